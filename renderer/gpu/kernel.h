@@ -1,0 +1,87 @@
+#pragma once
+// Compute kernels: GLSL files compiled in process by glslang, with includes, defines and a disk cache; their resources
+// are bound BY NAME. A kernel declares only what it uses; the host keeps one table name -> resource for a whole frame.
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "gpu/resources.h"
+
+namespace lucerna::gpu {
+
+using Defines = std::map<std::string, std::string>;  ///< #define NAME VALUE, in front of the source
+struct SpecConstant { uint32_t id; uint32_t value; };
+
+/// Finds, compiles and caches shaders. `root` is the shaders/ folder: files are named relative to it and
+/// #include "lib/bsdf.glsl" is relative to it too (or to the including file).
+/// Every kernel is compiled as GLSL 460 for Vulkan 1.2 with GL_EXT_scalar_block_layout,
+/// GL_GOOGLE_include_directive; #line directives keep file names, so that an error reads
+/// "shaders/lib/bsdf.glsl:123: 'foo' : undeclared identifier".
+/// Disk cache: $XDG_CACHE_HOME/lucerna/spirv (or ~/.cache), keyed by preprocessed source + defines + compiler version;
+/// safe against concurrent processes and truncated files.
+class ShaderCompiler {
+ public:
+  explicit ShaderCompiler(std::filesystem::path root = default_root());
+  ~ShaderCompiler();
+  /// $LUCERNA_SHADERS, else shaders/ beside the executable's install prefix, else the source tree's.
+  static std::filesystem::path default_root();
+  const std::filesystem::path& root() const;
+  void set_cache(bool enabled);
+  /// Throws Error located at file and line.
+  std::vector<uint32_t> compile(const std::string& file, const Defines& defines = {});
+  /// Files that the last compile() of this file and defines read (for hot reload).
+  std::vector<std::filesystem::path> dependencies(const std::string& file, const Defines& defines = {});
+  double seconds_spent() const;        ///< in glslang, so far
+  uint64_t cache_hits() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// name -> resource. Resources must outlive every use. Setting a name again replaces it.
+class Resources {
+ public:
+  void set(const std::string& name, const Buffer& buffer);          ///< storage buffer block of that name, or samplerBuffer
+  void set(const std::string& name, const TextureArray& array);     ///< sampler2DArray of that name
+  void remove(const std::string& name);
+  uint64_t version() const { return version_; }                     ///< grows with every change
+  using Entry = std::variant<const Buffer*, const TextureArray*>;
+  const Entry* find(const std::string& name) const;
+
+ private:
+  std::map<std::string, Entry> entries_;
+  uint64_t version_ = 0;
+};
+
+/// One compute pipeline. In the shader: set 0 only; `layout(set=0, binding=N, scalar) buffer NAME {...}` is bound to the
+/// resource NAME (the block's name, not the instance's), `uniform samplerBuffer NAME` and `uniform sampler2DArray NAME`
+/// likewise; binding numbers may be left out of the source altogether (glslang's auto-mapping assigns them). Workgroup
+/// size is read from the source.
+class Kernel {
+ public:
+  Kernel();
+  /// Throws Error: does not compile (located), needs more push constants than the device has, ...
+  Kernel(Device& device, ShaderCompiler& compiler, const std::string& file, const Defines& defines = {},
+         std::vector<SpecConstant> constants = {});
+  ~Kernel();
+  Kernel(Kernel&&) noexcept;
+  Kernel& operator=(Kernel&&) noexcept;
+  explicit operator bool() const { return impl_ != nullptr; }
+  const std::string& file() const;
+  uint32_t workgroup_size() const;     ///< local_size_x
+  uint32_t push_constant_bytes() const;
+  std::vector<std::string> resource_names() const;
+
+  struct Impl;
+  Impl* impl() const { return impl_.get(); }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lucerna::gpu

@@ -1,0 +1,92 @@
+#pragma once
+// Buffers and texture arrays. All are move-only and free themselves; a moved-from or default one is empty.
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gpu/device.h"
+
+namespace lucerna::gpu {
+
+enum class Memory {
+  device,  ///< fastest for kernels; mapped too where the device's memory is host-visible (lavapipe), else through staging
+  host     ///< always mapped, coherent, cached where possible: read-back, and queues shared with a host tracer
+};
+
+struct BufferDesc {
+  std::string name;                ///< for messages: "out of device memory for 'film sums' (99 MiB)"
+  uint64_t bytes = 0;              ///< 0 is allowed and makes a 16-byte buffer (so that it can be bound)
+  Memory memory = Memory::device;
+  bool texel = false;              ///< also readable as samplerBuffer (RGBA32F texels); bytes must be a multiple of 16
+};
+
+/// A storage buffer (also transfer source and destination, indirect arguments, and optionally a uniform texel buffer).
+class Buffer {
+ public:
+  Buffer();
+  /// Throws Error when it exceeds the device's limits or memory, naming the buffer, the size and the limit.
+  Buffer(Device& device, const BufferDesc& desc);
+  ~Buffer();
+  Buffer(Buffer&&) noexcept;
+  Buffer& operator=(Buffer&&) noexcept;
+
+  explicit operator bool() const { return impl_ != nullptr; }
+  uint64_t bytes() const;
+  const std::string& name() const;
+  /// Pointer to the whole buffer, or null where the memory is not mapped. Kernels must not be running.
+  void* mapped() const;
+  /// Blocking copies, through staging where not mapped. offset + size <= bytes().
+  void write(const void* data, uint64_t size, uint64_t offset = 0);
+  void read(void* data, uint64_t size, uint64_t offset = 0) const;
+
+  template <class T>
+  void write(std::span<const T> values, uint64_t first = 0) { write(values.data(), values.size_bytes(), first * sizeof(T)); }
+  template <class T>
+  std::vector<T> read_all() const {
+    std::vector<T> values(bytes() / sizeof(T));
+    read(values.data(), values.size() * sizeof(T));
+    return values;
+  }
+
+  struct Impl;
+  Impl* impl() const { return impl_.get(); }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+enum class TexelFormat { rgba8_unorm, rgba8_srgb, rgba16f, rgba32f };
+enum class AddressMode { repeat, clamp, mirror };
+
+struct TextureArrayDesc {
+  std::string name;
+  uint32_t width = 1, height = 1, layers = 1;
+  TexelFormat format = TexelFormat::rgba8_unorm;
+};
+
+/// A sampler2DArray in the shader: bilinear, one mip level, address mode repeat in both directions (other modes and
+/// nearest filtering are done on the coordinates in the shader).
+class TextureArray {
+ public:
+  TextureArray();
+  TextureArray(Device& device, const TextureArrayDesc& desc);
+  ~TextureArray();
+  TextureArray(TextureArray&&) noexcept;
+  TextureArray& operator=(TextureArray&&) noexcept;
+  explicit operator bool() const { return impl_ != nullptr; }
+  const TextureArrayDesc& desc() const;
+  /// Blocking upload of one layer, tightly packed rows, top row first, in the array's format
+  /// (4 bytes, 4 half floats or 4 floats a texel).
+  void write_layer(uint32_t layer, const void* texels);
+
+  struct Impl;
+  Impl* impl() const { return impl_.get(); }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lucerna::gpu
