@@ -28,14 +28,14 @@ int letter_index(char c) {
 }
 
 /// Thompson construction: a state has one labelled edge set (mask of letters) or up to two empty edges.
+struct NfaState {
+  uint32_t mask = 0;
+  int to = -1;
+  int empty[2] = {-1, -1};
+};
 struct Nfa {
-  struct State {
-    uint32_t mask = 0;
-    int to = -1;
-    int empty[2] = {-1, -1};
-  };
-  std::vector<State> states;
-  int add(State s = {}) { return states.push_back(s), static_cast<int>(states.size()) - 1; }
+  std::vector<NfaState> states;
+  int add(const NfaState& s = {}) { return states.push_back(s), static_cast<int>(states.size()) - 1; }
 };
 
 struct Fragment { int start, end; };  // `end` is a state without edges
