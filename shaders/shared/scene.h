@@ -1,0 +1,94 @@
+// The scene as it lies in device buffers. Read by C++ and GLSL. All buffers of this header are texel buffers (RGBA32F);
+// integers travel as their bit patterns.
+#ifndef LUCERNA_SHARED_SCENE_H
+#define LUCERNA_SHARED_SCENE_H
+#include "shaders/shared/compat.h"
+LUCERNA_SHARED_BEGIN
+
+// scene_triangles: one texel a primitive: bits (vertex 0, vertex 1, vertex 2, material | k_triangle_*).
+LUCERNA_CONST uint k_triangle_material_mask = 0x00ffffffu;
+LUCERNA_CONST uint k_triangle_flipped = 0x80000000u;   ///< instance with a negative determinant: clockwise is the front
+
+// scene_vertices: 2 texels a vertex: (position, u0) (normal, v0), world space, normals unit.
+// scene_tangents: 1 texel a vertex, only in scenes with normal maps: (tangent, handedness).
+// scene_extra:    2 texels a vertex, only in scenes with vertex colours or a second UV set: (rgba) (u1, v1, 0, 0).
+
+// scene_materials: k_material_texels a material.
+LUCERNA_CONST uint k_material_texels = 25u;
+LUCERNA_CONST uint k_material_base = 0u;          ///< base colour rgba
+LUCERNA_CONST uint k_material_emission = 1u;      ///< radiance rgb, bits: flags
+LUCERNA_CONST uint k_material_surface = 2u;       ///< metallic, roughness, ior, specular
+LUCERNA_CONST uint k_material_specular = 3u;      ///< specular colour rgb, transmission
+LUCERNA_CONST uint k_material_volume = 4u;        ///< absorption rgb [1/m], glass table row (-1: none)
+LUCERNA_CONST uint k_material_diffuse_t = 5u;     ///< diffuse transmission colour rgb, factor
+LUCERNA_CONST uint k_material_detail = 6u;        ///< normal scale, alpha cutoff, 0, 0
+LUCERNA_CONST uint k_material_textures = 7u;      ///< then 2 texels for each use: (m0 m1 m2 m3) (m4 m5 bits:texture 0)
+
+// Texture uses, in order.
+LUCERNA_CONST uint k_use_base = 0u;
+LUCERNA_CONST uint k_use_metallic_roughness = 1u;
+LUCERNA_CONST uint k_use_normal = 2u;
+LUCERNA_CONST uint k_use_emission = 3u;
+LUCERNA_CONST uint k_use_specular = 4u;
+LUCERNA_CONST uint k_use_specular_color = 5u;
+LUCERNA_CONST uint k_use_transmission = 6u;
+LUCERNA_CONST uint k_use_diffuse_t = 7u;
+LUCERNA_CONST uint k_use_diffuse_t_color = 8u;
+LUCERNA_CONST uint k_texture_uses = 9u;
+
+// Texture bits: 0-10 layer, 11-15 bucket, 16-17 wrap u, 18-19 wrap v (0 repeat, 1 clamp, 2 mirror), 20 nearest,
+// 21 second UV set, 31 present.
+LUCERNA_CONST uint k_texture_nearest = 1u << 20;
+LUCERNA_CONST uint k_texture_uv1 = 1u << 21;
+LUCERNA_CONST uint k_texture_present = 1u << 31;
+LUCERNA_CONST uint k_max_buckets = 12u;
+
+// Material flags.
+LUCERNA_CONST uint k_flag_double_sided = 1u;
+LUCERNA_CONST uint k_flag_unlit = 2u;
+LUCERNA_CONST uint k_flag_mask = 4u;              ///< alpha mask
+LUCERNA_CONST uint k_flag_blend = 8u;             ///< alpha blend
+LUCERNA_CONST uint k_flag_emissive = 16u;         ///< some emission: its triangles are in the light table
+LUCERNA_CONST uint k_flag_solid = 32u;            ///< transmits into a volume (thickness > 0)
+LUCERNA_CONST uint k_flag_vertex_color = 64u;
+
+// scene_lights: k_light_texels a light.
+LUCERNA_CONST uint k_light_texels = 4u;
+// texel 0: bits kind, bits primitive (triangle), area [m^2], 0
+// texel 1: intensity rgb (punctual), 0
+// texel 2: position (point, spot), cos of the inner cone
+// texel 3: direction (spot, directional; unit, into the scene), cos of the outer cone
+LUCERNA_CONST uint k_light_triangle = 0u;
+LUCERNA_CONST uint k_light_point = 1u;
+LUCERNA_CONST uint k_light_spot = 2u;
+LUCERNA_CONST uint k_light_directional = 3u;
+LUCERNA_CONST uint k_light_environment = 4u;
+
+// light_alias: one texel a light: (threshold, bits alias, pmf of this light, pmf of the alias).
+// environment_texels: one a texel: (radiance rgb, pmf of the texel). environment_alias: like light_alias.
+// bsdf_table: see renderer/upload/bsdf_table.h.
+
+/// What every kernel knows of the frame. Lengths in metres, angles in radians.
+struct Frame {
+  vec3 camera_origin;
+  uint width;
+  vec3 camera_right;       ///< half the picture's width at distance 1 (perspective), or half width (orthographic)
+  uint height;
+  vec3 camera_up;          ///< likewise, half the height
+  uint orthographic;
+  vec3 camera_forward;     ///< unit
+  uint seed;
+  vec3 environment_radiance;  ///< constant environment, or (1,1,1) * scale with a map
+  uint light_count;
+  uint environment_width, environment_height;  ///< 0: constant
+  float environment_rotation; ///< radians
+  float environment_light_pmf;///< probability that the light sampler chooses the environment (0: not sampled)
+  uint max_depth;
+  uint roulette_depth;
+  uint automaton_states;
+  float scene_radius;
+  uint automaton[16];         ///< paths::pack
+};
+
+LUCERNA_SHARED_END
+#endif

@@ -1,0 +1,54 @@
+// State of the paths in flight, and what the wavefront's kernels are told. Read by C++ and GLSL.
+#ifndef LUCERNA_SHARED_TRANSPORT_H
+#define LUCERNA_SHARED_TRANSPORT_H
+#include "shaders/shared/compat.h"
+LUCERNA_SHARED_BEGIN
+
+LUCERNA_CONST uint k_component_count = 4u;
+
+/// Bytes a path in flight takes on the device (ray, hit, shadow ray, state, queues): see PathBuffers.
+/// One path: `throughput` already divided by all probabilities.
+struct PathState {
+  vec3 throughput;
+  float pdf;           ///< of the last scattered direction, mixture of all lobes, per solid angle; 0: delta or camera
+  uint pixel;          ///< index into the film (y * width + x)
+  uint sample_index;   ///< of the pixel
+  uint bits;           ///< 0-7 automaton state, 8-23 scattering events so far, 24-31 null events since the last one
+  uint medium;         ///< material whose volume the ray is in, plus 1; 0: none
+  float travelled;     ///< metres since the last scattering event, over null events
+  float eta_scale;     ///< product of (eta_i/eta_t)^2 that refraction has put into the throughput
+  float pad0, pad1;
+};
+
+/// What a shadow ray brings if it arrives: the diffuse and the glossy lobe's shares go to components of their own.
+struct ShadowState {
+  vec3 diffuse;
+  uint components;     ///< 0-7 component of the diffuse share, 8-15 of the glossy one
+  vec3 glossy;
+  uint medium;
+};
+
+// Counters, uint each.
+LUCERNA_CONST uint k_counter_next = 0u;        ///< length of the next queue
+LUCERNA_CONST uint k_counter_shadow = 1u;      ///< length of the shadow queue
+LUCERNA_CONST uint k_counter_shadow_next = 2u; ///< shadow rays that go on behind a transparent surface
+LUCERNA_CONST uint k_counter_dropped = 3u;     ///< contributions refused because they were not finite
+LUCERNA_CONST uint k_counter_rays = 4u;        ///< [4]: rays of the next queue by the component they are accounted to
+LUCERNA_CONST uint k_counter_shadow_rays = 8u; ///< [4]: shadow rays likewise
+LUCERNA_CONST uint k_counter_roulette = 12u;   ///< paths ended by roulette
+LUCERNA_CONST uint k_counter_depth = 13u;      ///< paths ended by the maximum depth
+LUCERNA_CONST uint k_counter_slots = 16u;
+
+struct TransportPush {
+  uint count;          ///< entries of the queue, or slots
+  uint use_queue;      ///< 0: slot = index
+  uint first_pixel;    ///< camera source: of this batch
+  uint pixel_count;    ///< pixels of this batch
+  uint first_sample;
+  uint sample_count;   ///< samples a pixel in this batch
+  uint stride;         ///< camera source: pixel step of the coarse image (1: full)
+  uint pad;
+};
+
+LUCERNA_SHARED_END
+#endif
