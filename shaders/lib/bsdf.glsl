@@ -1,0 +1,381 @@
+// The surface model: glTF metallic-roughness with transmission, as a sum of lobes, each with its label.
+//
+//   conductor m            GGX, F = base + (1-base) w                                       G (S when smooth)
+//   dielectric (1-m)(1-t)  GGX, F = f0 + (f90-f0) w                                         G (S)
+//                          Lambert base/pi, coupled by (1-E(wo))(1-E(wi))/(1-E_avg)         D
+//                          diffuse transmission, coupled likewise                           D
+//   glass (1-m)t           GGX reflection and refraction with exact Fresnel (solid), or slab (thin)   G (S)
+// w = (1 - wo.h)^5. Every GGX lobe has its multiple-scattering complement (Kulla and Conty 2017):
+//   f_ms = F_ms (1-E1(wo))(1-E1(wi)) / (pi (1-E1_avg)),  F_ms = F_avg^2 E1_avg / (1 - F_avg (1-E1_avg)).
+// For solid glass the missing energy leaves on both sides in proportion to the sides' etendue (1-E_avg) n^2, the split
+// that satisfies both energy conservation and reciprocity f(wi->wo)/n_o^2 = f(wo->wi)/n_i^2.
+//
+// Local frame: z is the shading normal on wo's side, so wo.z > 0. Radiance transport: refraction includes (n_o/n_i)^2.
+// Compiled in only if the scene needs it: LUCERNA_SPECULAR, LUCERNA_SOLID_GLASS, LUCERNA_THIN_GLASS,
+// LUCERNA_DIFFUSE_TRANSMISSION.
+#ifndef LUCERNA_LIB_BSDF
+#define LUCERNA_LIB_BSDF
+#include "shaders/shared/bsdf_table.h"
+#include "lib/microfacet.glsl"
+
+#if LUCERNA_SOLID_GLASS || LUCERNA_THIN_GLASS
+#define LUCERNA_GLASS 1
+#else
+#define LUCERNA_GLASS 0
+#endif
+
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+uniform samplerBuffer bsdf_table;
+#endif
+
+const uint k_event_diffuse = 0u;
+const uint k_event_glossy = 1u;
+const uint k_event_specular = 2u;
+const uint k_event_null = 3u;   // no letter: straight on through a smooth thin wall
+
+// What the material says at a point.
+struct SurfaceParameters {
+  vec3 base;
+  float metallic;
+  float roughness;
+  float ior;             // 0: F = 1
+  float specular;
+  vec3 specular_color;
+  float transmission;
+  float diffuse_transmission;
+  vec3 diffuse_transmission_color;
+  bool solid;
+  bool inside;           // wo is on the inner side of a solid
+  int glass_row;
+};
+
+// Prepared for one wo.
+struct Bsdf {
+  vec3 diffuse;          // f_D on wo's side = diffuse * coupling(wi) / pi
+  vec3 transmitted;      // f_D on the other side, likewise
+  float alpha;
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+  float roughness;
+  bool delta;
+#endif
+#if LUCERNA_SPECULAR
+  vec3 f0, f90;          // of conductor and dielectric together, weighted
+  vec3 f_ms;             // their complement, weighted, times (1-E1(wo)) / (pi (1-E1_avg))
+  vec3 d_f0, d_f90, d_f_ms;  // of the dielectric alone, for the coupling
+#endif
+#if LUCERNA_GLASS
+  float glass;           // weight
+  vec3 tint;             // of what is transmitted
+  float eta;             // n on the other side / n on wo's side
+  bool solid;
+  uint table_here, table_there;
+  float ms_reflected, ms_transmitted;  // complement, times (1-E(wo)); radiance scale included
+#endif
+  // Probabilities of the lobes; they sum to 1, or are all 0 for a black surface.
+  float p_diffuse, p_transmitted, p_specular, p_specular_ms, p_glass, p_glass_ms;
+};
+
+struct BsdfValue {
+  vec3 diffuse;          // f_D |cos|
+  vec3 glossy;           // f_G |cos|
+  float pdf;             // of the mixture of all lobes, per solid angle; deltas excluded
+};
+
+struct BsdfSample {
+  vec3 wi;
+  vec3 weight;           // f_label |cos| / (p_label pdf_mix), or the delta's weight / probability
+  float pdf;             // pdf_mix; 0 for deltas
+  uint event;            // label
+  float eta2;            // (n_o/n_i)^2 contained in weight; 1 unless refracted
+  bool transmitted;      // wi is on the other side
+};
+
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+vec4 table_read(uint table, float mu, float roughness) {
+  float x = sqrt(clamp(mu, 0.0, 1.0)) * float(k_table_mu - 1u);
+  float y = clamp(roughness, 0.0, 1.0) * float(k_table_rough - 1u);
+  float x0 = min(floor(x), float(k_table_mu - 2u)), y0 = min(floor(y), float(k_table_rough - 2u));
+  int at = int(table * k_table_texels) + int(y0) * int(k_table_mu) + int(x0);
+  vec4 a = mix(texelFetch(bsdf_table, at), texelFetch(bsdf_table, at + 1), x - x0);
+  vec4 b = mix(texelFetch(bsdf_table, at + int(k_table_mu)), texelFetch(bsdf_table, at + int(k_table_mu) + 1), x - x0);
+  return mix(a, b, y - y0);
+}
+vec4 specular_table(float mu, float roughness, bool delta) {
+  float w = schlick_weight(mu);
+  vec4 smooth_row = vec4(1.0 - w, w, 20.0 / 21.0, 1.0 / 21.0);
+  return delta ? smooth_row : table_read(0u, mu, roughness);
+}
+// Complement's Fresnel factor for Schlick's F; e1 = E1_avg.
+vec3 complement_fresnel(vec3 f0, vec3 f90, float e1) {
+  vec3 average = f0 + (f90 - f0) * (1.0 / 21.0);
+  return average * average * e1 / (1.0 - average * (1.0 - e1));
+}
+#endif
+
+#if LUCERNA_SPECULAR
+// (1 - E(wi)) of the dielectric coat, E with its complement.
+vec3 coat_transmittance(Bsdf b, float mu) {
+  vec4 t = specular_table(mu, b.roughness, b.delta);
+  return max(vec3(0.0), 1.0 - b.d_f0 * t.x - b.d_f90 * t.y - b.d_f_ms * (1.0 - t.x - t.y));
+}
+#endif
+
+Bsdf make_bsdf(SurfaceParameters s, float mu) {
+  Bsdf b;
+  float dielectric = (1.0 - s.metallic) * (1.0 - s.transmission);
+  b.alpha = s.roughness * s.roughness;
+  b.diffuse = dielectric * s.base;
+  b.transmitted = vec3(0.0);
+#if LUCERNA_DIFFUSE_TRANSMISSION
+  b.transmitted = dielectric * s.diffuse_transmission * s.diffuse_transmission_color;
+  b.diffuse *= 1.0 - s.diffuse_transmission;
+#endif
+  b.p_specular = 0.0;
+  b.p_specular_ms = 0.0;
+  b.p_glass = 0.0;
+  b.p_glass_ms = 0.0;
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+  b.delta = b.alpha < k_delta_alpha;
+  b.roughness = s.roughness;
+  vec4 t = specular_table(mu, s.roughness, b.delta);
+  float e1 = t.x + t.y, e1_average = t.z + t.w;
+  float missing = max(0.0, 1.0 - e1), missing_average = max(1e-6, 1.0 - e1_average);
+#endif
+#if LUCERNA_SPECULAR
+  float r = (s.ior - 1.0) / (s.ior + 1.0);
+  b.d_f0 = min(vec3(1.0), (s.ior == 0.0 ? 1.0 : r * r) * s.specular_color) * s.specular;
+  b.d_f90 = vec3(s.specular);
+  vec3 m_ms = complement_fresnel(s.base, vec3(1.0), e1_average);
+  b.d_f_ms = complement_fresnel(b.d_f0, b.d_f90, e1_average);
+  b.f0 = s.metallic * s.base + dielectric * b.d_f0;
+  b.f90 = vec3(s.metallic) + dielectric * b.d_f90;
+  vec3 ms = s.metallic * m_ms + dielectric * b.d_f_ms;
+  b.f_ms = ms * missing / (k_pi * missing_average);
+  vec3 coat = coat_transmittance(b, mu);
+  vec3 coat_average = max(vec3(1e-6), 1.0 - b.d_f0 * t.z - b.d_f90 * t.w - b.d_f_ms * (1.0 - e1_average));
+  b.diffuse *= coat / coat_average;
+  b.transmitted *= coat / coat_average;
+  b.p_specular = luminance(b.f0 * t.x + b.f90 * t.y);
+  b.p_specular_ms = b.delta ? 0.0 : luminance(ms) * missing;
+  // What the lobe reflects in all, not only its prefactor: the coupling averages to coat_average.
+  b.p_diffuse = luminance(b.diffuse * coat_average);
+  b.p_transmitted = luminance(b.transmitted * coat_average);
+#else
+  b.p_diffuse = luminance(b.diffuse);
+  b.p_transmitted = luminance(b.transmitted);
+#endif
+#if LUCERNA_GLASS
+  b.glass = (1.0 - s.metallic) * s.transmission;
+  b.tint = s.base;
+  b.solid = s.solid;
+  float ior = max(s.ior, 1.0);
+  b.eta = s.solid ? (s.inside ? 1.0 / ior : ior) : ior;
+  // Thin: E1 of a mirror; average slab reflectance through the fit of Kulla and Conty to the Fresnel average.
+  float average = (ior - 1.0) / (4.08567 + 1.00071 * ior);
+  float slab = 2.0 * average / (1.0 + average);
+  float k = missing / (k_pi * missing_average);
+  b.ms_reflected = k * slab;
+  b.ms_transmitted = k * (1.0 - slab);
+  b.table_here = 0u;
+  b.table_there = 0u;
+#if LUCERNA_SOLID_GLASS
+  if (s.solid) {
+    uint outside = 1u + 2u * uint(max(s.glass_row, 0));
+    b.table_here = s.inside ? outside + 1u : outside;
+    b.table_there = s.inside ? outside : outside + 1u;
+    vec4 here = table_read(b.table_here, mu, s.roughness);
+    vec4 there = table_read(b.table_there, mu, s.roughness);
+    float lost_here = max(1e-7, 1.0 - here.y), lost_there = max(1e-7, 1.0 - there.y);
+    // Shares of etendue: n_here = 1, n_there = eta.
+    float share_there = lost_there * b.eta * b.eta / (lost_here + lost_there * b.eta * b.eta);
+    missing = max(0.0, 1.0 - here.x);
+    b.ms_reflected = (1.0 - share_there) * missing / (k_pi * lost_here);
+    // Radiance arriving from there: K(there->here) = K(here->there) / eta^2.
+    b.ms_transmitted = share_there * missing / (k_pi * lost_there * b.eta * b.eta);
+  }
+#endif
+  b.p_glass = b.glass;
+  b.p_glass_ms = b.delta ? 0.0 : b.glass * missing;
+#endif
+  float total = b.p_diffuse + b.p_transmitted + b.p_specular + b.p_specular_ms + b.p_glass + b.p_glass_ms;
+  float scale = total > 0.0 ? 1.0 / total : 0.0;
+  b.p_diffuse *= scale;
+  b.p_transmitted *= scale;
+  b.p_specular *= scale;
+  b.p_specular_ms *= scale;
+  b.p_glass *= scale;
+  b.p_glass_ms *= scale;
+  return b;
+}
+
+#if LUCERNA_GLASS
+// Reflectance of the boundary at a facet.
+float glass_fresnel(Bsdf b, float cos_h) {
+  float slab = fresnel_slab(cos_h, b.eta);
+#if LUCERNA_SOLID_GLASS
+  float solid = fresnel_dielectric(cos_h, b.eta);
+  return b.solid ? solid : slab;
+#else
+  return slab;
+#endif
+}
+#endif
+
+// All lobes but the deltas.
+BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
+  BsdfValue v;
+  float cos_i = abs(wi.z);
+  bool same_side = wi.z > 0.0;
+  float lambert = cos_i * k_inv_pi;
+  vec3 diffuse = same_side ? b.diffuse : b.transmitted;
+  v.pdf = (same_side ? b.p_diffuse : b.p_transmitted) * lambert;
+  v.glossy = vec3(0.0);
+#if LUCERNA_SPECULAR
+  diffuse *= coat_transmittance(b, cos_i);
+#endif
+  v.diffuse = diffuse * lambert;
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+  vec4 t = specular_table(cos_i, b.roughness, b.delta);
+  float missing = b.delta ? 0.0 : max(0.0, 1.0 - t.x - t.y);
+  vec3 h = normalize(wo + vec3(wi.xy, same_side ? wi.z : -wi.z));  // of reflection, or of the mirrored thin wall
+  float cos_oh = max(dot(wo, h), 0.0);
+  // f cos = F D G2 / (4 cos_o), pdf = visible / (4 wo.h)
+  float d = b.delta ? 0.0 : ggx_d(h.z, b.alpha);
+  float shape = d * ggx_g2(wo.z, cos_i, b.alpha) / (4.0 * wo.z);
+  float pdf_h = d * ggx_g1(wo.z, b.alpha) / (4.0 * wo.z);
+#endif
+#if LUCERNA_SPECULAR
+  if (same_side) {
+    float w = schlick_weight(cos_oh);
+    v.glossy += (b.f0 + (b.f90 - b.f0) * w) * shape + b.f_ms * missing * cos_i;
+    v.pdf += b.p_specular * pdf_h + b.p_specular_ms * lambert;
+  }
+#endif
+#if LUCERNA_GLASS
+  float f = glass_fresnel(b, cos_oh);
+  float ms_pdf_share = b.ms_reflected / max(b.ms_reflected + b.ms_transmitted, 1e-30);
+  float missing_i = missing;
+#if LUCERNA_SOLID_GLASS
+  vec4 there = table_read(same_side ? b.table_here : b.table_there, cos_i, b.roughness);
+  missing_i = b.solid && !b.delta ? max(0.0, 1.0 - there.x) : missing;
+#endif
+  vec3 reflected = vec3(f * shape + b.ms_reflected * missing_i * cos_i);
+  vec3 passed = b.tint * ((1.0 - f) * shape + b.ms_transmitted * missing_i * cos_i);
+  float pdf_reflected = f * pdf_h;
+  float pdf_passed = (1.0 - f) * pdf_h;
+#if LUCERNA_SOLID_GLASS
+  if (b.solid) {
+    vec3 g = wo + b.eta * wi;
+    vec3 ht = normalize(g * (g.z < 0.0 ? -1.0 : 1.0));
+    float oh = dot(wo, ht), ih = dot(wi, ht);
+    bool valid = !b.delta && !same_side && oh > 0.0 && ih < 0.0;
+    float denominator = square(ih + oh / b.eta);
+    float jacobian = valid ? -ih / max(denominator, 1e-30) : 0.0;   // d omega_h / d omega_i
+    float ft = 1.0 - fresnel_dielectric(max(oh, 0.0), b.eta);
+    float dt = valid ? ggx_d(ht.z, b.alpha) * max(oh, 0.0) / wo.z * jacobian : 0.0;
+    passed = b.tint * (ft * dt * ggx_g2(wo.z, cos_i, b.alpha) / (b.eta * b.eta) + b.ms_transmitted * missing_i * cos_i);
+    pdf_passed = ft * dt * ggx_g1(wo.z, b.alpha);
+  }
+#endif
+  v.glossy += b.glass * (same_side ? reflected : passed);
+  v.pdf += b.p_glass * (same_side ? pdf_reflected : pdf_passed) +
+           b.p_glass_ms * (same_side ? ms_pdf_share : 1.0 - ms_pdf_share) * lambert;
+#endif
+  return v;
+}
+
+// Draws a direction from the mixture of all lobes, then the label. u: direction; lobe: which lobe, which label.
+// Returns event k_event_null or weight 0 (absorbed) too.
+BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
+  BsdfSample s;
+  s.event = k_event_diffuse;
+  s.eta2 = 1.0;
+  s.transmitted = false;
+  s.weight = vec3(0.0);
+  s.pdf = 0.0;
+  vec3 cosine = sample_cosine(u);
+  float at = lobe.x;
+  s.wi = cosine;
+  bool through = at >= b.p_diffuse && at < b.p_diffuse + b.p_transmitted;
+  if (through) s.wi = vec3(cosine.xy, -cosine.z);
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+  at -= b.p_diffuse + b.p_transmitted;
+  vec3 h = b.delta ? vec3(0.0, 0.0, 1.0) : ggx_sample_visible(wo, b.alpha, u);
+  float cos_oh = dot(wo, h);
+  vec3 mirrored = 2.0 * cos_oh * h - wo;
+  bool delta = false;
+#endif
+#if LUCERNA_SPECULAR
+  bool specular = at >= 0.0 && at < b.p_specular;
+  if (specular) {
+    s.wi = mirrored;
+    if (b.delta) {
+      delta = true;
+      s.event = k_event_specular;
+      s.weight = (b.f0 + (b.f90 - b.f0) * schlick_weight(wo.z)) / b.p_specular;
+    }
+  }
+  at -= b.p_specular + b.p_specular_ms;
+#endif
+#if LUCERNA_GLASS
+  bool in_glass = at >= 0.0 && at < b.p_glass;
+  if (in_glass) {
+    float f = glass_fresnel(b, cos_oh);
+    float pick = at / b.p_glass;
+    bool reflect_it = pick < f;
+    vec3 passed = vec3(mirrored.xy, -mirrored.z);
+    float scale = 1.0;
+#if LUCERNA_SOLID_GLASS
+    if (b.solid) {
+      float sin2_t = max(0.0, 1.0 - cos_oh * cos_oh) / (b.eta * b.eta);
+      float cos_t = sqrt(max(0.0, 1.0 - sin2_t));
+      passed = -wo / b.eta + (cos_oh / b.eta - cos_t) * h;
+      scale = 1.0 / (b.eta * b.eta);
+    }
+#endif
+    s.wi = reflect_it ? mirrored : passed;
+    if (b.delta) {
+      delta = true;
+      bool straight = !reflect_it && !b.solid;
+      s.event = straight ? k_event_null : k_event_specular;
+      if (straight) s.wi = -wo;
+      s.weight = b.glass / b.p_glass * (reflect_it ? vec3(1.0) : b.tint * scale);
+    }
+  }
+  at -= b.p_glass;
+  bool in_complement = at >= 0.0 && b.p_glass_ms > 0.0;
+  if (in_complement) {
+    float share = b.ms_reflected / max(b.ms_reflected + b.ms_transmitted, 1e-30);
+    s.wi = at / b.p_glass_ms < share ? cosine : vec3(cosine.xy, -cosine.z);
+  }
+#endif
+  s.transmitted = s.wi.z < 0.0;
+#if LUCERNA_GLASS
+  if (b.solid && s.transmitted) s.eta2 = 1.0 / (b.eta * b.eta);
+#endif
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+  if (!delta) {
+#endif
+    BsdfValue v = bsdf_eval(b, wo, s.wi);
+    float yd = luminance(v.diffuse), yg = luminance(v.glossy);
+    float p_d = yd + yg > 0.0 ? yd / (yd + yg) : 1.0;
+    bool is_d = lobe.y < p_d;
+    s.event = is_d ? k_event_diffuse : k_event_glossy;
+    float p = (is_d ? p_d : 1.0 - p_d) * v.pdf;
+    s.weight = p > 0.0 ? (is_d ? v.diffuse : v.glossy) / p : vec3(0.0);
+    s.pdf = v.pdf;
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+  }
+#endif
+  return s;
+}
+
+// Straight transmission past shadow rays: of a smooth thin wall; 0 for everything else.
+vec3 bsdf_straight(Bsdf b, float mu) {
+#if LUCERNA_THIN_GLASS
+  if (b.delta && !b.solid) return b.glass * b.tint * (1.0 - fresnel_slab(mu, b.eta));
+#endif
+  return vec3(0.0);
+}
+
+#endif

@@ -1,0 +1,74 @@
+// Padded Owen-scrambled Sobol points: B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020.
+// Each pad is a two-dimensional (0,2)-sequence (Sobol dimensions 0 and 1) with an index shuffle and scrambles of its own,
+// all derived by hashing (pixel, seed, half, pad). Even and odd samples of a pixel are two independently scrambled
+// sequences: the two halves from which the error is estimated.
+#ifndef LUCERNA_LIB_SAMPLER
+#define LUCERNA_LIB_SAMPLER
+
+// Pads: 0 pixel, 1 lens, then k_pads_per_vertex for every scattering event.
+const uint k_pad_pixel = 0u;
+const uint k_pad_first_vertex = 2u;
+const uint k_pads_per_vertex = 4u;
+const uint k_pad_light_choice = 0u;  // x: which light, y: roulette
+const uint k_pad_light_uv = 1u;
+const uint k_pad_lobe = 2u;          // x: lobe, y: label
+const uint k_pad_direction = 3u;
+// Null events draw from a stream of their own, so that they do not shift the dimensions of the vertices.
+const uint k_pad_null = 0x10000u;
+
+struct Sampler {
+  uint key;    // of pixel, seed and half
+  uint index;  // in the half's sequence
+};
+
+uint hash_mix(uint x) {  // lowbias32, C. Wellons
+  x ^= x >> 16; x *= 0x7feb352du;
+  x ^= x >> 15; x *= 0x846ca68bu;
+  x ^= x >> 16;
+  return x;
+}
+uint hash_combine(uint seed, uint v) { return hash_mix(seed ^ (v * 0x9e3779b9u + 0x7f4a7c15u + (seed << 6) + (seed >> 2))); }
+
+Sampler make_sampler(uint pixel, uint sample_index, uint seed) {
+  Sampler s;
+  s.key = hash_combine(hash_combine(hash_mix(seed + 0x51633e2du), pixel), sample_index & 1u);
+  s.index = sample_index >> 1;
+  return s;
+}
+
+// Laine-Karras style permutation of reversed bits: an Owen scramble (Burley's improved constants are his; these are
+// the ones of N. Vegdahl, "Building a Better LK Hash", 2021).
+uint owen_scramble_reversed(uint x, uint seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+uint owen_scramble(uint x, uint seed) { return bitfieldReverse(owen_scramble_reversed(bitfieldReverse(x), seed)); }
+
+// Second Sobol dimension: Pascal's matrix mod 2 applied to the index by xor-shifts; result is bit-reversed.
+uint sobol_1_reversed(uint i) {
+  i ^= (i & 0xaaaaaaaau) >> 1;  // each step is one factor of the matrix
+  i ^= (i & 0xccccccccu) >> 2;
+  i ^= (i & 0xf0f0f0f0u) >> 4;
+  i ^= (i & 0xff00ff00u) >> 8;
+  i ^= i >> 16;
+  return i;
+}
+
+vec2 sample_2d(Sampler s, uint pad) {
+  uint key = hash_combine(s.key, pad);
+  uint index = owen_scramble(s.index, key);           // nested uniform shuffle of the order
+  uint rx = owen_scramble_reversed(index, hash_mix(key ^ 0xa511e9b3u));  // dimension 0 reversed is the index itself
+  uint ry = owen_scramble_reversed(sobol_1_reversed(index), hash_mix(key ^ 0x63d83595u));
+  // 24 bits keep the value strictly below 1.
+  return vec2(bitfieldReverse(rx) >> 8, bitfieldReverse(ry) >> 8) * (1.0 / 16777216.0);
+}
+
+vec2 sample_vertex(Sampler s, uint depth, uint what) {
+  return sample_2d(s, k_pad_first_vertex + depth * k_pads_per_vertex + what);
+}
+
+#endif
