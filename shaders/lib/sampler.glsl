@@ -8,11 +8,12 @@
 // Pads: 0 pixel, 1 lens, then k_pads_per_vertex for every scattering event.
 const uint k_pad_pixel = 0u;
 const uint k_pad_first_vertex = 2u;
-const uint k_pads_per_vertex = 4u;
+const uint k_pads_per_vertex = 5u;
 const uint k_pad_light_choice = 0u;  // x: which light, y: roulette
 const uint k_pad_light_uv = 1u;
 const uint k_pad_lobe = 2u;          // x: lobe, y: label
 const uint k_pad_direction = 3u;
+const uint k_pad_light_detail = 4u;  // which texel of the environment
 // Null events draw from a stream of their own, so that they do not shift the dimensions of the vertices.
 const uint k_pad_null = 0x10000u;
 
@@ -58,17 +59,21 @@ uint sobol_1_reversed(uint i) {
   return i;
 }
 
-vec2 sample_2d(Sampler s, uint pad) {
+uvec2 sample_2d_bits(Sampler s, uint pad) {
   uint key = hash_combine(s.key, pad);
   uint index = owen_scramble(s.index, key);           // nested uniform shuffle of the order
   uint rx = owen_scramble_reversed(index, hash_mix(key ^ 0xa511e9b3u));  // dimension 0 reversed is the index itself
   uint ry = owen_scramble_reversed(sobol_1_reversed(index), hash_mix(key ^ 0x63d83595u));
-  // 24 bits keep the value strictly below 1.
-  return vec2(bitfieldReverse(rx) >> 8, bitfieldReverse(ry) >> 8) * (1.0 / 16777216.0);
+  return uvec2(bitfieldReverse(rx), bitfieldReverse(ry));
 }
 
-vec2 sample_vertex(Sampler s, uint depth, uint what) {
-  return sample_2d(s, k_pad_first_vertex + depth * k_pads_per_vertex + what);
+// 24 bits keep the value strictly below 1.
+vec2 to_unit(uvec2 bits) { return vec2(bits >> 8) * (1.0 / 16777216.0); }
+vec2 sample_2d(Sampler s, uint pad) { return to_unit(sample_2d_bits(s, pad)); }
+
+uvec2 sample_vertex_bits(Sampler s, uint depth, uint what) {
+  return sample_2d_bits(s, k_pad_first_vertex + depth * k_pads_per_vertex + what);
 }
+vec2 sample_vertex(Sampler s, uint depth, uint what) { return to_unit(sample_vertex_bits(s, depth, what)); }
 
 #endif

@@ -1,0 +1,47 @@
+// Film -> picture: chosen layer, exposure, tone curve, sRGB bytes. Pixels that no sample has reached are taken from the coarse
+// film, which the host has tone-mapped into `Coarse` first.
+#include "lib/film.glsl"
+#include "lib/invocation.glsl"
+#include "shaders/shared/tone.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { TonePush push; };
+layout(scalar) buffer Picture { uint picture[]; };
+layout(scalar) readonly buffer Coarse { uint coarse[]; };
+
+vec3 component_mean(uint c, uint pixel, float n) {
+  FilmHalf a = film_read(c, pixel, 0u), b = film_read(c, pixel, 1u);
+  return ((a.sum + b.sum) + (a.compensation + b.compensation)) / n;
+}
+
+void main() {
+  uint pixel = global_index();
+  if (pixel >= push.width * push.height) return;
+  uint count = film_count[pixel];
+  float n = float(max(count, 1u));
+  vec3 color = vec3(0.0);
+  for (uint c = 0u; c < 4u; ++c) {
+    bool shown = push.layer == k_layer_beauty ? (push.show >> c & 1u) != 0u : push.layer == k_layer_primary + c;
+    if (shown) color += component_mean(c, pixel, n);
+  }
+  vec4 albedo = film_albedo[pixel], normal = film_normal[pixel];
+  float hits = max(albedo.w, 1.0);
+  vec3 flat_color = albedo.xyz / n;
+  if (push.layer == k_layer_normal) flat_color = 0.5 * normalize(normal.xyz + vec3(0.0, 0.0, 1e-20)) + 0.5;
+  if (push.layer == k_layer_depth) flat_color = vec3(albedo.w > 0.0 ? normal.w / hits / push.scale : 1.0);
+  if (push.layer == k_layer_samples) flat_color = vec3(float(count) / push.scale);
+  vec3 srgb;
+  if (push.layer >= k_layer_albedo) {
+    vec3 linear_color = clamp(flat_color, vec3(0.0), vec3(1.0));
+    srgb = push.layer == k_layer_normal ? linear_color : srgb_encode(linear_color);
+  } else {
+    srgb = tone_map(color * push.exposure, push.curve);
+  }
+  uvec3 bytes = uvec3(clamp(srgb, vec3(0.0), vec3(1.0)) * 255.0 + 0.5);
+  uint packed = bytes.x | bytes.y << 8 | bytes.z << 16 | 0xff000000u;
+  if (count == 0u && push.coarse_width > 0u) {
+    uvec2 xy = uvec2(pixel % push.width, pixel / push.width);
+    uvec2 at = min(xy * uvec2(push.coarse_width, push.coarse_height) / uvec2(push.width, push.height), uvec2(push.coarse_width, push.coarse_height) - 1u);
+    packed = coarse[at.y * push.coarse_width + at.x];
+  }
+  picture[pixel] = packed;
+}

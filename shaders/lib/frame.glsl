@@ -1,0 +1,32 @@
+// The frame's constants, the automaton, and the path state buffers.
+#ifndef LUCERNA_LIB_FRAME
+#define LUCERNA_LIB_FRAME
+#include "shaders/shared/scene.h"
+#include "shaders/shared/ray.h"
+#include "shaders/shared/transport.h"
+#include "lib/math.glsl"
+
+layout(scalar) readonly buffer FrameBlock { Frame frame; };
+
+#if LUCERNA_NO_AUTOMATON
+// The plain path tracer, kept as an oracle for the partition: everything is component 0 and nothing is cut off; one bit
+// remembers a diffuse event, for unlit surfaces.
+uint automaton_after(uint state, uint event) { return event == 0u ? 1u : state; }
+uint automaton_component(uint state) { return 0u; }
+bool automaton_live(uint state) { return true; }
+bool automaton_no_diffuse(uint state) { return state == 0u; }
+uint automaton_account(uint state) { return 0u; }
+#else
+// One word a state (paths/automaton.h, pack()).
+uint automaton_after(uint state, uint event) { return (frame.automaton[state] >> (8u * event)) & 0xffu; }
+uint automaton_component(uint state) { return (frame.automaton[state] >> 24) & 7u; }
+bool automaton_live(uint state) { return (frame.automaton[state] & (1u << 27)) != 0u; }
+bool automaton_no_diffuse(uint state) { return (frame.automaton[state] & (1u << 28)) != 0u; }
+uint automaton_account(uint state) { return (frame.automaton[state] >> 29) & 3u; }
+#endif
+
+uint path_automaton(PathState p) { return p.bits & 0xffu; }
+uint path_depth(PathState p) { return (p.bits >> 8) & 0xffffu; }
+uint path_nulls(PathState p) { return p.bits >> 24; }
+
+#endif

@@ -1,0 +1,167 @@
+// Light sampling: one light by its probability mass (alias method, Walker 1977; Vose 1991), then a point on it.
+// Densities are per solid angle at the shaded point, selection included.
+#ifndef LUCERNA_LIB_LIGHTS
+#define LUCERNA_LIB_LIGHTS
+#include "lib/frame.glsl"
+
+#if LUCERNA_LIGHTS
+uniform samplerBuffer scene_lights;
+uniform samplerBuffer light_alias;
+#endif
+#if LUCERNA_EMISSIVE
+layout(scalar) readonly buffer PrimitiveLightPmf { float primitive_light_pmf[]; };  // pmf / area [1/m^2]
+#endif
+#if LUCERNA_ENVIRONMENT_MAP
+uniform samplerBuffer environment_texels;
+uniform samplerBuffer environment_alias;
+#endif
+
+struct LightSample {
+  vec3 direction;    // unit, towards the light
+  float distance;    // metres; infinite for directional lights and the environment
+  vec3 radiance;     // of point and directional lights: irradiance on a facing plane
+  float pdf;         // per solid angle with selection; of delta lights: the selection's probability
+  bool delta;
+  uint primitive;    // emissive triangle, or k_no_hit
+  vec2 uv;           // barycentrics there
+  vec3 target;       // point on the triangle
+  vec3 normal;       // of the triangle, unit, on our side
+  vec3 offset;       // error bound of target, as Surface::offset
+};
+
+// `bits`: 32 uniform random bits; what is left of them within the entry flips its coin (exact to count / 2^32).
+uint alias_choose(samplerBuffer table, uint count, uint bits, out float pmf) {
+  uint i, fraction;
+  umulExtended(bits, count, i, fraction);
+  vec4 e = texelFetch(table, int(i));
+  bool first = float(fraction >> 8) * (1.0 / 16777216.0) < e.x;
+  pmf = first ? e.z : e.w;
+  return first ? i : floatBitsToUint(e.y);
+}
+
+#if LUCERNA_ENVIRONMENT_MAP
+// u = 0.5 + atan2(z, x) / 2pi, v = acos(y) / pi from the top; the map turned counter-clockwise seen from above, which
+// takes a direction at azimuth phi = atan2(z, x) to phi - rotation.
+vec2 environment_uv(vec3 d) {
+  float phi = atan(d.z, d.x) + frame.environment_rotation;
+  return vec2(fract(0.5 + phi * (0.5 * k_inv_pi)), acos(clamp(d.y, -1.0, 1.0)) * k_inv_pi);
+}
+vec3 environment_direction(vec2 uv) {
+  float phi = (uv.x - 0.5) * 2.0 * k_pi - frame.environment_rotation, theta = uv.y * k_pi;
+  return vec3(sin(theta) * cos(phi), cos(theta), sin(theta) * sin(phi));
+}
+#endif
+
+// Radiance that arrives from direction -d, and the density with which sample_light chooses d.
+vec3 environment_radiance(vec3 d, out float pdf) {
+  pdf = 0.0;
+#if LUCERNA_ENVIRONMENT_MAP
+  ivec2 size = ivec2(frame.environment_width, frame.environment_height);
+  vec2 uv = environment_uv(d);
+  vec2 at = uv * vec2(size) - 0.5;
+  ivec2 i = ivec2(floor(at));
+  vec2 f = at - vec2(i);
+  int x0 = (i.x + size.x) % size.x, x1 = (i.x + 1) % size.x;
+  int y0 = clamp(i.y, 0, size.y - 1), y1 = clamp(i.y + 1, 0, size.y - 1);
+  vec3 top = mix(texelFetch(environment_texels, y0 * size.x + x0).rgb, texelFetch(environment_texels, y0 * size.x + x1).rgb, f.x);
+  vec3 low = mix(texelFetch(environment_texels, y1 * size.x + x0).rgb, texelFetch(environment_texels, y1 * size.x + x1).rgb, f.x);
+  ivec2 cell = clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1);
+  float pmf = texelFetch(environment_texels, cell.y * size.x + cell.x).w;
+  // Uniform in solid angle within a texel's row band: area = 2pi/w * (cos top - cos bottom).
+  float band = cos(k_pi * float(cell.y) / float(size.y)) - cos(k_pi * float(cell.y + 1) / float(size.y));
+  pdf = frame.environment_light_pmf * pmf * float(size.x) / (2.0 * k_pi * band);
+  return frame.environment_radiance * mix(top, low, f.y);
+#else
+  return frame.environment_radiance;
+#endif
+}
+
+#if LUCERNA_EMISSIVE
+// Density with which sample_light chooses the direction to a point on an emissive triangle.
+float emissive_pdf(uint primitive, float distance2, float cos_light) {
+  return primitive_light_pmf[primitive] * distance2 / max(cos_light, 1e-30);
+}
+#endif
+
+#if LUCERNA_LIGHTS
+// Chooses by `choice` (32 bits), places by u; detail: 64 further bits (environment). Needs lib/surface.glsl before it.
+LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail) {
+  LightSample s;
+  s.primitive = k_no_hit;
+  s.uv = vec2(0.0);
+  s.target = vec3(0.0);
+  s.normal = vec3(0.0);
+  s.offset = vec3(0.0);
+  s.delta = true;
+  float pmf;
+  uint light = alias_choose(light_alias, frame.light_count, choice, pmf);
+  vec4 head = texelFetch(scene_lights, int(light * k_light_texels));
+  vec3 intensity = texelFetch(scene_lights, int(light * k_light_texels + 1u)).rgb;
+  vec4 place = texelFetch(scene_lights, int(light * k_light_texels + 2u));
+  vec4 aim = texelFetch(scene_lights, int(light * k_light_texels + 3u));
+  uint kind = floatBitsToUint(head.x);
+  // Point and spot: irradiance I/d^2; a spot falls off smoothly between its cones (glTF's recommended curve).
+  vec3 to = place.xyz - position;
+  float d2 = max(dot(to, to), 1e-20);
+  s.distance = sqrt(d2);
+  s.direction = to / s.distance;
+  float cos_axis = dot(-s.direction, aim.xyz);
+  float fade = clamp((cos_axis - aim.w) / max(place.w - aim.w, 1e-4), 0.0, 1.0);
+  s.radiance = intensity / d2 * (kind == k_light_spot ? fade * fade : 1.0);
+  s.pdf = pmf;
+  if (kind == k_light_directional) {
+    s.direction = -aim.xyz;
+    s.distance = k_infinity;
+    s.radiance = intensity;
+  }
+#if LUCERNA_EMISSIVE
+  if (kind == k_light_triangle) {
+    uint primitive = floatBitsToUint(head.y);
+    uvec4 tri = floatBitsToUint(texelFetch(scene_triangles, int(primitive)));
+    vec3 p0 = texelFetch(scene_vertices, int(2u * tri.x)).xyz;
+    vec3 p1 = texelFetch(scene_vertices, int(2u * tri.y)).xyz;
+    vec3 p2 = texelFetch(scene_vertices, int(2u * tri.z)).xyz;
+    // Uniform in area (low-distortion map, Heitz 2019).
+    vec2 b = 0.5 * u;
+    float offset = b.y - b.x;
+    b += offset > 0.0 ? vec2(0.0, offset) : vec2(-offset, 0.0);
+    vec3 p = b.x * p0 + b.y * p1 + (1.0 - b.x - b.y) * p2;
+    s.uv = vec2(b.y, 1.0 - b.x - b.y);
+    to = p - position;
+    d2 = max(dot(to, to), 1e-20);
+    s.distance = sqrt(d2);
+    s.direction = to / s.distance;
+    vec3 n = cross(p1 - p0, p2 - p0);
+    n = normalize(n / max(max3(abs(n)), 1e-37));
+    s.normal = dot(n, s.direction) > 0.0 ? -n : n;
+    s.target = p;
+    s.offset = error_gamma(16.0) * (abs(p0) + abs(p1) + abs(p2)) + error_gamma(6.0) * (abs(p1 - p0) + abs(p2 - p0));
+    float cos_light = abs(dot(n, s.direction));
+    s.pdf = pmf * d2 / max(cos_light * head.z, 1e-30);
+    s.delta = false;
+    s.primitive = primitive;
+    s.radiance = vec3(0.0);  // evaluated by the caller, with textures
+  }
+#endif
+#if LUCERNA_ENVIRONMENT_MAP
+  if (kind == k_light_environment) {
+    uint cells = frame.environment_width * frame.environment_height;
+    float texel_pmf;
+    uint cell = alias_choose(environment_alias, cells, detail.x, texel_pmf);
+    uint column = cell % frame.environment_width, row = cell / frame.environment_width;
+    float c0 = cos(k_pi * float(row) / float(frame.environment_height));
+    float c1 = cos(k_pi * float(row + 1u) / float(frame.environment_height));
+    float y = mix(c0, c1, u.y);
+    float sin_theta = sqrt(max(0.0, 1.0 - y * y));
+    float phi = ((float(column) + u.x) / float(frame.environment_width) - 0.5) * 2.0 * k_pi - frame.environment_rotation;
+    s.direction = vec3(sin_theta * cos(phi), y, sin_theta * sin(phi));
+    s.distance = k_infinity;
+    s.delta = false;
+    s.radiance = environment_radiance(s.direction, s.pdf);
+  }
+#endif
+  return s;
+}
+#endif
+
+#endif

@@ -1,0 +1,56 @@
+// Shadow rays that met no opaque surface deliver their light. In scenes with transparent surfaces the light first passes
+// them one by one (LUCERNA_TRANSPARENT): the queue of those still on their way is traced again.
+#include "lib/wavefront.glsl"
+#if LUCERNA_TRANSPARENT
+#include "lib/surface.glsl"
+layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
+#endif
+
+void main() {
+  uint index = global_index();
+  if (index >= push.count) return;
+  uint slot = queue[index];
+  Hit hit = hits[slot];
+  ShadowState s = shadow_states[slot];
+  bool blocked = hit.prim != k_no_hit;
+#if LUCERNA_TRANSPARENT
+  // hits: of the non-opaque triangles; the opaque ones have been tested by the first pass (push.stride == 0).
+  if (push.stride == 0u) {
+    if (!blocked) shadow_queue[atomicAdd(counters[k_counter_shadow_next], 1u)] = slot;
+    return;
+  }
+  if (blocked) {
+    Ray ray = rays[slot];
+    Surface surface = make_surface(ray, hit);
+    float coverage = surface_coverage(surface);
+    vec3 straight = vec3(0.0);
+#if LUCERNA_THIN_GLASS
+    mat3 to_world = shading_frame(surface, -ray.direction);
+    float mu = dot(to_world[2], -ray.direction);
+    straight = bsdf_straight(make_bsdf(surface.parameters, mu), mu);
+#endif
+    vec3 transmittance = vec3(1.0 - coverage) + coverage * straight;
+    s.diffuse *= transmittance;
+    s.glossy *= transmittance;
+    if (max3(s.diffuse) + max3(s.glossy) > 0.0) {
+      vec3 origin = offset_origin(surface, ray.direction);
+      // The end point stays where it was.
+      ray.tmax -= ray.tmax < 1e30 ? dot(origin - ray.origin, ray.direction) : 0.0;
+      ray.origin = origin;
+      if (ray.tmax > 0.0) {
+        rays[slot] = ray;
+        shadow_states[slot] = s;
+        shadow_queue[atomicAdd(counters[k_counter_shadow_next], 1u)] = slot;
+        return;
+      }
+    } else {
+      return;
+    }
+  }
+  blocked = false;
+#endif
+  if (!blocked) {
+    add_radiance(slot, s.components & 0xffu, s.diffuse);
+    add_radiance(slot, (s.components >> 8) & 0xffu, s.glossy);
+  }
+}
