@@ -1,8 +1,8 @@
 #pragma once
 // The acceleration structure: input, layout for the device, and the interface that every tracer answers.
 //
-// Rays and hits are the wavefront's own structs (shaders/shared/ray.h), so that a host tracer can work in place on the
-// mapped queue.
+// Rays and hits are the wavefront's own structs (shaders/shared/ray.h), so that a host tracer can work in
+// place on the mapped queue.
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,22 +12,27 @@
 
 namespace lucerna::bvh {
 
-/// World-space triangles, in primitive-id order. `non_opaque[i]` != 0: the triangle can let light pass straight through
-/// (alpha, smooth thin wall) and shadow rays must look at it.
+/// World-space triangles, in primitive-id order. `non_opaque[i]` != 0: the triangle can let light pass
+/// straight through (alpha, smooth thin wall) and shadow rays must look at it. An empty `non_opaque` means
+/// that all are opaque. Vertices must be finite; triangles of no area are allowed and are never hit.
 struct Triangles {
-  std::span<const vec3> vertices;      ///< 3 a triangle, unindexed
-  std::span<const uint8_t> non_opaque; ///< one a triangle
+  std::span<const vec3> vertices;       ///< 3 a triangle, unindexed
+  std::span<const uint8_t> non_opaque;  ///< one a triangle, or empty
   size_t count() const { return vertices.size() / 3; }
+  bool opaque(size_t prim) const { return non_opaque.empty() || non_opaque[prim] == 0; }
 };
 
-/// What a query looks for.
+/// What a query looks for. The numbers are the LUCERNA_QUERY of shaders/trace.comp.
 enum class Query {
-  closest,             ///< nearest hit over all triangles; at equal distance the lower primitive id
-  any_opaque,          ///< is there an opaque triangle within (0, tmax)? hit.prim is k_no_hit or any blocker
-  closest_non_opaque,  ///< nearest hit among the non-opaque triangles alone
+  closest = 0,     ///< nearest hit over all triangles; at equal distance the lower primitive id
+  any_opaque = 1,  ///< is there an opaque triangle within (0, tmax)? hit.prim is k_no_hit when there is none;
+                   ///< otherwise anything else (not every tracer knows which triangle it was)
+  closest_non_opaque = 2,  ///< nearest hit among the non-opaque triangles alone; ties as for closest
 };
 
 /// Deepest path of a tree, in inner nodes; the traversal stack in shared memory holds as many entries.
 inline constexpr uint32_t k_max_depth = 32;
+/// Most triangles in a leaf.
+inline constexpr uint32_t k_max_leaf = 4;
 
 }  // namespace lucerna::bvh

@@ -1,0 +1,31 @@
+#pragma once
+// The builder: surface-area heuristic (binned, with optional spatial splits) through Embree's rtcBuildBVH.
+#include <functional>
+
+#include "bvh/layout.h"
+
+namespace lucerna::bvh {
+
+struct BuildOptions {
+  /// Cut long triangles where it pays, so that one may lie in several leaves. Never changes a hit.
+  bool spatial_splits = false;
+  /// References that spatial splits may add, as a share of the triangles.
+  float split_budget = 0.3f;
+  /// Cost of a triangle test over that of a node visit, for the heuristic. Measured on lavapipe: see
+  /// build.cpp.
+  float intersection_cost = 1.0f;
+  int threads = 0;  ///< 0: all cores
+  /// Called from the building threads, one at a time, with the share done (0..1). Returning false cancels the
+  /// build.
+  std::function<bool(float)> progress;
+};
+
+/// The tree of `triangles`, laid out, no deeper than k_max_depth for any input. Same triangles and options
+/// give a tree that answers every query alike (hits do not depend on the tree at all). Throws Error: a vertex
+/// that is not finite (its triangle named), too many triangles, out of memory, cancelled.
+BvhData build(const Triangles& triangles, const BuildOptions& options = {});
+
+/// The same before layout and before its depth is limited; for tests and measurements.
+Tree build_tree(const Triangles& triangles, const BuildOptions& options = {});
+
+}  // namespace lucerna::bvh
