@@ -1,0 +1,41 @@
+#include "upload/alias_table.h"
+
+#include <bit>
+
+namespace lucerna::upload {
+
+std::vector<vec4> build_alias_table(std::span<const double> weights) {
+  double total = 0;
+  for (double w : weights) total += w;
+  if (!(total > 0)) return {};
+  const size_t n = weights.size();
+  std::vector<double> scaled(n);
+  std::vector<uint32_t> small, large, alias(n);
+  for (size_t i = 0; i < n; ++i) {
+    scaled[i] = weights[i] / total * double(n);
+    alias[i] = uint32_t(i);
+    (scaled[i] < 1 ? small : large).push_back(uint32_t(i));
+  }
+  while (!small.empty() && !large.empty()) {
+    const uint32_t s = small.back(), l = large.back();
+    small.pop_back();
+    alias[s] = l;
+    scaled[l] -= 1 - scaled[s];
+    if (scaled[l] < 1) large.pop_back(), small.push_back(l);
+  }
+  // What rounding left over takes its own entry whole; a zero weight never may.
+  for (uint32_t i : large) scaled[i] = 1;
+  uint32_t heaviest = 0;
+  for (size_t i = 0; i < n; ++i)
+    if (weights[i] > weights[heaviest]) heaviest = uint32_t(i);
+  for (uint32_t i : small) {
+    if (weights[i] > 0) scaled[i] = 1;
+    else scaled[i] = 0, alias[i] = heaviest;
+  }
+  std::vector<vec4> table(n);
+  for (size_t i = 0; i < n; ++i)
+    table[i] = vec4(float(scaled[i]), std::bit_cast<float>(alias[i]), float(weights[i] / total), float(weights[alias[i]] / total));
+  return table;
+}
+
+}  // namespace lucerna::upload

@@ -1,0 +1,131 @@
+#include "upload/bsdf_table.h"
+
+#include <cmath>
+
+#include "shaders/shared/bsdf_table.h"
+
+namespace lucerna::upload {
+namespace {
+
+using shared::k_table_mu;
+using shared::k_table_rough;
+constexpr double k_tau = 6.283185307179586;
+
+struct Vec { double x, y, z; };
+double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec normalized(Vec v) {
+  const double s = 1 / std::sqrt(dot(v, v));
+  return {v.x * s, v.y * s, v.z * s};
+}
+
+double lambda(double c, double alpha) {
+  const double tan2 = std::max(0.0, 1 - c * c) / std::max(c * c, 1e-30);
+  return 0.5 * (std::sqrt(1 + alpha * alpha * tan2) - 1);
+}
+
+double fresnel(double c, double eta) {
+  const double sin2 = (1 - c * c) / (eta * eta);
+  if (sin2 >= 1) return 1;
+  const double ct = std::sqrt(1 - sin2);
+  const double p = (eta * c - ct) / (eta * c + ct), s = (c - eta * ct) / (c + eta * ct);
+  return 0.5 * (p * p + s * s);
+}
+
+/// Visible normals (Heitz 2018 by spherical caps, Dupuy and Benyoub 2023), integrated with a fixed Hammersley set.
+template <class Integrand>
+void integrate_visible(double mu, double alpha, int n, const Integrand& integrand) {
+  const Vec wo{std::sqrt(std::max(0.0, 1 - mu * mu)), 0, mu};
+  const Vec v = normalized({alpha * wo.x, 0, wo.z});
+  for (int i = 0; i < n; ++i) {
+    uint32_t bits = uint32_t(i), reversed = 0;
+    for (int b = 0; b < 32; ++b) reversed = reversed << 1 | (bits >> b & 1);
+    const double u = (i + 0.5) / n, w = (reversed + 0.5 * 65536) / 4294967296.0;
+    const double z = (1 - w) * (1 + v.z) - v.z, s = std::sqrt(std::max(0.0, 1 - z * z));
+    Vec h{s * std::cos(k_tau * u) + v.x, s * std::sin(k_tau * u), z + v.z};
+    h = normalized({alpha * h.x, alpha * h.y, std::max(h.z, 1e-12)});
+    const double oh = dot(wo, h);
+    integrand(wo, h, oh, Vec{2 * oh * h.x - wo.x, 2 * oh * h.y - wo.y, 2 * oh * h.z - wo.z});
+  }
+}
+
+double g2_over_g1(double co, double ci, double alpha) {
+  const double lo = lambda(co, alpha), li = lambda(ci, alpha);
+  return (1 + lo) / (1 + lo + li);
+}
+
+/// Cosine-weighted average 2 * integral of E(mu) mu dmu of a row as the shader interpolates it (linear in sqrt(mu)).
+double row_average(const vec4* row, int channel) {
+  const int n = 4096;
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    const double mu = (i + 0.5) / n, x = std::sqrt(mu) * (k_table_mu - 1);
+    const int x0 = std::min(int(x), int(k_table_mu) - 2);
+    const double e = row[x0][channel] + (row[x0 + 1][channel] - row[x0][channel]) * (x - x0);
+    sum += 2 * mu * e / n;
+  }
+  return sum;
+}
+
+constexpr int k_samples = 1024;
+
+void schlick_table(vec4* table) {
+  for (uint32_t j = 0; j < k_table_rough; ++j) {
+    const double r = double(j) / (k_table_rough - 1), alpha = r * r;
+    vec4* row = table + j * k_table_mu;
+    for (uint32_t i = 0; i < k_table_mu; ++i) {
+      const double t = double(i) / (k_table_mu - 1), mu = std::max(t * t, 1e-6);
+      double a = 0, b = 0;
+      if (j == 0) {
+        b = std::pow(1 - mu, 5), a = 1 - b;
+      } else {
+        integrate_visible(mu, alpha, k_samples, [&](Vec wo, Vec, double oh, Vec wi) {
+          if (wi.z <= 0) return;
+          const double w = std::pow(1 - std::min(oh, 1.0), 5), g = g2_over_g1(wo.z, wi.z, alpha) / k_samples;
+          a += (1 - w) * g, b += w * g;
+        });
+      }
+      row[i] = vec4(float(a), float(b), 0, 0);
+    }
+    const float a = float(row_average(row, 0)), b = float(row_average(row, 1));
+    for (uint32_t i = 0; i < k_table_mu; ++i) row[i].z = a, row[i].w = b;
+  }
+}
+
+void glass_table(vec4* table, double eta) {
+  for (uint32_t j = 0; j < k_table_rough; ++j) {
+    const double r = double(j) / (k_table_rough - 1), alpha = r * r;
+    vec4* row = table + j * k_table_mu;
+    for (uint32_t i = 0; i < k_table_mu; ++i) {
+      const double t = double(i) / (k_table_mu - 1), mu = std::max(t * t, 1e-6);
+      double e = j == 0 ? 1 : 0;
+      if (j > 0) {
+        integrate_visible(mu, alpha, k_samples, [&](Vec wo, Vec h, double oh, Vec wi) {
+          const double f = fresnel(std::min(oh, 1.0), eta);
+          if (wi.z > 0) e += f * g2_over_g1(wo.z, wi.z, alpha) / k_samples;
+          if (f < 1) {
+            const double ct = std::sqrt(1 - (1 - oh * oh) / (eta * eta));
+            const double z = -wo.z / eta + (oh / eta - ct) * h.z;
+            if (z < 0) e += (1 - f) * g2_over_g1(wo.z, -z, alpha) / k_samples;
+          }
+        });
+      }
+      row[i] = vec4(float(std::min(e, 1.0)), 0, 0, 0);
+    }
+    const float average = float(row_average(row, 0));
+    for (uint32_t i = 0; i < k_table_mu; ++i) row[i].y = average;
+  }
+}
+
+}  // namespace
+
+std::vector<vec4> build_bsdf_tables(std::span<const float> glass_iors) {
+  std::vector<vec4> tables((1 + 2 * glass_iors.size()) * shared::k_table_texels);
+  schlick_table(tables.data());
+  for (size_t g = 0; g < glass_iors.size(); ++g) {
+    glass_table(tables.data() + (1 + 2 * g) * shared::k_table_texels, glass_iors[g]);
+    glass_table(tables.data() + (2 + 2 * g) * shared::k_table_texels, 1.0 / glass_iors[g]);
+  }
+  return tables;
+}
+
+}  // namespace lucerna::upload

@@ -1,0 +1,147 @@
+#include "upload/flatten.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/type_ptr.hpp>
+#include <map>
+
+#include "base/error.h"
+#include "upload/alias_table.h"
+#include "upload/bsdf_table.h"
+#include "upload/textures.h"
+
+namespace lucerna::upload {
+namespace {
+
+using namespace shared;
+float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
+
+bool any(const vec3& c) { return c.x > 0 || c.y > 0 || c.z > 0; }
+
+/// Vertices, triangles and their light-relevant facts, in instance order.
+void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
+  for (const scene::Material& m : scene.materials) {
+    flat.effects.normal_maps |= bool(m.normal_texture);
+  }
+  for (const scene::Mesh& mesh : scene.meshes)
+    for (const scene::Primitive& p : mesh.primitives) flat.effects.vertex_extra |= !p.colors.empty() || !p.uv1.empty();
+  const uint64_t count = scene::count_triangles(scene);
+  if (count > (1u << 27) / 3) throw_error(scene.file, "{} triangles are more than the limit of {}", count, (1u << 27) / 3);
+  flat.positions.reserve(3 * count);
+  flat.triangles.reserve(count);
+  for (const scene::Instance& instance : scene.instances) {
+    const mat3 linear(instance.to_world);
+    const mat3 normal_matrix = glm::transpose(glm::inverse(linear));
+    for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives) {
+      const uint32_t first = uint32_t(flat.vertices.size() / 2);
+      const scene::Material& material = scene.materials[p.material];
+      for (size_t i = 0; i < p.positions.size(); ++i) {
+        const vec3 position(instance.to_world * vec4(p.positions[i], 1));
+        vec3 n = i < p.normals.size() ? normal_matrix * p.normals[i] : vec3(0);
+        const float length = glm::length(n);
+        n = length > 0 && std::isfinite(length) ? n / length : vec3(0);
+        const vec2 uv = i < p.uv0.size() ? p.uv0[i] : vec2(0);
+        flat.vertices.push_back(vec4(position, uv.x));
+        flat.vertices.push_back(vec4(n, uv.y));
+        if (flat.effects.normal_maps) {
+          vec4 t(0);
+          if (i < p.tangents.size() && material.normal_texture) {
+            vec3 d = linear * vec3(p.tangents[i]);
+            d -= n * glm::dot(n, d);
+            const float l = glm::length(d);
+            if (l > 0) t = vec4(d / l, p.tangents[i].w * (instance.flipped ? -1.f : 1.f));
+          }
+          flat.tangents.push_back(t);
+        }
+        if (flat.effects.vertex_extra) {
+          flat.extra.push_back(i < p.colors.size() ? p.colors[i] : vec4(1));
+          flat.extra.push_back(vec4(i < p.uv1.size() ? p.uv1[i] : vec2(0), 0, 0));
+        }
+      }
+      const bool thin = material.transmission > 0 && material.thickness <= 0;
+      const bool non_opaque = material.alpha_mode != scene::AlphaMode::opaque || thin;
+      for (const uvec3& t : p.triangles) {
+        for (int k = 0; k < 3; ++k) flat.positions.push_back(vec3(flat.vertices[2 * size_t(first + t[k])]));
+        flat.triangles.push_back(uvec4(first + t.x, first + t.y, first + t.z,
+                                       p.material | (instance.flipped ? k_triangle_flipped : 0u)));
+        flat.non_opaque.push_back(non_opaque);
+      }
+    }
+  }
+  const Box box = scene::bounds(scene);
+  flat.scene_radius = box.empty() ? 1.f : std::max(box.radius(), 1e-6f);
+}
+
+void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
+  const TextureMap textures = pack_textures(scene, flat.buckets);
+  std::vector<float> glass_iors;
+  Effects& e = flat.effects;
+  for (const scene::Material& m : scene.materials) {
+    const bool solid = m.transmission > 0 && m.thickness > 0, thin = m.transmission > 0 && m.thickness <= 0;
+    const bool rough_glass = solid;
+    float row = -1;
+    if (rough_glass) {
+      const float ior = std::max(m.ior, 1.f);
+      auto at = std::find(glass_iors.begin(), glass_iors.end(), ior);
+      row = float(at - glass_iors.begin());
+      if (at == glass_iors.end()) glass_iors.push_back(ior);
+    }
+    uint32_t flags = 0;
+    if (m.double_sided) flags |= k_flag_double_sided;
+    if (m.unlit) flags |= k_flag_unlit;
+    if (m.alpha_mode == scene::AlphaMode::mask) flags |= k_flag_mask;
+    if (m.alpha_mode == scene::AlphaMode::blend) flags |= k_flag_blend;
+    if (any(m.emission) && !m.unlit) flags |= k_flag_emissive;
+    if (solid) flags |= k_flag_solid;
+    vec3 absorption(0);
+    if (solid && std::isfinite(m.attenuation_distance) && m.attenuation_distance > 0)
+      for (int k = 0; k < 3; ++k)
+        absorption[k] = -std::log(std::clamp(m.attenuation_color[k], 1e-6f, 1.f)) / m.attenuation_distance;
+    const size_t first = flat.materials.size();
+    flat.materials.resize(first + k_material_texels);
+    vec4* out = flat.materials.data() + first;
+    out[k_material_base] = m.base_color;
+    out[k_material_emission] = vec4(m.unlit ? vec3(0) : m.emission, as_float(flags));
+    out[k_material_surface] = vec4(m.metallic, m.roughness, m.ior, m.specular);
+    out[k_material_specular] = vec4(m.specular_color, m.transmission);
+    out[k_material_volume] = vec4(absorption, row);
+    out[k_material_diffuse_t] = vec4(m.diffuse_transmission_color, m.diffuse_transmission);
+    out[k_material_detail] = vec4(m.normal_scale, m.alpha_cutoff, 0, 0);
+    const scene::TextureUse* uses[k_texture_uses] = {
+        &m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emission_texture, &m.specular_texture,
+        &m.specular_color_texture, &m.transmission_texture, &m.diffuse_transmission_texture, &m.diffuse_transmission_color_texture};
+    for (uint32_t u = 0; u < k_texture_uses; ++u) {
+      const auto& x = uses[u]->m;
+      out[k_material_textures + 2 * u] = vec4(x[0], x[1], x[2], x[3]);
+      out[k_material_textures + 2 * u + 1] = vec4(x[4], x[5], as_float(textures.bits(*uses[u])), 0);
+    }
+    e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && m.transmission < 1));
+    e.solid_glass |= solid;
+    e.thin_glass |= thin;
+    e.diffuse_transmission |= m.diffuse_transmission > 0;
+    e.volumes |= any(absorption);
+    e.unlit |= m.unlit;
+    e.alpha |= m.alpha_mode != scene::AlphaMode::opaque;
+    e.tex_base |= bool(m.base_color_texture);
+    e.tex_metallic_roughness |= bool(m.metallic_roughness_texture);
+    e.tex_emission |= bool(m.emission_texture);
+    e.tex_specular |= m.specular_texture || m.specular_color_texture;
+    e.tex_transmission |= bool(m.transmission_texture);
+    e.tex_diffuse_transmission |= m.diffuse_transmission_texture || m.diffuse_transmission_color_texture;
+  }
+  flat.bsdf_tables = build_bsdf_tables(glass_iors);
+}
+
+}  // namespace
+
+FlatScene flatten(const scene::Scene& scene) {
+  FlatScene flat;
+  flatten_geometry(scene, flat);
+  flatten_materials(scene, flat);
+  flatten_lights(scene, flat);
+  return flat;
+}
+
+}  // namespace lucerna::upload

@@ -1,0 +1,53 @@
+#pragma once
+// Scene -> arrays as the device wants them (shaders/shared/scene.h): pure host code, no device, so that it is testable and
+// can be written to a file for the stand-alone ray bench.
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "shaders/shared/scene.h"
+
+namespace lucerna::upload {
+
+/// What the scene calls for; becomes #defines, so that nothing else is compiled in.
+struct Effects {
+  bool lights = false, emissive = false, environment_map = false, specular = false, solid_glass = false, thin_glass = false,
+       diffuse_transmission = false, volumes = false, unlit = false, alpha = false, normal_maps = false, vertex_extra = false,
+       tex_base = false, tex_metallic_roughness = false, tex_emission = false, tex_specular = false, tex_transmission = false,
+       tex_diffuse_transmission = false;
+  bool transparent() const { return alpha || thin_glass; }
+};
+
+/// Layers of one size and format.
+struct Bucket {
+  uint32_t width = 0, height = 0;
+  bool floats = false, srgb = false;
+  std::vector<std::vector<uint8_t>> layers;  ///< rgba8, or rgba32f bytes
+};
+
+struct FlatScene {
+  // Geometry (one entry a primitive, world space).
+  std::vector<vec3> positions;            ///< 3 a primitive; input of the BVH
+  std::vector<uint8_t> non_opaque;
+  std::vector<uvec4> triangles;           ///< scene_triangles
+  std::vector<vec4> vertices, tangents, extra;
+  std::vector<vec4> materials;
+  std::vector<Bucket> buckets;
+  // Lights.
+  std::vector<vec4> lights, light_alias;
+  std::vector<float> primitive_light_pmf; ///< pmf / area
+  std::vector<vec4> environment_texels, environment_alias;
+  std::vector<vec4> bsdf_tables;
+  uint32_t environment_width = 0, environment_height = 0;
+  vec3 environment_radiance{0};
+  float environment_rotation = 0, environment_light_pmf = 0;
+  float scene_radius = 1;
+  Effects effects;
+};
+
+/// Everything. Throws Error when the scene exceeds what indices or texture arrays can hold.
+FlatScene flatten(const scene::Scene& scene);
+/// Lights and environment only (after an edit of their strength); `flat` must come from the same scene.
+void flatten_lights(const scene::Scene& scene, FlatScene& flat);
+
+}  // namespace lucerna::upload

@@ -1,0 +1,149 @@
+// Lights of a flattened scene: emissive triangles by power, punctual lights, the environment by importance.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "upload/alias_table.h"
+#include "upload/flatten.h"
+#include "upload/textures.h"
+
+namespace lucerna::upload {
+namespace {
+
+using namespace shared;
+float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
+
+/// Radiance map and the weights of its texels: luminance under the bilinear filter's support (a 3x3 tent), times the
+/// solid angle of the texel, so that no direction with light has density 0.
+std::vector<double> flatten_environment_map(const scene::Image& image, FlatScene& flat) {
+  const uint32_t w = image.width, h = image.height;
+  flat.environment_width = w;
+  flat.environment_height = h;
+  flat.environment_texels.resize(size_t(w) * h);
+  std::vector<double> y(size_t(w) * h);
+  for (size_t i = 0; i < y.size(); ++i) {
+    vec3 c(image.floats[4 * i], image.floats[4 * i + 1], image.floats[4 * i + 2]);
+    for (int k = 0; k < 3; ++k) c[k] = std::isfinite(c[k]) ? std::max(c[k], 0.f) : 0.f;
+    flat.environment_texels[i] = vec4(c, 0);
+    y[i] = luminance(c);
+  }
+  std::vector<double> weights(y.size());
+  for (uint32_t row = 0; row < h; ++row) {
+    const double band = std::cos(k_pi * row / h) - std::cos(k_pi * (row + 1.0) / h);
+    for (uint32_t column = 0; column < w; ++column) {
+      double sum = 0;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const uint32_t r = uint32_t(std::clamp(int(row) + dy, 0, int(h) - 1)), c = (column + w + dx) % w;
+          sum += y[size_t(r) * w + c] * (dx ? 1 : 2) * (dy ? 1 : 2) / 16.0;
+        }
+      weights[size_t(row) * w + column] = sum * band;
+    }
+  }
+  return weights;
+}
+
+/// Mean luminance factor of the emission texture over a triangle, by 16 points; the estimate only steers sampling.
+double texture_mean(const scene::Scene& scene, const scene::TextureUse& use, const FlatScene& flat, const uvec4& t) {
+  if (!use) return 1;
+  double sum = 0;
+  for (int i = 0; i < 16; ++i) {
+    float u = (i % 4 + 0.5f) / 4, v = (i / 4 + 0.5f) / 4;
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    const auto uv = [&](uint32_t vertex) {
+      if (use.uv_set == 1 && !flat.extra.empty()) return vec2(flat.extra[2 * size_t(vertex) + 1]);
+      return vec2(flat.vertices[2 * size_t(vertex)].w, flat.vertices[2 * size_t(vertex) + 1].w);
+    };
+    sum += luminance(read_texture(scene, use, (1 - u - v) * uv(t.x) + u * uv(t.y) + v * uv(t.z)));
+  }
+  return sum / 16;
+}
+
+}  // namespace
+
+void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
+  flat.lights.clear();
+  flat.primitive_light_pmf.clear();
+  flat.environment_texels.clear();
+  flat.environment_alias.clear();
+  flat.environment_width = flat.environment_height = 0;
+  std::vector<double> weights;
+  const auto add = [&](uint32_t kind, uint32_t primitive, float area, vec3 intensity, vec4 place, vec4 aim, double power) {
+    flat.lights.insert(flat.lights.end(), {vec4(as_float(kind), as_float(primitive), area, 0), vec4(intensity, 0), place, aim});
+    weights.push_back(power);
+  };
+  // Emissive triangles: flux pi * L * A, twice that when both sides emit.
+  std::vector<std::pair<uint32_t, float>> emissive;
+  for (uint32_t i = 0; i < flat.triangles.size(); ++i) {
+    const scene::Material& m = scene.materials[flat.triangles[i].w & k_triangle_material_mask];
+    if (m.unlit || luminance(m.emission) <= 0) continue;
+    const vec3* p = &flat.positions[3 * size_t(i)];
+    const float area = 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+    if (!(area > 0)) continue;
+    const double mean = texture_mean(scene, m.emission_texture, flat, flat.triangles[i]);
+    emissive.emplace_back(i, area);
+    add(k_light_triangle, i, area, vec3(0), vec4(0), vec4(0),
+        double(k_pi) * area * luminance(m.emission) * mean * (m.double_sided ? 2 : 1));
+  }
+  const double disk = double(k_pi) * flat.scene_radius * flat.scene_radius;
+  for (const scene::Light& l : scene.lights) {
+    if (!l.enabled || !(luminance(l.intensity) > 0)) continue;
+    const float inner = std::cos(l.inner_cone), outer = std::cos(l.outer_cone);
+    const double y = luminance(l.intensity);
+    const bool spot = l.kind == scene::LightKind::spot;
+    if (l.kind == scene::LightKind::directional)
+      add(k_light_directional, 0, 0, l.intensity, vec4(0), vec4(l.direction, 0), y * disk);
+    else
+      add(spot ? k_light_spot : k_light_point, 0, 0, l.intensity, vec4(l.position, inner), vec4(l.direction, outer),
+          y * (spot ? 2 * k_pi * (1 - 0.5 * (inner + outer)) : 4 * k_pi));
+  }
+  // Environment. A constant one is left to BSDF sampling, which for it is the better strategy.
+  const scene::Environment& environment = scene.environment;
+  const bool map = environment.image != scene::k_none && environment.scale > 0;
+  flat.environment_radiance = (map ? vec3(1) : environment.image == scene::k_none ? environment.radiance : vec3(0)) * environment.scale;
+  flat.environment_rotation = environment.rotation * k_pi / 180;
+  double environment_weight = 0;
+  if (map) {
+    const std::vector<double> texels = flatten_environment_map(scene.images[environment.image], flat);
+    flat.environment_alias = build_alias_table(texels);
+    double total = 0;
+    for (double t : texels) total += t;
+    if (total > 0) {
+      for (size_t i = 0; i < texels.size(); ++i) flat.environment_texels[i].w = float(texels[i] / total);
+      // Mean radiance times solid angle through the scene's disk.
+      environment_weight = total * 2 * k_pi / flat.environment_width * environment.scale * disk;
+    }
+  }
+  // The environment and the sun count with the whole scene's cross-section, of which an interior receives little: neither
+  // they nor the lamps get less than a share of the samples.
+  double local = 0, distant = environment_weight;
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const bool far = std::bit_cast<uint32_t>(flat.lights[i * k_light_texels].x) == k_light_directional;
+    (far ? distant : local) += weights[i];
+  }
+  if (local > 0 && distant > 0) {
+    const double share = std::clamp(distant / (local + distant), 0.25, 0.6);
+    for (size_t i = 0; i < weights.size(); ++i) {
+      const bool far = std::bit_cast<uint32_t>(flat.lights[i * k_light_texels].x) == k_light_directional;
+      weights[i] *= far ? share / distant : (1 - share) / local;
+    }
+    environment_weight *= share / distant;
+  }
+  flat.environment_light_pmf = 0;
+  if (environment_weight > 0) {
+    add(k_light_environment, 0, 0, vec3(0), vec4(0), vec4(0), environment_weight);
+    double total = 0;
+    for (double w : weights) total += w;
+    flat.environment_light_pmf = float(environment_weight / total);
+  }
+  flat.light_alias = build_alias_table(weights);
+  if (flat.light_alias.empty()) flat.lights.clear();
+  flat.primitive_light_pmf.assign(emissive.empty() ? 0 : flat.triangles.size(), 0.f);
+  for (size_t k = 0; k < emissive.size() && !flat.light_alias.empty(); ++k)
+    flat.primitive_light_pmf[emissive[k].first] = flat.light_alias[k].z / emissive[k].second;
+  flat.effects.lights = !flat.lights.empty();
+  flat.effects.emissive = !emissive.empty();
+  flat.effects.environment_map = map;
+}
+
+}  // namespace lucerna::upload
