@@ -246,7 +246,7 @@ void any_one(RTCScene scene, const Rows& rows, uint32_t begin, uint32_t end) {
   }
 }
 
-/// N neighbours at a time. Coherent rays gain a factor 2.5 over single rays, incoherent ones lose 10 %.
+/// N neighbours at a time. Coherent rays gain a factor 1.8 over single rays, incoherent ones lose 10 %.
 template <uint32_t N>
 void closest_packet(RTCScene scene, const Rows& rows, uint32_t begin, uint32_t end) {
   Context context;
@@ -287,7 +287,13 @@ HostTracer::HostTracer(HostTracer&&) noexcept = default;
 HostTracer& HostTracer::operator=(HostTracer&&) noexcept = default;
 
 int HostTracer::threads() const { return impl_->workers.threads(); }
-uint64_t HostTracer::bytes() const { return static_cast<uint64_t>(std::max<int64_t>(0, impl_->bytes)); }
+uint64_t HostTracer::bytes() const {
+  uint64_t sum = static_cast<uint64_t>(std::max<int64_t>(0, impl_->bytes));
+  for (const Impl::Part* part : {&impl_->all, &impl_->opaque, &impl_->non_opaque})
+    sum += part->leaves.triangles.capacity() * sizeof(PackedTriangles) +
+           part->leaves.boxes.capacity() * sizeof(Box);
+  return sum;
+}
 
 void HostTracer::trace(Query query, std::span<const Ray> rays, std::span<Hit> hits, const uint32_t* queue,
                        uint32_t count, bool coherent) const {

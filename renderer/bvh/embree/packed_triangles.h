@@ -4,10 +4,10 @@
 //
 // S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. Vertices are moved
 // so that the ray starts at the origin and sheared so that it runs along an axis; then the signs of three 2D
-// edge functions decide. A vertex lands on the same 2D point whichever triangle asks, and the sign of an edge
-// function is exact: rounding can only make it zero (products that differ round to equal floats or to floats
-// of the same order), and zeros are recomputed exactly. So no ray passes between triangles that share an edge
-// or a vertex.
+// edge functions decide. A vertex lands on the same 2D point whichever triangle asks. Rounding can turn an
+// edge function into zero (its two products round to the same float) but never change its sign, and zeros are
+// recomputed exactly. So the signs are those of exact geometry on those 2D points, and no ray passes between
+// triangles that share an edge or a vertex.
 //
 // The arithmetic is the shader's, operation by operation: where the device divides with correct rounding
 // (lavapipe does), t, u and v are the same bits.
