@@ -202,9 +202,9 @@ uint8_t Automaton::classify(std::string_view word) const {
   return states[state].accept;
 }
 
-uint8_t Automaton::accounted_to(uint8_t state) const {
+uint8_t Automaton::accounted_to(uint8_t state, uint32_t enabled) const {
   for (uint8_t c = 0; c < k_component_count; ++c)
-    if (states[state].reachable >> c & 1u) return c;
+    if ((states[state].reachable & enabled) >> c & 1u) return c;
   return k_no_component;
 }
 
@@ -342,7 +342,7 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled) {
     const auto& s = automaton.states[i];
     const bool on = s.accept != k_no_component && (enabled >> s.accept & 1u);
     const uint32_t component = on ? s.accept : k_component_count;
-    const uint8_t account = automaton.accounted_to(static_cast<uint8_t>(i));
+    const uint8_t account = automaton.accounted_to(static_cast<uint8_t>(i), enabled);
     packed.push_back(s.next[0] | s.next[1] << 8 | s.next[2] << 16 | component << 24 |
                      ((s.reachable & enabled) ? 1u << 27 : 0u) |
                      (mirrors.count(static_cast<uint8_t>(i)) ? 1u << 28 : 0u) |

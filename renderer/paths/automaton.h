@@ -36,8 +36,9 @@ struct Automaton {
   uint8_t after(uint8_t state, Event event) const { return states[state].next[static_cast<int>(event)]; }
   /// Component of a word such as "EGDL" (it must start with E and end with L), or k_no_component.
   uint8_t classify(std::string_view word) const;
-  /// The lowest component still reachable from a state, 0..3, or k_no_component: the one its rays are accounted to.
-  uint8_t accounted_to(uint8_t state) const;
+  /// The lowest enabled component (bit i: component i) still reachable from a state, 0..3, or k_no_component: the one its
+  /// rays are accounted to.
+  uint8_t accounted_to(uint8_t state, uint32_t enabled = 0b1111) const;
 };
 
 /// Compiles expressions (all starting with E and ending with L) into one automaton, minimized.

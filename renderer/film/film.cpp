@@ -1,0 +1,96 @@
+#include "film/film.h"
+
+#include <cmath>
+
+namespace lucerna::film {
+
+Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width), height_(height) {
+  const uint64_t pixels = uint64_t(width) * height, largest = device.info().limits.max_storage_buffer / 48;
+  if (pixels == 0) throw Error("size", "a picture needs at least one pixel");
+  if (pixels > largest)
+    throw_error("size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{})", width, height, pixels, largest,
+                uint32_t(std::sqrt(largest * 16.0 / 9)), uint32_t(std::sqrt(largest * 9.0 / 16)));
+  const char* names[k_components] = {"film primary", "film secondary", "film tertiary", "film caustic"};
+  for (int c = 0; c < k_components; ++c) sums_[c] = gpu::Buffer(device, {.name = names[c], .bytes = pixels * 48});
+  albedo_ = gpu::Buffer(device, {.name = "film albedo", .bytes = pixels * 16});
+  normal_ = gpu::Buffer(device, {.name = "film normals", .bytes = pixels * 16});
+  count_ = gpu::Buffer(device, {.name = "film counts", .bytes = pixels * 4});
+  picture_ = gpu::Buffer(device, {.name = "picture", .bytes = pixels * 4, .memory = gpu::Memory::host});
+}
+
+void Film::clear(gpu::Stream& stream) {
+  for (gpu::Buffer& b : sums_) stream.fill(b, 0);
+  stream.fill(albedo_, 0);
+  stream.fill(normal_, 0);
+  stream.fill(count_, 0);
+  stream.run();
+}
+
+void Film::bind(gpu::Resources& r) const {
+  r.set("FilmPrimary", sums_[0]);
+  r.set("FilmSecondary", sums_[1]);
+  r.set("FilmTertiary", sums_[2]);
+  r.set("FilmCaustic", sums_[3]);
+  r.set("FilmAlbedo", albedo_);
+  r.set("FilmNormal", normal_);
+  r.set("FilmCount", count_);
+  r.set("Picture", picture_);
+}
+
+Image Film::read() const {
+  Image image;
+  image.width = width_;
+  image.height = height_;
+  const size_t n = size_t(width_) * height_;
+  image.samples.resize(n);
+  count_.read(image.samples.data(), n * 4);
+  std::vector<shared::FilmHalf> halves(2 * n);
+  for (int c = 0; c < k_components; ++c) {
+    sums_[c].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
+    image.components[c].resize(n);
+    image.odd_half[c].resize(n);
+    for (size_t i = 0; i < n; ++i) {
+      const auto total = [&](size_t k) { return glm::dvec3(halves[k].sum) + glm::dvec3(halves[k].compensation); };
+      const double samples = std::max(1u, image.samples[i]), odd = std::max(1u, image.samples[i] / 2);
+      image.components[c][i] = vec3((total(2 * i) + total(2 * i + 1)) / samples);
+      image.odd_half[c][i] = vec3(total(2 * i + 1) / odd);
+    }
+  }
+  std::vector<vec4> plane(n);
+  albedo_.read(plane.data(), n * 16);
+  std::vector<float> hits(n);
+  image.albedo.resize(n);
+  for (size_t i = 0; i < n; ++i) {
+    image.albedo[i] = vec3(plane[i]) / float(std::max(1u, image.samples[i]));
+    hits[i] = plane[i].w;
+  }
+  normal_.read(plane.data(), n * 16);
+  image.normal.resize(n);
+  image.depth.resize(n);
+  for (size_t i = 0; i < n; ++i) {
+    const float length = glm::length(vec3(plane[i]));
+    image.normal[i] = length > 0 ? vec3(plane[i]) / length : vec3(0);
+    image.depth[i] = hits[i] > 0 ? plane[i].w / hits[i] : 0;
+  }
+  return image;
+}
+
+std::array<vec3, k_components> Film::means(const Image& image) {
+  std::array<vec3, k_components> means{};
+  for (int c = 0; c < k_components; ++c) {
+    glm::dvec3 sum(0);
+    size_t pixels = 0;
+    for (size_t i = 0; i < image.samples.size(); ++i)
+      if (image.samples[i]) sum += glm::dvec3(image.components[c][i]), ++pixels;
+    means[c] = vec3(sum / double(std::max<size_t>(1, pixels)));
+  }
+  return means;
+}
+
+std::vector<uint8_t> Film::read_picture() const {
+  std::vector<uint8_t> bytes(size_t(width_) * height_ * 4);
+  picture_.read(bytes.data(), bytes.size());
+  return bytes;
+}
+
+}  // namespace lucerna::film

@@ -1,0 +1,54 @@
+#pragma once
+// The film: component sums in two independently scrambled halves, features, sample counts, in device memory; and its tone-mapped
+// picture. Layout: shaders/shared/film.h.
+#include <array>
+#include <vector>
+
+#include "base/math.h"
+#include "gpu/stream.h"
+#include "shaders/shared/film.h"
+
+namespace lucerna::film {
+
+inline constexpr int k_components = 4;
+
+/// What the film holds, read back: means over the samples. Row 0 at the top.
+struct Image {
+  uint32_t width = 0, height = 0;
+  std::array<std::vector<vec3>, k_components> components;       ///< radiance
+  std::array<std::vector<vec3>, k_components> odd_half;         ///< mean of the odd samples alone
+  std::vector<vec3> albedo, normal;                             ///< normal: unit or 0
+  std::vector<float> depth;                                     ///< metres along the view axis, mean of hits; 0: none
+  std::vector<uint32_t> samples;
+};
+
+struct View {
+  uint32_t layer = 0;     ///< shared::k_layer_*
+  uint32_t show = 15;     ///< components in the beauty layer
+  uint32_t curve = 0;     ///< tone curve
+  float exposure = 1;     ///< factor
+  float scale = 1;        ///< depth or samples shown white
+};
+
+class Film {
+ public:
+  /// Throws Error when a plane exceeds what one binding may hold (naming the largest size that fits), or memory.
+  Film(gpu::Device& device, uint32_t width, uint32_t height);
+  uint32_t width() const { return width_; }
+  uint32_t height() const { return height_; }
+  uint32_t tiles() const { return ((width_ + 7) / 8) * ((height_ + 7) / 8); }
+  void clear(gpu::Stream& stream);
+  void bind(gpu::Resources& resources) const;
+  Image read() const;
+  /// Mean radiance of each component over the picture's sampled pixels.
+  static std::array<vec3, k_components> means(const Image& image);
+  const gpu::Buffer& picture() const { return picture_; }
+  std::vector<uint8_t> read_picture() const;
+
+ private:
+  uint32_t width_, height_;
+  std::array<gpu::Buffer, k_components> sums_;
+  gpu::Buffer albedo_, normal_, count_, picture_;
+};
+
+}  // namespace lucerna::film

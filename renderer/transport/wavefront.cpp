@@ -1,0 +1,271 @@
+#include "transport/wavefront.h"
+
+#include "base/timer.h"
+#include "shaders/shared/trace.h"
+
+namespace lucerna::transport {
+
+using namespace shared;
+
+struct Wavefront::Impl {
+  gpu::Device& device;
+  gpu::Stream stream;
+  HostTrace host_trace;
+  uint32_t slots;
+  bool transparent = false;
+  uint32_t enabled = 15;
+  uint8_t first_account = 0;
+  double compile_seconds = 0;
+
+  gpu::Buffer frame, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states, counters, no_coarse;
+  std::array<gpu::Buffer, 2> queues, shadow_queues;
+  gpu::Kernel camera, shade, shadow, film_add, tonemap, trace_closest, trace_any, trace_non_opaque;
+  std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
+  gpu::Resources film_resources;
+  TransportStats stats;
+
+  Impl(gpu::Device& d, uint32_t n, HostTrace trace) : device(d), stream(d), host_trace(std::move(trace)), slots(n) {
+    const gpu::Memory queue_memory = host_trace ? gpu::Memory::host : gpu::Memory::device;
+    const auto make = [&](const char* name, uint64_t bytes, gpu::Memory memory) {
+      return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
+    };
+    frame = make("frame", sizeof(Frame), gpu::Memory::device);
+    rays = make("rays", uint64_t(n) * sizeof(Ray), queue_memory);
+    hits = make("hits", uint64_t(n) * sizeof(Hit), queue_memory);
+    paths = make("path states", uint64_t(n) * sizeof(PathState), gpu::Memory::device);
+    radiance = make("path radiance", uint64_t(n) * 12 * k_component_count, gpu::Memory::device);
+    features = make("path features", uint64_t(n) * 32, gpu::Memory::device);
+    shadow_rays = make("shadow rays", uint64_t(n) * sizeof(Ray), queue_memory);
+    shadow_hits = make("shadow hits", uint64_t(n) * sizeof(Hit), queue_memory);
+    shadow_states = make("shadow states", uint64_t(n) * sizeof(ShadowState), gpu::Memory::device);
+    counters = make("counters", 4 * k_counter_slots, gpu::Memory::host);
+    no_coarse = make("no coarse picture", 16, gpu::Memory::host);
+    for (auto& q : queues) q = make("queue", uint64_t(n) * 4, queue_memory);
+    for (auto& q : shadow_queues) q = make("shadow queue", uint64_t(n) * 4, queue_memory);
+  }
+
+  void bind(const upload::DeviceScene& scene) {
+    transparent = scene.effects().transparent();
+    for (int k = 0; k < 2; ++k) {
+      for (gpu::Resources* r : {&main[k], &shade_shadow[k]}) {
+        scene.bind(*r);
+        r->set("FrameBlock", frame);
+        r->set("Paths", paths);
+        r->set("Radiance", radiance);
+        r->set("Features", features);
+        r->set("ShadowStates", shadow_states);
+        r->set("Counters", counters);
+      }
+      main[k].set("Rays", rays);
+      main[k].set("Hits", hits);
+      main[k].set("Queue", queues[k]);
+      main[k].set("NextQueue", queues[1 - k]);
+      main[k].set("ShadowRays", shadow_rays);
+      main[k].set("ShadowQueue", shadow_queues[0]);
+      // The tracer and the shadow kernel see the shadow rays under the tracer's names.
+      shade_shadow[k].set("Rays", shadow_rays);
+      shade_shadow[k].set("Hits", shadow_hits);
+      shade_shadow[k].set("Queue", shadow_queues[k]);
+      shade_shadow[k].set("NextQueue", queues[0]);
+      shade_shadow[k].set("ShadowQueue", shadow_queues[1 - k]);
+    }
+    film_resources = main[0];
+    film_resources.set("Coarse", no_coarse);
+  }
+
+  StageSum& stage(const std::string& name, bool host) {
+    for (StageSum& s : stats.stages)
+      if (s.name == name) return s;
+    return stats.stages.emplace_back(StageSum{name, 0, host});
+  }
+
+  /// Adds a stage's time, shared out by rays per component; without rays it goes to the eye's own account.
+  void account(const std::string& name, double ms, const uint32_t* rays_by_component, bool host) {
+    stage(name, host).ms += ms;
+    double total = 0;
+    for (uint32_t c = 0; rays_by_component && c < k_component_count; ++c) total += rays_by_component[c];
+    if (total <= 0) {
+      stats.component_ms[first_account] += ms;
+      return;
+    }
+    for (uint32_t c = 0; c < k_component_count; ++c) stats.component_ms[c] += ms * rays_by_component[c] / total;
+  }
+
+  /// Runs what is recorded and shares its stages' times out: shadow stages by `shadow`, the others by `closest`.
+  void run_and_account(const uint32_t* closest, const uint32_t* shadow_rays_by_component) {
+    stream.run();
+    for (const gpu::StageTime& t : stream.take_times()) {
+      const bool is_shadow = t.stage.rfind("shadow", 0) == 0;
+      account(t.stage, t.milliseconds, is_shadow ? shadow_rays_by_component : closest, false);
+    }
+  }
+
+  void trace(bvh::Query query, const gpu::Kernel& kernel, const gpu::Resources& resources, const gpu::Buffer& r, const gpu::Buffer& h,
+             const gpu::Buffer* queue, uint32_t count, const char* name, const uint32_t* closest, const uint32_t* shadows) {
+    if (!host_trace) {
+      stream.dispatch(kernel, resources, TracePush{count, queue ? 1u : 0u}, groups(count), name);
+      return;
+    }
+    run_and_account(closest, shadows);
+    const Timer timer;
+    host_trace(query, {static_cast<const Ray*>(r.mapped()), slots}, {static_cast<Hit*>(h.mapped()), slots},
+               queue ? static_cast<const uint32_t*>(queue->mapped()) : nullptr, count, !queue);
+    const bool is_shadow = std::string_view(name).substr(0, 6) == "shadow";
+    account(name, timer.milliseconds(), is_shadow ? shadows : closest, true);
+  }
+
+  static uint32_t groups(uint32_t count) { return (count + 63) / 64; }
+};
+
+Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene, uint32_t slots,
+                     HostTrace host_trace, const gpu::Defines& extra_defines)
+    : impl_(std::make_unique<Impl>(device, slots, std::move(host_trace))) {
+  Impl& w = *impl_;
+  const Timer timer;
+  gpu::Defines defines = scene.defines();
+  for (const auto& [name, value] : extra_defines) defines[name] = value;
+  w.camera = gpu::Kernel(device, compiler, "transport/camera.comp", defines);
+  w.shade = gpu::Kernel(device, compiler, "transport/shade.comp", defines);
+  w.shadow = gpu::Kernel(device, compiler, "transport/shadow.comp", defines);
+  w.film_add = gpu::Kernel(device, compiler, "film/add.comp", defines);
+  w.tonemap = gpu::Kernel(device, compiler, "film/tonemap.comp");
+  w.bind(scene);
+  if (!w.host_trace) {
+    // Where nothing is transparent the any-hit kernel need not look at the flag.
+    const auto tracer = [&](int query) {
+      return gpu::Kernel(device, compiler, "trace.comp",
+                         {{"LUCERNA_QUERY", std::to_string(query)}, {"LUCERNA_TRANSPARENT", w.transparent ? "1" : "0"}});
+    };
+    w.trace_closest = tracer(0);
+    w.trace_any = tracer(1);
+    if (w.transparent) w.trace_non_opaque = tracer(2);
+  }
+  // Drivers that compile at the first dispatch do so here: an item of no paths.
+  w.stream.fill(w.counters, 0);
+  w.stream.dispatch(w.camera, w.main[0], TransportPush{0, 0, 0, 64, 0, 1, 1, 0}, 1);
+  w.stream.dispatch(w.shade, w.main[0], TransportPush{}, 1);
+  w.stream.dispatch(w.shadow, w.shade_shadow[0], TransportPush{}, 1);
+  if (!w.host_trace) {
+    w.stream.dispatch(w.trace_closest, w.main[0], TracePush{}, 1);
+    w.stream.dispatch(w.trace_any, w.shade_shadow[0], TracePush{}, 1);
+    if (w.transparent) w.stream.dispatch(w.trace_non_opaque, w.shade_shadow[0], TracePush{}, 1);
+  }
+  w.stream.run();
+  w.stream.take_times();
+  w.compile_seconds = timer.seconds();
+}
+
+Wavefront::~Wavefront() = default;
+
+void Wavefront::set_frame(const Frame& frame, uint32_t enabled) {
+  impl_->frame.write(&frame, sizeof frame);
+  impl_->enabled = enabled;
+  impl_->first_account = uint8_t(frame.automaton[0] >> 29 & 3u);
+}
+
+void Wavefront::rebind(const upload::DeviceScene& scene) { impl_->bind(scene); }
+uint32_t Wavefront::slots() const { return impl_->slots; }
+
+bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel) {
+  Impl& w = *impl_;
+  const uint32_t pixels = item.tile_count * 64, count = item.slots();
+  if (count == 0 || w.enabled == 0) return true;
+  if (count > w.slots) throw_error("transport", "work item of {} paths, room for {}", count, w.slots);
+  TransportPush push{count, 0, item.first_tile, pixels, item.first_sample, item.sample_count, 1, 0};
+  uint32_t closest[k_component_count] = {}, shadows[k_component_count] = {};
+  closest[w.first_account] = count;
+  w.stream.fill(w.counters, 0);
+  w.stream.dispatch(w.camera, w.main[0], push, Impl::groups(count), "camera");
+  const uint32_t* counters = static_cast<const uint32_t*>(w.counters.mapped());
+  uint32_t active = count, parity = 0, shadow_count = 0;
+  bool first = true;
+  // A path may pass any number of transparent surfaces; each costs it a factor, and roulette bounds the events.
+  for (; active > 0 || shadow_count > 0; parity ^= 1) {
+    if (cancel && cancel()) {
+      w.run_and_account(closest, shadows);
+      return false;
+    }
+    // Shadow rays of the vertices before, then the next vertices.
+    if (shadow_count > 0) {
+      const gpu::Resources& table = w.shade_shadow[0];
+      w.trace(bvh::Query::any_opaque, w.trace_any, table, w.shadow_rays, w.shadow_hits, &w.shadow_queues[0], shadow_count,
+              "shadow trace", closest, shadows);
+      w.stats.shadow_rays += shadow_count;
+      w.stats.rays += shadow_count;
+      push.count = shadow_count;
+      push.use_queue = 1;
+      push.stride = 0;
+      w.stream.dispatch(w.shadow, table, push, Impl::groups(shadow_count), "shadow light");
+      if (w.transparent) {
+        uint32_t side = 1;
+        for (;; side ^= 1) {
+          w.run_and_account(closest, shadows);
+          const uint32_t going = counters[k_counter_shadow_next];
+          w.stream.fill(w.counters, 0, 4 * k_counter_shadow_next, 4);
+          if (going == 0) break;
+          w.trace(bvh::Query::closest_non_opaque, w.trace_non_opaque, w.shade_shadow[side], w.shadow_rays, w.shadow_hits,
+                  &w.shadow_queues[side], going, "shadow trace", closest, shadows);
+          w.stats.shadow_rays += going;
+          w.stats.rays += going;
+          push.count = going;
+          push.stride = 1;
+          w.stream.dispatch(w.shadow, w.shade_shadow[side], push, Impl::groups(going), "shadow light");
+        }
+      }
+    }
+    if (active > 0) {
+      w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits, first ? nullptr : &w.queues[parity], active,
+              "closest trace", closest, shadows);
+      w.stats.rays += active;
+      w.stream.fill(w.counters, 0, 0, 12);
+      w.stream.fill(w.counters, 0, 4 * k_counter_rays, 32);
+      push.count = active;
+      push.use_queue = first ? 0 : 1;
+      push.stride = 1;
+      w.stream.dispatch(w.shade, w.main[parity], push, Impl::groups(active), "shade");
+    } else {
+      w.stream.fill(w.counters, 0, 0, 12);
+    }
+    w.run_and_account(closest, shadows);
+    active = counters[k_counter_next];
+    shadow_count = counters[k_counter_shadow];
+    for (uint32_t c = 0; c < k_component_count; ++c) {
+      closest[c] = counters[k_counter_rays + c];
+      shadows[c] = counters[k_counter_shadow_rays + c];
+    }
+    first = false;
+  }
+  w.stats.dropped += counters[k_counter_dropped];
+  w.stats.roulette += counters[k_counter_roulette];
+  w.stats.depth += counters[k_counter_depth];
+  w.stats.paths += count;
+  film.bind(w.film_resources);
+  const FilmPush add{film.width(), film.height(), item.first_tile, pixels, item.first_sample, item.sample_count};
+  w.stream.dispatch(w.film_add, w.film_resources, add, Impl::groups(pixels), "film");
+  w.run_and_account(nullptr, nullptr);
+  return true;
+}
+
+void Wavefront::clear(film::Film& film) { film.clear(impl_->stream); }
+
+void Wavefront::tone_map(film::Film& film, const film::View& view, film::Film* coarse) {
+  Impl& w = *impl_;
+  const auto record = [&](film::Film& f, film::Film* fill) {
+    f.bind(w.film_resources);
+    if (fill) w.film_resources.set("Coarse", fill->picture());
+    else w.film_resources.set("Coarse", w.no_coarse);
+    const TonePush push{f.width(), f.height(), view.layer, view.show, view.curve, view.exposure, view.scale,
+                        fill ? fill->width() : 0, fill ? fill->height() : 0, 0};
+    w.stream.dispatch(w.tonemap, w.film_resources, push, Impl::groups(f.width() * f.height()));
+  };
+  if (coarse) record(*coarse, nullptr);
+  record(film, coarse);
+  w.stream.run();
+  w.stream.take_times();
+}
+
+const TransportStats& Wavefront::stats() const { return impl_->stats; }
+void Wavefront::reset_stats() { impl_->stats = {}; }
+double Wavefront::compile_seconds() const { return impl_->compile_seconds; }
+
+}  // namespace lucerna::transport

@@ -1,0 +1,93 @@
+#include "upload/device_scene.h"
+
+namespace lucerna::upload {
+namespace {
+
+template <class T>
+gpu::Buffer upload(gpu::Device& device, const char* name, const std::vector<T>& values, bool texel = true) {
+  gpu::Buffer buffer(device, {.name = name, .bytes = std::max<uint64_t>(16, values.size() * sizeof(T)), .texel = texel});
+  if (!values.empty()) buffer.write(std::span<const T>(values));
+  return buffer;
+}
+
+}  // namespace
+
+DeviceScene::DeviceScene(gpu::Device& device, const FlatScene& flat, const bvh::BvhData& tree)
+    : triangles_(upload(device, "scene triangles", flat.triangles)),
+      vertices_(upload(device, "scene vertices", flat.vertices)),
+      tangents_(upload(device, "scene tangents", flat.tangents)),
+      extra_(upload(device, "scene vertex colours", flat.extra)),
+      materials_(upload(device, "scene materials", flat.materials)),
+      tables_(upload(device, "albedo tables", flat.bsdf_tables)),
+      nodes_(upload(device, "BVH nodes", tree.nodes)),
+      bvh_triangles_(upload(device, "BVH triangles", tree.triangles)) {
+  for (size_t b = 0; b < flat.buckets.size(); ++b) {
+    const Bucket& bucket = flat.buckets[b];
+    gpu::TextureArray array(device, {.name = fmt::format("textures {}x{}", bucket.width, bucket.height),
+                                     .width = bucket.width,
+                                     .height = bucket.height,
+                                     .layers = uint32_t(bucket.layers.size()),
+                                     .format = bucket.floats ? gpu::TexelFormat::rgba32f
+                                               : bucket.srgb ? gpu::TexelFormat::rgba8_srgb
+                                                             : gpu::TexelFormat::rgba8_unorm});
+    for (size_t layer = 0; layer < bucket.layers.size(); ++layer)
+      array.write_layer(uint32_t(layer), bucket.layers[layer].data());
+    buckets_.push_back(std::move(array));
+  }
+  update_lights(device, flat);
+}
+
+void DeviceScene::update_lights(gpu::Device& device, const FlatScene& flat) {
+  lights_ = upload(device, "lights", flat.lights);
+  light_alias_ = upload(device, "light table", flat.light_alias);
+  light_pmf_ = upload(device, "light probabilities", flat.primitive_light_pmf, false);
+  environment_texels_ = upload(device, "environment", flat.environment_texels);
+  environment_alias_ = upload(device, "environment table", flat.environment_alias);
+  effects_ = flat.effects;
+}
+
+void DeviceScene::bind(gpu::Resources& r) const {
+  r.set("scene_triangles", triangles_);
+  r.set("scene_vertices", vertices_);
+  r.set("scene_tangents", tangents_);
+  r.set("scene_extra", extra_);
+  r.set("scene_materials", materials_);
+  r.set("scene_lights", lights_);
+  r.set("light_alias", light_alias_);
+  r.set("PrimitiveLightPmf", light_pmf_);
+  r.set("environment_texels", environment_texels_);
+  r.set("environment_alias", environment_alias_);
+  r.set("bsdf_table", tables_);
+  r.set("bvh_nodes", nodes_);
+  r.set("bvh_triangles", bvh_triangles_);
+  for (size_t b = 0; b < buckets_.size(); ++b) r.set(fmt::format("texture_bucket_{}", b), buckets_[b]);
+}
+
+gpu::Defines DeviceScene::defines() const {
+  const Effects& e = effects_;
+  gpu::Defines d;
+  const auto set = [&](const char* name, bool on) { d[name] = on ? "1" : "0"; };
+  set("LUCERNA_LIGHTS", e.lights);
+  set("LUCERNA_EMISSIVE", e.emissive);
+  set("LUCERNA_ENVIRONMENT_MAP", e.environment_map);
+  set("LUCERNA_SPECULAR", e.specular);
+  set("LUCERNA_SOLID_GLASS", e.solid_glass);
+  set("LUCERNA_THIN_GLASS", e.thin_glass);
+  set("LUCERNA_DIFFUSE_TRANSMISSION", e.diffuse_transmission);
+  set("LUCERNA_VOLUMES", e.volumes);
+  set("LUCERNA_UNLIT", e.unlit);
+  set("LUCERNA_ALPHA", e.alpha);
+  set("LUCERNA_TRANSPARENT", e.transparent());
+  set("LUCERNA_NORMAL_MAPS", e.normal_maps);
+  set("LUCERNA_VERTEX_EXTRA", e.vertex_extra);
+  set("LUCERNA_TEX_BASE", e.tex_base);
+  set("LUCERNA_TEX_METALLIC_ROUGHNESS", e.tex_metallic_roughness);
+  set("LUCERNA_TEX_EMISSION", e.tex_emission);
+  set("LUCERNA_TEX_SPECULAR", e.tex_specular);
+  set("LUCERNA_TEX_TRANSMISSION", e.tex_transmission);
+  set("LUCERNA_TEX_DIFFUSE_TRANSMISSION", e.tex_diffuse_transmission);
+  d["LUCERNA_BUCKETS"] = std::to_string(buckets_.size());
+  return d;
+}
+
+}  // namespace lucerna::upload
