@@ -1,0 +1,220 @@
+// Traversal of the tree that renderer/bvh/layout.h describes.
+//
+// What a device likes is chosen here and nowhere else:
+//   LUCERNA_FETCH_STORAGE  nodes and triangles from storage buffers (default: texel buffers, LUCERNA_FETCH_TEXEL)
+//   LUCERNA_STACK_LOCAL    a stack in registers or private memory (default: in shared memory, LUCERNA_STACK_SHARED)
+// The kernel must have declared its local_size_x, at most 64, before including this file.
+//
+// No hit is lost to rounding. The triangle test is watertight; the boxes are tested so that they hold all that the
+// triangle test accepts: see bvh_margin(). And hits do not depend on the order of traversal: at equal distance the
+// lower primitive id wins.
+#ifndef LUCERNA_LIB_BVH
+#define LUCERNA_LIB_BVH
+#include "shaders/shared/ray.h"
+#include "shaders/shared/trace.h"
+
+// ---- fetch ----
+#ifdef LUCERNA_FETCH_STORAGE
+layout(scalar) readonly buffer bvh_nodes { vec4 bvh_node_texels[]; };
+layout(scalar) readonly buffer bvh_triangles { vec4 bvh_triangle_texels[]; };
+vec4 bvh_node_texel(uint i) { return bvh_node_texels[i]; }
+vec4 bvh_triangle_texel(uint i) { return bvh_triangle_texels[i]; }
+#else
+uniform samplerBuffer bvh_nodes;
+uniform samplerBuffer bvh_triangles;
+vec4 bvh_node_texel(uint i) { return texelFetch(bvh_nodes, int(i)); }
+vec4 bvh_triangle_texel(uint i) { return texelFetch(bvh_triangles, int(i)); }
+#endif
+
+// ---- stack ----
+// A node on level L of the tree finds at most L - 1 entries, so that 32 do for k_max_depth levels.
+const uint k_bvh_stack = 32u;
+#ifdef LUCERNA_STACK_LOCAL
+uint bvh_stack[k_bvh_stack];
+#define bvh_stack_at(i) bvh_stack[i]
+#else
+shared uint bvh_stack[k_bvh_stack * 64u];
+#define bvh_stack_at(i) bvh_stack[(i) * 64u + gl_LocalInvocationIndex]
+#endif
+
+// ---- words ----
+const uint k_bvh_flag = 0x80000000u, k_bvh_value = 0x1fffffffu;
+const uint k_bvh_done = 0xffffffffu;  // no link: bit 29 is never set in one
+
+// ---- triangles ----
+// Watertight test of Woop, Benthin and Wald (JCGT 2(1), 2013): vertices are moved so that the ray starts at the origin
+// and sheared so that it runs along the axis kz in which its direction is largest; the signs of three 2D edge functions
+// then decide. All that matters is `precise`: a fused multiply-add would give two triangles different signs for
+// the edge they share.
+struct ShearedRay {
+  vec3 origin;  // kx, ky, kz
+  vec3 shear;
+  bvec3 along;  // which axis kz is
+};
+
+vec3 bvh_permute(vec3 v, bvec3 along) {
+  return along.x ? v.yzx : along.y ? v.zxy : v;
+}
+
+ShearedRay bvh_shear(Ray ray) {
+  vec3 a = abs(ray.direction);
+  ShearedRay s;
+  s.along.x = a.x >= a.y && a.x >= a.z;
+  s.along.y = !s.along.x && a.y >= a.z;
+  s.along.z = !s.along.x && !s.along.y;
+  vec3 d = bvh_permute(ray.direction, s.along);
+  s.origin = bvh_permute(ray.origin, s.along);
+  precise float inverse = 1.0 / d.z;
+  precise vec2 shear = d.xy * inverse;
+  s.shear = vec3(shear, inverse);
+  return s;
+}
+
+// The rounding error of the product a * b = p, exactly (T. J. Dekker, Numer. Math. 18, 1971): each factor is cut in two
+// halves whose products need no rounding. It needs neither a fused multiply-add, which Vulkan does not promise to be
+// fused, nor double precision, which a device may lack.
+float bvh_product_error(float a, float b, float p) {
+  precise float ca = 4097.0 * a, cb = 4097.0 * b;
+  precise float ah = ca - (ca - a), bh = cb - (cb - b);
+  precise float al = a - ah, bl = b - bh;
+  precise float e = ((ah * bh - p) + ah * bl + al * bh) + al * bl;
+  return e;
+}
+
+// a * b - c * d. Where both products round to the same float, it is the difference of their errors, so that the sign
+// is always exact.
+float bvh_difference(float a, float b, float c, float d) {
+  precise float p = a * b;
+  precise float q = c * d;
+  precise float r = p - q;
+#ifndef LUCERNA_ROUNDED_EDGES
+  precise float e = bvh_product_error(a, b, p) - bvh_product_error(c, d, q);
+  r = r == 0.0 ? e : r;
+#endif
+  return r;
+}
+
+// Barycentric weights of p0, p1, p2 times their sum in xyz, distance times that sum in w; valid if `hit`.
+bool bvh_test(ShearedRay s, vec3 p0, vec3 p1, vec3 p2, out float t, out float u, out float v) {
+  precise vec3 a = bvh_permute(p0, s.along) - s.origin;
+  precise vec3 b = bvh_permute(p1, s.along) - s.origin;
+  precise vec3 c = bvh_permute(p2, s.along) - s.origin;
+  precise vec2 a2 = a.xy - s.shear.xy * a.z;
+  precise vec2 b2 = b.xy - s.shear.xy * b.z;
+  precise vec2 c2 = c.xy - s.shear.xy * c.z;
+  precise float wa = bvh_difference(c2.x, b2.y, c2.y, b2.x);
+  precise float wb = bvh_difference(a2.x, c2.y, a2.y, c2.x);
+  precise float wc = bvh_difference(b2.x, a2.y, b2.y, a2.x);
+  precise float det = wa + wb + wc;
+  precise float scale = 1.0 / det;
+  precise float along = wa * (s.shear.z * a.z) + wb * (s.shear.z * b.z) + wc * (s.shear.z * c.z);
+  precise float distance = along * scale;
+  precise float weight_b = wb * scale;
+  precise float weight_c = wc * scale;
+  t = distance;
+  u = weight_b;
+  v = weight_c;
+  float least = min(wa, min(wb, wc)), most = max(wa, max(wb, wc));
+  return (least >= 0.0 || most <= 0.0) && det != 0.0;
+}
+
+// ---- boxes ----
+// The shear moves a triangle by up to 5 units of rounding (2^-24) of its distance; boxes are widened by as much. The
+// distance is bounded by that of both from the world's origin. It also keeps a ray that runs within a box's face
+// inside it: the margin is larger than the last place of any coordinate.
+float bvh_margin(Ray ray, float reach) {
+  vec3 o = abs(ray.origin);
+  return 3e-7 * (reach + max(o.x, max(o.y, o.z)));
+}
+
+// A direction without zeros, so that no product below is 0 * infinity.
+vec3 bvh_inverse(vec3 d) {
+  const float tiny = 1e-25;
+  bvec3 small = lessThan(abs(d), vec3(tiny));
+  return 1.0 / mix(d, mix(vec3(tiny), vec3(-tiny), lessThan(d, vec3(0.0))), small);
+}
+
+// Rounding of the three operations on each side of the slab test, 2 gamma(3) with gamma(n) = n 2^-24 / (1 - n 2^-24)
+// (T. Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013).
+const float k_bvh_slab = 1.0 + 3.6e-7;
+
+Hit bvh_trace(Ray ray, const uint query) {
+  Hit hit;
+  hit.t = ray.tmax;
+  hit.prim = 0u;  // until there is a hit: an equal distance does not count, for no id is lower
+  hit.u = 0.0;
+  hit.v = 0.0;
+  bool found = false;
+
+  ShearedRay sheared = bvh_shear(ray);
+  vec3 inverse = bvh_inverse(ray.direction);
+  float margin = bvh_margin(ray, bvh_node_texel(3u).z);
+  vec3 low = ray.origin + margin, high = ray.origin - margin;
+  vec4 ox = vec4(low.x, high.x, low.x, high.x);
+  vec4 oy = vec4(low.y, high.y, low.y, high.y);
+  vec4 oz = vec4(low.z, high.z, low.z, high.z);
+
+  uint link = ray.tmax > 0.0 ? 0u : k_bvh_done;
+  uint depth = 0u;
+  while (link != k_bvh_done) {
+    while (link < k_bvh_flag) {
+      uint at = (link & k_bvh_value) * 4u;
+      vec4 x = bvh_node_texel(at), y = bvh_node_texel(at + 1u), z = bvh_node_texel(at + 2u);
+      vec4 links = bvh_node_texel(at + 3u);
+      x = (x - ox) * inverse.x;
+      y = (y - oy) * inverse.y;
+      z = (z - oz) * inverse.z;
+      vec2 x0 = min(x.xz, x.yw), x1 = max(x.xz, x.yw);
+      vec2 y0 = min(y.xz, y.yw), y1 = max(y.xz, y.yw);
+      vec2 z0 = min(z.xz, z.yw), z1 = max(z.xz, z.yw);
+      vec2 enter = max(max(x0, y0), max(z0, vec2(0.0)));
+      vec2 leave = min(min(x1, y1), min(z1, vec2(hit.t))) * k_bvh_slab;
+      bool hit0 = enter.x <= leave.x, hit1 = enter.y <= leave.y;
+      uint link0 = floatBitsToUint(links.x), link1 = floatBitsToUint(links.y);
+      bool first0 = hit0 && (!hit1 || enter.x <= enter.y);
+      uint near = first0 ? link0 : link1;
+      uint far = first0 ? link1 : link0;
+      if (hit0 && hit1) {
+        bvh_stack_at(depth) = far;
+        link = near;
+        ++depth;
+      } else if (hit0 || hit1) {
+        link = near;
+      } else if (depth == 0u) {
+        link = k_bvh_done;
+      } else {
+        --depth;
+        link = bvh_stack_at(depth);
+      }
+    }
+    if (link == k_bvh_done) break;
+    uint first = (link & k_bvh_value) >> 3, count = link & 7u;
+    for (uint i = 0u; i < count; ++i) {
+      uint at = (first + i) * 3u;
+      vec4 p0 = bvh_triangle_texel(at), p1 = bvh_triangle_texel(at + 1u), p2 = bvh_triangle_texel(at + 2u);
+      float t, u, v;
+      bool accept = bvh_test(sheared, p0.xyz, p1.xyz, p2.xyz, t, u, v);
+      uint word = floatBitsToUint(p0.w);
+      uint prim = word & k_bvh_value;
+      accept = accept && t > 0.0 && (t < hit.t || (t == hit.t && prim < hit.prim));
+#ifdef LUCERNA_NON_OPAQUE
+      if (query == k_query_any_opaque) accept = accept && word < k_bvh_flag;
+#endif
+      if (query == k_query_closest_non_opaque) accept = accept && word >= k_bvh_flag;
+      if (accept) {
+        hit.t = t;
+        hit.prim = prim;
+        hit.u = u;
+        hit.v = v;
+        found = true;
+      }
+    }
+    bool over = depth == 0u || (query == k_query_any_opaque && found);
+    depth = over ? 0u : depth - 1u;
+    link = over ? k_bvh_done : bvh_stack_at(depth);
+  }
+  hit.prim = found ? hit.prim : k_no_hit;
+  return hit;
+}
+
+#endif
