@@ -1,0 +1,59 @@
+#pragma once
+// How far an image is from a reference: the figures of `lucerna compare`, for stochastic images too.
+#include <array>
+#include <string>
+#include <vector>
+
+#include "film/io/image_file.h"
+
+namespace lucerna::film {
+
+struct CompareOptions {
+  double epsilon = 0.01;         ///< of the relative measures, in squared units of the layer; > 0
+  double trimmed_share = 0.001;  ///< share of the worst pixels that the trimmed measures drop; 0..1
+  uint32_t block = 16;  ///< side of the blocks, pixels; > 0 (blocks at the right and bottom may be smaller)
+};
+
+/// With a the image, b the reference, C the layer's channels (all weigh the same) and mean_C the average over
+/// them: every mean is over the pixels whose channels are finite in both images, in double precision.
+struct Comparison {
+  std::string layer;
+  uint32_t width = 0, height = 0;
+  std::vector<std::string> channels;         ///< names in b, in the order of the vectors below
+  uint64_t pixels = 0;                       ///< that are finite in both: what the figures rest on
+  std::array<uint64_t, 2> non_finite{0, 0};  ///< values (not pixels) that are NaN or infinite, in a and in b
+  std::array<uint64_t, 2> nan{0, 0};         ///< of those, the NaNs
+  std::vector<double> mean_a, mean_b;        ///< per channel
+  std::vector<double>
+      mean_ratio;     ///< mean_a / mean_b per channel; 1 when both are 0, infinite when only b is
+  double rmse = 0;    ///< sqrt(mean over pixels of mean_C (a - b)^2)
+  double relmse = 0;  ///< mean over pixels of mean_C (a - b)^2 / (b^2 + epsilon)
+  double rmse_trimmed = 0,
+         relmse_trimmed = 0;  ///< the same without the ceil(trimmed_share * pixels) worst pixels of each
+  double p99_absolute = 0;    ///< 99th percentile over pixels of mean_C |a - b|
+  double p99_relative = 0;    ///< 99th percentile over pixels of mean_C |a - b| / sqrt(b^2 + epsilon)
+  double max_absolute = 0;    ///< largest mean_C |a - b|
+  std::array<uint32_t, 2> max_at{0, 0};  ///< its pixel, from the top left
+  uint64_t blocks = 0;                   ///< blocks with light in b (sum over pixels and C above 0)
+  double block_ratio_p05 = 1, block_ratio_median = 1,
+         block_ratio_p95 = 1;  ///< of sum a / sum b over those blocks
+};
+
+/// Compares one layer (FilmImage::layer; "" is the sum R, G, B). Throws Error, located at the layer or
+/// "compare", when the sizes differ, a layer is missing or has not the same number of channels in both, or an
+/// option is out of range. Non-finite values do not throw: they are counted, and their pixels left out.
+/// Percentiles are nearest-rank: the ceil(q n)-th smallest value.
+Comparison compare(const FilmImage& a, const FilmImage& b, const std::string& layer = "",
+                   const CompareOptions& options = {});
+
+/// One JSON object, one line; numbers that are not finite are null.
+std::string to_json(const Comparison& comparison);
+/// A few lines for a person, ending in a line break.
+std::string to_text(const Comparison& comparison);
+
+/// |a - b| * factor of a layer as sRGB bytes (RGBA, alpha 255) for write_png; a single channel is shown grey;
+/// values that are not finite are magenta. Throws as compare() does.
+std::vector<uint8_t> difference_picture(const FilmImage& a, const FilmImage& b, const std::string& layer,
+                                        float factor);
+
+}  // namespace lucerna::film

@@ -1,0 +1,286 @@
+#include "film/io/image_file.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <set>
+#include <system_error>
+
+namespace lucerna::film {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// OpenImageIO ends some messages with a line break or joins several by one; an Error is one line.
+std::string one_line(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == '.')) text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ';');
+  return text;
+}
+
+/// The file under its temporary name, as OpenImageIO writes it. Its own PNG writer does not notice a full
+/// disk, so the first failure is kept here.
+class FileProxy : public OIIO::Filesystem::IOProxy {
+ public:
+  FileProxy(int handle, const fs::path& file) : IOProxy(file.string(), Write), handle_(handle) {}
+  const char* proxytype() const override { return "file"; }
+  size_t write(const void* data, size_t size) override {
+    const size_t written = pwrite(data, size, m_pos);
+    m_pos += static_cast<int64_t>(written);
+    return written;
+  }
+  size_t pwrite(const void* data, size_t size, int64_t offset) override {
+    size_t done = 0;
+    while (done < size) {
+      const ssize_t n = ::pwrite(handle_, static_cast<const char*>(data) + done, size - done,
+                                 offset + static_cast<int64_t>(done));
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) {
+        if (failure_ == 0) failure_ = n < 0 ? errno : ENOSPC;
+        break;
+      }
+      done += static_cast<size_t>(n);
+    }
+    end_ = std::max(end_, offset + static_cast<int64_t>(done));
+    return done;
+  }
+  size_t size() const override { return static_cast<size_t>(end_); }
+  /// errno of the first write that failed, or 0.
+  int failure() const { return failure_; }
+
+ private:
+  int handle_;
+  int failure_ = 0;
+  int64_t end_ = 0;
+};
+
+/// A new, empty file beside `file` that no one else has; it goes away unless it is committed.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& file) : target_(file) {
+    // Mode 0666 and O_EXCL rather than mkstemp, whose files are for their owner alone: an output file follows
+    // the umask like any other.
+    static std::atomic<uint32_t> counter = 0;
+    do {
+      path_ = folder_of(file) / fmt::format(".{}.{}-{}", file.filename().string(), getpid(), counter++);
+      handle_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (handle_ < 0 && errno == EEXIST);
+    if (handle_ < 0) {
+      const int code = errno;
+      throw_error(target_.string(), "cannot write into the folder '{}': {}", folder_of(file).string(),
+                  std::strerror(code));
+    }
+  }
+  ~TemporaryFile() {
+    close(handle_);
+    std::error_code ignored;
+    if (!committed_) fs::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  const fs::path& path() const { return path_; }
+  int handle() const { return handle_; }
+
+  /// Data first, then the name, then the folder's entry: after a power cut the old or the new file is there,
+  /// whole.
+  void commit() {
+    if (fsync(handle_) != 0) throw_error(target_.string(), "cannot write to disk: {}", std::strerror(errno));
+    std::error_code code;
+    fs::rename(path_, target_, code);
+    if (code) throw_error(target_.string(), "cannot replace the file: {}", code.message());
+    committed_ = true;
+    const int folder = open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder >= 0) fsync(folder), close(folder);
+  }
+
+ private:
+  fs::path target_, path_;
+  int handle_ = -1;
+  bool committed_ = false;
+};
+
+void check_target(const fs::path& file) {
+  const std::string where = file.string();
+  if (file.filename().empty()) throw_error(where.empty() ? "output" : where, "expected a file name");
+  std::error_code code;
+  const fs::path folder = folder_of(file);
+  if (!fs::exists(folder, code)) throw_error(where, "the folder '{}' does not exist", folder.string());
+  if (!fs::is_directory(folder, code)) throw_error(where, "'{}' is not a folder", folder.string());
+  if (fs::is_directory(file, code)) throw_error(where, "is a folder, expected a file name");
+}
+
+void check_size(const std::string& where, int64_t width, int64_t height) {
+  if (width <= 0 || height <= 0) throw_error(where, "the image is empty ({}x{})", width, height);
+  if (width > k_max_image_size || height > k_max_image_size)
+    throw_error(where, "the image has {}x{} pixels, at most {}x{} are handled", width, height,
+                k_max_image_size, k_max_image_size);
+}
+
+/// `format` is OpenImageIO's name of the format, "openexr" or "png".
+void write_with_oiio(const fs::path& file, const std::string& format, const OIIO::ImageSpec& spec,
+                     OIIO::TypeDesc type, const void* pixels) {
+  check_target(file);
+  TemporaryFile temporary(file);
+  FileProxy proxy(temporary.handle(), temporary.path());
+  auto output = OIIO::ImageOutput::create(format);
+  if (!output || !output->set_ioproxy(&proxy))
+    throw_error(file.string(), "cannot write {} here: {}", format, one_line(OIIO::geterror()));
+  const bool written =
+      output->open(temporary.path().string(), spec) && output->write_image(type, pixels) && output->close();
+  if (proxy.failure() != 0) throw_error(file.string(), "cannot write: {}", std::strerror(proxy.failure()));
+  if (!written) throw_error(file.string(), "cannot write: {}", one_line(output->geterror()));
+  temporary.commit();
+}
+
+/// "primary.R" -> {"primary", "R"}; "R" -> {"", "R"}.
+std::pair<std::string, std::string> split_name(const std::string& channel) {
+  const size_t dot = channel.rfind('.');
+  if (dot == std::string::npos) return {"", channel};
+  return {channel.substr(0, dot), channel.substr(dot + 1)};
+}
+
+int rank_of_component(const std::string& name) {
+  static const std::array<const char*, 9> k_order = {"R", "G", "B", "r", "g", "b", "X", "Y", "Z"};
+  const auto found = std::find(k_order.begin(), k_order.end(), name);
+  return static_cast<int>(found - k_order.begin());
+}
+
+bool is_sum(const std::string& name) { return name.empty() || name == "rgb" || name == "sum"; }
+
+}  // namespace
+
+const std::vector<float>* FilmImage::find(const std::string& name) const {
+  for (const auto& [channel, values] : channels)
+    if (channel == name) return &values;
+  return nullptr;
+}
+
+std::vector<size_t> FilmImage::layer(const std::string& name) const {
+  std::vector<size_t> found;
+  for (size_t i = 0; i < channels.size(); ++i) {
+    const auto [prefix, component] = split_name(channels[i].first);
+    if (is_sum(name) ? prefix.empty() && rank_of_component(component) < 3 : prefix == name)
+      found.push_back(i);
+  }
+  // One grey channel is the picture of a file that has no colour.
+  if (found.empty() && is_sum(name))
+    for (size_t i = 0; i < channels.size(); ++i)
+      if (channels[i].first == "Y") found.push_back(i);
+  if (found.empty())
+    for (size_t i = 0; i < channels.size(); ++i)
+      if (channels[i].first == name) found.push_back(i);
+  std::stable_sort(found.begin(), found.end(), [&](size_t a, size_t b) {
+    return rank_of_component(split_name(channels[a].first).second) <
+           rank_of_component(split_name(channels[b].first).second);
+  });
+  return found;
+}
+
+std::vector<std::string> FilmImage::layers() const {
+  std::vector<std::string> names;
+  for (const auto& [channel, values] : channels) {
+    const auto [prefix, component] = split_name(channel);
+    std::string name = prefix.empty() ? component : prefix;
+    if (prefix.empty() && rank_of_component(component) < 3) name = "rgb";
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+void write_exr(const fs::path& file, const FilmImage& image) {
+  const std::string where = file.string();
+  check_size(where, image.width, image.height);
+  if (image.channels.empty()) throw_error(where, "the image has no channels");
+  const size_t pixels = size_t{image.width} * image.height, count = image.channels.size();
+  OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), static_cast<int>(count),
+                       OIIO::TypeDesc::FLOAT);
+  spec.channelnames.clear();
+  std::set<std::string> names;
+  for (const auto& [name, values] : image.channels) {
+    if (values.size() != pixels)
+      throw_error(where, "channel '{}' has {} values, expected {}", name, values.size(), pixels);
+    if (name.empty() || !names.insert(name).second)
+      throw_error(where, "channel name '{}' is empty or repeated", name);
+    spec.channelnames.push_back(name);
+  }
+  // OpenImageIO guesses alpha and depth by name; here they are what the name says and nothing is multiplied.
+  spec.alpha_channel = spec.z_channel = -1;
+  spec.attribute("compression", "zip");
+  spec.attribute("oiio:ColorSpace", "Linear");
+  for (const auto& [key, value] : image.metadata) spec.attribute("lucerna:" + key, value);
+
+  std::vector<float> interleaved(pixels * count);
+  for (size_t c = 0; c < count; ++c) {
+    const std::vector<float>& values = image.channels[c].second;
+    for (size_t p = 0; p < pixels; ++p) interleaved[p * count + c] = values[p];
+  }
+  write_with_oiio(file, "openexr", spec, OIIO::TypeDesc::FLOAT, interleaved.data());
+}
+
+FilmImage read_exr(const fs::path& file) {
+  const std::string where = file.string();
+  std::error_code code;
+  if (!fs::exists(file, code)) throw_error(where.empty() ? "image" : where, "there is no such file");
+  if (fs::is_directory(file, code)) throw_error(where, "is a folder, expected an image");
+  auto input = OIIO::ImageInput::open(where);
+  if (!input) throw_error(where, "cannot read this image: {}", one_line(OIIO::geterror()));
+  const OIIO::ImageSpec& spec = input->spec();
+  check_size(where, spec.width, spec.height);
+  if (spec.depth > 1 || spec.deep)
+    throw_error(where, "expected a flat image, found a deep or volumetric one");
+
+  FilmImage image;
+  image.width = static_cast<uint32_t>(spec.width);
+  image.height = static_cast<uint32_t>(spec.height);
+  const size_t pixels = size_t{image.width} * image.height, count = static_cast<size_t>(spec.nchannels);
+  std::vector<float> interleaved(pixels * count);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data()))
+    throw_error(where, "cannot read this image: {}", one_line(input->geterror()));
+  for (size_t c = 0; c < count; ++c) {
+    std::vector<float> values(pixels);
+    for (size_t p = 0; p < pixels; ++p) values[p] = interleaved[p * count + c];
+    image.channels.emplace_back(spec.channel_name(static_cast<int>(c)), std::move(values));
+  }
+  const std::string prefix = "lucerna:";
+  for (const auto& attribute : spec.extra_attribs) {
+    if (attribute.type() != OIIO::TypeDesc::STRING) continue;
+    const std::string name = attribute.name().string();
+    image.metadata[name.starts_with(prefix) ? name.substr(prefix.size()) : name] = attribute.get_string();
+  }
+  return image;
+}
+
+void write_png(const fs::path& file, uint32_t width, uint32_t height, std::span<const uint8_t> rgba,
+               const std::map<std::string, std::string>& metadata) {
+  const std::string where = file.string();
+  check_size(where, width, height);
+  const size_t expected = size_t{width} * height * 4;
+  if (rgba.size() != expected) throw_error(where, "{} bytes of pixels, expected {}", rgba.size(), expected);
+  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 4, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  for (const auto& [key, value] : metadata) spec.attribute("lucerna:" + key, value);
+  write_with_oiio(file, "png", spec, OIIO::TypeDesc::UINT8, rgba.data());
+}
+
+void check_writable(const fs::path& file) {
+  check_target(file);
+  const std::string ending = file.extension().string();
+  if (ending != ".exr" && ending != ".png")
+    throw_error(file.string(), "expected a name that ends in .exr or .png, found '{}'", ending);
+  TemporaryFile probe(file);
+}
+
+}  // namespace lucerna::film

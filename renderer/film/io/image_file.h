@@ -1,0 +1,67 @@
+#pragma once
+// Image files in and out: the film's EXR, the tone-mapped PNG, and any image that OpenImageIO reads.
+// A file that exists is never left half overwritten: output goes to a temporary name in the same folder, is
+// synced to disk and then renamed over the target.
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+
+namespace lucerna::film {
+
+/// Named float planes of one size, top row first, row-major. The names of the film's own channels are
+///   R G B                                  linear Rec.709 radiance, the sum of the components
+///   primary.R .G .B, secondary., tertiary., caustic.   the components
+///   albedo.R .G .B                         0..1
+///   N.X .Y .Z                              world-space shading normal, unit or 0 where nothing was hit
+///   Z                                      distance along the view axis in metres, infinity where nothing
+///   was hit samples                                samples taken in the pixel
+/// Other names are allowed; a name occurs once. EXR sorts channels by name, so the order is not kept in a
+/// file (OpenImageIO moves R, G, B to the front).
+struct FilmImage {
+  uint32_t width = 0, height = 0;
+  std::vector<std::pair<std::string, std::vector<float>>> channels;  ///< each width * height values
+  std::map<std::string, std::string>
+      metadata;  ///< string attributes; the film writes settings (JSON), seed, device, version
+
+  /// Null when there is no such channel.
+  const std::vector<float>* find(const std::string& name) const;
+  /// Indices of the channels of a layer, in the order R G B (or X Y Z, or the file's order when it has
+  /// neither).
+  /// "" or "rgb" or "sum" is the unnamed layer R, G, B; a name with no channels under it, such as "Z" or
+  /// "primary.R", is that single channel. Empty when there is no such layer.
+  std::vector<size_t> layer(const std::string& name) const;
+  /// Names that layer() accepts, in file order: "rgb", "primary", ..., "Z", "samples".
+  std::vector<std::string> layers() const;
+};
+
+/// The largest width or height that is written or read.
+inline constexpr uint32_t k_max_image_size = 32768;
+
+/// Writes 32-bit float channels, ZIP-compressed scan lines. Values are stored bit for bit, NaN and infinity
+/// too. Throws Error located at `file` when the image is empty, a plane has the wrong length, a name is
+/// repeated, or the file cannot be written; a file already there is then untouched.
+void write_exr(const std::filesystem::path& file, const FilmImage& image);
+
+/// Reads any image that OpenImageIO knows (its first subimage, full resolution), as float. EXR and HDR are
+/// linear as stored; integer formats are scaled to 0..1 and keep the file's transfer curve. Channels that are
+/// named R, G, B, A or carry a layer name keep their names. Throws Error located at `file` when it is
+/// missing, truncated, empty or larger than k_max_image_size.
+FilmImage read_exr(const std::filesystem::path& file);
+
+/// Writes 8-bit RGBA, sRGB-encoded, not premultiplied, top row first; `rgba` holds width * height * 4 bytes.
+/// `metadata` becomes text chunks. Errors as write_exr.
+void write_png(const std::filesystem::path& file, uint32_t width, uint32_t height,
+               std::span<const uint8_t> rgba, const std::map<std::string, std::string>& metadata = {});
+
+/// Throws the Error that writing `file` later would end in, as far as that can be known: a missing folder, a
+/// folder that cannot be written, a target that is a folder, an ending other than .exr or .png. For use
+/// before a long render; leaves no trace on disk.
+void check_writable(const std::filesystem::path& file);
+
+}  // namespace lucerna::film
