@@ -1,6 +1,7 @@
 #pragma once
-// Compute kernels: GLSL files compiled in process by glslang, with includes, defines and a disk cache; their resources
-// are bound BY NAME. A kernel declares only what it uses; the host keeps one table name -> resource for a whole frame.
+// Compute kernels: GLSL files compiled in process by glslang, with includes, defines and a disk cache; their
+// resources are bound BY NAME. A kernel declares only what it uses; the host keeps one table name -> resource
+// for a whole frame.
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -14,15 +15,18 @@
 namespace lucerna::gpu {
 
 using Defines = std::map<std::string, std::string>;  ///< #define NAME VALUE, in front of the source
-struct SpecConstant { uint32_t id; uint32_t value; };
+struct SpecConstant {
+  uint32_t id;
+  uint32_t value;
+};
 
 /// Finds, compiles and caches shaders. `root` is the shaders/ folder: files are named relative to it and
 /// #include "lib/bsdf.glsl" is relative to it too (or to the including file).
 /// Every kernel is compiled as GLSL 460 for Vulkan 1.2 with GL_EXT_scalar_block_layout,
 /// GL_GOOGLE_include_directive; #line directives keep file names, so that an error reads
 /// "shaders/lib/bsdf.glsl:123: 'foo' : undeclared identifier".
-/// Disk cache: $XDG_CACHE_HOME/lucerna/spirv (or ~/.cache), keyed by preprocessed source + defines + compiler version;
-/// safe against concurrent processes and truncated files.
+/// Disk cache: $XDG_CACHE_HOME/lucerna/spirv (or ~/.cache), keyed by preprocessed source + defines + compiler
+/// version; safe against concurrent processes and truncated files.
 class ShaderCompiler {
  public:
   explicit ShaderCompiler(std::filesystem::path root = default_root());
@@ -35,7 +39,7 @@ class ShaderCompiler {
   std::vector<uint32_t> compile(const std::string& file, const Defines& defines = {});
   /// Files that the last compile() of this file and defines read (for hot reload).
   std::vector<std::filesystem::path> dependencies(const std::string& file, const Defines& defines = {});
-  double seconds_spent() const;        ///< in glslang, so far
+  double seconds_spent() const;  ///< in glslang, so far
   uint64_t cache_hits() const;
 
  private:
@@ -46,10 +50,12 @@ class ShaderCompiler {
 /// name -> resource. Resources must outlive every use. Setting a name again replaces it.
 class Resources {
  public:
-  void set(const std::string& name, const Buffer& buffer);          ///< storage buffer block of that name, or samplerBuffer
-  void set(const std::string& name, const TextureArray& array);     ///< sampler2DArray of that name
+  /// For the storage buffer block, or the samplerBuffer, of that name.
+  void set(const std::string& name, const Buffer& buffer);
+  /// For the sampler2DArray of that name.
+  void set(const std::string& name, const TextureArray& array);
   void remove(const std::string& name);
-  uint64_t version() const { return version_; }                     ///< grows with every change
+  uint64_t version() const { return version_; }  ///< grows with every change
   using Entry = std::variant<const Buffer*, const TextureArray*>;
   const Entry* find(const std::string& name) const;
 
@@ -58,10 +64,10 @@ class Resources {
   uint64_t version_ = 0;
 };
 
-/// One compute pipeline. In the shader: set 0 only; `layout(set=0, binding=N, scalar) buffer NAME {...}` is bound to the
-/// resource NAME (the block's name, not the instance's), `uniform samplerBuffer NAME` and `uniform sampler2DArray NAME`
-/// likewise; binding numbers may be left out of the source altogether (glslang's auto-mapping assigns them). Workgroup
-/// size is read from the source.
+/// One compute pipeline. In the shader: set 0 only; `layout(set=0, binding=N, scalar) buffer NAME {...}` is
+/// bound to the resource NAME (the block's name, not the instance's), `uniform samplerBuffer NAME` and
+/// `uniform sampler2DArray NAME` likewise; binding numbers may be left out of the source altogether
+/// (glslang's auto-mapping assigns them). Workgroup size is read from the source.
 class Kernel {
  public:
   Kernel();
@@ -73,7 +79,7 @@ class Kernel {
   Kernel& operator=(Kernel&&) noexcept;
   explicit operator bool() const { return impl_ != nullptr; }
   const std::string& file() const;
-  uint32_t workgroup_size() const;     ///< local_size_x
+  uint32_t workgroup_size() const;  ///< local_size_x
   uint32_t push_constant_bytes() const;
   std::vector<std::string> resource_names() const;
 

@@ -12,18 +12,20 @@
 namespace lucerna::gpu {
 
 enum class Memory {
-  device,  ///< fastest for kernels; mapped too where the device's memory is host-visible (lavapipe), else through staging
-  host     ///< always mapped, coherent, cached where possible: read-back, and queues shared with a host tracer
+  device,  ///< fastest for kernels; mapped too where the device's memory is host-visible (lavapipe), else
+           ///< through staging
+  host  ///< always mapped, coherent, cached where possible: read-back, and queues shared with a host tracer
 };
 
 struct BufferDesc {
-  std::string name;                ///< for messages: "out of device memory for 'film sums' (99 MiB)"
-  uint64_t bytes = 0;              ///< 0 is allowed and makes a 16-byte buffer (so that it can be bound)
+  std::string name;    ///< for messages: "out of device memory for 'film sums' (99 MiB)"
+  uint64_t bytes = 0;  ///< 0 is allowed and makes a 16-byte buffer (so that it can be bound)
   Memory memory = Memory::device;
-  bool texel = false;              ///< also readable as samplerBuffer (RGBA32F texels); bytes must be a multiple of 16
+  bool texel = false;  ///< also readable as samplerBuffer (RGBA32F texels); bytes must be a multiple of 16
 };
 
-/// A storage buffer (also transfer source and destination, indirect arguments, and optionally a uniform texel buffer).
+/// A storage buffer (also transfer source and destination, indirect arguments, and optionally a uniform texel
+/// buffer).
 class Buffer {
  public:
   Buffer();
@@ -43,7 +45,9 @@ class Buffer {
   void read(void* data, uint64_t size, uint64_t offset = 0) const;
 
   template <class T>
-  void write(std::span<const T> values, uint64_t first = 0) { write(values.data(), values.size_bytes(), first * sizeof(T)); }
+  void write(std::span<const T> values, uint64_t first = 0) {
+    write(values.data(), values.size_bytes(), first * sizeof(T));
+  }
   template <class T>
   std::vector<T> read_all() const {
     std::vector<T> values(bytes() / sizeof(T));
@@ -67,8 +71,8 @@ struct TextureArrayDesc {
   TexelFormat format = TexelFormat::rgba8_unorm;
 };
 
-/// A sampler2DArray in the shader: bilinear, one mip level, address mode repeat in both directions (other modes and
-/// nearest filtering are done on the coordinates in the shader).
+/// A sampler2DArray in the shader: bilinear, one mip level, address mode repeat in both directions (other
+/// modes and nearest filtering are done on the coordinates in the shader).
 class TextureArray {
  public:
   TextureArray();

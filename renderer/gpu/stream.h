@@ -1,6 +1,7 @@
 #pragma once
-// Recording and running work. One Stream is used by one thread; work runs in order, each dispatch after the one before it
-// has finished and its writes are visible (a full compute barrier between dispatches unless said otherwise).
+// Recording and running work. One Stream is used by one thread; work runs in order, each dispatch after the
+// one before it has finished and its writes are visible (a full compute barrier between dispatches unless
+// said otherwise).
 #include <string>
 #include <vector>
 
@@ -8,8 +9,19 @@
 
 namespace lucerna::gpu {
 
+/// Most workgroups along one axis that every Vulkan device takes.
+inline constexpr uint32_t k_most_groups = 65535;
+
+/// Workgroups of `workgroup` invocations that cover `items`.
+inline uint32_t groups_for(uint64_t items, uint32_t workgroup) {
+  return static_cast<uint32_t>((items + workgroup - 1) / workgroup);
+}
+
 /// Device time of one stage between two submits, from timestamp queries.
-struct StageTime { std::string stage; double milliseconds; };
+struct StageTime {
+  std::string stage;
+  double milliseconds;
+};
 
 class Stream {
  public:
@@ -18,30 +30,39 @@ class Stream {
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
 
-  /// Runs `groups` workgroups of the kernel. `push` must be as large as the kernel's push constants.
-  /// `stage` names the timer that the dispatch is counted under ("" = none).
-  /// Throws Error when a resource that the kernel declares is not in the table (both named).
-  void dispatch(const Kernel& kernel, const Resources& resources, const void* push, size_t push_bytes, uint32_t groups,
-                const std::string& stage = {});
-  /// Workgroup counts are read from three uint32 at `offset` of `arguments` when it runs.
-  void dispatch_indirect(const Kernel& kernel, const Resources& resources, const void* push, size_t push_bytes,
-                         const Buffer& arguments, uint64_t offset, const std::string& stage = {});
+  /// Runs `groups` workgroups of the kernel. Above k_most_groups they are laid out as a grid of x × y
+  /// workgroups with x * y >= groups: so kernels take their index from global_index()
+  /// (shaders/lib/invocation.glsl), never from gl_GlobalInvocationID.x, and return when it is beyond their
+  /// count. 0 groups run nothing but warm the kernel up: software devices compile at the first dispatch.
+  /// `push` must be as large as the kernel's push constants. `stage` names the timer that the dispatch is
+  /// counted under ("" = none). Throws Error when a resource that the kernel declares is not in the table
+  /// (both named).
+  void dispatch(const Kernel& kernel, const Resources& resources, const void* push, size_t push_bytes,
+                uint32_t groups, const std::string& stage = {});
+  /// Workgroup counts are read from three uint32 at `offset` of `arguments` when it runs; each at most
+  /// k_most_groups (indirect_groups() of shaders/lib/invocation.glsl makes them of one count).
+  void dispatch_indirect(const Kernel& kernel, const Resources& resources, const void* push,
+                         size_t push_bytes, const Buffer& arguments, uint64_t offset,
+                         const std::string& stage = {});
   template <class Push>
-  void dispatch(const Kernel& k, const Resources& r, const Push& push, uint32_t groups, const std::string& stage = {}) {
+  void dispatch(const Kernel& k, const Resources& r, const Push& push, uint32_t groups,
+                const std::string& stage = {}) {
     dispatch(k, r, &push, sizeof(Push), groups, stage);
   }
   template <class Push>
-  void dispatch_indirect(const Kernel& k, const Resources& r, const Push& push, const Buffer& args, uint64_t offset,
-                         const std::string& stage = {}) {
+  void dispatch_indirect(const Kernel& k, const Resources& r, const Push& push, const Buffer& args,
+                         uint64_t offset, const std::string& stage = {}) {
     dispatch_indirect(k, r, &push, sizeof(Push), args, offset, stage);
   }
   void fill(const Buffer& buffer, uint32_t value, uint64_t offset = 0, uint64_t bytes = ~0ull);
-  void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset = 0, uint64_t to_offset = 0);
+  void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset = 0,
+            uint64_t to_offset = 0);
 
   /// Submits what was recorded and waits for it; host-visible memory is then coherent for the host.
   /// Does nothing when nothing was recorded.
   void run();
-  /// Device milliseconds per stage since the last call, summed over dispatches of the same stage, in first-use order.
+  /// Device milliseconds per stage since the last call, summed over dispatches of the same stage, in
+  /// first-use order.
   std::vector<StageTime> take_times();
 
  private:

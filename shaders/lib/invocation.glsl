@@ -4,9 +4,9 @@
 
 // Number of this invocation over the whole dispatch. Large dispatches are laid out over x and y, and may hold more
 // invocations than items: compare it with the count before anything else.
-uint global_index() {
-  return (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
-}
+// A macro, because a function would read gl_WorkGroupSize before the kernel has declared its local_size.
+#define global_index() \
+  ((gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
 
 // Workgroup counts for an indirect dispatch of `groups` workgroups, within what every device takes along one axis.
 uvec3 indirect_groups(uint groups) {

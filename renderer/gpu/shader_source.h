@@ -1,0 +1,36 @@
+#pragma once
+// Finding a shader's files (internal to gpu/).
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lucerna::gpu {
+
+/// One file of a shader. `display` is what messages call it: "shaders/lib/bsdf.glsl" for what lies below the
+/// root.
+struct ShaderFile {
+  std::filesystem::path path;
+  std::string display, text;
+};
+
+class ShaderSource {
+ public:
+  explicit ShaderSource(std::filesystem::path root) : root_(std::move(root)) {}
+  const std::filesystem::path& root() const { return root_; }
+  /// A kernel's file: relative to the root ("shaders/x" is x), or absolute.
+  std::optional<ShaderFile> open(const std::string& file) const;
+  /// What #include "name" means in the file that messages call `includer`.
+  std::optional<ShaderFile> include(const std::string& name, const std::string& includer) const;
+  /// The file and all that its #include lines name, directly or not, each once, in order of first mention.
+  /// Lines are read without regard to #if, so this may be more than the compiler reads; what cannot be found
+  /// is left out (it may be in a branch for C++).
+  std::vector<ShaderFile> closure(const ShaderFile& file) const;
+
+ private:
+  std::optional<ShaderFile> read(const std::filesystem::path& path) const;
+  std::filesystem::path path_of(const std::string& display) const;
+  std::filesystem::path root_;
+};
+
+}  // namespace lucerna::gpu
