@@ -1,0 +1,110 @@
+// What a person starts: the viewer, or a batch verb.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include "app/verbs.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "plan/settings.h"
+#if __has_include("ui/viewer.h")
+#include "ui/viewer.h"
+#endif
+
+namespace lucerna::app {
+namespace {
+
+std::string settings_help() {
+  std::string text = "\nSettings for --set KEY=VALUE (and settings.json beside a scene):\n";
+  for (const plan::OptionInfo& o : plan::options()) {
+    std::string range;
+    if (o.type == plan::OptionType::choice) range = fmt::format("{}", fmt::join(o.choices, "|"));
+    else if (o.type == plan::OptionType::boolean) range = "true|false";
+    else if (o.type != plan::OptionType::text) range = fmt::format("{} to {}{}{}", o.lo, o.hi, o.unit.empty() ? "" : " ", o.unit);
+    text += fmt::format("  {:<24}{} [{}] {}\n", o.key, o.help, o.fallback.empty() ? "none" : o.fallback, range);
+  }
+  return text;
+}
+
+int main_checked(int argc, char** argv) {
+  CLI::App app{"Lucerna: watch global illumination being computed, component by component"};
+  app.set_version_flag("--version", LUCERNA_VERSION);
+  app.footer(settings_help());
+  std::string scene, device, script;
+  bool verbose = false;
+  app.add_option("SCENE", scene, "glTF scene (.gltf or .glb) to open in the viewer");
+  app.add_option("--device", device, "device: index, part of a name, cpu or gpu (also LUCERNA_DEVICE)");
+  app.add_option("--script", script, "viewer: file with scripted steps, one a line");
+  app.add_flag("-v,--verbose", verbose, "say more on standard error");
+
+  RenderArguments r;
+  CLI::App* render_verb = app.add_subcommand("render", "render a scene to files, without a window");
+  render_verb->add_option("SCENE", r.scene, "glTF scene")->required();
+  render_verb->add_option("-o,--output", r.outputs, "OUT.exr or OUT.png; may be given several times")->required()->allow_extra_args(false);
+  render_verb->add_option("--size", r.size, "picture, WIDTHxHEIGHT")->capture_default_str();
+  render_verb->add_option("--camera", r.camera, "name of a scene camera");
+  render_verb->add_option("--samples", r.samples, "samples a pixel")->check(CLI::Range(int64_t(1), int64_t(1) << 20));
+  render_verb->add_option("--time", r.seconds, "stop after this many seconds");
+  render_verb->add_option("--seed", r.seed, "seed of all random decisions")->check(CLI::Range(int64_t(0), int64_t(4294967295)));
+  render_verb->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
+  render_verb->add_option("--device", r.device, "as above");
+  render_verb->add_option("--stats", r.stats, "write figures of the run as JSON");
+  render_verb->add_flag("--quiet", r.quiet, "no progress line");
+  render_verb->footer(settings_help());
+
+  std::string info_scene;
+  bool info_json = false, devices_json = false;
+  CLI::App* info_verb = app.add_subcommand("info", "say what is in a scene");
+  info_verb->add_option("SCENE", info_scene, "glTF scene")->required();
+  info_verb->add_flag("--json", info_json, "as JSON");
+  CLI::App* devices_verb = app.add_subcommand("devices", "list the Vulkan devices");
+  devices_verb->add_flag("--json", devices_json, "as JSON");
+
+  CompareArguments c;
+  CLI::App* compare_verb = app.add_subcommand("compare", "compare two images");
+  compare_verb->add_option("A", c.a, "image")->required();
+  compare_verb->add_option("B", c.b, "reference")->required();
+  compare_verb->add_option("--layer", c.layer, "layer instead of R, G, B: primary, secondary, ...");
+  compare_verb->add_flag("--json", c.json, "as JSON");
+  compare_verb->add_option("--max-relmse", c.max_relmse, "exit with 1 when the relative MSE is above this");
+  app.require_subcommand(0, 1);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 1;
+  }
+  if (verbose) log::set_console_level(log::Level::info);
+  if (r.device.empty()) r.device = device;
+  if (*render_verb) return render(r);
+  if (*info_verb) return info(info_scene, info_json);
+  if (*devices_verb) return devices(devices_json);
+  if (*compare_verb) return compare(c);
+#if __has_include("ui/viewer.h")
+  session::Session session({.device = device, .validation = false, .shaders = {}});
+  ui::ViewerOptions options;
+  options.scene = scene;
+  if (!script.empty()) {
+    std::ifstream in(script);
+    if (!in) throw Error(script, "cannot be read");
+    for (std::string line; std::getline(in, line);)
+      if (!line.empty() && line[0] != '#') options.script.push_back(line);
+  }
+  return ui::run_viewer(session, options);
+#else
+  throw Error("viewer", "this build has no window; use 'lucerna render'");
+#endif
+}
+
+}  // namespace
+}  // namespace lucerna::app
+
+int main(int argc, char** argv) {
+  try {
+    return lucerna::app::main_checked(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "lucerna: %s\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,141 @@
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/verbs.h"
+#include "base/log.h"
+#include "base/timer.h"
+#include "session/renderer.h"
+
+namespace lucerna::app {
+namespace {
+
+std::atomic<bool> interrupted{false};
+void on_interrupt(int) { interrupted = true; }
+
+std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
+  unsigned long w = 0, h = 0;
+  char rest = 0;
+  if (text.find('-') != std::string::npos || std::sscanf(text.c_str(), "%lux%lu%c", &w, &h, &rest) != 2 || !w || !h || w > 65536 || h > 65536)
+    throw_error("--size", "'{}': expected WIDTHxHEIGHT, each from 1 to 65536, such as 1280x720", text);
+  return {uint32_t(w), uint32_t(h)};
+}
+
+void write_text(const std::string& file, const std::string& text) {
+  const std::string temporary = file + ".tmp";
+  std::ofstream out(temporary);
+  out << text;
+  out.close();
+  if (!out || std::rename(temporary.c_str(), file.c_str()) != 0) {
+    std::remove(temporary.c_str());
+    throw_error(file, "cannot write here; check that the folder exists and may be written");
+  }
+}
+
+void print_progress(const session::Renderer& r, double seconds, double limit, bool last) {
+  const double share = limit > 0 ? std::min(1.0, seconds / limit) : double(r.samples()) / r.max_samples();
+  const double paths = double(r.stats().paths) / (double(r.film().width()) * r.film().height());
+  const double done = limit > 0 ? share : std::max(share, paths / r.max_samples());
+  const double left = done > 0 ? seconds * (1 - done) / done : 0;
+  std::fprintf(stderr, "\r%5.1f %%  %u/%u samples  %.2f Mray/s  %.2f samples/s  %s %.0f s left   %s", 100 * done, r.samples(),
+               r.max_samples(), 1e-6 * double(r.stats().rays) / std::max(seconds, 1e-9), paths / std::max(seconds, 1e-9), "about", left,
+               last ? "\n" : "");
+  std::fflush(stderr);
+}
+
+nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
+  const auto means = film::Film::means(r.image());
+  nlohmann::ordered_json j;
+  j["version"] = LUCERNA_VERSION;
+  j["scene"] = r.scene()->file;
+  j["device"] = r.device().info().name;
+  j["tracer"] = r.tracer_name();
+  j["width"] = r.film().width();
+  j["height"] = r.film().height();
+  j["settings"] = nlohmann::ordered_json::parse(r.settings().changed_json());
+  j["wall_s"] = wall;
+  j["load_s"] = r.load_seconds();
+  j["compile_s"] = r.compile_seconds();
+  j["samples"] = r.samples();
+  j["rays"] = r.stats().rays;
+  j["shadow_rays"] = r.stats().shadow_rays;
+  j["mrays_per_s"] = 1e-6 * double(r.stats().rays) / std::max(wall, 1e-9);
+  j["dropped"] = r.stats().dropped;
+  j["ended_by_roulette"] = r.stats().roulette;
+  j["ended_by_depth"] = r.stats().depth;
+  j["peak_host_mb"] = session::peak_host_mb();
+  j["peak_device_mb"] = double(r.device().peak_bytes()) / (1 << 20);
+  for (const auto& s : r.stats().stages) j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
+  for (int c = 0; c < paths::k_component_count; ++c) {
+    const std::string name = paths::k_component_names[c];
+    j["components"][name] = {{"solver", r.settings().text("components." + name)},
+                             {"mean_radiance", {means[c].x, means[c].y, means[c].z}},
+                             {"ms", r.stats().component_ms[c]}};
+  }
+  return j;
+}
+
+}  // namespace
+
+int render(const RenderArguments& a) {
+  const auto [width, height] = parse_size(a.size);
+  if (a.outputs.empty()) throw Error("-o", "name at least one output, OUT.exr or OUT.png");
+  for (const std::string& file : a.outputs) {
+    const auto dot = file.rfind('.');
+    const std::string extension = dot == std::string::npos ? "" : file.substr(dot);
+    if (extension != ".exr" && extension != ".png") throw_error(file, "cannot write '{}' files; use .exr or .png", extension);
+    film::check_writable(file);
+  }
+  if (!a.stats.empty()) film::check_writable(a.stats);
+  session::Renderer r({.device = a.device, .validation = false, .shaders = {}, .defines = {}});
+  r.set_size(width, height);
+  // What the command line says stands above the scene's own settings; checked before the scene is loaded.
+  std::vector<std::pair<std::string, std::string>> changes;
+  for (const std::string& change : a.set) {
+    const size_t at = change.find('=');
+    if (at == std::string::npos) throw_error("--set", "'{}': expected key=value", change);
+    changes.emplace_back(change.substr(0, at), change.substr(at + 1));
+  }
+  if (a.samples != -1) changes.emplace_back("samples", std::to_string(a.samples));
+  if (a.seed != -1) changes.emplace_back("seed", std::to_string(a.seed));
+  plan::Settings probe;
+  for (const auto& [key, value] : changes) probe.set(key, value, key == "samples" && a.samples != -1 ? "--samples" : "--set");
+  for (const auto& [key, value] : changes)
+    if (key == "tracer" || key == "path.batch") r.settings().set(key, value);
+  if (a.seconds < 0) throw Error("--time", "expected a positive number of seconds");
+
+  const bool terminal = !a.quiet && isatty(2);
+  r.load(a.scene, [&](float fraction, const std::string& what) {
+    if (terminal) std::fprintf(stderr, "\rloading %3.0f %%  %-40.40s", 100 * fraction, what.c_str());
+    return !interrupted;
+  });
+  if (terminal) std::fprintf(stderr, "\r%-60s\r", "");
+  for (const auto& [key, value] : changes) r.settings().set(key, value, "--set");
+  if (a.seconds > 0 && a.samples == -1) r.settings().set("samples", "1048576");
+  r.apply_settings();
+  if (!a.camera.empty()) r.choose_camera(a.camera);
+
+  struct sigaction action{}, before{};
+  action.sa_handler = on_interrupt;
+  sigaction(SIGINT, &action, &before);
+  const Timer timer;
+  Timer since_line;
+  while (!r.done() && !interrupted && (a.seconds <= 0 || timer.seconds() < a.seconds)) {
+    if (!r.step()) break;
+    if (terminal && since_line.seconds() > 0.2) print_progress(r, timer.seconds(), a.seconds, false), since_line.restart();
+  }
+  const double wall = timer.seconds();
+  if (terminal) print_progress(r, wall, a.seconds, true);
+  sigaction(SIGINT, &before, nullptr);
+  if (interrupted) std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
+  for (const std::string& file : a.outputs) r.save(file);
+  if (!a.stats.empty()) write_text(a.stats, make_stats(r, wall).dump(2) + "\n");
+  if (r.stats().dropped) log::warning("{} contributions were not finite and were dropped", r.stats().dropped);
+  return interrupted ? 130 : 0;
+}
+
+}  // namespace lucerna::app

@@ -1,0 +1,31 @@
+#pragma once
+// The batch verbs of the command line. Each returns the process's exit status; errors are thrown.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lucerna::app {
+
+struct RenderArguments {
+  std::string scene;
+  std::vector<std::string> outputs;
+  std::string size = "1280x720", camera, device, stats;
+  int64_t samples = -1;            ///< -1: the settings'
+  double seconds = 0;              ///< 0: no time limit
+  int64_t seed = -1;
+  std::vector<std::string> set;    ///< key=value
+  bool quiet = false;
+};
+int render(const RenderArguments& arguments);
+
+int info(const std::string& scene, bool json);
+int devices(bool json);
+
+struct CompareArguments {
+  std::string a, b, layer, difference;
+  bool json = false;
+  double max_relmse = -1;          ///< < 0: no bound
+};
+int compare(const CompareArguments& arguments);
+
+}  // namespace lucerna::app

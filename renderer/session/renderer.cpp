@@ -1,0 +1,309 @@
+#include "session/renderer.h"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/log.h"
+#include "base/timer.h"
+#include "bvh/embree/build.h"
+#include "scene/io/load.h"
+#include "shaders/shared/film.h"
+
+namespace lucerna::session {
+namespace {
+
+constexpr uint32_t k_coarse_step = 4;
+
+void require(bool go_on) {
+  if (!go_on) throw Error("", "cancelled");
+}
+
+}  // namespace
+
+Renderer::Renderer(const RendererOptions& options)
+    : options_(options),
+      device_(std::make_unique<gpu::Device>(gpu::DeviceOptions{options.device, options.validation})),
+      compiler_(std::make_unique<gpu::ShaderCompiler>(options.shaders.empty() ? gpu::ShaderCompiler::default_root() : options.shaders)),
+      automaton_(paths::compile_components()) {}
+
+Renderer::~Renderer() = default;
+
+void Renderer::load(const std::filesystem::path& file, const Progress& progress) {
+  const Timer timer;
+  auto scene = std::make_shared<scene::Scene>(scene::load(file, {}, [&](float fraction, const std::string& what) {
+    return !progress || progress(0.6f * fraction, what);
+  }));
+  for (const std::string& warning : scene->warnings) log::warning("{}", warning);
+  set_scene(scene, [&](float fraction, const std::string& what) { return !progress || progress(0.6f + 0.4f * fraction, what); });
+  load_seconds_ = timer.seconds() - compile_seconds_;
+}
+
+void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress) {
+  const auto report = [&](float fraction, const char* what) { require(!progress || progress(fraction, what)); };
+  // Everything that can fail happens before the old scene is given up.
+  plan::Settings settings = settings_;
+  for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
+  report(0, "flattening the scene");
+  upload::FlatScene flat = upload::flatten(*scene);
+  report(0.2f, "building the BVH");
+  const bvh::Triangles triangles{flat.positions, flat.non_opaque};
+  const std::string& tracer = settings.text("tracer");
+  const bool use_host = tracer == "host" || (tracer == "auto" && device_->info().is_cpu);
+  std::unique_ptr<bvh::HostTracer> host;
+  bvh::BvhData tree;
+  if (use_host) {
+    host = std::make_unique<bvh::HostTracer>(triangles);
+  } else {
+    bvh::BuildOptions options;
+    options.progress = [&](float f) { return !progress || progress(0.2f + 0.6f * f, "building the BVH"); };
+    tree = bvh::build(triangles, options);
+  }
+  report(0.8f, "uploading the scene");
+  auto device_scene = std::make_unique<upload::DeviceScene>(*device_, flat, tree);
+  report(0.9f, "compiling kernels");
+  std::swap(host_, host);
+  std::swap(settings_, settings);
+  try {
+    build_wavefront(flat, *device_scene);
+  } catch (...) {
+    std::swap(host_, host);
+    std::swap(settings_, settings);
+    throw;
+  }
+  scene_ = std::move(scene);
+  flat_ = std::move(flat);
+  device_scene_ = std::move(device_scene);
+  camera_ = scene_->cameras.empty() ? scene::default_camera(*scene_) : scene_->cameras.front();
+  if (const std::string& name = settings_.text("camera"); !name.empty()) choose_camera(name);
+  make_film();
+}
+
+void Renderer::build_wavefront(const upload::FlatScene&, upload::DeviceScene& device_scene) {
+  const Timer timer;
+  transport::HostTrace trace;
+  if (host_) {
+    trace = [host = host_.get()](bvh::Query query, std::span<const shared::Ray> rays, std::span<shared::Hit> hits, const uint32_t* queue,
+                                 uint32_t count, bool coherent) { host->trace(query, rays, hits, queue, count, coherent); };
+  }
+  const uint32_t slots = uint32_t(settings_.integer("path.batch")) / 64 * 64;
+  wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots, std::move(trace), options_.defines);
+  compile_seconds_ = timer.seconds();
+}
+
+void Renderer::reload_shaders() {
+  if (!device_scene_) return;
+  build_wavefront(flat_, *device_scene_);
+  restart();
+}
+
+uint32_t Renderer::enabled_components() const {
+  uint32_t enabled = 0;
+  for (int c = 0; c < paths::k_component_count; ++c)
+    if (settings_.text(std::string("components.") + paths::k_component_names[c]) != "off") enabled |= 1u << c;
+  return enabled;
+}
+
+shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
+  shared::Frame f{};
+  const mat4& m = camera_.to_world;
+  const vec3 right = glm::normalize(vec3(m[0])), up = glm::normalize(vec3(m[1]));
+  const float half_h = camera_.orthographic ? camera_.ymag : std::tan(0.5f * camera_.yfov);
+  const float half_w = half_h * float(width) / float(height);
+  f.camera_origin = vec3(m[3]);
+  f.camera_right = right * half_w;
+  f.camera_up = up * half_h;
+  f.camera_forward = -glm::normalize(vec3(m[2]));
+  f.orthographic = camera_.orthographic;
+  f.width = width;
+  f.height = height;
+  f.seed = uint32_t(settings_.integer("seed"));
+  f.environment_radiance = flat_.environment_radiance;
+  f.environment_width = flat_.environment_width;
+  f.environment_height = flat_.environment_height;
+  f.environment_rotation = flat_.environment_rotation;
+  f.environment_light_pmf = flat_.environment_light_pmf;
+  f.light_count = uint32_t(flat_.lights.size() / shared::k_light_texels);
+  f.max_depth = uint32_t(settings_.integer("path.max_depth"));
+  f.roulette_depth = uint32_t(settings_.integer("path.roulette_depth"));
+  f.scene_radius = flat_.scene_radius;
+  const std::vector<uint32_t> table = paths::pack(automaton_, enabled_components());
+  f.automaton_states = uint32_t(table.size());
+  std::copy(table.begin(), table.end(), f.automaton);
+  return f;
+}
+
+void Renderer::make_film() {
+  film_ = std::make_unique<film::Film>(*device_, width_, height_);
+  coarse_ = std::make_unique<film::Film>(*device_, std::max(1u, width_ / k_coarse_step), std::max(1u, height_ / k_coarse_step));
+  restart();
+}
+
+void Renderer::restart() {
+  if (!wavefront_ || !film_) return;
+  wavefront_->clear(*film_);
+  wavefront_->clear(*coarse_);
+  wavefront_->reset_stats();
+  schedule_ = {film_->tiles(), uint32_t(settings_.integer("samples")), wavefront_->slots()};
+  wavefront_->set_frame(make_frame(width_, height_), enabled_components());
+  applied_ = settings_.all();
+}
+
+void Renderer::apply_settings() {
+  if (!wavefront_) return;
+  bool again = false, samples = false;
+  for (const auto& [key, value] : settings_.all()) {
+    if (applied_[key] == value) continue;
+    if (key == "samples") samples = true;
+    else if (key == "camera") choose_camera(value);
+    else if (key == "tracer" || key == "path.batch") set_scene(scene_);
+    else again |= plan::find_option(key)->restarts;
+  }
+  if (samples && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
+  if (again) restart();
+  applied_ = settings_.all();
+}
+
+void Renderer::set_size(uint32_t width, uint32_t height) {
+  if (width == width_ && height == height_ && film_) return;
+  const uint32_t old_width = width_, old_height = height_;
+  width_ = width;
+  height_ = height;
+  if (!wavefront_) return;
+  try {
+    make_film();
+  } catch (...) {
+    width_ = old_width, height_ = old_height;
+    make_film();
+    throw;
+  }
+}
+
+void Renderer::set_camera(const scene::Camera& camera) {
+  camera_ = camera;
+  restart();
+}
+
+void Renderer::choose_camera(const std::string& name) {
+  std::vector<std::string> names;
+  for (const scene::Camera& c : scene_->cameras) {
+    if (c.name == name) {
+      camera_ = c;
+      restart();
+      return;
+    }
+    names.push_back("'" + c.name + "'");
+  }
+  throw_error("camera", "the scene has no camera '{}'; it has {}", name, names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
+}
+
+void Renderer::set_light(uint32_t index, const scene::Light& light) {
+  if (!scene_ || index >= scene_->lights.size()) throw_error("light", "there is no light {}", index);
+  auto edited = std::make_shared<scene::Scene>(*scene_);
+  edited->lights[index] = light;
+  scene_ = edited;
+  const upload::Effects before = flat_.effects;
+  upload::flatten_lights(*scene_, flat_);
+  device_scene_->update_lights(*device_, flat_);
+  if (before.lights != flat_.effects.lights || before.emissive != flat_.effects.emissive) build_wavefront(flat_, *device_scene_);
+  else wavefront_->rebind(*device_scene_);
+  restart();
+}
+
+void Renderer::set_environment(float scale, float rotation_degrees) {
+  if (!scene_) return;
+  auto edited = std::make_shared<scene::Scene>(*scene_);
+  edited->environment.scale = scale;
+  edited->environment.rotation = rotation_degrees;
+  scene_ = edited;
+  const upload::Effects before = flat_.effects;
+  upload::flatten_lights(*scene_, flat_);
+  device_scene_->update_lights(*device_, flat_);
+  if (before.lights != flat_.effects.lights || before.environment_map != flat_.effects.environment_map)
+    build_wavefront(flat_, *device_scene_);
+  else wavefront_->rebind(*device_scene_);
+  restart();
+}
+
+bool Renderer::step(const std::function<bool()>& cancel) {
+  if (!wavefront_ || schedule_.done()) return false;
+  const schedule::UniformSchedule before = schedule_;
+  const schedule::WorkItem item = schedule_.next();
+  if (wavefront_->run(item, *film_, cancel)) return true;
+  schedule_ = before;
+  return false;
+}
+
+void Renderer::render_coarse(const std::function<bool()>& cancel) {
+  if (!wavefront_) return;
+  wavefront_->clear(*coarse_);
+  wavefront_->set_frame(make_frame(coarse_->width(), coarse_->height()), enabled_components());
+  schedule::UniformSchedule schedule(coarse_->tiles(), 1, wavefront_->slots());
+  while (!schedule.done() && wavefront_->run(schedule.next(), *coarse_, cancel)) {}
+  wavefront_->set_frame(make_frame(width_, height_), enabled_components());
+}
+
+film::View Renderer::view(const film::Film&) const {
+  film::View v;
+  v.layer = uint32_t(settings_.choice("film.layer"));
+  v.show = 0;
+  for (int c = 0; c < paths::k_component_count; ++c)
+    if (settings_.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
+  v.curve = uint32_t(settings_.choice("film.tone_curve"));
+  v.exposure = float(std::exp2(settings_.real("film.ev")));
+  v.scale = v.layer == shared::k_layer_samples ? float(std::max(1u, schedule_.samples())) : 2 * flat_.scene_radius;
+  return v;
+}
+
+std::vector<uint8_t> Renderer::picture(bool with_coarse) {
+  wavefront_->tone_map(*film_, view(*film_), with_coarse ? coarse_.get() : nullptr);
+  return film_->read_picture();
+}
+
+film::FilmImage Renderer::film_image() const {
+  const film::Image image = film_->read();
+  film::FilmImage out;
+  out.width = image.width;
+  out.height = image.height;
+  const size_t n = image.samples.size();
+  const auto add = [&](const std::string& prefix, const char* names, const std::vector<vec3>& plane) {
+    for (int k = 0; k < 3; ++k) {
+      std::vector<float> channel(n);
+      for (size_t i = 0; i < n; ++i) channel[i] = plane[i][k];
+      out.channels.emplace_back(prefix + names[k], std::move(channel));
+    }
+  };
+  std::vector<vec3> sum(n, vec3(0));
+  for (const auto& component : image.components)
+    for (size_t i = 0; i < n; ++i) sum[i] += component[i];
+  add("", "RGB", sum);
+  for (int c = 0; c < film::k_components; ++c) add(std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
+  add("albedo.", "RGB", image.albedo);
+  add("N.", "XYZ", image.normal);
+  out.channels.emplace_back("Z", image.depth);
+  out.channels.emplace_back("samples", std::vector<float>(image.samples.begin(), image.samples.end()));
+  out.metadata["lucerna:version"] = LUCERNA_VERSION;
+  out.metadata["lucerna:settings"] = settings_.changed_json();
+  out.metadata["lucerna:seed"] = settings_.text("seed");
+  out.metadata["lucerna:device"] = device_->info().name;
+  out.metadata["lucerna:tracer"] = tracer_name();
+  out.metadata["lucerna:scene"] = scene_->name;
+  return out;
+}
+
+void Renderer::save(const std::filesystem::path& file) {
+  if (!wavefront_) throw Error(file.string(), "nothing to save yet; load a scene first");
+  const std::string extension = file.extension().string();
+  if (extension == ".exr") film::write_exr(file, film_image());
+  else if (extension == ".png") film::write_png(file, film_->width(), film_->height(), picture(false));
+  else throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);
+}
+
+double peak_host_mb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("VmHWM:", 0) == 0) return std::stod(line.substr(6)) / 1024;
+  return 0;
+}
+
+}  // namespace lucerna::session

@@ -1,0 +1,107 @@
+#pragma once
+// The renderer on one thread: a device, a scene, settings, a film; step() does one bounded work item. The batch verbs use it
+// directly; Session runs one on a thread of its own.
+#include <array>
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "bvh/embree/host_tracer.h"
+#include "film/film.h"
+#include "film/io/image_file.h"
+#include "gpu/kernel.h"
+#include "paths/automaton.h"
+#include "plan/settings.h"
+#include "scene/scene.h"
+#include "transport/wavefront.h"
+
+namespace lucerna::session {
+
+struct RendererOptions {
+  std::string device;
+  bool validation = false;
+  std::filesystem::path shaders;
+  gpu::Defines defines;          ///< further #defines for the transport's kernels (tests)
+};
+
+/// fraction 0..1 and what is going on; returning false cancels (an Error "cancelled" is thrown).
+using Progress = std::function<bool(float, const std::string&)>;
+
+class Renderer {
+ public:
+  explicit Renderer(const RendererOptions& options);
+  ~Renderer();
+
+  gpu::Device& device() { return *device_; }
+  /// Loads a file and makes it ready to render. On failure throws Error and the scene before stays.
+  void load(const std::filesystem::path& file, const Progress& progress = {});
+  /// The same for a scene made in memory.
+  void set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress = {});
+  std::shared_ptr<const scene::Scene> scene() const { return scene_; }
+
+  plan::Settings& settings() { return settings_; }
+  /// Settings changed by hand: applies what differs, restarts if the image depends on it.
+  void apply_settings();
+  void set_size(uint32_t width, uint32_t height);
+  void set_camera(const scene::Camera& camera);
+  const scene::Camera& camera() const { return camera_; }
+  /// Camera of the scene by name; Error when there is none such, listing the names.
+  void choose_camera(const std::string& name);
+  void set_light(uint32_t index, const scene::Light& light);
+  void set_environment(float scale, float rotation_degrees);
+  void reload_shaders();
+  void restart();
+
+  bool ready() const { return wavefront_ != nullptr; }
+  bool done() const { return schedule_.done(); }
+  uint32_t samples() const { return schedule_.complete(); }
+  uint32_t max_samples() const { return schedule_.samples(); }
+  /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled.
+  bool step(const std::function<bool()>& cancel = {});
+  /// A quick image of a quarter of the resolution, for display until the film is filled.
+  void render_coarse(const std::function<bool()>& cancel = {});
+
+  /// Tone-mapped picture with the settings' view.
+  std::vector<uint8_t> picture(bool with_coarse);
+  film::Image image() const { return film_->read(); }
+  /// The image with its layers and metadata, as EXR files hold it.
+  film::FilmImage film_image() const;
+  void save(const std::filesystem::path& file);
+
+  const film::Film& film() const { return *film_; }
+  const transport::TransportStats& stats() const { return wavefront_->stats(); }
+  std::string tracer_name() const { return host_ ? "host" : "compute-bvh"; }
+  double load_seconds() const { return load_seconds_; }
+  double compile_seconds() const { return compile_seconds_; }
+  uint32_t enabled_components() const;
+
+ private:
+  void build_wavefront(const upload::FlatScene& flat, upload::DeviceScene& device_scene);
+  void make_film();
+  shared::Frame make_frame(uint32_t width, uint32_t height) const;
+  film::View view(const film::Film& film) const;
+
+  RendererOptions options_;
+  std::unique_ptr<gpu::Device> device_;
+  std::unique_ptr<gpu::ShaderCompiler> compiler_;
+  paths::Automaton automaton_;
+  plan::Settings settings_;
+  std::shared_ptr<const scene::Scene> scene_;
+  upload::FlatScene flat_;
+  std::unique_ptr<upload::DeviceScene> device_scene_;
+  std::unique_ptr<bvh::HostTracer> host_;
+  std::unique_ptr<transport::Wavefront> wavefront_;
+  std::unique_ptr<film::Film> film_, coarse_;
+  scene::Camera camera_;
+  schedule::UniformSchedule schedule_;
+  uint32_t width_ = 1280, height_ = 720;
+  std::map<std::string, std::string> applied_;  ///< settings that the film was made with
+  double load_seconds_ = 0, compile_seconds_ = 0;
+};
+
+/// Resident memory of this process at its highest, MiB.
+double peak_host_mb();
+
+}  // namespace lucerna::session
