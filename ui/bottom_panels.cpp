@@ -1,0 +1,221 @@
+// The strip at the bottom: device and timings, and the log.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "state.h"
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+/// Greys of different lightness, so that neighbours in the stacked bar part without claiming a meaning.
+ImU32 stage_colour(size_t index, bool host) {
+  static constexpr int steps[] = {178, 126, 152, 104, 190, 138, 116, 164};
+  const int v = steps[index % 8];
+  return host ? IM_COL32(v * 2 / 3, v * 5 / 6, v, 255) : colour::grey(v);
+}
+
+void figure(const char* name, const std::string& value, const std::string& help, float width) {
+  const ImVec2 lo = ImGui::GetCursorScreenPos();
+  ImGui::Dummy({width, px(36)});
+  tooltip(help);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  draw_text(list, lo, {lo.x + width, lo.y + px(16)}, name, colour::text_dim, Align::left,
+            theme().fonts.small);
+  draw_text(list, {lo.x, lo.y + px(16)}, {lo.x + width - px(8), lo.y + px(36)}, elided(value, width - px(8)),
+            colour::text);
+}
+
+void figures(const session::Snapshot& s, float width) {
+  const std::string device_help = s.device.empty() ? "" : s.device;
+  const int columns = width > px(560) ? 6 : 3;
+  const float w = std::floor(width / static_cast<float>(columns));
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  int n = 0;
+  const auto put = [&](const char* name, const std::string& value, const std::string& help) {
+    ImGui::SetCursorScreenPos(
+        {at.x + static_cast<float>(n % columns) * w, at.y + static_cast<float>(n / columns) * px(40)});
+    figure(name, value, help, w);
+    ++n;
+  };
+  put("Device", s.device.empty() ? "\xE2\x80\x93" : s.device, device_help);
+  put("Tracer", s.tracer.empty() ? "\xE2\x80\x93" : s.tracer, "Who traces the rays.");
+  put("Rays", fmt::format("{} Mray/s", padded(fmt::format("{:.2f}", s.mrays_per_second), 5)),
+      fmt::format("Rate of this picture; {} rays since it started.",
+                  count_text(static_cast<double>(s.rays))));
+  put("Size", fmt::format("{} \xC3\x97 {}", s.width, s.height), "Pixels of the picture.");
+  put("Device memory", megabytes_text(s.device_mb), "Memory taken on the device.");
+  put("Host memory", megabytes_text(s.host_mb), "Memory of this program.");
+  ImGui::SetCursorScreenPos({at.x, at.y + static_cast<float>((n + columns - 1) / columns) * px(40) + px(2)});
+}
+
+void stage_rows(const std::vector<session::StageStatus>& stages, float width) {
+  double total = 0, longest = 0;
+  for (const auto& stage : stages) total += stage.ms, longest = std::max(longest, stage.ms);
+  if (total <= 0) return label("No stage has run yet", colour::text_faint);
+  std::vector<Part> parts;
+  for (size_t i = 0; i < stages.size(); ++i)
+    parts.push_back({static_cast<float>(stages[i].ms / total), stage_colour(i, stages[i].host)});
+  stacked_bar(parts, 8, width);
+  tooltip("Time of all stages since the picture started, in the order of the rows below.");
+  gap(2);
+  // As many columns as fit; rows are read downwards.
+  const int columns = std::max(1, static_cast<int>(width / px(270)));
+  const float w = std::floor(width / static_cast<float>(columns));
+  const size_t rows = (stages.size() + static_cast<size_t>(columns) - 1) / static_cast<size_t>(columns);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  for (size_t i = 0; i < stages.size(); ++i) {
+    const auto& stage = stages[i];
+    const ImVec2 lo(at.x + static_cast<float>(i / rows) * w, at.y + static_cast<float>(i % rows) * px(20));
+    const float right = lo.x + w - (columns > 1 ? px(20) : 0);
+    list->AddRectFilled({lo.x, lo.y + px(6)}, {lo.x + px(8), lo.y + px(14)}, stage_colour(i, stage.host),
+                        px(2));
+    const float numbers = right - px(116);
+    std::string name = stage.name;
+    draw_text(list, {lo.x + px(16), lo.y}, {numbers, lo.y + px(20)}, elided(name, numbers - lo.x - px(16)),
+              colour::text_dim);
+    draw_text(list, {numbers, lo.y}, {right - px(52), lo.y + px(20)}, ms_text(stage.ms), colour::text,
+              Align::right);
+    draw_text(list, {right - px(52), lo.y}, {right, lo.y + px(20)},
+              fmt::format("{:.1f} %", 100 * stage.ms / total), colour::text_dim, Align::right);
+    ImGui::SetCursorScreenPos(lo);
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::InvisibleButton("##stage", {right - lo.x, px(20)});
+    ImGui::PopID();
+    tooltip(fmt::format("{}: {} {}since the picture started.", stage.name, ms_text(stage.ms),
+                        stage.host ? "of wall time on the host " : "on the device "));
+  }
+  ImGui::SetCursorScreenPos({at.x, at.y + static_cast<float>(rows) * px(20)});
+}
+
+ImU32 level_colour(log::Level level) {
+  switch (level) {
+    case log::Level::error:
+      return colour::error;
+    case log::Level::warning:
+      return colour::warning;
+    case log::Level::info:
+      return colour::text_dim;
+    case log::Level::debug:
+      return colour::text_faint;
+  }
+  return colour::text;
+}
+
+/// The heading of a bottom panel; returns the x where its content at the right may start.
+void heading(Ui& ui, const char* title, const Area& area, bool folds) {
+  const ImVec2 lo = area.lo, hi(area.hi.x, area.lo.y + px(k_folded_bottom));
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  ImFont* font = theme().fonts.caps;
+  ImVec2 at(lo.x + px(12), std::floor(lo.y + 0.5f * (hi.y - lo.y - font->FontSize)));
+  for (const char* c = title; *c; ++c) {
+    list->AddText(font, font->FontSize, at, colour::text_dim, c, c + 1);
+    at.x += font->GetCharAdvance(static_cast<unsigned char>(*c)) + px(0.6f);
+  }
+  if (!folds) return;
+  ImGui::SetCursorScreenPos({hi.x - px(28), lo.y + px(3)});
+  if (sign_button("##fold", ui.layout.bottom_open ? Sign::chevron_down : Sign::chevron_up, true,
+                  colour::text_faint))
+    ui.layout.bottom_open = !ui.layout.bottom_open;
+  tooltip(ui.layout.bottom_open ? "Folds the strip." : "Unfolds the strip.");
+}
+
+}  // namespace
+
+void draw_timings(Ui& ui, const Area& area) {
+  begin_panel("##timings", area, colour::panel, false);
+  heading(ui, "DEVICE & TIMINGS", area, false);
+  if (ui.layout.bottom_open) {
+    ImGui::SetCursorScreenPos({area.lo.x, area.lo.y + px(30)});
+    ImGui::BeginChild("##body", {area.width(), std::max(1.0f, area.hi.y - area.lo.y - px(30))});
+    const float width = begin_padded();
+    if (ui.snapshot)
+      figures(*ui.snapshot, width), gap(4), stage_rows(ui.snapshot->stages, width);
+    else
+      label("No device yet", colour::text_faint);
+    end_padded();
+    gap(8);
+    ImGui::EndChild();
+  }
+  ImGui::End();
+}
+
+void draw_log(Ui& ui, const Area& area) {
+  begin_panel("##log", area, colour::panel, false);
+  heading(ui, "LOG", area, true);
+  static const char* names[] = {"Debug", "Info", "Warnings", "Errors"};
+  std::array<size_t, 4> counts{};
+  for (const LogLine& line : ui.log) ++counts[static_cast<size_t>(line.level)];
+  if (ui.layout.bottom_open && area.width() > px(400)) {
+    float right = area.hi.x - px(36);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const auto chip = [&](const char* id, const std::string& text, bool on, ImU32 ink) {
+      const float w = text_width(text, theme().fonts.small) + px(14);
+      right -= w;
+      const ImVec2 lo(right, area.lo.y + px(4)), hi(right + w, area.lo.y + px(24));
+      ImGui::SetCursorScreenPos(lo);
+      const bool pressed = ImGui::InvisibleButton(id, {w, px(20)});
+      if (on || ImGui::IsItemHovered())
+        list->AddRectFilled(lo, hi, ImGui::IsItemHovered() ? colour::field_hover : colour::field, px(3));
+      draw_text(list, lo, hi, text, on ? ink : colour::text_faint, Align::centre, theme().fonts.small);
+      right -= px(4);
+      return pressed;
+    };
+    if (chip("##clear", "Clear", false, colour::text)) ui.log.clear();
+    tooltip("Empties the log.");
+    if (chip("##copy", "Copy", false, colour::text)) {
+      std::string all;
+      for (const LogLine& line : ui.log)
+        if (ui.log_levels[static_cast<size_t>(line.level)])
+          all += fmt::format("{:.2f} {} {}\n", line.time, names[static_cast<size_t>(line.level)], line.text);
+      ImGui::SetClipboardText(all.c_str());
+    }
+    tooltip("Copies the lines shown to the clipboard.");
+    right -= px(8);
+    for (int level = 3; level >= 0; --level) {
+      const auto l = static_cast<size_t>(level);
+      if (chip(names[l], counts[l] > 0 ? fmt::format("{} {}", names[l], counts[l]) : names[l],
+               ui.log_levels[l],
+               counts[l] > 0 ? level_colour(static_cast<log::Level>(level)) : colour::text_dim))
+        ui.log_levels[l] = !ui.log_levels[l];
+      tooltip(fmt::format("{} lines of this level.", ui.log_levels[l] ? "Hides" : "Shows"));
+    }
+  }
+  if (ui.layout.bottom_open) {
+    ImGui::SetCursorScreenPos({area.lo.x, area.lo.y + px(30)});
+    ImGui::BeginChild("##lines", {area.width(), std::max(1.0f, area.hi.y - area.lo.y - px(30))});
+    const float width = begin_padded();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    ImFont* font = theme().fonts.small;
+    for (const LogLine& line : ui.log) {
+      if (!ui.log_levels[static_cast<size_t>(line.level)]) continue;
+      const ImVec2 at = ImGui::GetCursorScreenPos();
+      const float text_x = at.x + px(64), room = std::max(px(80), at.x + width - text_x);
+      const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9f, room, line.text.c_str());
+      const float height = std::max(size.y, font->FontSize) + px(4);
+      ImGui::Dummy({width, height - ImGui::GetStyle().ItemSpacing.y});
+      if (!ImGui::IsRectVisible(at, {at.x + width, at.y + height})) continue;
+      draw_text(list, {at.x, at.y}, {at.x + px(48), at.y + font->FontSize}, fmt::format("{:.1f}", line.time),
+                colour::text_faint, Align::right, font);
+      if (line.level >= log::Level::warning)
+        list->AddRectFilled({at.x + px(55), at.y + px(1)}, {at.x + px(57), at.y + height - px(5)},
+                            level_colour(line.level), px(1));
+      list->AddText(font, font->FontSize, {text_x, at.y},
+                    line.level == log::Level::error || line.level == log::Level::warning
+                        ? colour::text
+                        : level_colour(line.level),
+                    line.text.c_str(), nullptr, room);
+    }
+    end_padded();
+    // Stays at the newest line until somebody scrolls up.
+    if (ImGui::GetIO().MouseWheel != 0 && ImGui::IsWindowHovered())
+      ui.log_follows = ImGui::GetScrollY() >= ImGui::GetScrollMaxY() - 1;
+    if (ui.log_follows) ImGui::SetScrollHereY(1);
+    ImGui::EndChild();
+  }
+  ImGui::End();
+}
+
+}  // namespace lucerna::ui

@@ -1,0 +1,326 @@
+// What lies above the panels: file dialogs, the page of keys; and the keys themselves. Also the frame of
+// every panel.
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui_internal.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "state.h"
+#include "widgets.h"
+
+namespace fs = std::filesystem;
+
+namespace lucerna::ui {
+namespace {
+
+struct Completion {
+  std::string path, name;
+  bool folder;
+};
+
+/// Entries of the folder that is being typed whose names start with what follows the last slash.
+std::vector<Completion> completions(const std::string& typed, bool open) {
+  std::vector<Completion> list;
+  const size_t slash = typed.rfind('/');
+  const std::string head = slash == std::string::npos ? "" : typed.substr(0, slash + 1);
+  const std::string start = slash == std::string::npos ? typed : typed.substr(slash + 1);
+  std::error_code error;
+  auto entry =
+      fs::directory_iterator(head.empty() ? "." : head, fs::directory_options::skip_permission_denied, error);
+  // A folder of many thousands is looked at in part: the window must not stall.
+  for (int n = 0; !error && entry != fs::directory_iterator() && n < 5000; entry.increment(error), ++n) {
+    const std::string name = entry->path().filename().string();
+    if (name.rfind(start, 0) != 0 || (name[0] == '.' && start.empty())) continue;
+    std::error_code ignored;
+    const bool folder = entry->is_directory(ignored);
+    std::string ending = entry->path().extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const bool wanted = open ? ending == ".gltf" || ending == ".glb" : ending == ".exr" || ending == ".png";
+    if (folder || wanted)
+      list.push_back({head + name + (folder ? "/" : ""), name + (folder ? "/" : ""), folder});
+  }
+  std::sort(list.begin(), list.end(), [](const Completion& a, const Completion& b) {
+    return a.folder != b.folder ? a.folder > b.folder : a.name < b.name;
+  });
+  return list;
+}
+
+std::string expanded(const std::string& path) {
+  if (path.rfind("~/", 0) == 0)
+    if (const char* home = std::getenv("HOME")) return home + path.substr(1);
+  return path;
+}
+
+bool is_folder(const std::string& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+void file_dialog(Ui& ui) {
+  Dialog& dialog = ui.dialog;
+  if (dialog.purpose == Dialog::Purpose::none) return;
+  const bool open = dialog.purpose == Dialog::Purpose::open;
+  const char* title = "##file";
+  if (dialog.fresh) ImGui::OpenPopup(title), dialog.fresh = false, dialog.focus = true;
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  const float width = std::min(px(560), window.x - px(48));
+  ImGui::SetNextWindowPos({std::floor(0.5f * (window.x - width)), std::floor(0.18f * window.y)});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(16), px(14)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(8)});
+  if (ImGui::BeginPopupModal(
+          title, nullptr,
+          ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
+    label(open ? "Open a scene" : "Save the picture", colour::text, theme().fonts.strong);
+    label(open ? "A .gltf or .glb file. Tab completes; arrows choose."
+               : ".exr holds all layers as floats; .png what is shown, through exposure and tone curve.",
+          colour::text_dim, theme().fonts.small);
+    ImGui::SetNextItemWidth(-1);
+    if (dialog.focus) ImGui::SetKeyboardFocusHere();
+    dialog.focus = false;
+    const std::vector<Completion> list = completions(expanded(dialog.path), open);
+    const bool entered = ImGui::InputText(
+        "##path", &dialog.path,
+        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
+            ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackEdit,
+        [](ImGuiInputTextCallbackData* data) {
+          auto& [d, entries] =
+              *static_cast<std::pair<Dialog*, const std::vector<Completion>*>*>(data->UserData);
+          const int count = static_cast<int>(entries->size());
+          if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) d->marked = -1;
+          if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory && count > 0)
+            d->marked = std::clamp(d->marked + (data->EventKey == ImGuiKey_DownArrow ? 1 : -1), 0, count - 1);
+          if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion && count > 0) {
+            // The marked entry, or what all of them share.
+            std::string common = (*entries)[0].path;
+            if (d->marked >= 0)
+              common = (*entries)[static_cast<size_t>(std::min(d->marked, count - 1))].path;
+            else
+              for (const Completion& c : *entries) {
+                const auto differ = std::mismatch(common.begin(), common.end(), c.path.begin(), c.path.end());
+                common.erase(differ.first, common.end());
+              }
+            data->DeleteChars(0, data->BufTextLen);
+            data->InsertChars(0, common.c_str());
+            d->marked = -1;
+          }
+          return 0;
+        },
+        [&]() -> void* {
+          static std::pair<Dialog*, const std::vector<Completion>*> data;
+          data = {&dialog, &list};
+          return &data;
+        }());
+    const float rows = 7 * px(24);
+    std::string chosen;
+    ImGui::BeginChild("##completions", {0, rows});
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
+    if (list.empty()) label(open ? "No scene or folder starts like that" : "A new file", colour::text_faint);
+    for (int i = 0; i < static_cast<int>(list.size()); ++i) {
+      const Completion& c = list[static_cast<size_t>(i)];
+      ImGui::PushID(i);
+      const ImVec2 at = ImGui::GetCursorScreenPos();
+      const float w = ImGui::GetContentRegionAvail().x;
+      if (ImGui::Selectable("##entry", i == dialog.marked, ImGuiSelectableFlags_DontClosePopups, {w, px(24)}))
+        chosen = c.path;
+      if (i == dialog.marked) ImGui::SetScrollHereY(0.5f);
+      draw_text(ImGui::GetWindowDrawList(), {at.x + px(8), at.y}, {at.x + w, at.y + px(24)},
+                elided(c.name, w - px(16)), c.folder ? colour::text_dim : colour::text);
+      ImGui::PopID();
+    }
+    ImGui::PopStyleVar();
+    ImGui::EndChild();
+
+    bool done = false, accept = entered;
+    if (entered && dialog.marked >= 0 && dialog.marked < static_cast<int>(list.size()))
+      chosen = list[static_cast<size_t>(dialog.marked)].path;
+    if (!chosen.empty()) {
+      dialog.path = chosen, dialog.marked = -1;
+      accept = !is_folder(chosen);
+      ImGui::ClearActiveID();
+      dialog.focus = true;  // the field takes the focus again, with the new text
+    }
+    const float w = px(96);
+    ImGui::SetCursorPosX(ImGui::GetWindowWidth() - 2 * w - px(24));
+    if (button("##cancel", "Cancel", false, w)) done = true;
+    ImGui::SameLine(0, px(8));
+    if (button("##accept", open ? "Open" : "Save", true, w)) accept = true;
+    if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE)) done = true;
+    if (accept && !dialog.path.empty()) {
+      const std::string file = expanded(dialog.path);
+      if (is_folder(file)) {
+        if (dialog.path.back() != '/') dialog.path += '/';
+        dialog.focus = true;
+        ImGui::ClearActiveID();
+      } else {
+        if (open)
+          ui.open_scene(file);
+        else
+          ui.save_picture(file);
+        done = true;
+      }
+    }
+    if (done) dialog = {}, ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+    if (dialog.focus) ui.wake(3);
+  } else {
+    dialog = {};
+  }
+  ImGui::PopStyleVar(2);
+}
+
+void key_page(Ui& ui) {
+  static bool open = false;
+  if (ui.help && !open) ImGui::OpenPopup("##keys");
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({std::floor(0.5f * window.x), std::floor(0.5f * window.y)}, 0, {0.5f, 0.5f});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(20), px(16)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
+  open = ImGui::BeginPopup("##keys", ImGuiWindowFlags_NoMove);
+  if (open) {
+    static constexpr std::pair<const char*, const char*> rows[] = {
+        {"Left drag", "orbit"},
+        {"Middle drag, Shift + left drag", "pan"},
+        {"Wheel, right drag", "come closer, go away"},
+        {"W A S D, Q E", "fly; down and up; drag to look about, wheel for speed"},
+        {"F", "frame the selection, or the scene"},
+        {"1 \xE2\x80\x93 9", "scene cameras"},
+        {"", ""},
+        {"Space", "pause, resume"},
+        {"R", "start the picture again"},
+        {"Tab", "panels"},
+        {"F5", "reload shaders"},
+        {"F12", "screenshot of the window"},
+        {"Ctrl + O, Ctrl + S", "open, save"},
+        {"Esc", "take away a message, give up a load"},
+        {"", ""},
+        {"Double-click a number", "type it"},
+        {"Shift, Ctrl while dragging", "ten times finer, coarser"}};
+    label("Keys and mouse", colour::text, theme().fonts.strong);
+    gap(6);
+    ImGui::PushItemWidth(px(520));
+    for (const auto& [keys, what] : rows) {
+      if (!*keys) {
+        gap(8);
+        continue;
+      }
+      const ImVec2 at = ImGui::GetCursorScreenPos();
+      ImGui::Dummy({px(540), px(20)});
+      draw_text(ImGui::GetWindowDrawList(), at, {at.x + px(212), at.y + px(20)}, keys, colour::text);
+      draw_text(ImGui::GetWindowDrawList(), {at.x + px(220), at.y}, {at.x + px(540), at.y + px(20)}, what,
+                colour::text_dim);
+    }
+    ImGui::PopItemWidth();
+    ImGui::EndPopup();
+  }
+  ui.help = open;
+  ImGui::PopStyleVar(2);
+}
+
+}  // namespace
+
+void begin_panel(const char* name, const Area& area, ImU32 background, bool scrolls) {
+  ImGui::SetNextWindowPos(area.lo);
+  ImGui::SetNextWindowSize({std::max(1.0f, area.width()), std::max(1.0f, area.height())});
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, background);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                           ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                           ImGuiWindowFlags_NoNavFocus;
+  if (scrolls)
+    flags &= ~ImGuiWindowFlags_NoScrollbar;
+  else
+    flags |= ImGuiWindowFlags_NoScrollWithMouse;
+  if (std::string_view(name) == "##bar") flags |= ImGuiWindowFlags_MenuBar;
+  ImGui::Begin(name, nullptr, flags);
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+}
+
+void Ui::start_dialog(Dialog::Purpose purpose) {
+  dialog = {};
+  dialog.purpose = purpose;
+  dialog.fresh = true;
+  std::error_code error;
+  if (purpose == Dialog::Purpose::open) {
+    const fs::path here =
+        scene && !scene->file.empty() ? fs::path(scene->file).parent_path() : fs::path("scenes");
+    if (fs::is_directory(here, error)) dialog.path = (here / "").string();
+  } else if (scene) {
+    dialog.path = scene->name + ".exr";
+  }
+  wake(4);
+}
+
+void draw_dialogs(Ui& ui) {
+  file_dialog(ui);
+  key_page(ui);
+}
+
+void handle_keys(Ui& ui) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+  if (pressed(GLFW_KEY_F12)) ui.screenshot = true;
+  if (pressed(GLFW_KEY_F5)) ui.session.reload_shaders();
+  if (ui.dialog.purpose != Dialog::Purpose::none) return;
+  if (io.KeyCtrl) {
+    if (pressed(GLFW_KEY_O)) ui.start_dialog(Dialog::Purpose::open);
+    if (pressed(GLFW_KEY_S) && ui.snapshot && !ui.snapshot->rgba.empty())
+      ui.start_dialog(Dialog::Purpose::save);
+    if (pressed(GLFW_KEY_Q)) ui.quit = true;
+    return;
+  }
+  if (io.WantTextInput) return;
+  if (pressed(GLFW_KEY_F1)) ui.help = true;
+  if (pressed(GLFW_KEY_TAB)) ui.layout.panels = !ui.layout.panels, ui.wake(3);
+  if (pressed(GLFW_KEY_ESCAPE)) {
+    if (ui.loading())
+      ui.session.cancel();
+    else if (!ui.errors.empty())
+      ui.errors.pop_back();
+  }
+  if (!ui.snapshot) return;
+  if (pressed(GLFW_KEY_F)) ui.frame_selection();
+  if (pressed(GLFW_KEY_R)) ui.session.restart();
+  if (pressed(GLFW_KEY_SPACE)) ui.session.set_paused(!ui.snapshot->paused);
+  for (int n = 0; n < 9; ++n)
+    if (pressed(GLFW_KEY_1 + n)) ui.take_camera(n);
+}
+
+void draw_splitters(Ui& ui, const Areas& areas) {
+  // A strip over each border, in a window of its own so that it lies above both neighbours.
+  const auto strip = [&](const char* name, ImVec2 lo, ImVec2 hi, bool along_x, float direction,
+                         float& value) {
+    ImGui::SetNextWindowPos(lo);
+    ImGui::SetNextWindowSize({hi.x - lo.x, hi.y - lo.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+    ImGui::Begin(name, nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoNav);
+    ImGui::PopStyleVar(2);
+    splitter("##strip", lo, hi, along_x, direction, value);
+    ImGui::End();
+  };
+  const float reach = px(3);
+  const Layout& l = ui.layout;
+  const float left = areas.left.hi.x, right = areas.right.lo.x, bottom = areas.timings.lo.y;
+  float still = 0;
+  strip("##split_left", {left - reach, areas.left.lo.y}, {left + reach, bottom - reach}, true, 1,
+        l.left_open ? ui.layout.left : still);
+  strip("##split_right", {right - reach, areas.right.lo.y}, {right + reach, bottom - reach}, true, -1,
+        l.right_open ? ui.layout.right : still);
+  strip("##split_bottom", {0, bottom - reach}, {areas.log.hi.x, bottom + reach}, false, -1,
+        l.bottom_open ? ui.layout.bottom : still);
+  float log_width = ui.layout.log_share * areas.log.hi.x / theme().scale;
+  strip("##split_log", {areas.log.lo.x - reach, bottom + reach}, {areas.log.lo.x + reach, areas.log.hi.y},
+        true, -1, log_width);
+  ui.layout.log_share = log_width * theme().scale / std::max(1.0f, areas.log.hi.x);
+}
+
+}  // namespace lucerna::ui

@@ -1,0 +1,217 @@
+// The panel on the left: the four components of light, and the options of the renderer.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "state.h"
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+const char* meaning(int component) {
+  static const char* texts[] = {"Primary: emitters and direct light, also seen in mirrors and through glass.",
+                                "Secondary: light after one diffuse interreflection.",
+                                "Tertiary: light after deeper interreflection, and caustics seen in it.",
+                                "Caustic: light focused on diffuse surfaces by mirrors and glass."};
+  return texts[component];
+}
+
+void component_row(Ui& ui, int c, float width) {
+  const auto index = static_cast<size_t>(c);
+  const std::string name = session::k_component_names[index];
+  const std::string key = "components." + name;
+  const session::ComponentStatus* status = ui.snapshot ? &ui.snapshot->components[index] : nullptr;
+  const bool off = ui.settings.text(key) == "off";
+  const bool shown = ui.settings.boolean("show." + name);
+  const ImU32 ink =
+      off || !shown ? colour::with_alpha(colour::component[index], 0.4f) : colour::component[index];
+
+  ImGui::PushID(c);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  // First line: colour, name, share; toggles at the right end.
+  list->AddRectFilled({at.x, at.y + px(6)}, {at.x + px(10), at.y + px(16)}, ink, px(2));
+  ImGui::SetCursorScreenPos({at.x, at.y});
+  ImGui::InvisibleButton("##name", {px(104), px(22)});
+  tooltip(meaning(c));
+  std::string title = name;
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  draw_text(list, {at.x + px(18), at.y}, {at.x + px(112), at.y + px(22)}, title,
+            off ? colour::text_faint : colour::text, Align::left, theme().fonts.strong);
+  ImGui::SetCursorScreenPos({at.x + width - px(48), at.y});
+  if (sign_button("##show", Sign::eye, shown)) ui.toggle_show(c);
+  tooltip(fmt::format("{} the {} layer in the shown sum. Costs no samples; what is computed does not change.",
+                      shown ? "Leaves out" : "Shows", name));
+  ImGui::SetCursorScreenPos({at.x + width - px(22), at.y});
+  if (sign_button("##solo", Sign::solo, ui.solo == c, colour::accent)) ui.toggle_solo(c);
+  tooltip(ui.solo == c
+              ? "Back to the layers shown before."
+              : fmt::format("Shows the {} layer alone; press again for the layers shown before.", name));
+
+  // Second line: solver, share, device time.
+  const float line = at.y + px(26);
+  ImGui::SetCursorScreenPos({at.x + px(18), line});
+  const plan::OptionInfo* option = plan::find_option(key);
+  if (option) {
+    int chosen =
+        static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.settings.text(key)) -
+                         option->choices.begin());
+    if (choice("##solver", "", option->choices, chosen, px(76)))
+      ui.settings.set(key, option->choices[static_cast<size_t>(chosen)]);
+    tooltip(option->help +
+            " Off: its paths are not traced beyond what the others need, and its light is missing.");
+  }
+  const float right = at.x + width;
+  const bool known = status && !off && ui.snapshot->samples > 0;
+  draw_text(list, {at.x + px(96), line}, {right - px(84), line + px(24)},
+            known ? fmt::format("{:.1f} %", 100 * status->share) : "\xE2\x80\x93",
+            known ? colour::text : colour::text_faint, Align::right);
+  draw_text(list, {right - px(84), line}, {right, line + px(24)},
+            known ? ms_text(status->ms_per_sample) : "\xE2\x80\x93",
+            known ? colour::text_dim : colour::text_faint, Align::right);
+  ImGui::SetCursorScreenPos({at.x + px(98), line});
+  ImGui::InvisibleButton("##figures", {std::max(1.0f, width - px(98)), px(24)});
+  tooltip(known ? fmt::format("Share of the sum's mean luminance, and device time that the rays of this "
+                              "component cost per sample a pixel. "
+                              "Mean luminance {:.4g}.",
+                              status->mean_luminance)
+                : "Nothing has been measured yet, or the component is off.");
+
+  // Third line: the share as a bar.
+  ImGui::SetCursorScreenPos({at.x + px(18), at.y + px(54)});
+  stacked_bar({{known ? static_cast<float>(status->share) : 0, ink}}, 3, width - px(18));
+  ImGui::SetCursorScreenPos({at.x, at.y + px(68)});
+  ImGui::PopID();
+}
+
+void components(Ui& ui, float width) {
+  for (int c = 0; c < session::k_components; ++c) component_row(ui, c, width);
+  // The sum: time of all, stacked.
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  double total = 0, luminance = 0;
+  if (ui.snapshot && ui.snapshot->samples > 0)
+    for (const session::ComponentStatus& status : ui.snapshot->components)
+      total += status.ms_per_sample, luminance += status.mean_luminance;
+  draw_text(list, {at.x + px(18), at.y}, {at.x + width, at.y + px(20)}, "Time a sample", colour::text_dim);
+  draw_text(list, at, {at.x + width, at.y + px(20)}, total > 0 ? ms_text(total) : "\xE2\x80\x93",
+            total > 0 ? colour::text : colour::text_faint, Align::right);
+  ImGui::SetCursorScreenPos({at.x + px(18), at.y + px(24)});
+  std::vector<Part> parts;
+  if (total > 0)
+    for (size_t c = 0; c < session::k_components; ++c)
+      parts.push_back(
+          {static_cast<float>(ui.snapshot->components[c].ms_per_sample / total), colour::component[c]});
+  stacked_bar(parts, 6, width - px(18));
+  tooltip(
+      "Device time of one sample a pixel, divided among the components: amber primary, teal secondary, "
+      "violet tertiary, coral caustic.");
+  ImGui::SetCursorScreenPos({at.x, at.y + px(40)});
+}
+
+std::string option_title(const std::string& key) {
+  static const std::map<std::string, std::string> titles{{"samples", "Samples"},
+                                                         {"seed", "Seed"},
+                                                         {"path.max_depth", "Longest path"},
+                                                         {"path.roulette_depth", "Roulette from"},
+                                                         {"path.batch", "Paths in flight"},
+                                                         {"tracer", "Tracer"}};
+  if (const auto found = titles.find(key); found != titles.end()) return found->second;
+  std::string name = key;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '.' || c == '_'; }, ' ');
+  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name;
+}
+
+/// Whether an option has a place of its own elsewhere in the window (or none: texts that belong to the
+/// scene).
+bool placed_elsewhere(const plan::OptionInfo& option) {
+  for (const char* head : {"components.", "show.", "film."})
+    if (option.key.rfind(head, 0) == 0) return true;
+  return option.type == plan::OptionType::text;
+}
+
+}  // namespace
+
+void option_control(Ui& ui, const std::string& key, const std::string& name) {
+  const plan::OptionInfo* option = plan::find_option(key);
+  if (!option) return;
+  ImGui::PushID(key.c_str());
+  std::string help = option->help;
+  if (option->type == plan::OptionType::integer || option->type == plan::OptionType::real)
+    help += fmt::format(" From {:.12g} to {:.12g}{}{}.", option->lo, option->hi,
+                        option->unit.empty() ? "" : " ", option->unit);
+  if (option->restarts) help += " A change starts the picture again.";
+  switch (option->type) {
+    case plan::OptionType::choice: {
+      int chosen =
+          static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.settings.text(key)) -
+                           option->choices.begin());
+      if (choice("##choice", name, option->choices, chosen))
+        ui.settings.set(key, option->choices[static_cast<size_t>(chosen)]);
+      break;
+    }
+    case plan::OptionType::boolean: {
+      const bool on = ui.settings.boolean(key);
+      if (button("##boolean", name, on, ImGui::CalcItemWidth())) ui.settings.set(key, on ? "false" : "true");
+      break;
+    }
+    case plan::OptionType::integer:
+    case plan::OptionType::real: {
+      const bool whole = option->type == plan::OptionType::integer;
+      auto value = static_cast<float>(ui.settings.real(key));
+      Slider how{.lo = static_cast<float>(option->lo),
+                 .hi = static_cast<float>(option->hi),
+                 .decimals = whole ? 0 : 2,
+                 .unit = option->unit};
+      how.log = option->lo > 0 && option->hi / option->lo > 100;
+      if (whole) how.step = 1;
+      if (option->hi > 4e9) how.hi = 65535, how.bar = false;  // seeds: a range that a hand can hit
+      if (slider("##number", name, value, how))
+        ui.settings.set(key, whole ? fmt::format("{:.0f}", std::clamp<double>(value, option->lo, option->hi))
+                                   : fmt::format("{:.6g}", value));
+      if (option->hi > 4e9)
+        help = option->help + " Double-click to type; drag up to 65535. A change starts the picture again.";
+      break;
+    }
+    case plan::OptionType::text:
+      break;
+  }
+  tooltip(help);
+  ImGui::PopID();
+}
+
+void draw_light_panel(Ui& ui, const Area& area) {
+  begin_panel("##light", area, colour::panel, true);
+  std::string note;
+  if (ui.solo >= 0) note = fmt::format("solo {}", session::k_component_names[static_cast<size_t>(ui.solo)]);
+  if (section("Light", ui.open("light"), note)) {
+    const float width = begin_padded();
+    components(ui, width);
+    end_padded();
+    gap(4);
+  }
+  if (section("Render", ui.open("render"))) {
+    begin_padded();
+    for (const plan::OptionInfo& option : plan::options())
+      if (!placed_elsewhere(option)) option_control(ui, option.key, option_title(option.key));
+    gap(4);
+    const float width = ImGui::CalcItemWidth(), half = std::floor(0.5f * (width - px(8)));
+    const bool paused = ui.snapshot && ui.snapshot->paused;
+    ImGui::BeginDisabled(!ui.snapshot);
+    if (button("##pause", paused ? "Resume" : "Pause", paused, half)) ui.session.set_paused(!paused);
+    tooltip("Stops taking samples, and goes on later from there. Space.");
+    ImGui::SameLine(0, px(8));
+    if (button("##restart", "Start again", false, width - half - px(8))) ui.session.restart();
+    tooltip("Throws the samples away and starts the picture anew. R.");
+    ImGui::EndDisabled();
+    end_padded();
+    gap(12);
+  }
+  hairline();
+  ImGui::End();
+}
+
+}  // namespace lucerna::ui

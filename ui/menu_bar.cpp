@@ -1,0 +1,168 @@
+// The bar on top: menus, the scene's name, the device and the state of the picture.
+#include <fmt/format.h>
+
+#include "state.h"
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+/// One entry of a menu, with its keys and the truth about it.
+bool entry(const char* name, const char* keys, const char* help, bool on = false, bool enabled = true) {
+  const bool pressed = ImGui::MenuItem(name, keys, on, enabled);
+  tooltip(help);
+  return pressed;
+}
+
+bool begin_menu(const char* name) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(8)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(16), px(8)});
+  if (ImGui::BeginMenu(name)) return true;
+  ImGui::PopStyleVar(2);
+  return false;
+}
+
+void end_menu() {
+  ImGui::EndMenu();
+  ImGui::PopStyleVar(2);
+}
+
+void file_menu(Ui& ui) {
+  if (!begin_menu("File")) return;
+  if (entry("Open\xE2\x80\xA6", "Ctrl+O",
+            "Opens a glTF scene (.gltf or .glb). A file dropped on the window opens too."))
+    ui.start_dialog(Dialog::Purpose::open);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(8)});
+  if (ImGui::BeginMenu("Open recent", !ui.recent.empty())) {
+    const std::vector<std::string> files(ui.recent.begin(), ui.recent.end());
+    for (const std::string& file : files)
+      if (ImGui::MenuItem(elided(file, px(420), nullptr, true).c_str())) ui.open_scene(file);
+    ImGui::EndMenu();
+  }
+  ImGui::PopStyleVar();
+  ImGui::Separator();
+  const bool picture = ui.snapshot && !ui.snapshot->rgba.empty();
+  if (entry("Save picture\xE2\x80\xA6", "Ctrl+S",
+            "Writes the picture as it is: all layers as EXR, or what is shown as PNG.", false, picture))
+    ui.start_dialog(Dialog::Purpose::save);
+  if (entry("Screenshot of the window", "F12",
+            "Writes the window, panels and all, as a PNG in the working folder."))
+    ui.screenshot = true;
+  ImGui::Separator();
+  if (entry("Quit", "Ctrl+Q", "Closes the window; a render in progress is given up.")) ui.quit = true;
+  end_menu();
+}
+
+void view_menu(Ui& ui) {
+  if (!begin_menu("View")) return;
+  if (entry("Panels", "Tab", "Shows or hides all panels.", ui.layout.panels))
+    ui.layout.panels = !ui.layout.panels;
+  if (entry("Light", nullptr, "Components and options.", ui.layout.left_open))
+    ui.layout.left_open = !ui.layout.left_open;
+  if (entry("Scene", nullptr, "Cameras, lights, environment, materials.", ui.layout.right_open))
+    ui.layout.right_open = !ui.layout.right_open;
+  if (entry("Timings and log", nullptr, "The strip at the bottom.", ui.layout.bottom_open))
+    ui.layout.bottom_open = !ui.layout.bottom_open;
+  ImGui::Separator();
+  if (entry("Frame selection", "F",
+            "Moves the camera so that the selection, or else the whole scene, fills the picture.", false,
+            ui.view.has_value()))
+    ui.frame_selection();
+  ImGui::Separator();
+  for (const auto& [divisor, name] :
+       {std::pair{1, "Full resolution"}, {2, "Half resolution"}, {4, "Quarter resolution"}})
+    if (entry(name, nullptr, "Pixels of the picture for each pixel of the window; fewer converge sooner.",
+              ui.picture_divisor == divisor))
+      ui.picture_divisor = divisor;
+  end_menu();
+}
+
+void render_menu(Ui& ui) {
+  if (!begin_menu("Render")) return;
+  const bool paused = ui.snapshot && ui.snapshot->paused;
+  if (entry(paused ? "Resume" : "Pause", "Space", "Stops taking samples, and goes on later from there.",
+            false, ui.snapshot != nullptr))
+    ui.session.set_paused(!paused);
+  if (entry("Start again", "R", "Throws the samples away and starts the picture anew.", false,
+            ui.snapshot != nullptr))
+    ui.session.restart();
+  if (entry("Reload shaders", "F5", "Compiles the shaders again; when that fails the old ones stay."))
+    ui.session.reload_shaders();
+  ImGui::Separator();
+  if (entry("Give up loading", "Esc", "Gives up the load in progress; the scene shown stays.", false,
+            ui.loading()))
+    ui.session.cancel();
+  end_menu();
+}
+
+void help_menu(Ui& ui) {
+  if (!begin_menu("Help")) return;
+  if (entry("Keys and mouse", "F1", "How to move and what the keys do.")) ui.help = true;
+  end_menu();
+}
+
+/// "142 / 256 samples", each number in the width of the largest.
+std::string state_text(const session::Snapshot& s) {
+  const size_t digits = count_text(s.max_samples).size() > 9 ? 9 : fmt::format("{}", s.max_samples).size();
+  const std::string state = s.finished ? "finished"
+                            : s.paused ? "paused"
+                            : s.coarse ? "first pass"
+                                       : "rendering";
+  return fmt::format("{}   {} / {} samples   {}", state, padded(fmt::format("{}", s.samples), digits),
+                     s.max_samples, padded(seconds_text(s.seconds), 7));
+}
+
+}  // namespace
+
+void draw_menu_bar(Ui& ui, const Area& area) {
+  begin_panel("##bar", area, colour::bar, false);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  // Menus. The bar itself is ours, so that it can hold more than menus.
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(8), 0.5f * (px(k_bar_height) - ImGui::GetFontSize())});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(16), 0});
+  if (ImGui::BeginMenuBar()) {
+    file_menu(ui), view_menu(ui), render_menu(ui), help_menu(ui);
+    ImGui::EndMenuBar();
+  }
+  ImGui::PopStyleVar(2);
+
+  const session::Snapshot* s = ui.snapshot.get();
+  const float left = area.lo.x + px(232);
+  float right = area.hi.x - px(16);
+  if (s && s->max_samples > 0) {
+    const std::string state = state_text(*s);
+    // The numbers stand still: the field is as wide as its longest text.
+    const float wide = text_width(state_text([&] {
+      session::Snapshot widest;
+      widest.samples = s->max_samples, widest.max_samples = s->max_samples, widest.seconds = 99.9,
+      widest.coarse = true;
+      return widest;
+    }()));
+    draw_text(list, {right - std::max(wide, text_width(state)), area.lo.y}, {right, area.hi.y}, state,
+              colour::text, Align::right);
+    right -= std::max(wide, text_width(state)) + px(24);
+  }
+  if (s && !s->device.empty()) {
+    const float room = std::max(0.0f, right - left - px(160));
+    const std::string device = elided(s->device, std::min(room, px(260)));
+    if (room > px(60)) {
+      draw_text(list, {right - text_width(device), area.lo.y}, {right, area.hi.y}, device, colour::text_dim);
+      right -= text_width(device) + px(24);
+    }
+  }
+  if (ui.scene) {
+    const std::string name = elided(ui.scene->name, std::max(0.0f, right - left), theme().fonts.strong);
+    draw_text(list, {left, area.lo.y}, {right, area.hi.y}, name, colour::text, Align::left,
+              theme().fonts.strong);
+  }
+  // How far the picture is, as a hairline.
+  list->AddRectFilled({area.lo.x, area.hi.y - 1}, area.hi, colour::hairline);
+  if (s && s->max_samples > 0 && !s->finished) {
+    const float done = static_cast<float>(s->samples) / static_cast<float>(s->max_samples);
+    list->AddRectFilled({area.lo.x, area.hi.y - px(2)}, {area.lo.x + done * area.width(), area.hi.y},
+                        s->paused ? colour::text_dim : colour::accent);
+  }
+  ImGui::End();
+}
+
+}  // namespace lucerna::ui

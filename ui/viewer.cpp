@@ -1,0 +1,209 @@
+#include "viewer.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/chrono.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <utility>
+
+#include "base/timer.h"
+#include "film/io/image_file.h"
+#include "recall.h"
+#include "runner.h"
+#include "widgets.h"
+#include "window.h"
+
+namespace lucerna::ui {
+namespace {
+
+constexpr double k_settle = 0.15;  // seconds a viewport size must last before the renderer is told
+constexpr size_t k_log_lines = 2000;
+
+class Viewer {
+ public:
+  Viewer(session::Session& session, const ViewerOptions& options)
+      : options_(options),
+        runner_(parse_script(options.script, options.script_name)),
+        window_(options.width, options.height, options.hidden, options.scale),
+        ui_(session) {
+    if (options.remember) recall(ui_);
+    if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
+    session.on_publish([] { Window::wake(); });
+    if (!options.scene.empty()) session.load(options.scene);
+  }
+
+  ~Viewer() {
+    ui_.session.on_publish({});
+    if (options_.remember) remember(ui_);
+  }
+
+  int run() {
+    while (!window_.closing() && !ui_.quit && !runner_.status) {
+      pause_until_needed();
+      collect();
+      runner_.advance(ui_);
+      if (runner_.size) window_.set_size(runner_.size->first, runner_.size->second), runner_.size.reset();
+      if (runner_.status) break;
+      if (ui_.frames_wanted > 0) draw();
+    }
+    return runner_.status.value_or(0);
+  }
+
+ private:
+  /// Sleeps while there is nothing to draw; otherwise holds the display's rate.
+  void pause_until_needed() {
+    double sleep = 1.0;
+    if (ui_.frames_wanted > 0)
+      sleep = window_.refresh_seconds() - (ui_.time() - last_draw_) - 1e-3;
+    else if (runner_.running())
+      sleep = 0.02;
+    else if (size_changed_at_ >= 0)
+      sleep = k_settle;
+    if (window_.wait(sleep)) ui_.wake(3), hovering_since_ = ui_.time();
+  }
+
+  /// Takes in what came from outside: snapshots, log lines, dropped files.
+  void collect() {
+    ui_.now = ui_.time();
+    auto snapshot = ui_.session.snapshot();
+    if (snapshot != ui_.snapshot) {
+      ui_.snapshot = std::move(snapshot);
+      ui_.wake(1);
+      fresh_picture_ = ui_.snapshot != nullptr;
+    }
+    auto scene = ui_.session.scene();
+    if (scene != ui_.scene) {
+      ui_.scene = std::move(scene);
+      ui_.wake(1);
+      window_.set_title(ui_.scene ? ui_.scene->name + " \xE2\x80\x93 Lucerna" : "Lucerna");
+      hold_selection();
+    }
+    ui_.follow_scene();
+    for (LogLine& line : inbox_.take()) {
+      if (line.level == log::Level::error) ui_.fail(line.text), ++ui_.error_count;
+      ui_.log.push_back(std::move(line));
+      if (ui_.log.size() > k_log_lines) ui_.log.pop_front();
+      ui_.wake(2);
+    }
+    for (const std::string& file : window_.dropped()) {
+      std::string ending = std::filesystem::path(file).extension().string();
+      std::transform(ending.begin(), ending.end(), ending.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      if (ending == ".gltf" || ending == ".glb")
+        ui_.open_scene(file);
+      else
+        log::error("{}: cannot be opened; expected a .gltf or .glb file", file);
+    }
+    // Tooltips and the text cursor need a frame after the pointer has come to rest.
+    if (ui_.now - hovering_since_ < 0.7 || ImGui::GetIO().WantTextInput) ui_.wake(1);
+    if (runner_.measuring() || ui_.moving) ui_.wake(1);
+  }
+
+  /// A selection outlives edits, but not what it points at.
+  void hold_selection() {
+    const auto& s = ui_.selection;
+    const size_t count = !ui_.scene                 ? 0
+                         : s.kind == Kind::material ? ui_.scene->materials.size()
+                         : s.kind == Kind::instance ? ui_.scene->instances.size()
+                         : s.kind == Kind::light    ? ui_.scene->lights.size()
+                                                    : 0;
+    if (s.index >= count) ui_.selection = {};
+  }
+
+  void draw() {
+    if (std::exchange(fresh_picture_, false) && !ui_.snapshot->rgba.empty()) {
+      ui_.texture = window_.upload(ui_.snapshot->rgba, ui_.snapshot->width, ui_.snapshot->height);
+      ui_.texture_width = ui_.snapshot->width, ui_.texture_height = ui_.snapshot->height;
+    }
+    --ui_.frames_wanted;
+    ui_.moving = false;
+    ui_.settings.refresh(ui_.now);
+    ui_.drop_taken_edits();
+
+    window_.begin_frame();
+    ImGui::PushFont(theme().fonts.regular);
+    handle_keys(ui_);
+    const Areas areas = arrange(ui_.layout, ImGui::GetIO().DisplaySize, theme().scale);
+    if (ui_.layout.panels) {
+      draw_splitters(ui_, areas);
+      draw_menu_bar(ui_, areas.bar);
+      draw_light_panel(ui_, areas.left);
+      draw_toolbar(ui_, areas.toolbar);
+      draw_scene_panel(ui_, areas.right);
+      draw_timings(ui_, areas.timings);
+      draw_log(ui_, areas.log);
+    }
+    draw_picture(ui_, areas.picture);
+    draw_dialogs(ui_);
+    ImGui::PopFont();
+    window_.end_frame();
+    if (runner_.screenshot) screenshot(*runner_.screenshot), runner_.screenshot.reset();
+    if (std::exchange(ui_.screenshot, false)) {
+      screenshot(fmt::format("lucerna-{:%Y%m%d-%H%M%S}.png", fmt::localtime(std::time(nullptr))));
+      ui_.wake(2);
+    }
+    window_.present();
+    const double now = ui_.time();
+    runner_.presented(ui_, 1e3 * (now - last_present_));
+    last_present_ = now;
+    last_draw_ = ui_.now;
+    send();
+  }
+
+  /// Tells the renderer about the camera and the size of the viewport.
+  void send() {
+    if (std::exchange(ui_.camera_moved, false) && ui_.view) ui_.session.set_camera(ui_.view->camera);
+    const ImVec2 ratio = ImGui::GetIO().DisplayFramebufferScale;
+    const auto divided = [&](float units, float scale) {
+      return static_cast<uint32_t>(std::max(1.0f, units * scale / static_cast<float>(ui_.picture_divisor)));
+    };
+    const std::pair<uint32_t, uint32_t> size{divided(ui_.picture.width(), ratio.x),
+                                             divided(ui_.picture.height(), ratio.y)};
+    if (size != wanted_size_) wanted_size_ = size, size_changed_at_ = ui_.now;
+    if (size_changed_at_ >= 0 && (ui_.now - size_changed_at_ >= k_settle || sent_size_.first == 0)) {
+      if (sent_size_ != wanted_size_) ui_.session.set_size(wanted_size_.first, wanted_size_.second);
+      sent_size_ = wanted_size_;
+      size_changed_at_ = -1;
+    } else if (size_changed_at_ >= 0) {
+      ui_.wake(1);
+    }
+  }
+
+  void screenshot(const std::string& file) {
+    uint32_t width = 0, height = 0;
+    const std::vector<uint8_t> rgba = window_.read(width, height);
+    try {
+      film::write_png(file, width, height, rgba, {});
+      log::info("window saved as {}", std::filesystem::absolute(file).string());
+    } catch (const Error& error) {
+      log::error("{}", error.what());
+      if (runner_.running()) runner_.status = 1;
+    }
+  }
+
+  ViewerOptions options_;
+  Runner runner_;
+  Window window_;
+  LogInbox inbox_;
+  Ui ui_;
+  bool fresh_picture_ = false;
+  double last_draw_ = -1, last_present_ = 0, hovering_since_ = -10;
+  std::pair<uint32_t, uint32_t> wanted_size_{0, 0}, sent_size_{0, 0};
+  double size_changed_at_ = -1;
+};
+
+}  // namespace
+
+int run_viewer(session::Session& session, const ViewerOptions& options) {
+  return Viewer(session, options).run();
+}
+
+bool display_available() {
+  if (!glfwInit()) return false;
+  glfwTerminate();
+  return true;
+}
+
+}  // namespace lucerna::ui

@@ -1,0 +1,30 @@
+#pragma once
+// The window: a lookdev viewer over one Session. It never waits for the renderer; everything it does goes
+// through the session's commands, and everything it shows comes from the session's snapshots.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "session/session.h"
+
+namespace lucerna::ui {
+
+struct ViewerOptions {
+  std::filesystem::path scene;         ///< loaded at the start; empty: the window invites to open one
+  int width = 1440, height = 900;      ///< of the window, in units of the desktop (pixels on X11)
+  bool hidden = false;                 ///< no visible window (drawing and screenshots work all the same)
+  float scale = 0;                     ///< of text and controls; 0: what the desktop asks for
+  bool remember = true;                ///< keep recent files and panel sizes in the user's state folder
+  std::vector<std::string> script;     ///< steps carried out in order, one command a line; see script.h
+  std::string script_name = "script";  ///< for messages: "NAME: line 3: ..."
+};
+
+/// Opens the window and runs until it is closed or the script quits. Returns the exit status: 0, the value
+/// given to the script's `quit`, or 1 when a scripted step failed (its message is logged). Throws Error when
+/// no display or no OpenGL 3.3 can be had, or when the script does not parse.
+int run_viewer(session::Session& session, const ViewerOptions& options);
+
+/// Whether a window could be opened here at all (an X or Wayland display answers). Cheap; opens nothing.
+bool display_available();
+
+}  // namespace lucerna::ui

@@ -1,0 +1,286 @@
+// The middle: the view toolbar, the picture, and moving in it.
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "state.h"
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+std::string capitalized(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+ImU32 layer_mark(const std::string& layer) {
+  for (size_t c = 0; c < session::k_components; ++c)
+    if (layer == session::k_component_names[c]) return colour::component[c];
+  return 0;
+}
+
+std::string layer_help(const std::string& layer) {
+  if (layer == "beauty") return "Shows the sum of the components whose eye is open.";
+  if (layer_mark(layer)) return fmt::format("Shows the {} component.", layer);
+  if (layer == "albedo") return "Shows the reflectance of the first surface.";
+  if (layer == "normal") return "Shows the shading normal of the first surface.";
+  if (layer == "depth") return "Shows the distance to the first surface.";
+  if (layer == "samples") return "Shows the samples taken in each pixel.";
+  return fmt::format("Shows the layer {}.", layer);
+}
+
+/// Layers as buttons; what does not fit goes into a list.
+void layer_buttons(Ui& ui, float room) {
+  const plan::OptionInfo* option = plan::find_option("film.layer");
+  if (!option) return;
+  const std::vector<std::string>& layers = option->choices;
+  const std::string& current = ui.settings.text("film.layer");
+  const float between = px(4), list_width = px(104);
+  const auto width_of = [&](const std::string& layer) { return text_width(capitalized(layer)) + px(18); };
+  const float all =
+      std::accumulate(layers.begin(), layers.end(), -between,
+                      [&](float sum, const std::string& l) { return sum + width_of(l) + between; });
+  size_t fitting = layers.size();
+  if (all > room) {
+    float used = list_width;
+    fitting = 0;
+    while (fitting < layers.size() && used + width_of(layers[fitting]) + between <= room)
+      used += width_of(layers[fitting++]) + between;
+    // Components stay together: beauty and the four, or the list alone.
+    fitting = fitting >= 5 ? 5 : 0;
+  }
+  for (size_t i = 0; i < fitting; ++i) {
+    if (button(("##layer" + layers[i]).c_str(), capitalized(layers[i]), layers[i] == current,
+               width_of(layers[i]), layer_mark(layers[i])))
+      ui.settings.set("film.layer", layers[i]);
+    tooltip(layer_help(layers[i]));
+    ImGui::SameLine(0, between);
+  }
+  if (fitting < layers.size()) {
+    std::vector<std::string> rest(layers.begin() + static_cast<std::ptrdiff_t>(fitting), layers.end()), names;
+    std::transform(rest.begin(), rest.end(), std::back_inserter(names), capitalized);
+    int chosen = static_cast<int>(std::find(rest.begin(), rest.end(), current) - rest.begin());
+    if (chosen == static_cast<int>(rest.size())) chosen = -1;
+    const bool none = chosen < 0;
+    if (choice("##layers", none ? "More" : "", names, chosen, list_width))
+      ui.settings.set("film.layer", rest[static_cast<size_t>(chosen)]);
+    tooltip("Further layers.");
+  }
+}
+
+/// Keys and mouse over the picture.
+void navigate(Ui& ui, bool hovered, bool active) {
+  ImGuiIO& io = ImGui::GetIO();
+  if (!ui.view) return;
+  Viewpoint& view = *ui.view;
+  const float height = std::max(1.0f, ui.picture.height());
+  const vec2 drag(io.MouseDelta.x, io.MouseDelta.y);
+  const bool typing = io.WantTextInput ||
+                      ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+
+  // Flight: while the pointer is over the picture.
+  vec3 wish(0);
+  if ((hovered || active) && !typing && !io.KeyCtrl && !io.KeyAlt) {
+    const auto down = [&](int key) { return io.KeysDown[key] ? 1.0f : 0.0f; };
+    wish = {down(GLFW_KEY_D) - down(GLFW_KEY_A), down(GLFW_KEY_E) - down(GLFW_KEY_Q),
+            down(GLFW_KEY_W) - down(GLFW_KEY_S)};
+  }
+  const bool flying = wish != vec3(0);
+  if (flying || ui.flight.moving()) {
+    const float seconds = std::min(io.DeltaTime, 0.1f);
+    fly(view, advance(ui.flight, wish, ui.speed * (io.KeyShift ? 4.0f : 1.0f), seconds));
+    ui.moving = true;
+    ui.moved();
+  }
+  if (active && (drag.x != 0 || drag.y != 0)) {
+    // Half a turn across the height of the picture.
+    const vec2 angles = -drag * (k_pi / height);
+    if (flying && (io.MouseDown[0] || io.MouseDown[1]))
+      look(view, 0.5f * angles);
+    else if (io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift))
+      pan(view, drag, height);
+    else if (io.MouseDown[1])
+      dolly(view, 12 * (drag.x - drag.y) / height);
+    else if (io.MouseDown[0])
+      orbit(view, {angles.x, -angles.y});
+    ui.moved();
+  }
+  if (hovered && io.MouseWheel != 0) {
+    if (flying)
+      ui.speed = std::clamp(ui.speed * std::pow(1.2f, io.MouseWheel), 0.01f, 1000.0f);
+    else
+      dolly(view, io.MouseWheel), ui.moved();
+  }
+}
+
+void empty_state(Ui& ui, const Area& area) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const float x = 0.5f * (area.lo.x + area.hi.x), y = std::floor(area.lo.y + 0.42f * area.height());
+  draw_text(list, {area.lo.x, y - px(16)}, {area.hi.x, y + px(16)}, "Drop a scene here", colour::text,
+            Align::centre, theme().fonts.large);
+  draw_text(list, {area.lo.x, y + px(20)}, {area.hi.x, y + px(40)}, "glTF 2.0, as .gltf or .glb",
+            colour::text_dim, Align::centre);
+  const float w = px(104);
+  ImGui::SetCursorScreenPos({std::floor(x - 0.5f * w), y + px(56)});
+  if (button("##open", "Open\xE2\x80\xA6", false, w)) ui.start_dialog(Dialog::Purpose::open);
+  tooltip("Opens a scene by its path. Ctrl+O.");
+  if (ui.recent.empty()) return;
+  float line = y + px(112);
+  const float width = std::min(px(420), area.width() - px(48));
+  draw_text(list, {area.lo.x, line - px(20)}, {area.hi.x, line}, "Recent", colour::text_faint, Align::centre,
+            theme().fonts.small);
+  const std::vector<std::string> files(
+      ui.recent.begin(),
+      ui.recent.begin() + std::min<std::ptrdiff_t>(5, static_cast<std::ptrdiff_t>(ui.recent.size())));
+  for (size_t i = 0; i < files.size() && line + px(24) < area.hi.y; ++i, line += px(24)) {
+    ImGui::PushID(static_cast<int>(i));
+    const ImVec2 lo(std::floor(x - 0.5f * width), line), hi(lo.x + width, line + px(24));
+    ImGui::SetCursorScreenPos(lo);
+    if (ImGui::InvisibleButton("##recent", {width, px(24)})) ui.open_scene(files[i]);
+    if (ImGui::IsItemHovered()) list->AddRectFilled(lo, hi, colour::field, px(3));
+    draw_text(list, lo, hi, elided(files[i], width - px(16), nullptr, true),
+              ImGui::IsItemHovered() ? colour::text : colour::text_dim, Align::centre);
+    ImGui::PopID();
+  }
+}
+
+/// What is going on, at the lower left, with a way out.
+void activity_card(Ui& ui, const Area& area) {
+  if (!ui.snapshot || ui.snapshot->activity.empty()) return;
+  const bool cancels = ui.loading();
+  const float w = std::min(px(360), area.width() - px(24)), h = px(cancels ? 60.0f : 36.0f);
+  const bool empty = ui.snapshot->rgba.empty();
+  const ImVec2 lo(empty ? std::floor(0.5f * (area.lo.x + area.hi.x - w)) : area.lo.x + px(12),
+                  empty ? std::floor(area.lo.y + 0.42f * area.height()) : area.hi.y - h - px(12));
+  const ImVec2 hi(lo.x + w, lo.y + h);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(lo, hi, colour::with_alpha(colour::bar, 0.95f), px(3));
+  list->AddRect(lo, hi, colour::hairline, px(3));
+  const float text_right = hi.x - px(cancels ? 96.0f : 12.0f);
+  draw_text(list, {lo.x + px(12), lo.y}, {text_right, lo.y + px(cancels ? 44.0f : 36.0f)},
+            elided(ui.snapshot->activity, text_right - lo.x - px(12)), colour::text);
+  if (!cancels) return;
+  ImGui::SetCursorScreenPos({hi.x - px(84), lo.y + px(10)});
+  if (button("##cancel", "Cancel", false, px(72))) ui.session.cancel();
+  tooltip("Gives up the load; the scene shown stays. Esc.");
+  const float track_lo = lo.x + px(12), track_hi = hi.x - px(12), y = hi.y - px(14);
+  list->AddRectFilled({track_lo, y}, {track_hi, y + px(3)}, colour::field, px(1));
+  list->AddRectFilled(
+      {track_lo, y},
+      {track_lo + (track_hi - track_lo) * std::clamp(ui.snapshot->progress, 0.0f, 1.0f), y + px(3)},
+      colour::accent, px(1));
+}
+
+/// The newest error, over the upper edge of the picture until it is taken away.
+void error_strip(Ui& ui, const Area& area) {
+  if (ui.errors.empty()) return;
+  const std::string message = ui.errors.back();
+  ImFont* font = theme().fonts.regular;
+  const float pad = px(12), count_width = ui.errors.size() > 1 ? px(44) : 0;
+  const float room = std::max(px(80), area.width() - 3 * pad - px(28) - count_width);
+  const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9f, room, message.c_str());
+  const float height = std::min(size.y + px(16), area.height() * 0.6f);
+  const ImVec2 lo = area.lo, hi(area.hi.x, area.lo.y + height);
+  ImGui::SetCursorScreenPos(lo);
+  ImGui::BeginChild("##errors", {hi.x - lo.x, hi.y - lo.y}, false, ImGuiWindowFlags_NoScrollbar);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(lo, hi, colour::error_field);
+  list->AddRectFilled(lo, {lo.x + px(3), hi.y}, colour::error);
+  list->AddText(font, font->FontSize, {lo.x + pad, lo.y + px(8)}, colour::text, message.c_str(), nullptr,
+                room);
+  if (ui.errors.size() > 1)
+    draw_text(list, {hi.x - px(36) - count_width, lo.y}, {hi.x - px(40), lo.y + px(34)},
+              fmt::format("1 of {}", ui.errors.size()), colour::text_dim, Align::right, theme().fonts.small);
+  ImGui::SetCursorScreenPos({hi.x - px(32), lo.y + px(6)});
+  if (sign_button("##dismiss", Sign::close, true, colour::text)) ui.errors.pop_back();
+  tooltip("Takes the message away; it stays in the log. Esc.");
+  ImGui::EndChild();
+}
+
+}  // namespace
+
+void draw_toolbar(Ui& ui, const Area& area) {
+  begin_panel("##toolbar", area, colour::bar, false);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled({area.lo.x, area.hi.y - 1}, area.hi, colour::hairline);
+  const float pad = px(8), y = area.lo.y + px(6);
+  const float tone_width = px(108), ev_width = px(112);
+  float right = area.hi.x - pad;
+  const plan::OptionInfo* tone = plan::find_option("film.tone_curve");
+  if (tone) {
+    right -= tone_width;
+    ImGui::SetCursorScreenPos({right, y});
+    std::vector<std::string> names;
+    for (const std::string& name : tone->choices) names.push_back(name == "agx" ? "AgX" : capitalized(name));
+    int chosen = static_cast<int>(
+        std::find(tone->choices.begin(), tone->choices.end(), ui.settings.text("film.tone_curve")) -
+        tone->choices.begin());
+    if (choice("##tone", "", names, chosen, tone_width))
+      ui.settings.set("film.tone_curve", tone->choices[static_cast<size_t>(chosen)]);
+    tooltip(tone->help);
+    right -= px(4);
+  }
+  if (const plan::OptionInfo* ev = plan::find_option("film.ev")) {
+    right -= ev_width;
+    ImGui::SetCursorScreenPos({right, y});
+    auto value = static_cast<float>(ui.settings.real("film.ev"));
+    // The hand wants the range in which pictures lie; typing reaches the rest.
+    const Slider how{.lo = std::max(-10.0f, static_cast<float>(ev->lo)),
+                     .hi = std::min(10.0f, static_cast<float>(ev->hi)),
+                     .decimals = 2,
+                     .unit = "EV",
+                     .sign = true};
+    if (slider("##ev", "", value, how, ev_width)) ui.settings.set("film.ev", fmt::format("{:.4g}", value));
+    tooltip(ev->help + " Double-click to type.");
+    right -= px(8);
+  }
+  ImGui::SetCursorScreenPos({area.lo.x + pad, y});
+  layer_buttons(ui, right - area.lo.x - pad);
+  ImGui::End();
+}
+
+void draw_picture(Ui& ui, const Area& area) {
+  begin_panel("##picture", area, colour::surround, false);
+  ui.picture = area;
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const bool shown = ui.snapshot && !ui.snapshot->rgba.empty() && ui.texture != 0;
+  if (shown) {
+    // One picture pixel on one window pixel; while the sizes differ the picture stands in the middle, scaled
+    // down if it must be.
+    float w = static_cast<float>(ui.texture_width) * static_cast<float>(ui.picture_divisor);
+    float h = static_cast<float>(ui.texture_height) * static_cast<float>(ui.picture_divisor);
+    if (w > area.width() + static_cast<float>(ui.picture_divisor) ||
+        h > area.height() + static_cast<float>(ui.picture_divisor)) {
+      const float fit = std::min(area.width() / w, area.height() / h);
+      w = std::floor(w * fit), h = std::floor(h * fit);
+    }
+    const ImVec2 lo(std::floor(area.lo.x + 0.5f * (area.width() - w)),
+                    std::floor(area.lo.y + 0.5f * (area.height() - h)));
+    list->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(ui.texture)), lo,
+                   {lo.x + w, lo.y + h});
+  }
+  const bool waiting = ui.snapshot && !ui.snapshot->activity.empty();
+  if (!shown && !waiting) empty_state(ui, area);
+  activity_card(ui, area);
+  error_strip(ui, area);
+
+  bool active = false;
+  ui.picture_hovered = false;
+  if (shown) {
+    ImGui::SetCursorScreenPos(area.lo);
+    ImGui::InvisibleButton("##view", {std::max(1.0f, area.width()), std::max(1.0f, area.height())},
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                               ImGuiButtonFlags_MouseButtonMiddle);
+    ui.picture_hovered = ImGui::IsItemHovered();
+    active = ImGui::IsItemActive();
+  }
+  navigate(ui, ui.picture_hovered, active);
+  ImGui::End();
+}
+
+}  // namespace lucerna::ui

@@ -1,0 +1,191 @@
+#include "window.h"
+
+#include <epoxy/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "base/error.h"
+#include "theme.h"
+
+namespace lucerna::ui {
+
+struct Window::Events {
+  bool any = false, rescaled = false;
+  std::vector<std::string> dropped;
+  std::string error;
+};
+
+namespace {
+
+std::string& last_error() {
+  static std::string text;
+  return text;
+}
+
+}  // namespace
+
+Window::Window(int width, int height, bool hidden, float scale) : events_(new Events), asked_scale_(scale) {
+  glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
+  const auto give_up = [&](const char* what) {
+    const std::string why = last_error();
+    glfwTerminate();
+    delete events_;
+    throw_error("window", "{}{}{}", what, why.empty() ? "" : ": ", why);
+  };
+  if (!glfwInit()) give_up("no display could be opened (is DISPLAY or WAYLAND_DISPLAY set?)");
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_VISIBLE, hidden ? GLFW_FALSE : GLFW_TRUE);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  window_ = glfwCreateWindow(width, height, "Lucerna", nullptr, nullptr);
+  if (!window_) give_up("no window with OpenGL 3.3 could be made");
+  glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  glfwMakeContextCurrent(window_);
+  glfwSwapInterval(1);
+  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor())
+    if (const GLFWvidmode* mode = glfwGetVideoMode(monitor); mode && mode->refreshRate > 0)
+      refresh_seconds_ = 1.0 / mode->refreshRate;
+
+  // Ours first; ImGui's backend chains them.
+  glfwSetWindowUserPointer(window_, events_);
+  const auto mark = [](GLFWwindow* w) { static_cast<Events*>(glfwGetWindowUserPointer(w))->any = true; };
+  static auto note = mark;
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) { note(w); });
+  glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int) { note(w); });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int, int, int) { note(w); });
+  glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double) { note(w); });
+  glfwSetKeyCallback(window_, [](GLFWwindow* w, int, int, int, int) { note(w); });
+  glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned) { note(w); });
+  glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int) { note(w); });
+  glfwSetWindowSizeCallback(window_, [](GLFWwindow* w, int, int) { note(w); });
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { note(w); });
+  glfwSetWindowCloseCallback(window_, [](GLFWwindow* w) { note(w); });
+  glfwSetWindowContentScaleCallback(window_, [](GLFWwindow* w, float, float) {
+    static_cast<Events*>(glfwGetWindowUserPointer(w))->rescaled = true;
+    note(w);
+  });
+  glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** files) {
+    for (int i = 0; i < count; ++i)
+      static_cast<Events*>(glfwGetWindowUserPointer(w))->dropped.push_back(files[i]);
+    note(w);
+  });
+
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.ConfigWindowsMoveFromTitleBarOnly = true;
+  follow_scale();
+  ImGui_ImplGlfw_InitForOpenGL(window_, true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+Window::~Window() {
+  if (texture_) glDeleteTextures(1, &texture_);
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+  delete events_;
+}
+
+void Window::follow_scale() {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(window_, &x, &y);
+  float scale = asked_scale_ > 0 ? asked_scale_ : x;
+  // Where window units are not pixels, ImGui works in window units and scales its drawing itself.
+  int units = 0, pixels = 0, ignored = 0;
+  glfwGetWindowSize(window_, &units, &ignored);
+  glfwGetFramebufferSize(window_, &pixels, &ignored);
+  if (asked_scale_ <= 0 && units > 0 && pixels > units)
+    scale *= static_cast<float>(units) / static_cast<float>(pixels);
+  scale = std::clamp(std::round(scale * 4) / 4, 0.75f, 4.0f);
+  if (scale == scale_) return;
+  const bool again = scale_ > 0;
+  scale_ = scale;
+  if (again) ImGui_ImplOpenGL3_DestroyFontsTexture();
+  apply_theme(scale);
+  if (again) ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+bool Window::closing() const { return glfwWindowShouldClose(window_); }
+
+bool Window::wait(double seconds) {
+  events_->any = false;
+  if (seconds > 0)
+    glfwWaitEventsTimeout(seconds);
+  else
+    glfwPollEvents();
+  return events_->any;
+}
+
+void Window::begin_frame() {
+  if (std::exchange(events_->rescaled, false)) follow_scale();
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+}
+
+void Window::end_frame() {
+  ImGui::Render();
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window_, &width, &height);
+  glViewport(0, 0, width, height);
+  const ImVec4 c = ImGui::ColorConvertU32ToFloat4(colour::surround);
+  glClearColor(c.x, c.y, c.z, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Window::present() { glfwSwapBuffers(window_); }
+
+std::vector<uint8_t> Window::read(uint32_t& width, uint32_t& height) const {
+  int w = 0, h = 0;
+  glfwGetFramebufferSize(window_, &w, &h);
+  width = static_cast<uint32_t>(w), height = static_cast<uint32_t>(h);
+  const size_t row = size_t{width} * 4;
+  std::vector<uint8_t> upside_down(row * height), rgba(row * height);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadBuffer(GL_BACK);
+  glReadPixels(0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE, upside_down.data());
+  for (size_t y = 0; y < height; ++y) std::memcpy(&rgba[y * row], &upside_down[(height - 1 - y) * row], row);
+  for (size_t i = 3; i < rgba.size(); i += 4) rgba[i] = 255;
+  return rgba;
+}
+
+void Window::set_size(int width, int height) { glfwSetWindowSize(window_, width, height); }
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+unsigned Window::upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height) {
+  if (!texture_) glGenTextures(1, &texture_);
+  glBindTexture(GL_TEXTURE_2D, texture_);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  const auto w = static_cast<GLsizei>(width), h = static_cast<GLsizei>(height);
+  if (width != texture_width_ || height != texture_height_) {
+    texture_width_ = width, texture_height_ = height;
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  } else {
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  }
+  return texture_;
+}
+
+std::vector<std::string> Window::dropped() { return std::exchange(events_->dropped, {}); }
+void Window::wake() { glfwPostEmptyEvent(); }
+
+}  // namespace lucerna::ui

@@ -1,0 +1,52 @@
+#pragma once
+// The operating system's side of the window: GLFW, an OpenGL 3.3 context, Dear ImGui's backends, the
+// picture's texture.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace lucerna::ui {
+
+class Window {
+ public:
+  /// Throws Error when there is no display or no OpenGL 3.3. `scale` 0: the desktop's.
+  Window(int width, int height, bool hidden, float scale);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  bool closing() const;
+  /// Sleeps until something happens, or `seconds` at most (0: only collects what has happened). Returns
+  /// whether input came.
+  bool wait(double seconds);
+  void begin_frame();
+  /// Draws what ImGui holds. Then read() may be called, then present().
+  void end_frame();
+  void present();
+  /// The window as drawn, RGBA, top row first.
+  std::vector<uint8_t> read(uint32_t& width, uint32_t& height) const;
+  void set_size(int width, int height);
+  void set_title(const std::string& title);
+  /// Puts a picture into the texture (made anew when the size changes). Returns its OpenGL name.
+  unsigned upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height);
+  /// Files dropped since the last call.
+  std::vector<std::string> dropped();
+  double refresh_seconds() const { return refresh_seconds_; }  ///< of the display
+  /// Ends a wait(); callable from any thread.
+  static void wake();
+
+ private:
+  struct Events;
+  void follow_scale();
+
+  GLFWwindow* window_ = nullptr;
+  Events* events_ = nullptr;
+  float asked_scale_ = 0, scale_ = 0;
+  double refresh_seconds_ = 1.0 / 60;
+  unsigned texture_ = 0;
+  uint32_t texture_width_ = 0, texture_height_ = 0;
+};
+
+}  // namespace lucerna::ui
