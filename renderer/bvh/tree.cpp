@@ -62,7 +62,8 @@ std::vector<Reference> references_of(const Triangles& triangles) {
                &c = triangles.vertices[3 * i + 2];
     if (!finite(a) || !finite(b) || !finite(c))
       throw_error("bvh", "triangle {} has a vertex that is not finite", i);
-    if (a == b || b == c || c == a) continue;
+    // In double precision, in which the products of differences of floats are all but always exact.
+    if (glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)) == glm::dvec3(0)) continue;
     Reference reference{{}, static_cast<uint32_t>(i)};
     reference.box.grow(a), reference.box.grow(b), reference.box.grow(c);
     references.push_back(reference);

@@ -28,8 +28,9 @@ struct Tree {
   std::vector<Reference> references;
 };
 
-/// One reference for every triangle that can be hit: those with two equal vertices are left out.
-/// Throws Error naming the first triangle with a vertex that is not finite.
+/// One reference for every triangle that can be hit: those of no area (equal or collinear vertices) are left
+/// out, for they have no normal to shade with. Throws Error naming the first triangle with a vertex that is
+/// not finite.
 std::vector<Reference> references_of(const Triangles& triangles);
 
 /// Levels of inner nodes that `count` references need at least: ceil(log2(ceil(count / k_max_leaf))).

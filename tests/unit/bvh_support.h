@@ -1,5 +1,7 @@
 #pragma once
 // Triangles and rays that tracers find hard, and the rules by which their hits are judged against the oracle.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <random>
 #include <string>
@@ -181,7 +183,7 @@ inline double slack(const Triangles& triangles, const Ray& ray, uint32_t prim) {
     for (int axis = 0; axis < 3; ++axis) {
       const double v = triangles.vertices[3 * size_t{prim} + static_cast<size_t>(k)][axis],
                    o = ray.origin[axis];
-      reach = std::max({reach, std::abs(v - o), std::abs(o) * 0.0});
+      reach = std::max(reach, std::abs(v - o));
     }
   return 8 * 0x1p-24 * reach;
 }
@@ -246,6 +248,103 @@ inline std::string judge(const Triangles& triangles, Query query, const Ray& ray
       !unsure(truth.prim))
     return "a nearer triangle was missed";
   return {};
+}
+
+/// A mesh with rays that are hard on it.
+struct Case {
+  std::string name;
+  Mesh mesh;
+  std::vector<Ray> rays;
+};
+
+inline std::vector<Case> hard_cases(size_t rays_each) {
+  Random random(11);
+  std::vector<Case> cases;
+  const auto add = [&](std::string name, Mesh mesh, float half, const vec3& centre = vec3(0)) {
+    std::vector<Ray> rays = hard_rays(random, mesh, rays_each, half, centre);
+    cases.push_back({std::move(name), std::move(mesh), std::move(rays)});
+  };
+  add("soup", soup(random, 300, 10, 3, vec3(0), 0.4f), 10);
+  const vec3 far(1e4f, 1e4f, -1e4f);
+  add("far from the origin", soup(random, 300, 5, 2, far, 0.4f), 8, far);
+  Mesh slivers;
+  for (int i = 0; i < 300; ++i) {
+    const vec3 p = random.in_box(5), d = 4.0f * random.direction();
+    slivers.add(p, p + d, p + 0.5f * d + 1e-4f * random.direction(), i % 3 == 0);
+  }
+  add("slivers", slivers, 8);
+  add("closed mesh", star(random, 8, 3, 0.3f), 6);
+  Mesh grid;
+  for (int x = 0; x < 8; ++x)
+    for (int z = 0; z < 8; ++z) {
+      const vec3 p(float(x), float((x + z) % 3), float(z));
+      grid.add(p, p + vec3(1, 0, 0), p + vec3(1, 0, 1), x % 2 == 0);
+      grid.add(p, p + vec3(1, 0, 1), p + vec3(0, 0, 1));
+    }
+  add("axis-aligned grid", grid, 8, vec3(4, 1, 4));
+  Mesh mixed = soup(random, 100, 5, 3);  // degenerate ones among others
+  for (int i = 0; i < 30; ++i) {
+    const vec3 p = random.in_box(5), d = random.in_box(1);
+    mixed.add(p, p, p), mixed.add(p, p + d, p), mixed.add(p, p + d, p + 2.0f * d);
+  }
+  add("degenerate triangles", mixed, 8);
+  Mesh one;
+  one.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, true);
+  add("one triangle", one, 2);
+  cases.push_back({"no triangle", Mesh{}, hard_rays(random, one, 100, 2)});
+  return cases;
+}
+
+/// A mesh and its rays seen `copies` times: every triangle again, in another order, after all the first ones.
+inline Mesh with_copies(const Mesh& once, int copies) {
+  Mesh mesh = once;
+  for (int copy = 0; copy < copies; ++copy)
+    for (size_t i = 0; i < once.count(); ++i) {
+      const vec3* p = &once.vertices[3 * ((i * 37) % once.count())];
+      mesh.add(p[0], p[1], p[2], copy % 2 == 0);
+    }
+  return mesh;
+}
+
+/// A closed mesh and where to stand inside it.
+struct Closed {
+  Mesh mesh;
+  vec3 centre;
+  float half;  ///< of the cube around the centre that origins are taken from
+};
+
+inline std::vector<Closed> closed_meshes() {
+  Random random(13);
+  const vec3 far(1e4f, -1e4f, 5e3f);
+  return {{icosphere(5, 2), vec3(0), 1},
+          {star(random, 60, 2, 0.2f), vec3(0), 0.5f},
+          {icosphere(3, 3, far), far, 1}};
+}
+
+/// Rays from inside a closed mesh, half of them straight at its edges and vertices, where leaks would be.
+inline void rays_inside(Random& random, const Closed& closed, std::vector<Ray>& rays) {
+  for (Ray& ray : rays) {
+    const vec3 origin = closed.centre + random.in_box(closed.half);
+    const vec3* p =
+        &closed.mesh.vertices[3 * size_t{random.below(static_cast<uint32_t>(closed.mesh.count()))}];
+    const uint32_t k = random.below(8);
+    ray = k < 4 ? make_ray(origin, random.direction())
+                : towards(origin, k == 4 ? p[0] : p[1] + random.uniform() * (p[2] - p[1]));
+  }
+}
+
+/// Judges all hits; "" or a line on how many are wrong and the first of them.
+inline std::string judge_all(const Triangles& triangles, Query query, const std::vector<Ray>& rays,
+                             const std::vector<Hit>& hits) {
+  size_t wrong = 0;
+  std::string first;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const std::string verdict = judge(triangles, query, rays[i], hits[i]);
+    if (verdict.empty() || ++wrong > 1) continue;
+    first = fmt::format("ray {}: {} (prim {} t {}, oracle {})", i, verdict, hits[i].prim, hits[i].t,
+                        oracle(triangles, query, rays[i]).prim);
+  }
+  return wrong == 0 ? "" : fmt::format("{} wrong; {}", wrong, first);
 }
 
 }  // namespace lucerna::bvh::test

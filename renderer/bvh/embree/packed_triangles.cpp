@@ -9,15 +9,14 @@ namespace {
 Float4 splat(float f) { return Float4{f, f, f, f}; }
 int lanes(Int4 mask) { return _mm_movemask_ps(_mm_castsi128_ps(reinterpret_cast<__m128i&>(mask))); }
 
-/// a * b - c * d with its exact sign: both products fit a double without rounding.
-Float4 exact_difference(Float4 a, Float4 b, Float4 c, Float4 d) {
-  Float4 r;
+/// Where r = a * b - c * d is zero, the same without rounding: both products fit a double.
+void refine(Float4& r, Float4 a, Float4 b, Float4 c, Float4 d) {
   for (int i = 0; i < 4; ++i) {
+    if (r[i] != 0.0f) continue;
     const double p = static_cast<double>(a[i]) * static_cast<double>(b[i]);
     const double q = static_cast<double>(c[i]) * static_cast<double>(d[i]);
     r[i] = static_cast<float>(p - q);
   }
-  return r;
 }
 
 }  // namespace
@@ -36,9 +35,9 @@ int intersect(const PackedTriangles& triangles, const ShearedRay& ray, Float4& t
   Float4 b = x[0] * y[2] - y[0] * x[2];
   Float4 c = x[1] * y[0] - y[1] * x[0];
   if (lanes((a == 0.0f) | (b == 0.0f) | (c == 0.0f)) != 0) [[unlikely]] {
-    a = exact_difference(x[2], y[1], y[2], x[1]);
-    b = exact_difference(x[0], y[2], y[0], x[2]);
-    c = exact_difference(x[1], y[0], y[1], x[0]);
+    refine(a, x[2], y[1], y[2], x[1]);
+    refine(b, x[0], y[2], y[0], x[2]);
+    refine(c, x[1], y[0], y[1], x[0]);
   }
   const Int4 negative = (a < 0.0f) | (b < 0.0f) | (c < 0.0f);
   const Int4 positive = (a > 0.0f) | (b > 0.0f) | (c > 0.0f);

@@ -1,0 +1,199 @@
+// links: gpu bvh_embree
+// The compute-bvh tracer through its real kernels: against the oracle, the host tracer, and leaks.
+#include <catch2/catch.hpp>
+
+#include "bvh/embree/build.h"
+#include "bvh/embree/host_tracer.h"
+#include "gpu/stream.h"
+#include "shaders/shared/trace.h"
+#include "unit/bvh_support.h"
+
+using namespace lucerna;
+using namespace lucerna::bvh;
+using namespace lucerna::bvh::test;
+
+namespace {
+
+constexpr Query k_queries[] = {Query::closest, Query::any_opaque, Query::closest_non_opaque};
+
+gpu::Device& device() {
+  static gpu::Device instance({"", true});
+  return instance;
+}
+
+gpu::Kernel kernel(Query query, bool non_opaque, gpu::Defines defines = {}) {
+  static gpu::ShaderCompiler compiler;
+  constexpr const char* k_numbers[] = {"0", "1", "2"};
+  defines["LUCERNA_QUERY"] = k_numbers[static_cast<int>(query)];
+  if (non_opaque) defines["LUCERNA_NON_OPAQUE"] = "1";
+  return {device(), compiler, "trace.comp", defines};
+}
+
+class ComputeTracer {
+ public:
+  explicit ComputeTracer(const Mesh& mesh, const BuildOptions& options = {})
+      : ComputeTracer(build(mesh.view(), options)) {}
+  explicit ComputeTracer(BvhData data) : data_(std::move(data)) {
+    nodes_ = gpu::Buffer(device(), {"nodes", data_.nodes.size() * sizeof(vec4), gpu::Memory::device, true});
+    triangles_ = gpu::Buffer(device(),
+                             {"triangles", data_.triangles.size() * sizeof(vec4), gpu::Memory::device, true});
+    nodes_.write(std::span<const vec4>(data_.nodes));
+    triangles_.write(std::span<const vec4>(data_.triangles));
+  }
+
+  void trace(const gpu::Kernel& kernel, const std::vector<Ray>& rays, std::vector<Hit>& hits,
+             const std::vector<uint32_t>* queue = nullptr) {
+    gpu::Buffer ray_buffer(device(), {"rays", rays.size() * sizeof(Ray)}),
+        hit_buffer(device(), {"hits", hits.size() * sizeof(Hit)});
+    gpu::Buffer queue_buffer(device(), {"queue", queue ? queue->size() * sizeof(uint32_t) : 0});
+    ray_buffer.write(std::span<const Ray>(rays)), hit_buffer.write(std::span<const Hit>(hits));
+    if (queue) queue_buffer.write(std::span<const uint32_t>(*queue));
+    gpu::Resources resources;
+    resources.set("Rays", ray_buffer), resources.set("Hits", hit_buffer),
+        resources.set("Queue", queue_buffer);
+    resources.set("bvh_nodes", nodes_), resources.set("bvh_triangles", triangles_);
+    const shared::TracePush push{static_cast<uint32_t>(queue ? queue->size() : rays.size()),
+                                 queue != nullptr};
+    stream_.dispatch(kernel, resources, push, gpu::groups_for(push.count, kernel.workgroup_size()));
+    stream_.run();
+    hits = hit_buffer.read_all<Hit>();
+  }
+  bool non_opaque() const { return data_.has_non_opaque; }
+
+ private:
+  BvhData data_;
+  gpu::Buffer nodes_, triangles_;
+  gpu::Stream stream_{device()};
+};
+
+/// Rows in which two lists of hits differ.
+size_t differences(Query query, const std::vector<Hit>& a, const std::vector<Hit>& b) {
+  size_t count = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    const bool found = a[i].prim != shared::k_no_hit;
+    bool same = found == (b[i].prim != shared::k_no_hit);
+    if (same && found && query != Query::any_opaque)
+      same = a[i].prim == b[i].prim && a[i].t == b[i].t && a[i].u == b[i].u && a[i].v == b[i].v;
+    count += !same;
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("compute tracer agrees with the oracle and with the host tracer") {
+  for (const Case& c : hard_cases(4000))
+    for (const bool splits : {false, true}) {
+      BuildOptions options;
+      options.spatial_splits = splits;
+      ComputeTracer tracer(c.mesh, options);
+      const HostTracer host(c.mesh.view());
+      for (const Query query : k_queries) {
+        INFO(c.name << ", query " << static_cast<int>(query) << ", splits " << splits);
+        std::vector<Hit> hits(c.rays.size()), from_host(c.rays.size());
+        tracer.trace(kernel(query, tracer.non_opaque()), c.rays, hits);
+        CHECK(judge_all(c.mesh.view(), query, c.rays, hits) == "");
+        host.trace(query, c.rays, from_host, nullptr, static_cast<uint32_t>(c.rays.size()), false);
+        // Division on the CPU rounds correctly, so that not a bit may differ.
+        if (device().info().is_cpu) CHECK(differences(query, hits, from_host) == 0);
+      }
+    }
+  CHECK(device().validation_messages() == 0);
+}
+
+TEST_CASE("other ways to fetch and to keep the stack give the same hits") {
+  Random random(21);
+  const Mesh mesh = soup(random, 5000, 10, 1, vec3(0), 0.3f);
+  const std::vector<Ray> rays = hard_rays(random, mesh, 20000, 10);
+  ComputeTracer tracer(mesh);
+  for (const Query query : k_queries) {
+    std::vector<Hit> usual(rays.size()), other(rays.size());
+    tracer.trace(kernel(query, true), rays, usual);
+    for (const gpu::Defines& defines :
+         {gpu::Defines{{"LUCERNA_FETCH_STORAGE", "1"}}, gpu::Defines{{"LUCERNA_STACK_LOCAL", "1"}}}) {
+      tracer.trace(kernel(query, true, defines), rays, other);
+      CHECK(differences(query, usual, other) == 0);
+    }
+  }
+}
+
+TEST_CASE("of exact copies the first is hit, on the device") {
+  Random random(22);
+  const Mesh once = soup(random, 100, 10, 4), mesh = with_copies(once, 6);
+  ComputeTracer tracer(mesh);
+  const std::vector<Ray> rays = hard_rays(random, once, 20000, 12);
+  std::vector<Hit> hits(rays.size());
+  tracer.trace(kernel(Query::closest, true), rays, hits);
+  size_t later = 0;
+  for (const Hit& hit : hits) later += hit.prim != shared::k_no_hit && hit.prim >= once.count();
+  CHECK(later == 0);
+}
+
+TEST_CASE("no ray leaks through a closed mesh, on the device: 10^7 rays") {
+  Random random(23);
+  std::vector<Ray> rays(1 << 18);
+  std::vector<Hit> hits(rays.size());
+  const gpu::Kernel closest = kernel(Query::closest, false), any = kernel(Query::any_opaque, false);
+  for (const Closed& closed : closed_meshes()) {
+    ComputeTracer tracer(closed.mesh);
+    size_t missed = 0;
+    for (int round = 0; round < 13; ++round) {
+      rays_inside(random, closed, rays);
+      tracer.trace(round % 4 == 3 ? any : closest, rays, hits);
+      for (const Hit& hit : hits) missed += hit.prim == shared::k_no_hit;
+    }
+    CHECK(missed == 0);
+  }
+}
+
+TEST_CASE("a tree as deep as the stack") {
+  // A list of triangles, each twice as far and as large as the last: limit_depth() leaves it k_max_depth
+  // levels.
+  Random random(25);
+  Mesh mesh;
+  float x = 1e-12f;
+  for (int i = 0; i < 120; ++i, x *= 1.6f)
+    for (int k = 0; k < 6; ++k)
+      mesh.add(vec3(x), vec3(x, 1.1f * x, x), vec3(x, x, x * (1.2f + 0.01f * float(k))));
+  Tree list;
+  list.references = references_of(mesh.view());
+  const auto count = static_cast<uint32_t>(list.references.size());
+  std::vector<Box> tail(count + 1);
+  for (uint32_t i = count; i-- > 0;) tail[i] = tail[i + 1], tail[i].grow(list.references[i].box);
+  for (uint32_t i = 0; i < count; ++i) {
+    const auto at = static_cast<uint32_t>(list.nodes.size());
+    if (i + 1 < count) list.nodes.push_back({tail[i], {at + 1, at + 2}, i, count - i});
+    list.nodes.push_back({list.references[i].box, {Tree::k_leaf, Tree::k_leaf}, i, 1});
+  }
+  const BvhData data = flatten(list, mesh.view());
+  REQUIRE(data.max_depth == k_max_depth);
+  REQUIRE(check(data, mesh.view()) == "");
+  std::vector<Ray> rays = hard_rays(random, mesh, 4000, 1e-3f);
+  std::vector<Hit> hits(rays.size());
+  ComputeTracer tracer(data);
+  tracer.trace(kernel(Query::closest, false), rays, hits);
+  CHECK(judge_all(mesh.view(), Query::closest, rays, hits) == "");
+}
+
+TEST_CASE("queues and dead rays on the device") {
+  Random random(24);
+  const Mesh mesh = soup(random, 2000, 10, 2, vec3(0), 0.3f);
+  std::vector<Ray> rays = hard_rays(random, mesh, 5001, 10);
+  rays[3].tmax = std::nanf("");
+  rays[4].tmax = -1;
+  ComputeTracer tracer(mesh);
+  const gpu::Kernel closest = kernel(Query::closest, true);
+  const Hit untouched{7, 7, 7, 7};
+  std::vector<Hit> expected(rays.size()), queued(rays.size(), untouched);
+  tracer.trace(closest, rays, expected);
+  CHECK(expected[3].prim == shared::k_no_hit);
+  CHECK(expected[4].prim == shared::k_no_hit);
+  std::vector<uint32_t> queue;
+  for (uint32_t i = 0; i < 5001; i += 2) queue.push_back(i);
+  for (uint32_t i = 1; i < 5001; i += 2) expected[i] = untouched;
+  for (size_t i = queue.size(); i > 1; --i)
+    std::swap(queue[i - 1], queue[random.below(static_cast<uint32_t>(i))]);
+  tracer.trace(closest, rays, queued, &queue);
+  CHECK(differences(Query::closest, queued, expected) == 0);
+  CHECK(device().validation_messages() == 0);
+}
