@@ -1,0 +1,37 @@
+#include "scene/scene.h"
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace lucerna::scene {
+
+Box bounds(const Scene& scene) {
+  Box box;
+  for (const Instance& instance : scene.instances)
+    for (const Primitive& p : scene.meshes[instance.mesh].primitives)
+      for (const uvec3& t : p.triangles)
+        for (int k = 0; k < 3; ++k) box.grow(vec3(instance.to_world * vec4(p.positions[t[k]], 1)));
+  return box;
+}
+
+uint64_t count_triangles(const Scene& scene) {
+  uint64_t count = 0;
+  for (const Instance& instance : scene.instances)
+    for (const Primitive& p : scene.meshes[instance.mesh].primitives) count += p.triangles.size();
+  return count;
+}
+
+Camera default_camera(const Scene& scene) {
+  Camera camera;
+  camera.name = "default";
+  camera.yfov = 0.7f;
+  const Box box = bounds(scene);
+  const vec3 centre = box.empty() ? vec3(0) : box.centre();
+  const float radius = box.empty() ? 1.f : std::max(box.radius(), 1e-3f);
+  const float distance = radius / std::sin(0.5f * camera.yfov);
+  const vec3 eye = centre + distance * glm::normalize(vec3(0.35f, 0.3f, 1));
+  camera.to_world = glm::inverse(glm::lookAt(eye, centre, vec3(0, 1, 0)));
+  return camera;
+}
+
+}  // namespace lucerna::scene
