@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -34,6 +35,12 @@ void write_text(const std::string& file, const std::string& text) {
     std::remove(temporary.c_str());
     throw_error(file, "cannot write here; check that the folder exists and may be written");
   }
+}
+
+void check_folder(const std::string& file) {
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  if (access(folder.empty() ? "." : folder.c_str(), W_OK) != 0 || std::filesystem::is_directory(file))
+    throw_error(file, "cannot write here; check that the folder exists and may be written");
 }
 
 void print_progress(const session::Renderer& r, double seconds, double limit, bool last) {
@@ -90,7 +97,7 @@ int render(const RenderArguments& a) {
     if (extension != ".exr" && extension != ".png") throw_error(file, "cannot write '{}' files; use .exr or .png", extension);
     film::check_writable(file);
   }
-  if (!a.stats.empty()) film::check_writable(a.stats);
+  if (!a.stats.empty()) check_folder(a.stats);
   session::Renderer r({.device = a.device, .validation = false, .shaders = {}, .defines = {}});
   r.set_size(width, height);
   // What the command line says stands above the scene's own settings; checked before the scene is loaded.

@@ -39,7 +39,7 @@ int compare(const CompareArguments& a) {
   const film::FilmImage first = film::read_exr(a.a), second = film::read_exr(a.b);
   const film::Comparison c = film::compare(first, second, a.layer);
   std::printf("%s\n", (a.json ? film::to_json(c) : film::to_text(c)).c_str());
-  return a.max_relmse >= 0 && !(c.relative_mse <= a.max_relmse) ? 1 : 0;
+  return a.max_relmse >= 0 && !(c.relmse <= a.max_relmse) ? 1 : 0;
 }
 
 }  // namespace lucerna::app

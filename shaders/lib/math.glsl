@@ -4,7 +4,7 @@
 
 const float k_pi = 3.14159265358979323846;
 const float k_inv_pi = 0.31830988618379067154;
-const float k_infinity = uintBitsToFloat(0x7f800000u);
+#define k_infinity uintBitsToFloat(0x7f800000u)
 const float k_epsilon = 5.9604644775390625e-08;  // half an ulp at 1: the unit roundoff
 
 // gamma(n): bound of the relative error of n floating-point operations (Higham; pbrt 6.8).
