@@ -44,8 +44,8 @@ const uint k_bvh_done = 0xffffffffu;  // no link: bit 29 is never set in one
 // ---- triangles ----
 // Watertight test of Woop, Benthin and Wald (JCGT 2(1), 2013): vertices are moved so that the ray starts at the origin
 // and sheared so that it runs along the axis kz in which its direction is largest; the signs of three 2D edge functions
-// then decide. All that matters is `precise`: a fused multiply-add would give two triangles different signs for
-// the edge they share.
+// then decide. `precise` matters: a fused multiply-add would give two triangles different signs for the edge that they
+// share. renderer/bvh/embree/packed_triangles.cpp is the same test, operation by operation.
 struct ShearedRay {
   vec3 origin;  // kx, ky, kz
   vec3 shear;
@@ -94,7 +94,7 @@ float bvh_difference(float a, float b, float c, float d) {
   return r;
 }
 
-// Barycentric weights of p0, p1, p2 times their sum in xyz, distance times that sum in w; valid if `hit`.
+// Whether the ray's line passes through the triangle; if so, where: distance t (of any sign), weights u of p1, v of p2.
 bool bvh_test(ShearedRay s, vec3 p0, vec3 p1, vec3 p2, out float t, out float u, out float v) {
   precise vec3 a = bvh_permute(p0, s.along) - s.origin;
   precise vec3 b = bvh_permute(p1, s.along) - s.origin;
@@ -138,6 +138,7 @@ vec3 bvh_inverse(vec3 d) {
 // (T. Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013).
 const float k_bvh_slab = 1.0 + 3.6e-7;
 
+// The hit of a ray, as `query` (shaders/shared/trace.h, a constant) defines it; dead rays hit nothing.
 Hit bvh_trace(Ray ray, const uint query) {
   Hit hit;
   hit.t = ray.tmax;

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "bvh/embree/host_tracer.h"
+#include "bvh/embree/reference.h"
 #include "unit/bvh_support.h"
 
 using namespace lucerna;
@@ -97,4 +98,23 @@ TEST_CASE("queues, threads and dead rays") {
   CHECK(same(queued, expected));
   four.trace(Query::closest, rays, queued, queue.data(), 0, false);
   CHECK(same(queued, expected));
+}
+
+TEST_CASE("the bench's yardstick sees the same scene") {
+  Random random(15);
+  const Mesh mesh = soup(random, 2000, 10, 2);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 20000; ++i)
+    rays.push_back(make_ray(random.in_box(12), random.direction(), random.uniform(-1, 30)));
+  const HostTracer host(mesh.view());
+  const EmbreeReference reference(mesh.view());
+  std::vector<Hit> a(rays.size()), b(rays.size());
+  for (const Query query : {Query::closest, Query::any_opaque}) {
+    host.trace(query, rays, a, nullptr, 20000, false);
+    reference.trace(query, rays, b);
+    size_t differ = 0;
+    for (size_t i = 0; i < rays.size(); ++i) differ += a[i].prim != b[i].prim;
+    CHECK(differ <= 2);  // rays within rounding of an edge: some 10^-6 of random ones
+  }
+  CHECK_THROWS(reference.trace(Query::closest_non_opaque, rays, b));
 }

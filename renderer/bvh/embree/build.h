@@ -7,12 +7,13 @@
 namespace lucerna::bvh {
 
 struct BuildOptions {
-  /// Cut long triangles where it pays, so that one may lie in several leaves. Never changes a hit.
+  /// Cut long triangles where it pays, so that one may lie in several leaves. Never changes a hit. Building
+  /// takes four times as long; scenes of many small triangles gain nothing, which is why it is off.
   bool spatial_splits = false;
   /// References that spatial splits may add, as a share of the triangles.
   float split_budget = 0.3f;
-  /// Cost of a triangle test over that of a node visit, for the heuristic. Measured on lavapipe: see
-  /// build.cpp.
+  /// Cost of a triangle test over that of a node visit, for the heuristic. On lavapipe 0.5 to 4 trace alike,
+  /// with 1 a little ahead.
   float intersection_cost = 1.0f;
   int threads = 0;  ///< 0: all cores
   /// Called from the building threads, one at a time, with the share done (0..1). Returning false cancels the

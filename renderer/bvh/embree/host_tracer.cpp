@@ -1,8 +1,5 @@
 #include "bvh/embree/host_tracer.h"
 
-#include <pmmintrin.h>
-#include <xmmintrin.h>
-
 #include <algorithm>
 #include <atomic>
 #include <type_traits>
@@ -10,6 +7,7 @@
 #include "base/error.h"
 #include "bvh/embree/build.h"
 #include "bvh/embree/embree_device.h"
+#include "bvh/embree/flush_denormals.h"
 #include "bvh/embree/packed_triangles.h"
 #include "bvh/embree/workers.h"
 
@@ -85,21 +83,6 @@ void any_leaf(const RTCOccludedFunctionNArguments* a) {
   }
 }
 
-/// Denormals cost hundreds of cycles and mean nothing at the scale of a scene; Embree asks for this.
-class FlushDenormals {
- public:
-  FlushDenormals() : saved_(_mm_getcsr()) {
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-  }
-  ~FlushDenormals() { _mm_setcsr(saved_); }
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
- private:
-  unsigned saved_;
-};
-
 }  // namespace
 
 struct HostTracer::Impl {
@@ -112,7 +95,7 @@ struct HostTracer::Impl {
     explicit operator bool() const { return scene != nullptr; }
   };
   Part all, opaque, non_opaque;
-  bool mixed = false;
+  bool mixed = false;         ///< both kinds of triangles may be there: `opaque` and `non_opaque` are filled
   uint32_t packet_width = 1;  ///< the widest that this processor has instructions for
   mutable Workers workers;
 
