@@ -303,7 +303,7 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
   vec3 h = b.delta ? vec3(0.0, 0.0, 1.0) : ggx_sample_visible(wo, b.alpha, u);
   float cos_oh = dot(wo, h);
   vec3 mirrored = 2.0 * cos_oh * h - wo;
-  bool delta = false;
+  bool delta = false, lost = false;
 #endif
 #if LUCERNA_SPECULAR
   bool specular = at >= 0.0 && at < b.p_specular;
@@ -334,6 +334,9 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
     }
 #endif
     s.wi = reflect_it ? mirrored : passed;
+    // A facet may send light to the wrong side of the surface: lost here, and returned by the complement. It must not be
+    // evaluated as if it had been meant for that side.
+    lost = reflect_it != (s.wi.z > 0.0);
     if (b.delta) {
       delta = true;
       bool straight = !reflect_it && !b.solid;
@@ -362,6 +365,9 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
     bool is_d = lobe.y < p_d;
     s.event = is_d ? k_event_diffuse : k_event_glossy;
     float p = (is_d ? p_d : 1.0 - p_d) * v.pdf;
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+    p = lost ? 0.0 : p;
+#endif
     s.weight = p > 0.0 ? (is_d ? v.diffuse : v.glossy) / p : vec3(0.0);
     s.pdf = v.pdf;
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
