@@ -1,0 +1,264 @@
+// links: base
+// Holds the folders to the layers: what #include lines name against the DEPS of the CMake targets, which in
+// turn are held to the rules that no list of dependencies can state.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Module {
+  std::string folder;          ///< relative to the include root: "scene/io"
+  std::set<std::string> deps;  ///< as written
+  std::set<std::string> sees;  ///< itself and what it reaches through deps
+};
+using Modules = std::map<std::string, Module>;
+using Lines = std::vector<std::string>;
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// The lucerna_module() calls of one CMake file, added to `modules`; complaints about DEPS that are not
+/// declared before (which also rules out cycles). `base_folder` is put in front of what stands behind the
+/// first variable of DIR.
+Lines parse(const std::string& cmake, const std::string& base_folder, Modules& modules) {
+  Lines complaints;
+  const std::string text = std::regex_replace(cmake, std::regex("#[^\n]*"), "");
+  static const std::regex k_call(R"(lucerna_module\(\s*(\w+)\s+DIR\s+\$\{\w+\}/?([\w/]*)([^)]*)\))");
+  for (std::sregex_iterator call(text.begin(), text.end(), k_call), end; call != end; ++call) {
+    const std::string name = (*call)[1];
+    Module module{.folder = base_folder + (*call)[2].str(), .deps = {}, .sees = {name}};
+    std::istringstream words((*call)[3].str());
+    bool in_deps = false;
+    for (std::string word; words >> word;) {
+      if (word == "DEPS" || word == "LIBS") {
+        in_deps = word == "DEPS";
+      } else if (in_deps && !modules.contains(word)) {
+        complaints.push_back(name + ": DEPS names " + word + ", which is not declared before it");
+      } else if (in_deps) {
+        module.deps.insert(word);
+        module.sees.insert(modules[word].sees.begin(), modules[word].sees.end());
+      }
+    }
+    modules[name] = module;
+  }
+  return complaints;
+}
+
+/// The module whose folder is the longest head of `path` ("scene/io/load.h" -> scene_io); "" when there is
+/// none.
+std::string module_of(const Modules& modules, const std::string& path) {
+  std::string best;
+  size_t length = 0;
+  for (const auto& [name, module] : modules)
+    if (path.starts_with(module.folder + "/") && module.folder.size() > length)
+      best = name, length = module.folder.size();
+  return best;
+}
+
+/// "solvers/NAME/..." -> "NAME" where NAME is one technique; "" for what techniques share.
+std::string technique_of(const std::string& path) {
+  static const std::regex k_technique(R"(solvers/(\w+)/.*)");
+  std::smatch match;
+  if (!std::regex_match(path, match, k_technique) || match[1] == "lookup") return "";
+  return match[1];
+}
+
+/// Outside headers that belong to some folders alone, by how their names begin.
+struct Owned {
+  std::regex header;
+  std::set<std::string> modules;
+};
+const std::vector<Owned>& owned() {
+  static const std::vector<Owned> k_owned = {
+      {std::regex("(vulkan/|volk).*|glslang/.*"), {"gpu"}},
+      {std::regex("(GLFW|epoxy|GL|imgui|backends/imgui|X11).*"), {"ui"}},
+      {std::regex("OpenImageIO/.*"), {"scene_io", "film_io"}},
+      {std::regex("tiny_gltf.*"), {"scene_io"}},
+      {std::regex("embree.*"), {"bvh_embree"}},
+      {std::regex("CLI/.*"), {"app"}},
+  };
+  return k_owned;
+}
+
+/// Complaints about the includes of one file. `path` is relative to the include root: "scene/scene.h",
+/// "ui/viewer.cpp", "shaders/shared/ray.h".
+Lines check_includes(const Modules& modules, const std::string& path, const std::string& text) {
+  Lines complaints;
+  const bool shader = path.starts_with("shaders/");
+  const std::string own = shader ? "base" : module_of(modules, path);
+  if (own.empty()) return {path + ": belongs to no module"};
+  const std::set<std::string>& sees = modules.at(own).sees;
+  static const std::regex k_include(R"re((?:^|\n)[ \t]*#[ \t]*include[ \t]*(["<])([^">\n]+)[">])re");
+  for (std::sregex_iterator line(text.begin(), text.end(), k_include), end; line != end; ++line) {
+    const std::string header = (*line)[2];
+    const auto complain = [&](const std::string& why) {
+      complaints.push_back(path + ": includes " + header + ": " + why);
+    };
+    if ((*line)[1] == "<") {
+      for (const Owned& rule : owned())
+        if (std::regex_match(header, rule.header) && !rule.modules.contains(own)) complain("not for " + own);
+      continue;
+    }
+    if (header.find("..") != std::string::npos) complain("a path that climbs");
+    if (header.find('/') == std::string::npos || header.starts_with("shaders/shared/")) continue;
+    const std::string target = module_of(modules, header);
+    if (target.empty()) {
+      complain("in the folder of no module");
+    } else if (!sees.contains(target)) {
+      complain(own + " may not see " + target);
+    }
+    if (own == "ui" && header.starts_with("gpu/") && header != "gpu/device.h") complain("ui sees no Vulkan");
+    const std::string from = technique_of(path), to = technique_of(header);
+    if (!from.empty() && !to.empty() && from != to) complain("solvers do not see each other");
+  }
+  return complaints;
+}
+
+/// Rules between layers, whatever DEPS says: "a: never b".
+Lines check_layers(const Modules& modules) {
+  static const std::vector<std::pair<std::string, Lines>> k_never = {
+      {"scene", {"gpu", "bvh", "upload", "film"}},
+      {"gpu", {"scene", "bvh", "paths", "film"}},
+      {"paths", {"gpu", "scene"}},
+      {"schedule", {"gpu", "scene", "film", "transport"}},
+      {"plan", {"gpu", "transport", "solvers"}},
+      {"transport", {"plan", "solvers", "session"}},
+      {"solvers", {"session", "commands", "scene_io", "film_io", "bvh_embree"}},
+      {"film_io", {"gpu", "scene"}},
+      {"raybench", {"film_io", "scene_io", "ui"}},
+  };
+  Lines complaints;
+  for (const auto& [name, unseen] : k_never)
+    for (const std::string& other : unseen)
+      if (modules.contains(name) && modules.at(name).sees.contains(other))
+        complaints.push_back(name + " may never see " + other);
+  for (const auto& [name, module] : modules)
+    for (const std::string upper : {"ui", "app"})
+      if (name != "ui" && name != "app" && module.sees.contains(upper))
+        complaints.push_back(name + " may never see " + upper);
+  return complaints;
+}
+
+Modules project_modules(Lines& complaints) {
+  const fs::path root = LUCERNA_SOURCE_DIR;
+  Modules modules;
+  const auto add = [&](const Lines& lines) {
+    complaints.insert(complaints.end(), lines.begin(), lines.end());
+  };
+  add(parse(read(root / "renderer" / "CMakeLists.txt"), "", modules));
+  add(parse(read(root / "ui" / "CMakeLists.txt"), "ui", modules));
+  Module app{.folder = "app", .deps = {}, .sees = {"app"}};  // what a person starts sees everything
+  for (const auto& [name, module] : modules) app.sees.insert(name);
+  modules["app"] = app;
+  return modules;
+}
+
+std::string joined(const Lines& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("Every include names only what its folder may see") {
+  Lines complaints;
+  const Modules modules = project_modules(complaints);
+  REQUIRE(modules.size() > 15);  // fewer: the CMake files are no longer understood
+  REQUIRE(modules.contains("ui"));
+  REQUIRE(modules.at("session").sees.contains("base"));
+  const fs::path root = LUCERNA_SOURCE_DIR;
+  const auto scan = [&](const fs::path& folder, const fs::path& include_root) {
+    size_t files = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+      const std::string ending = entry.path().extension().string();
+      if (!entry.is_regular_file() || (ending != ".h" && ending != ".cpp" && ending != ".c")) continue;
+      const std::string path = entry.path().lexically_relative(include_root).generic_string();
+      if (path == "CMakeLists.txt") continue;
+      const Lines lines = check_includes(modules, path, read(entry.path()));
+      complaints.insert(complaints.end(), lines.begin(), lines.end());
+      ++files;
+    }
+    CHECK(files > 0);
+  };
+  scan(root / "renderer", root / "renderer");
+  scan(root / "ui", root);
+  scan(root / "app", root);
+  scan(root / "shaders" / "shared", root);
+  INFO(joined(complaints));
+  CHECK(complaints.empty());
+}
+
+TEST_CASE("The layers keep apart what must not meet") {
+  Lines complaints;
+  const Modules modules = project_modules(complaints);
+  const Lines layers = check_layers(modules);
+  INFO(joined(layers));
+  CHECK(layers.empty());
+  for (const char* name : {"scene", "gpu", "paths", "schedule", "plan", "transport", "solvers", "film_io"}) {
+    INFO(name);
+    CHECK(modules.contains(name));  // a renamed module would silently lose its rule
+  }
+}
+
+TEST_CASE("The checker sees each kind of violation") {
+  Lines none;
+  const Modules modules = project_modules(none);
+  const auto complaints = [&](const std::string& path, const std::string& text) {
+    return joined(check_includes(modules, path, text));
+  };
+  using Catch::Contains;
+  CHECK_THAT(complaints("scene/x.cpp", "#include \"gpu/device.h\"\n"), Contains("scene may not see gpu"));
+  CHECK_THAT(complaints("gpu/x.h", "\n  # include \"scene/scene.h\"\n"), Contains("gpu may not see scene"));
+  CHECK_THAT(complaints("scene/x.h", "#include \"scene/io/load.h\""), Contains("scene may not see scene_io"));
+  CHECK_THAT(complaints("paths/x.h", "#include \"ui/viewer.h\""), Contains("paths may not see ui"));
+  CHECK_THAT(complaints("film/x.h", "#include \"nowhere/x.h\""), Contains("no module"));
+  CHECK_THAT(complaints("film/x.h", "#include \"../scene/scene.h\""), Contains("climbs"));
+  CHECK_THAT(complaints("nowhere/x.h", ""), Contains("belongs to no module"));
+  CHECK_THAT(complaints("ui/x.cpp", "#include <vulkan/vulkan.h>"), Contains("not for ui"));
+  CHECK_THAT(complaints("ui/x.cpp", "#include \"gpu/vulkan.h\""), Contains("ui sees no Vulkan"));
+  CHECK_THAT(complaints("transport/x.cpp", "#include <volk.h>"), Contains("not for transport"));
+  CHECK_THAT(complaints("session/x.cpp", "#include <imgui.h>"), Contains("not for session"));
+  CHECK_THAT(complaints("bvh/x.cpp", "#include <embree3/rtcore.h>"), Contains("not for bvh"));
+  CHECK_THAT(complaints("shaders/shared/x.h", "#include \"scene/scene.h\""), Contains("may not see scene"));
+  CHECK_THAT(complaints("solvers/photon_map/x.cpp", "#include \"solvers/irradiance_cache/y.h\""),
+             Contains("solvers do not see each other"));
+
+  CHECK(
+      complaints("solvers/photon_map/x.cpp", "#include \"solvers/lookup/y.h\"\n#include \"solvers/solver.h\"")
+          .empty());
+  CHECK(complaints("scene/io/x.cpp", "#include \"scene/scene.h\"\n#include <OpenImageIO/imageio.h>").empty());
+  CHECK(
+      complaints("session/x.cpp", "#include \"base/error.h\"\n#include \"x.h\"\n#include <vector>").empty());
+  CHECK(complaints("scene/x.cpp", "// #include \"gpu/device.h\"\n").empty());
+}
+
+TEST_CASE("The checker of layers sees a list of dependencies that breaks a rule") {
+  Modules modules;
+  const std::string cmake = R"(
+# lucerna_module(ghost DIR ${here}/ghost DEPS nothing)
+lucerna_module(base DIR ${here}/base LIBS fmt::fmt)
+lucerna_module(gpu DIR ${here}/gpu DEPS base LIBS dl)
+lucerna_module(scene DIR ${here}/scene
+  DEPS base gpu LIBS a::b)
+)";
+  CHECK(parse(cmake, "", modules).empty());
+  REQUIRE(modules.size() == 3);
+  CHECK(modules.at("scene").folder == "scene");
+  CHECK(modules.at("scene").sees == std::set<std::string>{"base", "gpu", "scene"});
+  CHECK_THAT(joined(check_layers(modules)), Catch::Contains("scene may never see gpu"));
+  CHECK_THAT(joined(parse("lucerna_module(a DIR ${here}/a DEPS later)", "", modules)),
+             Catch::Contains("later"));
+}
