@@ -113,6 +113,7 @@ Instance::Instance(bool validation) {
   load(handle, memory_properties, "vkGetPhysicalDeviceMemoryProperties");
   load(handle, queue_families, "vkGetPhysicalDeviceQueueFamilyProperties");
   load(handle, format_properties, "vkGetPhysicalDeviceFormatProperties");
+  load(handle, image_format_properties, "vkGetPhysicalDeviceImageFormatProperties");
   load(handle, create_device, "vkCreateDevice");
   if (layer) {
     PFN_vkCreateDebugUtilsMessengerEXT create_messenger = nullptr;

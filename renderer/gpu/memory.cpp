@@ -1,6 +1,7 @@
 #include "gpu/memory.h"
 
 #include <algorithm>
+#include <fstream>
 
 #include "gpu/vulkan.h"
 
@@ -9,10 +10,21 @@ namespace lucerna::gpu {
 namespace {
 
 constexpr VkDeviceSize k_block_bytes = 8ull << 20;
-constexpr VkDeviceSize k_small_bytes = 1ull << 20;  ///< below this, a buffer shares a block
+constexpr VkDeviceSize k_worth_asking = 64ull << 20;  ///< from here on, the host is asked what it has left
+constexpr VkDeviceSize k_small_bytes = 1ull << 20;    ///< below this, a buffer shares a block
 
 VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
   return (value + alignment - 1) / alignment * alignment;
+}
+
+/// What the operating system could give now, or "plenty" when it does not say.
+VkDeviceSize host_bytes_available() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string key; file >> key;) {
+    uint64_t kib = 0;
+    if (key == "MemAvailable:" && file >> kib) return kib * 1024;
+  }
+  return ~0ull;
 }
 
 }  // namespace
@@ -83,6 +95,8 @@ VkResult Allocator::allocate_memory(VkDeviceSize bytes, uint32_t type, bool map,
   // A software device over-commits: the operating system would kill the program later instead of refusing
   // now.
   if (bytes > largest_allocation_ || heap_used_[heap] + bytes > memory_.memoryHeaps[heap].size)
+    return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  if (map_device_memory_ && bytes >= k_worth_asking && bytes > host_bytes_available())
     return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, bytes, type};
   VkResult result = vk_.vkAllocateMemory(device_, &info, nullptr, &memory);

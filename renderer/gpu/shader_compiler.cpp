@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <mutex>
 
-#include "base/log.h"
 #include "base/timer.h"
 #include "gpu/kernel.h"
 #include "gpu/shader_cache.h"
@@ -73,33 +72,21 @@ std::string without_version(std::string text) {
   return text;
 }
 
-/// glslang's log as an Error at the first error's place; the others are logged.
+/// glslang's log as an Error. glslang gives up at the first error; what it reports after that is about giving
+/// up.
 [[noreturn]] void throw_compile_error(const std::string& display, const std::string& text) {
-  std::vector<std::pair<std::string, std::string>> errors;  // where, what
-  for (size_t at = 0; at < text.size();) {
-    const size_t end = std::min(text.find('\n', at), text.size());
-    const std::string line = text.substr(at, end - at);
-    at = end + 1;
-    const std::string mark = "ERROR: ";
-    if (line.rfind(mark, 0) != 0) continue;
-    // "ERROR: file:line: message", or "ERROR: message".
-    const std::string rest = line.substr(mark.size());
-    size_t colon = rest.find(": ");
-    const size_t number = colon == std::string::npos ? colon : rest.rfind(':', colon - 1);
-    const bool located = number != std::string::npos && number + 1 < colon &&
-                         rest.find_first_not_of("0123456789", number + 1) == colon;
-    if (located)
-      errors.emplace_back(rest.substr(0, colon), rest.substr(colon + 2));
-    else
-      errors.emplace_back(display, rest);
-  }
-  if (errors.empty()) throw Error(display, "does not compile: " + text);
-  for (size_t i = 1; i < errors.size() && i < 10; ++i) {
-    if (errors[i].second.find("compilation errors") != std::string::npos) continue;
-    log::error("{}: {}", errors[i].first, errors[i].second);
-  }
-  while (!errors[0].second.empty() && errors[0].second.back() == ' ') errors[0].second.pop_back();
-  throw Error(errors[0].first, errors[0].second);
+  // "ERROR: file:line: message", or "ERROR: message".
+  const std::string mark = "ERROR: ";
+  const size_t start = text.find(mark);
+  if (start == std::string::npos) throw Error(display, "does not compile: " + text);
+  std::string line = text.substr(start + mark.size(), text.find('\n', start) - start - mark.size());
+  line.erase(line.find_last_not_of(' ') + 1);
+  const size_t colon = line.find(": ");
+  const size_t number = colon == std::string::npos ? colon : line.rfind(':', colon - 1);
+  const bool located = number != std::string::npos && number + 1 < colon &&
+                       line.find_first_not_of("0123456789", number + 1) == colon;
+  if (!located) throw Error(display, line);
+  throw Error(line.substr(0, colon), line.substr(colon + 2));
 }
 
 std::vector<uint32_t> compile_glsl(const ShaderSource& source, const ShaderFile& file,

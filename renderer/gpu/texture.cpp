@@ -83,11 +83,18 @@ TextureArray::TextureArray(Device& device, const TextureArrayDesc& desc) {
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  VkImageFormatProperties most{};
+  check(h.instance.image_format_properties(h.physical, info.format, info.imageType, info.tiling, info.usage,
+                                           0, &most),
+        "asking about textures");
+  const uint64_t bytes = uint64_t(desc.width) * desc.height * desc.layers * format.bytes;
+  if (bytes > most.maxResourceSize)
+    throw_error(where, "{} exceed the {} that {} gives to one texture array (maxResourceSize)",
+                format_bytes(bytes), format_bytes(most.maxResourceSize), h.info.name);
   check(h.vk.vkCreateImage(h.device, &info, nullptr, &impl->image), "creating a texture");
   VkMemoryRequirements needs{};
   h.vk.vkGetImageMemoryRequirements(h.device, impl->image, &needs);
-  impl->memory = h.allocator->allocate(needs, Memory::device, true, desc.name,
-                                       uint64_t(desc.width) * desc.height * desc.layers * format.bytes);
+  impl->memory = h.allocator->allocate(needs, Memory::device, true, desc.name, bytes);
   check(h.vk.vkBindImageMemory(h.device, impl->image, impl->memory.memory, impl->memory.offset),
         "binding memory");
 

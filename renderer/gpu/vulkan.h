@@ -43,6 +43,7 @@ class Instance {
   PFN_vkGetPhysicalDeviceMemoryProperties memory_properties = nullptr;
   PFN_vkGetPhysicalDeviceQueueFamilyProperties queue_families = nullptr;
   PFN_vkGetPhysicalDeviceFormatProperties format_properties = nullptr;
+  PFN_vkGetPhysicalDeviceImageFormatProperties image_format_properties = nullptr;
   PFN_vkCreateDevice create_device = nullptr;
 
  private:

@@ -1,0 +1,197 @@
+// links: gpu
+#include <fstream>
+#include <thread>
+
+#include "gpu/spirv.h"
+#include "kernels/gpu_support.h"
+
+using namespace lucerna;
+using namespace lucerna::gpu;
+using Catch::Matchers::Contains;
+using test::error_of;
+using test::shader;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void write_text(const fs::path& path, const std::string& text) {
+  fs::create_directories(path.parent_path());
+  std::ofstream(path) << text;
+}
+
+/// Points the disk cache at a folder of its own while it lives.
+class OwnCache {
+ public:
+  OwnCache() { setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1); }
+  ~OwnCache() { unsetenv("XDG_CACHE_HOME"); }
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.path()))
+      if (entry.is_regular_file()) found.push_back(entry.path());
+    return found;
+  }
+
+ private:
+  test::TemporaryFolder folder_;
+};
+
+std::vector<std::string> names(const std::vector<uint32_t>& words) {
+  std::vector<std::string> list;
+  for (const auto& resource : spirv::reflect(words).resources) list.push_back(resource.name);
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+}  // namespace
+
+TEST_CASE("a kernel declares only what it uses, whatever its includes declare") {
+  const OwnCache cache;
+  ShaderCompiler compiler;
+  const auto words = compiler.compile(shader("gpu_scale.comp"), {{"OFFSET", "1.5"}});
+  CHECK(names(words) == std::vector<std::string>{"Source", "Target"});
+  const auto module = spirv::reflect(words);
+  CHECK(module.push_constant_bytes == 8);
+  CHECK(module.workgroup[0] == 64);
+  CHECK(module.resources[0].binding == 0);
+  CHECK(module.resources[1].binding == 1);
+}
+
+TEST_CASE("an error names the file and the line") {
+  const OwnCache cache;
+  ShaderCompiler compiler;
+  CHECK_THAT(error_of([&] {
+               compiler.compile(shader("gpu_version.comp"), {{"SPOIL", ""}});
+             }),
+             Contains("gpu_version.comp:8: ") && Contains("'mistake' : undeclared identifier"));
+  CHECK_THAT(error_of([&] {
+               compiler.compile(shader("gpu_scale.comp"), {{"OFFSET", "0"}, {"SPOIL_THE_INCLUDE", "1"}});
+             }),
+             Contains("lib/gpu_offset.glsl:6: ") && Contains("no_such_name"));
+  CHECK_THAT(error_of([&] { compiler.compile("no/such.comp"); }),
+             Contains("no/such.comp") && Contains("no such shader"));
+}
+
+TEST_CASE("files below the root are called shaders/...; includes are found from the root and from the file") {
+  const OwnCache cache;
+  const test::TemporaryFolder root;
+  write_text(root.path() / "a/kernel.comp",
+             "#include \"b/common.glsl\"\n#include \"beside.glsl\"\n#include \"shaders/b/common.glsl\"\n"
+             "layout(local_size_x = 1) in;\nbuffer Target { float target[]; };\n"
+             "void main() { target[0] = common_value() + beside(); }\n");
+  write_text(root.path() / "a/beside.glsl", "float beside() {\n  return 1.0 SPOIL;\n}\n");
+  // No newline at the end, a guard, and an include of the file itself.
+  write_text(root.path() / "b/common.glsl",
+             "#ifndef COMMON\n#define COMMON\n#include \"b/common.glsl\"\nfloat common_value() { return 2.0; "
+             "}\n#endif");
+  ShaderCompiler compiler(root.path());
+  CHECK_NOTHROW(compiler.compile("a/kernel.comp", {{"SPOIL", ""}}));
+  CHECK_NOTHROW(compiler.compile("shaders/a/kernel.comp", {{"SPOIL", ""}}));
+  CHECK_THAT(error_of([&] {
+               compiler.compile("a/kernel.comp", {{"SPOIL", "* wrong"}});
+             }),
+             Contains("shaders/a/beside.glsl:2: ") && Contains("wrong"));
+
+  write_text(root.path() / "lost.comp", "void main() {}\n\n#include \"nowhere.glsl\"\n");
+  CHECK_THAT(error_of([&] { compiler.compile("lost.comp"); }),
+             Contains("shaders/lost.comp:3: ") && Contains("nowhere.glsl"));
+}
+
+TEST_CASE("dependencies are the files to watch") {
+  const OwnCache cache;
+  ShaderCompiler compiler;
+  const Defines defines{{"OFFSET", "1"}};
+  compiler.compile(shader("gpu_scale.comp"), defines);
+  std::vector<std::string> files;
+  for (const auto& path : compiler.dependencies(shader("gpu_scale.comp"), defines)) {
+    CHECK(fs::exists(path));
+    files.push_back(path.filename().string());
+  }
+  std::sort(files.begin(), files.end());
+  CHECK(files == std::vector<std::string>{"gpu_offset.glsl", "gpu_scale.comp", "invocation.glsl"});
+  CHECK(compiler.dependencies("never/compiled.comp").empty());
+}
+
+TEST_CASE("a changed include is seen; a file that does not compile is still watched") {
+  const OwnCache cache;
+  const test::TemporaryFolder root;
+  const std::string body =
+      "#include \"value.glsl\"\nbuffer T { float t[]; };\nvoid main() { t[0] = VALUE; }\n";
+  write_text(root.path() / "k.comp", body);
+  write_text(root.path() / "value.glsl", "#define VALUE 1.0\n");
+  ShaderCompiler compiler(root.path());
+  const auto first = compiler.compile("k.comp");
+  write_text(root.path() / "value.glsl", "#define VALUE 2.0\n");
+  CHECK(compiler.compile("k.comp") != first);
+  write_text(root.path() / "value.glsl", "#define VALUE oops\n");
+  CHECK_THROWS_AS(compiler.compile("k.comp"), Error);
+  CHECK(compiler.dependencies("k.comp").size() == 2);
+  write_text(root.path() / "value.glsl", "#define VALUE 1.0\n");
+  CHECK(compiler.compile("k.comp") == first);
+  CHECK(compiler.cache_hits() == 1);
+}
+
+TEST_CASE("the disk cache saves the work, tells defines apart and recovers from damage") {
+  const OwnCache cache;
+  const std::string file = shader("gpu_scale.comp");
+  ShaderCompiler first;
+  const auto words = first.compile(file, {{"OFFSET", "1"}});
+  CHECK(first.cache_hits() == 0);
+  CHECK(first.seconds_spent() > 0);
+  REQUIRE(cache.files().size() == 1);
+  const fs::path stored = cache.files().front();
+
+  ShaderCompiler second;
+  CHECK(second.compile(file, {{"OFFSET", "1"}}) == words);
+  CHECK(second.cache_hits() == 1);
+  CHECK(second.seconds_spent() == 0);
+  CHECK(second.compile(file, {{"OFFSET", "2"}}) != words);
+  CHECK(second.cache_hits() == 1);
+
+  const auto size = fs::file_size(stored);
+  const auto spoil = [&](const std::string& how) {
+    if (how == "empty") fs::resize_file(stored, 0);
+    if (how == "half") fs::resize_file(stored, size / 2);
+    if (how == "one byte short") fs::resize_file(stored, size - 1);
+    if (how == "longer") std::ofstream(stored, std::ios::app) << "more";
+    if (how == "altered") {
+      std::fstream f(stored, std::ios::in | std::ios::out | std::ios::binary);
+      f.seekp(static_cast<std::streamoff>(size / 2));
+      f.put('\x5a').put('\x5a').put('\x5a').put('\x5a');
+    }
+  };
+  for (const char* how : {"empty", "half", "one byte short", "longer", "altered"}) {
+    INFO(how);
+    spoil(how);
+    ShaderCompiler again;
+    CHECK(again.compile(file, {{"OFFSET", "1"}}) == words);
+    CHECK(again.cache_hits() == 0);
+    CHECK(fs::file_size(stored) == size);
+  }
+  ShaderCompiler without;
+  without.set_cache(false);
+  CHECK(without.compile(file, {{"OFFSET", "1"}}) == words);
+  CHECK(without.cache_hits() == 0);
+  for (const auto& path : cache.files()) CHECK(path.extension() != ".new");
+}
+
+TEST_CASE("a cache folder that cannot be written is no reason to fail") {
+  setenv("XDG_CACHE_HOME", "/dev/null/nowhere", 1);
+  ShaderCompiler compiler;
+  CHECK_NOTHROW(compiler.compile(shader("gpu_scale.comp"), {{"OFFSET", "1"}}));
+  unsetenv("XDG_CACHE_HOME");
+}
+
+TEST_CASE("several threads compile at once") {
+  const OwnCache cache;
+  ShaderCompiler compiler;
+  std::vector<std::thread> threads;
+  std::vector<std::vector<uint32_t>> results(6);
+  for (size_t i = 0; i < results.size(); ++i)
+    threads.emplace_back([&, i] {
+      results[i] = compiler.compile(shader("gpu_scale.comp"), {{"OFFSET", i % 2 ? "1" : "2"}});
+    });
+  for (auto& thread : threads) thread.join();
+  for (size_t i = 2; i < results.size(); ++i) CHECK(results[i] == results[i - 2]);
+  CHECK(results[0] != results[1]);
+}

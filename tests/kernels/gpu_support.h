@@ -1,0 +1,53 @@
+#pragma once
+// Shared by the tests of gpu/: the device that they run on, and where their shaders are.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+
+#include "gpu/stream.h"
+
+namespace lucerna::test {
+
+/// A validated device, whose destructor requires that validation had nothing to say.
+struct SilentDevice {
+  SilentDevice() : device({"", true}) { REQUIRE(device.validation_active()); }
+  ~SilentDevice() { CHECK(device.validation_messages() == 0); }
+  gpu::Device device;
+};
+
+inline std::string shader(const std::string& file) {
+  return std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/" + file;
+}
+
+/// A folder of this test's own, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "lucerna-XXXXXX").string();
+    if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make a temporary folder");
+    path_ = pattern;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The message of the Error that `call` throws, or "no error".
+template <class Call>
+std::string error_of(Call&& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace lucerna::test

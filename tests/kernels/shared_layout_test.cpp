@@ -1,0 +1,109 @@
+// links: gpu
+// Structs that C++ and the shaders share: every member must have the same name and offset on both sides, and
+// an array of them the same stride. A new struct in shaders/shared/ is one line in `structs()`; forgetting it
+// fails the second test.
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "gpu/spirv.h"
+#include "kernels/gpu_support.h"
+#include "shaders/shared/film.h"
+#include "shaders/shared/ray.h"
+#include "shaders/shared/scene.h"
+#include "shaders/shared/trace.h"
+#include "shaders/shared/transport.h"
+
+using namespace lucerna;
+using namespace lucerna::gpu;
+
+namespace {
+
+struct SharedStruct {
+  std::string header, name;
+  size_t bytes;
+  std::vector<spirv::Member> members;
+};
+
+// SHARED(header, type, member, member, ...): repeats MEMBER for each member by rescanning (up to 64).
+#define AGAIN4(...) AGAIN3(AGAIN3(AGAIN3(AGAIN3(__VA_ARGS__))))
+#define AGAIN3(...) AGAIN2(AGAIN2(AGAIN2(AGAIN2(__VA_ARGS__))))
+#define AGAIN2(...) AGAIN1(AGAIN1(AGAIN1(AGAIN1(__VA_ARGS__))))
+#define AGAIN1(...) __VA_ARGS__
+#define PARENTHESES ()
+#define MEMBER(type, member) {#member, static_cast<uint32_t>(offsetof(shared::type, member))},
+#define MEMBERS(type, member, ...) \
+  MEMBER(type, member) __VA_OPT__(MEMBERS_LATER PARENTHESES(type, __VA_ARGS__))
+#define MEMBERS_LATER() MEMBERS
+#define SHARED(header, type, ...)                                               \
+  {                                                                             \
+    header, #type, sizeof(shared::type), { AGAIN4(MEMBERS(type, __VA_ARGS__)) } \
+  }
+
+std::vector<SharedStruct> structs() {
+  return {
+      SHARED("film.h", FilmHalf, sum, compensation),
+      SHARED("film.h", FilmPush, width, height, first_tile, pixel_count, first_sample, sample_count),
+      SHARED("film.h", TonePush, width, height, layer, show, curve, exposure, scale, coarse_width,
+             coarse_height, use_coarse_film),
+      SHARED("ray.h", Ray, origin, tmax, direction, slot),
+      SHARED("ray.h", Hit, t, prim, u, v),
+      SHARED("scene.h", Frame, camera_origin, width, camera_right, height, camera_up, orthographic,
+             camera_forward, seed, environment_radiance, light_count, environment_width, environment_height,
+             environment_rotation, environment_light_pmf, max_depth, roulette_depth, automaton_states,
+             scene_radius, automaton),
+      SHARED("trace.h", TracePush, count, use_queue),
+      SHARED("transport.h", PathState, throughput, pdf, pixel, sample_index, bits, medium, travelled,
+             eta_scale, pad0, pad1),
+      SHARED("transport.h", ShadowState, diffuse, components, glossy, medium),
+      SHARED("transport.h", TransportPush, count, use_queue, first_pixel, pixel_count, first_sample,
+             sample_count, stride, pad),
+  };
+}
+
+std::filesystem::path folder() { return std::filesystem::path(LUCERNA_SOURCE_DIR) / "shaders" / "shared"; }
+
+/// A kernel that copies one element of an array of the struct.
+std::vector<uint32_t> compile(const SharedStruct& s, const std::filesystem::path& where) {
+  const auto file = where / (s.name + ".comp");
+  std::ofstream(file) << "#include \"shaders/shared/" << s.header << "\"\n"
+                      << "layout(local_size_x = 1) in;\n"
+                      << "buffer Items { " << s.name << " items[]; };\n"
+                      << "void main() { items[1] = items[0]; }\n";
+  ShaderCompiler compiler;
+  compiler.set_cache(false);
+  return compiler.compile(file.string());
+}
+
+}  // namespace
+
+TEST_CASE("shared structs are laid out alike in C++ and GLSL") {
+  const test::TemporaryFolder temporary;
+  for (const SharedStruct& s : structs()) {
+    INFO(s.header << ": " << s.name);
+    const auto words = compile(s, temporary.path());
+    CHECK(spirv::struct_stride(words, s.name) == s.bytes);
+    const auto members = spirv::struct_members(words, s.name);
+    REQUIRE(members.size() == s.members.size());
+    for (size_t i = 0; i < members.size(); ++i) {
+      CHECK(members[i].name == s.members[i].name);
+      CHECK(members[i].offset == s.members[i].offset);
+    }
+  }
+}
+
+TEST_CASE("every struct in shaders/shared is in the list above") {
+  std::set<std::string> listed;
+  for (const SharedStruct& s : structs()) listed.insert(s.header + " " + s.name);
+  for (const auto& entry : std::filesystem::directory_iterator(folder())) {
+    std::ifstream file(entry.path());
+    const std::string keyword = "struct ";
+    for (std::string line; std::getline(file, line);) {
+      if (line.rfind(keyword, 0) != 0) continue;
+      const size_t end = line.find_first_of(" {;", keyword.size());
+      const std::string name = line.substr(keyword.size(), end - keyword.size());
+      INFO("add SHARED(\"" << entry.path().filename().string() << "\", " << name << ", ...) to structs()");
+      CHECK(listed.count(entry.path().filename().string() + " " + name) == 1);
+    }
+  }
+}
