@@ -28,22 +28,26 @@ void figure(const char* name, const std::string& value, const std::string& help,
 }
 
 void figures(const session::Snapshot& s, float width) {
-  const std::string device_help = s.device.empty() ? "" : s.device;
-  const int columns = width > px(560) ? 6 : 3;
+  // The device's name takes two of seven columns, or two of four.
+  const bool wide = width > px(560);
+  const int columns = wide ? 7 : 4;
   const float w = std::floor(width / static_cast<float>(columns));
   const ImVec2 at = ImGui::GetCursorScreenPos();
   int n = 0;
-  const auto put = [&](const char* name, const std::string& value, const std::string& help) {
+  const auto put = [&](const char* name, const std::string& value, const std::string& help, int span = 1) {
     ImGui::SetCursorScreenPos(
         {at.x + static_cast<float>(n % columns) * w, at.y + static_cast<float>(n / columns) * px(40)});
-    figure(name, value, help, w);
-    ++n;
+    figure(name, value, help, w * static_cast<float>(span));
+    n += span;
   };
-  put("Device", s.device.empty() ? "\xE2\x80\x93" : s.device, device_help);
+  put("Device", s.device.empty() ? "\xE2\x80\x93" : s.device, s.device, 2);
   put("Tracer", s.tracer.empty() ? "\xE2\x80\x93" : s.tracer, "Who traces the rays.");
-  put("Rays", fmt::format("{} Mray/s", padded(fmt::format("{:.2f}", s.mrays_per_second), 5)),
-      fmt::format("Rate of this picture; {} rays since it started.",
-                  count_text(static_cast<double>(s.rays))));
+  put("Rays", fmt::format("{:.2f} Mray/s", s.mrays_per_second),
+      fmt::format(
+          "Rate of this picture; {} rays since it started.{}", count_text(static_cast<double>(s.rays)),
+          s.dropped == 0
+              ? ""
+              : fmt::format(" {} contributions were refused because they were not finite.", s.dropped)));
   put("Size", fmt::format("{} \xC3\x97 {}", s.width, s.height), "Pixels of the picture.");
   put("Device memory", megabytes_text(s.device_mb), "Memory taken on the device.");
   put("Host memory", megabytes_text(s.host_mb), "Memory of this program.");
@@ -62,14 +66,15 @@ void stage_rows(const std::vector<session::StageStatus>& stages, float width) {
   gap(2);
   // As many columns as fit; rows are read downwards.
   const int columns = std::max(1, static_cast<int>(width / px(270)));
-  const float w = std::floor(width / static_cast<float>(columns));
+  const float between = px(32);
+  const float w = std::floor((width + between) / static_cast<float>(columns));
   const size_t rows = (stages.size() + static_cast<size_t>(columns) - 1) / static_cast<size_t>(columns);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList* list = ImGui::GetWindowDrawList();
   for (size_t i = 0; i < stages.size(); ++i) {
     const auto& stage = stages[i];
     const ImVec2 lo(at.x + static_cast<float>(i / rows) * w, at.y + static_cast<float>(i % rows) * px(20));
-    const float right = lo.x + w - (columns > 1 ? px(20) : 0);
+    const float right = lo.x + w - between;
     list->AddRectFilled({lo.x, lo.y + px(6)}, {lo.x + px(8), lo.y + px(14)}, stage_colour(i, stage.host),
                         px(2));
     const float numbers = right - px(116);

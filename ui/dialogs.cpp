@@ -72,6 +72,8 @@ void file_dialog(Ui& ui) {
   ImGui::SetNextWindowSize({width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(16), px(14)});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(8)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(3));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
   if (ImGui::BeginPopupModal(
           title, nullptr,
           ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
@@ -149,7 +151,7 @@ void file_dialog(Ui& ui) {
     if (button("##cancel", "Cancel", false, w)) done = true;
     ImGui::SameLine(0, px(8));
     if (button("##accept", open ? "Open" : "Save", true, w)) accept = true;
-    if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE)) done = true;
+    if (ui.pressed(GLFW_KEY_ESCAPE)) done = true;
     if (accept && !dialog.path.empty()) {
       const std::string file = expanded(dialog.path);
       if (is_folder(file)) {
@@ -170,7 +172,7 @@ void file_dialog(Ui& ui) {
   } else {
     dialog = {};
   }
-  ImGui::PopStyleVar(2);
+  ImGui::PopStyleVar(4);
 }
 
 void key_page(Ui& ui) {
@@ -209,9 +211,9 @@ void key_page(Ui& ui) {
         continue;
       }
       const ImVec2 at = ImGui::GetCursorScreenPos();
-      ImGui::Dummy({px(540), px(20)});
+      ImGui::Dummy({px(620), px(20)});
       draw_text(ImGui::GetWindowDrawList(), at, {at.x + px(212), at.y + px(20)}, keys, colour::text);
-      draw_text(ImGui::GetWindowDrawList(), {at.x + px(220), at.y}, {at.x + px(540), at.y + px(20)}, what,
+      draw_text(ImGui::GetWindowDrawList(), {at.x + px(220), at.y}, {at.x + px(620), at.y + px(20)}, what,
                 colour::text_dim);
     }
     ImGui::PopItemWidth();
@@ -261,34 +263,37 @@ void draw_dialogs(Ui& ui) {
   key_page(ui);
 }
 
+bool Ui::pressed(int key, int mods) const {
+  const int heeded = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+  return std::any_of(keys.begin(), keys.end(),
+                     [&](const auto& k) { return k.first == key && (k.second & heeded) == mods; });
+}
+
 void handle_keys(Ui& ui) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
-  if (pressed(GLFW_KEY_F12)) ui.screenshot = true;
-  if (pressed(GLFW_KEY_F5)) ui.session.reload_shaders();
+  const bool popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+  if (ui.pressed(GLFW_KEY_F12)) ui.screenshot = true;
+  if (ui.pressed(GLFW_KEY_F5)) ui.session.reload_shaders();
   if (ui.dialog.purpose != Dialog::Purpose::none) return;
-  if (io.KeyCtrl) {
-    if (pressed(GLFW_KEY_O)) ui.start_dialog(Dialog::Purpose::open);
-    if (pressed(GLFW_KEY_S) && ui.snapshot && !ui.snapshot->rgba.empty())
-      ui.start_dialog(Dialog::Purpose::save);
-    if (pressed(GLFW_KEY_Q)) ui.quit = true;
-    return;
-  }
-  if (io.WantTextInput) return;
-  if (pressed(GLFW_KEY_F1)) ui.help = true;
-  if (pressed(GLFW_KEY_TAB)) ui.layout.panels = !ui.layout.panels, ui.wake(3);
-  if (pressed(GLFW_KEY_ESCAPE)) {
+  if (ui.pressed(GLFW_KEY_O, GLFW_MOD_CONTROL)) ui.start_dialog(Dialog::Purpose::open);
+  if (ui.pressed(GLFW_KEY_S, GLFW_MOD_CONTROL) && ui.snapshot && !ui.snapshot->rgba.empty())
+    ui.start_dialog(Dialog::Purpose::save);
+  if (ui.pressed(GLFW_KEY_Q, GLFW_MOD_CONTROL)) ui.quit = true;
+  if (popup && ui.pressed(GLFW_KEY_ESCAPE)) ImGui::ClosePopupToLevel(0, true);
+  if (ImGui::GetIO().WantTextInput || popup) return;
+  if (ui.pressed(GLFW_KEY_F1)) ui.help = true;
+  if (ui.pressed(GLFW_KEY_TAB)) ui.layout.panels = !ui.layout.panels, ui.wake(3);
+  if (ui.pressed(GLFW_KEY_ESCAPE)) {
     if (ui.loading())
       ui.session.cancel();
     else if (!ui.errors.empty())
       ui.errors.pop_back();
   }
   if (!ui.snapshot) return;
-  if (pressed(GLFW_KEY_F)) ui.frame_selection();
-  if (pressed(GLFW_KEY_R)) ui.session.restart();
-  if (pressed(GLFW_KEY_SPACE)) ui.session.set_paused(!ui.snapshot->paused);
+  if (ui.pressed(GLFW_KEY_F)) ui.frame_selection();
+  if (ui.pressed(GLFW_KEY_R)) ui.session.restart();
+  if (ui.pressed(GLFW_KEY_SPACE)) ui.session.set_paused(!ui.snapshot->paused);
   for (int n = 0; n < 9; ++n)
-    if (pressed(GLFW_KEY_1 + n)) ui.take_camera(n);
+    if (ui.pressed(GLFW_KEY_1 + n)) ui.take_camera(n);
 }
 
 void draw_splitters(Ui& ui, const Areas& areas) {
@@ -304,19 +309,24 @@ void draw_splitters(Ui& ui, const Areas& areas) {
                      ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoNav);
     ImGui::PopStyleVar(2);
-    splitter("##strip", lo, hi, along_x, direction, value);
+    const bool twice = splitter("##strip", lo, hi, along_x, direction, value);
+    tooltip("Drag to resize; double-click to fold or unfold.");
     ImGui::End();
+    return twice;
   };
   const float reach = px(3);
-  const Layout& l = ui.layout;
+  Layout& l = ui.layout;
   const float left = areas.left.hi.x, right = areas.right.lo.x, bottom = areas.timings.lo.y;
   float still = 0;
-  strip("##split_left", {left - reach, areas.left.lo.y}, {left + reach, bottom - reach}, true, 1,
-        l.left_open ? ui.layout.left : still);
-  strip("##split_right", {right - reach, areas.right.lo.y}, {right + reach, bottom - reach}, true, -1,
-        l.right_open ? ui.layout.right : still);
-  strip("##split_bottom", {0, bottom - reach}, {areas.log.hi.x, bottom + reach}, false, -1,
-        l.bottom_open ? ui.layout.bottom : still);
+  if (strip("##split_left", {left - reach, areas.left.lo.y}, {left + reach, bottom - reach}, true, 1,
+            l.left_open ? l.left : still))
+    l.left_open = !l.left_open;
+  if (strip("##split_right", {right - reach, areas.right.lo.y}, {right + reach, bottom - reach}, true, -1,
+            l.right_open ? l.right : still))
+    l.right_open = !l.right_open;
+  if (strip("##split_bottom", {0, bottom - reach}, {areas.log.hi.x, bottom + reach}, false, -1,
+            l.bottom_open ? l.bottom : still))
+    l.bottom_open = !l.bottom_open;
   float log_width = ui.layout.log_share * areas.log.hi.x / theme().scale;
   strip("##split_log", {areas.log.lo.x - reach, bottom + reach}, {areas.log.lo.x + reach, areas.log.hi.y},
         true, -1, log_width);

@@ -167,8 +167,10 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
                  .decimals = whole ? 0 : 2,
                  .unit = option->unit};
       how.log = option->lo > 0 && option->hi / option->lo > 100;
+      if (option->unit == key) how.unit.clear();  // "Samples 256" says it once
       if (whole) how.step = 1;
-      if (option->hi > 4e9) how.hi = 65535, how.bar = false;  // seeds: a range that a hand can hit
+      if (option->hi > 4e9)
+        how.hi = 65535, how.bar = false, how.travel = 0.01f;  // seeds: a range that a hand can hit
       if (slider("##number", name, value, how))
         ui.settings.set(key, whole ? fmt::format("{:.0f}", std::clamp<double>(value, option->lo, option->hi))
                                    : fmt::format("{:.6g}", value));
@@ -184,6 +186,12 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
 }
 
 void draw_light_panel(Ui& ui, const Area& area) {
+  if (!ui.layout.left_open) {
+    begin_panel("##light_folded", area, colour::panel, false);
+    if (folded_strip("Light", area.lo, area.hi, true)) ui.layout.left_open = true;
+    ImGui::End();
+    return;
+  }
   begin_panel("##light", area, colour::panel, true);
   std::string note;
   if (ui.solo >= 0) note = fmt::format("solo {}", session::k_component_names[static_cast<size_t>(ui.solo)]);

@@ -1,30 +1,55 @@
 // The bar on top: menus, the scene's name, the device and the state of the picture.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include "state.h"
 #include "widgets.h"
 
 namespace lucerna::ui {
 namespace {
 
-/// One entry of a menu, with its keys and the truth about it.
+/// One entry of a menu, with its keys and the truth about it; a tick at the left when it is on.
 bool entry(const char* name, const char* keys, const char* help, bool on = false, bool enabled = true) {
-  const bool pressed = ImGui::MenuItem(name, keys, on, enabled);
+  const float width = std::max(px(232), ImGui::GetContentRegionAvail().x), height = px(26);
+  const ImVec2 lo = ImGui::GetCursorScreenPos(), hi(lo.x + width, lo.y + height);
+  ImGui::BeginDisabled(!enabled);
+  ImGui::PushID(name);
+  const bool pressed = ImGui::Selectable("##entry", false, 0, {width, height});
+  ImGui::PopID();
+  ImGui::EndDisabled();
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  if (on) draw_sign(list, {lo.x + px(13), 0.5f * (lo.y + hi.y)}, px(10), Sign::tick, true, colour::accent);
+  draw_text(list, {lo.x + px(26), lo.y}, hi, name, enabled ? colour::text : colour::text_faint);
+  if (keys) draw_text(list, lo, {hi.x - px(10), hi.y}, keys, colour::text_faint, Align::right);
   tooltip(help);
   return pressed;
 }
 
+/// A line between groups.
+void divide() {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = std::max(px(232), ImGui::GetContentRegionAvail().x);
+  ImGui::Dummy({width, px(9)});
+  ImGui::GetWindowDrawList()->AddLine({at.x, at.y + px(4) + 0.5f}, {at.x + width, at.y + px(4) + 0.5f},
+                                      colour::grey(58));
+}
+
 bool begin_menu(const char* name) {
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(8)});
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(16), px(8)});
-  if (ImGui::BeginMenu(name)) return true;
-  ImGui::PopStyleVar(2);
-  return false;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(4), px(4)});
+  const bool open = ImGui::BeginMenu(name);
+  if (open)
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
+  else
+    ImGui::PopStyleVar();
+  return open;
 }
 
 void end_menu() {
+  ImGui::PopStyleVar();
   ImGui::EndMenu();
-  ImGui::PopStyleVar(2);
+  ImGui::PopStyleVar();
 }
 
 void file_menu(Ui& ui) {
@@ -32,23 +57,22 @@ void file_menu(Ui& ui) {
   if (entry("Open\xE2\x80\xA6", "Ctrl+O",
             "Opens a glTF scene (.gltf or .glb). A file dropped on the window opens too."))
     ui.start_dialog(Dialog::Purpose::open);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(8)});
-  if (ImGui::BeginMenu("Open recent", !ui.recent.empty())) {
-    const std::vector<std::string> files(ui.recent.begin(), ui.recent.end());
-    for (const std::string& file : files)
-      if (ImGui::MenuItem(elided(file, px(420), nullptr, true).c_str())) ui.open_scene(file);
-    ImGui::EndMenu();
+  const std::vector<std::string> files(ui.recent.begin(), ui.recent.end());
+  if (!files.empty()) divide();
+  for (size_t i = 0; i < std::min<size_t>(files.size(), 5); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    const std::string name = std::filesystem::path(files[i]).filename().string();
+    if (entry(elided(name, px(240)).c_str(), nullptr, files[i].c_str())) ui.open_scene(files[i]);
+    ImGui::PopID();
   }
-  ImGui::PopStyleVar();
-  ImGui::Separator();
+  divide();
   const bool picture = ui.snapshot && !ui.snapshot->rgba.empty();
   if (entry("Save picture\xE2\x80\xA6", "Ctrl+S",
             "Writes the picture as it is: all layers as EXR, or what is shown as PNG.", false, picture))
     ui.start_dialog(Dialog::Purpose::save);
-  if (entry("Screenshot of the window", "F12",
-            "Writes the window, panels and all, as a PNG in the working folder."))
+  if (entry("Screenshot", "F12", "Writes the window, panels and all, as a PNG in the working folder."))
     ui.screenshot = true;
-  ImGui::Separator();
+  divide();
   if (entry("Quit", "Ctrl+Q", "Closes the window; a render in progress is given up.")) ui.quit = true;
   end_menu();
 }
@@ -63,12 +87,12 @@ void view_menu(Ui& ui) {
     ui.layout.right_open = !ui.layout.right_open;
   if (entry("Timings and log", nullptr, "The strip at the bottom.", ui.layout.bottom_open))
     ui.layout.bottom_open = !ui.layout.bottom_open;
-  ImGui::Separator();
+  divide();
   if (entry("Frame selection", "F",
             "Moves the camera so that the selection, or else the whole scene, fills the picture.", false,
             ui.view.has_value()))
     ui.frame_selection();
-  ImGui::Separator();
+  divide();
   for (const auto& [divisor, name] :
        {std::pair{1, "Full resolution"}, {2, "Half resolution"}, {4, "Quarter resolution"}})
     if (entry(name, nullptr, "Pixels of the picture for each pixel of the window; fewer converge sooner.",
@@ -88,7 +112,7 @@ void render_menu(Ui& ui) {
     ui.session.restart();
   if (entry("Reload shaders", "F5", "Compiles the shaders again; when that fails the old ones stay."))
     ui.session.reload_shaders();
-  ImGui::Separator();
+  divide();
   if (entry("Give up loading", "Esc", "Gives up the load in progress; the scene shown stays.", false,
             ui.loading()))
     ui.session.cancel();
@@ -126,10 +150,12 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   }
   ImGui::PopStyleVar(2);
 
+  // The rest of the bar is drawn over the whole of it; after its menus ImGui clips to what lies below them.
+  ImGui::PushClipRect(area.lo, area.hi, false);
   const session::Snapshot* s = ui.snapshot.get();
-  const float left = area.lo.x + px(232);
+  const float left = area.lo.x + px(288);
   float right = area.hi.x - px(16);
-  if (s && s->max_samples > 0) {
+  if (s && ui.scene && s->max_samples > 0) {
     const std::string state = state_text(*s);
     // The numbers stand still: the field is as wide as its longest text.
     const float wide = text_width(state_text([&] {
@@ -157,11 +183,12 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   }
   // How far the picture is, as a hairline.
   list->AddRectFilled({area.lo.x, area.hi.y - 1}, area.hi, colour::hairline);
-  if (s && s->max_samples > 0 && !s->finished) {
+  if (s && ui.scene && s->max_samples > 0 && !s->finished) {
     const float done = static_cast<float>(s->samples) / static_cast<float>(s->max_samples);
     list->AddRectFilled({area.lo.x, area.hi.y - px(2)}, {area.lo.x + done * area.width(), area.hi.y},
                         s->paused ? colour::text_dim : colour::accent);
   }
+  ImGui::PopClipRect();
   ImGui::End();
 }
 

@@ -95,8 +95,8 @@ void cameras(Ui& ui) {
       "faster.");
   const vec3 eye = eye_of(view.camera);
   value_row("Eye",
-            fmt::format("{} {} {} m", padded(fmt::format("{:.2f}", eye.x), 6),
-                        padded(fmt::format("{:.2f}", eye.y), 6), padded(fmt::format("{:.2f}", eye.z), 6)),
+            fmt::format("{} {} {} m", padded(real_text(eye.x, 2), 6), padded(real_text(eye.y, 2), 6),
+                        padded(real_text(eye.z, 2), 6)),
             "Position of the camera: x, y (up), z in metres.");
 }
 
@@ -132,7 +132,7 @@ void light_rows(Ui& ui) {
     const bool sun = light.kind == scene::LightKind::directional;
     Slider how{.lo = 0, .hi = 1000, .decimals = 2, .unit = sun ? "W/m\xC2\xB2" : "W/sr", .bar = false};
     // Drags move by a share of the value; a light turned down to nothing starts from a thousandth.
-    how.lo = 1e-3f, how.hi = 1e5f, how.log = true;
+    how.lo = 1e-3f, how.hi = 1e5f, how.log = true, how.travel = 0.25f;
     ImGui::BeginDisabled(!light.enabled);
     float shown = std::max(strength, how.lo);
     if (slider("##strength", sun ? "Irradiance" : "Intensity", shown, how)) {
@@ -160,11 +160,18 @@ void environment(Ui& ui) {
             : dark ? "none"
                    : "even radiance",
             image ? "A latitude-longitude image around the scene." : "Radiance from every direction.");
+  gap(4);
   ImGui::BeginDisabled(dark);
   bool changed = false;
   float shown = std::max(scale, 1e-3f);
   if (slider("##scale", "Strength", shown,
-             {.lo = 1e-3f, .hi = 1000, .log = true, .decimals = 3, .unit = "\xC3\x97", .bar = false}))
+             {.lo = 1e-3f,
+              .hi = 1000,
+              .log = true,
+              .decimals = 3,
+              .unit = "\xC3\x97",
+              .bar = false,
+              .travel = 0.25f}))
     scale = shown, changed = true;
   tooltip("Multiplies the radiance of the environment.");
   ImGui::BeginDisabled(!image);
@@ -268,6 +275,12 @@ void objects(Ui& ui) {
 }  // namespace
 
 void draw_scene_panel(Ui& ui, const Area& area) {
+  if (!ui.layout.right_open) {
+    begin_panel("##scene_folded", area, colour::panel, false);
+    if (folded_strip("Scene", area.lo, area.hi, false)) ui.layout.right_open = true;
+    ImGui::End();
+    return;
+  }
   begin_panel("##scene", area, colour::panel, true);
   if (!ui.scene) {
     bool open = true;

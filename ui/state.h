@@ -141,8 +141,11 @@ struct Ui {
   bool picture_hovered = false;
 
   // Requests to the loop.
-  int frames_wanted = 3;  ///< to be drawn even when nothing happens
-  bool moving = false;    ///< something on screen moves by itself
+  std::vector<std::pair<int, int>> keys;  ///< pressed since the last frame: GLFW key and modifiers
+  bool pressed(int key,
+               int mods = 0) const;  ///< among `keys`, with exactly these modifiers (Shift is not looked at)
+  int frames_wanted = 3;             ///< to be drawn even when nothing happens
+  bool moving = false;               ///< something on screen moves by itself
   bool quit = false;
   bool screenshot = false;  ///< F12
   void wake(int frames = 2) { frames_wanted = frames_wanted < frames ? frames : frames_wanted; }

@@ -55,6 +55,14 @@ std::string padded(const std::string& text, size_t width) {
   return result + text;
 }
 
+std::string real_text(double value, int decimals) {
+  const std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (text[0] != '-') return text;
+  // Minus nothing is nothing.
+  const bool zero = text.find_first_of("123456789") == std::string::npos;
+  return (zero ? "" : "\xE2\x88\x92") + text.substr(1);
+}
+
 std::string count_text(double n) {
   std::string digits = fmt::format("{:.0f}", n), result;
   for (size_t i = 0; i < digits.size(); ++i) {

@@ -28,7 +28,7 @@ class Viewer {
         runner_(parse_script(options.script, options.script_name)),
         window_(options.width, options.height, options.hidden, options.scale),
         ui_(session) {
-    if (options.remember) recall(ui_);
+    if (remembers()) recall(ui_);
     if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
     session.on_publish([] { Window::wake(); });
     if (!options.scene.empty()) session.load(options.scene);
@@ -36,7 +36,7 @@ class Viewer {
 
   ~Viewer() {
     ui_.session.on_publish({});
-    if (options_.remember) remember(ui_);
+    if (remembers()) remember(ui_);
   }
 
   int run() {
@@ -52,6 +52,9 @@ class Viewer {
   }
 
  private:
+  /// Scripted runs leave no trace.
+  bool remembers() const { return options_.remember && options_.script.empty(); }
+
   /// Sleeps while there is nothing to draw; otherwise holds the display's rate.
   void pause_until_needed() {
     double sleep = 1.0;
@@ -121,6 +124,9 @@ class Viewer {
     ui_.moving = false;
     ui_.settings.refresh(ui_.now);
     ui_.drop_taken_edits();
+
+    ui_.keys.clear();
+    for (const Window::Key& key : window_.pressed()) ui_.keys.emplace_back(key.key, key.mods);
 
     window_.begin_frame();
     ImGui::PushFont(theme().fonts.regular);

@@ -234,7 +234,9 @@ void draw_toolbar(Ui& ui, const Area& area) {
                      .hi = std::min(10.0f, static_cast<float>(ev->hi)),
                      .decimals = 2,
                      .unit = "EV",
-                     .sign = true};
+                     .bar = false,
+                     .sign = true,
+                     .travel = 0.2f};
     if (slider("##ev", "", value, how, ev_width)) ui.settings.set("film.ev", fmt::format("{:.4g}", value));
     tooltip(ev->help + " Double-click to type.");
     right -= px(8);

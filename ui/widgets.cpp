@@ -30,11 +30,8 @@ void draw_caps(ImDrawList* list, ImVec2 at, const std::string& text, ImU32 colou
 }
 
 std::string number_text(float value, const Slider& how) {
-  std::string text = fmt::format("{:.{}f}", value, how.decimals);
-  if (value < 0 && text[0] == '-')
-    text = "\xE2\x88\x92" + text.substr(1);
-  else if (how.sign)
-    text = (value > 0 ? "+" : "\xE2\x80\x87") + text;
+  std::string text = how.decimals == 0 && value >= 1e4f ? count_text(value) : real_text(value, how.decimals);
+  if (how.sign && value >= 0) text = (value > 0 ? "+" : "\xE2\x80\x87") + text;
   return how.unit.empty() ? text : text + (how.unit[0] == '\xC2' ? "" : " ") + how.unit;
 }
 
@@ -88,12 +85,13 @@ void tooltip(const std::string& text) {
   seen = now;
   if (now - since < 0.45) return;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(10), px(7)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(3));
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(px(320));
   label(text, colour::text, theme().fonts.small);
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(2);
 }
 
 void gap(float design) { ImGui::SetCursorPosY(ImGui::GetCursorPosY() + px(design)); }
@@ -206,6 +204,11 @@ void draw_sign(ImDrawList* list, const ImVec2& c, float size, Sign sign, bool on
       list->AddLine({c.x - 0.5f * r, c.y - 0.5f * r}, {c.x + 0.5f * r, c.y + 0.5f * r}, ink, line);
       list->AddLine({c.x - 0.5f * r, c.y + 0.5f * r}, {c.x + 0.5f * r, c.y - 0.5f * r}, ink, line);
       break;
+    case Sign::tick: {
+      const ImVec2 points[3] = {c + ImVec2(-r, 0), c + ImVec2(-0.3f * r, 0.7f * r), c + ImVec2(r, -0.7f * r)};
+      list->AddPolyline(points, 3, ink, 0, line);
+      break;
+    }
     default: {
       const float a = 0.5f * r, b = r;
       ImVec2 d(0, 0), e(0, 0), f(0, 0);
@@ -265,7 +268,7 @@ bool slider(const char* id, const std::string& name, float& value, const Slider&
   if (active && ImGui::GetIO().MouseDelta.x != 0) {
     const ImGuiIO& io = ImGui::GetIO();
     const float rate = io.KeyShift ? 0.1f : io.KeyCtrl ? 10.0f : 1.0f;
-    travelled += rate * io.MouseDelta.x / w;
+    travelled += rate * how.travel * io.MouseDelta.x / w;
     float next = from_fraction(start_fraction + travelled, how);
     if (how.step > 0) next = std::round(next / how.step) * how.step;
     if (!io.KeyShift && !how.log && how.step == 0) {
@@ -371,6 +374,30 @@ void stacked_bar(const std::vector<Part>& parts, float height, float width) {
   }
 }
 
+bool folded_strip(const char* title, const ImVec2& lo, const ImVec2& hi, bool opens_right) {
+  ImGui::SetCursorScreenPos(lo);
+  const bool pressed = ImGui::InvisibleButton("##unfold", {hi.x - lo.x, hi.y - lo.y});
+  const bool hovered = ImGui::IsItemHovered();
+  tooltip("Unfolds the panel.");
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  if (hovered) list->AddRectFilled(lo, hi, colour::field);
+  const ImU32 ink = hovered ? colour::text : colour::text_dim;
+  const float x = 0.5f * (lo.x + hi.x);
+  draw_sign(list, {x, lo.y + px(16)}, px(8), opens_right ? Sign::chevron_right : Sign::chevron_left, true,
+            ink);
+  // The title is drawn flat in the corner of the window, then its vertices are turned by a quarter and moved.
+  list->PushClipRectFullScreen();
+  const int first = list->VtxBuffer.Size;
+  const ImVec2 at(std::floor(x + 0.5f * theme().fonts.caps->FontSize), std::floor(lo.y + px(36)));
+  draw_caps(list, {0, 0}, upper(title), ink);
+  for (int i = first; i < list->VtxBuffer.Size; ++i) {
+    const ImVec2 p = list->VtxBuffer[i].pos;
+    list->VtxBuffer[i].pos = {at.x - p.y, at.y + p.x};
+  }
+  list->PopClipRect();
+  return pressed;
+}
+
 bool splitter(const char* id, const ImVec2& lo, const ImVec2& hi, bool along_x, float direction,
               float& value) {
   ImGui::SetCursorScreenPos(lo);
@@ -388,7 +415,7 @@ bool splitter(const char* id, const ImVec2& lo, const ImVec2& hi, bool along_x, 
     list->AddLine({middle, lo.y}, {middle, hi.y}, ink);
   else
     list->AddLine({lo.x, middle}, {hi.x, middle}, ink);
-  return active;
+  return hovered && ImGui::IsMouseDoubleClicked(0);
 }
 
 }  // namespace lucerna::ui

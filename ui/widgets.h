@@ -38,7 +38,7 @@ void value_row(const std::string& name, const std::string& value, const std::str
 /// A flat button; `on` shows it pressed. Width 0: that of its text.
 bool button(const char* id, const std::string& text, bool on = false, float width = 0, ImU32 mark = 0);
 /// A small square toggle with a drawn sign: 'eye', 'S' and the like.
-enum class Sign { eye, solo, power, close, chevron_left, chevron_right, chevron_down, chevron_up };
+enum class Sign { eye, solo, power, close, chevron_left, chevron_right, chevron_down, chevron_up, tick };
 bool sign_button(const char* id, Sign sign, bool on, ImU32 on_colour = colour::text, float size = 22);
 void draw_sign(ImDrawList* list, const ImVec2& centre, float size, Sign sign, bool on, ImU32 colour);
 
@@ -53,6 +53,7 @@ struct Slider {
   bool bar = true;    ///< show the filled part
   bool sign = false;  ///< show + for positive values
   float step = 0;     ///< values are multiples of it, when > 0
+  float travel = 1;   ///< share of the range that a drag across the control goes through
 };
 bool slider(const char* id, const std::string& name, float& value, const Slider& how, float width = 0);
 
@@ -67,16 +68,20 @@ struct Part {
 };
 void stacked_bar(const std::vector<Part>& parts, float height, float width = 0);
 
+/// What is left of a folded side panel: its title upwards and an arrow. Returns whether it was pressed.
+bool folded_strip(const char* title, const ImVec2& lo, const ImVec2& hi, bool opens_right);
+
 /// A splitter: a strip that drags `value` (design pixels) by the mouse along x or y; `direction` -1 when the
 /// panel grows the other way. Returns whether it is in use.
 bool splitter(const char* id, const ImVec2& lo, const ImVec2& hi, bool along_x, float direction,
               float& value);
 
 // Numbers as text, of constant width within a unit.
-std::string count_text(double n);       ///< 1 234 567 with thin grouping
-std::string ms_text(double ms);         ///< "12.3 ms", "1.24 s"
-std::string seconds_text(double s);     ///< "4.2 s", "2 min 05 s", "1 h 02 min"
-std::string megabytes_text(double mb);  ///< "312 MB", "1.42 GB"
+std::string real_text(double value, int decimals);  ///< with a true minus sign
+std::string count_text(double n);                   ///< 1 234 567 with thin grouping
+std::string ms_text(double ms);                     ///< "12.3 ms", "1.24 s"
+std::string seconds_text(double s);                 ///< "4.2 s", "2 min 05 s", "1 h 02 min"
+std::string megabytes_text(double mb);              ///< "312 MB", "1.42 GB"
 /// Pads with figure spaces on the left to `width` digits, so that a changing number keeps its place.
 std::string padded(const std::string& text, size_t width);
 

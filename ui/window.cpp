@@ -20,6 +20,7 @@ namespace lucerna::ui {
 struct Window::Events {
   bool any = false, rescaled = false;
   std::vector<std::string> dropped;
+  std::vector<Key> keys;
   std::string error;
 };
 
@@ -63,7 +64,10 @@ Window::Window(int width, int height, bool hidden, float scale) : events_(new Ev
   glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int) { note(w); });
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int, int, int) { note(w); });
   glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double) { note(w); });
-  glfwSetKeyCallback(window_, [](GLFWwindow* w, int, int, int, int) { note(w); });
+  glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int mods) {
+    if (action == GLFW_PRESS) static_cast<Events*>(glfwGetWindowUserPointer(w))->keys.push_back({key, mods});
+    note(w);
+  });
   glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned) { note(w); });
   glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int) { note(w); });
   glfwSetWindowSizeCallback(window_, [](GLFWwindow* w, int, int) { note(w); });
@@ -185,6 +189,7 @@ unsigned Window::upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32
   return texture_;
 }
 
+std::vector<Window::Key> Window::pressed() { return std::exchange(events_->keys, {}); }
 std::vector<std::string> Window::dropped() { return std::exchange(events_->dropped, {}); }
 void Window::wake() { glfwPostEmptyEvent(); }
 

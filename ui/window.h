@@ -31,6 +31,13 @@ class Window {
   void set_title(const std::string& title);
   /// Puts a picture into the texture (made anew when the size changes). Returns its OpenGL name.
   unsigned upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height);
+  /// A key that went down, with its modifiers (GLFW_MOD_*).
+  struct Key {
+    int key, mods;
+  };
+  /// Keys pressed since the last call, in order. (ImGui looks at keys once a frame and misses the quick
+  /// ones.)
+  std::vector<Key> pressed();
   /// Files dropped since the last call.
   std::vector<std::string> dropped();
   double refresh_seconds() const { return refresh_seconds_; }  ///< of the display

@@ -1,0 +1,289 @@
+#pragma once
+// A session without a renderer: the same class, defined here with a moving gradient for a picture, so that
+// the window can be run and tested on its own. Included by one test file, which then does not take the real
+// one from its library. Names with "missing" fail to load; names with "slow" load for three seconds; the name
+// "empty" makes a scene without cameras and lights.
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <glm/gtc/matrix_transform.hpp>
+#include <mutex>
+#include <thread>
+
+#include "base/log.h"
+#include "base/timer.h"
+#include "session/session.h"
+
+namespace lucerna::session {
+
+const std::array<const char*, k_components> k_component_names{"primary", "secondary", "tertiary", "caustic"};
+
+namespace fake {
+
+inline scene::Scene make_scene(const std::filesystem::path& file) {
+  scene::Scene scene;
+  scene.name = file.stem().string();
+  scene.file = file.string();
+  scene::Mesh box;
+  box.name = "room";
+  scene::Primitive p;
+  p.positions = {{-3, 0, -4}, {3, 0, -4}, {3, 3, 4}};
+  p.triangles = {{0, 1, 2}};
+  box.primitives.push_back(p);
+  scene.meshes.push_back(box);
+  if (scene.name == "empty") {
+    scene.materials.emplace_back();
+    scene.instances.push_back({.name = "", .mesh = 0});
+    return scene;
+  }
+  const auto camera = [&](const char* name, vec3 eye, vec3 target) {
+    scene::Camera c;
+    c.name = name;
+    c.to_world = glm::inverse(glm::lookAt(eye, target, vec3(0, 1, 0)));
+    scene.cameras.push_back(c);
+  };
+  camera("Entrance", {0, 1.65f, 3.5f}, {0, 1.4f, 0});
+  camera("Under the gallery, looking towards the skylight and the hanging cloth", {2, 1.65f, -3},
+         {0, 1.5f, 0});
+  camera("Detail", {0.5f, 1, 1}, {0, 0.5f, 0});
+  const auto light = [&](const char* name, scene::LightKind kind, vec3 intensity) {
+    scene::Light l;
+    l.name = name, l.kind = kind, l.intensity = intensity, l.position = {0, 2, 0};
+    scene.lights.push_back(l);
+  };
+  light("Sun", scene::LightKind::directional, {3.1f, 2.9f, 2.6f});
+  light("Brass lamp", scene::LightKind::point, {12, 9, 5.5f});
+  light("Reading lamp on the north wall, second from the left", scene::LightKind::spot, {40, 38, 36});
+  const auto material = [&](const char* name, vec3 colour, float roughness,
+                            float metallic) -> scene::Material& {
+    scene::Material m;
+    m.name = name, m.base_color = vec4(colour, 1), m.roughness = roughness, m.metallic = metallic;
+    scene.materials.push_back(m);
+    return scene.materials.back();
+  };
+  material("Worn limestone", {0.62f, 0.58f, 0.5f}, 0.9f, 0);
+  material("Brass", {0.91f, 0.72f, 0.35f}, 0.25f, 1);
+  auto& glass = material("Lamp glass", {1, 1, 1}, 0.02f, 0);
+  glass.transmission = 1, glass.thickness = 0.01f, glass.attenuation_distance = 0.2f,
+  glass.attenuation_color = {0.8f, 0.9f, 0.85f};
+  material("Linen cloth", {0.7f, 0.66f, 0.6f}, 1, 0).diffuse_transmission = 0.4f;
+  material("Filament", {0, 0, 0}, 1, 0).emission = {40, 28, 12};
+  for (int i = 0; i < 9; ++i)
+    material(("Tile " + std::to_string(i)).c_str(), vec3(0.1f * static_cast<float>(i)), 0.5f, 0);
+  for (int i = 0; i < 40; ++i) scene.instances.push_back({.name = "column " + std::to_string(i), .mesh = 0});
+  scene.environment.file = "sky/late_morning_2k.exr";
+  scene.environment.image = 0;
+  scene.images.emplace_back();
+  return scene;
+}
+
+}  // namespace fake
+
+struct Session::Impl {
+  std::mutex mutex;
+  std::condition_variable wake;
+  std::deque<std::function<void()>> commands;
+  std::shared_ptr<const Snapshot> snapshot;
+  std::shared_ptr<const scene::Scene> scene;
+  plan::Settings settings;
+  std::function<void()> call;
+  std::atomic<bool> stop{false}, cancelled{false};
+  uint32_t width = 0, height = 0;
+  scene::Camera camera;
+  uint64_t id = 0, scene_id = 0;
+  uint32_t samples = 0;
+  bool paused = false;
+  Timer timer;
+  std::string activity;
+  float progress = -1;
+  std::thread thread;
+
+  Impl() : thread([this] { run(); }) {}
+  ~Impl() {
+    stop = true, cancelled = true;
+    wake.notify_all();
+    thread.join();
+  }
+
+  void post(std::function<void()> command) {
+    std::lock_guard lock(mutex);
+    commands.push_back(std::move(command));
+    wake.notify_all();
+  }
+
+  void publish() {
+    auto s = std::make_shared<Snapshot>();
+    s->id = ++id, s->scene_id = scene_id, s->camera = camera, s->activity = activity, s->progress = progress;
+    s->device = "llvmpipe (LLVM 15.0.6, 256 bits)", s->tracer = "host";
+    s->max_samples = static_cast<uint32_t>(settings.integer("samples"));
+    s->samples = samples, s->paused = paused, s->finished = scene && samples >= s->max_samples;
+    s->coarse = samples == 0;
+    if (scene && width > 0) {
+      s->width = width, s->height = height;
+      s->rgba.resize(size_t{width} * height * 4);
+      const float gain = std::exp2(static_cast<float>(settings.real("film.ev")));
+      for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x) {
+          uint8_t* p = &s->rgba[(size_t{y} * width + x) * 4];
+          const vec3 d = glm::normalize(
+              vec3(camera.to_world * vec4((static_cast<float>(x) - 0.5f * static_cast<float>(width)) /
+                                              static_cast<float>(height),
+                                          0.5f - static_cast<float>(y) / static_cast<float>(height), -1, 0)));
+          const float grid = std::abs(std::sin(12 * d.x)) * std::abs(std::sin(12 * d.y));
+          for (int c = 0; c < 3; ++c)
+            p[c] = static_cast<uint8_t>(
+                std::clamp(gain * (40 + 90 * (d[c] * 0.5f + 0.5f) + 60 * grid), 0.0f, 255.0f));
+          p[3] = 255;
+        }
+    }
+    s->seconds = timer.seconds();
+    s->mrays_per_second = 3.42, s->rays = 1234567ull * samples;
+    s->device_mb = 212, s->host_mb = 1480;
+    const double shares[] = {0.618, 0.241, 0.126, 0.015}, ms[] = {412, 380, 1210, 96};
+    for (size_t c = 0; c < k_components; ++c) {
+      s->components[c].solver = settings.text(std::string("components.") + k_component_names[c]);
+      s->components[c].share = shares[c], s->components[c].ms_per_sample = ms[c],
+      s->components[c].mean_luminance = 0.4 * shares[c];
+    }
+    const char* names[] = {"camera",    "trace closest", "surface", "direct light",
+                           "trace any", "scatter",       "film",    "tone map"};
+    const double cost[] = {12, 840, 310, 260, 520, 190, 44, 6};
+    for (size_t i = 0; i < 8; ++i) s->stages.push_back({names[i], cost[i] * samples, i == 1 || i == 4});
+    std::function<void()> report;
+    {
+      std::lock_guard lock(mutex);
+      snapshot = s;
+      report = call;
+    }
+    if (report) report();
+  }
+
+  void restart() { samples = 0, timer.restart(); }
+
+  void load(const std::filesystem::path& file) {
+    cancelled = false;
+    const std::string name = file.filename().string();
+    const int steps = name.find("slow") != std::string::npos ? 60 : 6;
+    for (int i = 0; i < steps && !cancelled; ++i) {
+      activity = "loading " + name + ": textures " + std::to_string(100 * i / steps) + " %";
+      progress = static_cast<float>(i) / static_cast<float>(steps);
+      publish();
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    activity.clear(), progress = -1;
+    if (cancelled)
+      log::info("{}: loading was given up", file.string());
+    else if (name.find("missing") != std::string::npos)
+      log::error("{}: no such file; expected a .gltf or .glb scene", file.string());
+    else {
+      auto fresh = std::make_shared<scene::Scene>(fake::make_scene(file));
+      camera = fresh->cameras.empty() ? scene::default_camera(*fresh) : fresh->cameras[0];
+      std::lock_guard lock(mutex);
+      scene = fresh;
+      ++scene_id;
+      log::info("{}: 14 materials, 253 112 triangles", file.string());
+      log::warning("{}: the extension KHR_materials_sheen is not known and was passed over", file.string());
+    }
+    restart();
+    publish();
+  }
+
+  void run() {
+    while (!stop) {
+      std::function<void()> command;
+      {
+        std::unique_lock lock(mutex);
+        wake.wait_for(lock, std::chrono::milliseconds(30), [&] { return stop || !commands.empty(); });
+        if (!commands.empty()) command = std::move(commands.front()), commands.pop_front();
+      }
+      if (command) {
+        command();
+        continue;
+      }
+      if (!scene || paused || width == 0 || samples >= static_cast<uint32_t>(settings.integer("samples")))
+        continue;
+      ++samples;
+      publish();
+    }
+  }
+};
+
+Session::Session(const Options&) : impl_(std::make_unique<Impl>()) {}
+Session::~Session() = default;
+void Session::load(const std::filesystem::path& file) {
+  impl_->post([this, file] { impl_->load(file); });
+}
+void Session::set(const std::string& key, const std::string& value) {
+  impl_->post([this, key, value] {
+    try {
+      std::lock_guard lock(impl_->mutex);
+      impl_->settings.set(key, value);
+    } catch (const Error& error) {
+      log::error("{}", error.what());
+    }
+    impl_->publish();
+  });
+}
+void Session::set_camera(const scene::Camera& camera) {
+  impl_->post([this, camera] { impl_->camera = camera, impl_->restart(), impl_->publish(); });
+}
+void Session::set_size(uint32_t width, uint32_t height) {
+  impl_->post([this, width, height] {
+    impl_->width = width, impl_->height = height, impl_->restart(), impl_->publish();
+  });
+}
+void Session::set_light(uint32_t index, const scene::Light& light) {
+  impl_->post([this, index, light] {
+    auto edited = std::make_shared<scene::Scene>(*impl_->scene);
+    edited->lights[index] = light;
+    {
+      std::lock_guard lock(impl_->mutex);
+      impl_->scene = edited;
+    }
+    impl_->restart(), impl_->publish();
+  });
+}
+void Session::set_environment(float scale, float rotation) {
+  impl_->post([this, scale, rotation] {
+    auto edited = std::make_shared<scene::Scene>(*impl_->scene);
+    edited->environment.scale = scale, edited->environment.rotation = rotation;
+    {
+      std::lock_guard lock(impl_->mutex);
+      impl_->scene = edited;
+    }
+    impl_->restart(), impl_->publish();
+  });
+}
+void Session::set_paused(bool paused) {
+  impl_->post([this, paused] { impl_->paused = paused, impl_->publish(); });
+}
+void Session::restart() {
+  impl_->post([this] { impl_->restart(), impl_->publish(); });
+}
+void Session::reload_shaders() {
+  impl_->post(
+      [] { log::error("surface.comp:42: 'throughputt' : undeclared identifier; the kernels in use stay"); });
+}
+void Session::save(const std::filesystem::path& file) {
+  impl_->post([file] { log::info("picture saved as {}", file.string()); });
+}
+void Session::cancel() { impl_->cancelled = true; }
+std::shared_ptr<const Snapshot> Session::snapshot() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->snapshot;
+}
+std::shared_ptr<const scene::Scene> Session::scene() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->scene;
+}
+plan::Settings Session::settings() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->settings;
+}
+void Session::on_publish(std::function<void()> call) {
+  std::lock_guard lock(impl_->mutex);
+  impl_->call = std::move(call);
+}
+
+}  // namespace lucerna::session

@@ -1,0 +1,75 @@
+#pragma once
+// For tests that open a window: a display (xvfb-run starts one where there is none), and a look at what was
+// drawn.
+#include <sys/wait.h>
+#include <unistd.h>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "film/io/image_file.h"
+
+namespace lucerna::test {
+
+/// A command line that runs `command` with a display, or "" where neither a display nor xvfb-run exists.
+inline std::string with_display(const std::string& command) {
+  const char* display = std::getenv("DISPLAY");
+  if (display && *display) return command;
+  if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0) return "";
+  return "xvfb-run -a -s '-screen 0 1600x1000x24' " + command;
+}
+
+struct Outcome {
+  int status = -1;
+  std::string output;
+};
+
+/// Runs through the shell for `seconds` at most; standard output and error together.
+inline Outcome run(const std::string& command, int seconds = 120) {
+  Outcome outcome;
+  FILE* pipe = popen(("timeout " + std::to_string(seconds) + " " + command + " 2>&1").c_str(), "r");
+  if (!pipe) return outcome;
+  std::array<char, 4096> block;
+  size_t n = 0;
+  while ((n = std::fread(block.data(), 1, block.size(), pipe)) > 0) outcome.output.append(block.data(), n);
+  const int status = pclose(pipe);
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  return outcome;
+}
+
+/// An empty folder that goes away with the object.
+struct Folder {
+  std::filesystem::path path;
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "lucerna-viewer-XXXXXX").string();
+    path = mkdtemp(name.data());
+  }
+  ~Folder() {
+    std::error_code error;
+    std::filesystem::remove_all(path, error);
+  }
+};
+
+/// A PNG of the window as numbers 0..1 (encoded values).
+struct Picture {
+  film::FilmImage image;
+  explicit Picture(const std::filesystem::path& file) : image(film::read_exr(file)) {}
+  vec3 at(uint32_t x, uint32_t y) const {
+    const size_t i = size_t{y} * image.width + x;
+    return {image.channels[0].second[i], image.channels[1].second[i], image.channels[2].second[i]};
+  }
+  /// Standard deviation of the luminance in a rectangle.
+  double contrast(uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1) const {
+    double sum = 0, squares = 0, n = 0;
+    for (uint32_t y = y0; y < y1; ++y)
+      for (uint32_t x = x0; x < x1; ++x) {
+        const double v = luminance(at(x, y));
+        sum += v, squares += v * v, ++n;
+      }
+    return n > 0 ? std::sqrt(std::max(0.0, squares / n - sum / n * (sum / n))) : 0;
+  }
+};
+
+}  // namespace lucerna::test

@@ -1,0 +1,146 @@
+// links: ui film_io
+// The window over a session without a renderer: panels, steps, errors. Each case runs this executable again
+// under a display.
+#include "fake_session.h"
+#include "support.h"
+#include "ui/script.h"
+#include "ui/viewer.h"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <sstream>
+
+using namespace lucerna;
+
+namespace {
+
+/// Runs the steps in a window of this program; SCENE and steps travel in the environment.
+test::Outcome window(const std::string& scene, const std::string& steps, const std::string& more = "") {
+  static test::Folder folder;
+  const auto script = folder.path / "steps.txt";
+  std::ofstream(script) << steps;
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  return test::run("env LUCERNA_TEST_SCENE='" + scene + "' LUCERNA_TEST_SCRIPT='" + script.string() + "' " +
+                   more + " " + test::with_display(self + " '[inside]'"));
+}
+
+bool no_display() { return test::with_display("x").empty(); }
+
+}  // namespace
+
+TEST_CASE("inside: one window", "[.][inside]") {
+  log::set_console_level(log::Level::info);
+  ui::ViewerOptions options;
+  options.remember = false;
+  if (const char* scene = std::getenv("LUCERNA_TEST_SCENE")) options.scene = scene;
+  if (const char* scale = std::getenv("LUCERNA_TEST_SCALE")) options.scale = std::stof(scale);
+  if (const char* size = std::getenv("LUCERNA_TEST_SIZE"))
+    std::sscanf(size, "%dx%d", &options.width, &options.height);
+  if (const char* script = std::getenv("LUCERNA_TEST_SCRIPT")) {
+    std::ifstream stream(script);
+    for (std::string line; std::getline(stream, line);) options.script.push_back(line);
+  }
+  session::Session session({});
+  REQUIRE(ui::run_viewer(session, options) == 0);
+}
+
+TEST_CASE("a script is checked before it runs") {
+  const auto message = [](const std::vector<std::string>& lines) -> std::string {
+    try {
+      ui::parse_script(lines, "s");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(
+      message({"wait 1", "# remark", "", "orbit 0.3 -1  # a turn", "load \"a file.gltf\"", "quit"}).empty());
+  CHECK_THAT(message({"wait 1", "jump"}), Catch::StartsWith("s: line 2: unknown step 'jump'"));
+  CHECK_THAT(message({"orbit 1"}), Catch::StartsWith("s: line 1: 'orbit' takes 2 arguments"));
+  CHECK_THAT(message({"wait soon"}), Catch::StartsWith("s: line 1: 'wait' expects a number"));
+  CHECK_THAT(message({"load \"a"}), Catch::StartsWith("s: line 1: a quotation mark"));
+  CHECK(ui::parse_script({"load \"a file.gltf\""}, "s")[0].text[0] == "a file.gltf");
+}
+
+TEST_CASE("percentiles") {
+  CHECK(ui::percentile({}, 0.5) == 0);
+  CHECK(ui::percentile({4, 1, 3, 2, 5}, 0.5) == 3);
+  CHECK(ui::percentile({0, 10}, 0.95) == Approx(9.5));
+}
+
+TEST_CASE("a picture is shown, panels hide, and the window is saved at its size") {
+  if (no_display()) {
+    WARN("skipped: neither a display nor xvfb-run");
+    return;
+  }
+  const test::Folder folder;
+  const std::string a = (folder.path / "a.png").string(), b = (folder.path / "b.png").string();
+  const auto outcome = window("hall.gltf",
+                              "wait_scene\nwait_samples 2\nscreenshot " + a +
+                                  "\ntab\nwait 0.4\nwait_samples 1\nscreenshot " + b + "\nquit\n",
+                              "LUCERNA_TEST_SIZE=1100x700");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  const test::Picture panels(a), bare(b);
+  CHECK(panels.image.width == 1100);
+  CHECK(panels.image.height == 700);
+  CHECK(panels.contrast(400, 150, 700, 400) > 0.02);  // the picture
+  CHECK(panels.contrast(10, 40, 270, 400) > 0.02);    // text on the left panel
+  // Panels are neutral: no channel differs from another where nothing is written.
+  const vec3 grey = panels.at(3, 300);
+  CHECK(grey.x == grey.y);
+  CHECK(grey.y == grey.z);
+  CHECK(grey.x > 0.08f);
+  CHECK(grey.x < 0.18f);
+  CHECK(bare.contrast(0, 0, 200, 200) > 0.02);  // the picture reaches the corner
+}
+
+TEST_CASE("an error is shown over the old scene, and a script that fails says where") {
+  if (no_display()) {
+    WARN("skipped: neither a display nor xvfb-run");
+    return;
+  }
+  const test::Folder folder;
+  const std::string a = (folder.path / "a.png").string(), b = (folder.path / "b.png").string();
+  const auto outcome =
+      window("hall.gltf", "wait_scene\nwait_samples 2\nload missing.gltf\nwait 0.8\nscreenshot " + a +
+                              "\ndismiss\nscreenshot " + b + "\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  const test::Picture strip(a), without(b);
+  const vec3 red = strip.at(500, 70 + 10), below = strip.at(500, 400);
+  CHECK(red.x > 1.5f * red.y);                               // the strip
+  CHECK(std::abs(below.x - without.at(500, 400).x) < 0.2f);  // the scene stays
+  CHECK(without.at(500, 80).x < 1.5f * without.at(500, 80).y);
+
+  const auto failed = window("missing.gltf", "wait_scene\nquit\n");
+  INFO(failed.output);
+  CHECK(failed.status != 0);
+  CHECK_THAT(failed.output, Catch::Contains("script: line 1: wait_scene: no scene was loaded"));
+}
+
+TEST_CASE("an empty window, a cancelled load, and every step run") {
+  if (no_display()) {
+    WARN("skipped: neither a display nor xvfb-run");
+    return;
+  }
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  const auto outcome = window(
+      "", "screenshot " + file("empty.png") + "\nload slow.gltf\nwait 0.3\nscreenshot " +
+              file("loading.png") +
+              "\ncancel\nwait 0.3\nload hall.gltf\nwait_scene\n"
+              "orbit 0.2 0.1\nlook 0.1 0\npan 20 10\ndolly 2\nfly 0 0 0.5\nselect light 2\nframe\nselect "
+              "material 1\nframe\ncamera 2\ncamera Detail\n"
+              "solo 2\nsolo 2\nset film.ev 1.5\nsize 1200 800\npause\nresume\nrestart\nopen_dialog\nwait "
+              "0.2\ndismiss\nwait_samples 2\nmeasure 2\n"
+              "screenshot " +
+              file("end.png") + "\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  CHECK_THAT(outcome.output, Catch::Contains("\"measure\"") && Catch::Contains("\"answered\": 1"));
+  const test::Picture empty(file("empty.png")), end(file("end.png"));
+  CHECK(empty.contrast(450, 300, 1000, 560) > 0.01);  // the invitation
+  CHECK(end.image.width == 1200);
+  CHECK(end.image.height == 800);
+}
