@@ -134,7 +134,8 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
     // Where nothing is transparent the any-hit kernel need not look at the flag.
     const auto tracer = [&](int query) {
       return gpu::Kernel(device, compiler, "trace.comp",
-                         {{"LUCERNA_QUERY", std::to_string(query)}, {"LUCERNA_TRANSPARENT", w.transparent ? "1" : "0"}});
+                         w.transparent ? gpu::Defines{{"LUCERNA_QUERY", std::to_string(query)}, {"LUCERNA_NON_OPAQUE", "1"}}
+                                        : gpu::Defines{{"LUCERNA_QUERY", std::to_string(query)}});
     };
     w.trace_closest = tracer(0);
     w.trace_any = tracer(1);

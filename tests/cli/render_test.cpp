@@ -1,0 +1,103 @@
+// links: film_io
+// The command line as a person meets it: what it writes, and that every wrong input ends with one located line and status 1.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "film/io/image_file.h"
+
+namespace fs = std::filesystem;
+using namespace lucerna;
+
+namespace {
+
+struct Run { int status; std::string out; };
+
+Run run(const std::string& arguments) {
+  const std::string command = std::string(LUCERNA_BINARY) + " " + arguments + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  REQUIRE(pipe);
+  std::string out;
+  char buffer[512];
+  while (size_t n = fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, n);
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out};
+}
+
+fs::path folder() {
+  const fs::path p = fs::temp_directory_path() / ("lucerna-cli-" + std::to_string(getpid()));
+  fs::create_directories(p);
+  return p;
+}
+
+std::string scene(const std::string& name) { return std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf"; }
+
+void refused(const std::string& arguments, const std::string& expected) {
+  const Run r = run(arguments);
+  INFO(arguments << "\n" << r.out);
+  CHECK(r.status == 1);
+  CHECK(r.out.find(expected) != std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("render writes layers, PNG and figures") {
+  const fs::path f = folder();
+  const Run r = run("render " + scene("cornell") + " --samples 4 --size 40x30 --quiet -o " + (f / "a.exr").string() + " -o " + (f / "a.png").string() + " --stats " + (f / "a.json").string());
+  INFO(r.out);
+  REQUIRE(r.status == 0);
+  const film::FilmImage image = film::read_exr(f / "a.exr");
+  CHECK(image.width == 40);
+  CHECK(image.height == 30);
+  for (const char* name : {"R", "primary.R", "secondary.G", "tertiary.B", "caustic.R", "albedo.R", "N.X", "Z", "samples"}) {
+    bool found = false;
+    for (const auto& [channel, values] : image.channels) found |= channel == name;
+    INFO(name);
+    CHECK(found);
+  }
+  CHECK(image.metadata.count("lucerna:seed") == 1);
+  CHECK(fs::file_size(f / "a.png") > 500);
+  std::ifstream stats(f / "a.json");
+  const std::string text((std::istreambuf_iterator<char>(stats)), {});
+  for (const char* key : {"wall_s", "load_s", "compile_s", "device", "samples", "rays", "peak_host_mb", "peak_device_mb", "stages", "components", "mean_radiance"})
+    CHECK(text.find(std::string(1, '"').append(key).append("\"")) != std::string::npos);
+  const Run same = run("compare " + (f / "a.exr").string() + " " + (f / "a.exr").string() + " --json --max-relmse 0");
+  CHECK(same.status == 0);
+  const Run other = run("render " + scene("cornell") + " --samples 4 --seed 5 --size 40x30 --quiet -o " + (f / "b.exr").string());
+  CHECK(other.status == 0);
+  CHECK(run("compare " + (f / "a.exr").string() + " " + (f / "b.exr").string() + " --max-relmse 0").status == 1);
+  for (const auto& entry : fs::directory_iterator(f)) CHECK(entry.path().string().find("tmp") == std::string::npos);
+  fs::remove_all(f);
+}
+
+TEST_CASE("wrong arguments are refused with their place") {
+  const std::string good = "render " + scene("cornell") + " --quiet -o /tmp/lucerna-never.exr ";
+  refused("render no/such.gltf -o /tmp/lucerna-never.exr", "no/such.gltf");
+  refused(good + "--set components.primary=magic", "components.primary");
+  refused(good + "--set colour=red", "unknown setting 'colour'");
+  refused(good + "--set samples", "expected key=value");
+  refused(good + "--samples 0", "--samples");
+  refused(good + "--size 0x10", "--size");
+  refused(good + "--size 10", "--size");
+  refused(good + "--size 60000x60000 --samples 1", "can hold at most");
+  refused(good + "--camera nowhere --samples 1", "no camera 'nowhere'");
+  refused(good + "--device nothing", "nothing");
+  refused("render " + scene("cornell") + " -o /no/such/folder/a.exr", "/no/such/folder");
+  refused("render " + scene("cornell") + " -o a.gif", ".gif");
+  refused("render " + scene("cornell"), "--output");
+  refused("compare no.exr nothing.exr", "no.exr");
+  refused("info no.gltf", "no.gltf");
+  CHECK_FALSE(fs::exists("/tmp/lucerna-never.exr"));
+}
+
+TEST_CASE("devices and info speak") {
+  CHECK(run("devices").out.find("Vulkan") != std::string::npos);
+  CHECK(run("info " + scene("glass")).out.find("triangles") != std::string::npos);
+  CHECK(run("--help").status == 0);
+  CHECK(run("--help").out.find("components.primary") != std::string::npos);
+}
