@@ -63,7 +63,9 @@ TEST_CASE("switching a component off leaves the others bit-identical") {
       else
         CHECK(identical(all.image.components[c], some.image.components[c]));
     }
-    CHECK(some.stats.rays < all.stats.rays);  // off is not merely multiplied by zero
+    // Off is not merely multiplied by zero. (Caustics are found on the way to tertiary light, which goes on.)
+    CHECK(some.stats.rays <= all.stats.rays);
+    if (off != 3) CHECK(some.stats.rays < all.stats.rays);
   }
 }
 
