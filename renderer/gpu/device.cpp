@@ -273,8 +273,8 @@ Device::Device(const DeviceOptions& options) : handles_(std::make_unique<Handles
 
   VkPhysicalDeviceMemoryProperties memory{};
   h.instance.memory_properties(h.physical, &memory);
-  h.allocator =
-      std::make_unique<Allocator>(h.device, h.vk, memory, maintenance.maxMemoryAllocationSize, h.info.is_cpu);
+  h.allocator = std::make_unique<Allocator>(h.device, h.vk, memory, maintenance.maxMemoryAllocationSize,
+                                            h.info.is_cpu && options.map_device_memory);
 
   VkSamplerCreateInfo sampler{};
   sampler.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;

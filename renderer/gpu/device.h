@@ -50,7 +50,11 @@ struct DeviceOptions {
   /// "": LUCERNA_DEVICE if set, else a discrete GPU, else any usable device. Otherwise an index, or part of a
   /// name (case-insensitive), or "cpu" / "gpu".
   std::string selector;
-  bool validation = false;  ///< load the Khronos validation layer if present; messages are counted and logged
+  /// Load the Khronos validation layer if present, with its synchronization checks; messages are counted and
+  /// logged.
+  bool validation = false;
+  /// false: device memory is never mapped, not even where it could be, as on a GPU. For tests of the copies.
+  bool map_device_memory = true;
 };
 
 struct Handles;  // gpu/vulkan.h

@@ -20,13 +20,17 @@ struct SpecConstant {
   uint32_t value;
 };
 
-/// Finds, compiles and caches shaders. `root` is the shaders/ folder: files are named relative to it and
-/// #include "lib/bsdf.glsl" is relative to it too (or to the including file).
-/// Every kernel is compiled as GLSL 460 for Vulkan 1.2 with GL_EXT_scalar_block_layout,
-/// GL_GOOGLE_include_directive; #line directives keep file names, so that an error reads
-/// "shaders/lib/bsdf.glsl:123: 'foo' : undeclared identifier".
-/// Disk cache: $XDG_CACHE_HOME/lucerna/spirv (or ~/.cache), keyed by preprocessed source + defines + compiler
-/// version; safe against concurrent processes and truncated files.
+/// Finds, compiles and caches shaders. `root` is the shaders/ folder. A file is named relative to it, with or
+/// without "shaders/" in front, or by an absolute path (tests keep kernels of their own elsewhere).
+/// #include "shaders/x" is x below the root; #include "x" is x beside the including file, else below the
+/// root. Every kernel is compiled as GLSL 460 for Vulkan 1.2 (SPIR-V 1.5). In front of it stand: its defines;
+/// `layout(scalar)` as the default of buffers and push constants, so that structs lie as in C++; and the
+/// extensions for includes, control-flow hints, 8- and 16-bit storage, 64-bit integers and their atomics,
+/// float atomics, basic subgroup operations and debugPrintfEXT (none of which costs anything unless used). A
+/// #version of its own is ignored. Errors read "shaders/lib/bsdf.glsl:123: 'foo' : undeclared identifier".
+/// Disk cache: $XDG_CACHE_HOME/lucerna/spirv (or ~/.cache), keyed by the text of all files that the kernel
+/// may include + defines + compiler version; safe against concurrent processes and damaged files.
+/// Thread-safe.
 class ShaderCompiler {
  public:
   explicit ShaderCompiler(std::filesystem::path root = default_root());
@@ -35,9 +39,11 @@ class ShaderCompiler {
   static std::filesystem::path default_root();
   const std::filesystem::path& root() const;
   void set_cache(bool enabled);
-  /// Throws Error located at file and line.
+  /// Throws Error located at file and line. Resources that the kernel declares but never reaches are removed,
+  /// and bindings are numbered anew.
   std::vector<uint32_t> compile(const std::string& file, const Defines& defines = {});
-  /// Files that the last compile() of this file and defines read (for hot reload).
+  /// Files that the last compile() of this file and defines looked at, whether it succeeded or not (for hot
+  /// reload): the kernel and everything named by #include lines, those in inactive branches too.
   std::vector<std::filesystem::path> dependencies(const std::string& file, const Defines& defines = {});
   double seconds_spent() const;  ///< in glslang, so far
   uint64_t cache_hits() const;
@@ -64,14 +70,16 @@ class Resources {
   uint64_t version_ = 0;
 };
 
-/// One compute pipeline. In the shader: set 0 only; `layout(set=0, binding=N, scalar) buffer NAME {...}` is
-/// bound to the resource NAME (the block's name, not the instance's), `uniform samplerBuffer NAME` and
-/// `uniform sampler2DArray NAME` likewise; binding numbers may be left out of the source altogether
-/// (glslang's auto-mapping assigns them). Workgroup size is read from the source.
+/// One compute pipeline. In the shader, `buffer NAME {...}` is bound to the resource NAME (the block's name,
+/// not the instance's), `uniform samplerBuffer NAME` and `uniform sampler2DArray NAME` likewise; set and
+/// binding numbers are left out of the source (ignored if there). A library file may declare more than a
+/// kernel uses: only what main() reaches is needed. `constants` set `layout(constant_id = N) const` values
+/// (and local_size_x_id).
 class Kernel {
  public:
   Kernel();
-  /// Throws Error: does not compile (located), needs more push constants than the device has, ...
+  /// Throws Error: does not compile (located), needs more push constants than the device has, or declares
+  /// something that cannot be bound by name (a uniform block, an image).
   Kernel(Device& device, ShaderCompiler& compiler, const std::string& file, const Defines& defines = {},
          std::vector<SpecConstant> constants = {});
   ~Kernel();

@@ -113,9 +113,10 @@ VkResult Allocator::allocate_memory(VkDeviceSize bytes, uint32_t type, bool map,
   return VK_SUCCESS;
 }
 
-bool Allocator::from_blocks(const VkMemoryRequirements& needs, uint32_t type, Allocation& out) {
+bool Allocator::from_blocks(const VkMemoryRequirements& needs, uint32_t type, bool map, Allocation& out) {
   for (const auto& block : blocks_) {
-    if (block->type != type) continue;
+    // The same type may serve mapped and unmapped resources.
+    if (block->type != type || map != (block->mapped != nullptr)) continue;
     for (const auto& [hole_offset, hole_bytes] : block->holes) {
       const VkDeviceSize offset = align_up(hole_offset, needs.alignment);
       const VkDeviceSize end = hole_offset + hole_bytes;
@@ -141,7 +142,7 @@ VkResult Allocator::from_new_block(const VkMemoryRequirements& needs, uint32_t t
   block->mapped = static_cast<std::byte*>(mapped);
   block->holes[0] = k_block_bytes;
   blocks_.push_back(std::move(block));
-  return from_blocks(needs, type, out) ? VK_SUCCESS : VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  return from_blocks(needs, type, map, out) ? VK_SUCCESS : VK_ERROR_OUT_OF_DEVICE_MEMORY;
 }
 
 Allocation Allocator::allocate(const VkMemoryRequirements& needs, Memory kind, bool image,
@@ -152,7 +153,7 @@ Allocation Allocator::allocate(const VkMemoryRequirements& needs, Memory kind, b
   Allocation out;
   VkResult result = VK_SUCCESS;
   if (!image && needs.size < k_small_bytes) {
-    if (!from_blocks(needs, type, out)) result = from_new_block(needs, type, map, out);
+    if (!from_blocks(needs, type, map, out)) result = from_new_block(needs, type, map, out);
   } else {
     result = allocate_memory(needs.size, type, map, out.memory, out.mapped);
     out.offset = 0, out.bytes = needs.size, out.type = type, out.shared = false;

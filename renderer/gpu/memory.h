@@ -52,7 +52,7 @@ class Allocator {
   bool maps(uint32_t type, Memory kind) const;
   VkResult allocate_memory(VkDeviceSize bytes, uint32_t type, bool map, VkDeviceMemory& memory,
                            void*& mapped);
-  bool from_blocks(const VkMemoryRequirements& needs, uint32_t type, Allocation& out);
+  bool from_blocks(const VkMemoryRequirements& needs, uint32_t type, bool map, Allocation& out);
   VkResult from_new_block(const VkMemoryRequirements& needs, uint32_t type, bool map, Allocation& out);
 
   VkDevice device_;

@@ -20,7 +20,8 @@ std::vector<uint32_t> counting(size_t n) {
 }  // namespace
 
 TEST_CASE("buffers give back what was written, in both memories, small and larger than the staging buffer") {
-  test::SilentDevice silent;
+  const bool map_device_memory = GENERATE(true, false);
+  test::SilentDevice silent(map_device_memory);
   for (const Memory memory : {Memory::device, Memory::host})
     for (const size_t count : {1u, 5u, 1000u, 5000003u}) {
       Buffer buffer(silent.device, {"round trip", count * 4, memory});
@@ -29,6 +30,7 @@ TEST_CASE("buffers give back what was written, in both memories, small and large
       buffer.write(std::span<const uint32_t>(values));
       CHECK(buffer.read_all<uint32_t>() == values);
       if (memory == Memory::host) CHECK(buffer.mapped() != nullptr);
+      if (memory == Memory::device && !map_device_memory) CHECK(buffer.mapped() == nullptr);
       const uint32_t patch[] = {77};
       buffer.write(std::span<const uint32_t>(patch), count - 1);
       uint32_t last = 0;

@@ -10,7 +10,7 @@ namespace lucerna::test {
 
 /// A validated device, whose destructor requires that validation had nothing to say.
 struct SilentDevice {
-  SilentDevice() : device({"", true}) { REQUIRE(device.validation_active()); }
+  explicit SilentDevice(bool map_device_memory = true) : device({"", true, map_device_memory}) { REQUIRE(device.validation_active()); }
   ~SilentDevice() { CHECK(device.validation_messages() == 0); }
   gpu::Device device;
 };

@@ -7,10 +7,10 @@ layout(push_constant) uniform Push {
   uint count;
   float factor;
 } push;
-layout(set = 0, binding = 0) readonly buffer Source { float source[]; };
-buffer Target { float target[]; };
 buffer Unused { float unused[]; };
 uniform samplerBuffer unused_texels;
+layout(set = 0, binding = 0) readonly buffer Source { float source[]; };
+buffer Target { float target[]; };
 
 float never_called(int i) { return unused[i] + texelFetch(unused_texels, i).x; }
 
