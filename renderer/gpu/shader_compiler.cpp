@@ -163,7 +163,7 @@ std::vector<uint32_t> ShaderCompiler::compile(const std::string& file, const Def
   Hash hash;
   hash.add(fmt::format("glslang {}.{}.{} {}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR,
                        GLSLANG_VERSION_PATCH, glslang::GetSpirvGeneratorVersion()));
-  hash.add("trimmed 1");  // the version of what spirv::trim makes
+  hash.add("trimmed 1");  // to be changed with what spirv::trim makes
   hash.add(k_prologue);
   for (const auto& [name, value] : defines) hash.add(name), hash.add(value);
   std::vector<fs::path> paths;

@@ -20,21 +20,12 @@ void write_text(const fs::path& path, const std::string& text) {
   std::ofstream(path) << text;
 }
 
-/// Points the disk cache at a folder of its own while it lives.
-class OwnCache {
- public:
-  OwnCache() { setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1); }
-  ~OwnCache() { unsetenv("XDG_CACHE_HOME"); }
-  std::vector<fs::path> files() const {
-    std::vector<fs::path> found;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_.path()))
-      if (entry.is_regular_file()) found.push_back(entry.path());
-    return found;
-  }
-
- private:
-  test::TemporaryFolder folder_;
-};
+std::vector<fs::path> cached_files(const test::OwnCache& cache) {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::recursive_directory_iterator(cache.folder.path()))
+    if (entry.is_regular_file()) found.push_back(entry.path());
+  return found;
+}
 
 std::vector<std::string> names(const std::vector<uint32_t>& words) {
   std::vector<std::string> list;
@@ -46,7 +37,7 @@ std::vector<std::string> names(const std::vector<uint32_t>& words) {
 }  // namespace
 
 TEST_CASE("a kernel declares only what it uses, whatever its includes declare") {
-  const OwnCache cache;
+  const test::OwnCache cache;
   ShaderCompiler compiler;
   const auto words = compiler.compile(shader("gpu_scale.comp"), {{"OFFSET", "1.5"}});
   CHECK(names(words) == std::vector<std::string>{"Source", "Target"});
@@ -58,7 +49,7 @@ TEST_CASE("a kernel declares only what it uses, whatever its includes declare") 
 }
 
 TEST_CASE("an error names the file and the line") {
-  const OwnCache cache;
+  const test::OwnCache cache;
   ShaderCompiler compiler;
   CHECK_THAT(error_of([&] {
                compiler.compile(shader("gpu_version.comp"), {{"SPOIL", ""}});
@@ -73,7 +64,7 @@ TEST_CASE("an error names the file and the line") {
 }
 
 TEST_CASE("files below the root are called shaders/...; includes are found from the root and from the file") {
-  const OwnCache cache;
+  const test::OwnCache cache;
   const test::TemporaryFolder root;
   write_text(root.path() / "a/kernel.comp",
              "#include \"b/common.glsl\"\n#include \"beside.glsl\"\n#include \"shaders/b/common.glsl\"\n"
@@ -98,7 +89,7 @@ TEST_CASE("files below the root are called shaders/...; includes are found from 
 }
 
 TEST_CASE("dependencies are the files to watch") {
-  const OwnCache cache;
+  const test::OwnCache cache;
   ShaderCompiler compiler;
   const Defines defines{{"OFFSET", "1"}};
   compiler.compile(shader("gpu_scale.comp"), defines);
@@ -113,7 +104,7 @@ TEST_CASE("dependencies are the files to watch") {
 }
 
 TEST_CASE("a changed include is seen; a file that does not compile is still watched") {
-  const OwnCache cache;
+  const test::OwnCache cache;
   const test::TemporaryFolder root;
   const std::string body =
       "#include \"value.glsl\"\nbuffer T { float t[]; };\nvoid main() { t[0] = VALUE; }\n";
@@ -132,14 +123,14 @@ TEST_CASE("a changed include is seen; a file that does not compile is still watc
 }
 
 TEST_CASE("the disk cache saves the work, tells defines apart and recovers from damage") {
-  const OwnCache cache;
+  const test::OwnCache cache;
   const std::string file = shader("gpu_scale.comp");
   ShaderCompiler first;
   const auto words = first.compile(file, {{"OFFSET", "1"}});
   CHECK(first.cache_hits() == 0);
   CHECK(first.seconds_spent() > 0);
-  REQUIRE(cache.files().size() == 1);
-  const fs::path stored = cache.files().front();
+  REQUIRE(cached_files(cache).size() == 1);
+  const fs::path stored = cached_files(cache).front();
 
   ShaderCompiler second;
   CHECK(second.compile(file, {{"OFFSET", "1"}}) == words);
@@ -172,7 +163,7 @@ TEST_CASE("the disk cache saves the work, tells defines apart and recovers from 
   without.set_cache(false);
   CHECK(without.compile(file, {{"OFFSET", "1"}}) == words);
   CHECK(without.cache_hits() == 0);
-  for (const auto& path : cache.files()) CHECK(path.extension() != ".new");
+  for (const auto& path : cached_files(cache)) CHECK(path.extension() != ".new");
 }
 
 TEST_CASE("a cache folder that cannot be written is no reason to fail") {
@@ -183,7 +174,7 @@ TEST_CASE("a cache folder that cannot be written is no reason to fail") {
 }
 
 TEST_CASE("several threads compile at once") {
-  const OwnCache cache;
+  const test::OwnCache cache;
   ShaderCompiler compiler;
   std::vector<std::thread> threads;
   std::vector<std::vector<uint32_t>> results(6);

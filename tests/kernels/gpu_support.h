@@ -10,7 +10,9 @@ namespace lucerna::test {
 
 /// A validated device, whose destructor requires that validation had nothing to say.
 struct SilentDevice {
-  explicit SilentDevice(bool map_device_memory = true) : device({"", true, map_device_memory}) { REQUIRE(device.validation_active()); }
+  explicit SilentDevice(bool map_device_memory = true) : device({"", true, map_device_memory}) {
+    REQUIRE(device.validation_active());
+  }
   ~SilentDevice() { CHECK(device.validation_messages() == 0); }
   gpu::Device device;
 };
@@ -38,6 +40,14 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// Keeps a test's shaders out of the user's disk cache, and old SPIR-V out of the test.
+struct OwnCache {
+  OwnCache() { setenv("XDG_CACHE_HOME", folder.path().c_str(), 1); }
+  ~OwnCache() { unsetenv("XDG_CACHE_HOME"); }
+  TemporaryFolder folder;
+};
+inline const OwnCache own_cache;
 
 /// The message of the Error that `call` throws, or "no error".
 template <class Call>
