@@ -14,8 +14,10 @@ buffer Target { float target[]; };
 
 float never_called(int i) { return unused[i] + texelFetch(unused_texels, i).x; }
 
+void store(uint i, float value) { target[i] = value; }
+
 void main() {
   uint i = global_index();
   if (i >= push.count) return;
-  target[i] = source[i] * push.factor + k_offset;
+  store(i, source[i] * push.factor + k_offset);
 }
