@@ -60,6 +60,30 @@ bool is_folder(const std::string& path) {
   return fs::is_directory(path, error);
 }
 
+/// Tab puts the marked entry into the field, or what all entries share; arrows mark. Works on the text as it
+/// is at this moment, which may be newer than the list on the screen.
+int complete_field(ImGuiInputTextCallbackData* data) {
+  auto& dialog = *static_cast<Dialog*>(data->UserData);
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) dialog.marked = -1;
+  const auto list = completions(expanded(data->Buf), dialog.purpose == Dialog::Purpose::open);
+  if (list.empty()) return 0;
+  const int last = static_cast<int>(list.size()) - 1;
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory)
+    dialog.marked = std::clamp(dialog.marked + (data->EventKey == ImGuiKey_DownArrow ? 1 : -1), 0, last);
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) {
+    std::string common = list[static_cast<size_t>(std::clamp(dialog.marked, 0, last))].path;
+    if (dialog.marked < 0)
+      for (const Completion& c : list) {
+        const auto differ = std::mismatch(common.begin(), common.end(), c.path.begin(), c.path.end());
+        common.erase(differ.first, common.end());
+      }
+    data->DeleteChars(0, data->BufTextLen);
+    data->InsertChars(0, common.c_str());
+    dialog.marked = -1;
+  }
+  return 0;
+}
+
 void file_dialog(Ui& ui) {
   Dialog& dialog = ui.dialog;
   if (dialog.purpose == Dialog::Purpose::none) return;
@@ -78,45 +102,29 @@ void file_dialog(Ui& ui) {
           title, nullptr,
           ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
     label(open ? "Open a scene" : "Save the picture", colour::text, theme().fonts.strong);
-    label(open ? "A .gltf or .glb file. Tab completes; arrows choose."
-               : ".exr holds all layers as floats; .png what is shown, through exposure and tone curve.",
-          colour::text_dim, theme().fonts.small);
+    std::error_code ignored;
+    if (open)
+      label("A .gltf or .glb file. Tab completes; arrows choose.", colour::text_dim, theme().fonts.small);
+    else if (fs::is_regular_file(expanded(dialog.path), ignored))
+      label("A file of that name exists and will be replaced.", colour::warning, theme().fonts.small);
+    else
+      label(".exr holds all layers as floats; .png what is shown, through exposure and tone curve.",
+            colour::text_dim, theme().fonts.small);
     ImGui::SetNextItemWidth(-1);
-    if (dialog.focus) ImGui::SetKeyboardFocusHere();
+    if (dialog.focus) ImGui::SetKeyboardFocusHere(), dialog.to_end = true;
     dialog.focus = false;
     const std::vector<Completion> list = completions(expanded(dialog.path), open);
-    const bool entered = ImGui::InputText(
-        "##path", &dialog.path,
-        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
-            ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackEdit,
-        [](ImGuiInputTextCallbackData* data) {
-          auto& [d, entries] =
-              *static_cast<std::pair<Dialog*, const std::vector<Completion>*>*>(data->UserData);
-          const int count = static_cast<int>(entries->size());
-          if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) d->marked = -1;
-          if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory && count > 0)
-            d->marked = std::clamp(d->marked + (data->EventKey == ImGuiKey_DownArrow ? 1 : -1), 0, count - 1);
-          if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion && count > 0) {
-            // The marked entry, or what all of them share.
-            std::string common = (*entries)[0].path;
-            if (d->marked >= 0)
-              common = (*entries)[static_cast<size_t>(std::min(d->marked, count - 1))].path;
-            else
-              for (const Completion& c : *entries) {
-                const auto differ = std::mismatch(common.begin(), common.end(), c.path.begin(), c.path.end());
-                common.erase(differ.first, common.end());
-              }
-            data->DeleteChars(0, data->BufTextLen);
-            data->InsertChars(0, common.c_str());
-            d->marked = -1;
-          }
-          return 0;
-        },
-        [&]() -> void* {
-          static std::pair<Dialog*, const std::vector<Completion>*> data;
-          data = {&dialog, &list};
-          return &data;
-        }());
+    const bool entered =
+        ImGui::InputText("##path", &dialog.path,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
+                             ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackEdit,
+                         complete_field, &dialog);
+    // Focus selects all; one wants to go on typing behind the last slash.
+    if (ImGuiInputTextState* field = ImGui::GetInputTextState(ImGui::GetItemID());
+        field && dialog.to_end && ImGui::IsItemActive()) {
+      field->Stb.cursor = field->Stb.select_start = field->Stb.select_end = field->CurLenW;
+      dialog.to_end = false;
+    }
     const float rows = 7 * px(24);
     std::string chosen;
     ImGui::BeginChild("##completions", {0, rows});

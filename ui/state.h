@@ -64,9 +64,10 @@ struct Selection {
 struct Dialog {
   enum class Purpose { none, open, save } purpose = Purpose::none;
   std::string path;
-  bool fresh = false;  ///< to be opened in the next frame
-  bool focus = false;  ///< its field takes the keyboard in the next frame
-  int marked = -1;     ///< entry of the completion list
+  bool fresh = false;   ///< to be opened in the next frame
+  bool focus = false;   ///< its field takes the keyboard in the next frame
+  bool to_end = false;  ///< the cursor goes behind the text once the field has the keyboard
+  int marked = -1;      ///< entry of the completion list
 };
 
 struct Ui {

@@ -21,6 +21,7 @@ struct Window::Events {
   bool any = false, rescaled = false;
   std::vector<std::string> dropped;
   std::vector<Key> keys;
+  std::vector<int> quick;  // pressed since the last frame, perhaps released already
   std::string error;
 };
 
@@ -56,6 +57,11 @@ Window::Window(int width, int height, bool hidden, float scale) : events_(new Ev
     if (const GLFWvidmode* mode = glfwGetVideoMode(monitor); mode && mode->refreshRate > 0)
       refresh_seconds_ = 1.0 / mode->refreshRate;
 
+  // A processor that draws by itself is shared with the renderer: half the rate leaves it more.
+  const char* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  for (const char* software : {"llvmpipe", "softpipe", "swrast"})
+    if (renderer && std::strstr(renderer, software)) refresh_seconds_ = std::max(refresh_seconds_, 1.0 / 30);
+
   // Ours first; ImGui's backend chains them.
   glfwSetWindowUserPointer(window_, events_);
   const auto mark = [](GLFWwindow* w) { static_cast<Events*>(glfwGetWindowUserPointer(w))->any = true; };
@@ -65,7 +71,11 @@ Window::Window(int width, int height, bool hidden, float scale) : events_(new Ev
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int, int, int) { note(w); });
   glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double) { note(w); });
   glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int mods) {
-    if (action == GLFW_PRESS) static_cast<Events*>(glfwGetWindowUserPointer(w))->keys.push_back({key, mods});
+    if (action == GLFW_PRESS) {
+      auto* events = static_cast<Events*>(glfwGetWindowUserPointer(w));
+      events->keys.push_back({key, mods});
+      if (key >= 0) events->quick.push_back(key);
+    }
     note(w);
   });
   glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned) { note(w); });
@@ -137,7 +147,13 @@ void Window::begin_frame() {
   if (std::exchange(events_->rescaled, false)) follow_scale();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  // A key that went down and up between two frames is down for this one, or its press would be lost.
+  ImGuiIO& io = ImGui::GetIO();
+  std::vector<int> revived;
+  for (int key : std::exchange(events_->quick, {}))
+    if (!io.KeysDown[key]) io.KeysDown[key] = true, revived.push_back(key);
   ImGui::NewFrame();
+  for (int key : revived) io.KeysDown[key] = false;
 }
 
 void Window::end_frame() {

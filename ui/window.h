@@ -40,7 +40,7 @@ class Window {
   std::vector<Key> pressed();
   /// Files dropped since the last call.
   std::vector<std::string> dropped();
-  double refresh_seconds() const { return refresh_seconds_; }  ///< of the display
+  double refresh_seconds() const { return refresh_seconds_; }  ///< least time between frames
   /// Ends a wait(); callable from any thread.
   static void wake();
 

@@ -3,6 +3,7 @@
 // under a display.
 #include "fake_session.h"
 #include "support.h"
+#include "ui/layout.h"
 #include "ui/script.h"
 #include "ui/viewer.h"
 
@@ -62,6 +63,29 @@ TEST_CASE("a script is checked before it runs") {
   CHECK(ui::parse_script({"load \"a file.gltf\""}, "s")[0].text[0] == "a file.gltf");
 }
 
+TEST_CASE("the parts of the window tile it and leave room for the picture") {
+  for (const auto& [width, height, scale] :
+       {std::array{1440.0f, 900.0f, 1.0f}, {1100.0f, 700.0f, 1.0f}, {2200.0f, 1400.0f, 2.0f}})
+    for (int folds = 0; folds < 8; ++folds) {
+      ui::Layout layout;
+      layout.left = 4000, layout.right = 10, layout.bottom = 3000;  // what splitters may ask for
+      layout.left_open = folds & 1, layout.right_open = folds & 2, layout.bottom_open = folds & 4;
+      const ui::Areas areas = ui::arrange(layout, {width, height}, scale);
+      float covered = 0;
+      for (const ui::Area& a :
+           {areas.bar, areas.left, areas.toolbar, areas.picture, areas.right, areas.timings, areas.log}) {
+        CHECK(a.width() > 0);
+        CHECK(a.height() > 0);
+        covered += a.width() * a.height();
+      }
+      CHECK(covered == Approx(width * height));
+      CHECK(areas.picture.width() >= ui::k_least_picture_width * scale - 1);
+      CHECK(areas.picture.height() >= ui::k_least_picture_height * scale - 1);
+      layout.panels = false;
+      CHECK(ui::arrange(layout, {width, height}, scale).picture.width() == width);
+    }
+}
+
 TEST_CASE("percentiles") {
   CHECK(ui::percentile({}, 0.5) == 0);
   CHECK(ui::percentile({4, 1, 3, 2, 5}, 0.5) == 3);
@@ -108,10 +132,10 @@ TEST_CASE("an error is shown over the old scene, and a script that fails says wh
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const test::Picture strip(a), without(b);
-  const vec3 red = strip.at(500, 70 + 10), below = strip.at(500, 400);
+  const vec3 red = strip.at(1084, 72), below = strip.at(500, 400);
   CHECK(red.x > 1.5f * red.y);                               // the strip
   CHECK(std::abs(below.x - without.at(500, 400).x) < 0.2f);  // the scene stays
-  CHECK(without.at(500, 80).x < 1.5f * without.at(500, 80).y);
+  CHECK(without.at(1084, 72).x < 1.5f * without.at(1084, 72).y);
 
   const auto failed = window("missing.gltf", "wait_scene\nquit\n");
   INFO(failed.output);

@@ -1,0 +1,76 @@
+// links: film_io
+// The program as a person starts it: a window, a scene, a few samples, a screenshot, the end.
+#include "support.h"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+using namespace lucerna;
+
+namespace {
+
+bool available() {
+  if (!std::filesystem::exists(LUCERNA_BINARY)) {
+    WARN("skipped: the program is not built");
+    return false;
+  }
+  if (test::with_display("x").empty()) {
+    WARN("skipped: neither a display nor xvfb-run");
+    return false;
+  }
+  return true;
+}
+
+test::Outcome viewer(const test::Folder& folder, const std::string& arguments, const std::string& steps) {
+  const auto script = folder.path / "steps.txt";
+  std::ofstream(script) << steps;
+  return test::run(
+      test::with_display(std::string(LUCERNA_BINARY) + " " + arguments + " --script " + script.string()),
+      400);
+}
+
+}  // namespace
+
+TEST_CASE("the viewer starts, renders cornell, saves a screenshot and quits") {
+  if (!available()) return;
+  const test::Folder folder;
+  const auto png = folder.path / "window.png";
+  const auto outcome =
+      viewer(folder, "scenes/cornell/cornell.gltf",
+             "size 1100 700\nwait_scene\nwait_samples 1\norbit 0.05 0\nwait_samples 1\nscreenshot " +
+                 png.string() + "\nquit 0\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  const test::Picture window(png);
+  CHECK(window.image.width == 1100);
+  CHECK(window.image.height == 700);
+  CHECK(window.contrast(300, 80, 780, 480) > 0.05);  // the box, lit
+  CHECK(window.contrast(10, 40, 270, 400) > 0.02);   // the panel
+  // Cornell's left wall is red and its right wall green: the picture stands the right way round.
+  double red = 0, green = 0;
+  for (uint32_t y = 200; y < 360; ++y)
+    for (uint32_t x = 0; x < 524; ++x) {
+      const vec3 c = window.at(280 + x, y);
+      if (c.x > 2 * c.y && c.x > 0.05f) red += x < 262 ? 1 : -1;
+      if (c.y > 2 * c.x && c.y > 0.05f) green += x >= 262 ? 1 : -1;
+    }
+  CHECK(red > 500);
+  CHECK(green > 500);
+}
+
+TEST_CASE("a scene that is not there is an error in the window, and the script's failure the exit status") {
+  if (!available()) return;
+  const test::Folder folder;
+  const auto png = folder.path / "window.png";
+  const auto shown = viewer(folder, "no/such/scene.gltf", "wait 2\nscreenshot " + png.string() + "\nquit\n");
+  INFO(shown.output);
+  REQUIRE(shown.status == 0);
+  CHECK_THAT(shown.output, Catch::Contains("no/such/scene.gltf"));
+  const test::Picture window(png);
+  const vec3 strip = window.at(1084, 72);
+  CHECK(strip.x > 1.5f * strip.y);
+
+  const auto failed = viewer(folder, "no/such/scene.gltf", "wait_scene\nquit\n");
+  INFO(failed.output);
+  CHECK(failed.status == 1);
+}
