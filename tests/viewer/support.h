@@ -4,11 +4,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
 
+#include "base/math.h"
 #include "film/io/image_file.h"
 
 namespace lucerna::test {
