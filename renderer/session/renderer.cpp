@@ -282,12 +282,12 @@ film::FilmImage Renderer::film_image() const {
   add("N.", "XYZ", image.normal);
   out.channels.emplace_back("Z", image.depth);
   out.channels.emplace_back("samples", std::vector<float>(image.samples.begin(), image.samples.end()));
-  out.metadata["lucerna:version"] = LUCERNA_VERSION;
-  out.metadata["lucerna:settings"] = settings_.changed_json();
-  out.metadata["lucerna:seed"] = settings_.text("seed");
-  out.metadata["lucerna:device"] = device_->info().name;
-  out.metadata["lucerna:tracer"] = tracer_name();
-  out.metadata["lucerna:scene"] = scene_->name;
+  out.metadata["version"] = LUCERNA_VERSION;
+  out.metadata["settings"] = settings_.changed_json();
+  out.metadata["seed"] = settings_.text("seed");
+  out.metadata["device"] = device_->info().name;
+  out.metadata["tracer"] = tracer_name();
+  out.metadata["scene"] = scene_->name;
   return out;
 }
 

@@ -135,7 +135,7 @@ LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail) {
     n = normalize(n / max(max3(abs(n)), 1e-37));
     s.normal = dot(n, s.direction) > 0.0 ? -n : n;
     s.target = p;
-    s.offset = error_gamma(16.0) * (abs(p0) + abs(p1) + abs(p2)) + error_gamma(6.0) * (abs(p1 - p0) + abs(p2 - p0));
+    s.offset = error_gamma(8.0) * (abs(p0) + abs(p1) + abs(p2)) + vec3(error_gamma(16.0) * max(max3(abs(p1 - p0)), max3(abs(p2 - p0))));
     float cos_light = abs(dot(n, s.direction));
     s.pdf = pmf * d2 / max(cos_light * head.z, 1e-30);
     s.delta = false;

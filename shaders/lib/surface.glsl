@@ -66,11 +66,12 @@ Surface make_surface(Ray ray, Hit hit) {
   vec2 uv = barycentrics(ray.origin, ray.direction, a0.xyz, a1.xyz, a2.xyz);
   float w = 1.0 - uv.x - uv.y;
   s.position = w * a0.xyz + uv.x * a1.xyz + uv.y * a2.xyz;
-  // pbrt's bound for interpolation is gamma(7) of the summed magnitudes; as much again, and one more for the
-  // intersection of the next ray (whose vertices are translated to this origin), keeps neighbours of the plane out.
+  // pbrt's bound for interpolation is gamma(7) of the summed magnitudes, component by component. The next ray's test of
+  // this plane's triangles mixes the components (it shears them along the ray), with errors in proportion to the largest
+  // distance from here to a vertex; a floor at height exactly 0 has no error of the first kind but all of the second.
   vec3 magnitude = abs(w * a0.xyz) + abs(uv.x * a1.xyz) + abs(uv.y * a2.xyz);
-  vec3 extent = max(abs(a1.xyz - a0.xyz), abs(a2.xyz - a0.xyz));
-  s.offset = error_gamma(16.0) * magnitude + error_gamma(6.0) * extent;
+  vec3 extent = max(abs(a0.xyz - s.position), max(abs(a1.xyz - s.position), abs(a2.xyz - s.position)));
+  s.offset = error_gamma(8.0) * magnitude + vec3(error_gamma(16.0) * max3(extent));
   bool flipped = (tri.w & k_triangle_flipped) != 0u;
   vec3 cross_n = cross(a1.xyz - a0.xyz, a2.xyz - a0.xyz);
   s.normal_g = normalize(cross_n / max(max3(abs(cross_n)), 1e-37));
