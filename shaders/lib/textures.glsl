@@ -60,47 +60,47 @@ vec4 texture_fetch(sampler2DArray bucket, uint bits, vec2 uv) {
   return textureLod(bucket, vec3(uv, float(bits & 0x7ffu)), 0.0);
 }
 
-#define LUCERNA_BUCKET_READ(N) \
-  for (uint go = bucket == N##u ? 1u : 0u; go > 0u; go -= min(frame.width, 1u)) texel = texture_fetch(texture_bucket_##N, bits, uv);
+#define LUCERNA_BUCKET_READ(number, array) \
+  for (uint go = bucket == number ? 1u : 0u; go > 0u; go -= min(frame.width, 1u)) texel = texture_fetch(array, bits, uv);
 
 vec4 texture_read(uint bits, vec2 uv) {
   vec4 texel = vec4(1.0);
   uint bucket = (bits & k_texture_present) != 0u ? (bits >> 11) & 31u : 31u;
 #if LUCERNA_BUCKETS > 0
-  LUCERNA_BUCKET_READ(0)
+  LUCERNA_BUCKET_READ(0u, texture_bucket_0)
 #endif
 #if LUCERNA_BUCKETS > 1
-  LUCERNA_BUCKET_READ(1)
+  LUCERNA_BUCKET_READ(1u, texture_bucket_1)
 #endif
 #if LUCERNA_BUCKETS > 2
-  LUCERNA_BUCKET_READ(2)
+  LUCERNA_BUCKET_READ(2u, texture_bucket_2)
 #endif
 #if LUCERNA_BUCKETS > 3
-  LUCERNA_BUCKET_READ(3)
+  LUCERNA_BUCKET_READ(3u, texture_bucket_3)
 #endif
 #if LUCERNA_BUCKETS > 4
-  LUCERNA_BUCKET_READ(4)
+  LUCERNA_BUCKET_READ(4u, texture_bucket_4)
 #endif
 #if LUCERNA_BUCKETS > 5
-  LUCERNA_BUCKET_READ(5)
+  LUCERNA_BUCKET_READ(5u, texture_bucket_5)
 #endif
 #if LUCERNA_BUCKETS > 6
-  LUCERNA_BUCKET_READ(6)
+  LUCERNA_BUCKET_READ(6u, texture_bucket_6)
 #endif
 #if LUCERNA_BUCKETS > 7
-  LUCERNA_BUCKET_READ(7)
+  LUCERNA_BUCKET_READ(7u, texture_bucket_7)
 #endif
 #if LUCERNA_BUCKETS > 8
-  LUCERNA_BUCKET_READ(8)
+  LUCERNA_BUCKET_READ(8u, texture_bucket_8)
 #endif
 #if LUCERNA_BUCKETS > 9
-  LUCERNA_BUCKET_READ(9)
+  LUCERNA_BUCKET_READ(9u, texture_bucket_9)
 #endif
 #if LUCERNA_BUCKETS > 10
-  LUCERNA_BUCKET_READ(10)
+  LUCERNA_BUCKET_READ(10u, texture_bucket_10)
 #endif
 #if LUCERNA_BUCKETS > 11
-  LUCERNA_BUCKET_READ(11)
+  LUCERNA_BUCKET_READ(11u, texture_bucket_11)
 #endif
   return texel;
 }
