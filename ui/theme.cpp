@@ -162,7 +162,7 @@ void apply_theme(float scale) {
   t.fonts.strong = add_font("SemiBold", 14, scale);
   t.fonts.small = add_font("Regular", 12, scale);
   t.fonts.caps = add_font("SemiBold", 11, scale);
-  t.fonts.large = add_font("Light", 22, scale);
+  t.fonts.large = add_font("Regular", 22, scale);
   atlas->Build();
   for (ImFont* font : {t.fonts.regular, t.fonts.strong, t.fonts.small, t.fonts.caps, t.fonts.large})
     make_tabular(font);

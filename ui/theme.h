@@ -39,7 +39,7 @@ struct Fonts {
   ImFont* strong = nullptr;   ///< 14 px, semi-bold
   ImFont* small = nullptr;    ///< 12 px
   ImFont* caps = nullptr;     ///< 11 px semi-bold, for headings in capitals
-  ImFont* large = nullptr;    ///< 22 px, light; the empty window
+  ImFont* large = nullptr;    ///< 22 px; the empty window
 };
 
 struct Theme {
