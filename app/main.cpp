@@ -8,9 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "plan/settings.h"
-#if __has_include("ui/viewer.h")
 #include "ui/viewer.h"
-#endif
 
 namespace lucerna::app {
 namespace {
@@ -81,20 +79,16 @@ int main_checked(int argc, char** argv) {
   if (*info_verb) return info(info_scene, info_json);
   if (*devices_verb) return devices(devices_json);
   if (*compare_verb) return compare(c);
-#if __has_include("ui/viewer.h")
   session::Session session({.device = device, .validation = false, .shaders = {}});
   ui::ViewerOptions options;
   options.scene = scene;
   if (!script.empty()) {
     std::ifstream in(script);
     if (!in) throw Error(script, "cannot be read");
-    for (std::string line; std::getline(in, line);)
-      if (!line.empty() && line[0] != '#') options.script.push_back(line);
+    for (std::string line; std::getline(in, line);) options.script.push_back(line);
+    options.script_name = script;
   }
   return ui::run_viewer(session, options);
-#else
-  throw Error("viewer", "this build has no window; use 'lucerna render'");
-#endif
 }
 
 }  // namespace
