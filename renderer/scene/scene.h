@@ -86,7 +86,7 @@ struct Primitive {
   std::vector<vec2> uv0, uv1;
   std::vector<vec4> colors;         ///< COLOR_0, linear; multiplies base_color
   std::vector<uvec3> triangles;
-  Id material = 0;                  ///< always valid; Scene::materials[0] is glTF's default material if one is needed
+  Id material = 0;                  ///< always valid; glTF's default material is added where a primitive has none
 };
 
 struct Mesh {
@@ -149,6 +149,8 @@ struct Scene {
   /// Render settings given beside the scene (settings.json), key -> value as text, in file order; checked by plan/.
   std::vector<std::pair<std::string, std::string>> settings;
   std::vector<std::string> warnings;  ///< what loading had to mend or leave out, one line each
+  std::vector<std::string> extensions;          ///< glTF extensions that the file uses and that are honoured, sorted
+  std::vector<std::string> unknown_extensions;  ///< those that are ignored (a warning each), sorted
 };
 
 /// World-space bounds of all instances; empty for a scene without triangles.

@@ -1,81 +1,209 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "scene/io/load.h"
 
 namespace lucerna::scene {
 namespace {
 
-nlohmann::ordered_json triple(const vec3& v) { return {v.x, v.y, v.z}; }
-const char* kind_name(LightKind k) { return k == LightKind::point ? "point" : k == LightKind::spot ? "spot" : "directional"; }
+using Json = nlohmann::ordered_json;
 
+Json rgb(const vec3& v) { return {v.x, v.y, v.z}; }
+
+// What a person would call the material.
 std::string kind_of(const Material& m) {
-  std::string kind = m.unlit ? "unlit" : m.transmission > 0 ? (m.thickness > 0 ? "glass" : "thin glass") : m.metallic > 0.5f ? "metal" : m.specular > 0 ? "dielectric" : "Lambertian";
-  if (luminance(m.emission) > 0) kind += ", emits";
-  if (m.alpha_mode == AlphaMode::mask) kind += ", mask";
-  if (m.alpha_mode == AlphaMode::blend) kind += ", blend";
-  if (m.diffuse_transmission > 0) kind += ", translucent";
+  if (m.unlit) return "unlit";
+  std::string kind;
+  if (m.transmission > 0)
+    kind = m.thickness > 0 ? "glass, solid" : "glass, thin wall";
+  else if (m.metallic >= 1 && !m.metallic_roughness_texture)
+    kind = "metal";
+  else if (m.metallic > 0)
+    kind = m.metallic_roughness_texture ? "metal or dielectric by texture" : "metal and dielectric mixed";
+  else if (m.diffuse_transmission > 0)
+    kind = "diffuse transmission";
+  else if (m.specular == 0 && m.roughness >= 1)
+    kind = "matt";
+  else
+    kind = "dielectric";
+  if (m.emission != vec3(0)) kind += ", emitter";
+  if (m.alpha_mode == AlphaMode::mask) kind += ", alpha mask";
+  if (m.alpha_mode == AlphaMode::blend) kind += ", alpha blend";
   return kind;
+}
+
+size_t bytes_of(const Image& image) { return image.bytes.size() + image.floats.size() * sizeof(float); }
+
+const char* wrap_name(Wrap wrap) {
+  return wrap == Wrap::clamp ? "clamp" : wrap == Wrap::mirror ? "mirror" : "repeat";
+}
+
+const char* kind_name(LightKind kind) {
+  return kind == LightKind::point ? "point" : kind == LightKind::spot ? "spot" : "directional";
+}
+
+Json describe_materials(const Scene& scene) {
+  Json list = Json::array();
+  for (const Material& m : scene.materials) {
+    Json item{{"name", m.name}, {"kind", kind_of(m)}};
+    Json textures = Json::object();
+    const std::pair<const char*, const TextureUse*> uses[] = {
+        {"base_color", &m.base_color_texture},
+        {"metallic_roughness", &m.metallic_roughness_texture},
+        {"normal", &m.normal_texture},
+        {"emission", &m.emission_texture},
+        {"specular", &m.specular_texture},
+        {"specular_color", &m.specular_color_texture},
+        {"transmission", &m.transmission_texture},
+        {"diffuse_transmission", &m.diffuse_transmission_texture},
+        {"diffuse_transmission_color", &m.diffuse_transmission_color_texture}};
+    for (const auto& [name, use] : uses)
+      if (*use) textures[name] = use->texture;
+    if (!textures.empty()) item["textures"] = textures;
+    if (m.emission != vec3(0)) item["emission"] = rgb(m.emission);
+    list.push_back(item);
+  }
+  return list;
+}
+
+Json describe_lights(const Scene& scene) {
+  Json list = Json::array();
+  for (const Light& light : scene.lights) {
+    Json item{{"name", light.name}, {"kind", kind_name(light.kind)}, {"intensity", rgb(light.intensity)}};
+    if (light.kind != LightKind::directional) item["position"] = rgb(light.position);
+    if (light.kind != LightKind::point) item["direction"] = rgb(light.direction);
+    if (light.kind == LightKind::spot)
+      item["cone_degrees"] = {glm::degrees(light.inner_cone), glm::degrees(light.outer_cone)};
+    list.push_back(item);
+  }
+  return list;
+}
+
+Json describe_cameras(const Scene& scene) {
+  Json list = Json::array();
+  for (const Camera& camera : scene.cameras) {
+    Json item{{"name", camera.name}, {"kind", camera.orthographic ? "orthographic" : "perspective"}};
+    if (camera.orthographic)
+      item["half_size"] = {camera.xmag, camera.ymag};
+    else
+      item["yfov_degrees"] = glm::degrees(camera.yfov);
+    if (camera.aspect > 0) item["aspect"] = camera.aspect;
+    item["position"] = rgb(vec3(camera.to_world[3]));
+    list.push_back(item);
+  }
+  return list;
 }
 
 }  // namespace
 
 nlohmann::ordered_json describe(const Scene& scene) {
-  nlohmann::ordered_json j;
-  j["file"] = scene.file;
-  j["triangles"] = count_triangles(scene);
-  uint64_t unique = 0, vertices = 0;
-  for (const Mesh& m : scene.meshes)
-    for (const Primitive& p : m.primitives) unique += p.triangles.size(), vertices += p.positions.size();
-  j["unique_triangles"] = unique;
-  j["vertices"] = vertices;
-  j["meshes"] = scene.meshes.size();
-  j["instances"] = scene.instances.size();
-  const Box box = bounds(scene);
-  if (!box.empty()) j["bounds"] = {triple(box.lo), triple(box.hi)};
-  j["materials"] = nlohmann::ordered_json::array();
-  std::set<Id> used;
-  for (const Mesh& m : scene.meshes)
-    for (const Primitive& p : m.primitives) used.insert(p.material);
-  for (Id i : used) j["materials"].push_back({{"name", scene.materials[i].name}, {"kind", kind_of(scene.materials[i])}});
-  j["textures"] = scene.textures.size();
-  uint64_t bytes = 0;
-  j["images"] = nlohmann::ordered_json::array();
-  for (const Image& i : scene.images) {
-    if (i.name == "white") continue;
-    bytes += i.bytes.size() + 4 * i.floats.size();
-    j["images"].push_back({{"name", i.name}, {"width", i.width}, {"height", i.height}});
+  Json out;
+  out["name"] = scene.name;
+  out["file"] = scene.file;
+  uint64_t vertices = 0, emissive = 0;
+  size_t primitives = 0;
+  for (const Mesh& mesh : scene.meshes) {
+    primitives += mesh.primitives.size();
+    for (const Primitive& primitive : mesh.primitives) vertices += primitive.positions.size();
   }
-  j["image_mb"] = double(bytes) / (1 << 20);
-  j["lights"] = nlohmann::ordered_json::array();
-  for (const Light& l : scene.lights) j["lights"].push_back({{"name", l.name}, {"kind", kind_name(l.kind)}, {"intensity", triple(l.intensity)}});
-  j["cameras"] = nlohmann::ordered_json::array();
-  for (const Camera& c : scene.cameras)
-    j["cameras"].push_back({{"name", c.name}, {"kind", c.orthographic ? "orthographic" : "perspective"}, {"yfov_degrees", c.yfov * 180 / k_pi}});
-  if (scene.environment.image != k_none) j["environment"] = {{"file", scene.environment.file}, {"scale", scene.environment.scale}, {"rotation", scene.environment.rotation}};
-  else j["environment"] = {{"radiance", triple(scene.environment.radiance)}};
-  for (const auto& [key, value] : scene.settings) j["settings"][key] = value;
-  j["warnings"] = scene.warnings;
-  return j;
+  for (const Instance& instance : scene.instances)
+    for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
+      const Material& m = scene.materials[primitive.material];
+      if (m.emission != vec3(0) && !m.unlit) emissive += primitive.triangles.size();
+    }
+  out["triangles"] = count_triangles(scene);
+  out["emissive_triangles"] = emissive;
+  out["vertices"] = vertices;
+  out["instances"] = scene.instances.size();
+  out["meshes"] = scene.meshes.size();
+  out["primitives"] = primitives;
+  out["materials"] = describe_materials(scene);
+  out["images"] = Json::array();
+  size_t memory = 0;
+  for (const Image& image : scene.images) {
+    memory += bytes_of(image);
+    out["images"].push_back({{"name", image.name},
+                             {"width", image.width},
+                             {"height", image.height},
+                             {"format", image.floats.empty() ? "8 bit" : "float"},
+                             {"bytes", bytes_of(image)}});
+  }
+  out["image_bytes"] = memory;
+  out["textures"] = Json::array();
+  for (const Texture& texture : scene.textures)
+    out["textures"].push_back({{"image", texture.image},
+                               {"srgb", texture.srgb},
+                               {"wrap", {wrap_name(texture.wrap_u), wrap_name(texture.wrap_v)}},
+                               {"nearest", texture.nearest}});
+  out["lights"] = describe_lights(scene);
+  out["cameras"] = describe_cameras(scene);
+  const Environment& e = scene.environment;
+  if (e.image != k_none)
+    out["environment"] = {{"file", e.file},
+                          {"scale", e.scale},
+                          {"rotation", e.rotation},
+                          {"width", scene.images[e.image].width},
+                          {"height", scene.images[e.image].height}};
+  else if (e.radiance != vec3(0))
+    out["environment"] = {{"radiance", rgb(e.radiance)}, {"scale", e.scale}};
+  else
+    out["environment"] = nullptr;
+  out["extensions"] = scene.extensions;
+  out["unknown_extensions"] = scene.unknown_extensions;
+  const Box box = bounds(scene);
+  if (box.empty())
+    out["bounds"] = nullptr;
+  else
+    out["bounds"] = {{"lo", rgb(box.lo)}, {"hi", rgb(box.hi)}};
+  out["settings"] = Json::object();
+  for (const auto& [key, value] : scene.settings) out["settings"][key] = value;
+  out["warnings"] = scene.warnings;
+  return out;
 }
 
 std::string describe_text(const Scene& scene) {
-  const nlohmann::ordered_json j = describe(scene);
-  std::string out = fmt::format("{}\n  {} triangles ({} unique), {} vertices, {} meshes, {} instances\n", scene.file, j["triangles"].get<uint64_t>(),
-                                j["unique_triangles"].get<uint64_t>(), j["vertices"].get<uint64_t>(), scene.meshes.size(), scene.instances.size());
-  if (const Box box = bounds(scene); !box.empty())
-    out += fmt::format("  {:.2f} x {:.2f} x {:.2f} m, from ({:.2f}, {:.2f}, {:.2f})\n", box.size().x, box.size().y, box.size().z, box.lo.x, box.lo.y, box.lo.z);
-  for (const auto& m : j["materials"]) out += fmt::format("  material  {}: {}\n", m["name"].get<std::string>(), m["kind"].get<std::string>());
-  for (const auto& i : j["images"]) out += fmt::format("  image     {}: {}x{}\n", i["name"].get<std::string>(), i["width"].get<int>(), i["height"].get<int>());
-  for (const Light& l : scene.lights)
-    out += fmt::format("  light     {}: {}, intensity ({:.3g}, {:.3g}, {:.3g})\n", l.name, kind_name(l.kind), l.intensity.x, l.intensity.y, l.intensity.z);
-  for (const Camera& c : scene.cameras) out += fmt::format("  camera    {}: {}\n", c.name, c.orthographic ? "orthographic" : fmt::format("perspective, {:.1f} degrees", c.yfov * 180 / k_pi));
+  const Json d = describe(scene);
+  std::string text;
+  const auto line = [&text]<class... A>(fmt::format_string<A...> f, A&&... a) {
+    text += fmt::format(f, std::forward<A>(a)...) + "\n";
+  };
+  const auto number = [&d](const char* key) { return d[key].get<uint64_t>(); };
+  const auto name = [](const Json& item) { return item["name"].get<std::string>(); };
+  const auto kind = [](const Json& item) { return item["kind"].get<std::string>(); };
+  const auto triple = [](const Json& v) {
+    return fmt::format("{:.4g} {:.4g} {:.4g}", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+  };
+  line("{}", scene.file);
+  line("triangles    {} ({} emissive), from {} vertices in {} meshes ({} primitives), {} instances",
+       number("triangles"), number("emissive_triangles"), number("vertices"), number("meshes"),
+       number("primitives"), number("instances"));
+  if (!d["bounds"].is_null())
+    line("bounds       {} to {} m", triple(d["bounds"]["lo"]), triple(d["bounds"]["hi"]));
+  line("materials    {}", d["materials"].size());
+  for (const Json& m : d["materials"]) line("  {}: {}", name(m), kind(m));
+  line("images       {}, {:.1f} MiB; {} textures", d["images"].size(),
+       static_cast<double>(number("image_bytes")) / (1 << 20), d["textures"].size());
+  for (const Json& image : d["images"])
+    line("  {}: {} x {}, {}, {:.2f} MiB", name(image), image["width"].get<int>(), image["height"].get<int>(),
+         image["format"].get<std::string>(), image["bytes"].get<double>() / (1 << 20));
+  line("lights       {}", d["lights"].size());
+  for (const Json& light : d["lights"])
+    line("  {}: {}, {}", name(light), kind(light), triple(light["intensity"]));
+  line("cameras      {}", d["cameras"].size());
+  for (const Json& camera : d["cameras"]) line("  {}: {}", name(camera), kind(camera));
   const Environment& e = scene.environment;
-  if (e.image != k_none) out += fmt::format("  environment {}, scale {}, rotation {} degrees\n", e.file, e.scale, e.rotation);
-  else out += fmt::format("  environment radiance ({:.3g}, {:.3g}, {:.3g})\n", e.radiance.x, e.radiance.y, e.radiance.z);
-  for (const auto& [key, value] : scene.settings) out += fmt::format("  setting   {} = {}\n", key, value);
-  for (const std::string& w : scene.warnings) out += fmt::format("  warning   {}\n", w);
-  return out;
+  if (e.image != k_none)
+    line("environment  {} ({} x {}), scale {}, rotation {}", e.file, scene.images[e.image].width,
+         scene.images[e.image].height, e.scale, e.rotation);
+  else
+    line("environment  {}",
+         d["environment"].is_null() ? "none" : "radiance " + triple(d["environment"]["radiance"]));
+  line("extensions   {}",
+       scene.extensions.empty() ? "none" : fmt::format("{}", fmt::join(scene.extensions, ", ")));
+  if (!scene.unknown_extensions.empty()) line("unknown      {}", fmt::join(scene.unknown_extensions, ", "));
+  for (const auto& [key, value] : scene.settings) line("setting      {} = {}", key, value);
+  for (const std::string& warning : scene.warnings) line("warning      {}", warning);
+  return text;
 }
 
 }  // namespace lucerna::scene

@@ -1,44 +1,71 @@
 #pragma once
-// Shared by the parts of the loader: the parsed file, checked access to its accessors, and the warnings.
-#include <tiny_gltf.h>
-
+// A glTF file as read and checked, before anything is made of it.
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#include <tiny_gltf.h>
+
+#include "scene/io/json.h"
 #include "scene/io/load.h"
 
-namespace lucerna::scene::io {
+namespace lucerna::scene {
 
-struct Document {
-  std::filesystem::path file;
-  tinygltf::Model model;
-  std::map<std::string, uint64_t> counted;  ///< warning text with {} -> count
+/// Counted warnings: each kind is one line of the scene, whatever the number of cases.
+class Warnings {
+ public:
+  /// Adds `count` cases of `kind`, a sentence in which "{}" stands for the count; `example` locates the first
+  /// case.
+  void add(const std::string& kind, const std::string& example = {}, uint64_t count = 1);
+  /// One line a kind, in the order in which they first came.
+  std::vector<std::string> lines() const;
 
-  [[noreturn]] void fail(const std::string& element, const std::string& what) const {
-    throw Error(file.filename().string() + ": " + element, what);
-  }
-  void count(const std::string& warning, uint64_t n = 1) { counted[warning] += n; }
+ private:
+  struct Entry {
+    std::string kind, example;
+    uint64_t count = 0;
+  };
+  std::vector<Entry> entries_;
+  std::map<std::string, size_t> index_;
 };
 
-/// Elements of an accessor as floats (normalized integers scaled as glTF says), `components` each; sparse applied.
-/// Fails located at `element` when anything is out of range.
-std::vector<float> read_floats(const Document& d, int accessor, int components, const std::string& element);
-/// Scalars of an unsigned integer accessor.
-std::vector<uint32_t> read_indices(const Document& d, int accessor, const std::string& element);
-/// Number of components of an accessor's type (checked index).
-int component_count(const Document& d, int accessor, const std::string& element);
+/// What every step of loading needs.
+struct Document {
+  std::string file;              ///< as given, for messages
+  std::filesystem::path folder;  ///< where relative references start
+  nlohmann::json json;           ///< the whole document
+  tinygltf::Model model;  ///< accessors, meshes, nodes, cameras, samplers, textures; buffers with their bytes
+  Warnings warnings;
+  std::function<void(float, const char*)> progress;  ///< throws Cancelled
 
-void load_materials(Document& d, Scene& scene);
-void load_images(Document& d, Scene& scene, const LoadOptions& options, const LoadProgress& progress);
-void load_meshes(Document& d, Scene& scene, const LoadProgress& progress);
-void load_nodes(Document& d, Scene& scene);
-/// Environment from the glTF scene's extras, then settings.json.
-void load_settings(Document& d, Scene& scene);
+  Item root() const { return Item(file, json); }
+};
 
-/// A float image by OpenImageIO; Error located at the file.
-Image read_float_image(const std::filesystem::path& file);
+/// The bytes of a regular file. Throws an Error that starts with `where`.
+std::vector<uint8_t> read_file(const std::filesystem::path& path, const std::string& where);
 
-}  // namespace lucerna::scene::io
+/// Bytes behind a "data:" URI. Throws an Error at `item` unless it is base64 or percent-encoded text.
+std::vector<uint8_t> decode_data_uri(const Item& item);
+bool is_data_uri(const std::string& uri);
+/// "%20" and the like to bytes; a stray % stays.
+std::string percent_decode(const std::string& uri);
+/// The file that a relative URI means (percent-decoded; as written if only that exists).
+std::filesystem::path resolve_uri(const Document& document, const std::string& uri);
+
+/// Reads the container, the JSON and the buffers, and checks types, indices and sizes of everything that
+/// later steps touch (check_structure), then lets tinygltf make its model.
+void open_document(Document& document, const std::filesystem::path& path);
+
+/// Throws a located Error unless the document's structure is that of glTF 2.0 as far as we read it: after it
+/// every index is in range, every view inside its buffer, every accessor inside its view, the node graph a
+/// forest.
+void check_structure(const Document& document);
+/// Whether an extension is honoured (load.h lists them).
+bool is_known_extension(const std::string& name);
+
+}  // namespace lucerna::scene

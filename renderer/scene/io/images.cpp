@@ -1,120 +1,133 @@
-// Images through OpenImageIO, from files and from memory.
+#include "scene/io/images.h"
+
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 
-#include "scene/io/document.h"
+#include "base/error.h"
 
-namespace lucerna::scene::io {
+namespace lucerna::scene {
 namespace {
 
-/// Any channel count to RGBA: grey is spread, a missing alpha is 1.
+constexpr uint64_t k_max_texels = uint64_t{1} << 28;
+
+bool begins(const std::vector<uint8_t>& bytes, std::initializer_list<int> magic) {
+  return bytes.size() >= magic.size() &&
+         std::equal(magic.begin(), magic.end(), bytes.begin(), [](int a, uint8_t b) { return a == b; });
+}
+
+// A name by which OpenImageIO finds the reader.
+std::string reader_name(const std::vector<uint8_t>& bytes, const std::string& hint) {
+  if (begins(bytes, {0x89, 'P', 'N', 'G'})) return "image.png";
+  if (begins(bytes, {0xff, 0xd8, 0xff})) return "image.jpg";
+  if (begins(bytes, {0x76, 0x2f, 0x31, 0x01})) return "image.exr";
+  if (begins(bytes, {'#', '?'})) return "image.hdr";
+  if (bytes.size() > 12 && std::memcmp(bytes.data(), "RIFF", 4) == 0 &&
+      std::memcmp(bytes.data() + 8, "WEBP", 4) == 0)
+    return "image.webp";
+  const size_t dot = hint.find_last_of("./");
+  return "image." + (dot == std::string::npos ? std::string("png") : hint.substr(dot + 1));
+}
+
+// OpenImageIO keeps its messages per thread until they are fetched.
+std::string reader_error(const std::string& message) {
+  std::string text = message.empty() ? OIIO::geterror() : message;
+  OIIO::geterror();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
+  return text.empty() ? "the file is damaged" : text;
+}
+
+float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
+
+// n channels to RGBA; one and two channels are grey and grey with alpha.
 template <class T>
-std::vector<T> to_rgba(const std::vector<T>& in, int channels, size_t pixels, T one) {
-  std::vector<T> out(pixels * 4);
-  for (size_t i = 0; i < pixels; ++i) {
-    const T* p = &in[i * channels];
-    T* o = &out[i * 4];
-    if (channels < 3) o[0] = o[1] = o[2] = p[0];
-    else o[0] = p[0], o[1] = p[1], o[2] = p[2];
-    o[3] = channels == 2 ? p[1] : channels >= 4 ? p[3] : one;
+std::vector<T> to_rgba(const std::vector<T>& from, size_t texels, size_t channels, T one) {
+  std::vector<T> result(4 * texels);
+  for (size_t i = 0; i < texels; ++i) {
+    const T* in = from.data() + i * channels;
+    T* out = result.data() + 4 * i;
+    const bool grey = channels < 3;
+    out[0] = in[0];
+    out[1] = grey ? in[0] : in[1];
+    out[2] = grey ? in[0] : in[2];
+    out[3] = channels == 2 ? in[1] : channels >= 4 ? in[3] : one;
   }
-  return out;
-}
-
-/// Decodes; returns false with a reason. 8-bit files stay bytes, all others become floats.
-bool decode(OIIO::ImageInput& in, Image& image, bool floats, std::string& why) {
-  const OIIO::ImageSpec spec = in.spec();
-  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) return why = "it has no pixels", false;
-  if (spec.width > 32768 || spec.height > 32768) return why = fmt::format("{}x{} is larger than 32768x32768", spec.width, spec.height), false;
-  image.width = uint32_t(spec.width);
-  image.height = uint32_t(spec.height);
-  const size_t pixels = size_t(spec.width) * spec.height;
-  if (spec.format == OIIO::TypeDesc::UINT8 && !floats) {
-    std::vector<uint8_t> raw(pixels * spec.nchannels);
-    if (!in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, raw.data())) return why = in.geterror(), false;
-    image.bytes = to_rgba<uint8_t>(raw, spec.nchannels, pixels, 255);
-  } else if (!floats && spec.format == OIIO::TypeDesc::UINT16) {
-    // 16-bit files keep their encoding (which may be sRGB); bytes are precise enough for reflectances.
-    std::vector<uint8_t> raw(pixels * spec.nchannels);
-    if (!in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, raw.data())) return why = in.geterror(), false;
-    image.bytes = to_rgba<uint8_t>(raw, spec.nchannels, pixels, 255);
-  } else {
-    std::vector<float> raw(pixels * spec.nchannels);
-    if (!in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, raw.data())) return why = in.geterror(), false;
-    for (float& f : raw)
-      if (!std::isfinite(f)) f = 0;
-    image.floats = to_rgba<float>(raw, spec.nchannels, pixels, 1.f);
-  }
-  return true;
-}
-
-OIIO::ImageSpec straight_alpha() {
-  OIIO::ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;
-  return config;
-}
-
-bool decode_memory(const std::vector<unsigned char>& bytes, Image& image, std::string& why) {
-  if (bytes.size() < 12) return why = "it is empty", false;
-  const char* name = bytes[0] == 0x89 ? "a.png" : bytes[0] == 0xff ? "a.jpg" : bytes[0] == 0x76 ? "a.exr" : bytes[0] == '#' ? "a.hdr" : "a.png";
-  if (bytes[0] == 'R' && bytes[1] == 'I') name = "a.webp";
-  OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(bytes.data()), bytes.size());
-  const OIIO::ImageSpec config = straight_alpha();
-  auto in = OIIO::ImageInput::open(name, &config, &memory);
-  if (!in) return why = OIIO::geterror(), false;
-  return decode(*in, image, false, why);
+  return result;
 }
 
 }  // namespace
 
-Image read_float_image(const std::filesystem::path& file) {
-  Image image;
-  image.name = file.filename().string();
-  std::string why;
-  auto in = OIIO::ImageInput::open(file.string());
-  if (!in) throw Error(file.string(), "cannot be read as an image: " + OIIO::geterror());
-  if (!decode(*in, image, true, why)) throw Error(file.string(), "cannot be read as an image: " + why);
-  return image;
-}
+Image decode_image(const std::vector<uint8_t>& bytes, const std::string& hint, const std::string& where,
+                   Precision precision) {
+  if (bytes.empty()) throw Error(where, "the image has no bytes");
+  OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+  OIIO::ImageSpec config;
+  config["oiio:UnassociatedAlpha"] = 1;
+  // Readers take the memory from the configuration: with a proxy alone, open() with a configuration looks for
+  // a file.
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  std::unique_ptr<OIIO::ImageInput> input;
+  try {
+    input = OIIO::ImageInput::open(reader_name(bytes, hint), &config, &memory);
+    if (!input) throw Error(where, "the image cannot be decoded: " + reader_error({}));
+    const OIIO::ImageSpec& spec = input->spec();
+    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0)
+      throw_error(where, "the image has no texels ({} x {})", spec.width, spec.height);
+    const uint64_t texels = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height);
+    if (texels > k_max_texels || spec.depth > 1 || spec.deep)
+      throw_error(where, "an image of {} x {} x {} is beyond what can be read", spec.width, spec.height,
+                  spec.depth);
+    const int channels = std::min(spec.nchannels, 4);
+    // A header may promise far more than the file holds; the densest compressions reach about 1 : 1000.
+    if (texels * static_cast<uint64_t>(channels) / 4096 > bytes.size())
+      throw_error(where, "{} bytes cannot hold {} x {} texels", bytes.size(), spec.width, spec.height);
 
-void load_images(Document& d, Scene& scene, const LoadOptions& options, const LoadProgress& progress) {
-  for (size_t i = 0; i < d.model.images.size(); ++i) {
-    const tinygltf::Image& in = d.model.images[i];
+    const bool is_float = spec.format.is_floating_point();
+    const bool wide = is_float || spec.format.basesize() > 1;
+    const bool floats =
+        is_float || precision == Precision::linear_floats || (wide && precision == Precision::keep);
     Image image;
-    image.name = !in.uri.empty() && in.uri.rfind("data:", 0) != 0 ? in.uri : fmt::format("images[{}]", i);
-    std::string why = "not found";
-    bool read = false;
-    if (options.images) {
-      try {
-        read = decode_memory(in.image, image, why);
-      } catch (const std::exception& e) { why = e.what(); }
+    image.width = static_cast<uint32_t>(spec.width);
+    image.height = static_cast<uint32_t>(spec.height);
+    const auto read = [&](auto& buffer, OIIO::TypeDesc type) {
+      buffer.resize(texels * static_cast<uint64_t>(channels));
+      if (!input->read_image(0, 0, 0, channels, type, buffer.data()))
+        throw Error(where, "the image cannot be decoded: " + reader_error(input->geterror()));
+    };
+    if (floats) {
+      std::vector<float> raw;
+      read(raw, OIIO::TypeDesc::FLOAT);
+      image.floats = to_rgba(raw, texels, static_cast<size_t>(channels), 1.0f);
+      if (precision == Precision::linear_floats && !is_float)
+        for (size_t i = 0; i < image.floats.size(); ++i)
+          if (i % 4 != 3) image.floats[i] = linear_from_srgb(image.floats[i]);
+    } else {
+      std::vector<uint8_t> raw;
+      read(raw, OIIO::TypeDesc::UINT8);
+      image.bytes =
+          channels == 4 ? std::move(raw) : to_rgba(raw, texels, static_cast<size_t>(channels), uint8_t{255});
     }
-    if (!read) {
-      if (options.images) {
-        while (!why.empty() && why.back() == '\n') why.pop_back();
-        d.count(fmt::format("{{}} texture image cannot be read and is white: {} ({})", image.name, why));
-      }
-      image.width = image.height = 1;
-      image.floats.clear();
-      image.bytes = {255, 255, 255, 255};
-    }
-    scene.images.push_back(std::move(image));
-    if (progress && !progress(0.5f + 0.5f * float(i + 1) / float(d.model.images.size()), "textures")) throw Error("", "cancelled");
+    return image;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(where, "the image cannot be decoded: " + reader_error(error.what()));
   }
-  // What textures without an image point at.
-  Image white;
-  white.name = "white";
-  white.width = white.height = 1;
-  white.bytes = {255, 255, 255, 255};
-  scene.images.push_back(std::move(white));
-  // An unreadable normal map is flat, not white.
-  for (Material& m : scene.materials)
-    if (m.normal_texture) {
-      const Image& image = scene.images[scene.textures[m.normal_texture.texture].image];
-      if (image.width == 1 && image.height == 1 && image.bytes == std::vector<uint8_t>{255, 255, 255, 255}) m.normal_texture = {};
-    }
 }
 
-}  // namespace lucerna::scene::io
+size_t mend_texels(Image& image) {
+  size_t count = 0;
+  for (float& value : image.floats) {
+    if (std::isfinite(value) && value >= 0) continue;
+    value = value > 0 ? 65504.0f : 0.0f;
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace lucerna::scene

@@ -1,80 +1,125 @@
 #include "scene/io/load.h"
 
-#include <fstream>
+#include <algorithm>
 #include <set>
 
 #include "scene/io/document.h"
+#include "scene/io/environment.h"
+#include "scene/io/geometry.h"
+#include "scene/io/materials.h"
+#include "scene/io/nodes.h"
 
 namespace lucerna::scene {
 namespace {
 
-const std::set<std::string> k_known_extensions{
-    "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_specular", "KHR_materials_transmission",
-    "KHR_materials_volume", "KHR_materials_diffuse_transmission", "KHR_materials_unlit", "KHR_lights_punctual",
-    "KHR_texture_transform", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing"};
-
-/// Keeps the file's bytes; OpenImageIO decodes them later.
-bool keep_bytes(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes, int size, void*) {
-  image->image.assign(bytes, bytes + std::max(size, 0));
-  return true;
+// Names used anywhere, declared or not, and how often.
+void collect_extensions(const nlohmann::json& value, std::map<std::string, size_t>& uses) {
+  if (!value.is_structured()) return;
+  if (value.is_object())
+    if (const auto found = value.find("extensions"); found != value.end() && found->is_object())
+      for (const auto& [name, content] : found->items()) ++uses[name];
+  for (const auto& [key, child] : value.items())
+    if (key != "extras") collect_extensions(child, uses);
 }
 
-void parse(io::Document& d) {
-  const std::string name = d.file.string();
-  std::error_code error;
-  if (!std::filesystem::exists(d.file, error)) throw Error(name, "no such file");
-  if (!std::filesystem::is_regular_file(d.file, error)) throw Error(name, "is not a file");
-  std::ifstream in(d.file, std::ios::binary);
-  char magic[4] = {};
-  in.read(magic, 4);
-  if (!in && in.gcount() < 4) throw Error(name, "is too short to be glTF");
-  const bool binary = std::string(magic, 4) == "glTF";
-  tinygltf::TinyGLTF reader;
-  reader.SetImageLoader(keep_bytes, nullptr);
-  std::string problem, remark;
-  bool good = false;
-  try {
-    good = binary ? reader.LoadBinaryFromFile(&d.model, &problem, &remark, name) : reader.LoadASCIIFromFile(&d.model, &problem, &remark, name);
-  } catch (const std::exception& e) { problem = e.what(); }
-  if (!good) {
-    for (char& c : problem)
-      if (c == '\n') c = ' ';
-    while (!problem.empty() && problem.back() == ' ') problem.pop_back();
-    throw Error(name, "is not valid glTF: " + (problem.empty() ? std::string("it cannot be parsed") : problem));
+void list_extensions(Document& document, Scene& scene) {
+  std::map<std::string, size_t> uses;
+  collect_extensions(document.json, uses);
+  if (const auto declared = document.root().find("extensionsUsed"))
+    for (size_t i = 0; i < declared->size(); ++i) uses.try_emplace(declared->at(i).text(), 0);
+  for (const auto& [name, count] : uses) {
+    (is_known_extension(name) ? scene.extensions : scene.unknown_extensions).push_back(name);
+    if (!is_known_extension(name))
+      document.warnings.add(fmt::format("extension {} is not known and ignored", name),
+                            count == 0 ? "declared, not used" : fmt::format("used {} times", count));
   }
 }
 
-void check_extensions(io::Document& d, Scene& scene) {
-  for (const std::string& e : d.model.extensionsRequired)
-    if (!k_known_extensions.count(e)) d.fail("extensionsRequired", fmt::format("'{}' is required, and this program does not know it", e));
-  for (const std::string& e : std::set<std::string>(d.model.extensionsUsed.begin(), d.model.extensionsUsed.end()))
-    if (!k_known_extensions.count(e)) scene.warnings.push_back(fmt::format("{}: extension '{}' is not known and ignored", d.file.filename().string(), e));
+void warn_of_motion(Document& document) {
+  const Item root = document.root();
+  const auto animations = root.find("animations");
+  if (animations && animations->json().is_array() && !animations->json().empty())
+    document.warnings.add("{} animations are ignored: the scene is shown at rest", {}, animations->size());
+  const auto meshes = root.find("meshes");
+  for (size_t i = 0; meshes && i < meshes->size(); ++i) {
+    const Item primitives = meshes->at(i).at("primitives");
+    for (size_t k = 0; k < primitives.size(); ++k)
+      if (const auto targets = primitives.at(k).find("targets"))
+        document.warnings.add("{} primitives have morph targets; they are shown without",
+                              primitives.at(k).path());
+  }
+}
+
+// Meshes that instances use, each once, in glTF's order; instances of empty meshes vanish.
+void load_meshes(Document& document, Scene& scene, MaterialLoader& materials) {
+  std::map<Id, Id> ids;
+  for (const Instance& instance : scene.instances) ids[instance.mesh] = k_none;
+  size_t done = 0;
+  for (auto& [index, id] : ids) {
+    document.progress(0.15f + 0.35f * static_cast<float>(done++) / static_cast<float>(ids.size()),
+                      "geometry");
+    Mesh mesh = load_mesh(document, index, materials);
+    if (mesh.primitives.empty()) continue;
+    id = static_cast<Id>(scene.meshes.size());
+    scene.meshes.push_back(std::move(mesh));
+  }
+  for (Instance& instance : scene.instances) instance.mesh = ids[instance.mesh];
+  std::erase_if(scene.instances, [](const Instance& instance) { return instance.mesh == k_none; });
+}
+
+// The renderer works in world space, so what a matrix makes of the coordinates must be in range too.
+void check_world(const Document& document, const Scene& scene) {
+  std::vector<Box> boxes(scene.meshes.size());
+  for (size_t i = 0; i < boxes.size(); ++i)
+    for (const Primitive& primitive : scene.meshes[i].primitives)
+      for (const vec3& p : primitive.positions) boxes[i].grow(p);
+  for (const Instance& instance : scene.instances) {
+    const Box& box = boxes[instance.mesh];
+    for (int corner = 0; corner < 8; ++corner) {
+      const vec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                   corner & 4 ? box.hi.z : box.lo.z);
+      const vec3 a = glm::abs(vec3(instance.to_world * vec4(p, 1)));
+      if (!(std::max({a.x, a.y, a.z}) <= k_max_coordinate))
+        throw_error(document.file, "node '{}' places geometry beyond {} m from the origin", instance.name,
+                    k_max_coordinate);
+    }
+  }
 }
 
 }  // namespace
 
-Scene load(const std::filesystem::path& file, const LoadOptions& options, const LoadProgress& progress) {
-  const auto report = [&](float fraction, const char* what) {
-    if (progress && !progress(fraction, what)) throw Error("", "cancelled");
+Scene load(const std::filesystem::path& path, const LoadOptions& options, const LoadProgress& progress) {
+  Document document;
+  document.progress = [&progress](float fraction, const char* what) {
+    if (progress && !progress(fraction, what)) throw Cancelled();
   };
-  io::Document d;
-  d.file = file;
   Scene scene;
-  scene.name = file.stem().string();
-  scene.file = file.string();
-  report(0, "reading");
-  parse(d);
-  report(0.1f, "materials");
-  check_extensions(d, scene);
-  io::load_materials(d, scene);
-  io::load_meshes(d, scene, progress);
-  io::load_nodes(d, scene);
-  io::load_images(d, scene, options, progress);
-  io::load_settings(d, scene);
-  for (const auto& [text, count] : d.counted)
-    scene.warnings.push_back(fmt::format("{}: {}", file.filename().string(), fmt::format(fmt::runtime(text), count)));
-  if (count_triangles(scene) == 0) scene.warnings.push_back(fmt::format("{}: has no triangles to show", file.filename().string()));
-  report(1, "loaded");
+  scene.file = path.string();
+  scene.name = path.stem().string();
+  try {
+    document.progress(0, "file");
+    open_document(document, path);
+    list_extensions(document, scene);
+    warn_of_motion(document);
+    load_nodes(document, scene);
+    MaterialLoader materials(document, scene);
+    load_meshes(document, scene, materials);
+    check_world(document, scene);
+    document.progress(0.5f, "textures");
+    materials.load_images(options.images);
+    if (!options.settings || !load_settings(document, scene)) load_extras_environment(document, scene);
+    document.progress(1, "done");
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw Error(path.string(), "not enough memory to load this scene");
+  } catch (const std::length_error&) {
+    throw Error(path.string(), "not enough memory to load this scene");
+  } catch (const std::exception& error) {
+    throw Error(path.string(), error.what());
+  }
+  if (scene.instances.empty()) document.warnings.add("the scene has no triangles");
+  scene.warnings = document.warnings.lines();
   return scene;
 }
 

@@ -1,9 +1,30 @@
 #pragma once
-// glTF 2.0 (.gltf, .glb) with its images, the environment and settings.json -> Scene.
+// glTF 2.0 files into Scene. What is read, and what becomes of input that is not as it should be:
+// - Error (the message names file and element): a missing or truncated file, JSON that does not parse, a
+// value of a
+//   wrong type, an index out of range, an accessor beyond its view or a view beyond its buffer, positions
+//   that are not finite, a cyclic node graph or a node with two parents, a singular matrix above a mesh,
+//   camera or light, a required extension that is not known, an environment that cannot be read, a
+//   settings.json that is not as described below.
+// - One line in Scene::warnings, with a count: degenerate triangles (removed), points and lines (left out),
+// textures
+//   that are missing, cannot be decoded or have no texels (white instead; flat for normal maps), values
+//   outside their range (clamped), extensions that are not known, skins, morph targets and animations (rest
+//   pose is shown).
+// Honoured extensions: KHR_materials_emissive_strength, _ior, _specular, _transmission, _volume,
+// _diffuse_transmission, _unlit, KHR_lights_punctual (range ignored), KHR_texture_transform,
+// KHR_mesh_quantization, EXT_mesh_gpu_instancing.
 //
-// Read: node hierarchy and instances, triangles, strips and fans, all index types, sparse and interleaved accessors, vertex
-// colours, two UV sets, cameras, metallic-roughness materials, and the extensions listed by k_known_extensions. Images through
-// OpenImageIO. Missing normals become flat ones, missing tangents are computed where a normal texture needs them.
+// The environment comes from the scene's extras, {"environment": {"file": .., "scale": .., "rotation": ..}}
+// or
+// {"environment": {"radiance": [r, g, b]}} (unknown keys are accepted there), or, overriding it as a whole,
+// from a file settings.json beside the scene (there an unknown key of "environment" is an Error). Its other
+// values go to Scene::settings, nested objects as dotted keys: {"film": {"ev": 1}} is "film.ev" = "1".
+//
+// Images: PNG, JPEG, EXR, HDR and what else OpenImageIO reads, as files, data URIs or buffer views; grey,
+// grey with alpha and RGB become RGBA, alpha stays unassociated. 8-bit texels stay bytes. 16-bit ones become
+// floats where every use is data (normal maps, roughness ...) and 8 bits where one use is colour; float
+// formats stay floats.
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -15,18 +36,29 @@
 namespace lucerna::scene {
 
 struct LoadOptions {
-  bool images = true;  ///< false: textures are left as 1x1 white (for tools that look at geometry only)
+  bool images = true;    ///< false: textures are neutral single texels (for tools that look at geometry only)
+  bool settings = true;  ///< false: settings.json beside the scene is not looked at
 };
 
-/// fraction 0..1, what is being done; returning false cancels (an Error "cancelled" is thrown).
-using LoadProgress = std::function<bool(float, const std::string&)>;
+/// Called from time to time with the fraction done (0..1) and what is being done ("textures"); false cancels.
+using LoadProgress = std::function<bool(float fraction, const std::string& what)>;
 
-/// Throws Error located at the file and element: what cannot be read or is out of range. What can be mended (degenerate
-/// triangles, missing textures, unknown optional extensions) is listed in Scene::warnings.
-Scene load(const std::filesystem::path& file, const LoadOptions& options = {}, const LoadProgress& progress = {});
+/// Thrown when the progress callback cancels; not a failure.
+class Cancelled : public Error {
+ public:
+  Cancelled() : Error("", "cancelled") {}
+};
 
-/// What is in a scene, for `lucerna info`.
+/// Reads a .gltf or .glb (told apart by content). Only what the default scene reaches is kept: meshes,
+/// materials and images that it does not use are not loaded. A scene without triangles is no error; it has a
+/// warning.
+Scene load(const std::filesystem::path& gltf_or_glb, const LoadOptions& options = {},
+           const LoadProgress& progress = {});
+
+/// What is in a scene, for `lucerna info --json`: counts, meshes, materials and their kind, textures with
+/// sizes and memory, lights, cameras, environment, extensions, bounds, warnings.
 nlohmann::ordered_json describe(const Scene& scene);
+/// The same for people, several lines.
 std::string describe_text(const Scene& scene);
 
 }  // namespace lucerna::scene

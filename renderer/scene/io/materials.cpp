@@ -1,176 +1,313 @@
-// Materials, samplers and texture uses with their extensions.
+#include "scene/io/materials.h"
+
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <mutex>
+#include <thread>
 
-#include "scene/io/document.h"
+#include "scene/io/images.h"
 
-namespace lucerna::scene::io {
+namespace lucerna::scene {
 namespace {
 
-using tinygltf::Value;
+constexpr float k_huge = 1e30f;
 
-double number(const Value& v, const char* key, double fallback) {
-  if (!v.IsObject() || !v.Has(key)) return fallback;
-  const Value& x = v.Get(key);
-  const double n = x.IsNumber() ? x.GetNumberAsDouble() : fallback;
-  return std::isfinite(n) ? n : fallback;
+// KHR_texture_transform: uv' = T * R * S * uv, the rotation counter-clockwise in the (u right, v down) plane
+// of glTF: (1, 0) goes towards (0, -1). The first text of the extension had the opposite sign; its
+// conformance model, the Khronos viewer and the importers all turn this way.
+std::array<float, 6> transform_matrix(const Item& transform) {
+  const auto pair = [&transform](const char* key, double fallback) {
+    const auto item = transform.find(key);
+    if (!item) return glm::dvec2(fallback);
+    if (item->size() != 2) item->fail("expected 2 numbers, found {}", item->size());
+    return glm::dvec2(item->at(size_t{0}).number(), item->at(1).number());
+  };
+  const glm::dvec2 offset = pair("offset", 0), scale = pair("scale", 1);
+  const double rotation = transform.number("rotation", 0);
+  const double c = std::cos(rotation), s = std::sin(rotation);
+  return {static_cast<float>(c * scale.x),  static_cast<float>(s * scale.y), static_cast<float>(offset.x),
+          static_cast<float>(-s * scale.x), static_cast<float>(c * scale.y), static_cast<float>(offset.y)};
 }
 
-vec3 color(const Value& v, const char* key, vec3 fallback) {
-  if (!v.IsObject() || !v.Has(key)) return fallback;
-  const Value& x = v.Get(key);
-  if (!x.IsArray() || x.ArrayLen() < 3) return fallback;
-  for (int k = 0; k < 3; ++k) {
-    const Value& e = x.Get(k);
-    if (e.IsNumber() && std::isfinite(e.GetNumberAsDouble())) fallback[k] = float(e.GetNumberAsDouble());
-  }
-  return fallback;
+Wrap wrap_mode(int gl) {
+  if (gl == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp;
+  if (gl == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::mirror;
+  return Wrap::repeat;
 }
 
-const Value* extension(const tinygltf::ExtensionMap& map, const char* name) {
-  const auto at = map.find(name);
-  return at == map.end() ? nullptr : &at->second;
-}
-
-class Uses {
- public:
-  Uses(Document& d, Scene& scene) : d_(d), scene_(scene) {}
-
-  /// A texture use; the same image as colour and as data makes two textures.
-  TextureUse make(int index, int uv_set, const Value* transform, bool srgb, const std::string& element) {
-    TextureUse use;
-    if (index < 0) return use;
-    if (size_t(index) >= d_.model.textures.size()) d_.fail(element, fmt::format("texture {} does not exist", index));
-    const auto key = std::pair(index, srgb);
-    auto at = made_.find(key);
-    if (at == made_.end()) {
-      at = made_.emplace(key, Id(scene_.textures.size())).first;
-      scene_.textures.push_back(make_texture(d_.model.textures[index], srgb, fmt::format("textures[{}]", index)));
-    }
-    use.texture = at->second;
-    if (transform) {
-      // Translation * rotation * scale, as KHR_texture_transform gives it.
-      const auto pair = [&](const char* name, double a, double b) {
-        std::pair<double, double> p{a, b};
-        if (transform->Has(name) && transform->Get(name).IsArray() && transform->Get(name).ArrayLen() >= 2) {
-          p.first = transform->Get(name).Get(0).GetNumberAsDouble();
-          p.second = transform->Get(name).Get(1).GetNumberAsDouble();
-        }
-        return p;
-      };
-      const auto [ox, oy] = pair("offset", 0, 0);
-      const auto [sx, sy] = pair("scale", 1, 1);
-      const double r = number(*transform, "rotation", 0), c = std::cos(r), s = std::sin(r);
-      use.m = {float(c * sx), float(s * sy), float(ox), float(-s * sx), float(c * sy), float(oy)};
-      uv_set = int(number(*transform, "texCoord", uv_set));
-    }
-    if (uv_set > 1 || uv_set < 0) {
-      d_.count("{} texture uses ask for a UV set beyond the second and get the first");
-      uv_set = 0;
-    }
-    use.uv_set = uint32_t(uv_set);
-    return use;
-  }
-
-  TextureUse make(const tinygltf::TextureInfo& info, bool srgb, const std::string& element) {
-    return make(info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform"), srgb, element);
-  }
-  TextureUse make(const tinygltf::NormalTextureInfo& info, const std::string& element) {
-    return make(info.index, info.texCoord, extension(info.extensions, "KHR_texture_transform"), false, element);
-  }
-  /// A texture of an extension, which arrives as plain JSON values.
-  TextureUse make(const Value& owner, const char* key, bool srgb, const std::string& element) {
-    if (!owner.IsObject() || !owner.Has(key) || !owner.Get(key).IsObject()) return {};
-    const Value& info = owner.Get(key);
-    const Value* transform = nullptr;
-    if (info.Has("extensions") && info.Get("extensions").Has("KHR_texture_transform"))
-      transform = &info.Get("extensions").Get("KHR_texture_transform");
-    return make(int(number(info, "index", -1)), int(number(info, "texCoord", 0)), transform, srgb, element + "." + key);
-  }
-
- private:
-  Texture make_texture(const tinygltf::Texture& in, bool srgb, const std::string& element) {
-    Texture t;
-    t.srgb = srgb;
-    if (in.source < 0 || size_t(in.source) >= d_.model.images.size()) {
-      d_.count("{} textures have no image that can be read and are white");
-      t.image = Id(d_.model.images.size());  // the white one, kept last
-    } else {
-      t.image = Id(in.source);
-    }
-    if (in.sampler >= 0) {
-      if (size_t(in.sampler) >= d_.model.samplers.size()) d_.fail(element, fmt::format("sampler {} does not exist", in.sampler));
-      const tinygltf::Sampler& s = d_.model.samplers[in.sampler];
-      const auto wrap = [](int w) {
-        return w == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE ? Wrap::clamp : w == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Wrap::mirror : Wrap::repeat;
-      };
-      t.wrap_u = wrap(s.wrapS);
-      t.wrap_v = wrap(s.wrapT);
-      t.nearest = s.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
-    }
-    return t;
-  }
-
-  Document& d_;
-  Scene& scene_;
-  std::map<std::pair<int, bool>, Id> made_;
+// An image of the document decoded for its uses; `failure` says why it is not there.
+struct Decoded {
+  bool only_data = true;  // no use of it is colour
+  Image image;
+  std::string failure;
+  Id id = k_none;
 };
 
-float unit(double x) { return float(std::clamp(std::isfinite(x) ? x : 0.0, 0.0, 1.0)); }
+void decode(const Document& document, uint32_t index, Decoded& result) {
+  const Item item = document.root().at("images").at(index);
+  const auto uri = item.find("uri");
+  const auto view = item.find("bufferView");
+  std::string name = item.text("name", "");
+  try {
+    std::vector<uint8_t> bytes;
+    std::string hint = item.text("mimeType", "");
+    if (view) {
+      const auto& v =
+          document.model.bufferViews[view->index(document.model.bufferViews.size(), "bufferViews")];
+      const auto& data = document.model.buffers[static_cast<size_t>(v.buffer)].data;
+      const auto begin = data.begin() + static_cast<std::ptrdiff_t>(v.byteOffset);
+      bytes.assign(begin, begin + static_cast<std::ptrdiff_t>(v.byteLength));
+    } else if (uri && is_data_uri(uri->text())) {
+      bytes = decode_data_uri(*uri);
+    } else if (uri) {
+      name = percent_decode(uri->text());
+      hint = name;
+      bytes = read_file(resolve_uri(document, uri->text()), uri->where());
+    } else {
+      item.fail("neither 'uri' nor 'bufferView' is given");
+    }
+    result.image =
+        decode_image(bytes, hint, item.where(), result.only_data ? Precision::keep : Precision::eight_bit);
+  } catch (const std::exception& error) {
+    result.failure = error.what();
+  }
+  result.image.name = name.empty() ? fmt::format("image {}", index) : name;
+}
+
+Image constant_image(const char* name, std::array<uint8_t, 4> texel) {
+  Image image;
+  image.name = name;
+  image.width = image.height = 1;
+  image.bytes.assign(texel.begin(), texel.end());
+  return image;
+}
 
 }  // namespace
 
-void load_materials(Document& d, Scene& scene) {
-  Uses uses(d, scene);
-  for (size_t i = 0; i < d.model.materials.size(); ++i) {
-    const tinygltf::Material& in = d.model.materials[i];
-    const std::string element = fmt::format("materials[{}]", i);
-    Material m;
-    m.name = in.name.empty() ? fmt::format("material {}", i) : in.name;
-    const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
-    for (size_t k = 0; k < 4 && k < pbr.baseColorFactor.size(); ++k) m.base_color[k] = unit(pbr.baseColorFactor[k]);
-    m.base_color_texture = uses.make(pbr.baseColorTexture, true, element + ".baseColorTexture");
-    m.metallic = unit(pbr.metallicFactor);
-    m.roughness = unit(pbr.roughnessFactor);
-    m.metallic_roughness_texture = uses.make(pbr.metallicRoughnessTexture, false, element + ".metallicRoughnessTexture");
-    m.normal_texture = uses.make(in.normalTexture, element + ".normalTexture");
-    m.normal_scale = float(in.normalTexture.scale);
-    double strength = 1;
-    if (const Value* e = extension(in.extensions, "KHR_materials_emissive_strength")) strength = std::max(0.0, number(*e, "emissiveStrength", 1));
-    for (size_t k = 0; k < 3 && k < in.emissiveFactor.size(); ++k) m.emission[k] = float(std::max(0.0, in.emissiveFactor[k]) * strength);
-    m.emission_texture = uses.make(in.emissiveTexture, true, element + ".emissiveTexture");
-    m.alpha_mode = in.alphaMode == "MASK" ? AlphaMode::mask : in.alphaMode == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
-    m.alpha_cutoff = float(in.alphaCutoff);
-    m.double_sided = in.doubleSided;
-    m.unlit = extension(in.extensions, "KHR_materials_unlit") != nullptr;
-    if (const Value* e = extension(in.extensions, "KHR_materials_ior")) m.ior = float(number(*e, "ior", 1.5));
-    if (m.ior != 0 && m.ior < 1) d.count("{} materials have an index of refraction below 1, which becomes 1"), m.ior = 1;
-    if (const Value* e = extension(in.extensions, "KHR_materials_specular")) {
-      m.specular = unit(number(*e, "specularFactor", 1));
-      m.specular_texture = uses.make(*e, "specularTexture", false, element);
-      m.specular_color = glm::max(vec3(0), color(*e, "specularColorFactor", vec3(1)));
-      m.specular_color_texture = uses.make(*e, "specularColorTexture", true, element);
-    }
-    if (const Value* e = extension(in.extensions, "KHR_materials_transmission")) {
-      m.transmission = unit(number(*e, "transmissionFactor", 0));
-      m.transmission_texture = uses.make(*e, "transmissionTexture", false, element);
-    }
-    if (const Value* e = extension(in.extensions, "KHR_materials_volume")) {
-      m.thickness = float(std::max(0.0, number(*e, "thicknessFactor", 0)));
-      const double distance = number(*e, "attenuationDistance", INFINITY);
-      m.attenuation_distance = distance > 0 ? float(distance) : k_infinity;
-      m.attenuation_color = glm::clamp(color(*e, "attenuationColor", vec3(1)), vec3(0), vec3(1));
-    }
-    if (const Value* e = extension(in.extensions, "KHR_materials_diffuse_transmission")) {
-      m.diffuse_transmission = unit(number(*e, "diffuseTransmissionFactor", 0));
-      m.diffuse_transmission_texture = uses.make(*e, "diffuseTransmissionTexture", false, element);
-      m.diffuse_transmission_color = glm::clamp(color(*e, "diffuseTransmissionColorFactor", vec3(1)), vec3(0), vec3(1));
-      m.diffuse_transmission_color_texture = uses.make(*e, "diffuseTransmissionColorTexture", true, element);
-    }
-    scene.materials.push_back(std::move(m));
-  }
-  Material fallback;
-  fallback.name = "default";
-  scene.materials.push_back(fallback);
+float MaterialLoader::factor(const Item& parent, const char* key, float fallback, float lo, float hi) {
+  const auto item = parent.find(key);
+  if (!item) return fallback;
+  const auto value = static_cast<float>(item->number());
+  if (value < lo || value > hi)
+    document_.warnings.add("{} values of materials outside their range: clamped", item->path());
+  return std::clamp(value, lo, hi);
 }
 
-}  // namespace lucerna::scene::io
+vec3 MaterialLoader::color(const Item& parent, const char* key, vec3 fallback, float hi) {
+  const auto item = parent.find(key);
+  if (!item) return fallback;
+  const vec3 value = item->rgb(), clamped = glm::clamp(value, vec3(0), vec3(hi));
+  if (value != clamped)
+    document_.warnings.add("{} values of materials outside their range: clamped", item->path());
+  return clamped;
+}
+
+TextureUse MaterialLoader::texture_use(const Item& parent, const char* key, Use use, MaterialNeeds& needs) {
+  TextureUse result;
+  const auto info = parent.find(key);
+  if (!info) return result;
+  const uint32_t texture = info->at("index").index(document_.model.textures.size(), "textures");
+  int64_t set = info->integer("texCoord", 0, 0, 1 << 16);
+  if (const auto extensions = info->find("extensions"))
+    if (const auto transform = extensions->find("KHR_texture_transform")) {
+      result.m = transform_matrix(*transform);
+      set = transform->integer("texCoord", set, 0, 1 << 16);
+    }
+  if (set > 1) {
+    document_.warnings.add("{} textures that use TEXCOORD_2 or higher are left out", info->path());
+    return TextureUse();
+  }
+  result.uv_set = static_cast<uint32_t>(set);
+  needs.uv[set] = true;
+  const Wanted wanted{texture, use == Use::colour, use == Use::normal};
+  const auto [place, fresh] = wanted_ids_.try_emplace(wanted, static_cast<Id>(wanted_.size()));
+  if (fresh) wanted_.push_back(wanted);
+  result.texture = place->second;
+  if (use == Use::normal) needs.normal_map = result;
+  return result;
+}
+
+Id MaterialLoader::material(int index) {
+  const auto [place, fresh] = known_.try_emplace(index, static_cast<Id>(scene_.materials.size()));
+  if (!fresh) return place->second;
+  Material material;
+  MaterialNeeds needs;
+  if (index < 0) {
+    material.name = "default material";
+  } else {
+    const Item item = document_.root().at("materials").at(static_cast<size_t>(index));
+    material.name = item.text("name", "");
+    if (material.name.empty()) material.name = fmt::format("material {}", index);
+    read(item, material, needs);
+  }
+  scene_.materials.push_back(std::move(material));
+  needs_.push_back(needs);
+  return place->second;
+}
+
+void MaterialLoader::read(const Item& item, Material& m, MaterialNeeds& needs) {
+  if (const auto pbr = item.find("pbrMetallicRoughness")) {
+    if (const auto base = pbr->find("baseColorFactor")) {
+      if (base->size() != 4) base->fail("expected 4 numbers, found {}", base->size());
+      vec4 value;
+      for (size_t i = 0; i < 4; ++i) value[static_cast<int>(i)] = static_cast<float>(base->at(i).number());
+      m.base_color = glm::clamp(value, vec4(0), vec4(1));
+      if (value != m.base_color)
+        document_.warnings.add("{} values of materials outside their range: clamped", base->path());
+    }
+    m.metallic = factor(*pbr, "metallicFactor", 1, 0, 1);
+    m.roughness = factor(*pbr, "roughnessFactor", 1, 0, 1);
+    m.base_color_texture = texture_use(*pbr, "baseColorTexture", Use::colour, needs);
+    m.metallic_roughness_texture = texture_use(*pbr, "metallicRoughnessTexture", Use::data, needs);
+  }
+  m.normal_texture = texture_use(item, "normalTexture", Use::normal, needs);
+  if (const auto normal = item.find("normalTexture"))
+    m.normal_scale = factor(*normal, "scale", 1, -k_huge, k_huge);
+  m.emission = color(item, "emissiveFactor", vec3(0), k_huge);
+  m.emission_texture = texture_use(item, "emissiveTexture", Use::colour, needs);
+  const std::string mode = item.text("alphaMode", "OPAQUE");
+  if (mode == "MASK") {
+    m.alpha_mode = AlphaMode::mask;
+  } else if (mode == "BLEND") {
+    m.alpha_mode = AlphaMode::blend;
+  } else if (mode != "OPAQUE") {
+    item.at("alphaMode").fail("'{}', expected OPAQUE, MASK or BLEND", mode);
+  }
+  m.alpha_cutoff = factor(item, "alphaCutoff", 0.5f, 0, k_huge);
+  m.double_sided = item.boolean("doubleSided", false);
+  if (const auto extensions = item.find("extensions")) read_extensions(*extensions, m, needs);
+  // Black light needs no texture.
+  if (m.emission == vec3(0)) m.emission_texture = TextureUse();
+}
+
+void MaterialLoader::read_extensions(const Item& extensions, Material& m, MaterialNeeds& needs) {
+  if (const auto e = extensions.find("KHR_materials_emissive_strength"))
+    m.emission = glm::min(m.emission * factor(*e, "emissiveStrength", 1, 0, k_huge), vec3(k_huge));
+  if (const auto e = extensions.find("KHR_materials_ior")) {
+    m.ior = factor(*e, "ior", 1.5f, 0, k_huge);
+    if (m.ior > 0 && m.ior < 1) {
+      document_.warnings.add("{} values of materials outside their range: clamped", e->path() + ".ior");
+      m.ior = 1;
+    }
+  }
+  if (const auto e = extensions.find("KHR_materials_specular")) {
+    m.specular = factor(*e, "specularFactor", 1, 0, 1);
+    m.specular_texture = texture_use(*e, "specularTexture", Use::data, needs);
+    m.specular_color = color(*e, "specularColorFactor", vec3(1), k_huge);
+    m.specular_color_texture = texture_use(*e, "specularColorTexture", Use::colour, needs);
+  }
+  if (const auto e = extensions.find("KHR_materials_transmission")) {
+    m.transmission = factor(*e, "transmissionFactor", 0, 0, 1);
+    m.transmission_texture = texture_use(*e, "transmissionTexture", Use::data, needs);
+  }
+  if (const auto e = extensions.find("KHR_materials_volume")) {
+    m.thickness = factor(*e, "thicknessFactor", 0, 0, k_huge);
+    m.attenuation_color = color(*e, "attenuationColor", vec3(1), 1);
+    if (e->find("attenuationDistance")) {
+      const float distance = factor(*e, "attenuationDistance", 1, 0, 3e38f);
+      if (distance <= 0) e->at("attenuationDistance").fail("{} is not above 0", distance);
+      m.attenuation_distance = distance;
+    }
+  }
+  if (const auto e = extensions.find("KHR_materials_diffuse_transmission")) {
+    m.diffuse_transmission = factor(*e, "diffuseTransmissionFactor", 0, 0, 1);
+    m.diffuse_transmission_texture = texture_use(*e, "diffuseTransmissionTexture", Use::data, needs);
+    m.diffuse_transmission_color = color(*e, "diffuseTransmissionColorFactor", vec3(1), 1);
+    m.diffuse_transmission_color_texture =
+        texture_use(*e, "diffuseTransmissionColorTexture", Use::colour, needs);
+  }
+  m.unlit = extensions.find("KHR_materials_unlit").has_value();
+}
+
+void MaterialLoader::load_images(bool decode_them) {
+  // Which images, and whether a use of theirs is colour.
+  std::map<uint32_t, Decoded> images;
+  for (const Wanted& wanted : wanted_) {
+    const int source = document_.model.textures[wanted.texture].source;
+    if (source < 0 || !decode_them) continue;
+    Decoded& decoded = images[static_cast<uint32_t>(source)];
+    decoded.only_data = decoded.only_data && !wanted.srgb;
+  }
+
+  // Every image has its own place, so the order in which threads finish does not matter.
+  std::vector<std::pair<uint32_t, Decoded*>> jobs;
+  for (auto& [index, decoded] : images) jobs.emplace_back(index, &decoded);
+  std::atomic<size_t> next{0}, done{0};
+  std::atomic<bool> stop{false};
+  const auto work = [&] {
+    for (size_t i = next++; i < jobs.size() && !stop; i = next++, ++done)
+      decode(document_, jobs[i].first, *jobs[i].second);
+  };
+  std::vector<std::jthread> helpers;
+  const size_t threads = std::min<size_t>(jobs.size(), std::max(1u, std::thread::hardware_concurrency()));
+  for (size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
+  try {
+    for (size_t i = next++; i < jobs.size(); i = next++, ++done) {
+      document_.progress(0.5f + 0.45f * static_cast<float>(done) / static_cast<float>(jobs.size()),
+                         "textures");
+      decode(document_, jobs[i].first, *jobs[i].second);
+    }
+  } catch (...) {
+    stop = true;
+    throw;
+  }
+  helpers.clear();
+
+  for (auto& [index, decoded] : images) {
+    if (!decoded.failure.empty()) {
+      document_.warnings.add(
+          "{} images cannot be used; neutral ones (white, flat for normal maps) replace them",
+          decoded.failure);
+      continue;
+    }
+    if (const size_t mended = mend_texels(decoded.image))
+      document_.warnings.add("{} texel values that are negative or not finite: replaced", decoded.image.name,
+                             mended);
+    decoded.id = static_cast<Id>(scene_.images.size());
+    scene_.images.push_back(std::move(decoded.image));
+  }
+
+  // Textures; equal ones are one.
+  Id white = k_none, flat = k_none;
+  std::map<std::tuple<Id, Wrap, Wrap, bool, bool>, Id> unique;
+  std::vector<Id> final_ids;
+  for (const Wanted& wanted : wanted_) {
+    const tinygltf::Texture& source = document_.model.textures[wanted.texture];
+    Texture texture;
+    texture.srgb = wanted.srgb;
+    if (source.sampler >= 0) {
+      const tinygltf::Sampler& sampler = document_.model.samplers[static_cast<size_t>(source.sampler)];
+      texture.wrap_u = wrap_mode(sampler.wrapS);
+      texture.wrap_v = wrap_mode(sampler.wrapT);
+      texture.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    }
+    if (source.source >= 0 && decode_them)
+      texture.image = images.at(static_cast<uint32_t>(source.source)).id;
+    else if (decode_them)
+      document_.warnings.add("{} textures have no image that can be read; neutral ones replace them",
+                             fmt::format("textures[{}]", wanted.texture));
+    if (texture.image == k_none) {
+      Id& neutral = wanted.normal ? flat : white;
+      if (neutral == k_none) {
+        neutral = static_cast<Id>(scene_.images.size());
+        scene_.images.push_back(wanted.normal ? constant_image("neutral normal map", {128, 128, 255, 255})
+                                              : constant_image("neutral white", {255, 255, 255, 255}));
+      }
+      texture.image = neutral;
+    }
+    const auto key =
+        std::make_tuple(texture.image, texture.wrap_u, texture.wrap_v, texture.nearest, texture.srgb);
+    const auto [place, fresh] = unique.try_emplace(key, static_cast<Id>(scene_.textures.size()));
+    if (fresh) scene_.textures.push_back(texture);
+    final_ids.push_back(place->second);
+  }
+  for (Material& m : scene_.materials)
+    for (TextureUse* use :
+         {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emission_texture,
+          &m.specular_texture, &m.specular_color_texture, &m.transmission_texture,
+          &m.diffuse_transmission_texture, &m.diffuse_transmission_color_texture})
+      if (*use) use->texture = final_ids[use->texture];
+}
+
+}  // namespace lucerna::scene

@@ -1,0 +1,272 @@
+#include "scene/io/document.h"
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+
+namespace lucerna::scene {
+namespace {
+
+constexpr uint32_t k_glb_magic = 0x46546c67, k_chunk_json = 0x4e4f534a, k_chunk_bin = 0x004e4942;
+
+uint32_t read_u32(const std::vector<uint8_t>& bytes, size_t at) {
+  uint32_t value = 0;
+  std::memcpy(&value, bytes.data() + at, 4);
+  return value;
+}
+
+struct Container {
+  std::vector<uint8_t> bytes;
+  size_t json_begin = 0, json_end = 0;
+  size_t bin_begin = 0, bin_end = 0;
+  bool binary = false;
+  bool has_bin = false;
+};
+
+Container read_container(const std::filesystem::path& path, const std::string& file) {
+  Container c;
+  c.bytes = read_file(path, file);
+  const size_t size = c.bytes.size();
+  c.json_end = size;
+  if (size == 0) throw_error(file, "the file is empty");
+  if (size < 4 || read_u32(c.bytes, 0) != k_glb_magic) return c;
+
+  c.binary = true;
+  if (size < 20) throw_error(file, "truncated .glb: {} bytes, expected a header of 20", size);
+  const uint32_t version = read_u32(c.bytes, 4), length = read_u32(c.bytes, 8);
+  if (version != 2) throw_error(file, "container version {}, expected 2", version);
+  if (length > size) throw_error(file, "truncated .glb: {} bytes, expected {}", size, length);
+  size_t at = 12;
+  for (int chunk = 0; at < length; ++chunk) {
+    if (length - at < 8) throw_error(file, "truncated .glb: chunk {} has no header", chunk);
+    const uint32_t chunk_length = read_u32(c.bytes, at), type = read_u32(c.bytes, at + 4);
+    at += 8;
+    if (chunk_length > length - at)
+      throw_error(file, "truncated .glb: chunk {} claims {} bytes, {} are left", chunk, chunk_length,
+                  length - at);
+    if (chunk == 0) {
+      if (type != k_chunk_json) throw_error(file, "the first chunk of a .glb must be JSON");
+      c.json_begin = at;
+      c.json_end = at + chunk_length;
+    } else if (type == k_chunk_bin && !c.has_bin) {
+      c.bin_begin = at;
+      c.bin_end = at + chunk_length;
+      c.has_bin = true;
+    }
+    at += chunk_length;
+  }
+  if (c.json_begin == 0) throw_error(file, "a .glb without a JSON chunk");
+  return c;
+}
+
+int base64_value(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  if (c == '+' || c == '-') return 62;
+  if (c == '/' || c == '_') return 63;
+  return -1;
+}
+
+void read_buffers(Document& document, const Container& container) {
+  const auto buffers = document.root().find("buffers");
+  const size_t count = buffers ? buffers->size() : 0;
+  document.model.buffers.resize(count);
+  for (size_t i = 0; i < count; ++i) {
+    const Item buffer = buffers->at(i);
+    const auto length = static_cast<size_t>(buffer.at("byteLength").integer(1, int64_t{1} << 40));
+    std::vector<uint8_t>& data = document.model.buffers[i].data;
+    if (const auto uri = buffer.find("uri")) {
+      data = is_data_uri(uri->text()) ? decode_data_uri(*uri)
+                                      : read_file(resolve_uri(document, uri->text()), uri->where());
+    } else {
+      if (!container.binary || i != 0) buffer.fail("'uri' is missing");
+      if (!container.has_bin) buffer.fail("the .glb has no binary chunk");
+      data.assign(container.bytes.begin() + static_cast<std::ptrdiff_t>(container.bin_begin),
+                  container.bytes.begin() + static_cast<std::ptrdiff_t>(container.bin_end));
+    }
+    if (data.size() < length)
+      buffer.fail("byteLength is {}, but only {} bytes are there", length, data.size());
+    data.resize(length);
+  }
+}
+
+// Copies the members that tinygltf shall see. It gets nothing else: extensions, extras, materials and images
+// are read here, with located messages, and its own image and file reading stays out of the way.
+nlohmann::json pick(const nlohmann::json& from, std::initializer_list<const char*> keys) {
+  nlohmann::json result = nlohmann::json::object();
+  for (const char* key : keys)
+    if (const auto found = from.find(key); found != from.end()) result[key] = *found;
+  return result;
+}
+
+nlohmann::json pick_each(const nlohmann::json& root, const char* list,
+                         std::initializer_list<const char*> keys) {
+  nlohmann::json result = nlohmann::json::array();
+  if (const auto found = root.find(list); found != root.end())
+    for (const nlohmann::json& element : *found) result.push_back(pick(element, keys));
+  return result;
+}
+
+// tinygltf takes 3.0 for a float and refuses it as an integer; JSON schema does not tell them apart.
+void whole_numbers_to_integers(nlohmann::json& value) {
+  if (value.is_structured()) {
+    for (nlohmann::json& child : value) whole_numbers_to_integers(child);
+  } else if (value.is_number_float()) {
+    const double number = value.get<double>();
+    if (number >= 0 && number < 9.0e15 && number == static_cast<double>(static_cast<uint64_t>(number)))
+      value = static_cast<uint64_t>(number);
+  }
+}
+
+void make_model(Document& document) {
+  const nlohmann::json& root = document.json;
+  nlohmann::json reduced;
+  reduced["asset"] = {{"version", "2.0"}};
+  reduced["bufferViews"] =
+      pick_each(root, "bufferViews", {"buffer", "byteOffset", "byteLength", "byteStride"});
+  reduced["accessors"] =
+      pick_each(root, "accessors",
+                {"bufferView", "byteOffset", "componentType", "normalized", "count", "type", "sparse"});
+  reduced["meshes"] = pick_each(root, "meshes", {"name", "primitives"});
+  for (nlohmann::json& mesh : reduced["meshes"])
+    for (nlohmann::json& primitive : mesh["primitives"])
+      primitive = pick(primitive, {"attributes", "indices", "material", "mode"});
+  reduced["nodes"] = pick_each(
+      root, "nodes", {"name", "children", "matrix", "translation", "rotation", "scale", "mesh", "camera"});
+  reduced["samplers"] = pick_each(root, "samplers", {"magFilter", "minFilter", "wrapS", "wrapT"});
+  reduced["textures"] = pick_each(root, "textures", {"sampler", "source"});
+  whole_numbers_to_integers(reduced);
+
+  tinygltf::TinyGLTF parser;
+  tinygltf::Model model;
+  std::string error, warning;
+  const std::string text = reduced.dump();
+  if (text.size() > 0xffffffffu) throw_error(document.file, "more than 4 GiB of JSON");
+  bool ok = false;
+  try {
+    ok = parser.LoadASCIIFromString(&model, &error, &warning, text.c_str(),
+                                    static_cast<unsigned>(text.size()), "", tinygltf::REQUIRE_VERSION);
+  } catch (const std::exception& exception) {
+    error = exception.what();
+  }
+  if (!ok) {
+    const size_t end = error.find('\n');
+    throw_error(document.file, "not a valid glTF document: {}", error.substr(0, std::min<size_t>(end, 300)));
+  }
+  model.buffers = std::move(document.model.buffers);
+  document.model = std::move(model);
+}
+
+}  // namespace
+
+void Warnings::add(const std::string& kind, const std::string& example, uint64_t count) {
+  if (count == 0) return;
+  const auto [place, fresh] = index_.try_emplace(kind, entries_.size());
+  if (fresh) entries_.push_back({kind, example, 0});
+  entries_[place->second].count += count;
+}
+
+std::vector<std::string> Warnings::lines() const {
+  std::vector<std::string> result;
+  for (const Entry& entry : entries_) {
+    std::string line = entry.kind;
+    if (const size_t at = line.find("{}"); at != std::string::npos)
+      line.replace(at, 2, std::to_string(entry.count));
+    if (!entry.example.empty())
+      line += fmt::format(" ({}{})", entry.count > 1 ? "first: " : "", entry.example);
+    result.push_back(std::move(line));
+  }
+  return result;
+}
+
+std::vector<uint8_t> read_file(const std::filesystem::path& path, const std::string& where) {
+  const std::string name = where == path.string() ? "" : fmt::format(" '{}'", path.string());
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw_error(where, "no such file{}", name);
+  // Devices and pipes have no end or never answer.
+  if (!std::filesystem::is_regular_file(status)) throw_error(where, "not a regular file{}", name);
+  const uintmax_t size = std::filesystem::file_size(path, error);
+  std::ifstream stream(path, std::ios::binary);
+  if (error || !stream) throw_error(where, "the file cannot be opened{}", name);
+  std::vector<uint8_t> bytes(size);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (static_cast<uintmax_t>(stream.gcount()) != size) throw_error(where, "the file cannot be read{}", name);
+  return bytes;
+}
+
+bool is_data_uri(const std::string& uri) { return uri.rfind("data:", 0) == 0; }
+
+std::vector<uint8_t> decode_data_uri(const Item& item) {
+  const std::string& uri = item.text();
+  const size_t comma = uri.find(',');
+  if (comma == std::string::npos) item.fail("a data URI without data");
+  std::vector<uint8_t> bytes;
+  if (uri.compare(comma - std::min<size_t>(comma, 7), 7, ";base64") != 0) {
+    const std::string text = percent_decode(uri.substr(comma + 1));
+    return {text.begin(), text.end()};
+  }
+  bytes.reserve((uri.size() - comma) / 4 * 3);
+  uint32_t bits = 0;
+  int held = 0;
+  for (size_t i = comma + 1; i < uri.size() && uri[i] != '='; ++i) {
+    const int value = base64_value(uri[i]);
+    if (value < 0) item.fail("character {} of the data URI is not base64", i);
+    bits = (bits << 6) | static_cast<uint32_t>(value);
+    held += 6;
+    if (held < 8) continue;
+    held -= 8;
+    bytes.push_back(static_cast<uint8_t>(bits >> held));
+  }
+  return bytes;
+}
+
+std::string percent_decode(const std::string& uri) {
+  const auto hex = [](char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+  };
+  std::string result;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0) {
+      result += static_cast<char>(16 * hex(uri[i + 1]) + hex(uri[i + 2]));
+      i += 2;
+    } else {
+      result += uri[i];
+    }
+  }
+  return result;
+}
+
+std::filesystem::path resolve_uri(const Document& document, const std::string& uri) {
+  // Texts with a zero byte would be cut short by the system and name another file.
+  std::string decoded = percent_decode(uri);
+  decoded.erase(std::find(decoded.begin(), decoded.end(), '\0'), decoded.end());
+  std::error_code error;
+  std::filesystem::path path = document.folder / decoded;
+  if (decoded != uri && uri.find('\0') == std::string::npos && !std::filesystem::exists(path, error) &&
+      std::filesystem::exists(document.folder / uri, error))
+    path = document.folder / uri;
+  return path;
+}
+
+void open_document(Document& document, const std::filesystem::path& path) {
+  document.file = path.string();
+  document.folder = path.parent_path();
+  const Container container = read_container(path, document.file);
+  const char* text = reinterpret_cast<const char*>(container.bytes.data());
+  const char *begin = text + container.json_begin, *end = text + container.json_end;
+  // A .glb pads its JSON with spaces; zeros are a common mistake.
+  while (container.binary && end != begin && end[-1] == '\0') --end;
+  document.json = parse_json(document.file, begin, end);
+  document.progress(0.05f, "structure");
+  check_structure(document);
+  document.progress(0.1f, "buffers");
+  read_buffers(document, container);
+  make_model(document);
+}
+
+}  // namespace lucerna::scene

@@ -1,0 +1,91 @@
+#include "scene/io/environment.h"
+
+#include <cmath>
+
+#include "scene/io/images.h"
+#include "scene/io/nodes.h"
+
+namespace lucerna::scene {
+namespace {
+
+void read_environment(Document& document, Scene& scene, const Item& item, bool strict) {
+  const auto file = item.find("file");
+  const auto radiance = item.find("radiance");
+  if (strict) {
+    for (const auto& [key, value] : item.json().items())
+      if (key != "file" && key != "radiance" && key != "scale" && key != "rotation")
+        item.at(key.c_str()).fail("unknown key; known are radiance, file, scale, rotation");
+    if (file && radiance) item.fail("'radiance' and 'file' exclude each other");
+    if (!file && !radiance) item.fail("expected 'radiance' or 'file'");
+  } else if (!file && !radiance) {
+    document.warnings.add("{} environment with neither 'file' nor 'radiance': ignored", item.path());
+    return;
+  }
+  Environment environment;
+  environment.scale = static_cast<float>(item.number("scale", 1));
+  if (environment.scale < 0) item.at("scale").fail("{} is negative", environment.scale);
+  environment.rotation = static_cast<float>(std::remainder(item.number("rotation", 0), 360.0));
+  if (file) {
+    environment.file = file->text();
+    document.progress(0.95f, "environment");
+    Image image = decode_image(read_file(resolve_uri(document, environment.file), file->where()),
+                               environment.file, file->where(), Precision::linear_floats);
+    image.name = environment.file;
+    if (const size_t mended = mend_texels(image))
+      document.warnings.add("{} texel values of the environment that are negative or not finite: replaced",
+                            image.name, mended);
+    environment.image = static_cast<Id>(scene.images.size());
+    scene.images.push_back(std::move(image));
+  } else {
+    environment.radiance = radiance->rgb();
+    if (glm::any(glm::lessThan(environment.radiance, vec3(0)))) radiance->fail("radiance is negative");
+  }
+  scene.environment = std::move(environment);
+}
+
+// {"film": {"ev": 1}} and {"film.ev": 1} both become ("film.ev", "1").
+void flatten(const nlohmann::ordered_json& object, const std::string& prefix, const std::string& file,
+             Scene& scene) {
+  for (const auto& [key, value] : object.items()) {
+    if (prefix.empty() && key == "environment") continue;
+    const std::string name = prefix.empty() ? key : prefix + "." + key;
+    if (value.is_object())
+      flatten(value, name, file, scene);
+    else if (value.is_string())
+      scene.settings.emplace_back(name, value.get<std::string>());
+    else if (value.is_boolean() || value.is_number())
+      scene.settings.emplace_back(name, value.dump());
+    else
+      throw_error(file + ": " + name, "expected a number, a string, true or false, found {}",
+                  value.type_name());
+  }
+}
+
+}  // namespace
+
+bool load_settings(Document& document, Scene& scene) {
+  const std::filesystem::path path = document.folder / "settings.json";
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return false;
+  const std::string file = path.string();
+  const std::vector<uint8_t> bytes = read_file(path, file);
+  const char* text = reinterpret_cast<const char*>(bytes.data());
+  const nlohmann::json json = parse_json(file, text, text + bytes.size());
+  const Item root(file, json);
+  root.object();
+  // Once more, keeping the order of keys: settings are applied in it.
+  flatten(nlohmann::ordered_json::parse(bytes.begin(), bytes.end()), {}, file, scene);
+  const auto environment = root.find("environment");
+  if (environment) read_environment(document, scene, environment->object(), true);
+  return environment.has_value();
+}
+
+void load_extras_environment(Document& document, Scene& scene) {
+  const auto source = default_scene(document);
+  const auto extras = source ? source->find("extras") : std::nullopt;
+  if (!extras || !extras->json().is_object()) return;
+  if (const auto environment = extras->find("environment"))
+    read_environment(document, scene, environment->object(), false);
+}
+
+}  // namespace lucerna::scene

@@ -1,0 +1,300 @@
+#include "scene/io/geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/io/accessor.h"
+#include "scene/tangents.h"
+
+namespace lucerna::scene {
+namespace {
+
+constexpr size_t k_max_triangles = size_t{1} << 27;
+
+bool finite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+class PrimitiveLoader {
+ public:
+  PrimitiveLoader(Document& document, const tinygltf::Primitive& source, std::string where)
+      : document_(document), source_(source), where_(std::move(where)) {}
+
+  /// False when there is nothing to show.
+  bool load(MaterialLoader& materials, Primitive& primitive);
+
+ private:
+  std::string located(const std::string& member) const {
+    return fmt::format("{}: {}.{}", document_.file, where_, member);
+  }
+  void warn(const char* kind, uint64_t count = 1) { document_.warnings.add(kind, where_, count); }
+  int attribute(const char* name) const {
+    const auto found = source_.attributes.find(name);
+    return found == source_.attributes.end() ? -1 : found->second;
+  }
+  AccessorReader open(const char* name, int least, int most) const;
+  bool read_triangles(size_t vertices);
+  void keep_used_vertices();
+  template <class Vector>
+  std::vector<Vector> read_stream(const AccessorReader& reader, int components) const;
+  void read_positions(Primitive& primitive);
+  size_t drop_degenerate(const std::vector<vec3>& positions);
+  void read_normals(Primitive& primitive);
+  std::vector<vec2> read_uvs(const char* name);
+  void read_colors(Primitive& primitive);
+  void read_tangents(Primitive& primitive);
+
+  Document& document_;
+  const tinygltf::Primitive& source_;
+  std::string where_;
+  std::vector<uvec3> triangles_;
+  std::vector<uint32_t> used_;  // accessor element of each kept vertex
+  size_t vertices_ = 0;         // of the POSITION accessor
+};
+
+AccessorReader PrimitiveLoader::open(const char* name, int least, int most) const {
+  const std::string where = located("attributes." + std::string(name));
+  AccessorReader reader(document_, static_cast<uint32_t>(attribute(name)));
+  if (reader.components() < least || reader.components() > most)
+    throw_error(where, "{} components, expected {}{}", reader.components(), least,
+                most > least ? fmt::format(" to {}", most) : "");
+  if (reader.component_type() == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+    throw_error(where, "32-bit integers are not an attribute's type");
+  if (vertices_ != 0 && reader.count() != vertices_)
+    throw_error(where, "{} elements, but POSITION has {}", reader.count(), vertices_);
+  return reader;
+}
+
+bool PrimitiveLoader::read_triangles(size_t vertices) {
+  std::vector<uint32_t> list;
+  if (source_.indices >= 0) {
+    const AccessorReader reader(document_, static_cast<uint32_t>(source_.indices));
+    const int type = reader.component_type();
+    if (reader.components() != 1 ||
+        (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+         type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
+      throw Error(located("indices"), "expected scalars of an unsigned integer type");
+    list.resize(reader.count());
+    for (size_t i = 0; i < list.size(); ++i) {
+      list[i] = reader.read_index(i);
+      if (list[i] >= vertices)
+        throw_error(located("indices"), "index {} is {}, but there are {} vertices", i, list[i], vertices);
+    }
+  } else {
+    list.resize(vertices);
+    for (size_t i = 0; i < vertices; ++i) list[i] = static_cast<uint32_t>(i);
+  }
+  const size_t n = list.size();
+  if (n / 3 > k_max_triangles || (source_.mode != 4 && n > k_max_triangles))
+    throw_error(located("indices"), "more than {} triangles", k_max_triangles);
+  if (source_.mode == TINYGLTF_MODE_TRIANGLES) {
+    triangles_.reserve(n / 3);
+    for (size_t i = 0; i + 2 < n; i += 3) triangles_.emplace_back(list[i], list[i + 1], list[i + 2]);
+    if (n % 3 != 0) warn("{} primitives whose vertices are not a multiple of 3: the rest is ignored");
+  } else if (source_.mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+    // Every other triangle is turned, so that all have the winding of the first (glTF 2.0, 3.7.2.1).
+    for (size_t i = 0; i + 2 < n; ++i)
+      triangles_.emplace_back(list[i], list[i + 1 + i % 2], list[i + 2 - i % 2]);
+  } else {
+    for (size_t i = 1; i + 1 < n; ++i) triangles_.emplace_back(list[i], list[i + 1], list[0]);
+  }
+  return !triangles_.empty();
+}
+
+// Primitives often share one large vertex buffer; each keeps only what its triangles use, in the buffer's
+// order.
+void PrimitiveLoader::keep_used_vertices() {
+  std::vector<uint32_t> place(vertices_, k_none);
+  for (const uvec3& t : triangles_) place[t.x] = place[t.y] = place[t.z] = 0;
+  used_.clear();
+  for (size_t i = 0; i < vertices_; ++i) {
+    if (place[i] == k_none) continue;
+    place[i] = static_cast<uint32_t>(used_.size());
+    used_.push_back(static_cast<uint32_t>(i));
+  }
+  for (uvec3& t : triangles_) t = uvec3(place[t.x], place[t.y], place[t.z]);
+}
+
+template <class Vector>
+std::vector<Vector> PrimitiveLoader::read_stream(const AccessorReader& reader, int components) const {
+  std::vector<Vector> result(used_.size());
+  for (size_t i = 0; i < used_.size(); ++i) reader.read(used_[i], &result[i][0], components);
+  return result;
+}
+
+void PrimitiveLoader::read_positions(Primitive& primitive) {
+  const AccessorReader reader = open("POSITION", 3, 3);
+  primitive.positions = read_stream<vec3>(reader, 3);
+  for (size_t i = 0; i < primitive.positions.size(); ++i) {
+    const vec3& p = primitive.positions[i];
+    if (!finite(p))
+      throw_error(located("attributes.POSITION"), "vertex {} is ({}, {}, {}), expected finite numbers",
+                  used_[i], p.x, p.y, p.z);
+    const vec3 a = glm::abs(p);
+    if (std::max({a.x, a.y, a.z}) > k_max_coordinate)
+      throw_error(located("attributes.POSITION"), "vertex {} is ({}, {}, {}), beyond {} m", used_[i], p.x,
+                  p.y, p.z, k_max_coordinate);
+  }
+}
+
+size_t PrimitiveLoader::drop_degenerate(const std::vector<vec3>& positions) {
+  const size_t before = triangles_.size();
+  std::erase_if(triangles_, [&positions](const uvec3& t) {
+    if (t.x == t.y || t.y == t.z || t.z == t.x) return true;
+    const vec3 a = positions[t.x];
+    const vec3 n = glm::cross(positions[t.y] - a, positions[t.z] - a);
+    return !(glm::dot(n, n) > 0);  // as float arithmetic sees it: later pdfs divide by this area
+  });
+  return before - triangles_.size();
+}
+
+void PrimitiveLoader::read_normals(Primitive& primitive) {
+  if (attribute("NORMAL") < 0) {
+    make_flat_normals(primitive);
+    return;
+  }
+  primitive.normals = read_stream<vec3>(open("NORMAL", 3, 3), 3);
+  std::vector<uint8_t> bad(primitive.normals.size(), 0);
+  size_t count = 0;
+  for (size_t i = 0; i < primitive.normals.size(); ++i) {
+    vec3& n = primitive.normals[i];
+    const double length = glm::length(glm::dvec3(n));
+    if (std::isfinite(length) && length > 1e-12) {
+      n = vec3(glm::dvec3(n) / length);
+    } else {
+      bad[i] = 1;
+      n = vec3(0);
+      ++count;
+    }
+  }
+  if (count == 0) return;
+  warn("{} normals without a direction: replaced by those of their faces", count);
+  std::vector<glm::dvec3> sum(primitive.normals.size(), glm::dvec3(0));
+  for (const uvec3& t : primitive.triangles) {
+    const glm::dvec3 a = primitive.positions[t.x];
+    const glm::dvec3 n =
+        glm::cross(glm::dvec3(primitive.positions[t.y]) - a, glm::dvec3(primitive.positions[t.z]) - a);
+    for (int k = 0; k < 3; ++k) sum[t[k]] += n;
+  }
+  for (size_t i = 0; i < bad.size(); ++i) {
+    if (!bad[i]) continue;
+    const double length = glm::length(sum[i]);
+    primitive.normals[i] = length > 0 ? vec3(sum[i] / length) : vec3(0, 1, 0);
+  }
+}
+
+std::vector<vec2> PrimitiveLoader::read_uvs(const char* name) {
+  if (attribute(name) < 0) {
+    warn("{} primitives have a textured material but lack the texture coordinates: (0, 0) is taken");
+    return {};
+  }
+  std::vector<vec2> uvs = read_stream<vec2>(open(name, 2, 2), 2);
+  size_t bad = 0;
+  for (vec2& uv : uvs) {
+    if (std::abs(uv.x) < 1e6f && std::abs(uv.y) < 1e6f) continue;
+    uv = vec2(0);
+    ++bad;
+  }
+  if (bad != 0) warn("{} texture coordinates that are not finite or beyond 10^6: (0, 0) is taken", bad);
+  return uvs;
+}
+
+void PrimitiveLoader::read_colors(Primitive& primitive) {
+  if (attribute("COLOR_0") < 0) return;
+  AccessorReader reader = open("COLOR_0", 3, 4);
+  reader.force_normalized();
+  primitive.colors.assign(used_.size(), vec4(1));
+  size_t bad = 0;
+  bool white = true;
+  for (size_t i = 0; i < used_.size(); ++i) {
+    vec4& color = primitive.colors[i];
+    reader.read(used_[i], &color[0], reader.components());
+    for (int k = 0; k < 4; ++k) {
+      if (std::isfinite(color[k])) {
+        color[k] = std::clamp(color[k], 0.0f, 1.0f);  // glTF 2.0, 3.7.2.1
+      } else {
+        color[k] = 1;
+        ++bad;
+      }
+    }
+    white = white && color == vec4(1);
+  }
+  if (bad != 0) warn("{} vertex colour values that are not finite: 1 is taken", bad);
+  if (white) primitive.colors.clear();
+}
+
+void PrimitiveLoader::read_tangents(Primitive& primitive) {
+  primitive.tangents = read_stream<vec4>(open("TANGENT", 4, 4), 4);
+  size_t bad = 0;
+  for (size_t i = 0; i < primitive.tangents.size(); ++i) {
+    vec4& tangent = primitive.tangents[i];
+    const vec3 n = primitive.normals[i];
+    vec3 t = finite(vec3(tangent)) ? vec3(tangent) : vec3(0);
+    const float length = glm::length(t);
+    const vec3 across = length > 0 && std::isfinite(length) ? glm::cross(n, t / length) : vec3(0);
+    if (glm::length(across) < 1e-4f) {  // none, or along the normal
+      t = std::abs(n.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 1, 0);
+      t = glm::normalize(t - n * glm::dot(n, t));
+      ++bad;
+    } else {
+      t /= length;
+    }
+    tangent = vec4(t, tangent.w < 0 ? -1.0f : 1.0f);
+  }
+  if (bad != 0) warn("{} tangents without a direction in the surface: replaced", bad);
+}
+
+bool PrimitiveLoader::load(MaterialLoader& materials, Primitive& primitive) {
+  if (source_.mode < TINYGLTF_MODE_TRIANGLES) {
+    warn("{} primitives of points or lines are left out");
+    return false;
+  }
+  if (attribute("POSITION") < 0) {
+    warn("{} primitives without positions are left out");
+    return false;
+  }
+  vertices_ = open("POSITION", 3, 3).count();
+  if (attribute("TEXCOORD_2") >= 0)
+    warn("{} primitives have more than two sets of texture coordinates; the others are ignored");
+  if (attribute("JOINTS_0") >= 0) warn("{} primitives are skinned; they are shown in their rest pose");
+  if (!read_triangles(vertices_)) return false;
+
+  keep_used_vertices();
+  read_positions(primitive);
+  if (const size_t dropped = drop_degenerate(primitive.positions)) {
+    warn("{} degenerate triangles removed", dropped);
+    if (triangles_.empty()) return false;
+    for (uvec3& t : triangles_) t = uvec3(used_[t.x], used_[t.y], used_[t.z]);
+    keep_used_vertices();
+    primitive.positions = read_stream<vec3>(open("POSITION", 3, 3), 3);
+  }
+  primitive.material = materials.material(source_.material);
+  const MaterialNeeds& needs = materials.needs(primitive.material);
+  if (needs.uv[0]) primitive.uv0 = read_uvs("TEXCOORD_0");
+  if (needs.uv[1]) primitive.uv1 = read_uvs("TEXCOORD_1");
+  read_colors(primitive);
+  primitive.triangles = std::move(triangles_);
+  read_normals(primitive);
+  if (needs.normal_map) {
+    if (attribute("TANGENT") >= 0 && attribute("NORMAL") >= 0)
+      read_tangents(primitive);
+    else
+      make_tangents(primitive, needs.normal_map);
+  }
+  return true;
+}
+
+}  // namespace
+
+Mesh load_mesh(Document& document, uint32_t index, MaterialLoader& materials) {
+  const tinygltf::Mesh& source = document.model.meshes[index];
+  Mesh mesh;
+  mesh.name = source.name.empty() ? fmt::format("mesh {}", index) : source.name;
+  for (size_t i = 0; i < source.primitives.size(); ++i) {
+    PrimitiveLoader loader(document, source.primitives[i],
+                           fmt::format("meshes[{}].primitives[{}]", index, i));
+    Primitive primitive;
+    if (loader.load(materials, primitive)) mesh.primitives.push_back(std::move(primitive));
+  }
+  return mesh;
+}
+
+}  // namespace lucerna::scene

@@ -1,0 +1,56 @@
+#pragma once
+// Materials and textures of a glTF document.
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "scene/io/document.h"
+
+namespace lucerna::scene {
+
+/// What geometry must know of a material.
+struct MaterialNeeds {
+  bool uv[2] = {false, false};  ///< which texture coordinates its textures read
+  TextureUse normal_map;        ///< how its normal map is read; none without one
+};
+
+/// Reads materials on demand, and their images at the end.
+class MaterialLoader {
+ public:
+  MaterialLoader(Document& document, Scene& scene) : document_(document), scene_(scene) {}
+
+  /// The scene's id of glTF material `index` (-1: glTF's default material); reads it when asked for the first
+  /// time.
+  Id material(int index);
+  const MaterialNeeds& needs(Id material) const { return needs_[material]; }
+
+  /// Decodes every image that a texture uses and fills Scene::images and Scene::textures. `decode` false:
+  /// neutral images stand for all of them.
+  void load_images(bool decode);
+
+ private:
+  struct Wanted {          // a texture as some material asks for it
+    uint32_t texture = 0;  // glTF index
+    bool srgb = false;
+    bool normal = false;
+    bool operator<(const Wanted& o) const {
+      return std::tie(texture, srgb, normal) < std::tie(o.texture, o.srgb, o.normal);
+    }
+  };
+  enum class Use { colour, data, normal };
+
+  TextureUse texture_use(const Item& parent, const char* key, Use use, MaterialNeeds& needs);
+  void read(const Item& item, Material& material, MaterialNeeds& needs);
+  void read_extensions(const Item& extensions, Material& material, MaterialNeeds& needs);
+  float factor(const Item& parent, const char* key, float fallback, float lo, float hi);
+  vec3 color(const Item& parent, const char* key, vec3 fallback, float hi);
+
+  Document& document_;
+  Scene& scene_;
+  std::map<int, Id> known_;
+  std::vector<MaterialNeeds> needs_;
+  std::vector<Wanted> wanted_;  // TextureUse::texture indexes this until load_images
+  std::map<Wanted, Id> wanted_ids_;
+};
+
+}  // namespace lucerna::scene
