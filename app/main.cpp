@@ -17,10 +17,14 @@ std::string settings_help() {
   std::string text = "\nSettings for --set KEY=VALUE (and settings.json beside a scene):\n";
   for (const plan::OptionInfo& o : plan::options()) {
     std::string range;
-    if (o.type == plan::OptionType::choice) range = fmt::format("{}", fmt::join(o.choices, "|"));
-    else if (o.type == plan::OptionType::boolean) range = "true|false";
-    else if (o.type != plan::OptionType::text) range = fmt::format("{} to {}{}{}", o.lo, o.hi, o.unit.empty() ? "" : " ", o.unit);
-    text += fmt::format("  {:<24}{} [{}] {}\n", o.key, o.help, o.fallback.empty() ? "none" : o.fallback, range);
+    if (o.type == plan::OptionType::choice)
+      range = fmt::format("{}", fmt::join(o.choices, "|"));
+    else if (o.type == plan::OptionType::boolean)
+      range = "true|false";
+    else if (o.type != plan::OptionType::text)
+      range = fmt::format("{} to {}{}{}", o.lo, o.hi, o.unit.empty() ? "" : " ", o.unit);
+    text +=
+        fmt::format("  {:<24}{} [{}] {}\n", o.key, o.help, o.fallback.empty() ? "none" : o.fallback, range);
   }
   return text;
 }
@@ -39,12 +43,16 @@ int main_checked(int argc, char** argv) {
   RenderArguments r;
   CLI::App* render_verb = app.add_subcommand("render", "render a scene to files, without a window");
   render_verb->add_option("SCENE", r.scene, "glTF scene")->required();
-  render_verb->add_option("-o,--output", r.outputs, "OUT.exr or OUT.png; may be given several times")->required()->allow_extra_args(false);
+  render_verb->add_option("-o,--output", r.outputs, "OUT.exr or OUT.png; may be given several times")
+      ->required()
+      ->allow_extra_args(false);
   render_verb->add_option("--size", r.size, "picture, WIDTHxHEIGHT")->capture_default_str();
   render_verb->add_option("--camera", r.camera, "name of a scene camera");
-  render_verb->add_option("--samples", r.samples, "samples a pixel")->check(CLI::Range(int64_t(1), int64_t(1) << 20));
+  render_verb->add_option("--samples", r.samples, "samples a pixel")
+      ->check(CLI::Range(int64_t(1), int64_t(1) << 20));
   render_verb->add_option("--time", r.seconds, "stop after this many seconds");
-  render_verb->add_option("--seed", r.seed, "seed of all random decisions")->check(CLI::Range(int64_t(0), int64_t(4294967295)));
+  render_verb->add_option("--seed", r.seed, "seed of all random decisions")
+      ->check(CLI::Range(int64_t(0), int64_t(4294967295)));
   render_verb->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
   render_verb->add_option("--device", r.device, "as above");
   render_verb->add_option("--stats", r.stats, "write figures of the run as JSON");

@@ -21,7 +21,8 @@ void on_interrupt(int) { interrupted = true; }
 std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
   unsigned long w = 0, h = 0;
   char rest = 0;
-  if (text.find('-') != std::string::npos || std::sscanf(text.c_str(), "%lux%lu%c", &w, &h, &rest) != 2 || !w || !h || w > 65536 || h > 65536)
+  if (text.find('-') != std::string::npos || std::sscanf(text.c_str(), "%lux%lu%c", &w, &h, &rest) != 2 ||
+      !w || !h || w > 65536 || h > 65536)
     throw_error("--size", "'{}': expected WIDTHxHEIGHT, each from 1 to 65536, such as 1280x720", text);
   return {uint32_t(w), uint32_t(h)};
 }
@@ -48,9 +49,10 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
   const double paths = double(r.stats().paths) / (double(r.film().width()) * r.film().height());
   const double done = limit > 0 ? share : std::max(share, paths / r.max_samples());
   const double left = done > 0 ? seconds * (1 - done) / done : 0;
-  std::fprintf(stderr, "\r%5.1f %%  %u/%u samples  %.2f Mray/s  %.2f samples/s  %s %.0f s left   %s", 100 * done, r.samples(),
-               r.max_samples(), 1e-6 * double(r.stats().rays) / std::max(seconds, 1e-9), paths / std::max(seconds, 1e-9), "about", left,
-               last ? "\n" : "");
+  std::fprintf(stderr, "\r%5.1f %%  %u/%u samples  %.2f Mray/s  %.2f samples/s  %s %.0f s left   %s",
+               100 * done, r.samples(), r.max_samples(),
+               1e-6 * double(r.stats().rays) / std::max(seconds, 1e-9), paths / std::max(seconds, 1e-9),
+               "about", left, last ? "\n" : "");
   std::fflush(stderr);
 }
 
@@ -76,7 +78,8 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   j["ended_by_depth"] = r.stats().depth;
   j["peak_host_mb"] = session::peak_host_mb();
   j["peak_device_mb"] = double(r.device().peak_bytes()) / (1 << 20);
-  for (const auto& s : r.stats().stages) j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
+  for (const auto& s : r.stats().stages)
+    j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
   for (int c = 0; c < paths::k_component_count; ++c) {
     const std::string name = paths::k_component_names[c];
     j["components"][name] = {{"solver", r.settings().text("components." + name)},
@@ -94,7 +97,8 @@ int render(const RenderArguments& a) {
   for (const std::string& file : a.outputs) {
     const auto dot = file.rfind('.');
     const std::string extension = dot == std::string::npos ? "" : file.substr(dot);
-    if (extension != ".exr" && extension != ".png") throw_error(file, "cannot write '{}' files; use .exr or .png", extension);
+    if (extension != ".exr" && extension != ".png")
+      throw_error(file, "cannot write '{}' files; use .exr or .png", extension);
     film::check_writable(file);
   }
   if (!a.stats.empty()) check_folder(a.stats);
@@ -110,7 +114,8 @@ int render(const RenderArguments& a) {
   if (a.samples != -1) changes.emplace_back("samples", std::to_string(a.samples));
   if (a.seed != -1) changes.emplace_back("seed", std::to_string(a.seed));
   plan::Settings probe;
-  for (const auto& [key, value] : changes) probe.set(key, value, key == "samples" && a.samples != -1 ? "--samples" : "--set");
+  for (const auto& [key, value] : changes)
+    probe.set(key, value, key == "samples" && a.samples != -1 ? "--samples" : "--set");
   for (const auto& [key, value] : changes)
     if (key == "tracer" || key == "path.batch") r.settings().set(key, value);
   if (a.seconds < 0) throw Error("--time", "expected a positive number of seconds");
@@ -126,19 +131,22 @@ int render(const RenderArguments& a) {
   r.apply_settings();
   if (!a.camera.empty()) r.choose_camera(a.camera);
 
-  struct sigaction action{}, before{};
+  struct sigaction action {
+  }, before{};
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, &before);
   const Timer timer;
   Timer since_line;
   while (!r.done() && !interrupted && (a.seconds <= 0 || timer.seconds() < a.seconds)) {
     if (!r.step()) break;
-    if (terminal && since_line.seconds() > 0.2) print_progress(r, timer.seconds(), a.seconds, false), since_line.restart();
+    if (terminal && since_line.seconds() > 0.2)
+      print_progress(r, timer.seconds(), a.seconds, false), since_line.restart();
   }
   const double wall = timer.seconds();
   if (terminal) print_progress(r, wall, a.seconds, true);
   sigaction(SIGINT, &before, nullptr);
-  if (interrupted) std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
+  if (interrupted)
+    std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
   for (const std::string& file : a.outputs) r.save(file);
   if (!a.stats.empty()) write_text(a.stats, make_stats(r, wall).dump(2) + "\n");
   if (r.stats().dropped) log::warning("{} contributions were not finite and were dropped", r.stats().dropped);

@@ -11,24 +11,39 @@ namespace lucerna::app {
 
 int info(const std::string& file, bool json) {
   const scene::Scene scene = scene::load(file);
-  if (json) std::printf("%s\n", scene::describe(scene).dump(2).c_str());
-  else std::printf("%s", scene::describe_text(scene).c_str());
+  if (json)
+    std::printf("%s\n", scene::describe(scene).dump(2).c_str());
+  else
+    std::printf("%s", scene::describe_text(scene).c_str());
   return 0;
 }
 
 int devices(bool json) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const gpu::DeviceInfo& d : gpu::enumerate()) {
-    const auto version = fmt::format("{}.{}.{}", d.api_version >> 22 & 0x7f, d.api_version >> 12 & 0x3ff, d.api_version & 0xfff);
+    const auto version = fmt::format("{}.{}.{}", d.api_version >> 22 & 0x7f, d.api_version >> 12 & 0x3ff,
+                                     d.api_version & 0xfff);
     if (json) {
-      list.push_back({{"index", d.index}, {"name", d.name}, {"driver", d.driver}, {"vulkan", version}, {"cpu", d.is_cpu},
-                      {"discrete", d.is_discrete}, {"memory_mb", d.memory_bytes >> 20}, {"missing", d.missing}});
+      list.push_back({{"index", d.index},
+                      {"name", d.name},
+                      {"driver", d.driver},
+                      {"vulkan", version},
+                      {"cpu", d.is_cpu},
+                      {"discrete", d.is_discrete},
+                      {"memory_mb", d.memory_bytes >> 20},
+                      {"missing", d.missing}});
       continue;
     }
-    std::printf("%u  %s\n   %s, Vulkan %s, %s, %llu MiB\n   optional: float atomics %s, subgroups %s, external memory %s, int64 %s, float64 %s\n",
-                d.index, d.name.c_str(), d.driver.c_str(), version.c_str(), d.is_cpu ? "CPU" : d.is_discrete ? "discrete GPU" : "GPU",
-                (unsigned long long)(d.memory_bytes >> 20), d.optional.float_atomics ? "yes" : "no", d.optional.subgroups ? "yes" : "no",
-                d.optional.external_memory ? "yes" : "no", d.optional.int64 ? "yes" : "no", d.optional.float64 ? "yes" : "no");
+    std::printf(
+        "%u  %s\n   %s, Vulkan %s, %s, %llu MiB\n   optional: float atomics %s, subgroups %s, external "
+        "memory %s, int64 %s, float64 %s\n",
+        d.index, d.name.c_str(), d.driver.c_str(), version.c_str(),
+        d.is_cpu        ? "CPU"
+        : d.is_discrete ? "discrete GPU"
+                        : "GPU",
+        (unsigned long long)(d.memory_bytes >> 20), d.optional.float_atomics ? "yes" : "no",
+        d.optional.subgroups ? "yes" : "no", d.optional.external_memory ? "yes" : "no",
+        d.optional.int64 ? "yes" : "no", d.optional.float64 ? "yes" : "no");
     if (!d.missing.empty()) std::printf("   cannot be used: lacks %s\n", d.missing.c_str());
   }
   if (json) std::printf("%s\n", list.dump(2).c_str());

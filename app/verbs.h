@@ -10,10 +10,10 @@ struct RenderArguments {
   std::string scene;
   std::vector<std::string> outputs;
   std::string size = "1280x720", camera, device, stats;
-  int64_t samples = -1;            ///< -1: the settings'
-  double seconds = 0;              ///< 0: no time limit
+  int64_t samples = -1;  ///< -1: the settings'
+  double seconds = 0;    ///< 0: no time limit
   int64_t seed = -1;
-  std::vector<std::string> set;    ///< key=value
+  std::vector<std::string> set;  ///< key=value
   bool quiet = false;
 };
 int render(const RenderArguments& arguments);
@@ -24,7 +24,7 @@ int devices(bool json);
 struct CompareArguments {
   std::string a, b, layer, difference;
   bool json = false;
-  double max_relmse = -1;          ///< < 0: no bound
+  double max_relmse = -1;  ///< < 0: no bound
 };
 int compare(const CompareArguments& arguments);
 

@@ -15,7 +15,8 @@ struct State {
   int next_token = 1;
   std::shared_ptr<spdlog::logger> logger;
   State() {
-    logger = std::make_shared<spdlog::logger>("lucerna", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    logger =
+        std::make_shared<spdlog::logger>("lucerna", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
     logger->set_pattern("lucerna: %^%l%$: %v");
     logger->set_level(spdlog::level::warn);
   }
@@ -28,10 +29,14 @@ State& state() {
 
 spdlog::level::level_enum to_spdlog(Level level) {
   switch (level) {
-    case Level::debug: return spdlog::level::debug;
-    case Level::info: return spdlog::level::info;
-    case Level::warning: return spdlog::level::warn;
-    case Level::error: return spdlog::level::err;
+    case Level::debug:
+      return spdlog::level::debug;
+    case Level::info:
+      return spdlog::level::info;
+    case Level::warning:
+      return spdlog::level::warn;
+    case Level::error:
+      return spdlog::level::err;
   }
   return spdlog::level::info;
 }

@@ -8,10 +8,12 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width)
   const uint64_t pixels = uint64_t(width) * height, largest = device.info().limits.max_storage_buffer / 48;
   if (pixels == 0) throw Error("size", "a picture needs at least one pixel");
   if (pixels > largest)
-    throw_error("size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{})", width, height, pixels, largest,
-                uint32_t(std::sqrt(largest * 16.0 / 9)), uint32_t(std::sqrt(largest * 9.0 / 16)));
+    throw_error("size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{})", width,
+                height, pixels, largest, uint32_t(std::sqrt(largest * 16.0 / 9)),
+                uint32_t(std::sqrt(largest * 9.0 / 16)));
   const char* names[k_components] = {"film primary", "film secondary", "film tertiary", "film caustic"};
-  for (int c = 0; c < k_components; ++c) sums_[c] = gpu::Buffer(device, {.name = names[c], .bytes = pixels * 48});
+  for (int c = 0; c < k_components; ++c)
+    sums_[c] = gpu::Buffer(device, {.name = names[c], .bytes = pixels * 48});
   albedo_ = gpu::Buffer(device, {.name = "film albedo", .bytes = pixels * 16});
   normal_ = gpu::Buffer(device, {.name = "film normals", .bytes = pixels * 16});
   count_ = gpu::Buffer(device, {.name = "film counts", .bytes = pixels * 4});
@@ -50,7 +52,9 @@ Image Film::read() const {
     image.components[c].resize(n);
     image.odd_half[c].resize(n);
     for (size_t i = 0; i < n; ++i) {
-      const auto total = [&](size_t k) { return glm::dvec3(halves[k].sum) + glm::dvec3(halves[k].compensation); };
+      const auto total = [&](size_t k) {
+        return glm::dvec3(halves[k].sum) + glm::dvec3(halves[k].compensation);
+      };
       const double samples = std::max(1u, image.samples[i]), odd = std::max(1u, image.samples[i] / 2);
       image.components[c][i] = vec3((total(2 * i) + total(2 * i + 1)) / samples);
       image.odd_half[c][i] = vec3(total(2 * i + 1) / odd);

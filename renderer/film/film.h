@@ -1,6 +1,6 @@
 #pragma once
-// The film: component sums in two independently scrambled halves, features, sample counts, in device memory; and its tone-mapped
-// picture. Layout: shaders/shared/film.h.
+// The film: component sums in two independently scrambled halves, features, sample counts, in device memory;
+// and its tone-mapped picture. Layout: shaders/shared/film.h.
 #include <array>
 #include <vector>
 
@@ -15,24 +15,25 @@ inline constexpr int k_components = 4;
 /// What the film holds, read back: means over the samples. Row 0 at the top.
 struct Image {
   uint32_t width = 0, height = 0;
-  std::array<std::vector<vec3>, k_components> components;       ///< radiance
-  std::array<std::vector<vec3>, k_components> odd_half;         ///< mean of the odd samples alone
-  std::vector<vec3> albedo, normal;                             ///< normal: unit or 0
-  std::vector<float> depth;                                     ///< metres along the view axis, mean of hits; 0: none
+  std::array<std::vector<vec3>, k_components> components;  ///< radiance
+  std::array<std::vector<vec3>, k_components> odd_half;    ///< mean of the odd samples alone
+  std::vector<vec3> albedo, normal;                        ///< normal: unit or 0
+  std::vector<float> depth;  ///< metres along the view axis, mean of hits; 0: none
   std::vector<uint32_t> samples;
 };
 
 struct View {
-  uint32_t layer = 0;     ///< shared::k_layer_*
-  uint32_t show = 15;     ///< components in the beauty layer
-  uint32_t curve = 0;     ///< tone curve
-  float exposure = 1;     ///< factor
-  float scale = 1;        ///< depth or samples shown white
+  uint32_t layer = 0;  ///< shared::k_layer_*
+  uint32_t show = 15;  ///< components in the beauty layer
+  uint32_t curve = 0;  ///< tone curve
+  float exposure = 1;  ///< factor
+  float scale = 1;     ///< depth or samples shown white
 };
 
 class Film {
  public:
-  /// Throws Error when a plane exceeds what one binding may hold (naming the largest size that fits), or memory.
+  /// Throws Error when a plane exceeds what one binding may hold (naming the largest size that fits), or
+  /// memory.
   Film(gpu::Device& device, uint32_t width, uint32_t height);
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }

@@ -9,7 +9,8 @@
 
 namespace lucerna::paths {
 
-const std::array<const char*, k_component_count> k_component_names{"primary", "secondary", "tertiary", "caustic"};
+const std::array<const char*, k_component_count> k_component_names{"primary", "secondary", "tertiary",
+                                                                   "caustic"};
 const std::array<const char*, k_component_count> k_component_expressions{
     "E[SG]*L|E[SG]*DL",
     "E[SG]*D[SG]*DL",
@@ -38,7 +39,9 @@ struct Nfa {
   int add(const NfaState& s = {}) { return states.push_back(s), static_cast<int>(states.size()) - 1; }
 };
 
-struct Fragment { int start, end; };  // `end` is a state without edges
+struct Fragment {
+  int start, end;
+};  // `end` is a state without edges
 
 class Parser {
  public:
@@ -168,7 +171,8 @@ Automaton minimize(const Automaton& in) {
   Automaton out;
   std::vector<size_t> representative;
   for (size_t i = 0; i < group.size(); ++i)
-    if (number[group[i]] < 0) number[group[i]] = static_cast<int>(representative.size()), representative.push_back(i);
+    if (number[group[i]] < 0)
+      number[group[i]] = static_cast<int>(representative.size()), representative.push_back(i);
   for (size_t r : representative) {
     Automaton::State s = in.states[r];
     for (auto& next : s.next) next = static_cast<uint8_t>(number[group[next]]);
@@ -224,7 +228,8 @@ Automaton compile(const std::vector<std::string>& expressions) {
   const auto index_of = [&](const Subset& s, const std::string& word) {
     const auto [it, fresh] = number.emplace(s, static_cast<uint8_t>(subsets.size()));
     if (fresh) {
-      if (subsets.size() == 255) throw Error("path expressions", "need more than 255 states; use simpler ones");
+      if (subsets.size() == 255)
+        throw Error("path expressions", "need more than 255 states; use simpler ones");
       subsets.push_back(s), witness.push_back(word);
     }
     return it->second;
@@ -234,7 +239,8 @@ Automaton compile(const std::vector<std::string>& expressions) {
   for (size_t i = 0; i < subsets.size(); ++i) {
     Automaton::State state;
     for (int e = 0; e < k_scatter_events; ++e)
-      state.next[e] = index_of(step(nfa, Subset(subsets[i]), k_scatter_letters[e]), witness[i] + k_scatter_letters[e]);
+      state.next[e] =
+          index_of(step(nfa, Subset(subsets[i]), k_scatter_letters[e]), witness[i] + k_scatter_letters[e]);
     const Subset lit = step(nfa, subsets[i], 'L');
     for (size_t x = 0; x < ends.size(); ++x) {
       if (!lit.count(ends[x])) continue;
@@ -259,7 +265,8 @@ Automaton compile_components() {
     changed = false;
     for (size_t i = 0; i < word.size(); ++i)
       for (int e = 0; e < k_scatter_events && !word[i].empty(); ++e)
-        if (auto& w = word[automaton.states[i].next[e]]; w.empty()) w = word[i] + k_scatter_letters[e], changed = true;
+        if (auto& w = word[automaton.states[i].next[e]]; w.empty())
+          w = word[i] + k_scatter_letters[e], changed = true;
   }
   for (size_t i = 0; i < word.size(); ++i)
     if (automaton.states[i].accept == k_no_component)
@@ -301,7 +308,8 @@ class Matcher {
       int depth = 1;
       for (; depth; ++end) depth += e_[end] == '(' ? 1 : e_[end] == ')' ? -1 : 0;
     }
-    const char op = end < to && std::string_view("*+?").find(e_[end]) != std::string_view::npos ? e_[end] : ' ';
+    const char op =
+        end < to && std::string_view("*+?").find(e_[end]) != std::string_view::npos ? e_[end] : ' ';
     const size_t rest = op == ' ' ? end : end + 1;
     const auto tail = [&](size_t a) { return sequence(rest, to, a, k); };
     const auto once = [&](size_t a, const std::function<bool(size_t)>& then) {
@@ -315,10 +323,14 @@ class Matcher {
       return once(a, [&](size_t b) { return b > a && repeat(b, true); });
     };
     switch (op) {
-      case '*': return repeat(at, true);
-      case '+': return repeat(at, false);
-      case '?': return tail(at) || once(at, tail);
-      default: return once(at, tail);
+      case '*':
+        return repeat(at, true);
+      case '+':
+        return repeat(at, false);
+      case '?':
+        return tail(at) || once(at, tail);
+      default:
+        return once(at, tail);
     }
   }
 
@@ -336,7 +348,8 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled) {
   for (bool changed = true; changed;) {
     changed = false;
     for (uint8_t s : std::set<uint8_t>(mirrors))
-      for (Event e : {Event::glossy, Event::specular}) changed |= mirrors.insert(automaton.after(s, e)).second;
+      for (Event e : {Event::glossy, Event::specular})
+        changed |= mirrors.insert(automaton.after(s, e)).second;
   }
   for (size_t i = 0; i < automaton.states.size(); ++i) {
     const auto& s = automaton.states[i];

@@ -1,10 +1,12 @@
 #pragma once
-// Light-path words, path expressions and the automaton that sorts paths into components while they are traced.
+// Light-path words, path expressions and the automaton that sorts paths into components while they are
+// traced.
 //
-// A word begins at the eye and holds one letter an event, the sampled lobe's: D diffuse, G glossy, S specular (delta), and
-// L where it meets light. An expression is a regular expression over E D G S L: letters, [classes], . (any of D G S),
-// * + ? | and parentheses. The four component expressions (METHODS: the partition) are compiled into one deterministic
-// automaton whose table is uploaded; no shader knows a component by a rule of its own.
+// A word begins at the eye and holds one letter an event, the sampled lobe's: D diffuse, G glossy, S specular
+// (delta), and L where it meets light. An expression is a regular expression over E D G S L: letters,
+// [classes], . (any of D G S),
+// * + ? | and parentheses. The four component expressions (METHODS: the partition) are compiled into one
+// deterministic automaton whose table is uploaded; no shader knows a component by a rule of its own.
 #include <array>
 #include <cstdint>
 #include <string>
@@ -36,26 +38,27 @@ struct Automaton {
   uint8_t after(uint8_t state, Event event) const { return states[state].next[static_cast<int>(event)]; }
   /// Component of a word such as "EGDL" (it must start with E and end with L), or k_no_component.
   uint8_t classify(std::string_view word) const;
-  /// The lowest enabled component (bit i: component i) still reachable from a state, 0..3, or k_no_component: the one its
-  /// rays are accounted to.
+  /// The lowest enabled component (bit i: component i) still reachable from a state, 0..3, or k_no_component:
+  /// the one its rays are accounted to.
   uint8_t accounted_to(uint8_t state, uint32_t enabled = 0b1111) const;
 };
 
 /// Compiles expressions (all starting with E and ending with L) into one automaton, minimized.
-/// Throws Error, located at the expression: a syntax error, or two expressions that share a word (one such is named).
+/// Throws Error, located at the expression: a syntax error, or two expressions that share a word (one such is
+/// named).
 Automaton compile(const std::vector<std::string>& expressions);
 
-/// The automaton of the four components. Also checks that every word E[DGS]*L belongs to one of them; throws Error naming
-/// a word that is lost.
+/// The automaton of the four components. Also checks that every word E[DGS]*L belongs to one of them; throws
+/// Error naming a word that is lost.
 Automaton compile_components();
 
-/// True when the word belongs to the expression: a direct backtracking matcher that shares no code with compile(), kept
-/// as its oracle and for one-off queries.
+/// True when the word belongs to the expression: a direct backtracking matcher that shares no code with
+/// compile(), kept as its oracle and for one-off queries.
 bool matches(const std::string& expression, std::string_view word);
 
-/// The automaton as it is uploaded: packed[state] bits 0-7 next on D, 8-15 next on G, 16-23 next on S, 24-26 component
-/// (k_component_count: none, or switched off), bit 27: an enabled component is reachable, bit 28: no D so far
-/// (E[SG]*), bits 29-30: component its rays are accounted to. `enabled` bit i: component i is on.
+/// The automaton as it is uploaded: packed[state] bits 0-7 next on D, 8-15 next on G, 16-23 next on S, 24-26
+/// component (k_component_count: none, or switched off), bit 27: an enabled component is reachable, bit 28:
+/// no D so far (E[SG]*), bits 29-30: component its rays are accounted to. `enabled` bit i: component i is on.
 std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled);
 
 }  // namespace lucerna::paths

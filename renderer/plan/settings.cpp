@@ -16,9 +16,16 @@ OptionInfo component(const char* name, const char* what) {
           .help = fmt::format("Solver of the {} component: {}.", name, what)};
 }
 
-OptionInfo integer(const char* key, int64_t fallback, double lo, double hi, const char* unit, const char* help) {
-  return {.key = key, .type = OptionType::integer, .fallback = std::to_string(fallback), .lo = lo, .hi = hi,
-          .unit = unit, .choices = {}, .help = help};
+OptionInfo integer(const char* key, int64_t fallback, double lo, double hi, const char* unit,
+                   const char* help) {
+  return {.key = key,
+          .type = OptionType::integer,
+          .fallback = std::to_string(fallback),
+          .lo = lo,
+          .hi = hi,
+          .unit = unit,
+          .choices = {},
+          .help = help};
 }
 
 std::vector<OptionInfo> make_options() {
@@ -28,25 +35,59 @@ std::vector<OptionInfo> make_options() {
       component("tertiary", "deeper interreflection, and caustics seen in it"),
       component("caustic", "light focused on diffuse surfaces by mirrors and glass"),
       integer("samples", 256, 1, 1 << 20, "samples", "Samples a pixel at which the image is finished."),
-      integer("seed", 0, 0, 4294967295.0, "", "Seed of every random decision; the same seed gives the same image."),
+      integer("seed", 0, 0, 4294967295.0, "",
+              "Seed of every random decision; the same seed gives the same image."),
       integer("path.max_depth", 64, 1, 1024, "vertices", "Scattering events after which a path ends."),
-      integer("path.roulette_depth", 4, 1, 1024, "vertices", "Vertex from which Russian roulette may end a path."),
-      integer("path.batch", 131072, 1024, 4194304, "paths", "Paths in flight at once; sets the memory of the path state."),
-      {.key = "tracer", .type = OptionType::choice, .fallback = "auto", .choices = {"auto", "compute-bvh", "host"},
+      integer("path.roulette_depth", 4, 1, 1024, "vertices",
+              "Vertex from which Russian roulette may end a path."),
+      integer("path.batch", 131072, 1024, 4194304, "paths",
+              "Paths in flight at once; sets the memory of the path state."),
+      {.key = "tracer",
+       .type = OptionType::choice,
+       .fallback = "auto",
+       .choices = {"auto", "compute-bvh", "host"},
        .help = "Who traces rays: auto takes host (Embree) on CPU devices and compute-bvh elsewhere."},
-      {.key = "camera", .type = OptionType::text, .fallback = "", .choices = {}, .help = "Name of the scene camera to start with."},
-      {.key = "film.ev", .type = OptionType::real, .fallback = "0", .lo = -20, .hi = 20, .unit = "EV", .choices = {},
-       .help = "Exposure: the picture is multiplied by 2 to this power.", .restarts = false},
-      {.key = "film.tone_curve", .type = OptionType::choice, .fallback = "neutral", .choices = {"neutral", "agx", "linear"},
-       .help = "Tone curve of what is shown and of PNG files.", .restarts = false},
-      {.key = "film.layer", .type = OptionType::choice, .fallback = "beauty",
-       .choices = {"beauty", "primary", "secondary", "tertiary", "caustic", "albedo", "normal", "depth", "samples"},
-       .help = "Layer shown and written to PNG files.", .restarts = false},
-      {.key = "about", .type = OptionType::text, .fallback = "", .choices = {}, .help = "What the scene is for.", .restarts = false},
+      {.key = "camera",
+       .type = OptionType::text,
+       .fallback = "",
+       .choices = {},
+       .help = "Name of the scene camera to start with."},
+      {.key = "film.ev",
+       .type = OptionType::real,
+       .fallback = "0",
+       .lo = -20,
+       .hi = 20,
+       .unit = "EV",
+       .choices = {},
+       .help = "Exposure: the picture is multiplied by 2 to this power.",
+       .restarts = false},
+      {.key = "film.tone_curve",
+       .type = OptionType::choice,
+       .fallback = "neutral",
+       .choices = {"neutral", "agx", "linear"},
+       .help = "Tone curve of what is shown and of PNG files.",
+       .restarts = false},
+      {.key = "film.layer",
+       .type = OptionType::choice,
+       .fallback = "beauty",
+       .choices = {"beauty", "primary", "secondary", "tertiary", "caustic", "albedo", "normal", "depth",
+                   "samples"},
+       .help = "Layer shown and written to PNG files.",
+       .restarts = false},
+      {.key = "about",
+       .type = OptionType::text,
+       .fallback = "",
+       .choices = {},
+       .help = "What the scene is for.",
+       .restarts = false},
   };
   for (const char* name : {"primary", "secondary", "tertiary", "caustic"}) {
-    list.push_back({.key = std::string("show.") + name, .type = OptionType::boolean, .fallback = "true", .choices = {},
-                    .help = fmt::format("Whether the shown sum holds the {} layer.", name), .restarts = false});
+    list.push_back({.key = std::string("show.") + name,
+                    .type = OptionType::boolean,
+                    .fallback = "true",
+                    .choices = {},
+                    .help = fmt::format("Whether the shown sum holds the {} layer.", name),
+                    .restarts = false});
   }
   return list;
 }
@@ -57,7 +98,9 @@ bool parse_number(const std::string& text, double& value) {
   return error == std::errc() && stop == end && std::isfinite(value);
 }
 
-std::string list_choices(const std::vector<std::string>& choices) { return fmt::format("{}", fmt::join(choices, ", ")); }
+std::string list_choices(const std::vector<std::string>& choices) {
+  return fmt::format("{}", fmt::join(choices, ", "));
+}
 
 }  // namespace
 
@@ -90,17 +133,19 @@ void Settings::set(const std::string& key, const std::string& value, const std::
         throw_error(where, "{} = '{}': expected one of {}", key, value, list_choices(option->choices));
       break;
     case OptionType::boolean:
-      if (value != "true" && value != "false") throw_error(where, "{} = '{}': expected true or false", key, value);
+      if (value != "true" && value != "false")
+        throw_error(where, "{} = '{}': expected true or false", key, value);
       break;
     case OptionType::integer:
     case OptionType::real:
       if (!parse_number(value, number) || number < option->lo || number > option->hi ||
           (option->type == OptionType::integer && number != std::floor(number)))
         throw_error(where, "{} = '{}': expected {} from {} to {}{}{}", key, value,
-                    option->type == OptionType::integer ? "a whole number" : "a number", option->lo, option->hi,
-                    option->unit.empty() ? "" : " ", option->unit);
+                    option->type == OptionType::integer ? "a whole number" : "a number", option->lo,
+                    option->hi, option->unit.empty() ? "" : " ", option->unit);
       break;
-    case OptionType::text: break;
+    case OptionType::text:
+      break;
   }
   values_[key] = value;
 }

@@ -1,6 +1,7 @@
 #pragma once
-// Every option of the renderer, in one table: name, type, range, unit, default, help. The same table feeds window, command
-// line, settings.json and the documentation; an unknown key or a wrong value is a located Error that says what is valid.
+// Every option of the renderer, in one table: name, type, range, unit, default, help. The same table feeds
+// window, command line, settings.json and the documentation; an unknown key or a wrong value is a located
+// Error that says what is valid.
 #include <map>
 #include <string>
 #include <vector>
@@ -12,14 +13,14 @@ namespace lucerna::plan {
 enum class OptionType { choice, integer, real, boolean, text };
 
 struct OptionInfo {
-  std::string key;                    ///< dotted: "components.primary"
+  std::string key;  ///< dotted: "components.primary"
   OptionType type = OptionType::real;
-  std::string fallback;               ///< the default, as text
-  double lo = 0, hi = 0;              ///< integer and real, inclusive
-  std::string unit;                   ///< "EV", "samples", "" ...
-  std::vector<std::string> choices;   ///< choice
-  std::string help;                   ///< one sentence
-  bool restarts = true;               ///< a change makes the image start afresh (false: only its display)
+  std::string fallback;              ///< the default, as text
+  double lo = 0, hi = 0;             ///< integer and real, inclusive
+  std::string unit;                  ///< "EV", "samples", "" ...
+  std::vector<std::string> choices;  ///< choice
+  std::string help;                  ///< one sentence
+  bool restarts = true;              ///< a change makes the image start afresh (false: only its display)
 };
 
 /// The table, in display order.

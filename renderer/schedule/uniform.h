@@ -1,5 +1,6 @@
 #pragma once
-// Uniform sampling: the same number of samples for every pixel, cut into work items. Pure functions of counts.
+// Uniform sampling: the same number of samples for every pixel, cut into work items. Pure functions of
+// counts.
 #include <algorithm>
 #include <cstdint>
 
@@ -12,11 +13,13 @@ struct WorkItem {
   uint32_t slots() const { return tile_count * 64 * sample_count; }
 };
 
-/// Passes over the picture; in a pass every tile gets the same samples. The image does not depend on how items are cut.
+/// Passes over the picture; in a pass every tile gets the same samples. The image does not depend on how
+/// items are cut.
 class UniformSchedule {
  public:
   UniformSchedule() = default;
-  UniformSchedule(uint32_t tiles, uint32_t samples, uint32_t slots_at_once) : tiles_(tiles), samples_(samples), slots_(slots_at_once) {
+  UniformSchedule(uint32_t tiles, uint32_t samples, uint32_t slots_at_once)
+      : tiles_(tiles), samples_(samples), slots_(slots_at_once) {
     start_pass();
   }
   bool done() const { return sample_ >= samples_ || tiles_ == 0; }
@@ -41,7 +44,8 @@ class UniformSchedule {
  private:
   void start_pass() {
     if (done()) return;
-    // The first passes are single, so that something is seen at once; then as many samples as fill the device.
+    // The first passes are single, so that something is seen at once; then as many samples as fill the
+    // device.
     const uint32_t fitting = std::max(1u, slots_ / std::max(1u, 64 * tiles_));
     pass_ = std::min({fitting, std::max(1u, sample_), samples_ - sample_});
   }

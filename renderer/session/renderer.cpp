@@ -24,23 +24,29 @@ void require(bool go_on) {
 Renderer::Renderer(const RendererOptions& options)
     : options_(options),
       device_(std::make_unique<gpu::Device>(gpu::DeviceOptions{options.device, options.validation})),
-      compiler_(std::make_unique<gpu::ShaderCompiler>(options.shaders.empty() ? gpu::ShaderCompiler::default_root() : options.shaders)),
+      compiler_(std::make_unique<gpu::ShaderCompiler>(
+          options.shaders.empty() ? gpu::ShaderCompiler::default_root() : options.shaders)),
       automaton_(paths::compile_components()) {}
 
 Renderer::~Renderer() = default;
 
 void Renderer::load(const std::filesystem::path& file, const Progress& progress) {
   const Timer timer;
-  auto scene = std::make_shared<scene::Scene>(scene::load(file, {}, [&](float fraction, const std::string& what) {
-    return !progress || progress(0.6f * fraction, what);
-  }));
+  auto scene =
+      std::make_shared<scene::Scene>(scene::load(file, {}, [&](float fraction, const std::string& what) {
+        return !progress || progress(0.6f * fraction, what);
+      }));
   for (const std::string& warning : scene->warnings) log::warning("{}", warning);
-  set_scene(scene, [&](float fraction, const std::string& what) { return !progress || progress(0.6f + 0.4f * fraction, what); });
+  set_scene(scene, [&](float fraction, const std::string& what) {
+    return !progress || progress(0.6f + 0.4f * fraction, what);
+  });
   load_seconds_ = timer.seconds() - compile_seconds_;
 }
 
 void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress) {
-  const auto report = [&](float fraction, const char* what) { require(!progress || progress(fraction, what)); };
+  const auto report = [&](float fraction, const char* what) {
+    require(!progress || progress(fraction, what));
+  };
   // Everything that can fail happens before the old scene is given up.
   plan::Settings settings = settings_;
   for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
@@ -83,11 +89,13 @@ void Renderer::build_wavefront(const upload::FlatScene&, upload::DeviceScene& de
   const Timer timer;
   transport::HostTrace trace;
   if (host_) {
-    trace = [host = host_.get()](bvh::Query query, std::span<const shared::Ray> rays, std::span<shared::Hit> hits, const uint32_t* queue,
-                                 uint32_t count, bool coherent) { host->trace(query, rays, hits, queue, count, coherent); };
+    trace = [host = host_.get()](bvh::Query query, std::span<const shared::Ray> rays,
+                                 std::span<shared::Hit> hits, const uint32_t* queue, uint32_t count,
+                                 bool coherent) { host->trace(query, rays, hits, queue, count, coherent); };
   }
   const uint32_t slots = uint32_t(settings_.integer("path.batch")) / 64 * 64;
-  wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots, std::move(trace), options_.defines);
+  wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
+                                                      std::move(trace), options_.defines);
   compile_seconds_ = timer.seconds();
 }
 
@@ -135,7 +143,8 @@ shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
 
 void Renderer::make_film() {
   film_ = std::make_unique<film::Film>(*device_, width_, height_);
-  coarse_ = std::make_unique<film::Film>(*device_, std::max(1u, width_ / k_coarse_step), std::max(1u, height_ / k_coarse_step));
+  coarse_ = std::make_unique<film::Film>(*device_, std::max(1u, width_ / k_coarse_step),
+                                         std::max(1u, height_ / k_coarse_step));
   restart();
 }
 
@@ -154,10 +163,14 @@ void Renderer::apply_settings() {
   bool again = false, samples = false;
   for (const auto& [key, value] : settings_.all()) {
     if (applied_[key] == value) continue;
-    if (key == "samples") samples = true;
-    else if (key == "camera") choose_camera(value);
-    else if (key == "tracer" || key == "path.batch") set_scene(scene_);
-    else again |= plan::find_option(key)->restarts;
+    if (key == "samples")
+      samples = true;
+    else if (key == "camera")
+      choose_camera(value);
+    else if (key == "tracer" || key == "path.batch")
+      set_scene(scene_);
+    else
+      again |= plan::find_option(key)->restarts;
   }
   if (samples && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
   if (again) restart();
@@ -194,7 +207,8 @@ void Renderer::choose_camera(const std::string& name) {
     }
     names.push_back("'" + c.name + "'");
   }
-  throw_error("camera", "the scene has no camera '{}'; it has {}", name, names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
+  throw_error("camera", "the scene has no camera '{}'; it has {}", name,
+              names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
 }
 
 void Renderer::set_light(uint32_t index, const scene::Light& light) {
@@ -205,8 +219,10 @@ void Renderer::set_light(uint32_t index, const scene::Light& light) {
   const upload::Effects before = flat_.effects;
   upload::flatten_lights(*scene_, flat_);
   device_scene_->update_lights(*device_, flat_);
-  if (before.lights != flat_.effects.lights || before.emissive != flat_.effects.emissive) build_wavefront(flat_, *device_scene_);
-  else wavefront_->rebind(*device_scene_);
+  if (before.lights != flat_.effects.lights || before.emissive != flat_.effects.emissive)
+    build_wavefront(flat_, *device_scene_);
+  else
+    wavefront_->rebind(*device_scene_);
   restart();
 }
 
@@ -221,7 +237,8 @@ void Renderer::set_environment(float scale, float rotation_degrees) {
   device_scene_->update_lights(*device_, flat_);
   if (before.lights != flat_.effects.lights || before.environment_map != flat_.effects.environment_map)
     build_wavefront(flat_, *device_scene_);
-  else wavefront_->rebind(*device_scene_);
+  else
+    wavefront_->rebind(*device_scene_);
   restart();
 }
 
@@ -239,7 +256,8 @@ void Renderer::render_coarse(const std::function<bool()>& cancel) {
   wavefront_->clear(*coarse_);
   wavefront_->set_frame(make_frame(coarse_->width(), coarse_->height()), enabled_components());
   schedule::UniformSchedule schedule(coarse_->tiles(), 1, wavefront_->slots());
-  while (!schedule.done() && wavefront_->run(schedule.next(), *coarse_, cancel)) {}
+  while (!schedule.done() && wavefront_->run(schedule.next(), *coarse_, cancel)) {
+  }
   wavefront_->set_frame(make_frame(width_, height_), enabled_components());
 }
 
@@ -251,7 +269,8 @@ film::View Renderer::view(const film::Film&) const {
     if (settings_.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
   v.curve = uint32_t(settings_.choice("film.tone_curve"));
   v.exposure = float(std::exp2(settings_.real("film.ev")));
-  v.scale = v.layer == shared::k_layer_samples ? float(std::max(1u, schedule_.samples())) : 2 * flat_.scene_radius;
+  v.scale =
+      v.layer == shared::k_layer_samples ? float(std::max(1u, schedule_.samples())) : 2 * flat_.scene_radius;
   return v;
 }
 
@@ -277,7 +296,8 @@ film::FilmImage Renderer::film_image() const {
   for (const auto& component : image.components)
     for (size_t i = 0; i < n; ++i) sum[i] += component[i];
   add("", "RGB", sum);
-  for (int c = 0; c < film::k_components; ++c) add(std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
+  for (int c = 0; c < film::k_components; ++c)
+    add(std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
   add("albedo.", "RGB", image.albedo);
   add("N.", "XYZ", image.normal);
   out.channels.emplace_back("Z", image.depth);
@@ -294,9 +314,12 @@ film::FilmImage Renderer::film_image() const {
 void Renderer::save(const std::filesystem::path& file) {
   if (!wavefront_) throw Error(file.string(), "nothing to save yet; load a scene first");
   const std::string extension = file.extension().string();
-  if (extension == ".exr") film::write_exr(file, film_image());
-  else if (extension == ".png") film::write_png(file, film_->width(), film_->height(), picture(false));
-  else throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);
+  if (extension == ".exr")
+    film::write_exr(file, film_image());
+  else if (extension == ".png")
+    film::write_png(file, film_->width(), film_->height(), picture(false));
+  else
+    throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);
 }
 
 double peak_host_mb() {

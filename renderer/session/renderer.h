@@ -1,6 +1,6 @@
 #pragma once
-// The renderer on one thread: a device, a scene, settings, a film; step() does one bounded work item. The batch verbs use it
-// directly; Session runs one on a thread of its own.
+// The renderer on one thread: a device, a scene, settings, a film; step() does one bounded work item. The
+// batch verbs use it directly; Session runs one on a thread of its own.
 #include <array>
 #include <atomic>
 #include <filesystem>
@@ -23,7 +23,7 @@ struct RendererOptions {
   std::string device;
   bool validation = false;
   std::filesystem::path shaders;
-  gpu::Defines defines;          ///< further #defines for the transport's kernels (tests)
+  gpu::Defines defines;  ///< further #defines for the transport's kernels (tests)
 };
 
 /// fraction 0..1 and what is going on; returning false cancels (an Error "cancelled" is thrown).

@@ -18,9 +18,9 @@ namespace lucerna::session {
 const std::array<const char*, k_components> k_component_names = paths::k_component_names;
 
 namespace {
-constexpr double k_publish_seconds = 0.1;       // between pictures while the image refines
-constexpr double k_numbers_seconds = 0.5;       // between read-backs of the film for shares
-constexpr int k_nice = 10;                      // rendering yields to the window's thread
+constexpr double k_publish_seconds = 0.1;  // between pictures while the image refines
+constexpr double k_numbers_seconds = 0.5;  // between read-backs of the film for shares
+constexpr int k_nice = 10;                 // rendering yields to the window's thread
 }  // namespace
 
 struct Session::Impl {
@@ -121,7 +121,8 @@ void Session::Impl::run() {
   setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), k_nice);
   std::unique_ptr<Renderer> renderer;
   try {
-    renderer = std::make_unique<Renderer>(RendererOptions{options.device, options.validation, options.shaders, {}});
+    renderer =
+        std::make_unique<Renderer>(RendererOptions{options.device, options.validation, options.shaders, {}});
     next.device = renderer->device().info().name;
     publish();
   } catch (const std::exception& e) {
@@ -222,8 +223,8 @@ void Session::load(const std::filesystem::path& file) {
     });
     ++s->next.scene_id;
     s->restarted();
-    log::info("{} loaded: {} triangles, {} lights, {} cameras", file.string(), scene::count_triangles(*r.scene()),
-              r.scene()->lights.size(), r.scene()->cameras.size());
+    log::info("{} loaded: {} triangles, {} lights, {} cameras", file.string(),
+              scene::count_triangles(*r.scene()), r.scene()->lights.size(), r.scene()->cameras.size());
   });
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// The one object that runs. It owns the device, the scene and the renderer on a thread of its own; the outside talks to it
-// through commands and reads snapshots. Every method here may be called from any thread and returns at once unless it says
-// otherwise.
+// The one object that runs. It owns the device, the scene and the renderer on a thread of its own; the
+// outside talks to it through commands and reads snapshots. Every method here may be called from any thread
+// and returns at once unless it says otherwise.
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -19,13 +19,17 @@ inline constexpr int k_components = 4;  ///< primary, secondary, tertiary, caust
 extern const std::array<const char*, k_components> k_component_names;
 
 struct ComponentStatus {
-  std::string solver = "path";     ///< "path" or "off"
-  double mean_luminance = 0;       ///< of its layer
-  double share = 0;                ///< of the sum's mean luminance, 0..1
-  double ms_per_sample = 0;        ///< device time its rays cost, per sample a pixel
+  std::string solver = "path";  ///< "path" or "off"
+  double mean_luminance = 0;    ///< of its layer
+  double share = 0;             ///< of the sum's mean luminance, 0..1
+  double ms_per_sample = 0;     ///< device time its rays cost, per sample a pixel
 };
 
-struct StageStatus { std::string name; double ms = 0; bool host = false; };  ///< since the image started
+struct StageStatus {
+  std::string name;
+  double ms = 0;
+  bool host = false;
+};  ///< since the image started
 
 /// What the window draws: replaced as a whole, never changed after publishing.
 struct Snapshot {
@@ -37,29 +41,29 @@ struct Snapshot {
   uint32_t max_samples = 0;        ///< where it stops
   bool coarse = false;             ///< some of the picture still is the coarse first image
   bool paused = false, finished = false;
-  double seconds = 0;              ///< rendering time of this image
+  double seconds = 0;  ///< rendering time of this image
   double mrays_per_second = 0;
   uint64_t rays = 0;
   std::array<ComponentStatus, k_components> components;
   std::vector<StageStatus> stages;
   double device_mb = 0, host_mb = 0;
   std::string device, tracer;
-  std::string activity;            ///< "" or what is going on: "loading kitchen.gltf: textures 40 %"
-  float progress = -1;             ///< of the activity, 0..1, or -1
-  scene::Camera camera;            ///< that this picture was made with
-  uint64_t dropped = 0;            ///< contributions refused because they were not finite
+  std::string activity;  ///< "" or what is going on: "loading kitchen.gltf: textures 40 %"
+  float progress = -1;   ///< of the activity, 0..1, or -1
+  scene::Camera camera;  ///< that this picture was made with
+  uint64_t dropped = 0;  ///< contributions refused because they were not finite
 };
 
 struct Options {
-  std::string device;              ///< gpu::DeviceOptions::selector
+  std::string device;  ///< gpu::DeviceOptions::selector
   bool validation = false;
-  std::filesystem::path shaders;   ///< empty: ShaderCompiler::default_root()
+  std::filesystem::path shaders;  ///< empty: ShaderCompiler::default_root()
 };
 
 class Session {
  public:
   explicit Session(const Options& options);
-  ~Session();                      ///< stops the work in progress and joins
+  ~Session();  ///< stops the work in progress and joins
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -72,10 +76,10 @@ class Session {
   void set_light(uint32_t index, const scene::Light& light);
   void set_environment(float scale, float rotation_degrees);
   void set_paused(bool paused);
-  void restart();                  ///< throws the samples away and starts anew
-  void reload_shaders();           ///< compiles again; on error the old kernels stay and the message is logged
+  void restart();         ///< throws the samples away and starts anew
+  void reload_shaders();  ///< compiles again; on error the old kernels stay and the message is logged
   void save(const std::filesystem::path& file);  ///< EXR or PNG of what there is
-  void cancel();                   ///< gives up a load in progress
+  void cancel();                                 ///< gives up a load in progress
 
   /// The newest picture; null before the first. Cheap.
   std::shared_ptr<const Snapshot> snapshot() const;
@@ -83,7 +87,8 @@ class Session {
   std::shared_ptr<const scene::Scene> scene() const;
   /// Current settings (a copy).
   plan::Settings settings() const;
-  /// Called on the session thread after each publication (for glfwPostEmptyEvent). Set before the first command.
+  /// Called on the session thread after each publication (for glfwPostEmptyEvent). Set before the first
+  /// command.
   void on_publish(std::function<void()> call);
 
  private:

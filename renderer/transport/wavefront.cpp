@@ -17,14 +17,16 @@ struct Wavefront::Impl {
   uint8_t first_account = 0;
   double compile_seconds = 0;
 
-  gpu::Buffer frame, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states, counters, no_coarse;
+  gpu::Buffer frame, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states, counters,
+      no_coarse;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
   gpu::Kernel camera, shade, shadow, film_add, tonemap, trace_closest, trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
   TransportStats stats;
 
-  Impl(gpu::Device& d, uint32_t n, HostTrace trace) : device(d), stream(d), host_trace(std::move(trace)), slots(n) {
+  Impl(gpu::Device& d, uint32_t n, HostTrace trace)
+      : device(d), stream(d), host_trace(std::move(trace)), slots(n) {
     const gpu::Memory queue_memory = host_trace ? gpu::Memory::host : gpu::Memory::device;
     const auto make = [&](const char* name, uint64_t bytes, gpu::Memory memory) {
       return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
@@ -88,10 +90,12 @@ struct Wavefront::Impl {
       stats.component_ms[first_account] += ms;
       return;
     }
-    for (uint32_t c = 0; c < k_component_count; ++c) stats.component_ms[c] += ms * rays_by_component[c] / total;
+    for (uint32_t c = 0; c < k_component_count; ++c)
+      stats.component_ms[c] += ms * rays_by_component[c] / total;
   }
 
-  /// Runs what is recorded and shares its stages' times out: shadow stages by `shadow`, the others by `closest`.
+  /// Runs what is recorded and shares its stages' times out: shadow stages by `shadow`, the others by
+  /// `closest`.
   void run_and_account(const uint32_t* closest, const uint32_t* shadow_rays_by_component) {
     stream.run();
     for (const gpu::StageTime& t : stream.take_times()) {
@@ -100,8 +104,9 @@ struct Wavefront::Impl {
     }
   }
 
-  void trace(bvh::Query query, const gpu::Kernel& kernel, const gpu::Resources& resources, const gpu::Buffer& r, const gpu::Buffer& h,
-             const gpu::Buffer* queue, uint32_t count, const char* name, const uint32_t* closest, const uint32_t* shadows) {
+  void trace(bvh::Query query, const gpu::Kernel& kernel, const gpu::Resources& resources,
+             const gpu::Buffer& r, const gpu::Buffer& h, const gpu::Buffer* queue, uint32_t count,
+             const char* name, const uint32_t* closest, const uint32_t* shadows) {
     if (!host_trace) {
       stream.dispatch(kernel, resources, TracePush{count, queue ? 1u : 0u}, groups(count), name);
       return;
@@ -117,8 +122,8 @@ struct Wavefront::Impl {
   static uint32_t groups(uint32_t count) { return (count + 63) / 64; }
 };
 
-Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene, uint32_t slots,
-                     HostTrace host_trace, const gpu::Defines& extra_defines)
+Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
+                     uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines)
     : impl_(std::make_unique<Impl>(device, slots, std::move(host_trace))) {
   Impl& w = *impl_;
   const Timer timer;
@@ -133,9 +138,10 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   if (!w.host_trace) {
     // Where nothing is transparent the any-hit kernel need not look at the flag.
     const auto tracer = [&](int query) {
-      return gpu::Kernel(device, compiler, "trace.comp",
-                         w.transparent ? gpu::Defines{{"LUCERNA_QUERY", std::to_string(query)}, {"LUCERNA_NON_OPAQUE", "1"}}
-                                        : gpu::Defines{{"LUCERNA_QUERY", std::to_string(query)}});
+      return gpu::Kernel(
+          device, compiler, "trace.comp",
+          w.transparent ? gpu::Defines{{"LUCERNA_QUERY", std::to_string(query)}, {"LUCERNA_NON_OPAQUE", "1"}}
+                        : gpu::Defines{{"LUCERNA_QUERY", std::to_string(query)}});
     };
     w.trace_closest = tracer(0);
     w.trace_any = tracer(1);
@@ -180,7 +186,8 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
   const uint32_t* counters = static_cast<const uint32_t*>(w.counters.mapped());
   uint32_t active = count, parity = 0, shadow_count = 0;
   bool first = true;
-  // A path may pass any number of transparent surfaces; each costs it a factor, and roulette bounds the events.
+  // A path may pass any number of transparent surfaces; each costs it a factor, and roulette bounds the
+  // events.
   for (; active > 0 || shadow_count > 0; parity ^= 1) {
     if (cancel && cancel()) {
       w.run_and_account(closest, shadows);
@@ -189,8 +196,8 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
     // Shadow rays of the vertices before, then the next vertices.
     if (shadow_count > 0) {
       const gpu::Resources& table = w.shade_shadow[0];
-      w.trace(bvh::Query::any_opaque, w.trace_any, table, w.shadow_rays, w.shadow_hits, &w.shadow_queues[0], shadow_count,
-              "shadow trace", closest, shadows);
+      w.trace(bvh::Query::any_opaque, w.trace_any, table, w.shadow_rays, w.shadow_hits, &w.shadow_queues[0],
+              shadow_count, "shadow trace", closest, shadows);
       w.stats.shadow_rays += shadow_count;
       w.stats.rays += shadow_count;
       push.count = shadow_count;
@@ -204,8 +211,8 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
           const uint32_t going = counters[k_counter_shadow_next];
           w.stream.fill(w.counters, 0, 4 * k_counter_shadow_next, 4);
           if (going == 0) break;
-          w.trace(bvh::Query::closest_non_opaque, w.trace_non_opaque, w.shade_shadow[side], w.shadow_rays, w.shadow_hits,
-                  &w.shadow_queues[side], going, "shadow trace", closest, shadows);
+          w.trace(bvh::Query::closest_non_opaque, w.trace_non_opaque, w.shade_shadow[side], w.shadow_rays,
+                  w.shadow_hits, &w.shadow_queues[side], going, "shadow trace", closest, shadows);
           w.stats.shadow_rays += going;
           w.stats.rays += going;
           push.count = going;
@@ -215,8 +222,8 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
       }
     }
     if (active > 0) {
-      w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits, first ? nullptr : &w.queues[parity], active,
-              "closest trace", closest, shadows);
+      w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
+              first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
       w.stats.rays += active;
       w.stream.fill(w.counters, 0, 0, 12);
       w.stream.fill(w.counters, 0, 4 * k_counter_rays, 32);
@@ -241,7 +248,8 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
   w.stats.depth += counters[k_counter_depth];
   w.stats.paths += count;
   film.bind(w.film_resources);
-  const FilmPush add{film.width(), film.height(), item.first_tile, pixels, item.first_sample, item.sample_count};
+  const FilmPush add{film.width(), film.height(),     item.first_tile,
+                     pixels,       item.first_sample, item.sample_count};
   w.stream.dispatch(w.film_add, w.film_resources, add, Impl::groups(pixels), "film");
   w.run_and_account(nullptr, nullptr);
   return true;
@@ -253,10 +261,20 @@ void Wavefront::tone_map(film::Film& film, const film::View& view, film::Film* c
   Impl& w = *impl_;
   const auto record = [&](film::Film& f, film::Film* fill) {
     f.bind(w.film_resources);
-    if (fill) w.film_resources.set("Coarse", fill->picture());
-    else w.film_resources.set("Coarse", w.no_coarse);
-    const TonePush push{f.width(), f.height(), view.layer, view.show, view.curve, view.exposure, view.scale,
-                        fill ? fill->width() : 0, fill ? fill->height() : 0, 0};
+    if (fill)
+      w.film_resources.set("Coarse", fill->picture());
+    else
+      w.film_resources.set("Coarse", w.no_coarse);
+    const TonePush push{f.width(),
+                        f.height(),
+                        view.layer,
+                        view.show,
+                        view.curve,
+                        view.exposure,
+                        view.scale,
+                        fill ? fill->width() : 0,
+                        fill ? fill->height() : 0,
+                        0};
     w.stream.dispatch(w.tonemap, w.film_resources, push, Impl::groups(f.width() * f.height()));
   };
   if (coarse) record(*coarse, nullptr);

@@ -1,7 +1,9 @@
 #pragma once
-// The wavefront: traces a work item's paths from the camera through all their vertices and adds them to the film.
+// The wavefront: traces a work item's paths from the camera through all their vertices and adds them to the
+// film.
 //
-//   camera -> [closest hit -> shade (emission, light sample, scatter) -> shadow hit -> shadow light] ... -> film
+//   camera -> [closest hit -> shade (emission, light sample, scatter) -> shadow hit -> shadow light] ... ->
+//   film
 //
 // Path state is allocated once for `slots` paths, whatever the picture's size.
 #include <array>
@@ -20,19 +22,19 @@
 namespace lucerna::transport {
 
 /// Traces rays[j], j = queue ? queue[i] : i for i < count, into hits[j], on the host's mapped memory.
-using HostTrace = std::function<void(bvh::Query, std::span<const shared::Ray>, std::span<shared::Hit>, const uint32_t* queue,
-                                     uint32_t count, bool coherent)>;
+using HostTrace = std::function<void(bvh::Query, std::span<const shared::Ray>, std::span<shared::Hit>,
+                                     const uint32_t* queue, uint32_t count, bool coherent)>;
 
 struct StageSum {
   std::string name;
   double ms = 0;
-  bool host = false;    ///< wall time on the host; otherwise device time
+  bool host = false;  ///< wall time on the host; otherwise device time
 };
 
 /// Sums since the last reset().
 struct TransportStats {
   uint64_t paths = 0, rays = 0, shadow_rays = 0;
-  uint64_t dropped = 0;          ///< contributions refused because they were not finite
+  uint64_t dropped = 0;              ///< contributions refused because they were not finite
   uint64_t roulette = 0, depth = 0;  ///< paths ended by roulette, by the maximum depth
   std::vector<StageSum> stages;
   std::array<double, shared::k_component_count> component_ms{};  ///< sums to the stages' total
@@ -41,8 +43,8 @@ struct TransportStats {
 class Wavefront {
  public:
   /// `host_trace` empty: compute-bvh. Compiles all kernels (throws Error, located) and warms them up.
-  Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene, uint32_t slots,
-            HostTrace host_trace, const gpu::Defines& extra_defines = {});
+  Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
+            uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines = {});
   ~Wavefront();
 
   /// The frame's constants; `enabled`: components on (bit i).
@@ -50,10 +52,11 @@ class Wavefront {
   /// After DeviceScene::update_lights.
   void rebind(const upload::DeviceScene& scene);
   uint32_t slots() const;
-  /// Traces the item and adds it to the film. `cancel` is asked between bounces; a cancelled item leaves the film as it was
-  /// and returns false.
+  /// Traces the item and adds it to the film. `cancel` is asked between bounces; a cancelled item leaves the
+  /// film as it was and returns false.
   bool run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
-  /// Film -> its picture (8-bit sRGB). `coarse` fills pixels without samples, if given (it is tone-mapped first).
+  /// Film -> its picture (8-bit sRGB). `coarse` fills pixels without samples, if given (it is tone-mapped
+  /// first).
   void tone_map(film::Film& film, const film::View& view, film::Film* coarse = nullptr);
   void clear(film::Film& film);
 

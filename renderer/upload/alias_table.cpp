@@ -29,12 +29,15 @@ std::vector<vec4> build_alias_table(std::span<const double> weights) {
   for (size_t i = 0; i < n; ++i)
     if (weights[i] > weights[heaviest]) heaviest = uint32_t(i);
   for (uint32_t i : small) {
-    if (weights[i] > 0) scaled[i] = 1;
-    else scaled[i] = 0, alias[i] = heaviest;
+    if (weights[i] > 0)
+      scaled[i] = 1;
+    else
+      scaled[i] = 0, alias[i] = heaviest;
   }
   std::vector<vec4> table(n);
   for (size_t i = 0; i < n; ++i)
-    table[i] = vec4(float(scaled[i]), std::bit_cast<float>(alias[i]), float(weights[i] / total), float(weights[alias[i]] / total));
+    table[i] = vec4(float(scaled[i]), std::bit_cast<float>(alias[i]), float(weights[i] / total),
+                    float(weights[alias[i]] / total));
   return table;
 }
 

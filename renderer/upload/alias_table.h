@@ -7,9 +7,9 @@
 
 namespace lucerna::upload {
 
-/// One texel an entry: (threshold, bits of the alias index, pmf of this entry, pmf of the alias). Entry i is chosen
-/// uniformly, then i itself when a uniform number is below the threshold, else its alias. Weights are >= 0 and finite;
-/// all zero (or none): an empty table.
+/// One texel an entry: (threshold, bits of the alias index, pmf of this entry, pmf of the alias). Entry i is
+/// chosen uniformly, then i itself when a uniform number is below the threshold, else its alias. Weights are
+/// >= 0 and finite; all zero (or none): an empty table.
 std::vector<vec4> build_alias_table(std::span<const double> weights);
 
 }  // namespace lucerna::upload

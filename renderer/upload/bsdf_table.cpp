@@ -11,7 +11,9 @@ using shared::k_table_mu;
 using shared::k_table_rough;
 constexpr double k_tau = 6.283185307179586;
 
-struct Vec { double x, y, z; };
+struct Vec {
+  double x, y, z;
+};
 double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Vec normalized(Vec v) {
   const double s = 1 / std::sqrt(dot(v, v));
@@ -31,7 +33,8 @@ double fresnel(double c, double eta) {
   return 0.5 * (p * p + s * s);
 }
 
-/// Visible normals (Heitz 2018 by spherical caps, Dupuy and Benyoub 2023), integrated with a fixed Hammersley set.
+/// Visible normals (Heitz 2018 by spherical caps, Dupuy and Benyoub 2023), integrated with a fixed Hammersley
+/// set.
 template <class Integrand>
 void integrate_visible(double mu, double alpha, int n, const Integrand& integrand) {
   const Vec wo{std::sqrt(std::max(0.0, 1 - mu * mu)), 0, mu};
@@ -53,7 +56,8 @@ double g2_over_g1(double co, double ci, double alpha) {
   return (1 + lo) / (1 + lo + li);
 }
 
-/// Cosine-weighted average 2 * integral of E(mu) mu dmu of a row as the shader interpolates it (linear in sqrt(mu)).
+/// Cosine-weighted average 2 * integral of E(mu) mu dmu of a row as the shader interpolates it (linear in
+/// sqrt(mu)).
 double row_average(const vec4* row, int channel) {
   const int n = 4096;
   double sum = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Directional albedos of the microfacet lobes, computed on the host in double precision; layout and reading are described
-// in shaders/shared/bsdf_table.h.
+// Directional albedos of the microfacet lobes, computed on the host in double precision; layout and reading
+// are described in shaders/shared/bsdf_table.h.
 #include <span>
 #include <vector>
 
@@ -8,8 +8,9 @@
 
 namespace lucerna::upload {
 
-/// Table 0 (Schlick reflector), then two tables for each index of refraction. The averages are integrals of the table as it
-/// is read back (bilinear), so that the energy that the complement returns is exactly what the table says is missing.
+/// Table 0 (Schlick reflector), then two tables for each index of refraction. The averages are integrals of
+/// the table as it is read back (bilinear), so that the energy that the complement returns is exactly what
+/// the table says is missing.
 std::vector<vec4> build_bsdf_tables(std::span<const float> glass_iors);
 
 }  // namespace lucerna::upload

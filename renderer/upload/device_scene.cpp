@@ -5,7 +5,8 @@ namespace {
 
 template <class T>
 gpu::Buffer upload(gpu::Device& device, const char* name, const std::vector<T>& values, bool texel = true) {
-  gpu::Buffer buffer(device, {.name = name, .bytes = std::max<uint64_t>(16, values.size() * sizeof(T)), .texel = texel});
+  gpu::Buffer buffer(
+      device, {.name = name, .bytes = std::max<uint64_t>(16, values.size() * sizeof(T)), .texel = texel});
   if (!values.empty()) buffer.write(std::span<const T>(values));
   return buffer;
 }

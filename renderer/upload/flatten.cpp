@@ -26,9 +26,11 @@ void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
     flat.effects.normal_maps |= bool(m.normal_texture);
   }
   for (const scene::Mesh& mesh : scene.meshes)
-    for (const scene::Primitive& p : mesh.primitives) flat.effects.vertex_extra |= !p.colors.empty() || !p.uv1.empty();
+    for (const scene::Primitive& p : mesh.primitives)
+      flat.effects.vertex_extra |= !p.colors.empty() || !p.uv1.empty();
   const uint64_t count = scene::count_triangles(scene);
-  if (count > (1u << 27) / 3) throw_error(scene.file, "{} triangles are more than the limit of {}", count, (1u << 27) / 3);
+  if (count > (1u << 27) / 3)
+    throw_error(scene.file, "{} triangles are more than the limit of {}", count, (1u << 27) / 3);
   flat.positions.reserve(3 * count);
   flat.triangles.reserve(count);
   for (const scene::Instance& instance : scene.instances) {
@@ -109,9 +111,15 @@ void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
     out[k_material_volume] = vec4(absorption, row);
     out[k_material_diffuse_t] = vec4(m.diffuse_transmission_color, m.diffuse_transmission);
     out[k_material_detail] = vec4(m.normal_scale, m.alpha_cutoff, 0, 0);
-    const scene::TextureUse* uses[k_texture_uses] = {
-        &m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emission_texture, &m.specular_texture,
-        &m.specular_color_texture, &m.transmission_texture, &m.diffuse_transmission_texture, &m.diffuse_transmission_color_texture};
+    const scene::TextureUse* uses[k_texture_uses] = {&m.base_color_texture,
+                                                     &m.metallic_roughness_texture,
+                                                     &m.normal_texture,
+                                                     &m.emission_texture,
+                                                     &m.specular_texture,
+                                                     &m.specular_color_texture,
+                                                     &m.transmission_texture,
+                                                     &m.diffuse_transmission_texture,
+                                                     &m.diffuse_transmission_color_texture};
     for (uint32_t u = 0; u < k_texture_uses; ++u) {
       const auto& x = uses[u]->m;
       out[k_material_textures + 2 * u] = vec4(x[0], x[1], x[2], x[3]);

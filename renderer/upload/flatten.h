@@ -1,6 +1,6 @@
 #pragma once
-// Scene -> arrays as the device wants them (shaders/shared/scene.h): pure host code, no device, so that it is testable and
-// can be written to a file for the stand-alone ray bench.
+// Scene -> arrays as the device wants them (shaders/shared/scene.h): pure host code, no device, so that it is
+// testable and can be written to a file for the stand-alone ray bench.
 #include <string>
 #include <vector>
 
@@ -11,10 +11,10 @@ namespace lucerna::upload {
 
 /// What the scene calls for; becomes #defines, so that nothing else is compiled in.
 struct Effects {
-  bool lights = false, emissive = false, environment_map = false, specular = false, solid_glass = false, thin_glass = false,
-       diffuse_transmission = false, volumes = false, unlit = false, alpha = false, normal_maps = false, vertex_extra = false,
-       tex_base = false, tex_metallic_roughness = false, tex_emission = false, tex_specular = false, tex_transmission = false,
-       tex_diffuse_transmission = false;
+  bool lights = false, emissive = false, environment_map = false, specular = false, solid_glass = false,
+       thin_glass = false, diffuse_transmission = false, volumes = false, unlit = false, alpha = false,
+       normal_maps = false, vertex_extra = false, tex_base = false, tex_metallic_roughness = false,
+       tex_emission = false, tex_specular = false, tex_transmission = false, tex_diffuse_transmission = false;
   bool transparent() const { return alpha || thin_glass; }
 };
 
@@ -27,15 +27,15 @@ struct Bucket {
 
 struct FlatScene {
   // Geometry (one entry a primitive, world space).
-  std::vector<vec3> positions;            ///< 3 a primitive; input of the BVH
+  std::vector<vec3> positions;  ///< 3 a primitive; input of the BVH
   std::vector<uint8_t> non_opaque;
-  std::vector<uvec4> triangles;           ///< scene_triangles
+  std::vector<uvec4> triangles;  ///< scene_triangles
   std::vector<vec4> vertices, tangents, extra;
   std::vector<vec4> materials;
   std::vector<Bucket> buckets;
   // Lights.
   std::vector<vec4> lights, light_alias;
-  std::vector<float> primitive_light_pmf; ///< pmf / area
+  std::vector<float> primitive_light_pmf;  ///< pmf / area
   std::vector<vec4> environment_texels, environment_alias;
   std::vector<vec4> bsdf_tables;
   uint32_t environment_width = 0, environment_height = 0;

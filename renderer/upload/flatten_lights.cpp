@@ -13,8 +13,8 @@ namespace {
 using namespace shared;
 float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
 
-/// Radiance map and the weights of its texels: luminance under the bilinear filter's support (a 3x3 tent), times the
-/// solid angle of the texel, so that no direction with light has density 0.
+/// Radiance map and the weights of its texels: luminance under the bilinear filter's support (a 3x3 tent),
+/// times the solid angle of the texel, so that no direction with light has density 0.
 std::vector<double> flatten_environment_map(const scene::Image& image, FlatScene& flat) {
   const uint32_t w = image.width, h = image.height;
   flat.environment_width = w;
@@ -43,8 +43,10 @@ std::vector<double> flatten_environment_map(const scene::Image& image, FlatScene
   return weights;
 }
 
-/// Mean luminance factor of the emission texture over a triangle, by 16 points; the estimate only steers sampling.
-double texture_mean(const scene::Scene& scene, const scene::TextureUse& use, const FlatScene& flat, const uvec4& t) {
+/// Mean luminance factor of the emission texture over a triangle, by 16 points; the estimate only steers
+/// sampling.
+double texture_mean(const scene::Scene& scene, const scene::TextureUse& use, const FlatScene& flat,
+                    const uvec4& t) {
   if (!use) return 1;
   double sum = 0;
   for (int i = 0; i < 16; ++i) {
@@ -68,8 +70,10 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
   flat.environment_alias.clear();
   flat.environment_width = flat.environment_height = 0;
   std::vector<double> weights;
-  const auto add = [&](uint32_t kind, uint32_t primitive, float area, vec3 intensity, vec4 place, vec4 aim, double power) {
-    flat.lights.insert(flat.lights.end(), {vec4(as_float(kind), as_float(primitive), area, 0), vec4(intensity, 0), place, aim});
+  const auto add = [&](uint32_t kind, uint32_t primitive, float area, vec3 intensity, vec4 place, vec4 aim,
+                       double power) {
+    flat.lights.insert(flat.lights.end(),
+                       {vec4(as_float(kind), as_float(primitive), area, 0), vec4(intensity, 0), place, aim});
     weights.push_back(power);
   };
   // Emissive triangles: flux pi * L * A, twice that when both sides emit.
@@ -94,13 +98,16 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
     if (l.kind == scene::LightKind::directional)
       add(k_light_directional, 0, 0, l.intensity, vec4(0), vec4(l.direction, 0), y * disk);
     else
-      add(spot ? k_light_spot : k_light_point, 0, 0, l.intensity, vec4(l.position, inner), vec4(l.direction, outer),
-          y * (spot ? 2 * k_pi * (1 - 0.5 * (inner + outer)) : 4 * k_pi));
+      add(spot ? k_light_spot : k_light_point, 0, 0, l.intensity, vec4(l.position, inner),
+          vec4(l.direction, outer), y * (spot ? 2 * k_pi * (1 - 0.5 * (inner + outer)) : 4 * k_pi));
   }
   // Environment. A constant one is left to BSDF sampling, which for it is the better strategy.
   const scene::Environment& environment = scene.environment;
   const bool map = environment.image != scene::k_none && environment.scale > 0;
-  flat.environment_radiance = (map ? vec3(1) : environment.image == scene::k_none ? environment.radiance : vec3(0)) * environment.scale;
+  flat.environment_radiance = (map                                  ? vec3(1)
+                               : environment.image == scene::k_none ? environment.radiance
+                                                                    : vec3(0)) *
+                              environment.scale;
   flat.environment_rotation = environment.rotation * k_pi / 180;
   double environment_weight = 0;
   if (map) {
@@ -114,8 +121,8 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
       environment_weight = total * 2 * k_pi / flat.environment_width * environment.scale * disk;
     }
   }
-  // The environment and the sun count with the whole scene's cross-section, of which an interior receives little: neither
-  // they nor the lamps get less than a share of the samples.
+  // The environment and the sun count with the whole scene's cross-section, of which an interior receives
+  // little: neither they nor the lamps get less than a share of the samples.
   double local = 0, distant = environment_weight;
   for (size_t i = 0; i < weights.size(); ++i) {
     const bool far = std::bit_cast<uint32_t>(flat.lights[i * k_light_texels].x) == k_light_directional;

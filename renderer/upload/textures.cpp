@@ -21,17 +21,20 @@ Key key_of(const scene::Scene& scene, const scene::Texture& t) {
 
 /// Bilinear enlargement, repeating at the borders, channel by channel on the stored values.
 template <class T>
-std::vector<uint8_t> enlarge(const std::vector<T>& from, uint32_t w, uint32_t h, uint32_t to_w, uint32_t to_h) {
+std::vector<uint8_t> enlarge(const std::vector<T>& from, uint32_t w, uint32_t h, uint32_t to_w,
+                             uint32_t to_h) {
   std::vector<T> out(size_t(to_w) * to_h * 4);
   for (uint32_t y = 0; y < to_h; ++y)
     for (uint32_t x = 0; x < to_w; ++x) {
       const double sx = (x + 0.5) * w / to_w - 0.5, sy = (y + 0.5) * h / to_h - 0.5;
       const double fx = sx - std::floor(sx), fy = sy - std::floor(sy);
-      const uint32_t x0 = uint32_t(int(std::floor(sx)) + int(w)) % w, y0 = uint32_t(int(std::floor(sy)) + int(h)) % h;
+      const uint32_t x0 = uint32_t(int(std::floor(sx)) + int(w)) % w,
+                     y0 = uint32_t(int(std::floor(sy)) + int(h)) % h;
       const uint32_t x1 = (x0 + 1) % w, y1 = (y0 + 1) % h;
       for (int c = 0; c < 4; ++c) {
         const auto at = [&](uint32_t px, uint32_t py) { return double(from[(size_t(py) * w + px) * 4 + c]); };
-        const double v = (at(x0, y0) * (1 - fx) + at(x1, y0) * fx) * (1 - fy) + (at(x0, y1) * (1 - fx) + at(x1, y1) * fx) * fy;
+        const double v = (at(x0, y0) * (1 - fx) + at(x1, y0) * fx) * (1 - fy) +
+                         (at(x0, y1) * (1 - fx) + at(x1, y1) * fx) * fy;
         out[(size_t(y) * to_w + x) * 4 + c] = std::is_integral_v<T> ? T(v + 0.5) : T(v);
       }
     }
@@ -79,7 +82,8 @@ TextureMap pack_textures(const scene::Scene& scene, std::vector<Bucket>& buckets
         if (fa != fb || sa != sb) continue;
         const double size = double(std::max(wa, wb)) * std::max(ha, hb);
         const double cost = 2 * size - double(wa) * ha - double(wb) * hb;
-        if (cost < best) best = cost, a = list[i], b = list[j], joined = Key{std::max(wa, wb), std::max(ha, hb), fa, sa};
+        if (cost < best)
+          best = cost, a = list[i], b = list[j], joined = Key{std::max(wa, wb), std::max(ha, hb), fa, sa};
       }
     for (auto& [from, to] : home)
       if (to == a || to == b) to = joined;
@@ -94,16 +98,20 @@ TextureMap pack_textures(const scene::Scene& scene, std::vector<Bucket>& buckets
     const auto [at, fresh] = number.emplace(key, uint32_t(buckets.size()));
     if (fresh) buckets.push_back({w, h, floats, srgb, {}});
     Bucket& bucket = buckets[at->second];
-    const auto [layer, first_use] = layer_of.emplace(std::tuple{t.image, key}, uint32_t(bucket.layers.size()));
+    const auto [layer, first_use] =
+        layer_of.emplace(std::tuple{t.image, key}, uint32_t(bucket.layers.size()));
     if (first_use) {
       if (bucket.layers.size() == 2048)
         throw_error(scene.file, "more than 2048 textures of {}x{}; merge some or use other sizes", w, h);
       const bool same = image.width == w && image.height == h;
-      if (floats) bucket.layers.push_back(same ? as_bytes(image.floats) : enlarge(image.floats, image.width, image.height, w, h));
-      else bucket.layers.push_back(same ? image.bytes : enlarge(image.bytes, image.width, image.height, w, h));
+      if (floats)
+        bucket.layers.push_back(same ? as_bytes(image.floats)
+                                     : enlarge(image.floats, image.width, image.height, w, h));
+      else
+        bucket.layers.push_back(same ? image.bytes : enlarge(image.bytes, image.width, image.height, w, h));
     }
-    map.place.push_back(layer->second | at->second << 11 | uint32_t(t.wrap_u) << 16 | uint32_t(t.wrap_v) << 18 |
-                        (t.nearest ? k_texture_nearest : 0u) | k_texture_present);
+    map.place.push_back(layer->second | at->second << 11 | uint32_t(t.wrap_u) << 16 |
+                        uint32_t(t.wrap_v) << 18 | (t.nearest ? k_texture_nearest : 0u) | k_texture_present);
   }
   return map;
 }
@@ -111,14 +119,16 @@ TextureMap pack_textures(const scene::Scene& scene, std::vector<Bucket>& buckets
 vec3 read_texture(const scene::Scene& scene, const scene::TextureUse& use, vec2 uv) {
   const scene::Texture& t = scene.textures[use.texture];
   const scene::Image& image = scene.images[t.image];
-  const float u = use.m[0] * uv.x + use.m[1] * uv.y + use.m[2], v = use.m[3] * uv.x + use.m[4] * uv.y + use.m[5];
+  const float u = use.m[0] * uv.x + use.m[1] * uv.y + use.m[2],
+              v = use.m[3] * uv.x + use.m[4] * uv.y + use.m[5];
   const auto index = [](float x, uint32_t size, scene::Wrap wrap) {
     if (!std::isfinite(x)) return 0u;
     if (wrap == scene::Wrap::repeat) x -= std::floor(x);
     if (wrap == scene::Wrap::mirror) x = std::abs(x - 2 * std::floor(0.5f * x + 0.5f));
     return std::min(uint32_t(std::clamp(x, 0.f, 1.f) * size), size - 1);
   };
-  const size_t at = 4 * (size_t(index(v, image.height, t.wrap_v)) * image.width + index(u, image.width, t.wrap_u));
+  const size_t at =
+      4 * (size_t(index(v, image.height, t.wrap_v)) * image.width + index(u, image.width, t.wrap_u));
   vec3 c;
   for (int k = 0; k < 3; ++k) {
     const double x = image.floats.empty() ? image.bytes[at + k] / 255.0 : image.floats[at + k];

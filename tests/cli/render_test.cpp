@@ -1,5 +1,6 @@
 // links: film_io
-// The command line as a person meets it: what it writes, and that every wrong input ends with one located line and status 1.
+// The command line as a person meets it: what it writes, and that every wrong input ends with one located
+// line and status 1.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,7 +17,10 @@ using namespace lucerna;
 
 namespace {
 
-struct Run { int status; std::string out; };
+struct Run {
+  int status;
+  std::string out;
+};
 
 Run run(const std::string& arguments) {
   const std::string command = std::string(LUCERNA_BINARY) + " " + arguments + " 2>&1";
@@ -35,7 +39,9 @@ fs::path folder() {
   return p;
 }
 
-std::string scene(const std::string& name) { return std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf"; }
+std::string scene(const std::string& name) {
+  return std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf";
+}
 
 void refused(const std::string& arguments, const std::string& expected) {
   const Run r = run(arguments);
@@ -48,13 +54,16 @@ void refused(const std::string& arguments, const std::string& expected) {
 
 TEST_CASE("render writes layers, PNG and figures") {
   const fs::path f = folder();
-  const Run r = run("render " + scene("cornell") + " --samples 4 --size 40x30 --quiet -o " + (f / "a.exr").string() + " -o " + (f / "a.png").string() + " --stats " + (f / "a.json").string());
+  const Run r =
+      run("render " + scene("cornell") + " --samples 4 --size 40x30 --quiet -o " + (f / "a.exr").string() +
+          " -o " + (f / "a.png").string() + " --stats " + (f / "a.json").string());
   INFO(r.out);
   REQUIRE(r.status == 0);
   const film::FilmImage image = film::read_exr(f / "a.exr");
   CHECK(image.width == 40);
   CHECK(image.height == 30);
-  for (const char* name : {"R", "primary.R", "secondary.G", "tertiary.B", "caustic.R", "albedo.R", "N.X", "Z", "samples"}) {
+  for (const char* name :
+       {"R", "primary.R", "secondary.G", "tertiary.B", "caustic.R", "albedo.R", "N.X", "Z", "samples"}) {
     bool found = false;
     for (const auto& [channel, values] : image.channels) found |= channel == name;
     INFO(name);
@@ -64,14 +73,19 @@ TEST_CASE("render writes layers, PNG and figures") {
   CHECK(fs::file_size(f / "a.png") > 500);
   std::ifstream stats(f / "a.json");
   const std::string text((std::istreambuf_iterator<char>(stats)), {});
-  for (const char* key : {"wall_s", "load_s", "compile_s", "device", "samples", "rays", "peak_host_mb", "peak_device_mb", "stages", "components", "mean_radiance"})
+  for (const char* key : {"wall_s", "load_s", "compile_s", "device", "samples", "rays", "peak_host_mb",
+                          "peak_device_mb", "stages", "components", "mean_radiance"})
     CHECK(text.find(std::string(1, '"').append(key).append("\"")) != std::string::npos);
-  const Run same = run("compare " + (f / "a.exr").string() + " " + (f / "a.exr").string() + " --json --max-relmse 0");
+  const Run same =
+      run("compare " + (f / "a.exr").string() + " " + (f / "a.exr").string() + " --json --max-relmse 0");
   CHECK(same.status == 0);
-  const Run other = run("render " + scene("cornell") + " --samples 4 --seed 5 --size 40x30 --quiet -o " + (f / "b.exr").string());
+  const Run other = run("render " + scene("cornell") + " --samples 4 --seed 5 --size 40x30 --quiet -o " +
+                        (f / "b.exr").string());
   CHECK(other.status == 0);
-  CHECK(run("compare " + (f / "a.exr").string() + " " + (f / "b.exr").string() + " --max-relmse 0").status == 1);
-  for (const auto& entry : fs::directory_iterator(f)) CHECK(entry.path().filename().string().find("tmp") == std::string::npos);
+  CHECK(run("compare " + (f / "a.exr").string() + " " + (f / "b.exr").string() + " --max-relmse 0").status ==
+        1);
+  for (const auto& entry : fs::directory_iterator(f))
+    CHECK(entry.path().filename().string().find("tmp") == std::string::npos);
   fs::remove_all(f);
 }
 

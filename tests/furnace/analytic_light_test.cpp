@@ -1,6 +1,6 @@
 // links: session
-// Direct light of a disk and of a sphere on a Lambertian floor against the closed forms (furnace-disk and furnace-sphere:
-// orthographic, 8 m x 8 m about the axis, seen along the floor's normal).
+// Direct light of a disk and of a sphere on a Lambertian floor against the closed forms (furnace-disk and
+// furnace-sphere: orthographic, 8 m x 8 m about the axis, seen along the floor's normal).
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // links: session
-// White furnaces through the whole program: surfaces of albedo 1 under (or inside) radiance 1 must disappear, for every
-// roughness and lobe. Blocks of 10x10 pixels; the bound is 1 % plus four standard errors of the block, taken from the two
-// independent halves of the film.
+// White furnaces through the whole program: surfaces of albedo 1 under (or inside) radiance 1 must disappear,
+// for every roughness and lobe. Blocks of 10x10 pixels; the bound is 1 % plus four standard errors of the
+// block, taken from the two independent halves of the film.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -44,4 +44,6 @@ void check_is_one(const std::string& scene, uint32_t samples) {
 }  // namespace
 
 TEST_CASE("open furnace: albedo 1 under radiance 1") { check_is_one("furnace-open", 64); }
-TEST_CASE("closed furnace: walls emit 1/2 and reflect 1/2, albedo 1 inside") { check_is_one("furnace-closed", 64); }
+TEST_CASE("closed furnace: walls emit 1/2 and reflect 1/2, albedo 1 inside") {
+  check_is_one("furnace-closed", 64);
+}

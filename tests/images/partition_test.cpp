@@ -1,6 +1,6 @@
 // links: session
-// The four components are a partition: their sum is the plain path tracer's image, switching one off changes no other by a
-// bit, and the image is a function of scene, settings and seed alone.
+// The four components are a partition: their sum is the plain path tracer's image, switching one off changes
+// no other by a bit, and the image is a function of scene, settings and seed alone.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -18,7 +18,8 @@ bool identical(const std::vector<vec3>& a, const std::vector<vec3>& b) {
 
 bool identical(const film::Image& a, const film::Image& b) {
   for (int c = 0; c < film::k_components; ++c)
-    if (!identical(a.components[c], b.components[c]) || !identical(a.odd_half[c], b.odd_half[c])) return false;
+    if (!identical(a.components[c], b.components[c]) || !identical(a.odd_half[c], b.odd_half[c]))
+      return false;
   return a.samples == b.samples && identical(a.albedo, b.albedo) && identical(a.normal, b.normal);
 }
 
@@ -29,9 +30,13 @@ constexpr const char* k_names[] = {"primary", "secondary", "tertiary", "caustic"
 TEST_CASE("the components' sum agrees with a tracer that has no automaton") {
   for (const char* scene : {"cornell", "glass"}) {
     const test::Result parts = test::render({.scene = scene, .samples = 256, .settings = {{"seed", "1"}}});
-    const test::Result whole = test::render({.scene = scene, .samples = 256, .settings = {{"seed", "2"}}, .defines = {{"LUCERNA_NO_AUTOMATON", "1"}}});
-    // Z-test of 8x8-pixel blocks, errors from the halves of both; 64 blocks of 3 channels. The halves' errors of the 64 pixels
-    // estimate each block's variance. |z| < 5 leaves a false alarm below 1 in 5000 (t-distributed, 64 degrees of freedom).
+    const test::Result whole = test::render({.scene = scene,
+                                             .samples = 256,
+                                             .settings = {{"seed", "2"}},
+                                             .defines = {{"LUCERNA_NO_AUTOMATON", "1"}}});
+    // Z-test of 8x8-pixel blocks, errors from the halves of both; 64 blocks of 3 channels. The halves' errors
+    // of the 64 pixels estimate each block's variance. |z| < 5 leaves a false alarm below 1 in 5000
+    // (t-distributed, 64 degrees of freedom).
     for (uint32_t block = 0; block < 64; ++block)
       for (int channel = 0; channel < 3; ++channel) {
         double difference = 0, variance = 0;
@@ -55,7 +60,12 @@ TEST_CASE("the components' sum agrees with a tracer that has no automaton") {
 TEST_CASE("switching a component off leaves the others bit-identical") {
   const test::Result all = test::render({.scene = "glass", .width = 48, .height = 48, .samples = 8});
   for (int off = 0; off < 4; ++off) {
-    const test::Result some = test::render({.scene = "glass", .width = 48, .height = 48, .samples = 8, .settings = {{std::string("components.") + k_names[off], "off"}}});
+    const test::Result some =
+        test::render({.scene = "glass",
+                      .width = 48,
+                      .height = 48,
+                      .samples = 8,
+                      .settings = {{std::string("components.") + k_names[off], "off"}}});
     for (int c = 0; c < 4; ++c) {
       INFO(k_names[off] << " off, " << k_names[c]);
       if (c == off)
@@ -71,7 +81,8 @@ TEST_CASE("switching a component off leaves the others bit-identical") {
 
 TEST_CASE("the image does not depend on the size of batches, the tracer's threads or a second run") {
   for (const char* tracer : {"host", "compute-bvh"}) {
-    const test::Render base{.scene = "glass", .width = 40, .height = 36, .samples = 8, .settings = {{"tracer", tracer}}};
+    const test::Render base{
+        .scene = "glass", .width = 40, .height = 36, .samples = 8, .settings = {{"tracer", tracer}}};
     test::Render small = base;
     small.settings["path.batch"] = "1024";
     const test::Result a = test::render(base), b = test::render(base), c = test::render(small);
@@ -90,7 +101,8 @@ TEST_CASE("both tracers make the same image but for grazing ties") {
   r.settings["tracer"] = "compute-bvh";
   const test::Result compute = test::render(r);
   size_t different = 0;
-  for (size_t i = 0; i < host.image.samples.size(); ++i) different += test::sum_at(host.image, i) != test::sum_at(compute.image, i);
+  for (size_t i = 0; i < host.image.samples.size(); ++i)
+    different += test::sum_at(host.image, i) != test::sum_at(compute.image, i);
   INFO(different << " of " << host.image.samples.size() << " pixels differ");
   CHECK(different < host.image.samples.size() / 50);
 }

@@ -25,15 +25,18 @@ struct Result {
 inline Result render(const Render& r) {
   session::Renderer renderer({.device = "cpu", .validation = true, .shaders = {}, .defines = r.defines});
   for (const char* key : {"tracer", "path.batch"})
-    if (const auto at = r.settings.find(key); at != r.settings.end()) renderer.settings().set(key, at->second);
+    if (const auto at = r.settings.find(key); at != r.settings.end())
+      renderer.settings().set(key, at->second);
   renderer.set_size(r.width, r.height);
   renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + r.scene + "/" + r.scene + ".gltf");
   for (const auto& [key, value] : r.settings) renderer.settings().set(key, value);
   renderer.settings().set("samples", std::to_string(r.samples));
   renderer.apply_settings();
   if (!r.camera.empty()) renderer.choose_camera(r.camera);
-  while (renderer.step()) {}
-  return {renderer.image(), renderer.stats(), renderer.device().validation_messages(), renderer.tracer_name()};
+  while (renderer.step()) {
+  }
+  return {renderer.image(), renderer.stats(), renderer.device().validation_messages(),
+          renderer.tracer_name()};
 }
 
 /// The sum of all components at a pixel.

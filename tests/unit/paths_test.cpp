@@ -72,7 +72,8 @@ TEST_CASE("packing switches components off without moving states") {
     CHECK((none[i] >> 27 & 1) == 0);
     CHECK((all[i] >> 28 & 1) == (i == 0));
   }
-  const uint8_t ddd = automaton.after(automaton.after(automaton.after(0, Event::diffuse), Event::diffuse), Event::diffuse);
+  const uint8_t ddd =
+      automaton.after(automaton.after(automaton.after(0, Event::diffuse), Event::diffuse), Event::diffuse);
   CHECK((no_tertiary[ddd] >> 27 & 1) == 0);  // nothing to be gained there: the path stops
 }
 
@@ -80,7 +81,9 @@ TEST_CASE("wrong expressions are refused with their place") {
   const auto message = [](std::vector<std::string> expressions) {
     try {
       compile(expressions);
-    } catch (const Error& e) { return std::string(e.what()); }
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
     return std::string("accepted");
   };
   CHECK(message({"E[SGL"}).find("character 6: expected ']'") != std::string::npos);
