@@ -1,0 +1,45 @@
+// links: gpu
+// Every kernel compiles, in the leanest and in the fullest variant that a scene can call for.
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "gpu/kernel.h"
+
+using namespace lucerna;
+
+TEST_CASE("every kernel compiles with nothing and with everything in the scene") {
+  gpu::ShaderCompiler compiler(std::filesystem::path(LUCERNA_SOURCE_DIR) / "shaders");
+  compiler.set_cache(false);
+  const char* effects[] = {"LUCERNA_LIGHTS",
+                           "LUCERNA_EMISSIVE",
+                           "LUCERNA_ENVIRONMENT_MAP",
+                           "LUCERNA_SPECULAR",
+                           "LUCERNA_SOLID_GLASS",
+                           "LUCERNA_THIN_GLASS",
+                           "LUCERNA_DIFFUSE_TRANSMISSION",
+                           "LUCERNA_VOLUMES",
+                           "LUCERNA_UNLIT",
+                           "LUCERNA_ALPHA",
+                           "LUCERNA_TRANSPARENT",
+                           "LUCERNA_NORMAL_MAPS",
+                           "LUCERNA_VERTEX_EXTRA",
+                           "LUCERNA_TEX_BASE",
+                           "LUCERNA_TEX_METALLIC_ROUGHNESS",
+                           "LUCERNA_TEX_EMISSION",
+                           "LUCERNA_TEX_SPECULAR",
+                           "LUCERNA_TEX_TRANSMISSION",
+                           "LUCERNA_TEX_DIFFUSE_TRANSMISSION"};
+  size_t kernels = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(compiler.root())) {
+    if (entry.path().extension() != ".comp") continue;
+    const std::string file = std::filesystem::relative(entry.path(), compiler.root()).string();
+    ++kernels;
+    for (const char* on : {"0", "1"}) {
+      gpu::Defines defines{{"LUCERNA_BUCKETS", on[0] == '1' ? "12" : "0"}, {"LUCERNA_QUERY", on}};
+      for (const char* effect : effects) defines[effect] = on;
+      INFO(file << " with everything " << on);
+      CHECK_NOTHROW(compiler.compile(file, defines));
+    }
+  }
+  CHECK(kernels >= 6);
+}
