@@ -18,9 +18,9 @@ GALLERY = 5.1                     # gallery's floor
 SPRING2, CEILING2 = 7.55, 9.0     # upper arcade springs, gallery's ceiling
 VAULT, RADIUS = 9.4, 4.0          # the vault's axis height and radius
 WALL, WALL2 = 0.6, 0.45           # arcade walls' thickness below and above
-OCULI, OCULUS = (-10.0, -4.0, 2.0), 1.7
+OCULI, OCULUS = (-9.0, -3.0, 3.0), 1.7
 DAIS = 0.6
-SUN = np.array([0.44, 1.40, -0.70])   # towards the sun
+SUN = np.array([0.355, 1.40, -0.68])   # towards the sun
 
 
 def materials(s):
@@ -33,19 +33,24 @@ def materials(s):
     size = {"floor": 3.0, "ashlar": 3.0, "limestone": 1.5, "plaster": 2.5, "wood": 1.2}
     for name, m in maps.items():
         s.material(name, (1, 1, 1), rough=1.0, maps=m, metres=size[name])
+    s.material("dark stone", (0.16, 0.15, 0.145), rough=0.62, maps=maps["limestone"], metres=1.5)
+    s.material("ochre plaster", (0.97, 0.80, 0.58), rough=1.0, maps=maps["plaster"], metres=2.5)
+    s.material("red plaster", (0.72, 0.32, 0.20), rough=1.0, maps=maps["plaster"], metres=2.5)
     textures.png(f + "/cloth_color.png", textures.to_srgb(textures.cloth().color))
     weave = {"color": "cloth_color.png", "through": "cloth_color.png"}
     s.material("cloth saffron", (0.74, 0.36, 0.07), lambert=True, double=True, maps=weave, through=0.45,
                through_color=(0.95, 0.50, 0.10))
     s.material("cloth madder", (0.52, 0.11, 0.07), lambert=True, double=True, maps=weave, through=0.4,
                through_color=(0.80, 0.16, 0.08))
+    s.material("cloth linen", (0.66, 0.58, 0.45), lambert=True, double=True, maps=weave, through=0.45,
+               through_color=(0.90, 0.76, 0.54))
     s.material("cloth indigo", (0.11, 0.17, 0.36), lambert=True, double=True, maps=weave, through=0.35,
                through_color=(0.16, 0.28, 0.62))
     s.material("brass", (0.91, 0.71, 0.36), rough=0.22, metal=1)
     s.material("iron", (0.20, 0.19, 0.18), rough=0.55, metal=1)
     s.material("terracotta", (0.42, 0.19, 0.10), rough=0.75)
     s.material("glass", (1, 1, 1), glass=0, ior=1.5)
-    s.material("flame", (0, 0, 0), lambert=True, emit=(1.0, 0.60, 0.27), strength=40)
+    s.material("flame", (0, 0, 0), lambert=True, emit=(1.0, 0.60, 0.27), strength=16)
     s.material("opal", (0.6, 0.58, 0.52), lambert=True, emit=(1.0, 0.64, 0.32), strength=5)
     s.material("earth", (0.38, 0.31, 0.22), lambert=True)
 
@@ -64,8 +69,8 @@ def arcade(s):
     s.mesh("column", [(ap.column(SPRING, 0.27), "limestone")])
     s.mesh("capital", [(join([ap.leaves(0.27, SPRING - 0.62), ap.abacus(0.36, SPRING - 0.15, SPRING)]), "limestone")])
     h2 = SPRING2 - GALLERY
-    s.mesh("small column", [(ap.column(h2, 0.125, 18), "limestone")])
-    s.mesh("small capital", [(join([ap.leaves(0.125, h2 - 0.62 * 0.125 / 0.27, around=48, along=6),
+    s.mesh("small column", [(ap.column(h2, 0.125, 14), "limestone")])
+    s.mesh("small capital", [(join([ap.leaves(0.125, h2 - 0.62 * 0.125 / 0.27, around=40, along=5),
                                     ap.abacus(0.19, h2 - 0.08, h2 + 0.001)]), "limestone")])
     lower = ap.arch_panel(BAY, 0, 0, CEILING + 0.4 - SPRING, 1.2, WALL).moved(translate(0, SPRING, 0))
     s.mesh("arch", [(lower, "ashlar")])
@@ -74,7 +79,7 @@ def arcade(s):
     s.mesh("archivolt", [(join(ring).moved(translate(0, SPRING, 0)), "limestone")])
     upper = ap.arch_panel(BAY / 2, 0, 0, VAULT + 0.3 - SPRING2, 0.58, WALL2, 20).moved(translate(0, SPRING2, 0))
     s.mesh("small arch", [(upper, "ashlar")])
-    small = join([ap.archivolt(0.58, 0.13, 0.03, k * WALL2 / 2, 24, side=k) for k in (1, -1)])
+    small = join([ap.archivolt(0.58, 0.13, 0.03, k * WALL2 / 2, 16, side=k) for k in (1, -1)])
     s.mesh("small archivolt", [(small.moved(translate(0, SPRING2, 0)), "limestone")])
     s.mesh("balustrade", [(ap.balustrade(BAY / 2, 6), "limestone")])
     course = [(0, 0), (0.05, 0.03), (0.05, 0.10), (0.10, 0.20), (0.16, 0.24), (0.20, 0.27), (0.20, 0.34), (0, 0.36)]
@@ -128,7 +133,7 @@ def aisles(s):
                      box((-0.29, 0, 0), (0.29, 0.32, 0.18), "-z -y"),
                      box((-0.29, CEILING - 0.62, 0), (0.29, CEILING - 0.52, 0.18), "-z"),
                      box((-0.33, CEILING - 0.52, 0), (0.33, CEILING - 0.40, 0.22), "-z")])
-    s.mesh("aisle wall", [(planar_uv(wall), "plaster")])
+    s.mesh("aisle wall", [(planar_uv(wall), "ochre plaster")])
     s.mesh("dado", [(dado, "ashlar")])
     s.mesh("pilaster", [(pilaster, "limestone")])
     # upper outer wall: a window a bay, 1.1 m wide, reveal 0.5 m deep
@@ -156,9 +161,11 @@ def aisles(s):
                 s.place(part, (x * OUTER, GALLERY, z), yaw)
         for i in range(1, BAYS):
             s.place("pilaster", (x * OUTER, 0, Z_NEAR - BAY * i), yaw)
-    floor = quad((-OUTER - 0.3, 0, Z_NEAR + 4), (OUTER + 0.3, 0, Z_NEAR + 4), (OUTER + 0.3, 0, Z_FAR - 3.2),
-                 (-OUTER - 0.3, 0, Z_FAR - 3.2))
-    s.mesh("pavement", [(planar_uv(floor), "floor")])
+    # pavement: slabs, with a pair of dark bands along each arcade
+    edges = [-OUTER - 0.3, -3.24, -3.0, -2.88, -2.82, 2.82, 2.88, 3.0, 3.24, OUTER + 0.3]
+    strips = [quad((a, 0, Z_NEAR + 4), (b, 0, Z_NEAR + 4), (b, 0, Z_FAR - 3.2), (a, 0, Z_FAR - 3.2))
+              for a, b in zip(edges[:-1], edges[1:])]
+    s.mesh("pavement", [(planar_uv(join(strips[0::2])), "floor"), (planar_uv(join(strips[1::2])), "dark stone")])
     s.place("pavement")
 
 
@@ -183,7 +190,9 @@ def ends(s):
     """Far wall with steps, arch, apse and round window; near wall with the portal; ends of the aisles."""
     half, top = AXIS + 0.3, VAULT + RADIUS + 0.6
     r, spring = 2.3, 4.4
+    wide, low = 3.2, 3.9   # the portal's half width and springing
     wall = [ap.arch_panel(2 * half, 0, spring, 7.6, r, 0.6, 40).moved(translate(0, 0, -0.3))]
+    portal = [ap.arch_panel(2 * half, 0, low, 7.6, wide, 0.6, 40).moved(translate(0, 0, -0.3))]
     hole = 1.25
     c, hw = 10.3, 2.0
     panel = ap.round_hole_panel(hw, hw, hole, 0.6).moved(translate(0, c, 0))
@@ -191,9 +200,14 @@ def ends(s):
             ((-half, 7.6, half, c - hw), (-half, c + hw, half, top), (-half, c - hw, -hw, c + hw),
              (hw, c - hw, half, c + hw))]
     s.mesh("end wall", [(planar_uv(join(wall + [panel] + rest)), "ashlar")])
-    rings = join([ap.archivolt(r, 0.36, 0.07, 0.0, 48).moved(translate(0, spring, 0)),
-                  ap.keystone(r, 0.36, 0.07, 0.0).moved(translate(0, spring, 0)),
-                  lathe([(hole + 0.28, 0), (hole + 0.28, 0.05), (hole + 0.2, 0.07), (hole + 0.12, 0.03), (hole, 0.05),
+    s.mesh("portal wall", [(planar_uv(join(portal + [panel] + rest)), "ashlar")])
+
+    def ring(radius, at):
+        return [ap.archivolt(radius, 0.36, 0.07, 0.0, 48).moved(translate(0, at, 0)),
+                ap.keystone(radius, 0.36, 0.07, 0.0).moved(translate(0, at, 0))]
+    s.mesh("end arch", [(join(ring(r, spring)), "limestone")])
+    s.mesh("portal arch", [(join(ring(wide, low)), "limestone")])
+    rings = join([lathe([(hole + 0.28, 0), (hole + 0.28, 0.05), (hole + 0.2, 0.07), (hole + 0.12, 0.03), (hole, 0.05),
                          (hole, 0)], 64).moved(translate(0, c, 0) @ rotate("x", 90))])
     s.mesh("end mouldings", [(rings, "limestone")])
     imposts = [box((k * r - 0.36, spring - 0.22, -0.65), (k * r + 0.36, spring, 0.10)) for k in (-1, 1)]
@@ -203,17 +217,25 @@ def ends(s):
                         translate(0, 0, -0.31) @ rotate("x", 90))])
     s.mesh("tracery", [(tracery.moved(translate(0, c, 0)), "limestone")])
     for z, yaw in ((Z_FAR, 0.0), (Z_NEAR, 180.0)):
-        for part in ("end wall", "end mouldings", "imposts", "tracery"):
+        for part in ("end mouldings", "tracery"):
             s.place(part, (0, 0, z), yaw)
+    for part in ("end wall", "end arch", "imposts"):
+        s.place(part, (0, 0, Z_FAR))
+    for part in ("portal wall", "portal arch"):
+        s.place(part, (0, 0, Z_NEAR), 180.0)
     # the apse: half a drum under half a dome, behind the far arch
     depth = Z_FAR - 0.6
-    drum = lathe([(r, 0.0), (r, spring)], 48, arc=180.0).flipped().moved(translate(0, 0, depth) @ rotate("y", 90))
+    drum = ap.drum(r, 0.0, spring, (12.0, 1.75, 4.0, 0.4)).moved(translate(0, 0, depth))
+    bars = [box((-0.02, 1.75, -r - 0.22), (0.02, 4.0, -r - 0.18), "-y +y")]
+    bars += [box((-0.48, y - 0.018, -r - 0.215), (0.48, y + 0.018, -r - 0.185), "+x -x") for y in (2.5, 3.25)]
+    s.mesh("apse window bars", [(join(bars).moved(translate(0, 0, depth)), "iron")])
+    s.place("apse window bars")
     a = np.radians(np.linspace(0, 90, 17))
     dome = lathe([(r * np.cos(v), spring + r * np.sin(v)) for v in a], 48, arc=180.0).flipped().moved(
         translate(0, 0, depth) @ rotate("y", 90))
     band = lathe([(r + 0.01, spring - 0.10), (r - 0.07, spring - 0.10), (r - 0.11, spring), (r - 0.07, spring + 0.05),
                   (r + 0.01, spring + 0.07)][::-1], 48, arc=180.0).moved(translate(0, 0, depth) @ rotate("y", 90))
-    s.mesh("apse", [(join([drum, dome]), "plaster")])
+    s.mesh("apse", [(drum, "red plaster"), (dome, "ochre plaster")])
     s.mesh("apse moulding", [(band, "limestone")])
     s.place("apse")
     s.place("apse moulding")
@@ -231,9 +253,13 @@ def ends(s):
     lo, hi = AXIS - 0.35, OUTER + 0.3
     blank = quad((lo, 0, 0), (hi, 0, 0), (hi, CEILING2 + 0.3, 0), (lo, CEILING2 + 0.3, 0))
     s.mesh("aisle end", [(planar_uv(blank), "plaster")])
+    openings = [ap.arch_panel(hi - lo, 0, 2.9, GALLERY, 1.3, 0.5).moved(translate(0, 0, -0.25)),
+                ap.arch_panel(hi - lo, GALLERY, SPRING2 - 0.4, CEILING2 + 0.3, 1.2, 0.5).moved(translate(0, 0, -0.25))]
+    s.mesh("aisle portal", [(join(openings), "ashlar")])
     for x in (0, -lo - hi):
         s.place("aisle end", (x, 0, Z_FAR))
-        s.place("aisle end", (-x, 0, Z_NEAR), 180.0)
+    for x in (-1, 1):
+        s.place("aisle portal", (x * (lo + hi) / 2, 0, Z_NEAR), 180.0)
     s.mesh("earth", [(box((-60, -0.45, -60), (60, -0.05, 60), "-y +x -x +z -z"), "earth")])
     s.place("earth")
 
@@ -243,9 +269,9 @@ def furnish(s):
     banner = [ap.hanging(1.4, 4.2, k) for k in (1, 2)]
     s.mesh("saffron banner", [(banner[0], "cloth saffron")])
     s.mesh("madder banner", [(banner[1], "cloth madder")])
-    s.mesh("indigo banner", [(banner[0], "cloth indigo")])
+    s.mesh("linen banner", [(banner[0], "cloth linen")])
     s.mesh("banner rod", [(ap.rod(1.6, 0.02), "wood")])
-    for name, x, z in (("saffron banner", -2.2, -6.0), ("madder banner", 2.0, -6.0), ("indigo banner", -2.3, 0.0),
+    for name, x, z in (("saffron banner", -2.2, -6.0), ("madder banner", 2.0, -6.0), ("linen banner", -2.2, 0.0),
                        ("saffron banner", 2.2, 3.0)):
         s.place(name, (x, VAULT - 0.70, z))
         s.place("banner rod", (x, VAULT - 0.69, z))
@@ -265,10 +291,10 @@ def furnish(s):
     s.mesh("urn", [(ap.urn(), "terracotta")])
     s.mesh("bowl", [(ap.bowl(), "brass")])
     s.mesh("bench", [(ap.bench(), "wood")])
-    s.mesh("block", [(box((-0.42, 0, -0.42), (0.42, 0.46, 0.42), "-y"), "limestone")])
-    s.place("block", (-2.75, 0, 2.3), 12.0)
-    s.place("bowl", (-2.75, 0.46, 2.3))
-    s.place("urn", (3.0, 0, 1.2), 40.0, scale=1.0)
+    s.mesh("pedestal", [(ap.pedestal(0.66), "limestone")])
+    s.place("pedestal", (-2.3, 0, 3.1))
+    s.place("bowl", (-2.3, 0.66, 3.1), scale=1.15)
+    s.place("urn", (3.05, 0, 1.2), 40.0, scale=1.0)
     s.place("urn", (3.28, 0, 0.62), 10.0, scale=0.72)
     s.place("urn", (0, DAIS, Z_FAR - 1.2), scale=1.5)
     s.place("bench", (6.6, 0, -1.5), 90.0)
@@ -285,16 +311,16 @@ def main():
     ends(s)
     furnish(s)
     hdr(s.folder + "/sky.hdr", textures.sky(256, SUN))
-    s.sun("sun", -SUN, (1.0, 0.89, 0.74), 22.0)
+    s.sun("sun", -SUN, (1.0, 0.89, 0.74), 19.0)
     eye = 1.65
-    s.camera("main", (1.0, eye, 9.1), (0.0, eye, -12), yfov=46.0)
+    s.camera("main", (1.3, eye, 9.1), (-0.2, eye, -12), yfov=46.0)
     s.camera("gallery", (-5.6, GALLERY + eye, 5.2), (0.5, GALLERY + eye - 0.35, -6), yfov=46.0)
-    s.camera("bowl", (-1.5, 1.35, 4.0), (-2.8, 0.55, 2.25), yfov=34.0)
+    s.camera("bowl", (-1.0, 1.55, 4.75), (-2.4, 0.72, 3.0), yfov=34.0)
     env = {"file": "sky.hdr", "scale": 1.5}
     s.extras = {"environment": env}
     s.write("The face of the program: sun through oculi on worn stone, its bounce under the gallery, cloth that glows "
             "through, cool sky light, small caustics of a brass bowl and a glass lamp. Also the size of a real job: "
-            "instances, textures, normal maps, an environment, a sun and lamps.", {"film.ev": -0.3, "environment": env})
+            "instances, textures, normal maps, an environment, a sun and lamps.", {"film.ev": 0.5, "environment": env})
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ def shaft_profile(r0, r1, y0, y1, steps=8):
     return list(zip(r, y0 + (y1 - y0) * t))
 
 
-def column(height, r, segments=32):
+def column(height, r, segments=28):
     """Plinth, base, shaft and necking up to 0.55 r_scale below the abacus; `leaves` and `abacus` complete it."""
     s = r / 0.27
     base = [(0.36 * s, 0.14 * s)] + torus_profile(0.33 * s, 0.14 * s, 0.235 * s, 0.045 * s)
@@ -37,7 +37,7 @@ def column(height, r, segments=32):
                  lathe(base + shaft[1:] + top, segments), lathe(bell, segments)])
 
 
-def leaves(r, neck, rows=2, count=8, around=80, along=10):
+def leaves(r, neck, rows=2, count=8, around=72, along=9):
     """Rings of stylised acanthus that curl outwards, growing from the bell of a capital."""
     s = r / 0.27
     parts = []
@@ -150,6 +150,33 @@ def cornice(length, steps, dentils=0.0):
     return join(parts)
 
 
+def drum(radius, y0, y1, window=None, segments=48):
+    """Half a cylinder seen from inside, bulging towards -z. window: (half angle in degrees, sill, head, reveal) of an
+    opening at its middle."""
+    def band(a, b, lo, hi):
+        n = max(2, int(round(segments * (b - a) / 180)))
+        m = lathe([(radius, lo), (radius, hi)], n, arc=b - a).moved(rotate("y", a))
+        return m.with_uv(m.uv + [np.radians(a) * radius, -lo])
+    if not window:
+        return band(0, 180, y0, y1).flipped().moved(rotate("y", 90))
+    half, sill, head, reveal = window
+    shell = join([band(0, 180, y0, sill), band(0, 180, head, y1), band(0, 90 - half, sill, head),
+                  band(90 + half, 180, sill, head)]).flipped().moved(rotate("y", 90))
+    x, z = radius * np.sin(np.radians(half)), -radius * np.cos(np.radians(half))
+    deep = -radius - reveal
+    sides = [quad((-x, sill, z), (-x, sill, deep), (-x, head, deep), (-x, head, z)),
+             quad((x, sill, deep), (x, sill, z), (x, head, z), (x, head, deep)),
+             quad((-x, sill, z), (x, sill, z), (x, sill, deep), (-x, sill, deep)),
+             quad((-x, head, deep), (x, head, deep), (x, head, z), (-x, head, z))]
+    bow = np.radians(np.linspace(90 - half, 90 + half, 9))   # between the chord and the wall's curve
+    for y, order in ((sill, 1), (head, -1)):
+        curve = [(-radius * np.cos(v), y, -radius * np.sin(v)) for v in bow]
+        for a, b in zip(curve[:-1], curve[1:]):
+            ca, cb = (a[0], y, z), (b[0], y, z)
+            sides.append(quad(*((a, ca, cb, b)[::order])))
+    return join([shell] + [planar_uv(q) for q in sides])
+
+
 def round_hole_panel(half_w, half_h, radius, depth, segments=16):
     """A rectangle facing +z about the origin with a round hole and the hole's sleeve going back `depth`."""
     side = np.linspace(-1, 1, segments + 1)[:-1]
@@ -250,9 +277,8 @@ def oculus_patch(R, half_s, half_z, radius, top, per_side=12):
 
 # ---- furnishings ---------------------------------------------------------------------------------------------------
 def baluster(segments=10):
-    p = [(0.062, 0), (0.062, 0.045), (0.045, 0.055), (0.036, 0.08), (0.05, 0.12), (0.069, 0.19), (0.066, 0.25),
-         (0.045, 0.36), (0.033, 0.46), (0.03, 0.50), (0.046, 0.515), (0.046, 0.54), (0.032, 0.555), (0.05, 0.61),
-         (0.062, 0.625), (0.062, 0.67)]
+    p = [(0.062, 0), (0.062, 0.045), (0.038, 0.07), (0.05, 0.12), (0.069, 0.20), (0.045, 0.36), (0.031, 0.49),
+         (0.046, 0.515), (0.046, 0.54), (0.033, 0.555), (0.062, 0.62), (0.062, 0.67)]
     return lathe(p, segments)
 
 
@@ -308,7 +334,16 @@ def urn(height=0.9, segments=48):
     return lathe([(r * k, y * k) for r, y in p], segments, smooth=50)
 
 
-def bowl(radius=0.30, segments=96):
+def pedestal(height, radius=0.33):
+    """A short round pillar with base and cap, standing on a square plinth."""
+    r, h = radius, height
+    p = [(r * 0.98, 0.10)] + torus_profile(r * 0.92, 0.10, 0.17, 0.035) + [(r * 0.88, 0.18), (r * 0.80, 0.21)]
+    p += [(r * 0.78, 0.24), (r * 0.76, h - 0.16)] + torus_profile(r * 0.76, h - 0.15, h - 0.12, 0.02, 4)
+    p += [(r * 0.80, h - 0.10), (r * 0.95, h - 0.06), (r, h - 0.055), (r, h - 0.008), (r - 0.008, h), (0.0, h)]
+    return join([box((-r * 1.05, 0, -r * 1.05), (r * 1.05, 0.10, r * 1.05), "-y"), lathe(p, 56)])
+
+
+def bowl(radius=0.30, segments=72):
     """Open bowl on a foot, walls 6 mm: the caustic of its inside falls on its own floor and beside it."""
     a = np.radians(np.linspace(8, 86, 22))
     outer = [(radius * np.sin(v), radius * 0.92 * (1 - np.cos(v)) + 0.03) for v in a]
@@ -332,13 +367,13 @@ def lantern_parts(radius, hang):
         lathe([(0.0, top - 0.004), (r - 0.012, top - 0.004), (r + 0.014, top - 0.006), (r + 0.012, top + 0.012),
                (r * 0.6, top + 0.035), (0.016, top + 0.06), (0.014, top + 0.075), (0.006, top + 0.08),
                (0.006, hang)], 32)])
-    flame = sphere(radius * 0.36, 16, 8)
+    flame = sphere(radius * 0.5, 16, 8)
     return brass, glass, flame
 
 
 def globe_lamp(radius=0.11):
     """(brass, globe) of an opal globe on a short chain: the globe itself shines."""
-    globe = sphere(radius, 24, 12)
+    globe = sphere(radius, 16, 10)
     brass = lathe([(0.0, radius * 0.9), (radius * 0.45, radius * 0.91), (radius * 0.47, radius * 1.02),
                    (radius * 0.2, radius * 1.2), (0.012, radius * 1.3), (0.005, radius * 1.35), (0.005, 0.85)], 20)
     return brass, globe

@@ -98,7 +98,7 @@ def floor(n=1024):
     fx, fy = np.mod(wx / size, 1) - 0.5, np.mod(wy / size, 1) - 0.5
     rs = np.random.RandomState(7)
     tone, warm = rs.standard_normal((count, count)), rs.standard_normal((count, count))
-    color, relief = stone_tone((n, n), 20, rgb(0.66, 0.585, 0.47), rgb(0.40, 0.335, 0.25))
+    color, relief = stone_tone((n, n), 20, rgb(0.72, 0.645, 0.53), rgb(0.46, 0.39, 0.295))
     # each slab is cut from another place of the bed: shift the pattern slab by slab
     shift = rs.randint(0, n, (count, count, 2))
     sy, sx = (y + shift[cy, cx, 0]) % n, (x + shift[cy, cx, 1]) % n
@@ -142,7 +142,7 @@ def ashlar(n=1024):
         cell[here] = r * 4 + np.searchsorted(cuts, px) % 4
     fy = np.mod(wy / row, 1)
     joint = np.minimum(edge_distance, np.minimum(fy, 1 - fy) * row) * 3.0 / n
-    color, relief = stone_tone((n, n), 60, rgb(0.70, 0.61, 0.475), rgb(0.47, 0.385, 0.275))
+    color, relief = stone_tone((n, n), 60, rgb(0.77, 0.685, 0.55), rgb(0.53, 0.45, 0.335))
     shift = rs.randint(0, n, (rows * 4, 2))
     sy, sx = (y + shift[cell, 0]) % n, (x + shift[cell, 1]) % n
     color, relief = color[sy, sx], relief[sy, sx]
@@ -162,7 +162,7 @@ def ashlar(n=1024):
 
 def limestone(n=512):
     """Carved stone without joints, 1.5 m: columns and mouldings."""
-    color, relief = stone_tone((n, n), 80, rgb(0.73, 0.65, 0.525), rgb(0.50, 0.42, 0.31), 0.9)
+    color, relief = stone_tone((n, n), 80, rgb(0.78, 0.71, 0.59), rgb(0.56, 0.48, 0.365), 0.9)
     hole = pits((n, n), 86, 2.3)
     color = mix(color, rgb(0.36, 0.30, 0.22), 0.6 * hole)
     height = 0.0003 * relief - 0.0015 * hole
@@ -174,7 +174,7 @@ def plaster(n=512):
     """Lime plaster, 2.5 m: trowel marks, faint clouds, a few hairline cracks."""
     clouds, trowel = noise((n, n), 90, 1.7, 1, 12), noise((n, n), 91, 1.2, 8, 90, (1.0, 1.7))
     fine = noise((n, n), 92, 0.4, 60, 200)
-    color = rgb(0.72, 0.665, 0.575) * (1 + 0.035 * clouds + 0.02 * trowel + 0.012 * fine)[..., None]
+    color = rgb(0.78, 0.73, 0.64) * (1 + 0.035 * clouds + 0.02 * trowel + 0.012 * fine)[..., None]
     color = color * (1 + 0.012 * noise((n, n), 95, 1.6, 1, 10)[..., None] * rgb(1, 0, -1.5))
     crack = (1 - smooth(np.abs(noise((n, n), 93, 1.35, 2, 90)), 0.0, 0.025)) * \
         smooth(noise((n, n), 94, 1.6, 1, 8), 0.9, 1.9)
