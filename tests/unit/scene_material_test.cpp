@@ -1,0 +1,353 @@
+// links: scene_io
+// Materials with their extensions, textures and images.
+#include <cmath>
+
+#include "unit/scene_support.h"
+
+using namespace lucerna;
+using namespace lucerna::test;
+using scene::Image;
+using scene::Material;
+using scene::Scene;
+using scene::TextureUse;
+
+namespace {
+
+Material load_material(const json& material) {
+  Asset asset;
+  asset.textured_triangle(material);
+  const Scene scene = asset.load();
+  REQUIRE(scene.materials.size() == 1);
+  return scene.materials[0];
+}
+
+json extension(const std::string& name, const json& content) { return {{"extensions", {{name, content}}}}; }
+
+// A scene with one base colour texture of the given file; its image.
+Image load_image(const std::filesystem::path& folder, const json& image, bool data = false) {
+  Asset asset;
+  const int texture = asset.add("textures", {{"source", asset.add("images", image)}});
+  asset.textured_triangle(data
+                              ? json{{"normalTexture", {{"index", texture}}}}
+                              : json{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
+  write(folder / "a.gltf", asset.complete(true).dump());
+  const Scene scene = scene::load(folder / "a.gltf");
+  INFO((scene.warnings.empty() ? std::string() : scene.warnings[0]));
+  REQUIRE(scene.images.size() == 1);
+  CHECK(scene.warnings.empty());
+  CHECK(scene.textures[0].srgb == !data);
+  return scene.images[0];
+}
+
+vec2 apply(const TextureUse& use, vec2 uv) {
+  return {use.m[0] * uv.x + use.m[1] * uv.y + use.m[2], use.m[3] * uv.x + use.m[4] * uv.y + use.m[5]};
+}
+
+}  // namespace
+
+TEST_CASE("glTF's defaults, and the default material") {
+  const Material m = load_material(json::object());
+  CHECK(m.name == "material 0");
+  CHECK(m.base_color == vec4(1));
+  CHECK(m.metallic == 1);
+  CHECK(m.roughness == 1);
+  CHECK(m.emission == vec3(0));
+  CHECK(m.alpha_mode == scene::AlphaMode::opaque);
+  CHECK(m.alpha_cutoff == 0.5f);
+  CHECK_FALSE(m.double_sided);
+  CHECK(m.ior == 1.5f);
+  CHECK(m.attenuation_distance == k_infinity);
+
+  Asset asset;
+  asset.triangle();
+  asset.textured_triangle({{"name", "red"}});
+  const Scene scene = asset.load();
+  REQUIRE(scene.materials.size() == 2);
+  CHECK(scene.materials[scene.meshes[0].primitives[0].material].name == "default material");
+  CHECK(scene.materials[scene.meshes[1].primitives[0].material].name == "red");
+}
+
+TEST_CASE("core factors") {
+  const Material m = load_material(
+      {{"name", "m"},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.25, 0.5, 0.75, 0.125}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.25}}},
+       {"emissiveFactor", {1, 2, 3}},
+       {"alphaMode", "MASK"},
+       {"alphaCutoff", 0.75},
+       {"doubleSided", true}});
+  CHECK(m.name == "m");
+  CHECK(m.base_color == vec4(0.25f, 0.5f, 0.75f, 0.125f));
+  CHECK(m.metallic == 0.5f);
+  CHECK(m.roughness == 0.25f);
+  CHECK(m.emission == vec3(1, 2, 3));
+  CHECK(m.alpha_mode == scene::AlphaMode::mask);
+  CHECK(m.alpha_cutoff == 0.75f);
+  CHECK(m.double_sided);
+  CHECK(load_material({{"alphaMode", "BLEND"}}).alpha_mode == scene::AlphaMode::blend);
+}
+
+TEST_CASE("extensions of materials") {
+  Material m =
+      load_material({{"emissiveFactor", {1, 0.5, 0}},
+                     {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 40}}}}}});
+  CHECK(m.emission == vec3(40, 20, 0));
+  CHECK(load_material(extension("KHR_materials_ior", {{"ior", 1.33}})).ior == 1.33f);
+  CHECK(load_material(extension("KHR_materials_ior", {{"ior", 0}})).ior == 0);
+  m = load_material(
+      extension("KHR_materials_specular", {{"specularFactor", 0}, {"specularColorFactor", {1, 2, 0.5}}}));
+  CHECK(m.specular == 0);
+  CHECK(m.specular_color == vec3(1, 2, 0.5f));
+  CHECK(load_material(extension("KHR_materials_transmission", {{"transmissionFactor", 0.5}})).transmission ==
+        0.5f);
+  m = load_material(extension(
+      "KHR_materials_volume",
+      {{"thicknessFactor", 0.1}, {"attenuationDistance", 2}, {"attenuationColor", {1, 0.5, 0.25}}}));
+  CHECK(m.thickness == 0.1f);
+  CHECK(m.attenuation_distance == 2);
+  CHECK(m.attenuation_color == vec3(1, 0.5f, 0.25f));
+  m = load_material(
+      extension("KHR_materials_diffuse_transmission",
+                {{"diffuseTransmissionFactor", 0.5}, {"diffuseTransmissionColorFactor", {0.25, 0.5, 1}}}));
+  CHECK(m.diffuse_transmission == 0.5f);
+  CHECK(m.diffuse_transmission_color == vec3(0.25f, 0.5f, 1));
+  CHECK(load_material(extension("KHR_materials_unlit", json::object())).unlit);
+}
+
+TEST_CASE("values outside their range are clamped, with one warning") {
+  Asset asset;
+  asset.textured_triangle(
+      {{"pbrMetallicRoughness",
+        {{"baseColorFactor", {2, 0, 0, 1}}, {"roughnessFactor", -1}, {"metallicFactor", 0.5}}},
+       {"emissiveFactor", {-1, 0, 0}},
+       {"extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}}}});
+  const Scene scene = asset.load();
+  const Material& m = scene.materials[0];
+  CHECK(m.base_color == vec4(1, 0, 0, 1));
+  CHECK(m.roughness == 0);
+  CHECK(m.emission == vec3(0));
+  CHECK(m.ior == 1);
+  CHECK(warnings_with(scene, "4 values of materials outside their range") == 1);
+  CHECK(scene.warnings.size() == 1);
+}
+
+TEST_CASE("only materials that are used are kept, and names are given to the nameless") {
+  Asset asset;
+  asset.add("materials",
+            {{"name", "unused"},
+             {"normalTexture",
+              {{"index", asset.add("textures", {{"source", asset.add("images", {{"uri", "no.png"}})}})}}}});
+  asset.textured_triangle(json::object());
+  const Scene scene = asset.load();
+  REQUIRE(scene.materials.size() == 1);
+  CHECK(scene.materials[0].name == "material 1");
+  CHECK(scene.images.empty());
+  CHECK(scene.warnings.empty());
+  CHECK(scene.meshes[0].name == "mesh 0");
+  CHECK(scene.instances[0].name == "node 0");
+}
+
+TEST_CASE("KHR_texture_transform") {
+  Asset asset;
+  const int texture = asset.add("textures", {{"source", asset.add("images", {{"uri", "no.png"}})}});
+  const auto info = [&](const json& transform) {
+    return json{{"index", texture}, {"texCoord", 0}, {"extensions", {{"KHR_texture_transform", transform}}}};
+  };
+  const auto use_of = [&](const json& transform) {
+    Asset a = asset;
+    a.textured_triangle({{"pbrMetallicRoughness", {{"baseColorTexture", info(transform)}}}});
+    return a.load().materials[0].base_color_texture;
+  };
+  const auto close = [](vec2 a, vec2 b) { return glm::length(a - b) < 1e-6f; };
+  CHECK(close(apply(use_of(json::object()), {0.3f, 0.7f}), {0.3f, 0.7f}));
+  CHECK(close(apply(use_of({{"offset", {0.5, 0.25}}}), {0.25f, 0.25f}), {0.75f, 0.5f}));
+  CHECK(close(apply(use_of({{"scale", {2, 3}}}), {0.25f, 0.25f}), {0.5f, 0.75f}));
+  // A quarter turn takes +u to -v, which is upwards in a picture: counter-clockwise.
+  CHECK(close(apply(use_of({{"rotation", k_pi / 2}}), {1, 0}), {0, -1}));
+  CHECK(close(apply(use_of({{"rotation", k_pi / 2}}), {0, 1}), {1, 0}));
+  // Scale first, then rotation, then offset.
+  CHECK(close(apply(use_of({{"offset", {10, 20}}, {"rotation", k_pi / 2}, {"scale", {2, 3}}}), {1, 1}),
+              {13, 18}));
+  CHECK(use_of(json::object()).uv_set == 0);
+  CHECK(use_of({{"texCoord", 1}}).uv_set == 1);
+}
+
+TEST_CASE("texture coordinates: two sets, and only those that a material reads") {
+  Asset asset;
+  const int texture = asset.add("textures", {{"source", asset.add("images", {{"uri", "no.png"}})}});
+  asset.textured_triangle(
+      {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}, {"texCoord", 1}}}}}});
+  asset.textured_triangle(
+      {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}, {"texCoord", 2}}}}}});
+  for (json& mesh : asset.doc["meshes"])
+    mesh["primitives"][0]["attributes"]["TEXCOORD_2"] = mesh["primitives"][0]["attributes"]["TEXCOORD_0"];
+  const Scene scene = asset.load();
+  CHECK(scene.materials[0].base_color_texture.uv_set == 1);
+  CHECK(scene.meshes[0].primitives[0].uv0.empty());
+  CHECK(scene.meshes[0].primitives[0].uv1.size() == 3);
+  CHECK_FALSE(scene.materials[1].base_color_texture);
+  CHECK(scene.meshes[1].primitives[0].uv0.empty());
+  CHECK(warnings_with(scene, "1 textures that use TEXCOORD_2") == 1);
+  CHECK(warnings_with(scene, "2 primitives have more than two sets") == 1);
+}
+
+TEST_CASE("tangents are there exactly where a normal texture needs them") {
+  Asset asset;
+  const int texture = asset.add("textures", {{"source", asset.add("images", {{"uri", "no.png"}})}});
+  asset.textured_triangle({{"normalTexture", {{"index", texture}, {"scale", 0.5}}}});
+  asset.textured_triangle(json::object());
+  json& given = asset.triangle();
+  given["material"] = 0;
+  given["attributes"]["NORMAL"] = asset.accessor<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+  given["attributes"]["TANGENT"] = asset.accessor<float>("VEC4", {0, 2, 0, -1, 0, 2, 0, -1, 0, 0, 1, 1});
+  const Scene scene = asset.load();
+  CHECK(scene.materials[0].normal_scale == 0.5f);
+  CHECK(scene.meshes[0].primitives[0].tangents.size() == 3);
+  CHECK(scene.meshes[1].primitives[0].tangents.empty());
+  const std::vector<vec4>& tangents = scene.meshes[2].primitives[0].tangents;
+  REQUIRE(tangents.size() == 3);
+  CHECK(tangents[0] == vec4(0, 1, 0, -1));
+  CHECK(std::abs(tangents[2].z) < 1e-6f);  // along the normal: replaced by one in the surface
+  CHECK(warnings_with(scene, "1 tangents without a direction") == 1);
+  CHECK(warnings_with(scene, "1 primitives have a textured material but lack the texture coordinates") == 1);
+}
+
+TEST_CASE("samplers, and one image used as colour and as data") {
+  TempFolder folder;
+  write_image<uint8_t>(folder / "i.png", 1, 1, 3, {10, 20, 30});
+  Asset asset;
+  const int image = asset.add("images", {{"uri", "i.png"}});
+  asset.add("samplers", {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}});
+  const int plain = asset.add("textures", {{"source", image}});
+  const int same = asset.add("textures", {{"source", image}});
+  const int sampled = asset.add("textures", {{"source", image}, {"sampler", 0}});
+  asset.textured_triangle(
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture", {{"index", plain}}}, {"metallicRoughnessTexture", {{"index", same}}}}},
+       {"emissiveFactor", {1, 1, 1}},
+       {"emissiveTexture", {{"index", sampled}}},
+       {"occlusionTexture", {{"index", plain}}}});
+  asset.textured_triangle({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", same}}}}}});
+  const Scene scene = scene::load(asset.gltf(folder));
+  CHECK(scene.images.size() == 1);
+  REQUIRE(scene.textures.size() == 3);
+  const Material& m = scene.materials[0];
+  const scene::Texture& color = scene.textures[m.base_color_texture.texture];
+  const scene::Texture& data = scene.textures[m.metallic_roughness_texture.texture];
+  const scene::Texture& emission = scene.textures[m.emission_texture.texture];
+  CHECK(color.srgb);
+  CHECK_FALSE(data.srgb);
+  CHECK(color.wrap_u == scene::Wrap::repeat);
+  CHECK_FALSE(color.nearest);
+  CHECK(emission.srgb);
+  CHECK(emission.wrap_u == scene::Wrap::clamp);
+  CHECK(emission.wrap_v == scene::Wrap::mirror);
+  CHECK(emission.nearest);
+  CHECK(scene.materials[1].base_color_texture.texture == m.base_color_texture.texture);
+}
+
+TEST_CASE("channels: grey, grey with alpha, RGB, RGBA with straight alpha") {
+  TempFolder folder;
+  const std::filesystem::path root = (folder / "x").parent_path();
+  write_image<uint8_t>(folder / "1.png", 2, 1, 1, {10, 200});
+  CHECK(load_image(root, {{"uri", "1.png"}}).bytes ==
+        std::vector<uint8_t>{10, 10, 10, 255, 200, 200, 200, 255});
+  write_image<uint8_t>(folder / "2.png", 1, 1, 2, {10, 100});
+  CHECK(load_image(root, {{"uri", "2.png"}}).bytes == std::vector<uint8_t>{10, 10, 10, 100});
+  write_image<uint8_t>(folder / "3.png", 1, 1, 3, {10, 20, 30});
+  CHECK(load_image(root, {{"uri", "3.png"}}).bytes == std::vector<uint8_t>{10, 20, 30, 255});
+  write_image<uint8_t>(folder / "4.png", 1, 1, 4, {200, 100, 50, 10});
+  CHECK(load_image(root, {{"uri", "4.png"}}).bytes == std::vector<uint8_t>{200, 100, 50, 10});
+}
+
+TEST_CASE("rows run from the top") {
+  TempFolder folder;
+  write_image<uint8_t>(folder / "i.png", 1, 2, 1, {10, 200});
+  const Image image = load_image((folder / "x").parent_path(), {{"uri", "i.png"}});
+  CHECK(image.width == 1);
+  CHECK(image.height == 2);
+  CHECK(image.bytes[0] == 10);
+}
+
+TEST_CASE("16-bit files: floats as data, bytes as colour; float files stay floats") {
+  TempFolder folder;
+  const std::filesystem::path root = (folder / "x").parent_path();
+  write_image<uint16_t>(folder / "w.png", 1, 1, 3, {0, 32768, 65535});
+  const Image data = load_image(root, {{"uri", "w.png"}}, true);
+  REQUIRE(data.floats.size() == 4);
+  CHECK(data.bytes.empty());
+  CHECK(data.floats[1] == Approx(32768.0 / 65535));
+  CHECK(load_image(root, {{"uri", "w.png"}}).bytes == std::vector<uint8_t>{0, 128, 255, 255});
+  for (const char* name : {"f.exr", "f.hdr"}) {
+    write_image<float>(folder / name, 1, 1, 3, {0.5f, 2.0f, 8.0f});
+    const Image image = load_image(root, {{"uri", name}});
+    CHECK(image.floats == std::vector<float>{0.5f, 2.0f, 8.0f, 1.0f});
+  }
+}
+
+TEST_CASE("texels that are not finite are mended and counted") {
+  TempFolder folder;
+  write_image<float>(folder / "f.exr", 2, 1, 3, {NAN, INFINITY, -1, 1, 1, 1});
+  Asset asset;
+  asset.textured_triangle(
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture",
+          {{"index", asset.add("textures", {{"source", asset.add("images", {{"uri", "f.exr"}})}})}}}}}});
+  const Scene scene = scene::load(asset.gltf(folder));
+  REQUIRE(scene.images[0].floats.size() == 8);
+  CHECK(std::vector<float>(scene.images[0].floats.begin(), scene.images[0].floats.begin() + 4) ==
+        std::vector<float>{0, 65504, 0, 1});
+  CHECK(warnings_with(scene, "3 texel values") == 1);
+}
+
+TEST_CASE("images in data URIs, buffer views, files with odd names, JPEG") {
+  TempFolder folder;
+  const std::filesystem::path root = (folder / "x").parent_path();
+  write_image<uint8_t>(folder / "i.png", 1, 1, 3, {1, 2, 3});
+  const std::vector<uint8_t> png = bytes_of(folder / "i.png");
+  CHECK(load_image(root, {{"uri", "data:image/png;base64," + base64(png)}}).bytes ==
+        std::vector<uint8_t>{1, 2, 3, 255});
+  // The bytes tell the format, not the name.
+  std::filesystem::rename(folder / "i.png", folder / "a b+%.jpg");
+  const Image odd = load_image(root, {{"uri", "a%20b+%25.jpg"}});
+  CHECK(odd.bytes == std::vector<uint8_t>{1, 2, 3, 255});
+  CHECK(odd.name == "a b+%.jpg");
+  std::filesystem::rename(folder / "a b+%.jpg", folder / "50%.png");
+  CHECK(load_image(root, {{"uri", "50%.png"}}).width == 1);  // not encoded, though it should be
+
+  write_image<float>(folder / "f.exr", 1, 1, 3, {1, 2, 3});
+  CHECK(load_image(root, {{"uri", "data:image/x-exr;base64," + base64(bytes_of(folder / "f.exr"))}}).floats ==
+        std::vector<float>{1, 2, 3, 1});
+
+  write_image<uint8_t>(folder / "j.jpg", 8, 8, 3, std::vector<uint8_t>(192, 100));
+  const Image jpeg = load_image(root, {{"uri", "j.jpg"}});
+  CHECK(jpeg.width == 8);
+  CHECK(std::abs(int(jpeg.bytes[0]) - 100) <= 1);
+
+  Asset asset;
+  const int image =
+      asset.add("images", {{"bufferView", asset.view(png)}, {"mimeType", "image/png"}, {"name", "inside"}});
+  asset.textured_triangle(
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture", {{"index", asset.add("textures", {{"source", image}})}}}}}});
+  const Scene scene = scene::load(asset.glb(folder));
+  REQUIRE(scene.images.size() == 1);
+  CHECK(scene.images[0].name == "inside");
+  CHECK(scene.images[0].bytes == std::vector<uint8_t>{1, 2, 3, 255});
+}
+
+TEST_CASE("without images, neutral texels stand for them") {
+  TempFolder folder;
+  write_image<uint8_t>(folder / "i.png", 4, 4, 3, std::vector<uint8_t>(48, 9));
+  Asset asset;
+  asset.textured_triangle(
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture",
+          {{"index", asset.add("textures", {{"source", asset.add("images", {{"uri", "i.png"}})}})}}}}}});
+  scene::LoadOptions options;
+  options.images = false;
+  const Scene scene = scene::load(asset.gltf(folder), options);
+  REQUIRE(scene.images.size() == 1);
+  CHECK(scene.images[0].width == 1);
+  CHECK(scene.warnings.empty());
+}

@@ -1,0 +1,331 @@
+// links: scene_io
+// Where things stand: hierarchy, instances, cameras, lights, environment, settings; and what is said about a
+// scene.
+#include <cmath>
+
+#include "unit/scene_support.h"
+
+using namespace lucerna;
+using namespace lucerna::test;
+using Catch::Matchers::Contains;
+using scene::Scene;
+
+namespace {
+
+bool close(const vec3& a, const vec3& b, float tolerance = 1e-5f) { return glm::length(a - b) < tolerance; }
+vec3 at(const mat4& m, const vec3& p) { return vec3(m * vec4(p, 1)); }
+
+const json k_quarter_about_z{0, 0, std::sqrt(0.5), std::sqrt(0.5)};
+
+Asset with_light(const json& light, const json& node = json::object()) {
+  Asset asset;
+  asset.triangle();
+  asset.doc["extensionsUsed"] = {"KHR_lights_punctual"};
+  asset.doc["extensions"]["KHR_lights_punctual"]["lights"] = {light};
+  json n = node;
+  n["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  asset.doc["scenes"][0]["nodes"].push_back(asset.add("nodes", n));
+  return asset;
+}
+
+Asset with_camera(const json& camera, const json& node = json::object()) {
+  Asset asset;
+  json n = node;
+  n["camera"] = asset.add("cameras", camera);
+  asset.doc["scenes"][0]["nodes"].push_back(asset.add("nodes", n));
+  return asset;
+}
+
+}  // namespace
+
+TEST_CASE("translation, rotation, scale and matrices multiply down the hierarchy") {
+  Asset asset;
+  asset.triangle({{"name", "leaf"}, {"translation", {1, 0, 0}}, {"scale", {2, 2, 2}}});
+  const int middle = asset.add("nodes", {{"rotation", k_quarter_about_z}, {"children", {0}}});
+  const int top = asset.add(
+      "nodes", {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 20, 30, 1}}, {"children", {middle}}});
+  asset.doc["scenes"][0]["nodes"] = {top};
+  const Scene scene = asset.load();
+  REQUIRE(scene.instances.size() == 1);
+  CHECK(scene.instances[0].name == "leaf");
+  CHECK_FALSE(scene.instances[0].flipped);
+  // (1, 0, 0) -> scaled (2, 0, 0) -> moved (3, 0, 0) -> turned (0, 3, 0) -> moved (10, 23, 30)
+  CHECK(close(at(scene.instances[0].to_world, {1, 0, 0}), {10, 23, 30}));
+  const Box box = scene::bounds(scene);
+  CHECK(close(box.lo, {8, 21, 30}));
+  CHECK(close(box.hi, {10, 23, 30}));
+}
+
+TEST_CASE("a mesh in several nodes is one mesh with several instances; a mirrored one is flipped") {
+  Asset asset;
+  asset.triangle();
+  asset.doc["scenes"][0]["nodes"] = {0, asset.add("nodes", {{"mesh", 0}, {"scale", {-1, 1, 1}}}),
+                                     asset.add("nodes", {{"mesh", 0}, {"scale", {-1, -1, 1}}})};
+  const Scene scene = asset.load();
+  CHECK(scene.meshes.size() == 1);
+  REQUIRE(scene.instances.size() == 3);
+  CHECK(scene::count_triangles(scene) == 3);
+  CHECK_FALSE(scene.instances[0].flipped);
+  CHECK(scene.instances[1].flipped);
+  CHECK_FALSE(scene.instances[2].flipped);
+}
+
+TEST_CASE("the default scene is what is shown") {
+  Asset asset;
+  asset.triangle({{"name", "first"}});
+  asset.triangle({{"name", "second"}});
+  asset.doc["scenes"] = {{{"nodes", {0}}}, {{"nodes", {1}}}};
+  CHECK(asset.load().instances.at(0).name == "first");
+  asset.doc["scene"] = 1;
+  const Scene scene = asset.load();
+  REQUIRE(scene.instances.size() == 1);
+  CHECK(scene.instances[0].name == "second");
+  CHECK(scene.meshes.size() == 1);
+  asset.doc.erase("scene");
+  asset.doc.erase("scenes");
+  CHECK(asset.load().instances.size() == 2);  // without scenes, all roots
+}
+
+TEST_CASE("EXT_mesh_gpu_instancing") {
+  Asset asset;
+  asset.triangle({{"translation", {0, 0, 5}}});
+  json attributes;
+  attributes["TRANSLATION"] = asset.accessor<float>("VEC3", {1, 0, 0, 0, 2, 0});
+  attributes["ROTATION"] = asset.accessor<int16_t>("VEC4", {0, 0, 0, 32767, 0, 0, 23170, 23170}, true);
+  attributes["SCALE"] = asset.accessor<float>("VEC3", {1, 1, 1, 3, 3, -3});
+  asset.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
+  const Scene scene = asset.load();
+  REQUIRE(scene.instances.size() == 2);
+  CHECK(close(at(scene.instances[0].to_world, {1, 0, 0}), {2, 0, 5}));
+  CHECK(close(at(scene.instances[1].to_world, {1, 0, 1}), {0, 5, 2}, 1e-3f));
+  CHECK_FALSE(scene.instances[0].flipped);
+  CHECK(scene.instances[1].flipped);
+  CHECK(scene.meshes.size() == 1);
+
+  asset.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] =
+      asset.accessor<float>("VEC3", {1, 1, 1, 0, 1, 1});
+  CHECK_THAT(failure(asset), Contains("EXT_mesh_gpu_instancing: the matrix of instance 1 is singular"));
+}
+
+TEST_CASE("cameras") {
+  const Scene scene = with_camera({{"name", "eye"},
+                                   {"type", "perspective"},
+                                   {"perspective", {{"yfov", 0.5}, {"aspectRatio", 1.5}, {"znear", 0.1}}}},
+                                  {{"translation", {1, 2, 3}}, {"scale", {5, 5, 5}}})
+                          .load();
+  REQUIRE(scene.cameras.size() == 1);
+  const scene::Camera& camera = scene.cameras[0];
+  CHECK(camera.name == "eye");
+  CHECK_FALSE(camera.orthographic);
+  CHECK(camera.yfov == 0.5f);
+  CHECK(camera.aspect == 1.5f);
+  CHECK(close(vec3(camera.to_world[3]), {1, 2, 3}));
+  CHECK(close(vec3(camera.to_world[2]), {0, 0, 1}));  // no scale
+
+  const Scene flat = with_camera({{"type", "orthographic"},
+                                  {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"znear", 0}, {"zfar", 9}}}},
+                                 {{"name", "plan"}})
+                         .load();
+  CHECK(flat.cameras.at(0).orthographic);
+  CHECK(flat.cameras[0].name == "plan");
+  CHECK(flat.cameras[0].xmag == 4);
+  CHECK(flat.cameras[0].ymag == 2);
+
+  CHECK_THAT(failure(with_camera({{"type", "perspective"}, {"perspective", {{"yfov", 0}}}})),
+             Contains("cameras[0].perspective.yfov: 0 is not above 0"));
+  CHECK_THAT(failure(with_camera({{"type", "fisheye"}})),
+             Contains("cameras[0].type: 'fisheye', expected perspective or orthographic"));
+  CHECK_THAT(failure(with_camera({{"type", "orthographic"}})),
+             Contains("cameras[0]: 'orthographic' is missing"));
+}
+
+TEST_CASE("the default camera sees the whole scene") {
+  Asset asset;
+  asset.triangle({{"translation", {100, 50, 0}}, {"scale", {30, 30, 30}}});
+  const Scene scene = asset.load();
+  CHECK(scene.cameras.empty());
+  const scene::Camera camera = scene::default_camera(scene);
+  const mat4 to_camera = glm::inverse(camera.to_world);
+  for (const vec3& p : scene.meshes[0].primitives[0].positions) {
+    const vec3 q = at(to_camera, at(scene.instances[0].to_world, p));
+    CHECK(q.z < 0);
+    CHECK(std::abs(q.x / q.z) < std::tan(0.5f * camera.yfov));
+    CHECK(std::abs(q.y / q.z) < std::tan(0.5f * camera.yfov));
+  }
+}
+
+TEST_CASE("punctual lights") {
+  Scene scene =
+      with_light(
+          {{"name", "lamp"}, {"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 10}, {"range", 3}},
+          {{"translation", {1, 2, 3}}})
+          .load();
+  REQUIRE(scene.lights.size() == 1);
+  CHECK(scene.lights[0].kind == scene::LightKind::point);
+  CHECK(scene.lights[0].name == "lamp");
+  CHECK(scene.lights[0].intensity == vec3(10, 5, 0));
+  CHECK(scene.lights[0].position == vec3(1, 2, 3));
+  CHECK(scene.warnings.empty());  // the range is ignored without a word
+
+  // A quarter turn about x takes -Z to +Y.
+  scene = with_light(
+              {{"type", "directional"}},
+              {{"name", "sun"}, {"rotation", {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}}, {"scale", {2, 2, 2}}})
+              .load();
+  CHECK(scene.lights.at(0).kind == scene::LightKind::directional);
+  CHECK(scene.lights[0].name == "sun");
+  CHECK(scene.lights[0].intensity == vec3(1));
+  CHECK(close(scene.lights[0].direction, {0, 1, 0}));
+
+  scene =
+      with_light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}}).load();
+  CHECK(scene.lights.at(0).inner_cone == 0.25f);
+  CHECK(scene.lights[0].outer_cone == 0.5f);
+  CHECK(close(scene.lights[0].direction, {0, 0, -1}));
+  scene = with_light({{"type", "spot"}}).load();
+  CHECK(scene.lights.at(0).inner_cone == 0);
+  CHECK(scene.lights[0].outer_cone == Approx(k_pi / 4));
+
+  scene = with_light(
+              {{"type", "spot"}, {"intensity", -1}, {"spot", {{"innerConeAngle", 2}, {"outerConeAngle", 3}}}})
+              .load();
+  CHECK(scene.lights.at(0).outer_cone == Approx(k_pi / 2));
+  CHECK(scene.lights[0].inner_cone == scene.lights[0].outer_cone);
+  CHECK(scene.lights[0].intensity == vec3(0));
+  CHECK(scene.warnings.size() == 2);
+  CHECK_THAT(failure(with_light({{"type", "laser"}})),
+             Contains("extensions.KHR_lights_punctual.lights[0].type: 'laser'"));
+}
+
+TEST_CASE("environment in the scene's extras") {
+  TempFolder folder;
+  Asset asset;
+  asset.triangle();
+  write_image<float>(folder / "sky.exr", 2, 1, 3, {1, 2, 3, 4, 5, 6});
+  json& environment = asset.doc["scenes"][0]["extras"]["environment"];
+  environment = {{"type", "equirectangular"},
+                 {"file", "sky.exr"},
+                 {"scale", 2.5},
+                 {"rotation", 30},
+                 {"mapping", "any words"}};
+  Scene scene = scene::load(asset.gltf(folder));
+  REQUIRE(scene.environment.image != scene::k_none);
+  CHECK(scene.images[scene.environment.image].floats == std::vector<float>{1, 2, 3, 1, 4, 5, 6, 1});
+  CHECK(scene.environment.scale == 2.5f);
+  CHECK(scene.environment.rotation == 30);
+  CHECK(scene.environment.file == "sky.exr");
+
+  environment = {{"radiance", {1, 2, 3}}, {"mood", "dark"}};
+  scene = scene::load(asset.gltf(folder));
+  CHECK(scene.environment.image == scene::k_none);
+  CHECK(scene.environment.radiance == vec3(1, 2, 3));
+
+  environment = {{"type", "none"}};
+  scene = scene::load(asset.gltf(folder));
+  CHECK(scene.environment.radiance == vec3(0));
+  CHECK(warnings_with(scene, "neither 'file' nor 'radiance'") == 1);
+
+  // An 8-bit picture is taken for sRGB.
+  write_image<uint8_t>(folder / "sky.png", 1, 1, 3, {255, 188, 0});
+  environment = {{"file", "sky.png"}};
+  scene = scene::load(asset.gltf(folder));
+  CHECK(scene.images[scene.environment.image].floats[0] == Approx(1));
+  CHECK(scene.images[scene.environment.image].floats[1] == Approx(0.5029).margin(1e-3));
+}
+
+TEST_CASE("settings.json: its environment overrides, the rest goes to the settings in order") {
+  TempFolder folder;
+  Asset asset;
+  asset.triangle();
+  asset.doc["scenes"][0]["extras"]["environment"] = {{"file", "is-not-even-looked-for.exr"}};
+  const std::filesystem::path file = asset.gltf(folder);
+  write(folder / "settings.json",
+        R"({"samples": 64, "components": {"primary": "off", "caustic": "path"}, "film.ev": -1.5,
+            "environment": {"radiance": [0.5, 0.25, 0], "scale": 2}, "show": {"primary": true}, "camera": "main"})");
+  Scene scene = scene::load(file);
+  CHECK(scene.environment.radiance == vec3(0.5f, 0.25f, 0));
+  CHECK(scene.environment.scale == 2);
+  using Settings = std::vector<std::pair<std::string, std::string>>;
+  CHECK(scene.settings == Settings{{"samples", "64"},
+                                   {"components.primary", "off"},
+                                   {"components.caustic", "path"},
+                                   {"film.ev", "-1.5"},
+                                   {"show.primary", "true"},
+                                   {"camera", "main"}});
+
+  write(folder / "settings.json", R"({"samples": 1})");
+  CHECK_THAT(failure(file), Contains("extras.environment.file"));  // nothing overrides it now
+  scene::LoadOptions options;
+  options.settings = false;
+  asset.doc["scenes"][0].erase("extras");
+  CHECK(scene::load(asset.gltf(folder), options).settings.empty());
+}
+
+TEST_CASE("progress is told in order and can cancel") {
+  TempFolder folder;
+  Asset asset;
+  asset.triangle();
+  const std::filesystem::path file = asset.gltf(folder);
+  std::vector<float> told;
+  scene::load(file, {}, [&](float fraction, const std::string& what) {
+    CHECK_FALSE(what.empty());
+    told.push_back(fraction);
+    return true;
+  });
+  CHECK(std::is_sorted(told.begin(), told.end()));
+  CHECK(told.front() == 0);
+  CHECK(told.back() == 1);
+  for (size_t stop = 0; stop < told.size(); ++stop) {
+    size_t calls = 0;
+    CHECK_THROWS_AS(scene::load(file, {}, [&](float, const std::string&) { return calls++ != stop; }),
+                    scene::Cancelled);
+    CHECK(calls == stop + 1);
+  }
+}
+
+TEST_CASE("rest pose: skins, morph targets and animations are named and left out") {
+  Asset asset;
+  json& primitive = asset.triangle();
+  primitive["targets"] = {{{"POSITION", 0}}};
+  primitive["attributes"]["JOINTS_0"] = 0;
+  asset.doc["animations"] = {json::object(), json::object()};
+  const Scene scene = asset.load();
+  CHECK(scene::count_triangles(scene) == 1);
+  CHECK(warnings_with(scene, "2 animations are ignored") == 1);
+  CHECK(warnings_with(scene, "1 primitives have morph targets") == 1);
+  CHECK(warnings_with(scene, "1 primitives are skinned") == 1);
+}
+
+TEST_CASE("a description says what is in a scene") {
+  TempFolder folder;
+  write_image<uint8_t>(folder / "i.png", 4, 2, 3, std::vector<uint8_t>(24, 9));
+  Asset asset = with_light({{"type", "point"}, {"intensity", 3}});
+  asset.textured_triangle(
+      {{"name", "pane"}, {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
+  const int texture = asset.add("textures", {{"source", asset.add("images", {{"uri", "i.png"}})}});
+  asset.textured_triangle(
+      {{"name", "glow"}, {"emissiveFactor", {1, 1, 1}}, {"emissiveTexture", {{"index", texture}}}});
+  asset.doc["extensionsUsed"].push_back("EXT_never");
+  const Scene scene = scene::load(asset.gltf(folder));
+  const nlohmann::ordered_json d = scene::describe(scene);
+  CHECK(d["triangles"] == 3);
+  CHECK(d["emissive_triangles"] == 1);
+  CHECK(d["vertices"] == 9);
+  CHECK(d["instances"] == 3);
+  CHECK(d["meshes"] == 3);
+  REQUIRE(d["materials"].size() == 3);
+  CHECK(d["materials"][1]["name"] == "pane");
+  CHECK(d["materials"][1]["kind"] == "glass, thin wall");
+  CHECK_THAT(d["materials"][2]["kind"].get<std::string>(), Contains("emitter"));
+  CHECK(d["images"][0]["width"] == 4);
+  CHECK(d["image_bytes"] == 32);
+  CHECK(d["lights"][0]["kind"] == "point");
+  CHECK(d["environment"].is_null());
+  CHECK(d["unknown_extensions"][0] == "EXT_never");
+  CHECK(d["bounds"]["hi"][0] == 1);
+  CHECK(d["warnings"].size() == 1);
+  const std::string text = scene::describe_text(scene);
+  for (const char* word : {"triangles    3 (1 emissive)", "pane: glass, thin wall", "i.png: 4 x 2", "point",
+                           "EXT_never", "warning"})
+    CHECK_THAT(text, Contains(word));
+}
