@@ -271,7 +271,7 @@ def furnish(s):
     s.mesh("madder banner", [(banner[1], "cloth madder")])
     s.mesh("linen banner", [(banner[0], "cloth linen")])
     s.mesh("banner rod", [(ap.rod(1.6, 0.02), "wood")])
-    for name, x, z in (("saffron banner", -2.2, -6.0), ("madder banner", 2.0, -6.0), ("linen banner", -2.2, 0.0),
+    for name, x, z in (("saffron banner", -2.2, -6.0), ("madder banner", 2.0, -6.0), ("linen banner", -2.65, 0.0),
                        ("saffron banner", 2.2, 3.0)):
         s.place(name, (x, VAULT - 0.70, z))
         s.place("banner rod", (x, VAULT - 0.69, z))
@@ -292,8 +292,8 @@ def furnish(s):
     s.mesh("bowl", [(ap.bowl(), "brass")])
     s.mesh("bench", [(ap.bench(), "wood")])
     s.mesh("pedestal", [(ap.pedestal(0.66), "limestone")])
-    s.place("pedestal", (-2.3, 0, 3.1))
-    s.place("bowl", (-2.3, 0.66, 3.1), scale=1.15)
+    s.place("pedestal", (-2.25, 0, 3.1))
+    s.place("bowl", (-2.25, 0.66, 3.1), scale=1.15)
     s.place("urn", (3.05, 0, 1.2), 40.0, scale=1.0)
     s.place("urn", (3.28, 0, 0.62), 10.0, scale=0.72)
     s.place("urn", (0, DAIS, Z_FAR - 1.2), scale=1.5)
@@ -314,8 +314,8 @@ def main():
     s.sun("sun", -SUN, (1.0, 0.89, 0.74), 19.0)
     eye = 1.65
     s.camera("main", (1.3, eye, 9.1), (-0.2, eye, -12), yfov=46.0)
-    s.camera("gallery", (-5.6, GALLERY + eye, 5.2), (0.5, GALLERY + eye - 0.35, -6), yfov=46.0)
-    s.camera("bowl", (-1.0, 1.55, 4.75), (-2.4, 0.72, 3.0), yfov=34.0)
+    s.camera("gallery", (-4.4, GALLERY + eye, 3.75), (1.6, 5.0, -8), yfov=50.0)
+    s.camera("bowl", (-1.1, 1.6, 4.9), (-2.3, 0.74, 3.0), yfov=34.0)
     env = {"file": "sky.hdr", "scale": 1.5}
     s.extras = {"environment": env}
     s.write("The face of the program: sun through oculi on worn stone, its bounce under the gallery, cloth that glows "
