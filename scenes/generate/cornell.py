@@ -58,7 +58,7 @@ def cornell():
     scene.place("short block")
     scene.place("tall block")
     scene.write("The Cornell box: measured dimensions (1 mm as 1 cm) and measured spectra as linear Rec.709. Lambertian "
-                "only: colour bleeding, soft shadows, the first picture to be right.", {"film.ev": -1.0})
+                "only: colour bleeding, soft shadows, the first picture to be right.", {"film.ev": 1.0})
 
 
 def glass():
@@ -70,14 +70,14 @@ def glass():
     ball = sphere(1.0, 192, 96)
     scene.mesh("glass sphere", [(ball, "glass")])
     scene.mesh("metal sphere", [(ball, "steel")])
-    r0, r1, h, e = 0.80, 0.85, 0.42, 0.012
+    r0, r1, h, e = 0.80, 0.85, 0.34, 0.012
     ring = lathe([(r0, 0.002), (r1, 0.002), (r1, h - e), (r1 - e, h), (r0 + e, h), (r0, h - e), (r0, 0.002)], 192)
     scene.mesh("ring", [(ring, "gold")])
     scene.place("metal sphere", point(392, 102, 372), scale=1.02)
     scene.place("glass sphere", point(158, 92, 258), scale=0.92)
-    scene.place("ring", point(372, 0, 118))
+    scene.place("ring", point(345, 0, 150))
     scene.write("The Cornell box with a solid glass sphere, a polished metal sphere and a polished ring on the floor: "
-                "caustics, their mirror images, and light through refraction (specular chains).", {"film.ev": -1.0})
+                "caustics, their mirror images, and light through refraction (specular chains).", {"film.ev": 1.0})
 
 
 if __name__ == "__main__":

@@ -96,8 +96,9 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& hint, c
     image.height = static_cast<uint32_t>(spec.height);
     const auto read = [&](auto& buffer, OIIO::TypeDesc type) {
       buffer.resize(texels * static_cast<uint64_t>(channels));
-      if (!input->read_image(0, 0, 0, channels, type, buffer.data()))
-        throw Error(where, "the image cannot be decoded: " + reader_error(input->geterror()));
+      if (input->read_image(0, 0, 0, channels, type, buffer.data())) return;
+      const std::string message = input->geterror();
+      throw Error(where, "the image cannot be decoded: " + reader_error(message));
     };
     if (floats) {
       std::vector<float> raw;
