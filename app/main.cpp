@@ -74,6 +74,33 @@ int main_checked(int argc, char** argv) {
   compare_verb->add_option("--layer", c.layer, "layer instead of R, G, B: primary, secondary, ...");
   compare_verb->add_flag("--json", c.json, "as JSON");
   compare_verb->add_option("--max-relmse", c.max_relmse, "exit with 1 when the relative MSE is above this");
+
+  BenchRaysArguments b;
+  CLI::App* bench_verb = app.add_subcommand("bench", "measure speed");
+  bench_verb->require_subcommand(1);
+  CLI::App* rays_verb =
+      bench_verb->add_subcommand("rays", "rays a second of every tracer, and of Embree as it comes");
+  rays_verb->add_option("SCENE", b.scene, "glTF scene")->required();
+  rays_verb->add_option("--camera", b.camera, "name of a scene camera");
+  rays_verb->add_option("--rays", b.rays, "primary rays")
+      ->check(CLI::Range(64u, 1u << 22))
+      ->capture_default_str();
+  rays_verb->add_option("--repeats", b.repeats, "measurements of each figure")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  rays_verb->add_option("--width", b.width, "width of the path-traced frame")
+      ->check(CLI::Range(1u, 16384u))
+      ->capture_default_str();
+  rays_verb->add_option("--height", b.height, "its height")
+      ->check(CLI::Range(1u, 16384u))
+      ->capture_default_str();
+  rays_verb->add_option("--samples", b.samples, "its samples a pixel; 0: no frame")
+      ->check(CLI::Range(0u, 1u << 20))
+      ->capture_default_str();
+  rays_verb->add_option("--seed", b.seed, "seed of the rays")->capture_default_str();
+  rays_verb->add_option("--flat", b.flat, "write the flattened scene for lucerna-raybench");
+  rays_verb->add_option("--device", b.device, "as above");
+  rays_verb->add_flag("--json", b.json, "as JSON");
   app.require_subcommand(0, 1);
 
   try {
@@ -87,6 +114,8 @@ int main_checked(int argc, char** argv) {
   if (*info_verb) return info(info_scene, info_json);
   if (*devices_verb) return devices(devices_json);
   if (*compare_verb) return compare(c);
+  if (b.device.empty()) b.device = device;
+  if (*rays_verb) return bench_rays(b);
   session::Session session({.device = device, .validation = false, .shaders = {}});
   ui::ViewerOptions options;
   options.scene = scene;

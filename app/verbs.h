@@ -21,6 +21,16 @@ int render(const RenderArguments& arguments);
 int info(const std::string& scene, bool json);
 int devices(bool json);
 
+struct BenchRaysArguments {
+  std::string scene, camera, device;
+  std::string flat;  ///< file to write the flattened scene to; empty: none
+  uint32_t rays = 1 << 20, seed = 1;
+  int repeats = 5;
+  uint32_t width = 480, height = 270, samples = 16;  ///< of the path-traced frame; no samples: no frame
+  bool json = false;
+};
+int bench_rays(const BenchRaysArguments& arguments);
+
 struct CompareArguments {
   std::string a, b, layer, difference;
   bool json = false;

@@ -12,7 +12,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TracePush push; };
 
-layout(scalar) readonly buffer Rays { Ray rays[]; };
+uniform samplerBuffer ray_texels;  // Rays, 2 texels each: (origin, tmax) (direction, bits slot)
 layout(scalar) writeonly buffer Hits { Hit hits[]; };
 layout(scalar) readonly buffer Queue { uint queue[]; };
 
@@ -25,7 +25,8 @@ void main() {
   uint last = min(row, push.count - 1u);
   uint queued = queue[push.use_queue != 0u ? last : 0u];
   uint index = push.use_queue != 0u ? queued : last;
-  Ray ray = rays[index];
+  vec4 a = texelFetch(ray_texels, int(2u * index)), b = texelFetch(ray_texels, int(2u * index + 1u));
+  Ray ray = Ray(a.xyz, a.w, b.xyz, floatBitsToUint(b.w));
   ray.tmax = inside ? ray.tmax : 0.0;
   Hit hit = bvh_trace(ray, LUCERNA_QUERY);
   if (inside) hits[index] = hit;

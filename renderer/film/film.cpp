@@ -1,11 +1,15 @@
 #include "film/film.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lucerna::film {
 
 Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width), height_(height) {
-  const uint64_t pixels = uint64_t(width) * height, largest = device.info().limits.max_storage_buffer / 48;
+  const gpu::Limits& limits = device.info().limits;
+  const uint64_t pixels = uint64_t(width) * height;
+  // Three texels a pixel and component; four bytes a pixel in the storage buffers.
+  const uint64_t largest = std::min(limits.max_texel_elements / 3, limits.max_storage_buffer / 4);
   if (pixels == 0) throw Error("size", "a picture needs at least one pixel");
   if (pixels > largest)
     throw_error("size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{})", width,
@@ -13,9 +17,9 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width)
                 uint32_t(std::sqrt(largest * 9.0 / 16)));
   const char* names[k_components] = {"film primary", "film secondary", "film tertiary", "film caustic"};
   for (int c = 0; c < k_components; ++c)
-    sums_[c] = gpu::Buffer(device, {.name = names[c], .bytes = pixels * 48});
-  albedo_ = gpu::Buffer(device, {.name = "film albedo", .bytes = pixels * 16});
-  normal_ = gpu::Buffer(device, {.name = "film normals", .bytes = pixels * 16});
+    sums_[c] = gpu::Buffer(device, {.name = names[c], .bytes = pixels * 48, .texel = true});
+  albedo_ = gpu::Buffer(device, {.name = "film albedo", .bytes = pixels * 16, .texel = true});
+  normal_ = gpu::Buffer(device, {.name = "film normals", .bytes = pixels * 16, .texel = true});
   count_ = gpu::Buffer(device, {.name = "film counts", .bytes = pixels * 4});
   picture_ = gpu::Buffer(device, {.name = "picture", .bytes = pixels * 4, .memory = gpu::Memory::host});
 }
@@ -29,12 +33,16 @@ void Film::clear(gpu::Stream& stream) {
 }
 
 void Film::bind(gpu::Resources& r) const {
-  r.set("FilmPrimary", sums_[0]);
-  r.set("FilmSecondary", sums_[1]);
-  r.set("FilmTertiary", sums_[2]);
-  r.set("FilmCaustic", sums_[3]);
-  r.set("FilmAlbedo", albedo_);
-  r.set("FilmNormal", normal_);
+  const auto texels = [&](const char* name, const gpu::Buffer& buffer) {
+    r.set(name, buffer);
+    r.set(std::string(name) + "_image", buffer);
+  };
+  texels("film_primary", sums_[0]);
+  texels("film_secondary", sums_[1]);
+  texels("film_tertiary", sums_[2]);
+  texels("film_caustic", sums_[3]);
+  texels("film_albedo", albedo_);
+  texels("film_normal", normal_);
   r.set("FilmCount", count_);
   r.set("Picture", picture_);
 }

@@ -58,7 +58,8 @@ Buffer::Buffer(Device& device, const BufferDesc& desc) {
   info.size = impl->allocated;
   info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
-  if (desc.texel) info.usage |= VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
+  if (desc.texel)
+    info.usage |= VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
   check(h.vk.vkCreateBuffer(h.device, &info, nullptr, &impl->buffer), "creating a buffer");
   VkMemoryRequirements needs{};
   h.vk.vkGetBufferMemoryRequirements(h.device, impl->buffer, &needs);

@@ -81,6 +81,8 @@ std::string first_missing(const Instance& instance, VkPhysicalDevice physical, c
   // `properties` is now that of rgba32f, the texel buffers' format.
   if (!(properties.bufferFeatures & VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT))
     return "texel buffers of rgba32f";
+  if (!(properties.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT))
+    return "storage texel buffers of rgba32f";
   return {};
 }
 

@@ -21,10 +21,11 @@ struct BufferDesc {
   std::string name;    ///< for messages: "out of device memory for 'film sums' (99 MiB)"
   uint64_t bytes = 0;  ///< 0 is allowed and makes a 16-byte buffer (so that it can be bound)
   Memory memory = Memory::device;
-  bool texel = false;  ///< also readable as samplerBuffer (RGBA32F texels); bytes must be a multiple of 16
+  bool texel =
+      false;  ///< also bindable as samplerBuffer and as rgba32f imageBuffer; bytes must be a multiple of 16
 };
 
-/// A storage buffer (also transfer source and destination, indirect arguments, and optionally a uniform texel
+/// A storage buffer (also transfer source and destination, indirect arguments, and optionally a texel
 /// buffer).
 class Buffer {
  public:

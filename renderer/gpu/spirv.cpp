@@ -280,6 +280,7 @@ Module reflect(const std::vector<uint32_t>& words) {
       const Type& image = type.op == spv::OpTypeImage ? type : parsed.types.at(type.operands[0]);
       const uint32_t dimension = image.operands[1], arrayed = image.operands[3], sampled = image.operands[5];
       if (dimension == spv::DimBuffer && sampled == 1) resource.kind = ResourceKind::texel_buffer;
+      if (dimension == spv::DimBuffer && sampled == 2) resource.kind = ResourceKind::texel_image;
       if (dimension == spv::Dim2D && arrayed && type.op == spv::OpTypeSampledImage)
         resource.kind = ResourceKind::sampled_image;
     }

@@ -7,7 +7,14 @@
 
 namespace lucerna::gpu::spirv {
 
-enum class ResourceKind { storage_buffer, uniform_buffer, texel_buffer, sampled_image, unsupported };
+enum class ResourceKind {
+  storage_buffer,
+  uniform_buffer,
+  texel_buffer,
+  texel_image,
+  sampled_image,
+  unsupported
+};
 
 struct Resource {
   std::string name;  ///< block name, or the variable's for samplers

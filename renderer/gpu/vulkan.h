@@ -127,7 +127,7 @@ struct TextureArray::Impl {
 };
 
 struct Kernel::Impl {
-  enum class Kind { storage_buffer, texel_buffer, sampled_image };
+  enum class Kind { storage_buffer, texel_buffer, texel_image, sampled_image };
   struct Slot {
     std::string name;
     Kind kind;

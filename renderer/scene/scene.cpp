@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include "base/error.h"
+
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -32,6 +34,15 @@ Camera default_camera(const Scene& scene) {
   const vec3 eye = centre + distance * glm::normalize(vec3(0.35f, 0.3f, 1));
   camera.to_world = glm::inverse(glm::lookAt(eye, centre, vec3(0, 1, 0)));
   return camera;
+}
+
+const Camera& find_camera(const Scene& scene, const std::string& name) {
+  std::string names;
+  for (const Camera& c : scene.cameras) {
+    if (c.name == name) return c;
+    names += (names.empty() ? "'" : ", '") + c.name + "'";
+  }
+  throw_error("camera", "the scene has no camera '{}'; it has {}", name, names.empty() ? "none" : names);
 }
 
 }  // namespace lucerna::scene

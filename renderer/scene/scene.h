@@ -1,8 +1,9 @@
 #pragma once
-// The scene: plain data with stable ids (indices into the vectors of Scene), as loaded; nothing here knows of glTF,
-// files or a device. Right-handed, Y up, metres; colours are linear Rec.709; radiance in one unit throughout
-// (no photometric factor anywhere): emissive and environment values are radiance L, point and spot intensity is radiant
-// intensity I (irradiance I/d^2 at distance d), directional intensity is irradiance E on a facing plane.
+// The scene: plain data with stable ids (indices into the vectors of Scene), as loaded; nothing here knows of
+// glTF, files or a device. Right-handed, Y up, metres; colours are linear Rec.709; radiance in one unit
+// throughout (no photometric factor anywhere): emissive and environment values are radiance L, point and spot
+// intensity is radiant intensity I (irradiance I/d^2 at distance d), directional intensity is irradiance E on
+// a facing plane.
 #include <array>
 #include <optional>
 #include <string>
@@ -19,8 +20,8 @@ inline constexpr Id k_none = 0xffffffffu;
 struct Image {
   std::string name;  ///< file, or "scene.gltf: image 3 (name)"; for messages
   uint32_t width = 0, height = 0;
-  std::vector<uint8_t> bytes;   ///< width * height * 4, as stored in the file (not linearized)
-  std::vector<float> floats;    ///< width * height * 4, linear
+  std::vector<uint8_t> bytes;  ///< width * height * 4, as stored in the file (not linearized)
+  std::vector<float> floats;   ///< width * height * 4, linear
 };
 
 enum class Wrap : uint32_t { repeat, clamp, mirror };
@@ -34,8 +35,8 @@ struct Texture {
   bool srgb = false;
 };
 
-/// A use of a texture by a material. Coordinates: uv' = (m[0]*u + m[1]*v + m[2], m[3]*u + m[4]*v + m[5]), (u, v) of
-/// `uv_set` (0 or 1), v downwards from the top row as in glTF.
+/// A use of a texture by a material. Coordinates: uv' = (m[0]*u + m[1]*v + m[2], m[3]*u + m[4]*v + m[5]), (u,
+/// v) of `uv_set` (0 or 1), v downwards from the top row as in glTF.
 struct TextureUse {
   Id texture = k_none;
   uint32_t uv_set = 0;
@@ -48,45 +49,45 @@ enum class AlphaMode : uint32_t { opaque, mask, blend };
 /// glTF metallic-roughness with the extensions that we read. Textures multiply the factors as glTF says.
 struct Material {
   std::string name;
-  vec4 base_color{1};               ///< rgb reflectance 0..1, a = coverage
-  TextureUse base_color_texture;    ///< rgba
+  vec4 base_color{1};             ///< rgb reflectance 0..1, a = coverage
+  TextureUse base_color_texture;  ///< rgba
   float metallic = 1, roughness = 1;
   TextureUse metallic_roughness_texture;  ///< g = roughness, b = metallic
   TextureUse normal_texture;
   float normal_scale = 1;
-  vec3 emission{0};                 ///< emitted radiance: emissiveFactor * emissiveStrength
+  vec3 emission{0};  ///< emitted radiance: emissiveFactor * emissiveStrength
   TextureUse emission_texture;
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
-  bool double_sided = false;        ///< decides only whether the back side emits; surfaces reflect on both sides
-  bool unlit = false;               ///< shows base_color as radiance on E[SG]*L alone; no light source, black otherwise
-  float ior = 1.5f;                 ///< KHR_materials_ior; 0 means F = 1 (as the extension says)
-  float specular = 1;               ///< KHR_materials_specular; multiplies F0 and F90 of the dielectric
-  TextureUse specular_texture;      ///< a
+  bool double_sided = false;  ///< decides only whether the back side emits; surfaces reflect on both sides
+  bool unlit = false;  ///< shows base_color as radiance on E[SG]*L alone; no light source, black otherwise
+  float ior = 1.5f;    ///< KHR_materials_ior; 0 means F = 1 (as the extension says)
+  float specular = 1;  ///< KHR_materials_specular; multiplies F0 and F90 of the dielectric
+  TextureUse specular_texture;  ///< a
   vec3 specular_color{1};
   TextureUse specular_color_texture;  ///< rgb
-  float transmission = 0;           ///< KHR_materials_transmission
-  TextureUse transmission_texture;  ///< r
-  float thickness = 0;              ///< KHR_materials_volume; > 0: a solid that refracts and absorbs; 0: a thin wall
+  float transmission = 0;             ///< KHR_materials_transmission
+  TextureUse transmission_texture;    ///< r
+  float thickness = 0;  ///< KHR_materials_volume; > 0: a solid that refracts and absorbs; 0: a thin wall
   vec3 attenuation_color{1};
   float attenuation_distance = k_infinity;  ///< metres
-  float diffuse_transmission = 0;   ///< KHR_materials_diffuse_transmission
+  float diffuse_transmission = 0;           ///< KHR_materials_diffuse_transmission
   TextureUse diffuse_transmission_texture;  ///< a
   vec3 diffuse_transmission_color{1};
   TextureUse diffuse_transmission_color_texture;  ///< rgb
 };
 
 /// Triangles of one material in object space. Streams are either empty or one entry a vertex.
-/// After loading: positions finite, triangles in range and not degenerate, normals present (unit length), tangents
-/// present (xyz unit, w = +-1) when the material has a normal texture.
+/// After loading: positions finite, triangles in range and not degenerate, normals present (unit length),
+/// tangents present (xyz unit, w = +-1) when the material has a normal texture.
 struct Primitive {
   std::vector<vec3> positions;
   std::vector<vec3> normals;
   std::vector<vec4> tangents;
   std::vector<vec2> uv0, uv1;
-  std::vector<vec4> colors;         ///< COLOR_0, linear; multiplies base_color
+  std::vector<vec4> colors;  ///< COLOR_0, linear; multiplies base_color
   std::vector<uvec3> triangles;
-  Id material = 0;                  ///< always valid; glTF's default material is added where a primitive has none
+  Id material = 0;  ///< always valid; glTF's default material is added where a primitive has none
 };
 
 struct Mesh {
@@ -94,7 +95,8 @@ struct Mesh {
   std::vector<Primitive> primitives;
 };
 
-/// A mesh placed in the world. `flipped`: the matrix has a negative determinant, so the front side is the clockwise one.
+/// A mesh placed in the world. `flipped`: the matrix has a negative determinant, so the front side is the
+/// clockwise one.
 struct Instance {
   std::string name;  ///< of the node
   Id mesh = k_none;
@@ -102,14 +104,15 @@ struct Instance {
   bool flipped = false;
 };
 
-/// Looks down its -Z, +Y up. Perspective: yfov in radians, of the picture's height. Orthographic: half heights.
+/// Looks down its -Z, +Y up. Perspective: yfov in radians, of the picture's height. Orthographic: half
+/// heights.
 struct Camera {
   std::string name;
   mat4 to_world{1};
   bool orthographic = false;
   float yfov = 0.8f;
-  float xmag = 1, ymag = 1;         ///< orthographic half sizes, metres
-  float aspect = 0;                 ///< width / height; 0: that of the picture
+  float xmag = 1, ymag = 1;  ///< orthographic half sizes, metres
+  float aspect = 0;          ///< width / height; 0: that of the picture
 };
 
 enum class LightKind : uint32_t { point, spot, directional };
@@ -118,9 +121,9 @@ enum class LightKind : uint32_t { point, spot, directional };
 struct Light {
   std::string name;
   LightKind kind = LightKind::point;
-  vec3 intensity{1};                ///< colour times intensity
+  vec3 intensity{1};  ///< colour times intensity
   vec3 position{0};
-  vec3 direction{0, 0, -1};         ///< unit; into the scene
+  vec3 direction{0, 0, -1};                         ///< unit; into the scene
   float inner_cone = 0, outer_cone = 0.785398163f;  ///< radians from the axis; spot only
   bool enabled = true;
 };
@@ -128,15 +131,15 @@ struct Light {
 /// Light from infinitely far: constant radiance, or a latitude-longitude image:
 /// u = 0.5 + atan2(z, x) / 2pi, v = acos(y) / pi from the top; rotation counter-clockwise seen from above.
 struct Environment {
-  vec3 radiance{0};                 ///< used when image is k_none
-  Id image = k_none;                ///< float texels
-  float scale = 1;                  ///< multiplies image or radiance
-  float rotation = 0;               ///< degrees
-  std::string file;                 ///< as written; for messages and saving
+  vec3 radiance{0};    ///< used when image is k_none
+  Id image = k_none;   ///< float texels
+  float scale = 1;     ///< multiplies image or radiance
+  float rotation = 0;  ///< degrees
+  std::string file;    ///< as written; for messages and saving
 };
 
 struct Scene {
-  std::string name;                 ///< the file's stem
+  std::string name;  ///< the file's stem
   std::string file;
   std::vector<Image> images;
   std::vector<Texture> textures;
@@ -146,10 +149,11 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<Light> lights;
   Environment environment;
-  /// Render settings given beside the scene (settings.json), key -> value as text, in file order; checked by plan/.
+  /// Render settings given beside the scene (settings.json), key -> value as text, in file order; checked by
+  /// plan/.
   std::vector<std::pair<std::string, std::string>> settings;
-  std::vector<std::string> warnings;  ///< what loading had to mend or leave out, one line each
-  std::vector<std::string> extensions;          ///< glTF extensions that the file uses and that are honoured, sorted
+  std::vector<std::string> warnings;    ///< what loading had to mend or leave out, one line each
+  std::vector<std::string> extensions;  ///< glTF extensions that the file uses and that are honoured, sorted
   std::vector<std::string> unknown_extensions;  ///< those that are ignored (a warning each), sorted
 };
 
@@ -159,5 +163,8 @@ Box bounds(const Scene& scene);
 uint64_t count_triangles(const Scene& scene);
 /// The camera used when a scene has none: looks at the bounds' centre from the front and a little above.
 Camera default_camera(const Scene& scene);
+
+/// The camera of that name. Throws Error, listing the names, when there is none.
+const Camera& find_camera(const Scene& scene, const std::string& name);
 
 }  // namespace lucerna::scene

@@ -9,6 +9,7 @@
 #include "bvh/embree/build.h"
 #include "scene/io/load.h"
 #include "shaders/shared/film.h"
+#include "transport/frame.h"
 
 namespace lucerna::session {
 namespace {
@@ -113,32 +114,13 @@ uint32_t Renderer::enabled_components() const {
 }
 
 shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
-  shared::Frame f{};
-  const mat4& m = camera_.to_world;
-  const vec3 right = glm::normalize(vec3(m[0])), up = glm::normalize(vec3(m[1]));
-  const float half_h = camera_.orthographic ? camera_.ymag : std::tan(0.5f * camera_.yfov);
-  const float half_w = half_h * float(width) / float(height);
-  f.camera_origin = vec3(m[3]);
-  f.camera_right = right * half_w;
-  f.camera_up = up * half_h;
-  f.camera_forward = -glm::normalize(vec3(m[2]));
-  f.orthographic = camera_.orthographic;
-  f.width = width;
-  f.height = height;
-  f.seed = uint32_t(settings_.integer("seed"));
-  f.environment_radiance = flat_.environment_radiance;
-  f.environment_width = flat_.environment_width;
-  f.environment_height = flat_.environment_height;
-  f.environment_rotation = flat_.environment_rotation;
-  f.environment_light_pmf = flat_.environment_light_pmf;
-  f.light_count = uint32_t(flat_.lights.size() / shared::k_light_texels);
-  f.max_depth = uint32_t(settings_.integer("path.max_depth"));
-  f.roulette_depth = uint32_t(settings_.integer("path.roulette_depth"));
-  f.scene_radius = flat_.scene_radius;
-  const std::vector<uint32_t> table = paths::pack(automaton_, enabled_components());
-  f.automaton_states = uint32_t(table.size());
-  std::copy(table.begin(), table.end(), f.automaton);
-  return f;
+  return transport::make_frame(flat_, camera_, automaton_,
+                               {.width = width,
+                                .height = height,
+                                .seed = uint32_t(settings_.integer("seed")),
+                                .max_depth = uint32_t(settings_.integer("path.max_depth")),
+                                .roulette_depth = uint32_t(settings_.integer("path.roulette_depth")),
+                                .enabled = enabled_components()});
 }
 
 void Renderer::make_film() {
@@ -198,17 +180,8 @@ void Renderer::set_camera(const scene::Camera& camera) {
 }
 
 void Renderer::choose_camera(const std::string& name) {
-  std::vector<std::string> names;
-  for (const scene::Camera& c : scene_->cameras) {
-    if (c.name == name) {
-      camera_ = c;
-      restart();
-      return;
-    }
-    names.push_back("'" + c.name + "'");
-  }
-  throw_error("camera", "the scene has no camera '{}'; it has {}", name,
-              names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
+  camera_ = scene::find_camera(*scene_, name);
+  restart();
 }
 
 void Renderer::set_light(uint32_t index, const scene::Light& light) {

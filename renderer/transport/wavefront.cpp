@@ -31,15 +31,18 @@ struct Wavefront::Impl {
     const auto make = [&](const char* name, uint64_t bytes, gpu::Memory memory) {
       return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
     };
+    const auto texels = [&](const char* name, uint64_t bytes, gpu::Memory memory) {
+      return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory, .texel = true});
+    };
     frame = make("frame", sizeof(Frame), gpu::Memory::device);
-    rays = make("rays", uint64_t(n) * sizeof(Ray), queue_memory);
-    hits = make("hits", uint64_t(n) * sizeof(Hit), queue_memory);
-    paths = make("path states", uint64_t(n) * sizeof(PathState), gpu::Memory::device);
-    radiance = make("path radiance", uint64_t(n) * 12 * k_component_count, gpu::Memory::device);
-    features = make("path features", uint64_t(n) * 32, gpu::Memory::device);
-    shadow_rays = make("shadow rays", uint64_t(n) * sizeof(Ray), queue_memory);
-    shadow_hits = make("shadow hits", uint64_t(n) * sizeof(Hit), queue_memory);
-    shadow_states = make("shadow states", uint64_t(n) * sizeof(ShadowState), gpu::Memory::device);
+    rays = texels("rays", uint64_t(n) * sizeof(Ray), queue_memory);
+    hits = texels("hits", uint64_t(n) * sizeof(Hit), queue_memory);
+    paths = texels("path states", uint64_t(n) * sizeof(PathState), gpu::Memory::device);
+    radiance = texels("path radiance", uint64_t(n) * 16 * k_component_count, gpu::Memory::device);
+    features = texels("path features", uint64_t(n) * 32, gpu::Memory::device);
+    shadow_rays = texels("shadow rays", uint64_t(n) * sizeof(Ray), queue_memory);
+    shadow_hits = texels("shadow hits", uint64_t(n) * sizeof(Hit), queue_memory);
+    shadow_states = texels("shadow states", uint64_t(n) * sizeof(ShadowState), gpu::Memory::device);
     counters = make("counters", 4 * k_counter_slots, gpu::Memory::host);
     no_coarse = make("no coarse picture", 16, gpu::Memory::host);
     for (auto& q : queues) q = make("queue", uint64_t(n) * 4, queue_memory);
@@ -52,21 +55,29 @@ struct Wavefront::Impl {
       for (gpu::Resources* r : {&main[k], &shade_shadow[k]}) {
         scene.bind(*r);
         r->set("FrameBlock", frame);
+        r->set("ray_texels", rays);
+        r->set("path_texels", paths);
         r->set("Paths", paths);
+        r->set("radiance_texels", radiance);
         r->set("Radiance", radiance);
+        r->set("feature_texels", features);
         r->set("Features", features);
+        r->set("shadow_ray_texels", shadow_rays);
+        r->set("ShadowRays", shadow_rays);
+        r->set("shadow_state_texels", shadow_states);
         r->set("ShadowStates", shadow_states);
         r->set("Counters", counters);
       }
       main[k].set("Rays", rays);
       main[k].set("Hits", hits);
+      main[k].set("hit_texels", hits);
       main[k].set("Queue", queues[k]);
       main[k].set("NextQueue", queues[1 - k]);
-      main[k].set("ShadowRays", shadow_rays);
       main[k].set("ShadowQueue", shadow_queues[0]);
       // The tracer and the shadow kernel see the shadow rays under the tracer's names.
-      shade_shadow[k].set("Rays", shadow_rays);
+      shade_shadow[k].set("ray_texels", shadow_rays);
       shade_shadow[k].set("Hits", shadow_hits);
+      shade_shadow[k].set("hit_texels", shadow_hits);
       shade_shadow[k].set("Queue", shadow_queues[k]);
       shade_shadow[k].set("NextQueue", queues[0]);
       shade_shadow[k].set("ShadowQueue", shadow_queues[1 - k]);

@@ -24,13 +24,14 @@ DeviceScene::DeviceScene(gpu::Device& device, const FlatScene& flat, const bvh::
       bvh_triangles_(upload(device, "BVH triangles", tree.triangles)) {
   for (size_t b = 0; b < flat.buckets.size(); ++b) {
     const Bucket& bucket = flat.buckets[b];
-    gpu::TextureArray array(device, {.name = fmt::format("textures {}x{}", bucket.width, bucket.height),
-                                     .width = bucket.width,
-                                     .height = bucket.height,
-                                     .layers = uint32_t(bucket.layers.size()),
-                                     .format = bucket.floats ? gpu::TexelFormat::rgba32f
-                                               : bucket.srgb ? gpu::TexelFormat::rgba8_srgb
-                                                             : gpu::TexelFormat::rgba8_unorm});
+    gpu::TextureArray array(device,
+                            {.name = fmt::format("textures, pages of {}x{}", bucket.width, bucket.height),
+                             .width = bucket.width,
+                             .height = bucket.height,
+                             .layers = uint32_t(bucket.layers.size()),
+                             .format = bucket.floats ? gpu::TexelFormat::rgba32f
+                                       : bucket.srgb ? gpu::TexelFormat::rgba8_srgb
+                                                     : gpu::TexelFormat::rgba8_unorm});
     for (size_t layer = 0; layer < bucket.layers.size(); ++layer)
       array.write_layer(uint32_t(layer), bucket.layers[layer].data());
     buckets_.push_back(std::move(array));
@@ -87,6 +88,17 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_TEX_SPECULAR", e.tex_specular);
   set("LUCERNA_TEX_TRANSMISSION", e.tex_transmission);
   set("LUCERNA_TEX_DIFFUSE_TRANSMISSION", e.tex_diffuse_transmission);
+  set("LUCERNA_TEX_NEAREST", e.tex_nearest);
+  set("LUCERNA_TEX_WRAPS", e.tex_wraps);
+  static constexpr const char* k_masks[] = {
+      "LUCERNA_BASE_BUCKETS",           "LUCERNA_METALLIC_ROUGHNESS_BUCKETS",
+      "LUCERNA_NORMAL_BUCKETS",         "LUCERNA_EMISSION_BUCKETS",
+      "LUCERNA_SPECULAR_BUCKETS",       "LUCERNA_SPECULAR_COLOR_BUCKETS",
+      "LUCERNA_TRANSMISSION_BUCKETS",   "LUCERNA_DIFFUSE_T_BUCKETS",
+      "LUCERNA_DIFFUSE_T_COLOR_BUCKETS"};
+  static_assert(std::size(k_masks) == shared::k_texture_uses);
+  for (uint32_t use = 0; use < shared::k_texture_uses; ++use)
+    d[k_masks[use]] = fmt::format("{}u", e.texture_buckets[use]);
   d["LUCERNA_BUCKETS"] = std::to_string(buckets_.size());
   return d;
 }

@@ -122,8 +122,16 @@ void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
                                                      &m.diffuse_transmission_color_texture};
     for (uint32_t u = 0; u < k_texture_uses; ++u) {
       const auto& x = uses[u]->m;
-      out[k_material_textures + 2 * u] = vec4(x[0], x[1], x[2], x[3]);
-      out[k_material_textures + 2 * u + 1] = vec4(x[4], x[5], as_float(textures.bits(*uses[u])), 0);
+      vec4* texel = out + k_material_textures + k_texture_texels * u;
+      texel[0] = vec4(x[0], x[1], x[2], x[3]);
+      texel[1] = vec4(x[4], x[5], as_float(textures.bits(*uses[u])), 0);
+      if (!*uses[u]) continue;
+      const TexturePlace& place = textures.place[uses[u]->texture];
+      const scene::Texture& texture = scene.textures[uses[u]->texture];
+      texel[2] = place.rect;
+      e.texture_buckets[u] |= 1u << place.bucket;
+      e.tex_nearest |= texture.nearest;
+      e.tex_wraps |= texture.wrap_u != scene::Wrap::repeat || texture.wrap_v != scene::Wrap::repeat;
     }
     e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && m.transmission < 1));
     e.solid_glass |= solid;

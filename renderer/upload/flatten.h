@@ -1,6 +1,7 @@
 #pragma once
 // Scene -> arrays as the device wants them (shaders/shared/scene.h): pure host code, no device, so that it is
 // testable and can be written to a file for the stand-alone ray bench.
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,13 @@ struct Effects {
        thin_glass = false, diffuse_transmission = false, volumes = false, unlit = false, alpha = false,
        normal_maps = false, vertex_extra = false, tex_base = false, tex_metallic_roughness = false,
        tex_emission = false, tex_specular = false, tex_transmission = false, tex_diffuse_transmission = false;
+  bool tex_nearest = false;                                        ///< a texture that is not filtered
+  bool tex_wraps = false;                                          ///< a texture that does not repeat
+  std::array<uint32_t, shared::k_texture_uses> texture_buckets{};  ///< by use: bit b: bucket b may be read
   bool transparent() const { return alpha || thin_glass; }
 };
 
-/// Layers of one size and format.
+/// A texture array: pages of one size and format that hold textures of all sizes (upload/textures.h).
 struct Bucket {
   uint32_t width = 0, height = 0;
   bool floats = false, srgb = false;

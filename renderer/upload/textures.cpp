@@ -3,51 +3,91 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <numeric>
 #include <tuple>
 
 #include "base/error.h"
-#include "shaders/shared/scene.h"
 
 namespace lucerna::upload {
-namespace {
 
 using namespace shared;
-using Key = std::tuple<uint32_t, uint32_t, bool, bool>;  // width, height, floats, srgb
 
-Key key_of(const scene::Scene& scene, const scene::Texture& t) {
-  const scene::Image& i = scene.images[t.image];
-  return {i.width, i.height, !i.floats.empty(), t.srgb && i.floats.empty()};
+namespace {
+
+struct Format {
+  bool floats, srgb;
+  auto operator<=>(const Format&) const = default;
+  uint64_t texel_bytes() const { return floats ? 16 : 4; }
+};
+
+/// A texture to be placed: an image with a border that its wraps decide, so that an image used with two wraps
+/// is stored twice and one used twice alike is stored once.
+struct Item {
+  scene::Id image;
+  scene::Wrap wrap_u, wrap_v;
+  uint32_t width, height;  ///< with the border
+  uint32_t page = 0, x = 0, y = 0;
+};
+
+/// Shelves: items from high to low, side by side on shelves as high as their first. Returns the number of
+/// pages.
+uint32_t place_on_shelves(std::vector<Item*>& items, uint32_t page_width, uint32_t page_height) {
+  uint32_t page = 0, x = 0, y = 0, shelf = 0;
+  for (Item* item : items) {
+    if (x + item->width > page_width) x = 0, y += shelf, shelf = 0;
+    if (y + item->height > page_height) ++page, x = 0, y = 0, shelf = 0;
+    item->page = page, item->x = x, item->y = y;
+    shelf = std::max(shelf, item->height);
+    x += item->width;
+  }
+  return page + 1;
 }
 
-/// Bilinear enlargement, repeating at the borders, channel by channel on the stored values.
-template <class T>
-std::vector<uint8_t> enlarge(const std::vector<T>& from, uint32_t w, uint32_t h, uint32_t to_w,
-                             uint32_t to_h) {
-  std::vector<T> out(size_t(to_w) * to_h * 4);
-  for (uint32_t y = 0; y < to_h; ++y)
-    for (uint32_t x = 0; x < to_w; ++x) {
-      const double sx = (x + 0.5) * w / to_w - 0.5, sy = (y + 0.5) * h / to_h - 0.5;
-      const double fx = sx - std::floor(sx), fy = sy - std::floor(sy);
-      const uint32_t x0 = uint32_t(int(std::floor(sx)) + int(w)) % w,
-                     y0 = uint32_t(int(std::floor(sy)) + int(h)) % h;
-      const uint32_t x1 = (x0 + 1) % w, y1 = (y0 + 1) % h;
-      for (int c = 0; c < 4; ++c) {
-        const auto at = [&](uint32_t px, uint32_t py) { return double(from[(size_t(py) * w + px) * 4 + c]); };
-        const double v = (at(x0, y0) * (1 - fx) + at(x1, y0) * fx) * (1 - fy) +
-                         (at(x0, y1) * (1 - fx) + at(x1, y1) * fx) * fy;
-        out[(size_t(y) * to_w + x) * 4 + c] = std::is_integral_v<T> ? T(v + 0.5) : T(v);
-      }
+/// Page size of the least total: the largest item's, up to four times that each way, or as many items side by
+/// side as there are.
+void place_all(std::vector<Item>& items, uint32_t& page_width, uint32_t& page_height) {
+  std::vector<Item*> order;
+  uint32_t widest = 0, highest = 0;
+  for (Item& item : items) {
+    order.push_back(&item);
+    widest = std::max(widest, item.width), highest = std::max(highest, item.height);
+  }
+  std::stable_sort(order.begin(), order.end(), [](const Item* a, const Item* b) {
+    return std::tuple(a->height, a->width) > std::tuple(b->height, b->width);
+  });
+  constexpr uint32_t k_widest = 8192;  // within every device's limit, unless one texture alone is larger
+  uint64_t best = ~uint64_t(0);
+  for (uint32_t across = 1; across <= 4; ++across)
+    for (uint32_t down = 1; down <= 4; ++down) {
+      const uint32_t w = across * widest, h = down * highest;
+      if ((across > 1 && w > k_widest) || (down > 1 && h > k_widest)) continue;
+      const uint64_t total = uint64_t(place_on_shelves(order, w, h)) * w * h;
+      if (total < best) best = total, page_width = w, page_height = h;
     }
-  std::vector<uint8_t> bytes(out.size() * sizeof(T));
-  std::memcpy(bytes.data(), out.data(), bytes.size());
-  return bytes;
+  place_on_shelves(order, page_width, page_height);
+}
+
+/// The texel that stands at `at` (-1 .. size) of a row or column of `size` texels.
+uint32_t wrapped(int64_t at, uint32_t size, scene::Wrap wrap) {
+  if (at >= 0 && at < int64_t(size)) return uint32_t(at);
+  if (wrap == scene::Wrap::repeat) return at < 0 ? size - 1 : 0;
+  return at < 0 ? 0 : size - 1;  // clamp; and mirror, which starts with the edge texel again
 }
 
 template <class T>
-std::vector<uint8_t> as_bytes(const std::vector<T>& v) {
-  std::vector<uint8_t> bytes(v.size() * sizeof(T));
-  std::memcpy(bytes.data(), v.data(), bytes.size());
-  return bytes;
+void copy_with_border(const Item& item, const std::vector<T>& from, uint32_t page_width,
+                      std::vector<uint8_t>& page) {
+  const uint32_t w = item.width - 2, h = item.height - 2;
+  constexpr size_t k_texel = 4 * sizeof(T);
+  for (uint32_t y = 0; y < item.height; ++y) {
+    const uint8_t* row = reinterpret_cast<const uint8_t*>(from.data()) +
+                         size_t(wrapped(int64_t(y) - 1, h, item.wrap_v)) * w * k_texel;
+    uint8_t* out = page.data() + (size_t(item.y + y) * page_width + item.x) * k_texel;
+    std::memcpy(out, row + wrapped(-1, w, item.wrap_u) * k_texel, k_texel);
+    std::memcpy(out + k_texel, row, w * k_texel);
+    std::memcpy(out + (w + 1) * k_texel, row + wrapped(w, w, item.wrap_u) * k_texel, k_texel);
+  }
 }
 
 double srgb_to_linear(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
@@ -55,63 +95,61 @@ double srgb_to_linear(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x 
 }  // namespace
 
 uint32_t TextureMap::bits(const scene::TextureUse& use) const {
-  return use ? place[use.texture] | (use.uv_set == 1 ? k_texture_uv1 : 0u) : 0u;
+  return use ? place[use.texture].bits | (use.uv_set == 1 ? k_texture_uv1 : 0u) : 0u;
 }
 
-TextureMap pack_textures(const scene::Scene& scene, std::vector<Bucket>& buckets) {
+TextureMap pack_textures(const scene::Scene& scene, std::vector<Bucket>& buckets, uint64_t bucket_bytes) {
   buckets.clear();
-  std::map<Key, Key> home;  // kind of texture -> kind of bucket
-  for (const scene::Texture& t : scene.textures) {
-    const Key k = key_of(scene, t);
-    home.emplace(k, k);
-  }
-  // Join kinds until they fit: the two of one format whose common size costs the fewest added texels.
-  const auto kinds = [&] {
-    std::vector<Key> list;
-    for (const auto& [from, to] : home)
-      if (std::find(list.begin(), list.end(), to) == list.end()) list.push_back(to);
-    return list;
-  };
-  for (auto list = kinds(); list.size() > k_max_buckets; list = kinds()) {
-    double best = 1e300;
-    Key a, b, joined;
-    for (size_t i = 0; i < list.size(); ++i)
-      for (size_t j = i + 1; j < list.size(); ++j) {
-        const auto [wa, ha, fa, sa] = list[i];
-        const auto [wb, hb, fb, sb] = list[j];
-        if (fa != fb || sa != sb) continue;
-        const double size = double(std::max(wa, wb)) * std::max(ha, hb);
-        const double cost = 2 * size - double(wa) * ha - double(wb) * hb;
-        if (cost < best)
-          best = cost, a = list[i], b = list[j], joined = Key{std::max(wa, wb), std::max(ha, hb), fa, sa};
-      }
-    for (auto& [from, to] : home)
-      if (to == a || to == b) to = joined;
-  }
-  std::map<Key, uint32_t> number;
-  std::map<std::tuple<scene::Id, Key>, uint32_t> layer_of;  // an image used twice is stored once a bucket
-  TextureMap map;
+  using Key = std::tuple<scene::Id, scene::Wrap, scene::Wrap>;
+  std::map<Format, std::vector<Item>> items;
+  std::map<std::pair<Format, Key>, size_t> index;
+  std::vector<std::pair<Format, size_t>> item_of;  // by texture
   for (const scene::Texture& t : scene.textures) {
     const scene::Image& image = scene.images[t.image];
-    const Key key = home.at(key_of(scene, t));
-    const auto [w, h, floats, srgb] = key;
-    const auto [at, fresh] = number.emplace(key, uint32_t(buckets.size()));
-    if (fresh) buckets.push_back({w, h, floats, srgb, {}});
-    Bucket& bucket = buckets[at->second];
-    const auto [layer, first_use] =
-        layer_of.emplace(std::tuple{t.image, key}, uint32_t(bucket.layers.size()));
-    if (first_use) {
-      if (bucket.layers.size() == 2048)
-        throw_error(scene.file, "more than 2048 textures of {}x{}; merge some or use other sizes", w, h);
-      const bool same = image.width == w && image.height == h;
-      if (floats)
-        bucket.layers.push_back(same ? as_bytes(image.floats)
-                                     : enlarge(image.floats, image.width, image.height, w, h));
+    const Format format{!image.floats.empty(), t.srgb && image.floats.empty()};
+    std::vector<Item>& list = items[format];
+    const auto [at, fresh] = index.emplace(std::pair{format, Key{t.image, t.wrap_u, t.wrap_v}}, list.size());
+    if (fresh) list.push_back({t.image, t.wrap_u, t.wrap_v, image.width + 2, image.height + 2});
+    item_of.emplace_back(format, at->second);
+  }
+  std::map<Format, std::pair<uint32_t, uint32_t>> first_bucket;  // and pages in each
+  for (auto& [format, list] : items) {
+    uint32_t width = 0, height = 0;
+    place_all(list, width, height);
+    const uint64_t page_bytes = uint64_t(width) * height * format.texel_bytes();
+    const auto pages_a_bucket = uint32_t(std::clamp<uint64_t>(bucket_bytes / page_bytes, 1, 2048));
+    first_bucket[format] = {uint32_t(buckets.size()), pages_a_bucket};
+    for (Item& item : list) {
+      const size_t b = first_bucket[format].first + item.page / pages_a_bucket,
+                   layer = item.page % pages_a_bucket;
+      if (b >= k_max_buckets)
+        throw_error(scene.file, "the textures take more than {} arrays of {} MiB; use smaller or fewer ones",
+                    k_max_buckets, bucket_bytes >> 20);
+      while (buckets.size() <= b) buckets.push_back({width, height, format.floats, format.srgb, {}});
+      auto& layers = buckets[b].layers;
+      while (layers.size() <= layer) layers.emplace_back(page_bytes);
+      const scene::Image& image = scene.images[item.image];
+      if (format.floats)
+        copy_with_border(item, image.floats, width, layers[layer]);
       else
-        bucket.layers.push_back(same ? image.bytes : enlarge(image.bytes, image.width, image.height, w, h));
+        copy_with_border(item, image.bytes, width, layers[layer]);
     }
-    map.place.push_back(layer->second | at->second << 11 | uint32_t(t.wrap_u) << 16 |
-                        uint32_t(t.wrap_v) << 18 | (t.nearest ? k_texture_nearest : 0u) | k_texture_present);
+  }
+  TextureMap map;
+  for (size_t i = 0; i < scene.textures.size(); ++i) {
+    const scene::Texture& t = scene.textures[i];
+    const auto& [format, at] = item_of[i];
+    const Item& item = items[format][at];
+    const auto [first, pages] = first_bucket[format];
+    TexturePlace place;
+    place.bucket = first + item.page / pages;
+    place.bits = item.page % pages | place.bucket << 11 | uint32_t(t.wrap_u) << 16 |
+                 uint32_t(t.wrap_v) << 18 | (t.nearest ? k_texture_nearest : 0u) | k_texture_present;
+    const Bucket& bucket = buckets[place.bucket];
+    const vec2 page(bucket.width, bucket.height);
+    place.size = vec2(item.width - 2, item.height - 2);
+    place.rect = vec4(vec2(item.x + 1, item.y + 1) / page, place.size / page);
+    map.place.push_back(place);
   }
   return map;
 }

@@ -1,6 +1,8 @@
 #pragma once
-// Textures -> buckets of equal size and format, each a texture array on the device.
-#include <map>
+// Textures -> pages. All 8-bit colour textures lie side by side on the pages (layers) of one texture array,
+// all 8-bit data textures on those of another, float ones on a third: a device without dynamic indexing of
+// sampler arrays pays for each array that a read may have to look at, whatever the textures' sizes. Texels
+// are copied, never resampled.
 #include <vector>
 
 #include "scene/scene.h"
@@ -8,18 +10,29 @@
 
 namespace lucerna::upload {
 
-/// Where each texture went.
+/// Most bytes that one bucket may take; more pages of the same format open another bucket.
+inline constexpr uint64_t k_bucket_bytes = uint64_t(1) << 30;
+
+/// Where a texture went.
+struct TexturePlace {
+  uint32_t bits = 0;  ///< layer | bucket << 11 | wraps | nearest | present, as shaders/shared/scene.h
+  uint32_t bucket = 0;
+  /// Lower left texel and size on the page, over the page's size: a texture coordinate t in [0, 1] is at
+  /// rect.xy + t * rect.zw. Beyond that lies a border of one texel, filled as the wrap mode says, so that the
+  /// hardware's bilinear filter is right up to the edge.
+  vec4 rect{0};
+  vec2 size{0};  ///< texels
+};
+
 struct TextureMap {
-  std::vector<uint32_t>
-      place;  ///< by texture id: layer | bucket << 11 | wraps | nearest, as shaders/shared/scene.h
+  std::vector<TexturePlace> place;  ///< by texture id
   /// Bits of a use, with its UV set; 0 for no texture.
   uint32_t bits(const scene::TextureUse& use) const;
 };
 
-/// Textures of exactly one size and format share a bucket, unresampled. When there would be more than
-/// k_max_buckets, the smallest are scaled up (bilinearly, never down) to the next larger kind until they fit.
-/// Throws Error when a bucket would exceed 2048 layers.
-TextureMap pack_textures(const scene::Scene& scene, std::vector<Bucket>& buckets);
+/// Throws Error when there are more than k_max_buckets buckets or more than 2048 pages in one.
+TextureMap pack_textures(const scene::Scene& scene, std::vector<Bucket>& buckets,
+                         uint64_t bucket_bytes = k_bucket_bytes);
 
 /// A texel as the shader would read it at uv (before the use's transform), nearest, linear colour. Host side,
 /// for estimates.

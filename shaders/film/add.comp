@@ -5,9 +5,8 @@
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { FilmPush push; };
-layout(scalar) readonly buffer Paths { PathState paths[]; };
-layout(scalar) readonly buffer Radiance { vec3 radiance[]; };
-layout(scalar) readonly buffer Features { vec4 features[]; };
+uniform samplerBuffer radiance_texels;
+uniform samplerBuffer feature_texels;
 
 uint compact_bits(uint x) { return (x & 1u) | ((x >> 1) & 2u) | ((x >> 2) & 4u); }
 
@@ -27,32 +26,26 @@ void main() {
   uvec2 xy = 8u * uvec2(tile % tiles_x, tile / tiles_x) + uvec2(compact_bits(code), compact_bits(code >> 1));
   if (xy.x >= push.width || xy.y >= push.height) return;
   uint pixel = xy.y * push.width + xy.x;
-  FilmHalf p[2], s[2], t[2], c[2];
-  for (uint k = 0u; k < 2u; ++k) {
-    p[k] = film_primary[2u * pixel + k];
-    s[k] = film_secondary[2u * pixel + k];
-    t[k] = film_tertiary[2u * pixel + k];
-    c[k] = film_caustic[2u * pixel + k];
-  }
-  vec4 albedo = film_albedo[pixel], normal = film_normal[pixel];
+  FilmPixel p = film_load(0u, pixel), s = film_load(1u, pixel), t = film_load(2u, pixel), c = film_load(3u, pixel);
+  vec4 albedo = texelFetch(film_albedo, int(pixel)), normal = texelFetch(film_normal, int(pixel));
   for (uint i = 0u; i < push.sample_count; ++i) {
     uint slot = index + i * push.pixel_count;
-    vec3 rp = radiance[slot * 4u], rs = radiance[slot * 4u + 1u], rt = radiance[slot * 4u + 2u], rc = radiance[slot * 4u + 3u];
+    int first = int(slot * k_component_count);
+    vec3 rp = texelFetch(radiance_texels, first).rgb, rs = texelFetch(radiance_texels, first + 1).rgb;
+    vec3 rt = texelFetch(radiance_texels, first + 2).rgb, rc = texelFetch(radiance_texels, first + 3).rgb;
     if (((push.first_sample + i) & 1u) == 0u) {
-      add(p[0], rp); add(s[0], rs); add(t[0], rt); add(c[0], rc);
+      add(p.even, rp); add(s.even, rs); add(t.even, rt); add(c.even, rc);
     } else {
-      add(p[1], rp); add(s[1], rs); add(t[1], rt); add(c[1], rc);
+      add(p.odd, rp); add(s.odd, rs); add(t.odd, rt); add(c.odd, rc);
     }
-    albedo += features[2u * slot];
-    normal += features[2u * slot + 1u];
+    albedo += texelFetch(feature_texels, int(2u * slot));
+    normal += texelFetch(feature_texels, int(2u * slot + 1u));
   }
-  for (uint k = 0u; k < 2u; ++k) {
-    film_primary[2u * pixel + k] = p[k];
-    film_secondary[2u * pixel + k] = s[k];
-    film_tertiary[2u * pixel + k] = t[k];
-    film_caustic[2u * pixel + k] = c[k];
-  }
-  film_albedo[pixel] = albedo;
-  film_normal[pixel] = normal;
+  LUCERNA_FILM_STORE(film_primary_image, pixel, p)
+  LUCERNA_FILM_STORE(film_secondary_image, pixel, s)
+  LUCERNA_FILM_STORE(film_tertiary_image, pixel, t)
+  LUCERNA_FILM_STORE(film_caustic_image, pixel, c)
+  imageStore(film_albedo_image, int(pixel), albedo);
+  imageStore(film_normal_image, int(pixel), normal);
   film_count[pixel] += push.sample_count;
 }

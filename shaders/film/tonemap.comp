@@ -9,8 +9,8 @@ layout(scalar) buffer Picture { uint picture[]; };
 layout(scalar) readonly buffer Coarse { uint coarse[]; };
 
 vec3 component_mean(uint c, uint pixel, float n) {
-  FilmHalf a = film_read(c, pixel, 0u), b = film_read(c, pixel, 1u);
-  return ((a.sum + b.sum) + (a.compensation + b.compensation)) / n;
+  FilmPixel p = film_load(c, pixel);
+  return ((p.even.sum + p.odd.sum) + (p.even.compensation + p.odd.compensation)) / n;
 }
 
 void main() {
@@ -23,7 +23,7 @@ void main() {
     bool shown = push.layer == k_layer_beauty ? (push.show >> c & 1u) != 0u : push.layer == k_layer_primary + c;
     if (shown) color += component_mean(c, pixel, n);
   }
-  vec4 albedo = film_albedo[pixel], normal = film_normal[pixel];
+  vec4 albedo = texelFetch(film_albedo, int(pixel)), normal = texelFetch(film_normal, int(pixel));
   float hits = max(albedo.w, 1.0);
   vec3 flat_color = albedo.xyz / n;
   if (push.layer == k_layer_normal) flat_color = 0.5 * normalize(normal.xyz + vec3(0.0, 0.0, 1e-20)) + 0.5;

@@ -46,14 +46,17 @@ vec2 barycentrics(vec3 o, vec3 d, vec3 p0, vec3 p1, vec3 p2) {
   return s > 0.0 ? vec2(w1, w2) / s : vec2(1.0 / 3.0);
 }
 
-// Texture of a use, or `neutral` where there is none. `material` is the first texel of the material.
-vec4 read_use(int material, uint use, vec2 uv0, vec2 uv1, vec4 neutral) {
-  vec4 a = texelFetch(scene_materials, material + int(k_material_textures + 2u * use));
-  vec4 b = texelFetch(scene_materials, material + int(k_material_textures + 2u * use) + 1);
+// Texture of a use, or `neutral` where there is none. `material` is the first texel of the material, `buckets` the set
+// (a constant) of texture arrays in which the scene keeps textures for this use.
+vec4 read_use(int material, uint use, uint buckets, vec2 uv0, vec2 uv1, vec4 neutral) {
+  int at = material + int(k_material_textures + k_texture_texels * use);
+  vec4 a = texelFetch(scene_materials, at);
+  vec4 b = texelFetch(scene_materials, at + 1);
+  vec4 rect = texelFetch(scene_materials, at + 2);
   uint bits = floatBitsToUint(b.z);
   vec2 uv = (bits & k_texture_uv1) != 0u ? uv1 : uv0;
-  vec2 at = vec2(a.x * uv.x + a.y * uv.y + a.z, a.w * uv.x + b.x * uv.y + b.y);
-  vec4 texel = texture_read(bits, at);
+  vec2 t = vec2(a.x * uv.x + a.y * uv.y + a.z, a.w * uv.x + b.x * uv.y + b.y);
+  vec4 texel = texture_read(bits, buckets, rect, t);
   return (bits & k_texture_present) != 0u ? texel : neutral;
 }
 
@@ -96,17 +99,17 @@ Surface make_surface(Ray ray, Hit hit) {
   base *= color;
 #endif
 #if LUCERNA_TEX_BASE
-  base *= read_use(m, k_use_base, s.uv0, uv1, vec4(1.0));
+  base *= read_use(m, k_use_base, LUCERNA_BASE_BUCKETS, s.uv0, uv1, vec4(1.0));
 #endif
 #if LUCERNA_TEX_METALLIC_ROUGHNESS
-  vec4 mr = read_use(m, k_use_metallic_roughness, s.uv0, uv1, vec4(1.0));
+  vec4 mr = read_use(m, k_use_metallic_roughness, LUCERNA_METALLIC_ROUGHNESS_BUCKETS, s.uv0, uv1, vec4(1.0));
   surface.xy *= mr.zy;
 #endif
 #if LUCERNA_NORMAL_MAPS
   vec4 t = w * texelFetch(scene_tangents, int(tri.x)) + uv.x * texelFetch(scene_tangents, int(tri.y)) +
            uv.y * texelFetch(scene_tangents, int(tri.z));
   vec4 detail = texelFetch(scene_materials, m + int(k_material_detail));
-  vec3 local = 2.0 * read_use(m, k_use_normal, s.uv0, uv1, vec4(0.5, 0.5, 1.0, 1.0)).xyz - 1.0;
+  vec3 local = 2.0 * read_use(m, k_use_normal, LUCERNA_NORMAL_BUCKETS, s.uv0, uv1, vec4(0.5, 0.5, 1.0, 1.0)).xyz - 1.0;
   local.xy *= detail.x;
   vec3 bitangent = cross(s.normal_s, t.xyz) * (t.w < 0.0 ? -1.0 : 1.0);
   vec3 mapped = local.x * t.xyz + local.y * bitangent + local.z * s.normal_s;
@@ -114,14 +117,14 @@ Surface make_surface(Ray ray, Hit hit) {
   s.normal_s = has_map ? normalize(mapped) : s.normal_s;
 #endif
 #if LUCERNA_TEX_EMISSION
-  emission.rgb *= read_use(m, k_use_emission, s.uv0, uv1, vec4(1.0)).rgb;
+  emission.rgb *= read_use(m, k_use_emission, LUCERNA_EMISSION_BUCKETS, s.uv0, uv1, vec4(1.0)).rgb;
 #endif
 #if LUCERNA_TEX_SPECULAR
-  surface.w *= read_use(m, k_use_specular, s.uv0, uv1, vec4(1.0)).a;
-  specular.rgb *= read_use(m, k_use_specular_color, s.uv0, uv1, vec4(1.0)).rgb;
+  surface.w *= read_use(m, k_use_specular, LUCERNA_SPECULAR_BUCKETS, s.uv0, uv1, vec4(1.0)).a;
+  specular.rgb *= read_use(m, k_use_specular_color, LUCERNA_SPECULAR_COLOR_BUCKETS, s.uv0, uv1, vec4(1.0)).rgb;
 #endif
 #if LUCERNA_TEX_TRANSMISSION
-  specular.w *= read_use(m, k_use_transmission, s.uv0, uv1, vec4(1.0)).r;
+  specular.w *= read_use(m, k_use_transmission, LUCERNA_TRANSMISSION_BUCKETS, s.uv0, uv1, vec4(1.0)).r;
 #endif
   s.base = base;
   s.emission = emission.rgb;
@@ -138,8 +141,8 @@ Surface make_surface(Ray ray, Hit hit) {
 #if LUCERNA_DIFFUSE_TRANSMISSION
   vec4 dt = texelFetch(scene_materials, m + int(k_material_diffuse_t));
 #if LUCERNA_TEX_DIFFUSE_TRANSMISSION
-  dt.w *= read_use(m, k_use_diffuse_t, s.uv0, uv1, vec4(1.0)).a;
-  dt.rgb *= read_use(m, k_use_diffuse_t_color, s.uv0, uv1, vec4(1.0)).rgb;
+  dt.w *= read_use(m, k_use_diffuse_t, LUCERNA_DIFFUSE_T_BUCKETS, s.uv0, uv1, vec4(1.0)).a;
+  dt.rgb *= read_use(m, k_use_diffuse_t_color, LUCERNA_DIFFUSE_T_COLOR_BUCKETS, s.uv0, uv1, vec4(1.0)).rgb;
 #endif
   p.diffuse_transmission = clamp(dt.w, 0.0, 1.0);
   p.diffuse_transmission_color = clamp(dt.rgb, vec3(0.0), vec3(1.0));

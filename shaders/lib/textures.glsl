@@ -1,6 +1,7 @@
-// Textures in at most k_max_buckets arrays. A device without dynamic indexing of sampler arrays needs one call site a
-// bucket; each stands in a loop that runs once or not at all, because on lavapipe a loop whose lanes are all done is
-// skipped and an `if` is not.
+// Textures on the pages of a few texture arrays, one a format (renderer/upload/textures.h). A device without dynamic
+// indexing of sampler arrays needs one call site an array. Where the scene keeps a use's textures in one array, as nearly
+// all do, the read is unconditional; otherwise each call stands in a loop that runs once or not at all, because on lavapipe
+// a loop whose lanes are all done is skipped and an `if` is not.
 #ifndef LUCERNA_LIB_TEXTURES
 #define LUCERNA_LIB_TEXTURES
 #include "shaders/shared/scene.h"
@@ -23,49 +24,38 @@ uniform sampler2DArray texture_bucket_4;
 #if LUCERNA_BUCKETS > 5
 uniform sampler2DArray texture_bucket_5;
 #endif
-#if LUCERNA_BUCKETS > 6
-uniform sampler2DArray texture_bucket_6;
-#endif
-#if LUCERNA_BUCKETS > 7
-uniform sampler2DArray texture_bucket_7;
-#endif
-#if LUCERNA_BUCKETS > 8
-uniform sampler2DArray texture_bucket_8;
-#endif
-#if LUCERNA_BUCKETS > 9
-uniform sampler2DArray texture_bucket_9;
-#endif
-#if LUCERNA_BUCKETS > 10
-uniform sampler2DArray texture_bucket_10;
-#endif
-#if LUCERNA_BUCKETS > 11
-uniform sampler2DArray texture_bucket_11;
-#endif
 
-float wrap_coordinate(float x, uint mode, float size) {
-  // Repeat is the sampler's; fract keeps precision for large coordinates.
-  float repeat = fract(x);
-  float clamped = clamp(x, 0.5 / size, 1.0 - 0.5 / size);
-  float m = abs(x - 2.0 * floor(0.5 * x + 0.5));   // triangle wave
-  float mirror = clamp(m, 0.5 / size, 1.0 - 0.5 / size);
-  return mode == 0u ? repeat : mode == 1u ? clamped : mirror;
+// Into [0, 1]; the borders on the page do the rest. fract keeps precision for large coordinates.
+float wrap_coordinate(float x, uint mode) {
+#if LUCERNA_TEX_WRAPS
+  float mirror = abs(x - 2.0 * floor(0.5 * x + 0.5));   // triangle wave
+  return mode == 0u ? fract(x) : mode == 1u ? clamp(x, 0.0, 1.0) : mirror;
+#else
+  return fract(x);
+#endif
 }
 
-vec4 texture_fetch(sampler2DArray bucket, uint bits, vec2 uv) {
-  vec2 size = vec2(textureSize(bucket, 0).xy);
-  uv.x = wrap_coordinate(uv.x, (bits >> 16) & 3u, size.x);
-  uv.y = wrap_coordinate(uv.y, (bits >> 18) & 3u, size.y);
-  vec2 nearest = (floor(uv * size) + 0.5) / size;
+vec4 texture_fetch(sampler2DArray bucket, uint bits, vec4 rect, vec2 uv) {
+#if LUCERNA_TEX_NEAREST
+  vec2 size = round(rect.zw * vec2(textureSize(bucket, 0).xy));
+  vec2 nearest = (min(floor(uv * size), size - 1.0) + 0.5) / size;
   uv = (bits & k_texture_nearest) != 0u ? nearest : uv;
-  return textureLod(bucket, vec3(uv, float(bits & 0x7ffu)), 0.0);
+#endif
+  return textureLod(bucket, vec3(rect.xy + uv * rect.zw, float(bits & 0x7ffu)), 0.0);
 }
 
-#define LUCERNA_BUCKET_READ(number, array) \
-  for (uint go = bucket == number ? 1u : 0u; go > 0u; go -= min(frame.width, 1u)) texel = texture_fetch(array, bits, uv);
+#define LUCERNA_BUCKET_READ(number, array)                                                                      \
+  if (buckets == 1u << number) {                                                                                \
+    texel = texture_fetch(array, bits, rect, uv);                                                               \
+  } else if ((buckets & 1u << number) != 0u) {                                                                  \
+    for (uint go = bucket == number ? 1u : 0u; go > 0u; --go) texel = texture_fetch(array, bits, rect, uv); \
+  }
 
-vec4 texture_read(uint bits, vec2 uv) {
+// `buckets` is a constant: after inlining, only the reads that it names are left.
+vec4 texture_read(uint bits, uint buckets, vec4 rect, vec2 uv) {
   vec4 texel = vec4(1.0);
   uint bucket = (bits & k_texture_present) != 0u ? (bits >> 11) & 31u : 31u;
+  uv = vec2(wrap_coordinate(uv.x, (bits >> 16) & 3u), wrap_coordinate(uv.y, (bits >> 18) & 3u));
 #if LUCERNA_BUCKETS > 0
   LUCERNA_BUCKET_READ(0u, texture_bucket_0)
 #endif
@@ -83,24 +73,6 @@ vec4 texture_read(uint bits, vec2 uv) {
 #endif
 #if LUCERNA_BUCKETS > 5
   LUCERNA_BUCKET_READ(5u, texture_bucket_5)
-#endif
-#if LUCERNA_BUCKETS > 6
-  LUCERNA_BUCKET_READ(6u, texture_bucket_6)
-#endif
-#if LUCERNA_BUCKETS > 7
-  LUCERNA_BUCKET_READ(7u, texture_bucket_7)
-#endif
-#if LUCERNA_BUCKETS > 8
-  LUCERNA_BUCKET_READ(8u, texture_bucket_8)
-#endif
-#if LUCERNA_BUCKETS > 9
-  LUCERNA_BUCKET_READ(9u, texture_bucket_9)
-#endif
-#if LUCERNA_BUCKETS > 10
-  LUCERNA_BUCKET_READ(10u, texture_bucket_10)
-#endif
-#if LUCERNA_BUCKETS > 11
-  LUCERNA_BUCKET_READ(11u, texture_bucket_11)
 #endif
   return texel;
 }

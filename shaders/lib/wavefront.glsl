@@ -1,4 +1,9 @@
-// Buffers and push constants that the wavefront's kernels share.
+// What the wavefront's kernels share: queues, counters, and the state of the paths in flight.
+//
+// State is read through texel buffers (RGBA32F; integers as bit patterns) and written as storage buffers, word by word and
+// only what changed: on lavapipe a storage-buffer access under a mask is a scalar loop over the lanes for every word, and
+// those loops were two thirds of the shading time; a texel fetch is a vector operation (and an image store slower than
+// either). Within one dispatch a slot is touched by one invocation, which reads it before it writes it.
 #ifndef LUCERNA_LIB_WAVEFRONT
 #define LUCERNA_LIB_WAVEFRONT
 #include "lib/frame.glsl"
@@ -7,23 +12,66 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TransportPush push; };
 
-layout(scalar) buffer Rays { Ray rays[]; };
-layout(scalar) buffer Hits { Hit hits[]; };
 layout(scalar) buffer Queue { uint queue[]; };
 layout(scalar) buffer NextQueue { uint next_queue[]; };
-layout(scalar) buffer Paths { PathState paths[]; };
-layout(scalar) buffer Radiance { vec3 radiance[]; };      // slot * k_component_count + component
-layout(scalar) buffer Features { vec4 features[]; };      // slot * 2: (albedo, hit 0/1) (normal, depth)
-layout(scalar) buffer ShadowStates { ShadowState shadow_states[]; };
 layout(scalar) buffer Counters { uint counters[]; };
 
+uniform samplerBuffer ray_texels;           // Rays, 2 texels a slot
+uniform samplerBuffer hit_texels;           // Hits, 1
+uniform samplerBuffer path_texels;          // Paths, 3
+uniform samplerBuffer radiance_texels;      // Radiance, k_component_count (rgb)
+uniform samplerBuffer shadow_ray_texels;    // ShadowRays, 2
+uniform samplerBuffer shadow_state_texels;  // ShadowStates, 2
+layout(scalar) writeonly buffer Rays { Ray rays[]; };
+layout(scalar) writeonly buffer Paths { PathState paths[]; };
+layout(scalar) writeonly buffer Radiance { vec4 radiance[]; };
+layout(scalar) writeonly buffer Features { vec4 features[]; };  // 2 a slot: (albedo, hit 0/1) (normal, depth)
+layout(scalar) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(scalar) writeonly buffer ShadowStates { ShadowState shadow_states[]; };
+
+Ray ray_from(vec4 a, vec4 b) { return Ray(a.xyz, a.w, b.xyz, floatBitsToUint(b.w)); }
+Ray load_ray(uint slot) { return ray_from(texelFetch(ray_texels, int(2u * slot)), texelFetch(ray_texels, int(2u * slot + 1u))); }
+Ray load_shadow_ray(uint slot) {
+  return ray_from(texelFetch(shadow_ray_texels, int(2u * slot)), texelFetch(shadow_ray_texels, int(2u * slot + 1u)));
+}
+Hit load_hit(uint slot) {
+  vec4 h = texelFetch(hit_texels, int(slot));
+  return Hit(h.x, floatBitsToUint(h.y), h.z, h.w);
+}
+
+PathState load_path(uint slot) {
+  vec4 a = texelFetch(path_texels, int(3u * slot)), c = texelFetch(path_texels, int(3u * slot + 2u));
+  uvec4 b = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 1u)));
+  return PathState(a.xyz, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w);
+}
+ShadowState load_shadow_state(uint slot) {
+  vec4 a = texelFetch(shadow_state_texels, int(2u * slot)), b = texelFetch(shadow_state_texels, int(2u * slot + 1u));
+  return ShadowState(a.xyz, floatBitsToUint(a.w), b.xyz, floatBitsToUint(b.w));
+}
+// What later vertices change of a path; what the scene cannot change is not written.
+void store_path(uint slot, PathState p) {
+  paths[slot].throughput = p.throughput;
+  paths[slot].pdf = p.pdf;
+  paths[slot].bits = p.bits;
+#if LUCERNA_VOLUMES
+  paths[slot].medium = p.medium;
+#endif
+#if LUCERNA_TRANSPARENT
+  paths[slot].travelled = p.travelled;
+#endif
+#if LUCERNA_SOLID_GLASS
+  paths[slot].eta_scale = p.eta_scale;
+#endif
+}
+
+// At most once a component, slot and dispatch (see above). What is not finite is refused and counted.
 void add_radiance(uint slot, uint component, vec3 value) {
-  if (component >= k_component_count) return;
-  if (is_finite(value)) {
-    radiance[slot * k_component_count + component] += value;
-  } else {
-    atomicAdd(counters[k_counter_dropped], 1u);
+  bool wanted = component < k_component_count, finite = is_finite(value);
+  if (wanted && finite && any(notEqual(value, vec3(0.0)))) {
+    int at = int(slot * k_component_count + component);
+    radiance[at].rgb = texelFetch(radiance_texels, at).rgb + value;
   }
+  if (wanted && !finite) atomicAdd(counters[k_counter_dropped], 1u);
 }
 
 #endif

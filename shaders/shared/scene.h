@@ -14,7 +14,7 @@ LUCERNA_CONST uint k_triangle_flipped = 0x80000000u;   ///< instance with a nega
 // scene_extra:    2 texels a vertex, only in scenes with vertex colours or a second UV set: (rgba) (u1, v1, 0, 0).
 
 // scene_materials: k_material_texels a material.
-LUCERNA_CONST uint k_material_texels = 25u;
+LUCERNA_CONST uint k_material_texels = 34u;
 LUCERNA_CONST uint k_material_base = 0u;          ///< base colour rgba
 LUCERNA_CONST uint k_material_emission = 1u;      ///< radiance rgb, bits: flags
 LUCERNA_CONST uint k_material_surface = 2u;       ///< metallic, roughness, ior, specular
@@ -22,7 +22,9 @@ LUCERNA_CONST uint k_material_specular = 3u;      ///< specular colour rgb, tran
 LUCERNA_CONST uint k_material_volume = 4u;        ///< absorption rgb [1/m], glass table row (-1: none)
 LUCERNA_CONST uint k_material_diffuse_t = 5u;     ///< diffuse transmission colour rgb, factor
 LUCERNA_CONST uint k_material_detail = 6u;        ///< normal scale, alpha cutoff, 0, 0
-LUCERNA_CONST uint k_material_textures = 7u;      ///< then 2 texels for each use: (m0 m1 m2 m3) (m4 m5 bits:texture 0)
+LUCERNA_CONST uint k_material_textures = 7u;      ///< then k_texture_texels for each use:
+// (m0 m1 m2 m3) (m4 m5 bits:texture 0) (rectangle on the page: x, y, width, height over the page's size)
+LUCERNA_CONST uint k_texture_texels = 3u;
 
 // Texture uses, in order.
 LUCERNA_CONST uint k_use_base = 0u;
@@ -36,12 +38,12 @@ LUCERNA_CONST uint k_use_diffuse_t = 7u;
 LUCERNA_CONST uint k_use_diffuse_t_color = 8u;
 LUCERNA_CONST uint k_texture_uses = 9u;
 
-// Texture bits: 0-10 layer, 11-15 bucket, 16-17 wrap u, 18-19 wrap v (0 repeat, 1 clamp, 2 mirror), 20 nearest,
+// Texture bits: 0-10 page (layer), 11-15 bucket, 16-17 wrap u, 18-19 wrap v (0 repeat, 1 clamp, 2 mirror), 20 nearest,
 // 21 second UV set, 31 present.
 LUCERNA_CONST uint k_texture_nearest = 1u << 20;
 LUCERNA_CONST uint k_texture_uv1 = 1u << 21;
 LUCERNA_CONST uint k_texture_present = 1u << 31;
-LUCERNA_CONST uint k_max_buckets = 12u;
+LUCERNA_CONST uint k_max_buckets = 6u;
 
 // Material flags.
 LUCERNA_CONST uint k_flag_double_sided = 1u;

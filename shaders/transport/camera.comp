@@ -38,7 +38,7 @@ void main() {
   p.pad0 = 0.0;
   p.pad1 = 0.0;
   paths[slot] = p;
-  for (uint c = 0u; c < k_component_count; ++c) radiance[slot * k_component_count + c] = vec3(0.0);
+  for (uint c = 0u; c < k_component_count; ++c) radiance[slot * k_component_count + c].rgb = vec3(0.0);
   features[2u * slot] = vec4(0.0);
   features[2u * slot + 1u] = vec4(0.0);
 }

@@ -5,7 +5,6 @@
 #include "lib/surface.glsl"
 #include "lib/lights.glsl"
 
-layout(scalar) buffer ShadowRays { Ray shadow_rays[]; };
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
 
 // Power heuristic (Veach 1997, exponent 2), as a function of the densities' ratio so that nothing overflows.
@@ -47,21 +46,21 @@ void main() {
   uint index = global_index();
   if (index >= push.count) return;
   uint slot = push.use_queue != 0u ? queue[index] : index;
-  Ray ray = rays[slot];
-  Hit hit = hits[slot];
-  PathState path = paths[slot];
+  Ray ray = load_ray(slot);
+  Hit hit = load_hit(slot);
+  PathState path = load_path(slot);
   if (path.pixel == 0xffffffffu) return;
   uint state = path_automaton(path), depth = path_depth(path), nulls = path_nulls(path);
   Sampler random = make_sampler(path.pixel, path.sample_index, frame.seed);
 
+  vec3 gain = vec3(0.0);  // what the path meets here, all of one component
   if (hit.prim == k_no_hit) {
     float pdf;
     vec3 light = environment_radiance(ray.direction, pdf);
     float weight = path.pdf > 0.0 ? mis_weight(path.pdf, pdf) : 1.0;
-    add_radiance(slot, automaton_component(state), path.throughput * light * weight);
-    return;
+    gain = path.throughput * light * weight;
   }
-
+  if (hit.prim != k_no_hit) {
   Surface surface = make_surface(ray, hit);
 #if LUCERNA_VOLUMES
   if (path.medium != 0u) path.throughput *= exp(-material_absorption(path.medium - 1u) * hit.t);
@@ -79,7 +78,7 @@ void main() {
 #endif
 
   if (!passed) {
-    if (depth == 0u && (nulls == 0u || features[2u * slot].w == 0.0)) {
+    if (depth == 0u) {
       vec3 n = surface.front ? surface.normal_s : -surface.normal_s;
       features[2u * slot] = vec4(surface.parameters.base, 1.0);
       features[2u * slot + 1u] = vec4(n, dot(surface.position - frame.camera_origin, frame.camera_forward));
@@ -88,14 +87,14 @@ void main() {
     if ((surface.flags & k_flag_emissive) != 0u && (surface.front || (surface.flags & k_flag_double_sided) != 0u)) {
       float pdf = emissive_pdf(hit.prim, travelled * travelled, abs(dot(surface.normal_g, ray.direction)));
       float weight = path.pdf > 0.0 ? mis_weight(path.pdf, pdf) : 1.0;
-      add_radiance(slot, automaton_component(state), path.throughput * surface.emission * weight);
+      gain = path.throughput * surface.emission * weight;
     }
 #endif
     bool ends = depth >= frame.max_depth;
     if (ends) atomicAdd(counters[k_counter_depth], 1u);
 #if LUCERNA_UNLIT
     if ((surface.flags & k_flag_unlit) != 0u) {
-      if (automaton_no_diffuse(state)) add_radiance(slot, automaton_component(state), path.throughput * surface.base.rgb);
+      if (automaton_no_diffuse(state)) gain = path.throughput * surface.base.rgb;
       ends = true;
     }
 #endif
@@ -132,11 +131,9 @@ void main() {
         shadow.components = component_d | component_g << 8;
         shadow.medium = 0u;
         bool worth = sides_agree && l.pdf > 0.0 && max3(shadow.diffuse) + max3(shadow.glossy) > 0.0;
-        if (worth && !(is_finite(shadow.diffuse) && is_finite(shadow.glossy))) {
-          atomicAdd(counters[k_counter_dropped], 1u);
-          worth = false;
-        }
-        if (worth) {
+        bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
+        if (worth && !finite) atomicAdd(counters[k_counter_dropped], 1u);
+        if (worth && finite) {
           Ray shadow_ray;
           shadow_ray.origin = offset_origin(surface, l.direction);
           shadow_ray.direction = l.direction;
@@ -151,8 +148,14 @@ void main() {
           } else if (l.distance < 1e30) {
             shadow_ray.tmax = l.distance;
           }
-          shadow_rays[slot] = shadow_ray;
-          shadow_states[slot] = shadow;
+          shadow_rays[slot].origin = shadow_ray.origin;
+          shadow_rays[slot].tmax = shadow_ray.tmax;
+          shadow_rays[slot].direction = shadow_ray.direction;
+          shadow_states[slot].diffuse = shadow.diffuse;
+          shadow_states[slot].components = shadow.components;
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+          shadow_states[slot].glossy = shadow.glossy;
+#endif
           shadow_queue[atomicAdd(counters[k_counter_shadow], 1u)] = slot;
           uint first = max3(shadow.diffuse) > 0.0 ? component_d : component_g;
           atomicAdd(counters[k_counter_shadow_rays + first], 1u);
@@ -170,10 +173,9 @@ void main() {
         uint next = automaton_after(state, b.event);
         vec3 throughput = path.throughput * b.weight;
         go_on = sides_agree && max3(throughput) > 0.0 && automaton_live(next);
-        if (go_on && !is_finite(throughput)) {
-          atomicAdd(counters[k_counter_dropped], 1u);
-          go_on = false;
-        }
+        bool finite = is_finite(throughput);
+        if (go_on && !finite) atomicAdd(counters[k_counter_dropped], 1u);
+        go_on = go_on && finite;
         path.eta_scale *= b.eta2;
         // Roulette on what the path carries without the radiance scale of refraction.
         if (depth + 1u >= frame.roulette_depth) {
@@ -206,9 +208,12 @@ void main() {
     next_ray.direction = direction;
     next_ray.tmax = k_infinity;
     next_ray.slot = slot;
-    rays[slot] = next_ray;
-    paths[slot] = path;
+    rays[slot].origin = next_ray.origin;
+    rays[slot].direction = next_ray.direction;
+    store_path(slot, path);
     next_queue[atomicAdd(counters[k_counter_next], 1u)] = slot;
     atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);
   }
+  }
+  add_radiance(slot, automaton_component(state), gain);
 }

@@ -10,8 +10,8 @@ void main() {
   uint index = global_index();
   if (index >= push.count) return;
   uint slot = queue[index];
-  Hit hit = hits[slot];
-  ShadowState s = shadow_states[slot];
+  Hit hit = load_hit(slot);
+  ShadowState s = load_shadow_state(slot);
   bool blocked = hit.prim != k_no_hit;
 #if LUCERNA_TRANSPARENT
   // hits: of the non-opaque triangles; the opaque ones have been tested by the first pass (push.stride == 0).
@@ -20,7 +20,7 @@ void main() {
     return;
   }
   if (blocked) {
-    Ray ray = rays[slot];
+    Ray ray = load_shadow_ray(slot);
     Surface surface = make_surface(ray, hit);
     float coverage = surface_coverage(surface);
     vec3 straight = vec3(0.0);
@@ -38,8 +38,10 @@ void main() {
       ray.tmax -= ray.tmax < 1e30 ? dot(origin - ray.origin, ray.direction) : 0.0;
       ray.origin = origin;
       if (ray.tmax > 0.0) {
-        rays[slot] = ray;
-        shadow_states[slot] = s;
+        shadow_rays[slot].origin = ray.origin;
+        shadow_rays[slot].tmax = ray.tmax;
+        shadow_states[slot].diffuse = s.diffuse;
+        shadow_states[slot].glossy = s.glossy;
         shadow_queue[atomicAdd(counters[k_counter_shadow_next], 1u)] = slot;
         return;
       }
@@ -50,7 +52,9 @@ void main() {
   blocked = false;
 #endif
   if (!blocked) {
-    add_radiance(slot, s.components & 0xffu, s.diffuse);
-    add_radiance(slot, (s.components >> 8) & 0xffu, s.glossy);
+    uint diffuse = s.components & 0xffu, glossy = (s.components >> 8) & 0xffu;
+    bool same = diffuse == glossy;
+    add_radiance(slot, diffuse, s.diffuse + (same ? s.glossy : vec3(0.0)));
+    add_radiance(slot, same ? k_component_count : glossy, s.glossy);
   }
 }

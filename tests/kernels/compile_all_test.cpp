@@ -23,19 +23,24 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
                            "LUCERNA_TRANSPARENT",
                            "LUCERNA_NORMAL_MAPS",
                            "LUCERNA_VERTEX_EXTRA",
+                           "LUCERNA_TEX_NEAREST",
+                           "LUCERNA_TEX_WRAPS",
                            "LUCERNA_TEX_BASE",
                            "LUCERNA_TEX_METALLIC_ROUGHNESS",
                            "LUCERNA_TEX_EMISSION",
                            "LUCERNA_TEX_SPECULAR",
                            "LUCERNA_TEX_TRANSMISSION",
                            "LUCERNA_TEX_DIFFUSE_TRANSMISSION"};
+  const char* uses[] = {"BASE",           "METALLIC_ROUGHNESS", "NORMAL",    "EMISSION",       "SPECULAR",
+                        "SPECULAR_COLOR", "TRANSMISSION",       "DIFFUSE_T", "DIFFUSE_T_COLOR"};
   size_t kernels = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(compiler.root())) {
     if (entry.path().extension() != ".comp") continue;
     const std::string file = std::filesystem::relative(entry.path(), compiler.root()).string();
     ++kernels;
     for (const char* on : {"0", "1"}) {
-      gpu::Defines defines{{"LUCERNA_BUCKETS", on[0] == '1' ? "12" : "0"}, {"LUCERNA_QUERY", on}};
+      gpu::Defines defines{{"LUCERNA_BUCKETS", on[0] == '1' ? "6" : "0"}, {"LUCERNA_QUERY", on}};
+      for (const char* use : uses) defines["LUCERNA_" + std::string(use) + "_BUCKETS"] = "63u";
       for (const char* effect : effects) defines[effect] = on;
       INFO(file << " with everything " << on);
       CHECK_NOTHROW(compiler.compile(file, defines));

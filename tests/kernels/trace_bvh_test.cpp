@@ -43,13 +43,13 @@ class ComputeTracer {
 
   void trace(const gpu::Kernel& kernel, const std::vector<Ray>& rays, std::vector<Hit>& hits,
              const std::vector<uint32_t>* queue = nullptr) {
-    gpu::Buffer ray_buffer(device(), {"rays", rays.size() * sizeof(Ray)}),
+    gpu::Buffer ray_buffer(device(), {"rays", rays.size() * sizeof(Ray), gpu::Memory::device, true}),
         hit_buffer(device(), {"hits", hits.size() * sizeof(Hit)});
     gpu::Buffer queue_buffer(device(), {"queue", queue ? queue->size() * sizeof(uint32_t) : 0});
     ray_buffer.write(std::span<const Ray>(rays)), hit_buffer.write(std::span<const Hit>(hits));
     if (queue) queue_buffer.write(std::span<const uint32_t>(*queue));
     gpu::Resources resources;
-    resources.set("Rays", ray_buffer), resources.set("Hits", hit_buffer),
+    resources.set("ray_texels", ray_buffer), resources.set("Hits", hit_buffer),
         resources.set("Queue", queue_buffer);
     resources.set("bvh_nodes", nodes_), resources.set("bvh_triangles", triangles_);
     const shared::TracePush push{static_cast<uint32_t>(queue ? queue->size() : rays.size()),

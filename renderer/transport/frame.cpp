@@ -1,0 +1,38 @@
+#include "transport/frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::transport {
+
+shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& camera,
+                         const paths::Automaton& automaton, const FrameOptions& options) {
+  shared::Frame f{};
+  const mat4& m = camera.to_world;
+  const vec3 right = glm::normalize(vec3(m[0])), up = glm::normalize(vec3(m[1]));
+  const float half_h = camera.orthographic ? camera.ymag : std::tan(0.5f * camera.yfov);
+  const float half_w = half_h * float(options.width) / float(options.height);
+  f.camera_origin = vec3(m[3]);
+  f.camera_right = right * half_w;
+  f.camera_up = up * half_h;
+  f.camera_forward = -glm::normalize(vec3(m[2]));
+  f.orthographic = camera.orthographic;
+  f.width = options.width;
+  f.height = options.height;
+  f.seed = options.seed;
+  f.environment_radiance = flat.environment_radiance;
+  f.environment_width = flat.environment_width;
+  f.environment_height = flat.environment_height;
+  f.environment_rotation = flat.environment_rotation;
+  f.environment_light_pmf = flat.environment_light_pmf;
+  f.light_count = uint32_t(flat.lights.size() / shared::k_light_texels);
+  f.max_depth = options.max_depth;
+  f.roulette_depth = options.roulette_depth;
+  f.scene_radius = flat.scene_radius;
+  const std::vector<uint32_t> table = paths::pack(automaton, options.enabled);
+  f.automaton_states = uint32_t(table.size());
+  std::copy(table.begin(), table.end(), f.automaton);
+  return f;
+}
+
+}  // namespace lucerna::transport

@@ -1,0 +1,21 @@
+#pragma once
+// The frame's constants as the kernels read them, from scene, camera and a few numbers.
+#include "paths/automaton.h"
+#include "scene/scene.h"
+#include "shaders/shared/scene.h"
+#include "upload/flatten.h"
+
+namespace lucerna::transport {
+
+struct FrameOptions {
+  uint32_t width = 1, height = 1;
+  uint32_t seed = 1;
+  uint32_t max_depth = 64;      ///< scattering events after which a path ends
+  uint32_t roulette_depth = 3;  ///< events before roulette may end one
+  uint32_t enabled = 15;        ///< components on (bit i)
+};
+
+shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& camera,
+                         const paths::Automaton& automaton, const FrameOptions& options);
+
+}  // namespace lucerna::transport
