@@ -149,6 +149,7 @@ Hit bvh_trace(Ray ray, const uint query) {
 
   ShearedRay sheared = bvh_shear(ray);
   vec3 inverse = bvh_inverse(ray.direction);
+  bvec3 back = lessThan(inverse, vec3(0.0));
   float margin = bvh_margin(ray, bvh_node_texel(3u).z);
   vec3 low = ray.origin + margin, high = ray.origin - margin;
   vec4 ox = vec4(low.x, high.x, low.x, high.x);
@@ -165,11 +166,13 @@ Hit bvh_trace(Ray ray, const uint query) {
       x = (x - ox) * inverse.x;
       y = (y - oy) * inverse.y;
       z = (z - oz) * inverse.z;
-      vec2 x0 = min(x.xz, x.yw), x1 = max(x.xz, x.yw);
-      vec2 y0 = min(y.xz, y.yw), y1 = max(y.xz, y.yw);
-      vec2 z0 = min(z.xz, z.yw), z1 = max(z.xz, z.yw);
-      vec2 enter = max(max(x0, y0), max(z0, vec2(0.0)));
-      vec2 leave = min(min(x1, y1), min(z1, vec2(hit.t))) * k_bvh_slab;
+      // Near and far sides by the direction's sign. Compared as integers, which order as floats do unless both are
+      // negative; then any of them says the same here, and no instruction is spent on NaNs, which cannot occur.
+      ivec2 x0 = floatBitsToInt(back.x ? x.yw : x.xz), x1 = floatBitsToInt(back.x ? x.xz : x.yw);
+      ivec2 y0 = floatBitsToInt(back.y ? y.yw : y.xz), y1 = floatBitsToInt(back.y ? y.xz : y.yw);
+      ivec2 z0 = floatBitsToInt(back.z ? z.yw : z.xz), z1 = floatBitsToInt(back.z ? z.xz : z.yw);
+      vec2 enter = intBitsToFloat(max(max(x0, y0), max(z0, ivec2(0))));
+      vec2 leave = intBitsToFloat(min(min(x1, y1), min(z1, ivec2(floatBitsToInt(hit.t))))) * k_bvh_slab;
       bool hit0 = enter.x <= leave.x, hit1 = enter.y <= leave.y;
       uint link0 = floatBitsToUint(links.x), link1 = floatBitsToUint(links.y);
       bool first0 = hit0 && (!hit1 || enter.x <= enter.y);
