@@ -20,7 +20,7 @@ def shaft_profile(r0, r1, y0, y1, steps=8):
     return list(zip(r, y0 + (y1 - y0) * t))
 
 
-def column(height, r, segments=28):
+def column(height, r, segments=24):
     """Plinth, base, shaft and necking up to 0.55 r_scale below the abacus; `leaves` and `abacus` complete it."""
     s = r / 0.27
     base = [(0.36 * s, 0.14 * s)] + torus_profile(0.33 * s, 0.14 * s, 0.235 * s, 0.045 * s)
@@ -37,7 +37,7 @@ def column(height, r, segments=28):
                  lathe(base + shaft[1:] + top, segments), lathe(bell, segments)])
 
 
-def leaves(r, neck, rows=2, count=8, around=72, along=9):
+def leaves(r, neck, rows=2, count=8, around=56, along=7):
     """Rings of stylised acanthus that curl outwards, growing from the bell of a capital."""
     s = r / 0.27
     parts = []
@@ -107,7 +107,7 @@ def arch_panel(width, bottom, spring, top, radius, thick, segments=28, ends=Fals
     return join(parts)
 
 
-def archivolt(radius, width, proud, z, segments=36, side=1):
+def archivolt(radius, width, proud, z, segments=28, side=1):
     """Moulded ring on the face of an arch springing at y = 0; `side` is the sign of the face's z."""
     arc = arch_points(1.0, segments)
     A = np.stack([arc[:, 0], arc[:, 1], 0 * arc[:, 0]], 1)
@@ -235,11 +235,11 @@ def coffer(R, s0, s1, z0, z1, steps=3):
     return Mesh(m.p, n, np.stack([a, m.p[:, 2]], 1), t)
 
 
-def coffer_ring(R, cells, skip=0):
-    """A metre of vault: `cells` coffers around, `skip` of them left out about the crown."""
-    size = np.pi * R / cells
+def coffer_ring(R, arc, cells, skip=0):
+    """A metre of vault, `arc` metres around: `cells` coffers, `skip` of them left out about the crown."""
+    size = arc / cells
     keep = [k for k in range(cells) if not (cells - skip) / 2 <= k < (cells + skip) / 2]
-    return join([coffer(R, -np.pi * R / 2 + k * size, -np.pi * R / 2 + (k + 1) * size, -0.5, 0.5) for k in keep])
+    return join([coffer(R, -arc / 2 + k * size, -arc / 2 + (k + 1) * size, -0.5, 0.5) for k in keep])
 
 
 def oculus_patch(R, half_s, half_z, radius, top, per_side=12):
@@ -256,8 +256,8 @@ def oculus_patch(R, half_s, half_z, radius, top, per_side=12):
         x, z = unit[:, 0] * r, unit[:, 1] * r
         return np.stack([x, np.sqrt(R * R - x * x) + depth, z], 1)
 
-    for r, d in ((radius + 0.26, 0.0), (radius + 0.25, -0.07), (radius + 0.19, -0.07), (radius + 0.17, -0.02),
-                 (radius + 0.09, -0.02), (radius + 0.07, -0.10), (radius, -0.10)):
+    for r, d in ((radius + 0.22, 0.0), (radius + 0.21, -0.07), (radius + 0.16, -0.07), (radius + 0.14, -0.02),
+                 (radius + 0.08, -0.02), (radius + 0.06, -0.10), (radius, -0.10)):
         rows.append(circle(r, d))
     shaft_top = circle(radius, 0)
     shaft_top[:, 1] = top
@@ -276,9 +276,9 @@ def oculus_patch(R, half_s, half_z, radius, top, per_side=12):
 
 
 # ---- furnishings ---------------------------------------------------------------------------------------------------
-def baluster(segments=10):
-    p = [(0.062, 0), (0.062, 0.045), (0.038, 0.07), (0.05, 0.12), (0.069, 0.20), (0.045, 0.36), (0.031, 0.49),
-         (0.046, 0.515), (0.046, 0.54), (0.033, 0.555), (0.062, 0.62), (0.062, 0.67)]
+def baluster(segments=8):
+    p = [(0.062, 0), (0.062, 0.045), (0.038, 0.07), (0.069, 0.20), (0.045, 0.36), (0.031, 0.49), (0.046, 0.525),
+         (0.033, 0.555), (0.062, 0.62), (0.062, 0.67)]
     return lathe(p, segments)
 
 
@@ -325,7 +325,21 @@ def rail_cloth(width, drop, seed, rail=0.13, nu=40, nv=48):
                 np.stack([u, 1 - v], 2).reshape(-1, 2)).flipped()
 
 
-def urn(height=0.9, segments=48):
+def ripples(x0, x1, z0, z1, nx, nz, seed=2):
+    """Still water: a level grid whose normals tilt by a few milliradians, as a draught leaves it."""
+    rs = np.random.RandomState(seed)
+    z, x = np.meshgrid(np.linspace(z0, z1, nz + 1), np.linspace(x0, x1, nx + 1), indexing="ij")
+    dx, dz = 0 * x, 0 * x
+    for _ in range(14):
+        a, wave = rs.uniform(0, 2 * np.pi), rs.uniform(0.35, 1.6)
+        kx, kz = 2 * np.pi / wave * np.cos(a), 2 * np.pi / wave * np.sin(a)
+        slope = 0.0035 * np.cos(kx * x + kz * z + rs.uniform(0, 2 * np.pi))
+        dx, dz = dx + slope * np.cos(a), dz + slope * np.sin(a)
+    n = np.stack([-dx, 1 + 0 * x, -dz], 2)
+    return grid(np.stack([x, 0 * x, z], 2), n.reshape(-1, 3))
+
+
+def urn(height=0.9, segments=40):
     p = [(0.0, 0), (0.15, 0), (0.16, 0.02), (0.15, 0.045), (0.11, 0.07), (0.10, 0.09), (0.13, 0.13), (0.21, 0.23),
          (0.275, 0.36), (0.29, 0.47), (0.27, 0.58), (0.21, 0.68), (0.14, 0.75), (0.105, 0.79), (0.105, 0.83),
          (0.14, 0.87), (0.165, 0.885), (0.17, 0.90), (0.15, 0.90), (0.115, 0.86), (0.085, 0.82), (0.085, 0.76),
@@ -343,7 +357,7 @@ def pedestal(height, radius=0.33):
     return join([box((-r * 1.05, 0, -r * 1.05), (r * 1.05, 0.10, r * 1.05), "-y"), lathe(p, 56)])
 
 
-def bowl(radius=0.30, segments=72):
+def bowl(radius=0.30, segments=64):
     """Open bowl on a foot, walls 6 mm: the caustic of its inside falls on its own floor and beside it."""
     a = np.radians(np.linspace(8, 86, 22))
     outer = [(radius * np.sin(v), radius * 0.92 * (1 - np.cos(v)) + 0.03) for v in a]
