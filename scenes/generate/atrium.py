@@ -22,11 +22,11 @@ RADIUS, HALF_ARC = 6.5, 0.6435    # the vault: a segment 3.9 m to each side
 EAVES = 7.75                      # where the vault springs
 AXLE = EAVES - RADIUS * float(np.cos(HALF_ARC))   # height of the vault's axis
 WALL, WALL2 = 0.6, 0.45           # arcade walls' thickness below and above
-OCULI, OCULUS = (4.5, -1.5, -7.5, -13.5), 2.25
+OCULI, OCULUS = (5.0, -1.0, -7.0, -13.0), 2.5
 DAIS = 0.6
 POOL = (1.05, 3.9, -9.5)          # the basin: half width, near and far end
 ROD, RODS = 6.95, (0.0, -6.0, -12.0)   # tie rods; banners hang from them
-SUN = np.array([0.30, 1.0, -0.50])   # towards the sun
+SUN = np.array([0.36, 1.0, -0.44])   # towards the sun
 
 
 def materials(s):
@@ -202,19 +202,22 @@ def pavement():
 
 
 def vault(s):
-    """Coffered vault, ten coffers around, with oculi six coffers wide."""
+    """Coffered vault, twelve coffers around, with oculi eight coffers wide and a rib between each two."""
     arc = 2 * HALF_ARC * RADIUS
-    s.mesh("coffers", [(ap.coffer_ring(RADIUS, arc, 10), "plaster")])
-    s.mesh("coffers beside an oculus", [(ap.coffer_ring(RADIUS, arc, 10, skip=6), "plaster")])
-    s.mesh("oculus", [(ap.oculus_patch(RADIUS, 3 * arc / 10, 2.5, OCULUS, RADIUS + 0.30), "plaster")])
+    s.mesh("coffers", [(ap.coffer_ring(RADIUS, arc, 12), "plaster")])
+    s.mesh("coffers beside an oculus", [(ap.coffer_ring(RADIUS, arc, 12, skip=8), "plaster")])
+    s.mesh("oculus", [(ap.oculus_patch(RADIUS, 4 * arc / 12, 3.0, OCULUS, RADIUS + 0.30), "plaster")])
+    s.mesh("rib", [(ap.vault_rib(RADIUS, HALF_ARC), "limestone")])
     s.mesh("tie rod", [(ap.rod(2 * AXIS - 0.3, 0.022), "iron")])
     z = Z_NEAR - 0.5
     while z > Z_FAR:
-        beside = any(abs(z - o) < 2.5 for o in OCULI)
+        beside = any(abs(z - o) < 3 for o in OCULI)
         s.place("coffers beside an oculus" if beside else "coffers", (0, AXLE, z))
         z -= 1
     for o in OCULI:
         s.place("oculus", (0, AXLE, o))
+        s.place("rib", (0, AXLE, o + 3))
+    s.place("rib", (0, AXLE, OCULI[-1] - 3))
     for z in RODS:
         s.place("tie rod", (0, ROD, z))
 
@@ -321,27 +324,27 @@ def furnish(s):
         s.place("banner rod", (x, ROD - 0.02, z))
     s.mesh("indigo rug", [(ap.rail_cloth(1.1, 1.5, 5), "cloth indigo")])
     s.mesh("madder rug", [(ap.rail_cloth(1.1, 1.7, 6), "cloth madder")])
-    s.place("indigo rug", (-AXIS, GALLERY + 1.0, 0.75), 90.0)
-    s.place("madder rug", (AXIS, GALLERY + 1.0, -5.25), -90.0)
+    s.place("indigo rug", (-AXIS, GALLERY + 1.0, -3.75), 90.0)
+    s.place("madder rug", (AXIS, GALLERY + 1.0, -2.25), -90.0)
     brass, globe = ap.globe_lamp(0.16)
     s.mesh("globe lamp", [(brass, "brass"), (globe, "opal")])
     for x in (-1, 1):
-        for i in range(1, BAYS, 2):
+        for i in range(0 if x < 0 else 4, BAYS, 2):
             s.place("globe lamp", (x * (AXIS + OUTER) / 2, 2.95, bays()[i]))
     brass, glass, flame = ap.lantern_parts(0.20, 1.35)
     s.mesh("glass lamp", [(brass, "brass"), (glass, "glass"), (flame, "flame")])
     s.place("glass lamp", (AXIS, SPRING + 1.2 - 1.35, bays()[2]))
     s.mesh("urn", [(ap.urn(), "terracotta")])
-    s.mesh("bowl", [(ap.bowl(0.42), "brass")])
+    s.mesh("bowl", [(ap.bowl(0.50), "brass")])
     s.mesh("bench", [(ap.bench(), "wood")])
-    s.mesh("pedestal", [(ap.pedestal(0.80, 0.34), "limestone")])
+    s.mesh("pedestal", [(ap.pedestal(0.66, 0.32), "limestone")])
     s.place("pedestal", (-1.75, 0, 2.3))
-    s.place("bowl", (-1.75, 0.80, 2.3))
+    s.place("bowl", (-1.75, 0.66, 2.3), scale=(1, 0.66, 1))
     s.place("urn", (3.05, 0, 1.2), 40.0, scale=1.0)
     s.place("urn", (3.30, 0, 0.55), 10.0, scale=0.72)
     s.place("bench", (6.6, 0, -1.5), 90.0)
     s.place("bench", (-6.6, 0, -4.5), 90.0)
-    garden.orange_trees(s, ((-3.1, -3.0, 0, 1.05), (-3.1, -9.0, 130, 1.1), (3.1, -6.0, 250, 1.05), (2.75, -15.0, 70, 1.0),
+    garden.orange_trees(s, ((-3.1, -6.0, 0, 1.1), (-3.1, -12.0, 130, 1.1), (3.1, -3.0, 250, 1.05), (2.75, -15.0, 70, 1.0),
                             (-2.75, -15.0, 200, 1.0)))
 
 

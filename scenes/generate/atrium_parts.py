@@ -242,6 +242,18 @@ def coffer_ring(R, arc, cells, skip=0):
     return join([coffer(R, -arc / 2 + k * size, -arc / 2 + (k + 1) * size, -0.5, 0.5) for k in keep])
 
 
+def vault_rib(R, half_arc, width=0.46, drop=0.09, segments=40):
+    """A transverse band on the underside of the vault, moulded along both edges."""
+    a = np.linspace(-half_arc, half_arc, segments + 1)
+    radial = np.stack([np.sin(a), np.cos(a), 0 * a], 1)
+    w, d = width / 2, drop
+    profile = [(-w, 0.02), (-w, -0.6 * d), (-w + 0.05, -0.6 * d), (-w + 0.06, -d), (w - 0.06, -d), (w - 0.05, -0.6 * d),
+               (w, -0.6 * d), (w, 0.02)]
+    m = sweep(profile, R * radial, (np.tile([0.0, 0, 1], (len(a), 1)), radial))
+    face = np.cross(m.p[m.t[:, 1]] - m.p[m.t[:, 0]], m.p[m.t[:, 2]] - m.p[m.t[:, 0]]).sum(axis=0)
+    return m if face[1] < 0 else m.flipped()
+
+
 def oculus_patch(R, half_s, half_z, radius, top, per_side=12):
     """The piece of vault about an oculus, with a moulded collar and a shaft up to `top` above the vault's axis."""
     side = np.linspace(-1, 1, per_side + 1)[:-1]

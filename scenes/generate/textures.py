@@ -96,7 +96,7 @@ def floor(n=1024):
     shift = rs.randint(0, n, (count, count, 2))
     sy, sx = (y + shift[cy, cx, 0]) % n, (x + shift[cy, cx, 1]) % n
     color, relief = color[sy, sx], relief[sy, sx]
-    color = color * (1 + 0.085 * tone[cy, cx])[..., None] * (1 + 0.03 * warm[cy, cx][..., None] * rgb(1, 0, -1.4))
+    color = color * (1 + 0.085 * tone[cy, cx])[..., None] * (1 + 0.024 * warm[cy, cx][..., None] * rgb(1, 0, -1.2))
     corner = np.abs(np.abs(fx) - 0.5) + np.abs(np.abs(fy) - 0.5)   # 0 in the corners
     dark_color, _ = stone_tone((n, n), 40, rgb(0.13, 0.125, 0.12), rgb(0.055, 0.055, 0.06))
     inset = smooth(0.155 - corner, 0.0, 0.006)
@@ -108,7 +108,11 @@ def floor(n=1024):
     grout = 1 - smooth(joint, 0.0015, 0.0045)
     hole = pits((n, n), 31) * (1 - inset)
     dirt = np.exp(-joint / 0.03)
-    color = color * (1 - 0.22 * dirt * smooth(noise((n, n), 33, 1.4, 2, 60), -0.6, 1.5))[..., None]
+    color = color * (1 - 0.30 * dirt * smooth(noise((n, n), 33, 1.4, 2, 60), -0.6, 1.5))[..., None]
+    stain = smooth(noise((n, n), 37, 1.5, 2, 30), 0.7, 2.0) * (0.6 + 0.4 * smooth(noise((n, n), 38, 0.8, 20, 200), -1, 1))
+    color = color * (1 - 0.16 * stain[..., None] * rgb(0.85, 1.0, 1.2))
+    scuff = smooth(noise((n, n), 39, 0.9, 10, 250, (1.0, 3.0)), 1.6, 3.0)
+    color = color * (1 - 0.10 * scuff)[..., None]
     color = mix(color, rgb(0.20, 0.165, 0.125), 0.85 * grout)
     color = mix(color, rgb(0.22, 0.18, 0.135), 0.7 * hole)
     height = 0.00025 * relief - 0.0028 * grout - 0.0022 * hole - 0.0018 * np.exp(-joint / 0.006) \
@@ -139,7 +143,7 @@ def ashlar(n=1024):
     sy, sx = (y + shift[cell, 0]) % n, (x + shift[cell, 1]) % n
     color, relief = color[sy, sx], relief[sy, sx]
     tone, warm = rs.standard_normal(rows * 4), rs.standard_normal(rows * 4)
-    color = color * (1 + 0.075 * tone[cell])[..., None] * (1 + 0.03 * warm[cell][..., None] * rgb(1, 0, -1.5))
+    color = color * (1 + 0.075 * tone[cell])[..., None] * (1 + 0.024 * warm[cell][..., None] * rgb(1, 0, -1.2))
     grout = 1 - smooth(joint, 0.002, 0.006)
     hole = pits((n, n), 71, 1.9)
     color = mix(color, rgb(0.44, 0.375, 0.29), 0.8 * grout)
@@ -218,7 +222,7 @@ def cloth(n=1024):
 
 
 def sky(width=256, sun=(0, 1, 0)):
-    """Clear sky without the sun's disk, (h, w, 3) radiance in the scene's unit; below the horizon, the ground's light."""
+    """Clear sky without the sun's disk, (h, w, 3) radiance in the scene's unit; black from ten degrees below the horizon."""
     h = width // 2
     v, u = (np.arange(h) + 0.5) / h, (np.arange(width) + 0.5) / width
     theta, phi = np.pi * v[:, None], 2 * np.pi * (u[None, :] - 0.5)
@@ -226,9 +230,9 @@ def sky(width=256, sun=(0, 1, 0)):
     d = np.stack([np.sin(theta) * np.cos(phi), up, np.sin(theta) * np.sin(phi)], 2)
     cosine = d @ (np.asarray(sun) / np.linalg.norm(sun))
     low = np.exp(-np.maximum(up, 0) / 0.22)
-    color = mix(rgb(0.30, 0.56, 1.12), rgb(0.80, 0.97, 1.18), low)
+    color = mix(rgb(0.40, 0.66, 1.15), rgb(0.66, 0.80, 0.98), low)
     angle = np.arccos(np.clip(cosine, -1, 1))
-    glow = 1.6 * np.exp(-angle / 0.16) + 0.5 * np.exp(-angle / 0.55)
-    color = color * (0.86 + 0.14 * cosine ** 2)[..., None] + glow[..., None] * rgb(1.0, 0.92, 0.78)
-    ground = np.broadcast_to(rgb(0.62, 0.52, 0.40), color.shape)
-    return mix(color, ground, smooth(-up, -0.01, 0.03))
+    glow = 1.2 * np.exp(-angle / 0.18) + 0.6 * np.exp(-angle / 0.6)
+    color = color * (0.86 + 0.14 * cosine ** 2)[..., None] + glow[..., None] * rgb(1.0, 0.94, 0.83)
+    # the scene's own ground hides what lies lower: nothing there, so that no light sample is spent on it
+    return color * (1 - smooth(-up, 0.08, 0.16))[..., None]
