@@ -213,7 +213,7 @@ def set_cycles(a):
     c.device, c.feature_set = "CPU", "SUPPORTED"
     c.use_adaptive_sampling = c.use_denoising = False
     c.use_auto_tile = False
-    c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = c.volume_bounces = a.depth
+    c.max_bounces = c.diffuse_bounces = c.glossy_bounces = c.transmission_bounces = c.volume_bounces = a.depth - 1
     c.transparent_max_bounces = 1024
     c.min_light_bounces = c.min_transparent_bounces = 0
     c.sample_clamp_direct = c.sample_clamp_indirect = 0
