@@ -10,7 +10,7 @@ import atrium_garden as garden
 import atrium_parts as ap
 import textures
 from gltf import Scene, hdr, join
-from shapes import box, lathe, planar_uv, quad, rotate, translate
+from shapes import box, lathe, planar_uv, quad, rotate, sphere, translate
 
 BAY, BAYS = 3.0, 9
 Z_NEAR, Z_FAR = 9.0, -18.0
@@ -42,24 +42,25 @@ def materials(s):
         s.material(name, (1, 1, 1), rough=rough[name], maps=m, metres=size[name])
     s.material("dark stone", (0.16, 0.15, 0.145), rough=0.5, maps=maps["limestone"], metres=2.0)
     s.material("ochre plaster", (0.98, 0.83, 0.62), rough=0.95, maps=maps["plaster"], metres=3.6)
+    s.material("red plaster", (0.66, 0.235, 0.15), rough=0.9, maps=maps["plaster"], metres=3.6)
     s.material("blue plaster", (0.50, 0.66, 0.74), rough=0.95, maps=maps["plaster"], metres=3.6)
     textures.png(f + "/cloth_color.png", textures.to_srgb(textures.cloth().color))
     weave = {"color": "cloth_color.png", "through": "cloth_color.png"}
-    s.material("cloth saffron", (0.78, 0.42, 0.08), lambert=True, double=True, maps=weave, through=0.5,
-               through_color=(0.98, 0.56, 0.12))
-    s.material("cloth madder", (0.58, 0.12, 0.07), lambert=True, double=True, maps=weave, through=0.45,
-               through_color=(0.90, 0.20, 0.09))
-    s.material("cloth linen", (0.74, 0.67, 0.54), lambert=True, double=True, maps=weave, through=0.5,
-               through_color=(0.95, 0.83, 0.62))
+    s.material("cloth saffron", (0.82, 0.46, 0.09), lambert=True, double=True, maps=weave, through=0.6,
+               through_color=(1.0, 0.62, 0.13))
+    s.material("cloth madder", (0.58, 0.12, 0.07), lambert=True, double=True, maps=weave, through=0.55,
+               through_color=(0.98, 0.24, 0.10))
+    s.material("cloth linen", (0.74, 0.67, 0.54), lambert=True, double=True, maps=weave, through=0.6,
+               through_color=(1.0, 0.90, 0.70))
     s.material("cloth indigo", (0.12, 0.20, 0.42), lambert=True, double=True, maps=weave, through=0.4,
                through_color=(0.18, 0.32, 0.68))
-    s.material("brass", (0.91, 0.71, 0.36), rough=0.3, metal=1)
+    s.material("brass", (0.91, 0.71, 0.36), rough=0.4, metal=1)
     s.material("water", (0.03, 0.055, 0.05), rough=0, ior=1.33)
     s.material("iron", (0.20, 0.19, 0.18), rough=0.55, metal=1)
     s.material("terracotta", (0.50, 0.235, 0.125), rough=0.8)
     s.material("glass", (1, 1, 1), glass=0, ior=1.5)
-    s.material("flame", (0, 0, 0), lambert=True, emit=(1.0, 0.60, 0.27), strength=4)
-    s.material("opal", (0.6, 0.58, 0.52), lambert=True, emit=(1.0, 0.66, 0.34), strength=2)
+    s.material("flame", (0, 0, 0), lambert=True, emit=(1.0, 0.58, 0.24), strength=2.5)
+    s.material("opal", (0.6, 0.58, 0.52), lambert=True, emit=(1.0, 0.64, 0.32), strength=1.3)
     s.material("earth", (0.40, 0.34, 0.24), lambert=True)
     s.material("soil", (0.10, 0.07, 0.05), lambert=True)
     s.material("bark", (0.20, 0.15, 0.10), lambert=True)
@@ -84,8 +85,8 @@ def arcade(s):
     s.mesh("column", [(ap.column(SPRING, 0.27), "limestone")])
     s.mesh("capital", [(join([ap.leaves(0.27, SPRING - 0.62), ap.abacus(0.36, SPRING - 0.15, SPRING)]), "limestone")])
     h2 = SPRING2 - GALLERY
-    s.mesh("small column", [(ap.column(h2, 0.125, 12), "limestone")])
-    s.mesh("small capital", [(join([ap.leaves(0.125, h2 - 0.62 * 0.125 / 0.27, around=32, along=4),
+    s.mesh("small column", [(ap.column(h2, 0.125, 11), "limestone")])
+    s.mesh("small capital", [(join([ap.leaves(0.125, h2 - 0.62 * 0.125 / 0.27, around=28, along=4),
                                     ap.abacus(0.19, h2 - 0.08, h2 + 0.001)]), "limestone")])
     lower = ap.arch_panel(BAY, 0, 0, CEILING + 0.4 - SPRING, 1.2, WALL).moved(translate(0, SPRING, 0))
     for k in range(4):   # cut from different places of the wall's texture, whole courses apart
@@ -142,8 +143,7 @@ def aisles(s):
                                   "-y +x -x"), "floor")])
     # lower outer wall: plaster above a dado, a pilaster at every column
     wall = quad((-BAY / 2, 0, 0), (BAY / 2, 0, 0), (BAY / 2, GALLERY, 0), (-BAY / 2, GALLERY, 0))
-    dado = join([box((-BAY / 2, 0, 0), (BAY / 2, 0.95, 0.05), "-z -y +x -x"),
-                 ap.cornice(BAY, [(0.05, 0), (0.075, 0.01), (0.09, 0.05), (0.09, 0.08), (0, 0.095)]).moved(
+    dado = join([ap.cornice(BAY, [(0.05, 0), (0.075, 0.01), (0.09, 0.05), (0.09, 0.08), (0, 0.095)]).moved(
                      translate(0, 0.95, 0)),
                  box((-BAY / 2, 0, 0.05), (BAY / 2, 0.18, 0.085), "-z -y +x -x")])
     pilaster = join([box((-0.24, 0, 0), (0.24, CEILING - 0.40, 0.13), "-z -y"),
@@ -151,7 +151,8 @@ def aisles(s):
                      box((-0.29, CEILING - 0.62, 0), (0.29, CEILING - 0.52, 0.18), "-z"),
                      box((-0.33, CEILING - 0.52, 0), (0.33, CEILING - 0.40, 0.22), "-z")])
     s.mesh("aisle wall", [(planar_uv(wall), "ochre plaster")])
-    s.mesh("dado", [(dado, "ashlar")])
+    field = box((-BAY / 2, 0.18, 0), (BAY / 2, 0.96, 0.05), "-z -y +x -x +y")
+    s.mesh("dado", [(field, "red plaster"), (dado, "limestone")])
     s.mesh("pilaster", [(pilaster, "limestone")])
     # upper outer wall: a window a bay, 1.1 m wide, reveal 0.5 m deep
     sill, head = 0.75, 1.70
@@ -165,7 +166,7 @@ def aisles(s):
     s.mesh("window wall", [(planar_uv(join([window, below] + flanks)), "plaster")])
     s.mesh("window shelf", [(join([shelf]), "limestone")])
     s.mesh("window bars", [(join(bars), "iron")])
-    s.mesh("window ring", [(join([ap.archivolt(0.75, 0.14, 0.035, 0.0, 20)]).moved(translate(0, head, 0)),
+    s.mesh("window ring", [(join([ap.archivolt(0.75, 0.14, 0.035, 0.0, 14)]).moved(translate(0, head, 0)),
                             "limestone")])
     for x, yaw in sides():
         for i, z in enumerate(bays()):
@@ -307,7 +308,7 @@ def impluvium(s):
                 sides.append(m)
     s.mesh("curb", [(planar_uv(join(sides)), "limestone")])
     s.place("curb")
-    s.mesh("water", [(ap.ripples(-x, x, z1, z0, 36, 140).moved(translate(0, 0.06, 0)), "water")])
+    s.mesh("water", [(ap.ripples(-x, x, z1, z0, 24, 90).moved(translate(0, 0.06, 0)), "water")])
     s.place("water")
 
 
@@ -318,8 +319,7 @@ def furnish(s):
     s.mesh("madder banner", [(banner[1], "cloth madder")])
     s.mesh("linen banner", [(banner[0], "cloth linen")])
     s.mesh("banner rod", [(ap.rod(1.6, 0.02), "wood")])
-    for name, x, z in (("saffron banner", -2.35, 0.0), ("linen banner", -1.55, -6.0), ("madder banner", 2.45, -6.0),
-                       ("madder banner", -2.3, -12.0), ("saffron banner", 2.6, -12.0)):
+    for name, x, z in (("saffron banner", -2.35, 0.0), ("linen banner", -1.55, -6.0), ("madder banner", 2.45, -6.0)):
         s.place(name, (x, ROD - 0.03, z))
         s.place("banner rod", (x, ROD - 0.02, z))
     s.mesh("indigo rug", [(ap.rail_cloth(1.1, 1.5, 5), "cloth indigo")])
@@ -341,9 +341,15 @@ def furnish(s):
     s.place("pedestal", (-1.75, 0, 2.3))
     s.place("bowl", (-1.75, 0.66, 2.3), scale=(1, 0.66, 1))
     s.place("urn", (3.05, 0, 1.2), 40.0, scale=1.0)
-    s.place("urn", (3.30, 0, 0.55), 10.0, scale=0.72)
+    s.place("urn", (2.72, 0, 1.62), 10.0, scale=0.66)
     s.place("bench", (6.6, 0, -1.5), 90.0)
     s.place("bench", (-6.6, 0, -4.5), 90.0)
+    s.mesh("vine", [(garden.vine(1.5, 1.25, 16, 850, 3), "leaves")])
+    for x, z, yaw in ((-1, -1.95, 90.0), (-1, -7.6, 90.0), (1, -8.9, -90.0)):
+        s.place("vine", (x * AXIS, GALLERY + 1.0, z), yaw)
+    s.mesh("fallen orange", [(sphere(0.038, 16, 10), "orange")])
+    for x, z in ((-2.72, -5.35), (-2.45, -5.9), (2.62, -2.35), (2.35, -2.75), (2.78, -1.9), (-1.22, 1.1), (-1.16, 1.2)):
+        s.place("fallen orange", (x, 0.038 + 0.13 * (abs(x) < 1.3), z), 77.0 * x)
     garden.orange_trees(s, ((-3.1, -6.0, 0, 1.1), (-3.1, -12.0, 130, 1.1), (3.1, -3.0, 250, 1.05), (2.75, -15.0, 70, 1.0),
                             (-2.75, -15.0, 200, 1.0)))
 
@@ -362,7 +368,7 @@ def main():
     s.sun("sun", -SUN, (1.0, 0.88, 0.71), 6.0)
     eye = 1.65
     s.camera("main", (1.25, eye, 8.6), (-0.9, eye, -12), yfov=45.0)
-    s.camera("gallery", (-4.4, GALLERY + eye, 3.75), (1.6, 5.0, -8), yfov=50.0)
+    s.camera("gallery", (-3.9, GALLERY + eye, 3.75), (1.9, 5.4, -9), yfov=50.0)
     s.camera("bowl", (-0.3, 1.6, 4.3), (-1.8, 0.85, 2.2), yfov=34.0)
     env = {"file": "sky.hdr", "scale": 1.3}
     s.extras = {"environment": env}

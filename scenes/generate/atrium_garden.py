@@ -60,6 +60,39 @@ def leaf_ball(radius, count, seed, size=0.085):
     return Mesh(parts_p, parts_n, None, parts_t)
 
 
+def vine(width, drop, strands, leaves, seed, size=0.075):
+    """Strands of leaves that spill over a rail along x (its top at y = 0, its face towards +z) and hang down unevenly."""
+    rs = np.random.RandomState(seed)
+    p, n, t = [], [], []
+    share = rs.dirichlet(np.full(strands, 1.6)) * leaves
+    for k in range(strands):
+        x0 = width * (rs.uniform(-0.5, 0.5) + rs.uniform(-0.5, 0.5)) / 1.4
+        length = drop * rs.uniform(0.35, 1.0) * (1 - (1.6 * x0 / width) ** 2 * 0.5)
+        phase = rs.uniform(0, 6.3)
+        for _ in range(max(int(share[k]), 6)):
+            v = rs.uniform(-0.12, 1.0)
+            y = -length * v
+            at = np.array([x0 + 0.10 * np.sin(3.0 * v * length + phase), y, 0.17 + 0.05 * np.sin(2.2 * v + phase)])
+            if v < 0:   # over the rail
+                at[1], at[2] = 0.03, 0.16 + v * 1.6
+            at += rs.standard_normal(3) * [0.05, 0.04, 0.035]
+            axis = np.array([0, -0.7, 0.45]) + 0.6 * rs.standard_normal(3)
+            axis /= np.linalg.norm(axis)
+            side = np.cross(axis, [0, 0.3, 1] + 0.5 * rs.standard_normal(3))
+            side /= np.linalg.norm(side)
+            up = np.cross(side, axis)
+            l, w = size * rs.uniform(0.6, 1.2), size * rs.uniform(0.28, 0.42)
+            mid = at + 0.4 * l * axis + 0.3 * w * up
+            q = [at, mid + side * w, at + axis * l, mid - side * w]
+            base = len(p)
+            for tri in ((q[0], q[1], q[2]), (q[0], q[2], q[3])):
+                normal = np.cross(tri[1] - tri[0], tri[2] - tri[0])
+                p += list(tri)
+                n += [normal / np.linalg.norm(normal)] * 3
+            t += [[base, base + 1, base + 2], [base + 3, base + 4, base + 5]]
+    return Mesh(p, n, None, t)
+
+
 def oranges(radius, count, seed):
     rs = np.random.RandomState(seed)
     parts = []
@@ -67,11 +100,11 @@ def oranges(radius, count, seed):
         d = rs.standard_normal(3)
         d[1] = -abs(d[1]) * 0.5 + 0.2
         d /= np.linalg.norm(d)
-        parts.append(sphere(0.036, 12, 8).moved(translate(*(d * radius * 0.97))))
+        parts.append(sphere(0.036, 10, 6).moved(translate(*(d * radius * 0.97))))
     return join(parts)
 
 
-def pot(height=0.52, segments=36):
+def pot(height=0.52, segments=28):
     """A rolled-rim terracotta pot, filled with earth to 6 cm below the rim; (pot, earth)."""
     k = height / 0.52
     p = [(0.0, 0), (0.19, 0), (0.195, 0.015), (0.235, 0.20), (0.265, 0.38), (0.27, 0.40), (0.285, 0.405), (0.285, 0.43),
@@ -110,7 +143,7 @@ def orange_trees(s, places):
     """places: (x, z, yaw, scale)."""
     shell, soil = pot()
     s.mesh("orange tree", [(shell, "terracotta"), (soil, "soil"), (trunk(0.47, 1.25), "bark"),
-                           (leaf_ball(0.46, 1500, 5).moved(translate(0, 1.52, 0)), "leaves"),
+                           (leaf_ball(0.46, 1250, 5).moved(translate(0, 1.52, 0)), "leaves"),
                            (oranges(0.46, 11, 8).moved(translate(0, 1.52, 0)), "orange")])
     for x, z, yaw, k in places:
         s.place("orange tree", (x, 0, z), yaw, scale=k)

@@ -6,14 +6,14 @@ from shapes import box, grid, lathe, planar_uv, quad, rotate, sphere, sweep, tra
 
 
 # ---- columns -------------------------------------------------------------------------------------------------------
-def torus_profile(r, y0, y1, bulge, steps=6):
+def torus_profile(r, y0, y1, bulge, steps=5):
     """Half-round moulding between two heights."""
     a = np.linspace(-90, 90, steps + 1)
     m, h = (y0 + y1) / 2, (y1 - y0) / 2
     return [(r + bulge * np.cos(np.radians(v)), m + h * np.sin(np.radians(v))) for v in a]
 
 
-def shaft_profile(r0, r1, y0, y1, steps=8):
+def shaft_profile(r0, r1, y0, y1, steps=6):
     """Entasis: widest a third up, then drawing in."""
     t = np.linspace(0, 1, steps + 1)
     r = r0 + (r1 - r0) * t ** 1.8 + 0.012 * np.sin(np.pi * t) * r0 / 0.27
@@ -25,10 +25,10 @@ def column(height, r, segments=24):
     s = r / 0.27
     base = [(0.36 * s, 0.14 * s)] + torus_profile(0.33 * s, 0.14 * s, 0.235 * s, 0.045 * s)
     base += [(0.325 * s, 0.245 * s), (0.30 * s, 0.265 * s), (0.298 * s, 0.28 * s)]
-    base += torus_profile(0.29 * s, 0.285 * s, 0.335 * s, 0.028 * s, 5) + [(0.285 * s, 0.345 * s), (r, 0.40 * s)]
+    base += torus_profile(0.29 * s, 0.285 * s, 0.335 * s, 0.028 * s, 4) + [(0.285 * s, 0.345 * s), (r, 0.40 * s)]
     neck = height - 0.62 * s
     shaft = shaft_profile(r, 0.85 * r, 0.40 * s, neck - 0.05 * s)
-    top = [(0.87 * r, neck - 0.04 * s)] + torus_profile(0.86 * r, neck - 0.04 * s, neck + 0.01 * s, 0.03 * s, 5)
+    top = [(0.87 * r, neck - 0.04 * s)] + torus_profile(0.86 * r, neck - 0.04 * s, neck + 0.01 * s, 0.03 * s, 4)
     top += [(0.86 * r, neck + 0.012 * s)]
     bell = [(0.85 * r, neck + 0.012 * s), (0.86 * r, neck + 0.25 * s), (0.95 * r, neck + 0.40 * s),
             (1.12 * r, neck + 0.47 * s)]
@@ -37,7 +37,7 @@ def column(height, r, segments=24):
                  lathe(base + shaft[1:] + top, segments), lathe(bell, segments)])
 
 
-def leaves(r, neck, rows=2, count=8, around=56, along=7):
+def leaves(r, neck, rows=2, count=8, around=48, along=7):
     """Rings of stylised acanthus that curl outwards, growing from the bell of a capital."""
     s = r / 0.27
     parts = []
@@ -107,7 +107,7 @@ def arch_panel(width, bottom, spring, top, radius, thick, segments=28, ends=Fals
     return join(parts)
 
 
-def archivolt(radius, width, proud, z, segments=28, side=1):
+def archivolt(radius, width, proud, z, segments=24, side=1):
     """Moulded ring on the face of an arch springing at y = 0; `side` is the sign of the face's z."""
     arc = arch_points(1.0, segments)
     A = np.stack([arc[:, 0], arc[:, 1], 0 * arc[:, 0]], 1)
@@ -288,7 +288,7 @@ def oculus_patch(R, half_s, half_z, radius, top, per_side=12):
 
 
 # ---- furnishings ---------------------------------------------------------------------------------------------------
-def baluster(segments=8):
+def baluster(segments=7):
     p = [(0.062, 0), (0.062, 0.045), (0.038, 0.07), (0.069, 0.20), (0.045, 0.36), (0.031, 0.49), (0.046, 0.525),
          (0.033, 0.555), (0.062, 0.62), (0.062, 0.67)]
     return lathe(p, segments)
@@ -369,7 +369,7 @@ def pedestal(height, radius=0.33):
     return join([box((-r * 1.05, 0, -r * 1.05), (r * 1.05, 0.10, r * 1.05), "-y"), lathe(p, 56)])
 
 
-def bowl(radius=0.30, segments=64):
+def bowl(radius=0.30, segments=60):
     """Open bowl on a foot, walls 6 mm: the caustic of its inside falls on its own floor and beside it."""
     a = np.radians(np.linspace(8, 86, 22))
     outer = [(radius * np.sin(v), radius * 0.92 * (1 - np.cos(v)) + 0.03) for v in a]
@@ -382,10 +382,10 @@ def bowl(radius=0.30, segments=64):
 def lantern_parts(radius, hang):
     """(brass, glass, flame) of a lamp hanging `hang` below its hook, about the globe's centre; the globe is a shell of
     solid glass, closed above and below by brass."""
-    a = np.radians(np.linspace(180 - 24, 24, 30))
+    a = np.radians(np.linspace(180 - 24, 24, 22))
     outside = [(radius * np.sin(v), radius * np.cos(v)) for v in a]
     inside = [((radius - 0.008) * np.sin(v), (radius - 0.008) * np.cos(v)) for v in a[::-1]]
-    glass = lathe(outside + inside + [outside[0]], 48, smooth=40)
+    glass = lathe(outside + inside + [outside[0]], 40, smooth=40)
     top, r = outside[-1][1], outside[-1][0]
     brass = join([
         lathe([(0.0, -top - 0.065), (0.018, -top - 0.06), (0.02, -top - 0.045), (r + 0.012, -top - 0.014),
