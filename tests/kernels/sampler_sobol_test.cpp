@@ -70,14 +70,15 @@ int uneven_shapes(const Point* p, int k) {
   return uneven;
 }
 
-/// Histogram of pairs on a grid of `cells` x `cells` against the uniform distribution.
+/// Histogram of pairs on a grid of `cells` x `cells` against independent uniform numbers: neither more uneven
+/// than chance would have it, nor more even (a lattice).
 double uniform_tail(const std::vector<std::pair<uint32_t, uint32_t>>& pairs, uint32_t cells) {
   std::vector<double> observed(size_t(cells) * cells, 0.0);
   for (const auto& [x, y] : pairs)
     observed[(uint64_t(x) * cells >> 32) * cells + (uint64_t(y) * cells >> 32)] += 1;
-  return chi_square(observed,
-                    std::vector<double>(observed.size(), double(pairs.size()) / double(observed.size())))
-      .p;
+  const double each = double(pairs.size()) / double(observed.size());
+  const double p = chi_square(observed, std::vector<double>(observed.size(), each)).p;
+  return 2 * std::min(p, 1 - p);
 }
 
 }  // namespace
