@@ -40,9 +40,9 @@ def materials(s):
     rough = {"floor": 0.46, "ashlar": 0.9, "limestone": 0.72, "plaster": 0.95, "wood": 0.6}
     for name, m in maps.items():
         s.material(name, (1, 1, 1), rough=rough[name], maps=m, metres=size[name])
-    s.material("dark stone", (0.16, 0.15, 0.145), rough=0.5, maps=maps["limestone"], metres=2.0)
+    s.material("dark stone", (0.19, 0.18, 0.17), rough=0.5, maps=maps["limestone"], metres=2.0)
     s.material("ochre plaster", (0.98, 0.83, 0.62), rough=0.95, maps=maps["plaster"], metres=3.6)
-    s.material("red plaster", (0.66, 0.235, 0.15), rough=0.9, maps=maps["plaster"], metres=3.6)
+    s.material("red plaster", (0.60, 0.15, 0.10), rough=0.9, maps=maps["plaster"], metres=3.6)
     s.material("blue plaster", (0.50, 0.66, 0.74), rough=0.95, maps=maps["plaster"], metres=3.6)
     textures.png(f + "/cloth_color.png", textures.to_srgb(textures.cloth().color))
     weave = {"color": "cloth_color.png", "through": "cloth_color.png"}
@@ -323,9 +323,9 @@ def furnish(s):
         s.place(name, (x, ROD - 0.03, z))
         s.place("banner rod", (x, ROD - 0.02, z))
     s.mesh("indigo rug", [(ap.rail_cloth(1.1, 1.5, 5), "cloth indigo")])
-    s.mesh("madder rug", [(ap.rail_cloth(1.1, 1.7, 6), "cloth madder")])
-    s.place("indigo rug", (-AXIS, GALLERY + 1.0, -3.75), 90.0)
-    s.place("madder rug", (AXIS, GALLERY + 1.0, -2.25), -90.0)
+    s.mesh("indigo towel", [(ap.rail_cloth(0.75, 0.11, 6, 0.155, 0.09, 30, 24), "cloth indigo")])
+    s.place("indigo rug", (AXIS, GALLERY + 1.0, -2.25), -90.0)
+    s.place("indigo towel", (-POOL[0] - 0.15, 0.134, -0.9), -90.0)
     brass, globe = ap.globe_lamp(0.16)
     s.mesh("globe lamp", [(brass, "brass"), (globe, "opal")])
     for x in (-1, 1):
@@ -344,8 +344,8 @@ def furnish(s):
     s.place("urn", (2.72, 0, 1.62), 10.0, scale=0.66)
     s.place("bench", (6.6, 0, -1.5), 90.0)
     s.place("bench", (-6.6, 0, -4.5), 90.0)
-    s.mesh("vine", [(garden.vine(1.5, 1.25, 16, 850, 3), "leaves")])
-    for x, z, yaw in ((-1, -1.95, 90.0), (-1, -7.6, 90.0), (1, -8.9, -90.0)):
+    s.mesh("vine", [(garden.vine(2.2, 1.7, 22, 1150, 3), "leaves")])
+    for x, z, yaw in ((-1, -3.75, 90.0), (-1, -9.75, 90.0), (1, -8.25, -90.0)):
         s.place("vine", (x * AXIS, GALLERY + 1.0, z), yaw)
     s.mesh("fallen orange", [(sphere(0.038, 16, 10), "orange")])
     for x, z in ((-2.72, -5.35), (-2.45, -5.9), (2.62, -2.35), (2.35, -2.75), (2.78, -1.9), (-1.22, 1.1), (-1.16, 1.2)):
@@ -365,17 +365,17 @@ def main():
     impluvium(s)
     furnish(s)
     hdr(s.folder + "/sky.hdr", textures.sky(256, SUN))
-    s.sun("sun", -SUN, (1.0, 0.88, 0.71), 6.0)
+    s.sun("sun", -SUN, (1.0, 0.87, 0.69), 6.8)
     eye = 1.65
     s.camera("main", (1.25, eye, 8.6), (-0.9, eye, -12), yfov=45.0)
     s.camera("gallery", (-3.9, GALLERY + eye, 3.75), (1.9, 5.4, -9), yfov=50.0)
     s.camera("bowl", (-0.3, 1.6, 4.3), (-1.8, 0.85, 2.2), yfov=34.0)
-    env = {"file": "sky.hdr", "scale": 1.3}
+    env = {"file": "sky.hdr", "scale": 1.1}
     s.extras = {"environment": env}
     s.write("The face of the program: late-morning sun through oculi on worn stone, its bounce in the shade under the "
             "gallery, cloth that glows through, cool sky light, small caustics of a brass bowl and a glass lamp. Also "
             "the size of a real job: instances, textures, normal maps, an environment, a sun and lamps.",
-            {"film.ev": 0.3, "film.tone_curve": "neutral", "environment": env})
+            {"film.ev": 0.0, "film.tone_curve": "neutral", "environment": env})
 
 
 if __name__ == "__main__":

@@ -319,11 +319,11 @@ def hanging(width, length, seed, folds=5.0, depth=0.05, nu=40, nv=60):
     return grid(np.stack([x, y, z], 2)[::-1], None, np.stack([u, v], 2)[::-1].reshape(-1, 2)).flipped()
 
 
-def rail_cloth(width, drop, seed, rail=0.13, nu=40, nv=48):
-    """A rug thrown over a rail along x (its top at y = 0): down the front, over, and a little down the back."""
+def rail_cloth(width, drop, seed, rail=0.13, back=0.35, nu=40, nv=48):
+    """A rug thrown over a rail along x (its top at y = 0): `drop` down the front, over, and `back` down the back."""
     rs = np.random.RandomState(seed)
     phase = rs.uniform(0, 2 * np.pi, 4)
-    total = drop + 2 * rail + 0.35
+    total = drop + 2 * rail + back
     s = np.linspace(0, total, nv + 1)
     y = np.where(s < drop, -(drop - s), np.where(s < drop + 2 * rail, 0.012, -(s - drop - 2 * rail)))
     z = np.where(s < drop, rail + 0.015, np.where(s < drop + 2 * rail, rail + 0.015 - (s - drop), -rail - 0.015))
