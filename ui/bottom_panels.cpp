@@ -1,7 +1,10 @@
 // The strip at the bottom: device and timings, and the log.
 #include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "state.h"
 #include "widgets.h"
@@ -109,6 +112,95 @@ ImU32 level_colour(log::Level level) {
   return colour::text;
 }
 
+const char* const k_level_names[] = {"debug", "info", "warning", "error"};
+
+/// Tab completes what is typed at the console, arrows go through what was typed before.
+int edit_console(ImGuiInputTextCallbackData* data) {
+  auto& ui = *static_cast<Ui*>(data->UserData);
+  Console& console = ui.console;
+  const auto put = [&](const std::string& text) {
+    data->DeleteChars(0, data->BufTextLen);
+    data->InsertChars(0, text.c_str());
+  };
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory) {
+    const int last = static_cast<int>(console.history.size());
+    if (last == 0) return 0;
+    const int step = data->EventKey == ImGuiKey_UpArrow ? -1 : 1;
+    console.at = std::clamp((console.at < 0 ? last : console.at) + step, 0, last);
+    put(console.at < last ? console.history[static_cast<size_t>(console.at)] : "");
+    return 0;
+  }
+  const std::string typed(data->Buf, static_cast<size_t>(data->CursorPos));
+  const std::vector<std::string> words = ui.registry.complete(typed);
+  if (words.empty()) return 0;
+  std::string common = words[0];
+  for (const std::string& word : words) {
+    const auto differ = std::mismatch(common.begin(), common.end(), word.begin(), word.end());
+    common.erase(differ.first, common.end());
+  }
+  // The last word is replaced; one that is complete is parted from the next, unless its value follows.
+  const size_t begin = commands::last_word(typed);
+  if (words.size() == 1 && common.back() != '=' && common.back() != '/') common += ' ';
+  if (common.size() > typed.size() - begin || words.size() == 1)
+    put(typed.substr(0, begin) + common + std::string(data->Buf + data->CursorPos));
+  return 0;
+}
+
+/// What the console says to the right of what is typed: what may follow, or how the command goes on.
+std::string console_hint(const Ui& ui) {
+  const std::string& typed = ui.console.text;
+  if (typed.empty()) return "";
+  const std::vector<std::string> words = ui.registry.complete(typed);
+  const std::string last = typed.substr(commands::last_word(typed));
+  std::string hint;
+  if (!words.empty() && !(words.size() == 1 && words[0] == last)) {
+    for (size_t i = 0; i < std::min<size_t>(words.size(), 12); ++i) hint += (i ? "   " : "") + words[i];
+    return hint + (words.size() > 12 ? "   \xE2\x80\xA6" : "");
+  }
+  if (const commands::Command* c = ui.registry.find(typed.substr(0, typed.find(' '))))
+    return ui.registry.usage(*c).substr(c->name.size());
+  return "";
+}
+
+void draw_console(Ui& ui, const Area& area) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddLine({area.lo.x, area.lo.y + 0.5f}, {area.hi.x, area.lo.y + 0.5f}, colour::hairline);
+  Console& console = ui.console;
+  ImFont* font = theme().fonts.regular;
+  draw_text(list, {area.lo.x + px(12), area.lo.y}, {area.lo.x + px(24), area.hi.y}, "\xE2\x80\xBA",
+            console.active ? colour::accent : colour::text_faint);
+  const float pad = std::floor(0.5f * (area.height() - font->FontSize));
+  ImGui::SetCursorScreenPos({area.lo.x + px(24), area.lo.y + 1});
+  ImGui::SetNextItemWidth(area.width() - px(36));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, pad});
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0);
+  ImGui::PushStyleColor(ImGuiCol_FrameBg, 0);
+  if (console.focus) ImGui::SetKeyboardFocusHere(), console.focus = false;
+  const bool entered =
+      ImGui::InputText("##console", &console.text,
+                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
+                           ImGuiInputTextFlags_CallbackHistory,
+                       edit_console, &ui);
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar(2);
+  console.active = ImGui::IsItemActive();
+  tooltip("Carries out a command. Tab completes, arrows go back, 'help' lists the commands. Ctrl+L.");
+  const float used = px(24) + text_width(console.text) + px(14);
+  const std::string hint = console.active ? console_hint(ui) : console.text.empty() ? "Command" : "";
+  const ImVec2 lo(area.lo.x + (console.text.empty() ? px(26) : used), area.lo.y);
+  draw_text(list, lo, {area.hi.x - px(12), area.hi.y}, elided(hint, area.hi.x - px(12) - lo.x),
+            colour::text_faint);
+  if (entered && !console.text.empty()) {
+    if (console.history.empty() || console.history.back() != console.text)
+      console.history.push_back(console.text);
+    ui.typed.push_back(std::exchange(console.text, {}));
+    console.at = -1;
+    ui.log_follows = true;
+    console.focus = true;
+    ui.wake(3);
+  }
+}
+
 /// The heading of a bottom panel; returns the x where its content at the right may start.
 void heading(Ui& ui, const char* title, const Area& area, bool folds) {
   const ImVec2 lo = area.lo, hi(area.hi.x, area.lo.y + px(k_folded_bottom));
@@ -123,7 +215,7 @@ void heading(Ui& ui, const char* title, const Area& area, bool folds) {
   ImGui::SetCursorScreenPos({hi.x - px(28), lo.y + px(3)});
   if (sign_button("##fold", ui.layout.bottom_open ? Sign::chevron_down : Sign::chevron_up, true,
                   colour::text_faint))
-    ui.layout.bottom_open = !ui.layout.bottom_open;
+    ui.act("window.fold", "bottom", ui.layout.bottom_open);
   tooltip(ui.layout.bottom_open ? "Folds the strip." : "Unfolds the strip.");
 }
 
@@ -168,7 +260,7 @@ void draw_log(Ui& ui, const Area& area) {
       right -= px(4);
       return pressed;
     };
-    if (chip("##clear", "Clear", false, colour::text)) ui.log.clear();
+    if (chip("##clear", "Clear", false, colour::text)) ui.act("log.clear");
     tooltip("Empties the log.");
     if (chip("##copy", "Copy", false, colour::text)) {
       std::string all;
@@ -184,13 +276,14 @@ void draw_log(Ui& ui, const Area& area) {
       if (chip(names[l], counts[l] > 0 ? fmt::format("{} {}", names[l], counts[l]) : names[l],
                ui.log_levels[l],
                counts[l] > 0 ? level_colour(static_cast<log::Level>(level)) : colour::text_dim))
-        ui.log_levels[l] = !ui.log_levels[l];
+        ui.act("log.show", k_level_names[l], !ui.log_levels[l]);
       tooltip(fmt::format("{} lines of this level.", ui.log_levels[l] ? "Hides" : "Shows"));
     }
   }
   if (ui.layout.bottom_open) {
     ImGui::SetCursorScreenPos({area.lo.x, area.lo.y + px(30)});
-    ImGui::BeginChild("##lines", {area.width(), std::max(1.0f, area.hi.y - area.lo.y - px(30))});
+    const float console = px(28);
+    ImGui::BeginChild("##lines", {area.width(), std::max(1.0f, area.hi.y - area.lo.y - px(30) - console)});
     const float width = begin_padded();
     ImDrawList* list = ImGui::GetWindowDrawList();
     ImFont* font = theme().fonts.small;
@@ -219,6 +312,7 @@ void draw_log(Ui& ui, const Area& area) {
       ui.log_follows = ImGui::GetScrollY() >= ImGui::GetScrollMaxY() - 1;
     if (ui.log_follows) ImGui::SetScrollHereY(1);
     ImGui::EndChild();
+    draw_console(ui, {{area.lo.x, area.hi.y - console}, area.hi});
   }
   ImGui::End();
 }

@@ -21,31 +21,17 @@ struct Completion {
   bool folder;
 };
 
-/// Entries of the folder that is being typed whose names start with what follows the last slash.
-std::vector<Completion> completions(const std::string& typed, bool open) {
+/// Files of a kind and folders that begin with what is typed.
+std::vector<Completion> completions(const std::string& typed, Dialog::Purpose purpose) {
+  std::vector<std::string> endings{".exr", ".png"};
+  if (purpose == Dialog::Purpose::open) endings = {".gltf", ".glb"};
+  if (purpose == Dialog::Purpose::script) endings = {".lucerna"};
   std::vector<Completion> list;
-  const size_t slash = typed.rfind('/');
-  const std::string head = slash == std::string::npos ? "" : typed.substr(0, slash + 1);
-  const std::string start = slash == std::string::npos ? typed : typed.substr(slash + 1);
-  std::error_code error;
-  auto entry =
-      fs::directory_iterator(head.empty() ? "." : head, fs::directory_options::skip_permission_denied, error);
-  // A folder of many thousands is looked at in part: the window must not stall.
-  for (int n = 0; !error && entry != fs::directory_iterator() && n < 5000; entry.increment(error), ++n) {
-    const std::string name = entry->path().filename().string();
-    if (name.rfind(start, 0) != 0 || (name[0] == '.' && start.empty())) continue;
-    std::error_code ignored;
-    const bool folder = entry->is_directory(ignored);
-    std::string ending = entry->path().extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const bool wanted = open ? ending == ".gltf" || ending == ".glb" : ending == ".exr" || ending == ".png";
-    if (folder || wanted)
-      list.push_back({head + name + (folder ? "/" : ""), name + (folder ? "/" : ""), folder});
+  for (const std::string& path : commands::paths_starting(typed, endings)) {
+    const bool folder = path.back() == '/';
+    const size_t slash = path.rfind('/', path.size() - 2);
+    list.push_back({path, slash == std::string::npos ? path : path.substr(slash + 1), folder});
   }
-  std::sort(list.begin(), list.end(), [](const Completion& a, const Completion& b) {
-    return a.folder != b.folder ? a.folder > b.folder : a.name < b.name;
-  });
   return list;
 }
 
@@ -65,7 +51,7 @@ bool is_folder(const std::string& path) {
 int complete_field(ImGuiInputTextCallbackData* data) {
   auto& dialog = *static_cast<Dialog*>(data->UserData);
   if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) dialog.marked = -1;
-  const auto list = completions(expanded(data->Buf), dialog.purpose == Dialog::Purpose::open);
+  const auto list = completions(expanded(data->Buf), dialog.purpose);
   if (list.empty()) return 0;
   const int last = static_cast<int>(list.size()) - 1;
   if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory)
@@ -101,19 +87,26 @@ void file_dialog(Ui& ui) {
   if (ImGui::BeginPopupModal(
           title, nullptr,
           ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
-    label(open ? "Open a scene" : "Save the picture", colour::text, theme().fonts.strong);
+    const bool script = dialog.purpose == Dialog::Purpose::script;
+    label(open     ? "Open a scene"
+          : script ? "Save the session as a script"
+                   : "Save the picture",
+          colour::text, theme().fonts.strong);
     std::error_code ignored;
     if (open)
       label("A .gltf or .glb file. Tab completes; arrows choose.", colour::text_dim, theme().fonts.small);
     else if (fs::is_regular_file(expanded(dialog.path), ignored))
       label("A file of that name exists and will be replaced.", colour::warning, theme().fonts.small);
+    else if (script)
+      label("What was done, one command a line; lucerna --script FILE does it again.", colour::text_dim,
+            theme().fonts.small);
     else
       label(".exr holds all layers as floats; .png what is shown, through exposure and tone curve.",
             colour::text_dim, theme().fonts.small);
     ImGui::SetNextItemWidth(-1);
     if (dialog.focus) ImGui::SetKeyboardFocusHere(), dialog.to_end = true;
     dialog.focus = false;
-    const std::vector<Completion> list = completions(expanded(dialog.path), open);
+    const std::vector<Completion> list = completions(expanded(dialog.path), dialog.purpose);
     const bool entered =
         ImGui::InputText("##path", &dialog.path,
                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
@@ -167,10 +160,7 @@ void file_dialog(Ui& ui) {
         dialog.focus = true;
         ImGui::ClearActiveID();
       } else {
-        if (open)
-          ui.open_scene(file);
-        else
-          ui.save_picture(file);
+        ui.act(open ? "scene.open" : script ? "script.save" : "image.save", file);
         done = true;
       }
     }
@@ -197,7 +187,9 @@ void key_page(Ui& ui) {
         {"Middle drag, Shift + left drag", "pan"},
         {"Wheel, right drag", "come closer, go away"},
         {"W A S D, Q E", "fly; down and up; drag to look about, wheel for speed"},
+        {"Click", "select the object, its material with a second click"},
         {"F", "frame the selection, or the scene"},
+        {"L", "mark the lamps, to click on them"},
         {"1 \xE2\x80\x93 9", "scene cameras"},
         {"", ""},
         {"Space", "pause, resume"},
@@ -206,7 +198,9 @@ void key_page(Ui& ui) {
         {"F5", "reload shaders"},
         {"F12", "screenshot of the window"},
         {"Ctrl + O, Ctrl + S", "open, save"},
-        {"Esc", "take away a message, give up a load"},
+        {"Ctrl + L", "type a command"},
+        {"Ctrl + Z, Ctrl + Shift + Z", "undo, redo"},
+        {"Esc", "take away a message or the selection, give up a load"},
         {"", ""},
         {"Double-click a number", "type it"},
         {"Shift, Ctrl while dragging", "ten times finer, coarser"}};
@@ -251,6 +245,15 @@ void begin_panel(const char* name, const Area& area, ImU32 background, bool scro
   ImGui::PopStyleColor();
 }
 
+bool panel_section(Ui& ui, const char* title, bool fallback, const std::string& note) {
+  const auto found = ui.sections.find(title);
+  const bool open = found == ui.sections.end() ? fallback : found->second;
+  bool wanted = open;
+  section(title, wanted, note);
+  if (wanted != open) ui.act("window.section", title, wanted);
+  return open;
+}
+
 void Ui::start_dialog(Dialog::Purpose purpose) {
   dialog = {};
   dialog.purpose = purpose;
@@ -260,6 +263,8 @@ void Ui::start_dialog(Dialog::Purpose purpose) {
     const fs::path here =
         scene && !scene->file.empty() ? fs::path(scene->file).parent_path() : fs::path("scenes");
     if (fs::is_directory(here, error)) dialog.path = (here / "").string();
+  } else if (purpose == Dialog::Purpose::script) {
+    dialog.path = (scene ? scene->name : "session") + ".lucerna";
   } else if (scene) {
     dialog.path = scene->name + ".exr";
   }
@@ -279,29 +284,38 @@ bool Ui::pressed(int key, int mods) const {
 
 void handle_keys(Ui& ui) {
   const bool popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-  if (ui.pressed(GLFW_KEY_F12)) ui.screenshot = true;
-  if (ui.pressed(GLFW_KEY_F5)) ui.session.reload_shaders();
+  if (ui.pressed(GLFW_KEY_F12)) ui.act("screenshot");
+  if (ui.pressed(GLFW_KEY_F5)) ui.act("shaders.reload");
   if (ui.dialog.purpose != Dialog::Purpose::none) return;
-  if (ui.pressed(GLFW_KEY_O, GLFW_MOD_CONTROL)) ui.start_dialog(Dialog::Purpose::open);
-  if (ui.pressed(GLFW_KEY_S, GLFW_MOD_CONTROL) && ui.snapshot && !ui.snapshot->rgba.empty())
-    ui.start_dialog(Dialog::Purpose::save);
-  if (ui.pressed(GLFW_KEY_Q, GLFW_MOD_CONTROL)) ui.quit = true;
+  if (ui.pressed(GLFW_KEY_O, GLFW_MOD_CONTROL)) ui.act("dialog.open");
+  if (ui.pressed(GLFW_KEY_S, GLFW_MOD_CONTROL) && ui.has_picture()) ui.act("dialog.save");
+  if (ui.pressed(GLFW_KEY_L, GLFW_MOD_CONTROL)) ui.act("log.type");
+  if (ui.pressed(GLFW_KEY_Q, GLFW_MOD_CONTROL)) ui.act("quit");
   if (popup && ui.pressed(GLFW_KEY_ESCAPE)) ImGui::ClosePopupToLevel(0, true);
   if (ImGui::GetIO().WantTextInput || popup) return;
+  for (const auto& [key, mods] : ui.keys)
+    if (key == GLFW_KEY_Z && mods & GLFW_MOD_CONTROL) {
+      const bool again = mods & GLFW_MOD_SHIFT;
+      if (again ? ui.can_redo() : ui.can_undo()) ui.act(again ? "redo" : "undo");
+    }
   if (ui.pressed(GLFW_KEY_F1)) ui.help = true;
-  if (ui.pressed(GLFW_KEY_TAB)) ui.layout.panels = !ui.layout.panels, ui.wake(3);
+  if (ui.pressed(GLFW_KEY_TAB)) ui.act("window.panels", !ui.layout.panels), ui.wake(3);
   if (ui.pressed(GLFW_KEY_ESCAPE)) {
     if (ui.loading())
-      ui.session.cancel();
+      ui.act("scene.cancel");
     else if (!ui.errors.empty())
       ui.errors.pop_back();
+    else if (ui.selection.kind != Kind::none)
+      ui.act("select.none");
   }
   if (!ui.snapshot) return;
-  if (ui.pressed(GLFW_KEY_F)) ui.frame_selection();
-  if (ui.pressed(GLFW_KEY_R)) ui.session.restart();
-  if (ui.pressed(GLFW_KEY_SPACE)) ui.session.set_paused(!ui.snapshot->paused);
+  if (ui.pressed(GLFW_KEY_F) && ui.view) ui.act("camera.frame");
+  if (ui.pressed(GLFW_KEY_R)) ui.act("render.restart");
+  if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
+  if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.snapshot->paused ? "render.resume" : "render.pause");
   for (int n = 0; n < 9; ++n)
-    if (ui.pressed(GLFW_KEY_1 + n)) ui.take_camera(n);
+    if (ui.pressed(GLFW_KEY_1 + n) && ui.scene && n < static_cast<int>(ui.scene->cameras.size()) && ui.view)
+      ui.act("camera.select", n + 1);
 }
 
 void draw_splitters(Ui& ui, const Areas& areas) {
@@ -323,22 +337,29 @@ void draw_splitters(Ui& ui, const Areas& areas) {
     return twice;
   };
   const float reach = px(3);
-  Layout& l = ui.layout;
+  const Layout& l = ui.layout;
   const float left = areas.left.hi.x, right = areas.right.lo.x, bottom = areas.timings.lo.y;
-  float still = 0;
-  if (strip("##split_left", {left - reach, areas.left.lo.y}, {left + reach, bottom - reach}, true, 1,
-            l.left_open ? l.left : still))
-    l.left_open = !l.left_open;
-  if (strip("##split_right", {right - reach, areas.right.lo.y}, {right + reach, bottom - reach}, true, -1,
-            l.right_open ? l.right : still))
-    l.right_open = !l.right_open;
-  if (strip("##split_bottom", {0, bottom - reach}, {areas.log.hi.x, bottom + reach}, false, -1,
-            l.bottom_open ? l.bottom : still))
-    l.bottom_open = !l.bottom_open;
-  float log_width = ui.layout.log_share * areas.log.hi.x / theme().scale;
+  const auto edge = [&](const char* name, const char* panel, ImVec2 lo, ImVec2 hi, bool along_x,
+                        float direction, float size, bool open) {
+    float wanted = size;
+    if (strip(name, lo, hi, along_x, direction, wanted))
+      ui.act("window.fold", panel, open);
+    else if (wanted != size && open)
+      ui.act("window.split", panel, std::max(0.0f, wanted));
+  };
+  edge("##split_left", "left", {left - reach, areas.left.lo.y}, {left + reach, bottom - reach}, true, 1,
+       l.left, l.left_open);
+  edge("##split_right", "right", {right - reach, areas.right.lo.y}, {right + reach, bottom - reach}, true, -1,
+       l.right, l.right_open);
+  edge("##split_bottom", "bottom", {0, bottom - reach}, {areas.log.hi.x, bottom + reach}, false, -1, l.bottom,
+       l.bottom_open);
+  const float before = l.log_share * areas.log.hi.x / theme().scale;
+  float log_width = before;
   strip("##split_log", {areas.log.lo.x - reach, bottom + reach}, {areas.log.lo.x + reach, areas.log.hi.y},
         true, -1, log_width);
-  ui.layout.log_share = log_width * theme().scale / std::max(1.0f, areas.log.hi.x);
+  if (log_width != before)
+    ui.act("window.log_share",
+           std::clamp(log_width * theme().scale / std::max(1.0f, areas.log.hi.x), 0.0f, 1.0f));
 }
 
 }  // namespace lucerna::ui

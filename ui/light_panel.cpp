@@ -22,8 +22,8 @@ void component_row(Ui& ui, int c, float width) {
   const std::string name = session::k_component_names[index];
   const std::string key = "components." + name;
   const session::ComponentStatus* status = ui.snapshot ? &ui.snapshot->components[index] : nullptr;
-  const bool off = ui.settings.text(key) == "off";
-  const bool shown = ui.settings.boolean("show." + name);
+  const bool off = ui.setting(key) == "off";
+  const bool shown = ui.setting_on("show." + name);
   const ImU32 ink =
       off || !shown ? colour::with_alpha(colour::component[index], 0.4f) : colour::component[index];
 
@@ -40,12 +40,13 @@ void component_row(Ui& ui, int c, float width) {
   draw_text(list, {at.x + px(18), at.y}, {at.x + px(112), at.y + px(22)}, title,
             off ? colour::text_faint : colour::text, Align::left, theme().fonts.strong);
   ImGui::SetCursorScreenPos({at.x + width - px(48), at.y});
-  if (sign_button("##show", Sign::eye, shown)) ui.toggle_show(c);
+  if (sign_button("##show", Sign::eye, shown)) ui.act("view.show", name, !shown);
   tooltip(fmt::format("{} the {} layer in the shown sum. Costs no samples; what is computed does not change.",
                       shown ? "Leaves out" : "Shows", name));
   ImGui::SetCursorScreenPos({at.x + width - px(22), at.y});
-  if (sign_button("##solo", Sign::solo, ui.solo == c, colour::accent)) ui.toggle_solo(c);
-  tooltip(ui.solo == c
+  if (sign_button("##solo", Sign::solo, ui.solo() == c, colour::accent))
+    ui.act("view.solo", ui.solo() == c ? "none" : name.c_str());
+  tooltip(ui.solo() == c
               ? "Back to the layers shown before."
               : fmt::format("Shows the {} layer alone; press again for the layers shown before.", name));
 
@@ -54,11 +55,10 @@ void component_row(Ui& ui, int c, float width) {
   ImGui::SetCursorScreenPos({at.x + px(18), line});
   const plan::OptionInfo* option = plan::find_option(key);
   if (option) {
-    int chosen =
-        static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.settings.text(key)) -
-                         option->choices.begin());
+    int chosen = static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.setting(key)) -
+                                  option->choices.begin());
     if (choice("##solver", "", option->choices, chosen, px(76)))
-      ui.settings.set(key, option->choices[static_cast<size_t>(chosen)]);
+      ui.act("set", key, option->choices[static_cast<size_t>(chosen)]);
     tooltip(option->help +
             " Off: its paths are not traced beyond what the others need, and its light is missing.");
   }
@@ -147,21 +147,21 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
   switch (option->type) {
     case plan::OptionType::choice: {
       int chosen =
-          static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.settings.text(key)) -
+          static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.setting(key)) -
                            option->choices.begin());
       if (choice("##choice", name, option->choices, chosen))
-        ui.settings.set(key, option->choices[static_cast<size_t>(chosen)]);
+        ui.act("set", key, option->choices[static_cast<size_t>(chosen)]);
       break;
     }
     case plan::OptionType::boolean: {
-      const bool on = ui.settings.boolean(key);
-      if (button("##boolean", name, on, ImGui::CalcItemWidth())) ui.settings.set(key, on ? "false" : "true");
+      const bool on = ui.setting_on(key);
+      if (button("##boolean", name, on, ImGui::CalcItemWidth())) ui.act("set", key, on ? "false" : "true");
       break;
     }
     case plan::OptionType::integer:
     case plan::OptionType::real: {
       const bool whole = option->type == plan::OptionType::integer;
-      auto value = static_cast<float>(ui.settings.real(key));
+      auto value = static_cast<float>(ui.setting_real(key));
       Slider how{.lo = static_cast<float>(option->lo),
                  .hi = static_cast<float>(option->hi),
                  .decimals = whole ? 0 : 2,
@@ -172,8 +172,9 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
       if (option->hi > 4e9)
         how.hi = 65535, how.bar = false, how.travel = 0.01f;  // seeds: a range that a hand can hit
       if (slider("##number", name, value, how))
-        ui.settings.set(key, whole ? fmt::format("{:.0f}", std::clamp<double>(value, option->lo, option->hi))
-                                   : fmt::format("{:.6g}", value));
+        ui.act("set", key,
+               whole ? fmt::format("{:.0f}", std::clamp<double>(value, option->lo, option->hi))
+                     : fmt::format("{:.6g}", value));
       if (option->hi > 4e9)
         help = option->help + " Double-click to type; drag up to 65535. A change starts the picture again.";
       break;
@@ -188,20 +189,21 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
 void draw_light_panel(Ui& ui, const Area& area) {
   if (!ui.layout.left_open) {
     begin_panel("##light_folded", area, colour::panel, false);
-    if (folded_strip("Light", area.lo, area.hi, true)) ui.layout.left_open = true;
+    if (folded_strip("Light", area.lo, area.hi, true)) ui.act("window.fold", "left", false);
     ImGui::End();
     return;
   }
   begin_panel("##light", area, colour::panel, true);
   std::string note;
-  if (ui.solo >= 0) note = fmt::format("solo {}", session::k_component_names[static_cast<size_t>(ui.solo)]);
-  if (section("Light", ui.open("light"), note)) {
+  if (ui.solo() >= 0)
+    note = fmt::format("solo {}", session::k_component_names[static_cast<size_t>(ui.solo())]);
+  if (panel_section(ui, "Light", true, note)) {
     const float width = begin_padded();
     components(ui, width);
     end_padded();
     gap(4);
   }
-  if (section("Render", ui.open("render"))) {
+  if (panel_section(ui, "Render", true)) {
     begin_padded();
     for (const plan::OptionInfo& option : plan::options())
       if (!placed_elsewhere(option)) option_control(ui, option.key, option_title(option.key));
@@ -209,10 +211,11 @@ void draw_light_panel(Ui& ui, const Area& area) {
     const float width = ImGui::CalcItemWidth(), half = std::floor(0.5f * (width - px(8)));
     const bool paused = ui.snapshot && ui.snapshot->paused;
     ImGui::BeginDisabled(!ui.snapshot);
-    if (button("##pause", paused ? "Resume" : "Pause", paused, half)) ui.session.set_paused(!paused);
+    if (button("##pause", paused ? "Resume" : "Pause", paused, half))
+      ui.act(paused ? "render.resume" : "render.pause");
     tooltip("Stops taking samples, and goes on later from there. Space.");
     ImGui::SameLine(0, px(8));
-    if (button("##restart", "Start again", false, width - half - px(8))) ui.session.restart();
+    if (button("##restart", "Start again", false, width - half - px(8))) ui.act("render.restart");
     tooltip("Throws the samples away and starts the picture anew. R.");
     ImGui::EndDisabled();
     end_padded();

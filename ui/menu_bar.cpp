@@ -56,48 +56,72 @@ void file_menu(Ui& ui) {
   if (!begin_menu("File")) return;
   if (entry("Open\xE2\x80\xA6", "Ctrl+O",
             "Opens a glTF scene (.gltf or .glb). A file dropped on the window opens too."))
-    ui.start_dialog(Dialog::Purpose::open);
+    ui.act("dialog.open");
   const std::vector<std::string> files(ui.recent.begin(), ui.recent.end());
   if (!files.empty()) divide();
   for (size_t i = 0; i < std::min<size_t>(files.size(), 5); ++i) {
     ImGui::PushID(static_cast<int>(i));
     const std::string name = std::filesystem::path(files[i]).filename().string();
-    if (entry(elided(name, px(240)).c_str(), nullptr, files[i].c_str())) ui.open_scene(files[i]);
+    if (entry(elided(name, px(240)).c_str(), nullptr, files[i].c_str())) ui.act("scene.open", files[i]);
     ImGui::PopID();
   }
   divide();
-  const bool picture = ui.snapshot && !ui.snapshot->rgba.empty();
+  const bool picture = ui.has_picture();
   if (entry("Save picture\xE2\x80\xA6", "Ctrl+S",
             "Writes the picture as it is: all layers as EXR, or what is shown as PNG.", false, picture))
-    ui.start_dialog(Dialog::Purpose::save);
+    ui.act("dialog.save");
   if (entry("Screenshot", "F12", "Writes the window, panels and all, as a PNG in the working folder."))
-    ui.screenshot = true;
+    ui.act("screenshot");
   divide();
-  if (entry("Quit", "Ctrl+Q", "Closes the window; a render in progress is given up.")) ui.quit = true;
+  if (entry("Save session as script\xE2\x80\xA6", nullptr,
+            "Writes what was done in this session as commands, one a line; lucerna --script does it again."))
+    ui.act("dialog.script");
+  divide();
+  if (entry("Quit", "Ctrl+Q", "Closes the window; a render in progress is given up.")) ui.act("quit");
+  end_menu();
+}
+
+void edit_menu(Ui& ui) {
+  if (!begin_menu("Edit")) return;
+  if (entry("Undo", "Ctrl+Z",
+            ui.can_undo() ? ("Takes back: " + ui.undo_text()).c_str() : "Nothing to take back.", false,
+            ui.can_undo()))
+    ui.act("undo");
+  if (entry("Redo", "Ctrl+Shift+Z",
+            ui.can_redo() ? ("Does again: " + ui.redo_text()).c_str() : "Nothing to do again.", false,
+            ui.can_redo()))
+    ui.act("redo");
+  divide();
+  if (entry("Select nothing", nullptr, "A click in the picture selects what is under it.", false,
+            ui.selection.kind != Kind::none))
+    ui.act("select.none");
   end_menu();
 }
 
 void view_menu(Ui& ui) {
   if (!begin_menu("View")) return;
   if (entry("Panels", "Tab", "Shows or hides all panels.", ui.layout.panels))
-    ui.layout.panels = !ui.layout.panels;
+    ui.act("window.panels", !ui.layout.panels);
   if (entry("Light", nullptr, "Components and options.", ui.layout.left_open))
-    ui.layout.left_open = !ui.layout.left_open;
+    ui.act("window.fold", "left", ui.layout.left_open);
   if (entry("Scene", nullptr, "Cameras, lights, environment, materials.", ui.layout.right_open))
-    ui.layout.right_open = !ui.layout.right_open;
+    ui.act("window.fold", "right", ui.layout.right_open);
   if (entry("Timings and log", nullptr, "The strip at the bottom.", ui.layout.bottom_open))
-    ui.layout.bottom_open = !ui.layout.bottom_open;
+    ui.act("window.fold", "bottom", ui.layout.bottom_open);
   divide();
   if (entry("Frame selection", "F",
             "Moves the camera so that the selection, or else the whole scene, fills the picture.", false,
             ui.view.has_value()))
-    ui.frame_selection();
+    ui.act("camera.frame");
+  if (entry("Lamps", "L", "Marks the lamps in the picture; a click on a mark selects the lamp.",
+            ui.light_marks))
+    ui.act("view.lamps", !ui.light_marks);
   divide();
   for (const auto& [divisor, name] :
        {std::pair{1, "Full resolution"}, {2, "Half resolution"}, {4, "Quarter resolution"}})
     if (entry(name, nullptr, "Pixels of the picture for each pixel of the window; fewer converge sooner.",
               ui.picture_divisor == divisor))
-      ui.picture_divisor = divisor;
+      ui.act("view.divisor", divisor);
   end_menu();
 }
 
@@ -106,22 +130,24 @@ void render_menu(Ui& ui) {
   const bool paused = ui.snapshot && ui.snapshot->paused;
   if (entry(paused ? "Resume" : "Pause", "Space", "Stops taking samples, and goes on later from there.",
             false, ui.snapshot != nullptr))
-    ui.session.set_paused(!paused);
+    ui.act(paused ? "render.resume" : "render.pause");
   if (entry("Start again", "R", "Throws the samples away and starts the picture anew.", false,
             ui.snapshot != nullptr))
-    ui.session.restart();
+    ui.act("render.restart");
   if (entry("Reload shaders", "F5", "Compiles the shaders again; when that fails the old ones stay."))
-    ui.session.reload_shaders();
+    ui.act("shaders.reload");
   divide();
   if (entry("Give up loading", "Esc", "Gives up the load in progress; the scene shown stays.", false,
             ui.loading()))
-    ui.session.cancel();
+    ui.act("scene.cancel");
   end_menu();
 }
 
 void help_menu(Ui& ui) {
   if (!begin_menu("Help")) return;
   if (entry("Keys and mouse", "F1", "How to move and what the keys do.")) ui.help = true;
+  if (entry("Commands", nullptr, "Lists in the log what can be typed below it and written into scripts."))
+    ui.typed.push_back("help");
   end_menu();
 }
 
@@ -145,7 +171,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(8), 0.5f * (px(k_bar_height) - ImGui::GetFontSize())});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(16), 0});
   if (ImGui::BeginMenuBar()) {
-    file_menu(ui), view_menu(ui), render_menu(ui), help_menu(ui);
+    file_menu(ui), edit_menu(ui), view_menu(ui), render_menu(ui), help_menu(ui);
     ImGui::EndMenuBar();
   }
   ImGui::PopStyleVar(2);

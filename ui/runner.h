@@ -1,5 +1,6 @@
 #pragma once
-// Carries out the steps of a script, a little every frame, and measures.
+// Carries out the steps of a script and the lines of the console, a little every frame, and measures.
+#include <deque>
 #include <optional>
 
 #include "script.h"
@@ -9,42 +10,44 @@ namespace lucerna::ui {
 
 class Runner {
  public:
-  explicit Runner(std::vector<Step> steps) : steps_(std::move(steps)) {}
+  /// Registers the commands of script.h at the workspace and reads a script (see parse_script). The
+  /// workspace's commands refer to this object from now on.
+  Runner(Ui& ui, const std::vector<std::string>& lines, const std::string& name);
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
 
   /// Goes on as far as it can without waiting; call at the start of every frame.
-  void advance(Ui& ui);
+  void advance();
   /// Call after every presented frame. `interval_ms`: since the frame before was presented.
-  void presented(Ui& ui, double interval_ms);
+  void presented(double interval_ms);
 
-  bool running() const { return next_ < steps_.size(); }
+  /// Whether steps of a script are left.
+  bool running() const { return !steps_.empty(); }
   /// Whether frames are to be drawn all the time.
   bool measuring() const { return measure_.has_value(); }
-  std::optional<int> status;                ///< set when the program is to end
-  std::optional<std::string> screenshot;    ///< file wanted of the next frame
-  std::optional<std::pair<int, int>> size;  ///< window size wanted
 
  private:
   struct Measure {
     double start = 0, end = 0, next_move = 0;
     std::vector<double> frames, coarse;
     double moved_at = -1;
-    uint64_t snapshot_at_move = 0;
     scene::Camera target;
     int moves = 0;
   };
 
   /// True when the step is done; false: to be asked again.
-  bool step(Ui& ui, const Step& step);
-  bool measure(Ui& ui, const Step& step);
-  void fail(const Step& step, const std::string& why);
+  bool carry_out(const Step& step);
+  void measure(double seconds);
+  bool measured();
+  void console(const std::string& line);
+  void add_commands();
 
-  std::vector<Step> steps_;
-  size_t next_ = 0;
-  double began_ = -1;  ///< when the step began, or -1
-  uint64_t scene_before_ = 0;
-  int frames_left_ = 0;
-  uint64_t errors_before_ = 0;
+  Ui& ui_;
+  std::deque<Step> steps_;
+  commands::Line current_;  ///< begun and not done
+  double began_ = 0;        ///< when
   std::optional<Measure> measure_;
+  int frames_ = 0;  ///< drawn since the step began
 };
 
 }  // namespace lucerna::ui

@@ -47,8 +47,15 @@ ImU32 display_colour(const vec3& linear) {
 }
 
 float brightest(const vec3& c) { return std::max({c.x, c.y, c.z}); }
-std::string named(const std::string& name, const char* kind, size_t index) {
+std::string name_or(const std::string& name, const char* kind, size_t index) {
   return name.empty() ? fmt::format("{} {}", kind, index + 1) : name;
+}
+/// What a press on a row does: selects, or takes the selection away.
+void choose(Ui& ui, bool chosen, const char* kind, size_t index) {
+  if (chosen)
+    ui.act("select.none");
+  else
+    ui.act("select", kind, index + 1);
 }
 void quiet_line(const std::string& text) { label(text, colour::text_faint); }
 
@@ -57,43 +64,40 @@ void cameras(Ui& ui) {
   if (list.empty()) quiet_line("The scene has no camera");
   for (size_t i = 0; i < list.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    if (list_row("##camera", ui.scene_camera == static_cast<int>(i), named(list[i].name, "Camera", i),
+    if (list_row("##camera", ui.scene_camera == static_cast<int>(i), name_or(list[i].name, "Camera", i),
                  i < 9 ? fmt::format("{}", i + 1) : "", 0, 0))
-      ui.take_camera(static_cast<int>(i));
-    tooltip(fmt::format("{}: {}.{}", named(list[i].name, "Camera", i),
+      ui.act("camera.select", i + 1);
+    tooltip(fmt::format("{}: {}.{}", name_or(list[i].name, "Camera", i),
                         list[i].orthographic ? "orthographic" : "perspective",
                         i < 9 ? fmt::format(" Key {}.", i + 1) : ""));
     ImGui::PopID();
   }
   if (!ui.view) return;
   gap(4);
-  Viewpoint& view = *ui.view;
-  const float aspect = ui.picture.height() > 0 ? ui.picture.width() / ui.picture.height() : 1.5f;
+  const Viewpoint& view = *ui.view;
   if (view.camera.orthographic) {
     float height = 2 * view.camera.ymag;
     if (slider("##height", "Height", height,
-               {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m"})) {
-      const float ratio = height / (2 * view.camera.ymag);
-      view.camera.ymag *= ratio, view.camera.xmag *= ratio;
-      ui.moved();
-    }
+               {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m"}))
+      ui.act("camera.height", height);
     tooltip("Height of what an orthographic camera sees.");
   } else {
-    float lens = focal_length_mm(view.camera.yfov, aspect);
-    if (slider("##lens", "Lens", lens, {.lo = 8, .hi = 200, .log = true, .decimals = 1, .unit = "mm"})) {
-      view.camera.yfov = yfov_from_focal_length(lens, aspect);
-      ui.moved();
-    }
+    // The command takes the angle: it means the same in a window of any shape.
+    float lens = commands::focal_length_mm(view.camera.yfov, ui.aspect);
+    if (slider("##lens", "Lens", lens, {.lo = 8, .hi = 200, .log = true, .decimals = 1, .unit = "mm"}))
+      ui.act("camera.fov", commands::yfov_from_focal_length(lens, ui.aspect) * 180 / k_pi);
     tooltip(fmt::format(
         "Focal length for a frame 36 mm wide; now a field of view of {:.1f}\xC2\xB0 from top to bottom.",
         view.camera.yfov * 180 / k_pi));
   }
-  slider("##speed", "Fly speed", ui.speed,
-         {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"});
+  float speed = ui.speed;
+  if (slider("##speed", "Fly speed", speed,
+             {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"}))
+    ui.act("camera.speed", speed);
   tooltip(
       "Speed of flight with W A S D Q E while the pointer is over the picture; Shift flies four times "
       "faster.");
-  const vec3 eye = eye_of(view.camera);
+  const vec3 eye = commands::eye_of(view.camera);
   value_row("Eye",
             fmt::format("{} {} {} m", padded(real_text(eye.x, 2), 6), padded(real_text(eye.y, 2), 6),
                         padded(real_text(eye.z, 2), 6)),
@@ -111,22 +115,20 @@ void light_rows(Ui& ui) {
   static const char* kinds[] = {"point", "spot", "sun"};
   for (size_t i = 0; i < lights.size(); ++i) {
     const auto index = static_cast<uint32_t>(i);
-    scene::Light light = ui.light(index);
+    const scene::Light light = ui.light(index);
     ImGui::PushID(static_cast<int>(i));
-    float strength = brightest(light.intensity);
-    vec3 tint = strength > 0                    ? light.intensity / strength
-                : ui.light_colours.count(index) ? ui.light_colours[index]
-                                                : vec3(1);
+    const float strength = brightest(light.intensity);
+    const vec3 tint = strength > 0 ? light.intensity / strength : vec3(1);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool chosen = ui.selection.kind == Kind::light && ui.selection.index == index;
-    if (list_row("##light", chosen, named(light.name, "Light", i), kinds[static_cast<size_t>(light.kind)],
+    if (list_row("##light", chosen, name_or(light.name, "Light", i), kinds[static_cast<size_t>(light.kind)],
                  colour::with_alpha(display_colour(tint), light.enabled ? 1.0f : 0.3f), 28))
-      ui.selection = chosen ? Selection{} : Selection{Kind::light, index};
+      choose(ui, chosen, "light", index);
     tooltip("Selects the light; F then frames it.");
     const float below = ImGui::GetCursorScreenPos().y;
     ImGui::SetCursorScreenPos({at.x + ImGui::CalcItemWidth() - px(22), at.y + px(1)});
-    bool changed = false;
-    if (sign_button("##on", Sign::power, light.enabled)) light.enabled = !light.enabled, changed = true;
+    if (sign_button("##on", Sign::power, light.enabled))
+      ui.act("light.set", i + 1, named("on", !light.enabled));
     tooltip(light.enabled ? "Switches the light off." : "Switches the light on.");
     ImGui::SetCursorScreenPos({at.x, below});
     const bool sun = light.kind == scene::LightKind::directional;
@@ -135,15 +137,11 @@ void light_rows(Ui& ui) {
     how.lo = 1e-3f, how.hi = 1e5f, how.log = true, how.travel = 0.25f;
     ImGui::BeginDisabled(!light.enabled);
     float shown = std::max(strength, how.lo);
-    if (slider("##strength", sun ? "Irradiance" : "Intensity", shown, how)) {
-      if (strength <= 0) ui.light_colours[index] = tint;
-      light.intensity = tint * shown;
-      changed = true;
-    }
+    if (slider("##strength", sun ? "Irradiance" : "Intensity", shown, how))
+      ui.act("light.set", i + 1, named("intensity", shown));
     ImGui::EndDisabled();
     tooltip(sun ? "Irradiance on a surface that faces the light, of its strongest channel."
                 : "Radiant intensity of the strongest channel.");
-    if (changed) ui.edit_light(index, light);
     ImGui::PopID();
     gap(4);
   }
@@ -153,8 +151,6 @@ void environment(Ui& ui) {
   const scene::Environment& e = ui.scene->environment;
   const bool image = e.image != scene::k_none;
   const bool dark = !image && brightest(e.radiance) <= 0;
-  float scale = ui.environment_edit ? ui.environment_edit->scale : e.scale;
-  float rotation = ui.environment_edit ? ui.environment_edit->rotation : e.rotation;
   value_row("Light",
             image  ? (e.file.empty() ? "image" : e.file)
             : dark ? "none"
@@ -162,8 +158,7 @@ void environment(Ui& ui) {
             image ? "A latitude-longitude image around the scene." : "Radiance from every direction.");
   gap(4);
   ImGui::BeginDisabled(dark);
-  bool changed = false;
-  float shown = std::max(scale, 1e-3f);
+  float shown = std::max(ui.environment_scale(), 1e-3f);
   if (slider("##scale", "Strength", shown,
              {.lo = 1e-3f,
               .hi = 1000,
@@ -172,16 +167,15 @@ void environment(Ui& ui) {
               .unit = "\xC3\x97",
               .bar = false,
               .travel = 0.25f}))
-    scale = shown, changed = true;
+    ui.act("environment.set", named("scale", shown));
   tooltip("Multiplies the radiance of the environment.");
   ImGui::BeginDisabled(!image);
-  float turn = std::remainder(rotation, 360.0f);
+  float turn = std::remainder(ui.environment_rotation(), 360.0f);
   if (slider("##rotation", "Rotation", turn, {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0"}))
-    rotation = turn, changed = true;
+    ui.act("environment.set", named("rotation", turn));
   tooltip("Turns the image counter-clockwise, seen from above.");
   ImGui::EndDisabled();
   ImGui::EndDisabled();
-  if (changed) ui.edit_environment(scale, rotation);
 }
 
 void material_details(const scene::Material& m) {
@@ -237,11 +231,11 @@ void materials(Ui& ui) {
                        : m.transmission > 0                                 ? "glass"
                        : m.metallic > 0.5f && !m.metallic_roughness_texture ? "metal"
                                                                             : "";
-    if (list_row("##material", chosen, named(m.name, "Material", i), note,
+    if (list_row("##material", chosen, name_or(m.name, "Material", i), note,
                  display_colour(emits ? m.emission / brightest(m.emission) : vec3(m.base_color)), 0))
-      ui.selection = chosen ? Selection{} : Selection{Kind::material, index};
+      choose(ui, chosen, "material", index);
     tooltip(fmt::format("{}. Selects the material; F then frames what is made of it.",
-                        named(m.name, "Material", i)));
+                        name_or(m.name, "Material", i)));
     if (chosen) {
       ImGui::Indent(px(18));
       ImGui::PushItemWidth(ImGui::CalcItemWidth() - px(18));
@@ -265,8 +259,8 @@ void objects(Ui& ui) {
       const scene::Instance& instance = list[index];
       const bool chosen = ui.selection.kind == Kind::instance && ui.selection.index == index;
       ImGui::PushID(i);
-      if (list_row("##object", chosen, named(instance.name, "Object", index), "", 0, 0))
-        ui.selection = chosen ? Selection{} : Selection{Kind::instance, index};
+      if (list_row("##object", chosen, name_or(instance.name, "Object", index), "", 0, 0))
+        choose(ui, chosen, "object", index);
       tooltip("Selects the object; F then frames it.");
       ImGui::PopID();
     }
@@ -277,7 +271,7 @@ void objects(Ui& ui) {
 void draw_scene_panel(Ui& ui, const Area& area) {
   if (!ui.layout.right_open) {
     begin_panel("##scene_folded", area, colour::panel, false);
-    if (folded_strip("Scene", area.lo, area.hi, false)) ui.layout.right_open = true;
+    if (folded_strip("Scene", area.lo, area.hi, false)) ui.act("window.fold", "right", false);
     ImGui::End();
     return;
   }
@@ -293,7 +287,7 @@ void draw_scene_panel(Ui& ui, const Area& area) {
     return;
   }
   const auto block = [&](const char* title, size_t count, bool fallback, auto&& draw) {
-    if (section(title, ui.open(title, fallback), count > 0 ? fmt::format("{}", count) : "")) {
+    if (panel_section(ui, title, fallback, count > 0 ? fmt::format("{}", count) : "")) {
       begin_padded();
       ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
       draw();

@@ -1,17 +1,22 @@
 #pragma once
-// What the window knows and what its parts share: the session, the newest snapshot, edits on their way,
-// navigation, the log, and requests to the loop that draws.
+// What the window knows and what its parts share: the workspace, what the panels show, the log, and requests
+// to the loop that draws.
 #include <deque>
 #include <map>
 #include <mutex>
 #include <optional>
 
 #include "base/log.h"
-#include "camera_control.h"
+#include "commands/workspace.h"
 #include "layout.h"
-#include "session/session.h"
 
 namespace lucerna::ui {
+
+using commands::Flight;
+using commands::Kind;
+using commands::named;
+using commands::Selection;
+using commands::Viewpoint;
 
 struct LogLine {
   log::Level level;
@@ -34,35 +39,8 @@ class LogInbox {
   int token_ = 0;
 };
 
-/// Settings as the person sees them: the session's, with edits on top until the session has taken them.
-class SettingsView {
- public:
-  explicit SettingsView(session::Session& session) : session_(session) {}
-  void refresh(double now);
-  void set(const std::string& key, const std::string& value);
-  const std::string& text(const std::string& key) const;
-  double real(const std::string& key) const;
-  bool boolean(const std::string& key) const { return text(key) == "true"; }
-
- private:
-  struct Pending {
-    std::string value;
-    double since;
-  };
-  session::Session& session_;
-  plan::Settings known_;
-  std::map<std::string, Pending> pending_;
-  double now_ = 0;
-};
-
-enum class Kind { none, material, instance, light };
-struct Selection {
-  Kind kind = Kind::none;
-  uint32_t index = 0;
-};
-
 struct Dialog {
-  enum class Purpose { none, open, save } purpose = Purpose::none;
+  enum class Purpose { none, open, save, script } purpose = Purpose::none;
   std::string path;
   bool fresh = false;   ///< to be opened in the next frame
   bool focus = false;   ///< its field takes the keyboard in the next frame
@@ -70,75 +48,55 @@ struct Dialog {
   int marked = -1;      ///< entry of the completion list
 };
 
-struct Ui {
-  explicit Ui(session::Session& s) : session(s), settings(s) {}
+/// The line under the log.
+struct Console {
+  std::string text;
+  std::vector<std::string> history;
+  int at = -1;         ///< entry of the history that is shown, or -1
+  bool focus = false;  ///< takes the keyboard in the next frame
+  bool active = false;
+};
 
-  session::Session& session;
-  std::shared_ptr<const session::Snapshot> snapshot;
-  std::shared_ptr<const scene::Scene> scene;
-  SettingsView settings;
-  double now = 0;        ///< seconds since the window opened, at the start of the frame
-  static double time();  ///< the same, right now
+/// A workspace with a window around it.
+struct Ui : commands::Workspace {
+  explicit Ui(session::Session& s);
 
-  // Scene edits that the session may not have taken yet, with the time of the last change.
-  struct LightEdit {
-    scene::Light light;
-    double since;
-  };
-  std::map<uint32_t, LightEdit> light_edits;
-  std::map<uint32_t, vec3> light_colours;  ///< of lights turned down to nothing
-  struct EnvironmentEdit {
-    float scale, rotation;
-    double since;
-  };
-  std::optional<EnvironmentEdit> environment_edit;
-  /// The light as the person sees it.
-  scene::Light light(uint32_t index) const;
-  void edit_light(uint32_t index, const scene::Light& light);
-  void edit_environment(float scale, float rotation);
-  void drop_taken_edits();
+  static double time();  ///< seconds since the window opened
 
-  // Navigation.
-  std::optional<Viewpoint> view;  ///< none before the first picture of a scene
-  uint64_t view_scene = 0;        ///< scene_id that `view` belongs to
-  Box bounds;
+  /// Carries out a command that a control stands for; a failure goes to the log and the strip of errors. What
+  /// is done while one control is held, or in one flight, is one gesture.
+  template <class... A>
+  void act(const std::string& command, const A&... words) {
+    act_line(commands::line(command, words...));
+  }
+  void act_line(const std::string& line);
+  uint64_t gesture = 0;  ///< of the control that is held now; 0: none
+  /// Finds out which control is held; call once a frame.
+  void follow_gesture();
+
+  /// Lines typed at the console, to be carried out by the runner.
+  std::vector<std::string> typed;
+
   Flight flight;
-  float speed = 1.5f;         ///< m/s
-  int scene_camera = -1;      ///< the one taken last and not moved since
-  bool camera_moved = false;  ///< to be sent after this frame
-  void take_camera(int index);
-  void moved();
-  void frame_selection();
-  /// Follows the session to a new scene.
-  void follow_scene();
-
-  Selection selection;
-  Box selection_bounds() const;
-  std::string selection_name() const;
-
-  int solo = -1;
-  std::array<bool, session::k_components> shown_before{};
-  void toggle_solo(int component);
-  void toggle_show(int component);
+  /// Puts the camera where a drag or a flight has taken it.
+  void place(const Viewpoint& view);
 
   // The window.
   Layout layout;
   std::map<std::string, bool> sections;  ///< open or not, by title
-  bool& open(const char* section, bool fallback = true) {
-    return sections.emplace(section, fallback).first->second;
-  }
   std::deque<LogLine> log;
   bool log_follows = true;
   std::array<bool, 4> log_levels{false, true, true, true};
   std::vector<std::string> errors;  ///< the strip's, newest last
-  uint64_t error_count = 0;         ///< errors logged so far
+  Console console;
   Dialog dialog;
   bool help = false;
   std::vector<std::string> recent;  ///< files, newest first
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
-  int picture_divisor = 1;  ///< window pixels per picture pixel
-  Area picture;             ///< where the picture may be
+  int picture_divisor = 1;   ///< window pixels per picture pixel
+  bool light_marks = false;  ///< lamps are marked in the picture
+  Area picture;              ///< where the picture may be
   bool picture_hovered = false;
 
   // Requests to the loop.
@@ -147,15 +105,38 @@ struct Ui {
                int mods = 0) const;  ///< among `keys`, with exactly these modifiers (Shift is not looked at)
   int frames_wanted = 3;             ///< to be drawn even when nothing happens
   bool moving = false;               ///< something on screen moves by itself
-  bool quit = false;
-  bool screenshot = false;  ///< F12
+  std::optional<int> status;         ///< the program's, when it is to end with one
+  struct Shot {
+    std::string file;  ///< "" for none
+    int settle = 0;    ///< frames to draw before it is taken
+  } shot;
+  std::optional<std::pair<int, int>> size;  ///< window size wanted
+  /// Mouse and keys as a script moves them.
+  struct Input {
+    float x = 0, y = 0;  ///< window pixels
+    int button = -1;     ///< -1: the pointer moves; otherwise the button changes, where the pointer is
+    bool down = false;
+  };
+  std::vector<Input> inputs;
+  std::vector<std::pair<int, int>> key_strokes;  ///< GLFW keys with their modifiers
+  std::string keyboard;                          ///< text typed
+  std::vector<std::string> drops;                ///< files that a script drops on the window
   void wake(int frames = 2) { frames_wanted = frames_wanted < frames ? frames : frames_wanted; }
 
-  void open_scene(const std::string& file);
-  void save_picture(const std::string& file);
+  /// A file was dropped on the window.
+  void drop(const std::string& file);
   void start_dialog(Dialog::Purpose purpose);
-  void fail(const std::string& message);  ///< to the strip
-  bool loading() const { return snapshot && snapshot->progress >= 0; }
+  void fail(const std::string& message);                  ///< to the strip
+  void print(log::Level level, const std::string& text);  ///< to the log panel alone
+  bool has_picture() const { return snapshot && !snapshot->rgba.empty(); }
+
+ protected:
+  void scene_changed() override;
+
+ private:
+  unsigned held_ = 0;  ///< id of the control that is held
+  bool flying_ = false;
+  uint64_t gestures_ = 0;
 };
 
 // The parts, each in a file of its own; called once a frame in this order. Coordinates are window pixels.
@@ -170,8 +151,15 @@ void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
 void handle_keys(Ui& ui);
 
+/// GLFW's key and modifiers of a name such as "ctrl+z". Throws Error when there is none such.
+std::pair<int, int> key_of(const std::string& name);
+/// Registers what only a window can do: panels, dialogs, the log.
+void add_window_commands(Ui& ui);
+
 /// Begins a bare panel at an area; end with ImGui::End().
 void begin_panel(const char* name, const Area& area, ImU32 background, bool scrolls);
+/// A section of a panel, whose fold is a command; `fallback`: whether it is open before anybody has said so.
+bool panel_section(Ui& ui, const char* title, bool fallback, const std::string& note = "");
 /// A control for an option of the settings table, by its type; the tooltip is its help.
 void option_control(Ui& ui, const std::string& key, const std::string& name);
 

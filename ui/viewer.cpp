@@ -1,11 +1,9 @@
 #include "viewer.h"
 
 #include <GLFW/glfw3.h>
-#include <fmt/chrono.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <utility>
 
 #include "base/timer.h"
@@ -25,13 +23,13 @@ class Viewer {
  public:
   Viewer(session::Session& session, const ViewerOptions& options)
       : options_(options),
-        runner_(parse_script(options.script, options.script_name)),
-        window_(options.width, options.height, options.hidden, options.scale),
-        ui_(session) {
+        ui_(session),
+        runner_(ui_, options.script, options.script_name),  // read before a window is opened
+        window_(options.width, options.height, options.hidden, options.scale) {
     if (remembers()) recall(ui_);
     if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
     session.on_publish([] { Window::wake(); });
-    if (!options.scene.empty()) session.load(options.scene);
+    if (!options.scene.empty()) ui_.act("scene.open", options.scene.string());
   }
 
   ~Viewer() {
@@ -40,15 +38,15 @@ class Viewer {
   }
 
   int run() {
-    while (!window_.closing() && !ui_.quit && !runner_.status) {
+    while (!window_.closing() && !ui_.status) {
       pause_until_needed();
       collect();
-      runner_.advance(ui_);
-      if (runner_.size) window_.set_size(runner_.size->first, runner_.size->second), runner_.size.reset();
-      if (runner_.status) break;
+      runner_.advance();
+      inject();
+      if (ui_.status) break;
       if (ui_.frames_wanted > 0) draw();
     }
-    return runner_.status.value_or(0);
+    return ui_.status.value_or(0);
   }
 
  private:
@@ -69,39 +67,41 @@ class Viewer {
 
   /// Takes in what came from outside: snapshots, log lines, dropped files.
   void collect() {
-    ui_.now = ui_.time();
-    auto snapshot = ui_.session.snapshot();
+    const auto snapshot = ui_.snapshot;
+    const auto scene = ui_.scene;
+    ui_.refresh(ui_.time());
     if (snapshot != ui_.snapshot) {
-      ui_.snapshot = std::move(snapshot);
       ui_.wake(1);
       fresh_picture_ = ui_.snapshot != nullptr;
     }
-    auto scene = ui_.session.scene();
     if (scene != ui_.scene) {
-      ui_.scene = std::move(scene);
       ui_.wake(1);
       window_.set_title(ui_.scene ? ui_.scene->name + " \xE2\x80\x93 Lucerna" : "Lucerna");
       hold_selection();
     }
-    ui_.follow_scene();
     for (LogLine& line : inbox_.take()) {
       if (line.level == log::Level::error) ui_.fail(line.text), ++ui_.error_count;
       ui_.log.push_back(std::move(line));
       if (ui_.log.size() > k_log_lines) ui_.log.pop_front();
       ui_.wake(2);
     }
-    for (const std::string& file : window_.dropped()) {
-      std::string ending = std::filesystem::path(file).extension().string();
-      std::transform(ending.begin(), ending.end(), ending.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-      if (ending == ".gltf" || ending == ".glb")
-        ui_.open_scene(file);
-      else
-        log::error("{}: cannot be opened; expected a .gltf or .glb file", file);
-    }
+    for (const std::string& file : window_.dropped()) ui_.drop(file);
     // Tooltips and the text cursor need a frame after the pointer has come to rest.
     if (ui_.now - hovering_since_ < 0.7 || ImGui::GetIO().WantTextInput) ui_.wake(1);
     if (runner_.measuring() || ui_.moving) ui_.wake(1);
+  }
+
+  /// What a script does with mouse, keyboard and window comes in where a person's doings do.
+  void inject() {
+    if (ui_.size) window_.set_size(ui_.size->first, ui_.size->second), ui_.size.reset();
+    for (const Ui::Input& input : std::exchange(ui_.inputs, {}))
+      if (input.button < 0)
+        window_.move_mouse(input.x, input.y);
+      else
+        window_.press_mouse(input.button, input.down);
+    for (const auto& [key, mods] : std::exchange(ui_.key_strokes, {})) window_.press_key(key, mods);
+    if (!ui_.keyboard.empty()) window_.type(std::exchange(ui_.keyboard, {}));
+    for (const std::string& file : std::exchange(ui_.drops, {})) window_.drop(file);
   }
 
   /// A selection outlives edits, but not what it points at.
@@ -122,14 +122,12 @@ class Viewer {
     }
     --ui_.frames_wanted;
     ui_.moving = false;
-    ui_.settings.refresh(ui_.now);
-    ui_.drop_taken_edits();
-
     ui_.keys.clear();
     for (const Window::Key& key : window_.pressed()) ui_.keys.emplace_back(key.key, key.mods);
 
     window_.begin_frame();
     ImGui::PushFont(theme().fonts.regular);
+    ui_.follow_gesture();
     handle_keys(ui_);
     const Areas areas = arrange(ui_.layout, ImGui::GetIO().DisplaySize, theme().scale);
     if (ui_.layout.panels) {
@@ -145,14 +143,13 @@ class Viewer {
     draw_dialogs(ui_);
     ImGui::PopFont();
     window_.end_frame();
-    if (runner_.screenshot) screenshot(*runner_.screenshot), runner_.screenshot.reset();
-    if (std::exchange(ui_.screenshot, false)) {
-      screenshot(fmt::format("lucerna-{:%Y%m%d-%H%M%S}.png", fmt::localtime(std::time(nullptr))));
+    if (!ui_.shot.file.empty()) {
       ui_.wake(2);
+      if (ui_.shot.settle-- <= 0) screenshot(std::exchange(ui_.shot.file, {}));
     }
     window_.present();
     const double now = ui_.time();
-    runner_.presented(ui_, 1e3 * (now - last_present_));
+    runner_.presented(1e3 * (now - last_present_));
     last_present_ = now;
     last_draw_ = ui_.now;
     send();
@@ -160,7 +157,7 @@ class Viewer {
 
   /// Tells the renderer about the camera and the size of the viewport.
   void send() {
-    if (std::exchange(ui_.camera_moved, false) && ui_.view) ui_.session.set_camera(ui_.view->camera);
+    ui_.send_camera();
     const ImVec2 ratio = ImGui::GetIO().DisplayFramebufferScale;
     const auto divided = [&](float units, float scale) {
       return static_cast<uint32_t>(std::max(1.0f, units * scale / static_cast<float>(ui_.picture_divisor)));
@@ -185,15 +182,15 @@ class Viewer {
       log::info("window saved as {}", std::filesystem::absolute(file).string());
     } catch (const Error& error) {
       log::error("{}", error.what());
-      if (runner_.running()) runner_.status = 1;
+      if (runner_.running()) ui_.status = 1;
     }
   }
 
   ViewerOptions options_;
-  Runner runner_;
-  Window window_;
   LogInbox inbox_;
   Ui ui_;
+  Runner runner_;
+  Window window_;
   bool fresh_picture_ = false;
   double last_draw_ = -1, last_present_ = 0, hovering_since_ = -10;
   std::pair<uint32_t, uint32_t> wanted_size_{0, 0}, sent_size_{0, 0};

@@ -39,7 +39,7 @@ void layer_buttons(Ui& ui, float room) {
   const plan::OptionInfo* option = plan::find_option("film.layer");
   if (!option) return;
   const std::vector<std::string>& layers = option->choices;
-  const std::string& current = ui.settings.text("film.layer");
+  const std::string& current = ui.setting("film.layer");
   const float between = px(4), list_width = px(104);
   const auto width_of = [&](const std::string& layer) { return text_width(capitalized(layer)) + px(18); };
   const float all =
@@ -57,7 +57,7 @@ void layer_buttons(Ui& ui, float room) {
   for (size_t i = 0; i < fitting; ++i) {
     if (button(("##layer" + layers[i]).c_str(), capitalized(layers[i]), layers[i] == current,
                width_of(layers[i]), layer_mark(layers[i])))
-      ui.settings.set("film.layer", layers[i]);
+      ui.act("set", "film.layer", layers[i]);
     tooltip(layer_help(layers[i]));
     ImGui::SameLine(0, between);
   }
@@ -68,20 +68,74 @@ void layer_buttons(Ui& ui, float room) {
     if (chosen == static_cast<int>(rest.size())) chosen = -1;
     const bool none = chosen < 0;
     if (choice("##layers", none ? "More" : "", names, chosen, list_width))
-      ui.settings.set("film.layer", rest[static_cast<size_t>(chosen)]);
+      ui.act("set", "film.layer", rest[static_cast<size_t>(chosen)]);
     tooltip("Further layers.");
   }
+}
+
+constexpr float k_drag = 3;  // design pixels that part a drag from a click
+
+bool dragging() {
+  for (int button = 0; button < 3; ++button)
+    if (ImGui::GetIO().MouseDown[button] && ImGui::IsMouseDragging(button, px(k_drag))) return true;
+  return false;
+}
+
+/// A point of the scene in the picture; false behind the eye.
+bool project(const scene::Camera& camera, const Area& shown, const vec3& point, ImVec2& at) {
+  const vec3 d = point - commands::eye_of(camera);
+  const float depth = glm::dot(d, commands::forward_of(camera));
+  if (!camera.orthographic && depth <= 1e-6f) return false;
+  const float half = camera.orthographic ? camera.ymag : depth * std::tan(0.5f * camera.yfov);
+  const float scale = 0.5f * shown.height() / half;
+  at = {0.5f * (shown.lo.x + shown.hi.x) + scale * glm::dot(d, commands::right_of(camera)),
+        0.5f * (shown.lo.y + shown.hi.y) - scale * glm::dot(d, commands::up_of(camera))};
+  return true;
+}
+
+struct Mark {
+  size_t light;
+  ImVec2 at;
+};
+
+/// Where lamps stand in the picture on the screen. Suns have no place.
+std::vector<Mark> marks(const Ui& ui, const Area& shown) {
+  std::vector<Mark> list;
+  if (!ui.scene || !ui.snapshot) return list;
+  for (size_t i = 0; i < ui.scene->lights.size(); ++i) {
+    const scene::Light& light = ui.scene->lights[i];
+    ImVec2 at;
+    if (light.kind != scene::LightKind::directional &&
+        project(ui.snapshot->camera, shown, light.position, at))
+      list.push_back({i, at});
+  }
+  return list;
+}
+
+void draw_marks(const Ui& ui, const Area& shown) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->PushClipRect(shown.lo, shown.hi, true);
+  for (const Mark& mark : marks(ui, shown)) {
+    const bool chosen = ui.selection == Selection{Kind::light, static_cast<uint32_t>(mark.light)};
+    const float r = px(5);
+    list->AddCircleFilled(mark.at, r + px(1.5f), IM_COL32(0, 0, 0, 110), 20);
+    list->AddCircle(mark.at, r, chosen ? colour::accent : colour::text, 20, px(1.5f));
+    if (ui.light(static_cast<uint32_t>(mark.light)).enabled)
+      list->AddCircleFilled(mark.at, px(2), chosen ? colour::accent : colour::text, 12);
+  }
+  list->PopClipRect();
 }
 
 /// Keys and mouse over the picture.
 void navigate(Ui& ui, bool hovered, bool active) {
   ImGuiIO& io = ImGui::GetIO();
   if (!ui.view) return;
-  Viewpoint& view = *ui.view;
+  Viewpoint view = *ui.view;
   const float height = std::max(1.0f, ui.picture.height());
   const vec2 drag(io.MouseDelta.x, io.MouseDelta.y);
   const bool typing = io.WantTextInput ||
                       ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+  bool moved = false;
 
   // Flight: while the pointer is over the picture.
   vec3 wish(0);
@@ -93,29 +147,42 @@ void navigate(Ui& ui, bool hovered, bool active) {
   const bool flying = wish != vec3(0);
   if (flying || ui.flight.moving()) {
     const float seconds = std::min(io.DeltaTime, 0.1f);
-    fly(view, advance(ui.flight, wish, ui.speed * (io.KeyShift ? 4.0f : 1.0f), seconds));
-    ui.moving = true;
-    ui.moved();
+    commands::fly(view, advance(ui.flight, wish, ui.speed * (io.KeyShift ? 4.0f : 1.0f), seconds));
+    ui.moving = moved = true;
   }
-  if (active && (drag.x != 0 || drag.y != 0)) {
+  // A press that hardly moves is a click; it begins to drag after three pixels.
+  if (active && (drag.x != 0 || drag.y != 0) && (flying || dragging())) {
     // Half a turn across the height of the picture.
     const vec2 angles = -drag * (k_pi / height);
     if (flying && (io.MouseDown[0] || io.MouseDown[1]))
-      look(view, 0.5f * angles);
+      commands::look(view, 0.5f * angles);
     else if (io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift))
-      pan(view, drag, height);
+      commands::pan(view, drag, height);
     else if (io.MouseDown[1])
-      dolly(view, 12 * (drag.x - drag.y) / height);
+      commands::dolly(view, 12 * (drag.x - drag.y) / height);
     else if (io.MouseDown[0])
-      orbit(view, {angles.x, -angles.y});
-    ui.moved();
+      commands::orbit(view, {angles.x, -angles.y});
+    moved = true;
   }
+  if (moved) ui.place(view);
   if (hovered && io.MouseWheel != 0) {
     if (flying)
-      ui.speed = std::clamp(ui.speed * std::pow(1.2f, io.MouseWheel), 0.01f, 1000.0f);
+      ui.act("camera.speed", std::clamp(ui.speed * std::pow(1.2f, io.MouseWheel), 0.01f, 1000.0f));
     else
-      dolly(view, io.MouseWheel), ui.moved();
+      ui.act("camera.dolly", io.MouseWheel);
   }
+}
+
+/// A click selects what is under it: a light where its mark is shown, or else an object.
+void click(Ui& ui, const Area& shown) {
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  if (ui.light_marks)
+    for (const Mark& mark : marks(ui, shown))
+      if (std::hypot(mark.at.x - at.x, mark.at.y - at.y) <= px(9))
+        return ui.act("select", "light", mark.light + 1);
+  const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
+  const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
+  if (x >= 0 && x <= 1 && y >= 0 && y <= 1) ui.act("pick", x, y);
 }
 
 void empty_state(Ui& ui, const Area& area) {
@@ -127,7 +194,7 @@ void empty_state(Ui& ui, const Area& area) {
             colour::text_dim, Align::centre);
   const float w = px(104);
   ImGui::SetCursorScreenPos({std::floor(x - 0.5f * w), y + px(56)});
-  if (button("##open", "Open\xE2\x80\xA6", false, w)) ui.start_dialog(Dialog::Purpose::open);
+  if (button("##open", "Open\xE2\x80\xA6", false, w)) ui.act("dialog.open");
   tooltip("Opens a scene by its path. Ctrl+O.");
   if (ui.recent.empty()) return;
   float line = y + px(112);
@@ -141,7 +208,7 @@ void empty_state(Ui& ui, const Area& area) {
     ImGui::PushID(static_cast<int>(i));
     const ImVec2 lo(std::floor(x - 0.5f * width), line), hi(lo.x + width, line + px(24));
     ImGui::SetCursorScreenPos(lo);
-    if (ImGui::InvisibleButton("##recent", {width, px(24)})) ui.open_scene(files[i]);
+    if (ImGui::InvisibleButton("##recent", {width, px(24)})) ui.act("scene.open", files[i]);
     if (ImGui::IsItemHovered()) list->AddRectFilled(lo, hi, colour::field, px(3));
     draw_text(list, lo, hi, elided(files[i], width - px(16), nullptr, true),
               ImGui::IsItemHovered() ? colour::text : colour::text_dim, Align::centre);
@@ -166,7 +233,7 @@ void activity_card(Ui& ui, const Area& area) {
             elided(ui.snapshot->activity, text_right - lo.x - px(12)), colour::text);
   if (!cancels) return;
   ImGui::SetCursorScreenPos({hi.x - px(84), lo.y + px(10)});
-  if (button("##cancel", "Cancel", false, px(72))) ui.session.cancel();
+  if (button("##cancel", "Cancel", false, px(72))) ui.act("scene.cancel");
   tooltip("Gives up the load; the scene shown stays. Esc.");
   const float track_lo = lo.x + px(12), track_hi = hi.x - px(12), y = hi.y - px(14);
   list->AddRectFilled({track_lo, y}, {track_hi, y + px(3)}, colour::field, px(1));
@@ -218,17 +285,17 @@ void draw_toolbar(Ui& ui, const Area& area) {
     std::vector<std::string> names;
     for (const std::string& name : tone->choices) names.push_back(name == "agx" ? "AgX" : capitalized(name));
     int chosen = static_cast<int>(
-        std::find(tone->choices.begin(), tone->choices.end(), ui.settings.text("film.tone_curve")) -
+        std::find(tone->choices.begin(), tone->choices.end(), ui.setting("film.tone_curve")) -
         tone->choices.begin());
     if (choice("##tone", "", names, chosen, tone_width))
-      ui.settings.set("film.tone_curve", tone->choices[static_cast<size_t>(chosen)]);
+      ui.act("set", "film.tone_curve", tone->choices[static_cast<size_t>(chosen)]);
     tooltip(tone->help);
     right -= px(4);
   }
   if (const plan::OptionInfo* ev = plan::find_option("film.ev")) {
     right -= ev_width;
     ImGui::SetCursorScreenPos({right, y});
-    auto value = static_cast<float>(ui.settings.real("film.ev"));
+    auto value = static_cast<float>(ui.setting_real("film.ev"));
     // The hand wants the range in which pictures lie; typing reaches the rest.
     const Slider how{.lo = std::max(-10.0f, static_cast<float>(ev->lo)),
                      .hi = std::min(10.0f, static_cast<float>(ev->hi)),
@@ -237,7 +304,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
                      .bar = false,
                      .sign = true,
                      .travel = 0.2f};
-    if (slider("##ev", "", value, how, ev_width)) ui.settings.set("film.ev", fmt::format("{:.4g}", value));
+    if (slider("##ev", "", value, how, ev_width)) ui.act("set", "film.ev", fmt::format("{:.4g}", value));
     tooltip(ev->help + " Double-click to type.");
     right -= px(8);
   }
@@ -249,8 +316,10 @@ void draw_toolbar(Ui& ui, const Area& area) {
 void draw_picture(Ui& ui, const Area& area) {
   begin_panel("##picture", area, colour::surround, false);
   ui.picture = area;
+  if (area.height() > 0) ui.aspect = area.width() / area.height();
   ImDrawList* list = ImGui::GetWindowDrawList();
-  const bool shown = ui.snapshot && !ui.snapshot->rgba.empty() && ui.texture != 0;
+  const bool shown = ui.has_picture() && ui.texture != 0;
+  Area frame = area;  // of the picture itself
   if (shown) {
     // One picture pixel on one window pixel; while the sizes differ the picture stands in the middle, scaled
     // down if it must be.
@@ -265,6 +334,8 @@ void draw_picture(Ui& ui, const Area& area) {
                     std::floor(area.lo.y + 0.5f * (area.height() - h)));
     list->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(ui.texture)), lo,
                    {lo.x + w, lo.y + h});
+    frame = {lo, {lo.x + w, lo.y + h}};
+    if (ui.light_marks) draw_marks(ui, frame);
   }
   const bool waiting = ui.snapshot && !ui.snapshot->activity.empty();
   if (!shown && !waiting) empty_state(ui, area);
@@ -280,6 +351,9 @@ void draw_picture(Ui& ui, const Area& area) {
                                ImGuiButtonFlags_MouseButtonMiddle);
     ui.picture_hovered = ImGui::IsItemHovered();
     active = ImGui::IsItemActive();
+    if (ui.picture_hovered && ImGui::IsMouseReleased(0) && ImGui::IsItemDeactivated() &&
+        ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))
+      click(ui, frame);
   }
   navigate(ui, ui.picture_hovered, active);
   ImGui::End();

@@ -23,6 +23,20 @@ struct Window::Events {
   std::vector<Key> keys;
   std::vector<int> quick;  // pressed since the last frame, perhaps released already
   std::string error;
+  bool scripted = false;  // the pointer is a script's
+  float x = 0, y = 0;
+  bool down[3] = {};
+
+  /// What GLFW's callback does with dropped files; a script's go the same way.
+  void take(int count, const char** files) {
+    for (int i = 0; i < count; ++i) dropped.push_back(files[i]);
+    any = true;
+  }
+  void take_key(int key, int mods) {
+    keys.push_back({key, mods});
+    if (key >= 0) quick.push_back(key);
+    any = true;
+  }
 };
 
 namespace {
@@ -71,11 +85,7 @@ Window::Window(int width, int height, bool hidden, float scale) : events_(new Ev
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int, int, int) { note(w); });
   glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double) { note(w); });
   glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int mods) {
-    if (action == GLFW_PRESS) {
-      auto* events = static_cast<Events*>(glfwGetWindowUserPointer(w));
-      events->keys.push_back({key, mods});
-      if (key >= 0) events->quick.push_back(key);
-    }
+    if (action == GLFW_PRESS) static_cast<Events*>(glfwGetWindowUserPointer(w))->take_key(key, mods);
     note(w);
   });
   glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned) { note(w); });
@@ -88,9 +98,7 @@ Window::Window(int width, int height, bool hidden, float scale) : events_(new Ev
     note(w);
   });
   glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** files) {
-    for (int i = 0; i < count; ++i)
-      static_cast<Events*>(glfwGetWindowUserPointer(w))->dropped.push_back(files[i]);
-    note(w);
+    static_cast<Events*>(glfwGetWindowUserPointer(w))->take(count, files);
   });
 
   ImGui::CreateContext();
@@ -149,6 +157,10 @@ void Window::begin_frame() {
   ImGui_ImplGlfw_NewFrame();
   // A key that went down and up between two frames is down for this one, or its press would be lost.
   ImGuiIO& io = ImGui::GetIO();
+  if (events_->scripted) {
+    io.MousePos = {events_->x, events_->y};
+    std::copy(std::begin(events_->down), std::end(events_->down), io.MouseDown);
+  }
   std::vector<int> revived;
   for (int key : std::exchange(events_->quick, {}))
     if (!io.KeysDown[key]) io.KeysDown[key] = true, revived.push_back(key);
@@ -203,6 +215,21 @@ unsigned Window::upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32
     glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
   }
   return texture_;
+}
+
+void Window::move_mouse(float x, float y) {
+  events_->scripted = events_->any = true;
+  events_->x = x, events_->y = y;
+}
+void Window::press_mouse(int button, bool down) {
+  events_->scripted = events_->any = true;
+  events_->down[button] = down;
+}
+void Window::press_key(int key, int mods) { events_->take_key(key, mods); }
+void Window::type(const std::string& text) { ImGui::GetIO().AddInputCharactersUTF8(text.c_str()); }
+void Window::drop(const std::string& file) {
+  const char* name = file.c_str();
+  events_->take(1, &name);
 }
 
 std::vector<Window::Key> Window::pressed() { return std::exchange(events_->keys, {}); }

@@ -40,6 +40,14 @@ class Window {
   std::vector<Key> pressed();
   /// Files dropped since the last call.
   std::vector<std::string> dropped();
+
+  // Input that a script makes up. It takes the way of the real one; once used, the pointer is the script's.
+  void move_mouse(float x, float y);  ///< window units
+  void press_mouse(int button, bool down);
+  void press_key(int key, int mods);
+  void type(const std::string& text);
+  void drop(const std::string& file);
+
   double refresh_seconds() const { return refresh_seconds_; }  ///< least time between frames
   /// Ends a wait(); callable from any thread.
   static void wake();

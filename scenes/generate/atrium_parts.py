@@ -6,29 +6,29 @@ from shapes import box, grid, lathe, planar_uv, quad, rotate, sphere, sweep, tra
 
 
 # ---- columns -------------------------------------------------------------------------------------------------------
-def torus_profile(r, y0, y1, bulge, steps=6):
+def torus_profile(r, y0, y1, bulge, steps=5):
     """Half-round moulding between two heights."""
     a = np.linspace(-90, 90, steps + 1)
     m, h = (y0 + y1) / 2, (y1 - y0) / 2
     return [(r + bulge * np.cos(np.radians(v)), m + h * np.sin(np.radians(v))) for v in a]
 
 
-def shaft_profile(r0, r1, y0, y1, steps=8):
+def shaft_profile(r0, r1, y0, y1, steps=6):
     """Entasis: widest a third up, then drawing in."""
     t = np.linspace(0, 1, steps + 1)
     r = r0 + (r1 - r0) * t ** 1.8 + 0.012 * np.sin(np.pi * t) * r0 / 0.27
     return list(zip(r, y0 + (y1 - y0) * t))
 
 
-def column(height, r, segments=28):
+def column(height, r, segments=24):
     """Plinth, base, shaft and necking up to 0.55 r_scale below the abacus; `leaves` and `abacus` complete it."""
     s = r / 0.27
     base = [(0.36 * s, 0.14 * s)] + torus_profile(0.33 * s, 0.14 * s, 0.235 * s, 0.045 * s)
     base += [(0.325 * s, 0.245 * s), (0.30 * s, 0.265 * s), (0.298 * s, 0.28 * s)]
-    base += torus_profile(0.29 * s, 0.285 * s, 0.335 * s, 0.028 * s, 5) + [(0.285 * s, 0.345 * s), (r, 0.40 * s)]
+    base += torus_profile(0.29 * s, 0.285 * s, 0.335 * s, 0.028 * s, 4) + [(0.285 * s, 0.345 * s), (r, 0.40 * s)]
     neck = height - 0.62 * s
     shaft = shaft_profile(r, 0.85 * r, 0.40 * s, neck - 0.05 * s)
-    top = [(0.87 * r, neck - 0.04 * s)] + torus_profile(0.86 * r, neck - 0.04 * s, neck + 0.01 * s, 0.03 * s, 5)
+    top = [(0.87 * r, neck - 0.04 * s)] + torus_profile(0.86 * r, neck - 0.04 * s, neck + 0.01 * s, 0.03 * s, 4)
     top += [(0.86 * r, neck + 0.012 * s)]
     bell = [(0.85 * r, neck + 0.012 * s), (0.86 * r, neck + 0.25 * s), (0.95 * r, neck + 0.40 * s),
             (1.12 * r, neck + 0.47 * s)]
@@ -37,7 +37,7 @@ def column(height, r, segments=28):
                  lathe(base + shaft[1:] + top, segments), lathe(bell, segments)])
 
 
-def leaves(r, neck, rows=2, count=8, around=72, along=9):
+def leaves(r, neck, rows=2, count=8, around=48, along=7):
     """Rings of stylised acanthus that curl outwards, growing from the bell of a capital."""
     s = r / 0.27
     parts = []
@@ -107,7 +107,7 @@ def arch_panel(width, bottom, spring, top, radius, thick, segments=28, ends=Fals
     return join(parts)
 
 
-def archivolt(radius, width, proud, z, segments=36, side=1):
+def archivolt(radius, width, proud, z, segments=24, side=1):
     """Moulded ring on the face of an arch springing at y = 0; `side` is the sign of the face's z."""
     arc = arch_points(1.0, segments)
     A = np.stack([arc[:, 0], arc[:, 1], 0 * arc[:, 0]], 1)
@@ -235,11 +235,23 @@ def coffer(R, s0, s1, z0, z1, steps=3):
     return Mesh(m.p, n, np.stack([a, m.p[:, 2]], 1), t)
 
 
-def coffer_ring(R, cells, skip=0):
-    """A metre of vault: `cells` coffers around, `skip` of them left out about the crown."""
-    size = np.pi * R / cells
+def coffer_ring(R, arc, cells, skip=0):
+    """A metre of vault, `arc` metres around: `cells` coffers, `skip` of them left out about the crown."""
+    size = arc / cells
     keep = [k for k in range(cells) if not (cells - skip) / 2 <= k < (cells + skip) / 2]
-    return join([coffer(R, -np.pi * R / 2 + k * size, -np.pi * R / 2 + (k + 1) * size, -0.5, 0.5) for k in keep])
+    return join([coffer(R, -arc / 2 + k * size, -arc / 2 + (k + 1) * size, -0.5, 0.5) for k in keep])
+
+
+def vault_rib(R, half_arc, width=0.46, drop=0.09, segments=40):
+    """A transverse band on the underside of the vault, moulded along both edges."""
+    a = np.linspace(-half_arc, half_arc, segments + 1)
+    radial = np.stack([np.sin(a), np.cos(a), 0 * a], 1)
+    w, d = width / 2, drop
+    profile = [(-w, 0.02), (-w, -0.6 * d), (-w + 0.05, -0.6 * d), (-w + 0.06, -d), (w - 0.06, -d), (w - 0.05, -0.6 * d),
+               (w, -0.6 * d), (w, 0.02)]
+    m = sweep(profile, R * radial, (np.tile([0.0, 0, 1], (len(a), 1)), radial))
+    face = np.cross(m.p[m.t[:, 1]] - m.p[m.t[:, 0]], m.p[m.t[:, 2]] - m.p[m.t[:, 0]]).sum(axis=0)
+    return m if face[1] < 0 else m.flipped()
 
 
 def oculus_patch(R, half_s, half_z, radius, top, per_side=12):
@@ -256,8 +268,8 @@ def oculus_patch(R, half_s, half_z, radius, top, per_side=12):
         x, z = unit[:, 0] * r, unit[:, 1] * r
         return np.stack([x, np.sqrt(R * R - x * x) + depth, z], 1)
 
-    for r, d in ((radius + 0.26, 0.0), (radius + 0.25, -0.07), (radius + 0.19, -0.07), (radius + 0.17, -0.02),
-                 (radius + 0.09, -0.02), (radius + 0.07, -0.10), (radius, -0.10)):
+    for r, d in ((radius + 0.22, 0.0), (radius + 0.21, -0.07), (radius + 0.16, -0.07), (radius + 0.14, -0.02),
+                 (radius + 0.08, -0.02), (radius + 0.06, -0.10), (radius, -0.10)):
         rows.append(circle(r, d))
     shaft_top = circle(radius, 0)
     shaft_top[:, 1] = top
@@ -276,9 +288,9 @@ def oculus_patch(R, half_s, half_z, radius, top, per_side=12):
 
 
 # ---- furnishings ---------------------------------------------------------------------------------------------------
-def baluster(segments=10):
-    p = [(0.062, 0), (0.062, 0.045), (0.038, 0.07), (0.05, 0.12), (0.069, 0.20), (0.045, 0.36), (0.031, 0.49),
-         (0.046, 0.515), (0.046, 0.54), (0.033, 0.555), (0.062, 0.62), (0.062, 0.67)]
+def baluster(segments=7):
+    p = [(0.062, 0), (0.062, 0.045), (0.038, 0.07), (0.069, 0.20), (0.045, 0.36), (0.031, 0.49), (0.046, 0.525),
+         (0.033, 0.555), (0.062, 0.62), (0.062, 0.67)]
     return lathe(p, segments)
 
 
@@ -307,11 +319,11 @@ def hanging(width, length, seed, folds=5.0, depth=0.05, nu=40, nv=60):
     return grid(np.stack([x, y, z], 2)[::-1], None, np.stack([u, v], 2)[::-1].reshape(-1, 2)).flipped()
 
 
-def rail_cloth(width, drop, seed, rail=0.13, nu=40, nv=48):
-    """A rug thrown over a rail along x (its top at y = 0): down the front, over, and a little down the back."""
+def rail_cloth(width, drop, seed, rail=0.13, back=0.35, nu=40, nv=48):
+    """A rug thrown over a rail along x (its top at y = 0): `drop` down the front, over, and `back` down the back."""
     rs = np.random.RandomState(seed)
     phase = rs.uniform(0, 2 * np.pi, 4)
-    total = drop + 2 * rail + 0.35
+    total = drop + 2 * rail + back
     s = np.linspace(0, total, nv + 1)
     y = np.where(s < drop, -(drop - s), np.where(s < drop + 2 * rail, 0.012, -(s - drop - 2 * rail)))
     z = np.where(s < drop, rail + 0.015, np.where(s < drop + 2 * rail, rail + 0.015 - (s - drop), -rail - 0.015))
@@ -325,7 +337,21 @@ def rail_cloth(width, drop, seed, rail=0.13, nu=40, nv=48):
                 np.stack([u, 1 - v], 2).reshape(-1, 2)).flipped()
 
 
-def urn(height=0.9, segments=48):
+def ripples(x0, x1, z0, z1, nx, nz, seed=2):
+    """Still water: a level grid whose normals tilt by a few milliradians, as a draught leaves it."""
+    rs = np.random.RandomState(seed)
+    z, x = np.meshgrid(np.linspace(z0, z1, nz + 1), np.linspace(x0, x1, nx + 1), indexing="ij")
+    dx, dz = 0 * x, 0 * x
+    for _ in range(14):
+        a, wave = rs.uniform(0, 2 * np.pi), rs.uniform(0.35, 1.6)
+        kx, kz = 2 * np.pi / wave * np.cos(a), 2 * np.pi / wave * np.sin(a)
+        slope = 0.0035 * np.cos(kx * x + kz * z + rs.uniform(0, 2 * np.pi))
+        dx, dz = dx + slope * np.cos(a), dz + slope * np.sin(a)
+    n = np.stack([-dx, 1 + 0 * x, -dz], 2)
+    return grid(np.stack([x, 0 * x, z], 2), n.reshape(-1, 3))
+
+
+def urn(height=0.9, segments=40):
     p = [(0.0, 0), (0.15, 0), (0.16, 0.02), (0.15, 0.045), (0.11, 0.07), (0.10, 0.09), (0.13, 0.13), (0.21, 0.23),
          (0.275, 0.36), (0.29, 0.47), (0.27, 0.58), (0.21, 0.68), (0.14, 0.75), (0.105, 0.79), (0.105, 0.83),
          (0.14, 0.87), (0.165, 0.885), (0.17, 0.90), (0.15, 0.90), (0.115, 0.86), (0.085, 0.82), (0.085, 0.76),
@@ -343,7 +369,7 @@ def pedestal(height, radius=0.33):
     return join([box((-r * 1.05, 0, -r * 1.05), (r * 1.05, 0.10, r * 1.05), "-y"), lathe(p, 56)])
 
 
-def bowl(radius=0.30, segments=72):
+def bowl(radius=0.30, segments=60):
     """Open bowl on a foot, walls 6 mm: the caustic of its inside falls on its own floor and beside it."""
     a = np.radians(np.linspace(8, 86, 22))
     outer = [(radius * np.sin(v), radius * 0.92 * (1 - np.cos(v)) + 0.03) for v in a]
@@ -356,10 +382,10 @@ def bowl(radius=0.30, segments=72):
 def lantern_parts(radius, hang):
     """(brass, glass, flame) of a lamp hanging `hang` below its hook, about the globe's centre; the globe is a shell of
     solid glass, closed above and below by brass."""
-    a = np.radians(np.linspace(180 - 24, 24, 30))
+    a = np.radians(np.linspace(180 - 24, 24, 22))
     outside = [(radius * np.sin(v), radius * np.cos(v)) for v in a]
     inside = [((radius - 0.008) * np.sin(v), (radius - 0.008) * np.cos(v)) for v in a[::-1]]
-    glass = lathe(outside + inside + [outside[0]], 48, smooth=40)
+    glass = lathe(outside + inside + [outside[0]], 40, smooth=40)
     top, r = outside[-1][1], outside[-1][0]
     brass = join([
         lathe([(0.0, -top - 0.065), (0.018, -top - 0.06), (0.02, -top - 0.045), (r + 0.012, -top - 0.014),

@@ -1,7 +1,7 @@
 """Procedural surfaces for the atrium: every function returns tileable arrays, painted in linear light, stored as sRGB.
 
-A `Surface` holds colour (h, w, 3, linear), height in metres (h, w) and roughness (h, w); `save` writes colour, normal and
-roughness maps.
+A `Surface` holds colour (h, w, 3, linear) and height in metres (h, w); `save` writes the colour and normal maps. All are
+1024 x 1024, so that a renderer can keep them in one texture array each for colours and for normals.
 """
 import os
 
@@ -11,30 +11,23 @@ from gltf import png
 
 
 class Surface:
-    def __init__(self, color, height, rough, metres):
-        self.color, self.height, self.rough, self.metres = color, height, rough, metres
+    def __init__(self, color, height, metres):
+        self.color, self.height, self.metres = color, height, metres
 
-    def save(self, folder, name, normal_size=None, rough_size=None):
-        """Writes NAME_color.png, NAME_normal.png, NAME_rough.png (green: roughness); returns the map table."""
+    def save(self, folder, name, normal=True):
+        """Writes NAME_color.png and, with `normal`, NAME_normal.png; returns the map table."""
         png(os.path.join(folder, name + "_color.png"), to_srgb(self.color))
-        h = shrink(self.height, normal_size)
-        step = np.array(self.metres)[::-1] / h.shape
-        dv = (np.roll(h, -1, 0) - np.roll(h, 1, 0)) / (2 * step[0])
-        du = (np.roll(h, -1, 1) - np.roll(h, 1, 1)) / (2 * step[1])
-        n = np.stack([-du, dv, np.ones_like(h)], 2)   # v runs down the picture, the tangent frame's y up
-        n /= np.linalg.norm(n, axis=2, keepdims=True)
-        png(os.path.join(folder, name + "_normal.png"), np.round(n * 127 + 128).clip(0, 255))
-        r = np.round(shrink(self.rough, rough_size).clip(0.05, 1) * 85) * 3   # 85 steps: invisible, half the bytes
-        png(os.path.join(folder, name + "_rough.png"), np.stack([0 * r, r, 0 * r], 2))
-        return {"color": name + "_color.png", "normal": name + "_normal.png", "rough": name + "_rough.png"}
-
-
-def shrink(a, size):
-    """Box-filtered to `size` rows (a power of two below the original)."""
-    if not size or a.shape[0] <= size:
-        return a
-    k = a.shape[0] // size
-    return a.reshape(a.shape[0] // k, k, a.shape[1] // k, k).mean(axis=(1, 3))
+        maps = {"color": name + "_color.png"}
+        if normal:
+            h = self.height
+            step = np.array(self.metres)[::-1] / h.shape
+            dv = (np.roll(h, -1, 0) - np.roll(h, 1, 0)) / (2 * step[0])
+            du = (np.roll(h, -1, 1) - np.roll(h, 1, 1)) / (2 * step[1])
+            n = np.stack([-du, dv, np.ones_like(h)], 2)   # v runs down the picture, the tangent frame's y up
+            n /= np.linalg.norm(n, axis=2, keepdims=True)
+            png(os.path.join(folder, name + "_normal.png"), np.round(n * 127 + 128).clip(0, 255))
+            maps["normal"] = name + "_normal.png"
+        return maps
 
 
 def to_srgb(c):
@@ -98,14 +91,14 @@ def floor(n=1024):
     fx, fy = np.mod(wx / size, 1) - 0.5, np.mod(wy / size, 1) - 0.5
     rs = np.random.RandomState(7)
     tone, warm = rs.standard_normal((count, count)), rs.standard_normal((count, count))
-    color, relief = stone_tone((n, n), 20, rgb(0.72, 0.645, 0.53), rgb(0.46, 0.39, 0.295))
+    color, relief = stone_tone((n, n), 20, rgb(0.78, 0.72, 0.62), rgb(0.55, 0.485, 0.385))
     # each slab is cut from another place of the bed: shift the pattern slab by slab
     shift = rs.randint(0, n, (count, count, 2))
     sy, sx = (y + shift[cy, cx, 0]) % n, (x + shift[cy, cx, 1]) % n
     color, relief = color[sy, sx], relief[sy, sx]
-    color = color * (1 + 0.085 * tone[cy, cx])[..., None] * (1 + 0.03 * warm[cy, cx][..., None] * rgb(1, 0, -1.4))
+    color = color * (1 + 0.085 * tone[cy, cx])[..., None] * (1 + 0.024 * warm[cy, cx][..., None] * rgb(1, 0, -1.2))
     corner = np.abs(np.abs(fx) - 0.5) + np.abs(np.abs(fy) - 0.5)   # 0 in the corners
-    dark_color, _ = stone_tone((n, n), 40, rgb(0.13, 0.125, 0.12), rgb(0.055, 0.055, 0.06))
+    dark_color, _ = stone_tone((n, n), 40, rgb(0.17, 0.165, 0.155), rgb(0.08, 0.08, 0.082))
     inset = smooth(0.155 - corner, 0.0, 0.006)
     color = mix(color, dark_color, inset)
     joint = np.minimum(np.minimum(0.5 - np.abs(fx), 0.5 - np.abs(fy)), 9)
@@ -115,14 +108,17 @@ def floor(n=1024):
     grout = 1 - smooth(joint, 0.0015, 0.0045)
     hole = pits((n, n), 31) * (1 - inset)
     dirt = np.exp(-joint / 0.03)
-    color = color * (1 - 0.22 * dirt * smooth(noise((n, n), 33, 1.4, 2, 60), -0.6, 1.5))[..., None]
+    color = color * (1 - 0.30 * dirt * smooth(noise((n, n), 33, 1.4, 2, 60), -0.6, 1.5))[..., None]
+    stain = smooth(noise((n, n), 37, 1.5, 2, 30), 0.7, 2.0) * (0.6 + 0.4 * smooth(noise((n, n), 38, 0.8, 20, 200), -1, 1))
+    color = color * (1 - 0.16 * stain[..., None] * rgb(0.85, 1.0, 1.2))
+    scuff = smooth(noise((n, n), 39, 0.9, 10, 250, (1.0, 3.0)), 1.6, 3.0)
+    color = color * (1 - 0.10 * scuff)[..., None]
     color = mix(color, rgb(0.20, 0.165, 0.125), 0.85 * grout)
     color = mix(color, rgb(0.22, 0.18, 0.135), 0.7 * hole)
     height = 0.00025 * relief - 0.0028 * grout - 0.0022 * hole - 0.0018 * np.exp(-joint / 0.006) \
         + 0.0016 * noise((n, n), 34, 2.0, 1, 6)
-    wear = smooth(noise((n, n), 35, 1.7, 1, 20), -1.2, 1.4)
-    rough = 0.60 - 0.24 * wear + 0.05 * noise((n, n), 36, 0.9, 8, 200) + 0.3 * grout + 0.25 * hole - 0.08 * inset
-    return Surface(color, height, rough, (3.0, 3.0))
+
+    return Surface(color, height, (3.0, 3.0))
 
 
 def ashlar(n=1024):
@@ -142,12 +138,12 @@ def ashlar(n=1024):
         cell[here] = r * 4 + np.searchsorted(cuts, px) % 4
     fy = np.mod(wy / row, 1)
     joint = np.minimum(edge_distance, np.minimum(fy, 1 - fy) * row) * 3.0 / n
-    color, relief = stone_tone((n, n), 60, rgb(0.77, 0.685, 0.55), rgb(0.53, 0.45, 0.335))
+    color, relief = stone_tone((n, n), 60, rgb(0.80, 0.735, 0.625), rgb(0.60, 0.525, 0.41))
     shift = rs.randint(0, n, (rows * 4, 2))
     sy, sx = (y + shift[cell, 0]) % n, (x + shift[cell, 1]) % n
     color, relief = color[sy, sx], relief[sy, sx]
     tone, warm = rs.standard_normal(rows * 4), rs.standard_normal(rows * 4)
-    color = color * (1 + 0.075 * tone[cell])[..., None] * (1 + 0.03 * warm[cell][..., None] * rgb(1, 0, -1.5))
+    color = color * (1 + 0.075 * tone[cell])[..., None] * (1 + 0.024 * warm[cell][..., None] * rgb(1, 0, -1.2))
     grout = 1 - smooth(joint, 0.002, 0.006)
     hole = pits((n, n), 71, 1.9)
     color = mix(color, rgb(0.44, 0.375, 0.29), 0.8 * grout)
@@ -156,36 +152,34 @@ def ashlar(n=1024):
     color = color * (1 - 0.10 * streak)[..., None]
     tooling = noise((n, n), 74, 0.5, 60, 240, (1.0, 2.5))
     height = 0.0006 * relief + 0.0003 * tooling - 0.003 * grout - 0.003 * hole - 0.002 * np.exp(-joint / 0.012)
-    rough = 0.86 + 0.04 * relief + 0.1 * grout
-    return Surface(color, height, rough, (3.0, 3.0))
+    return Surface(color, height, (3.0, 3.0))
 
 
-def limestone(n=512):
-    """Carved stone without joints, 1.5 m: columns and mouldings."""
-    color, relief = stone_tone((n, n), 80, rgb(0.78, 0.71, 0.59), rgb(0.56, 0.48, 0.365), 0.9)
+def limestone(n=1024):
+    """Carved stone without joints, 2 m: columns and mouldings."""
+    color, relief = stone_tone((n, n), 80, rgb(0.82, 0.765, 0.66), rgb(0.62, 0.545, 0.44), 0.9)
     hole = pits((n, n), 86, 2.3)
     color = mix(color, rgb(0.36, 0.30, 0.22), 0.6 * hole)
     height = 0.0003 * relief - 0.0015 * hole
-    rough = 0.68 + 0.06 * noise((n, n), 87, 1.2, 2, 60)
-    return Surface(color, height, rough, (1.5, 1.5))
+    return Surface(color, height, (2.0, 2.0))
 
 
-def plaster(n=512):
-    """Lime plaster, 2.5 m: trowel marks, faint clouds, a few hairline cracks."""
+def plaster(n=1024):
+    """Lime plaster, 3.6 m: trowel marks, faint clouds, a few hairline cracks."""
     clouds, trowel = noise((n, n), 90, 1.7, 1, 12), noise((n, n), 91, 1.2, 8, 90, (1.0, 1.7))
     fine = noise((n, n), 92, 0.4, 60, 200)
-    color = rgb(0.78, 0.73, 0.64) * (1 + 0.035 * clouds + 0.02 * trowel + 0.012 * fine)[..., None]
+    color = rgb(0.80, 0.76, 0.69) * (1 + 0.035 * clouds + 0.02 * trowel + 0.012 * fine)[..., None]
     color = color * (1 + 0.012 * noise((n, n), 95, 1.6, 1, 10)[..., None] * rgb(1, 0, -1.5))
     crack = (1 - smooth(np.abs(noise((n, n), 93, 1.35, 2, 90)), 0.0, 0.025)) * \
         smooth(noise((n, n), 94, 1.6, 1, 8), 0.9, 1.9)
     color = color * (1 - 0.35 * crack)[..., None]
     height = 0.0011 * trowel + 0.0004 * fine * 0.4 + 0.002 * clouds - 0.0012 * crack
-    return Surface(color, height, 0.9 + 0.04 * trowel, (2.5, 2.5))
+    return Surface(color, height, (3.6, 3.6))
 
 
-def wood(n=512):
-    """Boards of dark oak along v, 1.2 m: six boards of 20 cm."""
-    count, size = 6, n / 6
+def wood(n=1024):
+    """Boards of weathered oak along v, 1.6 m: eight boards of 20 cm."""
+    count, size = 8, n / 8
     y, x = np.mgrid[0:n, 0:n]
     board = np.floor(x / size).astype(int) % count
     rs = np.random.RandomState(13)
@@ -195,19 +189,19 @@ def wood(n=512):
     figure = noise((n, n), 101, 1.5, 2, 40, (7.0, 1.0))[sy, x]
     pores = smooth(noise((n, n), 102, 0.3, 40, 250, (10.0, 1.0))[sy, x], 1.1, 2.4)
     t = np.clip(0.5 + 0.16 * rings + 0.15 * figure, 0, 1)
-    color = mix(rgb(0.30, 0.175, 0.085), rgb(0.135, 0.068, 0.03), t)
+    color = mix(rgb(0.42, 0.28, 0.165), rgb(0.22, 0.13, 0.07), t)
     color = color * (1 + 0.16 * tone[board])[..., None] * (1 - 0.45 * pores)[..., None]
     f = np.mod(x / size, 1)
     gap = np.minimum(f, 1 - f) * 0.2
     seam = 1 - smooth(gap, 0.001, 0.004)
     color = color * (1 - 0.8 * seam)[..., None]
     height = 0.0004 * rings - 0.0004 * pores - 0.004 * seam
-    return Surface(color, height, 0.55 + 0.07 * figure + 0.2 * pores, (1.2, 1.2))
+    return Surface(color, height, (1.6, 1.6))
 
 
-def cloth(n=512):
-    """A banner's weave and pattern as a grey to be tinted: u across 1.4 m, v down 4.2 m (height 3 n)."""
-    h, w = 2 * n, n
+def cloth(n=1024):
+    """A banner's weave and pattern as a grey to be tinted: u across 1.4 m, v down 4.2 m."""
+    h, w = n, n
     y, x = np.mgrid[0:h, 0:w]
     u, v = (x + 0.5) / w, (y + 0.5) / h
     slub = 0.5 * noise((h, w), 110, 0.5, 4, 250, (1.0, 12.0)) + 0.5 * noise((h, w), 111, 0.5, 4, 250, (12.0, 1.0))
@@ -224,11 +218,11 @@ def cloth(n=512):
     ring = (smooth(diamond, 0.80, 0.82) * (1 - smooth(diamond, 0.93, 0.95)) + (1 - smooth(diamond, 0.30, 0.32))) * inside
     pattern = np.clip(band + line + ring, 0, 1)
     color = np.repeat(base[..., None], 3, 2) * mix(rgb(1, 1, 1), rgb(0.42, 0.20, 0.14), 0.9 * pattern)
-    return Surface(color, np.zeros((h, w)), np.ones((h, w)), (1.4, 4.2))
+    return Surface(color, np.zeros((h, w)), (1.4, 4.2))
 
 
 def sky(width=256, sun=(0, 1, 0)):
-    """Clear sky without the sun's disk, (h, w, 3) radiance in the scene's unit; below the horizon, the ground's light."""
+    """Clear sky without the sun's disk, (h, w, 3) radiance in the scene's unit; black from ten degrees below the horizon."""
     h = width // 2
     v, u = (np.arange(h) + 0.5) / h, (np.arange(width) + 0.5) / width
     theta, phi = np.pi * v[:, None], 2 * np.pi * (u[None, :] - 0.5)
@@ -236,9 +230,9 @@ def sky(width=256, sun=(0, 1, 0)):
     d = np.stack([np.sin(theta) * np.cos(phi), up, np.sin(theta) * np.sin(phi)], 2)
     cosine = d @ (np.asarray(sun) / np.linalg.norm(sun))
     low = np.exp(-np.maximum(up, 0) / 0.22)
-    color = mix(rgb(0.30, 0.56, 1.12), rgb(1.08, 1.22, 1.36), low)
+    color = mix(rgb(0.40, 0.66, 1.15), rgb(0.66, 0.80, 0.98), low)
     angle = np.arccos(np.clip(cosine, -1, 1))
-    glow = 1.6 * np.exp(-angle / 0.16) + 0.5 * np.exp(-angle / 0.55)
-    color = color * (0.86 + 0.14 * cosine ** 2)[..., None] + glow[..., None] * rgb(1.0, 0.92, 0.78)
-    ground = np.broadcast_to(rgb(0.62, 0.52, 0.40), color.shape)
-    return mix(color, ground, smooth(-up, -0.01, 0.03))
+    glow = 1.2 * np.exp(-angle / 0.18) + 0.6 * np.exp(-angle / 0.6)
+    color = color * (0.86 + 0.14 * cosine ** 2)[..., None] + glow[..., None] * rgb(1.0, 0.94, 0.83)
+    # the scene's own ground hides what lies lower: nothing there, so that no light sample is spent on it
+    return color * (1 - smooth(-up, 0.08, 0.16))[..., None]

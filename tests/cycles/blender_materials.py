@@ -1,12 +1,19 @@
-"""Runs inside Blender: node trees that mean what the glTF material means.
+"""Runs inside Blender: node trees that mean what the glTF material means in Lucerna (shaders/lib/bsdf.glsl).
 
-Lambert, sharp glass, thin glass, diffuse transmission, emission and textures are exact. A coated dielectric is a mix of
-diffuse and glossy by the Fresnel factor of the view direction; a rough coloured metal takes Schlick's factor at the view
-direction: close, but outside any comparison at 1 %.
+Exact: Lambert, sharp and rough solid glass, smooth thin glass, smooth metals and coats, emission, alpha, textures.
+Within about 1 % of the lobe, and exact in what a direction of view sees of uniform light:
+  - rough lobes with Schlick's factor: Blender's closure has another Fresnel curve between the same ends; its weight is
+    the ratio of the two directional albedos (microfacet.py);
+  - the diffuse lobe under a coat, (1-E(o)) (1-E(i)) / (1-E_avg): the factor of o from a table, that of i as a
+    sum of Lambert and two diffuse toon lobes.
+Not: rough thin glass (Cycles has no such closure), textures of KHR_materials_specular, normal maps near the terminator
+(Cycles darkens there).
 """
 import math
 
 import bpy
+import microfacet
+import numpy as np
 
 
 class Tree:
@@ -34,7 +41,7 @@ class Tree:
 
     def math(self, operation, a, b=0.0):
         if not isinstance(a, bpy.types.NodeSocket) and not isinstance(b, bpy.types.NodeSocket):
-            return {"MULTIPLY": a * b, "SUBTRACT": a - b, "ADD": a + b}[operation]
+            return {"MULTIPLY": lambda: a * b, "SUBTRACT": lambda: a - b, "ADD": lambda: a + b}[operation]()
         return self.node("Math", {0: a, 1: b}, operation=operation).outputs[0]
 
     def times(self, a, b):
@@ -130,49 +137,136 @@ class Material:
         return self.tree.node("NormalMap", {"Strength": info.get("scale", 1), "Color": node.outputs["Color"]},
                               uv_map=uv).outputs[0]
 
-    def schlick(self, normal):
-        """(1 - cos)^5 of the view direction, either side."""
+    def cosine(self, normal):
+        """|cosine| of the view direction."""
         t = self.tree
         geometry = t.node("NewGeometry")
-        cosine = t.node("VectorMath", {0: normal or geometry.outputs["Normal"], 1: geometry.outputs["Incoming"]},
-                        operation="DOT_PRODUCT").outputs["Value"]
-        return t.math("POWER", t.math("SUBTRACT", 1.0, t.math("ABSOLUTE", cosine)), 5.0)
+        dot = t.node("VectorMath", {0: normal or geometry.outputs["Normal"], 1: geometry.outputs["Incoming"]},
+                     operation="DOT_PRODUCT").outputs["Value"]
+        return t.math("ABSOLUTE", dot)
+
+    def schlick(self, cosine):
+        return self.tree.math("POWER", self.tree.math("SUBTRACT", 1.0, cosine), 5.0)
+
+    def lookup(self, name, values, cosine, rough):
+        """Colour of a table (ROUGH, MU, 3) at a cosine and a roughness."""
+        t = self.tree
+        image = bpy.data.images.get(name)
+        if image is None:
+            rows, columns = values.shape[:2]
+            image = bpy.data.images.new(name, columns, rows, float_buffer=True, is_data=True)
+            image.colorspace_settings.name = "Non-Color"
+            texels = np.concatenate([values, np.ones((rows, columns, 1))], 2)
+            image.pixels.foreach_set(texels.astype(np.float32).ravel())
+            image.update()
+            image.pack()
+        columns, rows = image.size
+        x = t.math("MULTIPLY", t.math("SQRT", cosine), (columns - 1) / columns)
+        y = t.math("MULTIPLY", rough, (rows - 1) / rows)
+        at = t.node("CombineXYZ", {0: t.math("ADD", x, 0.5 / columns), 1: t.math("ADD", y, 0.5 / rows)}).outputs[0]
+        return t.node("TexImage", {"Vector": at}, image=image, extension="EXTEND", interpolation="Linear").outputs[0]
 
     def glossy(self, rough, color, normal):
+        """A mirror, or a rough lobe with F = color throughout."""
         sharp = rough == 0
         return self.tree.node("BsdfGlossy", {"Color": color, "Roughness": rough, "Normal": normal},
                               distribution="SHARP" if sharp else "MULTI_GGX").outputs[0]
 
-    def dielectric(self, base, rough, normal, F):
-        """Everything that is not metal."""
+    def lobe(self, rough, f0, normal):
+        """GGX with F = f0 + (1 - f0) Schlick."""
+        t = self.tree
+        cosine = self.cosine(normal)
+        if rough == 0:
+            color = t.node("MixRGB", {"Fac": self.schlick(cosine), "Color1": f0, "Color2": (1, 1, 1)}).outputs[0]
+            return self.glossy(0, color, normal)
+        closure = t.node("BsdfPrincipled", {"Base Color": f0, "Metallic": 1.0, "Specular": 0.5, "Roughness": rough,
+                                            "Normal": normal}, distribution="MULTI_GGX").outputs[0]
+        # Albedo with Schlick's curve over that with the closure's; of the channels together.
+        e = t.node("SeparateRGB", {0: self.lookup("lobes", microfacet.lobes(), cosine, rough)}).outputs
+        grey = sum(f0) / 3 if isinstance(f0, (tuple, list)) else t.node("RGBToBW", {0: f0}).outputs[0]
+
+        def albedo(curve):
+            return t.math("ADD", t.math("MULTIPLY", grey, t.math("SUBTRACT", e[0], curve)), curve)
+
+        return t.blend(t.math("MINIMUM", t.math("DIVIDE", albedo(e[1]), albedo(e[2])), 1.0), None, closure)
+
+    def coated(self, base, rough, normal, specular, tint, ior):
+        """The diffuse lobes below a coat, and the coat; without one where `specular` is 0."""
         t, ext = self.tree, self.ext
-        diffuse = t.node("BsdfDiffuse", {"Color": base, "Roughness": 0.0, "Normal": normal}).outputs[0]
         through = ext.get("KHR_materials_diffuse_transmission")
+        factor, passed = 0, (1, 1, 1)
         if through:
             factor = self.value(through.get("diffuseTransmissionFactor", 0),
                                 through.get("diffuseTransmissionTexture"), "a")
-            tint = self.color(through.get("diffuseTransmissionColorFactor", (1, 1, 1)),
-                              through.get("diffuseTransmissionColorTexture"))
-            translucent = t.node("BsdfTranslucent", {"Color": tint, "Normal": normal}).outputs[0]
-            diffuse = t.blend(factor, diffuse, translucent)
-        below = diffuse
-        passing = ext.get("KHR_materials_transmission")
-        thickness = ext.get("KHR_materials_volume", {}).get("thicknessFactor", 0)
+            passed = self.color(through.get("diffuseTransmissionColorFactor", (1, 1, 1)),
+                                through.get("diffuseTransmissionColorTexture"))
+        plain = self.lambert
+        if not specular:
+            return t.blend(factor, plain(base, normal), self.translucent(passed, normal) if through else None)
+        f0 = tuple(min(1.0, ((ior - 1) / (ior + 1)) ** 2 * v) * specular for v in tint)
+        cosine = self.cosine(normal)
+        name = "coat %.4f %.4f %.4f %.4f" % (*f0, specular)
+        tables = [microfacet.coat(v, specular) for v in f0] if len(set(f0)) > 1 else [microfacet.coat(f0[0], specular)] * 3
+        view = self.lookup(name, np.stack([table[0] for table in tables], 2), cosine, rough)
+        weights = self.lookup(name + " weights", np.repeat(tables[0][1][:, None], 2, 1), cosine, rough)
+        weights = t.node("SeparateRGB", {0: weights}).outputs
+        below = t.times(base, view)
+        diffuse = self.lambert(self.scaled(below, weights[0]), normal)
+        for k, (size, smooth) in enumerate(microfacet.TOONS):
+            toon = t.node("BsdfToon", {"Color": self.scaled(below, weights[1 + k]), "Size": size, "Smooth": smooth,
+                                       "Normal": normal}, component="DIFFUSE").outputs[0]
+            diffuse = t.node("AddShader", {0: diffuse, 1: toon}).outputs[0]
+        if through:
+            diffuse = t.blend(factor, diffuse, self.translucent(t.times(passed, view), normal))
+        mirror = t.blend(specular, None, self.lobe(rough, tuple(v / specular for v in f0), normal))
+        return t.node("AddShader", {0: diffuse, 1: mirror}).outputs[0]
+
+    def scaled(self, color, factor):
+        """A colour times a number, of any sign and size."""
+        return self.tree.node("VectorMath", {0: color, "Scale": factor}, operation="SCALE").outputs[0]
+
+    def lambert(self, color, normal):
+        return self.tree.node("BsdfDiffuse", {"Color": color, "Roughness": 0.0, "Normal": normal}).outputs[0]
+
+    def translucent(self, color, normal):
+        return self.tree.node("BsdfTranslucent", {"Color": color, "Normal": normal}).outputs[0]
+
+    def dielectric(self, base, rough, normal):
+        """Everything that is not metal."""
+        t, ext = self.tree, self.ext
+        shine = ext.get("KHR_materials_specular", {})
+        specular, tint = shine.get("specularFactor", 1), shine.get("specularColorFactor", (1, 1, 1))
         ior = ext.get("KHR_materials_ior", {}).get("ior", 1.5)
-        if passing:
-            factor = self.value(passing.get("transmissionFactor", 0), passing.get("transmissionTexture"), "r")
-            if thickness > 0:
-                glass = t.node("BsdfGlass", {"Color": base, "Roughness": rough, "IOR": ior, "Normal": normal},
-                               distribution="SHARP" if rough == 0 else "MULTI_GGX").outputs[0]
-                if factor == 1:
-                    return glass   # carries its own Fresnel factor
-                return t.blend(factor, t.blend(F, diffuse, self.glossy(rough, (1, 1, 1), normal)), glass)
-            clear = t.node("BsdfTransparent", {"Color": base}).outputs[0] if rough == 0 else t.node(
-                "BsdfRefraction", {"Color": base, "Roughness": rough, "IOR": 1.0, "Normal": normal},
-                distribution="GGX").outputs[0]
-            below = t.blend(factor, diffuse, clear)
-        tint = ext.get("KHR_materials_specular", {}).get("specularColorFactor", (1, 1, 1))
-        return t.blend(F, below, self.glossy(rough, tuple(min(v, 1) for v in tint), normal))
+        passing = ext.get("KHR_materials_transmission")
+        factor = self.value(passing.get("transmissionFactor", 0), passing.get("transmissionTexture"), "r") \
+            if passing else 0
+        body = self.coated(base, rough, normal, specular, tint, ior) if factor != 1 else None
+        if not passing:
+            return body
+        if ext.get("KHR_materials_volume", {}).get("thicknessFactor", 0) > 0:
+            glass = t.node("BsdfGlass", {"Color": (1, 1, 1), "Roughness": rough, "IOR": ior, "Normal": normal},
+                           distribution="SHARP" if rough == 0 else "MULTI_GGX").outputs[0]
+            if base != (1, 1, 1):   # tints what passes, not what is reflected
+                glass = self.tinted_glass(base, rough, normal, ior)
+            return t.blend(factor, body, glass)
+        # A slab: 2R / (1 + R) with the same R on both sides; the node inverts the index on the back.
+        back = t.node("NewGeometry").outputs["Backfacing"]
+        index = t.node("MixRGB", {"Fac": back, "Color1": (ior,) * 3, "Color2": (1 / ior,) * 3}).outputs[0]
+        once = t.node("Fresnel", {"IOR": index, "Normal": normal}).outputs[0]
+        slab = t.math("DIVIDE", t.math("MULTIPLY", once, 2.0), t.math("ADD", once, 1.0))
+        clear = t.node("BsdfTransparent", {"Color": base}).outputs[0] if rough == 0 else t.node(
+            "BsdfRefraction", {"Color": base, "Roughness": rough, "IOR": 1.0, "Normal": normal},
+            distribution="GGX").outputs[0]
+        return t.blend(factor, body, t.blend(slab, clear, self.glossy(rough, (1, 1, 1), normal)))
+
+    def tinted_glass(self, base, rough, normal, ior):
+        t = self.tree
+        kind = "SHARP" if rough == 0 else "GGX"
+        F = t.node("Fresnel", {"IOR": ior, "Normal": normal}).outputs[0]
+        mirror = t.node("BsdfGlossy", {"Color": (1, 1, 1), "Roughness": rough, "Normal": normal},
+                        distribution=kind).outputs[0]
+        return t.blend(F, t.node("BsdfRefraction", {"Color": base, "Roughness": rough, "IOR": ior, "Normal": normal},
+                                 distribution=kind).outputs[0], mirror)
 
     def build(self):
         t, m, ext = self.tree, self.m, self.ext
@@ -186,6 +280,8 @@ class Material:
             base = t.times(attribute.outputs["Color"], base)
             alpha = t.math("MULTIPLY", attribute.outputs["Alpha"], alpha)
         rough = self.value(pbr.get("roughnessFactor", 1), pbr.get("metallicRoughnessTexture"), "g")
+        if not isinstance(rough, bpy.types.NodeSocket) and rough * rough < 1e-3:
+            rough = 0   # smooth in Lucerna: k_delta_alpha
         metal = self.value(pbr.get("metallicFactor", 1), pbr.get("metallicRoughnessTexture"), "b")
         normal = self.normal()
         geometry = t.node("NewGeometry")
@@ -193,18 +289,8 @@ class Material:
         if "KHR_materials_unlit" in ext:
             out = t.node("Emission", {"Color": base}).outputs[0]
         else:
-            specular = ext.get("KHR_materials_specular", {}).get("specularFactor", 1)
-            ior = ext.get("KHR_materials_ior", {}).get("ior", 1.5)
-            F = t.math("MULTIPLY", t.node("Fresnel", {"IOR": ior, "Normal": normal}).outputs[0], specular) \
-                if specular else 0
-            body = self.dielectric(base, rough, normal, F) if metal != 1 else None
-            conductor = None
-            if metal != 0:
-                tint = base
-                if base != (1, 1, 1):
-                    tint = t.node("MixRGB", {"Fac": self.schlick(normal), "Color1": base,
-                                             "Color2": (1, 1, 1)}).outputs[0]
-                conductor = self.glossy(rough, tint, normal)
+            body = self.dielectric(base, rough, normal) if metal != 1 else None
+            conductor = self.lobe(rough, base, normal) if metal != 0 else None
             out = t.blend(metal, body, conductor)
             strength = ext.get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1)
             factor = m.get("emissiveFactor", (0, 0, 0))

@@ -3,6 +3,8 @@
 // fixed seeds, so a test that passes once passes always on the same device.
 #include <cmath>
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace lucerna::test {
@@ -20,7 +22,7 @@ inline double significant_below(size_t tests, double alpha = k_alpha) {
 /// Regularized upper incomplete gamma function Q(a, x), a > 0, x >= 0; relative error about 1e-12. The series
 /// of P where it converges fast, else Legendre's continued fraction by Lentz's method.
 inline double gamma_q(double a, double x) {
-  if (!(x > 0)) return 1;
+  if (x <= 0) return 1;
   const double front = std::exp(a * std::log(x) - x - std::lgamma(a));
   if (x < a + 1) {
     double term = 1 / a, sum = term;
@@ -85,6 +87,32 @@ struct Mean {
   void add(double x) { sum += x, squares += x * x, count += 1; }
   double value() const { return sum / count; }
   double error() const { return std::sqrt(std::max(0.0, squares / count - value() * value()) / (count - 1)); }
+};
+
+/// Chance of a mean this far from what it should be. `slack`: what `expected` itself, or rounding, may be off
+/// by.
+inline double mean_tail(const Mean& mean, double expected, double slack) {
+  const double off = std::max(0.0, std::abs(mean.value() - expected) - slack);
+  return off == 0 ? 1 : mean.error() == 0 ? 0 : normal_tail(off / mean.error());
+}
+
+/// Collects the chances of many tests and judges them together.
+class Jury {
+ public:
+  void add(std::string what, double p) { tests_.emplace_back(std::move(what), p); }
+  size_t size() const { return tests_.size(); }
+  /// "" when no chance is below the common level, else those that are.
+  std::string verdict(double alpha = k_alpha) const {
+    const double limit = significant_below(tests_.size(), alpha);
+    std::string text;
+    for (const auto& [what, p] : tests_)
+      if (!(p >= limit))
+        text += what + ": chance " + std::to_string(std::log10(std::max(p, 1e-300))) + " (log10)\n";
+    return text;
+  }
+
+ private:
+  std::vector<std::pair<std::string, double>> tests_;
 };
 
 }  // namespace lucerna::test

@@ -15,12 +15,30 @@
 
 namespace lucerna::test {
 
+/// A file for the display's authority. xvfb-run's own lies in a folder that it sometimes fails to remove,
+/// and then it returns a status of its own.
+inline const std::string& authority() {
+  struct File {
+    std::string path =
+        (std::filesystem::temp_directory_path() / ("lucerna-xauthority-" + std::to_string(getpid())))
+            .string();
+    ~File() {
+      std::error_code error;
+      std::filesystem::remove(path, error);
+    }
+  };
+  static const File file;
+  return file.path;
+}
+
 /// A command line that runs `command` with a display, or "" where neither a display nor xvfb-run exists.
 inline std::string with_display(const std::string& command) {
   const char* display = std::getenv("DISPLAY");
   if (display && *display) return command;
   if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0) return "";
-  return "xvfb-run -a -s '-screen 0 1600x1000x24' " + command;
+  // Display numbers start apart, so that tests running side by side do not race for one.
+  return "xvfb-run -a -n " + std::to_string(100 + getpid() % 20000) + " -f " + authority() +
+         " -s '-screen 0 1600x1000x24' " + command;
 }
 
 struct Outcome {

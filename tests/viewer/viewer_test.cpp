@@ -35,10 +35,10 @@ TEST_CASE("the viewer starts, renders cornell, saves a screenshot and quits") {
   if (!available()) return;
   const test::Folder folder;
   const auto png = folder.path / "window.png";
-  const auto outcome =
-      viewer(folder, "scenes/cornell/cornell.gltf",
-             "size 1100 700\nwait_scene\nwait_samples 1\norbit 0.05 0\nwait_samples 1\nscreenshot " +
-                 png.string() + "\nquit 0\n");
+  const auto outcome = viewer(
+      folder, "scenes/cornell/cornell.gltf",
+      "window.size 1100 700\nwait_scene\nwait_samples 1\ncamera.orbit 0.05 0\nwait_samples 1\nscreenshot " +
+          png.string() + "\nquit 0\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const test::Picture window(png);

@@ -2,9 +2,10 @@
 // The window over a session without a renderer: panels, steps, errors. Each case runs this executable again
 // under a display.
 #include "fake_session.h"
+#include "round_trip.h"
 #include "support.h"
 #include "ui/layout.h"
-#include "ui/script.h"
+#include "ui/runner.h"
 #include "ui/viewer.h"
 
 #include <catch2/catch.hpp>
@@ -46,21 +47,36 @@ TEST_CASE("inside: one window", "[.][inside]") {
 }
 
 TEST_CASE("a script is checked before it runs") {
-  const auto message = [](const std::vector<std::string>& lines) -> std::string {
+  session::Session session({});
+  ui::Ui window(session);
+  ui::Runner runner(window, {}, "");
+  const auto message = [&](const std::vector<std::string>& lines) -> std::string {
     try {
-      ui::parse_script(lines, "s");
+      ui::parse_script(window.registry, lines, "s");
     } catch (const Error& error) {
       return error.what();
     }
     return "";
   };
-  CHECK(
-      message({"wait 1", "# remark", "", "orbit 0.3 -1  # a turn", "load \"a file.gltf\"", "quit"}).empty());
-  CHECK_THAT(message({"wait 1", "jump"}), Catch::StartsWith("s: line 2: unknown step 'jump'"));
-  CHECK_THAT(message({"orbit 1"}), Catch::StartsWith("s: line 1: 'orbit' takes 2 arguments"));
-  CHECK_THAT(message({"wait soon"}), Catch::StartsWith("s: line 1: 'wait' expects a number"));
-  CHECK_THAT(message({"load \"a"}), Catch::StartsWith("s: line 1: a quotation mark"));
-  CHECK(ui::parse_script({"load \"a file.gltf\""}, "s")[0].text[0] == "a file.gltf");
+  CHECK(message({"wait 1", "# remark", "", "camera.orbit 0.3 -1  # a turn", "scene.open \"a file.gltf\"",
+                 "quit", "film.ev=1", "key ctrl+shift+z"})
+            .empty());
+  CHECK_THAT(message({"wait 1", "orbt 1 2"}),
+             Catch::StartsWith("s: line 2: unknown command 'orbt'; did you mean 'camera.orbit'?"));
+  CHECK_THAT(message({"camera.orbit 1"}), Catch::StartsWith("s: line 1: camera.orbit: up is missing"));
+  CHECK_THAT(message({"wait soon"}), Catch::StartsWith("s: line 1: wait: time = 'soon': expected a number"));
+  CHECK_THAT(message({"scene.open \"a"}), Catch::StartsWith("s: line 1: a quotation mark"));
+  CHECK_THAT(message({"key ctrl+hyper"}), Catch::Contains("there is no key 'ctrl+hyper'"));
+  CHECK(ui::parse_script(window.registry, {"", "quit 0"}, "s").at(0).where == "s: line 2");
+}
+
+TEST_CASE("every command of the window is read, written and read again as the same") {
+  session::Session session({});
+  ui::Ui window(session);
+  ui::Runner runner(window, {}, "");
+  CHECK(test::round_trip(window.registry) > 200);
+  for (const char* name : {"window.panels", "measure", "screenshot", "drop", "camera.orbit", "log.clear"})
+    CHECK(window.registry.find(name));
 }
 
 TEST_CASE("the parts of the window tile it and leave room for the picture") {
@@ -99,10 +115,11 @@ TEST_CASE("a picture is shown, panels hide, and the window is saved at its size"
   }
   const test::Folder folder;
   const std::string a = (folder.path / "a.png").string(), b = (folder.path / "b.png").string();
-  const auto outcome = window("hall.gltf",
-                              "wait_scene\nwait_samples 2\nscreenshot " + a +
-                                  "\ntab\nwait 0.4\nwait_samples 1\nscreenshot " + b + "\nquit\n",
-                              "LUCERNA_TEST_SIZE=1100x700");
+  const auto outcome =
+      window("hall.gltf",
+             "wait_scene\nwait_samples 2\nscreenshot " + a +
+                 "\nwindow.panels off\nwait 0.4\nwait_samples 1\nscreenshot " + b + "\nquit\n",
+             "LUCERNA_TEST_SIZE=1100x700");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const test::Picture panels(a), bare(b);
@@ -127,7 +144,7 @@ TEST_CASE("an error is shown over the old scene, and a script that fails says wh
   const test::Folder folder;
   const std::string a = (folder.path / "a.png").string(), b = (folder.path / "b.png").string();
   const auto outcome =
-      window("hall.gltf", "wait_scene\nwait_samples 2\nload missing.gltf\nwait 0.8\nscreenshot " + a +
+      window("hall.gltf", "wait_scene\nwait_samples 2\nscene.open missing.gltf\nwait 0.8\nscreenshot " + a +
                               "\ndismiss\nscreenshot " + b + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
@@ -150,16 +167,17 @@ TEST_CASE("an empty window, a cancelled load, and every step run") {
   }
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
-  const auto outcome = window(
-      "", "screenshot " + file("empty.png") + "\nload slow.gltf\nwait 0.3\nscreenshot " +
-              file("loading.png") +
-              "\ncancel\nwait 0.3\nload hall.gltf\nwait_scene\n"
-              "orbit 0.2 0.1\nlook 0.1 0\npan 20 10\ndolly 2\nfly 0 0 0.5\nselect light 2\nframe\nselect "
-              "material 1\nframe\ncamera 2\ncamera Detail\n"
-              "solo 2\nsolo 2\nset film.ev 1.5\nsize 1200 800\npause\nresume\nrestart\nopen_dialog\nwait "
-              "0.2\ndismiss\nwait_samples 2\nmeasure 2\n"
-              "screenshot " +
-              file("end.png") + "\nquit\n");
+  const auto outcome =
+      window("", "screenshot " + file("empty.png") + "\nscene.open slow.gltf\nwait 0.3\nscreenshot " +
+                     file("loading.png") +
+                     "\nscene.cancel\nwait 0.3\nscene.open hall.gltf\nwait_scene\n"
+                     "camera.orbit 0.2 0.1\ncamera.look 0.1 0\ncamera.pan 0.02 0.01\ncamera.dolly 2\n"
+                     "camera.fly 0 0 0.5\nselect light 2\ncamera.frame\nselect material 1\ncamera.frame\n"
+                     "camera.select 2\ncamera.select Detail\nview.solo secondary\nview.solo none\n"
+                     "film.ev 1.5\nwindow.size 1200 800\nrender.pause\nrender.resume\nrender.restart\n"
+                     "dialog.open\nwait 0.2\ndismiss\nwait_samples 2\nmeasure 2\n"
+                     "screenshot " +
+                     file("end.png") + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   CHECK_THAT(outcome.output, Catch::Contains("\"measure\"") && Catch::Contains("\"answered\": 1"));

@@ -1,11 +1,11 @@
-// links: ui
-#include "ui/camera_control.h"
+// links: commands
+#include "commands/camera_control.h"
 
 #include <catch2/catch.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
 using namespace lucerna;
-using namespace lucerna::ui;
+using namespace lucerna::commands;
 
 namespace {
 

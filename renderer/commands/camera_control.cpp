@@ -1,10 +1,10 @@
-#include "camera_control.h"
+#include "commands/camera_control.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace lucerna::ui {
+namespace lucerna::commands {
 namespace {
 
 constexpr float k_pole = 89.0f * k_pi / 180;  // elevation at which turning stops
@@ -107,6 +107,16 @@ void fly(Viewpoint& view, const vec3& metres) {
       placed(m, vec3(m[3]) + metres.x * vec3(m[0]) + metres.y * vec3(m[1]) - metres.z * vec3(m[2]));
 }
 
+bool place(Viewpoint& view, const vec3& eye, const vec3& target, const vec3& up) {
+  const vec3 away = eye - target;
+  const float distance = glm::length(away);
+  const vec3 right = glm::cross(up, away);
+  if (!(distance > 1e-12f) || !(glm::length(right) > 1e-6f * glm::length(up) * distance)) return false;
+  view.camera.to_world = placed(mat4(vec4(right, 0), vec4(up, 0), vec4(away, 0), vec4(eye, 1)), eye);
+  view.distance = distance;
+  return true;
+}
+
 void frame(Viewpoint& view, const Box& box, float aspect) {
   if (box.empty()) return;
   const float radius = std::max(box.radius(), 1e-3f * view.extent);
@@ -146,4 +156,4 @@ bool same_view(const scene::Camera& a, const scene::Camera& b) {
          a.xmag == b.xmag && a.ymag == b.ymag && a.aspect == b.aspect;
 }
 
-}  // namespace lucerna::ui
+}  // namespace lucerna::commands

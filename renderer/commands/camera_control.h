@@ -3,7 +3,7 @@
 // camera looks down its -Z. All functions leave the matrix rigid (orthonormal axes), whatever it was before.
 #include "scene/scene.h"
 
-namespace lucerna::ui {
+namespace lucerna::commands {
 
 /// A camera with the point that it turns about: `distance` metres straight ahead.
 struct Viewpoint {
@@ -33,6 +33,9 @@ void pan(Viewpoint& view, const vec2& pixels, float picture_height);
 /// Comes closer by 10 % of the distance a step (negative: away). When the pivot is nearly reached it is
 /// pushed ahead, so that one can go on through a doorway. Orthographic cameras change their size instead.
 void dolly(Viewpoint& view, float steps);
+/// Puts the eye at a place, looking at `target`, which becomes the pivot. False, and nothing changes, when
+/// that gives no direction.
+bool place(Viewpoint& view, const vec3& eye, const vec3& target, const vec3& up);
 /// Moves by metres along the camera's own axes: right, up, forward.
 void fly(Viewpoint& view, const vec3& metres);
 /// Keeps the direction and moves so that the sphere around `box` fills the picture (aspect = width / height).
@@ -57,4 +60,4 @@ float yfov_from_focal_length(float millimetres, float aspect);
 /// Whether two cameras make the same picture.
 bool same_view(const scene::Camera& a, const scene::Camera& b);
 
-}  // namespace lucerna::ui
+}  // namespace lucerna::commands

@@ -1,0 +1,207 @@
+// Commands that move the camera, and the selection that it can be framed on.
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "commands/workspace.h"
+#include "session/pick.h"
+
+namespace lucerna::commands {
+namespace {
+
+constexpr double k_degrees = 180.0 / 3.14159265358979323846;
+
+Parameter real(const char* name, const char* help, const char* unit = "", double lo = -1e9, double hi = 1e9) {
+  return {.name = name, .type = Type::real, .help = help, .lo = lo, .hi = hi, .unit = unit};
+}
+Parameter optional(Parameter p) {
+  p.optional = true;
+  return p;
+}
+Parameter vector(const char* name, const char* help, const char* unit) {
+  return {.name = name, .type = Type::vector, .help = help, .lo = -1e9, .hi = 1e9, .unit = unit};
+}
+
+Parameter fov() { return real("fov", "from top to bottom", "degrees", 0.01, 179); }
+Parameter height() { return real("height", "of what an orthographic camera sees", "m", 1e-6, 1e9); }
+
+void set_fov(scene::Camera& camera, double degrees) {
+  if (camera.orthographic) throw Error("", "the camera is orthographic; camera.height sets what it sees");
+  camera.yfov = static_cast<float>(degrees / k_degrees);
+}
+
+void set_height(scene::Camera& camera, float metres) {
+  if (!camera.orthographic) throw Error("", "the camera is not orthographic; camera.fov sets what it sees");
+  const float ratio = metres / (2 * camera.ymag);
+  camera.ymag = 0.5f * metres, camera.xmag *= ratio;
+}
+
+template <class List>
+std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& item : list)
+    if (!item.name.empty()) names.push_back(item.name);
+  return names;
+}
+
+/// Index of the item of that name, or of that number from 1.
+template <class List>
+uint32_t find_item(const List& list, const std::string& which, const char* kind) {
+  for (size_t i = 0; i < list.size(); ++i)
+    if (list[i].name == which) return static_cast<uint32_t>(i);
+  double number = 0;
+  if (read_number(which, number)) {
+    if (number >= 1 && number <= static_cast<double>(list.size()) && number == std::floor(number))
+      return static_cast<uint32_t>(number) - 1;
+    throw Error("", fmt::format("there is no {} {}; the scene has {}", kind, which, list.size()));
+  }
+  throw Error("", fmt::format("the scene has no {} '{}'{}", kind, which, suggestion(which, names_of(list))));
+}
+
+}  // namespace
+
+void Workspace::needs_view() const {
+  if (!view) throw Error("", "there is no picture yet; wait_scene first");
+}
+
+int Workspace::camera_index(const std::string& which) const {
+  needs_scene(), needs_view();
+  return static_cast<int>(find_item(scene->cameras, which, "camera"));
+}
+
+Selection Workspace::selection_of(const std::string& kind, const std::string& which) const {
+  needs_scene();
+  if (kind == "material") return {Kind::material, find_item(scene->materials, which, "material")};
+  if (kind == "light") return {Kind::light, find_item(scene->lights, which, "light")};
+  return {Kind::instance, find_item(scene->instances, which, "object")};
+}
+
+std::string Workspace::place_line(const Viewpoint& v) {
+  const vec3 eye = eye_of(v.camera), target = pivot_of(v), up = up_of(v.camera);
+  std::string line =
+      fmt::format("camera.place {} {} {}", vector_text(eye), vector_text(target), vector_text(up));
+  if (v.camera.orthographic) line += " height=" + number_text(2 * v.camera.ymag);
+  return line;
+}
+
+void Workspace::add_camera_commands() {
+  const auto move = [this](std::string name, std::string help, std::vector<Parameter> parameters,
+                           std::function<void(Viewpoint&, const Arguments&)> act) {
+    registry.add({.name = std::move(name),
+                  .help = std::move(help),
+                  .parameters = std::move(parameters),
+                  .run = [this, act = std::move(act)](const Arguments& a) {
+                    needs_view();
+                    Viewpoint moving = *view;
+                    act(moving, a);
+                    view = moving;
+                    moved();
+                  }});
+  };
+  move("camera.orbit", "Turns the eye about what it looks at.",
+       {real("right", "counter-clockwise seen from above", "radians"),
+        real("up", "raises the eye", "radians")},
+       [](Viewpoint& v, const Arguments& a) {
+         orbit(v, {a.number("right"), a.number("up")});
+       });
+  move("camera.look", "Turns the view about the eye.",
+       {real("left", "to the left", "radians"), real("up", "upwards", "radians")},
+       [](Viewpoint& v, const Arguments& a) {
+         look(v, {a.number("left"), a.number("up")});
+       });
+  move("camera.pan", "Moves sideways, as a drag across the picture does.",
+       {real("right", "the picture moves to the right", "picture heights"),
+        real("down", "the picture moves down", "picture heights")},
+       [](Viewpoint& v, const Arguments& a) {
+         pan(v, {a.number("right"), a.number("down")}, 1);
+       });
+  move("camera.dolly", "Comes closer by a tenth of the distance a step.",
+       {real("steps", "negative: goes away", "steps", -1000, 1000)},
+       [](Viewpoint& v, const Arguments& a) { dolly(v, a.number("steps")); });
+  move("camera.fly", "Moves along the camera's own axes.",
+       {real("right", "", "m"), real("up", "", "m"), real("forward", "", "m")},
+       [](Viewpoint& v, const Arguments& a) {
+         fly(v, {a.number("right"), a.number("up"), a.number("forward")});
+       });
+  move("camera.place", "Puts the camera at a place, looking at a point that it then orbits about.",
+       {vector("eye", "where it stands", "m"), vector("target", "what it looks at", "m"),
+        vector("up", "what is upwards in the picture", ""), optional(fov()), optional(height())},
+       [](Viewpoint& v, const Arguments& a) {
+         if (!place(v, a.vector("eye"), a.vector("target"), a.vector("up")))
+           throw Error("", "eye and target must differ, and up must not point from one to the other");
+         if (a.has("fov")) set_fov(v.camera, a.real("fov"));
+         if (a.has("height")) set_height(v.camera, a.number("height"));
+       });
+  move("camera.fov", "Sets the field of view of a perspective camera.", {fov()},
+       [](Viewpoint& v, const Arguments& a) { set_fov(v.camera, a.real("fov")); });
+  move("camera.height", "Sets what an orthographic camera sees.", {height()},
+       [](Viewpoint& v, const Arguments& a) { set_height(v.camera, a.number("height")); });
+  move("camera.lens", "Sets the field of view by a focal length, for a frame 36 mm wide.",
+       {real("length", "focal length", "mm", 1, 2000)}, [this](Viewpoint& v, const Arguments& a) {
+         set_fov(v.camera, k_degrees * yfov_from_focal_length(a.number("length"), aspect));
+       });
+  move("camera.frame", "Moves so that the selection, or else the whole scene, fills the picture.", {},
+       [this](Viewpoint& v, const Arguments&) { frame(v, selection_bounds(), aspect); });
+
+  registry.add({.name = "camera.speed",
+                .help = "Sets the speed of flight.",
+                .parameters = {real("speed", "", "m/s", 1e-3, 1e4)},
+                .run = [this](const Arguments& a) { speed = a.number("speed"); }});
+  registry.add({.name = "camera.select",
+                .help = "Takes a camera of the scene.",
+                .parameters = {{.name = "camera",
+                                .help = "its name, or its number from 1",
+                                .names =
+                                    [this](const std::vector<std::string>&) {
+                                      return scene ? names_of(scene->cameras) : std::vector<std::string>{};
+                                    }}},
+                .run = [this](const Arguments& a) {
+                  const int index = camera_index(a.text("camera"));
+                  view = make_viewpoint(scene->cameras[static_cast<size_t>(index)], bounds);
+                  moved();
+                  scene_camera = index;
+                }});
+
+  registry.add(
+      {.name = "select",
+       .help = "Selects a thing of the scene.",
+       .parameters = {{.name = "kind", .type = Type::choice, .choices = {"object", "material", "light"}},
+                      {.name = "item",
+                       .help = "its name, or its number from 1",
+                       .names =
+                           [this](const std::vector<std::string>& before) {
+                             std::vector<std::string> none;
+                             if (!scene || before.empty()) return none;
+                             if (before[0] == "material") return names_of(scene->materials);
+                             return before[0] == "light" ? names_of(scene->lights)
+                                                         : names_of(scene->instances);
+                           }}},
+       .run = [this](const Arguments& a) { selection = selection_of(a.text("kind"), a.text("item")); }});
+  registry.add(
+      {.name = "pick",
+       .help =
+           "Selects what is under a point of the picture: the object, or the material of an object that is "
+           "selected already; nothing where there is nothing.",
+       .parameters = {{.name = "right", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture widths"},
+                      {.name = "down", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture heights"}},
+       .run =
+           [this](const Arguments& a) {
+             needs_scene(), needs_view();
+             const auto hit =
+                 session::pick(*scene, view->camera, a.number("right"), a.number("down"), aspect);
+             if (!hit) {
+               if (selection.kind != Kind::none) run("select.none");
+               return;
+             }
+             const bool again = selection == Selection{Kind::instance, hit->instance};
+             run(again ? line("select material", hit->material + 1)
+                       : line("select object", hit->instance + 1));
+           },
+       .recorded = false});
+  registry.add(
+      {.name = "select.none", .help = "Selects nothing.", .parameters = {}, .run = [this](const Arguments&) {
+         selection = {};
+       }});
+}
+
+}  // namespace lucerna::commands

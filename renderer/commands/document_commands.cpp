@@ -1,0 +1,206 @@
+// Commands that change the document: settings, lights, environment, what is shown. All can be undone.
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "commands/workspace.h"
+
+namespace lucerna::commands {
+namespace {
+
+std::vector<std::string> setting_keys() {
+  std::vector<std::string> keys;
+  for (const plan::OptionInfo& option : plan::options()) keys.push_back(option.key);
+  return keys;
+}
+
+std::vector<std::string> setting_values(const std::vector<std::string>& before) {
+  const plan::OptionInfo* option = before.empty() ? nullptr : plan::find_option(before[0]);
+  if (!option) return {};
+  if (option->type == plan::OptionType::boolean) return {"true", "false"};
+  if (option->type == plan::OptionType::choice) return option->choices;
+  return {option->fallback};
+}
+
+const plan::OptionInfo& known_option(const std::string& key) {
+  if (const plan::OptionInfo* option = plan::find_option(key)) return *option;
+  throw Error("", fmt::format("there is no setting '{}'{}", key, suggestion(key, setting_keys())));
+}
+
+float brightest(const vec3& c) { return std::max({c.x, c.y, c.z}); }
+
+}  // namespace
+
+void Workspace::needs_scene() const {
+  if (!scene) throw Error("", "no scene is open");
+  if (loading()) throw Error("", "a scene is being loaded; wait_scene first");
+}
+
+uint32_t Workspace::light_index(const std::string& which) const {
+  needs_scene();
+  const auto& list = scene->lights;
+  std::vector<std::string> names;
+  for (const scene::Light& light : list) names.push_back(light.name);
+  const auto found = std::find(names.begin(), names.end(), which);
+  if (found != names.end()) return static_cast<uint32_t>(found - names.begin());
+  double number = 0;
+  if (read_number(which, number)) {
+    if (number >= 1 && number <= static_cast<double>(list.size()) && number == std::floor(number))
+      return static_cast<uint32_t>(number) - 1;
+    throw Error("", fmt::format("there is no light {}; the scene has {}", which, list.size()));
+  }
+  throw Error("", fmt::format("the scene has no light '{}'{}", which, suggestion(which, names)));
+}
+
+void Workspace::add_document_commands() {
+  const auto light_names = [this](const std::vector<std::string>&) {
+    std::vector<std::string> names;
+    if (scene)
+      for (const scene::Light& light : scene->lights)
+        if (!light.name.empty()) names.push_back(light.name);
+    return names;
+  };
+
+  registry.add(
+      {.name = "set",
+       .help = "Changes a setting; 'help settings' lists them. A line KEY VALUE or KEY=VALUE does the same.",
+       .parameters = {{.name = "key",
+                       .help = "the setting",
+                       .which = true,
+                       .names = [](const std::vector<std::string>&) { return setting_keys(); }},
+                      {.name = "value", .help = "its new value", .names = setting_values}},
+       .check =
+           [](const Arguments& a) {
+             known_option(a.text("key"));
+             plan::Settings().set(a.text("key"), a.text("value"), "");
+           },
+       .run =
+           [this](const Arguments& a) {
+             edit().settings[a.text("key")] = a.text("value");
+             touched_.push_back(a.text("key"));
+           },
+       .undoable = true});
+  registry.add({.name = "reset",
+                .help = "Gives a setting its default value.",
+                .parameters = {{.name = "key",
+                                .help = "the setting",
+                                .which = true,
+                                .names = [](const std::vector<std::string>&) { return setting_keys(); }}},
+                .check = [](const Arguments& a) { known_option(a.text("key")); },
+                .run =
+                    [this](const Arguments& a) {
+                      const std::string& key = a.text("key");
+                      edit().settings[key] = known_option(key).fallback;
+                      touched_.push_back(key);
+                    },
+                .undoable = true});
+  for (const plan::OptionInfo& option : plan::options())
+    registry.add_prefix(option.key, "set " + quote(option.key));
+
+  registry.add(
+      {.name = "light.set",
+       .help = "Changes a light of the scene. What is not given stays as it is.",
+       .parameters =
+           {{.name = "light", .help = "its name, or its number from 1", .which = true, .names = light_names},
+            {.name = "intensity",
+             .type = Type::real,
+             .help = "of the strongest channel; W/m2 for a sun",
+             .lo = 0,
+             .hi = 1e9,
+             .unit = "W/sr",
+             .optional = true},
+            {.name = "color",
+             .type = Type::vector,
+             .help = "linear; its strongest channel is scaled to 1",
+             .lo = 0,
+             .hi = 1e9,
+             .optional = true},
+            {.name = "on", .type = Type::boolean, .help = "whether it shines", .optional = true}},
+       .run =
+           [this](const Arguments& a) {
+             const uint32_t index = light_index(a.text("light"));
+             Document::Light& light = edit().lights[index];
+             float strength = brightest(light.intensity);
+             vec3 tint = strength > 0 ? light.intensity / strength : vec3(1);
+             if (a.has("intensity")) strength = a.number("intensity");
+             if (a.has("color")) {
+               tint = a.vector("color");
+               if (brightest(tint) <= 0) throw Error("", "color: at least one channel must be above 0");
+               tint /= brightest(tint);
+             }
+             light.intensity = tint * strength;
+             if (a.has("on")) light.enabled = a.boolean("on");
+           },
+       .undoable = true});
+
+  registry.add({.name = "environment.set",
+                .help = "Changes the light from infinitely far. What is not given stays as it is.",
+                .parameters = {{.name = "scale",
+                                .type = Type::real,
+                                .help = "multiplies its radiance",
+                                .lo = 0,
+                                .hi = 1e6,
+                                .optional = true},
+                               {.name = "rotation",
+                                .type = Type::real,
+                                .help = "counter-clockwise seen from above",
+                                .lo = -360,
+                                .hi = 360,
+                                .unit = "degrees",
+                                .optional = true}},
+                .run =
+                    [this](const Arguments& a) {
+                      needs_scene();
+                      if (a.has("scale")) edit().environment_scale = a.number("scale");
+                      if (a.has("rotation")) edit().environment_rotation = a.number("rotation");
+                    },
+                .undoable = true});
+
+  std::vector<std::string> components(session::k_component_names.begin(), session::k_component_names.end());
+  const auto show_key = [](size_t c) { return std::string("show.") + session::k_component_names[c]; };
+  registry.add(
+      {.name = "view.show",
+       .help = "Shows a component in the sum, or leaves it out. Nothing is computed anew.",
+       .parameters = {{.name = "component", .type = Type::choice, .choices = components, .which = true},
+                      {.name = "on", .type = Type::boolean}},
+       .run =
+           [this](const Arguments& a) {
+             Document& d = edit();
+             d.solo = -1;
+             d.settings["show." + a.text("component")] = a.text("on");
+           },
+       .undoable = true});
+  components.push_back("none");
+  registry.add({.name = "view.solo",
+                .help = "Shows one component alone; none: those that were shown before.",
+                .parameters = {{.name = "component", .type = Type::choice, .choices = components}},
+                .run =
+                    [this, components, show_key](const Arguments& a) {
+                      Document& d = edit();
+                      const auto found = std::find(components.begin(), components.end(), a.text("component"));
+                      const int chosen =
+                          a.text("component") == "none" ? -1 : static_cast<int>(found - components.begin());
+                      if (chosen == d.solo) return;
+                      if (d.solo < 0)
+                        for (size_t c = 0; c < session::k_components; ++c)
+                          d.shown_before[c] = d.settings[show_key(c)] == "true";
+                      d.solo = chosen;
+                      for (size_t c = 0; c < session::k_components; ++c)
+                        d.settings[show_key(c)] =
+                            (chosen < 0 ? d.shown_before[c] : static_cast<int>(c) == chosen) ? "true"
+                                                                                             : "false";
+                      if (chosen >= 0) d.settings["film.layer"] = "beauty";
+                    },
+                .undoable = true});
+
+  registry.add({.name = "undo",
+                .help = "Takes back the last change of a setting, a light, the environment or what is shown.",
+                .parameters = {},
+                .run = [this](const Arguments&) { undo(); }});
+  registry.add({.name = "redo",
+                .help = "Does again what was undone last.",
+                .parameters = {},
+                .run = [this](const Arguments&) { redo(); }});
+}
+
+}  // namespace lucerna::commands

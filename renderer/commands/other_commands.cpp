@@ -1,0 +1,135 @@
+// Commands on the scene's file, on rendering and on scripts themselves.
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "commands/workspace.h"
+
+namespace lucerna::commands {
+namespace {
+
+std::string settings_manual() {
+  std::string text = "Settings, for 'set KEY VALUE':";
+  for (const plan::OptionInfo& o : plan::options()) {
+    std::string range;
+    if (o.type == plan::OptionType::choice)
+      range = fmt::format("{}", fmt::join(o.choices, "|"));
+    else if (o.type == plan::OptionType::boolean)
+      range = "true|false";
+    else if (o.type != plan::OptionType::text)
+      range = fmt::format("{} to {}{}{}", o.lo, o.hi, o.unit.empty() ? "" : " ", o.unit);
+    text += fmt::format("\n  {} {}: {}", o.key, range, o.help);
+  }
+  return text;
+}
+
+}  // namespace
+
+void Workspace::add_other_commands() {
+  const auto act = [this](const char* name, const char* help, std::function<void()> run) {
+    registry.add(
+        {.name = name, .help = help, .parameters = {}, .run = [run = std::move(run)](const Arguments&) {
+           run();
+         }});
+  };
+  const auto file = [](std::vector<std::string> endings) {
+    return Parameter{.name = "file", .type = Type::file, .choices = std::move(endings)};
+  };
+
+  registry.add({.name = "scene.open",
+                .help = "Opens a glTF scene. The one shown stays until the new one is ready, or if it fails.",
+                .parameters = {file({".gltf", ".glb"})},
+                .run = [this](const Arguments& a) {
+                  opening_ = true, open_failed_ = false;
+                  errors_at_open_ = error_count;
+                  scene_at_open_ = snapshot ? snapshot->scene_id : 0;
+                  session.load(a.text("file"));
+                }});
+  act("scene.cancel", "Gives up the load in progress; the scene shown stays.", [this] {
+    session.cancel();
+    opening_ = false;
+  });
+  act("render.pause", "Stops taking samples.", [this] { session.set_paused(true); });
+  act("render.resume", "Goes on taking samples.", [this] { session.set_paused(false); });
+  act("render.restart", "Throws the samples away and starts the picture anew.",
+      [this] { session.restart(); });
+  act("shaders.reload", "Compiles the shaders again; when that fails the old ones stay.",
+      [this] { session.reload_shaders(); });
+  registry.add({.name = "image.save",
+                .help = "Writes the picture as it is: all layers as EXR, or what is shown as PNG.",
+                .parameters = {file({".exr", ".png"})},
+                .run = [this](const Arguments& a) { session.save(a.text("file")); }});
+
+  registry.add({.name = "script.save",
+                .help = "Writes what was done in this session, as a script that does it again.",
+                .parameters = {file({".lucerna"})},
+                .run =
+                    [this](const Arguments& a) {
+                      save_script(a.text("file"));
+                      log::info("session saved as {}", a.text("file"));
+                    },
+                .recorded = false});
+  registry.add(
+      {.name = "help",
+       .help = "Lists the commands, or explains one.",
+       .parameters = {{.name = "command",
+                       .help = "a command, a setting, or 'settings'",
+                       .optional = true,
+                       .names =
+                           [this](const std::vector<std::string>&) {
+                             std::vector<std::string> names{"settings"};
+                             for (const auto& [name, command] : registry.all()) names.push_back(name);
+                             return names;
+                           }}},
+       .run =
+           [this](const Arguments& a) { log::info("{}", manual(a.has("command") ? a.text("command") : "")); },
+       .recorded = false});
+
+  registry.add({.name = "wait",
+                .help = "In a script: lets the window run.",
+                .parameters = {{.name = "time", .type = Type::real, .lo = 0, .hi = 86400, .unit = "seconds"}},
+                .run = [this](const Arguments&) { waited_since_ = now; },
+                .done = [this](const Arguments& a) { return now - waited_since_ >= a.real("time"); },
+                .recorded = false});
+  registry.add({.name = "wait_scene",
+                .help = "In a script: waits until the scene is there; fails when it could not be loaded.",
+                .parameters = {},
+                .run = [](const Arguments&) {},
+                .done =
+                    [this](const Arguments&) {
+                      if (loading()) return false;
+                      if (open_failed_ || !view) throw Error("", "no scene was loaded");
+                      return true;
+                    },
+                .recorded = false});
+  registry.add(
+      {.name = "wait_samples",
+       .help = "In a script: waits until the picture holds that many samples a pixel, or is finished.",
+       .parameters = {{.name = "samples", .type = Type::integer, .lo = 0, .hi = 1 << 20}},
+       .run = [](const Arguments&) {},
+       .done =
+           [this](const Arguments& a) {
+             if (!snapshot || camera_moved) return false;
+             // A picture of an earlier camera does not count.
+             if (view && !same_view(snapshot->camera, view->camera)) return false;
+             return snapshot->finished || (!snapshot->coarse && snapshot->samples >= a.integer("samples"));
+           },
+       .recorded = false});
+}
+
+std::string Workspace::manual(const std::string& topic) const {
+  if (topic == "settings") return settings_manual();
+  if (const Command* command = registry.find(topic)) return registry.manual(*command);
+  if (const plan::OptionInfo* option = plan::find_option(topic))
+    return fmt::format("set {} VALUE\n  {}", topic, option->help);
+  std::vector<std::string> names;
+  std::string list = "Commands; 'help COMMAND' explains one, 'help settings' lists the settings:";
+  for (const auto& [name, command] : registry.all()) {
+    names.push_back(name);
+    list += "\n  " + registry.usage(command);
+  }
+  if (topic.empty()) return list;
+  throw Error("", fmt::format("there is no command '{}'{}", topic, suggestion(topic, names)));
+}
+
+}  // namespace lucerna::commands

@@ -1,0 +1,306 @@
+#include "commands/workspace.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <tuple>
+
+#include "base/error.h"
+
+namespace lucerna::commands {
+namespace {
+
+/// How long an edit is shown although the session says otherwise; then the session was right (it refused it).
+constexpr double k_patience = 2.0;
+constexpr size_t k_steps = 500;  // that can be undone
+
+}  // namespace
+
+const char* kind_name(Kind kind) {
+  static const char* names[] = {"none", "material", "object", "light"};
+  return names[static_cast<size_t>(kind)];
+}
+
+Workspace::Workspace(session::Session& s) : session(s) {
+  add_document_commands();
+  add_camera_commands();
+  add_other_commands();
+}
+
+void Workspace::refresh(double time) {
+  now = time;
+  // The scene after the snapshot: a picture's scene is then never newer than the one held here.
+  snapshot = session.snapshot();
+  scene = session.scene();
+  known_ = session.settings();
+  drop_taken();
+  follow_scene();
+  if (opening_ && error_count > errors_at_open_) opening_ = false, open_failed_ = true;
+}
+
+void Workspace::drop_taken() {
+  // While a scene is being loaded edits wait in the session's queue, however long.
+  const bool patient = loading();
+  const auto over = [&](double since) { return !patient && now - since > k_patience; };
+  std::erase_if(pending_, [&](const auto& entry) {
+    return known_.text(entry.first) == entry.second.value || over(entry.second.since);
+  });
+  std::erase_if(pending_lights_, [&](const auto& entry) {
+    const auto& [index, edit] = entry;
+    if (!scene || index >= scene->lights.size() || over(edit.since)) return true;
+    return scene->lights[index].intensity == edit.value.intensity &&
+           scene->lights[index].enabled == edit.value.enabled;
+  });
+  if (pending_environment_) {
+    const bool taken = scene && scene->environment.scale == pending_environment_->scale &&
+                       scene->environment.rotation == pending_environment_->rotation;
+    if (!scene || taken || over(pending_environment_->since)) pending_environment_.reset();
+  }
+}
+
+void Workspace::follow_scene() {
+  if (!snapshot || !scene || snapshot->scene_id == view_scene || snapshot->rgba.empty()) return;
+  view_scene = snapshot->scene_id;
+  bounds = scene::bounds(*scene);
+  view = make_viewpoint(snapshot->camera, bounds);
+  speed = walking_speed(view->extent);
+  selection = {};
+  pending_lights_.clear(), pending_environment_.reset();
+  undo_.clear(), redo_.clear();
+  solo_ = -1;
+  scene_camera = -1;
+  for (size_t i = 0; i < scene->cameras.size(); ++i)
+    if (same_view(scene->cameras[i], snapshot->camera)) scene_camera = static_cast<int>(i);
+  camera_moved = false;
+  if (opening_ && snapshot->scene_id != scene_at_open_) {
+    opening_ = false;
+    recorded_.push_back({"wait_scene", "wait_scene", 0});
+  }
+  scene_changed();
+}
+
+Document Workspace::document() const {
+  Document d;
+  d.settings = known_.all();
+  for (const auto& [key, edit] : pending_) d.settings[key] = edit.value;
+  if (scene)
+    for (uint32_t i = 0; i < scene->lights.size(); ++i) {
+      const scene::Light l = light(i);
+      d.lights.push_back({l.intensity, l.enabled});
+    }
+  std::tie(d.environment_scale, d.environment_rotation) = environment_();
+  d.solo = solo_;
+  d.shown_before = shown_before_;
+  return d;
+}
+
+const std::string& Workspace::setting(const std::string& key) const {
+  const auto found = pending_.find(key);
+  return found != pending_.end() ? found->second.value : known_.text(key);
+}
+
+double Workspace::setting_real(const std::string& key) const {
+  double value = 0;
+  read_number(setting(key), value);
+  return value;
+}
+
+scene::Light Workspace::light(uint32_t index) const {
+  scene::Light light = scene->lights.at(index);
+  if (const auto found = pending_lights_.find(index); found != pending_lights_.end())
+    light.intensity = found->second.value.intensity, light.enabled = found->second.value.enabled;
+  return light;
+}
+
+std::pair<float, float> Workspace::environment_() const {
+  if (pending_environment_) return {pending_environment_->scale, pending_environment_->rotation};
+  if (scene) return {scene->environment.scale, scene->environment.rotation};
+  return {1, 0};
+}
+
+Document& Workspace::edit() {
+  assert(working_ && "only commands marked undoable change the document");
+  return *working_;
+}
+
+void Workspace::send(const Document& before, const Document& after) {
+  for (const auto& [key, value] : after.settings) {
+    const auto old = before.settings.find(key);
+    // While a scene is being loaded nobody knows what its settings will be: what was asked for is sent.
+    const bool asked = loading() && std::find(touched_.begin(), touched_.end(), key) != touched_.end();
+    if (!asked && old != before.settings.end() && old->second == value) continue;
+    pending_[key] = {value, now};
+    session.set(key, value);
+  }
+  if (scene)
+    for (uint32_t i = 0; i < std::min(after.lights.size(), scene->lights.size()); ++i) {
+      if (i < before.lights.size() && before.lights[i] == after.lights[i]) continue;
+      pending_lights_[i] = {after.lights[i], now};
+      session.set_light(i, light(i));
+    }
+  if (before.environment_scale != after.environment_scale ||
+      before.environment_rotation != after.environment_rotation) {
+    pending_environment_ = PendingEnvironment{after.environment_scale, after.environment_rotation, now};
+    session.set_environment(after.environment_scale, after.environment_rotation);
+  }
+  solo_ = after.solo;
+  shown_before_ = after.shown_before;
+}
+
+Line Workspace::run(const std::string& text, uint64_t gesture, const std::string& where) {
+  const Line line = registry.parse(text, where);
+  if (!line.command) return line;
+  const auto located = [&](auto&& act) {
+    try {
+      act();
+    } catch (const Error& error) {
+      working_.reset();
+      const std::string what = error.what();
+      const std::string head = line.command->name + ": ";
+      throw Error(where, what.starts_with(head) ? what : head + what);
+    }
+  };
+  if (!line.command->undoable) {
+    located([&] { line.command->run(line.arguments); });
+    record(line, gesture);
+    return line;
+  }
+  const std::string target = registry.target(line);
+  const bool merges =
+      gesture != 0 && !undo_.empty() && undo_.back().gesture == gesture && undo_.back().target == target;
+  const Document now_seen = document();
+  // A step of a drag starts from where the drag began, so that the last step alone gives the same.
+  working_ = merges ? undo_.back().before : now_seen;
+  touched_.clear();
+  located([&] { line.command->run(line.arguments); });
+  const Document after = std::move(*working_);
+  working_.reset();
+  send(now_seen, after);
+  const bool asked = loading() && !touched_.empty();
+  if (merges)
+    undo_.back().after = after, undo_.back().line = registry.print(line);
+  else if (after != now_seen)
+    undo_.push_back({registry.print(line), target, gesture, now_seen, after});
+  else if (!asked)
+    return line;
+  if (undo_.size() > k_steps) undo_.erase(undo_.begin());
+  redo_.clear();
+  record(line, gesture);
+  return line;
+}
+
+void Workspace::undo() {
+  if (undo_.empty()) throw Error("", "there is nothing to undo");
+  Step step = std::move(undo_.back());
+  undo_.pop_back();
+  touched_.clear();
+  send(document(), step.before);
+  step.gesture = 0;
+  redo_.push_back(std::move(step));
+}
+
+void Workspace::redo() {
+  if (redo_.empty()) throw Error("", "there is nothing to do again");
+  Step step = std::move(redo_.back());
+  redo_.pop_back();
+  touched_.clear();
+  send(document(), step.after);
+  undo_.push_back(std::move(step));
+}
+
+void Workspace::record(const Line& line, uint64_t gesture) {
+  if (!line.command->recorded) return;
+  Recorded entry{line.command->name, registry.target(line), gesture};
+  // Files are named so that the script works from any folder.
+  for (const Parameter& p : line.command->parameters) {
+    if (!line.arguments.has(p.name)) continue;
+    std::string value = line.arguments.text(p.name);
+    if (p.type == Type::file) value = std::filesystem::absolute(value).lexically_normal().string();
+    entry.line += " " + (p.optional ? p.name + "=" : "") + quote(value);
+  }
+  if (gesture != 0 && !recorded_.empty() && recorded_.back().gesture == gesture &&
+      recorded_.back().target == entry.target)
+    recorded_.back() = std::move(entry);
+  else
+    recorded_.push_back(std::move(entry));
+}
+
+std::vector<std::string> Workspace::script() const {
+  std::vector<std::string> lines;
+  for (const Recorded& entry : recorded_) lines.push_back(entry.line);
+  return lines;
+}
+
+void Workspace::save_script(const std::string& file) const {
+  const std::string temporary = file + ".tmp";
+  std::ofstream out(temporary);
+  out << "# What was done in a session of Lucerna; lucerna --script FILE does it again.\n";
+  for (const Recorded& entry : recorded_) out << entry.line << '\n';
+  out.close();
+  if (!out || std::rename(temporary.c_str(), file.c_str()) != 0) {
+    std::remove(temporary.c_str());
+    throw Error(file, "cannot write here; check that the folder exists and may be written");
+  }
+}
+
+void Workspace::send_camera() {
+  if (!camera_moved || !view) return;
+  camera_moved = false;
+  session.set_camera(view->camera);
+}
+
+void Workspace::moved() {
+  camera_moved = true;
+  scene_camera = -1;
+}
+
+Box Workspace::selection_bounds() const {
+  Box box;
+  if (!scene) return box;
+  const auto add = [&](const scene::Instance& instance, auto&& wanted) {
+    if (instance.mesh >= scene->meshes.size()) return;
+    for (const scene::Primitive& primitive : scene->meshes[instance.mesh].primitives)
+      if (wanted(primitive))
+        for (const vec3& p : primitive.positions) box.grow(vec3(instance.to_world * vec4(p, 1)));
+  };
+  switch (selection.kind) {
+    case Kind::none:
+      return bounds;
+    case Kind::material:
+      for (const scene::Instance& instance : scene->instances)
+        add(instance, [&](const scene::Primitive& p) { return p.material == selection.index; });
+      break;
+    case Kind::instance:
+      if (selection.index < scene->instances.size())
+        add(scene->instances[selection.index], [](const scene::Primitive&) { return true; });
+      break;
+    case Kind::light:
+      if (selection.index < scene->lights.size() &&
+          scene->lights[selection.index].kind != scene::LightKind::directional) {
+        const float reach = 0.05f * std::max(bounds.radius(), 1e-3f);
+        box.grow(scene->lights[selection.index].position - vec3(reach));
+        box.grow(scene->lights[selection.index].position + vec3(reach));
+      }
+      break;
+  }
+  return box.empty() ? bounds : box;
+}
+
+std::string Workspace::selection_name() const {
+  if (!scene) return "";
+  switch (selection.kind) {
+    case Kind::material:
+      return scene->materials[selection.index].name;
+    case Kind::instance:
+      return scene->instances[selection.index].name;
+    case Kind::light:
+      return scene->lights[selection.index].name;
+    case Kind::none:
+      break;
+  }
+  return "";
+}
+
+}  // namespace lucerna::commands

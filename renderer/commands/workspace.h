@@ -1,0 +1,168 @@
+#pragma once
+// What a person works on: a session, the edits on their way to it, the camera, the selection – and the one
+// way to change any of it: run(line). It keeps what can be undone and the script of what was done. One
+// thread.
+//
+// An edit is seen here at once and handed to the session, which takes it when it can; until then the edit
+// stands above what the session says (or for two seconds: then the session has refused it).
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "commands/camera_control.h"
+#include "commands/registry.h"
+#include "session/session.h"
+
+namespace lucerna::commands {
+
+/// What can be undone. Plain values; a command that edits changes them, and the session is told what differs.
+struct Document {
+  struct Light {
+    vec3 intensity{0};  ///< as scene::Light
+    bool enabled = true;
+    bool operator==(const Light& o) const { return intensity == o.intensity && enabled == o.enabled; }
+  };
+  std::map<std::string, std::string> settings;  ///< by key
+  std::vector<Light> lights;                    ///< of the scene, in its order
+  float environment_scale = 1;
+  float environment_rotation = 0;                          ///< degrees
+  int solo = -1;                                           ///< component shown alone, or -1
+  std::array<bool, session::k_components> shown_before{};  ///< to come back to after solo
+  bool operator==(const Document&) const = default;
+};
+
+enum class Kind { none, material, instance, light };
+struct Selection {
+  Kind kind = Kind::none;
+  uint32_t index = 0;
+  bool operator==(const Selection&) const = default;
+};
+const char* kind_name(Kind kind);  ///< "object" for an instance
+
+class Workspace {
+ public:
+  explicit Workspace(session::Session& session);
+  virtual ~Workspace() = default;
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  session::Session& session;
+  Registry registry;  ///< holds the commands of this module; others may be added
+  double now = 0;     ///< seconds on the caller's clock
+
+  /// Takes in what the session has published since. Call before looking and before running commands.
+  void refresh(double time);
+  std::shared_ptr<const session::Snapshot> snapshot;
+  std::shared_ptr<const scene::Scene> scene;  ///< with the edits that the session has taken
+  bool loading() const { return opening_ || (snapshot && snapshot->progress >= 0); }
+  /// Errors seen so far, counted by whoever listens to the log: an error after scene.open is a failed load.
+  uint64_t error_count = 0;
+
+  /// Carries out a line. Lines of one `gesture` (not 0) on the same target are one step to undo and one line
+  /// of the script: the last. Throws Error, at `where`, when it is not understood or cannot be done; then
+  /// nothing has changed. Returns the line that was understood.
+  Line run(const std::string& line, uint64_t gesture = 0, const std::string& where = "");
+
+  // As the person sees it.
+  Document document() const;
+  const std::string& setting(const std::string& key) const;
+  double setting_real(const std::string& key) const;
+  bool setting_on(const std::string& key) const { return setting(key) == "true"; }
+  scene::Light light(uint32_t index) const;
+  float environment_scale() const { return environment_().first; }
+  float environment_rotation() const { return environment_().second; }
+  int solo() const { return solo_; }
+
+  bool can_undo() const { return !undo_.empty(); }
+  bool can_redo() const { return !redo_.empty(); }
+  /// The line that undo would take back; "" for none. And that redo would do again.
+  std::string undo_text() const { return undo_.empty() ? "" : undo_.back().line; }
+  std::string redo_text() const { return redo_.empty() ? "" : redo_.back().line; }
+  void undo();
+  void redo();
+
+  /// What 'help TOPIC' says; "" for the list of commands. Throws Error when there is no such topic.
+  std::string manual(const std::string& topic) const;
+
+  /// What was done, one line each, so that a script of them does it again.
+  std::vector<std::string> script() const;
+  /// Writes it (to a temporary name, then renamed). Throws Error: cannot be written.
+  void save_script(const std::string& file) const;
+
+  // The camera.
+  std::optional<Viewpoint> view;  ///< none before the first picture of a scene
+  uint64_t view_scene = 0;        ///< scene_id that `view` belongs to
+  Box bounds;                     ///< of the scene
+  float speed = 1.5f;             ///< of flight, m/s
+  float aspect = 1.5f;            ///< width / height of the picture
+  int scene_camera = -1;          ///< the one taken last and not moved since
+  /// The camera was moved and the session has not been told yet (send_camera).
+  bool camera_moved = false;
+  void send_camera();
+  /// "camera.place ..." that makes exactly this view.
+  static std::string place_line(const Viewpoint& view);
+
+  Selection selection;
+  Box selection_bounds() const;  ///< of the scene when nothing is selected
+  std::string selection_name() const;
+
+ protected:
+  /// Called when another scene has appeared and the view has been set up for it.
+  virtual void scene_changed() {}
+
+ private:
+  struct Step {
+    std::string line, target;
+    uint64_t gesture;
+    Document before, after;
+  };
+  struct Recorded {
+    std::string line, target;
+    uint64_t gesture;
+  };
+  struct Pending {
+    std::string value;
+    double since;
+  };
+  struct PendingLight {
+    Document::Light value;
+    double since;
+  };
+  struct PendingEnvironment {
+    float scale, rotation;
+    double since;
+  };
+
+  void add_document_commands();
+  void add_camera_commands();
+  void add_other_commands();
+  Document& edit();  ///< the document that the running command may change
+  void send(const Document& before, const Document& after);
+  void record(const Line& line, uint64_t gesture);
+  void follow_scene();
+  void drop_taken();
+  std::pair<float, float> environment_() const;
+  void needs_view() const;
+  void needs_scene() const;
+  uint32_t light_index(const std::string& which) const;
+  int camera_index(const std::string& which) const;
+  Selection selection_of(const std::string& kind, const std::string& which) const;
+  void moved();
+
+  plan::Settings known_;
+  std::map<std::string, Pending> pending_;
+  std::map<uint32_t, PendingLight> pending_lights_;
+  std::optional<PendingEnvironment> pending_environment_;
+  int solo_ = -1;
+  std::array<bool, session::k_components> shown_before_{};
+  std::optional<Document> working_;
+  std::vector<std::string> touched_;  ///< settings that the running command set, changed or not
+  std::vector<Step> undo_, redo_;
+  std::vector<Recorded> recorded_;
+  bool opening_ = false;      ///< scene.open was run and has not ended
+  bool open_failed_ = false;  ///< the last one has failed
+  uint64_t errors_at_open_ = 0, scene_at_open_ = 0;
+  double waited_since_ = -1;  ///< when the running 'wait' began
+};
+
+}  // namespace lucerna::commands

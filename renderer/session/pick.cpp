@@ -1,0 +1,88 @@
+#include "session/pick.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::session {
+namespace {
+
+float wrapped(float u, scene::Wrap wrap) {
+  switch (wrap) {
+    case scene::Wrap::clamp:
+      return std::clamp(u, 0.0f, 1.0f);
+    case scene::Wrap::mirror:
+      return std::abs(std::remainder(u, 2.0f));
+    case scene::Wrap::repeat:
+      break;
+  }
+  return u - std::floor(u);
+}
+
+float texture_alpha(const scene::Scene& s, const scene::TextureUse& use, const vec2& uv) {
+  const scene::Texture& texture = s.textures[use.texture];
+  if (texture.image >= s.images.size()) return 1;
+  const scene::Image& image = s.images[texture.image];
+  if (image.width == 0 || image.height == 0) return 1;
+  const auto& m = use.m;
+  float u = m[0] * uv.x + m[1] * uv.y + m[2], v = m[3] * uv.x + m[4] * uv.y + m[5];
+  if (!std::isfinite(u) || !std::isfinite(v)) return 1;
+  u = wrapped(u, texture.wrap_u), v = wrapped(v, texture.wrap_v);
+  const auto column = std::min(static_cast<uint32_t>(u * static_cast<float>(image.width)), image.width - 1);
+  const auto row = std::min(static_cast<uint32_t>(v * static_cast<float>(image.height)), image.height - 1);
+  const size_t texel = (size_t{row} * image.width + column) * 4 + 3;
+  if (texel < image.bytes.size()) return static_cast<float>(image.bytes[texel]) / 255;
+  return texel < image.floats.size() ? image.floats[texel] : 1;
+}
+
+/// Whether a ray is stopped at barycentric coordinates (a, b) of the second and third vertex.
+bool stops(const scene::Scene& s, const scene::Primitive& p, const uvec3& t, float a, float b) {
+  const scene::Material& m = s.materials[p.material];
+  if (m.alpha_mode == scene::AlphaMode::opaque) return true;
+  float alpha = m.base_color.w;
+  if (!p.colors.empty()) alpha *= (1 - a - b) * p.colors[t.x].w + a * p.colors[t.y].w + b * p.colors[t.z].w;
+  if (m.base_color_texture) {
+    const std::vector<vec2>& uv = m.base_color_texture.uv_set == 1 ? p.uv1 : p.uv0;
+    if (!uv.empty())
+      alpha *= texture_alpha(s, m.base_color_texture, (1 - a - b) * uv[t.x] + a * uv[t.y] + b * uv[t.z]);
+  }
+  return alpha >= (m.alpha_mode == scene::AlphaMode::mask ? m.alpha_cutoff : 0.5f);
+}
+
+}  // namespace
+
+std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camera, float x, float y,
+                           float aspect) {
+  const mat4& m = camera.to_world;
+  const vec3 right = glm::normalize(vec3(m[0])), up = glm::normalize(vec3(m[1]));
+  const vec3 forward = -glm::normalize(vec3(m[2]));
+  const float half = camera.orthographic ? camera.ymag : std::tan(0.5f * camera.yfov);
+  const vec3 offset = (2 * x - 1) * half * aspect * right + (1 - 2 * y) * half * up;
+  const vec3 origin = camera.orthographic ? vec3(m[3]) + offset : vec3(m[3]);
+  const vec3 direction = camera.orthographic ? forward : glm::normalize(forward + offset);
+
+  std::optional<Picked> best;
+  float nearest = k_infinity;
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Instance& instance = scene.instances[i];
+    if (instance.mesh >= scene.meshes.size()) continue;
+    // In the object's space the ray keeps its parameter, so that distances compare.
+    const mat4 to_object = glm::inverse(instance.to_world);
+    const vec3 o(to_object * vec4(origin, 1)), d(to_object * vec4(direction, 0));
+    for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives)
+      for (const uvec3& t : p.triangles) {
+        const vec3 &v0 = p.positions[t.x], e1 = p.positions[t.y] - v0, e2 = p.positions[t.z] - v0;
+        const vec3 q = glm::cross(d, e2);
+        const float det = glm::dot(e1, q);
+        if (det == 0) continue;
+        const vec3 s = o - v0, r = glm::cross(s, e1);
+        const float a = glm::dot(s, q) / det, b = glm::dot(d, r) / det, distance = glm::dot(e2, r) / det;
+        if (!(a >= 0 && b >= 0 && a + b <= 1 && distance > 0 && distance < nearest)) continue;
+        if (!stops(scene, p, t, a, b)) continue;
+        nearest = distance;
+        best = Picked{i, p.material, distance, origin + distance * direction};
+      }
+  }
+  return best;
+}
+
+}  // namespace lucerna::session

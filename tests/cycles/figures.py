@@ -1,0 +1,73 @@
+"""Statistics of two renderers' pictures of one scene, each rendered more than once with different seeds.
+
+Noise is measured, not assumed: the pixels of pictures with different seeds are independent, so the spread between them
+gives the variance of every pixel of their average, and its sum over a block that of the block's mean (hundreds of
+degrees of freedom).
+"""
+import numpy as np
+
+BLOCK = 16
+
+
+class Estimate:
+    """The average of several pictures of one renderer with the variance of that average, pixel by pixel."""
+
+    def __init__(self, pictures):
+        stack = np.stack(pictures)
+        self.count = len(pictures)
+        self.mean = stack.mean(axis=0)
+        self.variance = stack.var(axis=0, ddof=1) / len(pictures) if len(pictures) > 1 else np.zeros_like(self.mean)
+
+
+def in_blocks(x, keep, size=BLOCK):
+    """Sums over blocks (rows, columns, channels) of the kept pixels; what does not fill a block is dropped."""
+    h, w = keep.shape[0] // size, keep.shape[1] // size
+    x = np.where(keep[:, :, None], x, 0)[:h * size, :w * size]
+    return x.reshape(h, size, w, size, -1).sum(axis=(1, 3))
+
+
+def block_figures(ours, theirs, keep, tolerance=0.01):
+    """Blocks with at least a quarter of their pixels kept, brighter than 1 % of the picture's mean.
+
+    ratio: ours / theirs, mean of the channels; z: the difference over its standard deviation, each channel;
+    outside: share of blocks further apart than `tolerance` and three standard deviations in any channel.
+    """
+    n = in_blocks(np.ones(keep.shape + (1,)), keep)
+    o, t = in_blocks(ours.mean, keep), in_blocks(theirs.mean, keep)
+    deviation = np.sqrt(in_blocks(ours.variance, keep) + in_blocks(theirs.variance, keep))
+    bright = t.mean(axis=2) > 0.01 * theirs.mean[keep].mean() * n[:, :, 0]
+    good = bright & (n[:, :, 0] >= BLOCK * BLOCK / 4)
+    if not good.any():
+        return None
+    ratio = o.mean(axis=2)[good] / t.mean(axis=2)[good]
+    z = (o - t)[good] / np.maximum(deviation[good], 1e-12)
+    relative = (o - t)[good] / np.maximum(t[good], 1e-12)
+    outside = ((abs(z) > 3) & (abs(relative) > tolerance)).any(axis=1)
+    noise = (deviation[good] / np.maximum(t[good], 1e-12)).mean(axis=1)
+    places = np.argwhere(good)
+    order = np.argsort(-abs(z).max(axis=1) * outside)
+    worst = [{"x": int(places[i][1]) * BLOCK, "y": int(places[i][0]) * BLOCK, "ratio": round(float(ratio[i]), 4),
+              "z": z[i].round(1).tolist()} for i in order[:8] if outside[i]]
+    q = np.percentile(ratio, [5, 50, 95])
+    return {"count": int(good.sum()), "p5": round(q[0], 4), "median": round(q[1], 4), "p95": round(q[2], 4),
+            "noise": round(float(np.median(noise)), 4),
+            "z_rms": round(float(np.sqrt((z ** 2).mean())), 3),
+            "beyond_2_sigma": round(float((abs(z) > 2).mean()), 4),
+            "outside": round(float(outside.mean()), 4), "worst": worst}
+
+
+def figures(ours, theirs, keep, eps=0.01):
+    """Everything compare.py prints of one scene; `ours` and `theirs` are Estimates, `keep` a mask of pixels."""
+    o, t = ours.mean[keep], theirs.mean[keep]
+    mean_o, mean_t = o.mean(axis=0), t.mean(axis=0)
+    deviation = np.sqrt(ours.variance[keep].sum(axis=0) + theirs.variance[keep].sum(axis=0)) / len(o)
+    error = ((o - t) ** 2 / (t ** 2 + eps)).mean(axis=1)
+    # What is left when both renderers' own noise is taken away.
+    noise = ((ours.variance[keep] + theirs.variance[keep]) / (t ** 2 + eps)).mean(axis=1)
+    calm = np.argsort(error + noise)[:len(error) - max(1, len(error) // 1000)]
+    return {"mean": {"lucerna": mean_o.round(6).tolist(), "cycles": mean_t.round(6).tolist()},
+            "ratio": (mean_o / mean_t).round(5).tolist(),
+            "ratio_sigma": (deviation / mean_t).round(5).tolist(),
+            "blocks": block_figures(ours, theirs, keep),
+            "relmse": {"all": round(float(error.mean()), 6), "trimmed": round(float(error[calm].mean()), 6),
+                       "less_noise": round(float((error - noise)[calm].mean()), 6)}}

@@ -1,0 +1,137 @@
+// Commands that only a window can carry out: panels, dialogs, the log, what lies over the picture.
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "state.h"
+
+namespace lucerna::ui {
+namespace {
+
+const std::vector<std::string> k_levels{"debug", "info", "warning", "error"};
+
+float& size_of(Layout& layout, const std::string& panel) {
+  return panel == "left" ? layout.left : panel == "right" ? layout.right : layout.bottom;
+}
+bool& open_of(Layout& layout, const std::string& panel) {
+  return panel == "left" ? layout.left_open : panel == "right" ? layout.right_open : layout.bottom_open;
+}
+
+}  // namespace
+
+std::pair<int, int> key_of(const std::string& name) {
+  static const std::vector<std::pair<std::string, int>> keys{
+      {"tab", GLFW_KEY_TAB},     {"enter", GLFW_KEY_ENTER},   {"escape", GLFW_KEY_ESCAPE},
+      {"space", GLFW_KEY_SPACE}, {"up", GLFW_KEY_UP},         {"down", GLFW_KEY_DOWN},
+      {"left", GLFW_KEY_LEFT},   {"right", GLFW_KEY_RIGHT},   {"home", GLFW_KEY_HOME},
+      {"end", GLFW_KEY_END},     {"delete", GLFW_KEY_DELETE}, {"backspace", GLFW_KEY_BACKSPACE}};
+  static const std::vector<std::pair<std::string, int>> modifiers{
+      {"ctrl+", GLFW_MOD_CONTROL}, {"shift+", GLFW_MOD_SHIFT}, {"alt+", GLFW_MOD_ALT}};
+  std::string rest = name;
+  for (char& c : rest) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  int mods = 0;
+  for (bool again = true; again;) {
+    again = false;
+    for (const auto& [head, bit] : modifiers)
+      if (rest.starts_with(head)) rest = rest.substr(head.size()), mods |= bit, again = true;
+  }
+  double number = 0;
+  if (rest.size() == 1 && std::isalnum(static_cast<unsigned char>(rest[0])))
+    return {std::toupper(static_cast<unsigned char>(rest[0])), mods};  // GLFW's keys are their capitals
+  if (rest.size() > 1 && rest[0] == 'f' && commands::read_number(rest.substr(1), number) && number >= 1 &&
+      number <= 12)
+    return {GLFW_KEY_F1 + static_cast<int>(number) - 1, mods};
+  for (const auto& [known, key] : keys)
+    if (rest == known) return {key, mods};
+  throw Error("", fmt::format("there is no key '{}'; expected a letter, a digit, f1 to f12, tab, enter, "
+                              "escape, space, an arrow, home, end, delete or backspace, behind ctrl+, shift+ "
+                              "or alt+",
+                              name));
+}
+
+void add_window_commands(Ui& ui) {
+  using commands::Arguments;
+  using commands::Parameter;
+  using commands::Type;
+  const auto add = [&](std::string name, std::string help, std::vector<Parameter> parameters,
+                       std::function<void(const Arguments&)> run, bool recorded = true) {
+    ui.registry.add({.name = std::move(name),
+                     .help = std::move(help),
+                     .parameters = std::move(parameters),
+                     .run =
+                         [&ui, run = std::move(run)](const Arguments& a) {
+                           run(a);
+                           ui.wake(3);
+                         },
+                     .recorded = recorded});
+  };
+  const Parameter on{.name = "on", .type = Type::boolean};
+  const Parameter panel{
+      .name = "panel", .type = Type::choice, .choices = {"left", "right", "bottom"}, .which = true};
+
+  add("window.panels", "Shows or hides all panels.", {on},
+      [&ui](const Arguments& a) { ui.layout.panels = a.boolean("on"); });
+  add("window.fold", "Folds a panel, or unfolds it.", {panel, {.name = "folded", .type = Type::boolean}},
+      [&ui](const Arguments& a) { open_of(ui.layout, a.text("panel")) = !a.boolean("folded"); });
+  add("window.split", "Sets the width of a side panel, or the height of the strip at the bottom.",
+      {panel, {.name = "size", .type = Type::real, .lo = 0, .hi = 10000, .unit = "design pixels"}},
+      [&ui](const Arguments& a) { size_of(ui.layout, a.text("panel")) = a.number("size"); });
+  add("window.log_share", "Sets how much of the strip at the bottom is the log.",
+      {{.name = "share", .type = Type::real, .lo = 0, .hi = 1}},
+      [&ui](const Arguments& a) { ui.layout.log_share = a.number("share"); });
+  add("window.section", "Opens or closes a section of a panel.",
+      {{.name = "section",
+        .which = true,
+        .names =
+            [](const std::vector<std::string>&) {
+              return std::vector<std::string>{"Light",       "Render",    "Camera", "Lights",
+                                              "Environment", "Materials", "Objects"};
+            }},
+       {.name = "open", .type = Type::boolean}},
+      [&ui](const Arguments& a) { ui.sections[a.text("section")] = a.boolean("open"); });
+  add("window.size", "Resizes the window.",
+      {{.name = "width", .type = Type::integer, .lo = 640, .hi = 16384, .unit = "pixels"},
+       {.name = "height", .type = Type::integer, .lo = 400, .hi = 16384, .unit = "pixels"}},
+      [&ui](const Arguments& a) {
+        ui.size = {static_cast<int>(a.integer("width")), static_cast<int>(a.integer("height"))};
+      });
+  add(
+      "window.keys", "Shows what keys and mouse do.", {}, [&ui](const Arguments&) { ui.help = true; }, false);
+
+  add("view.divisor", "Pixels of the window for each pixel of the picture, along a side.",
+      {{.name = "divisor", .type = Type::choice, .choices = {"1", "2", "4"}}},
+      [&ui](const Arguments& a) { ui.picture_divisor = static_cast<int>(a.integer("divisor")); });
+  add("view.lamps", "Marks the lamps in the picture.", {on},
+      [&ui](const Arguments& a) { ui.light_marks = a.boolean("on"); });
+
+  add(
+      "dialog.open", "Asks for a scene to open.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::open); }, false);
+  add(
+      "dialog.save", "Asks where to save the picture.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::save); }, false);
+  add(
+      "dialog.script", "Asks where to save the session as a script.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::script); }, false);
+  add(
+      "dismiss", "Takes away the dialog, or else the newest message over the picture.", {},
+      [&ui](const Arguments&) {
+        if (ui.dialog.purpose != Dialog::Purpose::none)
+          ui.dialog = {};
+        else if (!ui.errors.empty())
+          ui.errors.pop_back();
+      },
+      false);
+
+  add(
+      "log.clear", "Empties the log.", {}, [&ui](const Arguments&) { ui.log.clear(); }, false);
+  add("log.show", "Shows or hides the lines of a level.",
+      {{.name = "level", .type = Type::choice, .choices = k_levels, .which = true}, on},
+      [&ui](const Arguments& a) {
+        const auto level = std::find(k_levels.begin(), k_levels.end(), a.text("level")) - k_levels.begin();
+        ui.log_levels[static_cast<size_t>(level)] = a.boolean("on");
+      });
+}
+
+}  // namespace lucerna::ui
