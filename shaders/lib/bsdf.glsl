@@ -221,6 +221,22 @@ float glass_fresnel(Bsdf b, float cos_h) {
 }
 #endif
 
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+// The complement's draws. What a narrow lobe misses it misses at grazing angles: (1-E(m)) m, m = cos, is far from a cosine
+// lobe there. Density of m: 2 a (1+a)^2 m / (m+a)^3, integral m^2 (1+a)^2 / (m+a)^2; a -> infinity is the cosine lobe. The
+// factor 8 keeps the weights small (at most 17 where a cosine lobe's reach 500).
+float complement_scale(Bsdf b) { return 8.0 * max(b.alpha, k_delta_alpha); }
+float complement_pdf(Bsdf b, float m) {
+  float a = complement_scale(b), k = (1.0 + a) / (m + a);
+  return k_inv_pi * a * m * k * k / (m + a);
+}
+vec3 complement_sample(Bsdf b, vec2 u) {
+  float a = complement_scale(b), r = sqrt(u.y), m = a * r / (1.0 + a - r);
+  float s = sqrt(max(0.0, 1.0 - m * m)), phi = 2.0 * k_pi * u.x;
+  return vec3(s * cos(phi), s * sin(phi), m);
+}
+#endif
+
 // All lobes but the deltas.
 BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   BsdfValue v;
@@ -240,7 +256,7 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   vec3 h = normalize(wo + vec3(wi.xy, same_side ? wi.z : -wi.z));  // of reflection, or of the mirrored thin wall
   float cos_oh = max(dot(wo, h), 0.0);
   // f cos = F D G2 / (4 cos_o), pdf = visible / (4 wo.h)
-  float d = b.delta ? 0.0 : ggx_d(h.z, b.alpha);
+  float d = b.delta ? 0.0 : ggx_d(h, b.alpha);
   float shape = d * ggx_g2(wo.z, cos_i, b.alpha) / (4.0 * wo.z);
   float pdf_h = d * ggx_g1(wo.z, b.alpha) / (4.0 * wo.z);
 #endif
@@ -248,7 +264,7 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   if (same_side) {
     float w = schlick_weight(cos_oh);
     v.glossy += (b.f0 + (b.f90 - b.f0) * w) * shape + b.f_ms * missing * cos_i;
-    v.pdf += b.p_specular * pdf_h + b.p_specular_ms * lambert;
+    v.pdf += b.p_specular * pdf_h + b.p_specular_ms * complement_pdf(b, cos_i);
   }
 #endif
 #if LUCERNA_GLASS
@@ -272,14 +288,14 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
     float denominator = square(ih + oh / b.eta);
     float jacobian = valid ? -ih / max(denominator, 1e-30) : 0.0;   // d omega_h / d omega_i
     float ft = 1.0 - fresnel_dielectric(max(oh, 0.0), b.eta);
-    float dt = valid ? ggx_d(ht.z, b.alpha) * max(oh, 0.0) / wo.z * jacobian : 0.0;
+    float dt = valid ? ggx_d(ht, b.alpha) * max(oh, 0.0) / wo.z * jacobian : 0.0;
     passed = b.tint * (ft * dt * ggx_g2(wo.z, cos_i, b.alpha) / (b.eta * b.eta) + b.ms_transmitted * missing_i * cos_i);
     pdf_passed = ft * dt * ggx_g1(wo.z, b.alpha);
   }
 #endif
   v.glossy += b.glass * (same_side ? reflected : passed);
   v.pdf += b.p_glass * (same_side ? pdf_reflected : pdf_passed) +
-           b.p_glass_ms * (same_side ? ms_pdf_share : 1.0 - ms_pdf_share) * lambert;
+           b.p_glass_ms * (same_side ? ms_pdf_share : 1.0 - ms_pdf_share) * complement_pdf(b, cos_i);
 #endif
   return v;
 }
@@ -309,12 +325,14 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
   bool specular = at >= 0.0 && at < b.p_specular;
   if (specular) {
     s.wi = mirrored;
+    lost = !b.delta && s.wi.z <= 0.0;
     if (b.delta) {
       delta = true;
       s.event = k_event_specular;
       s.weight = (b.f0 + (b.f90 - b.f0) * schlick_weight(wo.z)) / b.p_specular;
     }
   }
+  if (at >= b.p_specular && at < b.p_specular + b.p_specular_ms) s.wi = complement_sample(b, u);
   at -= b.p_specular + b.p_specular_ms;
 #endif
 #if LUCERNA_GLASS
@@ -349,13 +367,11 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
   bool in_complement = at >= 0.0 && b.p_glass_ms > 0.0;
   if (in_complement) {
     float share = b.ms_reflected / max(b.ms_reflected + b.ms_transmitted, 1e-30);
-    s.wi = at / b.p_glass_ms < share ? cosine : vec3(cosine.xy, -cosine.z);
+    s.wi = complement_sample(b, u);
+    if (at / b.p_glass_ms >= share) s.wi.z = -s.wi.z;
   }
 #endif
   s.transmitted = s.wi.z < 0.0;
-#if LUCERNA_GLASS
-  if (b.solid && s.transmitted) s.eta2 = 1.0 / (b.eta * b.eta);
-#endif
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
   if (!delta) {
 #endif
@@ -372,6 +388,9 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
     s.pdf = v.pdf;
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
   }
+#endif
+#if LUCERNA_GLASS
+  if (b.solid && s.transmitted && s.event != k_event_diffuse) s.eta2 = 1.0 / (b.eta * b.eta);
 #endif
   return s;
 }

@@ -44,7 +44,7 @@ uint alias_choose(samplerBuffer table, uint count, uint bits, out float pmf) {
 // takes a direction at azimuth phi = atan2(z, x) to phi - rotation.
 vec2 environment_uv(vec3 d) {
   float phi = atan(d.z, d.x) + frame.environment_rotation;
-  return vec2(fract(0.5 + phi * (0.5 * k_inv_pi)), acos(clamp(d.y, -1.0, 1.0)) * k_inv_pi);
+  return vec2(fract(0.5 + phi * (0.5 * k_inv_pi)), atan(length(d.xz), d.y) * k_inv_pi);
 }
 vec3 environment_direction(vec2 uv) {
   float phi = (uv.x - 0.5) * 2.0 * k_pi - frame.environment_rotation, theta = uv.y * k_pi;

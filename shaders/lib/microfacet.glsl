@@ -4,12 +4,11 @@
 #define LUCERNA_LIB_MICROFACET
 #include "lib/math.glsl"
 
-float ggx_d(float cos_h, float alpha) {
+// h need not be normalized to the last bit: sin^2 comes from x and y, since 1 - z^2 has no digits left for small alpha.
+float ggx_d(vec3 h, float alpha) {
   float a2 = alpha * alpha;
-  // cos^2 (a^2 - 1) + 1 written without cancellation for small alpha: a^2 cos^2 + sin^2.
-  float sin2 = max(0.0, 1.0 - cos_h * cos_h);
-  float k = a2 * cos_h * cos_h + sin2;
-  return cos_h > 0.0 ? a2 / (k_pi * k * k) : 0.0;
+  float k = a2 * h.z * h.z + dot(h.xy, h.xy);  // cos^2 (a^2 - 1) + 1
+  return h.z > 0.0 ? a2 / (k_pi * k * k) : 0.0;
 }
 
 float ggx_lambda(float cos_v, float alpha) {
@@ -25,7 +24,7 @@ float ggx_g2(float cos_o, float cos_i, float alpha) {
 
 // Density of visible normals per solid angle of h: G1(wo) max(0, wo.h) D(h) / wo.z.
 float ggx_visible_pdf(vec3 wo, vec3 h, float alpha) {
-  return ggx_g1(wo.z, alpha) * max(0.0, dot(wo, h)) * ggx_d(h.z, alpha) / wo.z;
+  return ggx_g1(wo.z, alpha) * max(0.0, dot(wo, h)) * ggx_d(h, alpha) / wo.z;
 }
 
 // Visible normals through spherical caps (Dupuy and Benyoub 2023).

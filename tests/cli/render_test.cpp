@@ -22,8 +22,8 @@ struct Run {
   std::string out;
 };
 
-Run run(const std::string& arguments) {
-  const std::string command = std::string(LUCERNA_BINARY) + " " + arguments + " 2>&1";
+Run run_under(const std::string& wrapper, const std::string& arguments) {
+  const std::string command = wrapper + " " + LUCERNA_BINARY + " " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   REQUIRE(pipe);
   std::string out;
@@ -32,6 +32,8 @@ Run run(const std::string& arguments) {
   const int status = pclose(pipe);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out};
 }
+
+Run run(const std::string& arguments) { return run_under("", arguments); }
 
 fs::path folder() {
   const fs::path p = fs::temp_directory_path() / ("lucerna-cli-" + std::to_string(getpid()));
@@ -107,6 +109,24 @@ TEST_CASE("wrong arguments are refused with their place") {
   refused("compare no.exr nothing.exr", "no.exr");
   refused("info no.gltf", "no.gltf");
   CHECK_FALSE(fs::exists("/tmp/lucerna-never.exr"));
+}
+
+TEST_CASE("Ctrl-C writes what there is and says so") {
+  const fs::path f = folder();
+  const std::string file = (f / "interrupted.exr").string();
+  // The signal must come while it renders, however slow the machine is: one that comes while it still loads
+  // ends the program without a word, and the next try waits longer.
+  Run r{};
+  for (int seconds = 1; seconds <= 64 && r.out.find("interrupted") == std::string::npos; seconds *= 2)
+    r = run_under("timeout --preserve-status -s INT " + std::to_string(seconds),
+                  "render " + scene("cornell") + " --samples 1000000 --size 64x64 -o " + file);
+  INFO(r.out);
+  CHECK(r.out.find("interrupted after") != std::string::npos);
+  CHECK(r.out.find("writing what there is") != std::string::npos);
+  CHECK(r.status == 130);
+  const film::FilmImage image = film::read_exr(file);
+  CHECK(image.width == 64);
+  fs::remove_all(f);
 }
 
 TEST_CASE("devices and info speak") {

@@ -1,0 +1,173 @@
+// links: session
+// Hard cases stay finite: extreme lights, materials, sizes and places make no NaN, no infinity and no crash.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/render.h"
+
+using namespace lucerna;
+
+namespace {
+
+scene::Primitive quad(vec3 corner, vec3 u, vec3 v, scene::Id material) {
+  scene::Primitive p;
+  const vec3 n = glm::normalize(glm::cross(u, v));
+  p.positions = {corner, corner + u, corner + u + v, corner + v};
+  p.normals.assign(4, n);
+  p.uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  p.triangles = {{0, 1, 2}, {0, 2, 3}};
+  p.material = material;
+  return p;
+}
+
+/// A floor, a box of `material` on it, a small lamp and a camera, everything `size` metres large and moved to
+/// `place`.
+scene::Scene make_scene(const scene::Material& material, float size, vec3 place, float radiance) {
+  scene::Scene s;
+  s.name = s.file = "stability";
+  scene::Material floor;
+  floor.base_color = vec4(0.7f, 0.7f, 0.7f, 1);
+  scene::Material lamp;
+  lamp.emission = vec3(radiance);
+  lamp.double_sided = true;
+  s.materials = {floor, material, lamp};
+  scene::Mesh mesh;
+  const float a = size;
+  mesh.primitives.push_back(quad(place + vec3(-a, 0, -a), vec3(0, 0, 2 * a), vec3(2 * a, 0, 0), 0));
+  const vec3 low = place + vec3(-0.4f * a, 0.001f * a, -0.4f * a), x(0.8f * a, 0, 0), y(0, 0.8f * a, 0),
+             z(0, 0, 0.8f * a);
+  mesh.primitives.push_back(quad(low, x, z, 1));
+  mesh.primitives.push_back(quad(low + y, z, x, 1));
+  mesh.primitives.push_back(quad(low, y, x, 1));
+  mesh.primitives.push_back(quad(low + z, x, y, 1));
+  mesh.primitives.push_back(quad(low, z, y, 1));
+  mesh.primitives.push_back(quad(low + x, y, z, 1));
+  mesh.primitives.push_back(
+      quad(place + vec3(0.6f * a, 1.5f * a, 0), vec3(0.2f * a, 0, 0), vec3(0, 0, 0.2f * a), 2));
+  s.meshes = {mesh};
+  s.instances = {{"all", 0, mat4(1), false}};
+  scene::Camera c;
+  c.to_world = mat4(1);
+  const vec3 eye = place + vec3(0.3f * a, 0.7f * a, 2.5f * a),
+             forward = glm::normalize(place + vec3(0, 0.3f * a, 0) - eye);
+  const vec3 right = glm::normalize(glm::cross(forward, vec3(0, 1, 0)));
+  c.to_world = mat4(vec4(right, 0), vec4(glm::cross(right, forward), 0), vec4(-forward, 0), vec4(eye, 1));
+  s.cameras = {c};
+  s.environment.radiance = vec3(0.1f * radiance);
+  return s;
+}
+
+struct Outcome {
+  double mean = 0;
+  bool finite = true;
+  uint64_t dropped = 0;
+};
+
+Outcome render(const scene::Scene& s) {
+  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  r.settings().set("path.batch", "16384");
+  r.set_size(32, 32);
+  r.set_scene(std::make_shared<scene::Scene>(s));
+  r.settings().set("samples", "16");
+  r.apply_settings();
+  while (r.step()) {
+  }
+  Outcome o;
+  const film::Image image = r.image();
+  for (const auto& component : image.components)
+    for (const vec3& v : component)
+      for (int k = 0; k < 3; ++k) {
+        o.finite = o.finite && std::isfinite(v[k]) && v[k] >= 0;
+        o.mean += v[k] / (3.0 * double(component.size()));
+      }
+  for (const vec3& v : image.normal) o.finite = o.finite && std::isfinite(v.x + v.y + v.z);
+  for (const float z : image.depth) o.finite = o.finite && std::isfinite(z);
+  o.dropped = r.stats().dropped;
+  return o;
+}
+
+scene::Material glass(float roughness, float ior, float thickness) {
+  scene::Material m;
+  m.base_color = vec4(1);
+  m.metallic = 0;
+  m.roughness = roughness;
+  m.ior = ior;
+  m.transmission = 1;
+  m.thickness = thickness;
+  m.attenuation_color = vec3(0.9f, 0.5f, 0.1f);
+  m.attenuation_distance = 0.1f;
+  return m;
+}
+
+scene::Material metal(float roughness) {
+  scene::Material m;
+  m.base_color = vec4(1);
+  m.roughness = roughness;
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("materials at the ends of their ranges") {
+  std::vector<std::pair<const char*, scene::Material>> list{{"mirror", metal(0)},
+                                                            {"almost a delta", metal(0.0316f)},
+                                                            {"just above the delta", metal(0.0317f)},
+                                                            {"rough metal", metal(1)},
+                                                            {"clear glass", glass(0, 1.5f, 1)},
+                                                            {"glass of no refraction", glass(0.3f, 1, 1)},
+                                                            {"diamond", glass(0.1f, 2.4f, 1)},
+                                                            {"dense rough glass", glass(1, 10, 1)},
+                                                            {"window", glass(0, 1.5f, 0)},
+                                                            {"frosted window", glass(0.5f, 1.5f, 0)}};
+  scene::Material mirror_dielectric;
+  mirror_dielectric.metallic = 0;
+  mirror_dielectric.ior = 0;
+  list.emplace_back("a dielectric with F = 1", mirror_dielectric);
+  scene::Material leaf;
+  leaf.metallic = 0;
+  leaf.diffuse_transmission = 1;
+  leaf.alpha_mode = scene::AlphaMode::blend;
+  leaf.base_color = vec4(1, 1, 1, 0.5f);
+  list.emplace_back("half a leaf", leaf);
+  for (const auto& [name, material] : list) {
+    INFO(name);
+    const Outcome o = render(make_scene(material, 1, vec3(0), 10));
+    CHECK(o.finite);
+    CHECK(o.mean > 0.01);
+    CHECK(o.mean < 100);
+    CHECK(o.dropped == 0);
+  }
+}
+
+TEST_CASE("sizes, places and brightness over many orders of magnitude") {
+  struct Case {
+    const char* name;
+    float size;
+    vec3 place;
+    float radiance;
+  };
+  // Far away means 10^4 sizes: beyond that float has no digits left for the geometry.
+  for (const Case& c : {Case{"a micrometre", 1e-6f, vec3(0), 10}, Case{"a planet", 1e7f, vec3(0), 10},
+                        Case{"far away", 1, vec3(1e4f, -1e4f, 1e4f), 10}, Case{"blinding", 1, vec3(0), 1e30f},
+                        Case{"almost dark", 1, vec3(0), 1e-30f}}) {
+    const Outcome o = render(make_scene(glass(0.2f, 1.5f, 1), c.size, c.place, c.radiance));
+    INFO(c.name << ": mean " << o.mean);
+    CHECK(o.finite);
+    CHECK(o.dropped == 0);
+    CHECK(o.mean / c.radiance > 0.005);
+    CHECK(o.mean / c.radiance < 10);
+  }
+}
+
+TEST_CASE("light that is too bright for float is dropped and counted, never written") {
+  const Outcome o = render(make_scene(metal(0.3f), 1, vec3(0), 1e38f));
+  CHECK(o.finite);
+  scene::Scene s = make_scene(metal(0.3f), 1, vec3(0), 1);
+  scene::Light l;
+  l.intensity = vec3(1e38f);
+  l.position = vec3(0, 0.4f, 0.41f);  // close before the side that the camera sees
+  s.lights = {l};
+  const Outcome p = render(s);
+  CHECK(p.finite);
+  CHECK(p.dropped > 0);
+}

@@ -1,0 +1,81 @@
+// links: film
+// The film's sums through the real kernel: a million samples of mixed magnitude add up without drift.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "film/film.h"
+
+using namespace lucerna;
+
+namespace {
+
+/// Sample `s` of a component: mostly small values with a part that float cannot hold beside the sum, now and
+/// then a firefly of a million times that.
+float sample_value(uint32_t pixel, uint32_t component, uint32_t s) {
+  uint32_t h = (s * 4 + component) * 64 + pixel;
+  h = (h ^ h >> 16) * 0x7feb352du, h = (h ^ h >> 15) * 0x846ca68bu, h ^= h >> 16;
+  const float u = float(h >> 8) * (1.0f / 16777216.0f);
+  return (h & 0xfffu) == 7u ? 3e5f * u : 0.1f + 0.3f * u;
+}
+
+}  // namespace
+
+TEST_CASE("a million samples of mixed magnitude: each half's sum is right to float's last digits") {
+  gpu::Device device({"cpu", true});
+  gpu::ShaderCompiler compiler;
+  gpu::Stream stream(device);
+  film::Film film(device, 8, 8);
+  film.clear(stream);
+  const gpu::Kernel add(device, compiler, "film/add.comp");
+  constexpr uint32_t k_batch = 1000, k_batches = 1000;
+  gpu::Buffer radiance(device, {.name = "radiance", .bytes = 64 * k_batch * 4 * sizeof(vec4), .texel = true});
+  gpu::Buffer features(device, {.name = "features", .bytes = 64 * k_batch * 2 * sizeof(vec4), .texel = true});
+  stream.fill(features, 0);
+  stream.run();
+  gpu::Buffer frame(device, {.name = "frame", .bytes = sizeof(shared::FilmPush)});
+  gpu::Resources resources;
+  film.bind(resources);
+  resources.set("radiance_texels", radiance);
+  resources.set("feature_texels", features);
+  resources.set("FrameBlock", frame);
+  // Three pixels are told apart; the rest of the tile repeats them.
+  std::vector<vec4> values(64 * k_batch * 4);
+  double even[3][4] = {}, odd[3][4] = {}, naive_error = 0;
+  float naive = 0;
+  double naive_truth = 0;
+  for (uint32_t batch = 0; batch < k_batches; ++batch) {
+    for (uint32_t i = 0; i < k_batch; ++i)
+      for (uint32_t c = 0; c < 4; ++c) {
+        float of[3];
+        for (uint32_t p = 0; p < 3; ++p) {
+          of[p] = sample_value(p, c, batch * k_batch + i);
+          ((batch * k_batch + i) % 2 ? odd : even)[p][c] += of[p];
+        }
+        if (c == 0) naive += of[0], naive_truth += of[0];
+        for (uint32_t pixel = 0; pixel < 64; ++pixel)
+          values[(size_t(i) * 64 + pixel) * 4 + c] = vec4(of[pixel % 3], 2 * of[pixel % 3], 0, 0);
+      }
+    radiance.write(std::span<const vec4>(values));
+    stream.dispatch(add, resources, shared::FilmPush{8, 8, 0, 64, batch * k_batch, k_batch}, 1);
+    stream.run();
+  }
+  naive_error = std::abs(naive - naive_truth) / naive_truth;
+  const film::Image image = film.read();
+  CHECK(naive_error > 1e-6);  // or this test would show nothing
+  const auto compact = [](uint32_t x) { return (x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u); };
+  for (uint32_t code = 0; code < 64; ++code) {
+    const size_t pixel = compact(code >> 1) * 8 + compact(code);
+    const uint32_t p = code % 3;
+    CHECK(image.samples[pixel] == k_batch * k_batches);
+    for (int c = 0; c < 4; ++c) {
+      const double mean = (even[p][c] + odd[p][c]) / (k_batch * k_batches),
+                   odd_mean = odd[p][c] * 2 / (k_batch * k_batches);
+      INFO("code " << code << " component " << c);
+      CHECK(std::abs(image.components[c][pixel].x - mean) <= 6e-8 * 2 * mean);
+      CHECK(std::abs(image.components[c][pixel].y - 2 * mean) <= 6e-8 * 4 * mean);
+      CHECK(std::abs(image.odd_half[c][pixel].x - odd_mean) <= 6e-8 * 2 * odd_mean);
+      CHECK(image.components[c][pixel].z == 0);
+    }
+  }
+  CHECK(device.validation_messages() == 0);
+}
