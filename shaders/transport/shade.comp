@@ -130,8 +130,8 @@ void main() {
         shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
         shadow.components = component_d | component_g << 8;
         shadow.medium = 0u;
-        bool worth = sides_agree && l.pdf > 0.0 && max3(shadow.diffuse) + max3(shadow.glossy) > 0.0;
         bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
+        bool worth = sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
         if (worth && !finite) atomicAdd(counters[k_counter_dropped], 1u);
         if (worth && finite) {
           Ray shadow_ray;
@@ -172,8 +172,8 @@ void main() {
         bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
         uint next = automaton_after(state, b.event);
         vec3 throughput = path.throughput * b.weight;
-        go_on = sides_agree && max3(throughput) > 0.0 && automaton_live(next);
         bool finite = is_finite(throughput);
+        go_on = sides_agree && (!finite || max3(throughput) > 0.0) && automaton_live(next);
         if (go_on && !finite) atomicAdd(counters[k_counter_dropped], 1u);
         go_on = go_on && finite;
         path.eta_scale *= b.eta2;
