@@ -31,9 +31,8 @@ void figure(const char* name, const std::string& value, const std::string& help,
 }
 
 void figures(const session::Snapshot& s, float width) {
-  // The device's name takes two of seven columns, or two of four.
-  const bool wide = width > px(560);
-  const int columns = wide ? 7 : 4;
+  // The device's name takes two columns.
+  const int columns = width > px(660) ? 7 : width > px(440) ? 4 : 3;
   const float w = std::floor(width / static_cast<float>(columns));
   const ImVec2 at = ImGui::GetCursorScreenPos();
   int n = 0;
@@ -51,7 +50,8 @@ void figures(const session::Snapshot& s, float width) {
           s.dropped == 0
               ? ""
               : fmt::format(" {} contributions were refused because they were not finite.", s.dropped)));
-  put("Size", fmt::format("{} \xC3\x97 {}", s.width, s.height), "Pixels of the picture.");
+  put("Size", s.width == 0 ? "\xE2\x80\x93" : fmt::format("{} \xC3\x97 {}", s.width, s.height),
+      "Pixels of the picture.");
   put("Device memory", megabytes_text(s.device_mb), "Memory taken on the device.");
   put("Host memory", megabytes_text(s.host_mb), "Memory of this program.");
   ImGui::SetCursorScreenPos({at.x, at.y + static_cast<float>((n + columns - 1) / columns) * px(40) + px(2)});
@@ -68,7 +68,7 @@ void stage_rows(const std::vector<session::StageStatus>& stages, float width) {
   tooltip("Time of all stages since the picture started, in the order of the rows below.");
   gap(2);
   // As many columns as fit; rows are read downwards.
-  const int columns = std::max(1, static_cast<int>(width / px(270)));
+  const int columns = std::max(1, static_cast<int>((width + px(32)) / px(256)));
   const float between = px(32);
   const float w = std::floor((width + between) / static_cast<float>(columns));
   const size_t rows = (stages.size() + static_cast<size_t>(columns) - 1) / static_cast<size_t>(columns);

@@ -54,24 +54,31 @@ void component_row(Ui& ui, int c, float width) {
   const float line = at.y + px(26);
   ImGui::SetCursorScreenPos({at.x + px(18), line});
   const plan::OptionInfo* option = plan::find_option(key);
+  float solver_width = px(76);
   if (option) {
+    for (const std::string& solver : option->choices)
+      solver_width = std::max(solver_width, text_width(solver) + px(36));
+    solver_width = std::min(solver_width, std::max(px(76), width - px(154)));
     int chosen = static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.setting(key)) -
                                   option->choices.begin());
-    if (choice("##solver", "", option->choices, chosen, px(76)))
+    if (choice("##solver", "", option->choices, chosen, solver_width))
       ui.act("set", key, option->choices[static_cast<size_t>(chosen)]);
     tooltip(option->help +
             " Off: its paths are not traced beyond what the others need, and its light is missing.");
   }
   const float right = at.x + width;
   const bool known = status && !off && ui.snapshot->samples > 0;
-  draw_text(list, {at.x + px(96), line}, {right - px(84), line + px(24)},
+  // Where the panel is narrow the time gives way to the share.
+  const float figures = at.x + px(24) + solver_width;
+  const float time = right - figures > px(120) ? px(72) : 0;
+  draw_text(list, {figures, line}, {right - time, line + px(24)},
             known ? fmt::format("{:.1f} %", 100 * status->share) : "\xE2\x80\x93",
             known ? colour::text : colour::text_faint, Align::right);
-  draw_text(list, {right - px(84), line}, {right, line + px(24)},
+  draw_text(list, {right - time, line}, {right, line + px(24)},
             known ? ms_text(status->ms_per_sample) : "\xE2\x80\x93",
             known ? colour::text_dim : colour::text_faint, Align::right);
-  ImGui::SetCursorScreenPos({at.x + px(98), line});
-  ImGui::InvisibleButton("##figures", {std::max(1.0f, width - px(98)), px(24)});
+  ImGui::SetCursorScreenPos({figures, line});
+  ImGui::InvisibleButton("##figures", {std::max(1.0f, right - figures), px(24)});
   tooltip(known ? fmt::format("Share of the sum's mean luminance, and device time that the rays of this "
                               "component cost per sample a pixel. "
                               "Mean luminance {:.4g}.",

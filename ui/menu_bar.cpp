@@ -170,8 +170,10 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   // Menus. The bar itself is ours, so that it can hold more than menus.
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(8), 0.5f * (px(k_bar_height) - ImGui::GetFontSize())});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(16), 0});
+  float menus_end = area.lo.x;
   if (ImGui::BeginMenuBar()) {
     file_menu(ui), edit_menu(ui), view_menu(ui), render_menu(ui), help_menu(ui);
+    menus_end = ImGui::GetCursorScreenPos().x;
     ImGui::EndMenuBar();
   }
   ImGui::PopStyleVar(2);
@@ -179,8 +181,10 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   // The rest of the bar is drawn over the whole of it; after its menus ImGui clips to what lies below them.
   ImGui::PushClipRect(area.lo, area.hi, false);
   const session::Snapshot* s = ui.snapshot.get();
-  const float left = area.lo.x + px(288);
-  float right = area.hi.x - px(16);
+  // The scene's name stands over the picture, or behind the menus where they reach further.
+  const float left =
+      std::max(menus_end + px(8), area.lo.x + px((ui.layout.left_open ? ui.layout.left : 0) + 8));
+  float right = area.hi.x - px(16), state_left = right;
   if (s && ui.scene && s->max_samples > 0) {
     const std::string state = state_text(*s);
     // The numbers stand still: the field is as wide as its longest text.
@@ -192,7 +196,8 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     }()));
     draw_text(list, {right - std::max(wide, text_width(state)), area.lo.y}, {right, area.hi.y}, state,
               colour::text, Align::right);
-    right -= std::max(wide, text_width(state)) + px(24);
+    state_left = right - std::max(wide, text_width(state));
+    right = state_left - px(24);
   }
   if (s && !s->device.empty()) {
     const float room = std::max(0.0f, right - left - px(160));
@@ -207,11 +212,12 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     draw_text(list, {left, area.lo.y}, {right, area.hi.y}, name, colour::text, Align::left,
               theme().fonts.strong);
   }
-  // How far the picture is, as a hairline.
+  // How far the picture is, as a hairline under its state.
   list->AddRectFilled({area.lo.x, area.hi.y - 1}, area.hi, colour::hairline);
   if (s && ui.scene && s->max_samples > 0 && !s->finished) {
     const float done = static_cast<float>(s->samples) / static_cast<float>(s->max_samples);
-    list->AddRectFilled({area.lo.x, area.hi.y - px(2)}, {area.lo.x + done * area.width(), area.hi.y},
+    list->AddRectFilled({state_left, area.hi.y - px(2)},
+                        {state_left + done * (area.hi.x - px(16) - state_left), area.hi.y},
                         s->paused ? colour::text_dim : colour::accent);
   }
   ImGui::PopClipRect();

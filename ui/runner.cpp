@@ -158,7 +158,7 @@ bool Runner::carry_out(const Step& step) {
 
 /// A line at the console acts at once; its failures are for the one who typed it, not for the strip.
 void Runner::console(const std::string& line) {
-  ui_.print(log::Level::debug, line);
+  ui_.print(log::Level::info, "\xE2\x80\xBA " + line);
   try {
     const commands::Line parsed = ui_.registry.parse(line);
     if (!parsed.command) return;

@@ -59,6 +59,13 @@ void choose(Ui& ui, bool chosen, const char* kind, size_t index) {
 }
 void quiet_line(const std::string& text) { label(text, colour::text_faint); }
 
+/// Scrolls so that the row at `y` (window pixels) is in view.
+void show_row(float y) {
+  const ImVec2 window = ImGui::GetWindowPos();
+  if (y < window.y || y + px(24) > window.y + ImGui::GetWindowHeight())
+    ImGui::SetScrollFromPosY(y - window.y, 0.5f);
+}
+
 void cameras(Ui& ui) {
   const auto& list = ui.scene->cameras;
   if (list.empty()) quiet_line("The scene has no camera");
@@ -104,7 +111,7 @@ void cameras(Ui& ui) {
             "Position of the camera: x, y (up), z in metres.");
 }
 
-void light_rows(Ui& ui) {
+void light_rows(Ui& ui, bool reveal) {
   const auto& lights = ui.scene->lights;
   size_t emitters = 0;
   for (const scene::Material& m : ui.scene->materials) emitters += brightest(m.emission) > 0;
@@ -120,7 +127,8 @@ void light_rows(Ui& ui) {
     const float strength = brightest(light.intensity);
     const vec3 tint = strength > 0 ? light.intensity / strength : vec3(1);
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const bool chosen = ui.selection.kind == Kind::light && ui.selection.index == index;
+    const bool chosen = ui.selection == Selection{Kind::light, index};
+    if (chosen && reveal) show_row(at.y);
     if (list_row("##light", chosen, name_or(light.name, "Light", i), kinds[static_cast<size_t>(light.kind)],
                  colour::with_alpha(display_colour(tint), light.enabled ? 1.0f : 0.3f), 28))
       choose(ui, chosen, "light", index);
@@ -219,12 +227,13 @@ void material_details(const scene::Material& m) {
   if (m.double_sided) value_row("Double-sided", "yes", "Its back side emits as its front does.");
 }
 
-void materials(Ui& ui) {
+void materials(Ui& ui, bool reveal) {
   const auto& list = ui.scene->materials;
   for (size_t i = 0; i < list.size(); ++i) {
     const auto index = static_cast<uint32_t>(i);
     const scene::Material& m = list[i];
-    const bool chosen = ui.selection.kind == Kind::material && ui.selection.index == index;
+    const bool chosen = ui.selection == Selection{Kind::material, index};
+    if (chosen && reveal) show_row(ImGui::GetCursorScreenPos().y);
     ImGui::PushID(static_cast<int>(i));
     const bool emits = brightest(m.emission) > 0;
     const char* note = emits                                                ? "emits"
@@ -248,8 +257,10 @@ void materials(Ui& ui) {
   }
 }
 
-void objects(Ui& ui) {
+void objects(Ui& ui, bool reveal) {
   const auto& list = ui.scene->instances;
+  if (reveal && ui.selection.kind == Kind::instance)
+    show_row(ImGui::GetCursorScreenPos().y + px(24) * static_cast<float>(ui.selection.index));
   // Long lists draw only the rows in view.
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(list.size()), px(24));
@@ -296,11 +307,16 @@ void draw_scene_panel(Ui& ui, const Area& area) {
       gap(10);
     }
   };
+  // What has been selected elsewhere, by a click in the picture say, is brought into view.
+  const bool reveal = ui.reveals();
+  if (reveal && ui.selection.kind == Kind::instance) ui.sections["Objects"] = true;
+  if (reveal && ui.selection.kind == Kind::material) ui.sections["Materials"] = true;
+  if (reveal && ui.selection.kind == Kind::light) ui.sections["Lights"] = true;
   block("Camera", ui.scene->cameras.size(), true, [&] { cameras(ui); });
-  block("Lights", ui.scene->lights.size(), true, [&] { light_rows(ui); });
+  block("Lights", ui.scene->lights.size(), true, [&] { light_rows(ui, reveal); });
   block("Environment", 0, true, [&] { environment(ui); });
-  block("Materials", ui.scene->materials.size(), true, [&] { materials(ui); });
-  block("Objects", ui.scene->instances.size(), false, [&] { objects(ui); });
+  block("Materials", ui.scene->materials.size(), true, [&] { materials(ui, reveal); });
+  block("Objects", ui.scene->instances.size(), false, [&] { objects(ui, reveal); });
   hairline();
   ImGui::End();
 }

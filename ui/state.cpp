@@ -54,10 +54,13 @@ void Ui::follow_gesture() {
   held_ = held, flying_ = flying;
 }
 
+bool Ui::reveals() { return std::exchange(revealed_, selection) != selection; }
+
 void Ui::place(const Viewpoint& to) { act_line(place_line(to)); }
 
 void Ui::scene_changed() {
   flight = {};
+  errors.clear();
   if (scene->file.empty()) return;
   std::erase(recent, scene->file);
   recent.insert(recent.begin(), scene->file);

@@ -78,6 +78,8 @@ struct Ui : commands::Workspace {
   std::vector<std::string> typed;
 
   Flight flight;
+  /// Whether the selection is new since the last call: then its row is to be shown.
+  bool reveals();
   /// Puts the camera where a drag or a flight has taken it.
   void place(const Viewpoint& view);
 
@@ -111,6 +113,7 @@ struct Ui : commands::Workspace {
     int settle = 0;    ///< frames to draw before it is taken
   } shot;
   std::optional<std::pair<int, int>> size;  ///< window size wanted
+  std::optional<float> scale;               ///< of text and controls wanted
   /// Mouse and keys as a script moves them.
   struct Input {
     float x = 0, y = 0;  ///< window pixels
@@ -134,6 +137,7 @@ struct Ui : commands::Workspace {
   void scene_changed() override;
 
  private:
+  Selection revealed_;
   unsigned held_ = 0;  ///< id of the control that is held
   bool flying_ = false;
   uint64_t gestures_ = 0;

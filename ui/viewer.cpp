@@ -70,6 +70,8 @@ class Viewer {
     const auto snapshot = ui_.snapshot;
     const auto scene = ui_.scene;
     ui_.refresh(ui_.time());
+    ui_.resizing = sent_size_ != wanted_size_ ||
+                   (ui_.has_picture() && std::pair(ui_.snapshot->width, ui_.snapshot->height) != sent_size_);
     if (snapshot != ui_.snapshot) {
       ui_.wake(1);
       fresh_picture_ = ui_.snapshot != nullptr;
@@ -94,6 +96,7 @@ class Viewer {
   /// What a script does with mouse, keyboard and window comes in where a person's doings do.
   void inject() {
     if (ui_.size) window_.set_size(ui_.size->first, ui_.size->second), ui_.size.reset();
+    if (ui_.scale) window_.set_scale(*ui_.scale), ui_.scale.reset();
     for (const Ui::Input& input : std::exchange(ui_.inputs, {}))
       if (input.button < 0)
         window_.move_mouse(input.x, input.y);

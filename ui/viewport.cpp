@@ -40,23 +40,29 @@ void layer_buttons(Ui& ui, float room) {
   if (!option) return;
   const std::vector<std::string>& layers = option->choices;
   const std::string& current = ui.setting("film.layer");
-  const float between = px(4), list_width = px(104);
+  const float between = px(4), list_width = px(88);
   const auto width_of = [&](const std::string& layer) { return text_width(capitalized(layer)) + px(18); };
   const float all =
       std::accumulate(layers.begin(), layers.end(), -between,
                       [&](float sum, const std::string& l) { return sum + width_of(l) + between; });
   size_t fitting = layers.size();
+  bool letters = false;
   if (all > room) {
-    float used = list_width;
-    fitting = 0;
-    while (fitting < layers.size() && used + width_of(layers[fitting]) + between <= room)
-      used += width_of(layers[fitting++]) + between;
-    // Components stay together: beauty and the four, or the list alone.
-    fitting = fitting >= 5 ? 5 : 0;
+    // Components stay together: beauty and the four, by name or by their first letters, or the list alone.
+    constexpr size_t k_together = 1 + session::k_components;
+    const auto need = [&](bool short_names) {
+      float sum = width_of(layers[0]) + between + list_width;
+      for (size_t i = 1; i < k_together; ++i) sum += between + (short_names ? px(26) : width_of(layers[i]));
+      return sum;
+    };
+    fitting = need(true) <= room ? k_together : 0;
+    letters = need(false) > room;
   }
   for (size_t i = 0; i < fitting; ++i) {
-    if (button(("##layer" + layers[i]).c_str(), capitalized(layers[i]), layers[i] == current,
-               width_of(layers[i]), layer_mark(layers[i])))
+    const bool letter = letters && i > 0;
+    const std::string name = capitalized(layers[i]);
+    if (button(("##layer" + layers[i]).c_str(), letter ? name.substr(0, 1) : name, layers[i] == current,
+               letter ? px(26) : width_of(layers[i]), layer_mark(layers[i])))
       ui.act("set", "film.layer", layers[i]);
     tooltip(layer_help(layers[i]));
     ImGui::SameLine(0, between);

@@ -196,6 +196,10 @@ std::vector<uint8_t> Window::read(uint32_t& width, uint32_t& height) const {
 }
 
 void Window::set_size(int width, int height) { glfwSetWindowSize(window_, width, height); }
+void Window::set_scale(float scale) {
+  asked_scale_ = scale;
+  events_->rescaled = events_->any = true;
+}
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 unsigned Window::upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height) {

@@ -28,6 +28,8 @@ class Window {
   /// The window as drawn, RGBA, top row first.
   std::vector<uint8_t> read(uint32_t& width, uint32_t& height) const;
   void set_size(int width, int height);
+  /// Of text and controls; 0: what the desktop asks for.
+  void set_scale(float scale);
   void set_title(const std::string& title);
   /// Puts a picture into the texture (made anew when the size changes). Returns its OpenGL name.
   unsigned upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height);

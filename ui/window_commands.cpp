@@ -96,6 +96,9 @@ void add_window_commands(Ui& ui) {
       [&ui](const Arguments& a) {
         ui.size = {static_cast<int>(a.integer("width")), static_cast<int>(a.integer("height"))};
       });
+  add("window.scale", "Sets the size of text and controls; 0: what the desktop asks for.",
+      {{.name = "scale", .type = Type::real, .lo = 0, .hi = 4}},
+      [&ui](const Arguments& a) { ui.scale = a.number("scale"); });
   add(
       "window.keys", "Shows what keys and mouse do.", {}, [&ui](const Arguments&) { ui.help = true; }, false);
 
@@ -124,6 +127,13 @@ void add_window_commands(Ui& ui) {
       },
       false);
 
+  add(
+      "log.type", "Puts the keyboard into the line under the log.", {},
+      [&ui](const Arguments&) {
+        ui.layout.panels = ui.layout.bottom_open = true;
+        ui.console.focus = true;
+      },
+      false);
   add(
       "log.clear", "Empties the log.", {}, [&ui](const Arguments&) { ui.log.clear(); }, false);
   add("log.show", "Shows or hides the lines of a level.",

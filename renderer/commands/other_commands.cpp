@@ -109,7 +109,7 @@ void Workspace::add_other_commands() {
        .run = [](const Arguments&) {},
        .done =
            [this](const Arguments& a) {
-             if (!snapshot || camera_moved) return false;
+             if (!snapshot || camera_moved || resizing) return false;
              // A picture of an earlier camera does not count.
              if (view && !same_view(snapshot->camera, view->camera)) return false;
              return snapshot->finished || (!snapshot->coarse && snapshot->samples >= a.integer("samples"));

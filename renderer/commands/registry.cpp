@@ -10,7 +10,8 @@ namespace lucerna::commands {
 namespace {
 
 std::string range_text(const Parameter& p) {
-  const bool low = std::isfinite(p.lo), high = std::isfinite(p.hi);
+  // Limits that only keep numbers sane are not worth the words.
+  const bool low = p.lo > -1e9, high = p.hi < 1e9;
   const std::string unit = p.unit.empty() ? "" : " " + p.unit;
   if (low && high) return fmt::format(" from {} to {}{}", p.lo, p.hi, unit);
   if (low) return fmt::format(" of at least {}{}", p.lo, unit);

@@ -98,6 +98,8 @@ class Workspace {
   int scene_camera = -1;          ///< the one taken last and not moved since
   /// The camera was moved and the session has not been told yet (send_camera).
   bool camera_moved = false;
+  /// The session has been told of another size, or will be, and has not drawn a picture of it yet.
+  bool resizing = false;
   void send_camera();
   /// "camera.place ..." that makes exactly this view.
   static std::string place_line(const Viewpoint& view);

@@ -39,11 +39,11 @@ def materials(s):
     size = {"floor": 3.0, "ashlar": 3.0, "limestone": 2.0, "plaster": 3.6, "wood": 1.6}
     rough = {"floor": 0.46, "ashlar": 0.9, "limestone": 0.72, "plaster": 0.95, "wood": 0.6}
     for name, m in maps.items():
-        s.material(name, (1, 1, 1), rough=rough[name], maps=m, metres=size[name])
+        s.material(name, (1, 1, 1), rough=rough[name], lambert=name in ("plaster", "wood"), maps=m, metres=size[name])
     s.material("dark stone", (0.19, 0.18, 0.17), rough=0.5, maps=maps["limestone"], metres=2.0)
-    s.material("ochre plaster", (0.98, 0.83, 0.62), rough=0.95, maps=maps["plaster"], metres=3.6)
-    s.material("red plaster", (0.60, 0.15, 0.10), rough=0.9, maps=maps["plaster"], metres=3.6)
-    s.material("blue plaster", (0.50, 0.66, 0.74), rough=0.95, maps=maps["plaster"], metres=3.6)
+    s.material("ochre plaster", (0.98, 0.83, 0.62), lambert=True, maps=maps["plaster"], metres=3.6)
+    s.material("red plaster", (0.60, 0.15, 0.10), lambert=True, maps=maps["plaster"], metres=3.6)
+    s.material("blue plaster", (0.50, 0.66, 0.74), lambert=True, maps=maps["plaster"], metres=3.6)
     textures.png(f + "/cloth_color.png", textures.to_srgb(textures.cloth().color))
     weave = {"color": "cloth_color.png", "through": "cloth_color.png"}
     s.material("cloth saffron", (0.82, 0.46, 0.09), lambert=True, double=True, maps=weave, through=0.6,
@@ -375,7 +375,7 @@ def main():
     s.write("The face of the program: late-morning sun through oculi on worn stone, its bounce in the shade under the "
             "gallery, cloth that glows through, cool sky light, small caustics of a brass bowl and a glass lamp. Also "
             "the size of a real job: instances, textures, normal maps, an environment, a sun and lamps.",
-            {"film.ev": 0.0, "film.tone_curve": "neutral", "environment": env})
+            {"film.ev": 0.15, "film.tone_curve": "neutral", "environment": env})
 
 
 if __name__ == "__main__":

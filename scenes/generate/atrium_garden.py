@@ -129,11 +129,12 @@ def terrace(s, top, z0, z1, half, rail):
         s.place(rail, ((i + 0.5 - n / 2) * 1.5, top, z1 + 0.15))
     s.mesh("hills", [(hills(58, 90, 4, 3.4), "hills")])
     s.mesh("near hills", [(hills(46, 70, 11, 1.9), "woods")])
-    s.place("hills")
-    s.place("near hills")
+    for yaw in (0, 90, 180, 270):
+        s.place("hills", yaw=yaw)
+        s.place("near hills", yaw=yaw)
     s.mesh("cypress", [(cypress(8.5, 0.95, 1), "cypress")])
     for x, z, k, yaw in ((-2.9, -33.0, 0.92, 0), (-1.75, -39.0, 1.0, 120), (1.9, -35.0, 0.72, 40), (3.4, -37.5, 1.05, 200),
-                         (-5.2, -36.0, 1.0, 70), (5.8, -41.0, 1.0, 300)):
+                         (-5.2, -36.0, 1.0, 70), (5.8, -41.0, 1.0, 300), (-6.5, 24.0, 0.9, 20), (7.2, 27.0, 1.0, 150)):
         s.place("cypress", (x, -0.3, z), yaw, scale=k)
     s.mesh("ground", [(quad((-60, -0.05, 60), (60, -0.05, 60), (60, -0.05, -60), (-60, -0.05, -60)), "earth")])
     s.place("ground")

@@ -31,6 +31,8 @@ sys.path.insert(0, HERE)
 import exr  # noqa: E402
 from figures import Estimate  # noqa: E402
 from figures import figures  # noqa: E402
+from reduce import FEATURES  # noqa: E402
+from reduce import reduced  # noqa: E402
 
 # Parts of the picture that are left out unless --leave-out is given: the walls within a lamp's half width of its plane.
 BANDS = {"cornell": ["0,0,1,0.14"], "glass": ["0,0,1,0.14"]}
@@ -50,6 +52,8 @@ def arguments():
     p.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="passed on to Lucerna")
     p.add_argument("--leave-out", action="append", metavar="X0,Y0,X1,Y1")
     p.add_argument("--no-band", action="store_true", help="leave nothing out")
+    p.add_argument("--without", default="", metavar="FEATURE,...",
+                   help="render a reduced copy, to find what differs: " + ", ".join(FEATURES))
     p.add_argument("--speed", action="store_true")
     p.add_argument("--repeats", type=int, default=3)
     p.add_argument("--keep", metavar="DIR", help="where the pictures go; those already there are used again")
@@ -74,6 +78,10 @@ class Job:
     def __init__(self, a, scene, folder):
         self.a, self.scene, self.folder = a, scene, folder
         self.name = os.path.splitext(os.path.basename(scene))[0]
+        if a.without:
+            self.folder = os.path.join(folder, self.name + "-without-" + a.without.replace(",", "-"))
+            os.makedirs(self.folder, exist_ok=True)
+            self.scene = reduced(scene, a.without.split(","), self.folder)
         if a.size == "auto":
             aspect = camera_aspect(scene, a.camera)
             w, h = (160, round(160 / aspect)) if aspect >= 1 else (round(160 * aspect), 160)

@@ -37,9 +37,10 @@ def closure_curve(cosine, ior=CLOSURE_IOR):
 
 
 def lobe_row(mu, alpha, n=48):
-    """Albedo of the lobe seen at cosine mu with F = 1, F = Schlick's weight, F = the closure's curve."""
+    """Albedo of the lobe seen at cosine mu: with F = 1, F = Schlick's weight, F = the closure's curve; then, with masking
+    and shadowing taken as independent (Blender's plain GGX), with F = 1 and F = the closure's curve."""
     if alpha < 1e-4:
-        return np.array([1, schlick(mu), closure_curve(mu)])
+        return np.array([1, schlick(mu), closure_curve(mu), 1, closure_curve(mu)])
     u = (np.arange(n) + 0.5) / n
     u, v = np.meshgrid(u, u, indexing="ij")
     side = np.sqrt(1 - mu * mu)
@@ -50,16 +51,18 @@ def lobe_row(mu, alpha, n=48):
     h /= np.linalg.norm(h, axis=-1, keepdims=True)
     cosine = side * h[..., 0] + mu * h[..., 2]
     out = 2 * cosine * h[..., 2] - mu
-    shadowing = (1 + _lambda(mu, alpha)) / (1 + _lambda(mu, alpha) + _lambda(np.maximum(out, 1e-9), alpha))
-    g = np.where(out > 0, shadowing, 0)
-    return np.array([g.mean(), (g * schlick(cosine)).mean(), (g * closure_curve(cosine)).mean()])
+    lambda_out = _lambda(np.maximum(out, 1e-9), alpha)
+    g = np.where(out > 0, (1 + _lambda(mu, alpha)) / (1 + _lambda(mu, alpha) + lambda_out), 0)
+    alone = np.where(out > 0, 1 / (1 + lambda_out), 0)
+    f = closure_curve(cosine)
+    return np.array([g.mean(), (g * schlick(cosine)).mean(), (g * f).mean(), alone.mean(), (alone * f).mean()])
 
 
 _lobes = []
 
 
 def lobes():
-    """(ROUGH, MU, 3): lobe_row on the grid."""
+    """(ROUGH, MU, 5): lobe_row on the grid."""
     if not _lobes:
         _lobes.append(np.array([[lobe_row(mu, r * r) for mu in cosines()] for r in roughnesses()]))
     return _lobes[0]
@@ -73,15 +76,9 @@ def average(values):
     return np.array([np.trapz(4 * x ** 3 * np.interp(x, at, row), x) for row in rows]).reshape(values.shape[:-1])
 
 
-def toon(cosine, size, smooth):
-    """Blender's diffuse toon closure relative to Lambert: constant up to the angle `size`, then falling linearly to 0
-    over `smooth` (both in right angles)."""
-    angle = np.arccos(cosine) / (np.pi / 2)
-    shape = np.clip(1 - (angle - size) / smooth, 0, 1)
-    return shape * 0.5 / (1 - np.cos((size + smooth) * np.pi / 2)) / cosine
-
-
-TOONS = ((0.3, 0.4), (0.7, 0.2))
+def exit_term(cosine):
+    """How Principled's diffuse term at roughness 0 goes with either direction, relative to Lambert."""
+    return 1 - 0.5 * schlick(cosine)
 
 
 def fit_positive(columns, wanted):
@@ -98,8 +95,9 @@ def fit_positive(columns, wanted):
 
 
 def coat(f0, f90):
-    """What a coat lets through, 1 - E: (ROUGH, MU), for one channel; and weights (ROUGH, 3) of Lambert and TOONS that
-    sum, as functions of the other direction's cosine, to (1 - E) / (1 - E_avg)."""
+    """What a coat lets through, 1 - E: (ROUGH, MU), for one channel; and weights (ROUGH, 2) of 1 and exit_term
+    that sum, as functions of the other direction's cosine, to (1 - E) / (1 - E_avg); and E over the albedo of Blender's
+    plain GGX closure of the same colour (ROUGH, MU)."""
     t = lobes()
     e1 = t[:, :, 0]
     e1_average = average(e1)[:, None]
@@ -109,9 +107,10 @@ def coat(f0, f90):
     relative = through / average(through)[:, None]
     x = np.linspace(0.01, 1, 300)
     weight = x ** 1.5   # squared: area times cosine, x^3 dx
-    basis = np.stack([np.ones_like(x)] + [toon(x * x, *k) for k in TOONS], 1)
+    basis = np.stack([np.ones_like(x), exit_term(x * x)], 1)
     at = np.sqrt(cosines())
     fit = np.array([fit_positive(basis * weight[:, None], np.interp(x, at, row) * weight) for row in relative])
     # Exact in the average, so that energy is right whatever the fit misses.
     means = np.trapz(4 * x[:, None] ** 3 * basis, x, axis=0)
-    return through, fit / (fit @ means)[:, None]
+    closure = f90 * (t[:, :, 4] + f0 / f90 * (t[:, :, 3] - t[:, :, 4]))
+    return through, fit / (fit @ means)[:, None], (1 - through) / closure

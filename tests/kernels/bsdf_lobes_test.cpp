@@ -1,8 +1,8 @@
 // links: upload
-// What the surface model is made of: the cosine lobe and the visible normals of GGX against their densities; and that
-// leaving out what a scene does not need changes nothing for what it has.
-#include <catch2/catch.hpp>
+// What the surface model is made of: the cosine lobe and the visible normals of GGX against their densities;
+// and that leaving out what a scene does not need changes nothing for what it has.
 #include <fmt/format.h>
+#include <catch2/catch.hpp>
 
 #include "kernels/bsdf_support.h"
 #include "kernels/statistics_support.h"
@@ -32,7 +32,8 @@ void judge(Subject subject, const std::vector<Material>& materials, const std::v
     std::vector<double> observed(sphere.number_bins(1.0 / 256), 0.0), expected;
     for (const double p : sphere.probabilities()) expected.push_back(p * k_draws);
     size_t bad = 0;
-    for (const Draw& d : probe.draw(views[i].material, views[i].wo, k_draws, 100 + static_cast<uint32_t>(i))) {
+    for (const Draw& d :
+         probe.draw(views[i].material, views[i].wo, k_draws, 100 + static_cast<uint32_t>(i))) {
       bad += !(d.pdf > 0 && d.wi.z >= 0 && std::abs(glm::length(d.wi) - 1) < 1e-5f);
       observed[sphere.bin_of(d.wi)] += 1;
     }
@@ -70,7 +71,9 @@ TEST_CASE("a leaner variant of the shader gives what the full one gives") {
       {"solid glass", surface_effects(false, {"LUCERNA_SOLID_GLASS"}),
        [](Material& m) { m.specular = 0, m.transmission = 0.7f, m.solid = 1, m.glass_row = 0; }},
       {"specular and solid glass", surface_effects(false, {"LUCERNA_SPECULAR", "LUCERNA_SOLID_GLASS"}),
-       [](Material& m) { m.metallic = 0.2f, m.transmission = 0.7f, m.solid = m.inside = 1, m.glass_row = 0; }}};
+       [](Material& m) {
+         m.metallic = 0.2f, m.transmission = 0.7f, m.solid = m.inside = 1, m.glass_row = 0;
+       }}};
   for (const Variant& variant : variants)
     for (const float roughness : {0.f, 0.3f}) {
       INFO(variant.name << ", roughness " << roughness);
@@ -97,3 +100,5 @@ TEST_CASE("a leaner variant of the shader gives what the full one gives") {
       CHECK(draws <= 4);  // a choice between lobes may fall the other way by rounding
     }
 }
+
+TEST_CASE("the validation layers had nothing to say") { CHECK(device().validation_messages() == 0); }

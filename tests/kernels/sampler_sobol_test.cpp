@@ -240,3 +240,5 @@ TEST_CASE("no two purposes of a path draw from the same pad") {
   for (const Point& p : points(others)) seen.insert({p.bits[0], p.bits[1]});
   CHECK(seen.size() == places.size() + others.size());
 }
+
+TEST_CASE("the validation layers had nothing to say") { CHECK(device().validation_messages() == 0); }

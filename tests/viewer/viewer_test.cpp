@@ -74,3 +74,25 @@ TEST_CASE("a scene that is not there is an error in the window, and the script's
   INFO(failed.output);
   CHECK(failed.status == 1);
 }
+
+TEST_CASE("a broken file that is dropped leaves the scene, and a click selects what is under it") {
+  if (!available()) return;
+  const test::Folder folder;
+  const auto broken = folder.path / "broken.glb", png = folder.path / "window.png";
+  const auto session = folder.path / "session.lucerna";
+  std::ofstream(broken, std::ios::binary) << "glTF\2 and then nothing that it says";
+  const auto outcome = viewer(folder, "scenes/cornell/cornell.gltf",
+                              "window.size 1100 700\nwait_scene\nwait_samples 1\ndrop " + broken.string() +
+                                  "\nwait 1\nwait_samples 1\npick 0.5 0.145\nscreenshot " + png.string() +
+                                  "\nscript.save " + session.string() + "\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  CHECK_THAT(outcome.output, Catch::Contains("broken.glb"));
+  const test::Picture window(png);
+  const vec3 strip = window.at(790, 72);
+  CHECK(strip.x > 1.5f * strip.y);
+  CHECK(window.contrast(300, 120, 780, 480) > 0.05);  // the box is still there
+  std::ifstream in(session);
+  const std::string script((std::istreambuf_iterator<char>(in)), {});
+  CHECK_THAT(script, Catch::EndsWith("select object 4\n"));  // the lamp
+}

@@ -186,3 +186,87 @@ TEST_CASE("an empty window, a cancelled load, and every step run") {
   CHECK(end.image.width == 1200);
   CHECK(end.image.height == 800);
 }
+
+TEST_CASE("mouse, keys and console act by commands, which a saved session holds") {
+  if (no_display()) {
+    WARN("skipped: neither a display nor xvfb-run");
+    return;
+  }
+  const test::Folder folder;
+  const std::string saved = (folder.path / "session.lucerna").string();
+  const auto outcome =
+      window("hall.gltf",
+             "wait_scene\nwindow.size 1440 900\nwait 0.3\n"
+             // A click in the picture on the room's one triangle.
+             "camera.place 3,1.5,20 1,0.5,-1.5 0,1,0\nmouse.move 712 380\nmouse.down\nmouse.up\n"
+             // A drag there turns the view; it is no click.
+             "mouse.down\nmouse.move 740 390\nmouse.move 780 400\nmouse.up\n"
+             // A drag of the exposure in the toolbar, undone and done again by keys.
+             "mouse.move 980 50\nmouse.down\nmouse.move 990 50\nmouse.move 1000 50\nmouse.up\n"
+             "key ctrl+z\nkey ctrl+shift+z\n"
+             // The console completes, reports mistakes and goes on.
+             "key ctrl+l\nwait 0.3\ntype \"film.tone_curve ag\"\nkey tab\nkey enter\nwait 0.3\n"
+             "type \"film.ev bright\"\nkey enter\nwait 0.3\n"
+             "script.save " +
+                 saved + "\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  std::ifstream in(saved);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  INFO(lines.size());
+  REQUIRE(lines.size() == 11);
+  CHECK_THAT(lines[1], Catch::StartsWith("scene.open ") && Catch::EndsWith("hall.gltf"));
+  CHECK(lines[2] == "wait_scene");
+  CHECK(lines[3] == "window.size 1440 900");
+  CHECK(lines[4] == "camera.place 3,1.5,20 1,0.5,-1.5 0,1,0");
+  CHECK(lines[5] == "select object 1");
+  CHECK_THAT(lines[6], Catch::StartsWith("camera.place "));
+  CHECK_THAT(lines[7], Catch::StartsWith("set film.ev "));
+  CHECK(lines[8] == "undo");
+  CHECK(lines[9] == "redo");
+  CHECK(lines[10] == "set film.tone_curve agx");
+
+  // The script runs, and a session of it is the same script.
+  const std::string again = (folder.path / "again.lucerna").string();
+  const auto replay = window("", "script.run " + saved + "\nscript.save " + again + "\nquit\n");
+  INFO(replay.output);
+  REQUIRE(replay.status == 0);
+  std::ifstream second(again);
+  for (const std::string& line : lines) {
+    std::string other;
+    std::getline(second, other);
+    CHECK(line == other);
+  }
+}
+
+TEST_CASE("a dropped scene opens; what cannot be opened is an error over the scene that stays") {
+  if (no_display()) {
+    WARN("skipped: neither a display nor xvfb-run");
+    return;
+  }
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  const auto outcome = window(
+      "hall.gltf", "wait_scene\nwait_samples 1\ndrop missing.glb\nwait 0.8\nwait_samples 1\nscreenshot " +
+                       file("missing.png") + "\ndismiss\ndrop picture.jpg\nwait 0.3\nscreenshot " +
+                       file("jpg.png") + "\ndrop other.gltf\nwait 0.1\nwait_scene\nselect light 3\n" +
+                       "wait_samples 1\nscreenshot " + file("other.png") + "\nscript.save " +
+                       file("session.lucerna") + "\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  CHECK_THAT(outcome.output,
+             Catch::Contains("missing.glb: no such file") &&
+                 Catch::Contains("picture.jpg: cannot be opened; expected a .gltf or .glb file"));
+  const auto strip = [&](const char* name) {
+    const vec3 c = test::Picture(file(name)).at(1084, 72);
+    return c.x > 1.5f * c.y;
+  };
+  CHECK(strip("missing.png"));
+  CHECK(strip("jpg.png"));
+  CHECK_FALSE(strip("other.png"));  // a scene that opens takes the messages away
+  CHECK(test::Picture(file("missing.png")).contrast(400, 300, 900, 500) > 0.02);
+  std::ifstream in(file("session.lucerna"));
+  const std::string script((std::istreambuf_iterator<char>(in)), {});
+  CHECK_THAT(script, Catch::Contains("missing.glb\nscene.open") && Catch::Contains("other.gltf\nwait_scene"));
+}
