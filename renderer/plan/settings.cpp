@@ -5,14 +5,24 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "plan/solvers.h"
+
 namespace lucerna::plan {
 namespace {
 
 OptionInfo component(const char* name, const char* what) {
+  const int c = int(std::find(std::begin(paths::k_component_names), std::end(paths::k_component_names),
+                              std::string_view(name)) -
+                    std::begin(paths::k_component_names));
+  std::vector<std::string> choices;
+  for (const SolverInfo& solver : solvers())
+    if (solver.serves[c]) choices.push_back(solver.name);
+  const std::string fallback = choices.front();
+  choices.push_back("off");
   return {.key = std::string("components.") + name,
           .type = OptionType::choice,
-          .fallback = "path",
-          .choices = {"path", "off"},
+          .fallback = fallback,
+          .choices = std::move(choices),
           .help = fmt::format("Solver of the {} component: {}.", name, what)};
 }
 

@@ -136,6 +136,7 @@ struct Environment {
   float scale = 1;     ///< multiplies image or radiance
   float rotation = 0;  ///< degrees
   std::string file;    ///< as written; for messages and saving
+  bool given = false;  ///< the scene or its settings name an environment, be it black
 };
 
 struct Scene {

@@ -7,6 +7,8 @@
 #include "base/log.h"
 #include "base/timer.h"
 #include "bvh/embree/build.h"
+#include "plan/plan.h"
+#include "scene/default_light.h"
 #include "scene/io/load.h"
 #include "shaders/shared/film.h"
 #include "transport/frame.h"
@@ -37,6 +39,9 @@ void Renderer::load(const std::filesystem::path& file, const Progress& progress)
       std::make_shared<scene::Scene>(scene::load(file, {}, [&](float fraction, const std::string& what) {
         return !progress || progress(0.6f * fraction, what);
       }));
+  scene::add_default_light(*scene);
+  for (std::string& line : plan::unreachable_light(plan::make_plan(settings_), *scene))
+    scene->warnings.push_back(std::move(line));
   for (const std::string& warning : scene->warnings) log::warning("{}", warning);
   set_scene(scene, [&](float fraction, const std::string& what) {
     return !progress || progress(0.6f + 0.4f * fraction, what);
@@ -106,12 +111,7 @@ void Renderer::reload_shaders() {
   restart();
 }
 
-uint32_t Renderer::enabled_components() const {
-  uint32_t enabled = 0;
-  for (int c = 0; c < paths::k_component_count; ++c)
-    if (settings_.text(std::string("components.") + paths::k_component_names[c]) != "off") enabled |= 1u << c;
-  return enabled;
-}
+uint32_t Renderer::enabled_components() const { return plan::make_plan(settings_).enabled(); }
 
 shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
   return transport::make_frame(flat_, camera_, automaton_,

@@ -40,6 +40,7 @@ void read_environment(Document& document, Scene& scene, const Item& item, bool s
     environment.radiance = radiance->rgb();
     if (glm::any(glm::lessThan(environment.radiance, vec3(0)))) radiance->fail("radiance is negative");
   }
+  environment.given = true;
   scene.environment = std::move(environment);
 }
 

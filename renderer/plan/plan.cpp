@@ -1,0 +1,35 @@
+#include "plan/plan.h"
+
+namespace lucerna::plan {
+
+uint32_t Plan::enabled() const {
+  uint32_t bits = 0;
+  for (size_t c = 0; c < solver.size(); ++c)
+    if (solver[c]) bits |= 1u << c;
+  return bits;
+}
+
+Plan make_plan(const Settings& settings) {
+  Plan plan;
+  for (int c = 0; c < paths::k_component_count; ++c) {
+    const std::string& name = settings.text(std::string("components.") + paths::k_component_names[c]);
+    for (const SolverInfo& info : solvers())
+      if (info.name == name) plan.solver[c] = &info;
+  }
+  return plan;
+}
+
+std::vector<std::string> unreachable_light(const Plan&, const scene::Scene& scene) {
+  size_t lamps = 0, solids = 0;
+  for (const scene::Light& light : scene.lights) lamps += light.enabled;
+  for (const scene::Material& m : scene.materials) solids += m.transmission > 0 && m.thickness > 0;
+  if (lamps == 0 || solids == 0) return {};
+  return {
+      fmt::format("{}: light of the {} point, spot or directional lights is not seen through solid glass ({} "
+                  "materials with "
+                  "KHR_materials_volume): path tracing cannot aim at a point through a refracting surface. "
+                  "Emissive meshes are seen.",
+                  scene.file, lamps, solids)};
+}
+
+}  // namespace lucerna::plan

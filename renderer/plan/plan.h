@@ -1,0 +1,27 @@
+#pragma once
+// Settings and scene -> what is to be done: which solver computes which component, and what cannot be
+// reached.
+#include <array>
+#include <string>
+#include <vector>
+
+#include "plan/settings.h"
+#include "plan/solvers.h"
+#include "scene/scene.h"
+
+namespace lucerna::plan {
+
+struct Plan {
+  std::array<const SolverInfo*, paths::k_component_count> solver{};  ///< null: off
+  /// Components that are computed (bit i).
+  uint32_t enabled() const;
+};
+
+/// From the settings `components.*`. Every component has one solver or is off, so no path is counted twice,
+/// and what is lost was declared.
+Plan make_plan(const Settings& settings);
+
+/// Light that the scene has and the plan's solvers cannot find, one line each, with what to do about it.
+std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene& scene);
+
+}  // namespace lucerna::plan

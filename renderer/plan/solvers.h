@@ -1,0 +1,20 @@
+#pragma once
+// The ways to compute a component of the light: the registry from which the settings take their choices.
+#include <array>
+#include <string>
+#include <vector>
+
+#include "paths/automaton.h"
+
+namespace lucerna::plan {
+
+struct SolverInfo {
+  std::string name;                                   ///< as in settings: components.secondary = NAME
+  std::string help;                                   ///< one sentence
+  std::array<bool, paths::k_component_count> serves;  ///< components that it can compute
+};
+
+/// All of them, the default of every component first. A new solver is a line here.
+const std::vector<SolverInfo>& solvers();
+
+}  // namespace lucerna::plan

@@ -1,0 +1,89 @@
+// links: plan
+// The plan: who computes what, and which light is out of reach. And light for scenes that have none.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "plan/plan.h"
+#include "scene/default_light.h"
+
+using namespace lucerna;
+
+namespace {
+
+scene::Scene one_triangle() {
+  scene::Scene s;
+  s.file = "one.gltf";
+  s.materials.resize(1);
+  scene::Primitive p;
+  p.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  p.triangles = {{0, 1, 2}};
+  s.meshes = {{"mesh", {p}}};
+  s.instances = {{"node", 0, mat4(1), false}};
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("every component has one solver of the registry, or none") {
+  plan::Settings settings;
+  CHECK(plan::make_plan(settings).enabled() == 15);
+  settings.set("components.secondary", "off");
+  const plan::Plan p = plan::make_plan(settings);
+  CHECK(p.enabled() == 13);
+  CHECK(p.solver[1] == nullptr);
+  REQUIRE(p.solver[0] != nullptr);
+  CHECK(p.solver[0]->name == "path");
+  // What the settings offer is what the registry serves.
+  for (int c = 0; c < paths::k_component_count; ++c) {
+    const auto* option = plan::find_option(std::string("components.") + paths::k_component_names[c]);
+    REQUIRE(option != nullptr);
+    size_t served = 0;
+    for (const plan::SolverInfo& info : plan::solvers()) served += info.serves[c];
+    CHECK(option->choices.size() == served + 1);
+    CHECK(option->choices.back() == "off");
+  }
+}
+
+TEST_CASE("lamps behind solid glass are warned about, and nothing else is") {
+  const plan::Plan p = plan::make_plan({});
+  scene::Scene s = one_triangle();
+  CHECK(plan::unreachable_light(p, s).empty());
+  s.lights.resize(2);
+  CHECK(plan::unreachable_light(p, s).empty());
+  s.materials[0].transmission = 1;  // a thin wall lets shadow rays through
+  CHECK(plan::unreachable_light(p, s).empty());
+  s.materials[0].thickness = 0.1f;
+  REQUIRE(plan::unreachable_light(p, s).size() == 1);
+  CHECK(plan::unreachable_light(p, s)[0].find("one.gltf") == 0);
+  for (scene::Light& l : s.lights) l.enabled = false;
+  CHECK(plan::unreachable_light(p, s).empty());
+}
+
+TEST_CASE("a scene without light gets a studio and says so; a scene with any keeps what it has") {
+  scene::Scene dark = one_triangle();
+  CHECK_FALSE(scene::has_light(dark));
+  REQUIRE(scene::add_default_light(dark));
+  CHECK(scene::has_light(dark));
+  CHECK(dark.warnings.size() == 1);
+  REQUIRE(dark.environment.image != scene::k_none);
+  const scene::Image& image = dark.images[dark.environment.image];
+  CHECK(image.floats.size() == size_t(image.width) * image.height * 4);
+  for (const float f : image.floats) CHECK((std::isfinite(f) && f >= 0));
+  CHECK_FALSE(scene::add_default_light(dark));  // only once
+
+  scene::Scene lamp = one_triangle();
+  lamp.lights.resize(1);
+  CHECK_FALSE(scene::add_default_light(lamp));
+  scene::Scene emissive = one_triangle();
+  emissive.materials[0].emission = vec3(0, 0, 1);
+  CHECK_FALSE(scene::add_default_light(emissive));
+  scene::Scene sky = one_triangle();
+  sky.environment.radiance = vec3(0.1f);
+  CHECK_FALSE(scene::add_default_light(sky));
+  scene::Scene black = one_triangle();
+  black.environment.given = true;  // somebody wants it dark
+  CHECK_FALSE(scene::add_default_light(black));
+  scene::Scene unlit = one_triangle();
+  unlit.materials[0].unlit = true;
+  CHECK_FALSE(scene::add_default_light(unlit));
+}
