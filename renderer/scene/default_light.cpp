@@ -53,7 +53,7 @@ bool has_light(const Scene& scene) {
   for (const Instance& instance : scene.instances)
     for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
       const Material& material = scene.materials[primitive.material];
-      if (!material.unlit && any(material.emission)) return true;
+      if (!material.unlit && any(material.emission) && !material.emission_texture) return true;
     }
   return false;
 }

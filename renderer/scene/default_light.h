@@ -4,7 +4,9 @@
 
 namespace lucerna::scene {
 
-/// Whether anything in the scene emits: a lamp that is on, an emissive material in use, an environment.
+/// Whether the scene is lit: by a lamp that is on, an environment, or an emissive material without a texture
+/// that is in use. (Textured emission is mostly a small display or a glowing seam of a model that means to be
+/// lit from outside.)
 bool has_light(const Scene& scene);
 
 /// Gives a scene that has no light, names no environment and is not all unlit a studio: a dim room with a

@@ -33,6 +33,10 @@ const uint k_event_glossy = 1u;
 const uint k_event_specular = 2u;
 const uint k_event_null = 3u;   // no letter: straight on through a smooth thin wall
 
+// Indices of refraction closer than this (relative) are the same medium: the half vector of refraction, wo + eta wi, has no
+// direction left there.
+const float k_same_medium = 1e-3;
+
 // What the material says at a point.
 struct SurfaceParameters {
   vec3 base;
@@ -68,6 +72,7 @@ struct Bsdf {
   vec3 tint;             // of what is transmitted
   float eta;             // n on the other side / n on wo's side
   bool solid;
+  bool glass_delta;      // smooth, or a solid that does not refract: facets turn no ray then, however rough
   uint table_here, table_there;
   float ms_reflected, ms_transmitted;  // complement, times (1-E(wo)); radiance scale included
 #endif
@@ -194,8 +199,12 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
     b.ms_transmitted = share_there * missing / (k_pi * lost_there * b.eta * b.eta);
   }
 #endif
+  b.glass_delta = b.delta || (s.solid && abs(b.eta - 1.0) < k_same_medium);
+  float complement = b.glass_delta ? 0.0 : 1.0;
+  b.ms_reflected *= complement;
+  b.ms_transmitted *= complement;
   b.p_glass = b.glass;
-  b.p_glass_ms = b.delta ? 0.0 : b.glass * missing;
+  b.p_glass_ms = b.glass * missing * complement;
 #endif
   float total = b.p_diffuse + b.p_transmitted + b.p_specular + b.p_specular_ms + b.p_glass + b.p_glass_ms;
   float scale = total > 0.0 ? 1.0 / total : 0.0;
@@ -273,18 +282,19 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   float missing_i = missing;
 #if LUCERNA_SOLID_GLASS
   vec4 there = table_read(same_side ? b.table_here : b.table_there, cos_i, b.roughness);
-  missing_i = b.solid && !b.delta ? max(0.0, 1.0 - there.x) : missing;
+  missing_i = b.solid ? max(0.0, 1.0 - there.x) : missing;
 #endif
-  vec3 reflected = vec3(f * shape + b.ms_reflected * missing_i * cos_i);
-  vec3 passed = b.tint * ((1.0 - f) * shape + b.ms_transmitted * missing_i * cos_i);
-  float pdf_reflected = f * pdf_h;
-  float pdf_passed = (1.0 - f) * pdf_h;
+  float facets = b.glass_delta ? 0.0 : 1.0;
+  vec3 reflected = vec3(f * shape * facets + b.ms_reflected * missing_i * cos_i);
+  vec3 passed = b.tint * ((1.0 - f) * shape * facets + b.ms_transmitted * missing_i * cos_i);
+  float pdf_reflected = f * pdf_h * facets;
+  float pdf_passed = (1.0 - f) * pdf_h * facets;
 #if LUCERNA_SOLID_GLASS
   if (b.solid) {
     vec3 g = wo + b.eta * wi;
     vec3 ht = normalize(g * (g.z < 0.0 ? -1.0 : 1.0));
     float oh = dot(wo, ht), ih = dot(wi, ht);
-    bool valid = !b.delta && !same_side && oh > 0.0 && ih < 0.0;
+    bool valid = !b.glass_delta && !same_side && oh > 0.0 && ih < 0.0;
     float denominator = square(ih + oh / b.eta);
     float jacobian = valid ? -ih / max(denominator, 1e-30) : 0.0;   // d omega_h / d omega_i
     float ft = 1.0 - fresnel_dielectric(max(oh, 0.0), b.eta);
@@ -338,24 +348,27 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
 #if LUCERNA_GLASS
   bool in_glass = at >= 0.0 && at < b.p_glass;
   if (in_glass) {
-    float f = glass_fresnel(b, cos_oh);
+    vec3 facet = b.glass_delta ? vec3(0.0, 0.0, 1.0) : h;
+    float cos_facet = dot(wo, facet);
+    vec3 off = 2.0 * cos_facet * facet - wo;
+    float f = glass_fresnel(b, cos_facet);
     float pick = at / b.p_glass;
     bool reflect_it = pick < f;
-    vec3 passed = vec3(mirrored.xy, -mirrored.z);
+    vec3 passed = vec3(off.xy, -off.z);
     float scale = 1.0;
 #if LUCERNA_SOLID_GLASS
     if (b.solid) {
-      float sin2_t = max(0.0, 1.0 - cos_oh * cos_oh) / (b.eta * b.eta);
+      float sin2_t = max(0.0, 1.0 - cos_facet * cos_facet) / (b.eta * b.eta);
       float cos_t = sqrt(max(0.0, 1.0 - sin2_t));
-      passed = -wo / b.eta + (cos_oh / b.eta - cos_t) * h;
+      passed = -wo / b.eta + (cos_facet / b.eta - cos_t) * facet;
       scale = 1.0 / (b.eta * b.eta);
     }
 #endif
-    s.wi = reflect_it ? mirrored : passed;
+    s.wi = reflect_it ? off : passed;
     // A facet may send light to the wrong side of the surface: lost here, and returned by the complement. It must not be
     // evaluated as if it had been meant for that side.
     lost = reflect_it != (s.wi.z > 0.0);
-    if (b.delta) {
+    if (b.glass_delta) {
       delta = true;
       bool straight = !reflect_it && !b.solid;
       s.event = straight ? k_event_null : k_event_specular;

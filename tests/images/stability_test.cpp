@@ -139,6 +139,19 @@ TEST_CASE("materials at the ends of their ranges") {
   }
 }
 
+TEST_CASE("rough glass that refracts nothing, or almost nothing, loses nothing") {
+  for (const float ior : {1.0f, 1.0005f, 1.002f, 1.01f}) {
+    INFO("ior " << ior);
+    scene::Material m = glass(0.4f, ior, 1);
+    m.attenuation_distance = k_infinity;
+    scene::Scene s = make_scene(m, 1, vec3(0), 1);
+    // The box alone in a world of radiance 1.
+    s.meshes[0].primitives = {s.meshes[0].primitives.begin() + 1, s.meshes[0].primitives.end() - 1};
+    s.environment.radiance = vec3(1);
+    CHECK(render(s).mean == Approx(1).epsilon(0.01));
+  }
+}
+
 TEST_CASE("sizes, places and brightness over many orders of magnitude") {
   struct Case {
     const char* name;

@@ -77,6 +77,10 @@ TEST_CASE("a scene without light gets a studio and says so; a scene with any kee
   scene::Scene emissive = one_triangle();
   emissive.materials[0].emission = vec3(0, 0, 1);
   CHECK_FALSE(scene::add_default_light(emissive));
+  scene::Scene display = one_triangle();
+  display.materials[0].emission = vec3(1);
+  display.materials[0].emission_texture.texture = 0;
+  CHECK(scene::add_default_light(display));
   scene::Scene sky = one_triangle();
   sky.environment.radiance = vec3(0.1f);
   CHECK_FALSE(scene::add_default_light(sky));
