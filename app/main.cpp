@@ -37,7 +37,10 @@ int main_checked(int argc, char** argv) {
   bool verbose = false;
   app.add_option("SCENE", scene, "glTF scene (.gltf or .glb) to open in the viewer");
   app.add_option("--device", device, "device: index, part of a name, cpu or gpu (also LUCERNA_DEVICE)");
-  app.add_option("--script", script, "viewer: file with scripted steps, one a line");
+  std::vector<std::string> set;
+  app.add_option("--set", set, "viewer: KEY=VALUE; see below")->allow_extra_args(false);
+  app.add_option("--script", script,
+                 "viewer: file with commands, one a line; 'help' under the log lists them");
   app.add_flag("-v,--verbose", verbose, "say more on standard error");
 
   RenderArguments r;
@@ -119,6 +122,7 @@ int main_checked(int argc, char** argv) {
   session::Session session({.device = device, .validation = false, .shaders = {}});
   ui::ViewerOptions options;
   options.scene = scene;
+  options.set = set;
   if (!script.empty()) {
     std::ifstream in(script);
     if (!in) throw Error(script, "cannot be read");

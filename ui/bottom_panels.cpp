@@ -262,13 +262,7 @@ void draw_log(Ui& ui, const Area& area) {
     };
     if (chip("##clear", "Clear", false, colour::text)) ui.act("log.clear");
     tooltip("Empties the log.");
-    if (chip("##copy", "Copy", false, colour::text)) {
-      std::string all;
-      for (const LogLine& line : ui.log)
-        if (ui.log_levels[static_cast<size_t>(line.level)])
-          all += fmt::format("{:.2f} {} {}\n", line.time, names[static_cast<size_t>(line.level)], line.text);
-      ImGui::SetClipboardText(all.c_str());
-    }
+    if (chip("##copy", "Copy", false, colour::text)) ui.act("log.copy");
     tooltip("Copies the lines shown to the clipboard.");
     right -= px(8);
     for (int level = 3; level >= 0; --level) {

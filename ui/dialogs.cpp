@@ -298,13 +298,13 @@ void handle_keys(Ui& ui) {
       const bool again = mods & GLFW_MOD_SHIFT;
       if (again ? ui.can_redo() : ui.can_undo()) ui.act(again ? "redo" : "undo");
     }
-  if (ui.pressed(GLFW_KEY_F1)) ui.help = true;
+  if (ui.pressed(GLFW_KEY_F1)) ui.act("window.keys");
   if (ui.pressed(GLFW_KEY_TAB)) ui.act("window.panels", !ui.layout.panels), ui.wake(3);
   if (ui.pressed(GLFW_KEY_ESCAPE)) {
     if (ui.loading())
       ui.act("scene.cancel");
     else if (!ui.errors.empty())
-      ui.errors.pop_back();
+      ui.act("dismiss");
     else if (ui.selection.kind != Kind::none)
       ui.act("select.none");
   }

@@ -177,7 +177,8 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
       if (option->unit == key) how.unit.clear();  // "Samples 256" says it once
       if (whole) how.step = 1;
       if (option->hi > 4e9)
-        how.hi = 65535, how.bar = false, how.travel = 0.01f;  // seeds: a range that a hand can hit
+        how.hi = 65535, how.bar = false, how.travel = 0.01f,
+        how.typed_hi = 16777215;  // seeds: a range that a hand can hit
       if (slider("##number", name, value, how))
         ui.act("set", key,
                whole ? fmt::format("{:.0f}", std::clamp<double>(value, option->lo, option->hi))

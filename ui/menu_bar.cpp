@@ -145,7 +145,7 @@ void render_menu(Ui& ui) {
 
 void help_menu(Ui& ui) {
   if (!begin_menu("Help")) return;
-  if (entry("Keys and mouse", "F1", "How to move and what the keys do.")) ui.help = true;
+  if (entry("Keys and mouse", "F1", "How to move and what the keys do.")) ui.act("window.keys");
   if (entry("Commands", nullptr, "Lists in the log what can be typed below it and written into scripts."))
     ui.typed.push_back("help");
   end_menu();

@@ -124,8 +124,10 @@ void Runner::advance() {
     const bool failed = [&] {
       try {
         if (carry_out(step)) return false;
-        if (ui_.now - began_ > k_longest_wait && !measure_)
-          throw_error(step.where, "{}: gave up after {:.0f} s", current_.command->name, k_longest_wait);
+        const commands::Arguments& a = current_.arguments;
+        const double limit = a.has("limit") ? a.real("limit") : k_longest_wait;
+        if (ui_.now - began_ > limit && !measure_ && current_.command->name != "wait")
+          throw_error(step.where, "{}: gave up after {:.0f} s", current_.command->name, limit);
         return false;
       } catch (const Error& error) {
         log::error("{}", error.what());

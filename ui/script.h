@@ -13,8 +13,8 @@
 //   drop FILE                does what dropping the file on the window does
 //   mouse.move X Y | mouse.down [BUTTON] | mouse.up [BUTTON] | key NAME | type TEXT
 //
-// A wait that lasts longer than 300 seconds fails. When a step fails its message is logged and the program
-// ends with 1.
+// Waiting for a scene or for samples longer than limit=SECONDS (300 when not said) fails. When a step fails
+// its message is logged and the program ends with 1.
 #include <string>
 #include <vector>
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error.h"
 #include "base/timer.h"
 #include "film/io/image_file.h"
 #include "recall.h"
@@ -24,12 +25,14 @@ class Viewer {
   Viewer(session::Session& session, const ViewerOptions& options)
       : options_(options),
         ui_(session),
-        runner_(ui_, options.script, options.script_name),  // read before a window is opened
+        runner_(ui_, options.script, options.script_name),  // before a window is opened
+        settings_(checked(ui_.registry, options.set)),
         window_(options.width, options.height, options.hidden, options.scale) {
     if (remembers()) recall(ui_);
     if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
     session.on_publish([] { Window::wake(); });
     if (!options.scene.empty()) ui_.act("scene.open", options.scene.string());
+    for (const std::string& line : settings_) ui_.act_line(line);
   }
 
   ~Viewer() {
@@ -50,6 +53,19 @@ class Viewer {
   }
 
  private:
+  /// Settings of the command line as commands. Throws Error.
+  static std::vector<std::string> checked(const commands::Registry& registry,
+                                          const std::vector<std::string>& changes) {
+    std::vector<std::string> lines;
+    for (const std::string& change : changes) {
+      const size_t at = change.find('=');
+      if (at == std::string::npos) throw_error("--set", "'{}': expected key=value", change);
+      lines.push_back(commands::line("set", change.substr(0, at), change.substr(at + 1)));
+      registry.parse(lines.back(), "--set");
+    }
+    return lines;
+  }
+
   /// Scripted runs leave no trace.
   bool remembers() const { return options_.remember && options_.script.empty(); }
 
@@ -67,6 +83,14 @@ class Viewer {
 
   /// Takes in what came from outside: snapshots, log lines, dropped files.
   void collect() {
+    // Errors first: the workspace asks whether there were any.
+    ui_.now = ui_.time();
+    for (LogLine& line : inbox_.take()) {
+      if (line.level == log::Level::error) ui_.fail(line.text), ++ui_.error_count;
+      ui_.log.push_back(std::move(line));
+      if (ui_.log.size() > k_log_lines) ui_.log.pop_front();
+      ui_.wake(2);
+    }
     const auto snapshot = ui_.snapshot;
     const auto scene = ui_.scene;
     ui_.refresh(ui_.time());
@@ -80,12 +104,6 @@ class Viewer {
       ui_.wake(1);
       window_.set_title(ui_.scene ? ui_.scene->name + " \xE2\x80\x93 Lucerna" : "Lucerna");
       hold_selection();
-    }
-    for (LogLine& line : inbox_.take()) {
-      if (line.level == log::Level::error) ui_.fail(line.text), ++ui_.error_count;
-      ui_.log.push_back(std::move(line));
-      if (ui_.log.size() > k_log_lines) ui_.log.pop_front();
-      ui_.wake(2);
     }
     for (const std::string& file : window_.dropped()) ui_.drop(file);
     // Tooltips and the text cursor need a frame after the pointer has come to rest.
@@ -193,6 +211,7 @@ class Viewer {
   LogInbox inbox_;
   Ui ui_;
   Runner runner_;
+  std::vector<std::string> settings_;
   Window window_;
   bool fresh_picture_ = false;
   double last_draw_ = -1, last_present_ = 0, hovering_since_ = -10;

@@ -15,6 +15,7 @@ struct ViewerOptions {
   bool hidden = false;                 ///< no visible window (drawing and screenshots work all the same)
   float scale = 0;                     ///< of text and controls; 0: what the desktop asks for
   bool remember = true;                ///< keep recent files and panel sizes in the user's state folder
+  std::vector<std::string> set;        ///< settings, KEY=VALUE each, above those of the scene
   std::vector<std::string> script;     ///< steps carried out in order, one command a line; see script.h
   std::string script_name = "script";  ///< for messages: "NAME: line 3: ..."
 };

@@ -270,7 +270,7 @@ void error_strip(Ui& ui, const Area& area) {
     draw_text(list, {hi.x - px(36) - count_width, lo.y}, {hi.x - px(40), lo.y + px(34)},
               fmt::format("1 of {}", ui.errors.size()), colour::text_dim, Align::right, theme().fonts.small);
   ImGui::SetCursorScreenPos({hi.x - px(32), lo.y + px(6)});
-  if (sign_button("##dismiss", Sign::close, true, colour::text)) ui.errors.pop_back();
+  if (sign_button("##dismiss", Sign::close, true, colour::text)) ui.act("dismiss");
   tooltip("Takes the message away; it stays in the log. Esc.");
   ImGui::EndChild();
 }
@@ -309,7 +309,9 @@ void draw_toolbar(Ui& ui, const Area& area) {
                      .unit = "EV",
                      .bar = false,
                      .sign = true,
-                     .travel = 0.2f};
+                     .travel = 0.2f,
+                     .typed_lo = static_cast<float>(ev->lo),
+                     .typed_hi = static_cast<float>(ev->hi)};
     if (slider("##ev", "", value, how, ev_width)) ui.act("set", "film.ev", fmt::format("{:.4g}", value));
     tooltip(ev->help + " Double-click to type.");
     right -= px(8);

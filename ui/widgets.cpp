@@ -245,12 +245,13 @@ bool slider(const char* id, const std::string& name, float& value, const Slider&
   const bool typing = ImGui::TempInputIsActive(key);
   if (typing) {
     float typed = value;
-    const float least = how.lo, most = how.hi;
+    const bool further = how.typed_lo < how.typed_hi;
+    const float least = further ? how.typed_lo : how.lo, most = further ? how.typed_hi : how.hi;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(8), 0.5f * (row_height() - ImGui::GetFontSize())});
     const bool changed = ImGui::TempInputScalar(box, key, id, ImGuiDataType_Float, &typed,
                                                 fmt::format("%.{}f", how.decimals).c_str(), &least, &most);
     ImGui::PopStyleVar();
-    if (changed && std::isfinite(typed)) value = std::clamp(typed, how.lo, how.hi);
+    if (changed && std::isfinite(typed)) value = std::clamp(typed, least, most);
     return changed;
   }
   ImGui::InvisibleButton(id, box.GetSize());

@@ -54,6 +54,8 @@ struct Slider {
   bool sign = false;  ///< show + for positive values
   float step = 0;     ///< values are multiples of it, when > 0
   float travel = 1;   ///< share of the range that a drag across the control goes through
+  /// What may be typed, when that is more than a drag reaches (typed_lo < typed_hi).
+  float typed_lo = 0, typed_hi = 0;
 };
 bool slider(const char* id, const std::string& name, float& value, const Slider& how, float width = 0);
 

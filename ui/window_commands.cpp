@@ -128,6 +128,18 @@ void add_window_commands(Ui& ui) {
       false);
 
   add(
+      "log.copy", "Copies the lines shown to the clipboard.", {},
+      [&ui](const Arguments&) {
+        std::string all;
+        for (const LogLine& line : ui.log) {
+          const auto level = static_cast<size_t>(line.level);
+          if (ui.log_levels[level])
+            all += fmt::format("{:.2f} {} {}\n", line.time, k_levels[level], line.text);
+        }
+        ImGui::SetClipboardText(all.c_str());
+      },
+      false);
+  add(
       "log.type", "Puts the keyboard into the line under the log.", {},
       [&ui](const Arguments&) {
         ui.layout.panels = ui.layout.bottom_open = true;

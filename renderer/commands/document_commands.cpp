@@ -76,6 +76,8 @@ void Workspace::add_document_commands() {
            },
        .run =
            [this](const Arguments& a) {
+             if (a.text("key") == "camera" && view && !loading())
+               throw Error("", "the camera to start with; camera.select takes another one now");
              edit().settings[a.text("key")] = a.text("value");
              touched_.push_back(a.text("key"));
            },

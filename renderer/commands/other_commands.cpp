@@ -85,6 +85,13 @@ void Workspace::add_other_commands() {
            [this](const Arguments& a) { log::info("{}", manual(a.has("command") ? a.text("command") : "")); },
        .recorded = false});
 
+  const Parameter limit{.name = "limit",
+                        .type = Type::real,
+                        .help = "how long at most; 300 when not given",
+                        .lo = 1,
+                        .hi = 86400,
+                        .unit = "seconds",
+                        .optional = true};
   registry.add({.name = "wait",
                 .help = "In a script: lets the window run.",
                 .parameters = {{.name = "time", .type = Type::real, .lo = 0, .hi = 86400, .unit = "seconds"}},
@@ -93,7 +100,7 @@ void Workspace::add_other_commands() {
                 .recorded = false});
   registry.add({.name = "wait_scene",
                 .help = "In a script: waits until the scene is there; fails when it could not be loaded.",
-                .parameters = {},
+                .parameters = {limit},
                 .run = [](const Arguments&) {},
                 .done =
                     [this](const Arguments&) {
@@ -102,10 +109,16 @@ void Workspace::add_other_commands() {
                       return true;
                     },
                 .recorded = false});
+  registry.add({.name = "wait_load",
+                .help = "In a script: waits until no scene is being loaded, whether one could be or not.",
+                .parameters = {limit},
+                .run = [](const Arguments&) {},
+                .done = [this](const Arguments&) { return !loading(); },
+                .recorded = false});
   registry.add(
       {.name = "wait_samples",
        .help = "In a script: waits until the picture holds that many samples a pixel, or is finished.",
-       .parameters = {{.name = "samples", .type = Type::integer, .lo = 0, .hi = 1 << 20}},
+       .parameters = {{.name = "samples", .type = Type::integer, .lo = 0, .hi = 1 << 20}, limit},
        .run = [](const Arguments&) {},
        .done =
            [this](const Arguments& a) {

@@ -1,4 +1,4 @@
-"""What grows and what lies outside: the terrace behind the far arch, cypresses, hills, small orange trees in pots."""
+"""What grows, flows and lies outside: orange trees, vines, water, the terrace behind the far arch, cypresses, hills."""
 import numpy as np
 
 from gltf import Mesh, join
@@ -61,7 +61,7 @@ def leaf_ball(radius, count, seed, size=0.085):
 
 
 def vine(width, drop, strands, leaves, seed, size=0.075):
-    """Strands of leaves that spill over a rail along x (its top at y = 0, its face towards +z) and hang down unevenly."""
+    """Strands of leaves that spill over a rail along x (its top at y = 0, its face to +z) and hang down unevenly."""
     rs = np.random.RandomState(seed)
     p, n, t = [], [], []
     share = rs.dirichlet(np.full(strands, 1.6)) * leaves
@@ -120,6 +120,20 @@ def trunk(y0, y1, radius=0.022):
     return lathe([(radius * (1.25 - 0.35 * v), y0 + (y1 - y0) * v) for v in t], 9)
 
 
+def ripples(x0, x1, z0, z1, nx, nz, seed=2):
+    """Still water: a level grid whose normals tilt by a few milliradians, as a draught leaves it."""
+    rs = np.random.RandomState(seed)
+    z, x = np.meshgrid(np.linspace(z0, z1, nz + 1), np.linspace(x0, x1, nx + 1), indexing="ij")
+    dx, dz = 0 * x, 0 * x
+    for _ in range(14):
+        a, wave = rs.uniform(0, 2 * np.pi), rs.uniform(0.35, 1.6)
+        kx, kz = 2 * np.pi / wave * np.cos(a), 2 * np.pi / wave * np.sin(a)
+        slope = 0.0035 * np.cos(kx * x + kz * z + rs.uniform(0, 2 * np.pi))
+        dx, dz = dx + slope * np.cos(a), dz + slope * np.sin(a)
+    n = np.stack([-dx, 1 + 0 * x, -dz], 2)
+    return grid(np.stack([x, 0 * x, z], 2), n.reshape(-1, 3))
+
+
 def terrace(s, top, z0, z1, half, rail):
     """Paved terrace from z0 back to z1 at height `top` with the balustrade mesh `rail` along its far edge."""
     s.mesh("terrace", [(box((-half, -0.4, z1), (half, top, z0), "-y +z"), "floor")])
@@ -133,8 +147,9 @@ def terrace(s, top, z0, z1, half, rail):
         s.place("hills", yaw=yaw)
         s.place("near hills", yaw=yaw)
     s.mesh("cypress", [(cypress(8.5, 0.95, 1), "cypress")])
-    for x, z, k, yaw in ((-2.9, -33.0, 0.92, 0), (-1.75, -39.0, 1.0, 120), (1.9, -35.0, 0.72, 40), (3.4, -37.5, 1.05, 200),
-                         (-5.2, -36.0, 1.0, 70), (5.8, -41.0, 1.0, 300), (-6.5, 24.0, 0.9, 20), (7.2, 27.0, 1.0, 150)):
+    for x, z, k, yaw in ((-2.9, -33.0, 0.92, 0), (-1.75, -39.0, 1.0, 120), (1.9, -35.0, 0.72, 40),
+                         (3.4, -37.5, 1.05, 200), (-5.2, -36.0, 1.0, 70), (5.8, -41.0, 1.0, 300),
+                         (-6.5, 24.0, 0.9, 20), (7.2, 27.0, 1.0, 150)):
         s.place("cypress", (x, -0.3, z), yaw, scale=k)
     s.mesh("ground", [(quad((-60, -0.05, 60), (60, -0.05, 60), (60, -0.05, -60), (-60, -0.05, -60)), "earth")])
     s.place("ground")

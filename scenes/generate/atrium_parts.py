@@ -150,33 +150,6 @@ def cornice(length, steps, dentils=0.0):
     return join(parts)
 
 
-def drum(radius, y0, y1, window=None, segments=48):
-    """Half a cylinder seen from inside, bulging towards -z. window: (half angle in degrees, sill, head, reveal) of an
-    opening at its middle."""
-    def band(a, b, lo, hi):
-        n = max(2, int(round(segments * (b - a) / 180)))
-        m = lathe([(radius, lo), (radius, hi)], n, arc=b - a).moved(rotate("y", a))
-        return m.with_uv(m.uv + [np.radians(a) * radius, -lo])
-    if not window:
-        return band(0, 180, y0, y1).flipped().moved(rotate("y", 90))
-    half, sill, head, reveal = window
-    shell = join([band(0, 180, y0, sill), band(0, 180, head, y1), band(0, 90 - half, sill, head),
-                  band(90 + half, 180, sill, head)]).flipped().moved(rotate("y", 90))
-    x, z = radius * np.sin(np.radians(half)), -radius * np.cos(np.radians(half))
-    deep = -radius - reveal
-    sides = [quad((-x, sill, z), (-x, sill, deep), (-x, head, deep), (-x, head, z)),
-             quad((x, sill, deep), (x, sill, z), (x, head, z), (x, head, deep)),
-             quad((-x, sill, z), (x, sill, z), (x, sill, deep), (-x, sill, deep)),
-             quad((-x, head, deep), (x, head, deep), (x, head, z), (-x, head, z))]
-    bow = np.radians(np.linspace(90 - half, 90 + half, 9))   # between the chord and the wall's curve
-    for y, order in ((sill, 1), (head, -1)):
-        curve = [(-radius * np.cos(v), y, -radius * np.sin(v)) for v in bow]
-        for a, b in zip(curve[:-1], curve[1:]):
-            ca, cb = (a[0], y, z), (b[0], y, z)
-            sides.append(quad(*((a, ca, cb, b)[::order])))
-    return join([shell] + [planar_uv(q) for q in sides])
-
-
 def round_hole_panel(half_w, half_h, radius, depth, segments=16):
     """A rectangle facing +z about the origin with a round hole and the hole's sleeve going back `depth`."""
     side = np.linspace(-1, 1, segments + 1)[:-1]
@@ -335,20 +308,6 @@ def rail_cloth(width, drop, seed, rail=0.13, back=0.35, nu=40, nv=48):
     x = (u - 0.5) * width * (1 - 0.04 * hang)
     return grid(np.stack([x, y[:, None] + 0 * u, zz], 2), None,
                 np.stack([u, 1 - v], 2).reshape(-1, 2)).flipped()
-
-
-def ripples(x0, x1, z0, z1, nx, nz, seed=2):
-    """Still water: a level grid whose normals tilt by a few milliradians, as a draught leaves it."""
-    rs = np.random.RandomState(seed)
-    z, x = np.meshgrid(np.linspace(z0, z1, nz + 1), np.linspace(x0, x1, nx + 1), indexing="ij")
-    dx, dz = 0 * x, 0 * x
-    for _ in range(14):
-        a, wave = rs.uniform(0, 2 * np.pi), rs.uniform(0.35, 1.6)
-        kx, kz = 2 * np.pi / wave * np.cos(a), 2 * np.pi / wave * np.sin(a)
-        slope = 0.0035 * np.cos(kx * x + kz * z + rs.uniform(0, 2 * np.pi))
-        dx, dz = dx + slope * np.cos(a), dz + slope * np.sin(a)
-    n = np.stack([-dx, 1 + 0 * x, -dz], 2)
-    return grid(np.stack([x, 0 * x, z], 2), n.reshape(-1, 3))
 
 
 def urn(height=0.9, segments=40):

@@ -1,7 +1,7 @@
 """Procedural surfaces for the atrium: every function returns tileable arrays, painted in linear light, stored as sRGB.
 
-A `Surface` holds colour (h, w, 3, linear) and height in metres (h, w); `save` writes the colour and normal maps. All are
-1024 x 1024, so that a renderer can keep them in one texture array each for colours and for normals.
+A `Surface` holds colour (h, w, 3, linear) and height in metres (h, w); `save` writes the colour and normal maps. All
+are 1024 x 1024, so that a renderer can keep them in one texture array each for colours and for normals.
 """
 import os
 
@@ -109,7 +109,8 @@ def floor(n=1024):
     hole = pits((n, n), 31) * (1 - inset)
     dirt = np.exp(-joint / 0.03)
     color = color * (1 - 0.30 * dirt * smooth(noise((n, n), 33, 1.4, 2, 60), -0.6, 1.5))[..., None]
-    stain = smooth(noise((n, n), 37, 1.5, 2, 30), 0.7, 2.0) * (0.6 + 0.4 * smooth(noise((n, n), 38, 0.8, 20, 200), -1, 1))
+    stain = smooth(noise((n, n), 37, 1.5, 2, 30), 0.7, 2.0)
+    stain = stain * (0.6 + 0.4 * smooth(noise((n, n), 38, 0.8, 20, 200), -1, 1))
     color = color * (1 - 0.16 * stain[..., None] * rgb(0.85, 1.0, 1.2))
     scuff = smooth(noise((n, n), 39, 0.9, 10, 250, (1.0, 3.0)), 1.6, 3.0)
     color = color * (1 - 0.10 * scuff)[..., None]
@@ -215,14 +216,16 @@ def cloth(n=1024):
         band = np.maximum(band, 1 - smooth(d, half, half + 0.003))
     diamond = np.abs(u - 0.5) * 1.4 / 0.30 + np.abs(np.mod(v * 4.2 - 0.62, 1.04) - 0.52) / 0.42
     inside = (v * 4.2 > 0.75) & (v * 4.2 < 3.78)
-    ring = (smooth(diamond, 0.80, 0.82) * (1 - smooth(diamond, 0.93, 0.95)) + (1 - smooth(diamond, 0.30, 0.32))) * inside
+    ring = smooth(diamond, 0.80, 0.82) * (1 - smooth(diamond, 0.93, 0.95)) + 1 - smooth(diamond, 0.30, 0.32)
+    ring = ring * inside
     pattern = np.clip(band + line + ring, 0, 1)
     color = np.repeat(base[..., None], 3, 2) * mix(rgb(1, 1, 1), rgb(0.42, 0.20, 0.14), 0.9 * pattern)
     return Surface(color, np.zeros((h, w)), (1.4, 4.2))
 
 
 def sky(width=256, sun=(0, 1, 0)):
-    """Clear sky without the sun's disk, (h, w, 3) radiance in the scene's unit; black from ten degrees below the horizon."""
+    """Clear sky without the sun's disk, (h, w, 3) radiance in the scene's unit; black from 10 degrees below the
+    horizon."""
     h = width // 2
     v, u = (np.arange(h) + 0.5) / h, (np.arange(width) + 0.5) / width
     theta, phi = np.pi * v[:, None], 2 * np.pi * (u[None, :] - 0.5)

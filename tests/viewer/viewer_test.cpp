@@ -73,6 +73,10 @@ TEST_CASE("a scene that is not there is an error in the window, and the script's
   const auto failed = viewer(folder, "no/such/scene.gltf", "wait_scene\nquit\n");
   INFO(failed.output);
   CHECK(failed.status == 1);
+  const auto mistyped = viewer(folder, "scenes/cornell/cornell.gltf --set film.evv=2", "quit\n");
+  CHECK(mistyped.status == 1);
+  CHECK_THAT(mistyped.output,
+             Catch::Contains("--set: set: there is no setting 'film.evv'; did you mean 'film.ev'?"));
 }
 
 TEST_CASE("a broken file that is dropped leaves the scene, and a click selects what is under it") {
@@ -83,7 +87,7 @@ TEST_CASE("a broken file that is dropped leaves the scene, and a click selects w
   std::ofstream(broken, std::ios::binary) << "glTF\2 and then nothing that it says";
   const auto outcome = viewer(folder, "scenes/cornell/cornell.gltf",
                               "window.size 1100 700\nwait_scene\nwait_samples 1\ndrop " + broken.string() +
-                                  "\nwait 1\nwait_samples 1\npick 0.5 0.145\nscreenshot " + png.string() +
+                                  "\nwait_load\nwait_samples 1\npick 0.5 0.145\nscreenshot " + png.string() +
                                   "\nscript.save " + session.string() + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);

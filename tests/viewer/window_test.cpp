@@ -144,7 +144,7 @@ TEST_CASE("an error is shown over the old scene, and a script that fails says wh
   const test::Folder folder;
   const std::string a = (folder.path / "a.png").string(), b = (folder.path / "b.png").string();
   const auto outcome =
-      window("hall.gltf", "wait_scene\nwait_samples 2\nscene.open missing.gltf\nwait 0.8\nscreenshot " + a +
+      window("hall.gltf", "wait_scene\nwait_samples 2\nscene.open missing.gltf\nwait_load\nscreenshot " + a +
                               "\ndismiss\nscreenshot " + b + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
@@ -248,11 +248,11 @@ TEST_CASE("a dropped scene opens; what cannot be opened is an error over the sce
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto outcome = window(
-      "hall.gltf", "wait_scene\nwait_samples 1\ndrop missing.glb\nwait 0.8\nwait_samples 1\nscreenshot " +
-                       file("missing.png") + "\ndismiss\ndrop picture.jpg\nwait 0.3\nscreenshot " +
-                       file("jpg.png") + "\ndrop other.gltf\nwait 0.1\nwait_scene\nselect light 3\n" +
-                       "wait_samples 1\nscreenshot " + file("other.png") + "\nscript.save " +
-                       file("session.lucerna") + "\nquit\n");
+      "hall.gltf",
+      "wait_scene\nwait_samples 1\ndrop missing.glb\nwait 0.2\nwait_load\nwait_samples 1\nscreenshot " +
+          file("missing.png") + "\ndismiss\ndrop picture.jpg\nwait 0.3\nscreenshot " + file("jpg.png") +
+          "\ndrop other.gltf\nwait 0.1\nwait_scene\nselect light 3\n" + "wait_samples 1\nscreenshot " +
+          file("other.png") + "\nscript.save " + file("session.lucerna") + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   CHECK_THAT(outcome.output,
