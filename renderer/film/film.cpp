@@ -15,6 +15,7 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width)
     throw_error("size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{})", width,
                 height, pixels, largest, uint32_t(std::sqrt(largest * 16.0 / 9)),
                 uint32_t(std::sqrt(largest * 9.0 / 16)));
+  fits_storage_buffers_ = pixels * 48 <= limits.max_storage_buffer;
   const char* names[k_components] = {"film primary", "film secondary", "film tertiary", "film caustic"};
   for (int c = 0; c < k_components; ++c)
     sums_[c] = gpu::Buffer(device, {.name = names[c], .bytes = pixels * 48, .texel = true});
@@ -33,16 +34,18 @@ void Film::clear(gpu::Stream& stream) {
 }
 
 void Film::bind(gpu::Resources& r) const {
-  const auto texels = [&](const char* name, const gpu::Buffer& buffer) {
+  // Read as texels, written as a storage buffer or an image (shaders/lib/film.glsl).
+  const auto plane = [&](const std::string& name, const char* block, const gpu::Buffer& buffer) {
     r.set(name, buffer);
-    r.set(std::string(name) + "_image", buffer);
+    r.set(name + "_out", buffer);
+    r.set(block, buffer);
   };
-  texels("film_primary", sums_[0]);
-  texels("film_secondary", sums_[1]);
-  texels("film_tertiary", sums_[2]);
-  texels("film_caustic", sums_[3]);
-  texels("film_albedo", albedo_);
-  texels("film_normal", normal_);
+  plane("film_primary", "FilmPrimary", sums_[0]);
+  plane("film_secondary", "FilmSecondary", sums_[1]);
+  plane("film_tertiary", "FilmTertiary", sums_[2]);
+  plane("film_caustic", "FilmCaustic", sums_[3]);
+  plane("film_albedo", "FilmAlbedo", albedo_);
+  plane("film_normal", "FilmNormal", normal_);
   r.set("FilmCount", count_);
   r.set("Picture", picture_);
 }

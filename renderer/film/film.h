@@ -38,6 +38,9 @@ class Film {
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
   uint32_t tiles() const { return ((width_ + 7) / 8) * ((height_ + 7) / 8); }
+  /// Whether kernels may write it as storage buffers; otherwise they must be compiled with
+  /// LUCERNA_FILM_IMAGES.
+  bool fits_storage_buffers() const { return fits_storage_buffers_; }
   void clear(gpu::Stream& stream);
   void bind(gpu::Resources& resources) const;
   Image read() const;
@@ -48,6 +51,7 @@ class Film {
 
  private:
   uint32_t width_, height_;
+  bool fits_storage_buffers_ = true;
   std::array<gpu::Buffer, k_components> sums_;
   gpu::Buffer albedo_, normal_, count_, picture_;
 };

@@ -42,11 +42,12 @@ class UniformSchedule {
   }
 
  private:
+  static constexpr uint32_t k_least_pass = 16;
   void start_pass() {
     if (done()) return;
     // The first passes are single, so that something is seen at once; then as many samples as fill the
-    // device.
-    const uint32_t fitting = std::max(1u, slots_ / std::max(1u, 64 * tiles_));
+    // device, or twice as many as before: adding to the film costs the same for one sample as for several.
+    const uint32_t fitting = std::max(k_least_pass, slots_ / std::max(1u, 64 * tiles_));
     pass_ = std::min({fitting, std::max(1u, sample_), samples_ - sample_});
   }
   uint32_t tiles_ = 0, samples_ = 0, slots_ = 64;

@@ -20,7 +20,8 @@ struct Wavefront::Impl {
   gpu::Buffer frame, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states, counters,
       no_coarse;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
-  gpu::Kernel camera, shade, shadow, film_add, tonemap, trace_closest, trace_any, trace_non_opaque;
+  gpu::Kernel camera, shade, shadow, film_add, film_add_images, tonemap, trace_closest, trace_any,
+      trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
   TransportStats stats;
@@ -144,6 +145,9 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   w.shade = gpu::Kernel(device, compiler, "transport/shade.comp", defines);
   w.shadow = gpu::Kernel(device, compiler, "transport/shadow.comp", defines);
   w.film_add = gpu::Kernel(device, compiler, "film/add.comp", defines);
+  gpu::Defines images = defines;
+  images["LUCERNA_FILM_IMAGES"] = "1";
+  w.film_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
   w.tonemap = gpu::Kernel(device, compiler, "film/tonemap.comp");
   w.bind(scene);
   if (!w.host_trace) {
@@ -261,7 +265,8 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
   film.bind(w.film_resources);
   const FilmPush add{film.width(), film.height(),     item.first_tile,
                      pixels,       item.first_sample, item.sample_count};
-  w.stream.dispatch(w.film_add, w.film_resources, add, Impl::groups(pixels), "film");
+  w.stream.dispatch(film.fits_storage_buffers() ? w.film_add : w.film_add_images, w.film_resources, add,
+                    Impl::groups(pixels), "film");
   w.run_and_account(nullptr, nullptr);
   return true;
 }

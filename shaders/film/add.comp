@@ -41,11 +41,11 @@ void main() {
     albedo += texelFetch(feature_texels, int(2u * slot));
     normal += texelFetch(feature_texels, int(2u * slot + 1u));
   }
-  LUCERNA_FILM_STORE(film_primary_image, pixel, p)
-  LUCERNA_FILM_STORE(film_secondary_image, pixel, s)
-  LUCERNA_FILM_STORE(film_tertiary_image, pixel, t)
-  LUCERNA_FILM_STORE(film_caustic_image, pixel, c)
-  imageStore(film_albedo_image, int(pixel), albedo);
-  imageStore(film_normal_image, int(pixel), normal);
+  LUCERNA_FILM_STORE(film_primary_out, pixel, p)
+  LUCERNA_FILM_STORE(film_secondary_out, pixel, s)
+  LUCERNA_FILM_STORE(film_tertiary_out, pixel, t)
+  LUCERNA_FILM_STORE(film_caustic_out, pixel, c)
+  LUCERNA_FILM_WRITE(film_albedo_out, int(pixel), albedo);
+  LUCERNA_FILM_WRITE(film_normal_out, int(pixel), normal);
   film_count[pixel] += push.sample_count;
 }

@@ -2,7 +2,8 @@
 // of Neumaier's variant of Kahan's summation, so that a million samples of mixed magnitude add up without drift.
 //
 // It lies in texel buffers, of which the largest hold 16 times what a storage buffer may on lavapipe. A pixel's two halves
-// are three texels. In one dispatch a pixel is read before it is written, by one invocation.
+// are three texels. In one dispatch a pixel is read before it is written, by one invocation. It is written as a storage
+// buffer where it fits into one, which is several times as fast on lavapipe, else through images (LUCERNA_FILM_IMAGES).
 #ifndef LUCERNA_LIB_FILM
 #define LUCERNA_LIB_FILM
 #include "shaders/shared/film.h"
@@ -11,8 +12,19 @@
 uniform samplerBuffer film_primary, film_secondary, film_tertiary, film_caustic;
 uniform samplerBuffer film_albedo;   // sums: albedo rgb, hits
 uniform samplerBuffer film_normal;   // sums: normal xyz, depth
-layout(rgba32f) uniform writeonly imageBuffer film_primary_image, film_secondary_image, film_tertiary_image, film_caustic_image;
-layout(rgba32f) uniform writeonly imageBuffer film_albedo_image, film_normal_image;
+#if LUCERNA_FILM_IMAGES
+layout(rgba32f) uniform writeonly imageBuffer film_primary_out, film_secondary_out, film_tertiary_out, film_caustic_out;
+layout(rgba32f) uniform writeonly imageBuffer film_albedo_out, film_normal_out;
+#define LUCERNA_FILM_WRITE(buffer, texel, value) imageStore(buffer, texel, value)
+#else
+layout(scalar) writeonly buffer FilmPrimary { vec4 film_primary_out[]; };
+layout(scalar) writeonly buffer FilmSecondary { vec4 film_secondary_out[]; };
+layout(scalar) writeonly buffer FilmTertiary { vec4 film_tertiary_out[]; };
+layout(scalar) writeonly buffer FilmCaustic { vec4 film_caustic_out[]; };
+layout(scalar) writeonly buffer FilmAlbedo { vec4 film_albedo_out[]; };
+layout(scalar) writeonly buffer FilmNormal { vec4 film_normal_out[]; };
+#define LUCERNA_FILM_WRITE(buffer, texel, value) buffer[texel] = value
+#endif
 layout(scalar) buffer FilmCount { uint film_count[]; };  // samples
 
 struct FilmPixel {
@@ -25,10 +37,10 @@ FilmPixel film_pixel(vec4 a, vec4 b, vec4 c) {
 #define LUCERNA_FILM_LOAD(buffer, pixel)                                                       \
   film_pixel(texelFetch(buffer, int(3u * (pixel))), texelFetch(buffer, int(3u * (pixel)) + 1), \
              texelFetch(buffer, int(3u * (pixel)) + 2))
-#define LUCERNA_FILM_STORE(image, pixel, value)                                                               \
-  imageStore(image, int(3u * (pixel)), vec4((value).even.sum, (value).even.compensation.x));                  \
-  imageStore(image, int(3u * (pixel)) + 1, vec4((value).even.compensation.yz, (value).odd.sum.xy));           \
-  imageStore(image, int(3u * (pixel)) + 2, vec4((value).odd.sum.z, (value).odd.compensation));
+#define LUCERNA_FILM_STORE(buffer, pixel, value)                                                              \
+  LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)), vec4((value).even.sum, (value).even.compensation.x));         \
+  LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)) + 1, vec4((value).even.compensation.yz, (value).odd.sum.xy));  \
+  LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)) + 2, vec4((value).odd.sum.z, (value).odd.compensation));
 
 FilmPixel film_load(uint component, uint pixel) {
   if (component == 0u) return LUCERNA_FILM_LOAD(film_primary, pixel);
