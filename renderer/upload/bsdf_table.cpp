@@ -120,15 +120,44 @@ void glass_table(vec4* table, double eta) {
   }
 }
 
+constexpr uint32_t k_points = k_table_mu * k_table_rough, k_columns = k_table_mu - 1,
+                   k_rows = k_table_rough - 1;
+static_assert(shared::k_table_cells == k_columns * k_rows);
+static_assert(shared::k_table_schlick_texels == 2 * shared::k_table_cells + k_rows);
+static_assert(shared::k_table_glass_texels == shared::k_table_cells + k_rows);
+
+void append_schlick(const vec4* points, std::vector<vec4>& out) {
+  for (uint32_t j = 0; j < k_rows; ++j)
+    for (uint32_t i = 0; i < k_columns; ++i)
+      for (const vec4* row : {points + j * k_table_mu, points + (j + 1) * k_table_mu})
+        out.push_back(vec4(row[i].x, row[i].y, row[i + 1].x, row[i + 1].y));
+  for (uint32_t j = 0; j < k_rows; ++j) {
+    const vec4 &a = points[j * k_table_mu], &b = points[(j + 1) * k_table_mu];
+    out.push_back(vec4(a.z, a.w, b.z, b.w));
+  }
+}
+
+void append_glass(const vec4* points, std::vector<vec4>& out) {
+  for (uint32_t j = 0; j < k_rows; ++j)
+    for (uint32_t i = 0; i < k_columns; ++i) {
+      const vec4 *low = points + j * k_table_mu + i, *high = low + k_table_mu;
+      out.push_back(vec4(low[0].x, low[1].x, high[0].x, high[1].x));
+    }
+  for (uint32_t j = 0; j < k_rows; ++j)
+    out.push_back(vec4(points[j * k_table_mu].y, points[(j + 1) * k_table_mu].y, 0, 0));
+}
+
 }  // namespace
 
 std::vector<vec4> build_bsdf_tables(std::span<const float> glass_iors) {
-  std::vector<vec4> tables((1 + 2 * glass_iors.size()) * shared::k_table_texels);
-  schlick_table(tables.data());
-  for (size_t g = 0; g < glass_iors.size(); ++g) {
-    glass_table(tables.data() + (1 + 2 * g) * shared::k_table_texels, glass_iors[g]);
-    glass_table(tables.data() + (2 + 2 * g) * shared::k_table_texels, 1.0 / glass_iors[g]);
-  }
+  std::vector<vec4> tables, points(k_points);
+  schlick_table(points.data());
+  append_schlick(points.data(), tables);
+  for (const float ior : glass_iors)
+    for (const double eta : {double(ior), 1.0 / ior}) {
+      glass_table(points.data(), eta);
+      append_glass(points.data(), tables);
+    }
   return tables;
 }
 

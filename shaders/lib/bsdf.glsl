@@ -96,20 +96,45 @@ struct BsdfSample {
 };
 
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
-vec4 table_read(uint table, float mu, float roughness) {
-  float x = sqrt(clamp(mu, 0.0, 1.0)) * float(k_table_mu - 1u);
-  float y = clamp(roughness, 0.0, 1.0) * float(k_table_rough - 1u);
-  float x0 = min(floor(x), float(k_table_mu - 2u)), y0 = min(floor(y), float(k_table_rough - 2u));
-  int at = int(table * k_table_texels) + int(y0) * int(k_table_mu) + int(x0);
-  vec4 a = mix(texelFetch(bsdf_table, at), texelFetch(bsdf_table, at + 1), x - x0);
-  vec4 b = mix(texelFetch(bsdf_table, at + int(k_table_mu)), texelFetch(bsdf_table, at + int(k_table_mu) + 1), x - x0);
-  return mix(a, b, y - y0);
+struct TablePlace {
+  int cell, row;
+  vec2 at;  // within the cell
+};
+TablePlace table_place(float mu, float roughness) {
+  vec2 p = vec2(sqrt(clamp(mu, 0.0, 1.0)), clamp(roughness, 0.0, 1.0)) * vec2(k_table_mu - 1u, k_table_rough - 1u);
+  vec2 low = min(floor(p), vec2(k_table_mu - 2u, k_table_rough - 2u));
+  int row = int(low.y);
+  return TablePlace(row * int(k_table_mu - 1u) + int(low.x), row, p - low);
 }
-vec4 specular_table(float mu, float roughness, bool delta) {
+// What a GGX reflector returns at once: (of f0, of f90).
+vec2 specular_albedo(float mu, float roughness, bool delta) {
+  TablePlace p = table_place(mu, roughness);
+  vec4 a = texelFetch(bsdf_table, 2 * p.cell), b = texelFetch(bsdf_table, 2 * p.cell + 1);
+  vec4 row = mix(a, b, p.at.y);
   float w = schlick_weight(mu);
-  vec4 smooth_row = vec4(1.0 - w, w, 20.0 / 21.0, 1.0 / 21.0);
-  return delta ? smooth_row : table_read(0u, mu, roughness);
+  return delta ? vec2(1.0 - w, w) : mix(row.xy, row.zw, p.at.x);
 }
+vec2 specular_average(float roughness, bool delta) {
+  TablePlace p = table_place(0.0, roughness);
+  vec4 a = texelFetch(bsdf_table, int(2u * k_table_cells) + p.row);
+  return delta ? vec2(20.0, 1.0) / 21.0 : mix(a.xy, a.zw, p.at.y);
+}
+#endif
+#if LUCERNA_SOLID_GLASS
+float glass_albedo(uint table, float mu, float roughness) {
+  TablePlace p = table_place(mu, roughness);
+  vec4 e = texelFetch(bsdf_table, int(k_table_schlick_texels + (table - 1u) * k_table_glass_texels) + p.cell);
+  vec2 row = mix(e.xy, e.zw, p.at.y);
+  return mix(row.x, row.y, p.at.x);
+}
+float glass_average(uint table, float roughness) {
+  TablePlace p = table_place(0.0, roughness);
+  vec4 e = texelFetch(bsdf_table, int(k_table_schlick_texels + (table - 1u) * k_table_glass_texels + k_table_cells) + p.row);
+  return mix(e.x, e.y, p.at.y);
+}
+#endif
+
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
 // Complement's Fresnel factor for Schlick's F; e1 = E1_avg.
 vec3 complement_fresnel(vec3 f0, vec3 f90, float e1) {
   vec3 average = f0 + (f90 - f0) * (1.0 / 21.0);
@@ -120,7 +145,7 @@ vec3 complement_fresnel(vec3 f0, vec3 f90, float e1) {
 #if LUCERNA_SPECULAR
 // (1 - E(wi)) of the dielectric coat, E with its complement.
 vec3 coat_transmittance(Bsdf b, float mu) {
-  vec4 t = specular_table(mu, b.roughness, b.delta);
+  vec2 t = specular_albedo(mu, b.roughness, b.delta);
   return max(vec3(0.0), 1.0 - b.d_f0 * t.x - b.d_f90 * t.y - b.d_f_ms * (1.0 - t.x - t.y));
 }
 #endif
@@ -142,7 +167,7 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
   b.delta = b.alpha < k_delta_alpha;
   b.roughness = s.roughness;
-  vec4 t = specular_table(mu, s.roughness, b.delta);
+  vec4 t = vec4(specular_albedo(mu, s.roughness, b.delta), specular_average(s.roughness, b.delta));
   float e1 = t.x + t.y, e1_average = t.z + t.w;
   float missing = max(0.0, 1.0 - e1), missing_average = max(1e-6, 1.0 - e1_average);
 #endif
@@ -188,12 +213,11 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
     uint outside = 1u + 2u * uint(max(s.glass_row, 0));
     b.table_here = s.inside ? outside + 1u : outside;
     b.table_there = s.inside ? outside : outside + 1u;
-    vec4 here = table_read(b.table_here, mu, s.roughness);
-    vec4 there = table_read(b.table_there, mu, s.roughness);
-    float lost_here = max(1e-7, 1.0 - here.y), lost_there = max(1e-7, 1.0 - there.y);
+    float lost_here = max(1e-7, 1.0 - glass_average(b.table_here, s.roughness));
+    float lost_there = max(1e-7, 1.0 - glass_average(b.table_there, s.roughness));
     // Shares of etendue: n_here = 1, n_there = eta.
     float share_there = lost_there * b.eta * b.eta / (lost_here + lost_there * b.eta * b.eta);
-    missing = max(0.0, 1.0 - here.x);
+    missing = max(0.0, 1.0 - glass_albedo(b.table_here, mu, s.roughness));
     b.ms_reflected = (1.0 - share_there) * missing / (k_pi * lost_here);
     // Radiance arriving from there: K(there->here) = K(here->there) / eta^2.
     b.ms_transmitted = share_there * missing / (k_pi * lost_there * b.eta * b.eta);
@@ -260,7 +284,7 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
 #endif
   v.diffuse = diffuse * lambert;
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
-  vec4 t = specular_table(cos_i, b.roughness, b.delta);
+  vec2 t = specular_albedo(cos_i, b.roughness, b.delta);
   float missing = b.delta ? 0.0 : max(0.0, 1.0 - t.x - t.y);
   vec3 h = normalize(wo + vec3(wi.xy, same_side ? wi.z : -wi.z));  // of reflection, or of the mirrored thin wall
   float cos_oh = max(dot(wo, h), 0.0);
@@ -281,8 +305,8 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   float ms_pdf_share = b.ms_reflected / max(b.ms_reflected + b.ms_transmitted, 1e-30);
   float missing_i = missing;
 #if LUCERNA_SOLID_GLASS
-  vec4 there = table_read(same_side ? b.table_here : b.table_there, cos_i, b.roughness);
-  missing_i = b.solid ? max(0.0, 1.0 - there.x) : missing;
+  float there = glass_albedo(b.solid && !same_side ? b.table_there : b.solid ? b.table_here : 1u, cos_i, b.roughness);
+  missing_i = b.solid ? max(0.0, 1.0 - there) : missing;
 #endif
   float facets = b.glass_delta ? 0.0 : 1.0;
   vec3 reflected = vec3(f * shape * facets + b.ms_reflected * missing_i * cos_i);

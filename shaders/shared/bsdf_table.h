@@ -4,15 +4,20 @@
 #include "shaders/shared/compat.h"
 LUCERNA_SHARED_BEGIN
 
-/// A table has k_table_mu x k_table_rough texels; column i is cos(theta) = (i/(k_table_mu-1))^2, row j is
-/// roughness = sqrt(alpha) = j/(k_table_rough-1). Read bilinearly in (sqrt(cos), roughness).
-/// Table 0 is of a GGX reflector with F = f0 (1-w) + f90 w, w = (1-cos)^5: its single-scattering albedo is
-/// f0*x + f90*y; z, w are the cosine-weighted hemisphere averages of x, y in that row.
-/// Each refracting glass adds two tables, seen from outside (1 + 2*row) and from inside (2 + 2*row): x = albedo
-/// (reflected + transmitted), y = its average.
+/// A table is a function of (cos, roughness) at k_table_mu x k_table_rough points: column i at cos(theta) =
+/// (i/(k_table_mu-1))^2, row j at roughness = sqrt(alpha) = j/(k_table_rough-1); read bilinearly in (sqrt(cos),
+/// roughness). It is stored by cells, each with all that its corners say, so that a read is one or two fetches; after
+/// the cells comes a texel for each pair of neighbouring rows with their averages over the cosine-weighted hemisphere.
+///
+/// Table 0 is of a GGX reflector with F = f0 (1-w) + f90 w, w = (1-cos)^5: its single-scattering albedo is f0*a + f90*b.
+/// Cell: (a b of column i, a b of column i+1) of row j, then of row j+1. Averages: (a b of row j, a b of row j+1).
+/// Each refracting glass adds two tables, seen from outside (1 + 2*row) and from inside (2 + 2*row): the albedo e
+/// (reflected + transmitted). Cell: (e at i of row j, at i+1; e at i of row j+1, at i+1). Averages: (row j, row j+1, 0, 0).
 LUCERNA_CONST uint k_table_mu = 32u;
 LUCERNA_CONST uint k_table_rough = 32u;
-LUCERNA_CONST uint k_table_texels = k_table_mu * k_table_rough;
+LUCERNA_CONST uint k_table_cells = 961u;          ///< (k_table_mu - 1) * (k_table_rough - 1), row by row
+LUCERNA_CONST uint k_table_schlick_texels = 1953u;  ///< 2 a cell, and the averages
+LUCERNA_CONST uint k_table_glass_texels = 992u;     ///< 1 a cell, and the averages
 
 /// Microfacet lobes with alpha below this are treated as deltas (label S).
 LUCERNA_CONST float k_delta_alpha = 1e-3f;
