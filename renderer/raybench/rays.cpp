@@ -94,20 +94,19 @@ vec3 light_direction(const FlatFile& f, vec3 from, Random& u, float& distance) {
   const vec4 choice = s.light_alias[entry];
   const size_t light = u() < choice.x ? entry : std::bit_cast<uint32_t>(choice.y);
   const vec4* texel = &s.lights[light * k_light_texels];
-  switch (std::bit_cast<uint32_t>(texel[0].x)) {
+  switch (std::bit_cast<uint32_t>(texel[0].w)) {
     case k_light_triangle: {
-      const vec3* p = &s.positions[3 * size_t(std::bit_cast<uint32_t>(texel[0].y))];
       const float a = std::sqrt(u()), b = u();
-      return towards((1 - a) * p[0] + a * (1 - b) * p[1] + a * b * p[2]);
+      return towards((1 - a) * vec3(texel[0]) + a * (1 - b) * vec3(texel[1]) + a * b * vec3(texel[2]));
     }
     case k_light_directional:
-      return -vec3(texel[3]);
+      return -vec3(texel[2]);
     case k_light_environment: {
       const float y = 2 * u() - 1, phi = 6.2831853f * u(), r = std::sqrt(std::max(0.0f, 1 - y * y));
       return vec3(r * std::cos(phi), y, r * std::sin(phi));
     }
     default:
-      return towards(vec3(texel[2]));
+      return towards(vec3(texel[0]));
   }
 }
 

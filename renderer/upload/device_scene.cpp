@@ -88,6 +88,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_TEX_SPECULAR", e.tex_specular);
   set("LUCERNA_TEX_TRANSMISSION", e.tex_transmission);
   set("LUCERNA_TEX_DIFFUSE_TRANSMISSION", e.tex_diffuse_transmission);
+  set("LUCERNA_UV_TRANSFORMS", e.uv_transforms);
   set("LUCERNA_TEX_NEAREST", e.tex_nearest);
   set("LUCERNA_TEX_WRAPS", e.tex_wraps);
   static constexpr const char* k_masks[] = {

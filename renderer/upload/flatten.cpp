@@ -123,12 +123,13 @@ void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
     for (uint32_t u = 0; u < k_texture_uses; ++u) {
       const auto& x = uses[u]->m;
       vec4* texel = out + k_material_textures + k_texture_texels * u;
-      texel[0] = vec4(x[0], x[1], x[2], x[3]);
-      texel[1] = vec4(x[4], x[5], as_float(textures.bits(*uses[u])), 0);
+      texel[1] = vec4(as_float(textures.bits(*uses[u])), x[2], x[5], 0);
+      texel[2] = vec4(x[0], x[1], x[3], x[4]);
       if (!*uses[u]) continue;
       const TexturePlace& place = textures.place[uses[u]->texture];
       const scene::Texture& texture = scene.textures[uses[u]->texture];
-      texel[2] = place.rect;
+      texel[0] = place.rect;
+      e.uv_transforms |= uses[u]->m != scene::TextureUse().m;
       e.texture_buckets[u] |= 1u << place.bucket;
       e.tex_nearest |= texture.nearest;
       e.tex_wraps |= texture.wrap_u != scene::Wrap::repeat || texture.wrap_v != scene::Wrap::repeat;

@@ -16,6 +16,7 @@ struct Effects {
        thin_glass = false, diffuse_transmission = false, volumes = false, unlit = false, alpha = false,
        normal_maps = false, vertex_extra = false, tex_base = false, tex_metallic_roughness = false,
        tex_emission = false, tex_specular = false, tex_transmission = false, tex_diffuse_transmission = false;
+  bool uv_transforms = false;  ///< a use of a texture that is scaled, turned or shifted
   bool tex_nearest = false;                                        ///< a texture that is not filtered
   bool tex_wraps = false;                                          ///< a texture that does not repeat
   std::array<uint32_t, shared::k_texture_uses> texture_buckets{};  ///< by use: bit b: bucket b may be read

@@ -70,11 +70,12 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
   flat.environment_alias.clear();
   flat.environment_width = flat.environment_height = 0;
   std::vector<double> weights;
-  const auto add = [&](uint32_t kind, uint32_t primitive, float area, vec3 intensity, vec4 place, vec4 aim,
-                       double power) {
-    flat.lights.insert(flat.lights.end(),
-                       {vec4(as_float(kind), as_float(primitive), area, 0), vec4(intensity, 0), place, aim});
+  const auto add = [&](uint32_t kind, vec3 a, vec4 b, vec4 c, vec4 d, double power) {
+    flat.lights.insert(flat.lights.end(), {vec4(a, as_float(kind)), b, c, d});
     weights.push_back(power);
+  };
+  const auto is_distant = [&](size_t light) {
+    return std::bit_cast<uint32_t>(flat.lights[light * k_light_texels].w) == k_light_directional;
   };
   // Emissive triangles: flux pi * L * A, twice that when both sides emit.
   std::vector<std::pair<uint32_t, float>> emissive;
@@ -86,7 +87,9 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
     if (!(area > 0)) continue;
     const double mean = texture_mean(scene, m.emission_texture, flat, flat.triangles[i]);
     emissive.emplace_back(i, area);
-    add(k_light_triangle, i, area, vec3(0), vec4(0), vec4(0),
+    const uint32_t sides = (m.double_sided ? k_light_both_sides : 0u) |
+                           (flat.triangles[i].w & k_triangle_flipped ? k_light_flipped : 0u);
+    add(k_light_triangle, p[0], vec4(p[1], area), vec4(p[2], as_float(i)), vec4(m.emission, as_float(sides)),
         double(k_pi) * area * luminance(m.emission) * mean * (m.double_sided ? 2 : 1));
   }
   const double disk = double(k_pi) * flat.scene_radius * flat.scene_radius;
@@ -96,10 +99,10 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
     const double y = luminance(l.intensity);
     const bool spot = l.kind == scene::LightKind::spot;
     if (l.kind == scene::LightKind::directional)
-      add(k_light_directional, 0, 0, l.intensity, vec4(0), vec4(l.direction, 0), y * disk);
+      add(k_light_directional, vec3(0), vec4(l.intensity, 0), vec4(l.direction, 0), vec4(0), y * disk);
     else
-      add(spot ? k_light_spot : k_light_point, 0, 0, l.intensity, vec4(l.position, inner),
-          vec4(l.direction, outer), y * (spot ? 2 * k_pi * (1 - 0.5 * (inner + outer)) : 4 * k_pi));
+      add(spot ? k_light_spot : k_light_point, l.position, vec4(l.intensity, inner), vec4(l.direction, outer),
+          vec4(0), y * (spot ? 2 * k_pi * (1 - 0.5 * (inner + outer)) : 4 * k_pi));
   }
   // Environment. A constant one is left to BSDF sampling, which for it is the better strategy.
   const scene::Environment& environment = scene.environment;
@@ -125,20 +128,18 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
   // little: neither they nor the lamps get less than a share of the samples.
   double local = 0, distant = environment_weight;
   for (size_t i = 0; i < weights.size(); ++i) {
-    const bool far = std::bit_cast<uint32_t>(flat.lights[i * k_light_texels].x) == k_light_directional;
-    (far ? distant : local) += weights[i];
+    (is_distant(i) ? distant : local) += weights[i];
   }
   if (local > 0 && distant > 0) {
-    const double share = std::clamp(distant / (local + distant), 0.25, 0.6);
+    const double share = std::clamp(distant / (local + distant), 0.25, 0.75);
     for (size_t i = 0; i < weights.size(); ++i) {
-      const bool far = std::bit_cast<uint32_t>(flat.lights[i * k_light_texels].x) == k_light_directional;
-      weights[i] *= far ? share / distant : (1 - share) / local;
+      weights[i] *= is_distant(i) ? share / distant : (1 - share) / local;
     }
     environment_weight *= share / distant;
   }
   flat.environment_light_pmf = 0;
   if (environment_weight > 0) {
-    add(k_light_environment, 0, 0, vec3(0), vec4(0), vec4(0), environment_weight);
+    add(k_light_environment, vec3(0), vec4(0), vec4(0), vec4(0), environment_weight);
     double total = 0;
     for (double w : weights) total += w;
     flat.environment_light_pmf = float(environment_weight / total);

@@ -19,7 +19,7 @@ uniform samplerBuffer environment_alias;
 struct LightSample {
   vec3 direction;    // unit, towards the light
   float distance;    // metres; infinite for directional lights and the environment
-  vec3 radiance;     // of point and directional lights: irradiance on a facing plane
+  vec3 radiance;     // of point and directional lights: irradiance on a facing plane; of triangles: without textures
   float pdf;         // per solid angle with selection; of delta lights: the selection's probability
   bool delta;
   uint primitive;    // emissive triangle, or k_no_hit
@@ -95,38 +95,32 @@ LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail) {
   s.delta = true;
   float pmf;
   uint light = alias_choose(light_alias, frame.light_count, choice, pmf);
-  vec4 head = texelFetch(scene_lights, int(light * k_light_texels));
-  vec3 intensity = texelFetch(scene_lights, int(light * k_light_texels + 1u)).rgb;
-  vec4 place = texelFetch(scene_lights, int(light * k_light_texels + 2u));
-  vec4 aim = texelFetch(scene_lights, int(light * k_light_texels + 3u));
-  uint kind = floatBitsToUint(head.x);
+  int at = int(light * k_light_texels);
+  vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
+  uint kind = floatBitsToUint(a.w);
   // Point and spot: irradiance I/d^2; a spot falls off smoothly between its cones (glTF's recommended curve).
-  vec3 to = place.xyz - position;
+  vec3 to = a.xyz - position;
   float d2 = max(dot(to, to), 1e-20);
   s.distance = sqrt(d2);
   s.direction = to / s.distance;
-  float cos_axis = dot(-s.direction, aim.xyz);
-  float fade = clamp((cos_axis - aim.w) / max(place.w - aim.w, 1e-4), 0.0, 1.0);
-  s.radiance = intensity / d2 * (kind == k_light_spot ? fade * fade : 1.0);
+  float cos_axis = dot(-s.direction, c.xyz);
+  float fade = clamp((cos_axis - c.w) / max(b.w - c.w, 1e-4), 0.0, 1.0);
+  s.radiance = b.xyz / d2 * (kind == k_light_spot ? fade * fade : 1.0);
   s.pdf = pmf;
   if (kind == k_light_directional) {
-    s.direction = -aim.xyz;
+    s.direction = -c.xyz;
     s.distance = k_infinity;
-    s.radiance = intensity;
+    s.radiance = b.xyz;
   }
 #if LUCERNA_EMISSIVE
   if (kind == k_light_triangle) {
-    uint primitive = floatBitsToUint(head.y);
-    uvec4 tri = floatBitsToUint(texelFetch(scene_triangles, int(primitive)));
-    vec3 p0 = texelFetch(scene_vertices, int(2u * tri.x)).xyz;
-    vec3 p1 = texelFetch(scene_vertices, int(2u * tri.y)).xyz;
-    vec3 p2 = texelFetch(scene_vertices, int(2u * tri.z)).xyz;
+    vec3 p0 = a.xyz, p1 = b.xyz, p2 = c.xyz;
     // Uniform in area (low-distortion map, Heitz 2019).
-    vec2 b = 0.5 * u;
-    float offset = b.y - b.x;
-    b += offset > 0.0 ? vec2(0.0, offset) : vec2(-offset, 0.0);
-    vec3 p = b.x * p0 + b.y * p1 + (1.0 - b.x - b.y) * p2;
-    s.uv = vec2(b.y, 1.0 - b.x - b.y);
+    vec2 m = 0.5 * u;
+    float offset = m.y - m.x;
+    m += offset > 0.0 ? vec2(0.0, offset) : vec2(-offset, 0.0);
+    vec3 p = m.x * p0 + m.y * p1 + (1.0 - m.x - m.y) * p2;
+    s.uv = vec2(m.y, 1.0 - m.x - m.y);
     to = p - position;
     d2 = max(dot(to, to), 1e-20);
     s.distance = sqrt(d2);
@@ -136,11 +130,13 @@ LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail) {
     s.normal = dot(n, s.direction) > 0.0 ? -n : n;
     s.target = p;
     s.offset = error_gamma(8.0) * (abs(p0) + abs(p1) + abs(p2)) + vec3(error_gamma(16.0) * max(max3(abs(p1 - p0)), max3(abs(p2 - p0))));
-    float cos_light = abs(dot(n, s.direction));
-    s.pdf = pmf * d2 / max(cos_light * head.z, 1e-30);
+    s.pdf = pmf * d2 / max(abs(dot(n, s.direction)) * b.w, 1e-30);
     s.delta = false;
-    s.primitive = primitive;
-    s.radiance = vec3(0.0);  // evaluated by the caller, with textures
+    s.primitive = floatBitsToUint(c.w);
+    vec4 emission = texelFetch(scene_lights, at + 3);
+    uint sides = floatBitsToUint(emission.w);
+    bool front = (dot(n, s.direction) < 0.0) != ((sides & k_light_flipped) != 0u);
+    s.radiance = front || (sides & k_light_both_sides) != 0u ? emission.rgb : vec3(0.0);
   }
 #endif
 #if LUCERNA_ENVIRONMENT_MAP

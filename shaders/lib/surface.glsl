@@ -50,12 +50,16 @@ vec2 barycentrics(vec3 o, vec3 d, vec3 p0, vec3 p1, vec3 p2) {
 // (a constant) of texture arrays in which the scene keeps textures for this use.
 vec4 read_use(int material, uint use, uint buckets, vec2 uv0, vec2 uv1, vec4 neutral) {
   int at = material + int(k_material_textures + k_texture_texels * use);
-  vec4 a = texelFetch(scene_materials, at);
-  vec4 b = texelFetch(scene_materials, at + 1);
-  vec4 rect = texelFetch(scene_materials, at + 2);
-  uint bits = floatBitsToUint(b.z);
+  vec4 rect = texelFetch(scene_materials, at);
+  vec4 a = texelFetch(scene_materials, at + 1);
+  uint bits = floatBitsToUint(a.x);
   vec2 uv = (bits & k_texture_uv1) != 0u ? uv1 : uv0;
-  vec2 t = vec2(a.x * uv.x + a.y * uv.y + a.z, a.w * uv.x + b.x * uv.y + b.y);
+#if LUCERNA_UV_TRANSFORMS
+  vec4 m = texelFetch(scene_materials, at + 2);
+  vec2 t = vec2(m.x * uv.x + m.y * uv.y + a.y, m.z * uv.x + m.w * uv.y + a.z);
+#else
+  vec2 t = uv;
+#endif
   vec4 texel = texture_read(bits, buckets, rect, t);
   return (bits & k_texture_present) != 0u ? texel : neutral;
 }

@@ -23,7 +23,7 @@ LUCERNA_CONST uint k_material_volume = 4u;        ///< absorption rgb [1/m], gla
 LUCERNA_CONST uint k_material_diffuse_t = 5u;     ///< diffuse transmission colour rgb, factor
 LUCERNA_CONST uint k_material_detail = 6u;        ///< normal scale, alpha cutoff, 0, 0
 LUCERNA_CONST uint k_material_textures = 7u;      ///< then k_texture_texels for each use:
-// (m0 m1 m2 m3) (m4 m5 bits:texture 0) (rectangle on the page: x, y, width, height over the page's size)
+// (rectangle on the page: x, y, width, height over the page's size) (bits:texture, m2, m5, 0) (m0 m1 m3 m4)
 LUCERNA_CONST uint k_texture_texels = 3u;
 
 // Texture uses, in order.
@@ -56,10 +56,14 @@ LUCERNA_CONST uint k_flag_vertex_color = 64u;
 
 // scene_lights: k_light_texels a light.
 LUCERNA_CONST uint k_light_texels = 4u;
-// texel 0: bits kind, bits primitive (triangle), area [m^2], 0
-// texel 1: intensity rgb (punctual), 0
-// texel 2: position (point, spot), cos of the inner cone
-// texel 3: direction (spot, directional; unit, into the scene), cos of the outer cone
+//           triangle                                punctual
+// texel 0:  vertex 0, bits kind                     position (point, spot), bits kind
+// texel 1:  vertex 1, area [m^2]                    intensity rgb, cos of the inner cone
+// texel 2:  vertex 2, bits primitive                direction (spot, directional; unit, into the scene), cos of the outer cone
+// texel 3:  radiance rgb without textures, bits:    0
+//           k_light_both_sides, k_light_flipped
+LUCERNA_CONST uint k_light_both_sides = 1u;       ///< the back side emits as well
+LUCERNA_CONST uint k_light_flipped = 2u;          ///< the front is the clockwise side
 LUCERNA_CONST uint k_light_triangle = 0u;
 LUCERNA_CONST uint k_light_point = 1u;
 LUCERNA_CONST uint k_light_spot = 2u;

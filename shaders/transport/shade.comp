@@ -13,8 +13,9 @@ float mis_weight(float mine, float other) {
   return 1.0 / (1.0 + r * r);
 }
 
-#if LUCERNA_EMISSIVE
-// Radiance that a sampled emissive triangle sends along -direction; coverage by alpha included.
+#if LUCERNA_EMISSIVE && (LUCERNA_TEX_EMISSION || LUCERNA_ALPHA || LUCERNA_VERTEX_EXTRA)
+#define LUCERNA_LIGHT_SURFACE 1
+// Radiance that a sampled emissive triangle sends along -direction; textures and coverage by alpha included.
 vec3 light_radiance(LightSample l) {
   Ray towards;
   towards.origin = l.target - l.direction * l.distance;
@@ -26,19 +27,9 @@ vec3 light_radiance(LightSample l) {
   there.prim = l.primitive;
   there.u = l.uv.x;
   there.v = l.uv.y;
-#if LUCERNA_TEX_EMISSION || LUCERNA_ALPHA || LUCERNA_VERTEX_EXTRA
   Surface s = make_surface(towards, there);
   bool lit = s.front || (s.flags & k_flag_double_sided) != 0u;
   return lit ? s.emission * surface_coverage(s) : vec3(0.0);
-#else
-  uvec4 tri = floatBitsToUint(texelFetch(scene_triangles, int(l.primitive)));
-  vec3 p0 = texelFetch(scene_vertices, int(2u * tri.x)).xyz;
-  vec3 n = cross(texelFetch(scene_vertices, int(2u * tri.y)).xyz - p0, texelFetch(scene_vertices, int(2u * tri.z)).xyz - p0);
-  bool front = (dot(n, l.direction) < 0.0) != ((tri.w & k_triangle_flipped) != 0u);
-  vec4 emission = texelFetch(scene_materials, int((tri.w & k_triangle_material_mask) * k_material_texels + k_material_emission));
-  bool lit = front || (floatBitsToUint(emission.w) & k_flag_double_sided) != 0u;
-  return lit ? emission.rgb : vec3(0.0);
-#endif
 }
 #endif
 
@@ -116,7 +107,7 @@ void main() {
         BsdfValue f = bsdf_eval(bsdf, wo, wi);
         bool reflected = dot(l.direction, side) > 0.0;
         bool sides_agree = reflected == (wi.z > 0.0);
-#if LUCERNA_EMISSIVE
+#if LUCERNA_LIGHT_SURFACE
         if (l.primitive != k_no_hit) l.radiance = light_radiance(l);
 #endif
         float weight = l.delta ? 1.0 : mis_weight(l.pdf, f.pdf);

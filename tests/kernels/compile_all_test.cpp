@@ -24,6 +24,7 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
                            "LUCERNA_NORMAL_MAPS",
                            "LUCERNA_VERTEX_EXTRA",
                            "LUCERNA_FILM_IMAGES",
+                           "LUCERNA_UV_TRANSFORMS",
                            "LUCERNA_TEX_NEAREST",
                            "LUCERNA_TEX_WRAPS",
                            "LUCERNA_TEX_BASE",
