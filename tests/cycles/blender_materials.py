@@ -259,7 +259,7 @@ class Material:
         if ext.get("KHR_materials_volume", {}).get("thicknessFactor", 0) > 0:
             glass = t.node("BsdfGlass", {"Color": (1, 1, 1), "Roughness": rough, "IOR": ior, "Normal": normal},
                            distribution="SHARP" if rough == 0 else "MULTI_GGX").outputs[0]
-            if base != (1, 1, 1):   # tints what passes, not what is reflected
+            if rough != 0 or base != (1, 1, 1):   # tints what passes, not what is reflected
                 glass = self.tinted_glass(base, rough, normal, ior)
             return t.blend(factor, body, glass)
         # A slab: 2R / (1 + R) with the same R on both sides; the node inverts the index on the back.
