@@ -66,10 +66,11 @@ int bench_rays(const BenchRaysArguments& a) {
                                            uint32_t count, bool coherent) {
       host_of_frame.trace(query, rays, hits, queue, count, coherent);
     };
-    report.frames.push_back(
-        {"compute-bvh", raybench::path_traced_frame(device, compiler, flat, report.frame_options, {}, 2)});
-    report.frames.push_back(
-        {"host", raybench::path_traced_frame(device, compiler, flat, report.frame_options, trace, 2)});
+    raybench::PathTracedFrame on_device(device, compiler, flat, report.frame_options, {}),
+        on_host(device, compiler, flat, report.frame_options, trace);
+    raybench::PathTracedFrame* const frames[] = {&on_device, &on_host};
+    const auto times = raybench::measure(frames, a.repeats);
+    report.frames = {{"compute-bvh", times[0]}, {"host", times[1]}};
   }
   if (a.json) {
     std::printf("%s\n", raybench::to_json(report).c_str());

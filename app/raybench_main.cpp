@@ -77,9 +77,11 @@ int run(int argc, char** argv) {
   for (const auto& t : tracers) report.tracers.push_back(t.name);
   for (const auto& s : sets) report.sets.push_back(s.name), report.set_sizes.push_back(s.rays.size());
   report.frame_options = frame;
-  if (frame.samples)
-    report.frames.push_back(
-        {"compute-bvh", raybench::path_traced_frame(device, compiler, scene, frame, {}, 2)});
+  if (frame.samples) {
+    raybench::PathTracedFrame on_device(device, compiler, scene, frame, {});
+    raybench::PathTracedFrame* const frames[] = {&on_device};
+    report.frames = {{"compute-bvh", raybench::measure(frames, repeats).front()}};
+  }
   std::printf("%s\n", (json ? raybench::to_json(report) : raybench::to_text(report, "")).c_str());
   return 0;
 }

@@ -102,28 +102,51 @@ uint64_t count_differences(const Tracer& a, const Tracer& b, const RaySet& set) 
   return count;
 }
 
-FrameTime path_traced_frame(gpu::Device& device, gpu::ShaderCompiler& compiler, const FlatFile& file,
-                            const FrameOptions& options, const transport::HostTrace& host_trace,
-                            int repeats) {
-  const upload::DeviceScene scene(device, file.scene, file.tree);
-  transport::Wavefront wavefront(device, compiler, scene, options.slots, host_trace);
-  film::Film film(device, options.width, options.height);
-  wavefront.set_frame(
+struct PathTracedFrame::Impl {
+  FrameOptions options;
+  upload::DeviceScene scene;
+  transport::Wavefront wavefront;
+  film::Film film;
+  Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, const FlatFile& file, const FrameOptions& o,
+       const transport::HostTrace& host_trace)
+      : options(o),
+        scene(device, file.scene, file.tree),
+        wavefront(device, compiler, scene, o.slots, host_trace),
+        film(device, o.width, o.height) {}
+};
+
+PathTracedFrame::PathTracedFrame(gpu::Device& device, gpu::ShaderCompiler& compiler, const FlatFile& file,
+                                 const FrameOptions& options, const transport::HostTrace& host_trace)
+    : impl_(std::make_unique<Impl>(device, compiler, file, options, host_trace)) {
+  impl_->wavefront.set_frame(
       transport::make_frame(file.scene, file.camera, paths::compile_components(),
                             {.width = options.width, .height = options.height, .seed = options.seed}),
       15);
-  FrameTime best;
-  for (int round = 0; round < repeats; ++round) {
-    wavefront.clear(film);
-    wavefront.reset_stats();
-    schedule::UniformSchedule schedule(film.tiles(), options.samples, wavefront.slots());
-    const Timer timer;
-    while (!schedule.done()) wavefront.run(schedule.next(), film);
-    const double seconds = timer.seconds();
-    if (round == 0 || seconds < best.seconds)
-      best = {seconds, wavefront.stats().rays, wavefront.stats().stages};
+}
+
+PathTracedFrame::~PathTracedFrame() = default;
+
+FrameTime PathTracedFrame::run() {
+  Impl& f = *impl_;
+  f.wavefront.clear(f.film);
+  f.wavefront.reset_stats();
+  schedule::UniformSchedule schedule(f.film.tiles(), f.options.samples, f.wavefront.slots());
+  const Timer timer;
+  while (!schedule.done()) f.wavefront.run(schedule.next(), f.film);
+  const double seconds = timer.seconds();
+  return {seconds, f.wavefront.stats().rays, f.wavefront.stats().stages};
+}
+
+std::vector<FrameTime> measure(std::span<PathTracedFrame* const> frames, int repeats) {
+  std::vector<std::vector<FrameTime>> seen(frames.size());
+  for (int round = 0; round < repeats; ++round)
+    for (size_t f = 0; f < frames.size(); ++f) seen[f].push_back(frames[f]->run());
+  std::vector<FrameTime> medians;
+  for (auto& times : seen) {
+    std::sort(times.begin(), times.end(), [](const auto& a, const auto& b) { return a.seconds < b.seconds; });
+    medians.push_back(times[times.size() / 2]);
   }
-  return best;
+  return medians;
 }
 
 }  // namespace lucerna::raybench

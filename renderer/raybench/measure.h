@@ -46,9 +46,20 @@ struct FrameTime {
   uint64_t rays = 0;
   std::vector<transport::StageSum> stages;
 };
-/// Path-traces the frame with all components on, as `lucerna render` does; `host_trace` empty: compute-bvh.
-/// The fastest of `repeats`.
-FrameTime path_traced_frame(gpu::Device& device, gpu::ShaderCompiler& compiler, const FlatFile& scene,
-                            const FrameOptions& options, const transport::HostTrace& host_trace, int repeats);
+/// Path-traces a frame with all components on, as `lucerna render` does. `host_trace` empty: compute-bvh.
+class PathTracedFrame {
+ public:
+  PathTracedFrame(gpu::Device& device, gpu::ShaderCompiler& compiler, const FlatFile& scene,
+                  const FrameOptions& options, const transport::HostTrace& host_trace);
+  ~PathTracedFrame();
+  FrameTime run();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The median of `repeats` runs of each, by seconds; they take turns.
+std::vector<FrameTime> measure(std::span<PathTracedFrame* const> frames, int repeats);
 
 }  // namespace lucerna::raybench

@@ -30,8 +30,8 @@ std::string to_text(const Report& r, const std::string& yardstick) {
     text += fmt::format("   of {}\n", yardstick);
   }
   if (!r.frames.empty())
-    text += fmt::format("path-traced frame, {}x{}, {} samples\n", r.frame_options.width,
-                        r.frame_options.height, r.frame_options.samples);
+    text += fmt::format("path-traced frame, {}x{}, {} samples, median of {}\n", r.frame_options.width,
+                        r.frame_options.height, r.frame_options.samples, r.repeats);
   for (const Report::Frame& f : r.frames) {
     text += fmt::format("{:<16}{:>9.3f} s {:>8.2f} Mray/s  ", f.tracer, f.time.seconds,
                         1e-6 * double(f.time.rays) / f.time.seconds);
