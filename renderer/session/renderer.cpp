@@ -188,15 +188,7 @@ void Renderer::set_light(uint32_t index, const scene::Light& light) {
   if (!scene_ || index >= scene_->lights.size()) throw_error("light", "there is no light {}", index);
   auto edited = std::make_shared<scene::Scene>(*scene_);
   edited->lights[index] = light;
-  scene_ = edited;
-  const upload::Effects before = flat_.effects;
-  upload::flatten_lights(*scene_, flat_);
-  device_scene_->update_lights(*device_, flat_);
-  if (before.lights != flat_.effects.lights || before.emissive != flat_.effects.emissive)
-    build_wavefront(flat_, *device_scene_);
-  else
-    wavefront_->rebind(*device_scene_);
-  restart();
+  relight(edited);
 }
 
 void Renderer::set_environment(float scale, float rotation_degrees) {
@@ -204,11 +196,17 @@ void Renderer::set_environment(float scale, float rotation_degrees) {
   auto edited = std::make_shared<scene::Scene>(*scene_);
   edited->environment.scale = scale;
   edited->environment.rotation = rotation_degrees;
-  scene_ = edited;
+  relight(edited);
+}
+
+void Renderer::relight(std::shared_ptr<const scene::Scene> edited) {
+  scene_ = std::move(edited);
   const upload::Effects before = flat_.effects;
   upload::flatten_lights(*scene_, flat_);
   device_scene_->update_lights(*device_, flat_);
-  if (before.lights != flat_.effects.lights || before.environment_map != flat_.effects.environment_map)
+  const upload::Effects& now = flat_.effects;
+  if (before.lights != now.lights || before.emissive != now.emissive ||
+      before.environment_map != now.environment_map)
     build_wavefront(flat_, *device_scene_);
   else
     wavefront_->rebind(*device_scene_);

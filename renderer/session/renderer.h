@@ -79,6 +79,8 @@ class Renderer {
 
  private:
   void build_wavefront(const upload::FlatScene& flat, upload::DeviceScene& device_scene);
+  /// The scene with other lights or another environment: uploads these anew.
+  void relight(std::shared_ptr<const scene::Scene> edited);
   void make_film();
   shared::Frame make_frame(uint32_t width, uint32_t height) const;
   film::View view(const film::Film& film) const;

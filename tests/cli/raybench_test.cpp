@@ -1,31 +1,18 @@
 // links: base
 // The ray benches: what `lucerna bench rays` prints and writes, and the stand-alone bench that reads it.
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 
+#include "support/run.h"
+
 namespace fs = std::filesystem;
+using lucerna::test::Run;
+using lucerna::test::run_command;
 
 namespace {
-
-struct Run {
-  int status;
-  std::string out;
-};
-
-Run run(const std::string& command) {
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  REQUIRE(pipe);
-  std::string out;
-  char buffer[512];
-  while (size_t n = fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, n);
-  const int status = pclose(pipe);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out};
-}
 
 const std::string k_bench = std::string(LUCERNA_BINARY) + " bench rays ";
 const std::string k_alone =
@@ -41,14 +28,14 @@ TEST_CASE(
   const fs::path folder = fs::temp_directory_path() / ("lucerna-raybench-" + std::to_string(getpid()));
   fs::create_directories(folder);
   const std::string flat = (folder / "glass.flat").string();
-  const Run full = run(k_bench + k_scene + k_small + " --flat " + flat);
+  const Run full = run_command(k_bench + k_scene + k_small + " --flat " + flat);
   INFO(full.out);
   REQUIRE(full.status == 0);
   for (const char* part : {"compute-bvh", "host", "embree single", "primary", "diffuse", "shadow",
                            "path-traced frame", "times as fast as", "disagree: 0"})
     CHECK(full.out.find(part) != std::string::npos);
 
-  const Run alone = run(k_alone + " " + flat + k_small + " --json");
+  const Run alone = run_command(k_alone + " " + flat + k_small + " --json");
   INFO(alone.out);
   CHECK(alone.status == 0);
   for (const char* part :
@@ -61,21 +48,22 @@ TEST_CASE(
     const std::string cut = (folder / "cut.flat").string();
     fs::copy_file(flat, cut, fs::copy_options::overwrite_existing);
     fs::resize_file(cut, std::uintmax_t(double(size) * part));
-    const Run r = run(k_alone + " " + cut + k_small);
+    const Run r = run_command(k_alone + " " + cut + k_small);
     INFO(part << "\n" << r.out);
     CHECK(r.status == 1);
     CHECK(r.out.find("cut.flat: ") != std::string::npos);
   }
-  CHECK(run(k_alone + " " + k_scene + k_small).out.find("not a flattened scene") != std::string::npos);
-  CHECK(run(k_alone + " /no/such.flat").status == 1);
-  CHECK(run(k_bench + k_scene + k_small + " --camera nowhere").out.find("no camera 'nowhere'") !=
+  CHECK(run_command(k_alone + " " + k_scene + k_small).out.find("not a flattened scene") !=
         std::string::npos);
-  CHECK(run(k_bench + k_scene + k_small + " --flat /no/such/folder/x.flat").status == 1);
+  CHECK(run_command(k_alone + " /no/such.flat").status == 1);
+  CHECK(run_command(k_bench + k_scene + k_small + " --camera nowhere").out.find("no camera 'nowhere'") !=
+        std::string::npos);
+  CHECK(run_command(k_bench + k_scene + k_small + " --flat /no/such/folder/x.flat").status == 1);
   fs::remove_all(folder);
 }
 
 TEST_CASE("the stand-alone bench needs neither image IO, nor Embree, nor a window") {
-  const Run r = run("ldd " + k_alone);
+  const Run r = run_command("ldd " + k_alone);
   REQUIRE(r.status == 0);
   for (const char* library : {"OpenImageIO", "embree", "glfw", "libGL", "libX11", "tinygltf"}) {
     INFO(library);

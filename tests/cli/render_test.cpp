@@ -1,39 +1,22 @@
 // links: film_io
 // The command line as a person meets it: what it writes, and that every wrong input ends with one located
 // line and status 1.
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "film/io/image_file.h"
+#include "support/run.h"
 
 namespace fs = std::filesystem;
 using namespace lucerna;
+using test::run;
+using test::Run;
 
 namespace {
-
-struct Run {
-  int status;
-  std::string out;
-};
-
-Run run_under(const std::string& wrapper, const std::string& arguments) {
-  const std::string command = wrapper + " " + LUCERNA_BINARY + " " + arguments + " 2>&1";
-  FILE* pipe = popen(command.c_str(), "r");
-  REQUIRE(pipe);
-  std::string out;
-  char buffer[512];
-  while (size_t n = fread(buffer, 1, sizeof buffer, pipe)) out.append(buffer, n);
-  const int status = pclose(pipe);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out};
-}
-
-Run run(const std::string& arguments) { return run_under("", arguments); }
 
 fs::path folder() {
   const fs::path p = fs::temp_directory_path() / ("lucerna-cli-" + std::to_string(getpid()));
@@ -118,8 +101,8 @@ TEST_CASE("Ctrl-C writes what there is and says so") {
   // ends the program without a word, and the next try waits longer.
   Run r{};
   for (int seconds = 1; seconds <= 64 && r.out.find("interrupted") == std::string::npos; seconds *= 2)
-    r = run_under("timeout --preserve-status -s INT " + std::to_string(seconds),
-                  "render " + scene("cornell") + " --samples 1000000 --size 64x64 -o " + file);
+    r = run("render " + scene("cornell") + " --samples 1000000 --size 64x64 -o " + file,
+            "timeout --preserve-status -s INT " + std::to_string(seconds));
   INFO(r.out);
   CHECK(r.out.find("interrupted after") != std::string::npos);
   CHECK(r.out.find("writing what there is") != std::string::npos);
