@@ -84,9 +84,9 @@ struct Frame {
   uint orthographic;
   vec3 camera_forward;     ///< unit
   uint seed;
-  vec3 environment_radiance;  ///< constant environment, or (1,1,1) * scale with a map
+  vec3 environment_radiance;  ///< factor of the environment map
   uint light_count;
-  uint environment_width, environment_height;  ///< 0: constant
+  uint environment_width, environment_height;  ///< 0: there is none
   float environment_rotation; ///< radians
   float environment_light_pmf;///< probability that the light sampler chooses the environment (0: not sampled)
   uint max_depth;
