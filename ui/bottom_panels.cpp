@@ -248,8 +248,12 @@ void draw_log(Ui& ui, const Area& area) {
   if (ui.layout.bottom_open && area.width() > px(400)) {
     float right = area.hi.x - px(36);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const auto chip = [&](const char* id, const std::string& text, bool on, ImU32 ink) {
-      const float w = text_width(text, theme().fonts.small) + px(14);
+    const auto chip = [&](const char* id, const std::string& text, bool on, ImU32 ink, bool counted = false) {
+      // Room for two digits, so that the first lines do not push the neighbours about.
+      const std::string head = text.substr(0, text.find(' '));
+      const float w = std::max(text_width(text, theme().fonts.small),
+                               counted ? text_width(head + " 00", theme().fonts.small) : 0) +
+                      px(14);
       right -= w;
       const ImVec2 lo(right, area.lo.y + px(4)), hi(right + w, area.lo.y + px(24));
       ImGui::SetCursorScreenPos(lo);
@@ -269,7 +273,7 @@ void draw_log(Ui& ui, const Area& area) {
       const auto l = static_cast<size_t>(level);
       if (chip(names[l], counts[l] > 0 ? fmt::format("{} {}", names[l], counts[l]) : names[l],
                ui.log_levels[l],
-               counts[l] > 0 ? level_colour(static_cast<log::Level>(level)) : colour::text_dim))
+               counts[l] > 0 ? level_colour(static_cast<log::Level>(level)) : colour::text_dim, true))
         ui.act("log.show", k_level_names[l], !ui.log_levels[l]);
       tooltip(fmt::format("{} lines of this level.", ui.log_levels[l] ? "Hides" : "Shows"));
     }

@@ -113,6 +113,8 @@ void view_menu(Ui& ui) {
             "Moves the camera so that the selection, or else the whole scene, fills the picture.", false,
             ui.view.has_value()))
     ui.act("camera.frame");
+  if (entry("Selection", nullptr, "Marks the selected object in the picture.", ui.brackets))
+    ui.act("view.selection", !ui.brackets);
   if (entry("Lamps", "L", "Marks the lamps in the picture; a click on a mark selects the lamp.",
             ui.light_marks))
     ui.act("view.lamps", !ui.light_marks);

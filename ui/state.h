@@ -98,6 +98,7 @@ struct Ui : commands::Workspace {
   uint32_t texture_width = 0, texture_height = 0;
   int picture_divisor = 1;   ///< window pixels per picture pixel
   bool light_marks = false;  ///< lamps are marked in the picture
+  bool brackets = true;      ///< the selected object is marked in the picture
   Area picture;              ///< where the picture may be
   bool picture_hovered = false;
 

@@ -118,6 +118,41 @@ std::vector<Mark> marks(const Ui& ui, const Area& shown) {
   return list;
 }
 
+/// The corners of the box around the selected object, as brackets: enough to find it, not so much as to hide
+/// it.
+void draw_brackets(const Ui& ui, const Area& shown) {
+  if (ui.selection.kind != Kind::instance || !ui.scene || !ui.snapshot) return;
+  const scene::Instance& instance = ui.scene->instances[ui.selection.index];
+  if (instance.mesh >= ui.scene->meshes.size()) return;
+  // Bounds in the object's space, kept while the selection lasts.
+  static std::pair<std::pair<uint64_t, uint32_t>, Box> known{{0, 0}, {}};
+  const scene::Mesh& mesh = ui.scene->meshes[instance.mesh];
+  if (const std::pair key{ui.view_scene, ui.selection.index}; known.first != key) {
+    known = {key, {}};
+    for (const scene::Primitive& p : mesh.primitives)
+      for (const vec3& v : p.positions) known.second.grow(v);
+  }
+  const Box& box = known.second;
+  if (box.empty()) return;
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->PushClipRect(shown.lo, shown.hi, true);
+  const auto corner = [&](int bits) {
+    return vec3(bits & 1 ? box.hi.x : box.lo.x, bits & 2 ? box.hi.y : box.lo.y,
+                bits & 4 ? box.hi.z : box.lo.z);
+  };
+  for (int from = 0; from < 8; ++from)
+    for (int axis = 1; axis < 8; axis *= 2) {
+      const vec3 a = corner(from), b = glm::mix(a, corner(from ^ axis), 0.18f);
+      ImVec2 p, q;
+      if (!project(ui.snapshot->camera, shown, vec3(instance.to_world * vec4(a, 1)), p) ||
+          !project(ui.snapshot->camera, shown, vec3(instance.to_world * vec4(b, 1)), q))
+        continue;
+      list->AddLine(p, q, IM_COL32(0, 0, 0, 120), px(3));
+      list->AddLine(p, q, colour::accent, std::max(1.0f, px(1)));
+    }
+  list->PopClipRect();
+}
+
 void draw_marks(const Ui& ui, const Area& shown) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->PushClipRect(shown.lo, shown.hi, true);
@@ -344,6 +379,7 @@ void draw_picture(Ui& ui, const Area& area) {
                    {lo.x + w, lo.y + h});
     frame = {lo, {lo.x + w, lo.y + h}};
     if (ui.light_marks) draw_marks(ui, frame);
+    if (ui.brackets) draw_brackets(ui, frame);
   }
   const bool waiting = ui.snapshot && !ui.snapshot->activity.empty();
   if (!shown && !waiting) empty_state(ui, area);

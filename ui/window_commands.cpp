@@ -105,6 +105,8 @@ void add_window_commands(Ui& ui) {
   add("view.divisor", "Pixels of the window for each pixel of the picture, along a side.",
       {{.name = "divisor", .type = Type::choice, .choices = {"1", "2", "4"}}},
       [&ui](const Arguments& a) { ui.picture_divisor = static_cast<int>(a.integer("divisor")); });
+  add("view.selection", "Marks the selected object in the picture.", {on},
+      [&ui](const Arguments& a) { ui.brackets = a.boolean("on"); });
   add("view.lamps", "Marks the lamps in the picture.", {on},
       [&ui](const Arguments& a) { ui.light_marks = a.boolean("on"); });
 

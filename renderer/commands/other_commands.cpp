@@ -8,6 +8,8 @@
 namespace lucerna::commands {
 namespace {
 
+constexpr double k_standstill = 10;  // seconds without a new picture
+
 std::string settings_manual() {
   std::string text = "Settings, for 'set KEY VALUE':";
   for (const plan::OptionInfo& o : plan::options()) {
@@ -119,9 +121,15 @@ void Workspace::add_other_commands() {
       {.name = "wait_samples",
        .help = "In a script: waits until the picture holds that many samples a pixel, or is finished.",
        .parameters = {{.name = "samples", .type = Type::integer, .lo = 0, .hi = 1 << 20}, limit},
-       .run = [](const Arguments&) {},
+       .run =
+           [this](const Arguments&) {
+             waited_since_ = now, waited_errors_ = error_count, waited_id_ = snapshot ? snapshot->id : 0;
+           },
        .done =
            [this](const Arguments& a) {
+             if (snapshot && snapshot->id != waited_id_) waited_id_ = snapshot->id, waited_since_ = now;
+             if (error_count > waited_errors_ && now - waited_since_ > k_standstill)
+               throw Error("", "the picture stands still after an error");
              if (!snapshot || camera_moved || resizing) return false;
              // A picture of an earlier camera does not count.
              if (view && !same_view(snapshot->camera, view->camera)) return false;

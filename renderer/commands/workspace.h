@@ -164,7 +164,8 @@ class Workspace {
   bool opening_ = false;      ///< scene.open was run and has not ended
   bool open_failed_ = false;  ///< the last one has failed
   uint64_t errors_at_open_ = 0, scene_at_open_ = 0;
-  double waited_since_ = -1;  ///< when the running 'wait' began
+  double waited_since_ = -1;                    ///< when the running wait began, or saw a new picture
+  uint64_t waited_errors_ = 0, waited_id_ = 0;  ///< errors when it began; picture seen last
 };
 
 }  // namespace lucerna::commands

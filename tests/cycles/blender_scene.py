@@ -249,18 +249,19 @@ def main():
     seeds = [int(s) for s in a.seeds.split(",")]
     scene.render.filepath = os.path.abspath(a.out.replace("SEED", str(seeds[0])))
     scene.cycles.seed, scene.cycles.samples = seeds[0], 1
-    start = time.perf_counter()
+    start, cpu_start = time.perf_counter(), time.process_time()
     bpy.ops.render.render(write_still=False)
-    build = time.perf_counter() - start
+    build, cpu_build = time.perf_counter() - start, time.process_time() - cpu_start
     scene.cycles.samples = a.samples
-    start = time.perf_counter()
+    start, cpu_start = time.perf_counter(), time.process_time()
     bpy.ops.render.render(write_still=True)
-    whole = time.perf_counter() - start
+    whole, cpu_whole = time.perf_counter() - start, time.process_time() - cpu_start
     seconds = max(whole - build, 1e-3)
     width, height = scene.render.resolution_x, scene.render.resolution_y
     print("CYCLES " + json.dumps({
         "samples": a.samples, "size": [width, height], "threads": a.threads, "build_s": round(build, 3),
         "call_s": round(whole, 3), "render_s": round(seconds, 3),
+        "cpu_s": round(max(cpu_whole - cpu_build, 1e-3), 3),
         "samples_per_s": round((a.samples - 1) * width * height / seconds, 1)}), flush=True)
     for seed in seeds[1:]:
         scene.cycles.seed = seed

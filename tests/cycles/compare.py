@@ -18,14 +18,17 @@ What Cycles cannot do as Lucerna does is in blender_materials.py; --without FEAT
 scene with both (reduce.py), e.g. --without normals.
 
 Speed: samples/s of the rendering alone (pixels x samples / seconds), scene loaded, kernels and acceleration structure
-built, --threads for both; medians of --repeats runs, the two renderers taking turns.
+built, --threads for both; medians of --repeats runs, the two renderers taking turns. The same per second of processor
+time stays comparable on a machine that does other work meanwhile (start-up subtracted).
 """
 import argparse
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
+from statistics import median
 
 import numpy as np
 
@@ -104,14 +107,17 @@ class Job:
         for s in self.a.set:
             command += ["--set", s]
         # Lavapipe and Embree's pool both follow the affinity; lavapipe also reads a variable.
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run(command, env={**os.environ, "LP_NUM_THREADS": str(self.a.threads)}, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         if done.returncode:
             sys.exit(done.stdout[-3000:] + "\ncompare.py: Lucerna did not render")
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
         found = json.load(open(stats))
         stages = {s["name"]: round(s["ms"]) for s in found.get("stages", [])}
         return {"samples_per_s": self.width * self.height * samples / found["wall_s"],
-                "render_s": found["wall_s"], "tracer": found.get("tracer"), "device": found.get("device"),
+                "render_s": found["wall_s"],
+                "cpu_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, "tracer": found.get("tracer"), "device": found.get("device"),
                 "stages_ms": stages}
 
     def cycles(self, seeds):
@@ -170,25 +176,33 @@ def print_pictures(results):
 def speed(job):
     ours, theirs = [], []
     job.lucerna(0, samples=1)   # kernels compiled and cached, files read once
+    start = job.lucerna(0, samples=1)["cpu_s"]
     for i in range(job.a.repeats):
         ours.append(job.lucerna(i))
+        ours[-1]["cpu_s"] = max(ours[-1]["cpu_s"] - start, 1e-3)
         theirs.append(job.cycles([i]))
-    middle = [sorted(runs, key=lambda r: r["samples_per_s"])[len(runs) // 2] for runs in (ours, theirs)]
-    rates = [m["samples_per_s"] for m in middle]
-    return {"scene": job.name, "size": job.size, "samples": job.a.samples, "threads": job.a.threads,
-            "lucerna": middle[0], "cycles": middle[1], "ratio": round(rates[0] / rates[1], 3),
-            "all_lucerna": [round(r["samples_per_s"]) for r in ours],
-            "all_cycles": [round(r["samples_per_s"]) for r in theirs]}
+    work = job.width * job.height * job.a.samples
+    result = {"scene": job.name, "size": job.size, "samples": job.a.samples, "threads": job.a.threads}
+    for name, runs in (("lucerna", ours), ("cycles", theirs)):
+        result[name] = {"samples_per_s": median([r["samples_per_s"] for r in runs]),
+                        "samples_per_cpu_s": median([work / r["cpu_s"] for r in runs]),
+                        "all": [round(r["samples_per_s"]) for r in runs]}
+    result["stages_ms"] = ours[-1]["stages_ms"]
+    for key in ("samples_per_s", "samples_per_cpu_s"):
+        result[key.replace("samples", "ratio")] = round(result["lucerna"][key] / result["cycles"][key], 3)
+    return result
 
 
 def print_speed(results):
-    print(f"{'scene':16} {'size':>8} {'spp':>5}  {'Lucerna':>11} {'Cycles':>11}  ratio   samples/s, medians of "
-          f"{len(results[0]['all_lucerna'])}, {results[0]['threads']} threads")
+    print(f"{'scene':16} {'size':>8} {'spp':>5}  {'samples/s: Lucerna':>18} {'Cycles':>10} {'ratio':>6}   "
+          f"{'a CPU second: Lucerna':>21} {'Cycles':>9} {'ratio':>6}   stages of Lucerna "
+          f"({results[0]['threads']} threads, medians of {len(results[0]['lucerna']['all'])})")
     for r in results:
-        stages = r["lucerna"]["stages_ms"]
+        a, b, stages = r["lucerna"], r["cycles"], r["stages_ms"]
         total = sum(stages.values()) or 1
-        print(f"{r['scene']:16} {r['size']:>8} {r['samples']:>5}  {r['lucerna']['samples_per_s']:11,.0f} "
-              f"{r['cycles']['samples_per_s']:11,.0f}  {r['ratio']:.3f}   "
+        print(f"{r['scene']:16} {r['size']:>8} {r['samples']:>5}  {a['samples_per_s']:18,.0f} "
+              f"{b['samples_per_s']:10,.0f} {r['ratio_per_s']:6.3f}   {a['samples_per_cpu_s']:21,.0f} "
+              f"{b['samples_per_cpu_s']:9,.0f} {r['ratio_per_cpu_s']:6.3f}   "
               + ", ".join(f"{k} {100 * v / total:.0f} %" for k, v in stages.items() if v > 0.005 * total))
 
 
