@@ -54,7 +54,8 @@ class Workspace {
   void refresh(double time);
   std::shared_ptr<const session::Snapshot> snapshot;
   std::shared_ptr<const scene::Scene> scene;  ///< with the edits that the session has taken
-  bool loading() const { return opening_ || (snapshot && snapshot->progress >= 0); }
+  /// A scene is being loaded. After a failure the session's last word may still be how far it had come.
+  bool loading() const { return opening_ || (!open_failed_ && snapshot && snapshot->progress >= 0); }
   /// Errors seen so far, counted by whoever listens to the log: an error after scene.open is a failed load.
   uint64_t error_count = 0;
 
