@@ -120,21 +120,28 @@ int render(const RenderArguments& a) {
     if (key == "tracer" || key == "path.batch") r.settings().set(key, value);
   if (a.seconds < 0) throw Error("--time", "expected a positive number of seconds");
 
+  struct sigaction action {
+  }, before{};
+  action.sa_handler = on_interrupt;
+  sigaction(SIGINT, &action, &before);
   const bool terminal = !a.quiet && isatty(2);
-  r.load(a.scene, [&](float fraction, const std::string& what) {
-    if (terminal) std::fprintf(stderr, "\rloading %3.0f %%  %-40.40s", 100 * fraction, what.c_str());
-    return !interrupted;
-  });
+  try {
+    r.load(a.scene, [&](float fraction, const std::string& what) {
+      if (terminal) std::fprintf(stderr, "\rloading %3.0f %%  %-40.40s", 100 * fraction, what.c_str());
+      return !interrupted;
+    });
+  } catch (const Error&) {
+    if (!interrupted) throw;
+    std::fprintf(stderr, "%slucerna: interrupted while loading; there is nothing to write\n",
+                 terminal ? "\n" : "");
+    return 130;
+  }
   if (terminal) std::fprintf(stderr, "\r%-60s\r", "");
   for (const auto& [key, value] : changes) r.settings().set(key, value, "--set");
   if (a.seconds > 0 && a.samples == -1) r.settings().set("samples", "1048576");
   r.apply_settings();
   if (!a.camera.empty()) r.choose_camera(a.camera);
 
-  struct sigaction action {
-  }, before{};
-  action.sa_handler = on_interrupt;
-  sigaction(SIGINT, &action, &before);
   const Timer timer;
   Timer since_line;
   while (!r.done() && !interrupted && (a.seconds <= 0 || timer.seconds() < a.seconds)) {

@@ -50,12 +50,23 @@ void Renderer::load(const std::filesystem::path& file, const Progress& progress)
 }
 
 void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress) {
+  // A scene starts with the defaults and its own settings; only how to compute is the machine's affair and
+  // stays.
+  plan::Settings settings;
+  for (const char* key : {"tracer", "path.batch"}) settings.set(key, settings_.text(key));
+  for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
+  scene::Camera camera = scene->cameras.empty() ? scene::default_camera(*scene) : scene->cameras.front();
+  if (const std::string& name = settings.text("camera"); !name.empty())
+    camera = scene::find_camera(*scene, name);
+  install(std::move(scene), std::move(settings), camera, progress);
+}
+
+void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings,
+                       scene::Camera camera, const Progress& progress) {
   const auto report = [&](float fraction, const char* what) {
     require(!progress || progress(fraction, what));
   };
   // Everything that can fail happens before the old scene is given up.
-  plan::Settings settings = settings_;
-  for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
   report(0, "flattening the scene");
   upload::FlatScene flat = upload::flatten(*scene);
   report(0.2f, "building the BVH");
@@ -86,8 +97,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   scene_ = std::move(scene);
   flat_ = std::move(flat);
   device_scene_ = std::move(device_scene);
-  camera_ = scene_->cameras.empty() ? scene::default_camera(*scene_) : scene_->cameras.front();
-  if (const std::string& name = settings_.text("camera"); !name.empty()) choose_camera(name);
+  camera_ = std::move(camera);
   make_film();
 }
 
@@ -142,7 +152,7 @@ void Renderer::restart() {
 
 void Renderer::apply_settings() {
   if (!wavefront_) return;
-  bool again = false, samples = false;
+  bool again = false, samples = false, rebuild = false;
   for (const auto& [key, value] : settings_.all()) {
     if (applied_[key] == value) continue;
     if (key == "samples")
@@ -150,9 +160,13 @@ void Renderer::apply_settings() {
     else if (key == "camera")
       choose_camera(value);
     else if (key == "tracer" || key == "path.batch")
-      set_scene(scene_);
+      rebuild = true;
     else
       again |= plan::find_option(key)->restarts;
+  }
+  if (rebuild) {
+    install(scene_, settings_, camera_, {});
+    return;
   }
   if (samples && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
   if (again) restart();

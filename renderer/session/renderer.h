@@ -37,7 +37,8 @@ class Renderer {
   gpu::Device& device() { return *device_; }
   /// Loads a file and makes it ready to render. On failure throws Error and the scene before stays.
   void load(const std::filesystem::path& file, const Progress& progress = {});
-  /// The same for a scene made in memory.
+  /// The same for a scene made in memory. Settings start afresh (but for tracer and path.batch), then the
+  /// scene's own.
   void set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress = {});
   std::shared_ptr<const scene::Scene> scene() const { return scene_; }
 
@@ -78,6 +79,9 @@ class Renderer {
   uint32_t enabled_components() const;
 
  private:
+  /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
+  void install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings, scene::Camera camera,
+               const Progress& progress);
   void build_wavefront(const upload::FlatScene& flat, upload::DeviceScene& device_scene);
   /// The scene with other lights or another environment: uploads these anew.
   void relight(std::shared_ptr<const scene::Scene> edited);

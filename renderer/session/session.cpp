@@ -187,7 +187,10 @@ void Session::Impl::run() {
       }
     } catch (const std::exception& e) {
       log::error("{}", e.what());
-      paused = true;
+      next.activity.clear();
+      next.progress = -1;
+      next.paused = paused = true;
+      publish();
       dirty = false;
     }
     lock.lock();
@@ -223,8 +226,11 @@ void Session::load(const std::filesystem::path& file) {
     });
     ++s->next.scene_id;
     s->restarted();
-    log::info("{} loaded: {} triangles, {} lights, {} cameras", file.string(),
-              scene::count_triangles(*r.scene()), r.scene()->lights.size(), r.scene()->cameras.size());
+    const auto count = [](uint64_t n, const char* what) {
+      return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+    };
+    log::info("{} loaded: {}, {}, {}", file.string(), count(scene::count_triangles(*r.scene()), "triangle"),
+              count(r.scene()->lights.size(), "lamp"), count(r.scene()->cameras.size(), "camera"));
   });
 }
 
