@@ -16,13 +16,7 @@ namespace {
 std::string settings_help() {
   std::string text = "\nSettings for --set KEY=VALUE (and settings.json beside a scene):\n";
   for (const plan::OptionInfo& o : plan::options()) {
-    std::string range;
-    if (o.type == plan::OptionType::choice)
-      range = fmt::format("{}", fmt::join(o.choices, "|"));
-    else if (o.type == plan::OptionType::boolean)
-      range = "true|false";
-    else if (o.type != plan::OptionType::text)
-      range = fmt::format("{} to {}{}{}", o.lo, o.hi, o.unit.empty() ? "" : " ", o.unit);
+    const std::string range = plan::describe_values(o);
     text +=
         fmt::format("  {:<24}{} [{}] {}\n", o.key, o.help, o.fallback.empty() ? "none" : o.fallback, range);
   }

@@ -13,13 +13,7 @@ constexpr double k_standstill = 10;  // seconds without a new picture
 std::string settings_manual() {
   std::string text = "Settings, for 'set KEY VALUE':";
   for (const plan::OptionInfo& o : plan::options()) {
-    std::string range;
-    if (o.type == plan::OptionType::choice)
-      range = fmt::format("{}", fmt::join(o.choices, "|"));
-    else if (o.type == plan::OptionType::boolean)
-      range = "true|false";
-    else if (o.type != plan::OptionType::text)
-      range = fmt::format("{} to {}{}{}", o.lo, o.hi, o.unit.empty() ? "" : " ", o.unit);
+    const std::string range = plan::describe_values(o);
     text += fmt::format("\n  {} {}: {}", o.key, range, o.help);
   }
   return text;

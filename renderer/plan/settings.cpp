@@ -119,6 +119,19 @@ const std::vector<OptionInfo>& options() {
   return list;
 }
 
+std::string describe_values(const OptionInfo& o) {
+  switch (o.type) {
+    case OptionType::choice:
+      return fmt::format("{}", fmt::join(o.choices, "|"));
+    case OptionType::boolean:
+      return "true|false";
+    case OptionType::text:
+      return "";
+    default:
+      return fmt::format("{} to {}{}{}", o.lo, o.hi, o.unit.empty() ? "" : " ", o.unit);
+  }
+}
+
 const OptionInfo* find_option(const std::string& key) {
   for (const OptionInfo& option : options())
     if (option.key == key) return &option;

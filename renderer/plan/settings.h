@@ -25,6 +25,8 @@ struct OptionInfo {
 
 /// The table, in display order.
 const std::vector<OptionInfo>& options();
+/// What values an option takes, for people: "path|off", "true|false", "1 to 64 vertices"; "" for a text.
+std::string describe_values(const OptionInfo& option);
 /// Null when there is no such key.
 const OptionInfo* find_option(const std::string& key);
 

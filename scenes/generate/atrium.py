@@ -376,7 +376,7 @@ def main():
     s.write("The face of the program: late-morning sun through oculi on worn stone, its bounce in the shade under the "
             "gallery, cloth that glows through, cool sky light, small caustics of a brass bowl and a glass lamp. Also "
             "the size of a real job: instances, textures, normal maps, an environment, a sun and lamps.",
-            {"film.ev": 0.0, "film.tone_curve": "neutral", "environment": env})
+            {"film.ev": 0.15, "film.tone_curve": "neutral", "environment": env})
 
 
 if __name__ == "__main__":
