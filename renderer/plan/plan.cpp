@@ -24,12 +24,11 @@ std::vector<std::string> unreachable_light(const Plan&, const scene::Scene& scen
   for (const scene::Light& light : scene.lights) lamps += light.enabled;
   for (const scene::Material& m : scene.materials) solids += m.transmission > 0 && m.thickness > 0;
   if (lamps == 0 || solids == 0) return {};
-  return {
-      fmt::format("{}: light of the {} point, spot or directional lights is not seen through solid glass ({} "
-                  "materials with "
-                  "KHR_materials_volume): path tracing cannot aim at a point through a refracting surface. "
-                  "Emissive meshes are seen.",
-                  scene.file, lamps, solids)};
+  return {fmt::format(
+      "{}: light of {} point, spot or directional light{} does not come through solid glass ({} material{} "
+      "with KHR_materials_volume): path tracing cannot aim at a point through a refracting surface, "
+      "only find emissive meshes",
+      scene.file, lamps, lamps == 1 ? "" : "s", solids, solids == 1 ? "" : "s")};
 }
 
 }  // namespace lucerna::plan
