@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <optional>
 
 #include "app/verbs.h"
 #include "base/error.h"
@@ -29,7 +30,7 @@ int bench_rays(const BenchRaysArguments& a) {
   const bvh::Triangles opaque{flat.scene.positions, {}};
   raybench::ComputeTracer compute(device, compiler,
                                   flat.tree.has_non_opaque ? bvh::build(opaque) : flat.tree);
-  const bvh::HostTracer host(opaque), host_of_frame(triangles);
+  const bvh::HostTracer host(opaque);
   const bvh::EmbreeReference embree(opaque);
   const auto sets = raybench::make_rays(flat, a.rays, a.seed, [&](bvh::Query query, auto rays, auto hits) {
     host.trace(query, rays, hits, nullptr, uint32_t(rays.size()), false);
@@ -62,6 +63,10 @@ int bench_rays(const BenchRaysArguments& a) {
   }
   report.frame_options = {.width = a.width, .height = a.height, .samples = a.samples, .seed = a.seed};
   if (a.samples) {
+    // Where all are opaque anyway, the rays' tracer is the frame's as well.
+    std::optional<bvh::HostTracer> with_flags;
+    if (flat.tree.has_non_opaque) with_flags.emplace(triangles);
+    const bvh::HostTracer& host_of_frame = with_flags ? *with_flags : host;
     const transport::HostTrace trace = [&](bvh::Query query, auto rays, auto hits, const uint32_t* queue,
                                            uint32_t count, bool coherent) {
       host_of_frame.trace(query, rays, hits, queue, count, coherent);

@@ -88,7 +88,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   std::swap(host_, host);
   std::swap(settings_, settings);
   try {
-    build_wavefront(flat, *device_scene);
+    build_wavefront(*device_scene);
   } catch (...) {
     std::swap(host_, host);
     std::swap(settings_, settings);
@@ -101,7 +101,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   make_film();
 }
 
-void Renderer::build_wavefront(const upload::FlatScene&, upload::DeviceScene& device_scene) {
+void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
   const Timer timer;
   transport::HostTrace trace;
   if (host_) {
@@ -117,7 +117,7 @@ void Renderer::build_wavefront(const upload::FlatScene&, upload::DeviceScene& de
 
 void Renderer::reload_shaders() {
   if (!device_scene_) return;
-  build_wavefront(flat_, *device_scene_);
+  build_wavefront(*device_scene_);
   restart();
 }
 
@@ -221,7 +221,7 @@ void Renderer::relight(std::shared_ptr<const scene::Scene> edited) {
   const upload::Effects& now = flat_.effects;
   if (before.lights != now.lights || before.emissive != now.emissive ||
       before.environment_map != now.environment_map)
-    build_wavefront(flat_, *device_scene_);
+    build_wavefront(*device_scene_);
   else
     wavefront_->rebind(*device_scene_);
   restart();
@@ -246,7 +246,7 @@ void Renderer::render_coarse(const std::function<bool()>& cancel) {
   wavefront_->set_frame(make_frame(width_, height_), enabled_components());
 }
 
-film::View Renderer::view(const film::Film&) const {
+film::View Renderer::view() const {
   film::View v;
   v.layer = uint32_t(settings_.choice("film.layer"));
   v.show = 0;
@@ -260,7 +260,7 @@ film::View Renderer::view(const film::Film&) const {
 }
 
 std::vector<uint8_t> Renderer::picture(bool with_coarse) {
-  wavefront_->tone_map(*film_, view(*film_), with_coarse ? coarse_.get() : nullptr);
+  wavefront_->tone_map(*film_, view(), with_coarse ? coarse_.get() : nullptr);
   return film_->read_picture();
 }
 

@@ -82,12 +82,12 @@ class Renderer {
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
   void install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings, scene::Camera camera,
                const Progress& progress);
-  void build_wavefront(const upload::FlatScene& flat, upload::DeviceScene& device_scene);
+  void build_wavefront(const upload::DeviceScene& device_scene);
   /// The scene with other lights or another environment: uploads these anew.
   void relight(std::shared_ptr<const scene::Scene> edited);
   void make_film();
   shared::Frame make_frame(uint32_t width, uint32_t height) const;
-  film::View view(const film::Film& film) const;
+  film::View view() const;
 
   RendererOptions options_;
   std::unique_ptr<gpu::Device> device_;

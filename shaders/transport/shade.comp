@@ -52,159 +52,159 @@ void main() {
     gain = path.throughput * light * weight;
   }
   if (hit.prim != k_no_hit) {
-  Surface surface = make_surface(ray, hit);
+    Surface surface = make_surface(ray, hit);
 #if LUCERNA_VOLUMES
-  if (path.medium != 0u) path.throughput *= exp(-material_absorption(path.medium - 1u) * hit.t);
+    if (path.medium != 0u) path.throughput *= exp(-material_absorption(path.medium - 1u) * hit.t);
 #endif
-  float travelled = path.travelled + hit.t;
-  bool go_on = false;   // a next ray is to be traced
-  bool passed = false;  // ... straight on, without an event
-  vec3 direction = ray.direction;
+    float travelled = path.travelled + hit.t;
+    bool go_on = false;   // a next ray is to be traced
+    bool passed = false;  // ... straight on, without an event
+    vec3 direction = ray.direction;
 
 #if LUCERNA_ALPHA
-  float coverage = surface_coverage(surface);
-  // A stream of their own keeps the null events from shifting the dimensions of what follows.
-  float u_null = sample_2d(random, k_pad_null + depth * 256u + nulls).x;
-  passed = u_null >= coverage;
+    float coverage = surface_coverage(surface);
+    // A stream of their own keeps the null events from shifting the dimensions of what follows.
+    float u_null = sample_2d(random, k_pad_null + depth * 256u + nulls).x;
+    passed = u_null >= coverage;
 #endif
 
-  if (!passed) {
-    if (depth == 0u) {
-      vec3 n = surface.front ? surface.normal_s : -surface.normal_s;
-      features[2u * slot] = vec4(surface.parameters.base, 1.0);
-      features[2u * slot + 1u] = vec4(n, dot(surface.position - frame.camera_origin, frame.camera_forward));
-    }
+    if (!passed) {
+      if (depth == 0u) {
+        vec3 n = surface.front ? surface.normal_s : -surface.normal_s;
+        features[2u * slot] = vec4(surface.parameters.base, 1.0);
+        features[2u * slot + 1u] = vec4(n, dot(surface.position - frame.camera_origin, frame.camera_forward));
+      }
 #if LUCERNA_EMISSIVE
-    if ((surface.flags & k_flag_emissive) != 0u && (surface.front || (surface.flags & k_flag_double_sided) != 0u)) {
-      float pdf = emissive_pdf(hit.prim, travelled * travelled, abs(dot(surface.normal_g, ray.direction)));
-      float weight = path.pdf > 0.0 ? mis_weight(path.pdf, pdf) : 1.0;
-      gain = path.throughput * surface.emission * weight;
-    }
+      if ((surface.flags & k_flag_emissive) != 0u && (surface.front || (surface.flags & k_flag_double_sided) != 0u)) {
+        float pdf = emissive_pdf(hit.prim, travelled * travelled, abs(dot(surface.normal_g, ray.direction)));
+        float weight = path.pdf > 0.0 ? mis_weight(path.pdf, pdf) : 1.0;
+        gain = path.throughput * surface.emission * weight;
+      }
 #endif
-    bool ends = depth >= frame.max_depth;
-    if (ends) atomicAdd(counters[k_counter_depth], 1u);
+      bool ends = depth >= frame.max_depth;
+      if (ends) atomicAdd(counters[k_counter_depth], 1u);
 #if LUCERNA_UNLIT
-    if ((surface.flags & k_flag_unlit) != 0u) {
-      if (automaton_no_diffuse(state)) gain = path.throughput * surface.base.rgb;
-      ends = true;
-    }
+      if ((surface.flags & k_flag_unlit) != 0u) {
+        if (automaton_no_diffuse(state)) gain = path.throughput * surface.base.rgb;
+        ends = true;
+      }
 #endif
-    if (!ends) {
-      vec3 wo_world = -ray.direction;
-      mat3 to_world = shading_frame(surface, wo_world);
-      vec3 wo = wo_world * to_world;   // transposed
-      Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
-      vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
+      if (!ends) {
+        vec3 wo_world = -ray.direction;
+        mat3 to_world = shading_frame(surface, wo_world);
+        vec3 wo = wo_world * to_world;   // transposed
+        Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
+        vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
 
 #if LUCERNA_LIGHTS
-      uint component_d = automaton_component(automaton_after(state, k_event_diffuse));
-      uint component_g = automaton_component(automaton_after(state, k_event_glossy));
-      {
-        LightSample l = sample_light(surface.position, sample_vertex_bits(random, depth, k_pad_light_choice).x,
-                                     sample_vertex(random, depth, k_pad_light_uv),
-                                     sample_vertex_bits(random, depth, k_pad_light_detail));
-        vec3 wi = l.direction * to_world;
-        BsdfValue f = bsdf_eval(bsdf, wo, wi);
-        bool reflected = dot(l.direction, side) > 0.0;
-        bool sides_agree = reflected == (wi.z > 0.0);
+        uint component_d = automaton_component(automaton_after(state, k_event_diffuse));
+        uint component_g = automaton_component(automaton_after(state, k_event_glossy));
+        {
+          LightSample l = sample_light(surface.position, sample_vertex_bits(random, depth, k_pad_light_choice).x,
+                                       sample_vertex(random, depth, k_pad_light_uv),
+                                       sample_vertex_bits(random, depth, k_pad_light_detail));
+          vec3 wi = l.direction * to_world;
+          BsdfValue f = bsdf_eval(bsdf, wo, wi);
+          bool reflected = dot(l.direction, side) > 0.0;
+          bool sides_agree = reflected == (wi.z > 0.0);
 #if LUCERNA_LIGHT_SURFACE
-        if (l.primitive != k_no_hit) l.radiance = light_radiance(l);
+          if (l.primitive != k_no_hit) l.radiance = light_radiance(l);
 #endif
-        float weight = l.delta ? 1.0 : mis_weight(l.pdf, f.pdf);
-        vec3 arrives = path.throughput * l.radiance * (weight / max(l.pdf, 1e-37));
+          float weight = l.delta ? 1.0 : mis_weight(l.pdf, f.pdf);
+          vec3 arrives = path.throughput * l.radiance * (weight / max(l.pdf, 1e-37));
 #if LUCERNA_VOLUMES
-        uint medium = reflected ? path.medium : surface.parameters.solid ? (surface.front ? surface.material + 1u : 0u) : path.medium;
-        if (medium != 0u) arrives *= exp(-material_absorption(medium - 1u) * min(l.distance, 1e30));
+          uint medium = reflected ? path.medium : surface.parameters.solid ? (surface.front ? surface.material + 1u : 0u) : path.medium;
+          if (medium != 0u) arrives *= exp(-material_absorption(medium - 1u) * min(l.distance, 1e30));
 #endif
-        ShadowState shadow;
-        shadow.diffuse = component_d < k_component_count ? arrives * f.diffuse : vec3(0.0);
-        shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
-        shadow.components = component_d | component_g << 8;
-        shadow.medium = 0u;
-        bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
-        bool worth = sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
-        if (worth && !finite) atomicAdd(counters[k_counter_dropped], 1u);
-        if (worth && finite) {
-          Ray shadow_ray;
-          shadow_ray.origin = offset_origin(surface, l.direction);
-          shadow_ray.direction = l.direction;
-          shadow_ray.tmax = k_infinity;
-          shadow_ray.slot = slot;
-          if (l.primitive != k_no_hit) {
-            // To a point moved off the light by its own error bound, so that the light does not shadow itself.
-            vec3 to = l.target + l.normal * dot(abs(l.normal), l.offset) - shadow_ray.origin;
-            float distance = length(to);
-            shadow_ray.direction = distance > 0.0 ? to / distance : l.direction;
-            shadow_ray.tmax = distance;
-          } else if (l.distance < 1e30) {
-            shadow_ray.tmax = l.distance;
-          }
-          shadow_rays[slot].origin = shadow_ray.origin;
-          shadow_rays[slot].tmax = shadow_ray.tmax;
-          shadow_rays[slot].direction = shadow_ray.direction;
-          shadow_states[slot].diffuse = shadow.diffuse;
-          shadow_states[slot].components = shadow.components;
+          ShadowState shadow;
+          shadow.diffuse = component_d < k_component_count ? arrives * f.diffuse : vec3(0.0);
+          shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
+          shadow.components = component_d | component_g << 8;
+          shadow.medium = 0u;
+          bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
+          bool worth = sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
+          if (worth && !finite) atomicAdd(counters[k_counter_dropped], 1u);
+          if (worth && finite) {
+            Ray shadow_ray;
+            shadow_ray.origin = offset_origin(surface, l.direction);
+            shadow_ray.direction = l.direction;
+            shadow_ray.tmax = k_infinity;
+            shadow_ray.slot = slot;
+            if (l.primitive != k_no_hit) {
+              // To a point moved off the light by its own error bound, so that the light does not shadow itself.
+              vec3 to = l.target + l.normal * dot(abs(l.normal), l.offset) - shadow_ray.origin;
+              float distance = length(to);
+              shadow_ray.direction = distance > 0.0 ? to / distance : l.direction;
+              shadow_ray.tmax = distance;
+            } else if (l.distance < 1e30) {
+              shadow_ray.tmax = l.distance;
+            }
+            shadow_rays[slot].origin = shadow_ray.origin;
+            shadow_rays[slot].tmax = shadow_ray.tmax;
+            shadow_rays[slot].direction = shadow_ray.direction;
+            shadow_states[slot].diffuse = shadow.diffuse;
+            shadow_states[slot].components = shadow.components;
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
-          shadow_states[slot].glossy = shadow.glossy;
+            shadow_states[slot].glossy = shadow.glossy;
 #endif
-          shadow_queue[atomicAdd(counters[k_counter_shadow], 1u)] = slot;
-          uint first = max3(shadow.diffuse) > 0.0 ? component_d : component_g;
-          atomicAdd(counters[k_counter_shadow_rays + first], 1u);
+            shadow_queue[atomicAdd(counters[k_counter_shadow], 1u)] = slot;
+            uint first = max3(shadow.diffuse) > 0.0 ? component_d : component_g;
+            atomicAdd(counters[k_counter_shadow_rays + first], 1u);
+          }
         }
-      }
 #endif
 
-      BsdfSample b = bsdf_sample(bsdf, wo, sample_vertex(random, depth, k_pad_direction), sample_vertex(random, depth, k_pad_lobe));
-      if (b.event == k_event_null) {
-        passed = true;
-        path.throughput *= b.weight;
-      } else {
-        direction = normalize(to_world * b.wi);
-        bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
-        uint next = automaton_after(state, b.event);
-        vec3 throughput = path.throughput * b.weight;
-        bool finite = is_finite(throughput);
-        go_on = sides_agree && (!finite || max3(throughput) > 0.0) && automaton_live(next);
-        if (go_on && !finite) atomicAdd(counters[k_counter_dropped], 1u);
-        go_on = go_on && finite;
-        path.eta_scale *= b.eta2;
-        // Roulette on what the path carries without the radiance scale of refraction.
-        if (depth + 1u >= frame.roulette_depth) {
-          float q = clamp(max3(throughput) / path.eta_scale, 0.0, 1.0);
-          float u = to_unit(sample_vertex_bits(random, depth, k_pad_light_choice)).y;
-          if (u >= q) {
-            if (go_on) atomicAdd(counters[k_counter_roulette], 1u);
-            go_on = false;
+        BsdfSample b = bsdf_sample(bsdf, wo, sample_vertex(random, depth, k_pad_direction), sample_vertex(random, depth, k_pad_lobe));
+        if (b.event == k_event_null) {
+          passed = true;
+          path.throughput *= b.weight;
+        } else {
+          direction = normalize(to_world * b.wi);
+          bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
+          uint next = automaton_after(state, b.event);
+          vec3 throughput = path.throughput * b.weight;
+          bool finite = is_finite(throughput);
+          go_on = sides_agree && (!finite || max3(throughput) > 0.0) && automaton_live(next);
+          if (go_on && !finite) atomicAdd(counters[k_counter_dropped], 1u);
+          go_on = go_on && finite;
+          path.eta_scale *= b.eta2;
+          // Roulette on what the path carries without the radiance scale of refraction.
+          if (depth + 1u >= frame.roulette_depth) {
+            float q = clamp(max3(throughput) / path.eta_scale, 0.0, 1.0);
+            float u = to_unit(sample_vertex_bits(random, depth, k_pad_light_choice)).y;
+            if (u >= q) {
+              if (go_on) atomicAdd(counters[k_counter_roulette], 1u);
+              go_on = false;
+            }
+            throughput /= max(q, 1e-30);
           }
-          throughput /= max(q, 1e-30);
-        }
-        path.throughput = throughput;
-        path.pdf = b.pdf;
-        path.bits = next | (depth + 1u) << 8;
-        path.travelled = 0.0;
+          path.throughput = throughput;
+          path.pdf = b.pdf;
+          path.bits = next | (depth + 1u) << 8;
+          path.travelled = 0.0;
 #if LUCERNA_VOLUMES
-        if (b.transmitted && surface.parameters.solid) path.medium = surface.front ? surface.material + 1u : 0u;
+          if (b.transmitted && surface.parameters.solid) path.medium = surface.front ? surface.material + 1u : 0u;
 #endif
+        }
       }
     }
-  }
-  if (passed) {
-    go_on = max3(path.throughput) > 0.0;
-    path.travelled = travelled;
-    path.bits = (path.bits & 0x00ffffffu) | min(nulls + 1u, 255u) << 24;
-  }
-  if (go_on) {
-    Ray next_ray;
-    next_ray.origin = offset_origin(surface, direction);
-    next_ray.direction = direction;
-    next_ray.tmax = k_infinity;
-    next_ray.slot = slot;
-    rays[slot].origin = next_ray.origin;
-    rays[slot].direction = next_ray.direction;
-    store_path(slot, path);
-    next_queue[atomicAdd(counters[k_counter_next], 1u)] = slot;
-    atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);
-  }
+    if (passed) {
+      go_on = max3(path.throughput) > 0.0;
+      path.travelled = travelled;
+      path.bits = (path.bits & 0x00ffffffu) | min(nulls + 1u, 255u) << 24;
+    }
+    if (go_on) {
+      Ray next_ray;
+      next_ray.origin = offset_origin(surface, direction);
+      next_ray.direction = direction;
+      next_ray.tmax = k_infinity;
+      next_ray.slot = slot;
+      rays[slot].origin = next_ray.origin;
+      rays[slot].direction = next_ray.direction;
+      store_path(slot, path);
+      next_queue[atomicAdd(counters[k_counter_next], 1u)] = slot;
+      atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);
+    }
   }
   add_radiance(slot, automaton_component(state), gain);
 }

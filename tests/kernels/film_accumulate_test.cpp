@@ -34,12 +34,10 @@ TEST_CASE("a million samples of mixed magnitude: each half's sum is right to flo
   gpu::Buffer features(device, {.name = "features", .bytes = 64 * k_batch * 2 * sizeof(vec4), .texel = true});
   stream.fill(features, 0);
   stream.run();
-  gpu::Buffer frame(device, {.name = "frame", .bytes = sizeof(shared::FilmPush)});
   gpu::Resources resources;
   film.bind(resources);
   resources.set("radiance_texels", radiance);
   resources.set("feature_texels", features);
-  resources.set("FrameBlock", frame);
   // Three pixels are told apart; the rest of the tile repeats them.
   std::vector<vec4> values(64 * k_batch * 4);
   double even[3][4] = {}, odd[3][4] = {}, naive_error = 0;
