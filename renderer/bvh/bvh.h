@@ -30,8 +30,10 @@ enum class Query {
   closest_non_opaque = 2,  ///< nearest hit among the non-opaque triangles alone; ties as for closest
 };
 
-/// Deepest path of a tree, in inner nodes; the traversal stack in shared memory holds as many entries.
+/// Deepest path of a binary tree, in inner nodes.
 inline constexpr uint32_t k_max_depth = 32;
+/// Entries of the device's traversal stack: three for each pair of levels of the binary tree.
+inline constexpr uint32_t k_stack = k_max_depth / 2 * 3;
 /// Most triangles in a leaf.
 inline constexpr uint32_t k_max_leaf = 4;
 

@@ -19,17 +19,18 @@ class Checker {
   Checker(const BvhData& data, const Triangles& triangles) : data_(data), triangles_(triangles) {}
 
   std::string run() {
-    if (data_.node_count == 0 || data_.nodes.size() != 4 * size_t{data_.node_count})
+    if (data_.node_count == 0 || data_.nodes.size() != k_node_texels * size_t{data_.node_count})
       return "wrong number of node texels";
     if (data_.triangles.size() != 3 * size_t{data_.triangle_count}) return "wrong number of triangle texels";
     if (data_.primitive_count != triangles_.count()) return "wrong number of primitives";
     covered_.assign(triangles_.count(), Box{});
-    node(0, data_.bounds, 1);
+    node(0, data_.bounds, 1, 0);
     if (!wrong_.empty()) return wrong_;
     if (next_node_ != data_.node_count) return "nodes that are never reached";
     if (next_triangle_ != data_.triangle_count) return "triangles that are never reached";
-    if (deepest_ != data_.max_depth || deepest_ > k_max_depth)
-      return fmt::format("depth {} stated {}", deepest_, data_.max_depth);
+    if (deepest_ != data_.max_depth) return fmt::format("depth {} stated {}", deepest_, data_.max_depth);
+    if (most_held_ != data_.stack || most_held_ > k_stack)
+      return fmt::format("stack {} stated {}", most_held_, data_.stack);
     for (const Reference& r : references_of(triangles_)) {
       // The parts of a split triangle together must span it.
       const Box& box = covered_[r.prim];
@@ -44,34 +45,54 @@ class Checker {
     if (wrong_.empty()) wrong_ = std::move(what);
   }
 
-  void node(uint32_t index, const Box& parent, uint32_t level) {
+  /// `held`: entries on the stack when a traversal comes to the node, at most.
+  void node(uint32_t index, const Box& parent, uint32_t level, uint32_t held) {
     if (index != next_node_++) return fail(fmt::format("node {} is out of depth-first order", index));
     if (index >= data_.node_count) return fail("link beyond the last node");
     deepest_ = std::max(deepest_, level);
-    if (level > k_max_depth) return fail("deeper than the stack");
-    const vec4* texel = &data_.nodes[4 * size_t{index}];
-    for (int side = 0; side < 2; ++side) {
-      Box box;
-      for (int axis = 0; axis < 3; ++axis)
-        box.lo[axis] = texel[axis][2 * side], box.hi[axis] = texel[axis][2 * side + 1];
-      if (!std::isnormal(texel[3][side]))
-        return fail(fmt::format("link of node {} is not a normal number", index));
-      const Word link = decode(texel[3][side]);
-      if (!link.flag) {
-        if (!inside(parent, box)) return fail(fmt::format("child of node {} sticks out of it", index));
-        node(link.value, box, level + 1);
+    const uvec4* texel = &data_.nodes[k_node_texels * size_t{index}];
+    Grid grid;
+    grid.origin = std::bit_cast<vec3>(uvec3(texel[0]));
+    if (!std::isfinite(grid.origin.x + grid.origin.y + grid.origin.z))
+      return fail("origin that is not finite");
+    const uint32_t low[3] = {texel[1].x, texel[1].z, texel[2].x},
+                   high[3] = {texel[1].y, texel[1].w, texel[2].y};
+    uint32_t children = 0;
+    bool there[k_width];
+    for (uint32_t c = 0; c < k_width; ++c) {
+      bool missing = true;
+      for (int axis = 0; axis < 3; ++axis) {
+        grid.exponent[axis] = static_cast<int>(texel[0].w >> 8 * axis & 255) - 127;
+        if (std::abs(grid.exponent[axis]) > 126) return fail("cell that is not a normal number");
+        grid.low[c][axis] = static_cast<uint8_t>(low[axis] >> 8 * c);
+        grid.high[c][axis] = static_cast<uint8_t>(high[axis] >> 8 * c);
+        missing = missing && grid.low[c][axis] == 255 && grid.high[c][axis] == 0;
+      }
+      there[c] = !missing;
+      children += there[c];
+    }
+    if (children > 0) held += children - 1;
+    most_held_ = std::max(most_held_, held);
+    for (uint32_t c = 0; c < k_width; ++c) {
+      const Link link = decode(texel[3][static_cast<int>(c)]);
+      // What the traversal lets through: each box on the way is rounded on a grid of its own.
+      Box box = grid.box(c);
+      if (there[c]) box = {glm::max(box.lo, parent.lo), glm::min(box.hi, parent.hi)};
+      if (!there[c]) {
+        if (!link.leaf || link.value != 0) fail(fmt::format("node {}: a link to a child without box", index));
+      } else if (link.leaf) {
+        leaf(link.value, box);
       } else {
-        leaf(link.value, box, parent);
+        node(link.value, box, level + 1, held);
       }
       if (!wrong_.empty()) return;
     }
   }
 
-  void leaf(uint32_t value, const Box& box, const Box& parent) {
+  void leaf(uint32_t value, const Box& box) {
     const uint32_t first = value >> 3, count = value & 7;
     if (count > k_max_leaf) return fail("leaf too large");
     if (count == 0) return;
-    if (!inside(parent, box)) return fail("leaf sticks out of its parent");
     if (first != next_triangle_) return fail("leaves are not in depth-first order");
     next_triangle_ += count;
     uint32_t last = 0;
@@ -102,7 +123,7 @@ class Checker {
   const Triangles& triangles_;
   std::vector<Box> covered_;
   std::string wrong_;
-  uint32_t next_node_ = 0, next_triangle_ = 0, deepest_ = 0;
+  uint32_t next_node_ = 0, next_triangle_ = 0, deepest_ = 0, most_held_ = 0;
 };
 
 }  // namespace

@@ -1,19 +1,24 @@
 #pragma once
-// The tree as the device reads it: two arrays of RGBA32F texels (shaders/lib/bvh.glsl is the reader).
+// The tree as the device reads it: two arrays of texels (shaders/lib/bvh.glsl is the reader).
 //
-// A node is 4 texels holding both children:
-//   0..2  for each axis x, y, z: (child 0 low, child 0 high, child 1 low, child 1 high)
-//   3     (child 0, child 1, reach, 0): links as words (below); `reach` of node 0 is the largest absolute
-//   coordinate
-//         of the scene, from which the traversal takes its rounding margin
-// Nodes lie in depth-first order, node 0 is the root and always there: an empty scene has a root with two
-// empty leaves. A triangle is 3 texels, in leaf order: (p0, word), (p1, 0), (p2, 0).
+// The binary tree of the builder is collapsed into nodes of up to four children, whose boxes are rounded
+// outwards to 8 bits a side on a grid of the node's own (H. Ylitie, T. Karras, S. Laine, "Efficient
+// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, with four children for their
+// eight): half the texels of a binary node for each child, whatever the scale of the scene.
 //
-// A word is an integer below 2^29 and a flag, stored as the bits of a float that is never denormal, infinite
-// or NaN (bit 30 set, bit 29 clear), so that no device may flush or quieten it on the way: flag << 31 | 1 <<
-// 30 | value.
-//   link:     flag = leaf; value = node index, or first triangle << 3 | triangles (0..4)
-//   triangle: flag = non-opaque; value = primitive id
+// A node is 4 texels of RGBA32UI:
+//   0  (origin x, y, z as float bits, exponents)   cell of axis a: 2^(e - 127), e = byte a of `exponents`
+//   1  (x low, x high, y low, y high)              byte c is that of child c: its plane lies at
+//   2  (z low, z high, reach, 0)                   origin + byte * cell
+//   3  links of the four children: leaf << 31 | value; an inner node's index, or first triangle << 3 |
+//   triangles (0..4)
+// `reach` (float bits) of node 0 is the largest absolute coordinate of the scene, from which the traversal
+// takes its rounding margin. A child that is not there has low 255, high 0 and an empty leaf. Nodes lie in
+// depth-first order, node 0 is the root and always there: an empty scene has a root without children.
+//
+// A triangle is 3 texels of RGBA32F, in leaf order: (p0, word), (p1, 0), (p2, 0). Its word is the primitive
+// id and a flag (non-opaque), stored as the bits of a float that is never denormal, infinite or NaN, so that
+// no device may flush or quieten it on the way: flag << 31 | 1 << 30 | id.
 #include <bit>
 #include <iosfwd>
 #include <string>
@@ -24,17 +29,28 @@
 
 namespace lucerna::bvh {
 
+inline constexpr uint32_t k_node_texels = 4;
+inline constexpr uint32_t k_width = 4;  ///< children of a node
+
 struct BvhData {
-  std::vector<vec4> nodes;      ///< 4 a node
+  std::vector<uvec4> nodes;     ///< k_node_texels a node
   std::vector<vec4> triangles;  ///< 3 a triangle reference
   Box bounds;                   ///< of all triangles that can be hit; empty for none
   uint32_t node_count = 0;
   uint32_t triangle_count = 0;   ///< references: a triangle that was split counts once for each part
   uint32_t primitive_count = 0;  ///< primitive ids are below this
-  uint32_t max_depth = 0;        ///< inner nodes on the deepest path, 1..k_max_depth
+  uint32_t max_depth = 0;        ///< nodes on the deepest path, at least 1
+  uint32_t stack = 0;            ///< most entries that a traversal can come to hold, 0..k_stack
   bool has_opaque = false, has_non_opaque = false;
   float sah_cost = 0;  ///< expected node visits + triangle tests of a random ray that enters the bounds
 };
+
+struct Link {
+  bool leaf;
+  uint32_t value;  ///< below 2^31
+};
+inline uint32_t encode(Link l) { return (l.leaf ? 1u << 31 : 0u) | l.value; }
+inline Link decode(uint32_t bits) { return {bits >> 31 != 0, bits & 0x7fffffffu}; }
 
 struct Word {
   bool flag;
@@ -47,6 +63,18 @@ inline Word decode(float f) {
   return {bits >> 31 != 0, bits & (k_word_limit - 1)};
 }
 
+/// The boxes of a node's children on the node's grid.
+struct Grid {
+  vec3 origin{0};
+  int exponent[3] = {};  ///< of the cells, -126..127
+  uint8_t low[k_width][3] = {}, high[k_width][3] = {};
+
+  /// The finest grid for these boxes, 1..k_width of them: byte * cell + origin is never inside a box.
+  static Grid around(std::span<const Box> boxes);
+  /// The box of a child, rounded outwards where floats cannot hold it.
+  Box box(uint32_t child) const;
+};
+
 /// Most triangle references: 3 texels each within the 2^27 texels that every device of interest offers.
 inline constexpr uint32_t k_max_triangles = (1u << 27) / 3;
 
@@ -54,7 +82,7 @@ inline constexpr uint32_t k_max_triangles = (1u << 27) / 3;
 /// Throws Error when there are more references than k_max_triangles.
 BvhData flatten(const Tree& tree, const Triangles& triangles);
 
-/// Checks every promise of this header against the triangles: order, links, depth, boxes around their
+/// Checks every promise of this header against the triangles: order, links, stack, boxes around their
 /// content, each triangle that can be hit present with its flag. Returns "" or the first thing found wrong.
 /// For tests and tools.
 std::string check(const BvhData& data, const Triangles& triangles);

@@ -43,15 +43,6 @@ uint32_t append_median(Tree& tree, uint32_t first, uint32_t count) {
   return index;
 }
 
-std::vector<uint32_t> heights(const Tree& tree) {
-  std::vector<uint32_t> height(tree.nodes.size(), 0);
-  for (size_t i = tree.nodes.size(); i-- > 0;) {  // children come after their parent
-    const Tree::Node& node = tree.nodes[i];
-    if (!node.leaf()) height[i] = 1 + std::max(height[node.child[0]], height[node.child[1]]);
-  }
-  return height;
-}
-
 }  // namespace
 
 std::vector<Reference> references_of(const Triangles& triangles) {
@@ -81,6 +72,15 @@ Tree build_median(std::vector<Reference> references) {
   tree.references = std::move(references);
   if (!tree.references.empty()) append_median(tree, 0, static_cast<uint32_t>(tree.references.size()));
   return tree;
+}
+
+std::vector<uint32_t> heights(const Tree& tree) {
+  std::vector<uint32_t> height(tree.nodes.size(), 0);
+  for (size_t i = tree.nodes.size(); i-- > 0;) {  // children come after their parent
+    const Tree::Node& node = tree.nodes[i];
+    if (!node.leaf()) height[i] = 1 + std::max(height[node.child[0]], height[node.child[1]]);
+  }
+  return height;
 }
 
 uint32_t depth(const Tree& tree) { return tree.nodes.empty() ? 0 : heights(tree)[0]; }

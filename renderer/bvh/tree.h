@@ -40,6 +40,9 @@ uint32_t least_depth(uint32_t count);
 /// rays cost about twice as much as a surface-area heuristic's.
 Tree build_median(std::vector<Reference> references);
 
+/// For every node, the levels of inner nodes on the deepest path down from it; 0 for leaves.
+std::vector<uint32_t> heights(const Tree& tree);
+
 /// Levels of inner nodes on the deepest path.
 uint32_t depth(const Tree& tree);
 

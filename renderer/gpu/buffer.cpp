@@ -35,6 +35,7 @@ void check_limits(const DeviceInfo& info, const BufferDesc& desc) {
 Buffer::Impl::~Impl() {
   const auto& vk = handles->vk;
   if (view) vk.vkDestroyBufferView(handles->device, view, nullptr);
+  if (word_view) vk.vkDestroyBufferView(handles->device, word_view, nullptr);
   if (buffer) vk.vkDestroyBuffer(handles->device, buffer, nullptr);
   handles->allocator->free(memory);
 }
@@ -73,6 +74,8 @@ Buffer::Buffer(Device& device, const BufferDesc& desc) {
     view.format = VK_FORMAT_R32G32B32A32_SFLOAT;
     view.range = impl->allocated;
     check(h.vk.vkCreateBufferView(h.device, &view, nullptr, &impl->view), "creating a texel buffer");
+    view.format = VK_FORMAT_R32G32B32A32_UINT;
+    check(h.vk.vkCreateBufferView(h.device, &view, nullptr, &impl->word_view), "creating a texel buffer");
   }
   impl_ = std::move(impl);
 }

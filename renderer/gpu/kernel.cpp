@@ -12,6 +12,7 @@ VkDescriptorType descriptor_type(Kernel::Impl::Kind kind) {
     case Kernel::Impl::Kind::storage_buffer:
       return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     case Kernel::Impl::Kind::texel_buffer:
+    case Kernel::Impl::Kind::texel_buffer_words:
       return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     case Kernel::Impl::Kind::texel_image:
       return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
@@ -27,13 +28,16 @@ Kernel::Impl::Kind slot_kind(const std::string& file, const spirv::Resource& res
       return Kernel::Impl::Kind::storage_buffer;
     case spirv::ResourceKind::texel_buffer:
       return Kernel::Impl::Kind::texel_buffer;
+    case spirv::ResourceKind::texel_buffer_words:
+      return Kernel::Impl::Kind::texel_buffer_words;
     case spirv::ResourceKind::texel_image:
       return Kernel::Impl::Kind::texel_image;
     case spirv::ResourceKind::sampled_image:
       return Kernel::Impl::Kind::sampled_image;
     default:
       throw_error(file,
-                  "'{}' is neither a storage buffer, a samplerBuffer, an imageBuffer nor a sampler2DArray; "
+                  "'{}' is neither a storage buffer, a samplerBuffer, a usamplerBuffer, an imageBuffer nor a "
+                  "sampler2DArray; "
                   "nothing else can be "
                   "bound to a kernel",
                   resource.name);

@@ -56,7 +56,7 @@ class ShaderCompiler {
 /// name -> resource. Resources must outlive every use. Setting a name again replaces it.
 class Resources {
  public:
-  /// For the storage buffer block, the samplerBuffer or the imageBuffer of that name.
+  /// For the storage buffer block, the samplerBuffer, the usamplerBuffer or the imageBuffer of that name.
   void set(const std::string& name, const Buffer& buffer);
   /// For the sampler2DArray of that name.
   void set(const std::string& name, const TextureArray& array);
@@ -71,7 +71,7 @@ class Resources {
 };
 
 /// One compute pipeline. In the shader, `buffer NAME {...}` is bound to the resource NAME (the block's name,
-/// not the instance's), `uniform samplerBuffer NAME`,
+/// not the instance's), `uniform samplerBuffer NAME`, `uniform usamplerBuffer NAME`,
 /// `layout(rgba32f) uniform imageBuffer NAME` and `uniform sampler2DArray NAME` likewise; set and
 /// binding numbers are left out of the source (ignored if there). A library file may declare more than a
 /// kernel uses: only what main() reaches is needed. `constants` set `layout(constant_id = N) const` values

@@ -21,8 +21,8 @@ struct BufferDesc {
   std::string name;    ///< for messages: "out of device memory for 'film sums' (99 MiB)"
   uint64_t bytes = 0;  ///< 0 is allowed and makes a 16-byte buffer (so that it can be bound)
   Memory memory = Memory::device;
-  bool texel =
-      false;  ///< also bindable as samplerBuffer and as rgba32f imageBuffer; bytes must be a multiple of 16
+  bool texel = false;  ///< also bindable as samplerBuffer, usamplerBuffer and rgba32f imageBuffer, texels of
+                       ///< four words; bytes must be a multiple of 16
 };
 
 /// A storage buffer (also transfer source and destination, indirect arguments, and optionally a texel

@@ -279,8 +279,13 @@ Module reflect(const std::vector<uint32_t>& words) {
     } else if (type.op == spv::OpTypeSampledImage || type.op == spv::OpTypeImage) {
       const Type& image = type.op == spv::OpTypeImage ? type : parsed.types.at(type.operands[0]);
       const uint32_t dimension = image.operands[1], arrayed = image.operands[3], sampled = image.operands[5];
-      if (dimension == spv::DimBuffer && sampled == 1) resource.kind = ResourceKind::texel_buffer;
-      if (dimension == spv::DimBuffer && sampled == 2) resource.kind = ResourceKind::texel_image;
+      const Type& component = parsed.types.at(image.operands[0]);
+      const bool floats = component.op == spv::OpTypeFloat;
+      const bool words = component.op == spv::OpTypeInt && component.operands[1] == 0;
+      if (dimension == spv::DimBuffer && sampled == 1 && floats) resource.kind = ResourceKind::texel_buffer;
+      if (dimension == spv::DimBuffer && sampled == 1 && words)
+        resource.kind = ResourceKind::texel_buffer_words;
+      if (dimension == spv::DimBuffer && sampled == 2 && floats) resource.kind = ResourceKind::texel_image;
       if (dimension == spv::Dim2D && arrayed && type.op == spv::OpTypeSampledImage)
         resource.kind = ResourceKind::sampled_image;
     }

@@ -10,7 +10,8 @@ namespace lucerna::gpu::spirv {
 enum class ResourceKind {
   storage_buffer,
   uniform_buffer,
-  texel_buffer,
+  texel_buffer,        ///< samplerBuffer
+  texel_buffer_words,  ///< usamplerBuffer
   texel_image,
   sampled_image,
   unsupported

@@ -73,11 +73,9 @@ const Resources::Entry& resource_for(const Kernel::Impl& kernel, const Kernel::I
   }
   const Buffer& buffer = *std::get<const Buffer*>(*entry);
   if (!buffer) throw_error(kernel.file, "the buffer '{}' was never made, or was moved away", slot.name);
-  const bool texels =
-      slot.kind == Kernel::Impl::Kind::texel_buffer || slot.kind == Kernel::Impl::Kind::texel_image;
+  const bool texels = slot.kind != Kernel::Impl::Kind::storage_buffer;
   if (texels && !buffer.impl()->view)
-    throw_error(kernel.file,
-                "'{}' is a samplerBuffer or imageBuffer, but the buffer '{}' was made without texel = true",
+    throw_error(kernel.file, "'{}' is read as texels, but the buffer '{}' was made without texel = true",
                 slot.name, buffer.name());
   const uint64_t limit = kernel.handles->info.limits.max_storage_buffer;
   if (slot.kind == Kernel::Impl::Kind::storage_buffer && buffer.bytes() > limit)
@@ -181,10 +179,15 @@ VkDescriptorSet Stream::Impl::set_for(const Kernel::Impl& kernel, const Resource
         break;
       }
       case Kernel::Impl::Kind::texel_buffer:
+        write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+        write.pTexelBufferView = &std::get<const Buffer*>(entry)->impl()->view;
+        break;
+      case Kernel::Impl::Kind::texel_buffer_words:
+        write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+        write.pTexelBufferView = &std::get<const Buffer*>(entry)->impl()->word_view;
+        break;
       case Kernel::Impl::Kind::texel_image:
-        write.descriptorType = kernel.slots[i].kind == Kernel::Impl::Kind::texel_buffer
-                                   ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
-                                   : VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+        write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
         write.pTexelBufferView = &std::get<const Buffer*>(entry)->impl()->view;
         break;
       case Kernel::Impl::Kind::sampled_image:

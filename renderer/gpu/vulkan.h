@@ -110,8 +110,9 @@ struct Buffer::Impl {
   BufferDesc desc;
   uint64_t id = 0;
   VkBuffer buffer = VK_NULL_HANDLE;
-  VkBufferView view = VK_NULL_HANDLE;  ///< when desc.texel
-  uint64_t allocated = 0;              ///< desc.bytes rounded up to 16, at least 16
+  VkBufferView view = VK_NULL_HANDLE;       ///< when desc.texel: as floats
+  VkBufferView word_view = VK_NULL_HANDLE;  ///< and as unsigned integers
+  uint64_t allocated = 0;                   ///< desc.bytes rounded up to 16, at least 16
   Allocation memory;
   ~Impl();
 };
@@ -127,7 +128,7 @@ struct TextureArray::Impl {
 };
 
 struct Kernel::Impl {
-  enum class Kind { storage_buffer, texel_buffer, texel_image, sampled_image };
+  enum class Kind { storage_buffer, texel_buffer, texel_buffer_words, texel_image, sampled_image };
   struct Slot {
     std::string name;
     Kind kind;

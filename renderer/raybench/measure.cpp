@@ -33,12 +33,12 @@ ComputeTracer::ComputeTracer(gpu::Device& device, gpu::ShaderCompiler& compiler,
   t.closest = kernel("0");
   t.any = kernel("1");
   t.nodes =
-      gpu::Buffer(device, {.name = "BVH nodes", .bytes = tree.nodes.size() * sizeof(vec4), .texel = true});
+      gpu::Buffer(device, {.name = "BVH nodes", .bytes = tree.nodes.size() * sizeof(uvec4), .texel = true});
   t.triangles = gpu::Buffer(device, {.name = "BVH triangles",
                                      .bytes = std::max<size_t>(16, tree.triangles.size() * sizeof(vec4)),
                                      .texel = true});
   t.queue = gpu::Buffer(device, {.name = "no queue", .bytes = 16});
-  t.nodes.write(std::span<const vec4>(tree.nodes));
+  t.nodes.write(std::span<const uvec4>(tree.nodes));
   t.triangles.write(std::span<const vec4>(tree.triangles));
   t.resources.set("bvh_nodes", t.nodes);
   t.resources.set("bvh_triangles", t.triangles);

@@ -15,20 +15,20 @@
 
 // ---- fetch ----
 #ifdef LUCERNA_FETCH_STORAGE
-layout(scalar) readonly buffer bvh_nodes { vec4 bvh_node_texels[]; };
+layout(scalar) readonly buffer bvh_nodes { uvec4 bvh_node_texels[]; };
 layout(scalar) readonly buffer bvh_triangles { vec4 bvh_triangle_texels[]; };
-vec4 bvh_node_texel(uint i) { return bvh_node_texels[i]; }
+uvec4 bvh_node_texel(uint i) { return bvh_node_texels[i]; }
 vec4 bvh_triangle_texel(uint i) { return bvh_triangle_texels[i]; }
 #else
-uniform samplerBuffer bvh_nodes;
+uniform usamplerBuffer bvh_nodes;
 uniform samplerBuffer bvh_triangles;
-vec4 bvh_node_texel(uint i) { return texelFetch(bvh_nodes, int(i)); }
+uvec4 bvh_node_texel(uint i) { return texelFetch(bvh_nodes, int(i)); }
 vec4 bvh_triangle_texel(uint i) { return texelFetch(bvh_triangles, int(i)); }
 #endif
 
 // ---- stack ----
-// A node on level L of the tree finds at most L - 1 entries, so that 32 do for k_max_depth levels.
-const uint k_bvh_stack = 32u;
+// lucerna::bvh::k_stack: the layout sees to it that no traversal holds more.
+const uint k_bvh_stack = 48u;
 #ifdef LUCERNA_STACK_LOCAL
 uint bvh_stack[k_bvh_stack];
 #define bvh_stack_at(i) bvh_stack[i]
@@ -38,8 +38,9 @@ shared uint bvh_stack[k_bvh_stack * 64u];
 #endif
 
 // ---- words ----
-const uint k_bvh_flag = 0x80000000u, k_bvh_value = 0x1fffffffu;
-const uint k_bvh_done = 0xffffffffu;  // no link: bit 29 is never set in one
+const uint k_bvh_flag = 0x80000000u;  // of a link: leaf; of a triangle: non-opaque
+const uint k_bvh_prim = 0x1fffffffu;  // of a triangle's word, its id
+const uint k_bvh_done = 0xffffffffu;  // no link: no leaf has 7 triangles
 
 // ---- triangles ----
 // Watertight test of Woop, Benthin and Wald (JCGT 2(1), 2013): vertices are moved so that the ray starts at the origin
@@ -119,12 +120,13 @@ bool bvh_test(ShearedRay s, vec3 p0, vec3 p1, vec3 p2, out float t, out float u,
 }
 
 // ---- boxes ----
-// The shear moves a triangle by up to 5 units of rounding (2^-24) of its distance; boxes are widened by as much. The
-// distance is bounded by that of both from the world's origin. It also keeps a ray that runs within a box's face
-// inside it: the margin is larger than the last place of any coordinate.
+// The shear moves a triangle by up to 5 units of rounding (2^-24) of its distance, and the planes of the boxes, computed
+// as origin * inverse + byte * (cell * inverse), lie wrong by up to 5 units of theirs; boxes are widened by as much. Both
+// distances are bounded by that from the world's origin. It also keeps a ray that runs within a box's face inside it:
+// the margin is larger than the last place of any coordinate.
 float bvh_margin(Ray ray, float reach) {
   vec3 o = abs(ray.origin);
-  return 3e-7 * (reach + max(o.x, max(o.y, o.z)));
+  return 6e-7 * (reach + max(o.x, max(o.y, o.z)));
 }
 
 // A direction without zeros, so that no product below is 0 * infinity.
@@ -138,6 +140,19 @@ vec3 bvh_inverse(vec3 d) {
 // (T. Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013).
 const float k_bvh_slab = 1.0 + 3.6e-7;
 
+// The four bytes of a word, the lowest first.
+vec4 bvh_bytes(uint w) { return vec4(ivec4(uvec4(w, w >> 8, w >> 16, w >> 24) & 0xffu)); }
+
+// ---- order ----
+// A child that the ray enters is known by a key: the distance's bits, which order as it does, with the child's number in
+// the last two.
+const int k_bvh_missed = 0x7fffffff;  // larger than the key of any distance
+
+uint bvh_child(uvec4 links, int key) {
+  bool odd = (key & 1) != 0;
+  return (key & 2) != 0 ? (odd ? links.w : links.z) : (odd ? links.y : links.x);
+}
+
 // The hit of a ray, as `query` (shaders/shared/trace.h, a constant) defines it; dead rays hit nothing.
 Hit bvh_trace(Ray ray, const uint query) {
   Hit hit;
@@ -150,40 +165,53 @@ Hit bvh_trace(Ray ray, const uint query) {
   ShearedRay sheared = bvh_shear(ray);
   vec3 inverse = bvh_inverse(ray.direction);
   bvec3 back = lessThan(inverse, vec3(0.0));
-  float margin = bvh_margin(ray, bvh_node_texel(3u).z);
-  vec3 low = ray.origin + margin, high = ray.origin - margin;
-  vec4 ox = vec4(low.x, high.x, low.x, high.x);
-  vec4 oy = vec4(low.y, high.y, low.y, high.y);
-  vec4 oz = vec4(low.z, high.z, low.z, high.z);
+  // Where the ray starts as seen from the planes by which it enters and leaves: low planes move down by the margin,
+  // high ones up.
+  float margin = bvh_margin(ray, uintBitsToFloat(bvh_node_texel(2u).z));
+  vec3 aside = mix(vec3(margin), vec3(-margin), back);
+  vec3 near_origin = ray.origin + aside, far_origin = ray.origin - aside;
 
   uint link = ray.tmax > 0.0 ? 0u : k_bvh_done;
   uint depth = 0u;
   while (link != k_bvh_done) {
     while (link < k_bvh_flag) {
-      uint at = (link & k_bvh_value) * 4u;
-      vec4 x = bvh_node_texel(at), y = bvh_node_texel(at + 1u), z = bvh_node_texel(at + 2u);
-      vec4 links = bvh_node_texel(at + 3u);
-      x = (x - ox) * inverse.x;
-      y = (y - oy) * inverse.y;
-      z = (z - oz) * inverse.z;
-      // Near and far sides by the direction's sign. Compared as integers, which order as floats do unless both are
+      uint at = link * 4u;
+      uvec4 head = bvh_node_texel(at), xy = bvh_node_texel(at + 1u), z = bvh_node_texel(at + 2u);
+      uvec4 links = bvh_node_texel(at + 3u);
+      vec3 origin = uintBitsToFloat(head.xyz);
+      vec3 step = uintBitsToFloat(uvec3(head.w << 23, head.w << 15, head.w << 7) & 0x7f800000u) * inverse;
+      vec3 near = (origin - near_origin) * inverse, far = (origin - far_origin) * inverse;
+      // Near and far planes by the direction's sign. Compared as integers, which order as floats do unless both are
       // negative; then any of them says the same here, and no instruction is spent on NaNs, which cannot occur.
-      ivec2 x0 = floatBitsToInt(back.x ? x.yw : x.xz), x1 = floatBitsToInt(back.x ? x.xz : x.yw);
-      ivec2 y0 = floatBitsToInt(back.y ? y.yw : y.xz), y1 = floatBitsToInt(back.y ? y.xz : y.yw);
-      ivec2 z0 = floatBitsToInt(back.z ? z.yw : z.xz), z1 = floatBitsToInt(back.z ? z.xz : z.yw);
-      vec2 enter = intBitsToFloat(max(max(x0, y0), max(z0, ivec2(0))));
-      vec2 leave = intBitsToFloat(min(min(x1, y1), min(z1, ivec2(floatBitsToInt(hit.t))))) * k_bvh_slab;
-      bool hit0 = enter.x <= leave.x, hit1 = enter.y <= leave.y;
-      uint link0 = floatBitsToUint(links.x), link1 = floatBitsToUint(links.y);
-      bool first0 = hit0 && (!hit1 || enter.x <= enter.y);
-      uint near = first0 ? link0 : link1;
-      uint far = first0 ? link1 : link0;
-      if (hit0 && hit1) {
-        bvh_stack_at(depth) = far;
-        link = near;
+      ivec4 x0 = floatBitsToInt(bvh_bytes(back.x ? xy.y : xy.x) * step.x + near.x);
+      ivec4 x1 = floatBitsToInt(bvh_bytes(back.x ? xy.x : xy.y) * step.x + far.x);
+      ivec4 y0 = floatBitsToInt(bvh_bytes(back.y ? xy.w : xy.z) * step.y + near.y);
+      ivec4 y1 = floatBitsToInt(bvh_bytes(back.y ? xy.z : xy.w) * step.y + far.y);
+      ivec4 z0 = floatBitsToInt(bvh_bytes(back.z ? z.y : z.x) * step.z + near.z);
+      ivec4 z1 = floatBitsToInt(bvh_bytes(back.z ? z.x : z.y) * step.z + far.z);
+      ivec4 enter = max(max(x0, y0), max(z0, ivec4(0)));
+      vec4 leave = intBitsToFloat(min(min(x1, y1), min(z1, ivec4(floatBitsToInt(hit.t))))) * k_bvh_slab;
+      bvec4 inside = lessThanEqual(intBitsToFloat(enter), leave);
+      ivec4 key = mix(ivec4(k_bvh_missed), (enter & ~3) | ivec4(0, 1, 2, 3), inside);
+      // Sorted by a network of five comparators.
+      ivec2 low = min(key.xy, key.zw), high = max(key.xy, key.zw);
+      int first = min(low.x, low.y), last = max(high.x, high.y);
+      int a = max(low.x, low.y), b = min(high.x, high.y);
+      int second = min(a, b), third = max(a, b);
+      if (last != k_bvh_missed) {
+        bvh_stack_at(depth) = bvh_child(links, last);
         ++depth;
-      } else if (hit0 || hit1) {
-        link = near;
+      }
+      if (third != k_bvh_missed) {
+        bvh_stack_at(depth) = bvh_child(links, third);
+        ++depth;
+      }
+      if (second != k_bvh_missed) {
+        bvh_stack_at(depth) = bvh_child(links, second);
+        ++depth;
+      }
+      if (first != k_bvh_missed) {
+        link = bvh_child(links, first);
       } else if (depth == 0u) {
         link = k_bvh_done;
       } else {
@@ -192,14 +220,14 @@ Hit bvh_trace(Ray ray, const uint query) {
       }
     }
     if (link == k_bvh_done) break;
-    uint first = (link & k_bvh_value) >> 3, count = link & 7u;
+    uint first = (link & ~k_bvh_flag) >> 3, count = link & 7u;
     for (uint i = 0u; i < count; ++i) {
       uint at = (first + i) * 3u;
       vec4 p0 = bvh_triangle_texel(at), p1 = bvh_triangle_texel(at + 1u), p2 = bvh_triangle_texel(at + 2u);
       float t, u, v;
       bool accept = bvh_test(sheared, p0.xyz, p1.xyz, p2.xyz, t, u, v);
       uint word = floatBitsToUint(p0.w);
-      uint prim = word & k_bvh_value;
+      uint prim = word & k_bvh_prim;
       accept = accept && t > 0.0 && (t < hit.t || (t == hit.t && prim < hit.prim));
 #ifdef LUCERNA_NON_OPAQUE
       if (query == k_query_any_opaque) accept = accept && word < k_bvh_flag;

@@ -211,6 +211,24 @@ TEST_CASE("texel buffers and texture arrays are read: formats, sRGB, filter, rep
   CHECK_THAT(error_of([&] { half.write_layer(2, halves.data()); }), Contains("'half'"));
 }
 
+TEST_CASE("a texel buffer read as words keeps bits that are no number") {
+  test::SilentDevice silent;
+  ShaderCompiler compiler;
+  const Kernel kernel(silent.device, compiler, shader("gpu_words.comp"));
+  std::vector<uvec4> words;  // NaNs, denormal numbers, a negative zero
+  for (uint32_t i = 0; i < 8; ++i) words.push_back({0x7f800001u + i, i, 0x80000000u, ~i});
+  Buffer source(silent.device, {"words", words.size() * 16, Memory::device, true});
+  source.write(std::span<const uvec4>(words));
+  Buffer result(silent.device, {"result", words.size() * 16});
+  Resources resources;
+  resources.set("words", source);
+  resources.set("Result", result);
+  Stream stream(silent.device);
+  stream.dispatch(kernel, resources, uint32_t(words.size()), 1);
+  stream.run();
+  CHECK(result.read_all<uvec4>() == words);
+}
+
 TEST_CASE("a texture larger than the staging buffer arrives whole") {
   test::SilentDevice silent;
   Device& device = silent.device;

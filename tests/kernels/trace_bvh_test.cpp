@@ -34,10 +34,10 @@ class ComputeTracer {
   explicit ComputeTracer(const Mesh& mesh, const BuildOptions& options = {})
       : ComputeTracer(build(mesh.view(), options)) {}
   explicit ComputeTracer(BvhData data) : data_(std::move(data)) {
-    nodes_ = gpu::Buffer(device(), {"nodes", data_.nodes.size() * sizeof(vec4), gpu::Memory::device, true});
+    nodes_ = gpu::Buffer(device(), {"nodes", data_.nodes.size() * sizeof(uvec4), gpu::Memory::device, true});
     triangles_ = gpu::Buffer(device(),
                              {"triangles", data_.triangles.size() * sizeof(vec4), gpu::Memory::device, true});
-    nodes_.write(std::span<const vec4>(data_.nodes));
+    nodes_.write(std::span<const uvec4>(data_.nodes));
     triangles_.write(std::span<const vec4>(data_.triangles));
   }
 
@@ -146,38 +146,49 @@ TEST_CASE("no ray leaks through a closed mesh, on the device: 10^7 rays") {
   }
 }
 
-TEST_CASE("a tree as deep as the stack") {
-  // Triangles each as large as their distance, as a list (the worst tree): limit_depth() leaves it
-  // k_max_depth levels. Rays along the list pass every box, in the half of it that its triangle does not
-  // cover, so that coming from the far end they fill the stack; only the triangle `odd` covers the other
-  // half. It lies where the stack is deepest, so that an entry lost there is a hit lost.
-  constexpr uint32_t k_count = 720;
+TEST_CASE("a tree that fills the stack") {
+  // Triangles each as large as their distance, the farthest at the root: on each level an inner node with two
+  // of them and the rest. The pair is larger than the rest, so that nodes of four children take in the pair
+  // and one level of the rest: three entries for two levels, which is the worst there is. Rays from the near
+  // end pass every box, in the half of it that its triangle does not cover, and leave three entries in every
+  // node; only the triangle `odd` covers the other half. For some `odd` it lies under the last entry that
+  // fits.
   Random random(25);
-  for (uint32_t odd = k_count - 40; odd < k_count; odd += 3) {
+  for (uint32_t odd = 0; odd < 2 * k_max_depth; ++odd) {
     Mesh mesh;
-    float x = 1e-12f;
-    for (uint32_t i = 0; i < k_count; ++i, x *= 1.08f) {
+    float x = 1e3f;
+    for (uint32_t i = 0; i < 2 * k_max_depth; ++i, x /= 1.6f) {
       const float near = i == odd ? 1.2f : 1.0f, far = i == odd ? 1.0f : 1.2f;
       mesh.add(x * vec3(1, near, near), x * vec3(1, far, near), x * vec3(1, near, far));
     }
-    Tree list;
-    list.references = references_of(mesh.view());
-    REQUIRE(list.references.size() == k_count);
-    std::vector<Box> tail(k_count + 1);
-    for (uint32_t i = k_count; i-- > 0;) tail[i] = tail[i + 1], tail[i].grow(list.references[i].box);
-    for (uint32_t i = 0; i < k_count; ++i) {
-      const auto at = static_cast<uint32_t>(list.nodes.size());
-      if (i + 1 < k_count) list.nodes.push_back({tail[i], {at + 1, at + 2}, i, k_count - i});
-      list.nodes.push_back({list.references[i].box, {Tree::k_leaf, Tree::k_leaf}, i, 1});
+    Tree tree;
+    tree.references = references_of(mesh.view());
+    REQUIRE(tree.references.size() == 2 * k_max_depth);
+    const auto box = [&](uint32_t first, uint32_t count) {
+      Box b;
+      for (uint32_t i = first; i < first + count; ++i) b.grow(tree.references[i].box);
+      return b;
+    };
+    const auto pair = [&](uint32_t first) {
+      const auto at = static_cast<uint32_t>(tree.nodes.size());
+      tree.nodes.push_back({box(first, 2), {at + 1, at + 2}, first, 2});
+      for (uint32_t i = first; i < first + 2; ++i)
+        tree.nodes.push_back({box(i, 1), {Tree::k_leaf, Tree::k_leaf}, i, 1});
+    };
+    for (uint32_t level = 0; level + 1 < k_max_depth; ++level) {
+      const auto at = static_cast<uint32_t>(tree.nodes.size());
+      const uint32_t count = 2 * (k_max_depth - level);
+      tree.nodes.push_back({box(2 * level, count), {at + 4, at + 1}, 2 * level, count});
+      pair(2 * level);
     }
-    const BvhData data = flatten(list, mesh.view());
-    REQUIRE(data.max_depth == k_max_depth);
+    pair(2 * k_max_depth - 2);
+    REQUIRE(depth(tree) == k_max_depth);
+    const BvhData data = flatten(tree, mesh.view());
+    REQUIRE(data.stack >= k_stack - 2);
     REQUIRE(check(data, mesh.view()) == "");
     std::vector<Ray> rays;
-    for (int i = 0; i < 64; ++i) {
-      const vec3 d(1, random.uniform(1.13f, 1.17f), random.uniform(1.13f, 1.17f));
-      rays.push_back(i % 2 == 0 ? towards(2 * x * d, vec3(0)) : towards(vec3(0), d));
-    }
+    for (int i = 0; i < 64; ++i)
+      rays.push_back(towards(vec3(0), vec3(1, random.uniform(1.13f, 1.17f), random.uniform(1.13f, 1.17f))));
     std::vector<Hit> hits(rays.size());
     ComputeTracer tracer(data);
     tracer.trace(kernel(Query::closest, false), rays, hits);
