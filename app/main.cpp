@@ -6,6 +6,7 @@
 
 #include "app/verbs.h"
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "base/log.h"
 #include "plan/settings.h"
 #include "ui/viewer.h"
@@ -130,6 +131,7 @@ int main_checked(int argc, char** argv) {
 }  // namespace lucerna::app
 
 int main(int argc, char** argv) {
+  lucerna::separate_large_allocations();
   try {
     return lucerna::app::main_checked(argc, argv);
   } catch (const std::exception& e) {

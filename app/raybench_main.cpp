@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "base/huge_pages.h"
 #include "raybench/report.h"
 
 namespace {
@@ -89,6 +90,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  lucerna::separate_large_allocations();
   try {
     return run(argc, argv);
   } catch (const std::exception& e) {

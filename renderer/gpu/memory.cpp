@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "base/huge_pages.h"
 #include "gpu/vulkan.h"
 
 namespace lucerna::gpu {
@@ -102,11 +103,18 @@ VkResult Allocator::allocate_memory(VkDeviceSize bytes, uint32_t type, bool map,
   VkResult result = vk_.vkAllocateMemory(device_, &info, nullptr, &memory);
   if (result != VK_SUCCESS) return result;
   mapped = nullptr;
-  if (map) {
+  // On a device that is the processor, large pages serve what it alone reads just as well.
+  const bool advise = map_device_memory_ && maps(type, Memory::device);
+  if (map || advise) {
     result = vk_.vkMapMemory(device_, memory, 0, VK_WHOLE_SIZE, 0, &mapped);
     if (result != VK_SUCCESS) {
       vk_.vkFreeMemory(device_, memory, nullptr);
       return result;
+    }
+    if (advise) advise_huge_pages(mapped, bytes);
+    if (!map) {
+      vk_.vkUnmapMemory(device_, memory);
+      mapped = nullptr;
     }
   }
   heap_used_[heap] += bytes;

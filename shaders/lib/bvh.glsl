@@ -46,7 +46,7 @@ const uint k_bvh_done = 0xffffffffu;  // no link: no leaf has 7 triangles
 // Watertight test of Woop, Benthin and Wald (JCGT 2(1), 2013): vertices are moved so that the ray starts at the origin
 // and sheared so that it runs along the axis kz in which its direction is largest; the signs of three 2D edge functions
 // then decide. `precise` matters: a fused multiply-add would give two triangles different signs for the edge that they
-// share. renderer/bvh/embree/packed_triangles.cpp is the same test, operation by operation.
+// share. renderer/bvh/embree/packed_triangles.h is the same test, operation by operation.
 struct ShearedRay {
   vec3 origin;  // kx, ky, kz
   vec3 shear;

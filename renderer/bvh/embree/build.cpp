@@ -22,7 +22,7 @@ struct BuiltInner : BuiltNode {
   Box box[2];
 };
 struct BuiltLeaf : BuiltNode {
-  Reference references[k_max_leaf];
+  Reference references[k_largest_leaf];
 };
 
 struct Job {
@@ -170,7 +170,7 @@ Tree build_tree(const Triangles& triangles, const BuildOptions& options) {
   arguments.maxDepth = 1024;
   arguments.sahBlockSize = 1;
   arguments.minLeafSize = 1;
-  arguments.maxLeafSize = k_max_leaf;
+  arguments.maxLeafSize = std::min(options.max_leaf, k_largest_leaf);
   arguments.traversalCost = 1.0f;
   arguments.intersectionCost = options.intersection_cost;
   arguments.bvh = bvh.get();

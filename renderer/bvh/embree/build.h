@@ -6,6 +6,9 @@
 
 namespace lucerna::bvh {
 
+/// Most triangles that a leaf of a tree that is not for the device may hold.
+inline constexpr uint32_t k_largest_leaf = 8;
+
 struct BuildOptions {
   /// Cut long triangles where it pays, so that one may lie in several leaves. Never changes a hit. Building
   /// takes four times as long; scenes of many small triangles gain nothing, which is why it is off.
@@ -15,6 +18,8 @@ struct BuildOptions {
   /// Cost of a triangle test over that of a node visit, for the heuristic. On lavapipe 0.5 to 4 trace alike,
   /// with 1 a little ahead.
   float intersection_cost = 1.0f;
+  uint32_t max_leaf =
+      k_max_leaf;   ///< triangles in a leaf, at most k_largest_leaf; flatten() cuts larger leaves up
   int threads = 0;  ///< 0: all cores
   /// Called from the building threads, one at a time, with the share done (0..1). Returning false cancels the
   /// build.

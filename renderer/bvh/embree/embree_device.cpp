@@ -8,7 +8,7 @@ namespace lucerna::bvh {
 
 EmbreeDevice new_embree_device(int threads) {
   // Embree's own threads only build. They are TBB's: pinning them would take cores from the device's.
-  EmbreeDevice device(rtcNewDevice(fmt::format("threads={},set_affinity=0", threads).c_str()));
+  EmbreeDevice device(rtcNewDevice(fmt::format("threads={},set_affinity=0,hugepages=1", threads).c_str()));
   if (!device) throw_error("embree", "cannot start: {}", embree_error(nullptr));
   return device;
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <type_traits>
 
 #include "base/error.h"
+#include "base/huge_pages.h"
 #include "bvh/embree/build.h"
 #include "bvh/embree/embree_device.h"
 #include "bvh/embree/flush_denormals.h"
@@ -41,18 +43,22 @@ void bounds(const RTCBoundsFunctionArguments* a) {
 
 /// The nearest lane among those hit, at equal distance that with the lower id; -1 when the best so far
 /// stands.
-int choose(const PackedTriangles& leaf, const ShearedRay& ray, int lanes, const Float4& t) {
+LUCERNA_LANES_INLINE int choose(const PackedTriangles& leaf, const ShearedRay& ray, uint32_t lanes,
+                                const Floats& t) {
   int best = -1;
   float limit = ray.limit;
   uint32_t prim = ray.best_prim;
-  for (int k = 0; k < 4; ++k) {
-    if ((lanes >> k & 1) == 0 || !(t[k] < limit || (t[k] == limit && leaf.prim[k] < prim))) continue;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int k = std::countr_zero(lanes);
+    if (!(t[k] < limit || (t[k] == limit && leaf.prim[k] < prim))) continue;
     best = k, limit = t[k], prim = leaf.prim[k];
   }
   return best;
 }
 
-void closest_leaf(const RTCIntersectFunctionNArguments* a) {
+// Compiled twice, the better one chosen when the program starts. Neither may contract products and sums into
+// one rounding (AVX2 without FMA): the device does not.
+[[gnu::target_clones("avx2", "default")]] void closest_leaf(const RTCIntersectFunctionNArguments* a) {
   const PackedTriangles& leaf = static_cast<const Leaves*>(a->geometryUserPtr)->triangles[a->primID];
   auto& context = *reinterpret_cast<Context*>(a->context);
   RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
@@ -60,8 +66,8 @@ void closest_leaf(const RTCIntersectFunctionNArguments* a) {
   for (unsigned i = 0; i < a->N; ++i) {
     if (a->valid[i] == 0) continue;
     ShearedRay& ray = context.ray[RTCRayN_id(rays, a->N, i)];
-    Float4 t, u, v;
-    const int lanes = intersect(leaf, ray, t, u, v);
+    Floats t, u, v;
+    const uint32_t lanes = intersect(leaf, ray, t, u, v);
     if (lanes == 0) continue;
     const int k = choose(leaf, ray, lanes, t);
     if (k < 0) continue;
@@ -72,12 +78,12 @@ void closest_leaf(const RTCIntersectFunctionNArguments* a) {
   }
 }
 
-void any_leaf(const RTCOccludedFunctionNArguments* a) {
+[[gnu::target_clones("avx2", "default")]] void any_leaf(const RTCOccludedFunctionNArguments* a) {
   const PackedTriangles& leaf = static_cast<const Leaves*>(a->geometryUserPtr)->triangles[a->primID];
   auto& context = *reinterpret_cast<Context*>(a->context);
   for (unsigned i = 0; i < a->N; ++i) {
     if (a->valid[i] == 0) continue;
-    Float4 t, u, v;
+    Floats t, u, v;
     if (intersect(leaf, context.ray[RTCRayN_id(a->ray, a->N, i)], t, u, v) != 0)
       RTCRayN_tfar(a->ray, a->N, i) = -k_infinity;
   }
@@ -113,7 +119,8 @@ struct HostTracer::Impl {
       packet_width = 8;
     BuildOptions options;
     options.threads = threads;
-    options.intersection_cost = 0.2f;  // four are tested at once: full leaves pay
+    options.max_leaf = k_lanes;
+    options.intersection_cost = 0.15f;  // eight are tested at once: full leaves pay
     const Tree tree = build_tree(triangles, options);
     fill(all, tree, triangles, [](uint32_t) { return true; });
     const auto is_opaque = [&](uint32_t prim) { return triangles.opaque(prim); };
@@ -132,9 +139,13 @@ struct HostTracer::Impl {
       for (int axis = 0; axis < 3; ++axis)
         reach = std::max({reach, std::abs(node.box.lo[axis]), std::abs(node.box.hi[axis])});
     const vec3 margin(1e-6f * reach);
+    const auto most = static_cast<size_t>(std::count_if(tree.nodes.begin(), tree.nodes.end(),
+                                                        [](const Tree::Node& node) { return node.leaf(); }));
+    part.leaves.triangles.reserve(most), part.leaves.boxes.reserve(most);
+    advise_huge_pages(part.leaves.triangles.data(), most * sizeof(PackedTriangles));
     for (const Tree::Node& node : tree.nodes) {
       if (!node.leaf()) continue;
-      uint32_t prims[k_max_leaf], count = 0;
+      uint32_t prims[k_lanes], count = 0;
       Box box;
       for (uint32_t i = node.first; i < node.first + node.count; ++i) {
         const Reference& r = tree.references[i];
@@ -142,7 +153,7 @@ struct HostTracer::Impl {
       }
       if (count == 0) continue;
       PackedTriangles packed;
-      for (uint32_t k = 0; k < 4; ++k) {
+      for (uint32_t k = 0; k < k_lanes; ++k) {
         packed.prim[k] = prims[k < count ? k : 0];
         for (int corner = 0; corner < 3; ++corner)
           for (int axis = 0; axis < 3; ++axis)

@@ -1,6 +1,6 @@
 #pragma once
-// The watertight triangle test of shaders/lib/bvh.glsl for the host: one ray against up to four triangles at
-// once.
+// The watertight triangle test of shaders/lib/bvh.glsl for the host: one ray against up to eight triangles
+// at once.
 //
 // S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. Vertices are moved
 // so that the ray starts at the origin and sheared so that it runs along an axis; then the signs of three 2D
@@ -11,20 +11,27 @@
 //
 // The arithmetic is the shader's, operation by operation: where the device divides with correct rounding
 // (lavapipe does), t, u and v are the same bits.
+#include <emmintrin.h>
+
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "bvh/bvh.h"
 
 namespace lucerna::bvh {
 
-typedef float Float4 __attribute__((vector_size(16)));
-typedef int32_t Int4 __attribute__((vector_size(16)));
+/// Triangles tested at once: one AVX register of floats, or two of SSE.
+inline constexpr int k_lanes = 8;
+typedef float Floats __attribute__((vector_size(4 * k_lanes)));
+typedef int32_t Ints __attribute__((vector_size(4 * k_lanes)));
+/// A function that is compiled for AVX2 too, where its caller is.
+#define LUCERNA_LANES_INLINE [[gnu::always_inline]] inline
 
-/// Up to four triangles, transposed. Unused lanes repeat another lane, which changes no result.
-struct alignas(16) PackedTriangles {
-  Float4 vertex[3][3];  ///< [vertex][axis]
-  uint32_t prim[4];
+/// Up to k_lanes triangles, transposed. Unused lanes repeat another lane, which changes no result.
+struct alignas(4 * k_lanes) PackedTriangles {
+  Floats vertex[3][3];  ///< [vertex][axis]
+  uint32_t prim[k_lanes];
 };
 
 /// What the test needs to know of a ray, computed once.
@@ -48,7 +55,54 @@ struct ShearedRay {
   ShearedRay() = default;
 };
 
-/// t, u, v of the four triangles; returns the lanes that are hit with 0 < t <= ray.limit, as bits 0..3.
-int intersect(const PackedTriangles& triangles, const ShearedRay& ray, Float4& t, Float4& u, Float4& v);
+/// The lanes whose mask is set, as bits.
+LUCERNA_LANES_INLINE uint32_t lanes(const Ints& mask) {
+  __m128i half[2];
+  static_assert(sizeof(half) == sizeof(mask));
+  std::memcpy(half, &mask, sizeof(mask));
+  return static_cast<uint32_t>(_mm_movemask_ps(_mm_castsi128_ps(half[0])) |
+                               _mm_movemask_ps(_mm_castsi128_ps(half[1])) << 4);
+}
+
+/// Where r = a * b - c * d is zero, the same without rounding: both products fit a double.
+LUCERNA_LANES_INLINE void refine(Floats& r, const Floats& a, const Floats& b, const Floats& c,
+                                 const Floats& d) {
+  for (int i = 0; i < k_lanes; ++i) {
+    if (r[i] != 0.0f) continue;
+    const double p = static_cast<double>(a[i]) * static_cast<double>(b[i]);
+    const double q = static_cast<double>(c[i]) * static_cast<double>(d[i]);
+    r[i] = static_cast<float>(p - q);
+  }
+}
+
+/// t, u, v of the triangles; returns the lanes that are hit with 0 < t <= ray.limit, as bits.
+LUCERNA_LANES_INLINE uint32_t intersect(const PackedTriangles& triangles, const ShearedRay& ray, Floats& t,
+                                        Floats& u, Floats& v) {
+  Floats x[3], y[3], z[3];
+  for (int k = 0; k < 3; ++k) {
+    const Floats along = triangles.vertex[k][ray.kz] - ray.origin[2];
+    x[k] = (triangles.vertex[k][ray.kx] - ray.origin[0]) - ray.shear[0] * along;
+    y[k] = (triangles.vertex[k][ray.ky] - ray.origin[1]) - ray.shear[1] * along;
+    z[k] = ray.shear[2] * along;
+  }
+  Floats a = x[2] * y[1] - y[2] * x[1];
+  Floats b = x[0] * y[2] - y[0] * x[2];
+  Floats c = x[1] * y[0] - y[1] * x[0];
+  if (lanes((a == 0.0f) | (b == 0.0f) | (c == 0.0f)) != 0) [[unlikely]] {
+    refine(a, x[2], y[1], y[2], x[1]);
+    refine(b, x[0], y[2], y[0], x[2]);
+    refine(c, x[1], y[0], y[1], x[0]);
+  }
+  const Ints negative = (a < 0.0f) | (b < 0.0f) | (c < 0.0f);
+  const Ints positive = (a > 0.0f) | (b > 0.0f) | (c > 0.0f);
+  const Floats det = a + b + c;
+  Ints hit = ~(negative & positive) & (det != 0.0f);
+  if (lanes(hit) == 0) return 0;
+  const Floats scale = 1.0f / det;
+  t = (a * z[0] + b * z[1] + c * z[2]) * scale;
+  u = b * scale, v = c * scale;
+  hit &= (t > 0.0f) & (t <= ray.limit);
+  return lanes(hit);
+}
 
 }  // namespace lucerna::bvh
