@@ -16,8 +16,7 @@ int bench_rays(const BenchRaysArguments& a) {
   const scene::Scene scene = scene::load(a.scene);
   raybench::FlatFile flat{.name = scene.name, .scene = upload::flatten(scene), .tree = {}, .camera = {}};
   if (flat.scene.triangles.empty()) throw Error(a.scene, "there are no triangles to trace");
-  flat.camera = scene.cameras.empty() ? scene::default_camera(scene) : scene.cameras.front();
-  if (!a.camera.empty()) flat.camera = scene::find_camera(scene, a.camera);
+  flat.camera = scene::starting_camera(scene, a.camera);
   const bvh::Triangles triangles{flat.scene.positions, flat.scene.non_opaque};
   flat.tree = bvh::build(triangles);
   if (!a.flat.empty()) {

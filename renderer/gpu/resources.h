@@ -64,7 +64,6 @@ class Buffer {
 };
 
 enum class TexelFormat { rgba8_unorm, rgba8_srgb, rgba16f, rgba32f };
-enum class AddressMode { repeat, clamp, mirror };
 
 struct TextureArrayDesc {
   std::string name;

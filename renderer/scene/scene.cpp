@@ -45,4 +45,9 @@ const Camera& find_camera(const Scene& scene, const std::string& name) {
   throw_error("camera", "the scene has no camera '{}'; it has {}", name, names.empty() ? "none" : names);
 }
 
+Camera starting_camera(const Scene& scene, const std::string& name) {
+  if (!name.empty()) return find_camera(scene, name);
+  return scene.cameras.empty() ? default_camera(scene) : scene.cameras.front();
+}
+
 }  // namespace lucerna::scene

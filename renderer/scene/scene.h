@@ -168,4 +168,7 @@ Camera default_camera(const Scene& scene);
 /// The camera of that name. Throws Error, listing the names, when there is none.
 const Camera& find_camera(const Scene& scene, const std::string& name);
 
+/// The camera to begin with: that of the name, or for an empty name the scene's first, or default_camera().
+Camera starting_camera(const Scene& scene, const std::string& name);
+
 }  // namespace lucerna::scene

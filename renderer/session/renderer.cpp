@@ -55,9 +55,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   plan::Settings settings;
   for (const char* key : {"tracer", "path.batch"}) settings.set(key, settings_.text(key));
   for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
-  scene::Camera camera = scene->cameras.empty() ? scene::default_camera(*scene) : scene->cameras.front();
-  if (const std::string& name = settings.text("camera"); !name.empty())
-    camera = scene::find_camera(*scene, name);
+  scene::Camera camera = scene::starting_camera(*scene, settings.text("camera"));
   install(std::move(scene), std::move(settings), camera, progress);
 }
 

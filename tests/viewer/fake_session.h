@@ -178,7 +178,7 @@ struct Session::Impl {
       log::error("{}: no such file; expected a .gltf or .glb scene", file.string());
     else {
       auto fresh = std::make_shared<scene::Scene>(fake::make_scene(file));
-      camera = fresh->cameras.empty() ? scene::default_camera(*fresh) : fresh->cameras[0];
+      camera = scene::starting_camera(*fresh, "");
       std::lock_guard lock(mutex);
       scene = fresh;
       ++scene_id;
