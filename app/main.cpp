@@ -46,7 +46,10 @@ int main_checked(int argc, char** argv) {
       ->allow_extra_args(false);
   render_verb->add_option("--size", r.size, "picture, WIDTHxHEIGHT")->capture_default_str();
   render_verb->add_option("--camera", r.camera, "name of a scene camera");
-  render_verb->add_option("--samples", r.samples, "samples a pixel")
+  render_verb->add_option(
+      "--error", r.error,
+      "relative error that every tile is to reach, such as 0.02: samples go where it is not reached yet");
+  render_verb->add_option("--samples", r.samples, "samples a pixel; with --error, the most that one may get")
       ->check(CLI::Range(int64_t(1), int64_t(1) << 20));
   render_verb->add_option("--time", r.seconds, "stop after this many seconds");
   render_verb->add_option("--seed", r.seed, "seed of all random decisions")

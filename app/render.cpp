@@ -1,6 +1,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
@@ -47,13 +48,76 @@ void check_folder(const std::string& file) {
 void print_progress(const session::Renderer& r, double seconds, double limit, bool last) {
   const double share = limit > 0 ? std::min(1.0, seconds / limit) : double(r.samples()) / r.max_samples();
   const double paths = double(r.stats().paths) / (double(r.film().width()) * r.film().height());
-  const double done = limit > 0 ? share : std::max(share, paths / r.max_samples());
+  double done = limit > 0 ? share : std::max(share, paths / r.max_samples());
+  if (const schedule::AdaptiveSchedule* s = r.adaptive(); s && limit <= 0)
+    done = double(s->count(schedule::TileState::done) + s->count(schedule::TileState::capped)) /
+           double(s->tiles().size());
   const double left = done > 0 ? seconds * (1 - done) / done : 0;
   std::fprintf(stderr, "\r%5.1f %%  %u/%u samples  %.2f Mray/s  %.2f samples/s  %s %.0f s left   %s",
                100 * done, r.samples(), r.max_samples(),
                1e-6 * double(r.stats().rays) / std::max(seconds, 1e-9), paths / std::max(seconds, 1e-9),
                "about", left, last ? "\n" : "");
   std::fflush(stderr);
+}
+
+/// Noise of the picture: estimated from its halves (film/error.h).
+nlohmann::ordered_json make_error(session::Renderer& r) {
+  const film::ImageError error = r.image_error();
+  nlohmann::ordered_json j;
+  j["rms"] = error.rms[0];
+  j["relative"] = error.relative(0);
+  for (int c = 0; c < paths::k_component_count; ++c) {
+    j["components"][paths::k_component_names[c]] = {{"rms", error.rms[c + 1]},
+                                                    {"relative", error.relative(c + 1)}};
+  }
+  return j;
+}
+
+/// Tiles that are over the target though they have all the samples they may have, the worst first.
+std::vector<uint32_t> unreached(const schedule::AdaptiveSchedule& s) {
+  std::vector<uint32_t> list;
+  for (uint32_t t = 0; t < s.tiles().size(); ++t)
+    if (s.tiles()[t].state != schedule::TileState::done) list.push_back(t);
+  std::sort(list.begin(), list.end(), [&](uint32_t a, uint32_t b) {
+    const float ea = s.tiles()[a].error, eb = s.tiles()[b].error;
+    return ea != eb ? ea > eb : a < b;
+  });
+  return list;
+}
+
+nlohmann::ordered_json make_tiles(const schedule::AdaptiveSchedule& s) {
+  using schedule::TileState;
+  nlohmann::ordered_json j;
+  j["side"] = s.options().tile;
+  j["target_error"] = s.options().target_error;
+  j["count"] = s.tiles().size();
+  j["done"] = s.count(TileState::done);
+  j["capped"] = s.count(TileState::capped);
+  j["unfinished"] = s.count(TileState::active) + s.count(TileState::waiting);
+  j["least_samples"] = s.least_samples();
+  j["most_samples"] = s.most_samples();
+  j["unreached"] = nlohmann::ordered_json::array();
+  for (const uint32_t t : unreached(s)) {
+    const schedule::Tile& tile = s.tiles()[t];
+    j["unreached"].push_back({{"x", t % s.tiles_across() * s.options().tile},
+                              {"y", t / s.tiles_across() * s.options().tile},
+                              {"error", tile.error},
+                              {"samples", tile.samples}});
+  }
+  return j;
+}
+
+void report_unreached(const schedule::AdaptiveSchedule& s) {
+  const std::vector<uint32_t> list = unreached(s);
+  if (list.empty()) return;
+  const schedule::Tile& worst = s.tiles()[list.front()];
+  log::warning(
+      "{} of {} tiles are over the error of {}: {} with all of {} samples, {} not finished; the worst, "
+      "{:.3f}, "
+      "at x {} y {}. More samples: --set sampling.max_samples=N",
+      list.size(), s.tiles().size(), s.options().target_error, s.count(schedule::TileState::capped),
+      s.options().max_samples, list.size() - s.count(schedule::TileState::capped), worst.error,
+      list.front() % s.tiles_across() * s.options().tile, list.front() / s.tiles_across() * s.options().tile);
 }
 
 nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
@@ -70,6 +134,7 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   j["load_s"] = r.load_seconds();
   j["compile_s"] = r.compile_seconds();
   j["samples"] = r.samples();
+  j["paths"] = r.stats().paths;
   j["rays"] = r.stats().rays;
   j["shadow_rays"] = r.stats().shadow_rays;
   j["mrays_per_s"] = 1e-6 * double(r.stats().rays) / std::max(wall, 1e-9);
@@ -78,6 +143,8 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   j["ended_by_depth"] = r.stats().depth;
   j["peak_host_mb"] = session::peak_host_mb();
   j["peak_device_mb"] = double(r.device().peak_bytes()) / (1 << 20);
+  j["error"] = make_error(r);
+  if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
   for (int c = 0; c < paths::k_component_count; ++c) {
@@ -111,7 +178,16 @@ int render(const RenderArguments& a) {
     if (at == std::string::npos) throw_error("--set", "'{}': expected key=value", change);
     changes.emplace_back(change.substr(0, at), change.substr(at + 1));
   }
-  if (a.samples != -1) changes.emplace_back("samples", std::to_string(a.samples));
+  if (a.samples != -1) {
+    changes.emplace_back("samples", std::to_string(a.samples));
+    if (a.error) changes.emplace_back("sampling.max_samples", std::to_string(a.samples));
+  }
+  if (a.error) {
+    if (!(*a.error > 0))
+      throw_error("--error", "'{}': expected a positive relative error, such as 0.02", *a.error);
+    changes.emplace_back("sampling.mode", "adaptive");
+    changes.emplace_back("sampling.target_error", fmt::format("{}", *a.error));
+  }
   if (a.seed != -1) changes.emplace_back("seed", std::to_string(a.seed));
   plan::Settings probe;
   for (const auto& [key, value] : changes)
@@ -154,6 +230,7 @@ int render(const RenderArguments& a) {
   sigaction(SIGINT, &before, nullptr);
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
+  if (r.adaptive() && !interrupted) report_unreached(*r.adaptive());
   for (const std::string& file : a.outputs) r.save(file);
   if (!a.stats.empty()) write_text(a.stats, make_stats(r, wall).dump(2) + "\n");
   if (r.stats().dropped) log::warning("{} contributions were not finite and were dropped", r.stats().dropped);

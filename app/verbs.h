@@ -1,6 +1,7 @@
 #pragma once
 // The batch verbs of the command line. Each returns the process's exit status; errors are thrown.
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,9 @@ struct RenderArguments {
   std::string scene;
   std::vector<std::string> outputs;
   std::string size = "1280x720", camera, device, stats;
-  int64_t samples = -1;  ///< -1: the settings'
-  double seconds = 0;    ///< 0: no time limit
+  int64_t samples = -1;         ///< -1: the settings'; with `error`, the most that a pixel may get
+  std::optional<double> error;  ///< relative error for every tile: adaptive sampling
+  double seconds = 0;           ///< 0: no time limit
   int64_t seed = -1;
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;

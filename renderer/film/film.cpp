@@ -23,6 +23,13 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width)
   normal_ = gpu::Buffer(device, {.name = "film normals", .bytes = pixels * 16, .texel = true});
   count_ = gpu::Buffer(device, {.name = "film counts", .bytes = pixels * 4});
   picture_ = gpu::Buffer(device, {.name = "picture", .bytes = pixels * 4, .memory = gpu::Memory::host});
+  errors_ = gpu::Buffer(
+      device,
+      {.name = "block errors", .bytes = blocks() * sizeof(shared::BlockError), .memory = gpu::Memory::host});
+}
+
+std::span<const shared::BlockError> Film::errors() const {
+  return {static_cast<const shared::BlockError*>(errors_.mapped()), blocks()};
 }
 
 void Film::clear(gpu::Stream& stream) {
@@ -30,6 +37,7 @@ void Film::clear(gpu::Stream& stream) {
   stream.fill(albedo_, 0);
   stream.fill(normal_, 0);
   stream.fill(count_, 0);
+  stream.fill(errors_, 0);
   stream.run();
 }
 
@@ -48,6 +56,7 @@ void Film::bind(gpu::Resources& r) const {
   plane("film_normal", "FilmNormal", normal_);
   r.set("FilmCount", count_);
   r.set("Picture", picture_);
+  r.set("BlockErrors", errors_);
 }
 
 Image Film::read() const {

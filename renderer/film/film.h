@@ -2,6 +2,7 @@
 // The film: component sums in two independently scrambled halves, features, sample counts, in device memory;
 // and its tone-mapped picture. Layout: shaders/shared/film.h.
 #include <array>
+#include <span>
 #include <vector>
 
 #include "base/math.h"
@@ -37,12 +38,17 @@ class Film {
   Film(gpu::Device& device, uint32_t width, uint32_t height);
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
-  uint32_t tiles() const { return ((width_ + 7) / 8) * ((height_ + 7) / 8); }
+  /// Blocks of 8x8 pixels, in raster order.
+  uint32_t blocks_across() const { return (width_ + 7) / 8; }
+  uint32_t blocks_down() const { return (height_ + 7) / 8; }
+  uint32_t blocks() const { return blocks_across() * blocks_down(); }
   /// Whether kernels may write it as storage buffers; otherwise they must be compiled with
   /// LUCERNA_FILM_IMAGES.
   bool fits_storage_buffers() const { return fits_storage_buffers_; }
   void clear(gpu::Stream& stream);
   void bind(gpu::Resources& resources) const;
+  /// One for each block, in raster order, as the last estimates left them (all 0 where there was none).
+  std::span<const shared::BlockError> errors() const;
   Image read() const;
   /// Mean radiance of each component over the picture's sampled pixels.
   static std::array<vec3, k_components> means(const Image& image);
@@ -53,7 +59,7 @@ class Film {
   uint32_t width_, height_;
   bool fits_storage_buffers_ = true;
   std::array<gpu::Buffer, k_components> sums_;
-  gpu::Buffer albedo_, normal_, count_, picture_;
+  gpu::Buffer albedo_, normal_, count_, picture_, errors_;
 };
 
 }  // namespace lucerna::film

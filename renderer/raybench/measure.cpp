@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/timer.h"
+#include "schedule/uniform.h"
 #include "shaders/shared/trace.h"
 #include "transport/frame.h"
 
@@ -130,7 +131,7 @@ FrameTime PathTracedFrame::run() {
   Impl& f = *impl_;
   f.wavefront.clear(f.film);
   f.wavefront.reset_stats();
-  schedule::UniformSchedule schedule(f.film.tiles(), f.options.samples, f.wavefront.slots());
+  schedule::UniformSchedule schedule(f.film.blocks(), f.options.samples, f.wavefront.slots());
   const Timer timer;
   while (!schedule.done()) f.wavefront.run(schedule.next(), f.film);
   const double seconds = timer.seconds();

@@ -143,9 +143,33 @@ void Renderer::restart() {
   wavefront_->clear(*film_);
   wavefront_->clear(*coarse_);
   wavefront_->reset_stats();
-  schedule_ = {film_->tiles(), uint32_t(settings_.integer("samples")), wavefront_->slots()};
+  start_schedule();
   wavefront_->set_frame(make_frame(width_, height_), enabled_components());
   applied_ = settings_.all();
+}
+
+void Renderer::start_schedule() {
+  schedule_ = {film_->blocks(), uint32_t(settings_.integer("samples")), wavefront_->slots()};
+  adaptive_.reset();
+  if (settings_.text("sampling.mode") != "adaptive") return;
+  adaptive_.emplace(film_->blocks_across(), film_->blocks_down(),
+                    schedule::AdaptiveOptions{
+                        .tile = uint32_t(std::stoul(settings_.text("sampling.tile"))),
+                        .target_error = float(settings_.real("sampling.target_error")),
+                        .min_samples = uint32_t(settings_.integer("sampling.min_samples")),
+                        .max_samples = uint32_t(settings_.integer("sampling.max_samples")),
+                        .slots = wavefront_->slots(),
+                    });
+}
+
+/// What the floor of the display (film/error.h) is before exposure.
+float Renderer::luminance_floor() const {
+  return film::k_luminance_floor * float(std::exp2(-settings_.real("film.ev")));
+}
+
+film::ImageError Renderer::image_error() {
+  wavefront_->estimate({}, *film_, luminance_floor());
+  return film::image_error(film_->errors());
 }
 
 void Renderer::apply_settings() {
@@ -226,7 +250,23 @@ void Renderer::relight(std::shared_ptr<const scene::Scene> edited) {
 }
 
 bool Renderer::step(const std::function<bool()>& cancel) {
-  if (!wavefront_ || schedule_.done()) return false;
+  if (!wavefront_ || done()) return false;
+  if (adaptive_) {
+    const schedule::WorkItem item = adaptive_->next();
+    if (!wavefront_->run(item, *film_, cancel)) {
+      adaptive_->give_back();
+      return false;
+    }
+    wavefront_->estimate(item.blocks, *film_, luminance_floor());
+    std::vector<float> errors;
+    for (const uint32_t tile : adaptive_->to_report()) {
+      std::vector<shared::BlockError> blocks;
+      for (const uint32_t block : adaptive_->blocks_of(tile)) blocks.push_back(film_->errors()[block]);
+      errors.push_back(float(film::tile_error(blocks).relative));
+    }
+    adaptive_->report(errors);
+    return true;
+  }
   const schedule::UniformSchedule before = schedule_;
   const schedule::WorkItem item = schedule_.next();
   if (wavefront_->run(item, *film_, cancel)) return true;
@@ -238,7 +278,7 @@ void Renderer::render_coarse(const std::function<bool()>& cancel) {
   if (!wavefront_) return;
   wavefront_->clear(*coarse_);
   wavefront_->set_frame(make_frame(coarse_->width(), coarse_->height()), enabled_components());
-  schedule::UniformSchedule schedule(coarse_->tiles(), 1, wavefront_->slots());
+  schedule::UniformSchedule schedule(coarse_->blocks(), 1, wavefront_->slots());
   while (!schedule.done() && wavefront_->run(schedule.next(), *coarse_, cancel)) {
   }
   wavefront_->set_frame(make_frame(width_, height_), enabled_components());
@@ -252,8 +292,7 @@ film::View Renderer::view() const {
     if (settings_.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
   v.curve = uint32_t(settings_.choice("film.tone_curve"));
   v.exposure = float(std::exp2(settings_.real("film.ev")));
-  v.scale =
-      v.layer == shared::k_layer_samples ? float(std::max(1u, schedule_.samples())) : 2 * flat_.scene_radius;
+  v.scale = v.layer == shared::k_layer_samples ? float(std::max(1u, max_samples())) : 2 * flat_.scene_radius;
   return v;
 }
 

@@ -6,15 +6,19 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "bvh/embree/host_tracer.h"
+#include "film/error.h"
 #include "film/film.h"
 #include "film/io/image_file.h"
 #include "gpu/kernel.h"
 #include "paths/automaton.h"
 #include "plan/settings.h"
 #include "scene/scene.h"
+#include "schedule/adaptive.h"
+#include "schedule/uniform.h"
 #include "transport/wavefront.h"
 
 namespace lucerna::session {
@@ -56,9 +60,15 @@ class Renderer {
   void restart();
 
   bool ready() const { return wavefront_ != nullptr; }
-  bool done() const { return schedule_.done(); }
-  uint32_t samples() const { return schedule_.complete(); }
-  uint32_t max_samples() const { return schedule_.samples(); }
+  bool done() const { return adaptive_ ? adaptive_->done() : schedule_.done(); }
+  /// Samples that every pixel has.
+  uint32_t samples() const { return adaptive_ ? adaptive_->least_samples() : schedule_.complete(); }
+  /// Samples a pixel at which the image is finished; adaptive: that no pixel goes beyond.
+  uint32_t max_samples() const { return adaptive_ ? adaptive_->options().max_samples : schedule_.samples(); }
+  /// The state of every tile; null in uniform sampling.
+  const schedule::AdaptiveSchedule* adaptive() const { return adaptive_ ? &*adaptive_ : nullptr; }
+  /// Noise of the picture as it is, from all its pixels. Takes a pass over the film.
+  film::ImageError image_error();
   /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled.
   bool step(const std::function<bool()>& cancel = {});
   /// A quick image of a quarter of the resolution, for display until the film is filled.
@@ -88,6 +98,8 @@ class Renderer {
   void make_film();
   shared::Frame make_frame(uint32_t width, uint32_t height) const;
   film::View view() const;
+  float luminance_floor() const;
+  void start_schedule();
 
   RendererOptions options_;
   std::unique_ptr<gpu::Device> device_;
@@ -102,6 +114,7 @@ class Renderer {
   std::unique_ptr<film::Film> film_, coarse_;
   scene::Camera camera_;
   schedule::UniformSchedule schedule_;
+  std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< instead of schedule_
   uint32_t width_ = 1280, height_ = 720;
   std::map<std::string, std::string> applied_;  ///< settings that the film was made with
   double load_seconds_ = 0, compile_seconds_ = 0;

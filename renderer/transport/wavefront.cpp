@@ -17,10 +17,10 @@ struct Wavefront::Impl {
   uint8_t first_account = 0;
   double compile_seconds = 0;
 
-  gpu::Buffer frame, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states, counters,
-      no_coarse;
+  gpu::Buffer frame, blocks, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states,
+      counters, no_coarse;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
-  gpu::Kernel camera, shade, shadow, film_add, film_add_images, tonemap, trace_closest, trace_any,
+  gpu::Kernel camera, shade, shadow, film_add, film_add_images, error, tonemap, trace_closest, trace_any,
       trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
@@ -36,6 +36,7 @@ struct Wavefront::Impl {
       return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory, .texel = true});
     };
     frame = make("frame", sizeof(Frame), gpu::Memory::device);
+    blocks = make("work blocks", uint64_t(n) / 64 * sizeof(WorkBlock), gpu::Memory::host);
     rays = texels("rays", uint64_t(n) * sizeof(Ray), queue_memory);
     hits = texels("hits", uint64_t(n) * sizeof(Hit), queue_memory);
     paths = texels("path states", uint64_t(n) * sizeof(PathState), gpu::Memory::device);
@@ -56,6 +57,7 @@ struct Wavefront::Impl {
       for (gpu::Resources* r : {&main[k], &shade_shadow[k]}) {
         scene.bind(*r);
         r->set("FrameBlock", frame);
+        r->set("WorkBlocks", blocks);
         r->set("ray_texels", rays);
         r->set("path_texels", paths);
         r->set("Paths", paths);
@@ -149,6 +151,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   images["LUCERNA_FILM_IMAGES"] = "1";
   w.film_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
   w.tonemap = gpu::Kernel(device, compiler, "film/tonemap.comp");
+  w.error = gpu::Kernel(device, compiler, "film/error.comp");
   w.bind(scene);
   if (!w.host_trace) {
     // Where nothing is transparent the any-hit kernel need not look at the flag.
@@ -164,7 +167,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   }
   // Drivers that compile at the first dispatch do so here: an item of no paths.
   w.stream.fill(w.counters, 0);
-  w.stream.dispatch(w.camera, w.main[0], TransportPush{0, 0, 0, 64, 0, 1, 1, 0}, 1);
+  w.stream.dispatch(w.camera, w.main[0], TransportPush{0, 0, 64, 0}, 1);
   w.stream.dispatch(w.shade, w.main[0], TransportPush{}, 1);
   w.stream.dispatch(w.shadow, w.shade_shadow[0], TransportPush{}, 1);
   if (!w.host_trace) {
@@ -190,10 +193,12 @@ uint32_t Wavefront::slots() const { return impl_->slots; }
 
 bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel) {
   Impl& w = *impl_;
-  const uint32_t pixels = item.tile_count * 64, count = item.slots();
+  const auto pixels = static_cast<uint32_t>(item.blocks.size()) * 64;
+  const uint32_t count = item.slots();
   if (count == 0 || w.enabled == 0) return true;
   if (count > w.slots) throw_error("transport", "work item of {} paths, room for {}", count, w.slots);
-  TransportPush push{count, 0, item.first_tile, pixels, item.first_sample, item.sample_count, 1, 0};
+  w.blocks.write(std::span<const WorkBlock>(item.blocks));
+  TransportPush push{count, 0, pixels, 0};
   uint32_t closest[k_component_count] = {}, shadows[k_component_count] = {};
   closest[w.first_account] = count;
   w.stream.fill(w.counters, 0);
@@ -217,7 +222,7 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
       w.stats.rays += shadow_count;
       push.count = shadow_count;
       push.use_queue = 1;
-      push.stride = 0;
+      push.round = 0;
       w.stream.dispatch(w.shadow, table, push, Impl::groups(shadow_count), "shadow light");
       if (w.transparent) {
         uint32_t side = 1;
@@ -231,7 +236,7 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
           w.stats.shadow_rays += going;
           w.stats.rays += going;
           push.count = going;
-          push.stride = 1;
+          push.round = 1;
           w.stream.dispatch(w.shadow, w.shade_shadow[side], push, Impl::groups(going), "shadow light");
         }
       }
@@ -244,7 +249,6 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
       w.stream.fill(w.counters, 0, 4 * k_counter_rays, 32);
       push.count = active;
       push.use_queue = first ? 0 : 1;
-      push.stride = 1;
       w.stream.dispatch(w.shade, w.main[parity], push, Impl::groups(active), "shade");
     } else {
       w.stream.fill(w.counters, 0, 0, 12);
@@ -263,12 +267,27 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
   w.stats.depth += counters[k_counter_depth];
   w.stats.paths += count;
   film.bind(w.film_resources);
-  const FilmPush add{film.width(), film.height(),     item.first_tile,
-                     pixels,       item.first_sample, item.sample_count};
+  const FilmPush add{film.width(), film.height(), pixels, item.sample_count};
   w.stream.dispatch(film.fits_storage_buffers() ? w.film_add : w.film_add_images, w.film_resources, add,
                     Impl::groups(pixels), "film");
   w.run_and_account(nullptr, nullptr);
   return true;
+}
+
+void Wavefront::estimate(const std::vector<WorkBlock>& blocks, film::Film& film, float luminance_floor) {
+  Impl& w = *impl_;
+  std::vector<WorkBlock> all;
+  for (uint32_t b = 0; blocks.empty() && b < film.blocks(); ++b) all.push_back({b, 0});
+  const std::vector<WorkBlock>& list = blocks.empty() ? all : blocks;
+  film.bind(w.film_resources);
+  for (size_t first = 0; first < list.size();) {
+    const auto count = static_cast<uint32_t>(std::min<size_t>(list.size() - first, w.slots / 64));
+    w.blocks.write(std::span<const WorkBlock>(&list[first], count));
+    const ErrorPush push{film.width(), film.height(), count, luminance_floor};
+    w.stream.dispatch(w.error, w.film_resources, push, count, "error");
+    w.run_and_account(nullptr, nullptr);
+    first += count;
+  }
 }
 
 void Wavefront::clear(film::Film& film) { film.clear(impl_->stream); }

@@ -2,13 +2,12 @@
 // on how samples were cut into batches.
 #include "lib/frame.glsl"
 #include "lib/film.glsl"
+#include "lib/blocks.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { FilmPush push; };
 uniform samplerBuffer radiance_texels;
 uniform samplerBuffer feature_texels;
-
-uint compact_bits(uint x) { return (x & 1u) | ((x >> 1) & 2u) | ((x >> 2) & 4u); }
 
 void add(inout FilmHalf h, vec3 x) {
   precise vec3 t = h.sum + x;
@@ -21,9 +20,8 @@ void add(inout FilmHalf h, vec3 x) {
 void main() {
   uint index = global_index();
   if (index >= push.pixel_count) return;
-  uint tile = push.first_tile + index / 64u, code = index % 64u;
-  uint tiles_x = (push.width + 7u) / 8u;
-  uvec2 xy = 8u * uvec2(tile % tiles_x, tile / tiles_x) + uvec2(compact_bits(code), compact_bits(code >> 1));
+  WorkBlock block = blocks[index / 64u];
+  uvec2 xy = block_pixel(block.index, index % 64u, push.width);
   if (xy.x >= push.width || xy.y >= push.height) return;
   uint pixel = xy.y * push.width + xy.x;
   FilmPixel p = film_load(0u, pixel), s = film_load(1u, pixel), t = film_load(2u, pixel), c = film_load(3u, pixel);
@@ -33,7 +31,7 @@ void main() {
     int first = int(slot * k_component_count);
     vec3 rp = texelFetch(radiance_texels, first).rgb, rs = texelFetch(radiance_texels, first + 1).rgb;
     vec3 rt = texelFetch(radiance_texels, first + 2).rgb, rc = texelFetch(radiance_texels, first + 3).rgb;
-    if (((push.first_sample + i) & 1u) == 0u) {
+    if (((block.first_sample + i) & 1u) == 0u) {
       add(p.even, rp); add(s.even, rs); add(t.even, rt); add(c.even, rc);
     } else {
       add(p.odd, rp); add(s.odd, rs); add(t.odd, rt); add(c.odd, rc);

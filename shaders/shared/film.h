@@ -10,12 +10,40 @@ struct FilmHalf {
   vec3 compensation;
 };
 
+/// A block of 8x8 pixels, the unit of work: which one, in raster order, and the first of the samples that its pixels
+/// are to be given.
+struct WorkBlock {
+  uint index;
+  uint first_sample;
+};
+LUCERNA_CONST uint k_block = 8u;  ///< pixels along its side
+
 struct FilmPush {
   uint width, height;
-  uint first_tile;       ///< 8x8 tiles in raster order
-  uint pixel_count;      ///< slots a sample: tiles * 64
-  uint first_sample;
-  uint sample_count;
+  uint pixel_count;      ///< slots a sample: 64 for each block of the item
+  uint sample_count;     ///< samples a pixel
+};
+
+/// What is known of the noise in one block, from the two halves of the film. A pixel's halves have the means A and B, which
+/// are independent, so that v = ((A - B) / 2)^2 is an unbiased estimate, with one degree of freedom, of the variance of the
+/// pixel's mean (A + B) / 2. All in luminance Y (Rec.709); [0] is the sum of the components, [1..4] are they.
+/// Sums run over the pixels that have samples in both halves.
+struct BlockError {
+  float pixels;
+  float luminance[5];     ///< sum of Y
+  float variance[5];      ///< sum of v
+  float fourth;           ///< sum of v^2, of [0]: how unevenly the noise is spread
+  // Relative error r = sqrt(pi/2) |A - B| / 2 over max(Y of the pixel, Y of its quadrant, floor), of [0], for the four
+  // quadrants of 4x4 pixels. Its mean is the relative standard error where noise is Gaussian; for any noise r stays below
+  // 1.26 (|A - B| / 2 is at most the pixel's own Y), so that no firefly can outweigh its neighbours.
+  float relative[4];      ///< sum of r
+  float quadrant_pixels[4];
+};
+
+struct ErrorPush {
+  uint width, height;
+  uint block_count;
+  float luminance_floor;  ///< noise in pixels darker than this is held against this
 };
 
 LUCERNA_CONST uint k_layer_beauty = 0u;   ///< sum of the shown components

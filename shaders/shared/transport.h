@@ -42,12 +42,8 @@ LUCERNA_CONST uint k_counter_slots = 16u;
 struct TransportPush {
   uint count;          ///< entries of the queue, or slots
   uint use_queue;      ///< 0: slot = index
-  uint first_pixel;    ///< camera source: of this batch
-  uint pixel_count;    ///< pixels of this batch
-  uint first_sample;
-  uint sample_count;   ///< samples a pixel in this batch
-  uint stride;         ///< camera source: pixel step of the coarse image (1: full)
-  uint pad;
+  uint pixel_count;    ///< camera source: slots a sample, 64 for each block of the item
+  uint round;          ///< shadow light: 0 for the rays just traced, 1 for those on their way behind a surface
 };
 
 LUCERNA_SHARED_END

@@ -1,22 +1,18 @@
-// Source `camera`: one path for each (pixel of the batch's tiles, sample). Slots are ordered pixel within tile first (Morton
-// order, so that neighbours trace neighbouring rays), then tile, then sample.
+// Source `camera`: one path for each (pixel of the item's blocks, sample). Slots are ordered pixel within block first (Morton
+// order, so that neighbours trace neighbouring rays), then block, then sample.
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
-
-uint compact_bits(uint x) {  // every other bit of a 6-bit Morton code
-  return (x & 1u) | ((x >> 1) & 2u) | ((x >> 2) & 4u);
-}
+#include "lib/blocks.glsl"
 
 void main() {
   uint slot = global_index();
   if (slot >= push.count) return;
   uint in_batch = slot % push.pixel_count;
-  uint tile = push.first_pixel + in_batch / 64u, code = in_batch % 64u;
-  uint tiles_x = (frame.width + 7u) / 8u;
-  uvec2 xy = 8u * uvec2(tile % tiles_x, tile / tiles_x) + uvec2(compact_bits(code), compact_bits(code >> 1));
+  WorkBlock block = blocks[in_batch / 64u];
+  uvec2 xy = block_pixel(block.index, in_batch % 64u, frame.width);
   bool inside = xy.x < frame.width && xy.y < frame.height;
   uint pixel = xy.y * frame.width + xy.x;
-  uint sample_index = push.first_sample + slot / push.pixel_count;
+  uint sample_index = block.first_sample + slot / push.pixel_count;
   Sampler s = make_sampler(pixel, sample_index, frame.seed);
   vec2 ndc = (vec2(xy) + sample_2d(s, k_pad_pixel)) / vec2(frame.width, frame.height) * 2.0 - 1.0;
   vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;

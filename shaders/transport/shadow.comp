@@ -14,8 +14,8 @@ void main() {
   ShadowState s = load_shadow_state(slot);
   bool blocked = hit.prim != k_no_hit;
 #if LUCERNA_TRANSPARENT
-  // hits: of the non-opaque triangles; the opaque ones have been tested by the first pass (push.stride == 0).
-  if (push.stride == 0u) {
+  // hits: of the non-opaque triangles; the opaque ones have been tested by the first pass (push.round == 0).
+  if (push.round == 0u) {
     if (!blocked) shadow_queue[atomicAdd(counters[k_counter_shadow_next], 1u)] = slot;
     return;
   }

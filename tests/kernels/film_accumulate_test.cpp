@@ -36,6 +36,8 @@ TEST_CASE("a million samples of mixed magnitude: each half's sum is right to flo
   stream.run();
   gpu::Resources resources;
   film.bind(resources);
+  gpu::Buffer block(device, {.name = "work blocks", .bytes = sizeof(shared::WorkBlock)});
+  resources.set("WorkBlocks", block);
   resources.set("radiance_texels", radiance);
   resources.set("feature_texels", features);
   // Three pixels are told apart; the rest of the tile repeats them.
@@ -56,7 +58,8 @@ TEST_CASE("a million samples of mixed magnitude: each half's sum is right to flo
           values[(size_t(i) * 64 + pixel) * 4 + c] = vec4(of[pixel % 3], 2 * of[pixel % 3], 0, 0);
       }
     radiance.write(std::span<const vec4>(values));
-    stream.dispatch(add, resources, shared::FilmPush{8, 8, 0, 64, batch * k_batch, k_batch}, 1);
+    block.write(std::span<const shared::WorkBlock>({shared::WorkBlock{0, batch * k_batch}}));
+    stream.dispatch(add, resources, shared::FilmPush{8, 8, 64, k_batch}, 1);
     stream.run();
   }
   naive_error = std::abs(naive - naive_truth) / naive_truth;

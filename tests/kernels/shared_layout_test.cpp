@@ -43,7 +43,10 @@ struct SharedStruct {
 std::vector<SharedStruct> structs() {
   return {
       SHARED("film.h", FilmHalf, sum, compensation),
-      SHARED("film.h", FilmPush, width, height, first_tile, pixel_count, first_sample, sample_count),
+      SHARED("film.h", WorkBlock, index, first_sample),
+      SHARED("film.h", BlockError, pixels, luminance, variance, fourth, relative, quadrant_pixels),
+      SHARED("film.h", ErrorPush, width, height, block_count, luminance_floor),
+      SHARED("film.h", FilmPush, width, height, pixel_count, sample_count),
       SHARED("film.h", TonePush, width, height, layer, show, curve, exposure, scale, coarse_width,
              coarse_height, use_coarse_film),
       SHARED("ray.h", Ray, origin, tmax, direction, slot),
@@ -56,8 +59,7 @@ std::vector<SharedStruct> structs() {
       SHARED("transport.h", PathState, throughput, pdf, pixel, sample_index, bits, medium, travelled,
              eta_scale, pad0, pad1),
       SHARED("transport.h", ShadowState, diffuse, components, glossy, medium),
-      SHARED("transport.h", TransportPush, count, use_queue, first_pixel, pixel_count, first_sample,
-             sample_count, stride, pad),
+      SHARED("transport.h", TransportPush, count, use_queue, pixel_count, round),
   };
 }
 

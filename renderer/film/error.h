@@ -1,0 +1,55 @@
+#pragma once
+// The noise in a picture, from the two independently scrambled halves of its film: of tiles, and of the
+// whole.
+//
+// Everything here is about the noise of estimators whose mean is right. What a biased solver gets wrong for
+// ever is not in it.
+#include <array>
+#include <span>
+
+#include "film/film.h"
+
+namespace lucerna::film {
+
+/// Display radiance (after exposure) below which noise is held against this value instead of the pixel's own:
+/// 5 % of it is about one step of an 8-bit sRGB picture, so that black corners do not eat the render.
+inline constexpr float k_luminance_floor = 0.02f;
+
+/// Of a tile: some blocks that lie together.
+struct TileError {
+  double pixels = 0;          ///< with samples in both halves
+  double luminance = 0;       ///< mean
+  double standard_error = 0;  ///< of that mean; pixels are independent, so their variances add up
+  /// Degrees of freedom of standard_error^2 by Satterthwaite: (sum v)^2 / (sum v^2 / 3), for v has one degree
+  /// of freedom and so E[v^2] = 3 sigma^4. All pixels alike: their number; one that dwarfs the rest: 3.
+  double degrees = 0;
+  /// What stops the tile: the relative error r of its pixels (shaders/shared/film.h), in the mean over each
+  /// quadrant of 4x4 pixels of a block, and of these the quadratic mean. A lone firefly, whose r is at
+  /// most 1.26, adds 2 % to a tile of 16x16 pixels whatever its size and does not hold it; one hard corner
+  /// counts for more than its area, but does not decide alone. Its own noise falls with the number of pixels,
+  /// so that it can be trusted from one pass to the next.
+  double relative = 0;
+  /// The noise is that of few pixels (degrees below an eighth of the pixels): caustics, fireflies. The
+  /// interval is then not to be trusted, for what has been seen so far may be little of what there is.
+  bool heavy_tailed = false;
+
+  /// Half width of the interval around `luminance` that holds the truth with probability 0.9, by Student's t.
+  double half_width_90() const;
+};
+TileError tile_error(std::span<const shared::BlockError> blocks);
+
+/// Of a whole picture; [0] the sum of the components, [1..4] they.
+struct ImageError {
+  double pixels = 0;
+  std::array<double, 5> luminance{};  ///< mean
+  std::array<double, 5> rms{};        ///< of the pixels' standard errors, in luminance
+  /// rms over the sum's mean luminance: one scale for all, so that components can be compared.
+  double relative(int layer) const { return luminance[0] > 0 ? rms[layer] / luminance[0] : 0; }
+};
+ImageError image_error(std::span<const shared::BlockError> blocks);
+
+/// The value t with P(|T| < t) = 0.9 for Student's T with that many degrees of freedom, which need not be
+/// whole; within 1 % for 1 or more.
+double student_90(double degrees);
+
+}  // namespace lucerna::film

@@ -1,0 +1,141 @@
+#include "schedule/adaptive.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace lucerna::schedule {
+
+namespace {
+constexpr uint32_t k_few = 8;  // samples a pixel when all of the device's path state is in use
+/// A tile stays while a neighbour is over this many times the target.
+constexpr float k_neighbours = 2;
+}  // namespace
+
+AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
+                                   const AdaptiveOptions& options)
+    : options_(options), blocks_across_(blocks_across), blocks_down_(blocks_down) {
+  const uint32_t side = options.tile / shared::k_block;
+  assert(side == 1 || side == 2);
+  options_.max_samples = std::max(2u, options.max_samples / 2 * 2);
+  options_.min_samples = std::clamp((options.min_samples + 1) / 2 * 2, 2u, options_.max_samples);
+  across_ = (blocks_across + side - 1) / side;
+  down_ = (blocks_down + side - 1) / side;
+  tiles_.resize(size_t{across_} * down_);
+  open_ = static_cast<uint32_t>(tiles_.size());
+  start_round();
+}
+
+std::vector<uint32_t> AdaptiveSchedule::blocks_of(uint32_t tile) const {
+  const uint32_t side = options_.tile / shared::k_block;
+  std::vector<uint32_t> blocks;
+  for (uint32_t y = tile / across_ * side; y < (tile / across_ + 1) * side; ++y)
+    for (uint32_t x = tile % across_ * side; x < (tile % across_ + 1) * side; ++x)
+      if (x < blocks_across_ && y < blocks_down_) blocks.push_back(y * blocks_across_ + x);
+  return blocks;
+}
+
+void AdaptiveSchedule::start_round() {
+  round_.clear();
+  at_ = 0;
+  const uint32_t pixels = options_.tile * options_.tile;
+  for (uint32_t t = 0; t < tiles_.size(); ++t)
+    if (tiles_[t].state == TileState::waiting) round_.push_back(t);
+  if (!round_.empty()) {
+    // All pixels alike up to the minimum: single samples first, so that something is seen at once, then
+    // doubling.
+    const uint32_t have = tiles_[round_.front()].samples;
+    const uint32_t fitting =
+        std::max(k_few, options_.slots / std::max<uint32_t>(1, pixels * uint32_t(round_.size())));
+    pass_ = std::min({std::max(1u, have), fitting, options_.min_samples - have});
+    return;
+  }
+  for (uint32_t t = 0; t < tiles_.size(); ++t)
+    if (tiles_[t].state == TileState::active) round_.push_back(t);
+  pass_ = std::min(k_few, std::max(1u, options_.slots / pixels));
+  while (!round_.empty() && uint64_t{2} * pass_ * pixels * round_.size() <= options_.slots) pass_ *= 2;
+  if (pass_ > 1) pass_ = pass_ / 2 * 2;
+}
+
+WorkItem AdaptiveSchedule::next() {
+  item_tiles_.clear();
+  if (done()) return {};
+  item_first_ = at_;
+  const uint32_t pixels = options_.tile * options_.tile;
+  const uint32_t at_once = std::max(1u, options_.slots / (pixels * pass_));
+  const size_t end = std::min(round_.size(), at_ + at_once);
+  // Nobody gets more than the cap. Those near it share an item with others, who then get less this time.
+  WorkItem item{{}, pass_};
+  for (size_t i = at_; i < end; ++i)
+    item.sample_count = std::min(item.sample_count, options_.max_samples - tiles_[round_[i]].samples);
+  for (; at_ < end; ++at_) {
+    const uint32_t tile = round_[at_];
+    for (const uint32_t block : blocks_of(tile)) item.blocks.push_back({block, tiles_[tile].samples});
+    item_tiles_.push_back(tile);
+  }
+  item_samples_ = item.sample_count;
+  return item;
+}
+
+void AdaptiveSchedule::give_back() {
+  at_ = item_first_;
+  item_tiles_.clear();
+}
+
+void AdaptiveSchedule::report(const std::vector<float>& errors) {
+  assert(errors.size() == item_tiles_.size());
+  for (size_t i = 0; i < item_tiles_.size(); ++i) {
+    Tile& tile = tiles_[item_tiles_[i]];
+    tile.samples += item_samples_;
+    ++tile.passes;
+    tile.error = errors[i];
+  }
+  item_tiles_.clear();
+  if (at_ < round_.size()) return;
+  update_states();
+  start_round();
+}
+
+void AdaptiveSchedule::update_states() {
+  // From the errors that the round has left, all tiles at once, so that their order does not matter.
+  std::vector<TileState> states(tiles_.size());
+  open_ = 0;
+  for (uint32_t t = 0; t < tiles_.size(); ++t) {
+    const Tile& tile = tiles_[t];
+    TileState state = tile.state;
+    if (state == TileState::waiting && tile.samples >= options_.min_samples) state = TileState::active;
+    if (state == TileState::active) {
+      float around = 0;
+      const int x = static_cast<int>(t % across_), y = static_cast<int>(t / across_);
+      for (int v = std::max(0, y - 1); v <= std::min(static_cast<int>(down_) - 1, y + 1); ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(static_cast<int>(across_) - 1, x + 1); ++u)
+          if (const Tile& n = tiles_[static_cast<size_t>(v) * across_ + u]; n.state != TileState::capped)
+            around = std::max(around, n.error);
+      if (tile.error <= options_.target_error && around <= k_neighbours * options_.target_error)
+        state = TileState::done;
+      else if (tile.samples >= options_.max_samples)
+        state = tile.error <= options_.target_error ? TileState::done : TileState::capped;
+    }
+    states[t] = state;
+    open_ += state == TileState::waiting || state == TileState::active;
+  }
+  for (uint32_t t = 0; t < tiles_.size(); ++t) tiles_[t].state = states[t];
+}
+
+uint32_t AdaptiveSchedule::least_samples() const {
+  uint32_t least = tiles_.empty() ? 0 : ~0u;
+  for (const Tile& tile : tiles_) least = std::min(least, tile.samples);
+  return least;
+}
+
+uint32_t AdaptiveSchedule::most_samples() const {
+  uint32_t most = 0;
+  for (const Tile& tile : tiles_) most = std::max(most, tile.samples);
+  return most;
+}
+
+uint32_t AdaptiveSchedule::count(TileState state) const {
+  return static_cast<uint32_t>(
+      std::count_if(tiles_.begin(), tiles_.end(), [&](const Tile& tile) { return tile.state == state; }));
+}
+
+}  // namespace lucerna::schedule

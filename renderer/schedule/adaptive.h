@@ -1,0 +1,81 @@
+#pragma once
+// Adaptive tiles (METHODS 2): samples go to the tiles whose error is not yet under the target.
+//
+// All pixels first get the minimum. Then the active tiles take turns, as many at once as the device's path
+// state holds at a few samples a pixel each; when fewer are left, the samples a pixel double, so that the
+// device stays full and ends up on the hardest tiles. A tile leaves the list when its error and, more
+// loosely, those of its neighbours are under the target: light that few samples have met (a caustic's rim) is
+// then looked for where something next to it is still noisy. Pure functions of counts and errors: the same
+// errors give the same schedule, whatever the machine's speed.
+#include <cstdint>
+#include <vector>
+
+#include "schedule/work.h"
+
+namespace lucerna::schedule {
+
+enum class TileState : uint8_t {
+  waiting,  ///< for the minimum of samples
+  active,
+  done,   ///< under the target
+  capped  ///< over it, with as many samples as it may have
+};
+
+struct Tile {
+  float error = 0;       ///< as last reported; meaningless while waiting
+  uint32_t samples = 0;  ///< a pixel
+  uint32_t passes = 0;
+  TileState state = TileState::waiting;
+};
+
+struct AdaptiveOptions {
+  uint32_t tile = 16;  ///< pixels along a side: 8 or 16
+  float target_error = 0.05f;
+  uint32_t min_samples = 64,
+           max_samples = 1024;  ///< a pixel; made even, so that both halves of the film agree
+  uint32_t slots = 131072;      ///< paths at once, at least those of one sample of a tile
+};
+
+class AdaptiveSchedule {
+ public:
+  AdaptiveSchedule() = default;
+  AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down, const AdaptiveOptions& options);
+
+  bool done() const { return open_ == 0; }
+  /// The next work; empty when done. The item's tiles are those that report() then wants to hear of.
+  WorkItem next();
+  /// Tiles of the item that next() gave last, in order; every one has its minimum when this is not empty.
+  const std::vector<uint32_t>& to_report() const { return item_tiles_; }
+  /// The item has been carried out; `errors`, one for each of to_report().
+  void report(const std::vector<float>& errors);
+  /// The item was not carried out: next() gives it again.
+  void give_back();
+
+  const std::vector<Tile>& tiles() const { return tiles_; }
+  uint32_t tiles_across() const { return across_; }
+  uint32_t tiles_down() const { return down_; }
+  /// The blocks of a tile, in Morton order.
+  std::vector<uint32_t> blocks_of(uint32_t tile) const;
+  /// Samples that every pixel has, that some pixel has.
+  uint32_t least_samples() const;
+  uint32_t most_samples() const;
+  uint32_t count(TileState state) const;
+  const AdaptiveOptions& options() const { return options_; }
+
+ private:
+  void start_round();
+  void update_states();
+
+  AdaptiveOptions options_;
+  uint32_t blocks_across_ = 0, blocks_down_ = 0, across_ = 0, down_ = 0;
+  std::vector<Tile> tiles_;
+  std::vector<uint32_t> round_;       // tiles of this round
+  std::vector<uint32_t> item_tiles_;  // of the last item
+  uint32_t pass_ = 1;                 // samples a pixel in this round
+  size_t at_ = 0;                     // in round_
+  uint32_t open_ = 0;                 // tiles waiting or active
+  uint32_t item_samples_ = 0;         // of the last item
+  size_t item_first_ = 0;
+};
+
+}  // namespace lucerna::schedule
