@@ -24,7 +24,7 @@ double TileError::half_width_90() const { return student_90(degrees) * standard_
 
 TileError tile_error(std::span<const shared::BlockError> blocks) {
   TileError tile;
-  double variance = 0, fourth = 0;
+  double &variance = tile.variance, &fourth = tile.fourth;
   for (const shared::BlockError& b : blocks) {
     tile.pixels += b.pixels;
     tile.luminance += b.luminance[0];
@@ -35,7 +35,6 @@ TileError tile_error(std::span<const shared::BlockError> blocks) {
   tile.luminance /= tile.pixels;
   tile.standard_error = std::sqrt(variance) / tile.pixels;
   tile.degrees = fourth > 0 ? 3 * variance * variance / fourth : tile.pixels;
-  tile.heavy_tailed = fourth > 0 && tile.degrees < tile.pixels / 8;
   double squares = 0, quadrants = 0;
   for (const shared::BlockError& b : blocks)
     for (uint32_t q = 0; q < 4; ++q) {
@@ -46,6 +45,28 @@ TileError tile_error(std::span<const shared::BlockError> blocks) {
     }
   tile.relative = std::sqrt(squares / quadrants);
   return tile;
+}
+
+void mark_heavy_tails(std::span<TileError> tiles, uint32_t across, double luminance_floor) {
+  constexpr double k_share = 1.0 / 8;
+  const auto few = [](double variance, double fourth, double pixels) {
+    return fourth > 0 && 3 * variance * variance < k_share * pixels * fourth;
+  };
+  const int width = static_cast<int>(across), height = across ? static_cast<int>(tiles.size() / across) : 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      double variance = 0, fourth = 0, pixels = 0;
+      for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
+          const TileError& n = tiles[static_cast<size_t>(v) * across + static_cast<size_t>(u)];
+          const double scale = std::max(n.luminance, luminance_floor);
+          variance += n.variance / (scale * scale);
+          fourth += n.fourth / (scale * scale * scale * scale);
+          pixels += n.pixels;
+        }
+      TileError& tile = tiles[static_cast<size_t>(y) * across + static_cast<size_t>(x)];
+      tile.heavy_tailed = few(variance, fourth, pixels) || few(tile.variance, tile.fourth, tile.pixels);
+    }
 }
 
 ImageError image_error(std::span<const shared::BlockError> blocks) {

@@ -37,7 +37,7 @@ std::vector<uint32_t> AdaptiveSchedule::blocks_of(uint32_t tile) const {
 void AdaptiveSchedule::start_round() {
   round_.clear();
   at_ = 0;
-  const uint32_t pixels = options_.tile * options_.tile;
+  const uint32_t pixels = options_.tile * options_.tile, most = std::max(1u, options_.slots / pixels);
   for (uint32_t t = 0; t < tiles_.size(); ++t)
     if (tiles_[t].state == TileState::waiting) round_.push_back(t);
   if (!round_.empty()) {
@@ -46,12 +46,12 @@ void AdaptiveSchedule::start_round() {
     const uint32_t have = tiles_[round_.front()].samples;
     const uint32_t fitting =
         std::max(k_few, options_.slots / std::max<uint32_t>(1, pixels * uint32_t(round_.size())));
-    pass_ = std::min({std::max(1u, have), fitting, options_.min_samples - have});
+    pass_ = std::min({std::max(1u, have), fitting, most, options_.min_samples - have});
     return;
   }
   for (uint32_t t = 0; t < tiles_.size(); ++t)
     if (tiles_[t].state == TileState::active) round_.push_back(t);
-  pass_ = std::min(k_few, std::max(1u, options_.slots / pixels));
+  pass_ = std::min(k_few, most);
   while (!round_.empty() && uint64_t{2} * pass_ * pixels * round_.size() <= options_.slots) pass_ *= 2;
   if (pass_ > 1) pass_ = pass_ / 2 * 2;
 }

@@ -1,0 +1,150 @@
+// links: schedule
+// Adaptive tiles against simulated noise: who gets samples, when tiles leave, how the device is filled.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "schedule/adaptive.h"
+#include "schedule/uniform.h"
+
+using namespace lucerna::schedule;
+
+namespace {
+
+/// Plays the schedule to its end; tile t has the error sigma(t) / sqrt(samples).
+struct Player {
+  AdaptiveSchedule schedule;
+  std::map<uint32_t, uint32_t> samples;  // by block
+  std::vector<WorkItem> items;
+
+  template <class Sigma>
+  void play(const Sigma& sigma, uint32_t slots) {
+    while (!schedule.done()) {
+      const WorkItem item = schedule.next();
+      REQUIRE(item.sample_count > 0);
+      REQUIRE_FALSE(item.blocks.empty());
+      CHECK(item.slots() <= slots);
+      std::set<uint32_t> seen;
+      for (const WorkBlock& b : item.blocks) {
+        CHECK(seen.insert(b.index).second);
+        CHECK(b.first_sample == samples[b.index]);  // no sample twice, none left out
+        samples[b.index] += item.sample_count;
+      }
+      std::vector<float> errors;
+      for (const uint32_t t : schedule.to_report())
+        errors.push_back(float(sigma(t) / std::sqrt(schedule.tiles()[t].samples + item.sample_count)));
+      schedule.report(errors);
+      items.push_back(item);
+      REQUIRE(items.size() < 100000);
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("every tile ends under the target or with all it may have, and easy ones with the minimum") {
+  for (const uint32_t side : {8u, 16u}) {
+    CAPTURE(side);
+    constexpr uint32_t k_slots = 8192;
+    const AdaptiveOptions options{
+        .tile = side, .target_error = 0.05f, .min_samples = 32, .max_samples = 500, .slots = k_slots};
+    Player p{AdaptiveSchedule(17, 11, options), {}, {}};
+    // A hard corner that needs 400 samples, one that would need 10 000, the rest easy.
+    const uint32_t hard = 0, hopeless = uint32_t(p.schedule.tiles().size()) - 1;
+    const auto sigma = [&](uint32_t t) { return t == hard ? 1.0 : t == hopeless ? 5.0 : 0.1; };
+    p.play(sigma, k_slots);
+    CHECK(p.samples.size() == 17 * 11);
+    for (uint32_t t = 0; t < p.schedule.tiles().size(); ++t) {
+      CAPTURE(t);
+      const Tile& tile = p.schedule.tiles()[t];
+      for (const uint32_t b : p.schedule.blocks_of(t)) CHECK(p.samples[b] == tile.samples);
+      CHECK(tile.samples % 2 == 0);  // both halves of the film alike
+      CHECK(tile.samples <= 500);
+      if (t == hopeless) CHECK((tile.state == TileState::capped && tile.samples == 500));
+      if (t == hard) CHECK((tile.state == TileState::done && tile.samples >= 400 && tile.samples < 500));
+      if (t != hopeless) CHECK(tile.error <= 0.05f);
+    }
+    // Only the hard ones' neighbours went on beyond the minimum, and only while these were far over the
+    // target.
+    CHECK(p.schedule.count(TileState::capped) == 1);
+    uint32_t beyond = 0;
+    for (const Tile& tile : p.schedule.tiles()) beyond += tile.samples > 32;
+    CHECK(beyond == 8);
+    CHECK(p.schedule.least_samples() == 32);
+    CHECK(p.schedule.most_samples() == 500);
+  }
+}
+
+TEST_CASE("few tiles left: the samples a pixel double, so that the device stays full") {
+  constexpr uint32_t k_slots = 65536;  // 128 tiles of 64 pixels at 8 samples
+  Player p{
+      AdaptiveSchedule(
+          32, 16,
+          {.tile = 8, .target_error = 0.01f, .min_samples = 16, .max_samples = 1 << 14, .slots = k_slots}),
+      {},
+      {}};
+  p.play([](uint32_t t) { return t % 64 == 0 ? 1.0 : 0.04; }, k_slots);
+  size_t full = 0, after = 0;
+  for (const WorkItem& item : p.items)
+    if (item.blocks.size() < 100 && item.sample_count > 16) ++after, full += 2 * item.slots() >= k_slots;
+  CHECK(after > 5);
+  // All but the items that end at somebody's cap.
+  CHECK(full == after);
+}
+
+TEST_CASE("work that is given back is given again; the same errors give the same schedule") {
+  const AdaptiveOptions options{
+      .tile = 16, .target_error = 0.05f, .min_samples = 8, .max_samples = 64, .slots = 2048};
+  AdaptiveSchedule a(9, 7, options), b(9, 7, options);
+  for (int i = 0; !a.done(); ++i) {
+    const WorkItem item = a.next();
+    if (i % 3 == 0) {
+      a.give_back();
+      const WorkItem again = a.next();
+      REQUIRE(again.sample_count == item.sample_count);
+      REQUIRE(again.blocks.size() == item.blocks.size());
+    }
+    const WorkItem other = b.next();
+    REQUIRE(other.sample_count == item.sample_count);
+    REQUIRE(other.blocks.front().index == item.blocks.front().index);
+    std::vector<float> errors;
+    for (const uint32_t t : a.to_report()) errors.push_back(0.02f * float(1 + t % 5));
+    a.report(errors), b.report(errors);
+  }
+  CHECK(b.done());
+}
+
+TEST_CASE("options at their limits") {
+  // A minimum above the maximum, odd numbers, a picture of one block, hardly any slots.
+  Player p{
+      AdaptiveSchedule(
+          1, 1, {.tile = 16, .target_error = 0.1f, .min_samples = 1001, .max_samples = 77, .slots = 1024}),
+      {},
+      {}};
+  p.play([](uint32_t) { return 1e-3; }, 1024);
+  CHECK(p.schedule.tiles()[0].samples == 76);
+  CHECK(p.schedule.tiles()[0].state == TileState::done);
+  Player infinite{
+      AdaptiveSchedule(2, 2,
+                       {.tile = 8, .target_error = 0.1f, .min_samples = 4, .max_samples = 16, .slots = 64}),
+      {},
+      {}};
+  infinite.play([](uint32_t) { return INFINITY; }, 64);
+  CHECK(infinite.schedule.count(TileState::capped) == 4);
+  CHECK(AdaptiveSchedule().done());
+}
+
+TEST_CASE("uniform: every block once a pass, no sample twice") {
+  UniformSchedule u(21, 37, 64 * 4);
+  std::map<uint32_t, uint32_t> samples;
+  while (!u.done()) {
+    const WorkItem item = u.next();
+    for (const WorkBlock& b : item.blocks) {
+      CHECK(b.first_sample == samples[b.index]);
+      samples[b.index] += item.sample_count;
+    }
+  }
+  CHECK(samples.size() == 21);
+  for (const auto& [block, n] : samples) CHECK(n == 37);
+}
