@@ -66,6 +66,16 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   nlohmann::ordered_json j;
   j["rms"] = error.rms[0];
   j["relative"] = error.relative(0);
+  // Of the tiles, what adaptive sampling goes by.
+  const std::vector<film::TileError> tiles = r.tile_errors();
+  std::vector<double> sorted;
+  size_t heavy = 0;
+  for (const film::TileError& t : tiles) sorted.push_back(t.relative), heavy += t.heavy_tailed;
+  std::sort(sorted.begin(), sorted.end());
+  j["tile_median"] = sorted[sorted.size() / 2];
+  j["tile_worst_decile"] = sorted[sorted.size() * 9 / 10];
+  j["tile_worst"] = sorted.back();
+  j["heavy_tailed_tiles"] = heavy;
   for (int c = 0; c < paths::k_component_count; ++c) {
     j["components"][paths::k_component_names[c]] = {{"rms", error.rms[c + 1]},
                                                     {"relative", error.relative(c + 1)}};

@@ -47,6 +47,20 @@ TileError tile_error(std::span<const shared::BlockError> blocks) {
   return tile;
 }
 
+std::vector<TileError> tile_errors(const Film& film, uint32_t side) {
+  const uint32_t step = std::max(1u, side / shared::k_block);
+  std::vector<TileError> tiles;
+  for (uint32_t y = 0; y < film.blocks_down(); y += step)
+    for (uint32_t x = 0; x < film.blocks_across(); x += step) {
+      std::vector<shared::BlockError> blocks;
+      for (uint32_t v = y; v < std::min(y + step, film.blocks_down()); ++v)
+        for (uint32_t u = x; u < std::min(x + step, film.blocks_across()); ++u)
+          blocks.push_back(film.errors()[v * film.blocks_across() + u]);
+      tiles.push_back(tile_error(blocks));
+    }
+  return tiles;
+}
+
 void mark_heavy_tails(std::span<TileError> tiles, uint32_t across, double luminance_floor) {
   constexpr double k_share = 1.0 / 8;
   const auto few = [](double variance, double fourth, double pixels) {

@@ -6,6 +6,7 @@
 // ever is not in it.
 #include <array>
 #include <span>
+#include <vector>
 
 #include "film/film.h"
 
@@ -37,6 +38,9 @@ struct TileError {
   double half_width_90() const;
 };
 TileError tile_error(std::span<const shared::BlockError> blocks);
+
+/// The tiles of a film, `side` pixels (8 or 16) along each side, in raster order, from film.errors().
+std::vector<TileError> tile_errors(const Film& film, uint32_t side);
 
 /// Marks the tiles, `across` in a row, whose light comes in rare large amounts (caustics, fireflies): where
 /// few pixels make up the noise (degrees below an eighth of the pixels) of the tile itself, or of it and its
