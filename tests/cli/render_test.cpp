@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "film/io/image_file.h"
@@ -81,6 +82,11 @@ TEST_CASE("wrong arguments are refused with their place") {
   refused(good + "--set colour=red", "unknown setting 'colour'");
   refused(good + "--set samples", "expected key=value");
   refused(good + "--samples 0", "--samples");
+  for (const char* error : {"0", "-1", "-0.05", "nan", "100", "x"})
+    refused(good + "--error " + error, "error");
+  refused(good + "--set sampling.tile=4", "8, 16");
+  refused(good + "--set sampling.target_error=0", "sampling.target_error");
+  refused(good + "--set sampling.mode=magic", "uniform, adaptive");
   refused(good + "--size 0x10", "--size");
   refused(good + "--size 10", "--size");
   refused(good + "--size 60000x60000 --samples 1", "can hold at most");
@@ -92,6 +98,35 @@ TEST_CASE("wrong arguments are refused with their place") {
   refused("compare no.exr nothing.exr", "no.exr");
   refused("info no.gltf", "no.gltf");
   CHECK_FALSE(fs::exists("/tmp/lucerna-never.exr"));
+}
+
+TEST_CASE("--error: samples go where the noise is, and what was not reached is told") {
+  const fs::path f = folder();
+  const auto stats = [&](const std::string& arguments) {
+    const Run r = run("render " + scene("cornell") + " --size 64x64 --quiet -o " + (f / "e.exr").string() +
+                      " --stats " + (f / "e.json").string() + " " + arguments);
+    INFO(r.out);
+    CHECK(r.status == 0);
+    std::ifstream file(f / "e.json");
+    return std::pair(nlohmann::json::parse(file), r.out);
+  };
+  const auto [j, out] = stats("--error 0.08 --set sampling.min_samples=16");
+  CHECK(j["tiles"]["count"] == 16);
+  CHECK(j["tiles"]["done"] == 16);
+  CHECK(j["tiles"]["unreached"].empty());
+  CHECK(j["error"]["tile_worst"] <= 0.0801);
+  CHECK(j["tiles"]["most_samples"] > j["tiles"]["least_samples"]);
+  CHECK(j["error"]["components"].size() == 4);
+  const auto [capped, warning] = stats("--error 0.01 --samples 32 --set sampling.min_samples=16");
+  CHECK(capped["tiles"]["most_samples"] == 32);
+  CHECK(capped["tiles"]["capped"] == capped["tiles"]["unreached"].size());
+  CHECK(capped["tiles"]["unreached"].size() > 8);
+  CHECK(warning.find("over the error of 0.01") != std::string::npos);
+  // In uniform sampling the noise is told too, and falls as it should.
+  const double few = stats("--samples 64").first["error"]["relative"],
+               many = stats("--samples 256").first["error"]["relative"];
+  CHECK(many < 0.6 * few);
+  CHECK(many > 0.3 * few);
 }
 
 TEST_CASE("Ctrl-C writes what there is and says so") {

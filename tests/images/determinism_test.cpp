@@ -50,6 +50,8 @@ TEST_CASE("bit-identical over the number of threads, of the device and of the ho
     CHECK(usual.channels.size() > 15);
     CHECK(identical(usual, render_with("LP_NUM_THREADS=1 taskset -c 0", tracer)));
     CHECK(identical(usual, render_with("LP_NUM_THREADS=7", tracer)));
+    const std::string adaptive = std::string(tracer) + " --error 0.3 --set sampling.min_samples=8";
+    CHECK(identical(render_with("", adaptive), render_with("LP_NUM_THREADS=7", adaptive)));
   }
 }
 
@@ -58,7 +60,14 @@ TEST_CASE("bit-identical over time slices: work that is cancelled between bounce
   r.settings().set("path.batch", "1024");
   r.set_size(40, 36);
   r.load(scene_file("glass"));
+  const bool adaptive = GENERATE(false, true);
   r.settings().set("samples", "8");
+  if (adaptive) {
+    r.settings().set("sampling.mode", "adaptive");
+    r.settings().set("sampling.min_samples", "8");
+    r.settings().set("sampling.max_samples", "32");
+    r.settings().set("sampling.target_error", "0.3");
+  }
   r.apply_settings();
   while (r.step()) {
   }
