@@ -139,8 +139,9 @@ def aisles(s):
                                                                                              width / 2 - 0.07)]
     beams[0] = beams[0].with_uv(np.stack([beams[0].p[:, 0] + beams[0].p[:, 1], beams[0].p[:, 2]], 1))
     s.mesh("timber ceiling", [(join([planks] + joists + beams + plates), "wood")])
-    s.mesh("gallery floor", [(box((-BAY / 2, 0.061, -width / 2 - 0.29), (BAY / 2, GALLERY - CEILING, width / 2 + 0.3),
-                                  "-y +x -x"), "floor")])
+    # its edge stands out of the arcade's face as a string course: surfaces that share a plane are a fault
+    s.mesh("gallery floor", [(box((-BAY / 2, 0.061, -width / 2 - 0.29), (BAY / 2, GALLERY - CEILING, width / 2 + 0.34),
+                                  "+x -x"), "floor")])
     # lower outer wall: plaster above a dado, a pilaster at every column
     wall = quad((-BAY / 2, 0, 0), (BAY / 2, 0, 0), (BAY / 2, GALLERY, 0), (-BAY / 2, GALLERY, 0))
     dado = join([ap.cornice(BAY, [(0.05, 0), (0.075, 0.01), (0.09, 0.05), (0.09, 0.08), (0, 0.095)]).moved(
@@ -247,11 +248,10 @@ def ends(s):
                          (hole, 0)], 56).moved(translate(0, c, 0) @ rotate("x", 90))])
     s.mesh("end mouldings", [(rings, "limestone")])
     imposts = [box((k * r - 0.36, spring - 0.22, -0.65), (k * r + 0.36, spring, 0.10)) for k in (-1, 1)]
-    imposts += [box((k * (r + 0.02) - 0.02, DAIS, -0.63), (k * (r + 0.02) + 0.34 * (k > 0), spring - 0.22, 0.05))
-                if k > 0 else box((-r - 0.36, DAIS, -0.63), (-r, spring - 0.22, 0.05)) for k in (-1, 1)]
+    imposts += [box((lo, DAIS - 0.01, -0.63), (lo + 0.38, spring - 0.215, 0.05)) for lo in (r - 0.02, -r - 0.36)]
     s.mesh("imposts", [(join(imposts), "limestone")])
     tracery = join([box((-0.04, -hole, -0.36), (0.04, hole, -0.26)), box((-hole, -0.04, -0.35), (hole, 0.04, -0.27)),
-                    lathe([(0.34, -0.05), (0.41, -0.05), (0.41, 0.05), (0.34, 0.05), (0.34, -0.05)], 40).moved(
+                    lathe([(0.34, -0.055), (0.41, -0.055), (0.41, 0.055), (0.34, 0.055), (0.34, -0.055)], 40).moved(
                         translate(0, 0, -0.31) @ rotate("x", 90))])
     s.mesh("tracery", [(tracery.moved(translate(0, c, 0)), "limestone")])
     for z, yaw in ((Z_FAR, 0.0), (Z_NEAR, 180.0)):
@@ -279,9 +279,9 @@ def ends(s):
                 ap.arch_panel(hi - lo, GALLERY, SPRING2 - 0.5, CEILING2 + 0.3, 1.1, 0.5).moved(translate(0, 0, -0.25))]
     s.mesh("aisle portal", [(join(openings), "ashlar")])
     for x in (0, -lo - hi):
-        s.place("aisle end", (x, 0, Z_FAR))
+        s.place("aisle end", (x, 0, Z_FAR - 0.01))  # behind the end wall's plane, which it overlaps
     for x in (-1, 1):
-        s.place("aisle portal", (x * (lo + hi) / 2, 0, Z_NEAR), 180.0)
+        s.place("aisle portal", (x * (lo + hi) / 2, 0, Z_NEAR + 0.01), 180.0)
 
 
 def impluvium(s):
