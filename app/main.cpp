@@ -56,6 +56,7 @@ int main_checked(int argc, char** argv) {
       ->check(CLI::Range(int64_t(0), int64_t(4294967295)));
   render_verb->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
   render_verb->add_option("--device", r.device, "as above");
+  render_verb->add_option("--ledger", r.ledger, "time, rays and error as they went on, as CSV");
   render_verb->add_option("--stats", r.stats, "write figures of the run as JSON");
   render_verb->add_flag("--quiet", r.quiet, "no progress line");
   render_verb->footer(settings_help());

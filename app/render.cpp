@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/timer.h"
 #include "session/renderer.h"
+#include "stats/forecast.h"
 
 namespace lucerna::app {
 namespace {
@@ -130,6 +131,34 @@ void report_unreached(const schedule::AdaptiveSchedule& s) {
       list.front() % s.tiles_across() * s.options().tile, list.front() / s.tiles_across() * s.options().tile);
 }
 
+nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
+  auto list = nlohmann::ordered_json::array();
+  for (const stats::Entry& e : ledger.entries()) {
+    nlohmann::ordered_json j{{"wall_s", e.wall_s},
+                             {"device_s", e.device_s},
+                             {"paths", e.paths},
+                             {"rays", e.rays},
+                             {"samples", e.samples}};
+    for (int k = 0; k < stats::k_layers; ++k) {
+      j["error"][stats::k_layer_names[k]] = e.error[k];
+      j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
+    }
+    if (e.total_rays) j["forecast_rays"] = {e.total_rays->low, e.total_rays->middle, e.total_rays->high};
+    list.push_back(std::move(j));
+  }
+  return list;
+}
+
+/// Seconds that smaller errors take or took, as [low, middle, high]; in uniform sampling.
+nlohmann::ordered_json make_forecast(const stats::Ledger& ledger) {
+  nlohmann::ordered_json j;
+  for (const double target : {0.05, 0.02, 0.01, 0.005})
+    if (const auto band = stats::seconds_to(ledger, target))
+      j["seconds_to"][fmt::format("{}", target)] = {band->low, band->middle, band->high};
+  j["exponent"] = stats::fit(ledger).exponent;
+  return j;
+}
+
 nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   const auto means = film::Film::means(r.image());
   nlohmann::ordered_json j;
@@ -155,6 +184,8 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   j["peak_device_mb"] = double(r.device().peak_bytes()) / (1 << 20);
   j["error"] = make_error(r);
   if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
+  j["ledger"] = make_ledger(r.ledger());
+  if (!r.adaptive()) j["forecast"] = make_forecast(r.ledger());
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
   for (int c = 0; c < paths::k_component_count; ++c) {
@@ -179,6 +210,7 @@ int render(const RenderArguments& a) {
     film::check_writable(file);
   }
   if (!a.stats.empty()) check_folder(a.stats);
+  if (!a.ledger.empty()) check_folder(a.ledger);
   session::Renderer r({.device = a.device, .validation = false, .shaders = {}, .defines = {}});
   r.set_size(width, height);
   // What the command line says stands above the scene's own settings; checked before the scene is loaded.
@@ -236,12 +268,14 @@ int render(const RenderArguments& a) {
       print_progress(r, timer.seconds(), a.seconds, false), since_line.restart();
   }
   const double wall = timer.seconds();
+  r.finish_ledger();
   if (terminal) print_progress(r, wall, a.seconds, true);
   sigaction(SIGINT, &before, nullptr);
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
   if (r.adaptive() && !interrupted) report_unreached(*r.adaptive());
   for (const std::string& file : a.outputs) r.save(file);
+  if (!a.ledger.empty()) write_text(a.ledger, r.ledger().csv());
   if (!a.stats.empty()) write_text(a.stats, make_stats(r, wall).dump(2) + "\n");
   if (r.stats().dropped) log::warning("{} contributions were not finite and were dropped", r.stats().dropped);
   return interrupted ? 130 : 0;

@@ -11,6 +11,7 @@
 #include "scene/default_light.h"
 #include "scene/io/load.h"
 #include "shaders/shared/film.h"
+#include "stats/forecast.h"
 #include "transport/frame.h"
 
 namespace lucerna::session {
@@ -144,6 +145,8 @@ void Renderer::restart() {
   wavefront_->clear(*coarse_);
   wavefront_->reset_stats();
   start_schedule();
+  ledger_.clear();
+  seconds_ = 0;
   wavefront_->set_frame(make_frame(width_, height_), enabled_components());
   applied_ = settings_.all();
 }
@@ -258,6 +261,48 @@ void Renderer::relight(std::shared_ptr<const scene::Scene> edited) {
 }
 
 bool Renderer::step(const std::function<bool()>& cancel) {
+  const Timer timer;
+  const bool progress = render_item(cancel);
+  seconds_ += timer.seconds();
+  if (progress) note_progress(false);
+  return progress;
+}
+
+void Renderer::note_progress(bool at_once) {
+  const transport::TransportStats& s = wavefront_->stats();
+  if (s.paths == 0 || !(at_once || ledger_.due(s.paths))) return;
+  stats::Entry entry;
+  entry.wall_s = seconds_;
+  for (const auto& stage : s.stages) entry.device_s += 1e-3 * stage.ms;
+  entry.paths = s.paths;
+  entry.rays = s.rays;
+  entry.samples = double(s.paths) / (double(film_->width()) * film_->height());
+  entry.component_s[0] = entry.device_s;
+  for (int c = 0; c < paths::k_component_count; ++c) entry.component_s[c + 1] = 1e-3 * s.component_ms[c];
+  const film::ImageError error = image_error();
+  for (int k = 0; k < stats::k_layers; ++k) entry.error[k] = error.relative(k);
+  if (adaptive_) {
+    std::vector<stats::TileProgress> tiles;
+    for (uint32_t t = 0; t < adaptive_->tiles().size(); ++t) {
+      const schedule::Tile& tile = adaptive_->tiles()[t];
+      tiles.push_back(
+          {.error = tile.error,
+           .samples = double(tile.samples),
+           .earlier_error = tile.earlier_error,
+           .earlier_samples = double(tile.earlier_samples),
+           .pixels = 64.0 * double(adaptive_->blocks_of(t).size()),
+           .open = tile.state == schedule::TileState::waiting || tile.state == schedule::TileState::active});
+    }
+    const schedule::AdaptiveOptions& o = adaptive_->options();
+    const stats::Band paths =
+        stats::total_paths(tiles, adaptive_->tiles_across(), o.target_error, o.min_samples, o.max_samples);
+    const double each = double(s.rays) / double(s.paths);
+    entry.total_rays = stats::Band{each * paths.low, each * paths.middle, each * paths.high};
+  }
+  ledger_.add(entry);
+}
+
+bool Renderer::render_item(const std::function<bool()>& cancel) {
   if (!wavefront_ || done()) return false;
   if (adaptive_) {
     const schedule::WorkItem item = adaptive_->next();

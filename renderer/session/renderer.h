@@ -19,6 +19,7 @@
 #include "scene/scene.h"
 #include "schedule/adaptive.h"
 #include "schedule/uniform.h"
+#include "stats/ledger.h"
 #include "transport/wavefront.h"
 
 namespace lucerna::session {
@@ -83,6 +84,11 @@ class Renderer {
   film::FilmImage film_image() const;
   void save(const std::filesystem::path& file);
 
+  /// What this image has cost and how good it was, from its start on; the last line is the present only after
+  /// finish_ledger().
+  const stats::Ledger& ledger() const { return ledger_; }
+  void finish_ledger() { note_progress(true); }
+
   const film::Film& film() const { return *film_; }
   const transport::TransportStats& stats() const { return wavefront_->stats(); }
   std::string tracer_name() const { return host_ ? "host" : "compute-bvh"; }
@@ -102,6 +108,9 @@ class Renderer {
   film::View view() const;
   float luminance_floor() const;
   void start_schedule();
+  bool render_item(const std::function<bool()>& cancel);
+  /// Adds a line to the ledger when one is due, or at once.
+  void note_progress(bool at_once);
 
   RendererOptions options_;
   std::unique_ptr<gpu::Device> device_;
@@ -116,6 +125,8 @@ class Renderer {
   std::unique_ptr<film::Film> film_, coarse_;
   scene::Camera camera_;
   schedule::UniformSchedule schedule_;
+  stats::Ledger ledger_;
+  double seconds_ = 0;                                  ///< rendering time of this image
   std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< instead of schedule_
   uint32_t width_ = 1280, height_ = 720;
   std::map<std::string, std::string> applied_;  ///< settings that the film was made with

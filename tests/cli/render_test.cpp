@@ -122,6 +122,21 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   CHECK(capped["tiles"]["capped"] == capped["tiles"]["unreached"].size());
   CHECK(capped["tiles"]["unreached"].size() > 8);
   CHECK(warning.find("over the error of 0.01") != std::string::npos);
+  // The story of the render, in JSON and as a table with as many lines.
+  const auto [told, nothing] = stats("--samples 32 --ledger " + (f / "e.csv").string());
+  std::ifstream table(f / "e.csv");
+  size_t lines = 0;
+  for (std::string line; std::getline(table, line);) ++lines;
+  CHECK(told["ledger"].size() + 1 == lines);
+  CHECK(lines > 5);
+  CHECK(told["ledger"].back()["paths"] == told["paths"]);
+  CHECK(told["ledger"].back()["error"]["sum"] == told["error"]["relative"]);
+  CHECK(told["forecast"]["seconds_to"]["0.01"][0] <= told["forecast"]["seconds_to"]["0.01"][2]);
+  CHECK(j["ledger"].back()["forecast_rays"][1].get<double>() ==
+        Approx(j["rays"].get<double>()).epsilon(0.01));
+  refused("render " + scene("cornell") + " --quiet -o " + (f / "e.exr").string() +
+              " --ledger /no/such/folder/e.csv",
+          "/no/such/folder");
   // In uniform sampling the noise is told too, and falls as it should.
   const double few = stats("--samples 64").first["error"]["relative"],
                many = stats("--samples 256").first["error"]["relative"];

@@ -1,0 +1,33 @@
+#include "stats/ledger.h"
+
+#include <fmt/format.h>
+
+namespace lucerna::stats {
+
+const std::array<const char*, k_layers> k_layer_names = {"sum", "primary", "secondary", "tertiary",
+                                                         "caustic"};
+
+void Ledger::add(const Entry& entry) {
+  // The end of a render may come right after a line: it takes that line's place.
+  if (!entries_.empty() && entries_.back().paths == entry.paths) entries_.pop_back();
+  entries_.push_back(entry);
+}
+
+std::string Ledger::csv() const {
+  std::string text = "wall_s,device_s,paths,rays,samples";
+  for (const char* what : {"error", "truth", "device_s"})
+    for (const char* layer : k_layer_names) text += fmt::format(",{}_{}", what, layer);
+  text += ",forecast_rays_low,forecast_rays,forecast_rays_high\n";
+  for (const Entry& e : entries_) {
+    text += fmt::format("{},{},{},{},{}", e.wall_s, e.device_s, e.paths, e.rays, e.samples);
+    for (const double x : e.error) text += fmt::format(",{}", x);
+    for (int k = 0; k < k_layers; ++k) text += e.truth ? fmt::format(",{}", (*e.truth)[k]) : ",";
+    for (const double x : e.component_s) text += fmt::format(",{}", x);
+    text += e.total_rays
+                ? fmt::format(",{},{},{}\n", e.total_rays->low, e.total_rays->middle, e.total_rays->high)
+                : ",,,\n";
+  }
+  return text;
+}
+
+}  // namespace lucerna::stats

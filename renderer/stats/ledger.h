@@ -1,0 +1,49 @@
+#pragma once
+// What a render has cost so far and how good it is: one line each time the work has grown by a quarter, so
+// that the whole story of a long render is a few dozen lines, evenly spaced in log time.
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lucerna::stats {
+
+inline constexpr int k_layers = 5;  ///< the sum, then primary, secondary, tertiary, caustic
+extern const std::array<const char*, k_layers> k_layer_names;
+
+/// A forecast as a band; low <= middle <= high.
+struct Band {
+  double low = 0, middle = 0, high = 0;
+};
+
+struct Entry {
+  double wall_s = 0;    ///< of rendering alone, since the image was started
+  double device_s = 0;  ///< sum of the stages, on the device and on the host
+  uint64_t paths = 0, rays = 0;
+  double samples = 0;                          ///< a pixel, on average
+  std::array<double, k_layers> error{};        ///< estimated: rms over the sum's mean luminance
+  std::array<double, k_layers> component_s{};  ///< device time by component; [0] all
+  std::optional<std::array<double, k_layers>>
+      truth;                       ///< the same against a reference, its own noise taken off
+  std::optional<Band> total_rays;  ///< forecast of the whole render's, in adaptive sampling
+};
+
+class Ledger {
+ public:
+  /// Whether a line is due: the first with any paths, then each time there are a quarter more.
+  bool due(uint64_t paths) const {
+    return paths > 0 && (entries_.empty() || paths >= entries_.back().paths * 5 / 4);
+  }
+  void add(const Entry& entry);
+  void clear() { entries_.clear(); }
+  const std::vector<Entry>& entries() const { return entries_; }
+
+  /// A table with a heading, a line an entry; empty fields for what is not known.
+  std::string csv() const;
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+}  // namespace lucerna::stats
