@@ -22,7 +22,7 @@ enum class TileState : uint8_t {
 };
 
 struct Tile {
-  float error = 0;       ///< as last reported; meaningless while waiting
+  float error = 0;       ///< as last reported; decides nothing while waiting
   uint32_t samples = 0;  ///< a pixel
   uint32_t passes = 0;
   float earlier_error = 0;       ///< what it was with at most half the samples,
@@ -46,7 +46,7 @@ class AdaptiveSchedule {
   bool done() const { return open_ == 0; }
   /// The next work; empty when done. The item's tiles are those that report() then wants to hear of.
   WorkItem next();
-  /// Tiles of the item that next() gave last, in order; every one has its minimum when this is not empty.
+  /// Tiles of the item that next() gave last, in order.
   const std::vector<uint32_t>& to_report() const { return item_tiles_; }
   /// The item has been carried out; `errors`, one for each of to_report().
   void report(const std::vector<float>& errors);

@@ -175,8 +175,7 @@ film::ImageError Renderer::image_error() {
   return film::image_error(film_->errors());
 }
 
-std::vector<film::TileError> Renderer::tile_errors() {
-  wavefront_->estimate({}, *film_, luminance_floor());
+std::vector<film::TileError> Renderer::tile_errors() const {
   const auto side = uint32_t(std::stoul(settings_.text("sampling.tile")));
   std::vector<film::TileError> tiles = film::tile_errors(*film_, side);
   film::mark_heavy_tails(tiles, (film_->width() + side - 1) / side, luminance_floor());

@@ -70,8 +70,9 @@ class Renderer {
   const schedule::AdaptiveSchedule* adaptive() const { return adaptive_ ? &*adaptive_ : nullptr; }
   /// Noise of the picture as it is, from all its pixels. Takes a pass over the film.
   film::ImageError image_error();
-  /// The same for every tile of sampling.tile, in raster order, heavy tails marked.
-  std::vector<film::TileError> tile_errors();
+  /// The same for every tile of sampling.tile, in raster order, heavy tails marked: as the last image_error()
+  /// found it.
+  std::vector<film::TileError> tile_errors() const;
   /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled.
   bool step(const std::function<bool()>& cancel = {});
   /// A quick image of a quarter of the resolution, for display until the film is filled.
