@@ -57,6 +57,8 @@ int main_checked(int argc, char** argv) {
   render_verb->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
   render_verb->add_option("--device", r.device, "as above");
   render_verb->add_option("--ledger", r.ledger, "time, rays and error as they went on, as CSV");
+  render_verb->add_option("--reference", r.reference,
+                          "EXR of the same picture, converged: ledger and figures then tell the true error");
   render_verb->add_option("--stats", r.stats, "write figures of the run as JSON");
   render_verb->add_flag("--quiet", r.quiet, "no progress line");
   render_verb->footer(settings_help());

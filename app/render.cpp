@@ -84,6 +84,19 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   return j;
 }
 
+/// Difference from the reference, whose own noise is taken off where its file tells it.
+nlohmann::ordered_json make_truth(const film::Reference& reference, const stats::Ledger& ledger) {
+  nlohmann::ordered_json j;
+  j["reference"] = reference.file.string();
+  for (int k = 0; k < stats::k_layers; ++k) {
+    auto& layer = j[stats::k_layer_names[k]];
+    if (!ledger.entries().empty() && ledger.entries().back().truth)
+      layer["relative"] = (*ledger.entries().back().truth)[k];
+    if (reference.noise) layer["reference_noise"] = (*reference.noise)[k] / reference.mean_luminance;
+  }
+  return j;
+}
+
 /// Tiles that are over the target though they have all the samples they may have, the worst first.
 std::vector<uint32_t> unreached(const schedule::AdaptiveSchedule& s) {
   std::vector<uint32_t> list;
@@ -143,6 +156,8 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
       j["error"][stats::k_layer_names[k]] = e.error[k];
       j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
     }
+    if (e.truth)
+      for (int k = 0; k < stats::k_layers; ++k) j["truth"][stats::k_layer_names[k]] = (*e.truth)[k];
     if (e.total_rays) j["forecast_rays"] = {e.total_rays->low, e.total_rays->middle, e.total_rays->high};
     list.push_back(std::move(j));
   }
@@ -183,6 +198,7 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   j["peak_host_mb"] = session::peak_host_mb();
   j["peak_device_mb"] = double(r.device().peak_bytes()) / (1 << 20);
   j["error"] = make_error(r);
+  if (const film::Reference* reference = r.reference()) j["truth"] = make_truth(*reference, r.ledger());
   if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
   j["ledger"] = make_ledger(r.ledger());
   if (!r.adaptive()) j["forecast"] = make_forecast(r.ledger());
@@ -259,6 +275,7 @@ int render(const RenderArguments& a) {
   if (a.seconds > 0 && a.samples == -1) r.settings().set("samples", "1048576");
   r.apply_settings();
   if (!a.camera.empty()) r.choose_camera(a.camera);
+  if (!a.reference.empty()) r.set_reference(a.reference);
 
   const Timer timer;
   Timer since_line;

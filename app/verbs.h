@@ -10,7 +10,7 @@ namespace lucerna::app {
 struct RenderArguments {
   std::string scene;
   std::vector<std::string> outputs;
-  std::string size = "1280x720", camera, device, stats, ledger;
+  std::string size = "1280x720", camera, device, stats, ledger, reference;
   int64_t samples = -1;         ///< -1: the settings'; with `error`, the most that a pixel may get
   std::optional<double> error;  ///< relative error for every tile: adaptive sampling
   double seconds = 0;           ///< 0: no time limit

@@ -182,6 +182,41 @@ std::vector<film::TileError> Renderer::tile_errors() const {
   return tiles;
 }
 
+std::string Renderer::view_text() const {
+  std::string text = camera_.orthographic
+                         ? fmt::format("orthographic {:.5g} {:.5g}", camera_.xmag, camera_.ymag)
+                         : fmt::format("perspective {:.5g}", camera_.yfov);
+  text += fmt::format(" aspect {:.5g} at", camera_.aspect);
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 3; ++row) text += fmt::format(" {:.5g}", camera_.to_world[column][row] + 0.0f);
+  return text;
+}
+
+void Renderer::set_reference(const std::filesystem::path& file) {
+  if (!wavefront_) throw Error(file.string(), "a reference is of a scene; load the scene first");
+  film::Reference reference = film::read_reference(file, width_, height_);
+  if (!reference.scene.empty() && reference.scene != scene_->name)
+    throw_error(file.string(), "the reference is of the scene '{}', not of '{}'", reference.scene,
+                scene_->name);
+  if (!reference.view.empty() && reference.view != view_text())
+    throw_error(file.string(), "the reference was taken with another camera ({}; now {})", reference.view,
+                view_text());
+  if (!reference.noise)
+    log::warning("{}: it does not tell its own noise, which is therefore taken for error", file.string());
+  if (reference.seed == settings_.text("seed"))
+    log::warning(
+        "{}: rendered with seed {} like this picture, so that they share samples and the difference is too "
+        "small; another seed tells the truth",
+        file.string(), reference.seed);
+  reference_ = std::move(reference);
+}
+
+bool Renderer::reference_applies() const {
+  return reference_ && wavefront_ && reference_->width == width_ && reference_->height == height_ &&
+         (reference_->scene.empty() || reference_->scene == scene_->name) &&
+         (reference_->view.empty() || reference_->view == view_text());
+}
+
 void Renderer::apply_settings() {
   if (!wavefront_) return;
   bool again = false, samples = false, rebuild = false;
@@ -280,6 +315,10 @@ void Renderer::note_progress(bool at_once) {
   for (int c = 0; c < paths::k_component_count; ++c) entry.component_s[c + 1] = 1e-3 * s.component_ms[c];
   const film::ImageError error = image_error();
   for (int k = 0; k < stats::k_layers; ++k) entry.error[k] = error.relative(k);
+  if (reference_applies()) {
+    const film::Image image = film_->read();
+    entry.truth = film::true_errors(*reference_, image.components, image.samples);
+  }
   if (adaptive_) {
     std::vector<stats::TileProgress> tiles;
     for (uint32_t t = 0; t < adaptive_->tiles().size(); ++t) {
@@ -353,7 +392,7 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
   return film_->read_picture();
 }
 
-film::FilmImage Renderer::film_image() const {
+film::FilmImage Renderer::film_image() {
   const film::Image image = film_->read();
   film::FilmImage out;
   out.width = image.width;
@@ -382,6 +421,8 @@ film::FilmImage Renderer::film_image() const {
   out.metadata["device"] = device_->info().name;
   out.metadata["tracer"] = tracer_name();
   out.metadata["scene"] = scene_->name;
+  out.metadata["view"] = view_text();
+  out.metadata["noise"] = film::noise_text(image_error().rms);
   return out;
 }
 

@@ -13,6 +13,7 @@
 #include "film/error.h"
 #include "film/film.h"
 #include "film/io/image_file.h"
+#include "film/io/reference.h"
 #include "gpu/kernel.h"
 #include "paths/automaton.h"
 #include "plan/settings.h"
@@ -81,14 +82,25 @@ class Renderer {
   /// Tone-mapped picture with the settings' view.
   std::vector<uint8_t> picture(bool with_coarse);
   film::Image image() const { return film_->read(); }
-  /// The image with its layers and metadata, as EXR files hold it.
-  film::FilmImage film_image() const;
+  /// The image with its layers and metadata (its own noise among them), as EXR files hold it.
+  film::FilmImage film_image();
   void save(const std::filesystem::path& file);
 
   /// What this image has cost and how good it was, from its start on; the last line is the present only after
   /// finish_ledger().
   const stats::Ledger& ledger() const { return ledger_; }
   void finish_ledger() { note_progress(true); }
+
+  /// Holds what is rendered from now on against this picture: the ledger's lines then tell the truth. Throws
+  /// Error as film::read_reference, or when there is no scene yet; the reference before then stays. Lines are
+  /// without truth while the picture is another than the reference's: other size, camera or scene.
+  void set_reference(const std::filesystem::path& file);
+  void clear_reference() { reference_.reset(); }
+  bool has_reference() const { return reference_.has_value(); }
+  /// Null when there is none.
+  const film::Reference* reference() const { return reference_ ? &*reference_ : nullptr; }
+  /// Whether the picture is the one that the reference shows.
+  bool reference_applies() const;
 
   const film::Film& film() const { return *film_; }
   const transport::TransportStats& stats() const { return wavefront_->stats(); }
@@ -109,6 +121,8 @@ class Renderer {
   film::View view() const;
   float luminance_floor() const;
   void start_schedule();
+  /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
+  std::string view_text() const;
   bool render_item(const std::function<bool()>& cancel);
   /// Adds a line to the ledger when one is due, or at once.
   void note_progress(bool at_once);
@@ -127,6 +141,7 @@ class Renderer {
   scene::Camera camera_;
   schedule::UniformSchedule schedule_;
   stats::Ledger ledger_;
+  std::optional<film::Reference> reference_;
   double seconds_ = 0;                                  ///< rendering time of this image
   std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< instead of schedule_
   uint32_t width_ = 1280, height_ = 720;

@@ -144,6 +144,36 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   CHECK(many > 0.3 * few);
 }
 
+TEST_CASE("--reference: the ledger tells the true error, and it is the estimated one") {
+  const fs::path f = folder();
+  const std::string reference = (f / "reference.exr").string(), out = (f / "r.exr").string();
+  const std::string cornell = "render " + scene("cornell") + " --size 48x48 --quiet ";
+  REQUIRE(run(cornell + "--samples 1024 --seed 7 -o " + reference).status == 0);
+  const Run r = run(cornell + "--samples 64 -o " + out + " --reference " + reference + " --stats " +
+                    (f / "r.json").string() + " --ledger " + (f / "r.csv").string());
+  INFO(r.out);
+  REQUIRE(r.status == 0);
+  std::ifstream file(f / "r.json");
+  const auto j = nlohmann::json::parse(file);
+  for (const char* layer : {"sum", "primary", "secondary", "tertiary", "caustic"}) {
+    INFO(layer);
+    const double truth = j["truth"][layer]["relative"], estimate = j["ledger"].back()["error"][layer];
+    CHECK(j["ledger"].back()["truth"][layer] == truth);
+    CHECK(j["truth"][layer]["reference_noise"] <= estimate);
+    // 2304 pixels; caustics come in few large amounts and stay outside.
+    if (std::string(layer) != "caustic") CHECK(truth == Approx(estimate).epsilon(0.25));
+  }
+  CHECK(j["ledger"][0].contains("truth"));
+  refused("render " + scene("cornell") + " --size 47x48 --quiet -o " + out + " --reference " + reference,
+          "48x48");
+  refused("render " + scene("glass") + " --size 48x48 --quiet -o " + out + " --reference " + reference,
+          "of the scene 'cornell'");
+  refused(cornell + "-o " + out + " --reference /no/such.exr", "/no/such.exr");
+  CHECK(run(cornell + "--samples 2 --seed 7 -o " + out + " --reference " + reference)
+            .out.find("with seed 7 like this picture") != std::string::npos);
+  fs::remove_all(f);
+}
+
 TEST_CASE("Ctrl-C writes what there is and says so") {
   const fs::path f = folder();
   const std::string file = (f / "interrupted.exr").string();

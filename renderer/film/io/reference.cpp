@@ -1,0 +1,101 @@
+#include "film/io/reference.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace lucerna::film {
+namespace {
+
+constexpr const char* k_names[k_reference_layers] = {"sum", "primary", "secondary", "tertiary", "caustic"};
+
+std::optional<LayerFigures> parse_noise(const std::string& text) {
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  LayerFigures rms{};
+  for (int k = 0; k < k_reference_layers; ++k) {
+    if (!json.is_object() || !json.contains(k_names[k]) || !json[k_names[k]].is_number()) return std::nullopt;
+    rms[size_t(k)] = json[k_names[k]].get<double>();
+    if (!(rms[size_t(k)] >= 0)) return std::nullopt;
+  }
+  return rms;
+}
+
+}  // namespace
+
+std::string noise_text(const LayerFigures& rms) {
+  nlohmann::ordered_json json;
+  for (int k = 0; k < k_reference_layers; ++k) json[k_names[k]] = rms[size_t(k)];
+  return json.dump();
+}
+
+Reference read_reference(const std::filesystem::path& file, uint32_t width, uint32_t height) {
+  const std::string where = file.string();
+  const FilmImage image = read_exr(file);
+  if (image.width != width || image.height != height)
+    throw_error(where, "the reference is {}x{} pixels, the picture {}x{}; they must be of one size",
+                image.width, image.height, width, height);
+  Reference reference;
+  reference.file = file;
+  reference.width = width;
+  reference.height = height;
+  const size_t pixels = size_t{width} * height;
+  for (int k = 0; k < k_reference_layers; ++k) {
+    const std::string prefix = k == 0 ? "" : std::string(k_names[k]) + ".";
+    std::array<const std::vector<float>*, 3> planes{};
+    for (int c = 0; c < 3; ++c) {
+      planes[c] = image.find(prefix + "RGB"[c]);
+      if (!planes[c])
+        throw_error(where,
+                    "no channel '{}'; a reference holds R, G, B and the same of primary, secondary, tertiary "
+                    "and caustic, as 'lucerna render -o REF.exr' writes them",
+                    prefix + "RGB"[c]);
+    }
+    auto& luminances = reference.luminance[size_t(k)];
+    luminances.resize(pixels);
+    for (size_t i = 0; i < pixels; ++i) {
+      luminances[i] = luminance(vec3((*planes[0])[i], (*planes[1])[i], (*planes[2])[i]));
+      if (!std::isfinite(luminances[i]))
+        throw_error(where, "the {} layer is not finite at x {} y {}; such a picture is no reference",
+                    k_names[k], i % width, i / width);
+    }
+  }
+  double sum = 0;
+  for (const float y : reference.luminance[0]) sum += double{y};
+  reference.mean_luminance = sum / double(pixels);
+  if (!(reference.mean_luminance > 0))
+    throw_error(where, "the reference is black; nothing can be held against it");
+  const auto told = [&](const char* key) {
+    const auto at = image.metadata.find(key);
+    return at == image.metadata.end() ? std::string() : at->second;
+  };
+  reference.noise = parse_noise(told("noise"));
+  reference.scene = told("scene");
+  reference.view = told("view");
+  reference.seed = told("seed");
+  return reference;
+}
+
+LayerFigures true_errors(const Reference& reference, std::span<const std::vector<vec3>> components,
+                         std::span<const uint32_t> samples) {
+  LayerFigures squares{};
+  double pixels = 0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i] == 0) continue;
+    ++pixels;
+    double sum = 0;
+    for (size_t c = 0; c < components.size(); ++c) {
+      const double y = luminance(components[c][i]), d = y - double{reference.luminance[c + 1][i]};
+      sum += y;
+      squares[c + 1] += d * d;
+    }
+    const double d = sum - double{reference.luminance[0][i]};
+    squares[0] += d * d;
+  }
+  LayerFigures errors{};
+  for (size_t k = 0; k < errors.size() && pixels > 0; ++k) {
+    const double own = reference.noise ? (*reference.noise)[k] : 0;
+    errors[k] = std::sqrt(std::max(0.0, squares[k] / pixels - own * own)) / reference.mean_luminance;
+  }
+  return errors;
+}
+
+}  // namespace lucerna::film

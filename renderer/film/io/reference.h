@@ -1,0 +1,40 @@
+#pragma once
+// A picture taken for the truth: what an image in progress is held against, layer by layer.
+#include <array>
+#include <optional>
+#include <span>
+
+#include "base/math.h"
+#include "film/io/image_file.h"
+
+namespace lucerna::film {
+
+inline constexpr int k_reference_layers = 5;  ///< the sum, then primary, secondary, tertiary, caustic
+using LayerFigures = std::array<double, k_reference_layers>;
+
+struct Reference {
+  std::filesystem::path file;
+  uint32_t width = 0, height = 0;
+  std::array<std::vector<float>, k_reference_layers> luminance;  ///< Rec.709, a value a pixel, top row first
+  double mean_luminance = 0;                                     ///< of the sum
+  /// Root mean square over the pixels of its own standard error, in luminance, as its file tells (metadata
+  /// "noise"); none: the file does not, and figures hold the reference's noise as well.
+  std::optional<LayerFigures> noise;
+  std::string scene, view, seed;  ///< of its metadata; empty: not told
+};
+
+/// Reads an EXR as `lucerna render` writes it, for a picture of that size. Throws Error located at `file`:
+/// unreadable, of another size, a layer missing (R G B and each component's), values that are not finite, or
+/// black all over.
+Reference read_reference(const std::filesystem::path& file, uint32_t width, uint32_t height);
+
+/// The metadata "noise" of a picture whose layers have these errors; and back.
+std::string noise_text(const LayerFigures& rms);
+
+/// Root mean square over the pixels with samples of the difference in luminance, the reference's noise
+/// variance taken off, over the reference's mean luminance. 0: the difference is no larger than the
+/// reference's own noise. Components are means over a pixel's samples; sizes as the reference's.
+LayerFigures true_errors(const Reference& reference, std::span<const std::vector<vec3>> components,
+                         std::span<const uint32_t> samples);
+
+}  // namespace lucerna::film
