@@ -326,8 +326,6 @@ void Renderer::note_progress(bool at_once) {
       tiles.push_back(
           {.error = tile.error,
            .samples = double(tile.samples),
-           .earlier_error = tile.earlier_error,
-           .earlier_samples = double(tile.earlier_samples),
            .pixels = 64.0 * double(adaptive_->blocks_of(t).size()),
            .open = tile.state == schedule::TileState::waiting || tile.state == schedule::TileState::active});
     }
