@@ -109,8 +109,11 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
                                  bool coherent) { host->trace(query, rays, hits, queue, count, coherent); };
   }
   const uint32_t slots = uint32_t(settings_.integer("path.batch")) / 64 * 64;
+  gpu::Defines defines = options_.defines;
+  if (settings_.boolean("sampling.coherent"))
+    defines["LUCERNA_COHERENT"] = settings_.text("sampling.tile") == "8" ? "3" : "4";
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
-                                                      std::move(trace), options_.defines);
+                                                      std::move(trace), defines);
   compile_seconds_ = timer.seconds();
 }
 
@@ -219,7 +222,7 @@ bool Renderer::reference_applies() const {
 
 void Renderer::apply_settings() {
   if (!wavefront_) return;
-  bool again = false, samples = false, rebuild = false;
+  bool again = false, samples = false, rebuild = false, kernels = false;
   for (const auto& [key, value] : settings_.all()) {
     if (applied_[key] == value) continue;
     if (key == "samples")
@@ -230,11 +233,14 @@ void Renderer::apply_settings() {
       rebuild = true;
     else
       again |= plan::find_option(key)->restarts;
+    kernels |=
+        key == "sampling.coherent" || (key == "sampling.tile" && settings_.boolean("sampling.coherent"));
   }
   if (rebuild) {
     install(scene_, settings_, camera_, {});
     return;
   }
+  if (kernels) build_wavefront(*device_scene_);
   if (samples && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
   if (again) restart();
   applied_ = settings_.all();
