@@ -7,9 +7,11 @@
 #include "base/log.h"
 #include "base/timer.h"
 #include "bvh/embree/build.h"
+#include "film/overlay.h"
 #include "plan/plan.h"
 #include "scene/default_light.h"
 #include "scene/io/load.h"
+#include "session/accuracy.h"
 #include "shaders/shared/film.h"
 #include "stats/forecast.h"
 #include "transport/frame.h"
@@ -145,6 +147,7 @@ void Renderer::restart() {
   wavefront_->clear(*coarse_);
   wavefront_->reset_stats();
   start_schedule();
+  ++restarts_;
   ledger_.clear();
   seconds_ = 0;
   wavefront_->set_frame(make_frame(width_, height_), enabled_components());
@@ -155,14 +158,17 @@ void Renderer::start_schedule() {
   schedule_ = {film_->blocks(), uint32_t(settings_.integer("samples")), wavefront_->slots()};
   adaptive_.reset();
   if (settings_.text("sampling.mode") != "adaptive") return;
-  adaptive_.emplace(film_->blocks_across(), film_->blocks_down(),
-                    schedule::AdaptiveOptions{
-                        .tile = uint32_t(std::stoul(settings_.text("sampling.tile"))),
-                        .target_error = float(settings_.real("sampling.target_error")),
-                        .min_samples = uint32_t(settings_.integer("sampling.min_samples")),
-                        .max_samples = uint32_t(settings_.integer("sampling.max_samples")),
-                        .slots = wavefront_->slots(),
-                    });
+  adaptive_.emplace(film_->blocks_across(), film_->blocks_down(), adaptive_options());
+}
+
+schedule::AdaptiveOptions Renderer::adaptive_options() const {
+  return {
+      .tile = uint32_t(std::stoul(settings_.text("sampling.tile"))),
+      .target_error = float(settings_.real("sampling.target_error")),
+      .min_samples = uint32_t(settings_.integer("sampling.min_samples")),
+      .max_samples = uint32_t(settings_.integer("sampling.max_samples")),
+      .slots = wavefront_->slots(),
+  };
 }
 
 /// What the floor of the display (film/error.h) is before exposure.
@@ -219,7 +225,7 @@ bool Renderer::reference_applies() const {
 
 void Renderer::apply_settings() {
   if (!wavefront_) return;
-  bool again = false, samples = false, rebuild = false;
+  bool again = false, samples = false, rebuild = false, retarget = false;
   for (const auto& [key, value] : settings_.all()) {
     if (applied_[key] == value) continue;
     if (key == "samples")
@@ -228,6 +234,8 @@ void Renderer::apply_settings() {
       choose_camera(value);
     else if (key == "tracer" || key == "path.batch")
       rebuild = true;
+    else if (key.starts_with("sampling.") && key != "sampling.mode" && (!adaptive_ || key != "sampling.tile"))
+      retarget = true;
     else
       again |= plan::find_option(key)->restarts;
   }
@@ -236,6 +244,7 @@ void Renderer::apply_settings() {
     return;
   }
   if (samples && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
+  if (retarget && !again && adaptive_) adaptive_->retarget(adaptive_options());
   if (again) restart();
   applied_ = settings_.all();
 }
@@ -383,12 +392,32 @@ film::View Renderer::view() const {
     if (settings_.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
   v.curve = uint32_t(settings_.choice("film.tone_curve"));
   v.exposure = float(std::exp2(settings_.real("film.ev")));
-  v.scale = v.layer == shared::k_layer_samples ? float(std::max(1u, max_samples())) : 2 * flat_.scene_radius;
+  v.scale = 2 * flat_.scene_radius;
+  v.heat = heat_scale(v.layer);
+  if (settings_.boolean("overlay.tiles")) v.tiles = uint32_t(std::stoul(settings_.text("sampling.tile")));
   return v;
 }
 
+film::HeatScale Renderer::heat_scale(uint32_t layer) const {
+  if (layer == shared::k_layer_samples)
+    return film::sample_scale(adaptive_ ? adaptive_->options().min_samples : 0, max_samples());
+  if (layer == shared::k_layer_error) return film::error_scale(settings_.real("sampling.target_error"));
+  double ms = 0;
+  for (const auto& stage : stats().stages) ms += stage.ms;
+  return film::cost_scale(ms, double(stats().rays - stats().shadow_rays),
+                          double(film_->width()) * film_->height(), adaptive_.has_value());
+}
+
 std::vector<uint8_t> Renderer::picture(bool with_coarse) {
-  wavefront_->tone_map(*film_, view(), with_coarse ? coarse_.get() : nullptr);
+  const film::View v = view();
+  if (v.tiles > 0) {
+    std::vector<shared::TileMark> marks;
+    for (const TileStatus& t : tile_status(*this))
+      marks.push_back({film::tile_position(double{t.error}, settings_.real("sampling.target_error")),
+                       t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
+    film_->mark_tiles(marks);
+  }
+  wavefront_->tone_map(*film_, v, with_coarse ? coarse_.get() : nullptr);
   return film_->read_picture();
 }
 
