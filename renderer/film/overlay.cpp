@@ -6,7 +6,7 @@
 namespace lucerna::film {
 
 float tile_position(double error, double target) {
-  if (!(error >= 0) || !(target > 0)) return 0;
+  if (!(error >= 0) || !(target > 0)) return -1;
   if (error <= target) return 1;
   return static_cast<float>(
       std::clamp(1 - std::log(error / target) / std::log(double{k_tiles_far}), 0.0, 1.0));

@@ -9,7 +9,7 @@ namespace lucerna::film {
 inline constexpr float k_tiles_far = 8;
 
 /// Where a tile of that error lies on the ramp of tiles: 0 far from the target .. 1 at it or below, even in
-/// the error's logarithm. 0 for errors that are not known (negative or NaN) and targets that are not
+/// the error's logarithm. -1 for errors that are not known (negative or NaN) and targets that are not
 /// positive.
 float tile_position(double error, double target);
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t k_passes = 64;
 /// Samples a pixel from which on heavy tails can be told from a bad start.
-constexpr uint32_t k_tail_samples = 16;
+constexpr uint32_t k_tail_samples = 32;
 
 /// Seconds that a ray takes: over the last half of the work, so that the first, short passes do not count.
 double seconds_a_ray(const stats::Ledger& ledger) {
@@ -158,6 +158,7 @@ std::shared_ptr<const Accuracy> AccuracyKeeper::publish(const Renderer& r, bool 
     now_.tiles = tile_status(r);
   }
   now_.paths = double(r.stats().paths), now_.rays = double(r.stats().rays);
+  if (now_.adaptive && (tiles || changed_)) now_.forecast = seconds_to(now_, now_.target);
   changed_ = false;
   published_ = std::make_shared<const Accuracy>(now_);
   return published_;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "shaders/shared/film.h"
 #include "shaders/shared/ramp.h"
 #include "stats/forecast.h"
 #include "stats/ledger.h"
@@ -47,6 +48,8 @@ struct Accuracy {
   /// For each line of the ledger the error of the hardest tile that was not given up; 0: not known.
   std::vector<double> hardest;
   std::vector<TileStatus> tiles;  ///< raster order
+  /// seconds_to(target), in adaptive sampling.
+  std::optional<stats::Band> forecast;
   std::vector<std::string> stages;
   std::deque<PassStatus> passes;  ///< the newest last
   std::string reference;          ///< file name of the picture taken for the truth; "" for none

@@ -20,14 +20,17 @@ void main() {
   vec3 color = vec3(packed & 0xffu, packed >> 8 & 0xffu, packed >> 16 & 0xffu) / 255.0;
   // The last column and row of tiles may be cut off by the picture's edge.
   uvec2 from = xy - at * push.side, last = min((at + 1u) * push.side, uvec2(push.width, push.height)) - 1u, to = last - xy;
-  vec3 ink = state == k_tile_waiting ? vec3(0.62) : ramp_color(k_ramp_tiles, mark.position);
+  bool known = mark.position >= 0.0;
+  vec3 ink = known ? ramp_color(k_ramp_tiles, mark.position) : vec3(0.62);
   if (at_work(mark.bits)) {
-    color = mix(color, ink, state == k_tile_waiting ? 0.0 : 0.2);
+    // Before the minimum of samples an error decides nothing: it is shown, but not in full strength.
+    float strength = !known ? 0.25 : state == k_tile_waiting ? 0.55 : 0.85;
+    color = mix(color, ink, known ? 0.25 * strength : 0.0);
     // Neighbours at work share a line: each draws its left and upper one, and the others where nobody else does.
     bool right = to.x < push.line && (at.x + 1u == push.across || !at_work(marks[tile + 1u].bits));
     bool below = to.y < push.line && (last.y + 1u == push.height || !at_work(marks[tile + push.across].bits));
     bool line = from.x < push.line || from.y < push.line || right || below;
-    if (line) color = mix(color, ink, state == k_tile_waiting ? 0.25 : 0.85);
+    if (line) color = mix(color, ink, strength);
   } else {
     float y = dot(color, vec3(0.2126, 0.7152, 0.0722));
     color = mix(color, vec3(y), 0.4) * 0.42;

@@ -83,10 +83,10 @@ LUCERNA_TONE_FUNCTION float ramp_position(float value, float lo, float hi, uint 
 
 // What the tiles' overlay is told of a tile.
 struct TileMark {
-  float position;  ///< on k_ramp_tiles
+  float position;  ///< on k_ramp_tiles; negative: its error is not known
   uint bits;       ///< 0-1 one of k_tile_*, then the flags
 };
-LUCERNA_CONST uint k_tile_waiting = 0u;  ///< for its first samples: no error is known yet
+LUCERNA_CONST uint k_tile_waiting = 0u;  ///< for the minimum of samples
 LUCERNA_CONST uint k_tile_active = 1u;
 LUCERNA_CONST uint k_tile_done = 2u;
 LUCERNA_CONST uint k_tile_capped = 3u;   ///< given up over the target

@@ -88,8 +88,8 @@ TEST_CASE("the parts of the window tile it and leave room for the picture") {
       layout.left_open = folds & 1, layout.right_open = folds & 2, layout.bottom_open = folds & 4;
       const ui::Areas areas = ui::arrange(layout, {width, height}, scale);
       float covered = 0;
-      for (const ui::Area& a :
-           {areas.bar, areas.left, areas.toolbar, areas.picture, areas.right, areas.timings, areas.log}) {
+      for (const ui::Area& a : {areas.bar, areas.left, areas.toolbar, areas.picture, areas.right,
+                                areas.accuracy, areas.passes, areas.log}) {
         CHECK(a.width() > 0);
         CHECK(a.height() > 0);
         covered += a.width() * a.height();
