@@ -60,7 +60,7 @@ void draw_axes(ImDrawList* list, const Plot& plot) {
   ImFont* font = theme().fonts.small;
   const Area& a = plot.area;
   for (const Tick& t : ticks(plot.x, Unit::seconds, px(46))) {
-    const float x = std::floor(plot.x.at(t.value)) + 0.5f;
+    const float x = std::floor(plot.x.at(t.value));
     list->AddLine({x, a.lo.y}, {x, a.hi.y}, colour::grey(t.labelled ? 48 : 40));
     if (!t.labelled) continue;
     const std::string text = tick_text(t.value, Unit::seconds);
@@ -70,7 +70,7 @@ void draw_axes(ImDrawList* list, const Plot& plot) {
               colour::text_faint, Align::left, font);
   }
   for (const Tick& t : ticks(plot.y, Unit::relative, px(17))) {
-    const float y = std::floor(plot.y.at(t.value)) + 0.5f;
+    const float y = std::floor(plot.y.at(t.value));
     list->AddLine({a.lo.x, y}, {a.hi.x, y}, colour::grey(t.labelled ? 48 : 40));
     if (!t.labelled || y > a.hi.y - px(5)) continue;
     draw_text(list, {a.lo.x - px(44), y - px(8)}, {a.lo.x - px(6), y + px(7)},
@@ -81,7 +81,7 @@ void draw_axes(ImDrawList* list, const Plot& plot) {
 /// The target's line: what it costs, and dragging it. In adaptive sampling it is the setting; in uniform
 /// sampling only a question. The range stands still meanwhile. Returns whether the pointer has to do with it.
 bool drag_target(Ui& ui, const Plot& plot, const Accuracy& a, double target, const PlotRange& range) {
-  const float y = std::floor(plot.y.at(target)) + 0.5f;
+  const float y = std::floor(plot.y.at(target));
   const bool inside = y >= plot.area.lo.y && y <= plot.area.hi.y;
   if (!inside && !ui.held_range) return false;
   ImGui::SetCursorScreenPos({plot.area.lo.x, y - px(5)});
@@ -254,7 +254,7 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
               k_sum, px(1.5f), px(3), px(1.5f));
   // Now.
   if (seconds > 0) {
-    const float x = std::floor(plot.x.at(seconds)) + 0.5f;
+    const float x = std::floor(plot.x.at(seconds));
     list->AddLine({x, plot.area.lo.y}, {x, plot.area.hi.y}, colour::grey(104));
     list->AddTriangleFilled({x - px(4), plot.area.lo.y}, {x + px(4), plot.area.lo.y},
                             {x, plot.area.lo.y + px(5)}, colour::text_dim);

@@ -46,7 +46,7 @@ PlotRange plot_range(const Accuracy& a, const std::deque<Run>& earlier, double t
   for (const double x : a.hardest) e_hi = std::max(e_hi, x);
   for (const Run& run : earlier) hold(*run.accuracy);
   const double now = t_hi;
-  if (forecast) t_hi = std::max(t_hi, std::min(1.15 * forecast->high, 50 * now));
+  if (forecast) t_hi = std::max(t_hi, std::min(1.15 * forecast->high, 300 * now));
   if (t_lo > t_hi) t_lo = 0.1 * t_hi;
   PlotRange range;
   range.t_lo = nice_below(std::min(t_lo, 0.2 * t_hi)), range.t_hi = nice_above(1.05 * t_hi);

@@ -12,7 +12,7 @@ struct PlotRange {
 };
 
 /// A range that holds the run's lines, its earlier ones, the target with room below it, and the forecast as
-/// far as it does not squeeze what is known into a corner (50 times the time so far).
+/// far as it does not squeeze what is known into a corner (300 times the time so far).
 PlotRange plot_range(const session::Accuracy& accuracy, const std::deque<Run>& earlier, double target,
                      const std::optional<stats::Band>& forecast, double seconds);
 

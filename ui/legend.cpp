@@ -34,7 +34,7 @@ void ramp_bar(ImDrawList* list, const ImVec2& at, uint32_t ramp,
   float taken = at.x - px(8);  // up to where there are labels
   for (const auto& [place, text] : labels) {
     const float x = std::floor(at.x + place * w);
-    list->AddLine({x + 0.5f, at.y + h}, {x + 0.5f, at.y + h + px(3)}, colour::text_dim);
+    list->AddLine({x, at.y + h}, {x, at.y + h + px(3)}, colour::text_dim);
     if (text.empty()) continue;
     const float half = 0.5f * text_width(text, font);
     const float middle = std::clamp(x, at.x + half - px(2), at.x + w - half + px(2));

@@ -78,7 +78,7 @@ std::string console_hint(const Ui& ui) {
 
 void draw_console(Ui& ui, const Area& area) {
   ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddLine({area.lo.x, area.lo.y + 0.5f}, {area.hi.x, area.lo.y + 0.5f}, colour::hairline);
+  list->AddLine({area.lo.x, area.lo.y}, {area.hi.x, area.lo.y}, colour::hairline);
   Console& console = ui.console;
   ImFont* font = theme().fonts.regular;
   draw_text(list, {area.lo.x + px(12), area.lo.y}, {area.lo.x + px(24), area.hi.y}, "\xE2\x80\xBA",

@@ -33,8 +33,7 @@ void divide() {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = std::max(px(232), ImGui::GetContentRegionAvail().x);
   ImGui::Dummy({width, px(9)});
-  ImGui::GetWindowDrawList()->AddLine({at.x, at.y + px(4) + 0.5f}, {at.x + width, at.y + px(4) + 0.5f},
-                                      colour::grey(58));
+  ImGui::GetWindowDrawList()->AddLine({at.x, at.y + px(4)}, {at.x + width, at.y + px(4)}, colour::grey(58));
 }
 
 bool begin_menu(const char* name) {

@@ -52,7 +52,7 @@ void pass_tooltip(const Snapshot& s, const PassStatus& pass) {
 /// The newest passes, the newest at the right.
 void pass_bars(const Snapshot& s, const Area& area) {
   ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddLine({area.lo.x, area.hi.y + 0.5f}, {area.hi.x, area.hi.y + 0.5f}, colour::hairline);
+  list->AddLine({area.lo.x, area.hi.y}, {area.hi.x, area.hi.y}, colour::hairline);
   const auto& passes = s.accuracy->passes;
   const float pitch = px(7), bar = px(6);
   const size_t fitting = std::min(passes.size(), static_cast<size_t>(std::max(1.0f, area.width() / pitch)));
@@ -65,7 +65,8 @@ void pass_bars(const Snapshot& s, const Area& area) {
   draw_text(list, {area.lo.x, area.lo.y - px(2)}, {area.hi.x, area.lo.y + px(12)},
             tick_text(top, Unit::milliseconds), colour::text_faint, Align::left, theme().fonts.small);
   const float floor_y = area.hi.y, room = area.height() - px(14);
-  list->AddLine({area.lo.x, floor_y - room + 0.5f}, {area.hi.x, floor_y - room + 0.5f}, colour::grey(44));
+  list->AddLine({area.lo.x, std::floor(floor_y - room)}, {area.hi.x, std::floor(floor_y - room)},
+                colour::grey(44));
   for (size_t i = first; i < passes.size(); ++i) {
     const float x = area.hi.x - pitch * static_cast<float>(passes.size() - i);
     float y = floor_y;
