@@ -67,9 +67,14 @@ std::vector<TileStatus> tile_status(const Renderer& r) {
   const std::vector<film::TileError> errors = r.tile_errors();
   std::vector<TileStatus> tiles(errors.size());
   const double target = r.settings().real("sampling.target_error");
+  const auto side = static_cast<uint32_t>(std::stoul(r.settings().text("sampling.tile")));
+  const size_t across = (r.film().width() + side - 1) / side;
   for (size_t i = 0; i < tiles.size(); ++i) {
     TileStatus& t = tiles[i];
-    t.pixels = static_cast<uint32_t>(errors[i].pixels);
+    const auto along = [&](size_t index, uint32_t whole) {
+      return std::min(whole, (static_cast<uint32_t>(index) + 1) * side) - static_cast<uint32_t>(index) * side;
+    };
+    t.pixels = along(i % across, r.film().width()) * along(i / across, r.film().height());
     if (const schedule::AdaptiveSchedule* adaptive = r.adaptive()) {
       const schedule::Tile& known = adaptive->tiles()[i];
       t.samples = known.samples;

@@ -177,7 +177,7 @@ float Renderer::luminance_floor() const {
 }
 
 film::ImageError Renderer::image_error() {
-  wavefront_->estimate({}, *film_, luminance_floor());
+  wavefront_->estimate(*film_, luminance_floor());
   return film::image_error(film_->errors());
 }
 
@@ -357,13 +357,10 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
       adaptive_->give_back();
       return false;
     }
-    wavefront_->estimate(item.blocks, *film_, luminance_floor());
+    wavefront_->estimate_stopping(item.blocks, *film_, luminance_floor());
     std::vector<float> errors;
-    for (const uint32_t tile : adaptive_->to_report()) {
-      std::vector<shared::BlockError> blocks;
-      for (const uint32_t block : adaptive_->blocks_of(tile)) blocks.push_back(film_->errors()[block]);
-      errors.push_back(float(film::tile_error(blocks).relative));
-    }
+    for (const uint32_t tile : adaptive_->to_report())
+      errors.push_back(float(film::relative_error(*film_, adaptive_->blocks_of(tile))));
     adaptive_->report(errors);
     return true;
   }
