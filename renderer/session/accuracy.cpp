@@ -63,9 +63,10 @@ std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
   return stats::Band{seconds(total.low), seconds(total.middle), seconds(total.high)};
 }
 
-std::vector<TileStatus> tile_status(const Renderer& r) {
-  const std::vector<film::TileError> errors = r.tile_errors();
-  std::vector<TileStatus> tiles(errors.size());
+std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
+  const std::vector<film::TileError> errors =
+      flags || !r.adaptive() ? r.tile_errors() : std::vector<film::TileError>();
+  std::vector<TileStatus> tiles(r.adaptive() ? r.adaptive()->tiles().size() : errors.size());
   const double target = r.settings().real("sampling.target_error");
   const auto side = static_cast<uint32_t>(std::stoul(r.settings().text("sampling.tile")));
   const size_t across = (r.film().width() + side - 1) / side;
@@ -90,7 +91,7 @@ std::vector<TileStatus> tile_status(const Renderer& r) {
                                     : shared::k_tile_active;
       }
     }
-    t.heavy_tailed = errors[i].heavy_tailed && t.samples >= k_tail_samples;
+    t.heavy_tailed = flags && errors[i].heavy_tailed && t.samples >= k_tail_samples;
   }
   return tiles;
 }
@@ -148,7 +149,7 @@ void AccuracyKeeper::note_pass(const Renderer& r) {
 
 std::shared_ptr<const Accuracy> AccuracyKeeper::publish(const Renderer& r, bool tiles) {
   if (published_ && !changed_ && !tiles) return published_;
-  if (tiles || now_.tiles.empty() || changed_) {
+  if (tiles || changed_) {
     now_.settings = r.settings().all();
     now_.adaptive = r.adaptive() != nullptr;
     now_.finished = r.done();
@@ -160,7 +161,9 @@ std::shared_ptr<const Accuracy> AccuracyKeeper::publish(const Renderer& r, bool 
     now_.pixels = double(r.film().width()) * r.film().height();
     now_.reference = r.reference() ? r.reference()->file.filename().string() : "";
     now_.reference_applies = r.reference_applies();
-    now_.tiles = tile_status(r);
+    now_.tiles.clear();
+    const bool shown = r.view().tiles > 0;
+    if (shown || now_.adaptive) now_.tiles = tile_status(r, shown);
   }
   now_.paths = double(r.stats().paths), now_.rays = double(r.stats().rays);
   if (now_.adaptive && (tiles || changed_)) now_.forecast = seconds_to(now_, now_.target);

@@ -47,7 +47,8 @@ struct Accuracy {
   stats::Ledger ledger;
   /// For each line of the ledger the error of the hardest tile that was not given up; 0: not known.
   std::vector<double> hardest;
-  std::vector<TileStatus> tiles;  ///< raster order
+  /// Raster order; none in uniform sampling while they are not shown. Flags only while they are.
+  std::vector<TileStatus> tiles;
   /// seconds_to(target), in adaptive sampling.
   std::optional<stats::Band> forecast;
   std::vector<std::string> stages;
@@ -66,8 +67,9 @@ struct Accuracy {
 /// a ray has taken lately. Nothing before there is enough to tell by.
 std::optional<stats::Band> seconds_to(const Accuracy& accuracy, double target);
 
-/// The tiles of the image in progress. Errors are those of the last estimate.
-std::vector<TileStatus> tile_status(const Renderer& renderer);
+/// The tiles of the image in progress; errors are those of the last estimate. `flags`: heavy tails are
+/// marked, which takes a look at the whole film.
+std::vector<TileStatus> tile_status(const Renderer& renderer, bool flags);
 
 /// Follows a renderer; one thread.
 class AccuracyKeeper {

@@ -409,7 +409,7 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
   const film::View v = view();
   if (v.tiles > 0) {
     std::vector<shared::TileMark> marks;
-    for (const TileStatus& t : tile_status(*this))
+    for (const TileStatus& t : tile_status(*this, true))
       marks.push_back({film::tile_position(double{t.error}, settings_.real("sampling.target_error")),
                        t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
     film_->mark_tiles(marks);
