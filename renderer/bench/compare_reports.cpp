@@ -11,6 +11,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+bool within_noise(double ratio, double noise) {
+  noise *= 1 + 1e-9;  // repeats that are equal to the bit have no noise at all
+  return ratio <= noise && ratio >= 1 / noise;
+}
+
 const Json* find_named(const Json& list, const std::string& name) {
   for (const Json& entry : list)
     if (entry.value("name", "") == name) return &entry;
@@ -32,7 +37,7 @@ std::optional<double> joint_noise(const Json& a, const Json& b, const char* poin
 
 std::string cell(const std::optional<double>& ratio, const std::optional<double>& noise, bool extrapolated) {
   if (!ratio) return fmt::format("{:>11}", "-");
-  const bool equal = noise && *ratio<*noise&& * ratio> 1 / *noise;
+  const bool equal = noise && within_noise(*ratio, *noise);
   return fmt::format("{:>10}{}", fmt::format("{}{:.2f}x", extrapolated ? "~" : "", *ratio),
                      equal    ? "="
                      : !noise ? "?"

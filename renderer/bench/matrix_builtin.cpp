@@ -7,12 +7,12 @@ const char* const k_quick = R"({
   "name": "quick",
   "repeats": 3,
   "scenes": [
-    {"file": "cornell/cornell.gltf", "size": "128x128", "reference_samples": 3072,
-     "budgets": {"samples": [256], "errors": [0.2, 0.1]}},
+    {"file": "cornell/cornell.gltf", "size": "128x128", "reference_samples": 4096,
+     "budgets": {"samples": [512], "errors": [0.1, 0.06]}},
     {"file": "glass/glass.gltf", "size": "128x128", "reference_samples": 3072,
      "budgets": {"samples": [256], "errors": [0.2, 0.1]}},
-    {"file": "studio/studio.gltf", "size": "160x120", "reference_samples": 3072,
-     "budgets": {"samples": [256], "errors": [0.1, 0.05]}}
+    {"file": "studio/studio.gltf", "size": "160x120", "reference_samples": 4096,
+     "budgets": {"samples": [512], "errors": [0.05, 0.03]}}
   ],
   "settings": [
     {"name": "plain", "about": "path tracing, samples for all pixels alike"},

@@ -99,18 +99,18 @@ std::string heading(const Json& report) {
   return html + "</table>\n";
 }
 
-std::string time_table(const Json& report, const char* measure) {
+std::string time_table(const Json& report, const std::string& measure) {
   std::string html = "<div class=\"wrap\"><table><tr><th class=\"l\">scene</th><th class=\"l\">setting</th>";
   for (const char* target : {"5 %", "2 %", "1 %"})
     html += fmt::format("<th>time to {}</th><th>factor</th>", target);
-  html += "</tr>\n";
+  html += "<th>factor at the smallest<br/>error both reached</th></tr>\n";
   for (const Json& scene : report.at("scenes")) {
     bool first = true;
     for (const Json& s : scene.at("settings")) {
       html += fmt::format("<tr{}><td class=\"l scene\">{}</td><td class=\"l\">{}{}</td>",
                           first ? " class=\"first\"" : "", first ? escape(text_of(scene, "name")) : "",
                           key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")));
-      for (const Json& e : s.at(measure)) {
+      for (const Json& e : s.at(measure + "_to")) {
         const std::string kind = text_of(e, "kind");
         if (!e.contains("seconds")) {
           html += "<td class=\"noise\">–</td><td></td>";
@@ -123,7 +123,11 @@ std::string time_table(const Json& report, const char* measure) {
                                                               : ""),
                             ratio_cell(e, text_of(e, "ratio_kind") == "extrapolated"));
       }
-      html += "</tr>\n";
+      const std::string common = measure + "_common";
+      html += s.contains(common)
+                  ? fmt::format("<td>{}<br/><small>at {:.4g} %</small></td></tr>\n",
+                                ratio_cell(s.at(common), false), 100 * s.at(common).at("error").get<double>())
+                  : "<td class=\"noise\">–</td></tr>\n";
       first = false;
     }
   }
@@ -137,13 +141,13 @@ std::string times(const Json& report) {
          "be if the squared error went on falling as one over the time. <b>&lt;</b>: reached before the "
          "first "
          "measurement.</p>\n<h3>The whole picture, true error</h3>\n" +
-         time_table(report, "time_to") +
+         time_table(report, "time") +
          "<h3>Nine tiles in ten, estimated error</h3>\n<p class=\"dim\">The renderer’s own estimate for "
          "tiles of "
          "16×16 pixels, each relative to its own brightness: what the eye meets in the difficult corners, "
          "and "
          "what adaptive sampling works on.</p>\n" +
-         time_table(report, "tiles_time_to");
+         time_table(report, "tiles_time");
 }
 
 std::string index_table(const Json& report) {

@@ -104,7 +104,9 @@ std::vector<double> indices(const std::vector<const Result*>& results) {
 
 void add_ratio(Json& json, double ratio, const std::optional<double>& noise) {
   json["ratio"] = ratio;
-  if (noise) json["noise"] = ratio < *noise && ratio > 1 / *noise;
+  if (!noise) return;
+  const double bound = *noise * (1 + 1e-9);  // repeats that are equal to the bit have no noise at all
+  json["noise"] = ratio <= bound && ratio >= 1 / bound;
 }
 
 Json times_json(const std::vector<Curve>& curves, const std::vector<Curve>& baseline, bool is_baseline,
@@ -121,6 +123,22 @@ Json times_json(const std::vector<Curve>& curves, const std::vector<Curve>& base
     list.push_back(std::move(entry));
   }
   return list;
+}
+
+/// The smallest error of the series 1, 2, 5 that half the repeats of both settings have reached, and how much
+/// sooner: the one ratio that rests on nothing but measurements.
+std::optional<Json> common_json(const std::vector<Curve>& curves, const std::vector<Curve>& baseline,
+                                const std::optional<double>& noise) {
+  for (double power = 1e-4; power < 10; power *= 10)
+    for (const double step : {1.0, 2.0, 5.0}) {
+      const Reached here = reached(curves, step * power), there = reached(baseline, step * power);
+      if (here.kind != ReachKind::measured || there.kind != ReachKind::measured) continue;
+      Json entry{
+          {"error", step * power}, {"seconds", here.seconds.median}, {"first_seconds", there.seconds.median}};
+      add_ratio(entry, there.seconds.median / here.seconds.median, noise);
+      return entry;
+    }
+  return std::nullopt;
 }
 
 Json cells_json(const Matrix& m, size_t scene, size_t setting, const Group& group) {
@@ -239,6 +257,10 @@ Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, dou
     e["cells"] = cells_json(m, s, k, groups[k]);
     e["time_to"] = times_json(curves[k], curves[0], k == 0, time_noise);
     e["tiles_time_to"] = times_json(tiles[k], tiles[0], k == 0, tile_noise);
+    if (k > 0) {
+      if (auto common = common_json(curves[k], curves[0], time_noise)) e["time_common"] = *common;
+      if (auto common = common_json(tiles[k], tiles[0], tile_noise)) e["tiles_time_common"] = *common;
+    }
     for (const double t : fixed) {
       std::vector<double> errors;
       for (const Curve& c : curves[k])

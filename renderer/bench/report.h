@@ -18,9 +18,11 @@ inline constexpr double k_targets[] = {0.05, 0.02, 0.01};
 ///   index [{setting, value, scenes}], results [as in cells/].
 /// A summary of a setting on a scene: cells [{budget, wall_s, rays .. as {median, low, high}}],
 ///   time_to [{error, kind, seconds {median, low, high}, ratio, noise}] of the whole picture's true error,
-///   tiles_time_to, the same of the estimated error that nine tiles in ten are under,
-///   error_at [{seconds, error}], curve [[seconds, median, low, high]] and tiles_curve,
-///   index {pi, relative, ratio, noise}, rays_per_s, forecast {seconds, rays: ratio to what it came to}.
+///   time_common {error, seconds, first_seconds, ratio, noise} at the smallest error that it and the first
+///   setting have both reached, tiles_time_to and tiles_time_common, the same of the estimated error that
+///   nine tiles in ten are under, error_at [{seconds, error}], curve [[seconds, median, low, high]] and
+///   tiles_curve, index {pi, relative, ratio, noise}, rays_per_s, forecast {seconds, rays: ratio to what it
+///   came to}.
 /// Ratios are the first setting's time over this one's, above 1: sooner; `noise` says that a ratio is not to
 /// be told from 1 (analysis.h). What is not known is left out.
 nlohmann::ordered_json make_report(const Matrix& matrix, const RunSummary& summary,
