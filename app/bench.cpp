@@ -5,7 +5,9 @@
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/verbs.h"
 #include "base/log.h"
@@ -55,6 +57,18 @@ class ProgressLine {
   size_t step_ = 0;
 };
 
+class Listening {
+ public:
+  explicit Listening(std::function<void(log::Level, const std::string&)> hear)
+      : token_(log::add_listener(std::move(hear))) {}
+  ~Listening() { log::remove_listener(token_); }
+  Listening(const Listening&) = delete;
+  Listening& operator=(const Listening&) = delete;
+
+ private:
+  int token_;
+};
+
 bench::Matrix choose_matrix(const BenchArguments& a) {
   if (int(a.quick) + int(a.full) + int(!a.matrix.empty()) != 1)
     throw Error("bench", "name one matrix: a MATRIX.json, --quick or --full (see lucerna bench --help)");
@@ -90,8 +104,6 @@ int run(const BenchArguments& a) {
   const bench::Folder folder(path, matrix, identity);
   const double before = earlier_seconds(path);
 
-  // A scene's warnings come once, not with every render.
-  log::set_console_level(log::Level::error);
   struct sigaction action {
   }, previous{};
   action.sa_handler = on_interrupt;
@@ -101,6 +113,12 @@ int run(const BenchArguments& a) {
   const bench::Hooks hooks{.interrupted = [] { return interrupted.load(); },
                            .progress = [&](const bench::Status& s) { line.show(s); },
                            .message = [&](const std::string& text) { line.message(text); }};
+  // A scene is loaded for every render; what it warns of comes once.
+  log::set_console_level(log::Level::error);
+  std::set<std::string> warned;
+  const Listening listening([&](log::Level level, const std::string& text) {
+    if (level == log::Level::warning && warned.insert(text).second) line.message(text);
+  });
   const bench::RunOptions options{
       .device = a.device, .references = a.references.empty() ? path / "references" : fs::path(a.references)};
   const bench::RunSummary summary = bench::run_matrix(matrix, folder, options, hooks);

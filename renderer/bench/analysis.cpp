@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "film/error.h"
@@ -78,12 +77,16 @@ std::optional<double> noise_ratio(std::span<const std::vector<double>> groups, s
 }
 
 std::vector<Band> common_curve(std::span<const std::vector<Point>> curves, size_t steps) {
-  double from = 0, to = std::numeric_limits<double>::max();
+  double from = 0;
+  std::vector<double> ends;
   for (const auto& c : curves) {
     if (c.empty()) return {};
-    from = std::max(from, c.front().seconds), to = std::min(to, c.back().seconds);
+    from = std::max(from, c.front().seconds), ends.push_back(c.back().seconds);
   }
-  if (curves.empty() || !(from > 0) || from >= to || steps < 2) return {};
+  if (ends.empty()) return {};
+  std::sort(ends.begin(), ends.end());
+  const double to = ends[ends.size() / 2];
+  if (!(from > 0) || from >= to || steps < 2) return {};
   std::vector<Band> bands;
   for (size_t i = 0; i < steps; ++i) {
     // The ends exactly, so that no rounding puts them outside a curve.

@@ -50,8 +50,9 @@ Spread spread(std::vector<double> values);
 /// values (0.449 for three). Nothing when no group has two values.
 std::optional<double> noise_ratio(std::span<const std::vector<double>> groups, size_t repeats);
 
-/// A common time grid of the curves, evenly spaced in log time over what all of them cover, with the spread
-/// of the error at each; empty when they do not overlap.
+/// A common time grid of the curves, evenly spaced in log time from where all have begun to where half of
+/// them have ended, with the spread at each time over those that are still there; empty when there is no such
+/// time.
 struct Band {
   double seconds = 0;
   Spread error;

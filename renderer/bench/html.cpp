@@ -58,8 +58,8 @@ std::string count_text(double count) {
 }
 
 const char* setting_colour(size_t index) {
-  static constexpr std::array<const char*, 8> k_colours = {"#e6e4e0", "#5aa9f0", "#f2e05c", "#e58ac0",
-                                                           "#7fd67a", "#b9773f", "#9fb8c8", "#d8d0ff"};
+  static constexpr std::array<const char*, 8> k_colours = {"#e6e4e0", "#ec7fbc", "#86d36b", "#f2e05c",
+                                                           "#b9773f", "#8fb4c8", "#d8c8ff", "#8a8a8a"};
   return k_colours[index % k_colours.size()];
 }
 

@@ -50,9 +50,8 @@ std::string ratio_cell(const Json& entry, bool extrapolated) {
 std::string heading(const Json& report) {
   const Json& cells = report.at("cells");
   std::string html = fmt::format(
-      "<h1>What accuracy costs in time</h1>\n<p class=\"dim\">lucerna bench, matrix “{}” · {} · {} · version "
-      "{}"
-      "</p>\n",
+      "<h1>What accuracy costs in time</h1>\n<p class=\"dim\" style=\"max-width:none\">lucerna bench, matrix "
+      "“{}” · {} · {} · version {}</p>\n",
       escape(text_of(report.at("matrix"), "name")), escape(text_of(report, "date")),
       escape(report.contains("device") ? text_of(report.at("device"), "name") : ""),
       escape(text_of(report, "version")));
@@ -66,14 +65,11 @@ std::string heading(const Json& report) {
   html += fmt::format(
       "<p class=\"lead\">{} scene{} {} rendered with {} setting{} of the renderer, each {} times, and held "
       "against a picture that was rendered much longer. <b>Error</b> is the distance from that picture: the "
-      "root "
-      "mean square of the difference in brightness, over the mean brightness. At 5 % noise is plainly seen, "
-      "at "
-      "2 % on a second look, at 1 % hardly.</p>\n"
-      "<p>What to read: how soon a setting reaches an error, and by what factor that is sooner than "
-      "<b>{}</b>, the first setting. Every factor rests on measurements that scatter; those that the scatter "
-      "explains are <span class=\"noise\">dim</span>, gains beyond it are <span "
-      "class=\"win\">blue</span>.</p>\n",
+      "root mean square of the difference in brightness, over the mean brightness. At 5 % noise is plainly "
+      "seen, at 2 % on a second look, at 1 % hardly.</p>\n<p>What to read: how soon a setting reaches an "
+      "error, and by what factor that is sooner than <b>{}</b>, the first setting. Every factor rests on "
+      "measurements that scatter; those that the scatter explains are <span class=\"noise\">dim</span>, "
+      "gains beyond it are <span class=\"win\">blue</span>.</p>\n",
       m.at("scenes").size(), m.at("scenes").size() == 1 ? "" : "s",
       m.at("scenes").size() == 1 ? "was" : "were", m.at("settings").size(),
       m.at("settings").size() == 1 ? "" : "s", m.at("repeats").get<int>(), plain);
@@ -84,16 +80,16 @@ std::string heading(const Json& report) {
     html += "</ul>\n";
   }
   html +=
-      "<table><tr><th class=\"l\">setting</th><th class=\"l\">what it is</th><th class=\"l\">options changed"
-      "</th></tr>\n";
+      "<table><tr><th class=\"l\">setting</th><th class=\"l\">what it is</th><th class=\"l\">options "
+      "changed</th></tr>\n";
   for (size_t k = 0; k < m.at("settings").size(); ++k) {
     const Json& s = m.at("settings")[k];
     std::string set;
     for (const auto& [key, value] : s.at("set").items())
       set += fmt::format("{}{}={}", set.empty() ? "" : ", ", key, value.get<std::string>());
     html += fmt::format(
-        "<tr><td class=\"l\">{}{}</td><td class=\"l\" style=\"white-space:normal\">{}</td>"
-        "<td class=\"l\"><code>{}</code></td></tr>\n",
+        "<tr><td class=\"l\">{}{}</td><td class=\"l\" style=\"white-space:normal\">{}</td><td "
+        "class=\"l\"><code>{}</code></td></tr>\n",
         key_of(k), escape(text_of(s, "name")), escape(text_of(s, "about")), set.empty() ? "–" : escape(set));
   }
   return html + "</table>\n";
@@ -137,27 +133,22 @@ std::string time_table(const Json& report, const std::string& measure) {
 std::string times(const Json& report) {
   return "<h2>Time to an error</h2>\n<p>Seconds of rendering, loading and compiling left out: median of the "
          "repeats, the range below it. <b>~</b> marks errors that were not reached: the time is what it "
-         "would "
-         "be if the squared error went on falling as one over the time. <b>&lt;</b>: reached before the "
-         "first "
-         "measurement.</p>\n<h3>The whole picture, true error</h3>\n" +
+         "would be if the squared error went on falling as one over the time. <b>&lt;</b>: reached before "
+         "the first measurement.</p>\n<h3>The whole picture, true error</h3>\n" +
          time_table(report, "time") +
          "<h3>Nine tiles in ten, estimated error</h3>\n<p class=\"dim\">The renderer’s own estimate for "
-         "tiles of "
-         "16×16 pixels, each relative to its own brightness: what the eye meets in the difficult corners, "
-         "and "
-         "what adaptive sampling works on.</p>\n" +
+         "tiles of 16×16 pixels, each relative to its own brightness: what the eye meets in the difficult "
+         "corners, and what adaptive sampling works on.</p>\n" +
          time_table(report, "tiles_time");
 }
 
 std::string index_table(const Json& report) {
   std::string html =
       "<h2>Relative performance</h2>\n<p>1 / (mean squared error × seconds): twice the figure is the same "
-      "error "
-      "in half the time. The best setting of each scene has 100; the bars are the mean over the scenes. From "
-      "the "
-      "largest budget of each setting.</p>\n<div class=\"wrap\"><table><tr><th class=\"l\">setting</th>"
-      "<th class=\"l\">mean over scenes</th>";
+      "error in half the time. The best setting of each scene has 100; the bars are the mean over the "
+      "scenes. From the largest budget of each setting. It sees the whole picture only: what is gained in "
+      "the difficult tiles stands in the table above.</p>\n<div class=\"wrap\"><table><tr><th "
+      "class=\"l\">setting</th><th class=\"l\">mean over scenes</th>";
   for (const Json& scene : report.at("scenes"))
     html += fmt::format("<th>{}</th><th>factor</th>", escape(text_of(scene, "name")));
   html += "</tr>\n";
@@ -208,8 +199,7 @@ std::string plots(const Json& report, const Json& scene) {
   for (const View& v :
        {View{"curve", "true", "true error, whole picture",
              "True error of the whole picture. The band is the range over the repeats, circles are the ends "
-             "of "
-             "renders; the fine blue lines are 5, 2 and 1 %."},
+             "of renders; the dotted lines are 5, 2 and 1 %."},
         View{"tiles_curve", "tiles_decile", "error of nine tiles in ten",
              "Estimated error that nine tiles in ten are under: the difficult parts of the picture."}}) {
     std::vector<PlotLine> lines;
@@ -239,8 +229,8 @@ std::string pictures(const Json& scene, const fs::path& folder) {
     const Json& cell = s.at("cells").back();
     const std::string what = fmt::format("{}, {}", setting, text_of(cell, "budget"));
     html += fmt::format(
-        "<figure><div class=\"pair\" style=\"flex-direction:column\">{}{}</div><figcaption>{}<br/>{} in {}"
-        "</figcaption></figure>\n",
+        "<figure><div class=\"pair\" style=\"flex-direction:column\">{}{}</div><figcaption>{}<br/>{} in "
+        "{}</figcaption></figure>\n",
         image_tag(folder / (stem + ".png"), w, h, name + ", " + what, name + ", " + what),
         image_tag(*error, scale, w, h, "error of " + name + ", " + what,
                   fmt::format("error of {}, {}: black 0, pale {}", name, what, percent_text(scale)),
@@ -250,26 +240,24 @@ std::string pictures(const Json& scene, const fs::path& folder) {
   if (html.empty()) return "";
   return fmt::format(
       "<div class=\"pictures\">{}</div>\n<div class=\"ramp\"><span>error image, difference in brightness "
-      "over the "
-      "picture’s mean:</span><span>0</span><span class=\"scale\" style=\"background:{}\"></span><span>{} and "
-      "more"
-      "</span></div>\n",
+      "over the picture’s mean:</span><span>0</span><span class=\"scale\" "
+      "style=\"background:{}\"></span><span>{} and more</span></div>\n",
       html, magma_gradient(), percent_text(scale));
 }
 
 std::string cells_table(const Json& report, const Json& scene) {
   std::string html =
-      "<div class=\"wrap\"><table><tr><th class=\"l\">setting</th><th class=\"l\">budget</th><th>seconds</th>"
-      "<th>samples<br/>a pixel</th><th>rays</th><th>rays a "
-      "second</th><th>error<br/>estimated</th><th>error<br/>true"
-      "</th><th>nine tiles<br/>in ten under</th><th>not<br/>reached</th></tr>\n";
+      "<div class=\"wrap\"><table><tr><th class=\"l\">setting</th><th "
+      "class=\"l\">budget</th><th>seconds</th><th>samples<br/>a pixel</th><th>rays</th><th>rays a "
+      "second</th><th>error<br/>estimated</th><th>error<br/>true</th><th>nine tiles<br/>in ten "
+      "under</th><th>not<br/>reached</th></tr>\n";
   for (const Json& s : scene.at("settings")) {
     for (const Json& c : s.at("cells")) {
       const double seconds = median_of(c.at("wall_s"));
       html += fmt::format(
           "<tr><td class=\"l\">{}{}</td><td "
-          "class=\"l\">{}</td><td>{}</td><td>{:.4g}</td><td>{}</td><td>{}</td>"
-          "<td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+          "class=\"l\">{}</td><td>{}</td><td>{:.4g}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</"
+          "td><td>{}</td></tr>\n",
           key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")),
           escape(text_of(c, "budget")), with_range(c.at("wall_s"), seconds_text), median_of(c.at("samples")),
           count_text(median_of(c.at("rays"))), count_text(median_of(c.at("rays")) / seconds),
@@ -319,8 +307,13 @@ std::string component_table(const Json& report, const Json& scene) {
     const double all = median_of(c.at("device_s"));
     for (const char* name : k_names) {
       const Json& layer = c.at("components").at(name);
-      html += fmt::format("<td>{}</td><td>{:.0f} %</td>", percent_text(median_of(layer.at("true"))),
-                          all > 0 ? 100 * median_of(layer.at("device_s")) / all : 0);
+      const double error = median_of(layer.at("true")), estimate = median_of(layer.at("estimated"));
+      const double share = all > 0 ? 100 * median_of(layer.at("device_s")) / all : 0;
+      html += fmt::format("<td>{}</td><td>{}</td>",
+                          error > 0      ? percent_text(error)
+                          : estimate > 0 ? "in the reference’s noise"
+                                         : "–",
+                          share > 0 || error > 0 ? fmt::format("{:.0f} %", share) : "–");
     }
     html += "</tr>\n";
   }
@@ -342,8 +335,7 @@ std::string forecast_table(const Json& report) {
       const Json& f = s.at("forecast");
       rows += fmt::format(
           "<tr><td class=\"l scene\">{}</td><td class=\"l\">{}{}</td><td>{}</td><td>{}</td><td>{}</td><td>{} "
-          "of {}"
-          "</td></tr>\n",
+          "of {}</td></tr>\n",
           escape(text_of(scene, "name")), key_of(index_of(report, text_of(s, "name"))),
           escape(text_of(s, "name")), percent_text(f.at("at").get<double>()),
           with_range(f.at("rays"), ratio_text), with_range(f.at("seconds"), ratio_text),
@@ -351,31 +343,22 @@ std::string forecast_table(const Json& report) {
     }
   if (rows.empty()) return "";
   return "<h2>How good the forecast is</h2>\n<p>When a tenth of a render’s time was over it foretold what "
-         "the "
-         "whole would take: to its target error (adaptive), or to the error that it had in the end. 1.00× is "
-         "right, "
-         "2× foretold twice as much as it took.</p>\n<table style=\"width:auto\"><tr><th "
-         "class=\"l\">scene</th><th "
-         "class=\"l\">setting</th><th>foretold at</th><th>rays</th><th>seconds</th><th>seconds "
-         "within<br/>the "
-         "band</th></tr>\n" +
+         "the whole would take: to its target error (adaptive), or to the error that it had in the end. "
+         "1.00× is right, 2× foretold twice as much as it took.</p>\n<table style=\"width:auto\"><tr><th "
+         "class=\"l\">scene</th><th class=\"l\">setting</th><th>foretold "
+         "at</th><th>rays</th><th>seconds</th><th>seconds within<br/>the band</th></tr>\n" +
          rows + "</table>\n";
 }
 
 std::string measurement(const Json& report) {
   std::string html =
       "<h2>The measurement itself</h2>\n<p>Every render ran in a renderer of its own, after a warm-up that "
-      "is not "
-      "in the times; the settings of a scene took turns, every second round backwards. Repeats differ in "
-      "their "
-      "seed, so that their range holds the luck of sampling and the machine’s moods alike. A ratio of two "
-      "settings that is below the figure in this table (and above its inverse) is noise: nine in ten ratios "
-      "of two "
-      "equal settings would be.</p>\n<table style=\"width:auto\"><tr><th class=\"l\">scene</th><th>time to "
-      "an error"
-      "</th><th>nine tiles in ten</th><th>performance</th><th>rays a second</th><th>reference’s own "
-      "noise</th>"
-      "<th>its samples</th><th>it took</th></tr>\n";
+      "is not in the times; the settings of a scene took turns, every second round backwards. Repeats differ "
+      "in their seed, so that their range holds the luck of sampling and the machine’s moods alike. A ratio "
+      "of two settings that is below the figure in this table (and above its inverse) is noise: nine in ten "
+      "ratios of two equal settings would be.</p>\n<table style=\"width:auto\"><tr><th "
+      "class=\"l\">scene</th><th>time to an error</th><th>nine tiles in ten</th><th>performance</th><th>rays "
+      "a second</th><th>reference’s own noise</th><th>its samples</th><th>it took</th></tr>\n";
   for (const Json& scene : report.at("scenes")) {
     html += fmt::format("<tr><td class=\"l scene\">{}</td>", escape(text_of(scene, "name")));
     for (const char* key : {"time", "tiles_time", "index", "rate"}) {
@@ -425,8 +408,7 @@ std::string make_page(const Json& report, const fs::path& folder) {
     std::string html = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/><meta name=\"viewport\" "
         "content=\"width=device-width, initial-scale=1\"/><title>lucerna bench: "
-        "{}</title><style>{}</style></head>"
-        "<body><main>\n",
+        "{}</title><style>{}</style></head><body><main>\n",
         escape(text_of(report.at("matrix"), "name")), k_style);
     html += heading(report);
     if (!report.at("scenes").empty()) {

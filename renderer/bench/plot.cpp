@@ -126,7 +126,7 @@ std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<doub
         x.from, y.at(t), x.to, x.from - 8, y.at(t) + 4, short_number(100 * t));
   for (const double t : marks)
     if (t > y.lo && t < y.hi)
-      svg += fmt::format("<path d=\"M{} {:.1f} H{}\" stroke=\"#70a4de\" stroke-opacity=\"0.45\"/>\n", x.from,
+      svg += fmt::format("<path d=\"M{} {:.1f} H{}\" stroke=\"#8a8988\" stroke-dasharray=\"1 4\"/>\n", x.from,
                          y.at(t), x.to);
   svg += fmt::format(
       "<text x=\"{}\" y=\"{}\" fill=\"#a09f9d\" text-anchor=\"end\">seconds of rendering</text>\n"

@@ -19,7 +19,8 @@ struct PlotLine {
 };
 
 /// A plot 540 by 320 units with every line's name at its end; errors are shares of 1, shown in per cent, with
-/// a fine line at each of `marks`. `title` is for those who cannot see it. "" when there is nothing to draw.
+/// a dotted line at each of `marks`. `title` is for those who cannot see it. "" when there is nothing to
+/// draw.
 std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<double>& marks,
                       const std::string& title, const std::string& error_axis);
 
