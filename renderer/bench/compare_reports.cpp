@@ -98,10 +98,21 @@ void name_missing(const Json& from, const Json& in, const char* which, std::stri
       text += fmt::format("missing in the {} report: {}\n", which, name);
       continue;
     }
-    for (const Json& setting : scene.at("settings"))
-      if (!find_named(other->at("settings"), setting.at("name").get<std::string>()))
-        text += fmt::format("missing in the {} report: {}, {}\n", which, name,
-                            setting.at("name").get<std::string>());
+    for (const Json& setting : scene.at("settings")) {
+      const std::string setting_name = setting.at("name").get<std::string>();
+      const Json* same = find_named(other->at("settings"), setting_name);
+      if (!same) {
+        text += fmt::format("missing in the {} report: {}, {}\n", which, name, setting_name);
+        continue;
+      }
+      for (const Json& cell : setting.at("cells")) {
+        const std::string budget = cell.at("budget").get<std::string>();
+        bool found = false;
+        for (const Json& c : same->at("cells")) found |= c.at("budget") == budget;
+        if (!found)
+          text += fmt::format("missing in the {} report: {}, {}, {}\n", which, name, setting_name, budget);
+      }
+    }
   }
 }
 

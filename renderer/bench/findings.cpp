@@ -44,7 +44,7 @@ std::vector<std::string> findings(const Json& report) {
   for (const Json& scene : report.at("scenes")) {
     const Json& settings = scene.at("settings");
     if (settings.size() < 2) continue;
-    const std::string first = settings.at(0).at("name").get<std::string>();
+    const std::string first = report.at("matrix").at("settings").at(0).at("name").get<std::string>();
     lines.push_back(finding(scene, first, "time_common", "the whole picture"));
     lines.push_back(finding(scene, first, "tiles_time_common", "nine tiles in ten"));
   }

@@ -7,11 +7,11 @@ const char* const k_quick = R"({
   "name": "quick",
   "repeats": 3,
   "scenes": [
-    {"file": "cornell/cornell.gltf", "size": "128x128", "reference_samples": 4096,
+    {"file": "cornell/cornell.gltf", "size": "128x128", "reference_samples": 2560,
      "budgets": {"samples": [512], "errors": [0.1, 0.06]}},
-    {"file": "glass/glass.gltf", "size": "128x128", "reference_samples": 3072,
+    {"file": "glass/glass.gltf", "size": "128x128", "reference_samples": 2048,
      "budgets": {"samples": [256], "errors": [0.2, 0.1]}},
-    {"file": "studio/studio.gltf", "size": "160x120", "reference_samples": 4096,
+    {"file": "studio/studio.gltf", "size": "160x120", "reference_samples": 2560,
      "budgets": {"samples": [512], "errors": [0.05, 0.03]}}
   ],
   "settings": [

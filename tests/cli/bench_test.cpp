@@ -31,10 +31,10 @@ struct Place {
   std::string matrix(const std::string& name, int samples, int reference) const {
     std::ofstream(path / name)
         << R"({"warmup": 2, "reference": {"samples": )" << reference << R"(}, "budgets": {"samples": [)"
-        << samples << R"(], "errors": [0.5]}, "scenes": [{"file": ")" << LUCERNA_SOURCE_DIR
+        << samples << R"(], "errors": [0.5], "seconds": [0.05]}, "scenes": [{"file": ")" << LUCERNA_SOURCE_DIR
         << R"(/scenes/cornell/cornell.gltf", "size": "16x16"}], "settings": [)"
         << R"({"name": "plain"}, {"name": "adaptive", "set": {"sampling.mode": "adaptive",)"
-        << R"("sampling.min_samples": 8}}]})";
+        << R"("sampling.min_samples": 8}}, {"name": "timed", "budget": "seconds"}]})";
     return *this / name;
   }
 };
@@ -46,6 +46,14 @@ nlohmann::json read_json(const std::string& file) {
 
 size_t count_files(const std::string& folder) {
   return size_t(std::distance(fs::directory_iterator(folder), {}));
+}
+
+/// Runs the program until it has said something, then sends what Ctrl-C sends.
+Run interrupt_at(const std::string& line, const std::string& arguments, const std::string& log) {
+  return test::run_command(std::string("rm -f ") + log + "; " + LUCERNA_BINARY + " " + arguments + " >" +
+                           log + " 2>&1 & for i in $(seq 600); do grep -qs '" + line + "' " + log +
+                           " && break; sleep 0.1; done; kill -INT $!; wait $!; status=$?; cat " + log +
+                           "; exit $status");
 }
 
 void refused(const std::string& arguments, const std::string& expected) {
@@ -63,11 +71,11 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
   const Run first = run("bench " + matrix + " --report " + folder);
   INFO(first.out);
   REQUIRE(first.status == 0);
-  CHECK_THAT(first.out, Contains("1 of 7  cornell, reference of 64 samples") && Contains("7 of 7"));
-  CHECK(count_files(folder + "/cells") == 6);
+  CHECK_THAT(first.out, Contains("1 of 10  cornell, reference of 64 samples") && Contains("10 of 10"));
+  CHECK(count_files(folder + "/cells") == 9);
   const auto report = read_json(folder + "/report.json");
   CHECK(report["complete"] == true);
-  CHECK(report["results"].size() == 6);
+  CHECK(report["results"].size() == 9);
   CHECK(report["references"][0]["samples"] == 64);
   CHECK(report["references"][0]["noise"]["sum"] > 0);
   for (const auto& r : report["results"]) {
@@ -77,8 +85,12 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
     CHECK(r["estimated"]["sum"] > 0);
     CHECK(r["curve"].size() > 0);
   }
-  // One budget and seed, one picture: only the times of settings that compute the same may differ.
   CHECK(report["results"][0]["samples"] == 16);
+  for (const auto& r : report["results"])
+    if (r["setting"] == "timed") {
+      CHECK(r["wall_s"] >= 0.05);
+      CHECK(r["budget"] == "0.05 s");
+    }
   std::ifstream page(folder + "/report.html");
   const std::string html((std::istreambuf_iterator<char>(page)), {});
   CHECK_THAT(html, Contains("What accuracy costs in time") && Contains("data:image/png;base64,") &&
@@ -88,7 +100,7 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
   const auto written = fs::last_write_time(folder + "/report.json");
   const Run again = run("bench " + matrix + " --report " + folder);
   CHECK(again.status == 0);
-  CHECK_THAT(again.out, Contains("all 6 renders were there"));
+  CHECK_THAT(again.out, Contains("all 9 renders were there"));
   CHECK(fs::last_write_time(folder + "/report.json") == written);
 
   // Half a cell, half a reference.
@@ -117,28 +129,28 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
   // Another matrix does not get into this folder.
   refused(place.matrix("other.json", 32, 64) + " --report " + folder,
           "another matrix (it differs at scenes/0");
-  CHECK(count_files(folder + "/cells") == 6);
+  CHECK(count_files(folder + "/cells") == 9);
 }
 
 TEST_CASE("bench stops at Ctrl-C with what is finished, and goes on from there") {
   const Place place;
   const std::string folder = place / "r";
-  // Long enough that the signal comes in the midst, on any machine.
+  // Cells so long that the signal always comes in the midst of one.
   const std::string matrix = place.matrix("m.json", 1 << 20, 16);
-  const Run stopped = run("bench " + matrix + " --report " + folder, "timeout -s INT 4");
+  const Run stopped = interrupt_at("2 of 10", "bench " + matrix + " --report " + folder, place / "log");
   INFO(stopped.out);
-  // 124 is what timeout says when it sent the signal.
-  CHECK((stopped.status == 130 || stopped.status == 124));
-  CHECK_THAT(stopped.out, Contains("interrupted; 0 of 6 renders are kept"));
+  CHECK(stopped.status == 130);
+  CHECK_THAT(stopped.out, Contains("interrupted; 0 of 9 renders are kept"));
   CHECK(fs::exists(folder + "/references/cornell-16x16.exr"));
   CHECK(count_files(folder + "/cells") == 0);
   const auto report = read_json(folder + "/report.json");
   CHECK(report["complete"] == false);
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     CHECK_FALSE(entry.path().filename().string().starts_with("."));
-  const Run further = run("bench " + matrix + " --report " + folder, "timeout -s INT 1");
+  const Run further = interrupt_at("1 of 9", "bench " + matrix + " --report " + folder, place / "log");
   INFO(further.out);
-  CHECK_THAT(further.out, Contains("1 of 6") && !Contains("reference of"));
+  CHECK(further.status == 130);
+  CHECK_THAT(further.out, Contains("1 of 9") && !Contains("reference of"));
 }
 
 TEST_CASE("bench refuses bad input before any work") {
