@@ -22,6 +22,27 @@ double student_90(double degrees) {
 
 double TileError::half_width_90() const { return student_90(degrees) * standard_error; }
 
+namespace {
+struct Quadrants {
+  double squares = 0, count = 0;
+  void add(const shared::BlockError& b) {
+    for (uint32_t q = 0; q < 4; ++q) {
+      if (b.quadrant_pixels[q] == 0) continue;
+      const double mean = double{b.relative[q]} / b.quadrant_pixels[q];
+      squares += mean * mean;
+      ++count;
+    }
+  }
+  double relative() const { return count > 0 ? std::sqrt(squares / count) : 0; }
+};
+}  // namespace
+
+double relative_error(const Film& film, std::span<const uint32_t> blocks) {
+  Quadrants quadrants;
+  for (const uint32_t b : blocks) quadrants.add(film.errors()[b]);
+  return quadrants.relative();
+}
+
 TileError tile_error(std::span<const shared::BlockError> blocks) {
   TileError tile;
   double &variance = tile.variance, &fourth = tile.fourth;
@@ -35,15 +56,9 @@ TileError tile_error(std::span<const shared::BlockError> blocks) {
   tile.luminance /= tile.pixels;
   tile.standard_error = std::sqrt(variance) / tile.pixels;
   tile.degrees = fourth > 0 ? 3 * variance * variance / fourth : tile.pixels;
-  double squares = 0, quadrants = 0;
-  for (const shared::BlockError& b : blocks)
-    for (uint32_t q = 0; q < 4; ++q) {
-      if (b.quadrant_pixels[q] == 0) continue;
-      const double mean = double{b.relative[q]} / b.quadrant_pixels[q];
-      squares += mean * mean;
-      ++quadrants;
-    }
-  tile.relative = std::sqrt(squares / quadrants);
+  Quadrants quadrants;
+  for (const shared::BlockError& b : blocks) quadrants.add(b);
+  tile.relative = quadrants.relative();
   return tile;
 }
 

@@ -39,6 +39,9 @@ struct TileError {
 };
 TileError tile_error(std::span<const shared::BlockError> blocks);
 
+/// TileError::relative alone, of these blocks of film.errors().
+double relative_error(const Film& film, std::span<const uint32_t> blocks);
+
 /// The tiles of a film, `side` pixels (8 or 16) along each side, in raster order, from film.errors().
 std::vector<TileError> tile_errors(const Film& film, uint32_t side);
 

@@ -109,8 +109,11 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
                                  bool coherent) { host->trace(query, rays, hits, queue, count, coherent); };
   }
   const uint32_t slots = uint32_t(settings_.integer("path.batch")) / 64 * 64;
+  gpu::Defines defines = options_.defines;
+  if (settings_.boolean("sampling.coherent"))
+    defines["LUCERNA_COHERENT"] = settings_.text("sampling.tile") == "8" ? "3" : "4";
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
-                                                      std::move(trace), options_.defines);
+                                                      std::move(trace), defines);
   compile_seconds_ = timer.seconds();
 }
 
@@ -171,7 +174,7 @@ float Renderer::luminance_floor() const {
 }
 
 film::ImageError Renderer::image_error() {
-  wavefront_->estimate({}, *film_, luminance_floor());
+  wavefront_->estimate(*film_, luminance_floor());
   return film::image_error(film_->errors());
 }
 
@@ -219,7 +222,7 @@ bool Renderer::reference_applies() const {
 
 void Renderer::apply_settings() {
   if (!wavefront_) return;
-  bool again = false, samples = false, rebuild = false;
+  bool again = false, samples = false, rebuild = false, kernels = false;
   for (const auto& [key, value] : settings_.all()) {
     if (applied_[key] == value) continue;
     if (key == "samples")
@@ -230,11 +233,14 @@ void Renderer::apply_settings() {
       rebuild = true;
     else
       again |= plan::find_option(key)->restarts;
+    kernels |=
+        key == "sampling.coherent" || (key == "sampling.tile" && settings_.boolean("sampling.coherent"));
   }
   if (rebuild) {
     install(scene_, settings_, camera_, {});
     return;
   }
+  if (kernels) build_wavefront(*device_scene_);
   if (samples && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
   if (again) restart();
   applied_ = settings_.all();
@@ -326,8 +332,6 @@ void Renderer::note_progress(bool at_once) {
       tiles.push_back(
           {.error = tile.error,
            .samples = double(tile.samples),
-           .earlier_error = tile.earlier_error,
-           .earlier_samples = double(tile.earlier_samples),
            .pixels = 64.0 * double(adaptive_->blocks_of(t).size()),
            .open = tile.state == schedule::TileState::waiting || tile.state == schedule::TileState::active});
     }
@@ -348,13 +352,10 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
       adaptive_->give_back();
       return false;
     }
-    wavefront_->estimate(item.blocks, *film_, luminance_floor());
+    wavefront_->estimate_stopping(item.blocks, *film_, luminance_floor());
     std::vector<float> errors;
-    for (const uint32_t tile : adaptive_->to_report()) {
-      std::vector<shared::BlockError> blocks;
-      for (const uint32_t block : adaptive_->blocks_of(tile)) blocks.push_back(film_->errors()[block]);
-      errors.push_back(float(film::tile_error(blocks).relative));
-    }
+    for (const uint32_t tile : adaptive_->to_report())
+      errors.push_back(float(film::relative_error(*film_, adaptive_->blocks_of(tile))));
     adaptive_->report(errors);
     return true;
   }

@@ -20,8 +20,8 @@ struct Wavefront::Impl {
   gpu::Buffer frame, blocks, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states,
       counters, no_coarse;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
-  gpu::Kernel camera, shade, shadow, film_add, film_add_images, error, tonemap, trace_closest, trace_any,
-      trace_non_opaque;
+  gpu::Kernel camera, shade, shadow, film_add, film_add_images, error, stopping, tonemap, trace_closest,
+      trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
   TransportStats stats;
@@ -89,6 +89,9 @@ struct Wavefront::Impl {
     film_resources.set("Coarse", no_coarse);
   }
 
+  void estimate(const gpu::Kernel& kernel, std::span<const WorkBlock> list, film::Film& film,
+                float luminance_floor);
+
   StageSum& stage(const std::string& name, bool host) {
     for (StageSum& s : stats.stages)
       if (s.name == name) return s;
@@ -152,6 +155,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   w.film_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
   w.tonemap = gpu::Kernel(device, compiler, "film/tonemap.comp");
   w.error = gpu::Kernel(device, compiler, "film/error.comp");
+  w.stopping = gpu::Kernel(device, compiler, "film/error.comp", {{"LUCERNA_STOPPING_ONLY", "1"}});
   w.bind(scene);
   if (!w.host_trace) {
     // Where nothing is transparent the any-hit kernel need not look at the flag.
@@ -274,20 +278,28 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
   return true;
 }
 
-void Wavefront::estimate(const std::vector<WorkBlock>& blocks, film::Film& film, float luminance_floor) {
-  Impl& w = *impl_;
-  std::vector<WorkBlock> all;
-  for (uint32_t b = 0; blocks.empty() && b < film.blocks(); ++b) all.push_back({b, 0});
-  const std::vector<WorkBlock>& list = blocks.empty() ? all : blocks;
-  film.bind(w.film_resources);
-  for (size_t first = 0; first < list.size();) {
-    const auto count = static_cast<uint32_t>(std::min<size_t>(list.size() - first, w.slots / 64));
-    w.blocks.write(std::span<const WorkBlock>(&list[first], count));
-    const ErrorPush push{film.width(), film.height(), count, luminance_floor};
-    w.stream.dispatch(w.error, w.film_resources, push, count, "error");
-    w.run_and_account(nullptr, nullptr);
-    first += count;
+void Wavefront::Impl::estimate(const gpu::Kernel& kernel, std::span<const WorkBlock> list, film::Film& film,
+                               float luminance_floor) {
+  film.bind(film_resources);
+  while (!list.empty()) {
+    const size_t count = std::min<size_t>(list.size(), slots / 64);
+    blocks.write(list.first(count));
+    const ErrorPush push{film.width(), film.height(), uint32_t(count), luminance_floor};
+    stream.dispatch(kernel, film_resources, push, uint32_t(count + 7) / 8, "error");
+    run_and_account(nullptr, nullptr);
+    list = list.subspan(count);
   }
+}
+
+void Wavefront::estimate(film::Film& film, float luminance_floor) {
+  std::vector<WorkBlock> all;
+  for (uint32_t b = 0; b < film.blocks(); ++b) all.push_back({b, 0});
+  impl_->estimate(impl_->error, all, film, luminance_floor);
+}
+
+void Wavefront::estimate_stopping(const std::vector<WorkBlock>& blocks, film::Film& film,
+                                  float luminance_floor) {
+  impl_->estimate(impl_->stopping, blocks, film, luminance_floor);
 }
 
 void Wavefront::clear(film::Film& film) { film.clear(impl_->stream); }

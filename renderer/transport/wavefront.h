@@ -55,9 +55,12 @@ class Wavefront {
   /// Traces the item and adds it to the film. `cancel` is asked between bounces; a cancelled item leaves the
   /// film as it was and returns false.
   bool run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
-  /// What the film's halves say of the noise in these blocks (none: in all), into film.errors(). Pixels
-  /// darker than `luminance_floor` are held against that.
-  void estimate(const std::vector<schedule::WorkBlock>& blocks, film::Film& film, float luminance_floor);
+  /// What the film's halves say of the noise in all its blocks, into film.errors(). Pixels darker than
+  /// `luminance_floor` are held against that.
+  void estimate(film::Film& film, float luminance_floor);
+  /// Of these blocks alone, and only what film::relative_error() reads; the rest of film.errors() stays.
+  void estimate_stopping(const std::vector<schedule::WorkBlock>& blocks, film::Film& film,
+                         float luminance_floor);
   /// Film -> its picture (8-bit sRGB). `coarse` fills pixels without samples, if given (it is tone-mapped
   /// first).
   void tone_map(film::Film& film, const film::View& view, film::Film* coarse = nullptr);

@@ -1,5 +1,6 @@
-// What the two halves of the film say of the noise in the blocks of a work item: one workgroup a block. All sums are taken
-// in a fixed order.
+// What the two halves of the film say of the noise in the blocks of a work item: one invocation a row of a block, eight
+// blocks a workgroup. All sums are taken in a fixed order. With LUCERNA_STOPPING_ONLY just what decides whether a tile goes
+// on, `relative` and `quadrant_pixels`: nobody asks for the rest after every pass.
 #include "lib/film.glsl"
 #include "lib/blocks.glsl"
 #include "lib/invocation.glsl"
@@ -7,78 +8,114 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { ErrorPush push; };
 layout(scalar) writeonly buffer BlockErrors { BlockError block_errors[]; };
 
-const uint k_sums = 11u;  // luminance [0..4], variance [5..9], fourth
+#if LUCERNA_STOPPING_ONLY
+const uint k_sums = 4u;
+#else
+const uint k_sums = 4u + 11u;
+#endif
+// Of a row, by what is summed. First its two halves of four pixels: luminance, and how many are there; then luminance
+// [0..4], variance [0..4], fourth. All of a kind lie together, so that neighbouring invocations write side by side.
 shared float values[k_sums * 64u];
-shared float relative[64];
-shared float present[64];
-shared float quadrant_mean[4];
 
 float half_luminance(FilmHalf h, float n) { return luminance(h.sum + h.compensation) / n; }
 
+float sum_of_rows(uint what, uint first, uint rows) {
+  float sum = 0.0;
+  for (uint i = 0u; i < rows; ++i) sum += values[what * 64u + first + i];
+  return sum;
+}
+
 void main() {
-  uint code = gl_LocalInvocationIndex, entry = global_index() / 64u;
-  if (entry >= push.block_count) return;
-  WorkBlock block = blocks[entry];
-  uvec2 xy = block_pixel(block.index, code, push.width);
-  bool inside = xy.x < push.width && xy.y < push.height;
-  uint pixel = inside ? xy.y * push.width + xy.x : 0u;
-  uint count = inside ? film_count[pixel] : 0u;
-  bool there = count >= 2u;
-  float even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
-  float a[5], b[5];
-  a[0] = 0.0;
-  b[0] = 0.0;
-  for (uint c = 0u; c < 4u; ++c) {
-    FilmPixel p = film_load(c, pixel);
-    a[c + 1u] = half_luminance(p.even, even);
-    b[c + 1u] = half_luminance(p.odd, odd);
-    a[0] += a[c + 1u];
-    b[0] += b[c + 1u];
+  uint lane = gl_LocalInvocationIndex, row = lane % k_block, entry = global_index() / k_block;
+  bool working = entry < push.block_count;
+  WorkBlock block = blocks[working ? entry : 0u];
+  uint across = (push.width + k_block - 1u) / k_block;
+  uvec2 first = k_block * uvec2(block.index % across, block.index / across) + uvec2(0u, row);
+  float y0[k_block], v0[k_block];
+  float half_y[2], half_n[2];
+  half_y[0] = half_y[1] = half_n[0] = half_n[1] = 0.0;
+  float ys[5], vs[5], fourth = 0.0;
+  for (uint c = 0u; c < 5u; ++c) ys[c] = vs[c] = 0.0;
+  for (uint x = 0u; x < k_block; ++x) {
+    bool inside = working && first.x + x < push.width && first.y < push.height;
+    uint pixel = inside ? first.y * push.width + first.x + x : 0u;
+    uint count = inside ? film_count[pixel] : 0u;
+    bool there = count >= 2u;
+    float even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
+    float a[5], b[5];
+    FilmPixel p = LUCERNA_FILM_LOAD(film_primary, pixel);
+    a[1] = half_luminance(p.even, even);
+    b[1] = half_luminance(p.odd, odd);
+    p = LUCERNA_FILM_LOAD(film_secondary, pixel);
+    a[2] = half_luminance(p.even, even);
+    b[2] = half_luminance(p.odd, odd);
+    p = LUCERNA_FILM_LOAD(film_tertiary, pixel);
+    a[3] = half_luminance(p.even, even);
+    b[3] = half_luminance(p.odd, odd);
+    p = LUCERNA_FILM_LOAD(film_caustic, pixel);
+    a[4] = half_luminance(p.even, even);
+    b[4] = half_luminance(p.odd, odd);
+    a[0] = a[1] + a[2] + a[3] + a[4];
+    b[0] = b[1] + b[2] + b[3] + b[4];
+    float difference = 0.5 * (a[0] - b[0]);
+    y0[x] = there ? 0.5 * (a[0] + b[0]) : 0.0;
+    v0[x] = there ? difference * difference : 0.0;
+    half_y[x / 4u] += y0[x];
+    half_n[x / 4u] += there ? 1.0 : 0.0;
+#if !LUCERNA_STOPPING_ONLY
+    ys[0] += y0[x];
+    vs[0] += v0[x];
+    fourth += v0[x] * v0[x];
+    for (uint c = 1u; c < 5u; ++c) {
+      difference = 0.5 * (a[c] - b[c]);
+      ys[c] += there ? 0.5 * (a[c] + b[c]) : 0.0;
+      vs[c] += there ? difference * difference : 0.0;
+    }
+#endif
   }
-  float y0 = 0.0, v0 = 0.0;
+  for (uint h = 0u; h < 2u; ++h) {
+    values[h * 64u + lane] = half_y[h];
+    values[(2u + h) * 64u + lane] = half_n[h];
+  }
+#if !LUCERNA_STOPPING_ONLY
   for (uint c = 0u; c < 5u; ++c) {
-    float difference = 0.5 * (a[c] - b[c]);
-    float y = there ? 0.5 * (a[c] + b[c]) : 0.0, v = there ? difference * difference : 0.0;
-    values[c * 64u + code] = y;
-    values[(5u + c) * 64u + code] = v;
-    if (c == 0u) {
-      y0 = y;
-      v0 = v;
-    }
+    values[(4u + c) * 64u + lane] = ys[c];
+    values[(9u + c) * 64u + lane] = vs[c];
   }
-  values[10u * 64u + code] = v0 * v0;
-  present[code] = there ? 1.0 : 0.0;
+  values[14u * 64u + lane] = fourth;
+#endif
   barrier();
-  // A quadrant's pixels follow one another in Morton order.
-  if (code < 4u) {
-    float sum = 0.0, n = 0.0;
-    for (uint i = 16u * code; i < 16u * code + 16u; ++i) {
-      sum += values[i];
-      n += present[i];
-    }
-    quadrant_mean[code] = sum / max(n, 1.0);
-    block_errors[block.index].quadrant_pixels[code] = n;
+  // Each row's halves belong to the two quadrants above or below the middle.
+  uint quadrant_row = lane / 4u * 4u;
+  float mean[2], pixels[2];
+  for (uint h = 0u; h < 2u; ++h) {
+    pixels[h] = sum_of_rows(2u + h, quadrant_row, 4u);
+    mean[h] = sum_of_rows(h, quadrant_row, 4u) / max(pixels[h], 1.0);
   }
-  if (code >= 16u && code < 16u + k_sums) {
-    uint which = code - 16u;
-    float sum = 0.0;
-    for (uint i = 0u; i < 64u; ++i) sum += values[which * 64u + i];
-    if (which < 5u) block_errors[block.index].luminance[which] = sum;
-    else if (which < 10u) block_errors[block.index].variance[which - 5u] = sum;
-    else block_errors[block.index].fourth = sum;
+#if !LUCERNA_STOPPING_ONLY
+  if (working) {
+    uint first_row = lane - row;
+    if (row < 5u) block_errors[block.index].luminance[row] = sum_of_rows(4u + row, first_row, k_block);
+    if (row < 5u) block_errors[block.index].variance[row] = sum_of_rows(9u + row, first_row, k_block);
+    if (row == 5u) block_errors[block.index].fourth = sum_of_rows(14u, first_row, k_block);
+    if (row == 6u)
+      block_errors[block.index].pixels = sum_of_rows(2u, first_row, k_block) + sum_of_rows(3u, first_row, k_block);
+  }
+#endif
+  float relative[2];
+  relative[0] = relative[1] = 0.0;
+  for (uint x = 0u; x < k_block; ++x) {
+    float scale = max(max(y0[x], mean[x / 4u]), push.luminance_floor);
+    relative[x / 4u] += 1.2533141 * sqrt(v0[x]) / scale;  // sqrt(pi/2)
   }
   barrier();
-  float scale = max(max(y0, quadrant_mean[code / 16u]), push.luminance_floor);
-  relative[code] = 1.2533141 * sqrt(v0) / scale;  // sqrt(pi/2)
+  for (uint h = 0u; h < 2u; ++h) values[h * 64u + lane] = relative[h];
   barrier();
-  if (code < 4u) {
-    float sum = 0.0;
-    for (uint i = 16u * code; i < 16u * code + 16u; ++i) sum += relative[i];
-    block_errors[block.index].relative[code] = sum;
-  }
-  if (code == 16u) {
-    float n = 0.0;
-    for (uint i = 0u; i < 64u; ++i) n += present[i];
-    block_errors[block.index].pixels = n;
+  // Rows 0 and 1 write the upper two quadrants, 4 and 5 the lower.
+  uint side = row % 4u;
+  if (working && side < 2u) {
+    uint quadrant = row / 4u * 2u + side;
+    block_errors[block.index].relative[quadrant] = sum_of_rows(side, quadrant_row, 4u);
+    block_errors[block.index].quadrant_pixels[quadrant] = side == 0u ? pixels[0] : pixels[1];
   }
 }

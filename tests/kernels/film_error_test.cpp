@@ -33,7 +33,8 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
   film.clear(stream);
   const uint32_t blocks = film.blocks();
   REQUIRE(blocks == 6);
-  const gpu::Kernel add(device, compiler, "film/add.comp"), error(device, compiler, "film/error.comp");
+  const gpu::Kernel add(device, compiler, "film/add.comp"), error(device, compiler, "film/error.comp"),
+      stopping(device, compiler, "film/error.comp", {{"LUCERNA_STOPPING_ONLY", "1"}});
   std::mt19937 random(1);
   std::vector<vec4> values(size_t(blocks) * 64 * k_samples * 4);
   std::vector<shared::WorkBlock> list;
@@ -66,7 +67,8 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
   const shared::FilmPush added{k_width, k_height, 64 * blocks, k_samples};
   stream.dispatch(add, resources, added, blocks);
   // The last block of the list is left out: its figures stay as they were.
-  stream.dispatch(error, resources, shared::ErrorPush{k_width, k_height, blocks - 1, k_floor}, blocks);
+  stream.dispatch(error, resources, shared::ErrorPush{k_width, k_height, blocks - 1, k_floor},
+                  (blocks + 7) / 8);
   stream.run();
 
   const auto close = [](double a, double b) { return std::abs(a - b) <= 2e-6 * std::abs(b) + 1e-12; };
@@ -112,6 +114,22 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
         CHECK(close(got.relative[q], relative[q]));
       }
     }
+  }
+  // What stops a tile, alone: the same to the last bit, and nothing else is touched.
+  const std::vector<BlockError> full(film.errors().begin(), film.errors().end());
+  film.clear(stream);
+  stream.dispatch(add, resources, added, blocks);
+  stream.dispatch(stopping, resources, shared::ErrorPush{k_width, k_height, blocks - 1, k_floor},
+                  (blocks + 7) / 8);
+  stream.run();
+  for (uint32_t b = 0; b < blocks; ++b) {
+    for (int q = 0; q < 4; ++q) {
+      CHECK(film.errors()[b].relative[q] == full[b].relative[q]);
+      CHECK(film.errors()[b].quadrant_pixels[q] == full[b].quadrant_pixels[q]);
+    }
+    CHECK(film.errors()[b].pixels == 0);
+    CHECK(film.errors()[b].variance[0] == 0);
+    CHECK(film::relative_error(film, std::span(&b, 1)) == film::tile_error(std::span(&full[b], 1)).relative);
   }
   CHECK(device.validation_messages() == 0);
 }
