@@ -1,88 +1,175 @@
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
 #include <cstdio>
-#include <optional>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/verbs.h"
-#include "base/error.h"
+#include "base/log.h"
 #include "base/timer.h"
-#include "bvh/embree/build.h"
-#include "bvh/embree/host_tracer.h"
-#include "bvh/embree/reference.h"
-#include "raybench/report.h"
-#include "scene/io/load.h"
+#include "bench/compare_reports.h"
+#include "bench/html.h"
+#include "bench/machine.h"
+#include "bench/page.h"
+#include "bench/report.h"
+#include "bench/runner.h"
+#include "gpu/device.h"
 
 namespace lucerna::app {
+namespace {
 
-int bench_rays(const BenchRaysArguments& a) {
-  const scene::Scene scene = scene::load(a.scene);
-  raybench::FlatFile flat{.name = scene.name, .scene = upload::flatten(scene), .tree = {}, .camera = {}};
-  if (flat.scene.triangles.empty()) throw Error(a.scene, "there are no triangles to trace");
-  flat.camera = scene::starting_camera(scene, a.camera);
-  const bvh::Triangles triangles{flat.scene.positions, flat.scene.non_opaque};
-  flat.tree = bvh::build(triangles);
-  if (!a.flat.empty()) {
-    raybench::write(a.flat, flat);
-    std::fprintf(stderr, "lucerna: wrote %s\n", a.flat.c_str());
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::atomic<bool> interrupted{false};
+void on_interrupt(int) { interrupted = true; }
+
+/// One line that is written over on a terminal; elsewhere a line a render.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(2)) {}
+  void show(const bench::Status& s) {
+    if (quiet_ || (!terminal_ && s.step == step_)) return;
+    step_ = s.step;
+    const std::string left = s.left_s ? ", about " + bench::seconds_text(*s.left_s) + " left" : "";
+    if (terminal_)
+      std::fprintf(stderr, "\r\033[K%zu of %zu  %s  %3.0f %%%s", s.step, s.steps, s.what.c_str(),
+                   100 * s.fraction, left.c_str());
+    else
+      std::fprintf(stderr, "%zu of %zu  %s%s\n", s.step, s.steps, s.what.c_str(), left.c_str());
+    std::fflush(stderr);
   }
-  gpu::Device device({a.device, false});
-  gpu::ShaderCompiler compiler;
-  // For the rays every triangle is opaque, because Embree as it comes knows no other kind.
-  const bvh::Triangles opaque{flat.scene.positions, {}};
-  raybench::ComputeTracer compute(device, compiler,
-                                  flat.tree.has_non_opaque ? bvh::build(opaque) : flat.tree);
-  const bvh::HostTracer host(opaque);
-  const bvh::EmbreeReference embree(opaque);
-  const auto sets = raybench::make_rays(flat, a.rays, a.seed, [&](bvh::Query query, auto rays, auto hits) {
-    host.trace(query, rays, hits, nullptr, uint32_t(rays.size()), false);
+  void message(const std::string& line) {
+    clear();
+    std::fprintf(stderr, "lucerna: %s\n", line.c_str());
+  }
+  void clear() const {
+    if (terminal_ && !quiet_ && step_ > 0) std::fprintf(stderr, "\r\033[K");
+  }
+
+ private:
+  bool quiet_, terminal_;
+  size_t step_ = 0;
+};
+
+class Listening {
+ public:
+  explicit Listening(std::function<void(log::Level, const std::string&)> hear)
+      : token_(log::add_listener(std::move(hear))) {}
+  ~Listening() { log::remove_listener(token_); }
+  Listening(const Listening&) = delete;
+  Listening& operator=(const Listening&) = delete;
+
+ private:
+  int token_;
+};
+
+bench::Matrix choose_matrix(const BenchArguments& a) {
+  if (int(a.quick) + int(a.full) + int(!a.matrix.empty()) != 1)
+    throw Error("bench", "name one matrix: a MATRIX.json, --quick or --full (see lucerna bench --help)");
+  bench::Matrix m = a.matrix.empty() ? bench::builtin_matrix(a.quick ? "quick" : "full",
+                                                             fs::path(LUCERNA_SOURCE_DIR) / "scenes")
+                                     : bench::read_matrix(a.matrix);
+  if (a.repeats > 0) m.repeats = a.repeats;
+  return m;
+}
+
+/// Seconds that earlier runs into the same folder took; their reports say so.
+double earlier_seconds(const fs::path& folder) {
+  if (!fs::exists(folder / "report.json")) return 0;
+  try {
+    return bench::read_report(folder).value("wall_s", 0.0);
+  } catch (const Error&) {
+    return 0;
+  }
+}
+
+int run(const BenchArguments& a) {
+  const Timer timer;
+  const bench::Matrix matrix = choose_matrix(a);
+  const fs::path path = a.report;
+  const bench::Machine machine = bench::this_machine();
+  const double load = bench::load_average();
+  Json device, identity;
+  {
+    const gpu::Device chosen({a.device, false});
+    device = {{"name", chosen.info().name}, {"driver", chosen.info().driver}};
+    identity = {{"version", LUCERNA_VERSION}, {"device", chosen.info().name}, {"processor", machine.cpu}};
+  }
+  const bench::Folder folder(path, matrix, identity);
+  const double before = earlier_seconds(path);
+
+  struct sigaction action {
+  }, previous{};
+  action.sa_handler = on_interrupt;
+  action.sa_flags = int(SA_RESETHAND);  // a second one ends the program at once
+  sigaction(SIGINT, &action, &previous);
+  ProgressLine line(a.quiet);
+  const bench::Hooks hooks{.interrupted = [] { return interrupted.load(); },
+                           .progress = [&](const bench::Status& s) { line.show(s); },
+                           .message = [&](const std::string& text) { line.message(text); }};
+  // A scene is loaded for every render; what it warns of comes once.
+  log::set_console_level(log::Level::error);
+  std::set<std::string> warned;
+  const Listening listening([&](log::Level level, const std::string& text) {
+    if (level == log::Level::warning && warned.insert(text).second) line.message(text);
   });
-  const raybench::Tracer tracers[] = {
-      {"compute-bvh", [&](const auto& set, auto hits) { return compute.trace(set, hits); }},
-      {"host",
-       [&](const auto& set, auto hits) {
-         const Timer timer;
-         host.trace(set.query, set.rays, hits, nullptr, uint32_t(set.rays.size()), set.coherent);
-         return timer.seconds();
-       }},
-      {"embree single", [&](const auto& set, auto hits) {
-         const Timer timer;
-         embree.trace(set.query, set.rays, hits);
-         return timer.seconds();
-       }}};
-  raybench::Report report{.scene = scene.name,
-                          .device = device.info().name,
-                          .triangles = flat.tree.primitive_count,
-                          .tree_nodes = flat.tree.node_count,
-                          .tree_depth = flat.tree.max_depth};
-  report.repeats = a.repeats;
-  report.rates = raybench::measure(tracers, sets, a.repeats);
-  for (const auto& t : tracers) report.tracers.push_back(t.name);
-  uint64_t differences = 0;
-  for (const auto& s : sets) {
-    report.sets.push_back(s.name), report.set_sizes.push_back(s.rays.size());
-    differences += raybench::count_differences(tracers[0], tracers[1], s);
+  const bench::RunOptions options{
+      .device = a.device, .references = a.references.empty() ? path / "references" : fs::path(a.references)};
+  const bench::RunSummary summary = bench::run_matrix(matrix, folder, options, hooks);
+  sigaction(SIGINT, &previous, nullptr);
+  line.clear();
+
+  const Json about{{"version", LUCERNA_VERSION},
+                   {"date", bench::now_utc()},
+                   {"command", a.command},
+                   {"wall_s", before + timer.seconds()},
+                   {"machine",
+                    {{"cpu", machine.cpu},
+                     {"cores", machine.cores},
+                     {"memory_gib", machine.memory_gib},
+                     {"system", machine.system},
+                     {"load", std::max(0.0, load)}}},
+                   {"device", device}};
+  const size_t total = matrix.cells().size();
+  if (summary.measured > 0 || !fs::exists(path / "report.json"))
+    bench::write_report(path, bench::make_report(matrix, summary, about));
+  if (!summary.complete) {
+    line.message(
+        fmt::format("interrupted; {} of {} renders are kept in {}: the same command goes on with them",
+                    summary.results.size(), total, path.string()));
+    return 130;
   }
-  report.frame_options = {.width = a.width, .height = a.height, .samples = a.samples, .seed = a.seed};
-  if (a.samples) {
-    // Where all are opaque anyway, the rays' tracer is the frame's as well.
-    std::optional<bvh::HostTracer> with_flags;
-    if (flat.tree.has_non_opaque) with_flags.emplace(triangles);
-    const bvh::HostTracer& host_of_frame = with_flags ? *with_flags : host;
-    const transport::HostTrace trace = [&](bvh::Query query, auto rays, auto hits, const uint32_t* queue,
-                                           uint32_t count, bool coherent) {
-      host_of_frame.trace(query, rays, hits, queue, count, coherent);
-    };
-    raybench::PathTracedFrame on_device(device, compiler, flat, report.frame_options, {}),
-        on_host(device, compiler, flat, report.frame_options, trace);
-    raybench::PathTracedFrame* const frames[] = {&on_device, &on_host};
-    const auto times = raybench::measure(frames, a.repeats);
-    report.frames = {{"compute-bvh", times[0]}, {"host", times[1]}};
-  }
-  if (a.json) {
-    std::printf("%s\n", raybench::to_json(report).c_str());
-  } else {
-    std::printf("%srays for which compute-bvh and host disagree: %llu\n",
-                raybench::to_text(report, "embree single").c_str(), (unsigned long long)differences);
-  }
+  if (summary.measured == 0)
+    line.message(
+        fmt::format("all {} renders were there; name another folder with --report to measure again", total));
+  for (const std::string& found : bench::findings(bench::read_report(path)))
+    std::printf("%s\n", found.c_str());
+  std::printf("%s\n", (path / "report.html").c_str());
   return 0;
+}
+
+}  // namespace
+
+int bench_matrix(const BenchArguments& a) {
+  if (!a.compare.empty()) {
+    const Json before = bench::read_report(a.compare[0]), after = bench::read_report(a.compare[1]);
+    std::printf("%s", bench::compare_reports(before, after).c_str());
+    return 0;
+  }
+  if (!a.page.empty()) {
+    const Json report = bench::read_report(a.page);
+    bench::write_file(fs::path(a.page) / "report.html",
+                      bench::make_page(report, fs::path(a.page) / "pictures"));
+    std::printf("%s\n", (fs::path(a.page) / "report.html").c_str());
+    return 0;
+  }
+  return run(a);
 }
 
 }  // namespace lucerna::app

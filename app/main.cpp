@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/huge_pages.h"
 #include "base/log.h"
+#include "bench/matrix.h"
 #include "plan/settings.h"
 #include "ui/viewer.h"
 
@@ -80,8 +81,25 @@ int main_checked(int argc, char** argv) {
   compare_verb->add_option("--max-relmse", c.max_relmse, "exit with 1 when the relative MSE is above this");
 
   BenchRaysArguments b;
-  CLI::App* bench_verb = app.add_subcommand("bench", "measure speed");
-  bench_verb->require_subcommand(1);
+  BenchArguments bm;
+  CLI::App* bench_verb = app.add_subcommand(
+      "bench", "measure what accuracy costs in time: scenes x settings x budgets, with a page to read");
+  bench_verb->require_subcommand(0, 1);
+  bench_verb->add_option("MATRIX", bm.matrix, "matrix file (JSON), see below");
+  bench_verb->add_flag("--quick", bm.quick, "three scenes in small pictures, under ten minutes on two cores");
+  bench_verb->add_flag("--full", bm.full, "larger pictures, the atrium too, more budgets; hours");
+  bench_verb->add_option("--report", bm.report, "folder to write to and to go on in; new, empty or a bench's")
+      ->capture_default_str();
+  bench_verb->add_option("--references", bm.references,
+                         "folder of the reference pictures [references in the report folder]");
+  bench_verb->add_option("--repeats", bm.repeats, "renders of each cell, instead of the matrix's")
+      ->check(CLI::Range(3, 100));
+  bench_verb->add_option("--device", bm.device, "as above");
+  bench_verb->add_flag("--quiet", bm.quiet, "no progress");
+  bench_verb->add_option("--compare", bm.compare, "OLD NEW: ratios of two reports (folders or report.json)")
+      ->expected(2);
+  bench_verb->add_option("--page", bm.page, "make report.html of a report folder again, measuring nothing");
+  bench_verb->footer(bench::k_matrix_help);
   CLI::App* rays_verb =
       bench_verb->add_subcommand("rays", "rays a second of every tracer, and of Embree as it comes");
   rays_verb->add_option("SCENE", b.scene, "glTF scene")->required();
@@ -120,6 +138,11 @@ int main_checked(int argc, char** argv) {
   if (*compare_verb) return compare(c);
   if (b.device.empty()) b.device = device;
   if (*rays_verb) return bench_rays(b);
+  if (*bench_verb) {
+    if (bm.device.empty()) bm.device = device;
+    for (int i = 0; i < argc; ++i) bm.command += std::string(i ? " " : "") + (i ? argv[i] : "lucerna");
+    return bench_matrix(bm);
+  }
   session::Session session({.device = device, .validation = false, .shaders = {}});
   ui::ViewerOptions options;
   options.scene = scene;

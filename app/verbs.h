@@ -33,6 +33,18 @@ struct BenchRaysArguments {
 };
 int bench_rays(const BenchRaysArguments& arguments);
 
+struct BenchArguments {
+  std::string matrix;  ///< file; or one of the two built in
+  bool quick = false, full = false;
+  std::string report = "report", references, device;  ///< references "": in the report folder
+  int repeats = 0;                                    ///< 0: the matrix's
+  bool quiet = false;
+  std::string command;               ///< as typed, for the report
+  std::vector<std::string> compare;  ///< two reports: nothing is measured
+  std::string page;                  ///< a report folder whose page is to be made again
+};
+int bench_matrix(const BenchArguments& arguments);
+
 struct CompareArguments {
   std::string a, b, layer, difference;
   bool json = false;

@@ -74,7 +74,14 @@ std::vector<OptionInfo> make_options() {
        .fallback = "16",
        .unit = "pixels",
        .choices = {"8", "16"},
-       .help = "Adaptive: side of the tiles that are decided on."},
+       .help = "Side of the tiles that adaptive sampling decides on, and that coherent sampling shares."},
+      {.key = "sampling.coherent",
+       .type = OptionType::boolean,
+       .fallback = "false",
+       .choices = {},
+       .help =
+           "The pixels of a tile share their random sequence: neighbouring paths stay together, which some "
+           "devices trace faster; noise then has a pattern, and a tile's error is not vouched for."},
       integer("seed", 0, 0, 4294967295.0, "",
               "Seed of every random decision; the same seed gives the same image."),
       integer("path.max_depth", 64, 1, 1024, "vertices", "Scattering events after which a path ends."),

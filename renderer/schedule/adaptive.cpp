@@ -99,11 +99,7 @@ void AdaptiveSchedule::report(const std::vector<float>& errors) {
   assert(errors.size() == item_tiles_.size());
   for (size_t i = 0; i < item_tiles_.size(); ++i) {
     Tile& tile = tiles_[item_tiles_[i]];
-    const uint32_t samples = tile.samples + item_samples_;
-    if (tile.passes > 0 && (tile.earlier_samples == 0 || samples >= 4 * tile.earlier_samples) &&
-        samples >= 2 * tile.samples)
-      tile.earlier_error = tile.error, tile.earlier_samples = tile.samples;
-    tile.samples = samples;
+    tile.samples += item_samples_;
     ++tile.passes;
     tile.error = errors[i];
   }

@@ -25,8 +25,6 @@ struct Tile {
   float error = 0;       ///< as last reported; decides nothing while waiting
   uint32_t samples = 0;  ///< a pixel
   uint32_t passes = 0;
-  float earlier_error = 0;       ///< what it was with at most half the samples,
-  uint32_t earlier_samples = 0;  ///< and with how many; 0: not yet
   TileState state = TileState::waiting;
 };
 

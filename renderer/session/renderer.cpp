@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/log.h"
 #include "base/timer.h"
@@ -111,8 +112,11 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
                                  bool coherent) { host->trace(query, rays, hits, queue, count, coherent); };
   }
   const uint32_t slots = uint32_t(settings_.integer("path.batch")) / 64 * 64;
+  gpu::Defines defines = options_.defines;
+  if (settings_.boolean("sampling.coherent"))
+    defines["LUCERNA_COHERENT"] = settings_.text("sampling.tile") == "8" ? "3" : "4";
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
-                                                      std::move(trace), options_.defines);
+                                                      std::move(trace), defines);
   compile_seconds_ = timer.seconds();
 }
 
@@ -225,25 +229,30 @@ bool Renderer::reference_applies() const {
 
 void Renderer::apply_settings() {
   if (!wavefront_) return;
-  bool again = false, samples = false, rebuild = false, retarget = false;
-  for (const auto& [key, value] : settings_.all()) {
-    if (applied_[key] == value) continue;
-    if (key == "samples")
-      samples = true;
-    else if (key == "camera")
-      choose_camera(value);
-    else if (key == "tracer" || key == "path.batch")
-      rebuild = true;
-    else if (key.starts_with("sampling.") && key != "sampling.mode" && (!adaptive_ || key != "sampling.tile"))
+  std::set<std::string> changed;  // before anything is done, for a restart counts all as applied
+  for (const auto& [key, value] : settings_.all())
+    if (applied_[key] != value) changed.insert(key);
+  bool again = false, retarget = false;
+  for (const std::string& key : changed) {
+    // What these say, the schedule in progress can take up.
+    const bool goal = key == "sampling.target_error" || key == "sampling.min_samples" ||
+                      key == "sampling.max_samples" || (key == "sampling.tile" && !adaptive_);
+    if (goal)
       retarget = true;
-    else
+    else if (key != "samples")
       again |= plan::find_option(key)->restarts;
   }
+  const bool rebuild = changed.contains("tracer") || changed.contains("path.batch");
+  const bool kernels = changed.contains("sampling.coherent") ||
+                       (changed.contains("sampling.tile") && settings_.boolean("sampling.coherent"));
+  if (changed.contains("camera")) choose_camera(settings_.text("camera"));
   if (rebuild) {
     install(scene_, settings_, camera_, {});
     return;
   }
-  if (samples && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
+  if (kernels) build_wavefront(*device_scene_);
+  again |= kernels;
+  if (changed.contains("samples") && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
   if (retarget && !again && adaptive_) adaptive_->retarget(adaptive_options());
   if (again) restart();
   applied_ = settings_.all();
@@ -335,8 +344,6 @@ void Renderer::note_progress(bool at_once) {
       tiles.push_back(
           {.error = tile.error,
            .samples = double(tile.samples),
-           .earlier_error = tile.earlier_error,
-           .earlier_samples = double(tile.earlier_samples),
            .pixels = 64.0 * double(adaptive_->blocks_of(t).size()),
            .open = tile.state == schedule::TileState::waiting || tile.state == schedule::TileState::active});
     }

@@ -17,10 +17,20 @@ const uint k_pad_light_detail = 4u;  // which texel of the environment
 // Null events draw from a stream of their own, so that they do not shift the dimensions of the vertices.
 const uint k_pad_null = 0x10000u;
 
+//
+// Coherent sampling (LUCERNA_COHERENT: log2 of the side of a tile in pixels; METHODS 2): all pixels of a tile share the
+// sequences, so that neighbouring paths go nearly the same way; each has a digital shift of its own below the first
+// k_shared_bits binary digits, so that they do not repeat each other. A pixel's points are still uniform and its halves
+// independent; the pixels of a tile are not, so that the noise of a tile's mean is not what theirs adds up to.
+
 struct Sampler {
-  uint key;    // of pixel, seed and half
+  uint key;    // of pixel (or tile), seed and half
   uint index;  // in the half's sequence
+#if LUCERNA_COHERENT
+  uint pixel_key;
+#endif
 };
+const uint k_shared_bits = 4u;
 
 uint hash_mix(uint x) {  // lowbias32, C. Wellons
   x ^= x >> 16; x *= 0x7feb352du;
@@ -30,9 +40,17 @@ uint hash_mix(uint x) {  // lowbias32, C. Wellons
 }
 uint hash_combine(uint seed, uint v) { return hash_mix(seed ^ (v * 0x9e3779b9u + 0x7f4a7c15u + (seed << 6) + (seed >> 2))); }
 
-Sampler make_sampler(uint pixel, uint sample_index, uint seed) {
+// `pixel`: y * width + x.
+Sampler make_sampler(uint pixel, uint width, uint sample_index, uint seed) {
   Sampler s;
-  s.key = hash_combine(hash_combine(hash_mix(seed + 0x51633e2du), pixel), sample_index & 1u);
+  uint seeded = hash_mix(seed + 0x51633e2du);
+#if LUCERNA_COHERENT
+  uint tile = ((pixel / width) >> LUCERNA_COHERENT << 16) + (pixel % width >> LUCERNA_COHERENT);
+  s.key = hash_combine(hash_combine(seeded, tile), sample_index & 1u);
+  s.pixel_key = hash_combine(seeded + 1u, pixel);
+#else
+  s.key = hash_combine(hash_combine(seeded, pixel), sample_index & 1u);
+#endif
   s.index = sample_index >> 1;
   return s;
 }
@@ -64,7 +82,12 @@ uvec2 sample_2d_bits(Sampler s, uint pad) {
   uint index = owen_scramble(s.index, key);           // nested uniform shuffle of the order
   uint rx = owen_scramble_reversed(index, hash_mix(key ^ 0xa511e9b3u));  // dimension 0 reversed is the index itself
   uint ry = owen_scramble_reversed(sobol_1_reversed(index), hash_mix(key ^ 0x63d83595u));
-  return uvec2(bitfieldReverse(rx), bitfieldReverse(ry));
+  uvec2 bits = uvec2(bitfieldReverse(rx), bitfieldReverse(ry));
+#if LUCERNA_COHERENT
+  uint shift = hash_combine(s.pixel_key, pad);
+  bits ^= uvec2(shift, hash_mix(shift)) >> k_shared_bits;
+#endif
+  return bits;
 }
 
 // 24 bits keep the value strictly below 1.

@@ -13,7 +13,7 @@ void main() {
   bool inside = xy.x < frame.width && xy.y < frame.height;
   uint pixel = xy.y * frame.width + xy.x;
   uint sample_index = block.first_sample + slot / push.pixel_count;
-  Sampler s = make_sampler(pixel, sample_index, frame.seed);
+  Sampler s = make_sampler(pixel, frame.width, sample_index, frame.seed);
   vec2 ndc = (vec2(xy) + sample_2d(s, k_pad_pixel)) / vec2(frame.width, frame.height) * 2.0 - 1.0;
   vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;
   Ray ray;

@@ -42,7 +42,7 @@ void main() {
   PathState path = load_path(slot);
   if (path.pixel == 0xffffffffu) return;
   uint state = path_automaton(path), depth = path_depth(path), nulls = path_nulls(path);
-  Sampler random = make_sampler(path.pixel, path.sample_index, frame.seed);
+  Sampler random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
 
   vec3 gain = vec3(0.0);  // what the path meets here, all of one component
   if (hit.prim == k_no_hit) {

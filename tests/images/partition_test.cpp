@@ -95,6 +95,42 @@ TEST_CASE("the image does not depend on the size of batches, the tracer's thread
   }
 }
 
+TEST_CASE("coherent sampling changes the noise, not the mean") {
+  // Pixels of a tile are not independent, so the deviation of the picture's mean is measured over seeds:
+  // Student's t with 46 degrees of freedom, two-sided at 1e-3 for each of five layers, is 3.5.
+  constexpr int k_seeds = 24;
+  double mean[2][5] = {}, squares[2][5] = {};
+  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  r.set_size(32, 32);
+  r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
+  r.settings().set("samples", "8");
+  std::vector<vec3> first[2];
+  for (const int coherent : {0, 1}) {
+    r.settings().set("sampling.coherent", coherent ? "true" : "false");
+    for (int seed = 0; seed < k_seeds; ++seed) {
+      r.settings().set("seed", std::to_string(seed));
+      r.apply_settings();
+      while (r.step()) {
+      }
+      const film::Image image = r.image();
+      if (seed == 0) first[coherent] = image.components[0];
+      double of[5] = {};
+      for (int c = 0; c < 4; ++c)
+        for (const vec3& v : image.components[c])
+          of[c + 1] += luminance(v) / 1024, of[0] += luminance(v) / 1024;
+      for (int k = 0; k < 5; ++k) mean[coherent][k] += of[k] / k_seeds, squares[coherent][k] += of[k] * of[k];
+    }
+  }
+  CHECK_FALSE(identical(first[0], first[1]));
+  for (int k = 0; k < 5; ++k) {
+    double variance = 0;
+    for (const int c : {0, 1})
+      variance += (squares[c][k] - k_seeds * mean[c][k] * mean[c][k]) / (k_seeds - 1) / k_seeds;
+    INFO("layer " << k << ": " << mean[0][k] << " and " << mean[1][k]);
+    CHECK(std::abs(mean[0][k] - mean[1][k]) <= 3.5 * std::sqrt(variance));
+  }
+}
+
 TEST_CASE("both tracers make the same image but for grazing ties") {
   test::Render r{.scene = "glass", .width = 40, .height = 36, .samples = 8, .settings = {{"tracer", "host"}}};
   const test::Result host = test::render(r);

@@ -24,6 +24,7 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
                            "LUCERNA_NORMAL_MAPS",
                            "LUCERNA_VERTEX_EXTRA",
                            "LUCERNA_FILM_IMAGES",
+                           "LUCERNA_STOPPING_ONLY",
                            "LUCERNA_UV_TRANSFORMS",
                            "LUCERNA_TEX_NEAREST",
                            "LUCERNA_TEX_WRAPS",
@@ -41,7 +42,9 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
     const std::string file = std::filesystem::relative(entry.path(), compiler.root()).string();
     ++kernels;
     for (const char* on : {"0", "1"}) {
-      gpu::Defines defines{{"LUCERNA_BUCKETS", on[0] == '1' ? "6" : "0"}, {"LUCERNA_QUERY", on}};
+      gpu::Defines defines{{"LUCERNA_BUCKETS", on[0] == '1' ? "6" : "0"},
+                           {"LUCERNA_QUERY", on},
+                           {"LUCERNA_COHERENT", on[0] == '1' ? "4" : "0"}};
       for (const char* use : uses) defines["LUCERNA_" + std::string(use) + "_BUCKETS"] = "63u";
       for (const char* effect : effects) defines[effect] = on;
       INFO(file << " with everything " << on);

@@ -16,6 +16,7 @@ namespace {
 
 struct Place {
   uint32_t pixel, sample, seed, pad;
+  uint32_t width = 64;  ///< of the picture; matters to coherent sampling alone
 };
 struct Point {
   uint32_t bits[2];
@@ -222,6 +223,50 @@ TEST_CASE("within a pixel, pads and halves are shuffled against each other: chi^
         }
     }
   CHECK(jury.verdict() == "");
+}
+
+TEST_CASE("coherent sampling: a pixel's points are as even, its tile's go together, its neighbour's differ") {
+  for (const char* side : {"3", "4"}) {
+    const gpu::Defines coherent{{"LUCERNA_COHERENT", side}};
+    const uint32_t tile = 1u << std::stoul(side);
+    CAPTURE(tile);
+    for (const uint32_t pixel : {0u, 777u})
+      for (const uint32_t half : {0u, 1u}) {
+        const auto p = points(run_of(pixel, half, 5, 5, 0, 1 << 12), coherent);
+        for (const int k : {1, 2, 3, 5, 8, 12}) CHECK(uneven_shapes(p.data(), k) == 0);
+      }
+    // Of one sample, all pixels of 1024 tiles in a picture 16 tiles wide.
+    const uint32_t width = 16 * tile, rows = 64 * tile;
+    std::vector<Place> places;
+    for (uint32_t pixel = 0; pixel < width * rows; ++pixel) places.push_back({pixel, 6, 3, 5, width});
+    const auto p = points(places, coherent);
+    Jury jury;
+    for (const int d : {0, 1}) {
+      std::vector<std::pair<uint32_t, uint32_t>> beside, across, low, own;
+      size_t apart = 0, alike = 0;
+      for (uint32_t i = 0; i + 1 < p.size(); i += 2) {
+        const uint32_t a = p[i].bits[d], b = p[i + 1].bits[d];  // side by side in one tile
+        apart += a >> 28 != b >> 28;
+        alike += a == b;
+        low.emplace_back(a << 4, b << 4);
+      }
+      CHECK(apart == 0);
+      CHECK(alike < 3);
+      jury.add(fmt::format("dimension {}, digits below the shared ones", d), uniform_tail(low, 64));
+      // One pixel of each tile, against the tile to the right and the one below.
+      for (uint32_t y = 0; y + tile < rows; y += tile)
+        for (uint32_t x = 0; x + tile < width; x += tile) {
+          const uint32_t i = y * width + x;
+          beside.emplace_back(p[i].bits[d], p[i + tile].bits[d]);
+          across.emplace_back(p[i].bits[d], p[i + tile * width].bits[d]);
+          own.emplace_back(p[i].bits[0], p[i].bits[1]);
+        }
+      jury.add(fmt::format("dimension {}, tiles side by side", d), uniform_tail(beside, 8));
+      jury.add(fmt::format("dimension {}, tiles above each other", d), uniform_tail(across, 8));
+      jury.add("one pixel's two dimensions over tiles", uniform_tail(own, 8));
+    }
+    CHECK(jury.verdict() == "");
+  }
 }
 
 TEST_CASE("no two purposes of a path draw from the same pad") {

@@ -23,14 +23,13 @@ Ledger render(double exponent, uint64_t paths, double wobble = 0) {
   return ledger;
 }
 
-std::vector<TileProgress> tiles(uint32_t count, double easy, double hard, double samples, double exponent) {
+/// Tiles that follow the law of forecast.h, of this noise in one sample; tile 0 is the hard one.
+std::vector<TileProgress> tiles(uint32_t count, double easy, double hard, double samples) {
   std::vector<TileProgress> list(count);
   for (uint32_t t = 0; t < count; ++t) {
-    const double sigma = t == 0 ? hard : easy;
-    list[t] = {.error = sigma * std::pow(samples, -exponent),
+    const double s = t == 0 ? hard : easy;
+    list[t] = {.error = 1 / std::sqrt(samples / (s * s) + 1 / (k_saturated_error * k_saturated_error)),
                .samples = samples,
-               .earlier_error = sigma * std::pow(samples / 2, -exponent),
-               .earlier_samples = samples / 2,
                .pixels = 256};
   }
   return list;
@@ -101,21 +100,26 @@ TEST_CASE("time to a smaller error: the law is found, the truth lies within the 
 }
 
 TEST_CASE("paths of an adaptive render: easy tiles stop at the minimum, hard ones go on, the cap holds") {
-  for (const double exponent : {0.5, 0.7}) {
-    CAPTURE(exponent);
-    const auto list = tiles(16, 0.1, 1.0, 32, exponent);
-    CHECK(fit(list).exponent == Approx(exponent).margin(1e-9));
+  // Even with 2 samples, where the hard tile's error is at its ceiling.
+  for (const double samples : {2.0, 32.0}) {
+    CAPTURE(samples);
+    const auto list = tiles(16, 0.1, 1.0, samples);
     // Tile 0 needs this many, its three neighbours run along until it is at twice the target.
-    const double target = 0.05, own = std::pow(1.0 / target, 1 / exponent),
-                 beside = std::pow(1.0 / (2 * target), 1 / exponent);
+    const double target = 0.05, ceiling = 1 / (k_saturated_error * k_saturated_error);
+    const double own = 1 / (target * target) - ceiling, beside = 0.25 / (target * target) - ceiling;
+    CHECK(samples_to(list[0], target) == Approx(own));
     const Band band = total_paths(list, 4, target, 64, 1e6);
-    CHECK(band.middle == Approx(256 * (own + 3 * std::max(64.0, beside) + 12 * 64)).epsilon(1e-6));
+    CHECK(band.middle == Approx(256 * (own + 3 * beside + 12 * 64)).epsilon(1e-6));
     CHECK(band.low < band.middle);
     CHECK(band.high > band.middle);
     CHECK(total_paths(list, 4, target, 64, 100).high <= 256 * (4 * 100 + 12 * 64) * 1.0001);
   }
-  auto closed = tiles(4, 1, 1, 100, 0.5);
+  auto closed = tiles(4, 1, 1, 100);
   for (TileProgress& t : closed) t.open = false;
   CHECK(total_paths(closed, 2, 1e-3, 64, 1e6).high == 4 * 256 * 100);
   CHECK(total_paths({}, 0, 0.1, 2, 10).high == 0);
+  // Where the error is beyond its ceiling, or not known, the answer stays a number.
+  CHECK(std::isfinite(samples_to({.error = 1.2, .samples = 2, .pixels = 256}, 0.01)));
+  CHECK(samples_to({.error = 0, .samples = 8, .pixels = 256}, 0.01) == 8);
+  CHECK(samples_to({.error = 0.1, .samples = 8, .pixels = 256}, 5) < 8);
 }

@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 layout(scalar, push_constant) uniform Push { uint count; } push;
 
 struct Place {
-  uint pixel, sample_index, seed, pad;
+  uint pixel, sample_index, seed, pad, width;
 };
 struct Point {
   uvec2 bits;
@@ -19,7 +19,7 @@ void main() {
   uint i = global_index();
   if (i >= push.count) return;
   Place p = places[i];
-  Sampler s = make_sampler(p.pixel, p.sample_index, p.seed);
+  Sampler s = make_sampler(p.pixel, p.width, p.sample_index, p.seed);
   Point result;
 #if TEST_VERTEX
   // pad: depth * 256 + what

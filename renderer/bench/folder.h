@@ -1,0 +1,50 @@
+#pragma once
+// The report folder: bench.json says whose it is (matrix, device, version), cells/ has one file a finished
+// render, pictures/ what the page shows. Every file is written under a temporary name and renamed, so that an
+// interruption leaves whole files only; half ones from elsewhere are recognised and measured again.
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "bench/matrix.h"
+#include "bench/result.h"
+
+namespace lucerna::bench {
+
+/// One line for a person.
+using Message = std::function<void(const std::string&)>;
+
+/// Writes a text file whole or not at all. Throws Error located at `file`.
+void write_file(const std::filesystem::path& file, const std::string& text);
+/// Throws Error located at `file` when it cannot be read.
+std::string read_file(const std::filesystem::path& file);
+
+class Folder {
+ public:
+  /// Makes the folder or goes on with one that holds the same matrix, measured by the same version on the
+  /// same device (`identity`: any JSON object; its keys are named when they differ). Throws Error, located at
+  /// the folder, and leaves everything as it was: when it cannot be written, is another bench's, holds files
+  /// that no bench made, or another bench is at work in it.
+  Folder(const std::filesystem::path& path, const Matrix& matrix, const nlohmann::ordered_json& identity);
+  ~Folder();
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path pictures() const { return path_ / "pictures"; }
+
+  /// Results of the matrix that are there, by Matrix::id(). Those that cannot be read, belong to another cell
+  /// or whose scene has changed since (`scene_hashes` by scene name) are told of and left out.
+  std::map<std::string, Result> load(const Matrix& matrix,
+                                     const std::map<std::string, std::string>& scene_hashes,
+                                     const Message& message) const;
+  void save(const std::string& id, const Result& result) const;
+
+ private:
+  std::filesystem::path path_;
+  int lock_ = -1;
+};
+
+}  // namespace lucerna::bench

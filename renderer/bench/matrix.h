@@ -1,0 +1,95 @@
+#pragma once
+// What `lucerna bench` measures: scenes x settings x budgets x repeats, read from a JSON file or built in.
+#include <array>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace lucerna::bench {
+
+/// What ends a render.
+enum class BudgetKind {
+  samples,  ///< samples a pixel, the same for all
+  errors,   ///< relative error that every tile is to reach; adaptive sampling only
+  seconds   ///< wall seconds of rendering alone
+};
+inline constexpr std::array<const char*, 3> k_budget_names = {"samples", "errors", "seconds"};
+
+struct Budget {
+  BudgetKind kind = BudgetKind::samples;
+  double value = 0;
+  /// "256 samples", "error 5 %", "10 s".
+  std::string text() const;
+};
+
+using SettingValues = std::map<std::string, std::string>;
+
+/// One way of rendering, by what it changes in the options (plan/settings.h).
+struct Setting {
+  std::string name, about;
+  SettingValues set;
+  BudgetKind budget = BudgetKind::samples;
+};
+
+struct SceneEntry {
+  std::string name;
+  std::filesystem::path file;
+  uint32_t width = 0, height = 0;
+  std::string camera;  ///< "": the scene's own
+  SettingValues set;   ///< for every setting on this scene, and its reference
+  uint32_t reference_samples = 0;
+  std::array<std::vector<double>, 3> budgets;  ///< by BudgetKind, smallest effort first
+};
+
+/// One render to be measured.
+struct Cell {
+  size_t scene = 0, setting = 0, budget = 0;  ///< indices; budget into SceneEntry::budgets[setting's kind]
+  int repeat = 0;
+  bool operator==(const Cell&) const = default;
+};
+
+struct Matrix {
+  std::string name;
+  int repeats = 3;
+  uint32_t warmup = 8;                         ///< samples a pixel rendered and thrown away before the clock
+  uint32_t seed = 1, reference_seed = 900001;  ///< repeat k has seed + k
+  SettingValues set;                           ///< for all
+  std::vector<SceneEntry> scenes;
+  std::vector<Setting> settings;  ///< the first is what the others are held against
+
+  const std::vector<double>& budgets(size_t scene, size_t setting) const {
+    return scenes[scene].budgets[size_t(settings[setting].budget)];
+  }
+  Budget budget(const Cell& c) const {
+    return {settings[c.setting].budget, budgets(c.scene, c.setting)[c.budget]};
+  }
+  /// All cells in the order in which they are measured: scene by scene, and within a scene the repeats
+  /// outermost, every second one backwards, so that a machine that drifts meets all settings alike.
+  std::vector<Cell> cells() const;
+  /// A name for a cell that serves as a file's: "glass.adaptive.2.0".
+  std::string id(const Cell& c) const;
+};
+
+/// Reads a matrix; `where` locates messages, `folder` is what relative scene files start from. Throws Error,
+/// located at the element ("m.json: settings[1].set"), for JSON that does not parse, unknown keys, wrong
+/// types, values out of range, unknown settings, names used twice, scenes that do not exist, and settings
+/// without a budget. k_matrix_help says what may stand in it.
+Matrix parse_matrix(const std::string& text, const std::string& where, const std::filesystem::path& folder);
+/// The same from a file, whose folder scene files are relative to.
+Matrix read_matrix(const std::filesystem::path& file);
+
+/// "quick": three scenes in small pictures, within ten minutes on two cores. "full": larger, with the atrium
+/// and more budgets; an hour and more. Scenes are taken from `scenes`.
+Matrix builtin_matrix(const std::string& name, const std::filesystem::path& scenes);
+
+/// The matrix with every default written out; parse_matrix() reads it back to the same.
+nlohmann::ordered_json to_json(const Matrix& matrix);
+
+/// For --help: the keys of a matrix file with an example.
+extern const char* const k_matrix_help;
+
+}  // namespace lucerna::bench

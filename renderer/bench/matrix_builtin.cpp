@@ -1,0 +1,77 @@
+#include "bench/matrix.h"
+
+namespace lucerna::bench {
+namespace {
+
+const char* const k_quick = R"({
+  "name": "quick",
+  "repeats": 3,
+  "scenes": [
+    {"file": "cornell/cornell.gltf", "size": "128x128", "reference_samples": 2560,
+     "budgets": {"samples": [512], "errors": [0.1, 0.06]}},
+    {"file": "glass/glass.gltf", "size": "128x128", "reference_samples": 2048,
+     "budgets": {"samples": [256], "errors": [0.2, 0.1]}},
+    {"file": "studio/studio.gltf", "size": "160x120", "reference_samples": 2560,
+     "budgets": {"samples": [512], "errors": [0.05, 0.03]}}
+  ],
+  "settings": [
+    {"name": "plain", "about": "path tracing, samples for all pixels alike"},
+    {"name": "adaptive", "about": "path tracing, samples for the tiles that are still noisy",
+     "set": {"sampling.mode": "adaptive"}},
+    {"name": "compute-bvh", "about": "as plain, rays traced by the compute shaders instead of Embree",
+     "set": {"tracer": "compute-bvh"}}
+  ]
+})";
+
+const char* const k_full = R"({
+  "name": "full",
+  "repeats": 5,
+  "reference": {"samples": 16384},
+  "budgets": {"samples": [16, 64, 256, 1024], "errors": [0.2, 0.1, 0.05]},
+  "scenes": [
+    {"file": "cornell/cornell.gltf", "size": "256x256"},
+    {"file": "glass/glass.gltf", "size": "256x256"},
+    {"file": "studio/studio.gltf", "size": "320x240"},
+    {"file": "atrium/atrium.gltf", "size": "320x180", "reference_samples": 8192,
+     "budgets": {"samples": [16, 64, 256]}}
+  ],
+  "settings": [
+    {"name": "plain", "about": "path tracing, samples for all pixels alike"},
+    {"name": "adaptive", "about": "path tracing, samples for the tiles of 16x16 pixels that are still noisy",
+     "set": {"sampling.mode": "adaptive", "sampling.max_samples": 4096}},
+    {"name": "adaptive-8", "about": "the same with tiles of 8x8 pixels",
+     "set": {"sampling.mode": "adaptive", "sampling.max_samples": 4096, "sampling.tile": 8}},
+    {"name": "compute-bvh", "about": "as plain, rays traced by the compute shaders instead of Embree",
+     "set": {"tracer": "compute-bvh"}}
+  ]
+})";
+
+}  // namespace
+
+Matrix builtin_matrix(const std::string& name, const std::filesystem::path& scenes) {
+  if (name != "quick" && name != "full")
+    throw_error("bench", "there is no matrix '{}'; there are quick and full", name);
+  return parse_matrix(name == "quick" ? k_quick : k_full, name, scenes);
+}
+
+const char* const k_matrix_help = R"(
+A matrix file is a JSON object; an unknown key is an error:
+  name       of the matrix [the file's]
+  about      a text, for people
+  repeats    renders of each cell, 3 to 100 [3]
+  warmup     samples a pixel rendered before the clock runs, in every cell [8]
+  seed       of the first repeat; every further one has the next [1]
+  reference  {"samples": N, "seed": N}: of the long plain path-traced renders taken for the truth [4096, 900001]
+  set        {"KEY": VALUE}: settings for all cells and references (keys: lucerna render --help)
+  budgets    what ends a render; lists of {"samples": [..], "errors": [..], "seconds": [..]}
+  scenes     [{"file": F.gltf (relative to the matrix file), "size": "WxH", "name", "camera", "set", "budgets",
+              "reference_samples"}]
+  settings   [{"name", "about", "set": {..}, "budget": "samples" | "errors" | "seconds"}]; the first is what the
+              others are held against. Without "budget", adaptive settings take errors, the others samples.
+The smallest one:
+  {"budgets": {"samples": [64], "errors": [0.1]},
+   "scenes": [{"file": "cornell.gltf", "size": "128x128"}],
+   "settings": [{"name": "plain"}, {"name": "adaptive", "set": {"sampling.mode": "adaptive"}}]}
+)";
+
+}  // namespace lucerna::bench

@@ -1,0 +1,161 @@
+#include "bench/reference.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "film/io/image_file.h"
+
+namespace lucerna::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// FNV-1a, 64 bits.
+class Hash {
+ public:
+  void add(std::string_view bytes) {
+    for (const char c : bytes) value_ = (value_ ^ uint8_t(c)) * 0x100000001b3ull;
+    // The length too, so that pieces cannot run into each other.
+    for (size_t n = bytes.size(), k = 0; k < 8; ++k, n >>= 8)
+      value_ = (value_ ^ (n & 255)) * 0x100000001b3ull;
+  }
+  std::string text() const { return fmt::format("{:016x}", value_); }
+
+ private:
+  uint64_t value_ = 0xcbf29ce484222325ull;
+};
+
+std::string decode_uri(const std::string& uri) {
+  std::string text;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    unsigned code = 0;
+    if (uri[i] == '%' && i + 2 < uri.size() && std::sscanf(uri.substr(i + 1, 2).c_str(), "%2x", &code) == 1)
+      text += char(code), i += 2;
+    else
+      text += uri[i];
+  }
+  return text;
+}
+
+/// Every text under a key "uri" (buffers, images) or "file" (environments), wherever it stands.
+void collect_files(const Json& json, std::set<std::string>& files) {
+  if (json.is_object()) {
+    for (const auto& [key, value] : json.items()) {
+      if ((key == "uri" || key == "file") && value.is_string()) {
+        const std::string uri = value.get<std::string>();
+        if (!uri.starts_with("data:")) files.insert(decode_uri(uri));
+      }
+      collect_files(value, files);
+    }
+  } else if (json.is_array()) {
+    for (const Json& value : json) collect_files(value, files);
+  }
+}
+
+/// The JSON of a .gltf, or of a .glb's first chunk.
+std::string json_part(const std::string& bytes) {
+  if (!bytes.starts_with("glTF") || bytes.size() < 20) return bytes;
+  uint32_t length = 0;
+  for (int k = 3; k >= 0; --k) length = length << 8 | uint8_t(bytes[12 + size_t(k)]);
+  return bytes.substr(20, length);
+}
+
+void set_aside(const fs::path& file, const std::string& why, const Message& message) {
+  fs::path old;
+  int n = 1;
+  do {
+    old = file.string() + (n == 1 ? ".old" : fmt::format(".old{}", n));
+    ++n;
+  } while (fs::exists(old));
+  std::error_code code;
+  fs::rename(file, old, code);
+  if (code) throw_error(file.string(), "{}, and it cannot be renamed: {}", why, code.message());
+  message(fmt::format("{}: {}; it is made anew (the old one is now {})", file.string(), why,
+                      old.filename().string()));
+}
+
+}  // namespace
+
+std::string scene_hash(const fs::path& file) {
+  Hash hash;
+  const std::string bytes = read_file(file);
+  hash.add(bytes);
+  std::set<std::string> files;
+  collect_files(Json::parse(json_part(bytes), nullptr, false), files);
+  const fs::path settings = file.parent_path() / "settings.json";
+  if (fs::exists(settings)) {
+    const std::string text = read_file(settings);
+    hash.add(text);
+    collect_files(Json::parse(text, nullptr, false), files);
+  }
+  for (const std::string& name : files) {
+    const fs::path part = file.parent_path() / name;
+    hash.add(name);
+    std::error_code code;
+    hash.add(fs::is_regular_file(part, code) ? read_file(part) : "missing");
+  }
+  return hash.text();
+}
+
+std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const std::string& scene_hash) {
+  Json j{{"scene", scene_hash},    {"width", scene.width},          {"height", scene.height},
+         {"camera", scene.camera}, {"seed", matrix.reference_seed}, {"version", LUCERNA_VERSION}};
+  SettingValues values = scene.set;
+  values.insert(matrix.set.begin(), matrix.set.end());  // the scene's stand
+  for (const auto& [key, value] : values) j["set"][key] = value;
+  Hash hash;
+  hash.add(j.dump());
+  return hash.text();
+}
+
+fs::path reference_file(const fs::path& folder, const SceneEntry& scene) {
+  return folder / fmt::format("{}-{}x{}.exr", scene.name, scene.width, scene.height);
+}
+
+void describe_reference(std::map<std::string, std::string>& metadata, const ReferenceInfo& info) {
+  metadata["bench.key"] = info.key;
+  metadata["bench.samples"] = std::to_string(info.samples);
+  metadata["bench.seconds"] = fmt::format("{:.3f}", info.seconds);
+}
+
+std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneEntry& scene,
+                                            const std::string& key, const Message& message) {
+  ReferenceInfo info;
+  info.file = reference_file(folder, scene);
+  if (!fs::exists(info.file)) return std::nullopt;
+  std::string why;
+  try {
+    const film::FilmImage image = film::read_exr(info.file);
+    const auto told = [&](const char* name) {
+      const auto at = image.metadata.find(name);
+      return at == image.metadata.end() ? std::string() : at->second;
+    };
+    info.key = told("bench.key");
+    info.samples = uint32_t(std::strtoul(told("bench.samples").c_str(), nullptr, 10));
+    info.seconds = std::strtod(told("bench.seconds").c_str(), nullptr);
+    info.seed = uint32_t(std::strtoul(told("seed").c_str(), nullptr, 10));
+    const film::Reference reference = film::read_reference(info.file, scene.width, scene.height);
+    if (info.key.empty())
+      why = "no reference of a bench";
+    else if (info.key != key)
+      why = "made of another scene, with other settings or by another version";
+    else if (info.samples < scene.reference_samples)
+      why = fmt::format("has {} samples, {} are wanted", info.samples, scene.reference_samples);
+    else if (!reference.noise)
+      why = "does not tell its own noise";
+    else
+      for (size_t k = 0; k < info.noise.size(); ++k)
+        info.noise[k] = (*reference.noise)[k] / reference.mean_luminance;
+  } catch (const Error& e) {
+    why = e.what();
+    // The message names the file itself.
+    if (const std::string head = e.where() + ": "; why.starts_with(head)) why = why.substr(head.size());
+  }
+  if (why.empty()) return info;
+  set_aside(info.file, why, message);
+  return std::nullopt;
+}
+
+}  // namespace lucerna::bench

@@ -1,0 +1,44 @@
+#pragma once
+// Pictures taken for the truth: long plain path-traced renders, kept as EXR with what made them.
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "bench/folder.h"
+#include "bench/matrix.h"
+#include "film/io/reference.h"
+
+namespace lucerna::bench {
+
+/// A short hash (16 hexadecimal digits) of all that a scene file is made of: the .gltf or .glb, the buffers
+/// and images it names, settings.json beside it and the environment named there. What is missing counts as
+/// missing. Throws Error when the scene itself cannot be read.
+std::string scene_hash(const std::filesystem::path& file);
+
+/// What a reference of that scene must have been made of to serve: scene, settings, size, camera, seed and
+/// program version, as a hash. Not the number of samples: more are always welcome.
+std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const std::string& scene_hash);
+
+/// "cornell-128x128.exr".
+std::filesystem::path reference_file(const std::filesystem::path& folder, const SceneEntry& scene);
+
+/// What is known of a reference beside its picture; in the EXR's metadata as bench.*.
+struct ReferenceInfo {
+  std::filesystem::path file;
+  std::string key;
+  uint32_t samples = 0, seed = 0;
+  double seconds = 0;          ///< that it took
+  film::LayerFigures noise{};  ///< its own, rms over mean luminance
+};
+
+/// The reference if it is there and serves: its key matches, it has at least the samples wanted, and the
+/// picture is whole and finite. Otherwise nothing; a file that does not serve is told of and renamed to
+/// NAME.exr.old (.old2, ...), for it may be someone's.
+std::optional<ReferenceInfo> find_reference(const std::filesystem::path& folder, const SceneEntry& scene,
+                                            const std::string& key, const Message& message);
+
+/// Metadata to write with the picture of a new reference.
+void describe_reference(std::map<std::string, std::string>& metadata, const ReferenceInfo& info);
+
+}  // namespace lucerna::bench

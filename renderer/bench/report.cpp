@@ -1,0 +1,381 @@
+#include "bench/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "bench/analysis.h"
+#include "bench/page.h"
+
+namespace lucerna::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Curve = std::vector<Point>;
+
+constexpr size_t k_curve_steps = 48;
+const char* const k_kinds[] = {"measured", "at_once", "extrapolated", "unknown"};
+
+Json to_json(const Spread& s) { return {{"median", s.median}, {"low", s.low}, {"high", s.high}}; }
+
+/// The repeats of one setting on one scene, by budget.
+struct Group {
+  std::vector<std::vector<const Result*>> budgets;
+  /// Those of the largest budget that has any: their curves are the setting's.
+  const std::vector<const Result*>& largest() const {
+    static const std::vector<const Result*> k_none;
+    for (size_t b = budgets.size(); b-- > 0;)
+      if (!budgets[b].empty()) return budgets[b];
+    return k_none;
+  }
+};
+
+template <class F>
+std::vector<double> collect(const std::vector<const Result*>& results, F value) {
+  std::vector<double> values;
+  for (const Result* r : results) values.push_back(double(value(*r)));
+  return values;
+}
+
+/// Points whose error is to be told from the reference's noise.
+Curve true_curve(const Result& r, double reference_noise) {
+  Curve curve;
+  for (const CurvePoint& p : r.curve)
+    if (p.truth[0] > 0.7 * reference_noise && p.truth[0] > 0) curve.push_back({p.wall_s, p.truth[0]});
+  return curve;
+}
+
+Curve tiles_curve(const Result& r) {
+  Curve curve;
+  for (const CurvePoint& p : r.curve)
+    if (p.tiles > 0) curve.push_back({p.wall_s, p.tiles});
+  return curve;
+}
+
+Json curve_json(const std::vector<Curve>& curves) {
+  Json list = Json::array();
+  for (const Band& b : common_curve(curves, k_curve_steps))
+    list.push_back({b.seconds, b.error.median, b.error.low, b.error.high});
+  return list;
+}
+
+struct Reached {
+  ReachKind kind = ReachKind::unknown;
+  Spread seconds;
+};
+
+Reached reached(const std::vector<Curve>& curves, double target) {
+  std::vector<double> seconds;
+  std::array<size_t, 4> kinds{};
+  for (const Curve& c : curves) {
+    const Reach r = time_to(c, target);
+    if (r.kind == ReachKind::unknown) continue;
+    seconds.push_back(r.seconds), ++kinds[size_t(r.kind)];
+  }
+  if (seconds.empty()) return {};
+  // Half the repeats decide, for theirs is the median.
+  ReachKind kind = ReachKind::measured;
+  for (const ReachKind k : {ReachKind::at_once, ReachKind::extrapolated})
+    if (2 * kinds[size_t(k)] >= seconds.size()) kind = k;
+  return {kind, spread(std::move(seconds))};
+}
+
+/// A repeat's time to all targets as one figure, for the noise of times.
+std::vector<double> mean_times(const std::vector<Curve>& curves) {
+  std::vector<double> times;
+  for (const Curve& c : curves) {
+    double sum = 0, count = 0;
+    for (const double target : k_targets)
+      if (const Reach r = time_to(c, target); r.kind != ReachKind::unknown)
+        sum += std::log(r.seconds), ++count;
+    if (count > 0) times.push_back(std::exp(sum / count));
+  }
+  return times;
+}
+
+std::vector<double> indices(const std::vector<const Result*>& results) {
+  std::vector<double> values;
+  for (const Result* r : results)
+    if (const auto pi = performance_index(r->mse, r->wall_s); pi && !r->in_reference_noise)
+      values.push_back(*pi);
+  return values;
+}
+
+void add_ratio(Json& json, double ratio, const std::optional<double>& noise) {
+  json["ratio"] = ratio;
+  if (!noise) return;
+  const double bound = *noise * (1 + 1e-9);  // repeats that are equal to the bit have no noise at all
+  json["noise"] = ratio <= bound && ratio >= 1 / bound;
+}
+
+Json times_json(const std::vector<Curve>& curves, const std::vector<Curve>& baseline, bool is_baseline,
+                const std::optional<double>& noise) {
+  Json list = Json::array();
+  for (const double target : k_targets) {
+    const Reached here = reached(curves, target), there = reached(baseline, target);
+    Json entry{{"error", target}, {"kind", k_kinds[size_t(here.kind)]}};
+    if (here.kind != ReachKind::unknown) entry["seconds"] = to_json(here.seconds);
+    if (!is_baseline && here.kind != ReachKind::unknown && there.kind != ReachKind::unknown) {
+      add_ratio(entry, there.seconds.median / here.seconds.median, noise);
+      entry["ratio_kind"] = k_kinds[std::max(size_t(here.kind), size_t(there.kind))];
+    }
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+/// The smallest error of the series 1, 2, 5 that half the repeats of both settings have reached, and how much
+/// sooner: the one ratio that rests on nothing but measurements.
+std::optional<Json> common_json(const std::vector<Curve>& curves, const std::vector<Curve>& baseline,
+                                const std::optional<double>& noise) {
+  for (double power = 1e-4; power < 10; power *= 10)
+    for (const double step : {1.0, 2.0, 5.0}) {
+      const Reached here = reached(curves, step * power), there = reached(baseline, step * power);
+      if (here.kind != ReachKind::measured || there.kind != ReachKind::measured) continue;
+      Json entry{
+          {"error", step * power}, {"seconds", here.seconds.median}, {"first_seconds", there.seconds.median}};
+      add_ratio(entry, there.seconds.median / here.seconds.median, noise);
+      return entry;
+    }
+  return std::nullopt;
+}
+
+Json cells_json(const Matrix& m, size_t scene, size_t setting, const Group& group) {
+  Json list = Json::array();
+  for (size_t b = 0; b < group.budgets.size(); ++b) {
+    const auto& results = group.budgets[b];
+    if (results.empty()) continue;
+    Json cell{{"budget", m.budget({scene, setting, b, 0}).text()}, {"repeats", results.size()}};
+    const auto add = [&](const char* name, auto value) {
+      cell[name] = to_json(spread(collect(results, value)));
+    };
+    add("wall_s", [](const Result& r) { return r.wall_s; });
+    add("device_s", [](const Result& r) { return r.device_s; });
+    add("samples", [](const Result& r) { return r.samples; });
+    add("rays", [](const Result& r) { return r.rays; });
+    add("estimated", [](const Result& r) { return r.estimated[0]; });
+    add("true", [](const Result& r) { return r.truth[0]; });
+    add("relmse", [](const Result& r) { return r.relmse; });
+    add("tiles_decile", [](const Result& r) { return r.tiles_decile; });
+    add("heavy_tiles", [](const Result& r) { return r.heavy_tiles; });
+    add("tiles_over", [](const Result& r) { return r.tiles_over; });
+    for (size_t k = 1; k < stats::k_layers; ++k) {
+      Json& layer = cell["components"][stats::k_layer_names[k]];
+      layer["true"] = to_json(spread(collect(results, [&](const Result& r) { return r.truth[k]; })));
+      layer["estimated"] = to_json(spread(collect(results, [&](const Result& r) { return r.estimated[k]; })));
+      layer["device_s"] =
+          to_json(spread(collect(results, [&](const Result& r) { return r.component_s[k]; })));
+    }
+    const auto in_noise =
+        std::count_if(results.begin(), results.end(), [](const Result* r) { return r->in_reference_noise; });
+    cell["in_reference_noise"] = 2 * size_t(in_noise) >= results.size();
+    list.push_back(std::move(cell));
+  }
+  return list;
+}
+
+std::optional<Json> forecast_json(const std::vector<const Result*>& results) {
+  std::vector<double> seconds, rays;
+  double at = 0;
+  size_t in_band = 0;
+  for (const Result* r : results) {
+    if (!r->forecast || !(r->forecast->seconds.middle > 0) || r->rays == 0) continue;
+    seconds.push_back(r->forecast->seconds.middle / r->wall_s);
+    rays.push_back(r->forecast->rays.middle / double(r->rays));
+    in_band += r->wall_s >= r->forecast->seconds.low && r->wall_s <= r->forecast->seconds.high;
+    at += r->forecast->at_s / r->wall_s;
+  }
+  if (seconds.empty()) return std::nullopt;
+  const size_t n = seconds.size();
+  return Json{{"at", at / double(n)},
+              {"seconds", to_json(spread(std::move(seconds)))},
+              {"rays", to_json(spread(std::move(rays)))},
+              {"in_band", in_band},
+              {"of", n}};
+}
+
+/// The largest time of the series 1, 2, 5, 10 .. that is not above t.
+double round_down(double t) {
+  const double power = std::pow(10.0, std::floor(std::log10(t)));
+  for (const double step : {5.0, 2.0})
+    if (step * power <= t * (1 + 1e-9)) return step * power;
+  return power;
+}
+
+/// Short times that all settings have seen on this scene: what METHODS 7 asks second.
+std::vector<double> fixed_times(const std::vector<std::vector<Curve>>& settings) {
+  double from = 0, to = 0;
+  for (const auto& curves : settings)
+    for (const Curve& c : curves) {
+      if (c.empty()) return {};
+      from = std::max(from, c.front().seconds);
+      to = to == 0 ? c.back().seconds : std::min(to, c.back().seconds);
+    }
+  if (!(to > from) || !(from > 0)) return {};
+  const double late = round_down(to), early = round_down(late / 4);
+  std::vector<double> times;
+  for (const double t : {early, late})
+    if (t >= from) times.push_back(t);
+  return times;
+}
+
+Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, double reference_noise,
+                std::vector<std::optional<double>>& relative_indices) {
+  const size_t n = groups.size();
+  std::vector<std::vector<Curve>> curves(n), tiles(n);
+  std::vector<std::vector<double>> times, tile_times, rates, pis(n);
+  for (size_t k = 0; k < n; ++k) {
+    for (const Result* r : groups[k].largest()) {
+      curves[k].push_back(true_curve(*r, reference_noise));
+      tiles[k].push_back(tiles_curve(*r));
+    }
+    times.push_back(mean_times(curves[k]));
+    tile_times.push_back(mean_times(tiles[k]));
+    rates.push_back(collect(groups[k].largest(), [](const Result& r) { return double(r.rays) / r.wall_s; }));
+    pis[k] = indices(groups[k].largest());
+  }
+  const auto repeats = size_t(m.repeats);
+  const auto time_noise = noise_ratio(times, repeats), tile_noise = noise_ratio(tile_times, repeats),
+             index_noise = noise_ratio(pis, repeats), rate_noise = noise_ratio(rates, repeats);
+  const SceneEntry& scene = m.scenes[s];
+  Json j{{"name", scene.name},
+         {"file", scene.file.string()},
+         {"size", fmt::format("{}x{}", scene.width, scene.height)},
+         {"reference_noise", reference_noise}};
+  const auto add_noise = [&](const char* name, const std::optional<double>& x) {
+    if (x) j["noise"][name] = *x;
+  };
+  add_noise("time", time_noise), add_noise("tiles_time", tile_noise);
+  add_noise("index", index_noise), add_noise("rate", rate_noise);
+  const std::vector<double> fixed = fixed_times(curves);
+  double best = 0;
+  for (const auto& values : pis) best = std::max(best, spread(values).median);
+  for (size_t k = 0; k < n; ++k) {
+    if (groups[k].largest().empty()) continue;
+    Json e{{"name", m.settings[k].name}, {"tracer", groups[k].largest()[0]->tracer}};
+    e["cells"] = cells_json(m, s, k, groups[k]);
+    e["time_to"] = times_json(curves[k], curves[0], k == 0, time_noise);
+    e["tiles_time_to"] = times_json(tiles[k], tiles[0], k == 0, tile_noise);
+    if (k > 0) {
+      if (auto common = common_json(curves[k], curves[0], time_noise)) e["time_common"] = *common;
+      if (auto common = common_json(tiles[k], tiles[0], tile_noise)) e["tiles_time_common"] = *common;
+    }
+    for (const double t : fixed) {
+      std::vector<double> errors;
+      for (const Curve& c : curves[k])
+        if (const auto error = error_at(c, t)) errors.push_back(*error);
+      if (!errors.empty()) e["error_at"].push_back({{"seconds", t}, {"error", to_json(spread(errors))}});
+    }
+    if (!pis[k].empty()) {
+      const Spread pi = spread(pis[k]);
+      e["index"] = {{"pi", to_json(pi)}, {"relative", 100 * pi.median / best}};
+      relative_indices[k] = 100 * pi.median / best;
+      if (k > 0 && !pis[0].empty()) add_ratio(e["index"], pi.median / spread(pis[0]).median, index_noise);
+    }
+    e["rays_per_s"] = to_json(spread(rates[k]));
+    if (k > 0 && !rates[0].empty()) {
+      e["rate"] = Json::object();
+      add_ratio(e["rate"], spread(rates[k]).median / spread(rates[0]).median, rate_noise);
+    }
+    if (auto forecast = forecast_json(groups[k].largest())) e["forecast"] = std::move(*forecast);
+    e["curve"] = curve_json(curves[k]);
+    e["tiles_curve"] = curve_json(tiles[k]);
+    j["settings"].push_back(std::move(e));
+  }
+  return j;
+}
+
+}  // namespace
+
+Json make_report(const Matrix& m, const RunSummary& summary, const Json& about) {
+  Json report{{"what", "lucerna bench"}, {"format", 1}};
+  report.update(about);
+  report["complete"] = summary.complete;
+  const std::vector<Cell> cells = m.cells();
+  report["cells"] = {{"done", summary.results.size()}, {"total", cells.size()}};
+  report["matrix"] = bench::to_json(m);
+  report["references"] = Json::array();
+  for (size_t s = 0; s < m.scenes.size() && s < summary.references.size(); ++s) {
+    const ReferenceInfo& r = summary.references[s];
+    if (r.key.empty()) continue;
+    Json noise;
+    for (size_t k = 0; k < r.noise.size(); ++k) noise[stats::k_layer_names[k]] = r.noise[k];
+    report["references"].push_back({{"scene", m.scenes[s].name},
+                                    {"file", r.file.string()},
+                                    {"samples", r.samples},
+                                    {"seed", r.seed},
+                                    {"seconds", r.seconds},
+                                    {"noise", noise},
+                                    {"key", r.key}});
+  }
+  report["scenes"] = Json::array();
+  std::vector<std::vector<std::optional<double>>> relative;
+  for (size_t s = 0; s < m.scenes.size(); ++s) {
+    std::vector<Group> groups(m.settings.size());
+    bool any = false;
+    for (size_t k = 0; k < groups.size(); ++k) groups[k].budgets.resize(m.budgets(s, k).size());
+    for (const Cell& c : cells) {
+      const auto at = summary.results.find(m.id(c));
+      if (c.scene != s || at == summary.results.end()) continue;
+      groups[c.setting].budgets[c.budget].push_back(&at->second);
+      any = true;
+    }
+    if (!any) continue;
+    relative.emplace_back(groups.size());
+    const double noise = s < summary.references.size() ? summary.references[s].noise[0] : 0;
+    report["scenes"].push_back(scene_json(m, s, groups, noise, relative.back()));
+  }
+  report["index"] = Json::array();
+  for (size_t k = 0; k < m.settings.size(); ++k) {
+    double sum = 0, count = 0;
+    for (const auto& scene : relative)
+      if (scene[k]) sum += *scene[k], ++count;
+    if (count > 0)
+      report["index"].push_back({{"setting", m.settings[k].name}, {"value", sum / count}, {"scenes", count}});
+  }
+  report["results"] = Json::array();
+  for (const Cell& c : cells)
+    if (const auto at = summary.results.find(m.id(c)); at != summary.results.end())
+      report["results"].push_back(bench::to_json(at->second));
+  return report;
+}
+
+std::string make_csv(const Json& report) {
+  std::string text =
+      "scene,setting,budget,repeat,seed,tracer,wall_s,device_s,setup_s,rays,paths,samples,mse,relmse,"
+      "in_reference_noise,tiles_median,tiles_decile,tiles_worst,heavy_tiles,tiles_over";
+  for (const char* what : {"estimated", "true", "device_s"})
+    for (const char* layer : stats::k_layer_names) text += fmt::format(",{}_{}", what, layer);
+  text += ",forecast_s,forecast_rays\n";
+  for (const Json& entry : report.at("results")) {
+    const Result r = result_from_json(entry, "results");
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.scene, r.setting,
+                        r.budget, r.repeat, r.seed, r.tracer, r.wall_s, r.device_s, r.setup_s, r.rays,
+                        r.paths, r.samples, r.mse, r.relmse, int(r.in_reference_noise), r.tiles_median,
+                        r.tiles_decile, r.tiles_worst, r.heavy_tiles, r.tiles_over);
+    for (const Layers* layers : {&r.estimated, &r.truth, &r.component_s})
+      for (const double x : *layers) text += fmt::format(",{}", x);
+    text +=
+        r.forecast ? fmt::format(",{},{}\n", r.forecast->seconds.middle, r.forecast->rays.middle) : ",,\n";
+  }
+  return text;
+}
+
+void write_report(const fs::path& folder, const Json& report) {
+  write_file(folder / "report.json", report.dump(1) + "\n");
+  write_file(folder / "report.csv", make_csv(report));
+  write_file(folder / "report.html", make_page(report, folder / "pictures"));
+}
+
+Json read_report(const fs::path& file_or_folder) {
+  const fs::path file = fs::is_directory(file_or_folder) ? file_or_folder / "report.json" : file_or_folder;
+  Json report = Json::parse(read_file(file), nullptr, false);
+  if (report.is_discarded()) throw_error(file.string(), "not JSON, perhaps half a file");
+  if (!report.is_object() || report.value("what", "") != "lucerna bench" || !report.contains("scenes"))
+    throw_error(file.string(), "no report of lucerna bench");
+  if (report.value("format", 0) != 1) throw_error(file.string(), "a report of another version of the bench");
+  return report;
+}
+
+}  // namespace lucerna::bench

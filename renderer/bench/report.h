@@ -1,0 +1,41 @@
+#pragma once
+// The bench's figures from its results: report.json holds everything, and all else (the table, the page, the
+// comparison of two benches) is made from it.
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "bench/matrix.h"
+#include "bench/runner.h"
+
+namespace lucerna::bench {
+
+/// The errors that times are given for.
+inline constexpr double k_targets[] = {0.05, 0.02, 0.01};
+
+/// `about`: what stands at its head as it is (version, date, command, machine, device ...). The rest:
+///   matrix, complete, cells {done, total}, references [{scene, file, samples, seconds, noise ..}],
+///   scenes [{name, size, noise {time, index, rate}, fixed_s, settings [summary]}],
+///   index [{setting, value, scenes}], results [as in cells/].
+/// A summary of a setting on a scene: cells [{budget, wall_s, rays .. as {median, low, high}}],
+///   time_to [{error, kind, seconds {median, low, high}, ratio, noise}] of the whole picture's true error,
+///   time_common {error, seconds, first_seconds, ratio, noise} at the smallest error that it and the first
+///   setting have both reached, tiles_time_to and tiles_time_common, the same of the estimated error that
+///   nine tiles in ten are under, error_at [{seconds, error}], curve [[seconds, median, low, high]] and
+///   tiles_curve, index {pi, relative, ratio, noise}, rays_per_s, forecast {seconds, rays: ratio to what it
+///   came to}.
+/// Ratios are the first setting's time over this one's, above 1: sooner; `noise` says that a ratio is not to
+/// be told from 1 (analysis.h). What is not known is left out.
+nlohmann::ordered_json make_report(const Matrix& matrix, const RunSummary& summary,
+                                   const nlohmann::ordered_json& about);
+
+/// One line a cell and repeat, with a heading.
+std::string make_csv(const nlohmann::ordered_json& report);
+
+/// Writes report.json, report.csv and report.html into the folder.
+void write_report(const std::filesystem::path& folder, const nlohmann::ordered_json& report);
+
+/// Reads report.json, or that of a folder. Throws Error located at the file when it is missing, not JSON, or
+/// not a report.
+nlohmann::ordered_json read_report(const std::filesystem::path& file_or_folder);
+
+}  // namespace lucerna::bench

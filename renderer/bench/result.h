@@ -1,0 +1,63 @@
+#pragma once
+// What one render of the bench came to, as it lies in the report folder: cells/ID.json.
+#include <array>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "stats/ledger.h"
+
+namespace lucerna::bench {
+
+using Layers = std::array<double, stats::k_layers>;  ///< the sum, then the components
+
+/// One line of the render's ledger.
+struct CurvePoint {
+  double wall_s = 0, device_s = 0;
+  uint64_t rays = 0;
+  double samples = 0;  ///< a pixel, on average
+  Layers estimated{};  ///< rms error over mean luminance, by the render itself
+  Layers truth{};      ///< the same against the reference, its noise taken off; 0: lost in that noise
+  double tiles = 0;    ///< estimated relative error that nine tiles in ten are under
+};
+
+/// What was foretold when a tenth of the render's time was over, against what it came to.
+struct ForecastResult {
+  double at_s = 0;  ///< when the forecast was made
+  stats::Band seconds, rays;
+};
+
+struct Result {
+  std::string scene, setting;
+  std::string budget;  ///< Budget::text()
+  int repeat = 0;
+  uint32_t seed = 0;
+  std::string scene_hash;      ///< of the files when it was rendered
+  std::string reference_hash;  ///< of the reference that it was held against
+  std::string tracer;
+  double wall_s = 0, device_s = 0;  ///< of rendering alone
+  double setup_s = 0;               ///< loading, compiling, warming up: not in wall_s
+  uint64_t rays = 0, paths = 0;
+  double samples = 0;
+  Layers estimated{}, truth{}, component_s{};
+  double mse = 0;                   ///< squared true rms error in luminance, the reference's noise taken off
+  double relmse = 0;                ///< film/io/compare.h with its epsilon; the reference's noise is in it
+  bool in_reference_noise = false;  ///< truth not to be told from the reference's own noise
+  double tiles_median = 0, tiles_decile = 0, tiles_worst = 0;  ///< estimated relative errors of tiles
+  uint64_t heavy_tiles = 0;                                    ///< whose light comes in rare large amounts
+  uint64_t tiles_over = 0;  ///< adaptive: over the target with all the samples they may have
+  uint64_t dropped = 0;     ///< contributions that were not finite
+  std::optional<ForecastResult> forecast;
+  std::vector<CurvePoint> curve;
+};
+
+nlohmann::ordered_json to_json(const Result& result);
+/// Throws Error, located at `where`, for anything that to_json() does not write: half a file, missing or
+/// wrong values, a curve that does not go forward.
+Result parse_result(const std::string& text, const std::string& where);
+Result result_from_json(const nlohmann::ordered_json& json, const std::string& where);
+
+}  // namespace lucerna::bench

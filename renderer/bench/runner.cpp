@@ -1,0 +1,328 @@
+#include "bench/runner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/log.h"
+#include "base/timer.h"
+#include "bench/time_left.h"
+#include "film/io/compare.h"
+#include "session/renderer.h"
+#include "stats/forecast.h"
+
+namespace lucerna::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using session::Renderer;
+
+constexpr double k_progress_every_s = 0.2;
+
+/// A setting's values above the scene's above those for all.
+SettingValues merged(const Matrix& matrix, const SceneEntry& scene, const SettingValues& own) {
+  SettingValues values = own;
+  values.insert(scene.set.begin(), scene.set.end());
+  values.insert(matrix.set.begin(), matrix.set.end());
+  return values;
+}
+
+/// A renderer of its own with the scene loaded and the settings applied. A scene warns once in a bench.
+std::unique_ptr<Renderer> make_renderer(const SceneEntry& scene, const SettingValues& values,
+                                        const std::string& device) {
+  auto r = std::make_unique<Renderer>(
+      session::RendererOptions{.device = device, .validation = false, .shaders = {}, .defines = {}});
+  r->set_size(scene.width, scene.height);
+  for (const char* key : {"tracer", "path.batch"})
+    if (const auto at = values.find(key); at != values.end()) r->settings().set(key, at->second);
+  r->load(scene.file);
+  for (const auto& [key, value] : values) r->settings().set(key, value, scene.name);
+  r->apply_settings();
+  if (!scene.camera.empty()) r->choose_camera(scene.camera);
+  return r;
+}
+
+/// How much of a render is done, 0..1, by whichever of its ends is nearer.
+double fraction_done(const Renderer& r, const Budget& budget, double seconds) {
+  if (budget.kind == BudgetKind::seconds) return std::min(1.0, seconds / budget.value);
+  if (const schedule::AdaptiveSchedule* s = r.adaptive())
+    return double(s->count(schedule::TileState::done) + s->count(schedule::TileState::capped)) /
+           double(s->tiles().size());
+  const double pixels = double(r.film().width()) * r.film().height();
+  return std::min(1.0, double(r.stats().paths) / pixels / r.max_samples());
+}
+
+double decile(std::vector<film::TileError> tiles, double share) {
+  std::vector<double> sorted;
+  for (const film::TileError& t : tiles) sorted.push_back(t.relative);
+  std::sort(sorted.begin(), sorted.end());
+  return sorted[std::min(sorted.size() - 1, size_t(double(sorted.size()) * share))];
+}
+
+CurvePoint make_point(const Renderer& r, const stats::Entry& e) {
+  return {.wall_s = e.wall_s,
+          .device_s = e.device_s,
+          .rays = e.rays,
+          .samples = e.samples,
+          .estimated = e.error,
+          .truth = e.truth.value_or(Layers{}),
+          .tiles = decile(r.tile_errors(), 0.9)};
+}
+
+/// What could be foretold at a tenth of the time; nothing when the ledger had no line by then.
+std::optional<ForecastResult> make_forecast(const stats::Ledger& ledger, bool adaptive) {
+  const auto& entries = ledger.entries();
+  stats::Ledger early;
+  for (const stats::Entry& e : entries)
+    if (e.wall_s <= 0.1 * entries.back().wall_s) early.add(e);
+  if (early.entries().empty()) return std::nullopt;
+  const stats::Entry& at = early.entries().back();
+  const double rays_per_s = double(at.rays) / at.wall_s;
+  const auto scaled = [](const stats::Band& b, double k) {
+    return stats::Band{b.low * k, b.middle * k, b.high * k};
+  };
+  ForecastResult f{.at_s = at.wall_s};
+  if (adaptive) {
+    if (!at.total_rays) return std::nullopt;
+    f.rays = *at.total_rays;
+    f.seconds = scaled(f.rays, 1 / rays_per_s);
+  } else {
+    const auto seconds = stats::seconds_to(early, entries.back().error[0]);
+    if (!seconds) return std::nullopt;
+    f.seconds = *seconds;
+    f.rays = scaled(f.seconds, rays_per_s);
+  }
+  return f;
+}
+
+struct Interrupted {};
+
+class Run {
+ public:
+  Run(const Matrix& matrix, const Folder& folder, const RunOptions& options, const Hooks& hooks)
+      : matrix_(matrix), folder_(folder), options_(options), hooks_(hooks), left_(matrix) {}
+
+  RunSummary run();
+
+ private:
+  ReferenceInfo make_reference(const SceneEntry& scene, const std::string& key);
+  Result render(const Cell& cell, const ReferenceInfo& reference, const std::string& scene_hash);
+  void save_pictures(Renderer& r, const Cell& cell, const film::FilmImage& reference);
+  /// Steps on; throws Interrupted when the person wants to stop.
+  bool step(Renderer& r) {
+    if (hooks_.interrupted() || !r.step(hooks_.interrupted)) {
+      if (hooks_.interrupted()) throw Interrupted{};
+      return false;
+    }
+    return true;
+  }
+  void tell(double fraction, bool at_once = false) {
+    if (!at_once && since_progress_.seconds() < k_progress_every_s) return;
+    since_progress_.restart();
+    status_.fraction = fraction;
+    status_.left_s = left_.seconds(unit_, fraction, since_unit_.seconds());
+    hooks_.progress(status_);
+  }
+  void begin(const TimeLeft::Unit& unit, const std::string& what) {
+    unit_ = unit;
+    since_unit_.restart();
+    ++status_.step;
+    status_.what = what;
+    tell(0, true);
+  }
+  void end() { left_.finished(unit_, since_unit_.seconds()); }
+
+  const Matrix& matrix_;
+  const Folder& folder_;
+  const RunOptions& options_;
+  const Hooks& hooks_;
+  TimeLeft left_;
+  TimeLeft::Unit unit_;
+  Status status_;
+  Timer since_unit_, since_progress_;
+};
+
+ReferenceInfo Run::make_reference(const SceneEntry& scene, const std::string& key) {
+  const Timer timer;
+  SettingValues values = merged(matrix_, scene, {});
+  // Plain path tracing, whatever the scene's own settings say; a component that is off stays off.
+  for (const plan::OptionInfo& option : plan::options())
+    if (option.key.starts_with("components.") && !values.contains(option.key))
+      values[option.key] = option.fallback;
+  values["sampling.mode"] = "uniform";
+  values["seed"] = std::to_string(matrix_.reference_seed);
+  values["samples"] = std::to_string(scene.reference_samples);
+  const auto r = make_renderer(scene, values, options_.device);
+  while (!r->done() && step(*r)) tell(fraction_done(*r, {}, 0));
+  ReferenceInfo info{.file = reference_file(options_.references, scene),
+                     .key = key,
+                     .samples = scene.reference_samples,
+                     .seed = matrix_.reference_seed,
+                     .seconds = timer.seconds()};
+  film::FilmImage image = r->film_image();
+  describe_reference(image.metadata, info);
+  film::write_exr(info.file, image);
+  const film::Reference reference = film::read_reference(info.file, scene.width, scene.height);
+  for (size_t k = 0; k < info.noise.size() && reference.noise; ++k)
+    info.noise[k] = (*reference.noise)[k] / reference.mean_luminance;
+  return info;
+}
+
+Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::string& scene_hash) {
+  const SceneEntry& scene = matrix_.scenes[cell.scene];
+  const Setting& setting = matrix_.settings[cell.setting];
+  const Budget budget = matrix_.budget(cell);
+  SettingValues values = merged(matrix_, scene, setting.set);
+  const uint32_t seed = matrix_.seed + uint32_t(cell.repeat);
+  values["seed"] = std::to_string(seed);
+  values["samples"] = std::to_string(budget.kind == BudgetKind::samples ? uint64_t(budget.value) : 1u << 20);
+  if (budget.kind == BudgetKind::errors) values["sampling.target_error"] = fmt::format("{}", budget.value);
+
+  const Timer setup;
+  const auto r = make_renderer(scene, values, options_.device);
+  r->set_reference(reference.file);
+  // The device compiles its kernels when they first run, and the machine's clocks and caches warm up.
+  while (r->samples() < matrix_.warmup && !r->done() && step(*r)) tell(0);
+  r->image_error();
+  Result result{.scene = scene.name,
+                .setting = setting.name,
+                .budget = budget.text(),
+                .repeat = cell.repeat,
+                .seed = seed,
+                .scene_hash = scene_hash,
+                .reference_hash = reference.key,
+                .tracer = r->tracer_name(),
+                .setup_s = setup.seconds()};
+  r->restart();
+
+  double seconds = 0;
+  const auto out_of_time = [&] { return budget.kind == BudgetKind::seconds && seconds >= budget.value; };
+  const auto& entries = r->ledger().entries();
+  while (!r->done() && !out_of_time()) {
+    const Timer timer;
+    const size_t lines = entries.size();
+    if (!step(*r)) break;
+    // A step that wrote into the ledger also held the picture against the reference; that is not rendering.
+    seconds = entries.size() > lines ? entries.back().wall_s : seconds + timer.seconds();
+    // Before every pixel has a sample it is not the same picture.
+    if (entries.size() > lines && r->samples() > 0) result.curve.push_back(make_point(*r, entries.back()));
+    tell(fraction_done(*r, budget, seconds));
+  }
+  r->finish_ledger();
+  const stats::Entry& last = entries.back();
+  if (!result.curve.empty() && result.curve.back().wall_s >= last.wall_s) result.curve.pop_back();
+  result.curve.push_back(make_point(*r, last));
+
+  result.wall_s = last.wall_s, result.device_s = last.device_s;
+  result.rays = last.rays, result.paths = last.paths, result.samples = last.samples;
+  result.estimated = last.error, result.truth = last.truth.value_or(Layers{});
+  result.component_s = last.component_s;
+  const double rms = result.truth[0] * r->reference()->mean_luminance;
+  result.mse = rms * rms;
+  // The reference's noise is itself known to a tenth or two; what is left of less than that is nothing.
+  result.in_reference_noise = result.truth[0] < 0.7 * reference.noise[0];
+  const film::FilmImage truth = film::read_exr(reference.file);
+  result.relmse = film::compare(r->film_image(), truth).relmse;
+  const std::vector<film::TileError> tiles = r->tile_errors();
+  result.tiles_median = decile(tiles, 0.5), result.tiles_decile = decile(tiles, 0.9);
+  result.tiles_worst = decile(tiles, 1);
+  for (const film::TileError& t : tiles) result.heavy_tiles += t.heavy_tailed;
+  if (r->adaptive()) result.tiles_over = r->adaptive()->count(schedule::TileState::capped);
+  result.dropped = r->stats().dropped;
+  result.forecast = make_forecast(r->ledger(), r->adaptive() != nullptr);
+  if (cell.repeat == 0 && cell.budget + 1 == matrix_.budgets(cell.scene, cell.setting).size())
+    save_pictures(*r, cell, truth);
+  return result;
+}
+
+void Run::save_pictures(Renderer& r, const Cell& cell, const film::FilmImage& truth) {
+  const std::string &scene = matrix_.scenes[cell.scene].name, &setting = matrix_.settings[cell.setting].name;
+  film::write_png(picture_file(folder_, scene, setting), truth.width, truth.height, r.picture(false));
+  const film::Image image = r.image();
+  const film::Reference& reference = *r.reference();
+  std::vector<float> error(image.samples.size());
+  for (size_t i = 0; i < error.size(); ++i) {
+    vec3 sum(0);
+    for (const auto& component : image.components) sum += component[i];
+    error[i] = float(std::abs(double(luminance(sum)) - double(reference.luminance[0][i])) /
+                     reference.mean_luminance);
+  }
+  film::FilmImage out{.width = truth.width, .height = truth.height};
+  out.channels.emplace_back("error", std::move(error));
+  film::write_exr(error_file(folder_, scene, setting), out);
+}
+
+RunSummary Run::run() {
+  RunSummary summary;
+  std::map<std::string, std::string> hashes;
+  for (const SceneEntry& scene : matrix_.scenes) hashes[scene.name] = scene_hash(scene.file);
+  summary.results = folder_.load(matrix_, hashes, hooks_.message);
+  std::error_code code;
+  fs::create_directories(options_.references, code);
+  if (code) throw_error(options_.references.string(), "the folder cannot be made: {}", code.message());
+
+  const std::vector<Cell> cells = matrix_.cells();
+  std::vector<std::optional<ReferenceInfo>> references;
+  for (const SceneEntry& scene : matrix_.scenes) {
+    const std::string key = reference_key(matrix_, scene, hashes[scene.name]);
+    references.push_back(find_reference(options_.references, scene, key, hooks_.message));
+    if (!references.back()) left_.add({references.size() - 1, TimeLeft::k_reference, 0});
+  }
+  for (const Cell& c : cells) {
+    const auto at = summary.results.find(matrix_.id(c));
+    const SceneEntry& scene = matrix_.scenes[c.scene];
+    const std::string key = reference_key(matrix_, scene, hashes[scene.name]);
+    if (at != summary.results.end() && at->second.reference_hash != key) summary.results.erase(at);
+    if (!summary.results.contains(matrix_.id(c))) left_.add({c.scene, c.setting, c.budget});
+  }
+  summary.kept = summary.results.size();
+  status_.steps = left_.units();
+
+  try {
+    for (size_t s = 0; s < matrix_.scenes.size(); ++s) {
+      const SceneEntry& scene = matrix_.scenes[s];
+      if (!references[s]) {
+        begin({s, TimeLeft::k_reference, 0},
+              fmt::format("{}, reference of {} samples", scene.name, scene.reference_samples));
+        references[s] = make_reference(scene, reference_key(matrix_, scene, hashes[scene.name]));
+        end();
+      }
+      for (const Cell& c : cells) {
+        const std::string id = matrix_.id(c);
+        if (c.scene != s || summary.results.contains(id)) continue;
+        begin({s, c.setting, c.budget},
+              fmt::format("{}, {}, {}, repeat {} of {}", scene.name, matrix_.settings[c.setting].name,
+                          matrix_.budget(c).text(), c.repeat + 1, matrix_.repeats));
+        Result result = render(c, *references[s], hashes[scene.name]);
+        folder_.save(id, result);
+        summary.results.emplace(id, std::move(result));
+        ++summary.measured;
+        end();
+      }
+    }
+    summary.complete = true;
+  } catch (const Interrupted&) {
+  } catch (const Error&) {
+    // Loading and compiling end with an Error when they are cancelled.
+    if (!hooks_.interrupted()) throw;
+  }
+  for (size_t s = 0; s < references.size(); ++s)
+    summary.references.push_back(references[s].value_or(ReferenceInfo{}));
+  return summary;
+}
+
+}  // namespace
+
+RunSummary run_matrix(const Matrix& matrix, const Folder& folder, const RunOptions& options,
+                      const Hooks& hooks) {
+  return Run(matrix, folder, options, hooks).run();
+}
+
+fs::path picture_file(const Folder& folder, const std::string& scene, const std::string& setting) {
+  return folder.pictures() / (scene + "." + setting + ".png");
+}
+
+fs::path error_file(const Folder& folder, const std::string& scene, const std::string& setting) {
+  return folder.pictures() / (scene + "." + setting + ".exr");
+}
+
+}  // namespace lucerna::bench

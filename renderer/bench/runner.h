@@ -1,0 +1,53 @@
+#pragma once
+// Runs a matrix: references first, then every cell that the report folder does not hold yet.
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/folder.h"
+#include "bench/matrix.h"
+#include "bench/reference.h"
+
+namespace lucerna::bench {
+
+struct Status {
+  size_t step = 0, steps = 0;    ///< of the renders still to do when the bench began, references among them
+  std::string what;              ///< "glass, adaptive, error 5 %, repeat 2 of 3"
+  double fraction = 0;           ///< of this render
+  std::optional<double> left_s;  ///< of the whole bench; nothing before anything is known
+};
+
+struct Hooks {
+  std::function<bool()> interrupted;            ///< asked between work items
+  std::function<void(const Status&)> progress;  ///< several times a second
+  Message message;                              ///< one line worth keeping
+};
+
+struct RunOptions {
+  std::string device;  ///< as gpu::DeviceOptions
+  std::filesystem::path references;
+};
+
+struct RunSummary {
+  bool complete = false;                  ///< false: interrupted; what was finished is kept
+  size_t measured = 0;                    ///< cells rendered now
+  size_t kept = 0;                        ///< cells that were there
+  std::vector<ReferenceInfo> references;  ///< by scene, as far as known
+  std::map<std::string, Result> results;  ///< by Matrix::id()
+};
+
+/// Every cell runs in a renderer of its own: load, render the warm-up, start afresh, and then the clock. A
+/// render that is interrupted is thrown away; the others are saved as they end. The truth comes from the
+/// scene's reference. At the largest budget of every setting the first repeat also leaves pictures.
+/// Throws Error as loading, rendering and writing do.
+RunSummary run_matrix(const Matrix& matrix, const Folder& folder, const RunOptions& options,
+                      const Hooks& hooks);
+
+/// pictures/SCENE.SETTING.png, and how far off it is: .exr with the layer "error", |difference in luminance|
+/// over the reference's mean luminance.
+std::filesystem::path picture_file(const Folder& folder, const std::string& scene,
+                                   const std::string& setting);
+std::filesystem::path error_file(const Folder& folder, const std::string& scene, const std::string& setting);
+
+}  // namespace lucerna::bench

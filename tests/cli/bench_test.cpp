@@ -1,0 +1,177 @@
+// links: film_io
+// lucerna bench as a person meets it: a tiny matrix measured, interrupted and gone on with; bad input.
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "film/io/image_file.h"
+#include "support/run.h"
+
+namespace fs = std::filesystem;
+using namespace lucerna;
+using Catch::Contains;
+using test::run;
+using test::Run;
+
+namespace {
+
+/// A folder with matrix files, removed in the end.
+struct Place {
+  fs::path path = fs::temp_directory_path() / ("lucerna-cli-bench-" + std::to_string(getpid()));
+  Place() { fs::remove_all(path), fs::create_directories(path); }
+  ~Place() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  std::string operator/(const std::string& name) const { return (path / name).string(); }
+  std::string matrix(const std::string& name, int samples, int reference) const {
+    std::ofstream(path / name)
+        << R"({"warmup": 2, "reference": {"samples": )" << reference << R"(}, "budgets": {"samples": [)"
+        << samples << R"(], "errors": [0.5], "seconds": [0.05]}, "scenes": [{"file": ")" << LUCERNA_SOURCE_DIR
+        << R"(/scenes/cornell/cornell.gltf", "size": "16x16"}], "settings": [)"
+        << R"({"name": "plain"}, {"name": "adaptive", "set": {"sampling.mode": "adaptive",)"
+        << R"("sampling.min_samples": 8}}, {"name": "timed", "budget": "seconds"}]})";
+    return *this / name;
+  }
+};
+
+nlohmann::json read_json(const std::string& file) {
+  std::ifstream in(file);
+  return nlohmann::json::parse(in);
+}
+
+size_t count_files(const std::string& folder) {
+  return size_t(std::distance(fs::directory_iterator(folder), {}));
+}
+
+/// Runs the program until it has said something, then sends what Ctrl-C sends.
+Run interrupt_at(const std::string& line, const std::string& arguments, const std::string& log) {
+  return test::run_command(std::string("rm -f ") + log + "; " + LUCERNA_BINARY + " " + arguments + " >" +
+                           log + " 2>&1 & for i in $(seq 600); do grep -qs '" + line + "' " + log +
+                           " && break; sleep 0.1; done; kill -INT $!; wait $!; status=$?; cat " + log +
+                           "; exit $status");
+}
+
+void refused(const std::string& arguments, const std::string& expected) {
+  const Run r = run("bench " + arguments);
+  INFO(arguments << "\n" << r.out);
+  CHECK(r.status == 1);
+  CHECK_THAT(r.out, Contains(expected));
+}
+
+}  // namespace
+
+TEST_CASE("bench measures a matrix, keeps what is there, mends half files and remakes its page") {
+  const Place place;
+  const std::string matrix = place.matrix("m.json", 16, 64), folder = place / "r";
+  const Run first = run("bench " + matrix + " --report " + folder);
+  INFO(first.out);
+  REQUIRE(first.status == 0);
+  CHECK_THAT(first.out, Contains("1 of 10  cornell, reference of 64 samples") && Contains("10 of 10"));
+  CHECK(count_files(folder + "/cells") == 9);
+  const auto report = read_json(folder + "/report.json");
+  CHECK(report["complete"] == true);
+  CHECK(report["results"].size() == 9);
+  CHECK(report["references"][0]["samples"] == 64);
+  CHECK(report["references"][0]["noise"]["sum"] > 0);
+  for (const auto& r : report["results"]) {
+    CHECK(r["wall_s"] > 0);
+    CHECK(r["rays"] > 0);
+    CHECK(r["true"]["sum"] > 0);
+    CHECK(r["estimated"]["sum"] > 0);
+    CHECK(r["curve"].size() > 0);
+  }
+  CHECK(report["results"][0]["samples"] == 16);
+  for (const auto& r : report["results"])
+    if (r["setting"] == "timed") {
+      CHECK(r["wall_s"] >= 0.05);
+      CHECK(r["budget"] == "0.05 s");
+    }
+  std::ifstream page(folder + "/report.html");
+  const std::string html((std::istreambuf_iterator<char>(page)), {});
+  CHECK_THAT(html, Contains("What accuracy costs in time") && Contains("data:image/png;base64,") &&
+                       Contains("<svg") && Contains("bench " + matrix));
+
+  // All is there: nothing is measured, nothing changes.
+  const auto written = fs::last_write_time(folder + "/report.json");
+  const Run again = run("bench " + matrix + " --report " + folder);
+  CHECK(again.status == 0);
+  CHECK_THAT(again.out, Contains("all 9 renders were there"));
+  CHECK(fs::last_write_time(folder + "/report.json") == written);
+
+  // Half a cell, half a reference.
+  const std::string cell = folder + "/cells/cornell.plain.0.1.json";
+  fs::resize_file(cell, fs::file_size(cell) / 2);
+  const std::string reference = folder + "/references/cornell-16x16.exr";
+  const film::FilmImage before = film::read_exr(reference);
+  fs::resize_file(reference, fs::file_size(reference) / 2);
+  const Run mended = run("bench " + matrix + " --report " + folder);
+  INFO(mended.out);
+  CHECK(mended.status == 0);
+  CHECK_THAT(mended.out, Contains("half a file; it is measured again") && Contains("it is made anew") &&
+                             Contains("2 of 2  cornell, plain, 16 samples, repeat 2 of 3"));
+  CHECK(read_json(cell)["repeat"] == 1);
+  const film::FilmImage after = film::read_exr(reference);
+  CHECK(*after.find("R") == *before.find("R"));
+  CHECK(fs::exists(reference + ".old"));
+
+  fs::remove(folder + "/report.html");
+  CHECK(run("bench --page " + folder).status == 0);
+  CHECK(fs::file_size(folder + "/report.html") > 10000);
+  const Run compared = run("bench --compare " + folder + " " + folder);
+  CHECK(compared.status == 0);
+  CHECK_THAT(compared.out, Contains("cornell") && Contains("adaptive") && Contains("1.00x="));
+
+  // Another matrix does not get into this folder.
+  refused(place.matrix("other.json", 32, 64) + " --report " + folder,
+          "another matrix (it differs at scenes/0");
+  CHECK(count_files(folder + "/cells") == 9);
+}
+
+TEST_CASE("bench stops at Ctrl-C with what is finished, and goes on from there") {
+  const Place place;
+  const std::string folder = place / "r";
+  // Cells so long that the signal always comes in the midst of one.
+  const std::string matrix = place.matrix("m.json", 1 << 20, 16);
+  const Run stopped = interrupt_at("2 of 10", "bench " + matrix + " --report " + folder, place / "log");
+  INFO(stopped.out);
+  CHECK(stopped.status == 130);
+  CHECK_THAT(stopped.out, Contains("interrupted; 0 of 9 renders are kept"));
+  CHECK(fs::exists(folder + "/references/cornell-16x16.exr"));
+  CHECK(count_files(folder + "/cells") == 0);
+  const auto report = read_json(folder + "/report.json");
+  CHECK(report["complete"] == false);
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    CHECK_FALSE(entry.path().filename().string().starts_with("."));
+  const Run further = interrupt_at("1 of 9", "bench " + matrix + " --report " + folder, place / "log");
+  INFO(further.out);
+  CHECK(further.status == 130);
+  CHECK_THAT(further.out, Contains("1 of 9") && !Contains("reference of"));
+}
+
+TEST_CASE("bench refuses bad input before any work") {
+  const Place place;
+  const std::string good = place.matrix("m.json", 16, 64);
+  refused("", "name one matrix");
+  refused("--quick --full", "name one matrix");
+  refused(place / "no.json", "no.json");
+  std::ofstream(place / "bad.json") << "{\"scenes\": [],\n \"setings\": []}";
+  refused(place / "bad.json", "unknown key 'setings'");
+  std::ofstream(place / "half.json") << "{\"scenes\": [";
+  refused(place / "half.json", "line 1");
+  refused(good + " --report /proc/nowhere", "/proc/nowhere");
+  refused(good + " --report " + good, "is a file");
+  std::ofstream(place / "letter.txt") << "dear";
+  refused(good + " --report " + place.path.string(), "which no bench made");
+  refused(good + " --repeats 2 --report " + (place / "r"), "--repeats");
+  refused(good + " --device nothing --report " + (place / "r"), "nothing");
+  CHECK_FALSE(fs::exists(place / "r"));
+  refused("--compare " + (place / "a") + " " + (place / "b"), "cannot be read");
+  refused("--compare " + (place / "a"), "--compare");
+  refused("--page " + (place / "a"), "cannot be read");
+  refused("rays", "SCENE");
+}

@@ -1,0 +1,119 @@
+// links: bench
+// The figures of the bench from made-up measurements whose answer is known.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "bench/analysis.h"
+
+using namespace lucerna::bench;
+
+namespace {
+
+/// error = c t^-exponent at doubling times.
+std::vector<Point> curve(double c, double exponent, double from, double to) {
+  std::vector<Point> points;
+  for (double t = from; t <= to * 1.001; t *= 2) points.push_back({t, c * std::pow(t, -exponent)});
+  return points;
+}
+
+}  // namespace
+
+TEST_CASE("Time to an error is interpolated on the curve's own power law") {
+  for (const double exponent : {0.5, 0.8, 1.0}) {
+    const auto c = curve(0.3, exponent, 0.1, 100);
+    const Reach r = time_to(c, 0.0777);
+    CHECK(r.kind == ReachKind::measured);
+    CHECK(r.seconds == Approx(std::pow(0.3 / 0.0777, 1 / exponent)));
+  }
+}
+
+TEST_CASE("Time to an error that is not reached is foretold by error^2 t = constant") {
+  const auto c = curve(0.3, 0.5, 0.1, 8);
+  const Reach r = time_to(c, 0.01);
+  CHECK(r.kind == ReachKind::extrapolated);
+  CHECK(r.seconds == Approx(900));
+  // Noisy: the mean over the last points, never before the end.
+  const std::vector<Point> noisy = {{1, 0.30}, {2, 0.18}, {4, 0.19}, {8, 0.10}};
+  CHECK(time_to(noisy, 0.0999).seconds >= 8);
+}
+
+TEST_CASE("Time to an error: bounds, going up again, nothing") {
+  const std::vector<Point> c = {{1, 0.4}, {2, 0.1}, {4, 0.3}, {8, 0.05}};
+  // 0.2 is passed at 1..2, but for good only after 4.
+  const Reach r = time_to(c, 0.2);
+  CHECK(r.kind == ReachKind::measured);
+  CHECK(r.seconds > 4);
+  CHECK(r.seconds < 8);
+  CHECK(time_to(c, 0.5).kind == ReachKind::at_once);
+  CHECK(time_to(c, 0.5).seconds == 1);
+  CHECK(time_to({}, 0.1).kind == ReachKind::unknown);
+  CHECK(time_to(c, 0).kind == ReachKind::unknown);
+}
+
+TEST_CASE("Error at a time") {
+  const auto c = curve(0.3, 0.5, 1, 64);
+  CHECK(*error_at(c, 10) == Approx(0.3 / std::sqrt(10)));
+  CHECK(*error_at(c, 1) == Approx(0.3));
+  CHECK(*error_at(c, 64) == Approx(0.3 / 8));
+  CHECK_FALSE(error_at(c, 0.9));
+  CHECK_FALSE(error_at(c, 65));
+  CHECK_FALSE(error_at({}, 1));
+}
+
+TEST_CASE("The performance index does not depend on the time of plain Monte Carlo") {
+  const auto c = curve(0.3, 0.5, 1, 64);
+  const double first = *performance_index(c[0].error * c[0].error, c[0].seconds);
+  for (const Point& p : c) CHECK(*performance_index(p.error * p.error, p.seconds) == Approx(first));
+  CHECK(*performance_index(0.04, 5) == Approx(5));
+  CHECK_FALSE(performance_index(0, 5));
+  CHECK_FALSE(performance_index(0.1, 0));
+}
+
+TEST_CASE("Median and range") {
+  const Spread odd = spread({3, 1, 2}), even = spread({4, 1, 2, 3});
+  CHECK(odd.median == 2);
+  CHECK(odd.low == 1);
+  CHECK(odd.high == 3);
+  CHECK(even.median == 2.5);
+  CHECK(even.count == 4);
+  CHECK(spread({}).count == 0);
+}
+
+TEST_CASE("Nine in ten ratios of equal settings are within the noise ratio") {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal(0, 0.2);
+  int within = 0, known = 0;
+  constexpr int k_trials = 4000;
+  for (int trial = 0; trial < k_trials; ++trial) {
+    std::vector<std::vector<double>> groups(3);
+    for (auto& g : groups)
+      for (int k = 0; k < 3; ++k) g.push_back(std::exp(normal(random)));
+    const auto x = noise_ratio(groups, 3);
+    known += x.has_value();
+    const double ratio = spread(groups[1]).median / spread(groups[0]).median;
+    within += x && ratio < *x && ratio > 1 / *x;
+  }
+  CHECK(known == k_trials);
+  // 0.9 with a standard deviation of 0.005.
+  CHECK(double(within) / k_trials == Approx(0.9).margin(0.02));
+  CHECK_FALSE(noise_ratio(std::vector<std::vector<double>>{{1.0}, {2.0}}, 1));
+}
+
+TEST_CASE("Curves of repeats are brought to common times") {
+  const std::vector<std::vector<Point>> curves = {curve(0.2, 0.5, 1, 64), curve(0.3, 0.5, 1.5, 96),
+                                                  curve(0.4, 0.5, 0.5, 32)};
+  const auto bands = common_curve(curves, 10);
+  REQUIRE(bands.size() == 10);
+  CHECK(bands.front().seconds == 1.5);
+  CHECK(bands.back().seconds == 64);
+  for (const Band& b : bands) {
+    // The third one ends at 32 s.
+    CHECK(b.error.count == (b.seconds <= 32 ? 3 : 2));
+    if (b.seconds <= 32) CHECK(b.error.median == Approx(0.3 / std::sqrt(b.seconds)));
+    CHECK(b.error.low == Approx(0.2 / std::sqrt(b.seconds)));
+    CHECK(b.error.high == Approx((b.seconds <= 32 ? 0.4 : 0.3) / std::sqrt(b.seconds)));
+  }
+  CHECK(common_curve({{curve(1, 1, 1, 2), curve(1, 1, 1, 2), curve(1, 1, 4, 8)}}, 10).empty());
+  CHECK(common_curve({}, 10).empty());
+}

@@ -1,0 +1,204 @@
+// links: bench
+// The report folder and the references in it: what is gone on with, what is refused, what is measured again,
+// and that nothing of a person's is overwritten.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+
+#include "bench/folder.h"
+#include "bench/reference.h"
+#include "film/io/image_file.h"
+#include "unit/bench_support.h"
+
+namespace fs = std::filesystem;
+using namespace lucerna;
+using namespace lucerna::bench;
+using Catch::Contains;
+
+namespace {
+
+const nlohmann::ordered_json k_identity = {{"version", "1"}, {"device", "one"}};
+
+struct Told {
+  std::vector<std::string> lines;
+  Message message = [this](const std::string& line) { lines.push_back(line); };
+};
+
+}  // namespace
+
+TEST_CASE("A result survives being written and read, to the bit") {
+  const Matrix m = test::small_matrix();
+  const Result r = test::fake_result(m, m.cells()[3], 0.3, 7.7);
+  const auto json = to_json(r);
+  CHECK(to_json(parse_result(json.dump(), "x")) == json);
+  Result without = r;
+  without.forecast.reset();
+  CHECK_FALSE(parse_result(to_json(without).dump(), "x").forecast);
+}
+
+TEST_CASE("Half a result and a wrong one are told apart from a whole one") {
+  const Matrix m = test::small_matrix();
+  const std::string whole = to_json(test::fake_result(m, m.cells()[0], 0.3, 7.7)).dump();
+  for (size_t length = 0; length < whole.size(); length += 97)
+    CHECK_THROWS_AS(parse_result(whole.substr(0, length), "x"), Error);
+  const auto without = [&](const char* key) {
+    auto j = nlohmann::ordered_json::parse(whole);
+    j.erase(key);
+    return j.dump();
+  };
+  for (const char* key : {"scene", "wall_s", "true", "curve", "tiles_decile"})
+    CHECK_THROWS_WITH(parse_result(without(key), "x"), Contains(key));
+  auto j = nlohmann::ordered_json::parse(whole);
+  j["wall_s"] = nullptr;  // what a NaN is written as
+  CHECK_THROWS_WITH(parse_result(j.dump(), "x"), Contains("wall_s"));
+  j = nlohmann::ordered_json::parse(whole);
+  j["curve"][1]["wall_s"] = 0;
+  CHECK_THROWS_WITH(parse_result(j.dump(), "x"), Contains("forward"));
+}
+
+TEST_CASE("A bench goes on with the cells that are whole and measures the others again") {
+  const test::BenchFolder temporary;
+  const Matrix m = test::small_matrix();
+  const auto cells = m.cells();
+  const std::map<std::string, std::string> hashes = {{"cornell", "0123456789abcdef"},
+                                                     {"glass", "0123456789abcdef"}};
+  {
+    const Folder folder(temporary / "r", m, k_identity);
+    for (size_t i = 0; i < 6; ++i) folder.save(m.id(cells[i]), test::fake_result(m, cells[i], 0.3, 7));
+  }
+  const Folder folder(temporary / "r", m, k_identity);
+  Told told;
+  CHECK(folder.load(m, hashes, told.message).size() == 6);
+  CHECK(told.lines.empty());
+  // Half a file, one of another cell.
+  const auto file = [&](size_t i) { return temporary / ("r/cells/" + m.id(cells[i]) + ".json"); };
+  const std::string whole = read_file(file(0));
+  std::ofstream(file(0)) << whole.substr(0, whole.size() / 2);
+  std::ofstream(file(1)) << whole;
+  const auto results = folder.load(m, hashes, told.message);
+  CHECK(results.size() == 4);
+  CHECK_FALSE(results.contains(m.id(cells[0])));
+  REQUIRE(told.lines.size() == 2);
+  CHECK_THAT(told.lines[0],
+             Contains(m.id(cells[0])) && Contains("half a file") && Contains("measured again"));
+  CHECK_THAT(told.lines[1], Contains("another cell"));
+  // The scene's files have changed since.
+  told.lines.clear();
+  CHECK(folder.load(m, {{"cornell", "new"}, {"glass", "0123456789abcdef"}}, told.message).empty());
+  CHECK_THAT(told.lines.back(), Contains("the scene has changed"));
+  for (const auto& entry : fs::directory_iterator(temporary / "r/cells"))
+    CHECK(entry.path().extension() == ".json");
+}
+
+TEST_CASE("A folder that is not this bench's is refused and left as it was") {
+  const test::BenchFolder temporary;
+  const Matrix m = test::small_matrix();
+  { const Folder folder(temporary / "mine", m, k_identity); }
+  Matrix other = m;
+  other.scenes[0].width = 32;
+  const auto refused = [&](const fs::path& path, const Matrix& matrix, const nlohmann::ordered_json& identity,
+                           const std::string& expected) {
+    CHECK_THROWS_WITH(Folder(path, matrix, identity), Contains(expected) && Contains(path.string()));
+  };
+  refused(temporary / "mine", other, k_identity, "another matrix (it differs at scenes/0/size)");
+  refused(temporary / "mine", m, {{"version", "1"}, {"device", "two"}}, "device was one, now it is two");
+  fs::create_directories(temporary / "theirs");
+  std::ofstream(temporary / "theirs/letter.txt") << "dear";
+  refused(temporary / "theirs", m, k_identity, "holds 'letter.txt', which no bench made");
+  CHECK(read_file(temporary / "theirs/letter.txt") == "dear");
+  CHECK(std::distance(fs::directory_iterator(temporary / "theirs"), {}) == 1);
+  std::ofstream(temporary / "file") << "x";
+  refused(temporary / "file", m, k_identity, "is a file");
+  refused(temporary / "file/r", m, k_identity, "cannot be made");
+  refused("/proc/nothing", m, k_identity, "cannot be made");
+  std::ofstream(temporary / "theirs/bench.json") << "{";
+  refused(temporary / "theirs", m, k_identity, "is not a bench's");
+  const Folder first(temporary / "mine", m, k_identity);
+  refused(temporary / "mine", m, k_identity, "another bench is at work");
+}
+
+TEST_CASE("The scene's hash sees every file that the scene is made of") {
+  const test::BenchFolder temporary;
+  const auto write = [&](const char* name, const std::string& text) {
+    std::ofstream(temporary / name) << text;
+  };
+  write("s.gltf", R"({"buffers": [{"uri": "a%20b.bin"}], "images": [{"uri": "t.png"}, {"uri": "data:x"}]})");
+  write("a b.bin", "one"), write("t.png", "two"), write("sky.hdr", "three"), write("other.txt", "four");
+  write("settings.json", R"({"environment": {"file": "sky.hdr"}})");
+  const auto hash = [&] { return scene_hash(temporary / "s.gltf"); };
+  std::string before = hash();
+  CHECK(before.size() == 16);
+  CHECK(before == hash());
+  write("other.txt", "4");
+  CHECK(before == hash());
+  for (const char* name : {"a b.bin", "t.png", "sky.hdr", "settings.json", "s.gltf"}) {
+    INFO(name);
+    write(name, read_file(temporary / name) + " ");
+    CHECK(before != hash());
+    before = hash();
+  }
+  fs::remove(temporary / "t.png");
+  CHECK(before != hash());
+  CHECK_THROWS_AS(scene_hash(temporary / "no.gltf"), Error);
+}
+
+TEST_CASE("A reference serves when it is whole and made of the same; otherwise it is set aside") {
+  const test::BenchFolder temporary;
+  Matrix m = test::small_matrix();
+  SceneEntry scene = m.scenes[0];
+  scene.reference_samples = 100;
+  const std::string key = reference_key(m, scene, "hash");
+  const auto write = [&](const std::string& with_key, uint32_t samples, float value, uint32_t width = 16) {
+    film::FilmImage image{.width = width, .height = 16};
+    for (const char* layer : {"", "primary.", "secondary.", "tertiary.", "caustic."})
+      for (const char* c : {"R", "G", "B"})
+        image.channels.emplace_back(layer + std::string(c), std::vector<float>(16 * width, value));
+    describe_reference(image.metadata, {.file = {}, .key = with_key, .samples = samples, .seconds = 12});
+    image.metadata["noise"] = film::noise_text({0.1, 0.1, 0.1, 0.1, 0.1});
+    film::write_exr(reference_file(temporary.path(), scene), image);
+  };
+  Told told;
+  const auto find = [&] { return find_reference(temporary.path(), scene, key, told.message); };
+  CHECK_FALSE(find());
+  CHECK(told.lines.empty());
+  write(key, 128, 2);
+  const auto found = find();
+  REQUIRE(found);
+  CHECK(found->samples == 128);
+  CHECK(found->noise[0] == Approx(0.05));
+  CHECK(told.lines.empty());
+
+  int old = 0;
+  const auto set_aside = [&](const std::string& why) {
+    INFO(why);
+    CHECK_FALSE(find());
+    REQUIRE(told.lines.size() == size_t(++old));
+    CHECK_THAT(told.lines.back(), Contains(why) && Contains("made anew"));
+    CHECK_FALSE(fs::exists(reference_file(temporary.path(), scene)));
+    CHECK(fs::exists(reference_file(temporary.path(), scene).string() +
+                     (old == 1 ? ".old" : ".old" + std::to_string(old))));
+  };
+  write("of something else", 128, 2);
+  set_aside("another scene");
+  write(key, 64, 2);
+  set_aside("has 64 samples, 100 are wanted");
+  write(key, 128, NAN);
+  set_aside("not finite");
+  write(key, 128, 2, 24);
+  set_aside("24x16");
+  write("", 128, 2);
+  set_aside("no reference of a bench");
+  write(key, 128, 2);
+  const std::string bytes = read_file(reference_file(temporary.path(), scene));
+  std::ofstream(reference_file(temporary.path(), scene)) << bytes.substr(0, bytes.size() / 2);
+  set_aside("cornell-16x16.exr");
+
+  // What makes another picture makes another key.
+  CHECK(reference_key(m, scene, "other") != key);
+  SceneEntry changed = scene;
+  changed.set["path.max_depth"] = "3";
+  CHECK(reference_key(m, changed, "hash") != key);
+  m.set["path.max_depth"] = "3";
+  CHECK(reference_key(m, scene, "hash") == reference_key(m, changed, "hash"));
+  CHECK(reference_key(m, scene, "hash") != key);
+}

@@ -1,0 +1,227 @@
+// links: bench
+// From results to figures, table, page and comparison: made-up results whose figures are known.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <regex>
+
+#include "bench/compare_reports.h"
+#include "bench/html.h"
+#include "bench/page.h"
+#include "bench/plot.h"
+#include "bench/thumbnails.h"
+#include "film/io/image_file.h"
+#include "unit/bench_support.h"
+
+using namespace lucerna;
+using namespace lucerna::bench;
+using Catch::Contains;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json report(double gain = 4, size_t cells = ~size_t{0}) {
+  const Matrix m = test::small_matrix();
+  return make_report(m, test::fake_summary(m, gain, cells), test::fake_about());
+}
+
+/// The first tag that is not closed or closed twice; "" when all are in order.
+std::string unbalanced(const std::string& html) {
+  std::vector<std::string> open;
+  const std::regex tag("<(/?)([a-zA-Z0-9]+)([^<>]*)>");
+  for (std::sregex_iterator at(html.begin(), html.end(), tag), end; at != end; ++at) {
+    const std::string name = (*at)[2], rest = (*at)[3];
+    if ((*at)[1] == "/") {
+      if (open.empty() || open.back() != name) return "</" + name + ">";
+      open.pop_back();
+    } else if (!rest.ends_with("/")) {
+      open.push_back(name);
+    }
+  }
+  return open.empty() ? "" : "<" + open.back() + ">";
+}
+
+size_t count(const std::string& text, const std::string& what) {
+  size_t n = 0;
+  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("Figures: times, ratios, index and forecast are those of the made-up renders") {
+  const Json r = report();
+  CHECK(r["complete"] == true);
+  CHECK(r["cells"]["done"] == 18);
+  CHECK(r["references"].size() == 2);
+  REQUIRE(r["scenes"].size() == 2);
+  const Json &plain = r["scenes"][0]["settings"][0], &adaptive = r["scenes"][0]["settings"][1];
+  // 0.19 / sqrt(t): 5 % at 14.44 s, 2 % at 90.25 s, beyond the end at 16 s.
+  CHECK(plain["time_to"][1]["kind"] == "extrapolated");
+  CHECK(plain["time_to"][1]["seconds"]["median"].get<double>() == Approx(90.25));
+  CHECK_FALSE(plain["time_to"][1].contains("ratio"));
+  CHECK(adaptive["time_to"][0]["kind"] == "measured");
+  CHECK(adaptive["time_to"][0]["seconds"]["median"].get<double>() == Approx(3.61));
+  CHECK(adaptive["time_to"][0]["seconds"]["low"].get<double>() == Approx(3.61 * 0.98 * 0.98));
+  CHECK(adaptive["time_to"][0]["ratio"].get<double>() == Approx(4));
+  CHECK(adaptive["time_to"][0]["noise"] == false);
+  // Tiles have twice the error: 5 % in four times the time.
+  CHECK(adaptive["tiles_time_to"][0]["seconds"]["median"].get<double>() == Approx(14.44).epsilon(0.05));
+  CHECK(adaptive["time_common"]["error"].get<double>() == Approx(0.05));
+  CHECK(adaptive["time_common"]["ratio"].get<double>() == Approx(4));
+  CHECK(adaptive["index"]["relative"].get<double>() == Approx(100));
+  CHECK(plain["index"]["relative"].get<double>() == Approx(25));
+  CHECK(adaptive["index"]["ratio"].get<double>() == Approx(4));
+  CHECK(r["index"][0]["value"].get<double>() == Approx(25));
+  CHECK(adaptive["rate"]["noise"] == true);
+  CHECK(adaptive["forecast"]["seconds"]["median"].get<double>() == Approx(1.1));
+  CHECK(adaptive["forecast"]["in_band"] == 3);
+  // Repeats differ by 2 % in error, 4 % in time.
+  CHECK(r["scenes"][0]["noise"]["time"].get<double>() == Approx(1.09).epsilon(0.02));
+  CHECK(plain["cells"].size() == 2);
+  CHECK(plain["error_at"].size() == 2);
+}
+
+TEST_CASE("A gain within the noise is not told as a gain") {
+  const auto told = findings(report(1.01));
+  REQUIRE(told.size() == 4);
+  for (const std::string& line : told) CHECK_THAT(line, Contains("by more than the measurement’s noise"));
+  const auto gain = findings(report(4));
+  CHECK_THAT(
+      gain[0],
+      Contains("adaptive brings the whole picture to 5 % in 3.61 s, plain in 14.4 s: 4.00 times sooner"));
+  CHECK_THAT(findings(report(0.25))[0], Contains("times later"));
+}
+
+TEST_CASE("An error lost in the reference's noise counts as not measured") {
+  const Matrix m = test::small_matrix();
+  bench::RunSummary s = test::fake_summary(m, 4);
+  s.references[0].noise[0] = 0.06;  // 0.7 of it is 4.2 %: adaptive ends at 2.4 %
+  for (auto& [id, r] : s.results) r.in_reference_noise = r.truth[0] < 0.042;
+  const Json r = make_report(m, s, test::fake_about());
+  const Json& adaptive = r["scenes"][0]["settings"][1];
+  CHECK(adaptive["cells"][0]["in_reference_noise"] == true);
+  CHECK_FALSE(adaptive.contains("index"));
+  CHECK(adaptive["time_to"][1]["kind"] == "extrapolated");
+  CHECK_THAT(make_page(r, "/no/pictures"), Contains("in the reference’s noise"));
+}
+
+TEST_CASE("The table has a line for each cell and repeat and as many fields everywhere") {
+  const std::string csv = make_csv(report());
+  CHECK(count(csv, "\n") == 19);
+  const auto fields = [&](size_t from) { return count(csv.substr(from, csv.find('\n', from) - from), ","); };
+  for (size_t at = 0; at < csv.size(); at = csv.find('\n', at) + 1) CHECK(fields(at) == fields(0));
+  CHECK_THAT(csv, Contains("\ncornell,adaptive,error 5 %,2,3,host,16"));
+}
+
+TEST_CASE("The page stands alone, is well-formed and holds every number of its tables") {
+  const test::BenchFolder folder;
+  film::write_png(folder / "cornell.plain.png", 16, 16, std::vector<uint8_t>(16 * 16 * 4, 128));
+  film::FilmImage error{.width = 16, .height = 16};
+  error.channels.emplace_back("error", std::vector<float>(256, 0.03f));
+  film::write_exr(folder / "cornell.plain.exr", error);
+  const Json r = report();
+  const std::string html = make_page(r, folder.path());
+  CHECK(html.starts_with("<!DOCTYPE html>"));
+  CHECK(unbalanced(html.substr(html.find('\n'))) == "");
+  for (const char* outside : {"http:", "https:", "<script", "<link", "url(", "@import", "file:"})
+    CHECK(html.find(outside) == std::string::npos);
+  CHECK(html.find("NaN") == std::string::npos);
+  CHECK(html.find("nan ") == std::string::npos);
+  CHECK(html.find("inf") == std::string::npos);
+  CHECK(count(html, "data:image/png;base64,") == 2);
+  CHECK(count(html, "<svg") == 4);
+  CHECK(count(html, "</svg>") == 4);
+  CHECK_THAT(html, Contains("small &lt;&amp;&gt; matrix"));
+  for (const Json& scene : r["scenes"]) {
+    for (const Json& s : scene["settings"]) {
+      for (const char* measure : {"time_to", "tiles_time_to"})
+        for (const Json& e : s[measure]) {
+          CHECK_THAT(html, Contains(seconds_text(e["seconds"]["median"].get<double>())));
+          CHECK_THAT(html, Contains(seconds_text(e["seconds"]["high"].get<double>())));
+          if (e.contains("ratio")) CHECK_THAT(html, Contains(ratio_text(e["ratio"].get<double>())));
+        }
+      for (const Json& cell : s["cells"])
+        CHECK_THAT(html, Contains(count_text(cell["rays"]["median"].get<double>())));
+      CHECK_THAT(html, Contains(ratio_text(s["forecast"]["seconds"]["median"].get<double>())));
+    }
+    for (const char* key : {"time", "index", "rate"})
+      CHECK_THAT(html, Contains(ratio_text(scene["noise"][key].get<double>())));
+  }
+  for (const char* word : {"A Processor, 2 cores", "3.5 GiB", "A System", "a device", "9.9", "5 min 21 s",
+                           "lucerna bench --quick", "2026-01-02", "4096"})
+    CHECK_THAT(html, Contains(word));
+}
+
+TEST_CASE("A page of a bench that is not complete says so; an empty one is a page too") {
+  const std::string part = make_page(report(4, 7), "/no/pictures");
+  CHECK_THAT(part, Contains("Not complete: 7 of 18"));
+  CHECK(unbalanced(part.substr(part.find('\n'))) == "");
+  const std::string none = make_page(report(4, 0), "/no/pictures");
+  CHECK_THAT(none, Contains("Not complete: 0 of 18"));
+  CHECK(unbalanced(none.substr(none.find('\n'))) == "");
+  CHECK_THROWS_AS(make_page(Json{{"what", "else"}}, "/no/pictures"), Error);
+}
+
+TEST_CASE("Reports are written and read; others are refused") {
+  const test::BenchFolder folder;
+  const Json r = report();
+  std::filesystem::create_directories(folder / "pictures");
+  write_report(folder.path(), r);
+  CHECK(read_report(folder.path()) == r);
+  CHECK(read_report(folder / "report.json") == r);
+  const std::string whole = read_file(folder / "report.json");
+  std::ofstream(folder / "half.json") << whole.substr(0, whole.size() / 2);
+  std::ofstream(folder / "other.json") << "{}";
+  CHECK_THROWS_WITH(read_report(folder / "half.json"), Contains("half.json") && Contains("half a file"));
+  CHECK_THROWS_WITH(read_report(folder / "other.json"), Contains("no report"));
+  CHECK_THROWS_WITH(read_report(folder / "none"), Contains("cannot be read"));
+}
+
+TEST_CASE("Two reports: ratios, marks of noise, what is missing") {
+  const Json before = report(1), after = report(4);
+  const std::string text = compare_reports(before, after);
+  INFO(text);
+  // Plain is as it was; adaptive four times sooner.
+  CHECK(std::regex_search(text, std::regex("cornell +plain +~?1.00x= +~1.00x= +~1.00x= +1.00x= +1.00x=")));
+  CHECK(std::regex_search(text, std::regex("glass +adaptive +~4.00x  +~4.00x  +~4.00x  +4.00x  +1.00x=")));
+  CHECK(text.find("missing") == std::string::npos);
+  CHECK(text.find("note") == std::string::npos);
+  const std::string part = compare_reports(before, report(4, 1));
+  INFO(part);
+  CHECK_THAT(part, Contains("missing in the new report: cornell, plain, 64 samples\n"));
+  CHECK_THAT(part, Contains("missing in the new report: cornell, adaptive\n"));
+  CHECK_THAT(part, Contains("missing in the new report: glass\n"));
+  CHECK_THAT(part, Contains("new report is not complete"));
+  Json elsewhere = after;
+  elsewhere["machine"]["cpu"] = "Another";
+  CHECK_THAT(compare_reports(before, elsewhere), Contains("machine/cpu differs"));
+}
+
+TEST_CASE("Small parts of the page") {
+  CHECK(base64("") == "");
+  CHECK(base64("M") == "TQ==");
+  CHECK(base64("Ma") == "TWE=");
+  CHECK(base64("Man") == "TWFu");
+  CHECK(base64(std::string("\0\xff\x10", 3)) == "AP8Q");
+  CHECK(seconds_text(0.004) == "4.0 ms");
+  CHECK(seconds_text(0.042) == "0.0420 s");
+  CHECK(seconds_text(4.123) == "4.12 s");
+  CHECK(seconds_text(99.99) == "1 min 40 s");
+  CHECK(seconds_text(130.4) == "2 min 10 s");
+  CHECK(seconds_text(3 * 3600 + 5 * 60) == "3 h 05 min");
+  CHECK(percent_text(0.0523) == "5.23 %");
+  CHECK(percent_text(0) == "0 %");
+  CHECK(count_text(12345678) == "12.3 M");
+  CHECK(log_ticks(0.09, 0.6) == std::vector<double>{0.1, 0.2, 0.5});
+  CHECK(magma(0) == std::array<uint8_t, 3>{0, 0, 4});
+  CHECK(magma(2) == std::array<uint8_t, 3>{252, 253, 191});
+  // Labels keep their order, a distance and the frame.
+  const auto at = spread_labels({100, 101, 50, 102, 10}, 16, 10, 120);
+  CHECK(at[2] == 50);
+  CHECK(at[4] == 10);
+  CHECK(at[1] - at[0] >= 15.99);
+  CHECK(at[3] - at[1] >= 15.99);
+  CHECK(at[3] <= 120.01);
+  CHECK(make_plot({}, {}, "t", "e").empty());
+  CHECK(make_plot({{"none", "#fff", {}, {}}}, {}, "t", "e").empty());
+}
