@@ -49,8 +49,6 @@ std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
                                                     (target >= a.target && t.state <= shared::k_tile_active));
     tiles.push_back({.error = std::max(0.0, double{t.error}),
                      .samples = double(t.samples),
-                     .earlier_error = t.earlier_error,
-                     .earlier_samples = double(t.earlier_samples),
                      .pixels = double(t.pixels),
                      .open = open});
     paths += double(t.samples) * t.pixels;
@@ -80,7 +78,6 @@ std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
       const schedule::Tile& known = adaptive->tiles()[i];
       t.samples = known.samples;
       if (known.samples >= 2) t.error = known.error;
-      t.earlier_error = known.earlier_error, t.earlier_samples = known.earlier_samples;
       t.state = static_cast<uint32_t>(known.state);
     } else {
       t.samples = r.samples();

@@ -21,8 +21,6 @@ class Renderer;
 struct TileStatus {
   float error = -1;  ///< relative; negative: not known
   uint32_t samples = 0;
-  float earlier_error = 0;       ///< what it was with at most half the samples,
-  uint32_t earlier_samples = 0;  ///< and with how many; 0: not yet
   uint32_t pixels = 0;
   uint32_t state = shared::k_tile_waiting;  ///< shared::k_tile_*
   bool heavy_tailed = false;
