@@ -64,7 +64,7 @@ std::vector<std::pair<float, std::string>> heat_labels(const session::Legend& le
     return labels;
   }
   const LogAxis axis{legend.lo, legend.hi, 0, px(k_ramp_width)};
-  for (const Tick& tick : ticks(axis, unit, px(34)))
+  for (const Tick& tick : ticks(axis, unit, px(unit == Unit::milliseconds ? 46 : 34)))
     labels.emplace_back(shared::ramp_position(static_cast<float>(tick.value), legend.lo, legend.hi, 1u),
                         tick.labelled ? tick_text(tick.value, unit) : "");
   return labels;

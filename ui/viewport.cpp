@@ -42,7 +42,8 @@ void layer_buttons(Ui& ui, float room) {
   if (!option) return;
   const std::vector<std::string>& layers = option->choices;
   const std::string& current = ui.setting("film.layer");
-  const float between = px(4), list_width = px(76);
+  const float between = px(4);
+  float list_width = px(96);
   const auto width_of = [&](const std::string& layer) { return text_width(capitalized(layer)) + px(18); };
   const float all =
       std::accumulate(layers.begin(), layers.end(), -between,
@@ -53,12 +54,13 @@ void layer_buttons(Ui& ui, float room) {
     // Components stay together: beauty and the four, by name or by their first letters, or the list alone.
     constexpr size_t k_together = 1 + session::k_components;
     const auto need = [&](bool short_names) {
-      float sum = width_of(layers[0]) + between + list_width;
+      float sum = width_of(layers[0]) + between + (short_names ? px(76) : list_width);
       for (size_t i = 1; i < k_together; ++i) sum += between + (short_names ? px(26) : width_of(layers[i]));
       return sum;
     };
     fitting = need(true) <= room ? k_together : 0;
     letters = need(false) > room;
+    if (letters) list_width = px(76);
   }
   for (size_t i = 0; i < fitting; ++i) {
     const bool letter = letters && i > 0;

@@ -2,6 +2,8 @@
 // What a person sets stays while the scene stays, and goes with it.
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 #include "session/renderer.h"
 
 using namespace lucerna;
@@ -44,5 +46,69 @@ TEST_CASE("another tracer keeps edits and camera; another scene starts with its 
   CHECK(r.settings().real("film.ev") == -2);
   CHECK(r.scene()->name == "cornell");
   CHECK(r.step());
+  CHECK(r.device().validation_messages() == 0);
+}
+
+TEST_CASE("a new target lets an adaptive image go on; in uniform sampling it only asks") {
+  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  r.set_size(64, 48);
+  r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
+  const auto set = [&](const char* key, const char* value) {
+    r.settings().set(key, value);
+    r.apply_settings();
+  };
+  REQUIRE(r.step());
+  uint64_t begun = r.restarts();
+  set("sampling.target_error", "0.2");
+  set("sampling.tile", "8");
+  CHECK(r.restarts() == begun);
+  set("sampling.mode", "adaptive");
+  CHECK(r.restarts() == begun + 1);
+  set("sampling.min_samples", "16");
+  while (r.step()) {
+  }
+  const uint32_t least = r.samples();
+  const uint64_t paths = r.stats().paths;
+  begun = r.restarts();
+  set("sampling.target_error", "0.1");
+  CHECK_FALSE(r.done());
+  while (r.step()) {
+  }
+  CHECK(r.restarts() == begun);
+  CHECK(r.stats().paths > paths);
+  CHECK(r.samples() >= least);
+  for (const schedule::Tile& tile : r.adaptive()->tiles())
+    CHECK((tile.error <= 0.1f || tile.samples == 1024));
+  set("sampling.tile", "16");  // other tiles are another image
+  CHECK(r.restarts() == begun + 1);
+  CHECK(r.device().validation_messages() == 0);
+}
+
+TEST_CASE("the heat map of cost shares the whole device time out") {
+  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  r.set_size(96, 64);
+  r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
+  r.settings().set("samples", "16");
+  r.settings().set("film.layer", "cost");
+  r.apply_settings();
+  while (r.step()) {
+  }
+  const film::HeatScale scale = r.view().heat;
+  const std::vector<uint8_t> shown = r.picture(false);
+  double total = 0, stages = 0, least = 1e9, most = 0;
+  for (size_t i = 0; i < shown.size(); i += 4) {
+    // Which place of the ramp that is.
+    float best = 1e9f, place = 0;
+    for (int k = 0; k <= 1000; ++k) {
+      const vec3 d = shared::ramp_color(scale.ramp, 0.001f * float(k)) -
+                     vec3(shown[i], shown[i + 1], shown[i + 2]) / 255.0f;
+      if (glm::dot(d, d) < best) best = glm::dot(d, d), place = 0.001f * float(k);
+    }
+    const double ms = scale.lo * std::pow(double{scale.hi} / scale.lo, double{place});
+    total += ms, least = std::min(least, ms), most = std::max(most, ms);
+  }
+  for (const auto& stage : r.stats().stages) stages += stage.ms;
+  CHECK(total == Approx(stages).epsilon(0.05));
+  CHECK(most > 2 * least);  // rays that leave through the open front are cheap
   CHECK(r.device().validation_messages() == 0);
 }

@@ -24,6 +24,7 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
                            "LUCERNA_NORMAL_MAPS",
                            "LUCERNA_VERTEX_EXTRA",
                            "LUCERNA_FILM_IMAGES",
+                           "LUCERNA_VERTEX_COUNT",
                            "LUCERNA_STOPPING_ONLY",
                            "LUCERNA_UV_TRANSFORMS",
                            "LUCERNA_TEX_NEAREST",

@@ -87,7 +87,7 @@ TEST_CASE("the ramps are those of their names, and their lightness rises evenly"
           std::max(worst, farthest(known, shared::ramp_color(ramp, static_cast<float>(i) / (k_steps - 1))));
     }
     INFO(name << ' ' << worst);
-    CHECK(worst < 0.02f);
+    CHECK(worst < 0.015f);
   }
   for (const uint32_t ramp : {shared::k_ramp_viridis, shared::k_ramp_magma, shared::k_ramp_tiles}) {
     const double from = lightness(shared::ramp_color(ramp, 0)), to = lightness(shared::ramp_color(ramp, 1));

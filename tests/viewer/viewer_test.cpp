@@ -100,3 +100,21 @@ TEST_CASE("a broken file that is dropped leaves the scene, and a click selects w
   const std::string script((std::istreambuf_iterator<char>(in)), {});
   CHECK_THAT(script, Catch::EndsWith("select object 4\n"));  // the lamp
 }
+
+TEST_CASE("a reference is loaded for a picture of its size, and refused with both sizes for another") {
+  if (!available()) return;
+  const test::Folder folder;
+  const std::string exr = (folder.path / "ref.exr").string(), png = (folder.path / "window.png").string();
+  const auto outcome = viewer(
+      folder, "scenes/cornell/cornell.gltf",
+      "window.size 1100 700\nwait_scene\nreference.load " + exr +
+          "\nwait 0.5\nview.size 96 64\nwait 0.5\nsamples 8\nwait_samples 8\nimage.save " + exr +
+          "\nwait 0.5\nsamples 64\nreference.load " + exr + "\nwait_samples 64\nwait 0.7\nscreenshot " + png +
+          "\nview.size 80 64\nwait 0.5\nwait_samples 2\nreference.load " + exr +
+          "\nwait 0.5\nreference.clear\nwait 0.2\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  CHECK_THAT(outcome.output, Catch::Contains("rendered with seed 0 like this picture"));
+  CHECK_THAT(outcome.output, Catch::Contains("the reference is 96x64 pixels, the picture 80x64"));
+  CHECK(test::Picture(png).contrast(60, 540, 420, 680) > 0.03);  // the lines
+}

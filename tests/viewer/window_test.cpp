@@ -357,7 +357,7 @@ TEST_CASE("the target's line is dragged: a question in uniform sampling, the set
   };
   const auto outcome = window("hall.gltf", start + drag(line, -30) +
                                                "sampling.mode adaptive\nsampling.target_error 0.1\n"
-                                               "wait_samples 32\nwait 0.3\nscreenshot " +
+                                               "mouse.move 700 300\nwait_samples 32\nwait 0.3\nscreenshot " +
                                                png + "\nscript.save " + saved + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
