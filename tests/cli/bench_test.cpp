@@ -67,16 +67,16 @@ void refused(const std::string& arguments, const std::string& expected) {
 
 TEST_CASE("bench measures a matrix, keeps what is there, mends half files and remakes its page") {
   const Place place;
-  const std::string matrix = place.matrix("m.json", 16, 64), folder = place / "r";
+  const std::string matrix = place.matrix("m.json", 16, 1024), folder = place / "r";
   const Run first = run("bench " + matrix + " --report " + folder);
   INFO(first.out);
   REQUIRE(first.status == 0);
-  CHECK_THAT(first.out, Contains("1 of 10  cornell, reference of 64 samples") && Contains("10 of 10"));
+  CHECK_THAT(first.out, Contains("1 of 10  cornell, reference of 1024 samples") && Contains("10 of 10"));
   CHECK(count_files(folder + "/cells") == 9);
   const auto report = read_json(folder + "/report.json");
   CHECK(report["complete"] == true);
   CHECK(report["results"].size() == 9);
-  CHECK(report["references"][0]["samples"] == 64);
+  CHECK(report["references"][0]["samples"] == 1024);
   CHECK(report["references"][0]["noise"]["sum"] > 0);
   for (const auto& r : report["results"]) {
     CHECK(r["wall_s"] > 0);
@@ -127,7 +127,7 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
   CHECK_THAT(compared.out, Contains("cornell") && Contains("adaptive") && Contains("1.00x="));
 
   // Another matrix does not get into this folder.
-  refused(place.matrix("other.json", 32, 64) + " --report " + folder,
+  refused(place.matrix("other.json", 32, 1024) + " --report " + folder,
           "another matrix (it differs at scenes/0");
   CHECK(count_files(folder + "/cells") == 9);
 }
