@@ -125,19 +125,32 @@ Json times_json(const std::vector<Curve>& curves, const std::vector<Curve>& base
   return list;
 }
 
-/// The smallest error of the series 1, 2, 5 that half the repeats of both settings have reached, and how much
-/// sooner: the one ratio that rests on nothing but measurements.
+/// Two figures, rounded up.
+double round_up(double x) {
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
+  return std::ceil(x / unit - 1e-9) * unit;
+}
+
+/// The smallest error that half the repeats of both settings have reached for good, and how much sooner: the
+/// one ratio that rests on nothing but measurements.
 std::optional<Json> common_json(const std::vector<Curve>& curves, const std::vector<Curve>& baseline,
                                 const std::optional<double>& noise) {
-  for (double power = 1e-4; power < 10; power *= 10)
-    for (const double step : {1.0, 2.0, 5.0}) {
-      const Reached here = reached(curves, step * power), there = reached(baseline, step * power);
-      if (here.kind != ReachKind::measured || there.kind != ReachKind::measured) continue;
-      Json entry{
-          {"error", step * power}, {"seconds", here.seconds.median}, {"first_seconds", there.seconds.median}};
-      add_ratio(entry, there.seconds.median / here.seconds.median, noise);
-      return entry;
-    }
+  double error = 0;
+  for (const auto* setting : {&curves, &baseline}) {
+    std::vector<double> last;
+    for (const Curve& c : *setting)
+      if (!c.empty()) last.push_back(c.back().error);
+    if (last.empty()) return std::nullopt;
+    error = std::max(error, spread(std::move(last)).median);
+  }
+  for (; error < 2; error *= 1.05) {
+    const double target = round_up(error);
+    const Reached here = reached(curves, target), there = reached(baseline, target);
+    if (here.kind != ReachKind::measured || there.kind != ReachKind::measured) continue;
+    Json entry{{"error", target}, {"seconds", here.seconds.median}, {"first_seconds", there.seconds.median}};
+    add_ratio(entry, there.seconds.median / here.seconds.median, noise);
+    return entry;
+  }
   return std::nullopt;
 }
 
