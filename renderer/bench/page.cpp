@@ -356,9 +356,10 @@ std::string measurement(const Json& report) {
       "is not in the times; the settings of a scene took turns, every second round backwards. Repeats differ "
       "in their seed, so that their range holds the luck of sampling and the machine’s moods alike. A ratio "
       "of two settings that is below the figure in this table (and above its inverse) is noise: nine in ten "
-      "ratios of two equal settings would be.</p>\n<table style=\"width:auto\"><tr><th "
-      "class=\"l\">scene</th><th>time to an error</th><th>nine tiles in ten</th><th>performance</th><th>rays "
-      "a second</th><th>reference’s own noise</th><th>its samples</th><th>it took</th></tr>\n";
+      "ratios of two equal settings would be. Where the times to one error scatter more than that, their own "
+      "scatter counts.</p>\n<table style=\"width:auto\"><tr><th class=\"l\">scene</th><th>time to an "
+      "error</th><th>nine tiles in ten</th><th>performance</th><th>rays a second</th><th>reference’s own "
+      "noise</th><th>its samples</th><th>it took</th></tr>\n";
   for (const Json& scene : report.at("scenes")) {
     html += fmt::format("<tr><td class=\"l scene\">{}</td>", escape(text_of(scene, "name")));
     for (const char* key : {"time", "tiles_time", "index", "rate"}) {
