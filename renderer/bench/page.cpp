@@ -265,7 +265,8 @@ std::string cells_table(const Json& report, const Json& scene) {
           c.value("in_reference_noise", false) ? "in the reference’s noise"
                                                : with_range(c.at("true"), percent_text),
           percent_text(median_of(c.at("tiles_decile"))),
-          median_of(c.at("tiles_over")) > 0 ? fmt::format("{:.0f} tiles", median_of(c.at("tiles_over")))
+          median_of(c.at("tiles_over")) > 0 ? fmt::format("{:.0f} tile{}", median_of(c.at("tiles_over")),
+                                                          median_of(c.at("tiles_over")) == 1 ? "" : "s")
                                             : "–");
     }
   }
