@@ -26,6 +26,7 @@ std::vector<Completion> completions(const std::string& typed, Dialog::Purpose pu
   std::vector<std::string> endings{".exr", ".png"};
   if (purpose == Dialog::Purpose::open) endings = {".gltf", ".glb"};
   if (purpose == Dialog::Purpose::script) endings = {".lucerna"};
+  if (purpose == Dialog::Purpose::reference) endings = {".exr"};
   std::vector<Completion> list;
   for (const std::string& path : commands::paths_starting(typed, endings)) {
     const bool folder = path.back() == '/';
@@ -73,7 +74,8 @@ int complete_field(ImGuiInputTextCallbackData* data) {
 void file_dialog(Ui& ui) {
   Dialog& dialog = ui.dialog;
   if (dialog.purpose == Dialog::Purpose::none) return;
-  const bool open = dialog.purpose == Dialog::Purpose::open;
+  const bool reference = dialog.purpose == Dialog::Purpose::reference;
+  const bool open = dialog.purpose == Dialog::Purpose::open || reference;  // the file is there
   const char* title = "##file";
   if (dialog.fresh) ImGui::OpenPopup(title), dialog.fresh = false, dialog.focus = true;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
@@ -88,12 +90,16 @@ void file_dialog(Ui& ui) {
           title, nullptr,
           ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
     const bool script = dialog.purpose == Dialog::Purpose::script;
-    label(open     ? "Open a scene"
-          : script ? "Save the session as a script"
-                   : "Save the picture",
+    label(reference ? "Load a reference"
+          : open    ? "Open a scene"
+          : script  ? "Save the session as a script"
+                    : "Save the picture",
           colour::text, theme().fonts.strong);
     std::error_code ignored;
-    if (open)
+    if (reference)
+      label("An .exr of this view and size, rendered long and with another seed.", colour::text_dim,
+            theme().fonts.small);
+    else if (open)
       label("A .gltf or .glb file. Tab completes; arrows choose.", colour::text_dim, theme().fonts.small);
     else if (fs::is_regular_file(expanded(dialog.path), ignored))
       label("A file of that name exists and will be replaced.", colour::warning, theme().fonts.small);
@@ -122,7 +128,8 @@ void file_dialog(Ui& ui) {
     std::string chosen;
     ImGui::BeginChild("##completions", {0, rows});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
-    if (list.empty()) label(open ? "No scene or folder starts like that" : "A new file", colour::text_faint);
+    if (list.empty())
+      label(open ? "No such file or folder starts like that" : "A new file", colour::text_faint);
     for (int i = 0; i < static_cast<int>(list.size()); ++i) {
       const Completion& c = list[static_cast<size_t>(i)];
       ImGui::PushID(i);
@@ -151,7 +158,7 @@ void file_dialog(Ui& ui) {
     ImGui::SetCursorPosX(ImGui::GetWindowWidth() - 2 * w - px(24));
     if (button("##cancel", "Cancel", false, w)) done = true;
     ImGui::SameLine(0, px(8));
-    if (button("##accept", open ? "Open" : "Save", true, w)) accept = true;
+    if (button("##accept", reference ? "Load" : open ? "Open" : "Save", true, w)) accept = true;
     if (ui.pressed(GLFW_KEY_ESCAPE)) done = true;
     if (accept && !dialog.path.empty()) {
       const std::string file = expanded(dialog.path);
@@ -160,7 +167,11 @@ void file_dialog(Ui& ui) {
         dialog.focus = true;
         ImGui::ClearActiveID();
       } else {
-        ui.act(open ? "scene.open" : script ? "script.save" : "image.save", file);
+        ui.act(reference ? "reference.load"
+               : open    ? "scene.open"
+               : script  ? "script.save"
+                         : "image.save",
+               file);
         done = true;
       }
     }
@@ -190,6 +201,7 @@ void key_page(Ui& ui) {
         {"Click", "select the object, its material with a second click"},
         {"F", "frame the selection, or the scene"},
         {"L", "mark the lamps, to click on them"},
+        {"T", "show the tiles at work"},
         {"1 \xE2\x80\x93 9", "scene cameras"},
         {"", ""},
         {"Space", "pause, resume"},
@@ -263,6 +275,8 @@ void Ui::start_dialog(Dialog::Purpose purpose) {
     const fs::path here =
         scene && !scene->file.empty() ? fs::path(scene->file).parent_path() : fs::path("scenes");
     if (fs::is_directory(here, error)) dialog.path = (here / "").string();
+  } else if (purpose == Dialog::Purpose::reference) {
+    dialog.path = fs::current_path(error).string() + "/";
   } else if (purpose == Dialog::Purpose::script) {
     dialog.path = (scene ? scene->name : "session") + ".lucerna";
   } else if (scene) {
@@ -312,6 +326,8 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_F) && ui.view) ui.act("camera.frame");
   if (ui.pressed(GLFW_KEY_R)) ui.act("render.restart");
   if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
+  if (ui.pressed(GLFW_KEY_T))
+    ui.act("set", "overlay.tiles", ui.setting_on("overlay.tiles") ? "false" : "true");
   if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.snapshot->paused ? "render.resume" : "render.pause");
   for (int n = 0; n < 9; ++n)
     if (ui.pressed(GLFW_KEY_1 + n) && ui.scene && n < static_cast<int>(ui.scene->cameras.size()) && ui.view)
@@ -338,7 +354,7 @@ void draw_splitters(Ui& ui, const Areas& areas) {
   };
   const float reach = px(3);
   const Layout& l = ui.layout;
-  const float left = areas.left.hi.x, right = areas.right.lo.x, bottom = areas.timings.lo.y;
+  const float left = areas.left.hi.x, right = areas.right.lo.x, bottom = areas.accuracy.lo.y;
   const auto edge = [&](const char* name, const char* panel, ImVec2 lo, ImVec2 hi, bool along_x,
                         float direction, float size, bool open) {
     float wanted = size;
@@ -353,13 +369,15 @@ void draw_splitters(Ui& ui, const Areas& areas) {
        l.right, l.right_open);
   edge("##split_bottom", "bottom", {0, bottom - reach}, {areas.log.hi.x, bottom + reach}, false, -1, l.bottom,
        l.bottom_open);
-  const float before = l.log_share * areas.log.hi.x / theme().scale;
-  float log_width = before;
-  strip("##split_log", {areas.log.lo.x - reach, bottom + reach}, {areas.log.lo.x + reach, areas.log.hi.y},
-        true, -1, log_width);
-  if (log_width != before)
-    ui.act("window.log_share",
-           std::clamp(log_width * theme().scale / std::max(1.0f, areas.log.hi.x), 0.0f, 1.0f));
+  const auto inner = [&](const char* name, const char* command, const Area& area, float share) {
+    const float before = share * areas.log.hi.x / theme().scale;
+    float width = before;
+    strip(name, {area.lo.x - reach, bottom + reach}, {area.lo.x + reach, area.hi.y}, true, -1, width);
+    if (width != before)
+      ui.act(command, std::clamp(width * theme().scale / std::max(1.0f, areas.log.hi.x), 0.0f, 1.0f));
+  };
+  inner("##split_log", "window.log_share", areas.log, l.log_share);
+  inner("##split_passes", "window.passes_share", areas.passes, l.passes_share);
 }
 
 }  // namespace lucerna::ui

@@ -17,7 +17,8 @@ Areas arrange(Layout& layout, const ImVec2& window, float scale) {
   layout.right =
       hold(layout.right, 232, std::min(520.0f, side_room - (layout.left_open ? layout.left : k_folded)));
   layout.bottom = hold(layout.bottom, 96, height - k_bar_height - k_toolbar_height - k_least_picture_height);
-  layout.log_share = std::clamp(layout.log_share, 0.25f, 0.75f);
+  layout.log_share = std::clamp(layout.log_share, 0.15f, 0.6f);
+  layout.passes_share = std::clamp(layout.passes_share, 0.1f, 0.75f - layout.log_share);
 
   const auto snap = [&](float design) { return std::floor(design * scale + 0.5f); };
   Areas areas;
@@ -30,14 +31,16 @@ Areas arrange(Layout& layout, const ImVec2& window, float scale) {
   const float left = snap(layout.left_open ? layout.left : k_folded);
   const float right = window.x - snap(layout.right_open ? layout.right : k_folded);
   const float toolbar = bar + snap(k_toolbar_height);
-  const float split = std::floor(window.x * (1 - layout.log_share));
+  const float log = std::floor(window.x * (1 - layout.log_share));
+  const float passes = std::floor(window.x * (1 - layout.log_share - layout.passes_share));
   areas.bar = {{0, 0}, {window.x, bar}};
   areas.left = {{0, bar}, {left, bottom}};
   areas.toolbar = {{left, bar}, {right, toolbar}};
   areas.picture = {{left, toolbar}, {right, bottom}};
   areas.right = {{right, bar}, {window.x, bottom}};
-  areas.timings = {{0, bottom}, {split, window.y}};
-  areas.log = {{split, bottom}, window};
+  areas.accuracy = {{0, bottom}, {passes, window.y}};
+  areas.passes = {{passes, bottom}, {log, window.y}};
+  areas.log = {{log, bottom}, window};
   return areas;
 }
 

@@ -6,9 +6,9 @@ namespace lucerna::ui {
 
 /// What the person has chosen; sizes in design pixels.
 struct Layout {
-  float left = 280, right = 296, bottom = 208;
-  float log_share = 0.5f;  ///< of the bottom strip's width
-  bool panels = true;      ///< Tab
+  float left = 280, right = 296, bottom = 224;
+  float log_share = 0.3f, passes_share = 0.3f;  ///< of the bottom strip's width
+  bool panels = true;                           ///< Tab
   bool left_open = true, right_open = true, bottom_open = true;
 };
 
@@ -19,9 +19,9 @@ struct Area {
 };
 
 /// The parts; those that are not shown have no area. They tile the window: bar on top; left, (toolbar over
-/// picture), right; bottom strip split into timings and log.
+/// picture), right; bottom strip split into accuracy, passes and log.
 struct Areas {
-  Area bar, left, toolbar, picture, right, timings, log;
+  Area bar, left, toolbar, picture, right, accuracy, passes, log;
 };
 
 inline constexpr float k_bar_height = 32, k_toolbar_height = 36, k_folded = 24, k_folded_bottom = 28;

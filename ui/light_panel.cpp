@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "chart.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -68,22 +69,28 @@ void component_row(Ui& ui, int c, float width) {
   }
   const float right = at.x + width;
   const bool known = status && !off && ui.snapshot->samples > 0;
-  // Where the panel is narrow the time gives way to the share.
+  const double error = known && ui.snapshot->accuracy ? ui.snapshot->accuracy->error()[index + 1] : 0;
+  // The share stands beside the name; error and time beside the solver.
+  if (width > px(200))
+    draw_text(list, {at.x + px(100), at.y}, {at.x + width - px(56), at.y + px(22)},
+              known ? fmt::format("{:.1f} %", 100 * status->share) : "\xE2\x80\x93",
+              known ? colour::text : colour::text_faint, Align::right);
   const float figures = at.x + px(24) + solver_width;
-  const float time = right - figures > px(120) ? px(72) : 0;
+  const float time = right - figures > px(120) ? px(66) : 0;
   draw_text(list, {figures, line}, {right - time, line + px(24)},
-            known ? fmt::format("{:.1f} %", 100 * status->share) : "\xE2\x80\x93",
-            known ? colour::text : colour::text_faint, Align::right);
+            error > 0 ? percent_text(error) : "\xE2\x80\x93", error > 0 ? colour::text : colour::text_faint,
+            Align::right);
   draw_text(list, {right - time, line}, {right, line + px(24)},
             known ? ms_text(status->ms_per_sample) : "\xE2\x80\x93",
             known ? colour::text_dim : colour::text_faint, Align::right);
   ImGui::SetCursorScreenPos({figures, line});
   ImGui::InvisibleButton("##figures", {std::max(1.0f, right - figures), px(24)});
-  tooltip(known ? fmt::format("Share of the sum's mean luminance, and device time that the rays of this "
-                              "component cost per sample a pixel. "
-                              "Mean luminance {:.4g}.",
-                              status->mean_luminance)
-                : "Nothing has been measured yet, or the component is off.");
+  tooltip(known
+              ? fmt::format("Estimated noise of this component over the picture's mean luminance, and device "
+                            "time that its rays cost per sample a pixel. Its share of the light is {:.1f} %, "
+                            "its mean luminance {:.4g}.",
+                            100 * status->share, status->mean_luminance)
+              : "Nothing has been measured yet, or the component is off.");
 
   // Third line: the share as a bar.
   ImGui::SetCursorScreenPos({at.x + px(18), at.y + px(54)});
@@ -135,7 +142,7 @@ std::string option_title(const std::string& key) {
 /// Whether an option has a place of its own elsewhere in the window (or none: texts that belong to the
 /// scene).
 bool placed_elsewhere(const plan::OptionInfo& option) {
-  for (const char* head : {"components.", "show.", "film."})
+  for (const char* head : {"components.", "show.", "film.", "overlay."})
     if (option.key.rfind(head, 0) == 0) return true;
   return option.type == plan::OptionType::text;
 }

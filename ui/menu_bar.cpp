@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "chart.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -32,8 +33,7 @@ void divide() {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = std::max(px(232), ImGui::GetContentRegionAvail().x);
   ImGui::Dummy({width, px(9)});
-  ImGui::GetWindowDrawList()->AddLine({at.x, at.y + px(4) + 0.5f}, {at.x + width, at.y + px(4) + 0.5f},
-                                      colour::grey(58));
+  ImGui::GetWindowDrawList()->AddLine({at.x, at.y + px(4)}, {at.x + width, at.y + px(4)}, colour::grey(58));
 }
 
 bool begin_menu(const char* name) {
@@ -73,6 +73,19 @@ void file_menu(Ui& ui) {
   if (entry("Screenshot", "F12", "Writes the window, panels and all, as a PNG in the working folder."))
     ui.act("screenshot");
   divide();
+  const session::Accuracy* accuracy = ui.snapshot ? ui.snapshot->accuracy.get() : nullptr;
+  const bool reference = accuracy && !accuracy->reference.empty();
+  if (entry(
+          "Load reference\xE2\x80\xA6", nullptr,
+          "Takes a picture for the truth: an EXR of this view and size, rendered long and with another seed. "
+          "The plot of accuracy then shows the true error too.",
+          false, picture))
+    ui.act("dialog.reference");
+  if (entry("Clear reference", nullptr,
+            reference ? ("Forgets " + accuracy->reference + ".").c_str() : "There is none.", false,
+            reference))
+    ui.act("reference.clear");
+  divide();
   if (entry("Save session as script\xE2\x80\xA6", nullptr,
             "Writes what was done in this session as commands, one a line; lucerna --script does it again."))
     ui.act("dialog.script");
@@ -106,7 +119,7 @@ void view_menu(Ui& ui) {
     ui.act("window.fold", "left", ui.layout.left_open);
   if (entry("Scene", nullptr, "Cameras, lights, environment, materials.", ui.layout.right_open))
     ui.act("window.fold", "right", ui.layout.right_open);
-  if (entry("Timings and log", nullptr, "The strip at the bottom.", ui.layout.bottom_open))
+  if (entry("Accuracy, passes and log", nullptr, "The strip at the bottom.", ui.layout.bottom_open))
     ui.act("window.fold", "bottom", ui.layout.bottom_open);
   divide();
   if (entry("Frame selection", "F",
@@ -118,6 +131,13 @@ void view_menu(Ui& ui) {
   if (entry("Lamps", "L", "Marks the lamps in the picture; a click on a mark selects the lamp.",
             ui.light_marks))
     ui.act("view.lamps", !ui.light_marks);
+  const bool tiles = ui.setting_on("overlay.tiles");
+  if (entry("Tiles", "T", plan::find_option("overlay.tiles")->help.c_str(), tiles))
+    ui.act("set", "overlay.tiles", tiles ? "false" : "true");
+  if (entry("Forget earlier renders", nullptr,
+            "Takes the lines of earlier renders out of the plot of accuracy.", false,
+            !ui.runs.earlier().empty()))
+    ui.act("accuracy.clear_runs");
   divide();
   for (const auto& [divisor, name] :
        {std::pair{1, "Full resolution"}, {2, "Half resolution"}, {4, "Quarter resolution"}})
@@ -153,15 +173,33 @@ void help_menu(Ui& ui) {
   end_menu();
 }
 
-/// "142 / 256 samples", each number in the width of the largest.
+/// "142 / 256 samples · 1.82 % · 12.3 s", each number in the width of the largest.
 std::string state_text(const session::Snapshot& s) {
-  const size_t digits = count_text(s.max_samples).size() > 9 ? 9 : fmt::format("{}", s.max_samples).size();
+  const bool adaptive = s.accuracy && s.accuracy->adaptive;
+  const size_t digits = fmt::format("{}", s.max_samples).size();
   const std::string state = s.finished ? "finished"
                             : s.paused ? "paused"
                             : s.coarse ? "first pass"
                                        : "rendering";
-  return fmt::format("{}   {} / {} samples   {}", state, padded(fmt::format("{}", s.samples), digits),
-                     s.max_samples, padded(seconds_text(s.seconds), 7));
+  // In adaptive sampling pixels differ: their mean.
+  const std::string samples =
+      padded(fmt::format("{:.0f}", adaptive ? s.mean_samples : static_cast<double>(s.samples)), digits);
+  const double error = s.accuracy ? s.accuracy->error()[0] : 0;
+  return fmt::format("{}   {} \xC2\xB7 {} \xC2\xB7 {}", state,
+                     adaptive ? fmt::format("{} samples on average", samples)
+                              : fmt::format("{} / {} samples", samples, s.max_samples),
+                     padded(error > 0 ? percent_text(error) : "\xE2\x80\x93", 6),
+                     padded(seconds_text(s.seconds), 7));
+}
+
+/// How much of the work is done, 0..1: of the samples, or in adaptive sampling of the rays forecast.
+float done_part(const session::Snapshot& s) {
+  if (s.accuracy && s.accuracy->adaptive) {
+    const auto& lines = s.accuracy->ledger.entries();
+    const double all = !lines.empty() && lines.back().total_rays ? lines.back().total_rays->middle : 0;
+    return all > 0 ? static_cast<float>(std::min(1.0, static_cast<double>(s.rays) / all)) : 0;
+  }
+  return static_cast<float>(s.samples) / static_cast<float>(s.max_samples);
 }
 
 }  // namespace
@@ -193,7 +231,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     const float wide = text_width(state_text([&] {
       session::Snapshot widest;
       widest.samples = s->max_samples, widest.max_samples = s->max_samples, widest.seconds = 99.9,
-      widest.coarse = true;
+      widest.mean_samples = s->max_samples, widest.accuracy = s->accuracy, widest.coarse = true;
       return widest;
     }()));
     draw_text(list, {right - std::max(wide, text_width(state)), area.lo.y}, {right, area.hi.y}, state,
@@ -217,7 +255,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   // How far the picture is, as a hairline under its state.
   list->AddRectFilled({area.lo.x, area.hi.y - 1}, area.hi, colour::hairline);
   if (s && ui.scene && s->max_samples > 0 && !s->finished) {
-    const float done = static_cast<float>(s->samples) / static_cast<float>(s->max_samples);
+    const float done = done_part(*s);
     list->AddRectFilled({state_left, area.hi.y - px(2)},
                         {state_left + done * (area.hi.x - px(16) - state_left), area.hi.y},
                         s->paused ? colour::text_dim : colour::accent);

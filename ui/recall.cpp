@@ -31,7 +31,9 @@ void recall(Ui& ui) {
     layout.left = json.value("left", layout.left);
     layout.right = json.value("right", layout.right);
     layout.bottom = json.value("bottom", layout.bottom);
-    layout.log_share = json.value("log_share", layout.log_share);
+    const auto shares = json.value("strip", nlohmann::json::object());
+    layout.passes_share = shares.value("passes", layout.passes_share);
+    layout.log_share = shares.value("log", layout.log_share);
     layout.left_open = json.value("left_open", true);
     layout.right_open = json.value("right_open", true);
     layout.bottom_open = json.value("bottom_open", true);
@@ -49,7 +51,7 @@ void remember(const Ui& ui) {
   nlohmann::ordered_json json;
   json["recent"] = ui.recent;
   json["left"] = ui.layout.left, json["right"] = ui.layout.right, json["bottom"] = ui.layout.bottom;
-  json["log_share"] = ui.layout.log_share;
+  json["strip"] = {{"passes", ui.layout.passes_share}, {"log", ui.layout.log_share}};
   json["left_open"] = ui.layout.left_open, json["right_open"] = ui.layout.right_open,
   json["bottom_open"] = ui.layout.bottom_open;
   json["sections"] = ui.sections;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include "accuracy_plot.h"
 #include "base/log.h"
 #include "commands/workspace.h"
 #include "layout.h"
@@ -40,7 +41,7 @@ class LogInbox {
 };
 
 struct Dialog {
-  enum class Purpose { none, open, save, script } purpose = Purpose::none;
+  enum class Purpose { none, open, save, script, reference } purpose = Purpose::none;
   std::string path;
   bool fresh = false;   ///< to be opened in the next frame
   bool focus = false;   ///< its field takes the keyboard in the next frame
@@ -96,11 +97,23 @@ struct Ui : commands::Workspace {
   std::vector<std::string> recent;  ///< files, newest first
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
-  int picture_divisor = 1;   ///< window pixels per picture pixel
+  int picture_divisor = 1;  ///< window pixels per picture pixel
+  /// Pixels of the picture; none: as many as the window has room for.
+  std::optional<std::pair<uint32_t, uint32_t>> picture_size;
   bool light_marks = false;  ///< lamps are marked in the picture
   bool brackets = true;      ///< the selected object is marked in the picture
   Area picture;              ///< where the picture may be
   bool picture_hovered = false;
+
+  // Accuracy.
+  Runs runs;
+  double what_if = 0.01;  ///< relative error that is asked about in uniform sampling
+  /// What the target's line stands at: the setting in adaptive sampling, the question in uniform.
+  double target() const;
+  /// Seconds of rendering until it is reached.
+  std::optional<stats::Band> forecast();
+  std::optional<PlotRange> held_range;  ///< the plot's, while the target is dragged
+  float held_offset = 0;                ///< of the pointer from the line
 
   // Requests to the loop.
   std::vector<std::pair<int, int>> keys;  ///< pressed since the last frame: GLFW key and modifiers
@@ -142,6 +155,11 @@ struct Ui : commands::Workspace {
   unsigned held_ = 0;  ///< id of the control that is held
   bool flying_ = false;
   uint64_t gestures_ = 0;
+  struct {
+    std::shared_ptr<const session::Accuracy> of;
+    double target = 0;
+    std::optional<stats::Band> band;
+  } forecast_;
 };
 
 // The parts, each in a file of its own; called once a frame in this order. Coordinates are window pixels.
@@ -150,8 +168,11 @@ void draw_light_panel(Ui& ui, const Area& area);
 void draw_scene_panel(Ui& ui, const Area& area);
 void draw_toolbar(Ui& ui, const Area& area);
 void draw_picture(Ui& ui, const Area& area);
-void draw_timings(Ui& ui, const Area& area);
+void draw_accuracy(Ui& ui, const Area& area);
+void draw_passes(Ui& ui, const Area& area);
 void draw_log(Ui& ui, const Area& area);
+/// Over the picture's lower left; part of draw_picture.
+void draw_legend(Ui& ui, const Area& area);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
 void handle_keys(Ui& ui);
@@ -163,6 +184,8 @@ void add_window_commands(Ui& ui);
 
 /// Begins a bare panel at an area; end with ImGui::End().
 void begin_panel(const char* name, const Area& area, ImU32 background, bool scrolls);
+/// The heading of a panel of the bottom strip; returns the x where its content at the right may start.
+float panel_heading(const char* title, const Area& area);
 /// A section of a panel, whose fold is a command; `fallback`: whether it is open before anybody has said so.
 bool panel_section(Ui& ui, const char* title, bool fallback, const std::string& note = "");
 /// A control for an option of the settings table, by its type; the tooltip is its help.

@@ -99,6 +99,7 @@ class Viewer {
     if (snapshot != ui_.snapshot) {
       ui_.wake(1);
       fresh_picture_ = ui_.snapshot != nullptr;
+      if (ui_.snapshot) ui_.runs.follow(*ui_.snapshot, ui_.scene);
     }
     if (scene != ui_.scene) {
       ui_.wake(1);
@@ -157,7 +158,8 @@ class Viewer {
       draw_light_panel(ui_, areas.left);
       draw_toolbar(ui_, areas.toolbar);
       draw_scene_panel(ui_, areas.right);
-      draw_timings(ui_, areas.timings);
+      draw_accuracy(ui_, areas.accuracy);
+      draw_passes(ui_, areas.passes);
       draw_log(ui_, areas.log);
     }
     draw_picture(ui_, areas.picture);
@@ -183,8 +185,9 @@ class Viewer {
     const auto divided = [&](float units, float scale) {
       return static_cast<uint32_t>(std::max(1.0f, units * scale / static_cast<float>(ui_.picture_divisor)));
     };
-    const std::pair<uint32_t, uint32_t> size{divided(ui_.picture.width(), ratio.x),
+    const std::pair<uint32_t, uint32_t> room{divided(ui_.picture.width(), ratio.x),
                                              divided(ui_.picture.height(), ratio.y)};
+    const std::pair<uint32_t, uint32_t> size = ui_.picture_size.value_or(room);
     if (size != wanted_size_) wanted_size_ = size, size_changed_at_ = ui_.now;
     if (size_changed_at_ >= 0 && (ui_.now - size_changed_at_ >= k_settle || sent_size_.first == 0)) {
       if (sent_size_ != wanted_size_) ui_.session.set_size(wanted_size_.first, wanted_size_.second);

@@ -31,6 +31,8 @@ std::string layer_help(const std::string& layer) {
   if (layer == "normal") return "Shows the shading normal of the first surface.";
   if (layer == "depth") return "Shows the distance to the first surface.";
   if (layer == "samples") return "Shows the samples taken in each pixel.";
+  if (layer == "error") return "Shows the estimated relative error.";
+  if (layer == "cost") return "Shows the device time that each pixel's paths took.";
   return fmt::format("Shows the layer {}.", layer);
 }
 
@@ -40,7 +42,7 @@ void layer_buttons(Ui& ui, float room) {
   if (!option) return;
   const std::vector<std::string>& layers = option->choices;
   const std::string& current = ui.setting("film.layer");
-  const float between = px(4), list_width = px(88);
+  const float between = px(4), list_width = px(76);
   const auto width_of = [&](const std::string& layer) { return text_width(capitalized(layer)) + px(18); };
   const float all =
       std::accumulate(layers.begin(), layers.end(), -between,
@@ -317,7 +319,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->AddRectFilled({area.lo.x, area.hi.y - 1}, area.hi, colour::hairline);
   const float pad = px(8), y = area.lo.y + px(6);
-  const float tone_width = px(108), ev_width = px(112);
+  const float tone_width = px(88), ev_width = px(92), tiles_width = px(46);
   float right = area.hi.x - pad;
   const plan::OptionInfo* tone = plan::find_option("film.tone_curve");
   if (tone) {
@@ -349,8 +351,15 @@ void draw_toolbar(Ui& ui, const Area& area) {
                      .typed_hi = static_cast<float>(ev->hi)};
     if (slider("##ev", "", value, how, ev_width)) ui.act("set", "film.ev", fmt::format("{:.4g}", value));
     tooltip(ev->help + " Double-click to type.");
-    right -= px(8);
+    right -= px(4);
   }
+  right -= tiles_width;
+  ImGui::SetCursorScreenPos({right, y});
+  const bool tiles = ui.setting_on("overlay.tiles");
+  if (button("##tiles", "Tiles", tiles, tiles_width))
+    ui.act("set", "overlay.tiles", tiles ? "false" : "true");
+  tooltip(plan::find_option("overlay.tiles")->help + " T.");
+  right -= px(8);
   ImGui::SetCursorScreenPos({area.lo.x + pad, y});
   layer_buttons(ui, right - area.lo.x - pad);
   ImGui::End();
@@ -383,6 +392,7 @@ void draw_picture(Ui& ui, const Area& area) {
   }
   const bool waiting = ui.snapshot && !ui.snapshot->activity.empty();
   if (!shown && !waiting) empty_state(ui, area);
+  draw_legend(ui, frame);
   activity_card(ui, area);
   error_strip(ui, area);
 

@@ -98,7 +98,7 @@ void gap(float design) { ImGui::SetCursorPosY(ImGui::GetCursorPosY() + px(design
 
 void hairline() {
   ImGuiWindow* window = ImGui::GetCurrentWindow();
-  const float y = std::floor(window->DC.CursorPos.y) + 0.5f;
+  const float y = std::floor(window->DC.CursorPos.y);
   window->DrawList->AddLine({window->Pos.x, y}, {window->Pos.x + window->Size.x, y}, colour::hairline);
 }
 
@@ -112,7 +112,7 @@ bool section(const char* title, bool& open, const std::string& right) {
   const bool hovered = ImGui::IsItemHovered();
   ImGui::PopID();
   ImDrawList* list = window->DrawList;
-  if (lo.y > window->Pos.y + 1) list->AddLine({lo.x, lo.y + 0.5f}, {hi.x, lo.y + 0.5f}, colour::hairline);
+  if (lo.y > window->Pos.y + 1) list->AddLine({lo.x, lo.y}, {hi.x, lo.y}, colour::hairline);
   draw_caps(list, {lo.x + px(12), std::floor(lo.y + 0.5f * (hi.y - lo.y - theme().fonts.caps->FontSize))},
             upper(title), hovered ? colour::text : colour::text_dim);
   draw_sign(list, {hi.x - px(18), 0.5f * (lo.y + hi.y)}, px(8),
@@ -409,7 +409,7 @@ bool splitter(const char* id, const ImVec2& lo, const ImVec2& hi, bool along_x, 
   if (active)
     value +=
         direction * (along_x ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y) / theme().scale;
-  const float middle = std::floor(along_x ? 0.5f * (lo.x + hi.x) : 0.5f * (lo.y + hi.y)) + 0.5f;
+  const float middle = std::floor(along_x ? 0.5f * (lo.x + hi.x) : 0.5f * (lo.y + hi.y));
   const ImU32 ink = active ? colour::accent : hovered ? colour::grey(96) : colour::hairline;
   ImDrawList* list = ImGui::GetWindowDrawList();
   if (along_x)

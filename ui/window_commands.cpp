@@ -80,6 +80,16 @@ void add_window_commands(Ui& ui) {
   add("window.log_share", "Sets how much of the strip at the bottom is the log.",
       {{.name = "share", .type = Type::real, .lo = 0, .hi = 1}},
       [&ui](const Arguments& a) { ui.layout.log_share = a.number("share"); });
+  add("window.passes_share", "Sets how much of the strip at the bottom is the panel of passes.",
+      {{.name = "share", .type = Type::real, .lo = 0, .hi = 1}},
+      [&ui](const Arguments& a) { ui.layout.passes_share = a.number("share"); });
+  add("accuracy.what_if",
+      "In uniform sampling: asks what this relative error of the picture would cost. In adaptive sampling "
+      "sampling.target_error is the question.",
+      {{.name = "error", .type = Type::real, .lo = 0.0001, .hi = 10}},
+      [&ui](const Arguments& a) { ui.what_if = a.real("error"); });
+  add("accuracy.clear_runs", "Takes the lines of earlier renders out of the plot of accuracy.", {},
+      [&ui](const Arguments&) { ui.runs.clear(); });
   add("window.section", "Opens or closes a section of a panel.",
       {{.name = "section",
         .which = true,
@@ -105,6 +115,16 @@ void add_window_commands(Ui& ui) {
   add("view.divisor", "Pixels of the window for each pixel of the picture, along a side.",
       {{.name = "divisor", .type = Type::choice, .choices = {"1", "2", "4"}}},
       [&ui](const Arguments& a) { ui.picture_divisor = static_cast<int>(a.integer("divisor")); });
+  add("view.size",
+      "Gives the picture a size of its own, such as that of a reference; 0 0: as large as there is room.",
+      {{.name = "width", .type = Type::integer, .lo = 0, .hi = 16384, .unit = "pixels"},
+       {.name = "height", .type = Type::integer, .lo = 0, .hi = 16384, .unit = "pixels"}},
+      [&ui](const Arguments& a) {
+        ui.picture_size.reset();
+        if (a.integer("width") > 0 && a.integer("height") > 0)
+          ui.picture_size.emplace(static_cast<uint32_t>(a.integer("width")),
+                                  static_cast<uint32_t>(a.integer("height")));
+      });
   add("view.selection", "Marks the selected object in the picture.", {on},
       [&ui](const Arguments& a) { ui.brackets = a.boolean("on"); });
   add("view.lamps", "Marks the lamps in the picture.", {on},
@@ -116,6 +136,9 @@ void add_window_commands(Ui& ui) {
   add(
       "dialog.save", "Asks where to save the picture.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::save); }, false);
+  add(
+      "dialog.reference", "Asks for a picture to hold this one against.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);
   add(
       "dialog.script", "Asks where to save the session as a script.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::script); }, false);

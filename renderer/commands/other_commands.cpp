@@ -56,6 +56,16 @@ void Workspace::add_other_commands() {
                 .parameters = {file({".exr", ".png"})},
                 .run = [this](const Arguments& a) { session.save(a.text("file")); }});
 
+  registry.add({.name = "reference.load",
+                .help = "Takes a picture for the truth, to hold this one against: an EXR with all layers, of "
+                        "the same scene, view and size.",
+                .parameters = {file({".exr"})},
+                .run = [this](const Arguments& a) {
+                  needs_scene();
+                  session.set_reference(a.text("file"));
+                }});
+  act("reference.clear", "Forgets the picture taken for the truth.", [this] { session.clear_reference(); });
+
   registry.add({.name = "script.save",
                 .help = "Writes what was done in this session, as a script that does it again.",
                 .parameters = {file({".lucerna"})},

@@ -22,10 +22,14 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width)
   albedo_ = gpu::Buffer(device, {.name = "film albedo", .bytes = pixels * 16, .texel = true});
   normal_ = gpu::Buffer(device, {.name = "film normals", .bytes = pixels * 16, .texel = true});
   count_ = gpu::Buffer(device, {.name = "film counts", .bytes = pixels * 4});
+  vertices_ = gpu::Buffer(device, {.name = "film vertices", .bytes = pixels * 4});
   picture_ = gpu::Buffer(device, {.name = "picture", .bytes = pixels * 4, .memory = gpu::Memory::host});
   errors_ = gpu::Buffer(
       device,
       {.name = "block errors", .bytes = blocks() * sizeof(shared::BlockError), .memory = gpu::Memory::host});
+  tile_marks_ = gpu::Buffer(
+      device,
+      {.name = "tile marks", .bytes = blocks() * sizeof(shared::TileMark), .memory = gpu::Memory::host});
 }
 
 std::span<const shared::BlockError> Film::errors() const {
@@ -37,6 +41,7 @@ void Film::clear(gpu::Stream& stream) {
   stream.fill(albedo_, 0);
   stream.fill(normal_, 0);
   stream.fill(count_, 0);
+  stream.fill(vertices_, 0);
   stream.fill(errors_, 0);
   stream.run();
 }
@@ -55,9 +60,13 @@ void Film::bind(gpu::Resources& r) const {
   plane("film_albedo", "FilmAlbedo", albedo_);
   plane("film_normal", "FilmNormal", normal_);
   r.set("FilmCount", count_);
+  r.set("FilmVertices", vertices_);
   r.set("Picture", picture_);
+  r.set("TileMarks", tile_marks_);
   r.set("BlockErrors", errors_);
 }
+
+void Film::mark_tiles(std::span<const shared::TileMark> marks) { tile_marks_.write(marks); }
 
 Image Film::read() const {
   Image image;

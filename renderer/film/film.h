@@ -8,6 +8,7 @@
 #include "base/math.h"
 #include "gpu/stream.h"
 #include "shaders/shared/film.h"
+#include "shaders/shared/ramp.h"
 
 namespace lucerna::film {
 
@@ -23,12 +24,24 @@ struct Image {
   std::vector<uint32_t> samples;
 };
 
+/// The scale of a heat map: the layers samples, error (relative, of a pixel's block) and cost (device time of
+/// a pixel, shared out by the vertices of its paths).
+struct HeatScale {
+  uint32_t ramp = 0;  ///< shared::k_ramp_*
+  bool logarithmic = false;
+  float lo = 0, hi = 1;  ///< values at its ends, lo < hi; samples, error 0..1, ms
+  float unit = 1;        ///< cost: ms a vertex
+};
+
 struct View {
   uint32_t layer = 0;  ///< shared::k_layer_*
   uint32_t show = 15;  ///< components in the beauty layer
   uint32_t curve = 0;  ///< tone curve
   float exposure = 1;  ///< factor
-  float scale = 1;     ///< depth or samples shown white
+  float scale = 1;     ///< depth shown white
+  HeatScale heat;      ///< of the layers that are heat maps
+  /// Side of the tiles whose marks (Film::mark_tiles) are drawn over the picture; 0: none.
+  uint32_t tiles = 0;
 };
 
 class Film {
@@ -52,6 +65,8 @@ class Film {
   Image read() const;
   /// Mean radiance of each component over the picture's sampled pixels.
   static std::array<vec3, k_components> means(const Image& image);
+  /// What the overlay of tiles shows: one mark a tile, in raster order; at most one a block.
+  void mark_tiles(std::span<const shared::TileMark> marks);
   const gpu::Buffer& picture() const { return picture_; }
   std::vector<uint8_t> read_picture() const;
 
@@ -59,7 +74,7 @@ class Film {
   uint32_t width_, height_;
   bool fits_storage_buffers_ = true;
   std::array<gpu::Buffer, k_components> sums_;
-  gpu::Buffer albedo_, normal_, count_, picture_, errors_;
+  gpu::Buffer albedo_, normal_, count_, vertices_, picture_, errors_, tile_marks_;
 };
 
 }  // namespace lucerna::film

@@ -38,6 +38,12 @@ OptionInfo integer(const char* key, int64_t fallback, double lo, double hi, cons
           .help = help};
 }
 
+/// A change lets the image go on.
+OptionInfo going_on(OptionInfo option) {
+  option.restarts = false;
+  return option;
+}
+
 std::vector<OptionInfo> make_options() {
   std::vector<OptionInfo> list{
       component("primary", "emitters and direct light, also seen in mirrors and through glass"),
@@ -57,11 +63,12 @@ std::vector<OptionInfo> make_options() {
        .lo = 0.0001,
        .hi = 10,
        .choices = {},
-       .help = "Adaptive: relative standard error of its pixels under which a tile is done."},
-      integer("sampling.min_samples", 64, 2, 1 << 20, "samples",
-              "Adaptive: samples that every pixel gets before its tile may be done."),
-      integer("sampling.max_samples", 1024, 2, 1 << 20, "samples",
-              "Adaptive: samples a pixel after which a tile is given up, and reported."),
+       .help = "Adaptive: relative standard error of its pixels under which a tile is done.",
+       .restarts = false},
+      going_on(integer("sampling.min_samples", 64, 2, 1 << 20, "samples",
+                       "Adaptive: samples that every pixel gets before its tile may be done.")),
+      going_on(integer("sampling.max_samples", 1024, 2, 1 << 20, "samples",
+                       "Adaptive: samples a pixel after which a tile is given up, and reported.")),
       {.key = "sampling.tile",
        .type = OptionType::choice,
        .fallback = "16",
@@ -111,8 +118,14 @@ std::vector<OptionInfo> make_options() {
        .type = OptionType::choice,
        .fallback = "beauty",
        .choices = {"beauty", "primary", "secondary", "tertiary", "caustic", "albedo", "normal", "depth",
-                   "samples"},
+                   "samples", "error", "cost"},
        .help = "Layer shown and written to PNG files.",
+       .restarts = false},
+      {.key = "overlay.tiles",
+       .type = OptionType::boolean,
+       .fallback = "false",
+       .choices = {},
+       .help = "Shows over the picture which tiles are at work and how far their error is from the target.",
        .restarts = false},
       {.key = "about",
        .type = OptionType::text,

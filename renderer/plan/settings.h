@@ -20,7 +20,7 @@ struct OptionInfo {
   std::string unit;                  ///< "EV", "samples", "" ...
   std::vector<std::string> choices;  ///< choice
   std::string help;                  ///< one sentence
-  bool restarts = true;              ///< a change makes the image start afresh (false: only its display)
+  bool restarts = true;  ///< a change makes the image start afresh (false: its display, or it goes on)
 };
 
 /// The table, in display order.

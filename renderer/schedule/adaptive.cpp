@@ -16,12 +16,25 @@ AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
     : options_(options), blocks_across_(blocks_across), blocks_down_(blocks_down) {
   const uint32_t side = options.tile / shared::k_block;
   assert(side == 1 || side == 2);
-  options_.max_samples = std::max(2u, options.max_samples / 2 * 2);
-  options_.min_samples = std::clamp((options.min_samples + 1) / 2 * 2, 2u, options_.max_samples);
+  set_limits(options);
   across_ = (blocks_across + side - 1) / side;
   down_ = (blocks_down + side - 1) / side;
   tiles_.resize(size_t{across_} * down_);
   open_ = static_cast<uint32_t>(tiles_.size());
+  start_round();
+}
+
+void AdaptiveSchedule::set_limits(const AdaptiveOptions& options) {
+  options_.target_error = options.target_error;
+  options_.max_samples = std::max(2u, options.max_samples / 2 * 2);
+  options_.min_samples = std::clamp((options.min_samples + 1) / 2 * 2, 2u, options_.max_samples);
+}
+
+void AdaptiveSchedule::retarget(const AdaptiveOptions& options) {
+  set_limits(options);
+  for (Tile& tile : tiles_)
+    tile.state = tile.samples < options_.min_samples ? TileState::waiting : TileState::active;
+  update_states();
   start_round();
 }
 
@@ -43,7 +56,8 @@ void AdaptiveSchedule::start_round() {
   if (!round_.empty()) {
     // All pixels alike up to the minimum: single samples first, so that something is seen at once, then
     // doubling.
-    const uint32_t have = tiles_[round_.front()].samples;
+    uint32_t have = ~0u;  // the least of them; a new minimum may find tiles that have more
+    for (const uint32_t t : round_) have = std::min(have, tiles_[t].samples);
     const uint32_t fitting =
         std::max(k_few, options_.slots / std::max<uint32_t>(1, pixels * uint32_t(round_.size())));
     pass_ = std::min({std::max(1u, have), fitting, most, options_.min_samples - have});
@@ -91,6 +105,7 @@ void AdaptiveSchedule::report(const std::vector<float>& errors) {
   }
   item_tiles_.clear();
   if (at_ < round_.size()) return;
+  ++rounds_;
   update_states();
   start_round();
 }

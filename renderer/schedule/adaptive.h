@@ -48,6 +48,10 @@ class AdaptiveSchedule {
   const std::vector<uint32_t>& to_report() const { return item_tiles_; }
   /// The item has been carried out; `errors`, one for each of to_report().
   void report(const std::vector<float>& errors);
+  /// Goes on with another target, minimum or maximum (tile and slots stay as they are): tiles that are then
+  /// over the target get samples again, those under it none, and no sample is thrown away. Between report()
+  /// or give_back() and next().
+  void retarget(const AdaptiveOptions& options);
   /// The item was not carried out: next() gives it again.
   void give_back();
 
@@ -60,9 +64,12 @@ class AdaptiveSchedule {
   uint32_t least_samples() const;
   uint32_t most_samples() const;
   uint32_t count(TileState state) const;
+  /// Rounds that are complete: in each, all tiles at work get the same samples.
+  uint32_t rounds() const { return rounds_; }
   const AdaptiveOptions& options() const { return options_; }
 
  private:
+  void set_limits(const AdaptiveOptions& options);
   void start_round();
   void update_states();
 
@@ -74,7 +81,8 @@ class AdaptiveSchedule {
   uint32_t pass_ = 1;                 // samples a pixel in this round
   size_t at_ = 0;                     // in round_
   uint32_t open_ = 0;                 // tiles waiting or active
-  uint32_t item_samples_ = 0;         // of the last item
+  uint32_t rounds_ = 0;
+  uint32_t item_samples_ = 0;  // of the last item
   size_t item_first_ = 0;
 };
 

@@ -22,6 +22,8 @@ class UniformSchedule {
   /// More may be asked for (or fewer) at any time.
   void set_samples(uint32_t samples) { samples_ = samples; }
   uint32_t samples() const { return samples_; }
+  /// Passes that are complete.
+  uint32_t passes() const { return passes_; }
 
   WorkItem next() {
     const uint32_t blocks_at_once = std::max(1u, slots_ / (64 * pass_));
@@ -31,6 +33,7 @@ class UniformSchedule {
     if (block_ == blocks_) {
       block_ = 0;
       sample_ += pass_;
+      ++passes_;
       start_pass();
     }
     return item;
@@ -46,7 +49,7 @@ class UniformSchedule {
     pass_ = std::min({fitting, std::max(1u, sample_), samples_ - sample_});
   }
   uint32_t blocks_ = 0, samples_ = 0, slots_ = 64;
-  uint32_t block_ = 0, sample_ = 0, pass_ = 1;
+  uint32_t block_ = 0, sample_ = 0, pass_ = 1, passes_ = 0;
 };
 
 }  // namespace lucerna::schedule

@@ -3,13 +3,16 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/log.h"
 #include "base/timer.h"
 #include "bvh/embree/build.h"
+#include "film/overlay.h"
 #include "plan/plan.h"
 #include "scene/default_light.h"
 #include "scene/io/load.h"
+#include "session/accuracy.h"
 #include "shaders/shared/film.h"
 #include "stats/forecast.h"
 #include "transport/frame.h"
@@ -148,6 +151,7 @@ void Renderer::restart() {
   wavefront_->clear(*coarse_);
   wavefront_->reset_stats();
   start_schedule();
+  ++restarts_;
   ledger_.clear();
   seconds_ = 0;
   wavefront_->set_frame(make_frame(width_, height_), enabled_components());
@@ -158,14 +162,17 @@ void Renderer::start_schedule() {
   schedule_ = {film_->blocks(), uint32_t(settings_.integer("samples")), wavefront_->slots()};
   adaptive_.reset();
   if (settings_.text("sampling.mode") != "adaptive") return;
-  adaptive_.emplace(film_->blocks_across(), film_->blocks_down(),
-                    schedule::AdaptiveOptions{
-                        .tile = uint32_t(std::stoul(settings_.text("sampling.tile"))),
-                        .target_error = float(settings_.real("sampling.target_error")),
-                        .min_samples = uint32_t(settings_.integer("sampling.min_samples")),
-                        .max_samples = uint32_t(settings_.integer("sampling.max_samples")),
-                        .slots = wavefront_->slots(),
-                    });
+  adaptive_.emplace(film_->blocks_across(), film_->blocks_down(), adaptive_options());
+}
+
+schedule::AdaptiveOptions Renderer::adaptive_options() const {
+  return {
+      .tile = uint32_t(std::stoul(settings_.text("sampling.tile"))),
+      .target_error = float(settings_.real("sampling.target_error")),
+      .min_samples = uint32_t(settings_.integer("sampling.min_samples")),
+      .max_samples = uint32_t(settings_.integer("sampling.max_samples")),
+      .slots = wavefront_->slots(),
+  };
 }
 
 /// What the floor of the display (film/error.h) is before exposure.
@@ -222,26 +229,31 @@ bool Renderer::reference_applies() const {
 
 void Renderer::apply_settings() {
   if (!wavefront_) return;
-  bool again = false, samples = false, rebuild = false, kernels = false;
-  for (const auto& [key, value] : settings_.all()) {
-    if (applied_[key] == value) continue;
-    if (key == "samples")
-      samples = true;
-    else if (key == "camera")
-      choose_camera(value);
-    else if (key == "tracer" || key == "path.batch")
-      rebuild = true;
-    else
+  std::set<std::string> changed;  // before anything is done, for a restart counts all as applied
+  for (const auto& [key, value] : settings_.all())
+    if (applied_[key] != value) changed.insert(key);
+  bool again = false, retarget = false;
+  for (const std::string& key : changed) {
+    // What these say, the schedule in progress can take up.
+    const bool goal = key == "sampling.target_error" || key == "sampling.min_samples" ||
+                      key == "sampling.max_samples" || (key == "sampling.tile" && !adaptive_);
+    if (goal)
+      retarget = true;
+    else if (key != "samples")
       again |= plan::find_option(key)->restarts;
-    kernels |=
-        key == "sampling.coherent" || (key == "sampling.tile" && settings_.boolean("sampling.coherent"));
   }
+  const bool rebuild = changed.contains("tracer") || changed.contains("path.batch");
+  const bool kernels = changed.contains("sampling.coherent") ||
+                       (changed.contains("sampling.tile") && settings_.boolean("sampling.coherent"));
+  if (changed.contains("camera")) choose_camera(settings_.text("camera"));
   if (rebuild) {
     install(scene_, settings_, camera_, {});
     return;
   }
   if (kernels) build_wavefront(*device_scene_);
-  if (samples && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
+  again |= kernels;
+  if (changed.contains("samples") && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
+  if (retarget && !again && adaptive_) adaptive_->retarget(adaptive_options());
   if (again) restart();
   applied_ = settings_.all();
 }
@@ -384,12 +396,32 @@ film::View Renderer::view() const {
     if (settings_.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
   v.curve = uint32_t(settings_.choice("film.tone_curve"));
   v.exposure = float(std::exp2(settings_.real("film.ev")));
-  v.scale = v.layer == shared::k_layer_samples ? float(std::max(1u, max_samples())) : 2 * flat_.scene_radius;
+  v.scale = 2 * flat_.scene_radius;
+  v.heat = heat_scale(v.layer);
+  if (settings_.boolean("overlay.tiles")) v.tiles = uint32_t(std::stoul(settings_.text("sampling.tile")));
   return v;
 }
 
+film::HeatScale Renderer::heat_scale(uint32_t layer) const {
+  if (layer == shared::k_layer_samples)
+    return film::sample_scale(adaptive_ ? adaptive_->options().min_samples : 0, max_samples());
+  if (layer == shared::k_layer_error) return film::error_scale(settings_.real("sampling.target_error"));
+  double ms = 0;
+  for (const auto& stage : stats().stages) ms += stage.ms;
+  return film::cost_scale(ms, double(stats().rays - stats().shadow_rays),
+                          double(film_->width()) * film_->height(), adaptive_.has_value());
+}
+
 std::vector<uint8_t> Renderer::picture(bool with_coarse) {
-  wavefront_->tone_map(*film_, view(), with_coarse ? coarse_.get() : nullptr);
+  const film::View v = view();
+  if (v.tiles > 0) {
+    std::vector<shared::TileMark> marks;
+    for (const TileStatus& t : tile_status(*this, true))
+      marks.push_back({film::tile_position(double{t.error}, settings_.real("sampling.target_error")),
+                       t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
+    film_->mark_tiles(marks);
+  }
+  wavefront_->tone_map(*film_, v, with_coarse ? coarse_.get() : nullptr);
   return film_->read_picture();
 }
 

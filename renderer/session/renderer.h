@@ -49,7 +49,9 @@ class Renderer {
   std::shared_ptr<const scene::Scene> scene() const { return scene_; }
 
   plan::Settings& settings() { return settings_; }
-  /// Settings changed by hand: applies what differs, restarts if the image depends on it.
+  const plan::Settings& settings() const { return settings_; }
+  /// Settings changed by hand: applies what differs, restarts if the image depends on it. A target error and
+  /// caps on samples let the image go on.
   void apply_settings();
   void set_size(uint32_t width, uint32_t height);
   void set_camera(const scene::Camera& camera);
@@ -60,6 +62,10 @@ class Renderer {
   void set_environment(float scale, float rotation_degrees);
   void reload_shaders();
   void restart();
+  /// Images begun so far.
+  uint64_t restarts() const { return restarts_; }
+  /// Passes over the picture, or over the tiles at work, that are complete.
+  uint32_t passes() const { return adaptive_ ? adaptive_->rounds() : schedule_.passes(); }
 
   bool ready() const { return wavefront_ != nullptr; }
   bool done() const { return adaptive_ ? adaptive_->done() : schedule_.done(); }
@@ -79,8 +85,10 @@ class Renderer {
   /// A quick image of a quarter of the resolution, for display until the film is filled.
   void render_coarse(const std::function<bool()>& cancel = {});
 
-  /// Tone-mapped picture with the settings' view.
+  /// Tone-mapped picture with the settings' view, or a heat map on view().heat's scale; tiles over it where
+  /// overlay.tiles is on.
   std::vector<uint8_t> picture(bool with_coarse);
+  film::View view() const;
   film::Image image() const { return film_->read(); }
   /// The image with its layers and metadata (its own noise among them), as EXR files hold it.
   film::FilmImage film_image();
@@ -118,9 +126,10 @@ class Renderer {
   void relight(std::shared_ptr<const scene::Scene> edited);
   void make_film();
   shared::Frame make_frame(uint32_t width, uint32_t height) const;
-  film::View view() const;
+  film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
   void start_schedule();
+  schedule::AdaptiveOptions adaptive_options() const;
   /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
   std::string view_text() const;
   bool render_item(const std::function<bool()>& cancel);
@@ -142,6 +151,7 @@ class Renderer {
   schedule::UniformSchedule schedule_;
   stats::Ledger ledger_;
   std::optional<film::Reference> reference_;
+  uint64_t restarts_ = 0;
   double seconds_ = 0;                                  ///< rendering time of this image
   std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< instead of schedule_
   uint32_t width_ = 1280, height_ = 720;

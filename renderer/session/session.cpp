@@ -38,6 +38,7 @@ struct Session::Impl {
 
   // Of the session thread alone.
   Snapshot next;
+  AccuracyKeeper accuracy;
   Timer since_publish, since_numbers;
   double seconds = 0;
   bool paused = false, dirty = true, coarse_wanted = false, size_known = false;
@@ -80,6 +81,11 @@ struct Session::Impl {
     next.width = r.film().width();
     next.height = r.film().height();
     next.rgba = r.picture(!filled);
+    const film::View view = r.view();
+    next.legend = {};
+    if (view.layer >= shared::k_layer_samples)
+      next.legend = {view.layer, view.heat.ramp, view.heat.logarithmic, view.heat.lo, view.heat.hi};
+    next.tiles = view.tiles > 0;
     next.samples = r.samples();
     next.max_samples = r.max_samples();
     next.coarse = !filled;
@@ -96,7 +102,10 @@ struct Session::Impl {
     next.dropped = stats.dropped;
     next.stages.clear();
     for (const auto& s : stats.stages) next.stages.push_back({s.name, s.ms, s.host});
-    const double pixel_samples = std::max(1.0, double(stats.paths) / (double(next.width) * next.height));
+    next.mean_samples = double(stats.paths) / (double(next.width) * next.height);
+    const double pixel_samples = std::max(1.0, next.mean_samples);
+    accuracy.follow(r, next.scene_id);
+    next.accuracy = accuracy.publish(r, numbers || dirty);
     for (int c = 0; c < k_components; ++c) {
       next.components[c].solver = r.settings().text(std::string("components.") + k_component_names[c]);
       next.components[c].ms_per_sample = stats.component_ms[c] / pixel_samples;
@@ -171,7 +180,12 @@ void Session::Impl::run() {
           changed = true;
         } else if (work && renderer->step(cancelled)) {
           seconds += timer.seconds();
+          accuracy.follow(*renderer, next.scene_id);
         }
+        // The last line of the ledger is that of the finished image.
+        if (renderer->done() && !renderer->ledger().entries().empty() &&
+            renderer->ledger().entries().back().paths != renderer->stats().paths)
+          renderer->finish_ledger();
         if (!filled && renderer->samples() > 0) filled = changed = true;
         if (changed || since_publish.seconds() > k_publish_seconds || renderer->done()) {
           const bool numbers = since_numbers.seconds() > k_numbers_seconds || renderer->done();
@@ -236,10 +250,10 @@ void Session::load(const std::filesystem::path& file) {
 
 void Session::set(const std::string& key, const std::string& value) {
   impl_->post([s = impl_.get(), key, value](Renderer& r) {
+    const uint64_t before = r.restarts();
     r.settings().set(key, value, "setting");
     r.apply_settings();
-    const plan::OptionInfo* option = plan::find_option(key);
-    if (option->restarts && key != "samples") s->restarted();
+    if (r.restarts() != before) s->restarted();
   });
 }
 
@@ -289,6 +303,18 @@ void Session::reload_shaders() {
     s->restarted();
     log::info("shaders reloaded in {:.2f} s", timer.seconds());
   });
+}
+
+void Session::set_reference(const std::filesystem::path& file) {
+  impl_->post([file](Renderer& r) {
+    r.set_reference(file);
+    r.finish_ledger();  // what there is is held against it at once
+    log::info("{} is the reference", file.string());
+  });
+}
+
+void Session::clear_reference() {
+  impl_->post([](Renderer& r) { r.clear_reference(); });
 }
 
 void Session::save(const std::filesystem::path& file) {

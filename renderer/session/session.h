@@ -12,6 +12,7 @@
 #include "gpu/device.h"
 #include "plan/settings.h"
 #include "scene/scene.h"
+#include "session/accuracy.h"
 
 namespace lucerna::session {
 
@@ -31,13 +32,24 @@ struct StageStatus {
   bool host = false;
 };  ///< since the image started
 
+/// The scale of the heat map that a picture shows.
+struct Legend {
+  uint32_t layer = 0;  ///< shared::k_layer_samples, _error (relative) or _cost (ms a pixel); 0: no heat map
+  uint32_t ramp = 0;   ///< shared::k_ramp_*
+  bool logarithmic = false;
+  float lo = 0, hi = 1;  ///< values at its ends
+};
+
 /// What the window draws: replaced as a whole, never changed after publishing.
 struct Snapshot {
   uint64_t id = 0;                 ///< grows with every published snapshot
   uint64_t scene_id = 0;           ///< grows when another scene is loaded
   uint32_t width = 0, height = 0;  ///< of the picture
   std::vector<uint8_t> rgba;       ///< width * height * 4, sRGB, top row first; tone-mapped
+  Legend legend;                   ///< of the picture, where it is a heat map
+  bool tiles = false;              ///< the picture has its tiles drawn over it
   uint32_t samples = 0;            ///< complete samples a pixel
+  double mean_samples = 0;         ///< a pixel, of those there are
   uint32_t max_samples = 0;        ///< where it stops
   bool coarse = false;             ///< some of the picture still is the coarse first image
   bool paused = false, finished = false;
@@ -46,6 +58,7 @@ struct Snapshot {
   uint64_t rays = 0;
   std::array<ComponentStatus, k_components> components;
   std::vector<StageStatus> stages;
+  std::shared_ptr<const Accuracy> accuracy;  ///< null before the first picture
   double device_mb = 0, host_mb = 0;
   std::string device, tracer;
   std::string activity;  ///< "" or what is going on: "loading kitchen.gltf: textures 40 %"
@@ -78,6 +91,9 @@ class Session {
   void set_paused(bool paused);
   void restart();         ///< throws the samples away and starts anew
   void reload_shaders();  ///< compiles again; on error the old kernels stay and the message is logged
+  /// Holds the picture against this one from now on (Renderer::set_reference).
+  void set_reference(const std::filesystem::path& file);
+  void clear_reference();
   void save(const std::filesystem::path& file);  ///< EXR or PNG of what there is
   void cancel();                                 ///< gives up a load in progress
 

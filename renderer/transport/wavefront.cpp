@@ -20,8 +20,8 @@ struct Wavefront::Impl {
   gpu::Buffer frame, blocks, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states,
       counters, no_coarse;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
-  gpu::Kernel camera, shade, shadow, film_add, film_add_images, error, stopping, tonemap, trace_closest,
-      trace_any, trace_non_opaque;
+  gpu::Kernel camera, shade, shadow, film_add, film_add_images, error, stopping, tonemap, heat, tiles,
+      trace_closest, trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
   TransportStats stats;
@@ -149,11 +149,15 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   w.camera = gpu::Kernel(device, compiler, "transport/camera.comp", defines);
   w.shade = gpu::Kernel(device, compiler, "transport/shade.comp", defines);
   w.shadow = gpu::Kernel(device, compiler, "transport/shadow.comp", defines);
-  w.film_add = gpu::Kernel(device, compiler, "film/add.comp", defines);
-  gpu::Defines images = defines;
+  gpu::Defines adding = defines;
+  adding["LUCERNA_VERTEX_COUNT"] = "1";
+  w.film_add = gpu::Kernel(device, compiler, "film/add.comp", adding);
+  gpu::Defines images = adding;
   images["LUCERNA_FILM_IMAGES"] = "1";
   w.film_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
   w.tonemap = gpu::Kernel(device, compiler, "film/tonemap.comp");
+  w.heat = gpu::Kernel(device, compiler, "film/heat.comp");
+  w.tiles = gpu::Kernel(device, compiler, "film/tiles.comp");
   w.error = gpu::Kernel(device, compiler, "film/error.comp");
   w.stopping = gpu::Kernel(device, compiler, "film/error.comp", {{"LUCERNA_STOPPING_ONLY", "1"}});
   w.bind(scene);
@@ -308,6 +312,12 @@ void Wavefront::tone_map(film::Film& film, const film::View& view, film::Film* c
   Impl& w = *impl_;
   const auto record = [&](film::Film& f, film::Film* fill) {
     f.bind(w.film_resources);
+    if (view.layer >= k_layer_samples) {
+      const film::HeatScale& h = view.heat;
+      const HeatPush push{f.width(), f.height(), view.layer, h.ramp, h.logarithmic, h.lo, h.hi, h.unit};
+      w.stream.dispatch(w.heat, w.film_resources, push, Impl::groups(f.width() * f.height()));
+      return;
+    }
     if (fill)
       w.film_resources.set("Coarse", fill->picture());
     else
@@ -326,6 +336,11 @@ void Wavefront::tone_map(film::Film& film, const film::View& view, film::Film* c
   };
   if (coarse) record(*coarse, nullptr);
   record(film, coarse);
+  if (view.tiles > 0) {
+    const TilesPush push{film.width(), film.height(), view.tiles,
+                         (film.width() + view.tiles - 1) / view.tiles, 1};
+    w.stream.dispatch(w.tiles, w.film_resources, push, Impl::groups(film.width() * film.height()));
+  }
   w.stream.run();
   w.stream.take_times();
 }

@@ -28,7 +28,6 @@ void main() {
   vec3 flat_color = albedo.xyz / n;
   if (push.layer == k_layer_normal) flat_color = 0.5 * normalize(normal.xyz + vec3(0.0, 0.0, 1e-20)) + 0.5;
   if (push.layer == k_layer_depth) flat_color = vec3(albedo.w > 0.0 ? normal.w / hits / push.scale : 1.0);
-  if (push.layer == k_layer_samples) flat_color = vec3(float(count) / push.scale);
   vec3 srgb;
   if (push.layer >= k_layer_albedo) {
     vec3 linear_color = clamp(flat_color, vec3(0.0), vec3(1.0));

@@ -51,7 +51,10 @@ LUCERNA_CONST uint k_layer_primary = 1u;  ///< ... to 4: one component
 LUCERNA_CONST uint k_layer_albedo = 5u;
 LUCERNA_CONST uint k_layer_normal = 6u;
 LUCERNA_CONST uint k_layer_depth = 7u;
+// Heat maps (shared/ramp.h):
 LUCERNA_CONST uint k_layer_samples = 8u;
+LUCERNA_CONST uint k_layer_error = 9u;
+LUCERNA_CONST uint k_layer_cost = 10u;
 
 struct TonePush {
   uint width, height;
@@ -59,7 +62,7 @@ struct TonePush {
   uint show;             ///< bit i: component i is part of the beauty layer
   uint curve;            ///< ToneCurve
   float exposure;        ///< factor, 2^EV
-  float scale;           ///< depth and samples: value shown white
+  float scale;           ///< depth: value shown white
   uint coarse_width, coarse_height;  ///< of the coarse film; 0: none
   uint use_coarse_film;  ///< 1: this dispatch reads the coarse film and fills pixels that the film has not reached
 };

@@ -9,6 +9,7 @@
 #include "gpu/spirv.h"
 #include "kernels/gpu_support.h"
 #include "shaders/shared/film.h"
+#include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
 #include "shaders/shared/trace.h"
@@ -55,6 +56,9 @@ std::vector<SharedStruct> structs() {
              camera_forward, seed, environment_radiance, light_count, environment_width, environment_height,
              environment_rotation, environment_light_pmf, max_depth, roulette_depth, automaton_states,
              scene_radius, automaton),
+      SHARED("ramp.h", TileMark, position, bits),
+      SHARED("ramp.h", TilesPush, width, height, side, across, line),
+      SHARED("ramp.h", HeatPush, width, height, layer, ramp, logarithmic, lo, hi, unit),
       SHARED("trace.h", TracePush, count, use_queue),
       SHARED("transport.h", PathState, throughput, pdf, pixel, sample_index, bits, medium, travelled,
              eta_scale, pad0, pad1),

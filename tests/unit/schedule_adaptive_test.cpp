@@ -148,3 +148,81 @@ TEST_CASE("uniform: every block once a pass, no sample twice") {
   CHECK(samples.size() == 21);
   for (const auto& [block, n] : samples) CHECK(n == 37);
 }
+
+TEST_CASE("another target lets the schedule go on: no sample is lost, none is given without need") {
+  constexpr uint32_t k_slots = 8192;
+  AdaptiveOptions options{
+      .tile = 16, .target_error = 0.1f, .min_samples = 32, .max_samples = 2000, .slots = k_slots};
+  Player p{AdaptiveSchedule(16, 12, options), {}, {}};
+  const auto sigma = [](uint32_t t) { return 0.2 + 0.02 * t; };
+  p.play(sigma, k_slots);
+  const std::map<uint32_t, uint32_t> loose = p.samples;
+  const uint32_t rounds = p.schedule.rounds();
+  CHECK(rounds > 3);
+
+  // Tighter: the hardest go on from where they were (Player checks each first sample).
+  options.target_error = 0.05f;
+  p.schedule.retarget(options);
+  CHECK_FALSE(p.schedule.done());
+  p.play(sigma, k_slots);
+  CHECK(p.schedule.rounds() > rounds);
+  uint32_t more = 0;
+  for (const auto& [block, samples] : p.samples) {
+    CHECK(samples >= loose.at(block));
+    more += samples > loose.at(block);
+  }
+  CHECK(more > 0);
+  CHECK(more < p.samples.size());
+  for (const Tile& tile : p.schedule.tiles()) CHECK(tile.error <= 0.05f);
+
+  // Looser, and the same again: nothing is left to do.
+  const std::map<uint32_t, uint32_t> tight = p.samples;
+  p.schedule.retarget(options);
+  CHECK(p.schedule.done());
+  options.target_error = 0.2f;
+  p.schedule.retarget(options);
+  CHECK(p.schedule.done());
+  CHECK(p.samples == tight);
+
+  // A smaller cap gives up what is over the target; a larger one takes it up again; a larger minimum too.
+  options.target_error = 0.02f, options.max_samples = 100;
+  p.schedule.retarget(options);
+  p.play(sigma, k_slots);
+  CHECK(p.schedule.count(TileState::capped) > 0);
+  options.max_samples = 4000;
+  p.schedule.retarget(options);
+  CHECK_FALSE(p.schedule.done());
+  p.play(sigma, k_slots);
+  for (const Tile& tile : p.schedule.tiles()) CHECK(tile.error <= 0.02f);
+  options.min_samples = 3000;
+  p.schedule.retarget(options);
+  p.play(sigma, k_slots);
+  CHECK(p.schedule.least_samples() >= 3000);
+  CHECK(p.schedule.most_samples() <= 4000);
+}
+
+TEST_CASE("another target in the middle of a round") {
+  constexpr uint32_t k_slots = 4096;  // several items a round
+  AdaptiveOptions options{
+      .tile = 8, .target_error = 0.1f, .min_samples = 16, .max_samples = 2000, .slots = k_slots};
+  for (const uint32_t items : {1u, 5u, 17u, 40u}) {
+    Player p{AdaptiveSchedule(9, 9, options), {}, {}};
+    const auto sigma = [](uint32_t t) { return 0.5 + 0.02 * t; };
+    for (uint32_t i = 0; i < items; ++i) {
+      const WorkItem item = p.schedule.next();
+      for (const WorkBlock& b : item.blocks) p.samples[b.index] += item.sample_count;
+      std::vector<float> errors;
+      for (const uint32_t t : p.schedule.to_report())
+        errors.push_back(float(sigma(t) / std::sqrt(p.schedule.tiles()[t].samples + item.sample_count)));
+      p.schedule.report(errors);
+    }
+    AdaptiveOptions other = options;
+    other.target_error = 0.06f;
+    p.schedule.retarget(other);
+    p.play(sigma, k_slots);
+    for (const Tile& tile : p.schedule.tiles()) {
+      CHECK(tile.error <= 0.06f);
+      CHECK(tile.samples >= 16);
+    }
+  }
+}

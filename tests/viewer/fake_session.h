@@ -93,8 +93,10 @@ struct Session::Impl {
   scene::Camera camera;
   uint64_t id = 0, scene_id = 0;
   uint32_t samples = 0;
+  uint64_t run_number = 0;
   bool paused = false;
-  Timer timer;
+  std::string reference;
+
   std::string activity;
   float progress = -1;
   std::thread thread;
@@ -137,7 +139,14 @@ struct Session::Impl {
           p[3] = 255;
         }
     }
-    s->seconds = timer.seconds();
+    s->seconds = 0.2 * samples;
+    s->mean_samples = samples;
+    if (scene && width > 0) {
+      s->accuracy = accuracy();
+      if (settings.text("film.layer") == "error")
+        s->legend = {shared::k_layer_error, shared::k_ramp_magma, true, 0.005f, 0.5f};
+      s->tiles = settings.boolean("overlay.tiles");
+    }
     s->mrays_per_second = 3.42, s->rays = 1234567ull * samples;
     s->device_mb = 212, s->host_mb = 1480;
     const double shares[] = {0.618, 0.241, 0.126, 0.015}, ms[] = {412, 380, 1210, 96};
@@ -159,7 +168,48 @@ struct Session::Impl {
     if (report) report();
   }
 
-  void restart() { samples = 0, timer.restart(); }
+  /// A render whose noise falls as it should, every other from twice as high: seconds grow with samples,
+  /// whatever the machine does.
+  std::shared_ptr<const Accuracy> accuracy() const {
+    auto a = std::make_shared<Accuracy>();
+    a->run = run_number, a->scene_id = scene_id, a->settings = settings.all();
+    a->adaptive = settings.text("sampling.mode") == "adaptive";
+    a->target = settings.real("sampling.target_error");
+    a->min_samples = 16, a->max_samples = 1024, a->tile = 16, a->across = (width + 15) / 16;
+    a->pixels = double(width) * height;
+    a->reference = reference, a->reference_applies = !reference.empty();
+    const double shares[] = {1, 0.62, 0.24, 0.13, 0.4};
+    for (double n = 2; n <= samples; n = std::max(n + 1, 1.25 * n)) {
+      stats::Entry e;
+      e.samples = n, e.paths = static_cast<uint64_t>(n * a->pixels), e.rays = 7 * e.paths;
+      e.wall_s = e.device_s = 0.2 * n;
+      for (size_t k = 0; k < 5; ++k) e.error[k] = (run_number % 2 ? 0.8 : 1.6) * shares[k] / std::sqrt(n);
+      if (!reference.empty()) {
+        e.truth = e.error;
+        for (double& x : *e.truth) x *= 1.1;
+      }
+      a->ledger.add(e);
+      a->hardest.push_back(2 * e.error[0]);
+    }
+    a->paths = samples * a->pixels, a->rays = 7 * a->paths;
+    const uint32_t rows = (height + 15) / 16;
+    for (uint32_t i = 0; i < rows * a->across; ++i) {
+      TileStatus t;
+      t.samples = samples, t.pixels = 256;
+      t.error =
+          static_cast<float>(1.6 / std::sqrt(std::max(1u, samples))) * (0.3f + 0.7f * float(i % 13) / 12);
+      t.state = double{t.error} <= a->target ? shared::k_tile_done : shared::k_tile_active;
+      t.heavy_tailed = i % 17 == 0;
+      a->tiles.push_back(t);
+    }
+    a->stages = {"camera", "trace closest", "surface"};
+    for (uint32_t i = 0; i < std::min(samples, 40u); ++i)
+      a->passes.push_back({{2.0f, 60.0f + float(i % 5), 30.0f}, 1000, i + 1});
+    if (a->adaptive) a->forecast = seconds_to(*a, a->target);
+    return a;
+  }
+
+  void restart() { samples = 0, ++run_number; }
 
   void load(const std::filesystem::path& file) {
     cancelled = false;
@@ -264,6 +314,17 @@ void Session::restart() {
 void Session::reload_shaders() {
   impl_->post(
       [] { log::error("surface.comp:42: 'throughputt' : undeclared identifier; the kernels in use stay"); });
+}
+void Session::set_reference(const std::filesystem::path& file) {
+  impl_->post([this, file] {
+    if (file.string().find("missing") != std::string::npos)
+      log::error("{}: cannot be opened", file.string());
+    else
+      impl_->reference = file.filename().string(), impl_->publish();
+  });
+}
+void Session::clear_reference() {
+  impl_->post([this] { impl_->reference.clear(), impl_->publish(); });
 }
 void Session::save(const std::filesystem::path& file) {
   impl_->post([file] { log::info("picture saved as {}", file.string()); });

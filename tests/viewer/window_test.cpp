@@ -88,8 +88,8 @@ TEST_CASE("the parts of the window tile it and leave room for the picture") {
       layout.left_open = folds & 1, layout.right_open = folds & 2, layout.bottom_open = folds & 4;
       const ui::Areas areas = ui::arrange(layout, {width, height}, scale);
       float covered = 0;
-      for (const ui::Area& a :
-           {areas.bar, areas.left, areas.toolbar, areas.picture, areas.right, areas.timings, areas.log}) {
+      for (const ui::Area& a : {areas.bar, areas.left, areas.toolbar, areas.picture, areas.right,
+                                areas.accuracy, areas.passes, areas.log}) {
         CHECK(a.width() > 0);
         CHECK(a.height() > 0);
         covered += a.width() * a.height();
@@ -269,4 +269,122 @@ TEST_CASE("a dropped scene opens; what cannot be opened is an error over the sce
   std::ifstream in(file("session.lucerna"));
   const std::string script((std::istreambuf_iterator<char>(in)), {});
   CHECK_THAT(script, Catch::Contains("missing.glb\nscene.open") && Catch::Contains("other.gltf\nwait_scene"));
+}
+
+namespace {
+
+/// How many pixels of a rectangle are near a colour (0..255).
+int near_colour(const test::Picture& p, int x0, int y0, int x1, int y1, vec3 colour, float reach = 0.09f) {
+  int n = 0;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) {
+      const vec3 d = glm::abs(p.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)) - colour / 255.0f);
+      n += std::max({d.x, d.y, d.z}) < reach;
+    }
+  return n;
+}
+
+std::vector<std::string> lines_of(const std::string& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("in mid-render the strip shows error over time, the forecast and the passes") {
+  if (no_display()) {
+    WARN("skipped: neither a display nor xvfb-run");
+    return;
+  }
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  // 1440 x 900: the strip is 224 high; accuracy 0..576, passes 576..1008.
+  const auto outcome = window(
+      "hall.gltf",
+      "wait_scene\nwindow.size 1440 900\nwait 0.3\nwait_samples 40\nrender.pause\nwait 0.2\nscreenshot " +
+          file("uniform.png") +
+          // Another render: the first stays as a faint line until it is cleared.
+          "\nrender.resume\nrender.restart\nwait 0.2\nwait_samples 20\nrender.pause\nwait 0.2\nscreenshot " +
+          file("earlier.png") + "\naccuracy.clear_runs\nwait 0.2\nscreenshot " + file("cleared.png") +
+          "\nfilm.layer error\noverlay.tiles true\nreference.load ref.exr\nwait 0.3\nscreenshot " +
+          file("legend.png") + "\nreference.clear\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  const test::Picture uniform(file("uniform.png")), earlier(file("earlier.png")),
+      cleared(file("cleared.png")), legend(file("legend.png"));
+  const vec3 amber(235, 168, 66), teal(64, 184, 172), violet(156, 128, 224), coral(242, 116, 94);
+  for (const vec3& c : {amber, teal, violet, coral}) {
+    INFO(c.x);
+    CHECK(near_colour(uniform, 56, 730, 560, 880, c) > 20);  // its line
+  }
+  CHECK(near_colour(uniform, 56, 730, 560, 880, {92, 131, 175}) > 400);       // the target's line and its tag
+  CHECK(near_colour(uniform, 56, 730, 560, 880, {65, 65, 65}, 0.03f) > 150);  // the forecast's fan
+  CHECK(near_colour(uniform, 590, 710, 760, 880, {178, 178, 178}, 0.02f) > 40);  // stages, stacked
+  CHECK(uniform.contrast(770, 710, 1000, 880) > 0.05);                           // their names and times
+  // The faint line.
+  const auto faint = [](const test::Picture& p) {
+    return near_colour(p, 60, 732, 500, 870, {92, 92, 92}, 0.04f);
+  };
+  CHECK(faint(earlier) > faint(cleared) + 20);
+  // Lower left of the picture: ramps of both legends.
+  CHECK(near_colour(legend, 288, 380, 580, 660, {254, 159, 109}, 0.05f) > 20);  // magma
+  CHECK(near_colour(legend, 288, 380, 580, 660, {176, 42, 45}, 0.05f) > 10);    // tiles, far from the target
+  CHECK(near_colour(uniform, 288, 380, 580, 660, {254, 159, 109}, 0.05f) == 0);
+}
+
+TEST_CASE("the target's line is dragged: a question in uniform sampling, the setting in adaptive") {
+  if (no_display()) {
+    WARN("skipped: neither a display nor xvfb-run");
+    return;
+  }
+  const test::Folder folder;
+  const std::string saved = (folder.path / "session.lucerna").string();
+  const std::string png = (folder.path / "a.png").string();
+  // Where the line is: found in a first picture; both runs are paused at the same sample.
+  const std::string start =
+      "wait_scene\nwindow.size 1440 900\nwait 0.3\nsamples 32\nwait_samples 32\nwait 0.3\n";
+  REQUIRE(window("hall.gltf", start + "screenshot " + png + "\nquit\n").status == 0);
+  const test::Picture first(png);
+  int line = 0;
+  for (int y = 730; y < 880; ++y)
+    if (near_colour(first, 100, y, 400, y + 1, {92, 131, 175}, 0.12f) > 200) line = y;
+  REQUIRE(line > 0);
+  const auto drag = [&](int from, int by) {
+    return fmt::format("mouse.move 200 {}\nmouse.down\nmouse.move 200 {}\nmouse.move 200 {}\nmouse.up\n",
+                       from, from + by / 2, from + by);
+  };
+  const auto outcome = window("hall.gltf", start + drag(line, -30) +
+                                               "sampling.mode adaptive\nsampling.target_error 0.1\n"
+                                               "wait_samples 32\nwait 0.3\nscreenshot " +
+                                               png + "\nscript.save " + saved + "\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  const auto asked = lines_of(saved);
+  double what_if = 0;
+  for (const std::string& l : asked)
+    if (l.starts_with("accuracy.what_if ")) what_if = std::stod(l.substr(17));
+  CHECK(what_if > 0.012);
+  CHECK(what_if < 0.1);
+  CHECK(std::count_if(asked.begin(), asked.end(), [](const std::string& l) {
+          return l.starts_with("accuracy.what_if") || l.starts_with("set sampling.target_error");
+        }) == 2);  // one gesture, one line
+
+  const test::Picture second(png);
+  int adaptive = 0;
+  for (int y = 730; y < 880; ++y)
+    if (near_colour(second, 100, y, 400, y + 1, {92, 131, 175}, 0.12f) > 200) adaptive = y;
+  REQUIRE(adaptive > 0);
+  const auto set = window("hall.gltf", start + "sampling.mode adaptive\nsampling.target_error 0.1\n" +
+                                           "wait_samples 32\nwait 0.3\n" + drag(adaptive, 30) +
+                                           "script.save " + saved + "\nundo\nquit\n");
+  INFO(set.output);
+  REQUIRE(set.status == 0);
+  const std::string last = lines_of(saved).back();
+  INFO(last);
+  REQUIRE(last.starts_with("set sampling.target_error "));
+  const double target = std::stod(last.substr(26));
+  CHECK(target < 0.09);
+  CHECK(target > 0.01);
 }

@@ -1,4 +1,4 @@
-// The strip at the bottom: device and timings, and the log.
+// The log and the console under it.
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -11,92 +11,6 @@
 
 namespace lucerna::ui {
 namespace {
-
-/// Greys of different lightness, so that neighbours in the stacked bar part without claiming a meaning.
-ImU32 stage_colour(size_t index, bool host) {
-  static constexpr int steps[] = {178, 126, 152, 104, 190, 138, 116, 164};
-  const int v = steps[index % 8];
-  return host ? IM_COL32(v * 2 / 3, v * 5 / 6, v, 255) : colour::grey(v);
-}
-
-void figure(const char* name, const std::string& value, const std::string& help, float width) {
-  const ImVec2 lo = ImGui::GetCursorScreenPos();
-  ImGui::Dummy({width, px(36)});
-  tooltip(help);
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  draw_text(list, lo, {lo.x + width, lo.y + px(16)}, name, colour::text_dim, Align::left,
-            theme().fonts.small);
-  draw_text(list, {lo.x, lo.y + px(16)}, {lo.x + width - px(8), lo.y + px(36)}, elided(value, width - px(8)),
-            colour::text);
-}
-
-void figures(const session::Snapshot& s, float width) {
-  // The device's name takes two columns.
-  const int columns = width > px(660) ? 7 : width > px(440) ? 4 : 3;
-  const float w = std::floor(width / static_cast<float>(columns));
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  int n = 0;
-  const auto put = [&](const char* name, const std::string& value, const std::string& help, int span = 1) {
-    ImGui::SetCursorScreenPos(
-        {at.x + static_cast<float>(n % columns) * w, at.y + static_cast<float>(n / columns) * px(40)});
-    figure(name, value, help, w * static_cast<float>(span));
-    n += span;
-  };
-  put("Device", s.device.empty() ? "\xE2\x80\x93" : s.device, s.device, 2);
-  put("Tracer", s.tracer.empty() ? "\xE2\x80\x93" : s.tracer, "Who traces the rays.");
-  put("Rays", fmt::format("{:.2f} Mray/s", s.mrays_per_second),
-      fmt::format(
-          "Rate of this picture; {} rays since it started.{}", count_text(static_cast<double>(s.rays)),
-          s.dropped == 0
-              ? ""
-              : fmt::format(" {} contributions were refused because they were not finite.", s.dropped)));
-  put("Size", s.width == 0 ? "\xE2\x80\x93" : fmt::format("{} \xC3\x97 {}", s.width, s.height),
-      "Pixels of the picture.");
-  put("Device memory", megabytes_text(s.device_mb), "Memory taken on the device.");
-  put("Host memory", megabytes_text(s.host_mb), "Memory of this program.");
-  ImGui::SetCursorScreenPos({at.x, at.y + static_cast<float>((n + columns - 1) / columns) * px(40) + px(2)});
-}
-
-void stage_rows(const std::vector<session::StageStatus>& stages, float width) {
-  double total = 0, longest = 0;
-  for (const auto& stage : stages) total += stage.ms, longest = std::max(longest, stage.ms);
-  if (total <= 0) return label("No stage has run yet", colour::text_faint);
-  std::vector<Part> parts;
-  for (size_t i = 0; i < stages.size(); ++i)
-    parts.push_back({static_cast<float>(stages[i].ms / total), stage_colour(i, stages[i].host)});
-  stacked_bar(parts, 8, width);
-  tooltip("Time of all stages since the picture started, in the order of the rows below.");
-  gap(2);
-  // As many columns as fit; rows are read downwards.
-  const int columns = std::max(1, static_cast<int>((width + px(32)) / px(256)));
-  const float between = px(32);
-  const float w = std::floor((width + between) / static_cast<float>(columns));
-  const size_t rows = (stages.size() + static_cast<size_t>(columns) - 1) / static_cast<size_t>(columns);
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  for (size_t i = 0; i < stages.size(); ++i) {
-    const auto& stage = stages[i];
-    const ImVec2 lo(at.x + static_cast<float>(i / rows) * w, at.y + static_cast<float>(i % rows) * px(20));
-    const float right = lo.x + w - between;
-    list->AddRectFilled({lo.x, lo.y + px(6)}, {lo.x + px(8), lo.y + px(14)}, stage_colour(i, stage.host),
-                        px(2));
-    const float numbers = right - px(116);
-    std::string name = stage.name;
-    draw_text(list, {lo.x + px(16), lo.y}, {numbers, lo.y + px(20)}, elided(name, numbers - lo.x - px(16)),
-              colour::text_dim);
-    draw_text(list, {numbers, lo.y}, {right - px(52), lo.y + px(20)}, ms_text(stage.ms), colour::text,
-              Align::right);
-    draw_text(list, {right - px(52), lo.y}, {right, lo.y + px(20)},
-              fmt::format("{:.1f} %", 100 * stage.ms / total), colour::text_dim, Align::right);
-    ImGui::SetCursorScreenPos(lo);
-    ImGui::PushID(static_cast<int>(i));
-    ImGui::InvisibleButton("##stage", {right - lo.x, px(20)});
-    ImGui::PopID();
-    tooltip(fmt::format("{}: {} {}since the picture started.", stage.name, ms_text(stage.ms),
-                        stage.host ? "of wall time on the host " : "on the device "));
-  }
-  ImGui::SetCursorScreenPos({at.x, at.y + static_cast<float>(rows) * px(20)});
-}
 
 ImU32 level_colour(log::Level level) {
   switch (level) {
@@ -164,7 +78,7 @@ std::string console_hint(const Ui& ui) {
 
 void draw_console(Ui& ui, const Area& area) {
   ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddLine({area.lo.x, area.lo.y + 0.5f}, {area.hi.x, area.lo.y + 0.5f}, colour::hairline);
+  list->AddLine({area.lo.x, area.lo.y}, {area.hi.x, area.lo.y}, colour::hairline);
   Console& console = ui.console;
   ImFont* font = theme().fonts.regular;
   draw_text(list, {area.lo.x + px(12), area.lo.y}, {area.lo.x + px(24), area.hi.y}, "\xE2\x80\xBA",
@@ -201,8 +115,9 @@ void draw_console(Ui& ui, const Area& area) {
   }
 }
 
-/// The heading of a bottom panel; returns the x where its content at the right may start.
-void heading(Ui& ui, const char* title, const Area& area, bool folds) {
+}  // namespace
+
+float panel_heading(const char* title, const Area& area) {
   const ImVec2 lo = area.lo, hi(area.hi.x, area.lo.y + px(k_folded_bottom));
   ImDrawList* list = ImGui::GetWindowDrawList();
   ImFont* font = theme().fonts.caps;
@@ -211,41 +126,21 @@ void heading(Ui& ui, const char* title, const Area& area, bool folds) {
     list->AddText(font, font->FontSize, at, colour::text_dim, c, c + 1);
     at.x += font->GetCharAdvance(static_cast<unsigned char>(*c)) + px(0.6f);
   }
-  if (!folds) return;
-  ImGui::SetCursorScreenPos({hi.x - px(28), lo.y + px(3)});
-  if (sign_button("##fold", ui.layout.bottom_open ? Sign::chevron_down : Sign::chevron_up, true,
-                  colour::text_faint))
-    ui.act("window.fold", "bottom", ui.layout.bottom_open);
-  tooltip(ui.layout.bottom_open ? "Folds the strip." : "Unfolds the strip.");
-}
-
-}  // namespace
-
-void draw_timings(Ui& ui, const Area& area) {
-  begin_panel("##timings", area, colour::panel, false);
-  heading(ui, "DEVICE & TIMINGS", area, false);
-  if (ui.layout.bottom_open) {
-    ImGui::SetCursorScreenPos({area.lo.x, area.lo.y + px(30)});
-    ImGui::BeginChild("##body", {area.width(), std::max(1.0f, area.hi.y - area.lo.y - px(30))});
-    const float width = begin_padded();
-    if (ui.snapshot)
-      figures(*ui.snapshot, width), gap(4), stage_rows(ui.snapshot->stages, width);
-    else
-      label("No device yet", colour::text_faint);
-    end_padded();
-    gap(8);
-    ImGui::EndChild();
-  }
-  ImGui::End();
+  return at.x + px(8);
 }
 
 void draw_log(Ui& ui, const Area& area) {
   begin_panel("##log", area, colour::panel, false);
-  heading(ui, "LOG", area, true);
+  panel_heading("LOG", area);
+  ImGui::SetCursorScreenPos({area.hi.x - px(28), area.lo.y + px(3)});
+  if (sign_button("##fold", ui.layout.bottom_open ? Sign::chevron_down : Sign::chevron_up, true,
+                  colour::text_faint))
+    ui.act("window.fold", "bottom", ui.layout.bottom_open);
+  tooltip(ui.layout.bottom_open ? "Folds the strip." : "Unfolds the strip.");
   static const char* names[] = {"Debug", "Info", "Warnings", "Errors"};
   std::array<size_t, 4> counts{};
   for (const LogLine& line : ui.log) ++counts[static_cast<size_t>(line.level)];
-  if (ui.layout.bottom_open && area.width() > px(400)) {
+  if (ui.layout.bottom_open && area.width() > px(460)) {
     float right = area.hi.x - px(36);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const auto chip = [&](const char* id, const std::string& text, bool on, ImU32 ink, bool counted = false) {

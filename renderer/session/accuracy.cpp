@@ -1,0 +1,172 @@
+#include "session/accuracy.h"
+
+#include <algorithm>
+
+#include "session/renderer.h"
+
+namespace lucerna::session {
+namespace {
+
+constexpr size_t k_passes = 64;
+/// Samples a pixel from which on heavy tails can be told from a bad start.
+constexpr uint32_t k_tail_samples = 32;
+
+/// Seconds that a ray takes: over the last half of the work, so that the first, short passes do not count.
+double seconds_a_ray(const stats::Ledger& ledger) {
+  const auto& lines = ledger.entries();
+  if (lines.empty() || lines.back().rays == 0) return 0;
+  const stats::Entry& last = lines.back();
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line)
+    if (2 * line->rays <= last.rays)
+      return (last.wall_s - line->wall_s) / static_cast<double>(last.rays - line->rays);
+  return last.wall_s / static_cast<double>(last.rays);
+}
+
+}  // namespace
+
+std::array<double, stats::k_layers> Accuracy::error() const {
+  return ledger.entries().empty() ? std::array<double, stats::k_layers>{} : ledger.entries().back().error;
+}
+
+uint32_t Accuracy::count(uint32_t state) const {
+  return static_cast<uint32_t>(
+      std::count_if(tiles.begin(), tiles.end(), [&](const TileStatus& t) { return t.state == state; }));
+}
+
+std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
+  if (!a.adaptive) return stats::seconds_to(a.ledger, target);
+  const double each = seconds_a_ray(a.ledger);
+  if (a.ledger.entries().empty() || a.tiles.empty() || each <= 0 || a.paths <= 0 || !(target > 0))
+    return std::nullopt;
+  const stats::Entry& last = a.ledger.entries().back();
+  std::vector<stats::TileProgress> tiles;
+  tiles.reserve(a.tiles.size());
+  double paths = 0;
+  for (const TileStatus& t : a.tiles) {
+    if (t.samples < 2) return std::nullopt;
+    // A tile that is done under one target may be open under another.
+    const bool open = t.samples < a.max_samples && (t.samples < a.min_samples || t.error > target ||
+                                                    (target >= a.target && t.state <= shared::k_tile_active));
+    tiles.push_back({.error = std::max(0.0, double{t.error}),
+                     .samples = double(t.samples),
+                     .pixels = double(t.pixels),
+                     .open = open});
+    paths += double(t.samples) * t.pixels;
+  }
+  const stats::Band total = stats::total_paths(tiles, a.across, target, a.min_samples, a.max_samples);
+  const double rays_a_path = static_cast<double>(last.rays) / static_cast<double>(last.paths);
+  const auto seconds = [&](double all) {
+    return last.wall_s + std::max(0.0, all - static_cast<double>(last.paths)) * rays_a_path * each;
+  };
+  return stats::Band{seconds(total.low), seconds(total.middle), seconds(total.high)};
+}
+
+std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
+  const std::vector<film::TileError> errors =
+      flags || !r.adaptive() ? r.tile_errors() : std::vector<film::TileError>();
+  std::vector<TileStatus> tiles(r.adaptive() ? r.adaptive()->tiles().size() : errors.size());
+  const double target = r.settings().real("sampling.target_error");
+  const auto side = static_cast<uint32_t>(std::stoul(r.settings().text("sampling.tile")));
+  const size_t across = (r.film().width() + side - 1) / side;
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    TileStatus& t = tiles[i];
+    const auto along = [&](size_t index, uint32_t whole) {
+      return std::min(whole, (static_cast<uint32_t>(index) + 1) * side) - static_cast<uint32_t>(index) * side;
+    };
+    t.pixels = along(i % across, r.film().width()) * along(i / across, r.film().height());
+    if (const schedule::AdaptiveSchedule* adaptive = r.adaptive()) {
+      const schedule::Tile& known = adaptive->tiles()[i];
+      t.samples = known.samples;
+      if (known.samples >= 2) t.error = known.error;
+      t.state = static_cast<uint32_t>(known.state);
+    } else {
+      t.samples = r.samples();
+      if (errors[i].pixels > 0) {
+        t.error = static_cast<float>(errors[i].relative);
+        t.state = t.error <= target ? shared::k_tile_done
+                  : r.done()        ? shared::k_tile_capped
+                                    : shared::k_tile_active;
+      }
+    }
+    t.heavy_tailed = flags && errors[i].heavy_tailed && t.samples >= k_tail_samples;
+  }
+  return tiles;
+}
+
+void AccuracyKeeper::follow(const Renderer& r, uint64_t scene_id) {
+  if (!r.ready()) return;
+  if (r.restarts() != restarts_) {
+    restarts_ = r.restarts();
+    const uint64_t run = now_.run + 1;
+    now_ = {};
+    now_.run = run;
+    passes_ = r.passes();
+    pass_ms_.clear(), pass_paths_ = 0;
+    changed_ = true;
+  }
+  now_.scene_id = scene_id;
+  if (r.passes() != passes_) note_pass(r);
+  const auto& lines = r.ledger().entries();
+  const auto& known = now_.ledger.entries();
+  if (lines.size() == known.size() &&
+      (lines.empty() || (lines.back().paths == known.back().paths &&
+                         lines.back().truth.has_value() == known.back().truth.has_value())))
+    return;
+  now_.ledger = r.ledger();
+  double hardest = 0;
+  if (r.adaptive())
+    for (const schedule::Tile& t : r.adaptive()->tiles())
+      if (t.state != schedule::TileState::capped && t.samples >= 2)
+        hardest = std::max(hardest, double{t.error});
+  now_.hardest.resize(lines.size(), hardest);
+  if (!lines.empty()) now_.hardest.back() = hardest;
+  changed_ = true;
+}
+
+void AccuracyKeeper::note_pass(const Renderer& r) {
+  passes_ = r.passes();
+  const transport::TransportStats& stats = r.stats();
+  PassStatus pass;
+  now_.stages.clear();
+  for (size_t i = 0; i < stats.stages.size(); ++i) {
+    now_.stages.push_back(stats.stages[i].name);
+    pass.stage_ms.push_back(static_cast<float>(stats.stages[i].ms - (i < pass_ms_.size() ? pass_ms_[i] : 0)));
+    if (i < pass_ms_.size())
+      pass_ms_[i] = stats.stages[i].ms;
+    else
+      pass_ms_.push_back(stats.stages[i].ms);
+  }
+  pass.paths = stats.paths - pass_paths_;
+  pass_paths_ = stats.paths;
+  pass.samples = r.adaptive() ? r.adaptive()->most_samples() : r.samples();
+  now_.passes.push_back(std::move(pass));
+  if (now_.passes.size() > k_passes) now_.passes.pop_front();
+  changed_ = true;
+}
+
+std::shared_ptr<const Accuracy> AccuracyKeeper::publish(const Renderer& r, bool tiles) {
+  if (published_ && !changed_ && !tiles) return published_;
+  if (tiles || changed_) {
+    now_.settings = r.settings().all();
+    now_.adaptive = r.adaptive() != nullptr;
+    now_.finished = r.done();
+    now_.target = r.settings().real("sampling.target_error");
+    now_.min_samples = r.adaptive() ? r.adaptive()->options().min_samples : 0;
+    now_.max_samples = r.max_samples();
+    now_.tile = static_cast<uint32_t>(std::stoul(r.settings().text("sampling.tile")));
+    now_.across = (r.film().width() + now_.tile - 1) / now_.tile;
+    now_.pixels = double(r.film().width()) * r.film().height();
+    now_.reference = r.reference() ? r.reference()->file.filename().string() : "";
+    now_.reference_applies = r.reference_applies();
+    now_.tiles.clear();
+    const bool shown = r.view().tiles > 0;
+    if (shown || now_.adaptive) now_.tiles = tile_status(r, shown);
+  }
+  now_.paths = double(r.stats().paths), now_.rays = double(r.stats().rays);
+  if (now_.adaptive && (tiles || changed_)) now_.forecast = seconds_to(now_, now_.target);
+  changed_ = false;
+  published_ = std::make_shared<const Accuracy>(now_);
+  return published_;
+}
+
+}  // namespace lucerna::session

@@ -1,0 +1,248 @@
+// links: ui
+// What the panel of accuracy computes: axes, words, forecasts, earlier runs. Without a window.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "ui/accuracy_plot.h"
+#include "ui/chart.h"
+
+using namespace lucerna;
+using namespace lucerna::ui;
+
+namespace {
+
+std::vector<std::string> labels(const LogAxis& axis, Unit unit, float room) {
+  std::vector<std::string> texts;
+  for (const Tick& t : ticks(axis, unit, room))
+    if (t.labelled) texts.push_back(tick_text(t.value, unit));
+  return texts;
+}
+
+/// A uniform render of `samples` passes of 0.5 s whose error falls with the root of the samples.
+session::Accuracy uniform(int samples, double first_error = 0.8) {
+  session::Accuracy a;
+  a.run = 1, a.scene_id = 1, a.max_samples = 256, a.pixels = 1000;
+  for (double n = 1; n <= samples; n *= 1.25) {
+    stats::Entry e;
+    e.wall_s = e.device_s = 0.5 * n;
+    e.samples = n, e.paths = static_cast<uint64_t>(1000 * n), e.rays = 5 * e.paths;
+    e.error = {first_error / std::sqrt(n), 0.5 * first_error / std::sqrt(n),
+               0.01 * first_error / std::sqrt(n), 0, 0};
+    a.ledger.add(e);
+    a.hardest.push_back(0);
+  }
+  a.paths = 1000.0 * samples, a.rays = 5 * a.paths;
+  a.settings["sampling.mode"] = "uniform";
+  return a;
+}
+
+/// The same in adaptive sampling: four tiles of which one is hard.
+session::Accuracy adaptive(double target) {
+  session::Accuracy a = uniform(64);
+  a.adaptive = true, a.target = target;
+  a.min_samples = 16, a.max_samples = 4096, a.tile = 16, a.across = 2;
+  for (const double sigma : {0.2, 0.3, 0.4, 2.0}) {
+    session::TileStatus t;
+    t.samples = 64, t.pixels = 250;
+    t.error = static_cast<float>(sigma / 8);
+    t.state = double{t.error} <= target ? shared::k_tile_done : shared::k_tile_active;
+    a.tiles.push_back(t);
+  }
+  for (double& h : a.hardest) h = 0.25;
+  return a;
+}
+
+}  // namespace
+
+TEST_CASE("a logarithmic axis goes both ways, and what cannot be drawn lies outside") {
+  const LogAxis x{0.1, 1000, 50, 450}, up{0.001, 1, 180, 20};
+  CHECK(x.at(0.1) == Approx(50));
+  CHECK(x.at(10) == Approx(250));
+  CHECK(up.at(1) == Approx(20));
+  for (const double v : {0.1, 0.37, 5.0, 999.0}) CHECK(x.value(x.at(v)) == Approx(v).epsilon(1e-4));
+  for (const double v : {0.001, 0.05, 0.9}) CHECK(up.value(up.at(v)) == Approx(v).epsilon(1e-4));
+  for (const double v : {0.0, -3.0, 1e-300}) CHECK(x.at(v) < 50);
+  CHECK(x.at(1e300) > 450);
+  CHECK(up.at(0) > 180);
+}
+
+TEST_CASE("ticks: 1-2-5 where there is room, decades where not, and never on top of one another") {
+  const LogAxis percent{0.001, 1, 400, 0};
+  CHECK(labels(percent, Unit::relative, 20) == std::vector<std::string>{"0.1 %", "0.2 %", "0.5 %", "1 %",
+                                                                        "2 %", "5 %", "10 %", "20 %", "50 %",
+                                                                        "100 %"});
+  CHECK(labels(percent, Unit::relative, 60) == std::vector<std::string>{"0.1 %", "1 %", "10 %", "100 %"});
+  CHECK(labels({1, 7200, 0, 600}, Unit::seconds, 20) ==
+        std::vector<std::string>{"1 s", "2 s", "5 s", "10 s", "20 s", "1 min", "2 min", "5 min", "10 min",
+                                 "20 min", "1 h", "2 h"});
+  CHECK(labels({0.01, 200000, 0, 300}, Unit::seconds, 40).size() >= 3);
+  for (const Unit unit : {Unit::seconds, Unit::relative, Unit::count, Unit::milliseconds})
+    for (double lo = 1e-4; lo < 100; lo *= 3)
+      for (const double span : {4.0, 50.0, 3e3, 1e6})
+        for (const float width : {90.0f, 400.0f}) {
+          const LogAxis axis{lo, lo * span, 0, width};
+          float before = -1e9f;
+          std::set<double> seen;
+          for (const Tick& t : ticks(axis, unit, 30)) {
+            CHECK(t.value >= lo * (1 - 1e-6));
+            CHECK(t.value <= lo * span * (1 + 1e-6));
+            CHECK(seen.insert(t.value).second);
+            if (!t.labelled) continue;
+            CHECK(axis.at(t.value) - before >= 30 - 1e-3f);
+            before = axis.at(t.value);
+          }
+        }
+  CHECK(tick_text(0.02, Unit::seconds) == "20 ms");
+  CHECK(tick_text(20000, Unit::count) == "20k");
+  CHECK(tick_text(0.05, Unit::milliseconds) == "50 \xC2\xB5s");
+}
+
+TEST_CASE("round numbers") {
+  CHECK(nice_below(0.037) == Approx(0.02));
+  CHECK(nice_above(0.037) == Approx(0.05));
+  for (const double v : {1e-3, 2e-3, 0.5, 1.0, 20.0, 5e4}) {
+    CHECK(nice_below(v) == Approx(v));
+    CHECK(nice_above(v) == Approx(v));
+  }
+  CHECK(nice_above(5.1) == Approx(10));
+  CHECK(about_text(4.23) == "4.2 s");
+  CHECK(about_text(42.4) == "42 s");
+  CHECK(about_text(131) == "2 min 10 s");
+  CHECK(about_text(100) == "1 min 40 s");
+  CHECK(about_text(180) == "3 min");
+  CHECK(about_text(12000) == "3 h 20 min");
+  CHECK(about_text(14 * 3600) == "14 h");
+  CHECK(about_text(5 * 86400) == "5 days");
+  CHECK(about_text(3.2e7) == "1 year");
+  CHECK(about_text(INFINITY) == "a century");
+  CHECK(about_text(59.7) == "1 min");
+  CHECK(about_text(3599) == "1 h");
+  CHECK(percent_text(0.0182) == "1.82 %");
+  CHECK(percent_text(0.182) == "18.2 %");
+  CHECK(percent_text(1.82) == "182 %");
+}
+
+TEST_CASE("a dragged target lands on two figures within what the setting takes") {
+  CHECK(snapped_target(0.01234) == Approx(0.012));
+  CHECK(snapped_target(0.0999) == Approx(0.1));
+  CHECK(snapped_target(3.456) == Approx(3.5));
+  CHECK(snapped_target(1e-9) == Approx(0.0001));
+  CHECK(snapped_target(50) == 10);
+  // All along a drag over the plot: the value follows the pointer.
+  const LogAxis up{0.001, 1, 180, 20};
+  double before = 0;
+  for (float y = 180; y >= 20; y -= 1) {
+    const double v = snapped_target(up.value(y));
+    CHECK(v >= before);
+    CHECK(std::abs(up.at(v) - y) < 2);
+    before = v;
+  }
+}
+
+TEST_CASE("uniform sampling: what a smaller error will cost, in words") {
+  const session::Accuracy a = uniform(100);
+  const double now = a.ledger.entries().back().wall_s, error = a.ledger.entries().back().error[0];
+  // Four times the time for half the error.
+  const auto band = session::seconds_to(a, 0.5 * error);
+  REQUIRE(band);
+  CHECK(band->middle == Approx(4 * now).epsilon(0.01));
+  CHECK(band->low < band->middle);
+  CHECK(band->high > band->middle);
+  const auto texts = target_texts(a, 0.01, stats::Band{100, 130, 180}, now);
+  CHECK(texts.at(0) == "1 % will take about 2 min 10 s (1 min 40 s to 3 min)");
+  CHECK(texts.back() == "1 %");
+  for (size_t i = 1; i < texts.size(); ++i) CHECK(texts[i].size() < texts[i - 1].size());
+  const auto reached = session::seconds_to(a, 2 * error);
+  REQUIRE(reached);
+  CHECK_THAT(target_texts(a, 0.16, reached, now).at(0), Catch::StartsWith("16 % was reached after "));
+  CHECK(target_texts({}, 0.01, {}, 0).at(0) == "1 %");
+}
+
+TEST_CASE("adaptive sampling: the forecast is of the rays that the tiles still need") {
+  const session::Accuracy a = adaptive(0.05);
+  const auto band = session::seconds_to(a, 0.05);
+  REQUIRE(band);
+  // The hard tile wants (2 / 0.05)^2 = 1600 samples, the others are done or nearly so.
+  const double now = a.ledger.entries().back().wall_s, a_path = now / a.ledger.entries().back().paths;
+  CHECK(band->middle > now + 0.7 * 250 * 1536 * a_path);
+  CHECK(band->middle < now + 1.6 * 250 * 1536 * a_path);
+  const auto tighter = session::seconds_to(a, 0.04), looser = session::seconds_to(a, 0.5);
+  REQUIRE(tighter);
+  REQUIRE(looser);
+  CHECK(tighter->middle > band->middle);
+  CHECK(looser->high == Approx(now).epsilon(0.3));
+  CHECK_THAT(target_texts(a, 0.05, band, now).at(0),
+             Catch::StartsWith("Every tile under 5 % will take about "));
+
+  session::Accuracy over = a;
+  over.finished = true;
+  over.tiles[3].state = shared::k_tile_capped;
+  CHECK(target_texts(over, 0.05, band, now).at(0) == "1 of 4 tiles stay over 5 %, with all of 4096 samples");
+  over.tiles[3].state = shared::k_tile_done;
+  CHECK(target_texts(over, 0.05, stats::Band{60, 60, 60}, 60).at(0) == "Every tile under 5 % after 1 min");
+}
+
+TEST_CASE("the plot reaches as far as its lines, its target and, within reason, its forecast") {
+  const session::Accuracy a = uniform(100);
+  const PlotRange r = plot_range(a, {}, 0.01, stats::Band{3000, 6000, 1e9}, 50);
+  CHECK(r.t_lo <= 0.5);
+  CHECK(r.t_hi >= 50);
+  CHECK(r.t_hi <= 50 * 300 * 2);  // not to the end of time
+  CHECK(r.e_lo < 0.01);
+  CHECK(r.e_hi >= 0.8);
+  // Earlier runs count.
+  std::deque<Run> earlier{{std::make_shared<session::Accuracy>(uniform(2000, 9)), {}, nullptr, 0, 0}};
+  const PlotRange wide = plot_range(a, earlier, 0.01, {}, 50);
+  CHECK(wide.t_hi >= 500);
+  CHECK(wide.e_hi >= 9);
+  const PlotRange none = plot_range({}, {}, 0.05, {}, 0);
+  CHECK(none.t_lo > 0);
+  CHECK(none.t_hi > none.t_lo);
+  CHECK(none.e_hi > none.e_lo);
+}
+
+TEST_CASE("earlier runs of a scene are kept, told apart and forgotten with it") {
+  Runs runs;
+  const auto scene = std::make_shared<scene::Scene>();
+  session::Snapshot s;
+  s.width = 320, s.height = 200;
+  const auto show = [&](session::Accuracy a, uint64_t run, uint64_t scene_id = 1) {
+    a.run = run, a.scene_id = scene_id;
+    s.accuracy = std::make_shared<session::Accuracy>(a);
+    runs.follow(s, scene);
+  };
+  show(uniform(3), 1);
+  show(uniform(100), 1);  // the same run, further on
+  CHECK(runs.earlier().empty());
+  show(adaptive(0.05), 2);
+  CHECK(runs.earlier().size() == 1);
+  CHECK(runs.earlier()[0].accuracy->ledger.entries().size() == uniform(100).ledger.entries().size());
+  show(uniform(2), 3);  // too short to be drawn: it leaves no line
+  show(uniform(2), 4);
+  CHECK(runs.earlier().size() == 2);
+  session::Accuracy changed = uniform(100);
+  changed.settings["sampling.mode"] = "adaptive", changed.settings["film.ev"] = "2";
+  show(changed, 5);
+  s.width = 640;
+  CHECK(runs.earlier().size() == 2);
+  show(changed, 6);
+  const auto told = differences(runs.earlier().back(), runs.current());
+  REQUIRE(told.size() == 2);
+  CHECK(told[0] == "sampling.mode uniform (now adaptive)");
+  CHECK_THAT(told[1], Catch::StartsWith("320 \xC3\x97 200 pixels"));
+  CHECK(differences(runs.current(), runs.current()).empty());
+  Run lit = runs.current();
+  auto dark = std::make_shared<scene::Scene>();
+  dark->environment.scale = 0.5f;
+  lit.scene = dark;
+  CHECK(differences(lit, runs.current()) == std::vector<std::string>{"other lights"});
+  for (uint64_t run = 10; run < 20; ++run) show(uniform(100), run);
+  CHECK(runs.earlier().size() == Runs::k_most);
+  runs.clear();
+  CHECK(runs.earlier().empty());
+  show(uniform(100), 30);
+  CHECK(runs.earlier().size() == 1);
+  show(uniform(100), 31, 2);
+  CHECK(runs.earlier().empty());
+}

@@ -1,0 +1,309 @@
+// The panel of accuracy: error against time, what a smaller error will cost, and earlier renders to compare
+// with.
+#include <fmt/format.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy_plot.h"
+#include "chart.h"
+#include "state.h"
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+using session::Accuracy;
+
+constexpr ImU32 k_sum = colour::text;
+
+ImU32 layer_ink(size_t layer) { return layer == 0 ? k_sum : colour::component[layer - 1]; }
+
+struct Plot {
+  Area area;
+  LogAxis x, y;
+  ImVec2 at(double seconds, double error) const { return {x.at(seconds), y.at(error)}; }
+};
+
+/// Points of one of the ledger's lines; what is 0 is not known.
+template <class Value>
+std::vector<ImVec2> line_points(const Plot& plot, const Accuracy& a, const Value& value) {
+  std::vector<ImVec2> points;
+  const auto& lines = a.ledger.entries();
+  for (size_t i = 0; i < lines.size(); ++i)
+    if (const double e = value(i); e > 0 && lines[i].wall_s > 0)
+      points.push_back(plot.at(lines[i].wall_s, e));
+  return points;
+}
+
+std::vector<ImVec2> error_points(const Plot& plot, const Accuracy& a, size_t layer) {
+  return line_points(plot, a, [&](size_t i) { return a.ledger.entries()[i].error[layer]; });
+}
+
+void stroke(ImDrawList* list, const std::vector<ImVec2>& points, ImU32 ink, float width) {
+  if (points.size() == 1) list->AddCircleFilled(points[0], width, ink, 8);
+  if (points.size() > 1) list->AddPolyline(points.data(), static_cast<int>(points.size()), ink, 0, width);
+}
+
+float distance_to(const ImVec2& p, const std::vector<ImVec2>& points) {
+  float best = 1e9f;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const ImVec2 a = points[i > 0 ? i - 1 : 0], b = points[i];
+    const ImVec2 c = ImLineClosestPoint(a, b, p);
+    best = std::min(best, std::hypot(c.x - p.x, c.y - p.y));
+  }
+  return best;
+}
+
+void draw_axes(ImDrawList* list, const Plot& plot) {
+  ImFont* font = theme().fonts.small;
+  const Area& a = plot.area;
+  for (const Tick& t : ticks(plot.x, Unit::seconds, px(46))) {
+    const float x = std::floor(plot.x.at(t.value));
+    list->AddLine({x, a.lo.y}, {x, a.hi.y}, colour::grey(t.labelled ? 48 : 40));
+    if (!t.labelled) continue;
+    const std::string text = tick_text(t.value, Unit::seconds);
+    const float half = 0.5f * text_width(text, font);
+    const float middle = std::clamp(x, a.lo.x + half - px(8), a.hi.x - half + px(4));
+    draw_text(list, {middle - half - 1, a.hi.y + px(1)}, {middle + half + px(2), a.hi.y + px(15)}, text,
+              colour::text_faint, Align::left, font);
+  }
+  for (const Tick& t : ticks(plot.y, Unit::relative, px(17))) {
+    const float y = std::floor(plot.y.at(t.value));
+    list->AddLine({a.lo.x, y}, {a.hi.x, y}, colour::grey(t.labelled ? 48 : 40));
+    if (!t.labelled || y > a.hi.y - px(5)) continue;
+    draw_text(list, {a.lo.x - px(44), y - px(8)}, {a.lo.x - px(6), y + px(7)},
+              tick_text(t.value, Unit::relative), colour::text_faint, Align::right, font);
+  }
+}
+
+/// The target's line: what it costs, and dragging it. In adaptive sampling it is the setting; in uniform
+/// sampling only a question. The range stands still meanwhile. Returns whether the pointer has to do with it.
+bool drag_target(Ui& ui, const Plot& plot, const Accuracy& a, double target, const PlotRange& range) {
+  const float y = std::floor(plot.y.at(target));
+  const bool inside = y >= plot.area.lo.y && y <= plot.area.hi.y;
+  if (!inside && !ui.held_range) return false;
+  ImGui::SetCursorScreenPos({plot.area.lo.x, y - px(5)});
+  ImGui::InvisibleButton("##target", {plot.area.width(), px(11)});
+  const bool held = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
+  if (ImGui::IsItemActivated()) ui.held_offset = ImGui::GetIO().MousePos.y - y, ui.held_range = range;
+  if (!held) ui.held_range.reset();
+  if (held) {
+    const float place =
+        std::clamp(ImGui::GetIO().MousePos.y - ui.held_offset, plot.area.lo.y, plot.area.hi.y);
+    const double wanted = snapped_target(plot.y.value(place));
+    if (wanted != target && ImGui::GetIO().MouseDelta.y != 0) {
+      const std::string text = fmt::format("{:.4g}", wanted);
+      if (a.adaptive)
+        ui.act("set", "sampling.target_error", text);
+      else
+        ui.act("accuracy.what_if", text);
+    }
+  }
+  if (held || hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeNS);
+  if (hovered && !held)
+    tooltip(a.adaptive ? "The error under which every tile is to come. Drag to change it: samples are kept."
+                       : "Drag to ask what another error would cost. In adaptive sampling this line is the "
+                         "target.");
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const ImU32 ink = held || hovered ? colour::accent : colour::with_alpha(colour::accent, 0.75f);
+  list->AddLine({plot.area.lo.x, y}, {plot.area.hi.x, y}, ink);
+  const std::string tag = tick_text(target, Unit::relative);
+  ImFont* font = theme().fonts.small;
+  const float w = text_width(tag, font) + px(10);
+  const ImVec2 lo(plot.area.hi.x - w, y - px(8)), hi(plot.area.hi.x, y + px(8));
+  list->AddRectFilled(lo, hi, ink, px(3));
+  draw_text(list, lo, hi, tag, colour::grey(24), Align::centre, font);
+  return held || hovered;
+}
+
+/// The forecast: from where the line is now to where it meets the target, as a fan.
+void draw_forecast(ImDrawList* list, const Plot& plot, const Accuracy& a, double target,
+                   const std::optional<stats::Band>& band) {
+  const auto from = present(a);
+  if (!band || !from || from->error <= target) return;
+  const ImVec2 tip = plot.at(from->seconds, from->error);
+  const ImVec2 low = plot.at(band->low, target), high = plot.at(band->high, target);
+  list->AddTriangleFilled(tip, low, high, colour::with_alpha(k_sum, 0.16f));
+  dashed_line(list, {tip, plot.at(band->middle, target)}, colour::with_alpha(k_sum, 0.55f), px(3), px(3), 1);
+}
+
+void card(const std::vector<std::pair<std::string, ImU32>>& rows) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(10), px(7)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(3));
+  ImGui::BeginTooltip();
+  for (const auto& [text, ink] : rows) label(text, ink, theme().fonts.small);
+  ImGui::EndTooltip();
+  ImGui::PopStyleVar(2);
+}
+
+std::string run_figures(const Accuracy& a, size_t line) {
+  const stats::Entry& e = a.ledger.entries()[line];
+  return fmt::format("{} \xC2\xB7 {:.3g} samples a pixel \xC2\xB7 {} rays", seconds_text(e.wall_s), e.samples,
+                     count_text(static_cast<double>(e.rays)));
+}
+
+/// What lies under the pointer: a line's values at that time, or what an earlier run was made with.
+void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  if (!ImGui::IsMouseHoveringRect(plot.area.lo, plot.area.hi) || !ImGui::IsWindowHovered()) return;
+  const float reach = px(9);
+  struct Found {
+    float distance;
+    std::string name;
+    ImU32 ink;
+    std::vector<ImVec2> points;
+    const Run* run = nullptr;
+  } best{reach, "", 0, {}, nullptr};
+  const auto look = [&](std::vector<ImVec2> points, const std::string& name, ImU32 ink,
+                        const Run* run = nullptr) {
+    const float d = distance_to(mouse, points);
+    if (d < best.distance) best = {d, name, ink, std::move(points), run};
+  };
+  const auto& lines = a.ledger.entries();
+  for (size_t k = 0; k < stats::k_layers; ++k)
+    look(error_points(plot, a, k), fmt::format("{}, noise (estimated)", stats::k_layer_names[k]),
+         layer_ink(k));
+  look(line_points(plot, a, [&](size_t i) { return lines[i].truth ? (*lines[i].truth)[0] : 0.0; }),
+       "sum, true error against " + a.reference, k_sum);
+  if (a.adaptive) look(line_points(plot, a, [&](size_t i) { return a.hardest[i]; }), "hardest tile", k_sum);
+  for (const Run& run : ui.runs.earlier())
+    look(error_points(plot, *run.accuracy, 0), "earlier render, noise (estimated)", colour::text_dim, &run);
+  if (best.points.empty()) return;
+  // The measured point nearest to the pointer.
+  const auto near = std::min_element(best.points.begin(), best.points.end(), [&](ImVec2 p, ImVec2 q) {
+    return std::abs(p.x - mouse.x) < std::abs(q.x - mouse.x);
+  });
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  if (best.run) stroke(list, best.points, colour::text_dim, px(1.5f));
+  list->AddCircleFilled(*near, px(3), best.ink, 12);
+  const Accuracy& told = best.run ? *best.run->accuracy : a;
+  // Which line of the ledger that is, by its time.
+  const double seconds = plot.x.value(near->x);
+  size_t line = 0;
+  for (size_t i = 0; i < told.ledger.entries().size(); ++i)
+    if (std::abs(std::log(told.ledger.entries()[i].wall_s / seconds)) <
+        std::abs(std::log(told.ledger.entries()[line].wall_s / seconds)))
+      line = i;
+  std::string name = best.name;
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  std::vector<std::pair<std::string, ImU32>> rows{
+      {fmt::format("{}: {}", name, percent_text(plot.y.value(near->y))), colour::text},
+      {run_figures(told, line), colour::text_dim}};
+  if (best.run) {
+    const std::vector<std::string> other = differences(*best.run, ui.runs.current());
+    if (other.empty()) rows.emplace_back("Made with the same settings", colour::text_dim);
+    for (const std::string& row : other) rows.emplace_back(row, colour::text);
+  }
+  card(rows);
+}
+
+/// Names of the lines in their colours.
+void line_names(const Ui& ui, const Accuracy& a, const ImVec2& lo, float right) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  ImFont* font = theme().fonts.small;
+  float x = lo.x;
+  const auto put = [&](const std::string& text, ImU32 ink, float after) {
+    const float w = text_width(text, font);
+    if (x + w > right) return;
+    draw_text(list, {x, lo.y}, {x + w + 1, lo.y + px(16)}, text, ink, Align::left, font);
+    x += w + px(after);
+  };
+  put("Noise (estimated):", colour::text_dim, 6);
+  put("sum", k_sum, 8);
+  if (a.adaptive) put("- - hardest tile", colour::text_dim, 8);
+  if (!a.reference.empty())
+    put(a.reference_applies ? "\xC2\xB7 \xC2\xB7 \xC2\xB7 true error" : "reference of another view",
+        a.reference_applies ? colour::text : colour::warning, 8);
+  // The components last: where there is no room, their colours are known from the panel on the left.
+  const auto error = a.error();
+  for (size_t c = 0; c < session::k_components; ++c)
+    if (error[c + 1] > 0) put(session::k_component_names[c], colour::component[c], 8);
+  if (!ui.runs.earlier().empty())
+    put(fmt::format("{} earlier", ui.runs.earlier().size()), colour::text_faint, 8);
+}
+
+void body(Ui& ui, const Area& area, const Accuracy& a) {
+  const double seconds = ui.snapshot->seconds;
+  const double target = ui.target();
+  const std::optional<stats::Band> band = ui.forecast();
+  const PlotRange range =
+      ui.held_range ? *ui.held_range : plot_range(a, ui.runs.earlier(), target, band, seconds);
+  Plot plot;
+  plot.area = {{area.lo.x + px(56), area.lo.y + px(24)}, {area.hi.x - px(16), area.hi.y - px(18)}};
+  if (plot.area.width() < px(60) || plot.area.height() < px(30)) return;
+  plot.x = {range.t_lo, range.t_hi, plot.area.lo.x, plot.area.hi.x};
+  plot.y = {range.e_lo, range.e_hi, plot.area.hi.y, plot.area.lo.y};
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  draw_axes(list, plot);
+  line_names(ui, a, {area.lo.x + px(12), area.lo.y}, area.hi.x - px(12));
+
+  list->PushClipRect(plot.area.lo, plot.area.hi, true);
+  for (const Run& run : ui.runs.earlier())
+    stroke(list, error_points(plot, *run.accuracy, 0), colour::grey(92), 1);
+  draw_forecast(list, plot, a, target, band);
+  for (size_t k = stats::k_layers; k-- > 1;) stroke(list, error_points(plot, a, k), layer_ink(k), px(1.25f));
+  const auto& lines = a.ledger.entries();
+  stroke(list, error_points(plot, a, 0), k_sum, px(2));
+  if (a.adaptive)
+    dashed_line(list, line_points(plot, a, [&](size_t i) { return a.hardest[i]; }),
+                colour::with_alpha(k_sum, 0.7f), px(5), px(4), px(1.25f));
+  dashed_line(list,
+              line_points(plot, a, [&](size_t i) { return lines[i].truth ? (*lines[i].truth)[0] : 0.0; }),
+              k_sum, px(1.5f), px(3), px(1.5f));
+  // Now.
+  if (seconds > 0) {
+    const float x = std::floor(plot.x.at(seconds));
+    list->AddLine({x, plot.area.lo.y}, {x, plot.area.hi.y}, colour::grey(104));
+    list->AddTriangleFilled({x - px(4), plot.area.lo.y}, {x + px(4), plot.area.lo.y},
+                            {x, plot.area.lo.y + px(5)}, colour::text_dim);
+  }
+  list->PopClipRect();
+
+  if (!drag_target(ui, plot, a, target, range)) hover(ui, plot, a);
+}
+
+}  // namespace
+
+double Ui::target() const {
+  const bool adaptive = setting("sampling.mode") == "adaptive";
+  return adaptive ? setting_real("sampling.target_error") : what_if;
+}
+
+std::optional<stats::Band> Ui::forecast() {
+  if (!snapshot || !snapshot->accuracy) return std::nullopt;
+  const Accuracy& a = *snapshot->accuracy;
+  const double wanted = target();
+  if (a.adaptive && wanted == a.target) return a.forecast;
+  if (forecast_.of != snapshot->accuracy || forecast_.target != wanted)
+    forecast_ = {snapshot->accuracy, wanted, session::seconds_to(a, wanted)};
+  return forecast_.band;
+}
+
+void draw_accuracy(Ui& ui, const Area& area) {
+  begin_panel("##accuracy", area, colour::panel, false);
+  const float left = panel_heading("ACCURACY", area);
+  const Accuracy* a = ui.snapshot ? ui.snapshot->accuracy.get() : nullptr;
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  if (a && ui.scene) {
+    const float right = area.hi.x - px(16), room = right - left - px(16);
+    for (const std::string& text : target_texts(*a, ui.target(), ui.forecast(), ui.snapshot->seconds)) {
+      if (text_width(text, theme().fonts.small) > room) continue;
+      draw_text(list, {left, area.lo.y}, {right, area.lo.y + px(k_folded_bottom)}, text, colour::text,
+                Align::right, theme().fonts.small);
+      break;
+    }
+  }
+  if (ui.layout.bottom_open) {
+    const Area inside{{area.lo.x, area.lo.y + px(k_folded_bottom)}, area.hi};
+    if (a && ui.scene && !a->ledger.entries().empty())
+      body(ui, inside, *a);
+    else
+      draw_text(list, {inside.lo.x + px(12), inside.lo.y}, {inside.hi.x, inside.lo.y + px(20)},
+                "The lines begin with the first samples", colour::text_faint);
+  }
+  ImGui::End();
+}
+
+}  // namespace lucerna::ui

@@ -1,0 +1,83 @@
+#include "accuracy_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "chart.h"
+
+namespace lucerna::ui {
+
+using session::Accuracy;
+
+namespace {
+
+std::string short_percent(double fraction) { return fmt::format("{:.3g} %", 100 * fraction); }
+
+}  // namespace
+
+std::optional<Present> present(const Accuracy& a) {
+  if (a.ledger.entries().empty()) return std::nullopt;
+  const stats::Entry& last = a.ledger.entries().back();
+  const double error = !a.adaptive ? last.error[0] : a.hardest.empty() ? 0 : a.hardest.back();
+  if (!(error > 0) || !(last.wall_s > 0)) return std::nullopt;
+  return Present{last.wall_s, error};
+}
+
+PlotRange plot_range(const Accuracy& a, const std::deque<Run>& earlier, double target,
+                     const std::optional<stats::Band>& forecast, double seconds) {
+  double t_lo = 1e9, t_hi = std::max(seconds, 1e-3), e_lo = 0.5 * target, e_hi = 2 * target;
+  const auto hold = [&](const Accuracy& run) {
+    double last = 0;
+    for (const stats::Entry& e : run.ledger.entries()) {
+      if (!(e.error[0] > 0) || !(e.wall_s > 0)) continue;
+      t_lo = std::min(t_lo, e.wall_s), t_hi = std::max(t_hi, e.wall_s);
+      e_hi = std::max(e_hi, e.error[0]);
+      last = e.error[0];
+    }
+    if (last > 0) e_lo = std::min(e_lo, 0.5 * last);
+    // The components that matter, down to a tenth of the sum.
+    if (last > 0)
+      for (const double x : run.ledger.entries().back().error)
+        if (x > 0.1 * last) e_lo = std::min(e_lo, 0.7 * x);
+  };
+  hold(a);
+  for (const double x : a.hardest) e_hi = std::max(e_hi, x);
+  for (const Run& run : earlier) hold(*run.accuracy);
+  const double now = t_hi;
+  if (forecast) t_hi = std::max(t_hi, std::min(1.15 * forecast->high, 300 * now));
+  if (t_lo > t_hi) t_lo = 0.1 * t_hi;
+  PlotRange range;
+  range.t_lo = nice_below(std::min(t_lo, 0.2 * t_hi)), range.t_hi = nice_above(1.05 * t_hi);
+  range.e_lo = nice_below(std::max(e_lo, 1e-6)), range.e_hi = nice_above(std::min(e_hi, 20.0));
+  if (range.e_hi < 4 * range.e_lo) range.e_hi = nice_above(4 * range.e_lo);
+  return range;
+}
+
+std::vector<std::string> target_texts(const Accuracy& a, double target,
+                                      const std::optional<stats::Band>& forecast, double seconds) {
+  const std::string goal = short_percent(target);
+  const std::string all = a.adaptive ? "Every tile under " + goal : goal;
+  if (a.ledger.entries().empty()) return {all};
+  if (a.adaptive && a.finished && target == a.target) {
+    const uint32_t over = a.count(shared::k_tile_capped);
+    if (over == 0) return {fmt::format("{} after {}", all, about_text(seconds)), all};
+    return {fmt::format("{} of {} tiles stay over {}, with all of {:.0f} samples", over, a.tiles.size(), goal,
+                        a.max_samples),
+            fmt::format("{} tiles stay over {}", over, goal), goal};
+  }
+  if (!forecast) return {all + ": too early to tell", all};
+  if (forecast->high <= seconds * (1 + 1e-9))
+    return {fmt::format("{} was reached after {}", all, about_text(forecast->middle)), all};
+  const std::string low = about_text(forecast->low), high = about_text(forecast->high);
+  const std::string middle = about_text(forecast->middle);
+  std::vector<std::string> texts;
+  if (low != high) texts.push_back(fmt::format("{} will take about {} ({} to {})", all, middle, low, high));
+  texts.push_back(fmt::format("{} will take about {}", all, middle));
+  texts.push_back(fmt::format("{} in about {}", goal, middle));
+  texts.push_back(goal);
+  return texts;
+}
+
+}  // namespace lucerna::ui

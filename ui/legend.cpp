@@ -1,0 +1,170 @@
+// The legend of what lies over the picture, at its lower left: the ramp of a heat map, the states of tiles.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "chart.h"
+#include "film/overlay.h"
+#include "state.h"
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+constexpr float k_ramp_width = 248, k_ramp_height = 8;
+
+ImU32 ramp_ink(uint32_t ramp, float t) {
+  const vec3 c = shared::ramp_color(ramp, t);
+  return IM_COL32(static_cast<int>(255 * c.x + 0.5f), static_cast<int>(255 * c.y + 0.5f),
+                  static_cast<int>(255 * c.z + 0.5f), 255);
+}
+
+/// The ramp from left to right, with labels under the given places (0..1).
+void ramp_bar(ImDrawList* list, const ImVec2& at, uint32_t ramp,
+              const std::vector<std::pair<float, std::string>>& labels) {
+  constexpr int k_steps = 32;
+  const float w = px(k_ramp_width), h = px(k_ramp_height);
+  for (int i = 0; i < k_steps; ++i) {
+    const float a = static_cast<float>(i) / k_steps, b = static_cast<float>(i + 1) / k_steps;
+    const ImU32 from = ramp_ink(ramp, a), to = ramp_ink(ramp, b);
+    list->AddRectFilledMultiColor({at.x + a * w, at.y}, {at.x + b * w, at.y + h}, from, to, to, from);
+  }
+  ImFont* font = theme().fonts.small;
+  float taken = at.x - px(8);  // up to where there are labels
+  for (const auto& [place, text] : labels) {
+    const float x = std::floor(at.x + place * w);
+    list->AddLine({x, at.y + h}, {x, at.y + h + px(3)}, colour::text_dim);
+    if (text.empty()) continue;
+    const float half = 0.5f * text_width(text, font);
+    const float middle = std::clamp(x, at.x + half - px(2), at.x + w - half + px(2));
+    if (middle - half < taken + px(4)) continue;
+    taken = middle + half;
+    draw_text(list, {middle - half - 1, at.y + h + px(3)}, {middle + half + px(2), at.y + h + px(18)}, text,
+              colour::text, Align::left, font);
+  }
+}
+
+const char* title_of(uint32_t layer) {
+  if (layer == shared::k_layer_samples) return "Samples a pixel";
+  if (layer == shared::k_layer_error) return "Relative error, estimated, of 8 \xC3\x97 8 pixels";
+  return "Device time a pixel";
+}
+
+std::vector<std::pair<float, std::string>> heat_labels(const session::Legend& legend) {
+  const Unit unit = legend.layer == shared::k_layer_samples ? Unit::count
+                    : legend.layer == shared::k_layer_error ? Unit::relative
+                                                            : Unit::milliseconds;
+  std::vector<std::pair<float, std::string>> labels;
+  if (!legend.logarithmic) {
+    for (int i = 0; i <= 4; ++i) {
+      const float value = legend.lo + 0.25f * static_cast<float>(i) * (legend.hi - legend.lo);
+      labels.emplace_back(0.25f * static_cast<float>(i), tick_text(double{value}, unit));
+    }
+    return labels;
+  }
+  const LogAxis axis{legend.lo, legend.hi, 0, px(k_ramp_width)};
+  for (const Tick& tick : ticks(axis, unit, px(34)))
+    labels.emplace_back(shared::ramp_position(static_cast<float>(tick.value), legend.lo, legend.hi, 1u),
+                        tick.labelled ? tick_text(tick.value, unit) : "");
+  return labels;
+}
+
+/// A sample of how a state is drawn.
+void tile_sample(ImDrawList* list, const ImVec2& lo, uint32_t state) {
+  const ImVec2 hi(lo.x + px(12), lo.y + px(12));
+  const ImU32 far = ramp_ink(shared::k_ramp_tiles, 0), near = ramp_ink(shared::k_ramp_tiles, 1);
+  switch (state) {
+    case shared::k_tile_waiting:
+      list->AddRect(lo, hi, colour::grey(120));
+      break;
+    case shared::k_tile_active:
+      list->AddRectFilledMultiColor(lo, hi, colour::with_alpha(far, 0.35f), colour::with_alpha(near, 0.35f),
+                                    colour::with_alpha(near, 0.35f), colour::with_alpha(far, 0.35f));
+      list->AddRect(lo, hi, colour::mix(far, near, 0.5f));
+      break;
+    case shared::k_tile_done:
+      list->AddRectFilled(lo, hi, colour::grey(62));
+      break;
+    default:
+      list->AddRectFilled(lo, hi, colour::grey(50));
+      list->PushClipRect(lo, hi, true);
+      for (float x = -1; x < 2; x += 0.4f)
+        list->AddLine({lo.x + x * px(12), hi.y}, {lo.x + (x + 1) * px(12), lo.y}, far);
+      list->PopClipRect();
+  }
+}
+
+}  // namespace
+
+void draw_legend(Ui& ui, const Area& area) {
+  const session::Snapshot* s = ui.snapshot.get();
+  if (!s || !s->activity.empty() || s->coarse) return;
+  const bool heat = s->legend.layer != 0, tiles = s->tiles && s->accuracy;
+  if (!heat && !tiles) return;
+  struct Row {
+    uint32_t state;
+    std::string name, count;
+  };
+  std::vector<Row> rows;
+  uint32_t heavy = 0;
+  if (tiles) {
+    const session::Accuracy& a = *s->accuracy;
+    for (const session::TileStatus& t : a.tiles) heavy += t.heavy_tailed;
+    const auto row = [&](uint32_t state, const char* name, bool always) {
+      const uint32_t n = a.count(state);
+      if (n > 0 || always) rows.push_back({state, name, count_text(n)});
+    };
+    row(shared::k_tile_waiting, "before the minimum of samples", false);
+    row(shared::k_tile_active, a.adaptive ? "at work" : "over the target", true);
+    row(shared::k_tile_done, a.adaptive ? "done" : "under the target", true);
+    row(shared::k_tile_capped, "stays over the target", false);
+  }
+  const float line = px(18), pad = px(12);
+  const float heat_height = heat ? px(48) : 0;
+  const float tiles_height = tiles ? px(50) + line * static_cast<float>(rows.size() + (heavy > 0)) : 0;
+  const float w = px(k_ramp_width) + 2 * pad,
+              h = heat_height + tiles_height + pad + (heat && tiles ? px(6) : 0);
+  if (h > area.height() - px(24) || w > area.width() - px(24)) return;
+  const ImVec2 lo(area.lo.x + px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(lo, hi, colour::with_alpha(colour::bar, 0.92f), px(3));
+  list->AddRect(lo, hi, colour::hairline, px(3));
+  ImFont* font = theme().fonts.small;
+  float y = lo.y + px(6);
+  const auto title = [&](const std::string& text) {
+    draw_text(list, {lo.x + pad, y}, {hi.x, y + px(16)}, text, colour::text_dim, Align::left, font);
+    y += px(20);
+  };
+  if (heat) {
+    title(title_of(s->legend.layer));
+    ramp_bar(list, {lo.x + pad, y}, s->legend.ramp, heat_labels(s->legend));
+    y += heat_height - px(20) + (tiles ? px(6) : 0);
+  }
+  if (!tiles) return;
+  const session::Accuracy& a = *s->accuracy;
+  title("Tiles: relative error, estimated");
+  std::vector<std::pair<float, std::string>> labels;
+  for (const double times : {8.0, 4.0, 2.0, 1.0})
+    labels.emplace_back(film::tile_position(times * a.target, a.target),
+                        (times == 8 ? "\xE2\x89\xA5 " : "") + tick_text(times * a.target, Unit::relative));
+  ramp_bar(list, {lo.x + pad, y}, shared::k_ramp_tiles, labels);
+  y += px(28);
+  const auto row = [&](const std::string& name, const std::string& count) {
+    draw_text(list, {lo.x + pad + px(20), y}, {hi.x, y + line}, name, colour::text_dim, Align::left, font);
+    draw_text(list, {lo.x, y}, {hi.x - pad, y + line}, count, colour::text, Align::right, font);
+  };
+  for (const Row& r : rows) {
+    tile_sample(list, {lo.x + pad, y + px(3)}, r.state);
+    row(r.name, r.count);
+    y += line;
+  }
+  if (heavy > 0) {
+    const ImVec2 corner(lo.x + pad + px(12), y + px(3));
+    list->AddRectFilled({corner.x - px(12), corner.y}, {corner.x, corner.y + px(12)}, colour::grey(50));
+    list->AddTriangleFilled({corner.x - px(6), corner.y}, corner, {corner.x, corner.y + px(6)}, colour::text);
+    row("light in rare large amounts", count_text(heavy));
+  }
+}
+
+}  // namespace lucerna::ui
