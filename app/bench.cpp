@@ -79,13 +79,13 @@ bench::Matrix choose_matrix(const BenchArguments& a) {
   return m;
 }
 
-/// Seconds that earlier runs into the same folder took; their reports say so.
-double earlier_seconds(const fs::path& folder) {
-  if (!fs::exists(folder / "report.json")) return 0;
+/// What an earlier run into the same folder reported; null when there is none, or half a file.
+Json earlier_report(const fs::path& folder) {
+  if (!fs::exists(folder / "report.json")) return {};
   try {
-    return bench::read_report(folder).value("wall_s", 0.0);
+    return bench::read_report(folder);
   } catch (const Error&) {
-    return 0;
+    return {};
   }
 }
 
@@ -102,7 +102,7 @@ int run(const BenchArguments& a) {
     identity = {{"version", LUCERNA_VERSION}, {"device", chosen.info().name}, {"processor", machine.cpu}};
   }
   const bench::Folder folder(path, matrix, identity);
-  const double before = earlier_seconds(path);
+  const Json before = earlier_report(path);
 
   struct sigaction action {
   }, previous{};
@@ -125,20 +125,23 @@ int run(const BenchArguments& a) {
   sigaction(SIGINT, &previous, nullptr);
   line.clear();
 
-  const Json about{{"version", LUCERNA_VERSION},
-                   {"date", bench::now_utc()},
-                   {"command", a.command},
-                   {"wall_s", before + timer.seconds()},
-                   {"machine",
-                    {{"cpu", machine.cpu},
-                     {"cores", machine.cores},
-                     {"memory_gib", machine.memory_gib},
-                     {"system", machine.system},
-                     {"load", std::max(0.0, load)}}},
-                   {"device", device}};
+  Json about{{"version", LUCERNA_VERSION},
+             {"date", bench::now_utc()},
+             {"command", a.command},
+             {"wall_s", timer.seconds() + (before.is_object() ? before.value("wall_s", 0.0) : 0)},
+             {"machine",
+              {{"cpu", machine.cpu},
+               {"cores", machine.cores},
+               {"memory_gib", machine.memory_gib},
+               {"system", machine.system},
+               {"load", std::max(0.0, load)}}},
+             {"device", device}};
   const size_t total = matrix.cells().size();
-  if (summary.measured > 0 || !fs::exists(path / "report.json"))
-    bench::write_report(path, bench::make_report(matrix, summary, about));
+  // Where nothing was measured the figures are made again, but it stays the report of that day.
+  if (summary.measured == 0 && before.is_object())
+    for (auto& [key, value] : about.items())
+      if (before.contains(key)) value = before.at(key);
+  bench::write_report(path, bench::make_report(matrix, summary, about));
   if (!summary.complete) {
     line.message(
         fmt::format("interrupted; {} of {} renders are kept in {}: the same command goes on with them",

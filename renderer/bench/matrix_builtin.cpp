@@ -41,6 +41,8 @@ const char* const k_full = R"({
      "set": {"sampling.mode": "adaptive", "sampling.max_samples": 4096}},
     {"name": "adaptive-8", "about": "the same with tiles of 8x8 pixels",
      "set": {"sampling.mode": "adaptive", "sampling.max_samples": 4096, "sampling.tile": 8}},
+    {"name": "coherent", "about": "as plain, the pixels of a tile share their sequences",
+     "set": {"sampling.coherent": true}},
     {"name": "compute-bvh", "about": "as plain, rays traced by the compute shaders instead of Embree",
      "set": {"tracer": "compute-bvh"}}
   ]

@@ -265,7 +265,8 @@ std::string cells_table(const Json& report, const Json& scene) {
           c.value("in_reference_noise", false) ? "in the reference’s noise"
                                                : with_range(c.at("true"), percent_text),
           percent_text(median_of(c.at("tiles_decile"))),
-          median_of(c.at("tiles_over")) > 0 ? fmt::format("{:.0f} tiles", median_of(c.at("tiles_over")))
+          median_of(c.at("tiles_over")) > 0 ? fmt::format("{:.0f} tile{}", median_of(c.at("tiles_over")),
+                                                          median_of(c.at("tiles_over")) == 1 ? "" : "s")
                                             : "–");
     }
   }
@@ -356,9 +357,10 @@ std::string measurement(const Json& report) {
       "is not in the times; the settings of a scene took turns, every second round backwards. Repeats differ "
       "in their seed, so that their range holds the luck of sampling and the machine’s moods alike. A ratio "
       "of two settings that is below the figure in this table (and above its inverse) is noise: nine in ten "
-      "ratios of two equal settings would be.</p>\n<table style=\"width:auto\"><tr><th "
-      "class=\"l\">scene</th><th>time to an error</th><th>nine tiles in ten</th><th>performance</th><th>rays "
-      "a second</th><th>reference’s own noise</th><th>its samples</th><th>it took</th></tr>\n";
+      "ratios of two equal settings would be. Where the times to one error scatter more than that, their own "
+      "scatter counts.</p>\n<table style=\"width:auto\"><tr><th class=\"l\">scene</th><th>time to an "
+      "error</th><th>nine tiles in ten</th><th>performance</th><th>rays a second</th><th>reference’s own "
+      "noise</th><th>its samples</th><th>it took</th></tr>\n";
   for (const Json& scene : report.at("scenes")) {
     html += fmt::format("<tr><td class=\"l scene\">{}</td>", escape(text_of(scene, "name")));
     for (const char* key : {"time", "tiles_time", "index", "rate"}) {

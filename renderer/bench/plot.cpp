@@ -11,7 +11,7 @@
 namespace lucerna::bench {
 namespace {
 
-constexpr double k_width = 540, k_height = 320, k_left = 56, k_right = 104, k_top = 12, k_bottom = 44;
+constexpr double k_width = 540, k_height = 320, k_left = 56, k_right = 104, k_top = 28, k_bottom = 44;
 
 struct Axis {
   double lo = 1, hi = 1, from = 0, to = 0;
@@ -130,8 +130,8 @@ std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<doub
                          y.at(t), x.to);
   svg += fmt::format(
       "<text x=\"{}\" y=\"{}\" fill=\"#a09f9d\" text-anchor=\"end\">seconds of rendering</text>\n"
-      "<text x=\"{}\" y=\"{}\" fill=\"#a09f9d\">{}</text>\n",
-      x.to, k_height - 8, k_left + 8, k_height - k_bottom - 10, escape(error_axis));
+      "<text x=\"{}\" y=\"{}\" fill=\"#e2e1df\">{}</text>\n",
+      x.to, k_height - 8, k_left, k_top - 12, escape(error_axis));
 
   std::vector<double> ends;
   std::vector<size_t> labelled;

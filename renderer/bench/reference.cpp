@@ -117,7 +117,7 @@ fs::path reference_file(const fs::path& folder, const SceneEntry& scene) {
 void describe_reference(std::map<std::string, std::string>& metadata, const ReferenceInfo& info) {
   metadata["bench.key"] = info.key;
   metadata["bench.samples"] = std::to_string(info.samples);
-  metadata["bench.seconds"] = fmt::format("{:.3f}", info.seconds);
+  metadata["bench.seconds"] = fmt::format("{}", info.seconds);
 }
 
 std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneEntry& scene,

@@ -63,6 +63,7 @@ Json curve_json(const std::vector<Curve>& curves) {
 struct Reached {
   ReachKind kind = ReachKind::unknown;
   Spread seconds;
+  std::vector<double> repeats;
 };
 
 Reached reached(const std::vector<Curve>& curves, double target) {
@@ -78,7 +79,7 @@ Reached reached(const std::vector<Curve>& curves, double target) {
   ReachKind kind = ReachKind::measured;
   for (const ReachKind k : {ReachKind::at_once, ReachKind::extrapolated})
     if (2 * kinds[size_t(k)] >= seconds.size()) kind = k;
-  return {kind, spread(std::move(seconds))};
+  return {kind, spread(seconds), seconds};
 }
 
 /// A repeat's time to all targets as one figure, for the noise of times.
@@ -109,6 +110,15 @@ void add_ratio(Json& json, double ratio, const std::optional<double>& noise) {
   json["noise"] = ratio <= bound && ratio >= 1 / bound;
 }
 
+/// The ratio of two times with its noise: that of the scene, or of these very times when they scatter more.
+void add_time_ratio(Json& json, const Reached& here, const Reached& there,
+                    const std::optional<double>& of_scene) {
+  const std::vector<double> both[] = {here.repeats, there.repeats};
+  auto noise = noise_ratio(both, std::min(here.seconds.count, there.seconds.count));
+  if (of_scene) noise = std::max(*of_scene, noise.value_or(1));
+  add_ratio(json, there.seconds.median / here.seconds.median, noise);
+}
+
 Json times_json(const std::vector<Curve>& curves, const std::vector<Curve>& baseline, bool is_baseline,
                 const std::optional<double>& noise) {
   Json list = Json::array();
@@ -117,7 +127,7 @@ Json times_json(const std::vector<Curve>& curves, const std::vector<Curve>& base
     Json entry{{"error", target}, {"kind", k_kinds[size_t(here.kind)]}};
     if (here.kind != ReachKind::unknown) entry["seconds"] = to_json(here.seconds);
     if (!is_baseline && here.kind != ReachKind::unknown && there.kind != ReachKind::unknown) {
-      add_ratio(entry, there.seconds.median / here.seconds.median, noise);
+      add_time_ratio(entry, here, there, noise);
       entry["ratio_kind"] = k_kinds[std::max(size_t(here.kind), size_t(there.kind))];
     }
     list.push_back(std::move(entry));
@@ -125,19 +135,32 @@ Json times_json(const std::vector<Curve>& curves, const std::vector<Curve>& base
   return list;
 }
 
-/// The smallest error of the series 1, 2, 5 that half the repeats of both settings have reached, and how much
-/// sooner: the one ratio that rests on nothing but measurements.
+/// Two figures, rounded up.
+double round_up(double x) {
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
+  return std::ceil(x / unit - 1e-9) * unit;
+}
+
+/// The smallest error that half the repeats of both settings have reached for good, and how much sooner: the
+/// one ratio that rests on nothing but measurements.
 std::optional<Json> common_json(const std::vector<Curve>& curves, const std::vector<Curve>& baseline,
                                 const std::optional<double>& noise) {
-  for (double power = 1e-4; power < 10; power *= 10)
-    for (const double step : {1.0, 2.0, 5.0}) {
-      const Reached here = reached(curves, step * power), there = reached(baseline, step * power);
-      if (here.kind != ReachKind::measured || there.kind != ReachKind::measured) continue;
-      Json entry{
-          {"error", step * power}, {"seconds", here.seconds.median}, {"first_seconds", there.seconds.median}};
-      add_ratio(entry, there.seconds.median / here.seconds.median, noise);
-      return entry;
-    }
+  double error = 0;
+  for (const auto* setting : {&curves, &baseline}) {
+    std::vector<double> last;
+    for (const Curve& c : *setting)
+      if (!c.empty()) last.push_back(c.back().error);
+    if (last.empty()) return std::nullopt;
+    error = std::max(error, spread(std::move(last)).median);
+  }
+  for (; error < 2; error *= 1.05) {
+    const double target = round_up(error);
+    const Reached here = reached(curves, target), there = reached(baseline, target);
+    if (here.kind != ReachKind::measured || there.kind != ReachKind::measured) continue;
+    Json entry{{"error", target}, {"seconds", here.seconds.median}, {"first_seconds", there.seconds.median}};
+    add_time_ratio(entry, here, there, noise);
+    return entry;
+  }
   return std::nullopt;
 }
 
