@@ -46,6 +46,9 @@ PathState load_path(uint slot) {
 }
 ShadowState load_shadow_state(uint slot) {
   vec4 a = texelFetch(shadow_state_texels, int(2u * slot)), b = texelFetch(shadow_state_texels, int(2u * slot + 1u));
+#if !(LUCERNA_SPECULAR || LUCERNA_GLASS)
+  b.xyz = vec3(0.0);  // where nothing is glossy it is not written
+#endif
   return ShadowState(a.xyz, floatBitsToUint(a.w), b.xyz, floatBitsToUint(b.w));
 }
 // What later vertices change of a path; what the scene cannot change is not written.
