@@ -86,7 +86,8 @@ def architecture(s):
     face = quad((-x, 0, -z), (x, 0, -z), (x, 0, z), (-x, 0, z))
     case = box((-x - 0.05, 0.001, -z - 0.05), (x + 0.05, 0.10, z + 0.05), "-y")
     frame = [chamfer((k * (x - 0.004), -0.036, -z - 0.03), (k * (x + 0.03), -0.024, z + 0.03), 0.003) for k in (-1, 1)]
-    frame += [chamfer((-x - 0.029, -0.0355, k * (z - 0.0045)), (x + 0.029, -0.0245, k * (z + 0.0293)), 0.003) for k in (-1, 1)]
+    frame += [chamfer((-x - 0.029, -0.0355, k * (z - 0.0045)), (x + 0.029, -0.0245, k * (z + 0.0293)),
+                      0.003) for k in (-1, 1)]
     louvres = [box((-x, -0.026, t - 0.004), (x, -0.004, t + 0.004), "-x +x") for t in np.linspace(-z, z, 9)[1:-1]]
     s.mesh("ceiling lamp", [(face, "panel"), (join([case] + frame + louvres), "white wood")])
     for px, pz in PANELS:
@@ -112,7 +113,8 @@ def architecture(s):
                 (join([chamfer((-length / 2 + 0.001, 0.815, -0.004), (length / 2 - 0.001, 0.875, 0.020), 0.005),
                        chamfer((-length / 2 + 0.001, -0.002, -0.004), (length / 2 - 0.001, 0.12, 0.018), 0.005)]),
                  "white wood")]
-    for name, length, at, yaw in (("lower far", WIDTH - 0.05, (0, 0, -d), 0), ("lower near", WIDTH - 0.05, (0, 0, d), 180),
+    for name, length, at, yaw in (("lower far", WIDTH - 0.05, (0, 0, -d), 0),
+                                  ("lower near", WIDTH - 0.05, (0, 0, d), 180),
                                   ("lower left", DEPTH, (-w, 0, 0), 90)):
         s.mesh(name, lower(length))
         s.place(name, at, yaw)
@@ -143,14 +145,16 @@ def chair():
     frames = (np.tile([0.0, 1, 0], (9, 1)), np.tile([0.0, 0, 1], (9, 1)))
     path = np.stack([x, np.full_like(x, 0.73), 0.215 + 0.018 * (1 - (x / 0.19) ** 2)], 1)
     h, t = 0.075, 0.005
-    back = sweep([(-h, -t), (-h, t), (-h + 0.008, t + 0.001), (h - 0.008, t + 0.001), (h, t), (h, -t), (-h, -t)], path, frames,
+    back = sweep([(-h, -t), (-h, t), (-h + 0.008, t + 0.001), (h - 0.008, t + 0.001), (h, t), (h, -t),
+                  (-h, -t)], path, frames,
                  smooth=20)
     ends = [chamfer((k * 0.186, 0.656, 0.209), (k * 0.1925, 0.804, 0.2215), 0.003) for k in (-1, 1)]
     seat = chamfer((-0.195, 0.437, -0.19), (0.195, 0.450, 0.18), 0.0055)
     steel = []
     for k in (-1, 1):
         a = k * 0.175
-        steel.append(f.tube([(k * 0.19, 0.0, -0.205), (a, 0.425, -0.155), (a, 0.425, 0.16), (a, 0.80, 0.204)], 0.0105, 8,
+        steel.append(f.tube([(k * 0.19, 0.0, -0.205), (a, 0.425, -0.155), (a, 0.425, 0.16),
+                             (a, 0.80, 0.204)], 0.0105, 8,
                             0.05))
         steel.append(f.tube([(a, 0.42, 0.06), (k * 0.19, 0.0, 0.235)], 0.0105, 8))
         steel += [lathe([(0, -0.001), (0.015, -0.001), (0.014, 0.02), (0, 0.022)], 10).moved(translate(k * 0.19, 0, z))
@@ -172,7 +176,8 @@ def pupils(s):
     sharpener = chamfer((-0.012, 0, -0.008), (0.012, 0.014, 0.008), 0.002)
     box_ = join([chamfer((-0.105, 0, -0.035), (0.105, 0.030, 0.035), 0.006),
                  chamfer((-0.107, 0.024, -0.037), (0.107, 0.040, 0.037), 0.006)])
-    bag = join([chamfer((-0.17, -0.001, -0.07), (0.17, 0.36, 0.07), 0.035), chamfer((-0.13, 0.03, 0.05), (0.13, 0.20, 0.11), 0.025),
+    bag = join([chamfer((-0.17, -0.001, -0.07), (0.17, 0.36, 0.07), 0.035),
+                chamfer((-0.13, 0.03, 0.05), (0.13, 0.20, 0.11), 0.025),
                 f.tube([(-0.05, 0.35, 0), (-0.05, 0.41, 0), (0.05, 0.41, 0), (0.05, 0.35, 0)], 0.007, 6, 0.03)])
     sheet = box((-0.105, 0, -0.1485), (0.105, 0.0012, 0.1485))
     s.mesh("sheet", [(sheet, "paper")])
@@ -201,7 +206,8 @@ def pupils(s):
                     s.place("sheet", (x - 0.05, top + 0.0014, z_ + 0.05), rs.uniform(-30, 30))
             n = rs.randint(0, 4)
             for k in range(n):
-                s.place(f"{pick()} book", (x + 0.235 + rs.uniform(-0.012, 0.012), top + 0.0222 * k, z_ - 0.10), rs.uniform(-14, 14))
+                s.place(f"{pick()} book", (x + 0.235 + rs.uniform(-0.012, 0.012), top + 0.0222 * k, z_ - 0.10),
+                        rs.uniform(-14, 14))
             for k in range(rs.randint(1, 4)):
                 s.place(f"{pick()} pencil", at(rs.uniform(-0.22, 0.10), -0.09 - 0.035 * k), rs.uniform(-20, 20))
             if rs.uniform() < 0.45:
@@ -211,7 +217,8 @@ def pupils(s):
             if rs.uniform() < 0.65:
                 s.place(f"{pick()} book", (x - 0.12, 0.5965, z_), rs.uniform(-6, 6))
             if rs.uniform() < 0.4 and i < 4:
-                s.place(f"{pick()} bag", (x + 0.52 * (1 if j < 3 else -1) * 0.98, 0, z_ + 0.05), 90 + rs.uniform(-15, 15))
+                s.place(f"{pick()} bag", (x + 0.52 * (1 if j < 3 else -1) * 0.98, 0, z_ + 0.05),
+                        90 + rs.uniform(-15, 15))
 
 
 def front(s):
@@ -227,16 +234,20 @@ def front(s):
         y, x = 2.06 - 0.145 * k, -1.55
         while x < 0.25 - 0.3 * (k % 2):
             n = rs.uniform(0.05, 0.16)
-            chalk.append(box((x, y + rs.uniform(-0.008, 0.008), 0.021), (x + n, y + rs.uniform(0.014, 0.03), 0.0228), "-z"))
+            chalk.append(box((x, y + rs.uniform(-0.008, 0.008), 0.021),
+                             (x + n, y + rs.uniform(0.014, 0.03), 0.0228), "-z"))
             x += n + 0.035
     ring = lathe([(0.27, 0.0), (0.285, 0.0), (0.285, 0.0018), (0.27, 0.0018), (0.27, 0)], 40).moved(
         translate(1.05, 1.62, 0.0212) @ rotate("x", 90))
     line = [f.bar((1.05 + a, 1.62 + b, 0.0225), (1.05 + c, 1.62 + e, 0.0225), 0.006, 6)
-            for a, b, c, e in ((-0.277, 0, 0.277, 0), (0, -0.277, 0, 0.277), (-0.277, 0, 0, 0.277), (0, 0.277, 0.277, 0))]
+            for a, b, c, e in ((-0.277, 0, 0.277, 0), (0, -0.277, 0, 0.277), (-0.277, 0, 0, 0.277),
+                               (0, 0.277, 0.277, 0))]
     sticks = [lathe([(0, 0), (0.006, 0), (0.006, 0.07), (0, 0.07)], 8).moved(
-        translate(x, 0.9405, 0.06) @ rotate("z", 90) @ rotate("x", 5 * k)) for k, x in enumerate((-0.6, -0.42, 0.2, 0.9))]
+        translate(x, 0.9405, 0.06) @ rotate("z", 90) @ rotate("x", 5 * k))
+        for k, x in enumerate((-0.6, -0.42, 0.2, 0.9))]
     sponge = chamfer((0.45, 0.934, 0.03), (0.59, 0.985, 0.09), 0.012)
-    s.mesh("blackboard", [(board, "board"), (join(rim + [tray]), "oak"), (join(chalk + [ring] + line + sticks), "chalk"),
+    s.mesh("blackboard", [(board, "board"), (join(rim + [tray]), "oak"),
+                          (join(chalk + [ring] + line + sticks), "chalk"),
                           (sponge, "yellow")])
     s.place("blackboard", (-0.25, 0, -d))
     # the teacher's desk and chair
@@ -265,7 +276,8 @@ def front(s):
     dial = lathe([(0.152, 0.031), (0, 0.031)], 40).moved(rotate("x", 90))
     hands = join([chamfer((-0.006, -0.02, 0.033), (0.006, 0.085, 0.036), 0.001).moved(rotate("z", 50)),
                   chamfer((-0.004, -0.02, 0.0365), (0.004, 0.125, 0.039), 0.001).moved(rotate("z", -60))])
-    marks = join([box((-0.004, 0.12, 0.0305), (0.004, 0.142, 0.0325), "-z").moved(rotate("z", 30 * k)) for k in range(12)])
+    mark = box((-0.004, 0.12, 0.0305), (0.004, 0.142, 0.0325), "-z")
+    marks = join([mark.moved(rotate("z", 30 * k)) for k in range(12)])
     s.mesh("clock", [(join([clock, hands, marks]), "black"), (dial, "paper")])
     s.place("clock", (-0.25, 2.62, -d))
     cork = box((-0.55, -0.50, -0.003), (0.55, 0.50, 0.014), "-z")
@@ -275,7 +287,8 @@ def front(s):
     for k in range(11):
         x, y = -0.40 + 0.27 * (k % 4) + rs.uniform(-0.02, 0.02), 0.32 - 0.31 * (k // 4) + rs.uniform(-0.02, 0.02)
         a, b = rs.uniform(0.085, 0.115), rs.uniform(0.095, 0.135)
-        m = box((-a, -b, 0), (a, b, 0.0012), "-z").moved(translate(x, y, 0.0145 + 0.0003 * k) @ rotate("z", rs.uniform(-5, 5)))
+        m = box((-a, -b, 0), (a, b, 0.0012), "-z").moved(
+            translate(x, y, 0.0145 + 0.0003 * k) @ rotate("z", rs.uniform(-5, 5)))
         notes.setdefault(("paper", "yellow", "paper", "teal", "red")[k % 5], []).append(m)
     s.mesh("pin board", [(cork, "cork"), (join(rim), "oak")] + [(join(v), k) for k, v in notes.items()])
     s.place("pin board", (2.75, 1.58, -d))
@@ -288,7 +301,7 @@ def shelves(s):
     tones = ("red", "blue", "green", "yellow", "teal", "black", "cork")
     for k, z in enumerate((-2.55, -1.30, -0.05)):
         case, heights = f.bookcase(1.18, 1.30, 0.32, 3)
-        covers, pages, extra = {}, [], []
+        covers, pages = {}, []
         for level, y in enumerate(heights):
             c, p = f.row_of_books(rs, rs.uniform(0.75, 1.08), 0.31, 0.24, tones)
             for tone, m in c.items():
@@ -297,24 +310,27 @@ def shelves(s):
         s.mesh(f"bookcase {k}", [(case, "beech"), (join(pages), "paper")] + [(join(v), t) for t, v in covers.items()])
         s.place(f"bookcase {k}", (w - 0.012, 0, z), -90)
     ball = sphere(0.16, 36, 18).moved(translate(0, 0.25, 0))
-    stand = join([lathe([(0, 0), (0.10, 0), (0.105, 0.012), (0.03, 0.022), (0.014, 0.04), (0.012, 0.085), (0, 0.09)], 32),
-                  f.tube([0.18 * np.array([np.sin(t), np.cos(t), 0]) + (0, 0.25, 0) for t in np.linspace(-0.2, np.pi + 0.05, 14)],
-                         0.006, 8, 0.02)])
+    foot = lathe([(0, 0), (0.10, 0), (0.105, 0.012), (0.03, 0.022), (0.014, 0.04), (0.012, 0.085), (0, 0.09)], 32)
+    arc = [(0.18 * np.sin(t), 0.25 + 0.18 * np.cos(t), 0) for t in np.linspace(-0.2, np.pi + 0.05, 14)]
+    stand = join([foot, f.tube(arc, 0.006, 8, 0.02)])
     s.mesh("globe", [(ball, "globe"), (stand, "oak")])
     s.place("globe", (w - 0.20, 1.299, -2.75), 60)
     pot, soil = f.pot(0.095, 0.16)
-    s.mesh("plant", [(pot, "terracotta"), (soil, "soil"), (f.plant(rs, 20, 0.28, 0.05).moved(translate(0, 0.14, 0)), "leaf")])
-    for x, y, z in ((-w - 0.06, SILL + 0.003, -2.9), (-w - 0.07, SILL + 0.003, 0.75), (-w - 0.06, SILL + 0.003, -0.55), (w - 0.2, 1.299, 0.30)):
+    s.mesh("plant", [(pot, "terracotta"), (soil, "soil"),
+                     (f.plant(rs, 20, 0.28, 0.05).moved(translate(0, 0.14, 0)), "leaf")])
+    for x, y, z in ((-w - 0.06, SILL + 0.003, -2.9), (-w - 0.07, SILL + 0.003, 0.75), (-w - 0.06, SILL + 0.003, -0.55),
+                    (w - 0.2, 1.299, 0.30)):
         s.place("plant", (x, y, z), 80 * z)
     for k, t in enumerate(("yellow", "teal", "red")):
         s.place(f"{t} book", (w - 0.18, 1.2995 + 0.0222 * k, -1.35), 80 + 9 * k)
-    s.mesh("bin", [(lathe([(0, -0.001), (0.12, -0.001), (0.15, 0.33), (0.155, 0.335), (0.148, 0.335), (0.117, 0.008), (0, 0.008)], 32),
+    s.mesh("bin", [(lathe([(0, -0.001), (0.12, -0.001), (0.15, 0.33), (0.155, 0.335), (0.148, 0.335), (0.117, 0.008),
+                           (0, 0.008)], 32),
                     "blue")])
     s.place("bin", (w - 0.35, 0, -3.85))
     chart = box((-0.40, -0.56, 0.002), (0.40, 0.56, 0.005))
     rods = join([f.bar((-0.43, y, 0.006), (0.43, y, 0.006), 0.011, 10) for y in (-0.565, 0.565)])
-    land = [box((-0.33 + 0.16 * k, -0.40 + 0.1 * j, 0.0045), (-0.33 + 0.16 * k + 0.13, -0.40 + 0.1 * j + 0.075, 0.0065), "-z")
-            for k in range(4) for j in range(8) if rs.uniform() < 0.75]
+    cells = [(-0.33 + 0.16 * k, -0.40 + 0.1 * j) for k in range(4) for j in range(8)]
+    land = [box((x, y, 0.0045), (x + 0.13, y + 0.075, 0.0065), "-z") for x, y in cells if rs.uniform() < 0.75]
     s.mesh("chart", [(chart, "paper"), (rods, "black"), (join(land[0::3]), "teal"), (join(land[1::3]), "yellow"),
                      (join(land[2::3]), "red")])
     for z in (-2.2, -0.6):

@@ -72,12 +72,14 @@ def column(height, r, segments):
     """Base, shaft and a cushion capital under a square abacus."""
     k = r / 0.26
     p = [(0.37 * k, 0.13 * k)] + ap.torus_profile(0.33 * k, 0.135 * k, 0.225 * k, 0.04 * k, 4)
-    p += [(0.315 * k, 0.235 * k), (0.295 * k, 0.262 * k)] + ap.torus_profile(0.285 * k, 0.27 * k, 0.32 * k, 0.026 * k, 3)
+    p += [(0.315 * k, 0.235 * k), (0.295 * k, 0.262 * k)]
+    p += ap.torus_profile(0.285 * k, 0.27 * k, 0.32 * k, 0.026 * k, 3)
     p += [(0.28 * k, 0.33 * k), (r, 0.38 * k)]
     neck = height - 0.50 * k
     p += ap.shaft_profile(r, 0.86 * r, 0.40 * k, neck - 0.06 * k, 5)[1:]
     p += ap.torus_profile(0.87 * r, neck - 0.045 * k, neck, 0.026 * k, 3)
-    p += [(0.87 * r, neck + 0.005 * k), (0.90 * r, neck + 0.08 * k), (1.02 * r, neck + 0.19 * k), (1.22 * r, neck + 0.28 * k),
+    p += [(0.87 * r, neck + 0.005 * k), (0.90 * r, neck + 0.08 * k), (1.02 * r, neck + 0.19 * k),
+          (1.22 * r, neck + 0.28 * k),
           (1.34 * r, neck + 0.325 * k), (1.36 * r, neck + 0.345 * k)]
     half = 1.42 * r
     return join([chamfer((-0.375 * k, -0.002, -0.375 * k), (0.375 * k, 0.135 * k, 0.375 * k), 0.012 * k),
@@ -97,8 +99,8 @@ def arcades(s):
     s.mesh("archivolt", [(join(ring).moved(translate(0, SPRING, 0)), "pale stone")])
     upper = ap.arch_panel(BAY / 2, 0, 0, ROOF - SPRING2 + 0.05, 0.64, WALL2, 18).moved(translate(0, SPRING2, 0))
     s.mesh("small arch", [(upper, "stone")])
-    s.mesh("small archivolt", [(join([ap.archivolt(0.64, 0.12, 0.028, k * WALL2 / 2, 10, side=k) for k in (1, -1)]).moved(
-        translate(0, SPRING2, 0)), "pale stone")])
+    ring = [ap.archivolt(0.64, 0.12, 0.028, k * WALL2 / 2, 10, side=k) for k in (1, -1)]
+    s.mesh("small archivolt", [(join(ring).moved(translate(0, SPRING2, 0)), "pale stone")])
     s.mesh("balustrade", [(ap.balustrade(BAY / 2, 5).moved(translate(0, -0.002, 0)), "pale stone")])
     course = [(0, 0), (0.05, 0.03), (0.05, 0.10), (0.10, 0.20), (0.16, 0.24), (0.20, 0.27), (0.20, 0.33), (0, 0.35)]
     s.mesh("string course", [(ap.cornice(BAY, course, 0.16).moved(translate(0, LEVEL - 0.03, WALL / 2)), "pale stone")])
@@ -125,9 +127,11 @@ def aisles(s):
     s.mesh("vault", [(groin_vault(half + 0.01, BAY / 2, VAULT), "plaster")])
     length = Z_NEAR - Z_FAR
     floor_lo = AXIS - WALL / 2 + 0.006
-    s.mesh("gallery", [(box((floor_lo, SPRING + VAULT + 0.02, -length / 2 - 0.2), (OUTER + 0.2, GALLERY, length / 2 + 0.2)),
+    s.mesh("gallery", [(box((floor_lo, SPRING + VAULT + 0.02, -length / 2 - 0.2),
+                            (OUTER + 0.2, GALLERY, length / 2 + 0.2)),
                         "stone"),
-                       (box((AXIS + WALL2 / 2 - 0.1, CEILING2, -length / 2 - 0.2), (OUTER + 0.2, ROOF + 0.1, length / 2 + 0.2)),
+                       (box((AXIS + WALL2 / 2 - 0.1, CEILING2, -length / 2 - 0.2),
+                            (OUTER + 0.2, ROOF + 0.1, length / 2 + 0.2)),
                         "plaster")])
     s.mesh("outer wall", [(slab((OUTER, -0.1, -length / 2 - 0.4), (OUTER + 0.45, ROOF + 0.2, length / 2 + 0.4), "x"),
                            "plaster")])
@@ -175,23 +179,29 @@ def court(s):
     s.mesh("pavement", [(join(tiles), "dark floor")])
     a, b = OPENING
     holes = [(-a, a, z - b, z + b) for z in SHAFTS]
-    s.mesh("roof", [(slab((-wide, ROOF, -length / 2 - 0.6), (wide, ROOF + SHAFT, length / 2 + 0.6), "y", holes), "plaster")])
+    s.mesh("roof", [(slab((-wide, ROOF, -length / 2 - 0.6), (wide, ROOF + SHAFT, length / 2 + 0.6), "y", holes),
+                     "plaster")])
     mould = []
     for z in SHAFTS:
         for side in (-1, 1):
-            mould.append(chamfer((-a - 0.20, ROOF - 0.07, z + side * b), (a + 0.20, ROOF + 0.02, z + side * (b + 0.20)), 0.02))
-            mould.append(chamfer((side * a, ROOF - 0.068, z - b - 0.19), (side * (a + 0.198), ROOF + 0.02, z + b + 0.19), 0.02))
+            mould.append(chamfer((-a - 0.20, ROOF - 0.07, z + side * b),
+                                 (a + 0.20, ROOF + 0.02, z + side * (b + 0.20)), 0.02))
+            mould.append(chamfer((side * a, ROOF - 0.068, z - b - 0.19),
+                                 (side * (a + 0.198), ROOF + 0.02, z + b + 0.19), 0.02))
     s.mesh("roof mouldings", [(join(mould), "pale stone")])
-    beams = [chamfer((-AXIS, ROOF - 0.32, z - 0.16), (AXIS, ROOF + 0.01, z + 0.16), 0.02) for z in (9.85, 3.2, -3.2, -9.85)]
+    beams = [chamfer((-AXIS, ROOF - 0.32, z - 0.16), (AXIS, ROOF + 0.01, z + 0.16),
+                     0.02) for z in (9.85, 3.2, -3.2, -9.85)]
     s.mesh("roof beams", [(join(beams), "wood")])
     # end walls: a tall blind arch, a wooden door in it
     wall = slab((-wide, -0.12, -0.45), (wide, ROOF + 0.3, 0.0), "z")
     s.mesh("end wall", [(wall, "plaster")])
     frame = join([ap.archivolt(1.5, 0.34, 0.10, 0.0, 32).moved(translate(0, 3.0, 0)),
                   ap.keystone(1.5, 0.34, 0.10, 0.0).moved(translate(0, 3.0, 0)),
-                  chamfer((-1.84, -0.002, -0.01), (-1.5, 2.86, 0.10), 0.015), chamfer((1.5, -0.002, -0.01), (1.84, 2.86, 0.10),
+                  chamfer((-1.84, -0.002, -0.01), (-1.5, 2.86, 0.10), 0.015),
+                  chamfer((1.5, -0.002, -0.01), (1.84, 2.86, 0.10),
                                                                                   0.015),
-                  chamfer((-1.92, 2.85, -0.012), (-1.46, 3.01, 0.15), 0.015), chamfer((1.46, 2.85, -0.012), (1.92, 3.01, 0.15),
+                  chamfer((-1.92, 2.85, -0.012), (-1.46, 3.01, 0.15), 0.015),
+                  chamfer((1.46, 2.85, -0.012), (1.92, 3.01, 0.15),
                                                                                   0.015)])
     lunette = join([lathe([(1.51, 0.0), (1.51, 0.012), (0.0, 0.012)], 32, arc=180.0).moved(
         translate(0, 3.0, 0) @ rotate("x", 90) @ rotate("y", -90))])
@@ -201,7 +211,8 @@ def court(s):
         for y0, y1 in ((0.18, 1.0), (1.12, 1.94), (2.06, 2.86)):
             leaves.append(chamfer((k * 0.16, y0, 0.04), (k * 1.34, y1, 0.062), 0.012))
     s.mesh("portal", [(frame, "pale stone"), (join(leaves), "wood"), (lunette, "dado")])
-    s.mesh("round window", [(lathe([(0.95, 0), (0.95, 0.06), (0.86, 0.09), (0.74, 0.04), (0.66, 0.06), (0.66, 0.008), (0, 0.008)],
+    s.mesh("round window", [(lathe([(0.95, 0), (0.95, 0.06), (0.86, 0.09), (0.74, 0.04), (0.66, 0.06), (0.66, 0.008),
+                                    (0, 0.008)],
                                    48).moved(rotate("x", 90)), "pale stone")])
     course = [(0, 0), (0.05, 0.03), (0.05, 0.10), (0.10, 0.20), (0.16, 0.24), (0.20, 0.27), (0.20, 0.33), (0, 0.35)]
     s.mesh("end course", [(ap.cornice(2 * AXIS - WALL - 0.4, course, 0.16).moved(translate(0, LEVEL - 0.03, 0)),
@@ -228,15 +239,18 @@ def furnish(s):
             s.mesh(f"{c} rug {k}", [(rugs[k], f"{c} cloth")])
     zs = bays()
     # curtains hang in the arches, drawn to one side
-    for x, i, c, k, off in ((1, 2, "red", 0, 0.22), (1, 3, "saffron", 1, 0.25), (1, 4, "green", 1, -0.22), (1, 5, "blue", 0, 0.22),
+    for x, i, c, k, off in ((1, 2, "red", 0, 0.22), (1, 3, "saffron", 1, 0.25), (1, 4, "green", 1, -0.22),
+                            (1, 5, "blue", 0, 0.22),
                             (-1, 1, "blue", 1, 0.2), (-1, 3, "red", 0, -0.2), (-1, 5, "green", 1, 0.2)):
         yaw = -90.0 * x
         s.place(f"{c} curtain {k}", (x * AXIS, SPRING - 0.03, zs[i] + off), yaw)
         s.place("rod", (x * AXIS, SPRING - 0.02, zs[i]), 90)
     for x, i, half, c, k in ((1, 1, 1, "saffron", 0), (1, 3, -1, "blue", 1), (1, 5, 1, "red", 0),
-                             (-1, 2, 1, "green", 1), (-1, 3, -1, "saffron", 0), (-1, 4, 1, "blue", 1), (-1, 5, -1, "red", 0)):
+                             (-1, 2, 1, "green", 1), (-1, 3, -1, "saffron", 0), (-1, 4, 1, "blue", 1),
+                             (-1, 5, -1, "red", 0)):
         s.place(f"{c} rug {k}", (x * AXIS, GALLERY + 1.0, zs[i] + half * BAY / 4), -90.0 * x)
-    for z, c, k, x in ((3.2, "red", 0, -1.1), (3.2, "saffron", 1, 1.2), (-3.2, "green", 1, -1.3), (-3.2, "blue", 0, 1.1)):
+    for z, c, k, x in ((3.2, "red", 0, -1.1), (3.2, "saffron", 1, 1.2), (-3.2, "green", 1, -1.3),
+                       (-3.2, "blue", 0, 1.1)):
         s.place(f"{c} banner {k}", (x, 7.33, z))
     for z in (3.2, -3.2):
         s.place("banner rod", (0, 7.345, z))
@@ -254,7 +268,8 @@ def furnish(s):
     s.place("urn", (OUTER - 0.45, -0.001, zs[3] - 0.2), 30)
     s.place("urn", (OUTER - 0.42, -0.001, zs[5] + 0.5), 70, scale=0.8)
     # a fountain in the middle of the court
-    basin = lathe([(0, 0), (1.16, 0), (1.16, 0.06), (1.08, 0.10), (1.08, 0.40), (1.14, 0.45), (1.15, 0.50), (1.11, 0.53),
+    basin = lathe([(0, 0), (1.16, 0), (1.16, 0.06), (1.08, 0.10), (1.08, 0.40), (1.14, 0.45), (1.15, 0.50),
+                   (1.11, 0.53),
                    (0.98, 0.53), (0.95, 0.50), (0.93, 0.30), (0.20, 0.24), (0.13, 0.32), (0.10, 0.60), (0.13, 0.84),
                    (0.20, 0.90), (0.46, 0.98), (0.50, 1.02), (0.47, 1.04), (0.20, 0.98), (0.07, 0.98), (0.05, 1.2),
                    (0.075, 1.26), (0.05, 1.33), (0, 1.36)], 48)
@@ -273,7 +288,8 @@ def main():
     s.camera("main", (5.85, 1.62, 10.35), (2.7, 1.62, -2.0), yfov=52.0)
     s.camera("court", (1.2, 1.62, 10.4), (-0.6, 1.62, -10.0), yfov=52.0)
     s.write("An arcaded hall of two storeys without textures, every surface Lambertian, lit by the sun through the roof alone: "
-            "under the vaults secondary and tertiary light are all there is, coloured by hanging cloths.", {"film.ev": 1.45})
+            "under the vaults secondary and tertiary light are all there is, coloured by hanging cloths.",
+            {"film.ev": 1.45})
 
 
 if __name__ == "__main__":

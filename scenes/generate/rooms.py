@@ -74,7 +74,8 @@ def window(width, height, across=2, up=2, frame=0.06, bar=0.028, deep=0.06):
     parts = [chamfer((-0.005, -0.005, -h), (frame, height + 0.005, h), 0.004),
              chamfer((width - frame, -0.005, -h), (width + 0.005, height + 0.005, h), 0.004),
              chamfer((frame - 0.01, -0.005, -h + 0.002), (width - frame + 0.01, frame, h - 0.002), 0.004),
-             chamfer((frame - 0.01, height - frame, -h + 0.002), (width - frame + 0.01, height + 0.005, h - 0.002), 0.004)]
+             chamfer((frame - 0.01, height - frame, -h + 0.002),
+                     (width - frame + 0.01, height + 0.005, h - 0.002), 0.004)]
     for i in range(1, across):
         x = frame + (width - 2 * frame) * i / across
         wide = bar * (0.9 if across > 2 or i * 2 != across else 1.6)
@@ -143,7 +144,8 @@ def radiator(length, height=0.6, sections=None):
 def picture(width, height, frame=0.03, mat=0.07, deep=0.022):
     """(frame, mat, picture) hung on a wall's face z = 0, centred."""
     w, h = width / 2, height / 2
-    bars = [chamfer((-w, -h, 0.002), (-w + frame, h, deep), 0.004), chamfer((w - frame, -h, 0.002), (w, h, deep), 0.004),
+    bars = [chamfer((-w, -h, 0.002), (-w + frame, h, deep), 0.004),
+            chamfer((w - frame, -h, 0.002), (w, h, deep), 0.004),
             chamfer((-w + frame - 0.004, -h + 0.0004, 0.002), (w - frame + 0.004, -h + frame, deep - 0.001), 0.004),
             chamfer((-w + frame - 0.004, h - frame, 0.002), (w - frame + 0.004, h - 0.0004, deep - 0.001), 0.004)]
     a, b = w - frame, h - frame

@@ -77,7 +77,8 @@ def architecture(s):
     parts = []
     for at, yaw, length in (((0, 0, -d), 0, WIDTH), ((0, 0, d), 180, WIDTH), ((-w, 0, 0), 90, DEPTH),
                             ((w, 0, 0), -90, DEPTH)):
-        crown = join([chamfer((-length / 2 - 0.01, HEIGHT - 0.10, -0.004), (length / 2 + 0.01, HEIGHT - 0.055, 0.03), 0.008),
+        crown = join([chamfer((-length / 2 - 0.01, HEIGHT - 0.10, -0.004),
+                              (length / 2 + 0.01, HEIGHT - 0.055, 0.03), 0.008),
                       chamfer((-length / 2 - 0.01, HEIGHT - 0.06, -0.004), (length / 2 + 0.01, HEIGHT + 0.004, 0.075),
                               0.012)])
         if yaw in (90, -90):   # the mitres' faces must not lie in one plane
@@ -145,7 +146,8 @@ def furnish(s):
     s.place("bowl", (-1.44, 0.7282, -1.50))
     # pictures above it, a narrow rug in the sun's way, a chest at the right wall
     frame, mat, art = rooms.picture(0.62, 0.78, 0.035, 0.085)
-    hill = join([box((-0.17, -0.25, 0.0090), (0.17, -0.06, 0.0106), "-z"), box((-0.10, -0.06, 0.0092), (0.02, 0.05, 0.0108),
+    hill = join([box((-0.17, -0.25, 0.0090), (0.17, -0.06, 0.0106), "-z"),
+                 box((-0.10, -0.06, 0.0092), (0.02, 0.05, 0.0108),
                                                                              "-z")])
     s.mesh("picture", [(frame, "walnut"), (mat, "paper"), (art, "cream wool"), (hill, "moss")])
     s.place("picture", (-1.52, 1.66, -d))
@@ -158,7 +160,8 @@ def furnish(s):
     field, border = f.rug(1.7, 1.15)
     s.mesh("rug", [(field, "red wool"), (border, "cream wool")])
     s.place("rug", (-1.12, 0, -1.62), 5)
-    chest = [chamfer((-0.55, 0.06, 0.03), (0.55, 0.80, 0.45), 0.004), chamfer((-0.575, 0.795, 0.012), (0.575, 0.825, 0.475),
+    chest = [chamfer((-0.55, 0.06, 0.03), (0.55, 0.80, 0.45), 0.004),
+             chamfer((-0.575, 0.795, 0.012), (0.575, 0.825, 0.475),
                                                                               0.006)]
     drawers, pulls = [], []
     for k in range(3):
@@ -167,7 +170,8 @@ def furnish(s):
         for x in (-0.28, 0.28):
             pulls.append(lathe([(0.008, 0), (0.007, 0.012), (0.015, 0.02), (0.012, 0.03), (0, 0.032)], 16).moved(
                 translate(x, y + 0.111, 0.461) @ rotate("x", 90)))
-    feet = [chamfer((x - 0.035, -0.001, z), (x + 0.035, 0.065, z + 0.06), 0.004) for x in (-0.50, 0.50) for z in (0.04, 0.38)]
+    feet = [chamfer((x - 0.035, -0.001, z), (x + 0.035, 0.065, z + 0.06),
+                    0.004) for x in (-0.50, 0.50) for z in (0.04, 0.38)]
     s.mesh("chest", [(join(chest + drawers + feet), "oak"), (join(pulls), "brass")])
     s.place("chest", (WIDTH / 2 - 0.035, 0, -0.85), -90)
     s.mesh("pot", [(f.pot(0.11, 0.19)[0], "terracotta"), (f.pot(0.11, 0.19)[1], "soil"),

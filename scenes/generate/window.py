@@ -58,7 +58,7 @@ def materials(s):
 
 
 def architecture(s):
-    w, d = WIDTH / 2, DEPTH / 2
+    w = WIDTH / 2
     sh = rooms.shell(WIDTH, DEPTH, HEIGHT, 0.34, {"-x": [WINDOW]})
     s.mesh("walls", [(join([sh[k] for k in ("-x", "+x", "+z")]), "wall"), (sh["-z"], "far wall")])
     s.mesh("ceiling", [(sh["ceiling"], "ceiling")])
@@ -74,8 +74,10 @@ def architecture(s):
     frame = rooms.window(z1 - z0, y1 - y0, 2, 2, 0.055, 0.035, 0.06)
     sill = chamfer((-0.07, -0.032, -0.03), (z1 - z0 + 0.07, 0.004, 0.31), 0.008)
     wide = 0.075
-    lining = [chamfer((a, -0.03, 0.255), (b, y1 - y0 + 0.0, 0.285), 0.005) for a, b in ((-wide, 0), (z1 - z0, z1 - z0 + wide))]
-    lining.append(chamfer((-wide - 0.01, y1 - y0 + 0.0005, 0.254), (z1 - z0 + wide + 0.01, y1 - y0 + wide, 0.289), 0.005))
+    lining = [chamfer((a, -0.03, 0.255), (b, y1 - y0 + 0.0, 0.285),
+                      0.005) for a, b in ((-wide, 0), (z1 - z0, z1 - z0 + wide))]
+    lining.append(chamfer((-wide - 0.01, y1 - y0 + 0.0005, 0.254),
+                          (z1 - z0 + wide + 0.01, y1 - y0 + wide, 0.289), 0.005))
     s.mesh("window", [(join([frame, sill] + lining), "white wood")])
     s.place("window", (-w - 0.26, y0, z1), 90)
     s.mesh("radiator", [(rooms.radiator(0.84, 0.56), "white wood")])
@@ -115,7 +117,8 @@ def bed(s):
             chamfer((-h - 0.045, 1.0, 0.022), (h + 0.045, 1.045, 0.085), 0.012)]
     wood += [chamfer((k * (h - 0.02), 0.20, 0.06), (k * (h + 0.015), 0.34, length + 0.05), 0.006) for k in (-1, 1)]
     wood.append(chamfer((-h - 0.014, 0.198, length + 0.02), (h + 0.014, 0.338, length + 0.055), 0.006))
-    wood += [chamfer((k * (h - 0.045), -0.001, length - 0.01), (k * (h + 0.012), 0.21, length + 0.05), 0.006) for k in (-1, 1)]
+    wood += [chamfer((k * (h - 0.045), -0.001, length - 0.01), (k * (h + 0.012), 0.21, length + 0.05),
+                     0.006) for k in (-1, 1)]
     mattress = chamfer((-h + 0.03, 0.26, 0.08), (h - 0.03, 0.50, length + 0.01), 0.05)
     s.mesh("bed", [(join(wood), "oak"), (mattress, "linen"),
                    (draped(h - 0.05, 0.535, 0.24, 1.40, 3).moved(translate(0, 0, 0.66)), "linen"),
@@ -128,15 +131,18 @@ def bed(s):
         s.place("pillow", matrix=m, name=f"pillow {k}")
     s.place("cushion", matrix=translate(x - 0.10, 0.70, FAR + 0.46) @ rotate("y", 10) @ rotate("x", 62), name="cushion")
     # bedside table, lamp, book
-    night = [chamfer((-0.23, 0.47, 0.02), (0.23, 0.495, 0.40), 0.005), chamfer((-0.21, 0.28, 0.04), (0.21, 0.472, 0.375), 0.004),
+    night = [chamfer((-0.23, 0.47, 0.02), (0.23, 0.495, 0.40), 0.005),
+             chamfer((-0.21, 0.28, 0.04), (0.21, 0.472, 0.375), 0.004),
              chamfer((-0.195, 0.295, 0.365), (0.195, 0.455, 0.388), 0.004)]
-    night += [f.leg((a * 0.18, b), (a * 0.20, b + 0.02 * (1 if b > 0.2 else -1)), 0.019, 0.29) for a in (-1, 1) for b in (0.08, 0.33)]
+    night += [f.leg((a * 0.18, b), (a * 0.20, b + 0.02 * (1 if b > 0.2 else -1)), 0.019,
+                    0.29) for a in (-1, 1) for b in (0.08, 0.33)]
     pull = lathe([(0.007, 0), (0.006, 0.012), (0.013, 0.02), (0.010, 0.028), (0, 0.03)], 16).moved(
         translate(0, 0.375, 0.387) @ rotate("x", 90))
     s.mesh("bedside table", [(join(night), "oak"), (pull, "brass")])
     at = (x - h - 0.36, 0, FAR)
     s.place("bedside table", at)
-    lamp = lathe([(0, -0.001), (0.06, -0.001), (0.075, 0.02), (0.095, 0.09), (0.085, 0.15), (0.04, 0.21), (0.018, 0.235),
+    lamp = lathe([(0, -0.001), (0.06, -0.001), (0.075, 0.02), (0.095, 0.09), (0.085, 0.15), (0.04, 0.21),
+                  (0.018, 0.235),
                   (0.014, 0.29), (0, 0.29)], 40)
     shade = lathe([(0.155, 0.25), (0.157, 0.25), (0.105, 0.45), (0.103, 0.45), (0.155, 0.25)], 40)
     s.mesh("lamp", [(lamp, "glaze"), (shade, "linen")])
@@ -174,7 +180,8 @@ def furnish(s):
     case, heights = f.bookcase(0.92, 1.62, 0.30, 4)
     covers, pages = {}, []
     for level, y in enumerate(heights):
-        c, p = f.row_of_books(rs, (0.84, 0.62, 0.80, 0.46)[level], 0.31, 0.22, ("blue", "green", "rust", "black", "paper", "mustard"))
+        c, p = f.row_of_books(rs, (0.84, 0.62, 0.80, 0.46)[level], 0.31, 0.22,
+                              ("blue", "green", "rust", "black", "paper", "mustard"))
         for tone, m in c.items():
             covers.setdefault(tone, []).append(m.moved(translate(-0.43, y, 0.28)))
         pages.append(p.moved(translate(-0.43, y, 0.28)))
@@ -184,7 +191,8 @@ def furnish(s):
     s.mesh("vase", [(f.vase(0.22), "glaze")])
     s.place("vase", (bx + 0.22, heights[3] - 0.0005, FAR + 0.17))
     pot, soil = f.pot(0.09, 0.15)
-    s.mesh("small plant", [(pot, "terracotta"), (soil, "soil"), (f.plant(rs, 22, 0.26, 0.045).moved(translate(0, 0.13, 0)), "leaf")])
+    s.mesh("small plant", [(pot, "terracotta"), (soil, "soil"),
+                           (f.plant(rs, 22, 0.26, 0.045).moved(translate(0, 0.13, 0)), "leaf")])
     s.place("small plant", (bx - 0.22, 1.6195, FAR + 0.17))
     s.place("small plant", (-w - 0.09, WINDOW[2] + 0.0035, -1.42), 100, scale=0.8)
     c, p = f.flat_book(0.16, 0.03, 0.22)
@@ -195,8 +203,10 @@ def furnish(s):
                          (f.plant(rs, 26, 0.75, 0.15, 0.62, 0.25).moved(translate(0, 0.28, 0)), "leaf")])
     s.place("big plant", (-w + 0.42, -0.001, 0.12), 30)
     # pictures over the bed and on the right wall
-    for name, size, at, turn, tones in (("hills", (0.70, 0.52), (BED[0] - 0.22, 1.62, FAR), 0, ("paper", "green", "mustard")),
-                                        ("shore", (0.42, 0.52), (BED[0] + 0.50, 1.62, FAR), 0, ("wool", "rust", "blue"))):
+    for name, size, at, turn, tones in (("hills", (0.70, 0.52), (BED[0] - 0.22, 1.62, FAR), 0,
+                                         ("paper", "green", "mustard")),
+                                        ("shore", (0.42, 0.52), (BED[0] + 0.50, 1.62, FAR), 0,
+                                         ("wool", "rust", "blue"))):
         frame, mat, art = rooms.picture(*size, 0.022, 0.06)
         a, b = size[0] / 2 - 0.082, size[1] / 2 - 0.082
         t = np.linspace(-a, a, 25)
@@ -208,8 +218,8 @@ def furnish(s):
         s.mesh(name, [(frame, "black"), (mat, "paper"), (art, tones[0]), (low, tones[1]), (disc, tones[2])])
         s.place(name, at, turn)
     # a shelf on the right wall, a basket by the bed
-    shelf = [chamfer((-0.50, 0, 0), (0.50, 0.03, 0.22), 0.004)] + [chamfer((x - 0.015, -0.16, 0.0), (x + 0.015, 0.002, 0.03), 0.003)
-                                                               for x in (-0.36, 0.36)]
+    shelf = [chamfer((-0.50, 0, 0), (0.50, 0.03, 0.22), 0.004)]
+    shelf += [chamfer((x - 0.015, -0.16, 0.0), (x + 0.015, 0.002, 0.03), 0.003) for x in (-0.36, 0.36)]
     s.mesh("shelf", [(join(shelf), "oak")])
     s.place("shelf", (w - 0.001, 1.42, -0.75), -90)
     c, p = f.row_of_books(rs, 0.42, 0.26, 0.18, ("blue", "rust", "paper", "green"), False)
@@ -235,7 +245,8 @@ def main():
     s.extras = {"environment": env}
     s.camera("main", (1.30, 1.42, 2.25), (-0.42, 1.42, -2.40), yfov=50.0)
     s.write("A furnished bedroom lit by an overcast sky through one window of less than a square metre, no sun and no lamp: "
-            "path tracing's hard case, because few paths leave through the window.", {"film.ev": 2.9, "environment": env})
+            "path tracing's hard case, because few paths leave through the window.",
+            {"film.ev": 2.9, "environment": env})
 
 
 if __name__ == "__main__":
