@@ -216,7 +216,7 @@ def pupils(s):
                 s.place(f"{pick()} sharpener", at(0.06, -0.20), rs.uniform(0, 90))
             if rs.uniform() < 0.65:
                 s.place(f"{pick()} book", (x - 0.12, 0.5965, z_), rs.uniform(-6, 6))
-            if rs.uniform() < 0.4 and i < 4:
+            if rs.uniform() < 0.4 and i < 3:
                 s.place(f"{pick()} bag", (x + 0.52 * (1 if j < 3 else -1) * 0.98, 0, z_ + 0.05),
                         90 + rs.uniform(-15, 15))
 
