@@ -2,7 +2,7 @@
 facing +z, in metres."""
 import numpy as np
 
-from gltf import Mesh, join
+from gltf import join
 from shapes import box, chamfer, facing, grid, lathe, rotate, superquadric, sweep, translate
 
 
@@ -111,26 +111,6 @@ def round_table(radius=0.40, height=0.72):
                   (0.13, h - 0.028), (r - 0.012, h - 0.028), (r - 0.003, h - 0.022), (r, h - 0.012),
                   (r - 0.004, h - 0.003),
                   (r - 0.012, h), (0, h)], 56, smooth=40)
-
-
-def sofa(width=1.9, depth=0.86):
-    """(body, cushions, legs) of a sofa that faces +z, its back at z = 0."""
-    w, arm, seat = width / 2, 0.17, 0.40
-    body = [chamfer((-w, 0.10, 0.01), (w, 0.26, depth), 0.02),
-            chamfer((-w + arm - 0.02, 0.20, 0.0), (w - arm + 0.02, 0.80, 0.16), 0.04)]
-    for x in (-1, 1):
-        body.append(chamfer((x * (w + 0.004), 0.12, 0.004), (x * (w - arm), 0.60, depth + 0.006), 0.04))
-    inner = width - 2 * arm
-    cushions = []
-    for k in (-1, 1):
-        c = inner / 4 * k
-        cushions.append(superquadric((inner / 4 - 0.004, 0.10, 0.36), 0.16, 0.34, 48, 16).moved(
-            translate(c, seat - 0.055, depth - 0.355)))
-        cushions.append(superquadric((inner / 4 - 0.008, 0.22, 0.095), 0.22, 0.5, 48, 16).moved(
-            translate(c, 0.62, 0.235) @ rotate("x", -10)))
-    legs = [lathe([(0.0, -0.001), (0.016, -0.001), (0.026, 0.11)], 12).moved(translate(x * (w - 0.09), 0, z))
-            for x in (-1, 1) for z in (0.08, depth - 0.09)]
-    return join(body), join(cushions), join(legs)
 
 
 def pillow(size=0.45, thick=0.075):
@@ -276,11 +256,3 @@ def desk_lamp():
                    (0.028, 0.092), (0.055, 0.068), (0.078, -0.002)], 32).moved(
         translate(0.155, 0.425, 0) @ rotate("z", 18))
     return join(metal), shade
-
-
-def cloth_over(width, depth, nu=48, nv=48, height=None):
-    """A surface y = height(x, z) over a rectangle, for blankets and bedding; faces up."""
-    x, z = np.meshgrid(np.linspace(-width / 2, width / 2, nu + 1), np.linspace(-depth / 2, depth / 2, nv + 1))
-    p = np.stack([x, height(x, z), z], 2)
-    m = grid(p)
-    return m if m.n[:, 1].sum() > 0 else Mesh(m.p, -m.n, m.uv, m.t[:, ::-1])

@@ -9,7 +9,7 @@ import numpy as np
 import furniture as f
 import rooms
 from gltf import Scene, join
-from shapes import box, chamfer, lathe, rotate, scale, translate
+from shapes import box, chamfer, lathe, rotate, translate
 
 WIDTH, DEPTH, HEIGHT = 4.6, 5.2, 2.85
 WINDOW = (0.12, 1.00, 0.98, 2.18)           # z and y of the opening in the left wall
@@ -82,7 +82,7 @@ def architecture(s):
                       chamfer((-length / 2 - 0.01, HEIGHT - 0.06, -0.004), (length / 2 + 0.01, HEIGHT + 0.004, 0.075),
                               0.012)])
         if yaw in (90, -90):   # the mitres' faces must not lie in one plane
-            crown = crown.moved(scale(1, 1, 1) @ translate(0, 0.0015, 0.0015))
+            crown = crown.moved(translate(0, 0.0015, 0.0015))
         parts.append(crown.moved(translate(*at) @ rotate("y", yaw)))
     s.mesh("cornice", [(join(parts), "ceiling")])
     s.place("cornice")
