@@ -191,7 +191,7 @@ def main():
     s.sun("sun", SUN, (1.0, 0.92, 0.80), 30.0)
     s.camera("main", (0.28, 1.45, 2.42), (-0.10, 1.45, -2.6), yfov=50.0)
     s.write("A room lit by one patch of sun, less than a square metre of its floor: nearly all light is indirect, and "
-            "most of it has been reflected more than twice.", {"film.ev": 2.4})
+            "most of it has been reflected more than twice.", {"film.ev": 2.7})
 
 
 if __name__ == "__main__":
