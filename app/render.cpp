@@ -61,10 +61,12 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
   std::fflush(stderr);
 }
 
-/// Noise of the picture: estimated from its halves (film/error.h).
+/// Noise of the picture, estimated from its halves (film/error.h); beside it the bias, where the solver can
+/// tell.
 nlohmann::ordered_json make_error(session::Renderer& r) {
   const film::ImageError error = r.image_error();
   nlohmann::ordered_json j;
+  j["of"] = "noise";
   j["rms"] = error.rms[0];
   j["relative"] = error.relative(0);
   // Of the tiles, what adaptive sampling goes by.
@@ -78,8 +80,9 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   j["tile_worst"] = sorted.back();
   j["heavy_tailed_tiles"] = heavy;
   for (int c = 0; c < paths::k_component_count; ++c) {
-    j["components"][paths::k_component_names[c]] = {{"rms", error.rms[c + 1]},
-                                                    {"relative", error.relative(c + 1)}};
+    auto& component = j["components"][paths::k_component_names[c]];
+    component = {{"rms", error.rms[c + 1]}, {"relative", error.relative(c + 1)}, {"bias", nullptr}};
+    if (const auto bias = r.bias(size_t(c))) component["bias"] = *bias;
   }
   return j;
 }

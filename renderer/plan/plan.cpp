@@ -9,6 +9,11 @@ uint32_t Plan::enabled() const {
   return bits;
 }
 
+std::optional<double> Plan::bias(size_t component) const {
+  const SolverInfo* info = solver[component];
+  return info && info->unbiased ? std::optional(0.0) : std::nullopt;
+}
+
 Plan make_plan(const Settings& settings) {
   Plan plan;
   for (int c = 0; c < paths::k_component_count; ++c) {

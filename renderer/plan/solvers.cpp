@@ -6,7 +6,8 @@ const std::vector<SolverInfo>& solvers() {
   static const std::vector<SolverInfo> list{
       {"path",
        "Path tracing: unbiased, needs no preparation, noisy where light is hard to find.",
-       {true, true, true, true}},
+       {true, true, true, true},
+       true},
   };
   return list;
 }

@@ -12,6 +12,8 @@ struct SolverInfo {
   std::string name;                                   ///< as in settings: components.secondary = NAME
   std::string help;                                   ///< one sentence
   std::array<bool, paths::k_component_count> serves;  ///< components that it can compute
+  /// Whether its mean is the true image at every number of samples: then noise is all its error.
+  bool unbiased;
 };
 
 /// All of them, the default of every component first. A new solver is a line here.

@@ -185,6 +185,10 @@ film::ImageError Renderer::image_error() {
   return film::image_error(film_->errors());
 }
 
+std::optional<double> Renderer::bias(size_t component) const {
+  return plan::make_plan(settings_).bias(component);
+}
+
 std::vector<film::TileError> Renderer::tile_errors() const {
   const auto side = uint32_t(std::stoul(settings_.text("sampling.tile")));
   std::vector<film::TileError> tiles = film::tile_errors(*film_, side);

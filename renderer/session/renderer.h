@@ -80,6 +80,8 @@ class Renderer {
   /// The same for every tile of sampling.tile, in raster order, heavy tails marked: as the last image_error()
   /// found it.
   std::vector<film::TileError> tile_errors() const;
+  /// What these errors, which are of the noise, do not tell: plan::Plan::bias of the settings in force.
+  std::optional<double> bias(size_t component) const;
   /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled.
   bool step(const std::function<bool()>& cancel = {});
   /// A quick image of a quarter of the resolution, for display until the film is filled.
