@@ -220,7 +220,8 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
 
 int render(const RenderArguments& a) {
   const auto [width, height] = parse_size(a.size);
-  if (a.outputs.empty()) throw Error("-o", "name at least one output, OUT.exr or OUT.png");
+  if (a.outputs.empty() && a.stats.empty() && a.ledger.empty())
+    throw Error("-o", "name at least one output: OUT.exr or OUT.png, or figures alone: --stats OUT.json");
   for (const std::string& file : a.outputs) {
     const auto dot = file.rfind('.');
     const std::string extension = dot == std::string::npos ? "" : file.substr(dot);

@@ -124,6 +124,13 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   CHECK(capped["tiles"]["capped"] == capped["tiles"]["unreached"].size());
   CHECK(capped["tiles"]["unreached"].size() > 8);
   CHECK(warning.find("over the error of 0.01") != std::string::npos);
+  // Figures alone need no picture; nothing at all is a mistake.
+  const std::string small = "render " + scene("cornell") + " --size 16x16 --samples 4 --quiet";
+  CHECK(run(small + " --stats " + (f / "alone.json").string()).status == 0);
+  CHECK(std::filesystem::exists(f / "alone.json"));
+  const Run nowhere = run(small);
+  CHECK(nowhere.status == 1);
+  CHECK(nowhere.out.find("name at least one output") != std::string::npos);
   // The story of the render, in JSON and as a table with as many lines.
   const auto [told, nothing] = stats("--samples 32 --ledger " + (f / "e.csv").string());
   std::ifstream table(f / "e.csv");
