@@ -94,7 +94,7 @@ TEST_CASE("wrong arguments are refused with their place") {
   refused(good + "--device nothing", "nothing");
   refused("render " + scene("cornell") + " -o /no/such/folder/a.exr", "/no/such/folder");
   refused("render " + scene("cornell") + " -o a.gif", ".gif");
-  refused("render " + scene("cornell"), "--output");
+  refused("render " + scene("cornell"), "-o: name at least one output");
   refused("compare no.exr nothing.exr", "no.exr");
   refused("info no.gltf", "no.gltf");
   CHECK_FALSE(fs::exists("/tmp/lucerna-never.exr"));
