@@ -89,6 +89,9 @@ struct Wavefront::Impl {
     film_resources.set("Coarse", no_coarse);
   }
 
+  /// From `begin` until no path is alive. False when cancelled.
+  bool trace_paths(uint32_t count, const std::function<void()>& begin,
+                   const std::function<void()>& first_hits, const std::function<bool()>& cancel);
   void estimate(const gpu::Kernel& kernel, std::span<const WorkBlock> list, film::Film& film,
                 float luminance_floor);
 
@@ -206,11 +209,36 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
   if (count == 0 || w.enabled == 0) return true;
   if (count > w.slots) throw_error("transport", "work item of {} paths, room for {}", count, w.slots);
   w.blocks.write(std::span<const WorkBlock>(item.blocks));
-  TransportPush push{count, 0, pixels, 0};
+  const TransportPush push{count, 0, pixels, 0};
+  const auto begin = [&] { w.stream.dispatch(w.camera, w.main[0], push, Impl::groups(count), "camera"); };
+  if (!w.trace_paths(count, begin, {}, cancel)) return false;
+  film.bind(w.film_resources);
+  const FilmPush add{film.width(), film.height(), pixels, item.sample_count};
+  w.stream.dispatch(film.fits_storage_buffers() ? w.film_add : w.film_add_images, w.film_resources, add,
+                    Impl::groups(pixels), "film");
+  w.run_and_account(nullptr, nullptr);
+  return true;
+}
+
+bool Wavefront::run(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel) {
+  Impl& w = *impl_;
+  if (count == 0 || w.enabled == 0) return true;
+  if (count > w.slots) throw_error("transport", "{} paths, room for {}", count, w.slots);
+  if (!w.trace_paths(count, ends.begin, ends.first_hits, cancel)) return false;
+  ends.end();
+  w.run_and_account(nullptr, nullptr);
+  return true;
+}
+
+bool Wavefront::Impl::trace_paths(uint32_t count, const std::function<void()>& begin,
+                                  const std::function<void()>& first_hits,
+                                  const std::function<bool()>& cancel) {
+  Impl& w = *this;
+  TransportPush push{count, 0, 64, 0};
   uint32_t closest[k_component_count] = {}, shadows[k_component_count] = {};
   closest[w.first_account] = count;
   w.stream.fill(w.counters, 0);
-  w.stream.dispatch(w.camera, w.main[0], push, Impl::groups(count), "camera");
+  begin();
   const uint32_t* counters = static_cast<const uint32_t*>(w.counters.mapped());
   uint32_t active = count, parity = 0, shadow_count = 0;
   bool first = true;
@@ -253,6 +281,7 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
       w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
               first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
       w.stats.rays += active;
+      if (first && first_hits) first_hits();
       w.stream.fill(w.counters, 0, 0, 12);
       w.stream.fill(w.counters, 0, 4 * k_counter_rays, 32);
       push.count = active;
@@ -274,11 +303,6 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
   w.stats.roulette += counters[k_counter_roulette];
   w.stats.depth += counters[k_counter_depth];
   w.stats.paths += count;
-  film.bind(w.film_resources);
-  const FilmPush add{film.width(), film.height(), pixels, item.sample_count};
-  w.stream.dispatch(film.fits_storage_buffers() ? w.film_add : w.film_add_images, w.film_resources, add,
-                    Impl::groups(pixels), "film");
-  w.run_and_account(nullptr, nullptr);
   return true;
 }
 
@@ -305,6 +329,10 @@ void Wavefront::estimate_stopping(const std::vector<WorkBlock>& blocks, film::Fi
                                   float luminance_floor) {
   impl_->estimate(impl_->stopping, blocks, film, luminance_floor);
 }
+
+void Wavefront::bind_paths(gpu::Resources& resources) const { resources = impl_->main[0]; }
+const gpu::Buffer& Wavefront::hits() const { return impl_->hits; }
+gpu::Stream& Wavefront::stream() { return impl_->stream; }
 
 void Wavefront::clear(film::Film& film) { film.clear(impl_->stream); }
 

@@ -1,0 +1,46 @@
+// The records of an irradiance cache. Read by C++ and GLSL.
+//
+// A record holds the irradiance of a point on a surface in parts, so that components stay apart wherever it is read. The
+// parts carry the numbers of the components that a path beginning with ED would bring them to: light that comes from the
+// hemisphere straight, over one diffuse event, over more, or over mirrors and glass alone.
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_H
+#include "shaders/shared/compat.h"
+LUCERNA_SHARED_BEGIN
+
+LUCERNA_CONST uint k_part_direct = 0u;     ///< L: in a cache, the environment's alone (E_env)
+LUCERNA_CONST uint k_part_secondary = 1u;  ///< [SG]*DL
+LUCERNA_CONST uint k_part_tertiary = 2u;   ///< the rest
+LUCERNA_CONST uint k_part_caustic = 3u;    ///< [SG]+L
+LUCERNA_CONST uint k_part_count = 4u;
+
+// record_texels: k_record_texels a record.
+//   0: position xyz [m], moved off its surface by the error bound; radius of validity [m], 0: none yet
+//   1: normal xyz, unit, on the side that is lit; harmonic mean of the distances that its rays met [m]
+//   2: bits rays so far, least distance [m], standard error of the luminance of all parts' sum (irradiance), bits flags
+LUCERNA_CONST uint k_record_texels = 3u;
+
+// irradiance_texels: k_part_texels for each (record, part), record by record: 16 floats, of which 15 are used:
+//   irradiance rgb; rotational gradient rgb along the tangent, then along the bitangent; translational likewise [1/m].
+// Tangent and bitangent are make_basis() of the normal. Rotational gradient: change of the irradiance as the normal n_i
+// turns to n, by the components of n_i x n.
+LUCERNA_CONST uint k_part_texels = 4u;
+
+/// Bytes that a record takes, lookup structure not included.
+LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + k_part_count * k_part_texels);
+
+/// One level of evaluation of `records` records: entries `first` on of record_list, elevations x azimuths paths each.
+struct RecordPush {
+  uint first, records;
+  uint elevations, azimuths;
+  uint rays_before;  ///< that each of them has had
+  uint parts;        ///< bit p: part p is wanted
+  uint state;        ///< of the automaton after ED
+  uint seed;
+};
+
+LUCERNA_SHARED_END
+#ifdef __cplusplus
+static_assert(lucerna::shared::k_record_bytes == 304 && sizeof(lucerna::shared::RecordPush) == 32);
+#endif
+#endif
