@@ -205,6 +205,14 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
   j["ledger"] = make_ledger(r.ledger());
   if (!r.adaptive()) j["forecast"] = make_forecast(r.ledger());
+  if (const irradiance_cache::Cache* cache = r.cache()) {
+    const irradiance_cache::CacheStatus& s = cache->status();
+    constexpr const char* k_reasons[] = {"building", "covered", "passes", "records"};
+    j["cache"] = {
+        {"passes", s.pass}, {"records", s.records},
+        {"rays", s.rays},   {"uncovered_share", double(s.asked) / double(std::max<uint64_t>(1, s.paths))},
+        {"bytes", s.bytes}, {"stopped_by", k_reasons[size_t(s.stop)]}};
+  }
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
   for (int c = 0; c < paths::k_component_count; ++c) {

@@ -20,6 +20,7 @@
 #include "scene/scene.h"
 #include "schedule/adaptive.h"
 #include "schedule/uniform.h"
+#include "solvers/irradiance_cache/cache.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
 
@@ -118,6 +119,8 @@ class Renderer {
   double load_seconds() const { return load_seconds_; }
   double compile_seconds() const { return compile_seconds_; }
   uint32_t enabled_components() const;
+  /// Null where nothing is looked up.
+  const irradiance_cache::Cache* cache() const { return cache_.get(); }
 
  private:
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
@@ -135,6 +138,9 @@ class Renderer {
   /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
   std::string view_text() const;
   bool render_item(const std::function<bool()>& cancel);
+  irradiance_cache::CacheOptions cache_options() const;
+  irradiance_cache::CacheView cache_view() const;
+  paths::LookupRoutes wanted_routes() const;  ///< by the settings
   /// Adds a line to the ledger when one is due, or at once.
   void note_progress(bool at_once);
 
@@ -147,6 +153,8 @@ class Renderer {
   upload::FlatScene flat_;
   std::unique_ptr<upload::DeviceScene> device_scene_;
   std::unique_ptr<bvh::HostTracer> host_;
+  paths::LookupRoutes routes_;                      ///< of the kernels in use
+  std::unique_ptr<irradiance_cache::Cache> cache_;  ///< null: nothing is looked up
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::unique_ptr<film::Film> film_, coarse_;
   scene::Camera camera_;

@@ -24,6 +24,7 @@ struct Wavefront::Impl {
       trace_closest, trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
+  std::function<void(gpu::Resources&)> bind_lookup;
   TransportStats stats;
 
   Impl(gpu::Device& d, uint32_t n, HostTrace trace)
@@ -85,6 +86,8 @@ struct Wavefront::Impl {
       shade_shadow[k].set("NextQueue", queues[0]);
       shade_shadow[k].set("ShadowQueue", shadow_queues[1 - k]);
     }
+    if (bind_lookup)
+      for (gpu::Resources& r : main) bind_lookup(r);
     film_resources = main[0];
     film_resources.set("Coarse", no_coarse);
   }
@@ -143,7 +146,8 @@ struct Wavefront::Impl {
 };
 
 Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
-                     uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines)
+                     uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines,
+                     std::function<void(gpu::Resources&)> bind_lookup)
     : impl_(std::make_unique<Impl>(device, slots, std::move(host_trace))) {
   Impl& w = *impl_;
   const Timer timer;
@@ -163,6 +167,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   w.tiles = gpu::Kernel(device, compiler, "film/tiles.comp");
   w.error = gpu::Kernel(device, compiler, "film/error.comp");
   w.stopping = gpu::Kernel(device, compiler, "film/error.comp", {{"LUCERNA_STOPPING_ONLY", "1"}});
+  w.bind_lookup = std::move(bind_lookup);
   w.bind(scene);
   if (!w.host_trace) {
     // Where nothing is transparent the any-hit kernel need not look at the flag.
@@ -205,19 +210,26 @@ uint32_t Wavefront::slots() const { return impl_->slots; }
 bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel) {
   Impl& w = *impl_;
   const auto pixels = static_cast<uint32_t>(item.blocks.size()) * 64;
-  const uint32_t count = item.slots();
-  if (count == 0 || w.enabled == 0) return true;
-  if (count > w.slots) throw_error("transport", "work item of {} paths, room for {}", count, w.slots);
-  w.blocks.write(std::span<const WorkBlock>(item.blocks));
-  const TransportPush push{count, 0, pixels, 0};
-  const auto begin = [&] { w.stream.dispatch(w.camera, w.main[0], push, Impl::groups(count), "camera"); };
-  if (!w.trace_paths(count, begin, {}, cancel)) return false;
+  if (item.slots() == 0 || w.enabled == 0) return true;
+  if (!probe(item, cancel)) return false;
+  w.stats.paths += item.slots();
   film.bind(w.film_resources);
   const FilmPush add{film.width(), film.height(), pixels, item.sample_count};
   w.stream.dispatch(film.fits_storage_buffers() ? w.film_add : w.film_add_images, w.film_resources, add,
                     Impl::groups(pixels), "film");
   w.run_and_account(nullptr, nullptr);
   return true;
+}
+
+bool Wavefront::probe(const schedule::WorkItem& item, const std::function<bool()>& cancel) {
+  Impl& w = *impl_;
+  const uint32_t count = item.slots();
+  if (count == 0 || w.enabled == 0) return true;
+  if (count > w.slots) throw_error("transport", "work item of {} paths, room for {}", count, w.slots);
+  w.blocks.write(std::span<const WorkBlock>(item.blocks));
+  const TransportPush push{count, 0, static_cast<uint32_t>(item.blocks.size()) * 64, 0};
+  const auto begin = [&] { w.stream.dispatch(w.camera, w.main[0], push, Impl::groups(count), "camera"); };
+  return w.trace_paths(count, begin, {}, cancel);
 }
 
 bool Wavefront::run(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel) {
@@ -302,7 +314,6 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const std::function<void()>& b
   w.stats.dropped += counters[k_counter_dropped];
   w.stats.roulette += counters[k_counter_roulette];
   w.stats.depth += counters[k_counter_depth];
-  w.stats.paths += count;
   return true;
 }
 

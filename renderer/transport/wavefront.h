@@ -33,7 +33,8 @@ struct StageSum {
 
 /// Sums since the last reset().
 struct TransportStats {
-  uint64_t paths = 0, rays = 0, shadow_rays = 0;
+  uint64_t paths = 0;  ///< of the film's
+  uint64_t rays = 0, shadow_rays = 0;
   uint64_t dropped = 0;              ///< contributions refused because they were not finite
   uint64_t roulette = 0, depth = 0;  ///< paths ended by roulette, by the maximum depth
   std::vector<StageSum> stages;
@@ -51,9 +52,12 @@ struct PathEnds {
 
 class Wavefront {
  public:
-  /// `host_trace` empty: compute-bvh. Compiles all kernels (throws Error, located) and warms them up.
+  /// `host_trace` empty: compute-bvh. `bind_lookup`: sets what kernels read that are compiled, by
+  /// `extra_defines`, with a lookup; called again by rebind(). Compiles all kernels (throws Error, located)
+  /// and warms them up.
   Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
-            uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines = {});
+            uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines = {},
+            std::function<void(gpu::Resources&)> bind_lookup = {});
   ~Wavefront();
 
   /// The frame's constants; `enabled`: components on (bit i).
@@ -64,6 +68,8 @@ class Wavefront {
   /// Traces the item and adds it to the film. `cancel` is asked between bounces; a cancelled item leaves the
   /// film as it was and returns false.
   bool run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
+  /// The same without a film: for what kernels note on the way.
+  bool probe(const schedule::WorkItem& item, const std::function<bool()>& cancel = {});
   /// Traces `count` <= slots() paths between ends of the caller's; cancellable as above, `end` is then not
   /// called. Their time and rays are in stats() like those of the film's paths. Their frame is that of
   /// set_frame().

@@ -29,6 +29,25 @@ LUCERNA_CONST uint k_part_texels = 4u;
 /// Bytes that a record takes, lookup structure not included.
 LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + k_part_count * k_part_texels);
 
+// candidate_texels: 2 a path slot, all 0 where there is none:
+//   0: position, off its surface; 1 where there is one    1: normal on the side that asks, 0
+LUCERNA_CONST uint k_candidate_texels = 2u;
+
+LUCERNA_CONST uint k_no_routes = 0xffffu;
+
+/// What paths are told of the cache.
+struct CacheFrame {
+  /// By state of the automaton, for the diffuse lobe of a vertex met in it: bits 4 p on: the component to which part p
+  /// goes; k_component_count: none. k_no_routes: no lookup there.
+  uint routes[16];
+  uint record_count;
+  /// Most that the normals of a point and of a record may differ, as 1 - cos.
+  float normal_tolerance;
+  /// How far below a record's tangent plane, in its radius, a point may lie and still be served.
+  float behind;
+  uint probing;        ///< 1: vertices that no record serves are noted as candidates
+};
+
 /// One level of evaluation of `records` records: entries `first` on of record_list, elevations x azimuths paths each.
 struct RecordPush {
   uint first, records;
@@ -37,6 +56,13 @@ struct RecordPush {
   uint parts;        ///< bit p: part p is wanted
   uint state;        ///< of the automaton after ED
   uint seed;
+};
+
+struct RadiusPush {
+  uint first, count;   ///< records
+  float error;         ///< radius over harmonic mean distance
+  float least_pixels;  ///< as the camera sees them
+  float most;          ///< [m]
 };
 
 LUCERNA_SHARED_END

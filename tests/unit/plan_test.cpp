@@ -36,7 +36,7 @@ TEST_CASE("every component has one solver of the registry, or none") {
   // What is off has no bias of its own to tell; a solver that cannot tell says so too.
   CHECK(p.bias(0) == 0.0);
   CHECK_FALSE(p.bias(1).has_value());
-  plan::SolverInfo reuses{"reuses", "", {true, true, true, true}, false};
+  plan::SolverInfo reuses{"reuses", "", {true, true, true, true}, false, true};
   plan::Plan biased;
   biased.solver[2] = &reuses;
   CHECK_FALSE(biased.bias(2).has_value());
