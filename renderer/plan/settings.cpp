@@ -121,7 +121,7 @@ std::vector<OptionInfo> make_options() {
        .choices = {"256", "1024", "4096", "16384"},
        .help = "Irradiance cache: rays from a record over its hemisphere."},
       integer("cache.max_records", 100000, 16, 400000, "records",
-              "Irradiance cache: room for records, of 304 bytes each; building ends when it is used up."),
+              "Irradiance cache: room for records, of 320 bytes each; building ends when it is used up."),
       integer("cache.passes", 12, 1, 64, "passes", "Irradiance cache: passes of building at most."),
       {.key = "cache.stop",
        .type = OptionType::real,

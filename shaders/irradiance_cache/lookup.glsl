@@ -5,6 +5,7 @@
 #define LUCERNA_IRRADIANCE_CACHE_LOOKUP
 #include "shaders/shared/irradiance_cache.h"
 #include "lib/math.glsl"
+#include "lib/octree.glsl"
 
 layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
 uniform samplerBuffer record_texels;
@@ -40,9 +41,10 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, bool asks) {
   Cached found;
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
   found.weight = 0.0;
-  uint last = asks && cache_can_serve(n, shading) ? cache.record_count : 0u;
-  for (uint i = 0u; i < last; ++i) {
-    uint record = i;
+  OctreeRange range = octree_find(x);
+  uint last = asks && cache.record_count > 0u && cache_can_serve(n, shading) ? range.last : range.first;
+  for (uint i = range.first; i < last; ++i) {
+    uint record = octree_sphere(i);
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
     float weight = record_weight(x, n, place, facing);

@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { RadiusPush push; };
 uniform samplerBuffer record_texels;
 layout(scalar) writeonly buffer Records { vec4 records[]; };
+layout(scalar) writeonly buffer Spheres { vec4 spheres[]; };  // of the octree
 
 void main() {
   uint index = global_index();
@@ -18,5 +19,7 @@ void main() {
   float seen = frame.orthographic != 0u ? 1.0 : distance(place.xyz, frame.camera_origin);
   float pixel = 2.0 * seen * length(frame.camera_up) / float(frame.height);
   float least = min(push.least_pixels * pixel, push.most);
-  records[at].w = max(min(push.error * facing.w, min(push.most, nearest)), least);
+  float radius = max(min(push.error * facing.w, min(push.most, nearest)), least);
+  records[at].w = radius;
+  spheres[push.first + index] = vec4(place.xyz, radius);
 }

@@ -17,8 +17,12 @@ LUCERNA_CONST uint k_part_count = 4u;
 // record_texels: k_record_texels a record.
 //   0: position xyz [m], moved off its surface by the error bound; radius of validity [m], 0: none yet
 //   1: normal xyz, unit, on the side that is lit; harmonic mean of the distances that its rays met [m]
-//   2: bits rays so far, least distance [m], standard error of the luminance of all parts' sum (irradiance), bits flags
+//   2: bits rays so far, least distance [m], standard error of the luminance of all parts' sum (irradiance), bits k_record_*
 LUCERNA_CONST uint k_record_texels = 3u;
+LUCERNA_CONST uint k_record_pass = 0xffu;       ///< mask: the pass that placed it, from 0
+LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: what asked for it, k_origin_*
+LUCERNA_CONST uint k_origin_screen = 0u;        ///< a surface that the camera sees straight
+LUCERNA_CONST uint k_origin_world = 1u;         ///< a vertex of a longer path
 
 // irradiance_texels: k_part_texels for each (record, part), record by record: 16 floats, of which 15 are used:
 //   irradiance rgb; rotational gradient rgb along the tangent, then along the bitangent; translational likewise [1/m].
@@ -26,11 +30,11 @@ LUCERNA_CONST uint k_record_texels = 3u;
 // turns to n, by the components of n_i x n.
 LUCERNA_CONST uint k_part_texels = 4u;
 
-/// Bytes that a record takes, lookup structure not included.
-LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + k_part_count * k_part_texels);
+/// Bytes that a record takes with its sphere; the octree's references come to that.
+LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + k_part_count * k_part_texels + 1u);
 
 // candidate_texels: 2 a path slot, all 0 where there is none:
-//   0: position, off its surface; 1 where there is one    1: normal on the side that asks, 0
+//   0: position, off its surface; 1 where there is one    1: normal on the side that asks; k_origin_*
 LUCERNA_CONST uint k_candidate_texels = 2u;
 
 LUCERNA_CONST uint k_no_routes = 0xffffu;
@@ -65,8 +69,22 @@ struct RadiusPush {
   float most;          ///< [m]
 };
 
+// What the overlay colours records by.
+LUCERNA_CONST uint k_record_by_pass = 0u;
+LUCERNA_CONST uint k_record_by_origin = 1u;
+LUCERNA_CONST uint k_record_by_rays = 2u;
+LUCERNA_CONST uint k_record_by_distance = 3u;
+LUCERNA_CONST uint k_record_by_error = 4u;
+struct OverlayPush {
+  uint width, height;
+  uint discs, overlap;  ///< not 0: drawn
+  uint color;           ///< k_record_by_*
+  float lo, hi;         ///< of the value, logarithmic; 0 < lo < hi
+  float overlap_most;   ///< records at the upper end of the heat map
+};
+
 LUCERNA_SHARED_END
 #ifdef __cplusplus
-static_assert(lucerna::shared::k_record_bytes == 304 && sizeof(lucerna::shared::RecordPush) == 32);
+static_assert(lucerna::shared::k_record_bytes == 320 && sizeof(lucerna::shared::RecordPush) == 32);
 #endif
 #endif

@@ -176,7 +176,7 @@ void main() {
           bool missing = asks && found.weight <= 0.0;
           if (missing && cache.probing != 0u && cache_can_serve(sign * side, sign * to_world[2])) {
             candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), 1.0);
-            candidates[slot * k_candidate_texels + 1u] = vec4(sign * side, 0.0);
+            candidates[slot * k_candidate_texels + 1u] = vec4(sign * side, depth == 0u ? float(k_origin_screen) : float(k_origin_world));
           }
           cached_everywhere = cached_everywhere && !missing;
           for (uint p = 0u; p < k_part_count; ++p)

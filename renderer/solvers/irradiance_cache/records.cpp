@@ -27,6 +27,9 @@ Record unpack(const vec4* place, const vec4* light) {
   r.mean_distance = place[1].w;
   r.rays = std::bit_cast<uint32_t>(place[2].x);
   r.least_distance = place[2].y;
+  const auto flags = std::bit_cast<uint32_t>(place[2].w);
+  r.pass = flags & k_record_pass;
+  r.place.origin = flags >> k_record_origin_shift & 3u;
   r.error = place[2].z;
   const auto [t, b] = basis(r.place.normal);
   for (uint32_t p = 0; p < k_part_count; ++p) {
@@ -55,16 +58,18 @@ Records::Records(gpu::Device& device, uint32_t capacity) : capacity_(capacity) {
   records_ = gpu::Buffer(device, {.name = "cache records", .bytes = capacity * k_place_bytes, .texel = true});
   irradiance_ =
       gpu::Buffer(device, {.name = "cache irradiance", .bytes = capacity * k_light_bytes, .texel = true});
+  spheres_ = gpu::Buffer(device, {.name = "cache spheres", .bytes = capacity * sizeof(vec4), .texel = true});
 }
 
-uint32_t Records::append(std::span<const Place> places) {
+uint32_t Records::append(std::span<const Place> places, uint32_t pass) {
   const auto fitting = static_cast<uint32_t>(std::min<size_t>(places.size(), capacity_ - size_));
   std::vector<vec4> texels;
   texels.reserve(size_t{fitting} * k_record_texels);
   for (const Place& p : places.first(fitting)) {
     texels.emplace_back(p.position, 0.0f);
     texels.emplace_back(p.normal, 0.0f);
-    texels.emplace_back(0.0f);
+    const uint32_t flags = std::min(pass, k_record_pass) | p.origin << k_record_origin_shift;
+    texels.emplace_back(0.0f, 0.0f, 0.0f, std::bit_cast<float>(flags));
   }
   records_.write(texels.data(), texels.size() * sizeof(vec4), size_ * k_place_bytes);
   const std::vector<vec4> dark(size_t{fitting} * k_part_count * k_part_texels, vec4(0));
@@ -97,6 +102,7 @@ void Records::bind(gpu::Resources& resources) const {
   resources.set("Records", records_);
   resources.set("irradiance_texels", irradiance_);
   resources.set("Irradiance", irradiance_);
+  resources.set("Spheres", spheres_);
 }
 
 }  // namespace lucerna::irradiance_cache

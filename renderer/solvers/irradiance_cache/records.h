@@ -18,6 +18,7 @@ namespace lucerna::irradiance_cache {
 /// side from which light is gathered.
 struct Place {
   vec3 position{0}, normal{0, 1, 0};
+  uint32_t origin = shared::k_origin_screen;  ///< shared::k_origin_*: what asked for it
 };
 
 /// One part of a record's irradiance, gradients in world space.
@@ -36,6 +37,7 @@ struct Record {
   float least_distance = 0;  ///< [m]
   float error = 0;           ///< standard error of the luminance of value, all evaluated parts together
   uint32_t rays = 0;
+  uint32_t pass = 0;         ///< that placed it
   std::array<Irradiance, shared::k_part_count> parts;
 };
 
@@ -48,8 +50,10 @@ class Records {
   static uint32_t most_records(const gpu::Device& device);
   uint32_t capacity() const { return capacity_; }
   uint32_t size() const { return size_; }
-  /// Adds records without light and validity; returns how many found room.
-  uint32_t append(std::span<const Place> places);
+  /// Adds records without light and validity; returns how many found room. `pass`: at most k_record_pass.
+  uint32_t append(std::span<const Place> places, uint32_t pass = 0);
+  /// (position, radius), for the octree.
+  const gpu::Buffer& spheres() const { return spheres_; }
   void clear() { size_ = 0; }
   /// All of them, or one; for tests, files and the inspector.
   std::vector<Record> read() const;
@@ -59,7 +63,7 @@ class Records {
 
  private:
   uint32_t capacity_ = 0, size_ = 0;
-  gpu::Buffer records_, irradiance_;
+  gpu::Buffer records_, irradiance_, spheres_;
 };
 
 }  // namespace lucerna::irradiance_cache
