@@ -1,5 +1,6 @@
 #pragma once
 // What prefix sums and sorts are told about the length of an array.
+#include <algorithm>
 #include <cstdint>
 
 #include "gpu/resources.h"
@@ -10,7 +11,8 @@ namespace lucerna::sort {
 /// queue is.
 ///
 /// Kernels find their share of the work from the count itself, so that nothing has to be dispatched
-/// indirectly: the number of invocations is fixed (Runs::most), those without work return at once.
+/// indirectly: invocations are enough for `most` elements, few as they are (see Runs), and those without work
+/// return at once.
 struct Count {
   uint32_t most = 0;                    ///< elements, or the most that there may be
   const gpu::Buffer* buffer = nullptr;  ///< holds the number; more than `most` counts as `most`
@@ -25,6 +27,11 @@ struct Runs {
   uint32_t most = 1024;  ///< runs there may be, a multiple of `group` >= `wanted`: more than `wanted` where
                          ///< these would be longer than k_longest
   static constexpr uint32_t k_longest = 32768;  ///< elements of a run; see shaders/lib/runs.glsl
+  /// Workgroups for that many elements or fewer: enough for all runs, as shaders/lib/runs.glsl cuts them.
+  uint32_t groups(uint32_t elements) const {
+    const uint64_t n = elements, few = (n + least - 1) / least, long_ones = (n + k_longest - 1) / k_longest;
+    return uint32_t((std::max(std::min<uint64_t>(few, wanted), long_ones) + group - 1) / group);
+  }
   /// Elements that they reach.
   uint64_t reach() const { return uint64_t(most) * k_longest; }
 };

@@ -21,7 +21,6 @@ PrefixSum::PrefixSum(gpu::Device& device, gpu::ShaderCompiler& compiler, const R
       unused_(device, {.name = "unused total", .bytes = sizeof(uint32_t)}) {
   const gpu::Defines defines{{"LUCERNA_SCAN_GROUP", std::to_string(runs.group)},
                              {"LUCERNA_SCAN_WANTED", std::to_string(runs.wanted) + "u"},
-                             {"LUCERNA_SCAN_RUNS", std::to_string(runs.most) + "u"},
                              {"LUCERNA_SCAN_LEAST", std::to_string(runs.least) + "u"}};
   sums_ = gpu::Kernel(device, compiler, "sort/scan_sums.comp", defines);
   spine_ = gpu::Kernel(device, compiler, "sort/scan_spine.comp", defines);
@@ -50,7 +49,7 @@ void PrefixSum::encode(gpu::Stream& stream, const gpu::Buffer& in, const gpu::Bu
   const shared::ScanPush push{count.most,
                               count.buffer ? uint32_t(count.offset / 4) : shared::k_sort_count_here,
                               total ? uint32_t(total_offset / 4) : 0};
-  const uint32_t groups = runs_.most / runs_.group;
+  const uint32_t groups = runs_.groups(count.most);
   stream.dispatch(sums_, resources, push, groups, stage);
   stream.dispatch(spine_, resources, push, 1, stage);
   stream.dispatch(write_, resources, push, groups, stage);

@@ -51,13 +51,20 @@ RadixSort::RadixSort(gpu::Device& device, gpu::ShaderCompiler& compiler, Keys ke
                       .texel = true}),
       table_count_(device, {.name = "length of the table of digits", .bytes = sizeof(uint32_t)}),
       unused_(device, {.name = "unused count", .bytes = sizeof(uint32_t)}) {
-  const gpu::Defines defines{{"LUCERNA_SORT_GROUP", std::to_string(tuning.runs.group) + "u"},
-                             {"LUCERNA_SORT_WANTED", std::to_string(tuning.runs.wanted) + "u"},
-                             {"LUCERNA_SORT_LEAST", std::to_string(tuning.runs.least) + "u"},
-                             {"LUCERNA_SORT_BINS", std::to_string(1u << tuning.digit_bits) + "u"},
-                             {"LUCERNA_SORT_WIDE", keys == Keys::bits64 ? "1" : "0"}};
-  count_ = gpu::Kernel(device, compiler, "sort/count.comp", defines);
-  scatter_ = gpu::Kernel(device, compiler, "sort/scatter.comp", defines);
+  large_ = kernels(device, compiler, tuning.digit_bits);
+  if (tuning.small > 0) small_ = kernels(device, compiler, tuning.small_digit_bits);
+}
+
+RadixSort::Kernels RadixSort::kernels(gpu::Device& device, gpu::ShaderCompiler& compiler,
+                                      uint32_t digit_bits) const {
+  const Runs& runs = tuning_.runs;
+  const gpu::Defines defines{{"LUCERNA_SORT_GROUP", std::to_string(runs.group) + "u"},
+                             {"LUCERNA_SORT_WANTED", std::to_string(runs.wanted) + "u"},
+                             {"LUCERNA_SORT_LEAST", std::to_string(runs.least) + "u"},
+                             {"LUCERNA_SORT_BINS", std::to_string(1u << digit_bits) + "u"},
+                             {"LUCERNA_SORT_WIDE", keys_ == Keys::bits64 ? "1" : "0"}};
+  return {gpu::Kernel(device, compiler, "sort/count.comp", defines),
+          gpu::Kernel(device, compiler, "sort/scatter.comp", defines)};
 }
 
 const gpu::Buffer& RadixSort::encode(gpu::Stream& stream, const gpu::Buffer& entries,
@@ -73,10 +80,10 @@ const gpu::Buffer& RadixSort::encode(gpu::Stream& stream, const gpu::Buffer& ent
   if (count.most > tuning_.runs.reach())
     throw_error("sort", "{} entries; it reaches {}", count.most, tuning_.runs.reach());
   const gpu::Buffer *from = &entries, *to = &scratch;
-  const uint32_t groups = tuning_.runs.most / tuning_.runs.group;
+  const uint32_t groups = tuning_.runs.groups(count.most);
   const bool small = count.most < tuning_.small;
-  for (const Digit& digit :
-       digits(bits, small ? std::min(tuning_.small_digit_bits, tuning_.digit_bits) : tuning_.digit_bits)) {
+  const Kernels& kernels = small ? small_ : large_;
+  for (const Digit& digit : digits(bits, small ? tuning_.small_digit_bits : tuning_.digit_bits)) {
     gpu::Resources resources;
     resources.set("sort_in", *from);
     resources.set("SortOut", *to);
@@ -87,11 +94,12 @@ const gpu::Buffer& RadixSort::encode(gpu::Stream& stream, const gpu::Buffer& ent
     const shared::SortPush push{count.most,
                                 count.buffer ? uint32_t(count.offset / 4) : shared::k_sort_count_here,
                                 digit.shift, 1u << digit.width, digit.word};
-    stream.dispatch(count_, resources, push, groups, stage);
-    prefix_sum_.encode(stream, table_, table_,
-                       {.most = tuning_.runs.most << digit.width, .buffer = &table_count_, .offset = 0},
-                       nullptr, 0, stage);
-    stream.dispatch(scatter_, resources, push, groups, stage);
+    stream.dispatch(kernels.count, resources, push, groups, stage);
+    prefix_sum_.encode(
+        stream, table_, table_,
+        {.most = groups * tuning_.runs.group << digit.width, .buffer = &table_count_, .offset = 0}, nullptr,
+        0, stage);
+    stream.dispatch(kernels.scatter, resources, push, groups, stage);
     std::swap(from, to);
   }
   return *from;

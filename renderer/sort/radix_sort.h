@@ -36,11 +36,16 @@ class RadixSort {
                             const Count& count, uint32_t bits, const std::string& stage = {});
 
  private:
+  struct Kernels {
+    gpu::Kernel count, scatter;
+  };
+  Kernels kernels(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t digit_bits) const;
+
   Keys keys_;
   Tuning tuning_;
   PrefixSum prefix_sum_;
-  gpu::Kernel count_, scatter_;
   gpu::Buffer table_, table_count_, unused_;
+  Kernels large_, small_;  ///< differ in the number of counters, which lavapipe clears in every workgroup
 };
 
 }  // namespace lucerna::sort

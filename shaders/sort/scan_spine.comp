@@ -7,8 +7,8 @@ shared uint part[64];
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
-  const uint each = (LUCERNA_SCAN_RUNS + 63) / 64;
-  uint first = lane * each, end = min(first + each, LUCERNA_SCAN_RUNS), sum = 0u;
+  uint count = scan_count(), runs = run_count(count, scan_run_length(count)), each = (runs + 63u) / 64u;
+  uint first = lane * each, end = min(first + each, runs), sum = 0u;
   for (uint i = first; i < end; ++i) sum += scan_sums[i];
   part[lane] = sum;
   barrier();

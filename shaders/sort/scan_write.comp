@@ -7,8 +7,8 @@ layout(scalar) writeonly buffer ScanOut { uint scan_out[]; };
 
 void main() {
   uint index = global_index(), count = scan_count(), length = scan_run_length(count);
-  if (index >= LUCERNA_SCAN_RUNS) return;
   Run run = run_of(index, run_count(count, length), length, count);
+  if (run.first >= run.end) return;
   uint sum = scan_sums[index];
   for (uint at = run.first; at < run.end; at += 4u) {
     uvec4 v = scan_fetch(at, run.end);
