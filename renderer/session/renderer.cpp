@@ -481,6 +481,11 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
     film_->mark_tiles(marks);
   }
   wavefront_->tone_map(*film_, v, with_coarse ? coarse_.get() : nullptr);
+  if (cache_)
+    cache_->draw(*wavefront_, *film_,
+                 {.discs = settings_.boolean("overlay.records"),
+                  .overlap = settings_.boolean("overlay.overlap"),
+                  .color = uint32_t(settings_.choice("overlay.records_by"))});
   return film_->read_picture();
 }
 

@@ -205,6 +205,10 @@ void Wavefront::set_frame(const Frame& frame, uint32_t enabled) {
 }
 
 void Wavefront::rebind(const upload::DeviceScene& scene) { impl_->bind(scene); }
+void Wavefront::rebind_lookup() {
+  for (gpu::Resources& r : impl_->main)
+    if (impl_->bind_lookup) impl_->bind_lookup(r);
+}
 uint32_t Wavefront::slots() const { return impl_->slots; }
 
 bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel) {

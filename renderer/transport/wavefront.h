@@ -64,6 +64,8 @@ class Wavefront {
   void set_frame(const shared::Frame& frame, uint32_t enabled);
   /// After DeviceScene::update_lights.
   void rebind(const upload::DeviceScene& scene);
+  /// Calls `bind_lookup` again: after its buffers have changed.
+  void rebind_lookup();
   uint32_t slots() const;
   /// Traces the item and adds it to the film. `cancel` is asked between bounces; a cancelled item leaves the
   /// film as it was and returns false.

@@ -18,6 +18,8 @@ namespace {
 constexpr float k_first_spacing = 1.0f / 16, k_least_spacing = 1.0f / 512;
 constexpr float k_normal_tolerance = 0.015f;  // 1 - cos of 10 degrees
 constexpr float k_behind = 0.05f;
+/// References of the octree that there is memory for, a record.
+constexpr uint32_t k_references = 16;
 
 enum class Stage { probe, evaluate, done };
 
@@ -26,9 +28,10 @@ enum class Stage { probe, evaluate, done };
 struct Cache::Impl {
   CacheOptions options;
   Records records;
+  lookup::Octree octree;
   gpu::Buffer frame, candidates;
-  gpu::Kernel radius;
-  gpu::Resources radius_resources;
+  gpu::Kernel radius, overlay;
+  gpu::Resources resources;
   std::unique_ptr<Evaluator> evaluator;
   CacheFrame told{};
   uint32_t parts = 0;
@@ -36,16 +39,36 @@ struct Cache::Impl {
   Stage stage = Stage::probe;
   schedule::UniformSchedule picture;
   bool probing = false;  // the schedule of this pass has begun
+  std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
   std::vector<Place> asked;
   uint32_t evaluated = 0;  // records up to here are
 
-  Impl(gpu::Device& device, uint32_t slots, const CacheOptions& o)
-      : options(o), records(device, o.most_records) {
+  Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o)
+      : options(o),
+        records(device, o.most_records),
+        octree(device, compiler, {.spheres = o.most_records, .references = k_references * o.most_records}) {
     frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
     candidates = gpu::Buffer(device, {.name = "cache candidates",
                                       .bytes = uint64_t{slots} * 16 * k_candidate_texels,
                                       .memory = gpu::Memory::host});
-    status.bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes();
+    status.bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + octree.bytes();
+  }
+
+  void build_octree(transport::Wavefront& wavefront) {
+    const shared::OctreeHeader& h = octree.build(wavefront.stream(), records.spheres(), {.most = evaluated});
+    // What all but a few records lie between.
+    const std::vector<vec3> figures = records.figures();
+    for (int k = 0; k < 3 && !figures.empty(); ++k) {
+      std::vector<float> values;
+      for (const vec3& f : figures)
+        if (f[k] > 0 && std::isfinite(f[k])) values.push_back(f[k]);
+      std::sort(values.begin(), values.end());
+      const size_t n = values.size();
+      const float lo = n ? values[n / 50] : 1, hi = n ? values[n - 1 - n / 50] : 2;
+      scales[k] = {lo, std::max(hi, 1.01f * lo)};
+    }
+    status.references = h.spheres ? double(h.references) / h.spheres : 0;
+    wavefront.rebind_lookup();
   }
 
   /// What paths know of the cache from here on.
@@ -63,7 +86,8 @@ struct Cache::Impl {
       const vec4& place = texels[size_t{slot} * k_candidate_texels];
       if (place.w == 0) continue;
       ++status.asked;
-      asked.push_back({vec3(place), vec3(texels[size_t{slot} * k_candidate_texels + 1])});
+      const vec4& facing = texels[size_t{slot} * k_candidate_texels + 1];
+      asked.push_back({vec3(place), vec3(facing), static_cast<uint32_t>(facing.w)});
     }
   }
 
@@ -77,13 +101,14 @@ struct Cache::Impl {
 
 Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
              const paths::LookupRoutes& routes, const CacheOptions& options)
-    : impl_(std::make_unique<Impl>(device, slots, options)) {
+    : impl_(std::make_unique<Impl>(device, compiler, slots, options)) {
   Impl& c = *impl_;
   const auto elevations = static_cast<uint32_t>(std::lround(std::sqrt(options.rays / 4.0)));
   if (options.rays == 0 || elevations * elevations * 4 != options.rays)
     throw_error("cache.rays", "'{}': expected four times a square, such as 256 or 1024", options.rays);
-  c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
   c.parts = routes.parts;
+  c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
+  c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(routes));
   c.told.normal_tolerance = k_normal_tolerance;
   c.told.behind = k_behind;
   for (uint32_t s = 0; s < 16; ++s) {
@@ -112,6 +137,7 @@ void Cache::bind(gpu::Resources& resources) const {
   c.records.bind(resources);
   resources.set("CacheBlock", c.frame);
   resources.set("Candidates", c.candidates);
+  c.octree.bind(resources);
 }
 
 void Cache::clear() {
@@ -169,7 +195,7 @@ bool Cache::step(gpu::Device& device, gpu::ShaderCompiler& compiler, transport::
                                 .normal_tolerance = k_normal_tolerance,
                                 .seed = c.options.seed + c.status.pass,
                                 .most = c.records.capacity() - c.records.size()});
-    c.records.append(chosen);
+    c.records.append(chosen, c.status.pass);
     c.stage = Stage::evaluate;
     return true;
   }
@@ -188,12 +214,11 @@ bool Cache::step(gpu::Device& device, gpu::ShaderCompiler& compiler, transport::
     c.tell(c.evaluated, false);
     if (done < list.size()) return false;
     if (!list.empty()) {
-      wavefront.bind_paths(c.radius_resources);
-      c.records.bind(c.radius_resources);
+      wavefront.bind_paths(c.resources);
+      bind(c.resources);
       const RadiusPush push{list.front(), uint32_t(list.size()), c.options.error, c.options.least_pixels,
                             c.options.most_radius * view.scene_radius};
-      wavefront.stream().dispatch(c.radius, c.radius_resources, push, gpu::groups_for(list.size(), 64),
-                                  "records");
+      wavefront.stream().dispatch(c.radius, c.resources, push, gpu::groups_for(list.size(), 64), "records");
       wavefront.stream().run();
     }
     c.evaluated += static_cast<uint32_t>(done);
@@ -201,6 +226,7 @@ bool Cache::step(gpu::Device& device, gpu::ShaderCompiler& compiler, transport::
     c.status.records = c.evaluated;
     if (c.evaluated < c.records.size()) return true;
     ++c.status.pass;
+    c.build_octree(wavefront);
     c.tell(c.evaluated, false);
     c.stage = Stage::probe;
     if (c.records.size() == c.records.capacity())
@@ -209,6 +235,25 @@ bool Cache::step(gpu::Device& device, gpu::ShaderCompiler& compiler, transport::
       c.finish(StopReason::passes);
   }
   return true;
+}
+
+std::pair<float, float> Cache::scale(uint32_t color) const {
+  return color < k_record_by_rays ? std::pair(1.0f, 2.0f) : impl_->scales[color - k_record_by_rays];
+}
+
+void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const Overlay& overlay) {
+  Impl& c = *impl_;
+  if (!overlay.discs && !overlay.overlap) return;
+  wavefront.bind_paths(c.resources);
+  bind(c.resources);
+  film.bind(c.resources);
+  OverlayPush push{film.width(), film.height(), overlay.discs, overlay.overlap, overlay.color, 0, 1, 12};
+  const auto [lo, hi] = scale(overlay.color);
+  push.lo = lo, push.hi = hi;
+  wavefront.stream().dispatch(c.overlay, c.resources, push,
+                              gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
+  wavefront.stream().run();
+  wavefront.stream().take_times();
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -12,6 +12,7 @@
 #include "paths/automaton.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/records.h"
+#include "solvers/lookup/octree.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -34,6 +35,7 @@ struct CacheStatus {
   uint64_t asked = 0, paths = 0;  ///< of the last complete pass: paths that asked, paths
   uint64_t rays = 0;              ///< of the records' own hemispheres
   uint64_t bytes = 0;             ///< of device memory
+  double references = 0;          ///< leaves that list a record, on average
   StopReason stop = StopReason::building;
 };
 
@@ -67,6 +69,16 @@ class Cache {
             const std::function<bool()>& cancel = {});
   const CacheStatus& status() const;
   const Records& records() const;
+  /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many
+  /// serve each pixel. Needs the film's depth. `stream` is run.
+  struct Overlay {
+    bool discs = false, overlap = false;
+    uint32_t color = shared::k_record_by_pass;
+  };
+  /// Ends of the logarithmic scale of a value that records are coloured by, from nearly all records; of rays,
+  /// distance and error only. 0 < first < second.
+  std::pair<float, float> scale(uint32_t color) const;
+  void draw(transport::Wavefront& wavefront, const film::Film& film, const Overlay& overlay);
 
  private:
   struct Impl;

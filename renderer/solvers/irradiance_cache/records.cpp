@@ -97,6 +97,17 @@ Record Records::read(uint32_t index) const {
   return unpack(place, light);
 }
 
+std::vector<vec3> Records::figures() const {
+  std::vector<vec4> places(size_t{size_} * k_record_texels);
+  records_.read(places.data(), places.size() * sizeof(vec4));
+  std::vector<vec3> all;
+  for (uint32_t i = 0; i < size_; ++i) {
+    const vec4* p = &places[size_t{i} * k_record_texels];
+    all.emplace_back(float(std::bit_cast<uint32_t>(p[2].x)), p[1].w, p[2].z);
+  }
+  return all;
+}
+
 void Records::bind(gpu::Resources& resources) const {
   resources.set("record_texels", records_);
   resources.set("Records", records_);

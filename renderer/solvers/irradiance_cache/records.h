@@ -37,7 +37,7 @@ struct Record {
   float least_distance = 0;  ///< [m]
   float error = 0;           ///< standard error of the luminance of value, all evaluated parts together
   uint32_t rays = 0;
-  uint32_t pass = 0;         ///< that placed it
+  uint32_t pass = 0;  ///< that placed it
   std::array<Irradiance, shared::k_part_count> parts;
 };
 
@@ -58,6 +58,8 @@ class Records {
   /// All of them, or one; for tests, files and the inspector.
   std::vector<Record> read() const;
   Record read(uint32_t index) const;
+  /// What the overlay colours by, of every record: rays, harmonic mean distance, error.
+  std::vector<vec3> figures() const;
   /// Under the names of shaders/irradiance_cache.
   void bind(gpu::Resources& resources) const;
 
