@@ -42,8 +42,10 @@ int main_checked(int argc, char** argv) {
   RenderArguments r;
   CLI::App* render_verb = app.add_subcommand("render", "render a scene to files, without a window");
   render_verb->add_option("SCENE", r.scene, "glTF scene")->required();
-  render_verb->add_option("-o,--output", r.outputs, "OUT.exr or OUT.png; may be given several times")
-      ->required()
+  render_verb
+      ->add_option(
+          "-o,--output", r.outputs,
+          "OUT.exr or OUT.png; may be given several times, or not at all where --stats or --ledger is")
       ->allow_extra_args(false);
   render_verb->add_option("--size", r.size, "picture, WIDTHxHEIGHT")->capture_default_str();
   render_verb->add_option("--camera", r.camera, "name of a scene camera");
@@ -123,6 +125,29 @@ int main_checked(int argc, char** argv) {
   rays_verb->add_option("--flat", b.flat, "write the flattened scene for lucerna-raybench");
   rays_verb->add_option("--device", b.device, "as above");
   rays_verb->add_flag("--json", b.json, "as JSON");
+  BenchSortArguments bs;
+  CLI::App* sort_verb = bench_verb->add_subcommand(
+      "sort", "elements a second of prefix sum and radix sort on the device, and of the C++ library's");
+  sort_verb->add_option("--sizes", bs.sizes, "elements to sort")->check(CLI::Range(1u, 1u << 22));
+  sort_verb->add_option("--repeats", bs.repeats, "measurements of each figure")
+      ->check(CLI::Range(5, 1000))
+      ->capture_default_str();
+  sort_verb->add_option("--seed", bs.seed, "seed of the keys")->capture_default_str();
+  sort_verb->add_option("--json", bs.json, "file to write the figures to");
+  sort_verb->add_option("--device", bs.device, "as above");
+  BenchLookupArguments bl;
+  CLI::App* lookup_verb = bench_verb->add_subcommand(
+      "lookup", "building the octree of spheres and asking it, against a plain grid");
+  lookup_verb->add_option("--sizes", bl.sizes, "spheres")->check(CLI::Range(1u, 1u << 22));
+  lookup_verb->add_option("--queries", bl.queries, "points to look up")
+      ->check(CLI::Range(1u, 1u << 22))
+      ->capture_default_str();
+  lookup_verb->add_option("--repeats", bl.repeats, "measurements of each figure")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  lookup_verb->add_option("--seed", bl.seed, "seed of spheres and points")->capture_default_str();
+  lookup_verb->add_option("--json", bl.json, "file to write the figures to");
+  lookup_verb->add_option("--device", bl.device, "as above");
   app.require_subcommand(0, 1);
 
   try {
@@ -138,6 +163,10 @@ int main_checked(int argc, char** argv) {
   if (*compare_verb) return compare(c);
   if (b.device.empty()) b.device = device;
   if (*rays_verb) return bench_rays(b);
+  if (bs.device.empty()) bs.device = device;
+  if (*sort_verb) return bench_sort(bs);
+  if (bl.device.empty()) bl.device = device;
+  if (*lookup_verb) return bench_lookup(bl);
   if (*bench_verb) {
     if (bm.device.empty()) bm.device = device;
     for (int i = 0; i < argc; ++i) bm.command += std::string(i ? " " : "") + (i ? argv[i] : "lucerna");

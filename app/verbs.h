@@ -33,6 +33,24 @@ struct BenchRaysArguments {
 };
 int bench_rays(const BenchRaysArguments& arguments);
 
+struct BenchSortArguments {
+  std::string device;
+  std::vector<uint32_t> sizes{1 << 10, 1 << 14, 1 << 17, 1 << 20, 1 << 22};
+  int repeats = 7;
+  uint32_t seed = 1;
+  std::string json;  ///< file to write the figures to; empty: none
+};
+int bench_sort(const BenchSortArguments& arguments);
+
+struct BenchLookupArguments {
+  std::string device;
+  std::vector<uint32_t> sizes{10000, 100000, 1000000};
+  uint32_t queries = 1 << 18, seed = 1;
+  int repeats = 5;
+  std::string json;  ///< file to write the figures to; empty: none
+};
+int bench_lookup(const BenchLookupArguments& arguments);
+
 struct BenchArguments {
   std::string matrix;  ///< file; or one of the two built in
   bool quick = false, full = false;

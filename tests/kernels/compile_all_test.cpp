@@ -26,6 +26,8 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
                            "LUCERNA_FILM_IMAGES",
                            "LUCERNA_VERTEX_COUNT",
                            "LUCERNA_STOPPING_ONLY",
+                           "LUCERNA_SORT_WIDE",
+                           "LUCERNA_OCTREE_SINGLE",
                            "LUCERNA_UV_TRANSFORMS",
                            "LUCERNA_TEX_NEAREST",
                            "LUCERNA_TEX_WRAPS",
@@ -45,7 +47,10 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
     for (const char* on : {"0", "1"}) {
       gpu::Defines defines{{"LUCERNA_BUCKETS", on[0] == '1' ? "6" : "0"},
                            {"LUCERNA_QUERY", on},
-                           {"LUCERNA_COHERENT", on[0] == '1' ? "4" : "0"}};
+                           {"LUCERNA_COHERENT", on[0] == '1' ? "4" : "0"},
+                           {"LUCERNA_CACHE", on},
+                           {"LUCERNA_CACHE_PARTS", "15u"},
+                           {"LUCERNA_NEIGHBOURS", on[0] == '1' ? "27" : "0"}};
       for (const char* use : uses) defines["LUCERNA_" + std::string(use) + "_BUCKETS"] = "63u";
       for (const char* effect : effects) defines[effect] = on;
       INFO(file << " with everything " << on);

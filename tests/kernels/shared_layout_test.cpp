@@ -9,9 +9,11 @@
 #include "gpu/spirv.h"
 #include "kernels/gpu_support.h"
 #include "shaders/shared/film.h"
+#include "shaders/shared/octree.h"
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
+#include "shaders/shared/sort.h"
 #include "shaders/shared/trace.h"
 #include "shaders/shared/transport.h"
 
@@ -59,6 +61,13 @@ std::vector<SharedStruct> structs() {
       SHARED("ramp.h", TileMark, position, bits),
       SHARED("ramp.h", TilesPush, width, height, side, across, line),
       SHARED("ramp.h", HeatPush, width, height, layer, ramp, logarithmic, lo, hi, unit),
+      SHARED("sort.h", SortPair, key, value),
+      SHARED("sort.h", SortEntry64, low, high, value, unused),
+      SHARED("sort.h", ScanPush, count, count_at, total_at),
+      SHARED("sort.h", SortPush, count, count_at, shift, bins, high_word),
+      SHARED("octree.h", OctreeHeader, origin, leaf, inverse_leaf, edge, mean_diameter, level, wanted_level,
+             cells, spheres, references, needed, capacity, leaves, slots, slot_shift, overflow),
+      SHARED("octree.h", OctreePush, count, count_at, capacity, slot_capacity, scale),
       SHARED("trace.h", TracePush, count, use_queue),
       SHARED("transport.h", PathState, throughput, pdf, pixel, sample_index, bits, medium, travelled,
              eta_scale, pad0, pad1),

@@ -1,0 +1,208 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "app/bench_timing.h"
+#include "app/verbs.h"
+#include "base/error.h"
+#include "base/math.h"
+#include "bench/folder.h"
+#include "solvers/lookup/octree.h"
+
+namespace lucerna::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A structure and the way to ask it.
+struct Way {
+  std::string name;
+  bool single;
+  float size;      ///< leaves against the mean diameter; single: cells against the largest diameter
+  int neighbours;  ///< LUCERNA_NEIGHBOURS
+};
+
+struct Row {
+  std::string spheres_kind, way;
+  uint32_t spheres = 0;
+  shared::OctreeHeader header{};
+  Timing build, gather;
+  double listed = 0, found = 0;  ///< spheres a query
+  uint64_t bytes = 0;
+  bool same = true;  ///< result as the octree's
+};
+
+float uniform(std::mt19937& random) { return float(random() >> 8) * (1.0f / 16777216); }
+
+/// A point on the walls, floor and ceiling of a hall of 20 × 8 × 10 m and on 40 boxes in it.
+struct Hall {
+  std::vector<std::pair<vec3, vec3>> boxes;  ///< corner, extent; the first is the hall
+  std::vector<float> area;                   ///< sums
+  explicit Hall(std::mt19937& random) {
+    boxes.push_back({vec3(0), vec3(20, 8, 10)});
+    for (int i = 0; i < 40; ++i) {
+      const vec3 extent = vec3(0.3f) + 1.5f * vec3(uniform(random), uniform(random), uniform(random));
+      boxes.push_back({vec3(18 * uniform(random), 0, 8 * uniform(random)), extent});
+    }
+    float sum = 0;
+    for (const auto& [corner, e] : boxes) area.push_back(sum += 2 * (e.x * e.y + e.y * e.z + e.z * e.x));
+  }
+  vec3 point(std::mt19937& random) const {
+    const float a = uniform(random) * area.back();
+    const size_t i = size_t(std::upper_bound(area.begin(), area.end(), a) - area.begin());
+    const auto& [corner, e] = boxes[std::min(i, boxes.size() - 1)];
+    const float faces[] = {e.y * e.z, e.z * e.x, e.x * e.y};
+    float f = uniform(random) * (faces[0] + faces[1] + faces[2]);
+    int axis = 0;
+    while (axis < 2 && f >= faces[axis]) f -= faces[axis++];
+    vec3 p(uniform(random), uniform(random), uniform(random));
+    p[axis] = float(random() % 2);
+    return corner + e * p;
+  }
+};
+
+/// `photons`: all of one radius, about 50 around a point. `records`: radii over one decade, about 6 around a
+/// point.
+std::vector<vec4> make_spheres(const Hall& hall, const std::string& kind, uint32_t n, std::mt19937& random) {
+  std::vector<vec4> spheres(n);
+  const float density = float(n) / hall.area.back();
+  // The mean of r^2 over radii spread evenly in their logarithm from a to 10 a is 99 / (2 ln 10) a^2.
+  const float radius = kind == "photons" ? std::sqrt(50 / (3.14159265f * density))
+                                         : std::sqrt(6 / (3.14159265f * density * 21.5f));
+  for (vec4& s : spheres)
+    s = vec4(hall.point(random), kind == "photons" ? radius : radius * std::pow(10.0f, uniform(random)));
+  return spheres;
+}
+
+class Bench {
+ public:
+  Bench(gpu::Device& device, const BenchLookupArguments& a) : device_(device), stream_(device), a_(a) {}
+
+  void run(const std::string& kind, uint32_t n) {
+    std::mt19937 random(a_.seed);
+    const Hall hall(random);
+    const std::vector<vec4> list = make_spheres(hall, kind, n, random);
+    gpu::Buffer spheres = texels(n * sizeof(vec4)), points = texels(a_.queries * sizeof(vec4)),
+                found = texels(a_.queries * sizeof(uvec4));
+    spheres.write(std::span<const vec4>(list));
+    std::vector<vec4> where(a_.queries);
+    for (vec4& p : where) p = vec4(hall.point(random), 0);
+    points.write(std::span<const vec4>(where));
+    float largest = 0, mean = 0;
+    for (const vec4& s : list) largest = std::max(largest, s.w), mean += s.w / float(n);
+
+    std::vector<Row> rows;
+    std::vector<uvec4> truth;
+    for (const Way& way : ways()) {
+      // Leaves are powers of two not above what is asked for; a cell must not be below.
+      const float scale = way.single ? 1.9999f * way.size * largest / mean : way.size;
+      lookup::Octree octree(device_, compiler_,
+                            {.spheres = n,
+                             .references = way.single ? n : std::max(64 * n, 1u << 20),
+                             .leaf_scale = scale,
+                             .single_reference = way.single});
+      Row row{.spheres_kind = kind, .way = way.name, .spheres = n};
+      row.build = take_turns({{{}, [&] { octree.build(stream_, spheres, {.most = n}); }}}, a_.repeats)[0];
+      row.header = octree.header();
+      row.bytes = octree.bytes();
+      const gpu::Kernel gather(device_, compiler_, "bench/gather.comp",
+                               {{"LUCERNA_NEIGHBOURS", std::to_string(way.neighbours)}});
+      gpu::Resources r;
+      octree.bind(r);
+      r.set("spheres", spheres);
+      r.set("points", points);
+      r.set("Found", found);
+      row.gather = take_turns({{{},
+                                [&] {
+                                  stream_.dispatch(gather, r, a_.queries, gpu::groups_for(a_.queries, 64));
+                                  stream_.run();
+                                }}},
+                              a_.repeats)[0];
+      auto got = found.read_all<uvec4>();
+      got.resize(a_.queries);
+      for (uvec4& g : got) row.found += g.x, row.listed += g.z, g.z = 0;
+      row.found /= a_.queries, row.listed /= a_.queries;
+      if (truth.empty()) truth = got;
+      row.same = got == truth;
+      rows.push_back(row);
+    }
+    rows_.insert(rows_.end(), rows.begin(), rows.end());
+    std::printf("%s", to_text(rows).c_str());
+    std::fflush(stdout);
+    for (const Row& row : rows)
+      if (!row.same) throw Error("bench lookup", row.way + " finds other spheres than the octree");
+  }
+
+  Json to_json() const {
+    Json j{
+        {"device", device_.info().name}, {"queries", a_.queries}, {"repeats", a_.repeats}, {"seed", a_.seed}};
+    for (const Row& r : rows_)
+      j["rows"].push_back(
+          {{"spheres", r.spheres},
+           {"kind", r.spheres_kind},
+           {"way", r.way},
+           {"level", r.header.level},
+           {"leaf_m", r.header.leaf},
+           {"mean_diameter_m", r.header.mean_diameter},
+           {"leaves", r.header.leaves},
+           {"references_per_sphere", double(r.header.references) / r.spheres},
+           {"bytes", r.bytes},
+           {"build_s", {{"median", r.build.median}, {"low", r.build.low}, {"high", r.build.high}}},
+           {"gather_s", {{"median", r.gather.median}, {"low", r.gather.low}, {"high", r.gather.high}}},
+           {"queries_per_s", a_.queries / r.gather.median},
+           {"listed_per_query", r.listed},
+           {"found_per_query", r.found}});
+    return j;
+  }
+
+ private:
+  static std::vector<Way> ways() {
+    return {{"octree", false, 1, 0},
+            {"octree, leaves twice", false, 2, 0},
+            {"octree, leaves half", false, 0.5f, 0},
+            {"grid, 27 cells >= diameter", true, 1, 27},
+            {"grid, 27 cells >= radius", true, 0.5f, 27},
+            {"grid, 8 cells >= diameter", true, 1, 8}};
+  }
+  gpu::Buffer texels(uint64_t bytes) {
+    return {device_, {.name = "bench", .bytes = (bytes + 15) / 16 * 16, .texel = true}};
+  }
+  std::string to_text(const std::vector<Row>& rows) const {
+    const Row& first = rows.front();
+    std::string text =
+        fmt::format("{} {}: {:.1f} found a query\n", first.spheres, first.spheres_kind, first.found);
+    for (const Row& r : rows)
+      text += fmt::format(
+          "  {:<28} build {:>8.2f} ms ({:.2f} to {:.2f})  {:>5.1f} references a sphere  {:>6.1f} listed a "
+          "query  "
+          "gather {:>7.3f} M/s ({:.3f} to {:.3f})  octree is {:.2f} times as fast\n",
+          r.way, 1e3 * r.build.median, 1e3 * r.build.low, 1e3 * r.build.high,
+          double(r.header.references) / r.spheres, r.listed, 1e-6 * a_.queries / r.gather.median,
+          1e-6 * a_.queries / r.gather.high, 1e-6 * a_.queries / r.gather.low,
+          r.gather.median / first.gather.median);
+    return text;
+  }
+
+  gpu::Device& device_;
+  gpu::ShaderCompiler compiler_;
+  gpu::Stream stream_;
+  const BenchLookupArguments& a_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace
+
+int bench_lookup(const BenchLookupArguments& a) {
+  gpu::Device device({a.device, false});
+  std::printf("%u queries, median of %d (range), on %s\n", a.queries, a.repeats, device.info().name.c_str());
+  Bench bench(device, a);
+  for (const uint32_t n : a.sizes)
+    for (const char* kind : {"photons", "records"}) bench.run(kind, n);
+  if (!a.json.empty()) bench::write_file(a.json, bench.to_json().dump(2) + "\n");
+  return 0;
+}
+
+}  // namespace lucerna::app

@@ -1,0 +1,42 @@
+#pragma once
+// Repeated timings for the benches of single kernels.
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/timer.h"
+
+namespace lucerna::app {
+
+/// Seconds of several repeats.
+struct Timing {
+  double median = 0, low = 0, high = 0;
+};
+
+/// Something that can be timed: `before` is not counted.
+struct Timed {
+  std::function<void()> before, run;
+};
+
+/// They take turns, `repeats` times, after one round that is not counted (kernels compile at their first
+/// dispatch on software devices), so that a machine that slows down slows all alike.
+inline std::vector<Timing> take_turns(const std::vector<Timed>& candidates, int repeats) {
+  std::vector<std::vector<double>> seconds(candidates.size());
+  for (int round = 0; round <= repeats; ++round)
+    for (size_t i = 0; i < candidates.size(); ++i) {
+      if (candidates[i].before) candidates[i].before();
+      const Timer timer;
+      candidates[i].run();
+      if (round > 0) seconds[i].push_back(timer.seconds());
+    }
+  std::vector<Timing> timings;
+  for (auto& s : seconds) {
+    std::sort(s.begin(), s.end());
+    const size_t n = s.size();
+    timings.push_back({n % 2 ? s[n / 2] : 0.5 * (s[n / 2 - 1] + s[n / 2]), s.front(), s.back()});
+  }
+  return timings;
+}
+
+}  // namespace lucerna::app

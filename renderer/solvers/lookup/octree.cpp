@@ -1,0 +1,128 @@
+#include "solvers/lookup/octree.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace lucerna::lookup {
+
+namespace {
+
+/// Invocations of the kernels that work through runs, as a rule and at most.
+uint32_t wanted_for(const gpu::Device& device) { return device.info().is_cpu ? 1024 : 16384; }
+uint32_t runs_for(const gpu::Device& device) { return device.info().is_cpu ? 4096 : 16384; }
+uint32_t group_for(const gpu::Device& device) { return device.info().is_cpu ? 8 : 64; }
+
+}  // namespace
+
+Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeOptions& options)
+    : options_(options),
+      groups_(runs_for(device) / group_for(device)),
+      prefix_sum_(device, compiler),
+      sorter_(device, compiler, sort::Keys::bits32) {
+  const uint64_t runs = runs_for(device);
+  const gpu::Defines defines{{"LUCERNA_OCTREE_GROUP", std::to_string(group_for(device)) + "u"},
+                             {"LUCERNA_OCTREE_WANTED", std::to_string(wanted_for(device)) + "u"},
+                             {"LUCERNA_OCTREE_RUNS", std::to_string(runs) + "u"},
+                             {"LUCERNA_OCTREE_SINGLE", options.single_reference ? "1" : "0"}};
+  const std::pair<gpu::Kernel*, const char*> kernels[] = {
+      {&bounds_, "bounds"}, {&grid_, "grid"},     {&levels_, "levels"}, {&choose_, "choose"},
+      {&count_, "count"},   {&write_, "write"},   {&heads_, "heads"},   {&leaves_, "leaves"},
+      {&clear_, "clear"},   {&insert_, "insert"}, {&expand_, "expand"}};
+  for (const auto& [kernel, name] : kernels)
+    *kernel = gpu::Kernel(device, compiler, std::string("lookup/") + name + ".comp", defines);
+
+  const auto buffer = [&](const char* name, uint64_t bytes) {
+    return gpu::Buffer(
+        device, {.name = std::string("octree ") + name, .bytes = (bytes + 15) / 16 * 16, .texel = true});
+  };
+  const uint64_t references = std::max(options.references, 1u), slots = std::bit_ceil(references + 1);
+  header_buffer_ = buffer("header", sizeof(shared::OctreeHeader));
+  run_bounds_ = buffer("bounds of runs", runs * 2 * sizeof(vec4));
+  run_needs_ = buffer("needs of runs", runs * (shared::k_octree_levels + 1) * sizeof(uint32_t));
+  run_leaves_ = buffer("leaves of runs", runs * sizeof(uint32_t));
+  sphere_references_ = buffer("references of spheres", uint64_t(options.spheres) * sizeof(uint32_t));
+  for (gpu::Buffer& pairs : pairs_) pairs = buffer("references", references * sizeof(shared::SortPair));
+  slot_leaves_ = buffer("leaves of slots", slots * sizeof(uint32_t));
+  slots_ = buffer("slots", slots * sizeof(uvec4));
+  unused_ = buffer("unused count", sizeof(uint32_t));
+  references_ = &pairs_[0];
+  // Until something is built: no cells, and a table of which every slot is free.
+  header_.inverse_leaf = 1, header_.slots = 2, header_.slot_shift = 31;
+  header_buffer_.write(&header_, sizeof(header_));
+  const uvec4 free[2] = {{shared::k_octree_no_leaf, 0, 0, 0}, {shared::k_octree_no_leaf, 0, 0, 0}};
+  slots_.write(free, sizeof(free));
+}
+
+const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer& spheres,
+                                          const sort::Count& count) {
+  if (count.most > options_.spheres || spheres.bytes() / sizeof(vec4) < count.most)
+    throw_error("octree", "{} spheres were given; it was made for {}, and '{}' has room for {}", count.most,
+                options_.spheres, spheres.name(), spheres.bytes() / sizeof(vec4));
+  gpu::Resources r;
+  r.set("spheres", spheres);
+  r.set("SphereCount", count.buffer ? *count.buffer : unused_);
+  r.set("OctreeHeaders", header_buffer_);
+  r.set("RunBounds", run_bounds_);
+  r.set("RunNeeds", run_needs_);
+  r.set("RunLeaves", run_leaves_);
+  r.set("SphereReferences", sphere_references_);
+  r.set("sphere_places", sphere_references_);
+  r.set("References", pairs_[0]);
+  r.set("SlotLeaves", slot_leaves_);
+  r.set("slot_leaf_texels", slot_leaves_);
+  r.set("Slots", slots_);
+  const shared::OctreePush push{
+      count.most, count.buffer ? uint32_t(count.offset / 4) : shared::k_sort_count_here,
+      std::max(options_.references, 1u), uint32_t(slots_.bytes() / sizeof(uvec4)), options_.leaf_scale};
+  const auto run = [&](const gpu::Kernel& kernel, uint32_t groups) {
+    // Those that use no push constant have none.
+    stream.dispatch(kernel, r, &push, kernel.push_constant_bytes(), groups,
+                    "octree " + kernel.file().substr(sizeof("lookup")));
+  };
+  run(bounds_, groups_);
+  run(grid_, 1);
+  run(levels_, groups_);
+  run(choose_, 1);
+  const uint32_t sphere_groups = gpu::groups_for(count.most, 64);
+  run(count_, sphere_groups);
+  prefix_sum_.encode(stream, sphere_references_, sphere_references_, count, &header_buffer_,
+                     offsetof(shared::OctreeHeader, references), "octree scan");
+  run(write_, sphere_groups);
+  stream.run();
+  header_buffer_.read(&header_, sizeof(header_));
+
+  const sort::Count written{push.capacity, &header_buffer_, offsetof(shared::OctreeHeader, references)};
+  references_ = &sorter_.encode(stream, pairs_[0], pairs_[1], written, 3 * header_.level, "octree sort");
+  // What the sort leaves behind has room for one leaf a reference, and so for all.
+  const gpu::Buffer& leaves = references_ == &pairs_[0] ? pairs_[1] : pairs_[0];
+  r.set("octree_references", *references_);
+  r.set("Leaves", leaves);
+  r.set("leaf_texels", leaves);
+  run(heads_, groups_);
+  prefix_sum_.encode(stream, run_leaves_, run_leaves_, {.most = uint32_t(run_leaves_.bytes() / 4)},
+                     &header_buffer_, offsetof(shared::OctreeHeader, leaves), "octree scan");
+  run(leaves_, groups_);
+  run(clear_, groups_);
+  run(insert_, groups_);
+  run(expand_, groups_);
+  stream.run();
+  header_buffer_.read(&header_, sizeof(header_));
+  header_.references = std::min(header_.references, header_.capacity);
+  return header_;
+}
+
+void Octree::bind(gpu::Resources& resources) const {
+  resources.set("OctreeHeaders", header_buffer_);
+  resources.set("octree_slots", slots_);
+  resources.set("octree_references", *references_);
+}
+
+uint64_t Octree::bytes() const {
+  uint64_t sum = 0;
+  for (const gpu::Buffer* b : {&header_buffer_, &run_bounds_, &run_needs_, &run_leaves_, &sphere_references_,
+                               &pairs_[0], &pairs_[1], &slot_leaves_, &slots_})
+    sum += b->bytes();
+  return sum;
+}
+
+}  // namespace lucerna::lookup

@@ -1,0 +1,63 @@
+#pragma once
+// The multiple-reference octree: spheres in, for every point the list of the spheres that may contain it.
+// Shared by all solvers that look things up by place: cache records with their radii, photons with the gather
+// radius.
+//
+// Only leaves exist, all of one level, each with the list of every sphere that overlaps it, so that a query
+// is one hash lookup and one loop (shaders/lib/octree.glsl, where the contract of a query stands). Everything
+// is built on the device: references are counted, placed by a prefix sum, written, sorted by the Morton code
+// of their leaf, and cut into leaves. No order comes from atomics: two builds of the same spheres are the
+// same byte for byte.
+#include "gpu/stream.h"
+#include "shaders/shared/octree.h"
+#include "sort/radix_sort.h"
+
+namespace lucerna::lookup {
+
+struct OctreeOptions {
+  uint32_t spheres = 0;     ///< most that a build may be given, at most 2^24
+  uint32_t references = 0;  ///< memory for that many; about 8 to 12 a sphere where all are of a size
+  /// Leaves are no larger than this times the mean diameter of the spheres (and larger than half of that, the
+  /// level permitting). Changes speed and memory, never a result.
+  float leaf_scale = 1;
+  /// Each sphere is listed once, in the leaf of its centre: the plain grid that the bench compares with.
+  /// Queries must then visit the neighbours.
+  bool single_reference = false;
+};
+
+class Octree {
+ public:
+  /// Throws Error when the device cannot hold it.
+  Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeOptions& options);
+
+  /// Builds it from `spheres`, a texel buffer of (centre, radius) in metres. Spheres whose radius is
+  /// negative, or that are not finite, are left out; indices are places in the buffer. Runs the stream, with
+  /// all that was recorded before, and reads the header back twice: when the level is known, because it says
+  /// how many bits are to be sorted by, and at the end.
+  ///
+  /// Where memory does not suffice for the level that the spheres call for, the finest that fits is taken:
+  /// lists grow longer, results stay the same, and the header says so (`level` < `wanted_level`, `needed` >
+  /// `capacity`). Only when not even one leaf can list every sphere, `overflow` is not 0, and the spheres of
+  /// the highest indices are missing.
+  const shared::OctreeHeader& build(gpu::Stream& stream, const gpu::Buffer& spheres,
+                                    const sort::Count& count);
+
+  /// Of the last build.
+  const shared::OctreeHeader& header() const { return header_; }
+  /// Whatever shaders/lib/octree.glsl needs. Call it after a build, and again after every other.
+  void bind(gpu::Resources& resources) const;
+  uint64_t bytes() const;  ///< device memory
+
+ private:
+  OctreeOptions options_;
+  uint32_t groups_;
+  sort::PrefixSum prefix_sum_;
+  sort::RadixSort sorter_;
+  gpu::Kernel bounds_, grid_, levels_, choose_, count_, write_, heads_, leaves_, clear_, insert_, expand_;
+  gpu::Buffer header_buffer_, run_bounds_, run_needs_, run_leaves_, sphere_references_, unused_;
+  gpu::Buffer pairs_[2], slot_leaves_, slots_;
+  const gpu::Buffer* references_ = nullptr;  ///< one of pairs_
+  shared::OctreeHeader header_{};
+};
+
+}  // namespace lucerna::lookup

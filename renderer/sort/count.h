@@ -1,0 +1,43 @@
+#pragma once
+// What prefix sums and sorts are told about the length of an array.
+#include <algorithm>
+#include <cstdint>
+
+#include "gpu/resources.h"
+
+namespace lucerna::sort {
+
+/// How many elements an array has: known while recording, or only on the device, as the length of an append
+/// queue is.
+///
+/// Kernels find their share of the work from the count itself, so that nothing has to be dispatched
+/// indirectly: invocations are enough for `most` elements, few as they are (see Runs), and those without work
+/// return at once.
+struct Count {
+  uint32_t most = 0;                    ///< elements, or the most that there may be
+  const gpu::Buffer* buffer = nullptr;  ///< holds the number; more than `most` counts as `most`
+  uint64_t offset = 0;                  ///< bytes, a multiple of 4
+};
+
+/// How work is cut into runs, one an invocation.
+struct Runs {
+  uint32_t group = 8;    ///< invocations a workgroup
+  uint32_t wanted = 64;  ///< runs, where there are elements enough
+  uint32_t least = 64;   ///< elements of a run, unless all are fewer
+  uint32_t most = 1024;  ///< runs there may be, a multiple of `group` >= `wanted`: more than `wanted` where
+                         ///< these would be longer than k_longest
+  static constexpr uint32_t k_longest = 32768;  ///< elements of a run; see shaders/lib/runs.glsl
+  /// Workgroups for that many elements or fewer: enough for all runs, as shaders/lib/runs.glsl cuts them.
+  uint32_t groups(uint32_t elements) const {
+    const uint64_t n = elements, few = (n + least - 1) / least, long_ones = (n + k_longest - 1) / k_longest;
+    return uint32_t((std::max(std::min<uint64_t>(few, wanted), long_ones) + group - 1) / group);
+  }
+  /// Elements that they reach.
+  uint64_t reach() const { return uint64_t(most) * k_longest; }
+};
+
+/// Invocations that keep a device busy when all have the same to do: a few vectors of lanes for every core of
+/// a CPU.
+uint32_t lanes_for(const gpu::Device& device);
+
+}  // namespace lucerna::sort

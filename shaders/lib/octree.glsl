@@ -1,0 +1,63 @@
+// Which spheres may contain a point: one lookup, then one loop.
+//
+//   OctreeRange range = octree_find(x);
+//   for (uint i = range.first; i < range.last; ++i) {
+//     uint sphere = octree_sphere(i);
+//     ...                                             // test the distance here
+//   }
+//
+// Contract: every sphere (c, r) with dot(x - c, x - c) <= r * r, in float as written here or exactly, is in the range,
+// once; others may be. The order is that of the spheres' indices. Points outside the root have an empty range.
+//
+// The host binds these by Octree::bind().
+#ifndef LUCERNA_LIB_OCTREE
+#define LUCERNA_LIB_OCTREE
+#include "shaders/shared/octree.h"
+
+layout(scalar) readonly buffer OctreeHeaders { OctreeHeader octree; };
+uniform usamplerBuffer octree_slots;        // code, first, last, 0
+uniform usamplerBuffer octree_references;   // (code, sphere) pairs, two a texel
+
+struct OctreeRange { uint first, last; };
+
+// Every third bit.
+uint octree_spread(uint x) {
+  x = (x | x << 16) & 0x030000ffu;
+  x = (x | x << 8) & 0x0300f00fu;
+  x = (x | x << 4) & 0x030c30c3u;
+  return (x | x << 2) & 0x09249249u;
+}
+uint octree_code(uvec3 cell) {
+  return octree_spread(cell.x) | octree_spread(cell.y) << 1 | octree_spread(cell.z) << 2;
+}
+// The references of a leaf.
+OctreeRange octree_leaf(uint code) {
+  uint slot = (code * k_octree_hash) >> octree.slot_shift;
+  uvec4 found = texelFetch(octree_slots, int(slot));
+  // A slot is free before the table has been gone through, because it has more slots than leaves.
+  while (found.x != code && found.x != k_octree_no_leaf) {
+    slot = (slot + 1u) & (octree.slots - 1u);
+    found = texelFetch(octree_slots, int(slot));
+  }
+  return OctreeRange(found.y, found.z);
+}
+
+// Cell of a point along every axis; monotone in x, so that a point between two others lies in a cell between theirs.
+// Outside the root it is negative or at least octree.cells.
+vec3 octree_cell(vec3 x) {
+  precise vec3 offset = x - octree.origin;
+  return floor(offset * octree.inverse_leaf);
+}
+
+OctreeRange octree_find(vec3 x) {
+  vec3 cell = octree_cell(x);
+  bool inside = all(greaterThanEqual(cell, vec3(0.0))) && all(lessThan(cell, vec3(float(octree.cells))));
+  OctreeRange range = octree_leaf(octree_code(uvec3(inside ? cell : vec3(0.0))));
+  return OctreeRange(range.first, inside ? range.last : range.first);
+}
+
+uint octree_sphere(uint reference) {
+  uvec4 two = texelFetch(octree_references, int(reference >> 1));
+  return (reference & 1u) != 0u ? two.w : two.y;
+}
+#endif

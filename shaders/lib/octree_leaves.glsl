@@ -1,0 +1,21 @@
+// What the kernels share that make leaves of the sorted references.
+#ifndef LUCERNA_LIB_OCTREE_LEAVES
+#define LUCERNA_LIB_OCTREE_LEAVES
+#include "lib/octree_build.glsl"
+
+layout(scalar) buffer OctreeHeaders { OctreeHeader octree; };
+uniform usamplerBuffer octree_references;   // sorted (code, sphere) pairs, two a texel
+uniform usamplerBuffer leaf_texels;         // (code, first reference) pairs
+
+uint reference_count() { return min(octree.references, push.capacity); }
+
+uvec2 pair_of(uvec4 two, uint index) { return (index & 1u) != 0u ? two.zw : two.xy; }
+uint reference_code(uint index) { return pair_of(texelFetch(octree_references, int(index >> 1)), index).x; }
+uvec2 leaf_pair(uint index) { return pair_of(texelFetch(leaf_texels, int(index >> 1)), index); }
+
+// Size of the hash table for that many leaves, as a power of two: half full at most, if there is memory; never full.
+uint table_bits(uint leaves) {
+  uint bits = uint(findMSB(max(2u * leaves, 2u) - 1u) + 1);
+  return min(bits, uint(findMSB(push.slot_capacity)));
+}
+#endif

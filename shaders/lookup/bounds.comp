@@ -1,0 +1,24 @@
+// Octree, step 1: box, number and summed diameter of every run's spheres.
+#include "lib/octree_build.glsl"
+layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
+layout(scalar) writeonly buffer RunBounds { vec4 run_bounds[]; };   // low, sum of diameters; high, spheres
+
+void main() {
+  if (global_index() >= LUCERNA_OCTREE_RUNS) return;
+  Run run = own_run(global_index(), sphere_count());
+  vec3 low = vec3(3.4e38), high = vec3(-3.4e38);
+  float sum = 0.0, n = 0.0;
+  for (uint i = run.first; i < run.end; ++i) {
+    vec4 s = texelFetch(spheres, int(i));
+    bool used = usable(s);
+    // One more unit on each side for the rounding of these differences themselves.
+    vec3 r = vec3(safe_radius(s.w)), slack = (abs(s.xyz) + r) * (1.0 / 4194304.0) + 1e-30;
+    low = used ? min(low, s.xyz - r - slack) : low;
+    high = used ? max(high, s.xyz + r + slack) : high;
+    sum += used ? 2.0 * s.w : 0.0;
+    n += used ? 1.0 : 0.0;
+  }
+  uint at = 2u * global_index();
+  run_bounds[at] = vec4(low, sum);
+  run_bounds[at + 1u] = vec4(high, n);
+}

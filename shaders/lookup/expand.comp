@@ -1,0 +1,19 @@
+// Octree, step 11: into every slot of the hash table what a query asks for.
+#include "lib/octree_leaves.glsl"
+layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
+uniform usamplerBuffer slot_leaf_texels;
+layout(scalar) writeonly buffer Slots { uvec4 slots[]; };
+
+void main() {
+  if (global_index() >= LUCERNA_OCTREE_RUNS) return;
+  Run run = own_run(global_index(), octree.slots);
+  for (uint at = run.first; at < run.end; ++at) {
+    uvec4 four = texelFetch(slot_leaf_texels, int(at >> 2));
+    uvec2 two = (at & 2u) != 0u ? four.zw : four.xy;
+    uint leaf = (at & 1u) != 0u ? two.y : two.x;
+    bool there = leaf != k_octree_no_leaf;
+    uvec2 own = leaf_pair(there ? leaf : 0u);
+    uint next = there && leaf + 1u < octree.leaves ? leaf_pair(leaf + 1u).y : reference_count();
+    slots[at] = there ? uvec4(own, next, 0u) : uvec4(k_octree_no_leaf, 0u, 0u, 0u);
+  }
+}

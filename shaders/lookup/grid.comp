@@ -1,0 +1,54 @@
+// Octree, step 2, one workgroup: the root, and the level of the leaves that the spheres' size calls for. Sums are taken in
+// a fixed order.
+#include "lib/octree_build.glsl"
+layout(local_size_x = 64) in;
+layout(scalar) readonly buffer RunBounds { vec4 run_bounds[]; };
+layout(scalar) writeonly buffer OctreeHeaders { OctreeHeader octree; };
+shared vec4 lows[64], highs[64];
+
+void main() {
+  uint lane = gl_LocalInvocationIndex;
+  const uint each = (LUCERNA_OCTREE_RUNS + 63) / 64;
+  uint end = min((lane + 1u) * each, LUCERNA_OCTREE_RUNS);
+  vec4 low = vec4(vec3(3.4e38), 0.0), high = vec4(vec3(-3.4e38), 0.0);
+  for (uint i = lane * each; i < end; ++i) {
+    vec4 a = run_bounds[2u * i], b = run_bounds[2u * i + 1u];
+    low = vec4(min(low.xyz, a.xyz), low.w + a.w);
+    high = vec4(max(high.xyz, b.xyz), high.w + b.w);
+  }
+  lows[lane] = low;
+  highs[lane] = high;
+  barrier();
+  if (lane != 0u) return;
+  for (uint i = 1u; i < 64u; ++i) {
+    low = vec4(min(low.xyz, lows[i].xyz), low.w + lows[i].w);
+    high = vec4(max(high.xyz, highs[i].xyz), high.w + highs[i].w);
+  }
+  float n = high.w;
+  OctreeHeader o;
+  o.origin = n > 0.0 ? low.xyz : vec3(0.0);
+  precise vec3 extent = n > 0.0 ? high.xyz - o.origin : vec3(0.0);
+  float longest = max(max(extent.x, extent.y), extent.z);
+  o.mean_diameter = n > 0.0 ? low.w / n : 0.0;
+  // The largest power of two not above the size wanted; at most k_octree_levels levels; one root over everything.
+  float wanted = max(push.scale * o.mean_diameter, longest * (0.5 / float(1u << k_octree_levels)));
+  int exponent;
+  frexp(clamp(wanted, 1e-30, 1e30), exponent);   // wanted = [0.5, 1) * 2^exponent
+  o.leaf = ldexp(1.0, exponent - 1);
+  o.level = 0u;
+  o.edge = o.leaf;
+  // `longest` itself must lie inside: a point there is in the last cell, not behind it.
+  for (uint i = 0u; i < 300u && o.edge <= longest; ++i) {
+    o.edge *= 2.0;
+    if (o.level < k_octree_levels) o.level++; else o.leaf *= 2.0;
+  }
+  o.inverse_leaf = 1.0 / o.leaf;
+  o.wanted_level = o.level;
+  o.cells = n > 0.0 ? 1u << o.level : 0u;
+  o.spheres = uint(n);
+  o.references = o.needed = o.leaves = o.overflow = 0u;
+  o.capacity = push.capacity;
+  o.slots = 2u;
+  o.slot_shift = 31u;
+  octree = o;
+}

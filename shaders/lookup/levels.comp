@@ -1,0 +1,25 @@
+// Octree, step 3: the references that every run takes at the level wanted and at all coarser ones, at most: the cells of
+// the spheres' boxes. Sums stay at 2^32 - 1 once they are there, and a level is as good as unaffordable where one sphere
+// overlaps more leaves than an invocation may visit (see lib/runs.glsl).
+#include "lib/octree_cells.glsl"
+layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
+layout(scalar) writeonly buffer RunNeeds { uint run_needs[]; };   // k_octree_levels + 1 a run
+
+void main() {
+  if (global_index() >= LUCERNA_OCTREE_RUNS) return;
+  Run run = own_run(global_index(), sphere_count());
+  uint need[k_octree_levels + 1u];
+  for (uint k = 0u; k <= k_octree_levels; ++k) need[k] = 0u;
+  for (uint i = run.first; i < run.end; ++i) {
+    vec4 s = texelFetch(spheres, int(i));
+    SphereCells c = sphere_cells(s);
+    bool used = usable(s);
+    [[unroll]] for (uint k = 0u; k <= k_octree_levels; ++k) {
+      uvec3 n = uvec3((c.last >> k) - (c.first >> k) + 1);
+      uint cells = n.x * n.y * n.z, sum = need[k] + (used ? cells : 0u);
+      need[k] = sum < need[k] || (used && cells > k_longest_run) ? 0xffffffffu : sum;
+    }
+  }
+  for (uint k = 0u; k <= k_octree_levels; ++k)
+    run_needs[global_index() * (k_octree_levels + 1u) + k] = need[k];
+}

@@ -1,0 +1,342 @@
+// links: lookup
+// The octree's lists against brute force.
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "base/math.h"
+#include "kernels/gpu_support.h"
+#include "solvers/lookup/octree.h"
+
+using namespace lucerna;
+using lookup::Octree;
+
+namespace {
+
+using Spheres = std::vector<vec4>;
+using Points = std::vector<vec4>;
+
+/// What shaders/octree_probe.comp finds.
+struct Found {
+  uint32_t count, checksum, list, unordered;
+};
+
+bool contains(const vec4& s, const vec4& x) {
+  const float a = x.x - s.x, b = x.y - s.y, c = x.z - s.z;
+  const float aa = a * a, bb = b * b, cc = c * c;
+  return (aa + bb) + cc <= s.w * s.w && s.w >= 0 && std::isfinite(s.w);
+}
+
+void add(Found& f, uint32_t sphere) { ++f.count, f.checksum += (sphere + 1) * 2654435761u; }
+
+Found brute_force(const Spheres& spheres, const vec4& x) {
+  Found f{};
+  for (uint32_t i = 0; i < spheres.size(); ++i)
+    if (contains(spheres[i], x)) add(f, i);
+  return f;
+}
+
+/// The host's own grid: every cell lists the spheres whose boxes, a little enlarged, touch it.
+class HostGrid {
+ public:
+  explicit HostGrid(const Spheres& spheres) : spheres_(spheres) {
+    for (const vec4& s : spheres)
+      for (int a = 0; a < 3; ++a) {
+        low_[a] = std::min(low_[a], double(s[a]) - 1.01 * s.w - 1e-6);
+        high_[a] = std::max(high_[a], double(s[a]) + 1.01 * s.w + 1e-6);
+      }
+    cells_.resize(k_side * k_side * k_side);
+    for (uint32_t i = 0; i < spheres.size(); ++i) {
+      const double r = 1.01 * spheres[i].w + 1e-9;
+      int from[3], to[3];
+      for (int a = 0; a < 3; ++a) {
+        const double margin = r + 1e-6 * std::abs(double(spheres[i][a]));
+        from[a] = cell(a, spheres[i][a] - margin), to[a] = cell(a, spheres[i][a] + margin);
+      }
+      for (int z = from[2]; z <= to[2]; ++z)
+        for (int y = from[1]; y <= to[1]; ++y)
+          for (int x = from[0]; x <= to[0]; ++x) cells_[size_t((z * k_side + y) * k_side + x)].push_back(i);
+    }
+  }
+  Found find(const vec4& x) const {
+    Found f{};
+    for (const uint32_t i : cells_[size_t((cell(2, x.z) * k_side + cell(1, x.y)) * k_side + cell(0, x.x))])
+      if (contains(spheres_[i], x)) add(f, i);
+    return f;
+  }
+
+ private:
+  static constexpr int k_side = 48;
+  int cell(int axis, double x) const {
+    return std::clamp(int(std::floor((x - low_[axis]) / (high_[axis] - low_[axis]) * k_side)), 0, k_side - 1);
+  }
+  const Spheres& spheres_;
+  double low_[3] = {1e30, 1e30, 1e30}, high_[3] = {-1e30, -1e30, -1e30};
+  std::vector<std::vector<uint32_t>> cells_;
+};
+
+struct Bench {
+  test::SilentDevice silent;
+  gpu::Device& device = silent.device;
+  gpu::ShaderCompiler compiler;
+  gpu::Stream stream{device};
+  gpu::Kernel probe{device, compiler, test::shader("octree_probe.comp")};
+  gpu::Buffer spheres;
+
+  gpu::Buffer texels(const char* name, uint64_t bytes) {
+    return {device, {.name = name, .bytes = std::max<uint64_t>(bytes, 16), .texel = true}};
+  }
+  void upload(const Spheres& list) {
+    spheres = texels("spheres", list.size() * sizeof(vec4));
+    spheres.write(std::span<const vec4>(list));
+  }
+  Octree build(const Spheres& list, uint32_t references, float leaf_scale = 1) {
+    upload(list);
+    Octree octree(device, compiler,
+                  {.spheres = uint32_t(list.size()), .references = references, .leaf_scale = leaf_scale});
+    octree.build(stream, spheres, {.most = uint32_t(list.size())});
+    return octree;
+  }
+  std::vector<Found> query(const Octree& octree, const Points& points) {
+    gpu::Buffer in = texels("points", points.size() * sizeof(vec4)),
+                out = texels("found", points.size() * sizeof(Found));
+    in.write(std::span<const vec4>(points));
+    gpu::Resources r;
+    octree.bind(r);
+    r.set("spheres", spheres);
+    r.set("points", in);
+    r.set("Found", out);
+    stream.dispatch(probe, r, uint32_t(points.size()), gpu::groups_for(points.size(), 64));
+    stream.run();
+    return out.read_all<Found>();
+  }
+};
+
+struct Differences {
+  size_t wrong = 0, unordered = 0, found = 0, listed = 0;
+};
+template <class Truth>
+Differences compare(const std::vector<Found>& got, const Points& points, const Truth& truth) {
+  Differences d;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Found expected = truth(points[i]);
+    d.wrong += got[i].count != expected.count || got[i].checksum != expected.checksum;
+    d.unordered += got[i].unordered;
+    d.found += expected.count;
+    d.listed += got[i].list;
+  }
+  return d;
+}
+
+float uniform(std::mt19937& random) { return float(random() >> 8) * (1.0f / 16777216); }
+
+/// Radii over three decades, evenly in their logarithm, most of them on the faces of a room, as records are.
+Spheres mixed_spheres(uint32_t n, vec3 centre, float extent, uint32_t seed) {
+  std::mt19937 random(seed);
+  Spheres list(n);
+  for (vec4& s : list) {
+    vec3 p(uniform(random), uniform(random), uniform(random));
+    if (random() % 4) p[random() % 3] = float(random() % 2);
+    s = vec4(centre + extent * (p - 0.5f), extent * 0.0002f * std::pow(1000.0f, uniform(random)));
+  }
+  return list;
+}
+
+/// Points near the spheres' centres, on their surfaces as well as float can say, and anywhere in the box.
+Points points_for(const Spheres& spheres, uint32_t n, vec3 centre, float extent, uint32_t seed) {
+  std::mt19937 random(seed);
+  Points points(n);
+  for (uint32_t i = 0; i < n; ++i) {
+    vec3 p = centre + extent * 1.1f * (vec3(uniform(random), uniform(random), uniform(random)) - 0.5f);
+    if (i % 4 != 0 && !spheres.empty()) {
+      const vec4& s = spheres[random() % spheres.size()];
+      vec3 d = vec3(uniform(random), uniform(random), uniform(random)) - 0.5f;
+      if (i % 8 == 1) d = vec3(0), d[random() % 3] = 1;  // the ends of its axes
+      d *= s.w / std::max(glm::length(d), 1e-6f) * (i % 4 == 3 ? uniform(random) : 1.0f);
+      p = vec3(s) + (i % 2 ? d : -d);
+    }
+    points[i] = vec4(p, 0);
+  }
+  return points;
+}
+
+}  // namespace
+
+TEST_CASE("a million queries among spheres of radii over three decades find what brute force finds") {
+  Bench bench;
+  const vec3 centre(1, 2, 3);
+  const Spheres spheres = mixed_spheres(20000, centre, 10, 1);
+  const Points points = points_for(spheres, 1000000, centre, 10, 2);
+  const HostGrid grid(spheres);
+  size_t grid_wrong = 0;
+  for (uint32_t i = 0; i < 3000; ++i) {
+    const Found a = brute_force(spheres, points[i * 300]), b = grid.find(points[i * 300]);
+    grid_wrong += a.count != b.count || a.checksum != b.checksum;
+  }
+  REQUIRE(grid_wrong == 0);
+  const Octree octree = bench.build(spheres, 2000000);
+  CHECK(octree.header().level == octree.header().wanted_level);
+  CHECK(octree.header().spheres == 20000);
+  CHECK(octree.header().leaf <= octree.header().mean_diameter);
+  CHECK(octree.header().references <= octree.header().needed);
+  const Differences d =
+      compare(bench.query(octree, points), points, [&](const vec4& x) { return grid.find(x); });
+  CHECK(d.wrong == 0);
+  CHECK(d.unordered == 0);
+  CHECK(d.found > 1000000);  // or this test would show little
+  WARN("lists hold " << double(d.listed) / double(d.found) << " times what is found");
+}
+
+TEST_CASE("coordinates around ten kilometres, where float's steps are a millimetre") {
+  Bench bench;
+  for (const float extent : {0.05f, 2.0f, 50.0f}) {
+    const vec3 centre(10000, -9000, 12000);
+    const Spheres spheres = mixed_spheres(3000, centre, extent, 3);
+    const Points points = points_for(spheres, 60000, centre, extent, 4);
+    const HostGrid grid(spheres);
+    for (const float scale : {1.0f, 0.25f}) {
+      const Octree octree = bench.build(spheres, 4000000, scale);
+      INFO("extent " << extent << " level " << octree.header().level);
+      const Differences d =
+          compare(bench.query(octree, points), points, [&](const vec4& x) { return grid.find(x); });
+      CHECK(d.wrong == 0);
+      CHECK(d.unordered == 0);
+      CHECK(d.found > 20000);
+    }
+  }
+}
+
+TEST_CASE("points on the borders of cells and spheres that touch them") {
+  Bench bench;
+  // Everything at multiples of a power of two, so that borders are met exactly.
+  std::mt19937 random(5);
+  Spheres spheres;
+  for (int i = 0; i < 2000; ++i)
+    spheres.push_back(0.25f * vec4(random() % 64, random() % 64, random() % 64, 1 + random() % 6));
+  Bench* const b = &bench;
+  const Octree octree = b->build(spheres, 1000000);
+  const float leaf = octree.header().leaf;
+  const vec3 origin = octree.header().origin;
+  Points points;
+  for (int i = 0; i < 40000; ++i) {
+    vec3 p = 0.25f * vec3(random() % 66, random() % 66, random() % 66);
+    if (i % 2) p = origin + leaf * vec3(random() % 20, random() % 20, random() % 20);
+    if (i % 3 == 1) p[random() % 3] = std::nextafter(p[random() % 3], 1000.0f);
+    if (i % 3 == 2) p[random() % 3] = std::nextafter(p[random() % 3], -1000.0f);
+    points.push_back(vec4(p, 0));
+  }
+  const Differences d =
+      compare(bench.query(octree, points), points, [&](const vec4& x) { return brute_force(spheres, x); });
+  CHECK(d.wrong == 0);
+  CHECK(d.unordered == 0);
+  CHECK(d.found > 10000);
+}
+
+TEST_CASE("no sphere, one, equal ones, and ones that are none") {
+  Bench bench;
+  Points points{{0, 0, 0, 0},       {1, 0, 0, 0},          {1.0001f, 0, 0, 0},
+                {-5, 3, 100, 0},    {1e30f, -1e30f, 0, 0}, {std::nanf(""), 0, 0, 0},
+                {INFINITY, 0, 0, 0}};
+  const auto check = [&](const Spheres& spheres, uint32_t references) {
+    const Octree octree = bench.build(spheres, references);
+    const Differences d =
+        compare(bench.query(octree, points), points, [&](const vec4& x) { return brute_force(spheres, x); });
+    CHECK(d.wrong == 0);
+    CHECK(octree.header().overflow == 0);
+    return octree.header();
+  };
+  CHECK(check({}, 10).leaves == 0);
+  CHECK(check({{0, 0, 0, 1}}, 100).spheres == 1);
+  CHECK(check({{1, 0, 0, 0}}, 100).spheres == 1);
+  CHECK(check(Spheres(100, vec4(0.5f, 0, 0, 0.5f)), 10000).spheres == 100);
+  const float nan = std::nanf("");
+  const auto header = check({{0, 0, 0, -1},
+                             {nan, 0, 0, 1},
+                             {0, INFINITY, 0, 1},
+                             {0, 0, 0, nan},
+                             {0, 0, 0, INFINITY},
+                             {0.5f, 0, 0, 1}},
+                            100);
+  CHECK(header.spheres == 1);
+  CHECK(header.leaf <= 2);
+  CHECK(check({{0, 0, 0, -1}, {0, 0, 0, -2}}, 100).cells == 0);
+  // Before anything was built.
+  const Octree empty(bench.device, bench.compiler, {.spheres = 1, .references = 1});
+  for (const Found& f : bench.query(empty, points)) CHECK(f.list == 0);
+}
+
+TEST_CASE("where memory is short the leaves are larger and the result is the same") {
+  Bench bench;
+  const Spheres spheres = mixed_spheres(4000, vec3(0), 8, 6);
+  const Points points = points_for(spheres, 40000, vec3(0), 8, 7);
+  const HostGrid grid(spheres);
+  const auto truth = [&](const vec4& x) { return grid.find(x); };
+  const uint32_t full = bench.build(spheres, 1000000).header().needed;
+  for (const uint32_t references : {full, full - 1, full / 3, 8000u, 4001u, 4000u}) {
+    const Octree octree = bench.build(spheres, references);
+    const shared::OctreeHeader& h = octree.header();
+    INFO(references << " references, level " << h.level << " of " << h.wanted_level);
+    CHECK(h.needed == full);
+    CHECK(h.capacity == references);
+    CHECK((h.level < h.wanted_level) == (references < full));
+    CHECK(h.references <= references);
+    CHECK(h.overflow == 0);
+    const Differences d = compare(bench.query(octree, points), points, truth);
+    CHECK(d.wrong == 0);
+    CHECK(d.unordered == 0);
+  }
+  // Less than one reference a sphere: said, and what there is is what the first spheres are.
+  const Octree octree = bench.build(spheres, 1500);
+  CHECK(octree.header().level == 0);
+  CHECK(octree.header().overflow == 2500);
+  CHECK(octree.header().references == 1500);
+  const Spheres first(spheres.begin(), spheres.begin() + 1500);
+  const Differences d =
+      compare(bench.query(octree, points), points, [&](const vec4& x) { return brute_force(first, x); });
+  CHECK(d.wrong == 0);
+}
+
+TEST_CASE("one huge sphere among small ones costs a coarser level, no endless loop") {
+  Bench bench;
+  std::mt19937 random(8);
+  Spheres spheres{{0, 0, 0, 50}};
+  for (int i = 0; i < 3000; ++i)
+    spheres.push_back({100 * uniform(random) - 50, 100 * uniform(random) - 50, 100 * uniform(random) - 50,
+                       0.05f + 0.1f * uniform(random)});
+  const Points points = points_for(spheres, 30000, vec3(0), 100, 9);
+  const Octree octree = bench.build(spheres, 100000);
+  CHECK(octree.header().level < octree.header().wanted_level);
+  CHECK(octree.header().needed > 100000000);
+  const Differences d =
+      compare(bench.query(octree, points), points, [&](const vec4& x) { return brute_force(spheres, x); });
+  CHECK(d.wrong == 0);
+}
+
+TEST_CASE("two builds are the same byte for byte, and an octree can be built again from other spheres") {
+  Bench bench;
+  const Spheres spheres = mixed_spheres(30000, vec3(0), 20, 10), others = mixed_spheres(500, vec3(9), 3, 11);
+  gpu::Buffer count(bench.device, {.name = "count", .bytes = 16});
+  count.write(std::span<const uint32_t>({0u, 30000u, 500u, 0u}));
+  std::vector<std::vector<uint32_t>> first;
+  Octree octree(bench.device, bench.compiler, {.spheres = 40000, .references = 3000000});
+  for (int round = 0; round < 3; ++round) {
+    bench.upload(round == 1 ? others : spheres);
+    // The count stands in a buffer; `most` is what the buffer of spheres has room for.
+    const uint32_t n = round == 1 ? 500 : 30000;
+    octree.build(bench.stream, bench.spheres, {.most = n, .buffer = &count, .offset = round == 1 ? 8u : 4u});
+    const shared::OctreeHeader& h = octree.header();
+    CHECK(h.spheres == n);
+    gpu::Resources r;
+    octree.bind(r);
+    std::vector<std::vector<uint32_t>> now;
+    for (const auto& [name, words] : {std::pair<const char*, size_t>{"octree_slots", h.slots * 4ull},
+                                      {"octree_references", h.references * 2ull},
+                                      {"OctreeHeaders", sizeof(h) / 4}}) {
+      now.push_back(std::get<const gpu::Buffer*>(*r.find(name))->read_all<uint32_t>());
+      now.back().resize(words);
+    }
+    if (round == 0) first = now;
+    if (round == 1) CHECK(first != now);
+    if (round == 2) CHECK(first == now);
+  }
+}

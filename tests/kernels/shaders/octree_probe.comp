@@ -1,0 +1,30 @@
+// What the octree says of every point: spheres that contain it, a checksum of their indices, the length of its list, and
+// whether the list is in order.
+#include "shaders/lib/invocation.glsl"
+#include "shaders/lib/octree.glsl"
+
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { uint count; };
+uniform samplerBuffer points;
+uniform samplerBuffer spheres;
+layout(scalar) writeonly buffer Found { uvec4 found[]; };
+
+void main() {
+  uint index = global_index();
+  if (index >= count) return;
+  vec3 x = texelFetch(points, int(index)).xyz;
+  OctreeRange range = octree_find(x);
+  uint n = 0u, sum = 0u, unordered = 0u, previous = 0u;
+  for (uint i = range.first; i < range.last; ++i) {
+    uint sphere = octree_sphere(i);
+    vec4 s = texelFetch(spheres, int(sphere));
+    precise vec3 d = x - s.xyz, dd = d * d;
+    precise float square = dd.x + dd.y, all = square + dd.z, limit = s.w * s.w;
+    bool inside = all <= limit && s.w >= 0.0;
+    n += inside ? 1u : 0u;
+    sum += inside ? (sphere + 1u) * 2654435761u : 0u;
+    unordered |= i > range.first && sphere <= previous ? 1u : 0u;
+    previous = sphere;
+  }
+  found[index] = uvec4(n, sum, range.last - range.first, unordered);
+}
