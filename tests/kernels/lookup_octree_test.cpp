@@ -340,6 +340,21 @@ TEST_CASE("one huge sphere among small ones costs a coarser level, no endless lo
   CHECK(d.wrong == 0);
 }
 
+TEST_CASE("no sphere overlaps more leaves than an invocation may visit on lavapipe, whatever the memory") {
+  Bench bench;
+  std::mt19937 random(14);
+  Spheres spheres{{32, 32, 32, 24}};  // 49^3 leaves of 1 m
+  for (int i = 0; i < 2000; ++i)
+    spheres.push_back({64 * uniform(random), 64 * uniform(random), 64 * uniform(random), 0.51f});
+  const Points points = points_for(spheres, 30000, vec3(32), 64, 15);
+  const Octree octree = bench.build(spheres, 1000000);
+  CHECK(octree.header().level < octree.header().wanted_level);
+  CHECK(octree.header().overflow == 0);
+  const Differences d =
+      compare(bench.query(octree, points), points, [&](const vec4& x) { return brute_force(spheres, x); });
+  CHECK(d.wrong == 0);
+}
+
 TEST_CASE("two builds are the same byte for byte, and an octree can be built again from other spheres") {
   Bench bench;
   const Spheres spheres = mixed_spheres(30000, vec3(0), 20, 10), others = mixed_spheres(500, vec3(9), 3, 11);
