@@ -42,8 +42,10 @@ int main_checked(int argc, char** argv) {
   RenderArguments r;
   CLI::App* render_verb = app.add_subcommand("render", "render a scene to files, without a window");
   render_verb->add_option("SCENE", r.scene, "glTF scene")->required();
-  render_verb->add_option("-o,--output", r.outputs, "OUT.exr or OUT.png; may be given several times")
-      ->required()
+  render_verb
+      ->add_option(
+          "-o,--output", r.outputs,
+          "OUT.exr or OUT.png; may be given several times, or not at all where --stats or --ledger is")
       ->allow_extra_args(false);
   render_verb->add_option("--size", r.size, "picture, WIDTHxHEIGHT")->capture_default_str();
   render_verb->add_option("--camera", r.camera, "name of a scene camera");

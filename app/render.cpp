@@ -61,10 +61,12 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
   std::fflush(stderr);
 }
 
-/// Noise of the picture: estimated from its halves (film/error.h).
+/// Noise of the picture, estimated from its halves (film/error.h); beside it the bias, where the solver can
+/// tell.
 nlohmann::ordered_json make_error(session::Renderer& r) {
   const film::ImageError error = r.image_error();
   nlohmann::ordered_json j;
+  j["of"] = "noise";
   j["rms"] = error.rms[0];
   j["relative"] = error.relative(0);
   // Of the tiles, what adaptive sampling goes by.
@@ -78,8 +80,9 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   j["tile_worst"] = sorted.back();
   j["heavy_tailed_tiles"] = heavy;
   for (int c = 0; c < paths::k_component_count; ++c) {
-    j["components"][paths::k_component_names[c]] = {{"rms", error.rms[c + 1]},
-                                                    {"relative", error.relative(c + 1)}};
+    auto& component = j["components"][paths::k_component_names[c]];
+    component = {{"rms", error.rms[c + 1]}, {"relative", error.relative(c + 1)}, {"bias", nullptr}};
+    if (const auto bias = r.bias(size_t(c))) component["bias"] = *bias;
   }
   return j;
 }
@@ -202,6 +205,14 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
   j["ledger"] = make_ledger(r.ledger());
   if (!r.adaptive()) j["forecast"] = make_forecast(r.ledger());
+  if (const irradiance_cache::Cache* cache = r.cache()) {
+    const irradiance_cache::CacheStatus& s = cache->status();
+    constexpr const char* k_reasons[] = {"building", "covered", "passes", "records"};
+    j["cache"] = {
+        {"passes", s.pass}, {"records", s.records},
+        {"rays", s.rays},   {"uncovered_share", double(s.asked) / double(std::max<uint64_t>(1, s.paths))},
+        {"bytes", s.bytes}, {"stopped_by", k_reasons[size_t(s.stop)]}};
+  }
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
   for (int c = 0; c < paths::k_component_count; ++c) {
@@ -217,7 +228,8 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
 
 int render(const RenderArguments& a) {
   const auto [width, height] = parse_size(a.size);
-  if (a.outputs.empty()) throw Error("-o", "name at least one output, OUT.exr or OUT.png");
+  if (a.outputs.empty() && a.stats.empty() && a.ledger.empty())
+    throw Error("-o", "name at least one output: OUT.exr or OUT.png, or figures alone: --stats OUT.json");
   for (const std::string& file : a.outputs) {
     const auto dot = file.rfind('.');
     const std::string extension = dot == std::string::npos ? "" : file.substr(dot);

@@ -138,6 +138,22 @@ void card(const std::vector<std::pair<std::string, ImU32>>& rows) {
   ImGui::PopStyleVar(2);
 }
 
+/// The part of a layer's error that its line does not show; 0: the sum.
+std::string bias_text(const Accuracy& a, size_t layer) {
+  std::string unknown;
+  double most = 0;
+  for (size_t c = 0; c < a.bias.size(); ++c) {
+    if (layer > 0 ? c + 1 != layer : a.error()[c + 1] <= 0) continue;
+    if (!a.bias[c])
+      unknown += fmt::format("{}{}", unknown.empty() ? "" : ", ", session::k_component_names[c]);
+    else
+      most = std::max(most, std::abs(*a.bias[c]));
+  }
+  if (!unknown.empty()) return fmt::format("Bias not known: {}", unknown);
+  return most > 0 ? fmt::format("Bias beside the noise: {}", percent_text(most))
+                  : "No bias: noise is all its error";
+}
+
 std::string run_figures(const Accuracy& a, size_t line) {
   const stats::Entry& e = a.ledger.entries()[line];
   return fmt::format("{} \xC2\xB7 {:.3g} samples a pixel \xC2\xB7 {} rays", seconds_text(e.wall_s), e.samples,
@@ -155,16 +171,17 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
     ImU32 ink;
     std::vector<ImVec2> points;
     const Run* run = nullptr;
-  } best{reach, "", 0, {}, nullptr};
+    std::optional<size_t> layer{};  ///< whose noise it is
+  } best{reach, "", 0, {}, nullptr, {}};
   const auto look = [&](std::vector<ImVec2> points, const std::string& name, ImU32 ink,
-                        const Run* run = nullptr) {
+                        const Run* run = nullptr, std::optional<size_t> layer = {}) {
     const float d = distance_to(mouse, points);
-    if (d < best.distance) best = {d, name, ink, std::move(points), run};
+    if (d < best.distance) best = {d, name, ink, std::move(points), run, layer};
   };
   const auto& lines = a.ledger.entries();
   for (size_t k = 0; k < stats::k_layers; ++k)
     look(error_points(plot, a, k), fmt::format("{}, noise (estimated)", stats::k_layer_names[k]),
-         layer_ink(k));
+         layer_ink(k), nullptr, k);
   look(line_points(plot, a, [&](size_t i) { return lines[i].truth ? (*lines[i].truth)[0] : 0.0; }),
        "sum, true error against " + a.reference, k_sum);
   if (a.adaptive) look(line_points(plot, a, [&](size_t i) { return a.hardest[i]; }), "hardest tile", k_sum);
@@ -191,6 +208,7 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   std::vector<std::pair<std::string, ImU32>> rows{
       {fmt::format("{}: {}", name, percent_text(plot.y.value(near->y))), colour::text},
       {run_figures(told, line), colour::text_dim}};
+  if (best.layer) rows.emplace_back(bias_text(a, *best.layer), colour::text_dim);
   if (best.run) {
     const std::vector<std::string> other = differences(*best.run, ui.runs.current());
     if (other.empty()) rows.emplace_back("Made with the same settings", colour::text_dim);

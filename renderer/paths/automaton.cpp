@@ -364,4 +364,41 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled) {
   return packed;
 }
 
+LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached) {
+  constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2;
+  cached &= enabled;
+  // Words of the secondary component go on into those of the tertiary one, and nothing traces behind a
+  // lookup.
+  if (cached & k_secondary) cached |= enabled & k_tertiary;
+  LookupRoutes routes;
+  routes.traced = enabled & ~cached;
+  routes.component.assign(automaton.states.size(),
+                          {k_no_component, k_no_component, k_no_component, k_no_component});
+  std::set<uint8_t> open{0}, seen{0};  // states that a path can be in before it has been looked up
+  while (!open.empty()) {
+    const uint8_t state = *open.begin();
+    open.erase(open.begin());
+    const uint8_t d = automaton.after(state, Event::diffuse), dd = automaton.after(d, Event::diffuse);
+    const std::array<uint8_t, k_part_count> brings{
+        automaton.states[d].accept, automaton.states[dd].accept,
+        automaton.states[automaton.after(dd, Event::diffuse)].accept,
+        automaton.states[automaton.after(d, Event::specular)].accept};
+    const auto within = [](uint8_t component, uint32_t set) {
+      return component != k_no_component && (set >> component & 1u) != 0;
+    };
+    const bool left = (within(brings[1], enabled) && !within(brings[1], cached)) ||
+                      (within(brings[2], enabled) && !within(brings[2], cached));
+    const bool any = within(brings[1], cached) || within(brings[2], cached);
+    const bool looks = any && !left;
+    for (uint32_t p = 1; looks && p < k_part_count; ++p)
+      if (within(brings[p], cached)) routes.component[state][p] = brings[p], routes.parts |= 1u << p;
+    for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
+      if (e == Event::diffuse && looks) continue;
+      const uint8_t next = automaton.after(state, e);
+      if (seen.insert(next).second) open.insert(next);
+    }
+  }
+  return routes;
+}
+
 }  // namespace lucerna::paths

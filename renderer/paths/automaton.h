@@ -61,4 +61,25 @@ bool matches(const std::string& expression, std::string_view word);
 /// no D so far (E[SG]*), bits 29-30: component its rays are accounted to. `enabled` bit i: component i is on.
 std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled);
 
+/// Light arriving at a diffuse vertex, by what it has done before: straight from a light, over one diffuse
+/// event
+/// ([SG]*DL), over more, or over mirrors and glass alone ([SG]+L). Their numbers are those of the components
+/// that they belong to after ED.
+inline constexpr int k_part_count = 4;
+
+/// Where a lookup of such parts (of a record, of photons) takes the place of tracing on from a diffuse lobe.
+struct LookupRoutes {
+  /// By state in which the vertex is met, for each part: the component that it brings light to,
+  /// k_no_component: it is left to the path. Nothing at all: no lookup in that state.
+  std::vector<std::array<uint8_t, k_part_count>> component;
+  uint32_t parts = 0;   ///< bit p: some state reads part p
+  uint32_t traced = 0;  ///< components that paths still bring, beside the lookups (bit i)
+};
+
+/// For `cached` components, of the enabled ones. A lookup stands at the first diffuse vertex behind which
+/// nothing but cached components has a further diffuse event: with secondary and tertiary cached at the
+/// first, with tertiary alone at the second. Tertiary light behind a cached secondary one comes from the same
+/// lookup, whatever its own solver.
+LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached);
+
 }  // namespace lucerna::paths

@@ -9,6 +9,18 @@ uint32_t Plan::enabled() const {
   return bits;
 }
 
+uint32_t Plan::looked_up() const {
+  uint32_t bits = 0;
+  for (size_t c = 0; c < solver.size(); ++c)
+    if (solver[c] && solver[c]->looked_up) bits |= 1u << c;
+  return bits;
+}
+
+std::optional<double> Plan::bias(size_t component) const {
+  const SolverInfo* info = solver[component];
+  return info && info->unbiased ? std::optional(0.0) : std::nullopt;
+}
+
 Plan make_plan(const Settings& settings) {
   Plan plan;
   for (int c = 0; c < paths::k_component_count; ++c) {

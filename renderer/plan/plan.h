@@ -2,6 +2,7 @@
 // Settings and scene -> what is to be done: which solver computes which component, and what cannot be
 // reached.
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,12 @@ struct Plan {
   std::array<const SolverInfo*, paths::k_component_count> solver{};  ///< null: off
   /// Components that are computed (bit i).
   uint32_t enabled() const;
+  /// Components that are looked up (bit i).
+  uint32_t looked_up() const;
+  /// What a component's mean is off by, relative to its luminance: the part of the error that the two halves
+  /// of the film cannot see. 0 where the solver is unbiased; nothing where it cannot tell, or where the
+  /// component is off.
+  std::optional<double> bias(size_t component) const;
 };
 
 /// From the settings `components.*`. Every component has one solver or is off, so no path is counted twice,

@@ -158,6 +158,7 @@ std::shared_ptr<const Accuracy> AccuracyKeeper::publish(const Renderer& r, bool 
     now_.pixels = double(r.film().width()) * r.film().height();
     now_.reference = r.reference() ? r.reference()->file.filename().string() : "";
     now_.reference_applies = r.reference_applies();
+    for (size_t c = 0; c < now_.bias.size(); ++c) now_.bias[c] = r.bias(c);
     now_.tiles.clear();
     const bool shown = r.view().tiles > 0;
     if (shown || now_.adaptive) now_.tiles = tile_status(r, shown);

@@ -1,6 +1,7 @@
 #pragma once
 // What the window shows of accuracy: the ledger of the image in progress, its tiles, its passes. Kept on the
 // session's thread, published as a whole.
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -53,6 +54,9 @@ struct Accuracy {
   std::deque<PassStatus> passes;  ///< the newest last
   std::string reference;          ///< file name of the picture taken for the truth; "" for none
   bool reference_applies = false;
+  /// Relative, of each component's mean; none: the solver cannot tell, or the component is off. The ledger's
+  /// errors are of the noise alone.
+  std::array<std::optional<double>, stats::k_layers - 1> bias;
 
   /// The sum's and the components' errors by the last line; all 0 before the first.
   std::array<double, stats::k_layers> error() const;

@@ -115,8 +115,18 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
   gpu::Defines defines = options_.defines;
   if (settings_.boolean("sampling.coherent"))
     defines["LUCERNA_COHERENT"] = settings_.text("sampling.tile") == "8" ? "3" : "4";
+  paths::LookupRoutes routes = wanted_routes();
+  std::unique_ptr<irradiance_cache::Cache> cache;
+  std::function<void(gpu::Resources&)> bind;
+  if (routes.parts != 0) {
+    cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, cache_options());
+    for (const auto& [name, value] : irradiance_cache::Cache::defines(routes)) defines[name] = value;
+    bind = [c = cache.get()](gpu::Resources& r) { c->bind(r); };
+  }
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
-                                                      std::move(trace), defines);
+                                                      std::move(trace), defines, bind);
+  cache_ = std::move(cache);
+  routes_ = std::move(routes);
   compile_seconds_ = timer.seconds();
 }
 
@@ -135,7 +145,43 @@ shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
                                 .seed = uint32_t(settings_.integer("seed")),
                                 .max_depth = uint32_t(settings_.integer("path.max_depth")),
                                 .roulette_depth = uint32_t(settings_.integer("path.roulette_depth")),
-                                .enabled = enabled_components()});
+                                .enabled = routes_.traced,
+                                .fallback = cache_ ? enabled_components() : 0});
+}
+
+irradiance_cache::CacheOptions Renderer::cache_options() const {
+  return {.error = float(settings_.real("cache.error")),
+          .least_pixels = float(settings_.real("cache.min_radius")),
+          .most_radius = float(settings_.real("cache.max_radius")),
+          .rays = uint32_t(std::stoul(settings_.text("cache.rays"))),
+          .most_records = uint32_t(settings_.integer("cache.max_records")),
+          .most_passes = uint32_t(settings_.integer("cache.passes")),
+          .stop_share = float(settings_.real("cache.stop")),
+          .seed = uint32_t(settings_.integer("seed"))};
+}
+
+irradiance_cache::CacheView Renderer::cache_view() const {
+  irradiance_cache::CacheView view;
+  view.paths_frame = make_frame(width_, height_);
+  view.paths_enabled = enabled_components();
+  // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
+  view.records_frame =
+      transport::make_frame(flat_, camera_, automaton_,
+                            {.width = width_,
+                             .height = height_,
+                             .seed = uint32_t(settings_.integer("seed")),
+                             .max_depth = uint32_t(settings_.integer("path.max_depth")),
+                             .roulette_depth = uint32_t(settings_.integer("path.roulette_depth")),
+                             .enabled = routes_.parts});
+  view.records_enabled = routes_.parts;
+  view.width = width_, view.height = height_;
+  view.scene_radius = flat_.scene_radius;
+  return view;
+}
+
+paths::LookupRoutes Renderer::wanted_routes() const {
+  const plan::Plan plan = plan::make_plan(settings_);
+  return paths::lookup_routes(automaton_, plan.enabled(), plan.looked_up());
 }
 
 void Renderer::make_film() {
@@ -147,6 +193,9 @@ void Renderer::make_film() {
 
 void Renderer::restart() {
   if (!wavefront_ || !film_) return;
+  if (cache_) cache_->clear();
+  // What is switched off changes without new kernels.
+  routes_.traced = wanted_routes().traced;
   wavefront_->clear(*film_);
   wavefront_->clear(*coarse_);
   wavefront_->reset_stats();
@@ -183,6 +232,10 @@ float Renderer::luminance_floor() const {
 film::ImageError Renderer::image_error() {
   wavefront_->estimate(*film_, luminance_floor());
   return film::image_error(film_->errors());
+}
+
+std::optional<double> Renderer::bias(size_t component) const {
+  return plan::make_plan(settings_).bias(component);
 }
 
 std::vector<film::TileError> Renderer::tile_errors() const {
@@ -243,7 +296,11 @@ void Renderer::apply_settings() {
       again |= plan::find_option(key)->restarts;
   }
   const bool rebuild = changed.contains("tracer") || changed.contains("path.batch");
-  const bool kernels = changed.contains("sampling.coherent") ||
+  const bool cache_changed = cache_ && std::any_of(changed.begin(), changed.end(), [](const std::string& k) {
+                               return k.starts_with("cache.");
+                             });
+  const bool kernels = wanted_routes().component != routes_.component || cache_changed ||
+                       changed.contains("sampling.coherent") ||
                        (changed.contains("sampling.tile") && settings_.boolean("sampling.coherent"));
   if (changed.contains("camera")) choose_camera(settings_.text("camera"));
   if (rebuild) {
@@ -358,6 +415,8 @@ void Renderer::note_progress(bool at_once) {
 
 bool Renderer::render_item(const std::function<bool()>& cancel) {
   if (!wavefront_ || done()) return false;
+  if (cache_ && !cache_->ready())
+    return cache_->step(*device_, *compiler_, *wavefront_, automaton_, cache_view(), cancel);
   if (adaptive_) {
     const schedule::WorkItem item = adaptive_->next();
     if (!wavefront_->run(item, *film_, cancel)) {
@@ -422,6 +481,11 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
     film_->mark_tiles(marks);
   }
   wavefront_->tone_map(*film_, v, with_coarse ? coarse_.get() : nullptr);
+  if (cache_)
+    cache_->draw(*wavefront_, *film_,
+                 {.discs = settings_.boolean("overlay.records"),
+                  .overlap = settings_.boolean("overlay.overlap"),
+                  .color = uint32_t(settings_.choice("overlay.records_by"))});
   return film_->read_picture();
 }
 

@@ -20,6 +20,7 @@
 #include "scene/scene.h"
 #include "schedule/adaptive.h"
 #include "schedule/uniform.h"
+#include "solvers/irradiance_cache/cache.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
 
@@ -80,6 +81,8 @@ class Renderer {
   /// The same for every tile of sampling.tile, in raster order, heavy tails marked: as the last image_error()
   /// found it.
   std::vector<film::TileError> tile_errors() const;
+  /// What these errors, which are of the noise, do not tell: plan::Plan::bias of the settings in force.
+  std::optional<double> bias(size_t component) const;
   /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled.
   bool step(const std::function<bool()>& cancel = {});
   /// A quick image of a quarter of the resolution, for display until the film is filled.
@@ -116,6 +119,8 @@ class Renderer {
   double load_seconds() const { return load_seconds_; }
   double compile_seconds() const { return compile_seconds_; }
   uint32_t enabled_components() const;
+  /// Null where nothing is looked up.
+  const irradiance_cache::Cache* cache() const { return cache_.get(); }
 
  private:
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
@@ -133,6 +138,9 @@ class Renderer {
   /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
   std::string view_text() const;
   bool render_item(const std::function<bool()>& cancel);
+  irradiance_cache::CacheOptions cache_options() const;
+  irradiance_cache::CacheView cache_view() const;
+  paths::LookupRoutes wanted_routes() const;  ///< by the settings
   /// Adds a line to the ledger when one is due, or at once.
   void note_progress(bool at_once);
 
@@ -145,6 +153,8 @@ class Renderer {
   upload::FlatScene flat_;
   std::unique_ptr<upload::DeviceScene> device_scene_;
   std::unique_ptr<bvh::HostTracer> host_;
+  paths::LookupRoutes routes_;                      ///< of the kernels in use
+  std::unique_ptr<irradiance_cache::Cache> cache_;  ///< null: nothing is looked up
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::unique_ptr<film::Film> film_, coarse_;
   scene::Camera camera_;

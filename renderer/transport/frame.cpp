@@ -1,7 +1,10 @@
 #include "transport/frame.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+
+#include "shaders/shared/transport.h"
 
 namespace lucerna::transport {
 
@@ -30,8 +33,16 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.roulette_depth = options.roulette_depth;
   f.scene_radius = flat.scene_radius;
   const std::vector<uint32_t> table = paths::pack(automaton, options.enabled);
+  assert(table.size() <= shared::k_fallback_state);
   f.automaton_states = uint32_t(table.size());
   std::copy(table.begin(), table.end(), f.automaton);
+  if (options.fallback != 0) {
+    const std::vector<uint32_t> all = paths::pack(automaton, options.fallback);
+    for (size_t i = 0; i < all.size(); ++i)
+      f.automaton[shared::k_fallback_state + i] =
+          all[i] +
+          (shared::k_fallback_state | shared::k_fallback_state << 8 | shared::k_fallback_state << 16);
+  }
   return f;
 }
 

@@ -24,6 +24,7 @@ struct Wavefront::Impl {
       trace_closest, trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
+  std::function<void(gpu::Resources&)> bind_lookup;
   TransportStats stats;
 
   Impl(gpu::Device& d, uint32_t n, HostTrace trace)
@@ -85,10 +86,15 @@ struct Wavefront::Impl {
       shade_shadow[k].set("NextQueue", queues[0]);
       shade_shadow[k].set("ShadowQueue", shadow_queues[1 - k]);
     }
+    if (bind_lookup)
+      for (gpu::Resources& r : main) bind_lookup(r);
     film_resources = main[0];
     film_resources.set("Coarse", no_coarse);
   }
 
+  /// From `begin` until no path is alive. False when cancelled.
+  bool trace_paths(uint32_t count, const std::function<void()>& begin,
+                   const std::function<void()>& first_hits, const std::function<bool()>& cancel);
   void estimate(const gpu::Kernel& kernel, std::span<const WorkBlock> list, film::Film& film,
                 float luminance_floor);
 
@@ -140,7 +146,8 @@ struct Wavefront::Impl {
 };
 
 Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
-                     uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines)
+                     uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines,
+                     std::function<void(gpu::Resources&)> bind_lookup)
     : impl_(std::make_unique<Impl>(device, slots, std::move(host_trace))) {
   Impl& w = *impl_;
   const Timer timer;
@@ -160,6 +167,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   w.tiles = gpu::Kernel(device, compiler, "film/tiles.comp");
   w.error = gpu::Kernel(device, compiler, "film/error.comp");
   w.stopping = gpu::Kernel(device, compiler, "film/error.comp", {{"LUCERNA_STOPPING_ONLY", "1"}});
+  w.bind_lookup = std::move(bind_lookup);
   w.bind(scene);
   if (!w.host_trace) {
     // Where nothing is transparent the any-hit kernel need not look at the flag.
@@ -197,20 +205,56 @@ void Wavefront::set_frame(const Frame& frame, uint32_t enabled) {
 }
 
 void Wavefront::rebind(const upload::DeviceScene& scene) { impl_->bind(scene); }
+void Wavefront::rebind_lookup() {
+  for (gpu::Resources& r : impl_->main)
+    if (impl_->bind_lookup) impl_->bind_lookup(r);
+}
 uint32_t Wavefront::slots() const { return impl_->slots; }
 
 bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel) {
   Impl& w = *impl_;
   const auto pixels = static_cast<uint32_t>(item.blocks.size()) * 64;
+  if (item.slots() == 0 || w.enabled == 0) return true;
+  if (!probe(item, cancel)) return false;
+  w.stats.paths += item.slots();
+  film.bind(w.film_resources);
+  const FilmPush add{film.width(), film.height(), pixels, item.sample_count};
+  w.stream.dispatch(film.fits_storage_buffers() ? w.film_add : w.film_add_images, w.film_resources, add,
+                    Impl::groups(pixels), "film");
+  w.run_and_account(nullptr, nullptr);
+  return true;
+}
+
+bool Wavefront::probe(const schedule::WorkItem& item, const std::function<bool()>& cancel) {
+  Impl& w = *impl_;
   const uint32_t count = item.slots();
   if (count == 0 || w.enabled == 0) return true;
   if (count > w.slots) throw_error("transport", "work item of {} paths, room for {}", count, w.slots);
   w.blocks.write(std::span<const WorkBlock>(item.blocks));
-  TransportPush push{count, 0, pixels, 0};
+  const TransportPush push{count, 0, static_cast<uint32_t>(item.blocks.size()) * 64, 0};
+  const auto begin = [&] { w.stream.dispatch(w.camera, w.main[0], push, Impl::groups(count), "camera"); };
+  return w.trace_paths(count, begin, {}, cancel);
+}
+
+bool Wavefront::run(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel) {
+  Impl& w = *impl_;
+  if (count == 0 || w.enabled == 0) return true;
+  if (count > w.slots) throw_error("transport", "{} paths, room for {}", count, w.slots);
+  if (!w.trace_paths(count, ends.begin, ends.first_hits, cancel)) return false;
+  ends.end();
+  w.run_and_account(nullptr, nullptr);
+  return true;
+}
+
+bool Wavefront::Impl::trace_paths(uint32_t count, const std::function<void()>& begin,
+                                  const std::function<void()>& first_hits,
+                                  const std::function<bool()>& cancel) {
+  Impl& w = *this;
+  TransportPush push{count, 0, 64, 0};
   uint32_t closest[k_component_count] = {}, shadows[k_component_count] = {};
   closest[w.first_account] = count;
   w.stream.fill(w.counters, 0);
-  w.stream.dispatch(w.camera, w.main[0], push, Impl::groups(count), "camera");
+  begin();
   const uint32_t* counters = static_cast<const uint32_t*>(w.counters.mapped());
   uint32_t active = count, parity = 0, shadow_count = 0;
   bool first = true;
@@ -253,6 +297,7 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
       w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
               first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
       w.stats.rays += active;
+      if (first && first_hits) first_hits();
       w.stream.fill(w.counters, 0, 0, 12);
       w.stream.fill(w.counters, 0, 4 * k_counter_rays, 32);
       push.count = active;
@@ -273,12 +318,6 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
   w.stats.dropped += counters[k_counter_dropped];
   w.stats.roulette += counters[k_counter_roulette];
   w.stats.depth += counters[k_counter_depth];
-  w.stats.paths += count;
-  film.bind(w.film_resources);
-  const FilmPush add{film.width(), film.height(), pixels, item.sample_count};
-  w.stream.dispatch(film.fits_storage_buffers() ? w.film_add : w.film_add_images, w.film_resources, add,
-                    Impl::groups(pixels), "film");
-  w.run_and_account(nullptr, nullptr);
   return true;
 }
 
@@ -305,6 +344,10 @@ void Wavefront::estimate_stopping(const std::vector<WorkBlock>& blocks, film::Fi
                                   float luminance_floor) {
   impl_->estimate(impl_->stopping, blocks, film, luminance_floor);
 }
+
+void Wavefront::bind_paths(gpu::Resources& resources) const { resources = impl_->main[0]; }
+const gpu::Buffer& Wavefront::hits() const { return impl_->hits; }
+gpu::Stream& Wavefront::stream() { return impl_->stream; }
 
 void Wavefront::clear(film::Film& film) { film.clear(impl_->stream); }
 

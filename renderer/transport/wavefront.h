@@ -1,9 +1,9 @@
 #pragma once
-// The wavefront: traces a work item's paths from the camera through all their vertices and adds them to the
-// film.
+// The wavefront: traces paths through all their vertices; from the camera to the film, or between kernels of
+// others.
 //
-//   camera -> [closest hit -> shade (emission, light sample, scatter) -> shadow hit -> shadow light] ... ->
-//   film
+//   source -> [closest hit -> shade (emission, light sample, scatter) -> shadow hit -> shadow light] ... ->
+//   sink
 //
 // Path state is allocated once for `slots` paths, whatever the picture's size.
 #include <array>
@@ -33,28 +33,54 @@ struct StageSum {
 
 /// Sums since the last reset().
 struct TransportStats {
-  uint64_t paths = 0, rays = 0, shadow_rays = 0;
+  uint64_t paths = 0;  ///< of the film's
+  uint64_t rays = 0, shadow_rays = 0;
   uint64_t dropped = 0;              ///< contributions refused because they were not finite
   uint64_t roulette = 0, depth = 0;  ///< paths ended by roulette, by the maximum depth
   std::vector<StageSum> stages;
   std::array<double, shared::k_component_count> component_ms{};  ///< sums to the stages' total
 };
 
+/// Where paths come from and where their light goes, recorded on the wavefront's stream with resources that
+/// bind_paths() has filled. Path p lies in slot p.
+struct PathEnds {
+  std::function<void()> begin;  ///< writes ray, path state and zero radiance of every slot
+  std::function<void()>
+      first_hits;             ///< reads the hits of the first rays (before they are shaded); may be empty
+  std::function<void()> end;  ///< reads the radiance of every slot, by component
+};
+
 class Wavefront {
  public:
-  /// `host_trace` empty: compute-bvh. Compiles all kernels (throws Error, located) and warms them up.
+  /// `host_trace` empty: compute-bvh. `bind_lookup`: sets what kernels read that are compiled, by
+  /// `extra_defines`, with a lookup; called again by rebind(). Compiles all kernels (throws Error, located)
+  /// and warms them up.
   Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
-            uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines = {});
+            uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines = {},
+            std::function<void(gpu::Resources&)> bind_lookup = {});
   ~Wavefront();
 
   /// The frame's constants; `enabled`: components on (bit i).
   void set_frame(const shared::Frame& frame, uint32_t enabled);
   /// After DeviceScene::update_lights.
   void rebind(const upload::DeviceScene& scene);
+  /// Calls `bind_lookup` again: after its buffers have changed.
+  void rebind_lookup();
   uint32_t slots() const;
   /// Traces the item and adds it to the film. `cancel` is asked between bounces; a cancelled item leaves the
   /// film as it was and returns false.
   bool run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
+  /// The same without a film: for what kernels note on the way.
+  bool probe(const schedule::WorkItem& item, const std::function<bool()>& cancel = {});
+  /// Traces `count` <= slots() paths between ends of the caller's; cancellable as above, `end` is then not
+  /// called. Their time and rays are in stats() like those of the film's paths. Their frame is that of
+  /// set_frame().
+  bool run(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel = {});
+  /// The paths' buffers, under the names of shaders/lib/wavefront.glsl, and the scene's.
+  void bind_paths(gpu::Resources& resources) const;
+  gpu::Stream& stream();
+  /// shared::Hit a slot, of the rays traced last.
+  const gpu::Buffer& hits() const;
   /// What the film's halves say of the noise in all its blocks, into film.errors(). Pixels darker than
   /// `luminance_floor` are held against that.
   void estimate(film::Film& film, float luminance_floor);

@@ -182,3 +182,129 @@ def sweep(profile, path, frames, smooth=35.0, uv_along=None):
         face = np.cross(m.p[f[1]] - m.p[f[0]], m.p[f[2]] - m.p[f[0]])
         parts.append(m if np.dot(face, m.n[f[0]]) > 0 else Mesh(m.p, m.n, m.uv, m.t[:, ::-1]))
     return join(parts)
+
+
+def facing(mesh, centre=None):
+    """The same mesh with every triangle wound to the side of its vertices' normals, or, where `centre` is given, away
+    from that point."""
+    a, b, c = (mesh.p[mesh.t[:, k]] for k in range(3))
+    out = mesh.n[mesh.t].sum(axis=1) if centre is None else (a + b + c) / 3 - np.asarray(centre, float)
+    wrong = np.einsum("ij,ij->i", np.cross(b - a, c - a), out) < 0
+    t = mesh.t.copy()
+    t[wrong] = t[wrong][:, ::-1]
+    return Mesh(mesh.p, mesh.n, mesh.uv, t)
+
+
+def chamfer(lo, hi, edge):
+    """Axis-aligned box whose edges are cut back by `edge` metres; the faces' normals run on over the cut, so that edges
+    look rounded. 44 triangles, uv in metres."""
+    lo, hi = np.minimum(lo, hi).astype(float), np.maximum(lo, hi).astype(float)
+    edge = min(edge, 0.49 * float((hi - lo).min()))
+    corners = [np.array(c) for c in np.ndindex(2, 2, 2)]
+    p, n, at = [], [], {}
+    for c in corners:
+        for axis in range(3):
+            v = np.where(c == 1, hi - edge, lo + edge)
+            v[axis] = (lo, hi)[c[axis]][axis]
+            at[(*c, axis)] = len(p)
+            p.append(v), n.append(np.eye(3)[axis] * (2 * c[axis] - 1))
+    t = []
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for side in (0, 1):
+            ring = []
+            for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                c = np.zeros(3, int)
+                c[axis], c[u], c[v] = side, a, b
+                ring.append(at[(*c, axis)])
+            t += [ring[:3], [ring[0], ring[2], ring[3]]]
+        for a in (0, 1):   # the cuts along this axis
+            for b in (0, 1):
+                c = np.zeros(3, int)
+                c[u], c[v] = a, b
+                d = c.copy()
+                d[axis] = 1
+                q = [at[(*c, u)], at[(*d, u)], at[(*d, v)], at[(*c, v)]]
+                t += [q[:3], [q[0], q[2], q[3]]]
+    t += [[at[(*c, axis)] for axis in range(3)] for c in corners]
+    return planar_uv(facing(Mesh(p, n, None, t), (lo + hi) / 2))
+
+
+def slab(lo, hi, axis, holes=()):
+    """A box pierced along `axis` ('x', 'y', 'z') by rectangular holes: walls with windows and doors, ceilings with roof
+    lights. holes: (a0, a1, b0, b1) along the other two axes, in the order z y for 'x', x z for 'y', x y for 'z'; a hole
+    may reach the box's edge. All quads share whole edges. uv in metres."""
+    k = "xyz".index(axis)
+    u, v = {0: (2, 1), 1: (0, 2), 2: (0, 1)}[k]
+    cuts = [sorted({float(lo[w]), float(hi[w])} |
+                   {min(max(float(h[i]), lo[w]), hi[w]) for h in holes for i in ((0, 1) if w == u else (2, 3))})
+            for w in (u, v)]
+
+    def solid(i, j):
+        if not (0 <= i < len(cuts[0]) - 1 and 0 <= j < len(cuts[1]) - 1):
+            return False
+        a, b = (cuts[0][i] + cuts[0][i + 1]) / 2, (cuts[1][j] + cuts[1][j + 1]) / 2
+        return not any(h[0] < a < h[1] and h[2] < b < h[3] for h in holes)
+
+    parts = []
+    names = ("x", "y", "z")
+    for i in range(len(cuts[0]) - 1):
+        for j in range(len(cuts[1]) - 1):
+            if not solid(i, j):
+                continue
+            a, b = [0.0] * 3, [0.0] * 3
+            a[k], b[k] = lo[k], hi[k]
+            a[u], b[u] = cuts[0][i], cuts[0][i + 1]
+            a[v], b[v] = cuts[1][j], cuts[1][j + 1]
+            hidden = [s + names[w] for s, w, di, dj in (("-", u, -1, 0), ("+", u, 1, 0), ("-", v, 0, -1),
+                                                        ("+", v, 0, 1)) if solid(i + di, j + dj)]
+            parts.append(box(a, b, " ".join(hidden)))
+    return join(parts)
+
+
+def superquadric(half, square=0.4, lens=1.0, segments=32, rings=16):
+    """A closed cushion about the origin with half extents `half`: `square` 1 is round seen from above, towards 0 a
+    rectangle; `lens` the same for its profile. Normals are exact."""
+    th = np.linspace(-np.pi / 2, np.pi / 2, rings + 1)[:, None]
+    ph = np.linspace(0, 2 * np.pi, segments + 1)[None, :]
+
+    def power(x, e):
+        return np.sign(x) * np.abs(np.where(np.abs(x) < 1e-12, 0, x)) ** e
+
+    def both(fx, fy):
+        return np.stack([fx * power(np.sin(ph), fy), power(np.sin(th), lens if fy == square else 2 - lens) + 0 * ph,
+                         fx * power(np.cos(ph), fy)], 2)
+
+    half = np.asarray(half, float)
+    p = both(power(np.cos(th), lens), square) * half
+    n = both(power(np.cos(th), 2 - lens), 2 - square) / half
+    p[:, -1], n[:, -1] = p[:, 0], n[:, 0]
+    p[0], p[-1] = (0, -half[1], 0), (0, half[1], 0)
+    n[0], n[-1] = (0, -1, 0), (0, 1, 0)
+    return facing(grid(p, n.reshape(-1, 3)))
+
+
+def bezier(patch, steps, centre_line=None):
+    """A bicubic Bezier patch of 4 x 4 control points as steps x steps quads. Normals are exact; where a derivative
+    vanishes (a pole), that of the nearest inner point's tangent plane in the limit. `centre_line`: points the normals
+    away from this function of the surface's points."""
+    t = np.linspace(0, 1, steps + 1)
+
+    def basis(t):
+        s = 1 - t
+        return (np.stack([s ** 3, 3 * s * s * t, 3 * s * t * t, t ** 3], 1),
+                np.stack([-3 * s * s, 3 * s * s - 6 * s * t, 6 * s * t - 3 * t * t, 3 * t * t], 1))
+
+    c = np.asarray(patch, float).reshape(4, 4, 3)
+    (b, d), inner = basis(t), np.clip(t, 1e-4, 1 - 1e-4)
+    p = np.einsum("ui,vj,ijk->uvk", b, b, c)
+    bi, di = basis(inner)
+    n = np.cross(np.einsum("ui,vj,ijk->uvk", d, b, c), np.einsum("ui,vj,ijk->uvk", b, d, c))
+    near = np.cross(np.einsum("ui,vj,ijk->uvk", di, bi, c), np.einsum("ui,vj,ijk->uvk", bi, di, c))
+    size = np.linalg.norm(n, axis=2, keepdims=True)
+    n = np.where(size > 1e-9 * max(size.max(), 1e-12), n, near)
+    n /= np.maximum(np.linalg.norm(n, axis=2, keepdims=True), 1e-30)
+    if centre_line is not None:
+        out = np.einsum("ijk,ijk->", n, p - centre_line(p))
+        n = n if out > 0 else -n
+    return facing(grid(p, n.reshape(-1, 3)))

@@ -57,6 +57,9 @@ struct SurfaceParameters {
 struct Bsdf {
   vec3 diffuse;          // f_D on wo's side = diffuse * coupling(wi) / pi
   vec3 transmitted;      // f_D on the other side, likewise
+  // What these reflect and transmit of light that comes evenly from a side. Taken out of the integral over any other
+  // light it is an approximation, exact without a coat: how a coat's coupling varies with wi is then lost.
+  vec3 diffuse_albedo, transmitted_albedo;
   float alpha;
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
   float roughness;
@@ -188,12 +191,14 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
   b.p_specular = luminance(b.f0 * t.x + b.f90 * t.y);
   b.p_specular_ms = b.delta ? 0.0 : luminance(ms) * missing;
   // What the lobe reflects in all, not only its prefactor: the coupling averages to coat_average.
-  b.p_diffuse = luminance(b.diffuse * coat_average);
-  b.p_transmitted = luminance(b.transmitted * coat_average);
+  b.diffuse_albedo = b.diffuse * coat_average;
+  b.transmitted_albedo = b.transmitted * coat_average;
 #else
-  b.p_diffuse = luminance(b.diffuse);
-  b.p_transmitted = luminance(b.transmitted);
+  b.diffuse_albedo = b.diffuse;
+  b.transmitted_albedo = b.transmitted;
 #endif
+  b.p_diffuse = luminance(b.diffuse_albedo);
+  b.p_transmitted = luminance(b.transmitted_albedo);
 #if LUCERNA_GLASS
   b.glass = (1.0 - s.metallic) * s.transmission;
   b.tint = s.base;

@@ -10,7 +10,11 @@
 #include "lib/invocation.glsl"
 
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push { TransportPush push; };
+// Kernels that begin or end paths define LUCERNA_PUSH first, as the name of a structure of their own.
+#ifndef LUCERNA_PUSH
+#define LUCERNA_PUSH TransportPush
+#endif
+layout(push_constant, scalar) uniform Push { LUCERNA_PUSH push; };
 
 layout(scalar) buffer Queue { uint queue[]; };
 layout(scalar) buffer NextQueue { uint next_queue[]; };

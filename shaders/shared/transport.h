@@ -5,6 +5,8 @@
 LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_component_count = 4u;
+/// States of the automaton from here on are those of paths that a lookup left alone: nothing is cut off for them.
+LUCERNA_CONST uint k_fallback_state = 8u;
 
 /// Bytes a path in flight takes on the device (ray, hit, shadow ray, state, queues): see PathBuffers.
 /// One path: `throughput` already divided by all probabilities.

@@ -4,6 +4,9 @@
 #include "lib/sampler.glsl"
 #include "lib/surface.glsl"
 #include "lib/lights.glsl"
+#if LUCERNA_CACHE
+#include "irradiance_cache/lookup.glsl"
+#endif
 
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
 
@@ -45,6 +48,11 @@ void main() {
   Sampler random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
 
   vec3 gain = vec3(0.0);  // what the path meets here, all of one component
+#if LUCERNA_CACHE
+  vec3 cached[k_component_count];
+  for (uint c = 0u; c < k_component_count; ++c) cached[c] = vec3(0.0);
+  bool cached_everywhere = false;
+#endif
   if (hit.prim == k_no_hit) {
     float pdf;
     vec3 light = environment_radiance(ray.direction, pdf);
@@ -154,6 +162,31 @@ void main() {
         }
 #endif
 
+#if LUCERNA_CACHE
+        // What lies behind this vertex's diffuse lobe: from the records, or where there are none by going on in the
+        // states that leave nothing out.
+        uint routes = cache.routes[state];
+        bool looks = routes != k_no_routes && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
+        cached_everywhere = looks;
+        for (int facing = 0; facing < k_cache_sides; ++facing) {
+          vec3 albedo = path.throughput * (facing == 0 ? bsdf.diffuse_albedo : bsdf.transmitted_albedo) * k_inv_pi;
+          bool asks = looks && max3(albedo) > 0.0;
+          float sign = facing == 0 ? 1.0 : -1.0;
+          Cached found = cache_lookup(surface.position, sign * side, sign * to_world[2], asks);
+          bool missing = asks && found.weight <= 0.0;
+          if (missing && cache.probing != 0u && cache_can_serve(sign * side, sign * to_world[2])) {
+            candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), 1.0);
+            candidates[slot * k_candidate_texels + 1u] = vec4(sign * side, depth == 0u ? float(k_origin_screen) : float(k_origin_world));
+          }
+          cached_everywhere = cached_everywhere && !missing;
+          for (uint p = 0u; p < k_part_count; ++p)
+            for (uint c = 0u; c < k_component_count; ++c)
+              if (found.weight > 0.0 && ((routes >> (4u * p)) & 15u) == c) cached[c] += albedo * found.part[p];
+        }
+        if (looks && !cached_everywhere)
+          for (uint c = 0u; c < k_component_count; ++c) cached[c] = vec3(0.0);
+#endif
+
         BsdfSample b = bsdf_sample(bsdf, wo, sample_vertex(random, depth, k_pad_direction), sample_vertex(random, depth, k_pad_lobe));
         if (b.event == k_event_null) {
           passed = true;
@@ -161,7 +194,12 @@ void main() {
         } else {
           direction = normalize(to_world * b.wi);
           bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
+#if LUCERNA_CACHE
+          bool alone = looks && !cached_everywhere && b.event == k_event_diffuse;
+          uint next = automaton_after(state + (alone ? k_fallback_state : 0u), b.event);
+#else
           uint next = automaton_after(state, b.event);
+#endif
           vec3 throughput = path.throughput * b.weight;
           bool finite = is_finite(throughput);
           go_on = sides_agree && (!finite || max3(throughput) > 0.0) && automaton_live(next);
@@ -206,5 +244,10 @@ void main() {
       atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);
     }
   }
+#if LUCERNA_CACHE
+  for (uint c = 0u; c < k_component_count; ++c)
+    add_radiance(slot, c, cached[c] + (automaton_component(state) == c ? gain : vec3(0.0)));
+#else
   add_radiance(slot, automaton_component(state), gain);
+#endif
 }

@@ -94,7 +94,7 @@ TEST_CASE("wrong arguments are refused with their place") {
   refused(good + "--device nothing", "nothing");
   refused("render " + scene("cornell") + " -o /no/such/folder/a.exr", "/no/such/folder");
   refused("render " + scene("cornell") + " -o a.gif", ".gif");
-  refused("render " + scene("cornell"), "--output");
+  refused("render " + scene("cornell"), "-o: name at least one output");
   refused("compare no.exr nothing.exr", "no.exr");
   refused("info no.gltf", "no.gltf");
   CHECK_FALSE(fs::exists("/tmp/lucerna-never.exr"));
@@ -117,11 +117,20 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   CHECK(j["error"]["tile_worst"] <= 0.0801);
   CHECK(j["tiles"]["most_samples"] > j["tiles"]["least_samples"]);
   CHECK(j["error"]["components"].size() == 4);
+  CHECK(j["error"]["of"] == "noise");
+  CHECK(j["error"]["components"]["tertiary"]["bias"] == 0);
   const auto [capped, warning] = stats("--error 0.01 --samples 32 --set sampling.min_samples=16");
   CHECK(capped["tiles"]["most_samples"] == 32);
   CHECK(capped["tiles"]["capped"] == capped["tiles"]["unreached"].size());
   CHECK(capped["tiles"]["unreached"].size() > 8);
   CHECK(warning.find("over the error of 0.01") != std::string::npos);
+  // Figures alone need no picture; nothing at all is a mistake.
+  const std::string small = "render " + scene("cornell") + " --size 16x16 --samples 4 --quiet";
+  CHECK(run(small + " --stats " + (f / "alone.json").string()).status == 0);
+  CHECK(std::filesystem::exists(f / "alone.json"));
+  const Run nowhere = run(small);
+  CHECK(nowhere.status == 1);
+  CHECK(nowhere.out.find("name at least one output") != std::string::npos);
   // The story of the render, in JSON and as a table with as many lines.
   const auto [told, nothing] = stats("--samples 32 --ledger " + (f / "e.csv").string());
   std::ifstream table(f / "e.csv");

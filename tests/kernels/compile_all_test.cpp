@@ -48,6 +48,8 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
       gpu::Defines defines{{"LUCERNA_BUCKETS", on[0] == '1' ? "6" : "0"},
                            {"LUCERNA_QUERY", on},
                            {"LUCERNA_COHERENT", on[0] == '1' ? "4" : "0"},
+                           {"LUCERNA_CACHE", on},
+                           {"LUCERNA_CACHE_PARTS", "15u"},
                            {"LUCERNA_NEIGHBOURS", on[0] == '1' ? "27" : "0"}};
       for (const char* use : uses) defines["LUCERNA_" + std::string(use) + "_BUCKETS"] = "63u";
       for (const char* effect : effects) defines[effect] = on;

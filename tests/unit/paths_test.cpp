@@ -93,3 +93,40 @@ TEST_CASE("wrong expressions are refused with their place") {
   CHECK(message({"E.*L", "E[SG]DL"}).find("both hold the word EGDL") != std::string::npos);
   CHECK(message({"ED?(G|S)+L", "EDL"}) == "accepted");
 }
+
+TEST_CASE("lookups stand where nothing but cached components goes on, each part for its component") {
+  const paths::Automaton a = paths::compile_components();
+  const auto after = [&](const char* word) {
+    uint8_t state = 0;
+    for (const char* e = word; *e; ++e)
+      state = a.after(state, static_cast<paths::Event>(*e == 'D' ? 0 : *e == 'G' ? 1 : 2));
+    return state;
+  };
+  const uint8_t none = paths::k_no_component;
+  const auto nothing = std::array<uint8_t, 4>{none, none, none, none};
+  // Both: at the first diffuse vertex, also behind mirrors; nothing behind it, caustics are left to the path.
+  const auto both = paths::lookup_routes(a, 15, 0b0110);
+  CHECK(both.traced == 0b1001);
+  CHECK(both.parts == 0b0110);
+  CHECK(both.component[after("")] == std::array<uint8_t, 4>{none, 1, 2, none});
+  CHECK(both.component[after("GS")] == both.component[after("")]);
+  for (const char* word : {"D", "DS", "DD", "DDD"}) CHECK(both.component[after(word)] == nothing);
+  // Secondary light from records brings tertiary light with it, unless that is off.
+  CHECK(paths::lookup_routes(a, 15, 0b0010).component == both.component);
+  CHECK(paths::lookup_routes(a, 0b1011, 0b0010).component[0] == std::array<uint8_t, 4>{none, 1, none, none});
+  // Tertiary light alone: at the second diffuse vertex all that is not direct belongs to it.
+  const auto tertiary = paths::lookup_routes(a, 15, 0b0100);
+  CHECK(tertiary.traced == 0b1011);
+  CHECK(tertiary.parts == 0b1110);
+  CHECK(tertiary.component[after("")] == nothing);
+  CHECK(tertiary.component[after("D")] == std::array<uint8_t, 4>{none, 2, 2, 2});
+  CHECK(tertiary.component[after("SDG")] == tertiary.component[after("D")]);
+  CHECK(tertiary.component[after("DD")] == nothing);
+  // With secondary light off there is nothing that goes on from the first: it is looked up there.
+  const auto alone = paths::lookup_routes(a, 0b0100, 0b0100);
+  CHECK(alone.component[0] == std::array<uint8_t, 4>{none, none, 2, none});
+  // Nothing cached, nothing looked up.
+  const auto plain = paths::lookup_routes(a, 15, 0);
+  CHECK(plain.parts == 0);
+  CHECK(plain.traced == 15);
+}

@@ -33,6 +33,13 @@ TEST_CASE("every component has one solver of the registry, or none") {
   CHECK(p.solver[1] == nullptr);
   REQUIRE(p.solver[0] != nullptr);
   CHECK(p.solver[0]->name == "path");
+  // What is off has no bias of its own to tell; a solver that cannot tell says so too.
+  CHECK(p.bias(0) == 0.0);
+  CHECK_FALSE(p.bias(1).has_value());
+  plan::SolverInfo reuses{"reuses", "", {true, true, true, true}, false, true};
+  plan::Plan biased;
+  biased.solver[2] = &reuses;
+  CHECK_FALSE(biased.bias(2).has_value());
   // What the settings offer is what the registry serves.
   for (int c = 0; c < paths::k_component_count; ++c) {
     const auto* option = plan::find_option(std::string("components.") + paths::k_component_names[c]);

@@ -1,0 +1,259 @@
+#include "solvers/irradiance_cache/cache.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "gpu/stream.h"
+#include "schedule/uniform.h"
+#include "solvers/irradiance_cache/placement.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+/// Spacing of the first pass, in the scene's radius; each pass halves it down to the least.
+constexpr float k_first_spacing = 1.0f / 16, k_least_spacing = 1.0f / 512;
+constexpr float k_normal_tolerance = 0.015f;  // 1 - cos of 10 degrees
+constexpr float k_behind = 0.05f;
+/// References of the octree that there is memory for, a record.
+constexpr uint32_t k_references = 16;
+
+enum class Stage { probe, evaluate, done };
+
+}  // namespace
+
+struct Cache::Impl {
+  CacheOptions options;
+  Records records;
+  lookup::Octree octree;
+  gpu::Buffer frame, candidates;
+  gpu::Kernel radius, overlay;
+  gpu::Resources resources;
+  std::unique_ptr<Evaluator> evaluator;
+  CacheFrame told{};
+  uint32_t parts = 0;
+  CacheStatus status;
+  Stage stage = Stage::probe;
+  schedule::UniformSchedule picture;
+  bool probing = false;  // the schedule of this pass has begun
+  std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
+  std::vector<Place> asked;
+  uint32_t evaluated = 0;  // records up to here are
+
+  Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o)
+      : options(o),
+        records(device, o.most_records),
+        octree(device, compiler, {.spheres = o.most_records, .references = k_references * o.most_records}) {
+    frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
+    candidates = gpu::Buffer(device, {.name = "cache candidates",
+                                      .bytes = uint64_t{slots} * 16 * k_candidate_texels,
+                                      .memory = gpu::Memory::host});
+    status.bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + octree.bytes();
+  }
+
+  void build_octree(transport::Wavefront& wavefront) {
+    const shared::OctreeHeader& h = octree.build(wavefront.stream(), records.spheres(), {.most = evaluated});
+    // What all but a few records lie between.
+    const std::vector<vec3> figures = records.figures();
+    for (int k = 0; k < 3 && !figures.empty(); ++k) {
+      std::vector<float> values;
+      for (const vec3& f : figures)
+        if (f[k] > 0 && std::isfinite(f[k])) values.push_back(f[k]);
+      std::sort(values.begin(), values.end());
+      const size_t n = values.size();
+      const float lo = n ? values[n / 50] : 1, hi = n ? values[n - 1 - n / 50] : 2;
+      scales[k] = {lo, std::max(hi, 1.01f * lo)};
+    }
+    status.references = h.spheres ? double(h.references) / h.spheres : 0;
+    wavefront.rebind_lookup();
+  }
+
+  /// What paths know of the cache from here on.
+  void tell(uint32_t count, bool probes, bool looks = true) {
+    CacheFrame f = told;
+    f.record_count = count;
+    f.probing = probes ? 1 : 0;
+    if (!looks) std::fill(std::begin(f.routes), std::end(f.routes), k_no_routes);
+    frame.write(&f, sizeof f);
+  }
+
+  void collect(uint32_t slots) {
+    const auto* texels = static_cast<const vec4*>(candidates.mapped());
+    for (uint32_t slot = 0; slot < slots; ++slot) {
+      const vec4& place = texels[size_t{slot} * k_candidate_texels];
+      if (place.w == 0) continue;
+      ++status.asked;
+      const vec4& facing = texels[size_t{slot} * k_candidate_texels + 1];
+      asked.push_back({vec3(place), vec3(facing), static_cast<uint32_t>(facing.w)});
+    }
+  }
+
+  void finish(StopReason reason) {
+    stage = Stage::done;
+    status.stop = reason;
+    asked = {};
+    tell(records.size(), false);
+  }
+};
+
+Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
+             const paths::LookupRoutes& routes, const CacheOptions& options)
+    : impl_(std::make_unique<Impl>(device, compiler, slots, options)) {
+  Impl& c = *impl_;
+  const auto elevations = static_cast<uint32_t>(std::lround(std::sqrt(options.rays / 4.0)));
+  if (options.rays == 0 || elevations * elevations * 4 != options.rays)
+    throw_error("cache.rays", "'{}': expected four times a square, such as 256 or 1024", options.rays);
+  c.parts = routes.parts;
+  c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
+  c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(routes));
+  c.told.normal_tolerance = k_normal_tolerance;
+  c.told.behind = k_behind;
+  for (uint32_t s = 0; s < 16; ++s) {
+    c.told.routes[s] = k_no_routes;
+    if (s >= routes.component.size()) continue;
+    uint32_t packed = 0;
+    bool any = false;
+    for (uint32_t p = 0; p < k_part_count; ++p) {
+      const uint8_t component = routes.component[s][p];
+      any |= component != paths::k_no_component;
+      packed |= (component == paths::k_no_component ? k_component_count : component) << (4 * p);
+    }
+    if (any) c.told.routes[s] = packed;
+  }
+  clear();
+}
+
+Cache::~Cache() = default;
+
+gpu::Defines Cache::defines(const paths::LookupRoutes& routes) {
+  return {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", std::to_string(routes.parts)}};
+}
+
+void Cache::bind(gpu::Resources& resources) const {
+  const Impl& c = *impl_;
+  c.records.bind(resources);
+  resources.set("CacheBlock", c.frame);
+  resources.set("Candidates", c.candidates);
+  c.octree.bind(resources);
+}
+
+void Cache::clear() {
+  Impl& c = *impl_;
+  c.records.clear();
+  c.asked.clear();
+  c.status = {.bytes = c.status.bytes};
+  c.stage = Stage::probe;
+  c.probing = false;
+  c.evaluated = 0;
+  c.tell(0, false);
+}
+
+bool Cache::ready() const { return impl_->stage == Stage::done; }
+const CacheStatus& Cache::status() const { return impl_->status; }
+const Records& Cache::records() const { return impl_->records; }
+
+bool Cache::step(gpu::Device& device, gpu::ShaderCompiler& compiler, transport::Wavefront& wavefront,
+                 const paths::Automaton& automaton, const CacheView& view,
+                 const std::function<bool()>& cancel) {
+  Impl& c = *impl_;
+  if (!c.evaluator) c.evaluator = std::make_unique<Evaluator>(device, compiler, wavefront);
+  if (c.stage == Stage::probe) {
+    if (!c.probing) {
+      c.picture = {((view.width + 7) / 8) * ((view.height + 7) / 8), 1, wavefront.slots()};
+      c.status.asked = c.status.paths = 0;
+      c.asked.clear();
+      c.probing = true;
+    }
+    const schedule::UniformSchedule before = c.picture;
+    schedule::WorkItem item = c.picture.next();
+    // Each pass looks along paths of its own.
+    for (WorkBlock& b : item.blocks) b.first_sample = c.status.pass;
+    c.tell(c.evaluated, true);
+    wavefront.stream().fill(c.candidates, 0);
+    if (!wavefront.probe(item, cancel)) {
+      c.picture = before;
+      c.tell(c.evaluated, false);
+      return false;
+    }
+    c.collect(item.slots());
+    c.status.paths += item.slots();
+    c.tell(c.evaluated, false);
+    if (!c.picture.done()) return true;
+    c.probing = false;
+    if (double(c.status.asked) <= double(c.options.stop_share) * double(c.status.paths)) {
+      c.finish(StopReason::covered);
+      return true;
+    }
+    const float spacing =
+        view.scene_radius *
+        std::max(k_least_spacing, std::ldexp(k_first_spacing, -static_cast<int>(c.status.pass)));
+    const std::vector<Place> chosen =
+        choose_places(c.asked, {.spacing = spacing,
+                                .normal_tolerance = k_normal_tolerance,
+                                .seed = c.options.seed + c.status.pass,
+                                .most = c.records.capacity() - c.records.size()});
+    c.records.append(chosen, c.status.pass);
+    c.stage = Stage::evaluate;
+    return true;
+  }
+  if (c.stage == Stage::evaluate) {
+    const auto elevations = static_cast<uint32_t>(std::lround(std::sqrt(c.options.rays / 4.0)));
+    const uint32_t batch = std::max(1u, wavefront.slots() / c.options.rays);
+    std::vector<uint32_t> list;
+    for (uint32_t r = c.evaluated; r < c.records.size() && list.size() < batch; ++r) list.push_back(r);
+    wavefront.set_frame(view.records_frame, view.records_enabled);
+    c.tell(0, false, false);
+    const size_t done = c.evaluator->evaluate(
+        wavefront, automaton, c.records, list,
+        {.elevations = elevations, .azimuths = 4 * elevations, .parts = c.parts, .seed = c.options.seed},
+        cancel);
+    wavefront.set_frame(view.paths_frame, view.paths_enabled);
+    c.tell(c.evaluated, false);
+    if (done < list.size()) return false;
+    if (!list.empty()) {
+      wavefront.bind_paths(c.resources);
+      bind(c.resources);
+      const RadiusPush push{list.front(), uint32_t(list.size()), c.options.error, c.options.least_pixels,
+                            c.options.most_radius * view.scene_radius};
+      wavefront.stream().dispatch(c.radius, c.resources, push, gpu::groups_for(list.size(), 64), "records");
+      wavefront.stream().run();
+    }
+    c.evaluated += static_cast<uint32_t>(done);
+    c.status.rays += uint64_t(done) * c.options.rays;
+    c.status.records = c.evaluated;
+    if (c.evaluated < c.records.size()) return true;
+    ++c.status.pass;
+    c.build_octree(wavefront);
+    c.tell(c.evaluated, false);
+    c.stage = Stage::probe;
+    if (c.records.size() == c.records.capacity())
+      c.finish(StopReason::records);
+    else if (c.status.pass >= c.options.most_passes)
+      c.finish(StopReason::passes);
+  }
+  return true;
+}
+
+std::pair<float, float> Cache::scale(uint32_t color) const {
+  return color < k_record_by_rays ? std::pair(1.0f, 2.0f) : impl_->scales[color - k_record_by_rays];
+}
+
+void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const Overlay& overlay) {
+  Impl& c = *impl_;
+  if (!overlay.discs && !overlay.overlap) return;
+  wavefront.bind_paths(c.resources);
+  bind(c.resources);
+  film.bind(c.resources);
+  OverlayPush push{film.width(), film.height(), overlay.discs, overlay.overlap, overlay.color, 0, 1, 12};
+  const auto [lo, hi] = scale(overlay.color);
+  push.lo = lo, push.hi = hi;
+  wavefront.stream().dispatch(c.overlay, c.resources, push,
+                              gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
+  wavefront.stream().run();
+  wavefront.stream().take_times();
+}
+
+}  // namespace lucerna::irradiance_cache

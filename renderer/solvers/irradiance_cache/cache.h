@@ -1,0 +1,88 @@
+#pragma once
+// The irradiance cache as a solver: built in passes before the picture is begun, then only read, so that the
+// picture does not depend on the order in which records came (METHODS 3.2).
+//
+// A pass sends paths from the camera through the scene (one a pixel); where a diffuse vertex finds no record
+// it asks for one. Of the places asked for some are chosen (placement.h), evaluated (evaluate.h) and given a
+// radius. Passes end when few paths still ask. What no record serves is path traced.
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "paths/automaton.h"
+#include "solvers/irradiance_cache/evaluate.h"
+#include "solvers/irradiance_cache/records.h"
+#include "solvers/lookup/octree.h"
+
+namespace lucerna::irradiance_cache {
+
+struct CacheOptions {
+  float error = 0.15f;       ///< radius of a record over the harmonic mean distance of what it sees; above 0
+  float least_pixels = 3;    ///< least radius as the camera sees it; 0 or more
+  float most_radius = 0.1f;  ///< of the scene's radius
+  uint32_t rays =
+      1024;  ///< a record: a multiple of 4 (elevations x 4 elevations), at most the wavefront's slots
+  uint32_t most_records = 100000;
+  uint32_t most_passes = 12;
+  float stop_share = 0.002f;  ///< building ends when no more of the paths than this ask for records
+  uint32_t seed = 1;
+};
+
+enum class StopReason { building, covered, passes, records };
+
+struct CacheStatus {
+  uint32_t pass = 0, records = 0;
+  uint64_t asked = 0, paths = 0;  ///< of the last complete pass: paths that asked, paths
+  uint64_t rays = 0;              ///< of the records' own hemispheres
+  uint64_t bytes = 0;             ///< of device memory
+  double references = 0;          ///< leaves that list a record, on average
+  StopReason stop = StopReason::building;
+};
+
+/// What the building needs to know of the picture and its scene.
+struct CacheView {
+  shared::Frame paths_frame,
+      records_frame;  ///< of the picture's paths; of the records' (components: the parts)
+  uint32_t paths_enabled = 0, records_enabled = 0;
+  uint32_t width = 0, height = 0;
+  float scene_radius = 1;
+};
+
+class Cache {
+ public:
+  /// Throws Error as Records, or when an option is out of its range.
+  Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const paths::LookupRoutes& routes,
+        const CacheOptions& options);
+  ~Cache();
+
+  /// For the kernels of a wavefront that reads a cache with these routes.
+  static gpu::Defines defines(const paths::LookupRoutes& routes);
+  /// Under the names of shaders/irradiance_cache/lookup.glsl.
+  void bind(gpu::Resources& resources) const;
+  /// Begins anew, without records.
+  void clear();
+  bool ready() const;
+  /// One bounded piece of the building, cancellable between bounces; on return the wavefront's frame is that
+  /// of the picture's paths. False when it was cancelled: it will be done again.
+  bool step(gpu::Device& device, gpu::ShaderCompiler& compiler, transport::Wavefront& wavefront,
+            const paths::Automaton& automaton, const CacheView& view,
+            const std::function<bool()>& cancel = {});
+  const CacheStatus& status() const;
+  const Records& records() const;
+  /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many
+  /// serve each pixel. Needs the film's depth. `stream` is run.
+  struct Overlay {
+    bool discs = false, overlap = false;
+    uint32_t color = shared::k_record_by_pass;
+  };
+  /// Ends of the logarithmic scale of a value that records are coloured by, from nearly all records; of rays,
+  /// distance and error only. 0 < first < second.
+  std::pair<float, float> scale(uint32_t color) const;
+  void draw(transport::Wavefront& wavefront, const film::Film& film, const Overlay& overlay);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lucerna::irradiance_cache

@@ -1,0 +1,45 @@
+#pragma once
+// Evaluates records: rays over their hemispheres through the wavefront, summed to irradiance, gradients and
+// distances (METHODS 3.1, 3.4).
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "gpu/kernel.h"
+#include "paths/automaton.h"
+#include "solvers/irradiance_cache/records.h"
+#include "transport/wavefront.h"
+
+namespace lucerna::irradiance_cache {
+
+struct EvaluateOptions {
+  /// Strata of the hemisphere; their product is the rays of a level, at most the wavefront's slots. Four
+  /// times as many azimuths as elevations make the cells about as wide as high.
+  uint32_t elevations = 8, azimuths = 32;
+  uint32_t rays_before =
+      0;  ///< that these records have had in earlier levels; their result then weighs by its rays
+  uint32_t parts =
+      0b1110;  ///< bit p: shared::k_part_* p is gathered; they must be enabled in the wavefront's frame
+  uint32_t seed = 1;
+};
+
+class Evaluator {
+ public:
+  /// Compiles and warms up. `defines`: those of the wavefront's kernels.
+  Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, const transport::Wavefront& wavefront,
+            const gpu::Defines& defines = {});
+  ~Evaluator();
+  /// Evaluates the listed records (indices), a batch of the wavefront's slots at a time; `cancel` is asked
+  /// between bounces. Returns how many of the list are done: they, and only they, are changed. The
+  /// wavefront's frame must be that of the scene, with the parts' components enabled; its picture does not
+  /// matter.
+  size_t evaluate(transport::Wavefront& wavefront, const paths::Automaton& automaton, Records& records,
+                  std::span<const uint32_t> list, const EvaluateOptions& options,
+                  const std::function<bool()>& cancel = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lucerna::irradiance_cache

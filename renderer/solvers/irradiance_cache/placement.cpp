@@ -1,0 +1,92 @@
+#include "solvers/irradiance_cache/placement.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lucerna::irradiance_cache {
+namespace {
+
+constexpr uint32_t k_morton_bits = 21;
+constexpr float k_cluster_width = 4;  // in spacings
+
+uint64_t spread(uint64_t x) {  // two zero bits after each
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffffull;
+  x = (x | x << 16) & 0x1f0000ff0000ffull;
+  x = (x | x << 8) & 0x100f00f00f00f00full;
+  x = (x | x << 4) & 0x10c30c30c30c30c3ull;
+  x = (x | x << 2) & 0x1249249249249249ull;
+  return x;
+}
+
+uint64_t mix(uint64_t x) {  // splitmix64's finalizer
+  x ^= x >> 30, x *= 0xbf58476d1ce4e5b9ull;
+  x ^= x >> 27, x *= 0x94d049bb133111ebull;
+  return x ^ x >> 31;
+}
+
+}  // namespace
+
+std::vector<Place> choose_places(std::span<const Place> candidates, const PlacementOptions& o) {
+  if (candidates.empty() || o.most == 0) return {};
+  vec3 lo = candidates[0].position, hi = lo;
+  for (const Place& c : candidates) lo = glm::min(lo, c.position), hi = glm::max(hi, c.position);
+  const vec3 extent = hi - lo;
+  const float side = std::max({extent.x, extent.y, extent.z, 1e-20f});
+  std::vector<std::pair<uint64_t, uint32_t>> order;
+  order.reserve(candidates.size());
+  const double cells = double((1u << k_morton_bits) - 1);
+  for (uint32_t i = 0; i < candidates.size(); ++i) {
+    const vec3 p = candidates[i].position - lo;
+    const auto cell = [&](float x) { return static_cast<uint64_t>(double(x) / side * cells); };
+    order.emplace_back(spread(cell(p.x)) | spread(cell(p.y)) << 1 | spread(cell(p.z)) << 2, i);
+  }
+  std::sort(order.begin(), order.end());
+
+  std::vector<std::vector<Place>> clusters;
+  const float widest = k_cluster_width * o.spacing;
+  const float near2 = o.spacing * o.spacing;
+  for (size_t first = 0; first < order.size();) {
+    vec3 box_lo = candidates[order[first].second].position, box_hi = box_lo;
+    size_t last = first + 1;
+    for (; last < order.size(); ++last) {
+      const vec3& p = candidates[order[last].second].position;
+      const vec3 l = glm::min(box_lo, p), h = glm::max(box_hi, p);
+      if (std::max({h.x - l.x, h.y - l.y, h.z - l.z}) > widest) break;
+      box_lo = l, box_hi = h;
+    }
+    std::vector<Place> left, chosen;
+    for (size_t i = first; i < last; ++i) left.push_back(candidates[order[i].second]);
+    uint64_t random = mix(order[first].first * 0x9e3779b97f4a7c15ull + o.seed);
+    while (!left.empty()) {
+      random = mix(random + 0x9e3779b97f4a7c15ull);
+      const Place pick = left[random % left.size()];
+      chosen.push_back(pick);
+      std::erase_if(left, [&](const Place& c) {
+        const vec3 d = c.position - pick.position;
+        return dot(d, d) <= near2 && 1 - dot(c.normal, pick.normal) <= o.normal_tolerance;
+      });
+    }
+    clusters.push_back(std::move(chosen));
+    first = last;
+  }
+  std::vector<Place> all;
+  size_t total = 0;
+  for (const auto& c : clusters) total += c.size();
+  size_t most_each = 1;  // the rank below which all are taken, when there are too many
+  if (total <= o.most) {
+    for (const auto& c : clusters) all.insert(all.end(), c.begin(), c.end());
+    return all;
+  }
+  for (size_t taken = 0;; ++most_each) {
+    size_t now = 0;
+    for (const auto& c : clusters) now += std::min(c.size(), most_each);
+    if (now > o.most || now == taken) break;
+    taken = now;
+  }
+  for (const auto& c : clusters)
+    for (size_t i = 0; i < std::min(c.size(), most_each) && all.size() < o.most; ++i) all.push_back(c[i]);
+  return all;
+}
+
+}  // namespace lucerna::irradiance_cache

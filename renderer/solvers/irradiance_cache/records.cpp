@@ -1,0 +1,119 @@
+#include "solvers/irradiance_cache/records.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/error.h"
+#include "gpu/kernel.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+constexpr uint64_t k_place_bytes = 16 * k_record_texels, k_light_bytes = 16 * k_part_count * k_part_texels;
+
+/// make_basis() of shaders/lib/math.glsl.
+std::array<vec3, 2> basis(const vec3& n) {
+  const float s = n.z >= 0 ? 1.0f : -1.0f, a = -1 / (s + n.z), c = n.x * n.y * a;
+  return {vec3(1 + s * n.x * n.x * a, s * c, -s * n.x), vec3(c, s + n.y * n.y * a, -n.y)};
+}
+
+Record unpack(const vec4* place, const vec4* light) {
+  Record r;
+  r.place = {vec3(place[0]), vec3(place[1])};
+  r.radius = place[0].w;
+  r.mean_distance = place[1].w;
+  r.rays = std::bit_cast<uint32_t>(place[2].x);
+  r.least_distance = place[2].y;
+  const auto flags = std::bit_cast<uint32_t>(place[2].w);
+  r.pass = flags & k_record_pass;
+  r.place.origin = flags >> k_record_origin_shift & 3u;
+  r.error = place[2].z;
+  const auto [t, b] = basis(r.place.normal);
+  for (uint32_t p = 0; p < k_part_count; ++p) {
+    const float* f = &light[p * k_part_texels].x;
+    Irradiance& e = r.parts[p];
+    e.value = vec3(f[0], f[1], f[2]);
+    for (int c = 0; c < 3; ++c) {
+      e.rotation[c] = f[3 + c] * t + f[6 + c] * b;
+      e.translation[c] = f[9 + c] * t + f[12 + c] * b;
+    }
+  }
+  return r;
+}
+
+}  // namespace
+
+uint32_t Records::most_records(const gpu::Device& device) {
+  return static_cast<uint32_t>(
+      std::min<uint64_t>(device.info().limits.max_storage_buffer / k_light_bytes, 1u << 24));
+}
+
+Records::Records(gpu::Device& device, uint32_t capacity) : capacity_(capacity) {
+  if (capacity > most_records(device))
+    throw_error("irradiance cache", "room for {} records asked; this device can bind {}", capacity,
+                most_records(device));
+  records_ = gpu::Buffer(device, {.name = "cache records", .bytes = capacity * k_place_bytes, .texel = true});
+  irradiance_ =
+      gpu::Buffer(device, {.name = "cache irradiance", .bytes = capacity * k_light_bytes, .texel = true});
+  spheres_ = gpu::Buffer(device, {.name = "cache spheres", .bytes = capacity * sizeof(vec4), .texel = true});
+}
+
+uint32_t Records::append(std::span<const Place> places, uint32_t pass) {
+  const auto fitting = static_cast<uint32_t>(std::min<size_t>(places.size(), capacity_ - size_));
+  std::vector<vec4> texels;
+  texels.reserve(size_t{fitting} * k_record_texels);
+  for (const Place& p : places.first(fitting)) {
+    texels.emplace_back(p.position, 0.0f);
+    texels.emplace_back(p.normal, 0.0f);
+    const uint32_t flags = std::min(pass, k_record_pass) | p.origin << k_record_origin_shift;
+    texels.emplace_back(0.0f, 0.0f, 0.0f, std::bit_cast<float>(flags));
+  }
+  records_.write(texels.data(), texels.size() * sizeof(vec4), size_ * k_place_bytes);
+  const std::vector<vec4> dark(size_t{fitting} * k_part_count * k_part_texels, vec4(0));
+  irradiance_.write(dark.data(), dark.size() * sizeof(vec4), size_ * k_light_bytes);
+  size_ += fitting;
+  return fitting;
+}
+
+std::vector<Record> Records::read() const {
+  std::vector<vec4> places(size_t{size_} * k_record_texels),
+      lights(size_t{size_} * k_part_count * k_part_texels);
+  records_.read(places.data(), places.size() * sizeof(vec4));
+  irradiance_.read(lights.data(), lights.size() * sizeof(vec4));
+  std::vector<Record> all;
+  for (uint32_t i = 0; i < size_; ++i)
+    all.push_back(
+        unpack(&places[size_t{i} * k_record_texels], &lights[size_t{i} * k_part_count * k_part_texels]));
+  return all;
+}
+
+Record Records::read(uint32_t index) const {
+  vec4 place[k_record_texels], light[k_part_count * k_part_texels];
+  records_.read(place, sizeof place, index * k_place_bytes);
+  irradiance_.read(light, sizeof light, index * k_light_bytes);
+  return unpack(place, light);
+}
+
+std::vector<vec3> Records::figures() const {
+  std::vector<vec4> places(size_t{size_} * k_record_texels);
+  records_.read(places.data(), places.size() * sizeof(vec4));
+  std::vector<vec3> all;
+  for (uint32_t i = 0; i < size_; ++i) {
+    const vec4* p = &places[size_t{i} * k_record_texels];
+    all.emplace_back(float(std::bit_cast<uint32_t>(p[2].x)), p[1].w, p[2].z);
+  }
+  return all;
+}
+
+void Records::bind(gpu::Resources& resources) const {
+  resources.set("record_texels", records_);
+  resources.set("Records", records_);
+  resources.set("irradiance_texels", irradiance_);
+  resources.set("Irradiance", irradiance_);
+  resources.set("Spheres", spheres_);
+}
+
+}  // namespace lucerna::irradiance_cache

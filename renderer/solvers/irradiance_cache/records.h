@@ -1,0 +1,71 @@
+#pragma once
+// The records of an irradiance cache, in device memory. Layout: shaders/shared/irradiance_cache.h.
+#include <array>
+#include <span>
+#include <vector>
+
+#include "base/math.h"
+#include "gpu/resources.h"
+#include "shaders/shared/irradiance_cache.h"
+
+namespace lucerna::gpu {
+class Resources;
+}
+
+namespace lucerna::irradiance_cache {
+
+/// Where a record is to be: world space; `position` off its surface by the error bound, `normal` unit, on the
+/// side from which light is gathered.
+struct Place {
+  vec3 position{0}, normal{0, 1, 0};
+  uint32_t origin = shared::k_origin_screen;  ///< shared::k_origin_*: what asked for it
+};
+
+/// One part of a record's irradiance, gradients in world space.
+struct Irradiance {
+  vec3 value{0};  ///< rgb; radiance times sr
+  /// Change by channel as the normal n_i turns to n: dot(n_i x n, rotation[channel]).
+  std::array<vec3, 3> rotation{};
+  std::array<vec3, 3> translation{};  ///< by channel [1/m]
+};
+
+/// A record read back.
+struct Record {
+  Place place;
+  float radius = 0;          ///< of validity [m]; 0: none yet
+  float mean_distance = 0;   ///< harmonic mean of what its rays met [m]; infinite where they met nothing
+  float least_distance = 0;  ///< [m]
+  float error = 0;           ///< standard error of the luminance of value, all evaluated parts together
+  uint32_t rays = 0;
+  uint32_t pass = 0;  ///< that placed it
+  std::array<Irradiance, shared::k_part_count> parts;
+};
+
+class Records {
+ public:
+  /// Room for `capacity` records of shared::k_record_bytes. Throws Error when that exceeds what the device
+  /// can bind (most_records()) or its memory.
+  Records(gpu::Device& device, uint32_t capacity);
+  /// The most that one buffer of this device holds.
+  static uint32_t most_records(const gpu::Device& device);
+  uint32_t capacity() const { return capacity_; }
+  uint32_t size() const { return size_; }
+  /// Adds records without light and validity; returns how many found room. `pass`: at most k_record_pass.
+  uint32_t append(std::span<const Place> places, uint32_t pass = 0);
+  /// (position, radius), for the octree.
+  const gpu::Buffer& spheres() const { return spheres_; }
+  void clear() { size_ = 0; }
+  /// All of them, or one; for tests, files and the inspector.
+  std::vector<Record> read() const;
+  Record read(uint32_t index) const;
+  /// What the overlay colours by, of every record: rays, harmonic mean distance, error.
+  std::vector<vec3> figures() const;
+  /// Under the names of shaders/irradiance_cache.
+  void bind(gpu::Resources& resources) const;
+
+ private:
+  uint32_t capacity_ = 0, size_ = 0;
+  gpu::Buffer records_, irradiance_, spheres_;
+};
+
+}  // namespace lucerna::irradiance_cache

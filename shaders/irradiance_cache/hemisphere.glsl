@@ -1,0 +1,17 @@
+// The strata of a record's hemisphere: elevations x azimuths cells of equal probability under the cosine's distribution,
+// in which sin^2 of the angle from the normal is even in 0..1. After J. Krivanek, P. Gautron, S. Pattanaik and
+// K. Bouatouch, "Radiance Caching for Efficient Global Illumination Computation", 2005.
+#ifndef LUCERNA_IRRADIANCE_CACHE_HEMISPHERE
+#define LUCERNA_IRRADIANCE_CACHE_HEMISPHERE
+#include "shaders/shared/irradiance_cache.h"
+#include "lib/math.glsl"
+
+uniform samplerBuffer record_texels;
+layout(scalar) buffer RecordList { uint record_list[]; };
+
+// The rays of one cell of all records of a batch are neighbours: nearly parallel, from records that lie near each other.
+// Cells of one azimuth follow each other.
+uint cell_slot(uint elevation, uint azimuth, uint record) {
+  return (azimuth * push.elevations + elevation) * push.records + record;
+}
+#endif

@@ -1,0 +1,70 @@
+// Irradiance at a point from the records around it (METHODS 3.1): the mean of what each extrapolates by its gradients,
+// with a weight that falls to 0 at the border of its validity (E. Tabellion and A. Lamorlette, 2004), so that no seam
+// shows. LUCERNA_CACHE_PARTS: bit p: part p is read.
+#ifndef LUCERNA_IRRADIANCE_CACHE_LOOKUP
+#define LUCERNA_IRRADIANCE_CACHE_LOOKUP
+#include "shaders/shared/irradiance_cache.h"
+#include "lib/math.glsl"
+#include "lib/octree.glsl"
+
+layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
+uniform samplerBuffer record_texels;
+uniform samplerBuffer irradiance_texels;
+layout(scalar) writeonly buffer Candidates { vec4 candidates[]; };
+
+#if LUCERNA_DIFFUSE_TRANSMISSION
+const int k_cache_sides = 2;
+#else
+const int k_cache_sides = 1;
+#endif
+
+struct Cached {
+  vec3 part[k_part_count];
+  float weight;  // 0: no record serves here
+};
+
+// Weight of a record, 0..1, at a point with that geometric normal.
+float record_weight(vec3 x, vec3 n, vec4 place, vec4 facing) {
+  vec3 away = x - place.xyz;
+  float far = length(away) / place.w;
+  float turned = sqrt(max(0.0, 1.0 - dot(n, facing.xyz)) / cache.normal_tolerance);
+  bool before = dot(away, n + facing.xyz) >= -2.0 * cache.behind * place.w;
+  return place.w > 0.0 && before ? max(0.0, 1.0 - max(far, turned)) : 0.0;
+}
+
+// Whether a record at a point with that geometric normal could serve that shading normal.
+bool cache_can_serve(vec3 n, vec3 shading) { return 1.0 - dot(n, shading) <= cache.normal_tolerance; }
+
+// `n`: geometric, on the side whose light is asked for; `shading`: the normal that the light falls on. They may differ by
+// what the gradient of rotation can bridge; beyond that nothing is served. `asks` false: an empty answer, without work.
+Cached cache_lookup(vec3 x, vec3 n, vec3 shading, bool asks) {
+  Cached found;
+  for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
+  found.weight = 0.0;
+  OctreeRange range = octree_find(x);
+  uint last = asks && cache.record_count > 0u && cache_can_serve(n, shading) ? range.last : range.first;
+  for (uint i = range.first; i < last; ++i) {
+    uint record = octree_sphere(i);
+    int at = int(record * k_record_texels);
+    vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
+    float weight = record_weight(x, n, place, facing);
+    vec3 tangent, bitangent;
+    make_basis(facing.xyz, tangent, bitangent);
+    vec3 turn = cross(facing.xyz, shading), away = x - place.xyz;
+    vec2 r = vec2(dot(turn, tangent), dot(turn, bitangent)), t = vec2(dot(away, tangent), dot(away, bitangent));
+    for (uint p = 0u; p < k_part_count; ++p) {
+      if ((uint(LUCERNA_CACHE_PARTS) >> p & 1u) == 0u) continue;
+      int from = int((record * k_part_count + p) * k_part_texels);
+      vec4 a = texelFetch(irradiance_texels, from), b = texelFetch(irradiance_texels, from + 1);
+      vec4 c = texelFetch(irradiance_texels, from + 2), d = texelFetch(irradiance_texels, from + 3);
+      // Not below 0; and no further up than down, because a limit on one side would make light of noisy gradients.
+      vec3 change = r.x * vec3(a.a, b.xy) + r.y * vec3(b.zw, c.x) + t.x * c.yzw + t.y * d.xyz;
+      found.part[p] += weight > 0.0 ? weight * (a.rgb + clamp(change, -a.rgb, a.rgb)) : vec3(0.0);
+    }
+    found.weight += weight;
+  }
+  if (found.weight > 0.0)
+    for (uint p = 0u; p < k_part_count; ++p) found.part[p] /= found.weight;
+  return found;
+}
+#endif

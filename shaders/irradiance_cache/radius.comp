@@ -1,0 +1,25 @@
+// The radius within which a record serves: error bound times the harmonic mean of what its rays met (Ward 1988), at
+// least some pixels wide as the camera sees it, and no wider than the nearest thing that a ray met, so that nothing stands
+// between a record and a point that it serves.
+#include "shaders/shared/irradiance_cache.h"
+#include "lib/frame.glsl"
+#include "lib/invocation.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { RadiusPush push; };
+uniform samplerBuffer record_texels;
+layout(scalar) writeonly buffer Records { vec4 records[]; };
+layout(scalar) writeonly buffer Spheres { vec4 spheres[]; };  // of the octree
+
+void main() {
+  uint index = global_index();
+  if (index >= push.count) return;
+  int at = int((push.first + index) * k_record_texels);
+  vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
+  float nearest = texelFetch(record_texels, at + 2).y;
+  float seen = frame.orthographic != 0u ? 1.0 : distance(place.xyz, frame.camera_origin);
+  float pixel = 2.0 * seen * length(frame.camera_up) / float(frame.height);
+  float least = min(push.least_pixels * pixel, push.most);
+  float radius = max(min(push.error * facing.w, min(push.most, nearest)), least);
+  records[at].w = radius;
+  spheres[push.first + index] = vec4(place.xyz, radius);
+}

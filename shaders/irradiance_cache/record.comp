@@ -1,0 +1,49 @@
+// Source `record`: a path for each cell of the hemispheres of a batch of records. They begin in the state after ED, so
+// that the components of what they gather are the parts of the irradiance. Density cos/pi per solid angle, whose
+// weight 1/pdf the sum's pi/(MN) stands for: throughput 1. What the first ray meets gets the full weight (pdf 0), because
+// no light sample competes with it here.
+#define LUCERNA_PUSH RecordPush
+#include "shaders/shared/irradiance_cache.h"
+#include "lib/wavefront.glsl"
+#include "lib/sampler.glsl"
+#include "irradiance_cache/hemisphere.glsl"
+
+void main() {
+  uint slot = global_index();
+  uint cells = push.elevations * push.azimuths;
+  if (slot >= push.records * cells) return;
+  uint cell = slot / push.records;
+  uint elevation = cell % push.elevations, azimuth = cell / push.elevations;
+  uint record = record_list[push.first + slot % push.records];
+  vec4 place = texelFetch(record_texels, int(record * k_record_texels));
+  vec3 normal = texelFetch(record_texels, int(record * k_record_texels + 1u)).xyz;
+  // Jitter inside the cell by hashing alone: a low-discrepancy sequence would correlate with the cells' order.
+  uint sample_index = push.rays_before + cell;
+  uint key = hash_combine(hash_combine(hash_mix(push.seed + 0x2c1b3c6du), record), sample_index);
+  vec2 jitter = to_unit(uvec2(key, hash_mix(key ^ 0x9e3779b9u)));
+  // The cosine from what is missing to 1, so that it is never 0.
+  float sine = sqrt((float(elevation) + jitter.x) / float(push.elevations));
+  float cosine = sqrt((float(push.elevations - elevation) - jitter.x) / float(push.elevations));
+  float phi = 2.0 * k_pi * (float(azimuth) + jitter.y) / float(push.azimuths);
+  vec3 tangent, bitangent;
+  make_basis(normal, tangent, bitangent);
+  Ray ray;
+  ray.origin = place.xyz;
+  ray.tmax = k_infinity;
+  ray.direction = normalize(sine * (cos(phi) * tangent + sin(phi) * bitangent) + cosine * normal);
+  ray.slot = slot;
+  rays[slot] = ray;
+  PathState p;
+  p.throughput = vec3(1.0);
+  p.pdf = 0.0;
+  p.pixel = 0x80000000u | record;  // sequences apart from the pixels'
+  p.sample_index = sample_index;
+  p.bits = push.state | 1u << 8;
+  p.medium = 0u;
+  p.travelled = 0.0;
+  p.eta_scale = 1.0;
+  p.pad0 = 0.0;
+  p.pad1 = 0.0;
+  paths[slot] = p;
+  for (uint c = 0u; c < k_component_count; ++c) radiance[slot * k_component_count + c].rgb = vec3(0.0);
+}

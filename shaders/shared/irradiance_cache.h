@@ -1,0 +1,90 @@
+// The records of an irradiance cache. Read by C++ and GLSL.
+//
+// A record holds the irradiance of a point on a surface in parts, so that components stay apart wherever it is read. The
+// parts carry the numbers of the components that a path beginning with ED would bring them to: light that comes from the
+// hemisphere straight, over one diffuse event, over more, or over mirrors and glass alone.
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_H
+#include "shaders/shared/compat.h"
+LUCERNA_SHARED_BEGIN
+
+LUCERNA_CONST uint k_part_direct = 0u;     ///< L: in a cache, the environment's alone (E_env)
+LUCERNA_CONST uint k_part_secondary = 1u;  ///< [SG]*DL
+LUCERNA_CONST uint k_part_tertiary = 2u;   ///< the rest
+LUCERNA_CONST uint k_part_caustic = 3u;    ///< [SG]+L
+LUCERNA_CONST uint k_part_count = 4u;
+
+// record_texels: k_record_texels a record.
+//   0: position xyz [m], moved off its surface by the error bound; radius of validity [m], 0: none yet
+//   1: normal xyz, unit, on the side that is lit; harmonic mean of the distances that its rays met [m]
+//   2: bits rays so far, least distance [m], standard error of the luminance of all parts' sum (irradiance), bits k_record_*
+LUCERNA_CONST uint k_record_texels = 3u;
+LUCERNA_CONST uint k_record_pass = 0xffu;       ///< mask: the pass that placed it, from 0
+LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: what asked for it, k_origin_*
+LUCERNA_CONST uint k_origin_screen = 0u;        ///< a surface that the camera sees straight
+LUCERNA_CONST uint k_origin_world = 1u;         ///< a vertex of a longer path
+
+// irradiance_texels: k_part_texels for each (record, part), record by record: 16 floats, of which 15 are used:
+//   irradiance rgb; rotational gradient rgb along the tangent, then along the bitangent; translational likewise [1/m].
+// Tangent and bitangent are make_basis() of the normal. Rotational gradient: change of the irradiance as the normal n_i
+// turns to n, by the components of n_i x n.
+LUCERNA_CONST uint k_part_texels = 4u;
+
+/// Bytes that a record takes with its sphere; the octree's references come to that.
+LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + k_part_count * k_part_texels + 1u);
+
+// candidate_texels: 2 a path slot, all 0 where there is none:
+//   0: position, off its surface; 1 where there is one    1: normal on the side that asks; k_origin_*
+LUCERNA_CONST uint k_candidate_texels = 2u;
+
+LUCERNA_CONST uint k_no_routes = 0xffffu;
+
+/// What paths are told of the cache.
+struct CacheFrame {
+  /// By state of the automaton, for the diffuse lobe of a vertex met in it: bits 4 p on: the component to which part p
+  /// goes; k_component_count: none. k_no_routes: no lookup there.
+  uint routes[16];
+  uint record_count;
+  /// Most that the normals of a point and of a record may differ, as 1 - cos.
+  float normal_tolerance;
+  /// How far below a record's tangent plane, in its radius, a point may lie and still be served.
+  float behind;
+  uint probing;        ///< 1: vertices that no record serves are noted as candidates
+};
+
+/// One level of evaluation of `records` records: entries `first` on of record_list, elevations x azimuths paths each.
+struct RecordPush {
+  uint first, records;
+  uint elevations, azimuths;
+  uint rays_before;  ///< that each of them has had
+  uint parts;        ///< bit p: part p is wanted
+  uint state;        ///< of the automaton after ED
+  uint seed;
+};
+
+struct RadiusPush {
+  uint first, count;   ///< records
+  float error;         ///< radius over harmonic mean distance
+  float least_pixels;  ///< as the camera sees them
+  float most;          ///< [m]
+};
+
+// What the overlay colours records by.
+LUCERNA_CONST uint k_record_by_pass = 0u;
+LUCERNA_CONST uint k_record_by_origin = 1u;
+LUCERNA_CONST uint k_record_by_rays = 2u;
+LUCERNA_CONST uint k_record_by_distance = 3u;
+LUCERNA_CONST uint k_record_by_error = 4u;
+struct OverlayPush {
+  uint width, height;
+  uint discs, overlap;  ///< not 0: drawn
+  uint color;           ///< k_record_by_*
+  float lo, hi;         ///< of the value, logarithmic; 0 < lo < hi
+  float overlap_most;   ///< records at the upper end of the heat map
+};
+
+LUCERNA_SHARED_END
+#ifdef __cplusplus
+static_assert(lucerna::shared::k_record_bytes == 320 && sizeof(lucerna::shared::RecordPush) == 32);
+#endif
+#endif

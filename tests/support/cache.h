@@ -1,0 +1,57 @@
+#pragma once
+// Records of an irradiance cache in a scene of scenes/, evaluated through the wavefront.
+#include <memory>
+#include <numeric>
+#include <string>
+
+#include "bvh/embree/build.h"
+#include "gpu/kernel.h"
+#include "scene/io/load.h"
+#include "solvers/irradiance_cache/evaluate.h"
+#include "transport/frame.h"
+#include "upload/device_scene.h"
+
+namespace lucerna::test {
+
+class CacheBed {
+ public:
+  explicit CacheBed(const scene::Scene& scene, uint32_t slots = 65536)
+      : device({"cpu", true}),
+        compiler(gpu::ShaderCompiler::default_root()),
+        automaton(paths::compile_components()),
+        flat(upload::flatten(scene)),
+        device_scene(device, flat, bvh::build({flat.positions, flat.non_opaque})),
+        wavefront(device, compiler, device_scene, slots, {}),
+        evaluator(device, compiler, wavefront, device_scene.defines()) {}
+  static scene::Scene load(const std::string& name) {
+    return scene::load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf");
+  }
+
+  /// `enabled`: components that the records' paths may bring.
+  void set_frame(uint32_t enabled, transport::FrameOptions options = {}) {
+    options.enabled = enabled;
+    wavefront.set_frame(transport::make_frame(flat, {}, automaton, options), enabled);
+  }
+  std::vector<irradiance_cache::Record> evaluate(const std::vector<irradiance_cache::Place>& places,
+                                                 const irradiance_cache::EvaluateOptions& options) {
+    irradiance_cache::Records records(device, static_cast<uint32_t>(places.size()));
+    records.append(places);
+    evaluate(records, options);
+    return records.read();
+  }
+  void evaluate(irradiance_cache::Records& records, const irradiance_cache::EvaluateOptions& options) {
+    std::vector<uint32_t> all(records.size());
+    std::iota(all.begin(), all.end(), 0u);
+    evaluator.evaluate(wavefront, automaton, records, all, options);
+  }
+
+  gpu::Device device;
+  gpu::ShaderCompiler compiler;
+  paths::Automaton automaton;
+  upload::FlatScene flat;
+  upload::DeviceScene device_scene;
+  transport::Wavefront wavefront;
+  irradiance_cache::Evaluator evaluator;
+};
+
+}  // namespace lucerna::test
