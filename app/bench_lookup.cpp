@@ -23,6 +23,7 @@ struct Way {
   bool single;
   float size;      ///< leaves against the mean diameter; single: cells against the largest diameter
   int neighbours;  ///< LUCERNA_NEIGHBOURS
+  bool copies = false;
 };
 
 struct Row {
@@ -77,6 +78,14 @@ std::vector<vec4> make_spheres(const Hall& hall, const std::string& kind, uint32
   return spheres;
 }
 
+/// Leaves are powers of two. So that the grid's cells need not be larger than they must, everything is scaled
+/// until the largest sphere's diameter is just under one.
+float scale_for(const std::vector<vec4>& spheres) {
+  float largest = 0;
+  for (const vec4& s : spheres) largest = std::max(largest, 2 * s.w);
+  return 0.9999f * std::exp2(std::ceil(std::log2(largest))) / largest;
+}
+
 class Bench {
  public:
   Bench(gpu::Device& device, const BenchLookupArguments& a) : device_(device), stream_(device), a_(a) {}
@@ -84,12 +93,14 @@ class Bench {
   void run(const std::string& kind, uint32_t n) {
     std::mt19937 random(a_.seed);
     const Hall hall(random);
-    const std::vector<vec4> list = make_spheres(hall, kind, n, random);
+    std::vector<vec4> list = make_spheres(hall, kind, n, random);
+    const float unit = scale_for(list);
+    for (vec4& s : list) s *= unit;
     gpu::Buffer spheres = texels(n * sizeof(vec4)), points = texels(a_.queries * sizeof(vec4)),
                 found = texels(a_.queries * sizeof(uvec4));
     spheres.write(std::span<const vec4>(list));
     std::vector<vec4> where(a_.queries);
-    for (vec4& p : where) p = vec4(hall.point(random), 0);
+    for (vec4& p : where) p = vec4(unit * hall.point(random), 0);
     points.write(std::span<const vec4>(where));
     float largest = 0, mean = 0;
     for (const vec4& s : list) largest = std::max(largest, s.w), mean += s.w / float(n);
@@ -101,15 +112,18 @@ class Bench {
       const float scale = way.single ? 1.9999f * way.size * largest / mean : way.size;
       lookup::Octree octree(device_, compiler_,
                             {.spheres = n,
-                             .references = way.single ? n : std::max(64 * n, 1u << 20),
+                             .references = std::min(way.single ? n : std::max(64 * n, 1u << 20),
+                                                    lookup::Octree::most_references(device_)),
                              .leaf_scale = scale,
+                             .copies = way.copies,
                              .single_reference = way.single});
       Row row{.spheres_kind = kind, .way = way.name, .spheres = n};
       row.build = take_turns({{{}, [&] { octree.build(stream_, spheres, {.most = n}); }}}, a_.repeats)[0];
       row.header = octree.header();
       row.bytes = octree.bytes();
       const gpu::Kernel gather(device_, compiler_, "bench/gather.comp",
-                               {{"LUCERNA_NEIGHBOURS", std::to_string(way.neighbours)}});
+                               {{"LUCERNA_NEIGHBOURS", std::to_string(way.neighbours)},
+                                {"LUCERNA_COPIES", way.copies ? "1" : "0"}});
       gpu::Resources r;
       octree.bind(r);
       r.set("spheres", spheres);
@@ -163,6 +177,7 @@ class Bench {
     return {{"octree", false, 1, 0},
             {"octree, leaves twice", false, 2, 0},
             {"octree, leaves half", false, 0.5f, 0},
+            {"octree, spheres copied", false, 1, 0, true},
             {"grid, 27 cells >= diameter", true, 1, 27},
             {"grid, 27 cells >= radius", true, 0.5f, 27},
             {"grid, 8 cells >= diameter", true, 1, 8}};

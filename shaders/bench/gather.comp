@@ -14,6 +14,11 @@ layout(scalar) writeonly buffer Found { uvec4 found[]; };
 #define LUCERNA_NEIGHBOURS 0
 #endif
 
+void take(uint sphere, inout uint n, inout uint sum) {
+  n++;
+  sum += (sphere + 1u) * 2654435761u;
+}
+
 void main() {
   uint index = global_index();
   if (index >= count) return;
@@ -37,14 +42,21 @@ void main() {
     OctreeRange range = octree_find(x);
 #endif
     listed += range.last - range.first;
+#if LUCERNA_COPIES
     for (uint i = range.first; i < range.last; ++i) {
-      uint sphere = octree_sphere(i);
-      vec4 s = texelFetch(spheres, int(sphere));
+      vec4 s = octree_copy(i);
       vec3 d = x - s.xyz;
-      bool within = dot(d, d) <= s.w * s.w;
-      n += within ? 1u : 0u;
-      sum += within ? (sphere + 1u) * 2654435761u : 0u;
+      if (dot(d, d) <= s.w * s.w) take(octree_sphere(i), n, sum);
     }
+#else
+    for (uint i = range.first & ~1u; i < range.last; i += 2u) {
+      uvec2 two = octree_two_spheres(i);
+      vec4 a = texelFetch(spheres, int(two.x)), b = texelFetch(spheres, int(two.y));
+      vec3 da = x - a.xyz, db = x - b.xyz;
+      if (i >= range.first && dot(da, da) <= a.w * a.w) take(two.x, n, sum);
+      if (i + 1u < range.last && dot(db, db) <= b.w * b.w) take(two.y, n, sum);
+    }
+#endif
 #if LUCERNA_NEIGHBOURS
   }
 #endif

@@ -6,6 +6,16 @@
 //     ...                                             // test the distance here
 //   }
 //
+// A texel holds two references, so that two a step are faster:
+//
+//   for (uint i = range.first & ~1u; i < range.last; i += 2u) {
+//     uvec2 two = octree_two_spheres(i);               // two.x if i >= range.first, two.y if i + 1 < range.last
+//
+// Where the octree was built with copies, octree_copy(i) is the sphere itself, (centre, radius): twice as fast as to fetch
+// it by its index, because copies lie in the order in which they are read.
+//
+// On lavapipe all loops of an invocation together end, silently, after 65535 iterations.
+//
 // Contract: every sphere (c, r) with dot(x - c, x - c) <= r * r, in float as written here or exactly, is in the range,
 // once; others may be. The order is that of the spheres' indices. Points outside the root have an empty range.
 //
@@ -17,6 +27,7 @@
 layout(scalar) readonly buffer OctreeHeaders { OctreeHeader octree; };
 uniform usamplerBuffer octree_slots;        // code, first, last, 0
 uniform usamplerBuffer octree_references;   // (code, sphere) pairs, two a texel
+uniform samplerBuffer octree_copies;        // centre, radius; in the order of the references
 
 struct OctreeRange { uint first, last; };
 
@@ -56,6 +67,8 @@ OctreeRange octree_find(vec3 x) {
   return OctreeRange(range.first, inside ? range.last : range.first);
 }
 
+uvec2 octree_two_spheres(uint even_reference) { return texelFetch(octree_references, int(even_reference >> 1)).yw; }
+vec4 octree_copy(uint reference) { return texelFetch(octree_copies, int(reference)); }
 uint octree_sphere(uint reference) {
   uvec4 two = texelFetch(octree_references, int(reference >> 1));
   return (reference & 1u) != 0u ? two.w : two.y;

@@ -8,11 +8,12 @@ void main() {
   if (i >= sphere_count()) return;
   vec4 s = texelFetch(spheres, int(i));
   SphereCells c = sphere_cells(s);
-  uint count = usable(s) ? cell_count(c) : 0u, found = 0u;
-  ivec3 cell = c.first;
-  for (uint k = 0u; k < count; ++k) {
-    found += overlaps(c, cell) ? 1u : 0u;
-    cell = next_cell(c, cell);
+  uint rows = usable(s) ? row_count(c) : 0u, found = 0u;
+  ivec2 row = c.first.yz;
+  for (uint k = 0u; k < rows; ++k) {
+    ivec2 cells = row_cells(c, row);
+    found += uint(max(cells.y - cells.x + 1, 0));
+    row = next_row(c, row);
   }
   sphere_references[i] = found;
 }

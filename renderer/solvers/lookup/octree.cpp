@@ -19,6 +19,9 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
       groups_(runs_for(device) / group_for(device)),
       prefix_sum_(device, compiler),
       sorter_(device, compiler, sort::Keys::bits32) {
+  const uint32_t most = most_references(device);
+  if (options.references > most)
+    throw_error("octree", "{} references; buffers hold {} here", options.references, most);
   const uint64_t runs = runs_for(device);
   const gpu::Defines defines{{"LUCERNA_OCTREE_GROUP", std::to_string(group_for(device)) + "u"},
                              {"LUCERNA_OCTREE_WANTED", std::to_string(wanted_for(device)) + "u"},
@@ -27,7 +30,7 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
   const std::pair<gpu::Kernel*, const char*> kernels[] = {
       {&bounds_, "bounds"}, {&grid_, "grid"},     {&levels_, "levels"}, {&choose_, "choose"},
       {&count_, "count"},   {&write_, "write"},   {&heads_, "heads"},   {&leaves_, "leaves"},
-      {&clear_, "clear"},   {&insert_, "insert"}, {&expand_, "expand"}};
+      {&clear_, "clear"},   {&insert_, "insert"}, {&expand_, "expand"}, {&copy_, "copy"}};
   for (const auto& [kernel, name] : kernels)
     *kernel = gpu::Kernel(device, compiler, std::string("lookup/") + name + ".comp", defines);
 
@@ -44,6 +47,7 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
   for (gpu::Buffer& pairs : pairs_) pairs = buffer("references", references * sizeof(shared::SortPair));
   slot_leaves_ = buffer("leaves of slots", slots * sizeof(uint32_t));
   slots_ = buffer("slots", slots * sizeof(uvec4));
+  copies_ = buffer("copies", options.copies ? references * sizeof(vec4) : 0);
   unused_ = buffer("unused count", sizeof(uint32_t));
   references_ = &pairs_[0];
   // Until something is built: no cells, and a table of which every slot is free.
@@ -71,6 +75,7 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
   r.set("SlotLeaves", slot_leaves_);
   r.set("slot_leaf_texels", slot_leaves_);
   r.set("Slots", slots_);
+  r.set("Copies", copies_);
   const shared::OctreePush push{
       count.most, count.buffer ? uint32_t(count.offset / 4) : shared::k_sort_count_here,
       std::max(options_.references, 1u), uint32_t(slots_.bytes() / sizeof(uvec4)), options_.leaf_scale};
@@ -105,6 +110,7 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
   run(clear_, groups_);
   run(insert_, groups_);
   run(expand_, groups_);
+  if (options_.copies) run(copy_, groups_);
   stream.run();
   header_buffer_.read(&header_, sizeof(header_));
   header_.references = std::min(header_.references, header_.capacity);
@@ -115,12 +121,19 @@ void Octree::bind(gpu::Resources& resources) const {
   resources.set("OctreeHeaders", header_buffer_);
   resources.set("octree_slots", slots_);
   resources.set("octree_references", *references_);
+  resources.set("octree_copies", copies_);
+}
+
+uint32_t Octree::most_references(const gpu::Device& device) {
+  // The largest buffer is that of the slots: a power of two, more than there are references.
+  const uint64_t slots = std::bit_floor(device.info().limits.max_storage_buffer / sizeof(uvec4));
+  return uint32_t(std::min<uint64_t>(slots, 1u << 27) - 1);
 }
 
 uint64_t Octree::bytes() const {
   uint64_t sum = 0;
   for (const gpu::Buffer* b : {&header_buffer_, &run_bounds_, &run_needs_, &run_leaves_, &sphere_references_,
-                               &pairs_[0], &pairs_[1], &slot_leaves_, &slots_})
+                               &pairs_[0], &pairs_[1], &slot_leaves_, &slots_, &copies_})
     sum += b->bytes();
   return sum;
 }

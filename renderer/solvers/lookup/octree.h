@@ -20,6 +20,8 @@ struct OctreeOptions {
   /// Leaves are no larger than this times the mean diameter of the spheres (and larger than half of that, the
   /// level permitting). Changes speed and memory, never a result.
   float leaf_scale = 1;
+  /// Keep copies of the spheres in the order of the lists (16 bytes a reference), for octree_copy().
+  bool copies = false;
   /// Each sphere is listed once, in the leaf of its centre: the plain grid that the bench compares with.
   /// Queries must then visit the neighbours.
   bool single_reference = false;
@@ -27,7 +29,7 @@ struct OctreeOptions {
 
 class Octree {
  public:
-  /// Throws Error when the device cannot hold it.
+  /// Throws Error when the device cannot hold it, naming the most references that it can.
   Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeOptions& options);
 
   /// Builds it from `spheres`, a texel buffer of (centre, radius) in metres. Spheres whose radius is
@@ -48,14 +50,18 @@ class Octree {
   void bind(gpu::Resources& resources) const;
   uint64_t bytes() const;  ///< device memory
 
+  /// What fits into the storage buffers of a device; on lavapipe 8 388 607.
+  static uint32_t most_references(const gpu::Device& device);
+
  private:
   OctreeOptions options_;
   uint32_t groups_;
   sort::PrefixSum prefix_sum_;
   sort::RadixSort sorter_;
-  gpu::Kernel bounds_, grid_, levels_, choose_, count_, write_, heads_, leaves_, clear_, insert_, expand_;
+  gpu::Kernel bounds_, grid_, levels_, choose_, count_, write_, heads_, leaves_, clear_, insert_, expand_,
+      copy_;
   gpu::Buffer header_buffer_, run_bounds_, run_needs_, run_leaves_, sphere_references_, unused_;
-  gpu::Buffer pairs_[2], slot_leaves_, slots_;
+  gpu::Buffer pairs_[2], slot_leaves_, slots_, copies_;
   const gpu::Buffer* references_ = nullptr;  ///< one of pairs_
   shared::OctreeHeader header_{};
 };

@@ -17,7 +17,11 @@ void main() {
   uint n = 0u, sum = 0u, unordered = 0u, previous = 0u;
   for (uint i = range.first; i < range.last; ++i) {
     uint sphere = octree_sphere(i);
+#if LUCERNA_COPIES
+    vec4 s = octree_copy(i);
+#else
     vec4 s = texelFetch(spheres, int(sphere));
+#endif
     precise vec3 d = x - s.xyz, dd = d * d;
     precise float square = dd.x + dd.y, all = square + dd.z, limit = s.w * s.w;
     bool inside = all <= limit && s.w >= 0.0;

@@ -1,0 +1,58 @@
+// links: base
+// The benches of single building blocks: what `lucerna bench sort` and `bench lookup` print and write.
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "support/run.h"
+
+namespace fs = std::filesystem;
+using lucerna::test::Run;
+using lucerna::test::run;
+
+namespace {
+
+struct File {
+  std::string path =
+      (fs::temp_directory_path() / ("lucerna-bench-" + std::to_string(getpid()) + ".json")).string();
+  ~File() { fs::remove(path); }
+  std::string text() const {
+    std::stringstream all;
+    all << std::ifstream(path).rdbuf();
+    return all.str();
+  }
+};
+
+void check_parts(const std::string& text, std::initializer_list<const char*> parts) {
+  for (const char* part : parts) {
+    INFO(part << " in\n" << text);
+    CHECK(text.find(part) != std::string::npos);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the bench of sorts tells rates and factors, and writes them") {
+  const File file;
+  const Run r = run("bench sort --sizes 1000 3 --repeats 5 --json " + file.path);
+  CHECK(r.status == 0);
+  check_parts(r.out, {"prefix sum", "std::exclusive_scan", "std::stable_sort", "sort, 24 of 32 bits",
+                      "sort, 64 of 64 bits", "factor 1.00"});
+  check_parts(file.text(), {"\"elements_per_s\"", "\"median\"", "\"size\": 1000", "\"size\": 3"});
+  CHECK(run("bench sort --sizes 0").status == 1);
+  CHECK(run("bench sort --repeats 4").status == 1);
+  CHECK(run("bench sort --sizes 10 --json /no/such/folder/x.json").status == 1);
+}
+
+TEST_CASE("the bench of lookups finds the same spheres every way, and writes what it took") {
+  const File file;
+  const Run r = run("bench lookup --sizes 300 --queries 2000 --repeats 1 --json " + file.path);
+  INFO(r.out);
+  CHECK(r.status == 0);
+  check_parts(r.out, {"300 photons", "300 records", "octree", "27 cells", "references a sphere"});
+  check_parts(file.text(), {"\"queries_per_s\"", "\"references_per_sphere\"", "\"found_per_query\""});
+  CHECK(run("bench lookup --sizes 0").status == 1);
+}
