@@ -6,6 +6,7 @@
 #include "shaders/shared/irradiance_cache.h"
 #include "lib/math.glsl"
 #include "lib/octree.glsl"
+#include "irradiance_cache/facet.glsl"
 
 layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
 uniform samplerBuffer record_texels;

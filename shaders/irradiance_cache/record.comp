@@ -7,6 +7,7 @@
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
 #include "irradiance_cache/hemisphere.glsl"
+#include "irradiance_cache/facet.glsl"
 
 void main() {
   uint slot = global_index();
@@ -29,12 +30,15 @@ void main() {
   make_basis(normal, tangent, bitangent);
   Ray ray;
   ray.origin = place.xyz;
-  ray.tmax = k_infinity;
   ray.direction = normalize(sine * (cos(phi) * tangent + sin(phi) * bitangent) + cosine * normal);
+  // Below the facet there is no light, and the facet itself is not what the record sees: as path tracing has it.
+  uint flags = floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 2u)).w);
+  bool above = dot(ray.direction, facet_unpack(flags >> k_record_facet_shift)) > 0.0;
+  ray.tmax = above ? k_infinity : -1.0;
   ray.slot = slot;
   rays[slot] = ray;
   PathState p;
-  p.throughput = vec3(1.0);
+  p.throughput = vec3(above ? 1.0 : 0.0);
   p.pdf = 0.0;
   p.pixel = 0x80000000u | record;  // sequences apart from the pixels'
   p.sample_index = sample_index;

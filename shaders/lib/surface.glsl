@@ -23,6 +23,7 @@ struct Surface {
   vec3 offset;       // |position - true position| is below this, componentwise; for robust ray origins
   vec3 normal_g;     // geometric, unit, front side (counter-clockwise; flipped instances mirrored)
   vec3 normal_s;     // shading, unit, on the front side's hemisphere
+  vec3 normal_v;     // as normal_s, without the normal map
   bool front;        // the ray came from the front
   uint material;
   uint flags;
@@ -86,6 +87,7 @@ Surface make_surface(Ray ray, Hit hit) {
   s.front = dot(s.normal_g, ray.direction) < 0.0;
   vec3 n = w * b0.xyz + uv.x * b1.xyz + uv.y * b2.xyz;
   s.normal_s = dot(n, n) > 1e-12 ? normalize(n) : s.normal_g;
+  s.normal_v = s.normal_s;
   s.uv0 = w * vec2(a0.w, b0.w) + uv.x * vec2(a1.w, b1.w) + uv.y * vec2(a2.w, b2.w);
   vec2 uv1 = vec2(0.0);
   s.material = tri.w & k_triangle_material_mask;

@@ -21,6 +21,7 @@ LUCERNA_CONST uint k_part_count = 4u;
 LUCERNA_CONST uint k_record_texels = 3u;
 LUCERNA_CONST uint k_record_pass = 0xffu;       ///< mask: the pass that placed it, from 0
 LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: what asked for it, k_origin_*
+LUCERNA_CONST uint k_record_facet_shift = 10u;  ///< 11 + 11 bits: the geometric normal, octahedral (Cigolle et al. 2014)
 LUCERNA_CONST uint k_origin_screen = 0u;        ///< a surface that the camera sees straight
 LUCERNA_CONST uint k_origin_world = 1u;         ///< a vertex of a longer path
 
@@ -34,8 +35,10 @@ LUCERNA_CONST uint k_part_texels = 4u;
 LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + k_part_count * k_part_texels + 1u);
 
 // candidate_texels: 2 a path slot, all 0 where there is none:
-//   0: position, off its surface; 1 where there is one    1: normal on the side that asks; k_origin_*
+//   0: position, off its surface; 1 + k_origin_* where there is one    1: smooth normal on the side that asks, bits facet
 LUCERNA_CONST uint k_candidate_texels = 2u;
+
+LUCERNA_CONST uint k_facet_steps = 2047u;  // of the octahedral map along an axis, -1 to 1
 
 LUCERNA_CONST uint k_no_routes = 0xffffu;
 

@@ -168,15 +168,17 @@ void main() {
         uint routes = cache.routes[state];
         bool looks = routes != k_no_routes && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
         cached_everywhere = looks;
+        // Records stand on the smooth surface, not on its facets nor its normal map.
+        vec3 smooth_side = dot(surface.normal_v, side) < 0.0 ? -surface.normal_v : surface.normal_v;
         for (int facing = 0; facing < k_cache_sides; ++facing) {
           vec3 albedo = path.throughput * (facing == 0 ? bsdf.diffuse_albedo : bsdf.transmitted_albedo) * k_inv_pi;
           bool asks = looks && max3(albedo) > 0.0;
           float sign = facing == 0 ? 1.0 : -1.0;
-          Cached found = cache_lookup(surface.position, sign * side, sign * to_world[2], asks);
+          Cached found = cache_lookup(surface.position, sign * smooth_side, sign * to_world[2], asks);
           bool missing = asks && found.weight <= 0.0;
-          if (missing && cache.probing != 0u && cache_can_serve(sign * side, sign * to_world[2])) {
-            candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), 1.0);
-            candidates[slot * k_candidate_texels + 1u] = vec4(sign * side, depth == 0u ? float(k_origin_screen) : float(k_origin_world));
+          if (missing && cache.probing != 0u && cache_can_serve(sign * smooth_side, sign * to_world[2])) {
+            candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), 1.0 + float(depth == 0u ? k_origin_screen : k_origin_world));
+            candidates[slot * k_candidate_texels + 1u] = vec4(sign * smooth_side, uintBitsToFloat(facet_pack(sign * side)));
           }
           cached_everywhere = cached_everywhere && !missing;
           for (uint p = 0u; p < k_part_count; ++p)

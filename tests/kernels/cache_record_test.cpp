@@ -150,7 +150,7 @@ TEST_CASE("the parts of a record are the components of a path that came by one d
   }
   // Two levels weigh by their rays.
   irradiance_cache::Records records(bed.device, 64);
-  records.append(places);
+  records.append(test::CacheBed::on_facets(places));
   bed.evaluate(records, {.elevations = 8, .azimuths = 32, .parts = k_beyond});
   const auto coarse = records.read();
   bed.evaluate(records, {.elevations = 16, .azimuths = 64, .rays_before = 256, .parts = k_beyond});
@@ -163,7 +163,7 @@ TEST_CASE("the parts of a record are the components of a path that came by one d
   CHECK(both[0].least_distance <= coarse[0].least_distance);
   // Batches are only a way to cut work: one record alone is bit for bit the one among many.
   irradiance_cache::Records again(bed.device, 64);
-  again.append(places);
+  again.append(test::CacheBed::on_facets(places));
   for (const uint32_t i : {63u, 0u, 17u}) {
     const std::vector<uint32_t> one{i};
     CHECK(bed.evaluator.evaluate(bed.wavefront, bed.automaton, again, one,

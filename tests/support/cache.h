@@ -27,6 +27,12 @@ class CacheBed {
     return scene::load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf");
   }
 
+  /// The same, on surfaces that face as they do.
+  static std::vector<irradiance_cache::Place> on_facets(std::vector<irradiance_cache::Place> places) {
+    for (irradiance_cache::Place& p : places) p.facet = irradiance_cache::pack_facet(p.normal);
+    return places;
+  }
+
   /// `enabled`: components that the records' paths may bring.
   void set_frame(uint32_t enabled, transport::FrameOptions options = {}) {
     options.enabled = enabled;
@@ -35,7 +41,7 @@ class CacheBed {
   std::vector<irradiance_cache::Record> evaluate(const std::vector<irradiance_cache::Place>& places,
                                                  const irradiance_cache::EvaluateOptions& options) {
     irradiance_cache::Records records(device, static_cast<uint32_t>(places.size()));
-    records.append(places);
+    records.append(on_facets(places));
     evaluate(records, options);
     return records.read();
   }

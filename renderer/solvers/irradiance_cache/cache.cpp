@@ -1,6 +1,8 @@
 #include "solvers/irradiance_cache/cache.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "base/error.h"
@@ -87,7 +89,8 @@ struct Cache::Impl {
       if (place.w == 0) continue;
       ++status.asked;
       const vec4& facing = texels[size_t{slot} * k_candidate_texels + 1];
-      asked.push_back({vec3(place), vec3(facing), static_cast<uint32_t>(facing.w)});
+      asked.push_back(
+          {vec3(place), vec3(facing), std::bit_cast<uint32_t>(facing.w), static_cast<uint32_t>(place.w) - 1});
     }
   }
 

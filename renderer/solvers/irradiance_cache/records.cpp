@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "base/error.h"
 #include "gpu/kernel.h"
@@ -29,6 +30,7 @@ Record unpack(const vec4* place, const vec4* light) {
   r.least_distance = place[2].y;
   const auto flags = std::bit_cast<uint32_t>(place[2].w);
   r.pass = flags & k_record_pass;
+  r.place.facet = flags >> k_record_facet_shift;
   r.place.origin = flags >> k_record_origin_shift & 3u;
   r.error = place[2].z;
   const auto [t, b] = basis(r.place.normal);
@@ -45,6 +47,17 @@ Record unpack(const vec4* place, const vec4* light) {
 }
 
 }  // namespace
+
+uint32_t pack_facet(const vec3& n) {
+  vec2 p = vec2(n.x, n.y) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+  const auto sign = [](float x) { return x >= 0 ? 1.0f : -1.0f; };
+  if (n.z < 0) p = vec2((1 - std::abs(p.y)) * sign(p.x), (1 - std::abs(p.x)) * sign(p.y));
+  const auto step = [](float x) {
+    const float most = float(k_facet_steps);
+    return static_cast<uint32_t>(std::clamp((x * 0.5f + 0.5f) * most + 0.5f, 0.0f, most));
+  };
+  return step(p.x) | step(p.y) << 11;
+}
 
 uint32_t Records::most_records(const gpu::Device& device) {
   return static_cast<uint32_t>(
@@ -68,7 +81,8 @@ uint32_t Records::append(std::span<const Place> places, uint32_t pass) {
   for (const Place& p : places.first(fitting)) {
     texels.emplace_back(p.position, 0.0f);
     texels.emplace_back(p.normal, 0.0f);
-    const uint32_t flags = std::min(pass, k_record_pass) | p.origin << k_record_origin_shift;
+    const uint32_t flags =
+        std::min(pass, k_record_pass) | p.origin << k_record_origin_shift | p.facet << k_record_facet_shift;
     texels.emplace_back(0.0f, 0.0f, 0.0f, std::bit_cast<float>(flags));
   }
   records_.write(texels.data(), texels.size() * sizeof(vec4), size_ * k_place_bytes);
@@ -105,6 +119,16 @@ std::vector<vec3> Records::figures() const {
     const vec4* p = &places[size_t{i} * k_record_texels];
     all.emplace_back(float(std::bit_cast<uint32_t>(p[2].x)), p[1].w, p[2].z);
   }
+  return all;
+}
+
+std::vector<float> Records::luminances() const {
+  std::vector<vec4> lights(size_t{size_} * k_part_count * k_part_texels);
+  irradiance_.read(lights.data(), lights.size() * sizeof(vec4));
+  std::vector<float> all(size_, 0.0f);
+  for (size_t i = 0; i < size_; ++i)
+    for (uint32_t p = 0; p < k_part_count; ++p)
+      all[i] += luminance(vec3(lights[(i * k_part_count + p) * k_part_texels]));
   return all;
 }
 

@@ -18,6 +18,7 @@ namespace lucerna::irradiance_cache {
 /// side from which light is gathered.
 struct Place {
   vec3 position{0}, normal{0, 1, 0};
+  uint32_t facet = 0;  ///< geometric normal as facet_pack() of shaders/irradiance_cache/facet.glsl has it
   uint32_t origin = shared::k_origin_screen;  ///< shared::k_origin_*: what asked for it
 };
 
@@ -41,6 +42,9 @@ struct Record {
   std::array<Irradiance, shared::k_part_count> parts;
 };
 
+/// As facet_pack() of shaders/irradiance_cache/facet.glsl.
+uint32_t pack_facet(const vec3& normal);
+
 class Records {
  public:
   /// Room for `capacity` records of shared::k_record_bytes. Throws Error when that exceeds what the device
@@ -60,6 +64,8 @@ class Records {
   Record read(uint32_t index) const;
   /// What the overlay colours by, of every record: rays, harmonic mean distance, error.
   std::vector<vec3> figures() const;
+  /// Luminance of the irradiance, all parts together, of every record.
+  std::vector<float> luminances() const;
   /// Under the names of shaders/irradiance_cache.
   void bind(gpu::Resources& resources) const;
 
