@@ -28,6 +28,7 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
                            "LUCERNA_STOPPING_ONLY",
                            "LUCERNA_SORT_WIDE",
                            "LUCERNA_OCTREE_SINGLE",
+                           "LUCERNA_COPIES",
                            "LUCERNA_UV_TRANSFORMS",
                            "LUCERNA_TEX_NEAREST",
                            "LUCERNA_TEX_WRAPS",

@@ -209,6 +209,10 @@ TEST_CASE("an octree that no buffer can hold is refused") {
   CHECK_THAT(
       test::error_of([&] { Octree(bench.device, bench.compiler, {.spheres = 1, .references = most + 1}); }),
       Catch::Matchers::Contains(std::to_string(most)));
+  CHECK_THAT(test::error_of([&] {
+               Octree(bench.device, bench.compiler, {.spheres = lookup::k_most_spheres + 1, .references = 1});
+             }),
+             Catch::Matchers::Contains("16777217 spheres"));
   Octree octree(bench.device, bench.compiler, {.spheres = 10, .references = 10});
   bench.upload(Spheres(11, vec4(0)));
   CHECK_THAT(test::error_of([&] { octree.build(bench.stream, bench.spheres, {.most = 11}); }),

@@ -22,6 +22,8 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
   const uint32_t most = most_references(device);
   if (options.references > most)
     throw_error("octree", "{} references; buffers hold {} here", options.references, most);
+  if (options.spheres > k_most_spheres)
+    throw_error("octree", "{} spheres; it counts {} at most", options.spheres, k_most_spheres);
   const uint64_t runs = runs_for(device);
   const gpu::Defines defines{{"LUCERNA_OCTREE_GROUP", std::to_string(group_for(device)) + "u"},
                              {"LUCERNA_OCTREE_WANTED", std::to_string(wanted_for(device)) + "u"},

@@ -14,8 +14,10 @@
 
 namespace lucerna::lookup {
 
+inline constexpr uint32_t k_most_spheres = 1u << 24;  ///< they are counted in float
+
 struct OctreeOptions {
-  uint32_t spheres = 0;     ///< most that a build may be given, at most 2^24
+  uint32_t spheres = 0;     ///< most that a build may be given, at most k_most_spheres
   uint32_t references = 0;  ///< memory for that many; about 8 to 12 a sphere where all are of a size
   /// Leaves are no larger than this times the mean diameter of the spheres (and larger than half of that, the
   /// level permitting). Changes speed and memory, never a result.
