@@ -154,6 +154,8 @@ irradiance_cache::CacheOptions Renderer::cache_options() const {
           .least_pixels = float(settings_.real("cache.min_radius")),
           .most_radius = float(settings_.real("cache.max_radius")),
           .rays = uint32_t(std::stoul(settings_.text("cache.rays"))),
+          .most_rays = uint32_t(std::stoul(settings_.text("cache.max_rays"))),
+          .noise = float(settings_.real("cache.noise")),
           .most_records = uint32_t(settings_.integer("cache.max_records")),
           .most_passes = uint32_t(settings_.integer("cache.passes")),
           .stop_share = float(settings_.real("cache.stop")),

@@ -9,6 +9,7 @@
 #include "gpu/spirv.h"
 #include "kernels/gpu_support.h"
 #include "shaders/shared/film.h"
+#include "shaders/shared/irradiance_cache.h"
 #include "shaders/shared/octree.h"
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
@@ -52,6 +53,11 @@ std::vector<SharedStruct> structs() {
       SHARED("film.h", FilmPush, width, height, pixel_count, sample_count),
       SHARED("film.h", TonePush, width, height, layer, show, curve, exposure, scale, coarse_width,
              coarse_height, use_coarse_film),
+      SHARED("irradiance_cache.h", CacheFrame, routes, record_count, normal_tolerance, behind, probing),
+      SHARED("irradiance_cache.h", RecordPush, first, records, elevations, azimuths, rays_before, parts,
+             state, seed),
+      SHARED("irradiance_cache.h", RadiusPush, first, count, error, least_pixels, most),
+      SHARED("irradiance_cache.h", OverlayPush, width, height, discs, overlap, color, lo, hi, overlap_most),
       SHARED("ray.h", Ray, origin, tmax, direction, slot),
       SHARED("ray.h", Hit, t, prim, u, v),
       SHARED("scene.h", Frame, camera_origin, width, camera_right, height, camera_up, orthographic,

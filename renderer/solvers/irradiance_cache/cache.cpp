@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.h"
 #include "gpu/stream.h"
@@ -43,7 +44,10 @@ struct Cache::Impl {
   bool probing = false;  // the schedule of this pass has begun
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
   std::vector<Place> asked;
-  uint32_t evaluated = 0;  // records up to here are
+  uint32_t evaluated = 0;      // records up to here are complete
+  std::vector<uint32_t> list;  // of this level, in the order of the records
+  size_t at = 0;               // of which so many are done
+  uint32_t level = 0, rays_before = 0;
 
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o)
       : options(o),
@@ -80,6 +84,24 @@ struct Cache::Impl {
     f.probing = probes ? 1 : 0;
     if (!looks) std::fill(std::begin(f.routes), std::end(f.routes), k_no_routes);
     frame.write(&f, sizeof f);
+  }
+
+  /// The records of this pass that are still too noisy, for four times as many rays. False when there are
+  /// none.
+  bool next_level(uint32_t slots) {
+    const uint32_t rays = options.rays << 2 * level;
+    if (list.empty() || uint64_t{4} * rays > std::min(options.most_rays, slots)) return false;
+    const std::vector<vec3> figures = records.figures();
+    const std::vector<float> light = records.luminances();
+    double sum = 0;
+    for (const float l : light) sum += double(l);
+    const float least = 0.1f * float(sum / double(light.size()));
+    std::erase_if(list,
+                  [&](uint32_t r) { return figures[r].z <= options.noise * std::max(light[r], least); });
+    rays_before += rays;
+    ++level;
+    at = 0;
+    return !list.empty();
   }
 
   void collect(uint32_t slots) {
@@ -199,35 +221,47 @@ bool Cache::step(gpu::Device& device, gpu::ShaderCompiler& compiler, transport::
                                 .seed = c.options.seed + c.status.pass,
                                 .most = c.records.capacity() - c.records.size()});
     c.records.append(chosen, c.status.pass);
+    c.list.resize(c.records.size() - c.evaluated);
+    std::iota(c.list.begin(), c.list.end(), c.evaluated);
+    c.level = c.rays_before = 0;
+    c.at = 0;
     c.stage = Stage::evaluate;
     return true;
   }
   if (c.stage == Stage::evaluate) {
-    const auto elevations = static_cast<uint32_t>(std::lround(std::sqrt(c.options.rays / 4.0)));
-    const uint32_t batch = std::max(1u, wavefront.slots() / c.options.rays);
-    std::vector<uint32_t> list;
-    for (uint32_t r = c.evaluated; r < c.records.size() && list.size() < batch; ++r) list.push_back(r);
-    wavefront.set_frame(view.records_frame, view.records_enabled);
-    c.tell(0, false, false);
-    const size_t done = c.evaluator->evaluate(
-        wavefront, automaton, c.records, list,
-        {.elevations = elevations, .azimuths = 4 * elevations, .parts = c.parts, .seed = c.options.seed},
-        cancel);
-    wavefront.set_frame(view.paths_frame, view.paths_enabled);
-    c.tell(c.evaluated, false);
-    if (done < list.size()) return false;
+    const uint32_t rays = c.options.rays << 2 * c.level;
+    const auto elevations = static_cast<uint32_t>(std::lround(std::sqrt(rays / 4.0)));
+    const size_t batch = std::min<size_t>(c.list.size() - c.at, std::max(1u, wavefront.slots() / rays));
+    const std::span<const uint32_t> list(c.list.data() + c.at, batch);
     if (!list.empty()) {
+      wavefront.set_frame(view.records_frame, view.records_enabled);
+      c.tell(0, false, false);
+      const size_t done = c.evaluator->evaluate(wavefront, automaton, c.records, list,
+                                                {.elevations = elevations,
+                                                 .azimuths = 4 * elevations,
+                                                 .rays_before = c.rays_before,
+                                                 .parts = c.parts,
+                                                 .seed = c.options.seed},
+                                                cancel);
+      wavefront.set_frame(view.paths_frame, view.paths_enabled);
+      c.tell(c.evaluated, false);
+      if (done < list.size()) return false;
+      c.at += done;
+      c.status.rays += uint64_t(done) * rays;
+      if (c.at < c.list.size()) return true;
+    }
+    if (c.next_level(wavefront.slots())) return true;
+    if (c.evaluated < c.records.size()) {
       wavefront.bind_paths(c.resources);
       bind(c.resources);
-      const RadiusPush push{list.front(), uint32_t(list.size()), c.options.error, c.options.least_pixels,
+      const uint32_t count = c.records.size() - c.evaluated;
+      const RadiusPush push{c.evaluated, count, c.options.error, c.options.least_pixels,
                             c.options.most_radius * view.scene_radius};
-      wavefront.stream().dispatch(c.radius, c.resources, push, gpu::groups_for(list.size(), 64), "records");
+      wavefront.stream().dispatch(c.radius, c.resources, push, gpu::groups_for(count, 64), "records");
       wavefront.stream().run();
     }
-    c.evaluated += static_cast<uint32_t>(done);
-    c.status.rays += uint64_t(done) * c.options.rays;
+    c.evaluated = c.records.size();
     c.status.records = c.evaluated;
-    if (c.evaluated < c.records.size()) return true;
     ++c.status.pass;
     c.build_octree(wavefront);
     c.tell(c.evaluated, false);

@@ -20,8 +20,12 @@ struct CacheOptions {
   float error = 0.15f;       ///< radius of a record over the harmonic mean distance of what it sees; above 0
   float least_pixels = 3;    ///< least radius as the camera sees it; 0 or more
   float most_radius = 0.1f;  ///< of the scene's radius
-  uint32_t rays =
-      1024;  ///< a record: a multiple of 4 (elevations x 4 elevations), at most the wavefront's slots
+  /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
+  /// `most_rays` and what the wavefront has slots for.
+  uint32_t rays = 256, most_rays = 4096;
+  /// Relative standard error of its luminance above which a record gets another level. Records darker than a
+  /// tenth of the mean are held against that.
+  float noise = 0.1f;
   uint32_t most_records = 100000;
   uint32_t most_passes = 12;
   float stop_share = 0.002f;  ///< building ends when no more of the paths than this ask for records
@@ -41,8 +45,8 @@ struct CacheStatus {
 
 /// What the building needs to know of the picture and its scene.
 struct CacheView {
-  shared::Frame paths_frame,
-      records_frame;  ///< of the picture's paths; of the records' (components: the parts)
+  /// Of the picture's paths; of the records', whose components are the parts.
+  shared::Frame paths_frame, records_frame;
   uint32_t paths_enabled = 0, records_enabled = 0;
   uint32_t width = 0, height = 0;
   float scene_radius = 1;

@@ -9,6 +9,12 @@ namespace lucerna::irradiance_cache {
 
 using namespace shared;
 
+namespace {
+/// lavapipe ends all loops of an invocation after 65535 iterations in all, without a word; gather.comp takes
+/// up to 12 a cell.
+constexpr uint32_t k_most_cells = 4096;
+}  // namespace
+
 struct Evaluator::Impl {
   gpu::Kernel record, gather;
   gpu::Buffer first_hits, list;
@@ -35,9 +41,10 @@ size_t Evaluator::evaluate(transport::Wavefront& wavefront, const paths::Automat
                            const std::function<bool()>& cancel) {
   Impl& e = *impl_;
   const uint32_t cells = o.elevations * o.azimuths, slots = wavefront.slots();
-  if (cells == 0 || cells > slots)
+  const uint32_t most = std::min(slots, k_most_cells);
+  if (cells == 0 || cells > most)
     throw_error("irradiance cache", "{} x {} rays a record; there is room for 1 to {} paths", o.elevations,
-                o.azimuths, slots);
+                o.azimuths, most);
   wavefront.bind_paths(e.resources);
   records.bind(e.resources);
   e.resources.set("RecordList", e.list);

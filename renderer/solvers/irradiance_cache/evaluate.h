@@ -13,8 +13,8 @@
 namespace lucerna::irradiance_cache {
 
 struct EvaluateOptions {
-  /// Strata of the hemisphere; their product is the rays of a level, at most the wavefront's slots. Four
-  /// times as many azimuths as elevations make the cells about as wide as high.
+  /// Strata of the hemisphere; their product is the rays of a level, at most the wavefront's slots and 4096.
+  /// Four times as many azimuths as elevations make the cells about as wide as high.
   uint32_t elevations = 8, azimuths = 32;
   uint32_t rays_before =
       0;  ///< that these records have had in earlier levels; their result then weighs by its rays
