@@ -17,7 +17,7 @@
 namespace lucerna::irradiance_cache {
 
 struct CacheOptions {
-  float error = 0.15f;       ///< radius of a record over the harmonic mean distance of what it sees; above 0
+  float error = 0.3f;        ///< radius of a record over the harmonic mean distance of what it sees; above 0
   float least_pixels = 3;    ///< least radius as the camera sees it; 0 or more
   float most_radius = 0.1f;  ///< of the scene's radius
   /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
@@ -25,7 +25,7 @@ struct CacheOptions {
   uint32_t rays = 256, most_rays = 4096;
   /// Relative standard error of its luminance above which a record gets another level. Records darker than a
   /// tenth of the mean are held against that.
-  float noise = 0.1f;
+  float noise = 0.2f;
   uint32_t most_records = 100000;
   uint32_t most_passes = 12;
   float stop_share = 0.002f;  ///< building ends when no more of the paths than this ask for records
