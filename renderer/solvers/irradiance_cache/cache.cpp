@@ -24,6 +24,9 @@ constexpr float k_behind = 0.05f;
 /// References of the octree that there is memory for, a record.
 constexpr uint32_t k_references = 16;
 
+/// Records that go on with a noisy one, on either side.
+constexpr size_t k_company = 4;
+
 enum class Stage { probe, evaluate, done };
 
 }  // namespace
@@ -96,8 +99,18 @@ struct Cache::Impl {
     double sum = 0;
     for (const float l : light) sum += double(l);
     const float least = 0.1f * float(sum / double(light.size()));
-    std::erase_if(list,
-                  [&](uint32_t r) { return figures[r].z <= options.noise * std::max(light[r], least); });
+    // Light that few rays find (a caustic) is looked for wherever a record near by has found it: one that has
+    // not would else stop, content with its darkness. The list is in Morton order, so that neighbours in it
+    // are near.
+    std::vector<uint32_t> kept;
+    size_t next = 0;  // the first that no noisy one so far has kept or passed
+    for (size_t i = 0; i < list.size(); ++i) {
+      const uint32_t r = list[i];
+      if (figures[r].z <= options.noise * std::max(light[r], least)) continue;
+      next = std::max(next, i > k_company ? i - k_company : 0);
+      for (; next < std::min(list.size(), i + k_company + 1); ++next) kept.push_back(list[next]);
+    }
+    list = std::move(kept);
     rays_before += rays;
     ++level;
     at = 0;
