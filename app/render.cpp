@@ -150,11 +150,8 @@ void report_unreached(const schedule::AdaptiveSchedule& s) {
 nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
   auto list = nlohmann::ordered_json::array();
   for (const stats::Entry& e : ledger.entries()) {
-    nlohmann::ordered_json j{{"wall_s", e.wall_s},
-                             {"device_s", e.device_s},
-                             {"paths", e.paths},
-                             {"rays", e.rays},
-                             {"samples", e.samples}};
+    nlohmann::ordered_json j{{"wall_s", e.wall_s}, {"device_s", e.device_s}, {"prepared_s", e.prepared_s},
+                             {"paths", e.paths},   {"rays", e.rays},         {"samples", e.samples}};
     for (int k = 0; k < stats::k_layers; ++k) {
       j["error"][stats::k_layer_names[k]] = e.error[k];
       j["component_s"][stats::k_layer_names[k]] = e.component_s[k];

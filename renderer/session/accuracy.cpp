@@ -17,9 +17,10 @@ double seconds_a_ray(const stats::Ledger& ledger) {
   if (lines.empty() || lines.back().rays == 0) return 0;
   const stats::Entry& last = lines.back();
   for (auto line = lines.rbegin(); line != lines.rend(); ++line)
-    if (2 * line->rays <= last.rays)
+    if (2 * (line->rays - line->prepared_rays) <= last.rays - last.prepared_rays)
       return (last.wall_s - line->wall_s) / static_cast<double>(last.rays - line->rays);
-  return last.wall_s / static_cast<double>(last.rays);
+  return (last.wall_s - last.prepared_s) /
+         std::max(1.0, static_cast<double>(last.rays) - static_cast<double>(last.prepared_rays));
 }
 
 }  // namespace
@@ -54,7 +55,8 @@ std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
     paths += double(t.samples) * t.pixels;
   }
   const stats::Band total = stats::total_paths(tiles, a.across, target, a.min_samples, a.max_samples);
-  const double rays_a_path = static_cast<double>(last.rays) / static_cast<double>(last.paths);
+  const double rays_a_path =
+      static_cast<double>(last.rays - last.prepared_rays) / static_cast<double>(last.paths);
   const auto seconds = [&](double all) {
     return last.wall_s + std::max(0.0, all - static_cast<double>(last.paths)) * rays_a_path * each;
   };

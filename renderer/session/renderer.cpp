@@ -204,7 +204,8 @@ void Renderer::restart() {
   start_schedule();
   ++restarts_;
   ledger_.clear();
-  seconds_ = 0;
+  seconds_ = prepared_s_ = 0;
+  prepared_rays_ = 0;
   wavefront_->set_frame(make_frame(width_, height_), enabled_components());
   applied_ = settings_.all();
 }
@@ -373,9 +374,13 @@ void Renderer::relight(std::shared_ptr<const scene::Scene> edited) {
 
 bool Renderer::step(const std::function<bool()>& cancel) {
   const Timer timer;
+  const bool prepares = cache_ && !cache_->ready();
   const bool progress = render_item(cancel);
   seconds_ += timer.seconds();
-  if (progress) note_progress(false);
+  if (prepares)
+    prepared_s_ = seconds_, prepared_rays_ = stats().rays;
+  else if (progress)
+    note_progress(false);
   return progress;
 }
 
@@ -384,6 +389,8 @@ void Renderer::note_progress(bool at_once) {
   if (s.paths == 0 || !(at_once || ledger_.due(s.paths))) return;
   stats::Entry entry;
   entry.wall_s = seconds_;
+  entry.prepared_s = prepared_s_;
+  entry.prepared_rays = prepared_rays_;
   for (const auto& stage : s.stages) entry.device_s += 1e-3 * stage.ms;
   entry.paths = s.paths;
   entry.rays = s.rays;
@@ -409,8 +416,9 @@ void Renderer::note_progress(bool at_once) {
     const schedule::AdaptiveOptions& o = adaptive_->options();
     const stats::Band paths =
         stats::total_paths(tiles, adaptive_->tiles_across(), o.target_error, o.min_samples, o.max_samples);
-    const double each = double(s.rays) / double(s.paths);
-    entry.total_rays = stats::Band{each * paths.low, each * paths.middle, each * paths.high};
+    const double before = double(prepared_rays_), each = (double(s.rays) - before) / double(s.paths);
+    entry.total_rays =
+        stats::Band{before + each * paths.low, before + each * paths.middle, before + each * paths.high};
   }
   ledger_.add(entry);
 }

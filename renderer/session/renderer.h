@@ -162,7 +162,9 @@ class Renderer {
   stats::Ledger ledger_;
   std::optional<film::Reference> reference_;
   uint64_t restarts_ = 0;
-  double seconds_ = 0;                                  ///< rendering time of this image
+  double seconds_ = 0;     ///< rendering time of this image
+  double prepared_s_ = 0;  ///< of that, before its first sample
+  uint64_t prepared_rays_ = 0;
   std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< instead of schedule_
   uint32_t width_ = 1280, height_ = 720;
   std::map<std::string, std::string> applied_;  ///< settings that the film was made with

@@ -38,7 +38,8 @@ std::optional<Band> seconds_to(const Ledger& ledger, double target, int layer) {
   const Entry& last = entries.back();
   const Law law = fit(ledger, layer);
   const auto seconds = [&](double exponent, double error) {
-    return last.wall_s * std::pow(std::max(1.0, error / target), 1 / hold(exponent));
+    return last.prepared_s +
+           (last.wall_s - last.prepared_s) * std::pow(std::max(1.0, error / target), 1 / hold(exponent));
   };
   const double error = last.error[layer];
   return Band{seconds(law.exponent + law.deviation, 0.95 * error), seconds(law.exponent, error),

@@ -18,7 +18,10 @@ struct Band {
 };
 
 struct Entry {
-  double wall_s = 0;    ///< of rendering alone, since the image was started
+  double wall_s = 0;  ///< of rendering alone, since the image was started
+  /// Of these, seconds and rays that went into what paths look up, before the first sample.
+  double prepared_s = 0;
+  uint64_t prepared_rays = 0;
   double device_s = 0;  ///< sum of the stages, on the device and on the host
   uint64_t paths = 0, rays = 0;
   double samples = 0;                          ///< a pixel, on average

@@ -67,7 +67,7 @@ TEST_CASE("CSV: as many fields in every line, unknown ones empty") {
   REQUIRE(commas.size() == 4);
   CHECK(commas[0] == commas[1]);
   CHECK(commas[0] == commas[2]);
-  CHECK(csv.find("\n0.5,0,10,") != std::string::npos);
+  CHECK(csv.find("\n0.5,0,0,10,") != std::string::npos);
   CHECK(csv.find(",1,2,3\n") != std::string::npos);
 }
 
@@ -87,6 +87,16 @@ TEST_CASE("time to a smaller error: the law is found, the truth lies within the 
       CHECK(band->middle <= band->high);
       CHECK(band->middle == Approx(truth).epsilon(wobble > 0 ? 0.4 : 0.06));
     }
+  }
+  // What was prepared before the first sample takes its time once: a forecast does not scale it.
+  Ledger prepared;
+  const Ledger plain = render(0.5, 100000);
+  for (Entry e : plain.entries()) e.prepared_s = 40, e.wall_s += 40, prepared.add(e);
+  for (const double target : {0.03, 0.01}) {
+    const auto with = seconds_to(prepared, target), without = seconds_to(plain, target);
+    REQUIRE((with && without));
+    CHECK(with->middle == Approx(without->middle + 40));
+    CHECK(with->high == Approx(without->high + 40));
   }
   // Reached: when it was.
   const auto reached = seconds_to(render(0.5, 100000), 0.2);  // at 100 samples, 10 s

@@ -7,6 +7,8 @@ namespace lucerna::lookup {
 
 namespace {
 
+constexpr const char* k_stage = "octree";
+
 /// Invocations of the kernels that work through runs, as a rule and at most.
 uint32_t wanted_for(const gpu::Device& device) { return device.info().is_cpu ? 1024 : 16384; }
 uint32_t runs_for(const gpu::Device& device) { return device.info().is_cpu ? 4096 : 16384; }
@@ -83,8 +85,7 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
       std::max(options_.references, 1u), uint32_t(slots_.bytes() / sizeof(uvec4)), options_.leaf_scale};
   const auto run = [&](const gpu::Kernel& kernel, uint32_t groups) {
     // Those that use no push constant have none.
-    stream.dispatch(kernel, r, &push, kernel.push_constant_bytes(), groups,
-                    "octree " + kernel.file().substr(sizeof("lookup")));
+    stream.dispatch(kernel, r, &push, kernel.push_constant_bytes(), groups, k_stage);
   };
   run(bounds_, groups_);
   run(grid_, 1);
@@ -93,13 +94,13 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
   const uint32_t sphere_groups = gpu::groups_for(count.most, 64);
   run(count_, sphere_groups);
   prefix_sum_.encode(stream, sphere_references_, sphere_references_, count, &header_buffer_,
-                     offsetof(shared::OctreeHeader, references), "octree scan");
+                     offsetof(shared::OctreeHeader, references), k_stage);
   run(write_, sphere_groups);
   stream.run();
   header_buffer_.read(&header_, sizeof(header_));
 
   const sort::Count written{push.capacity, &header_buffer_, offsetof(shared::OctreeHeader, references)};
-  references_ = &sorter_.encode(stream, pairs_[0], pairs_[1], written, 3 * header_.level, "octree sort");
+  references_ = &sorter_.encode(stream, pairs_[0], pairs_[1], written, 3 * header_.level, k_stage);
   // What the sort leaves behind has room for one leaf a reference, and so for all.
   const gpu::Buffer& leaves = references_ == &pairs_[0] ? pairs_[1] : pairs_[0];
   r.set("octree_references", *references_);
@@ -107,7 +108,7 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
   r.set("leaf_texels", leaves);
   run(heads_, groups_);
   prefix_sum_.encode(stream, run_leaves_, run_leaves_, {.most = uint32_t(run_leaves_.bytes() / 4)},
-                     &header_buffer_, offsetof(shared::OctreeHeader, leaves), "octree scan");
+                     &header_buffer_, offsetof(shared::OctreeHeader, leaves), k_stage);
   run(leaves_, groups_);
   run(clear_, groups_);
   run(insert_, groups_);
