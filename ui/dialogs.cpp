@@ -202,6 +202,7 @@ void key_page(Ui& ui) {
         {"F", "frame the selection, or the scene"},
         {"L", "mark the lamps, to click on them"},
         {"T", "show the tiles at work"},
+        {"C, V", "show the records of the irradiance cache, their overlap"},
         {"1 \xE2\x80\x93 9", "scene cameras"},
         {"", ""},
         {"Space", "pause, resume"},
@@ -328,6 +329,12 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
   if (ui.pressed(GLFW_KEY_T))
     ui.act("set", "overlay.tiles", ui.setting_on("overlay.tiles") ? "false" : "true");
+  const bool cached =
+      ui.setting("components.secondary") == "cache" || ui.setting("components.tertiary") == "cache";
+  if (cached && ui.pressed(GLFW_KEY_C))
+    ui.act("set", "overlay.records", ui.setting_on("overlay.records") ? "false" : "true");
+  if (cached && ui.pressed(GLFW_KEY_V))
+    ui.act("set", "overlay.overlap", ui.setting_on("overlay.overlap") ? "false" : "true");
   if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.snapshot->paused ? "render.resume" : "render.pause");
   for (int n = 0; n < 9; ++n)
     if (ui.pressed(GLFW_KEY_1 + n) && ui.scene && n < static_cast<int>(ui.scene->cameras.size()) && ui.view)

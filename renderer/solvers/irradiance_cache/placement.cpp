@@ -70,22 +70,22 @@ std::vector<Place> choose_places(std::span<const Place> candidates, const Placem
     clusters.push_back(std::move(chosen));
     first = last;
   }
+  // When there are too many: whole ranks (the first of every cluster, the second, ...) while they fit, and of
+  // the next one evenly over the clusters.
+  std::vector<size_t> quota(clusters.size(), 0);
+  for (size_t left = o.most, rank = 0; left > 0; ++rank) {
+    std::vector<size_t> having;
+    for (size_t c = 0; c < clusters.size(); ++c)
+      if (clusters[c].size() > rank) having.push_back(c);
+    if (having.empty()) break;
+    const size_t fitting = std::min(left, having.size());
+    for (size_t k = 0; k < fitting; ++k) ++quota[having[k * having.size() / fitting]];
+    left -= fitting;
+    if (fitting < having.size()) break;
+  }
   std::vector<Place> all;
-  size_t total = 0;
-  for (const auto& c : clusters) total += c.size();
-  size_t most_each = 1;  // the rank below which all are taken, when there are too many
-  if (total <= o.most) {
-    for (const auto& c : clusters) all.insert(all.end(), c.begin(), c.end());
-    return all;
-  }
-  for (size_t taken = 0;; ++most_each) {
-    size_t now = 0;
-    for (const auto& c : clusters) now += std::min(c.size(), most_each);
-    if (now > o.most || now == taken) break;
-    taken = now;
-  }
-  for (const auto& c : clusters)
-    for (size_t i = 0; i < std::min(c.size(), most_each) && all.size() < o.most; ++i) all.push_back(c[i]);
+  for (size_t c = 0; c < clusters.size(); ++c)
+    all.insert(all.end(), clusters[c].begin(), clusters[c].begin() + std::ptrdiff_t(quota[c]));
   return all;
 }
 
