@@ -196,6 +196,8 @@ std::string state_text(const session::Snapshot& s) {
                             : s.paused ? "paused"
                             : s.coarse ? "first pass"
                                        : "rendering";
+  if (!s.preparing.empty() && !s.paused)
+    return fmt::format("{} \xC2\xB7 {}", s.preparing, padded(seconds_text(s.seconds), 7));
   // In adaptive sampling pixels differ: their mean.
   const std::string samples =
       padded(fmt::format("{:.0f}", adaptive ? s.mean_samples : static_cast<double>(s.samples)), digits);

@@ -91,6 +91,10 @@ struct Session::Impl {
     next.coarse = !filled;
     next.paused = paused;
     next.finished = r.done();
+    next.preparing.clear();
+    if (const irradiance_cache::Cache* cache = r.cache(); cache && !cache->ready())
+      next.preparing =
+          fmt::format("cache, pass {}: {} records", cache->status().pass + 1, cache->records().size());
     next.seconds = seconds;
     next.camera = r.camera();
     next.tracer = r.tracer_name();

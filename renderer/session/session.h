@@ -53,6 +53,8 @@ struct Snapshot {
   uint32_t max_samples = 0;        ///< where it stops
   bool coarse = false;             ///< some of the picture still is the coarse first image
   bool paused = false, finished = false;
+  /// "" or what is made before the first sample: "cache, pass 3: 2810 records".
+  std::string preparing;
   double seconds = 0;  ///< rendering time of this image
   double mrays_per_second = 0;
   uint64_t rays = 0;

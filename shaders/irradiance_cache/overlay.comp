@@ -59,8 +59,8 @@ void main() {
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
     vec3 away = x - place.xyz;
-    // A pixel's depth is a mean over its samples: a disc is drawn a little off its plane too.
-    bool on_it = abs(dot(away, facing.xyz)) < 2.0 * size + 0.02 * place.w && dot(n, facing.xyz) > 0.7;
+    // Discs follow the surface where it is curved, and a pixel's depth is a mean over its samples: off the plane too.
+    bool on_it = abs(dot(away, facing.xyz)) < 2.0 * size + 0.15 * place.w && dot(n, facing.xyz) > 0.7;
     overlap += record_weight(x, n, place, facing) > 0.0 ? 1u : 0u;
     float from = length(away);
     vec3 ink = ink_of(record);
