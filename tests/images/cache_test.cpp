@@ -41,6 +41,53 @@ double block_error(const test::Result& a, const test::Result& b, int component, 
   return std::sqrt(squares / (across * down)) / mean(y);
 }
 
+/// A closed room, 2 m wide, cut in two by a wall 1 mm thick that leaves 10 cm under the ceiling; a panel
+/// lights one half. The camera stands on the wall's edge and looks down at both floors.
+scene::Scene divided_room() {
+  scene::Scene s;
+  s.name = "divided", s.file = "divided.gltf";
+  s.materials.resize(2);
+  for (scene::Material& m : s.materials)
+    m.base_color = vec4(0.7f, 0.7f, 0.7f, 1), m.roughness = 1, m.metallic = 0, m.specular = 0;
+  s.materials[1].emission = vec3(10);
+  s.materials[1].base_color = vec4(0, 0, 0, 1);
+  const auto add = [&](vec3 a, vec3 b, vec3 c,
+                       uint32_t material) {  // a parallelogram, counter-clockwise from its front
+    scene::Primitive p;
+    p.material = material;
+    p.positions = {a, b, b + c - a, c};
+    p.triangles = {{0, 1, 2}, {0, 2, 3}};
+    s.meshes.push_back({"quad", {p}});
+    s.instances.push_back({"quad", scene::Id(s.meshes.size() - 1), mat4(1), false});
+  };
+  const auto wall = [&](vec3 origin, vec3 u, vec3 v) { add(origin, origin + u, origin + v, 0); };
+  const vec3 x(2, 0, 0), y(0, 1, 0), z(0, 0, 2), o(-1, 0, -1);
+  wall(o, z, x), wall(o + y, x, z);  // floor, ceiling
+  wall(o, x, y), wall(o + z, y, x);  // back, front
+  wall(o, y, z), wall(o + x, z, y);  // left, right
+  const vec3 h(0, 0.9f, 0), t(0.0005f, 0, 0), w(0, 0, -1);
+  wall(w - t, z, h), wall(w + t, h, z), wall(w + h - t, z, 2.0f * t);
+  add({0.3f, 0.999f, -0.5f}, {0.9f, 0.999f, -0.5f}, {0.3f, 0.999f, 0.5f}, 1);
+  scene::Camera camera;
+  camera.yfov = 1.4f;
+  // Looks down: its right is x, its up -z.
+  camera.to_world = mat4(vec4(1, 0, 0, 0), vec4(0, 0, -1, 0), vec4(0, 1, 0, 0), vec4(0, 0.98f, 0, 1));
+  s.cameras = {camera};
+  return s;
+}
+
+film::Image render_divided(const Settings& settings, uint32_t samples) {
+  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  r.set_size(64, 64);
+  r.set_scene(std::make_shared<scene::Scene>(divided_room()));
+  for (const auto& [key, value] : settings) r.settings().set(key, value);
+  r.settings().set("samples", std::to_string(samples));
+  r.apply_settings();
+  while (r.step()) {
+  }
+  return r.image();
+}
+
 }  // namespace
 
 TEST_CASE("the cache brings the light of its components, and no other changes") {
@@ -68,7 +115,8 @@ TEST_CASE(
   test::Render r{.scene = "glass", .width = 32, .height = 32, .samples = 128, .settings = {}};
   const test::Result path = test::render(r);
   r.settings["components.tertiary"] = "cache";
-  // One level of rays: more for those that are still noisy would leave out some of the caustics that few rays find.
+  // One level of rays: more for those that are still noisy would leave out some of the caustics that few rays
+  // find.
   r.settings["cache.rays"] = "4096";
   const test::Result cached = test::render(r);
   for (const int c : {0, 1, 3}) {
@@ -101,4 +149,28 @@ TEST_CASE("a cached picture does not depend on how its work was cut") {
   r.settings["seed"] = "9";
   const test::Result other = test::render(r);
   CHECK_FALSE(identical(whole.image.components[1], other.image.components[1]));
+}
+
+TEST_CASE("light does not leak through a wall of a millimetre") {
+  // Radii as wide as they may be, so that only what limits them keeps records from reaching through.
+  Settings wide = k_both;
+  wide["cache.error"] = "1", wide["cache.max_radius"] = "1";
+  const film::Image path = render_divided({}, 512), cached = render_divided(wide, 16);
+  // Columns of the picture by their distance from the wall, which stands in its middle: floors left (dark)
+  // and right.
+  const auto column_mean = [](const film::Image& image, int component, uint32_t from, uint32_t to) {
+    double sum = 0;
+    for (uint32_t y = 16; y < 48; ++y)
+      for (uint32_t x = from; x < to; ++x) sum += luminance(image.components[component][size_t{y} * 64 + x]);
+    return sum / (32.0 * (to - from));
+  };
+  for (const int c : {1, 2})
+    for (const auto& [from, to] : {std::pair{8u, 20u}, {20u, 26u}, {26u, 30u}, {34u, 38u}, {38u, 44u}}) {
+      const double truth = column_mean(path, c, from, to), value = column_mean(cached, c, from, to);
+      INFO("component " << c << ", columns " << from << " to " << to << ": " << value << " of " << truth);
+      CHECK(truth > 0);
+      CHECK(value == Approx(truth).epsilon(0.12));
+    }
+  // The dark half is dark: what leaked would show.
+  CHECK(column_mean(path, 1, 20, 26) < 0.3 * column_mean(path, 1, 38, 44));
 }
