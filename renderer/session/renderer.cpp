@@ -190,12 +190,13 @@ void Renderer::make_film() {
   film_ = std::make_unique<film::Film>(*device_, width_, height_);
   coarse_ = std::make_unique<film::Film>(*device_, std::max(1u, width_ / k_coarse_step),
                                          std::max(1u, height_ / k_coarse_step));
-  restart();
+  restart(Lookups::extend);
 }
 
-void Renderer::restart() {
+void Renderer::restart(Lookups lookups) {
   if (!wavefront_ || !film_) return;
-  if (cache_) cache_->clear();
+  if (cache_ && lookups == Lookups::clear) cache_->clear();
+  if (cache_ && lookups == Lookups::extend) cache_->extend();
   // What is switched off changes without new kernels.
   routes_.traced = wanted_routes().traced;
   wavefront_->clear(*film_);
@@ -314,7 +315,11 @@ void Renderer::apply_settings() {
   again |= kernels;
   if (changed.contains("samples") && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
   if (retarget && !again && adaptive_) adaptive_->retarget(adaptive_options());
-  if (again) restart();
+  // Records hold what the scene sends, whoever samples the picture and however long.
+  const bool spoils = std::any_of(changed.begin(), changed.end(), [](const std::string& k) {
+    return !k.starts_with("sampling.") && k != "samples" && k != "camera";
+  });
+  if (again) restart(spoils ? Lookups::clear : Lookups::keep);
   applied_ = settings_.all();
 }
 
@@ -335,12 +340,12 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
 
 void Renderer::set_camera(const scene::Camera& camera) {
   camera_ = camera;
-  restart();
+  restart(Lookups::extend);
 }
 
 void Renderer::choose_camera(const std::string& name) {
   camera_ = scene::find_camera(*scene_, name);
-  restart();
+  restart(Lookups::extend);
 }
 
 void Renderer::set_light(uint32_t index, const scene::Light& light) {

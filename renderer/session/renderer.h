@@ -62,7 +62,8 @@ class Renderer {
   void set_light(uint32_t index, const scene::Light& light);
   void set_environment(float scale, float rotation_degrees);
   void reload_shaders();
-  void restart();
+  /// Begins the image anew, and what it looks up.
+  void restart() { restart(Lookups::clear); }
   /// Images begun so far.
   uint64_t restarts() const { return restarts_; }
   /// Passes over the picture, or over the tiles at work, that are complete.
@@ -130,6 +131,13 @@ class Renderer {
   /// The scene with other lights or another environment: uploads these anew.
   void relight(std::shared_ptr<const scene::Scene> edited);
   void make_film();
+  /// What a change leaves of the records that paths look up.
+  enum class Lookups {
+    keep,    ///< nothing that they depend on has changed
+    extend,  ///< seen from elsewhere: the same, and more where some are missing
+    clear    ///< other light, surfaces or options
+  };
+  void restart(Lookups lookups);
   shared::Frame make_frame(uint32_t width, uint32_t height) const;
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;

@@ -174,3 +174,65 @@ TEST_CASE("light does not leak through a wall of a millimetre") {
   // The dark half is dark: what leaked would show.
   CHECK(column_mean(path, 1, 20, 26) < 0.3 * column_mean(path, 1, 38, 44));
 }
+
+TEST_CASE("what a change spoils is gathered anew, and nothing else") {
+  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  r.set_size(48, 48);
+  r.set_scene(std::make_shared<scene::Scene>(divided_room()));
+  for (const auto& [key, value] : k_both) r.settings().set(key, value);
+  r.settings().set("samples", "4");
+  r.apply_settings();
+  const auto finish = [&] {
+    while (r.step()) {
+    }
+    REQUIRE(r.cache()->ready());
+    return r.cache()->records().read();
+  };
+  const auto begins_with = [](const auto& all, const auto& some) {
+    return all.size() >= some.size() &&
+           std::memcmp(all.data(), some.data(), some.size() * sizeof(some[0])) == 0;
+  };
+  const auto first = finish();
+  REQUIRE(first.size() > 50);
+
+  // Another camera: all records stay, others come where it sees what none serves.
+  scene::Camera moved = divided_room().cameras[0];
+  moved.to_world[3] = vec4(0.5f, 0.7f, 0.3f, 1);
+  r.set_camera(moved);
+  CHECK_FALSE(r.cache()->ready());
+  const uint64_t before = r.cache()->status().rays;
+  const auto more = finish();
+  CHECK(begins_with(more, first));
+  CHECK(more.size() > first.size());
+  CHECK(r.cache()->status().rays > before);
+  // The same again: nothing is missing, nothing is gathered.
+  const uint64_t rays = r.cache()->status().rays;
+  r.set_camera(moved);
+  CHECK(finish().size() - more.size() <= more.size() / 50);
+
+  // How the picture is sampled is no affair of the cache.
+  r.settings().set("sampling.mode", "adaptive");
+  r.settings().set("sampling.max_samples", "64");
+  r.apply_settings();
+  CHECK(r.cache()->ready());
+  CHECK(begins_with(finish(), more));
+  CHECK(r.cache()->status().rays < rays + rays / 10);
+
+  // Its own options, the seed and the light are.
+  for (const auto& [key, value] : Settings{{"cache.error", "0.5"}, {"seed", "4"}, {"path.max_depth", "3"}}) {
+    INFO(key);
+    r.settings().set(key, value);
+    r.apply_settings();
+    CHECK_FALSE(r.cache()->ready());
+    CHECK(r.cache()->records().size() == 0);
+    finish();
+  }
+  r.set_environment(0.5f, 0);
+  CHECK(r.cache()->records().size() == 0);
+  finish();
+  r.settings().set("components.secondary", "path");
+  r.settings().set("components.tertiary", "path");
+  r.apply_settings();
+  CHECK(r.cache() == nullptr);
+  CHECK(r.step());
+}

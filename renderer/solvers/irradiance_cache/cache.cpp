@@ -189,6 +189,18 @@ void Cache::clear() {
   c.tell(0, false);
 }
 
+void Cache::extend() {
+  Impl& c = *impl_;
+  c.status.pass = 0;
+  c.status.stop = StopReason::building;
+  // Records that are being evaluated stay so; what was asked for from where the camera was is dropped.
+  if (c.stage != Stage::evaluate) {
+    c.stage = Stage::probe;
+    c.probing = false;
+    c.asked.clear();
+  }
+}
+
 bool Cache::ready() const { return impl_->stage == Stage::done; }
 const CacheStatus& Cache::status() const { return impl_->status; }
 const Records& Cache::records() const { return impl_->records; }

@@ -35,7 +35,8 @@ struct CacheOptions {
 enum class StopReason { building, covered, passes, records };
 
 struct CacheStatus {
-  uint32_t pass = 0, records = 0;
+  uint32_t pass = 0;  ///< complete since the building began or was extended
+  uint32_t records = 0;
   uint64_t asked = 0, paths = 0;  ///< of the last complete pass: paths that asked, paths
   uint64_t rays = 0;              ///< of the records' own hemispheres
   uint64_t bytes = 0;             ///< of device memory
@@ -65,6 +66,9 @@ class Cache {
   void bind(gpu::Resources& resources) const;
   /// Begins anew, without records.
   void clear();
+  /// Goes on building with what there is, for a picture from elsewhere or of another size: its passes are
+  /// counted anew. Work in progress is finished first.
+  void extend();
   bool ready() const;
   /// One bounded piece of the building, cancellable between bounces; on return the wavefront's frame is that
   /// of the picture's paths. False when it was cancelled: it will be done again.
