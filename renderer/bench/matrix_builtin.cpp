@@ -33,7 +33,12 @@ const char* const k_full = R"({
     {"file": "glass/glass.gltf", "size": "256x256"},
     {"file": "studio/studio.gltf", "size": "320x240"},
     {"file": "atrium/atrium.gltf", "size": "320x180", "reference_samples": 8192,
-     "budgets": {"samples": [16, 64, 256]}}
+     "budgets": {"samples": [16, 64, 256]}},
+    {"file": "hall/hall.gltf", "size": "256x144", "budgets": {"samples": [16, 64, 256]}},
+    {"file": "teapot/teapot.gltf", "size": "256x144", "budgets": {"samples": [16, 64, 256]}},
+    {"file": "sun-patch/sun-patch.gltf", "size": "256x144", "budgets": {"samples": [16, 64, 256]}},
+    {"file": "classroom/classroom.gltf", "size": "256x144", "budgets": {"samples": [16, 64, 256]}},
+    {"file": "window/window.gltf", "size": "256x144", "budgets": {"samples": [16, 64, 256]}}
   ],
   "settings": [
     {"name": "plain", "about": "path tracing, samples for all pixels alike"},
@@ -41,6 +46,8 @@ const char* const k_full = R"({
      "set": {"sampling.mode": "adaptive", "sampling.max_samples": 4096}},
     {"name": "adaptive-8", "about": "the same with tiles of 8x8 pixels",
      "set": {"sampling.mode": "adaptive", "sampling.max_samples": 4096, "sampling.tile": 8}},
+    {"name": "cache", "about": "as plain, secondary and tertiary light from an irradiance cache",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache"}},
     {"name": "coherent", "about": "as plain, the pixels of a tile share their sequences",
      "set": {"sampling.coherent": true}},
     {"name": "compute-bvh", "about": "as plain, rays traced by the compute shaders instead of Embree",
