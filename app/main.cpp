@@ -125,16 +125,20 @@ int main_checked(int argc, char** argv) {
   rays_verb->add_option("--flat", b.flat, "write the flattened scene for lucerna-raybench");
   rays_verb->add_option("--device", b.device, "as above");
   rays_verb->add_flag("--json", b.json, "as JSON");
+  // What the small benches share.
+  const auto measured = [](CLI::App* verb, auto& a, int least_repeats, const char* seed_of) {
+    verb->add_option("--repeats", a.repeats, "measurements of each figure")
+        ->check(CLI::Range(least_repeats, 1000))
+        ->capture_default_str();
+    verb->add_option("--seed", a.seed, seed_of)->capture_default_str();
+    verb->add_option("--json", a.json, "file to write the figures to");
+    verb->add_option("--device", a.device, "as above");
+  };
   BenchSortArguments bs;
   CLI::App* sort_verb = bench_verb->add_subcommand(
       "sort", "elements a second of prefix sum and radix sort on the device, and of the C++ library's");
   sort_verb->add_option("--sizes", bs.sizes, "elements to sort")->check(CLI::Range(1u, 1u << 22));
-  sort_verb->add_option("--repeats", bs.repeats, "measurements of each figure")
-      ->check(CLI::Range(5, 1000))
-      ->capture_default_str();
-  sort_verb->add_option("--seed", bs.seed, "seed of the keys")->capture_default_str();
-  sort_verb->add_option("--json", bs.json, "file to write the figures to");
-  sort_verb->add_option("--device", bs.device, "as above");
+  measured(sort_verb, bs, 5, "seed of the keys");
   BenchLookupArguments bl;
   CLI::App* lookup_verb = bench_verb->add_subcommand(
       "lookup", "building the octree of spheres and asking it, against a plain grid");
@@ -142,12 +146,7 @@ int main_checked(int argc, char** argv) {
   lookup_verb->add_option("--queries", bl.queries, "points to look up")
       ->check(CLI::Range(1u, 1u << 22))
       ->capture_default_str();
-  lookup_verb->add_option("--repeats", bl.repeats, "measurements of each figure")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  lookup_verb->add_option("--seed", bl.seed, "seed of spheres and points")->capture_default_str();
-  lookup_verb->add_option("--json", bl.json, "file to write the figures to");
-  lookup_verb->add_option("--device", bl.device, "as above");
+  measured(lookup_verb, bl, 1, "seed of spheres and points");
   app.require_subcommand(0, 1);
 
   try {

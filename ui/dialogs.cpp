@@ -327,14 +327,9 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_F) && ui.view) ui.act("camera.frame");
   if (ui.pressed(GLFW_KEY_R)) ui.act("render.restart");
   if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
-  if (ui.pressed(GLFW_KEY_T))
-    ui.act("set", "overlay.tiles", ui.setting_on("overlay.tiles") ? "false" : "true");
-  const bool cached =
-      ui.setting("components.secondary") == "cache" || ui.setting("components.tertiary") == "cache";
-  if (cached && ui.pressed(GLFW_KEY_C))
-    ui.act("set", "overlay.records", ui.setting_on("overlay.records") ? "false" : "true");
-  if (cached && ui.pressed(GLFW_KEY_V))
-    ui.act("set", "overlay.overlap", ui.setting_on("overlay.overlap") ? "false" : "true");
+  if (ui.pressed(GLFW_KEY_T)) ui.toggle("overlay.tiles");
+  if (ui.cached() && ui.pressed(GLFW_KEY_C)) ui.toggle("overlay.records");
+  if (ui.cached() && ui.pressed(GLFW_KEY_V)) ui.toggle("overlay.overlap");
   if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.snapshot->paused ? "render.resume" : "render.pause");
   for (int n = 0; n < 9; ++n)
     if (ui.pressed(GLFW_KEY_1 + n) && ui.scene && n < static_cast<int>(ui.scene->cameras.size()) && ui.view)

@@ -167,11 +167,9 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
         ui.act("set", key, option->choices[static_cast<size_t>(chosen)]);
       break;
     }
-    case plan::OptionType::boolean: {
-      const bool on = ui.setting_on(key);
-      if (button("##boolean", name, on, ImGui::CalcItemWidth())) ui.act("set", key, on ? "false" : "true");
+    case plan::OptionType::boolean:
+      if (button("##boolean", name, ui.setting_on(key), ImGui::CalcItemWidth())) ui.toggle(key);
       break;
-    }
     case plan::OptionType::integer:
     case plan::OptionType::real: {
       const bool whole = option->type == plan::OptionType::integer;

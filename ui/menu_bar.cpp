@@ -131,19 +131,14 @@ void view_menu(Ui& ui) {
   if (entry("Lamps", "L", "Marks the lamps in the picture; a click on a mark selects the lamp.",
             ui.light_marks))
     ui.act("view.lamps", !ui.light_marks);
-  const bool tiles = ui.setting_on("overlay.tiles");
-  if (entry("Tiles", "T", plan::find_option("overlay.tiles")->help.c_str(), tiles))
-    ui.act("set", "overlay.tiles", tiles ? "false" : "true");
-  const bool cached =
-      ui.setting("components.secondary") == "cache" || ui.setting("components.tertiary") == "cache";
-  const auto overlay = [&](const char* name, const char* key, const std::string& option) {
-    const bool on = ui.setting_on(option);
-    if (entry(name, key, plan::find_option(option)->help.c_str(), on, cached))
-      ui.act("set", option, on ? "false" : "true");
+  const auto overlay = [&](const char* name, const char* key, const std::string& option, bool enabled) {
+    if (entry(name, key, plan::find_option(option)->help.c_str(), ui.setting_on(option), enabled))
+      ui.toggle(option);
   };
-  overlay("Cache records", "C", "overlay.records");
-  overlay("Cache overlap", "V", "overlay.overlap");
-  if (cached && ui.setting_on("overlay.records")) {
+  overlay("Tiles", "T", "overlay.tiles", true);
+  overlay("Cache records", "C", "overlay.records", ui.cached());
+  overlay("Cache overlap", "V", "overlay.overlap", ui.cached());
+  if (ui.cached() && ui.setting_on("overlay.records")) {
     const plan::OptionInfo* by = plan::find_option("overlay.records_by");
     for (const std::string& choice : by->choices)
       if (entry(("   by " + choice).c_str(), nullptr, by->help.c_str(), ui.setting(by->key) == choice))

@@ -71,6 +71,12 @@ struct Ui : commands::Workspace {
     act_line(commands::line(command, words...));
   }
   void act_line(const std::string& line);
+  /// Turns a boolean setting over.
+  void toggle(const std::string& key) { act("set", key, setting_on(key) ? "false" : "true"); }
+  /// Whether the settings have some light come from the irradiance cache.
+  bool cached() const {
+    return setting("components.secondary") == "cache" || setting("components.tertiary") == "cache";
+  }
   uint64_t gesture = 0;  ///< of the control that is held now; 0: none
   /// Finds out which control is held; call once a frame.
   void follow_gesture();

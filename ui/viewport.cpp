@@ -357,9 +357,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
   }
   right -= tiles_width;
   ImGui::SetCursorScreenPos({right, y});
-  const bool tiles = ui.setting_on("overlay.tiles");
-  if (button("##tiles", "Tiles", tiles, tiles_width))
-    ui.act("set", "overlay.tiles", tiles ? "false" : "true");
+  if (button("##tiles", "Tiles", ui.setting_on("overlay.tiles"), tiles_width)) ui.toggle("overlay.tiles");
   tooltip(plan::find_option("overlay.tiles")->help + " T.");
   right -= px(8);
   ImGui::SetCursorScreenPos({area.lo.x + pad, y});

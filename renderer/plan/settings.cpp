@@ -38,6 +38,22 @@ OptionInfo integer(const char* key, int64_t fallback, double lo, double hi, cons
           .help = help};
 }
 
+OptionInfo real(const char* key, const char* fallback, double lo, double hi, const char* unit,
+                const char* help) {
+  return {.key = key,
+          .type = OptionType::real,
+          .fallback = fallback,
+          .lo = lo,
+          .hi = hi,
+          .unit = unit,
+          .choices = {},
+          .help = help};
+}
+
+OptionInfo boolean(const char* key, const char* help) {
+  return {.key = key, .type = OptionType::boolean, .fallback = "false", .choices = {}, .help = help};
+}
+
 /// A change lets the image go on.
 OptionInfo going_on(OptionInfo option) {
   option.restarts = false;
@@ -57,14 +73,8 @@ std::vector<OptionInfo> make_options() {
        .fallback = "uniform",
        .choices = {"uniform", "adaptive"},
        .help = "Samples for all pixels alike, or for the tiles whose noise is not yet under the target."},
-      {.key = "sampling.target_error",
-       .type = OptionType::real,
-       .fallback = "0.05",
-       .lo = 0.0001,
-       .hi = 10,
-       .choices = {},
-       .help = "Adaptive: relative standard error of its pixels under which a tile is done.",
-       .restarts = false},
+      going_on(real("sampling.target_error", "0.05", 0.0001, 10, "",
+                    "Adaptive: relative standard error of its pixels under which a tile is done.")),
       going_on(integer("sampling.min_samples", 64, 2, 1 << 20, "samples",
                        "Adaptive: samples that every pixel gets before its tile may be done.")),
       going_on(integer("sampling.max_samples", 1024, 2, 1 << 20, "samples",
@@ -75,13 +85,10 @@ std::vector<OptionInfo> make_options() {
        .unit = "pixels",
        .choices = {"8", "16"},
        .help = "Side of the tiles that adaptive sampling decides on, and that coherent sampling shares."},
-      {.key = "sampling.coherent",
-       .type = OptionType::boolean,
-       .fallback = "false",
-       .choices = {},
-       .help =
-           "The pixels of a tile share their random sequence: neighbouring paths stay together, which some "
-           "devices trace faster; noise then has a pattern, and a tile's error is not vouched for."},
+      boolean(
+          "sampling.coherent",
+          "The pixels of a tile share their random sequence: neighbouring paths stay together, which some "
+          "devices trace faster; noise then has a pattern, and a tile's error is not vouched for."),
       integer("seed", 0, 0, 4294967295.0, "",
               "Seed of every random decision; the same seed gives the same image."),
       integer("path.max_depth", 64, 1, 1024, "vertices", "Scattering events after which a path ends."),
@@ -89,31 +96,14 @@ std::vector<OptionInfo> make_options() {
               "Vertex from which Russian roulette may end a path."),
       integer("path.batch", 131072, 1024, 4194304, "paths",
               "Paths in flight at once; sets the memory of the path state."),
-      {.key = "cache.error",
-       .type = OptionType::real,
-       .fallback = "0.3",
-       .lo = 0.01,
-       .hi = 1,
-       .choices = {},
-       .help = "Irradiance cache: radius of a record over the harmonic mean distance of what it sees. "
-               "Smaller: more "
-               "records, less error."},
-      {.key = "cache.min_radius",
-       .type = OptionType::real,
-       .fallback = "3",
-       .lo = 0,
-       .hi = 100,
-       .unit = "pixels",
-       .choices = {},
-       .help = "Irradiance cache: least radius of a record, as the camera sees it."},
-      {.key = "cache.max_radius",
-       .type = OptionType::real,
-       .fallback = "0.1",
-       .lo = 0.001,
-       .hi = 1,
-       .unit = "of the scene's radius",
-       .choices = {},
-       .help = "Irradiance cache: greatest radius of a record."},
+      real("cache.error", "0.3", 0.01, 1, "",
+           "Irradiance cache: radius of a record over the harmonic mean distance of what it sees. "
+           "Smaller: more "
+           "records, less error."),
+      real("cache.min_radius", "3", 0, 100, "pixels",
+           "Irradiance cache: least radius of a record, as the camera sees it."),
+      real("cache.max_radius", "0.1", 0.001, 1, "of the scene's radius",
+           "Irradiance cache: greatest radius of a record."),
       {.key = "cache.rays",
        .type = OptionType::choice,
        .fallback = "256",
@@ -127,26 +117,16 @@ std::vector<OptionInfo> make_options() {
        .choices = {"64", "256", "1024", "4096"},
        .help = "Irradiance cache: rays of the last level that a noisy record gets, each four times the one "
                "before."},
-      {.key = "cache.noise",
-       .type = OptionType::real,
-       .fallback = "0.2",
-       .lo = 0,
-       .hi = 10,
-       .choices = {},
-       .help = "Irradiance cache: relative standard error of a record above which it gets another level of "
-               "rays."},
+      real("cache.noise", "0.2", 0, 10, "",
+           "Irradiance cache: relative standard error of a record above which it gets another level of "
+           "rays."),
       integer("cache.max_records", 100000, 16, 400000, "records",
               "Irradiance cache: room for records, of 320 bytes each; building ends when it is used up."),
       integer("cache.passes", 12, 1, 64, "passes", "Irradiance cache: passes of building at most."),
-      {.key = "cache.stop",
-       .type = OptionType::real,
-       .fallback = "0.002",
-       .lo = 0,
-       .hi = 1,
-       .choices = {},
-       .help = "Irradiance cache: building ends when no greater share of the paths still asks for records; "
-               "these are "
-               "path traced."},
+      real("cache.stop", "0.002", 0, 1, "",
+           "Irradiance cache: building ends when no greater share of the paths still asks for records; "
+           "these are "
+           "path traced."),
       {.key = "tracer",
        .type = OptionType::choice,
        .fallback = "auto",
@@ -157,15 +137,8 @@ std::vector<OptionInfo> make_options() {
        .fallback = "",
        .choices = {},
        .help = "Name of the scene camera to start with."},
-      {.key = "film.ev",
-       .type = OptionType::real,
-       .fallback = "0",
-       .lo = -20,
-       .hi = 20,
-       .unit = "EV",
-       .choices = {},
-       .help = "Exposure: the picture is multiplied by 2 to this power.",
-       .restarts = false},
+      going_on(
+          real("film.ev", "0", -20, 20, "EV", "Exposure: the picture is multiplied by 2 to this power.")),
       {.key = "film.tone_curve",
        .type = OptionType::choice,
        .fallback = "neutral",
@@ -179,18 +152,11 @@ std::vector<OptionInfo> make_options() {
                    "samples", "error", "cost"},
        .help = "Layer shown and written to PNG files.",
        .restarts = false},
-      {.key = "overlay.tiles",
-       .type = OptionType::boolean,
-       .fallback = "false",
-       .choices = {},
-       .help = "Shows over the picture which tiles are at work and how far their error is from the target.",
-       .restarts = false},
-      {.key = "overlay.records",
-       .type = OptionType::boolean,
-       .fallback = "false",
-       .choices = {},
-       .help = "Shows over the picture the irradiance cache's records as discs of their validity.",
-       .restarts = false},
+      going_on(boolean(
+          "overlay.tiles",
+          "Shows over the picture which tiles are at work and how far their error is from the target.")),
+      going_on(boolean("overlay.records",
+                       "Shows over the picture the irradiance cache's records as discs of their validity.")),
       {.key = "overlay.records_by",
        .type = OptionType::choice,
        .fallback = "pass",
@@ -199,12 +165,7 @@ std::vector<OptionInfo> make_options() {
                "the harmonic "
                "mean of the distances that they see, their error.",
        .restarts = false},
-      {.key = "overlay.overlap",
-       .type = OptionType::boolean,
-       .fallback = "false",
-       .choices = {},
-       .help = "Shows over the picture how many records serve each pixel.",
-       .restarts = false},
+      going_on(boolean("overlay.overlap", "Shows over the picture how many records serve each pixel.")),
       {.key = "about",
        .type = OptionType::text,
        .fallback = "",

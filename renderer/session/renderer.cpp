@@ -138,15 +138,20 @@ void Renderer::reload_shaders() {
 
 uint32_t Renderer::enabled_components() const { return plan::make_plan(settings_).enabled(); }
 
-shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
+shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, uint32_t enabled,
+                                   uint32_t fallback) const {
   return transport::make_frame(flat_, camera_, automaton_,
                                {.width = width,
                                 .height = height,
                                 .seed = uint32_t(settings_.integer("seed")),
                                 .max_depth = uint32_t(settings_.integer("path.max_depth")),
                                 .roulette_depth = uint32_t(settings_.integer("path.roulette_depth")),
-                                .enabled = routes_.traced,
-                                .fallback = cache_ ? enabled_components() : 0});
+                                .enabled = enabled,
+                                .fallback = fallback});
+}
+
+shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
+  return make_frame(width, height, routes_.traced, cache_ ? enabled_components() : 0);
 }
 
 irradiance_cache::CacheOptions Renderer::cache_options() const {
@@ -167,14 +172,7 @@ irradiance_cache::CacheView Renderer::cache_view() const {
   view.paths_frame = make_frame(width_, height_);
   view.paths_enabled = enabled_components();
   // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
-  view.records_frame =
-      transport::make_frame(flat_, camera_, automaton_,
-                            {.width = width_,
-                             .height = height_,
-                             .seed = uint32_t(settings_.integer("seed")),
-                             .max_depth = uint32_t(settings_.integer("path.max_depth")),
-                             .roulette_depth = uint32_t(settings_.integer("path.roulette_depth")),
-                             .enabled = routes_.parts});
+  view.records_frame = make_frame(width_, height_, routes_.parts, 0);
   view.records_enabled = routes_.parts;
   view.width = width_, view.height = height_;
   view.scene_radius = flat_.scene_radius;
@@ -430,8 +428,7 @@ void Renderer::note_progress(bool at_once) {
 
 bool Renderer::render_item(const std::function<bool()>& cancel) {
   if (!wavefront_ || done()) return false;
-  if (cache_ && !cache_->ready())
-    return cache_->step(*device_, *compiler_, *wavefront_, automaton_, cache_view(), cancel);
+  if (cache_ && !cache_->ready()) return cache_->step(*wavefront_, automaton_, cache_view(), cancel);
   if (adaptive_) {
     const schedule::WorkItem item = adaptive_->next();
     if (!wavefront_->run(item, *film_, cancel)) {

@@ -52,6 +52,11 @@ struct Wavefront::Impl {
     for (auto& q : shadow_queues) q = make("shadow queue", uint64_t(n) * 4, queue_memory);
   }
 
+  void rebind_lookup() {
+    for (gpu::Resources& r : main)
+      if (bind_lookup) bind_lookup(r);
+  }
+
   void bind(const upload::DeviceScene& scene) {
     transparent = scene.effects().transparent();
     for (int k = 0; k < 2; ++k) {
@@ -86,8 +91,7 @@ struct Wavefront::Impl {
       shade_shadow[k].set("NextQueue", queues[0]);
       shade_shadow[k].set("ShadowQueue", shadow_queues[1 - k]);
     }
-    if (bind_lookup)
-      for (gpu::Resources& r : main) bind_lookup(r);
+    rebind_lookup();
     film_resources = main[0];
     film_resources.set("Coarse", no_coarse);
   }
@@ -205,10 +209,7 @@ void Wavefront::set_frame(const Frame& frame, uint32_t enabled) {
 }
 
 void Wavefront::rebind(const upload::DeviceScene& scene) { impl_->bind(scene); }
-void Wavefront::rebind_lookup() {
-  for (gpu::Resources& r : impl_->main)
-    if (impl_->bind_lookup) impl_->bind_lookup(r);
-}
+void Wavefront::rebind_lookup() { impl_->rebind_lookup(); }
 uint32_t Wavefront::slots() const { return impl_->slots; }
 
 bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel) {

@@ -6,7 +6,7 @@
 #include "shaders/shared/irradiance_cache.h"
 #include "lib/math.glsl"
 #include "lib/octree.glsl"
-#include "irradiance_cache/facet.glsl"
+#include "shaders/shared/facet.h"
 
 layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
 uniform samplerBuffer record_texels;
@@ -36,15 +36,20 @@ float record_weight(vec3 x, vec3 n, vec4 place, vec4 facing) {
 // Whether a record at a point with that geometric normal could serve that shading normal.
 bool cache_can_serve(vec3 n, vec3 shading) { return 1.0 - dot(n, shading) <= cache.normal_tolerance; }
 
+// The records that may serve a point; none when nothing is asked, or while the cache holds none that are complete.
+OctreeRange cache_range(vec3 x, bool asks) {
+  OctreeRange range = octree_find(x);
+  return OctreeRange(range.first, asks && cache.record_count > 0u ? range.last : range.first);
+}
+
 // `n`: geometric, on the side whose light is asked for; `shading`: the normal that the light falls on. They may differ by
 // what the gradient of rotation can bridge; beyond that nothing is served. `asks` false: an empty answer, without work.
 Cached cache_lookup(vec3 x, vec3 n, vec3 shading, bool asks) {
   Cached found;
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
   found.weight = 0.0;
-  OctreeRange range = octree_find(x);
-  uint last = asks && cache.record_count > 0u && cache_can_serve(n, shading) ? range.last : range.first;
-  for (uint i = range.first; i < last; ++i) {
+  OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
+  for (uint i = range.first; i < range.last; ++i) {
     uint record = octree_sphere(i);
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);

@@ -1,6 +1,6 @@
 // Draws the records over the picture, where the surfaces that the camera sees are: each as the disc of its validity with
-// a mark at its centre and its normal as a short line, and how many serve a pixel as a heat map. The place on the surface
-// comes from the film's depth, so that what is hidden stays hidden.
+// a mark at its centre, and how many serve a pixel as a heat map. The place on the surface comes from the film's depth, so
+// that what is hidden stays hidden.
 #include "lib/frame.glsl"
 #include "lib/film.glsl"
 #include "lib/invocation.glsl"
@@ -52,9 +52,8 @@ void main() {
 
   uint overlap = 0u;
   vec4 over = vec4(0.0);  // premultiplied
-  OctreeRange range = octree_find(x);
-  uint last = solid ? range.last : range.first;
-  for (uint i = range.first; i < last; ++i) {
+  OctreeRange range = cache_range(x, solid);
+  for (uint i = range.first; i < range.last; ++i) {
     uint record = octree_sphere(i);
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);

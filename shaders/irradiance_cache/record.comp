@@ -7,7 +7,7 @@
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
 #include "irradiance_cache/hemisphere.glsl"
-#include "irradiance_cache/facet.glsl"
+#include "shaders/shared/facet.h"
 
 void main() {
   uint slot = global_index();

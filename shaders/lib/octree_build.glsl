@@ -19,7 +19,7 @@ layout(scalar) readonly buffer SphereCount { uint sphere_count_words[]; };
 uniform samplerBuffer spheres;   // centre, radius
 
 uint sphere_count() {
-  return push.count_at == k_sort_count_here ? push.count : min(sphere_count_words[push.count_at], push.count);
+  return counted(sphere_count_words);
 }
 Run own_run(uint index, uint count) {
   uint length = run_length(count, k_least_run, LUCERNA_OCTREE_WANTED);

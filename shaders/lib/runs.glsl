@@ -2,6 +2,10 @@
 #ifndef LUCERNA_LIB_RUNS
 #define LUCERNA_LIB_RUNS
 
+// Length of the array that a kernel works on, from push constants `count` and `count_at` (shaders/shared/sort.h) and the
+// words of the buffer that may hold it. A macro, because the buffer has another name in every library.
+#define counted(words) (push.count_at == k_sort_count_here ? push.count : min(words[push.count_at], push.count))
+
 struct Run {
   uint first, end;  // elements; empty when the array ends before it
 };

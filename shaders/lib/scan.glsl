@@ -16,7 +16,7 @@ layout(scalar) readonly buffer ScanCount { uint scan_count_words[]; };
 uniform usamplerBuffer scan_in;
 
 uint scan_count() {
-  return push.count_at == k_sort_count_here ? push.count : min(scan_count_words[push.count_at], push.count);
+  return counted(scan_count_words);
 }
 uint scan_run_length(uint count) { return run_length(count, LUCERNA_SCAN_LEAST, LUCERNA_SCAN_WANTED); }
 

@@ -18,7 +18,7 @@ layout(scalar) readonly buffer SortCount { uint sort_count_words[]; };
 uniform usamplerBuffer sort_in;
 
 uint sort_count() {
-  return push.count_at == k_sort_count_here ? push.count : min(sort_count_words[push.count_at], push.count);
+  return counted(sort_count_words);
 }
 uint sort_run_length(uint count) { return run_length(count, LUCERNA_SORT_LEAST, LUCERNA_SORT_WANTED); }
 uint digit(uint word) { return (word >> push.shift) & (push.bins - 1u); }

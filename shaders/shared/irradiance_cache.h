@@ -38,9 +38,7 @@ LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + k_part_count * k_pa
 //   0: position, off its surface; 1 + k_origin_* where there is one    1: smooth normal on the side that asks, bits facet
 LUCERNA_CONST uint k_candidate_texels = 2u;
 
-LUCERNA_CONST uint k_facet_steps = 2047u;  // of the octahedral map along an axis, -1 to 1
-
-LUCERNA_CONST uint k_no_routes = 0xffffu;
+LUCERNA_CONST uint k_no_routes = 0x4444u;  ///< k_component_count for every part
 
 /// What paths are told of the cache.
 struct CacheFrame {

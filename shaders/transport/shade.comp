@@ -51,7 +51,6 @@ void main() {
 #if LUCERNA_CACHE
   vec3 cached[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) cached[c] = vec3(0.0);
-  bool cached_everywhere = false;
 #endif
   if (hit.prim == k_no_hit) {
     float pdf;
@@ -167,7 +166,7 @@ void main() {
         // states that leave nothing out.
         uint routes = cache.routes[state];
         bool looks = routes != k_no_routes && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
-        cached_everywhere = looks;
+        bool alone = false;  // a side asks and finds nothing
         // Records stand on the smooth surface, not on its facets nor its normal map.
         vec3 smooth_side = dot(surface.normal_v, side) < 0.0 ? -surface.normal_v : surface.normal_v;
         for (int facing = 0; facing < k_cache_sides; ++facing) {
@@ -180,12 +179,12 @@ void main() {
             candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), 1.0 + float(depth == 0u ? k_origin_screen : k_origin_world));
             candidates[slot * k_candidate_texels + 1u] = vec4(sign * smooth_side, uintBitsToFloat(facet_pack(sign * side)));
           }
-          cached_everywhere = cached_everywhere && !missing;
+          alone = alone || missing;
           for (uint p = 0u; p < k_part_count; ++p)
             for (uint c = 0u; c < k_component_count; ++c)
               if (found.weight > 0.0 && ((routes >> (4u * p)) & 15u) == c) cached[c] += albedo * found.part[p];
         }
-        if (looks && !cached_everywhere)
+        if (alone)
           for (uint c = 0u; c < k_component_count; ++c) cached[c] = vec3(0.0);
 #endif
 
@@ -197,8 +196,7 @@ void main() {
           direction = normalize(to_world * b.wi);
           bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
 #if LUCERNA_CACHE
-          bool alone = looks && !cached_everywhere && b.event == k_event_diffuse;
-          uint next = automaton_after(state + (alone ? k_fallback_state : 0u), b.event);
+          uint next = automaton_after(state + (alone && b.event == k_event_diffuse ? k_fallback_state : 0u), b.event);
 #else
           uint next = automaton_after(state, b.event);
 #endif

@@ -7,6 +7,7 @@
 #include "bvh/embree/build.h"
 #include "gpu/kernel.h"
 #include "scene/io/load.h"
+#include "shaders/shared/facet.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "transport/frame.h"
 #include "upload/device_scene.h"
@@ -22,14 +23,14 @@ class CacheBed {
         flat(upload::flatten(scene)),
         device_scene(device, flat, bvh::build({flat.positions, flat.non_opaque})),
         wavefront(device, compiler, device_scene, slots, {}),
-        evaluator(device, compiler, wavefront, device_scene.defines()) {}
+        evaluator(device, compiler, slots) {}
   static scene::Scene load(const std::string& name) {
     return scene::load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf");
   }
 
   /// The same, on surfaces that face as they do.
   static std::vector<irradiance_cache::Place> on_facets(std::vector<irradiance_cache::Place> places) {
-    for (irradiance_cache::Place& p : places) p.facet = irradiance_cache::pack_facet(p.normal);
+    for (irradiance_cache::Place& p : places) p.facet = shared::facet_pack(p.normal);
     return places;
   }
 

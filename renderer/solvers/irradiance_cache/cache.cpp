@@ -29,6 +29,9 @@ constexpr size_t k_company = 4;
 
 enum class Stage { probe, evaluate, done };
 
+/// Elevations of a level of that many rays; there are four times as many azimuths.
+uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lround(std::sqrt(rays / 4.0))); }
+
 }  // namespace
 
 struct Cache::Impl {
@@ -38,7 +41,7 @@ struct Cache::Impl {
   gpu::Buffer frame, candidates;
   gpu::Kernel radius, overlay;
   gpu::Resources resources;
-  std::unique_ptr<Evaluator> evaluator;
+  Evaluator evaluator;
   CacheFrame told{};
   uint32_t parts = 0;
   CacheStatus status;
@@ -55,7 +58,8 @@ struct Cache::Impl {
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o)
       : options(o),
         records(device, o.most_records),
-        octree(device, compiler, {.spheres = o.most_records, .references = k_references * o.most_records}) {
+        octree(device, compiler, {.spheres = o.most_records, .references = k_references * o.most_records}),
+        evaluator(device, compiler, slots) {
     frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
     candidates = gpu::Buffer(device, {.name = "cache candidates",
                                       .bytes = uint64_t{slots} * 16 * k_candidate_texels,
@@ -141,7 +145,7 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
              const paths::LookupRoutes& routes, const CacheOptions& options)
     : impl_(std::make_unique<Impl>(device, compiler, slots, options)) {
   Impl& c = *impl_;
-  const auto elevations = static_cast<uint32_t>(std::lround(std::sqrt(options.rays / 4.0)));
+  const uint32_t elevations = elevations_for(options.rays);
   if (options.rays == 0 || elevations * elevations * 4 != options.rays)
     throw_error("cache.rays", "'{}': expected four times a square, such as 256 or 1024", options.rays);
   c.parts = routes.parts;
@@ -152,14 +156,9 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
   for (uint32_t s = 0; s < 16; ++s) {
     c.told.routes[s] = k_no_routes;
     if (s >= routes.component.size()) continue;
-    uint32_t packed = 0;
-    bool any = false;
-    for (uint32_t p = 0; p < k_part_count; ++p) {
-      const uint8_t component = routes.component[s][p];
-      any |= component != paths::k_no_component;
-      packed |= (component == paths::k_no_component ? k_component_count : component) << (4 * p);
-    }
-    if (any) c.told.routes[s] = packed;
+    c.told.routes[s] = 0;
+    for (uint32_t p = 0; p < k_part_count; ++p)
+      c.told.routes[s] |= std::min<uint32_t>(routes.component[s][p], k_component_count) << (4 * p);
   }
   clear();
 }
@@ -205,11 +204,9 @@ bool Cache::ready() const { return impl_->stage == Stage::done; }
 const CacheStatus& Cache::status() const { return impl_->status; }
 const Records& Cache::records() const { return impl_->records; }
 
-bool Cache::step(gpu::Device& device, gpu::ShaderCompiler& compiler, transport::Wavefront& wavefront,
-                 const paths::Automaton& automaton, const CacheView& view,
+bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
                  const std::function<bool()>& cancel) {
   Impl& c = *impl_;
-  if (!c.evaluator) c.evaluator = std::make_unique<Evaluator>(device, compiler, wavefront);
   if (c.stage == Stage::probe) {
     if (!c.probing) {
       c.picture = {((view.width + 7) / 8) * ((view.height + 7) / 8), 1, wavefront.slots()};
@@ -255,19 +252,19 @@ bool Cache::step(gpu::Device& device, gpu::ShaderCompiler& compiler, transport::
   }
   if (c.stage == Stage::evaluate) {
     const uint32_t rays = c.options.rays << 2 * c.level;
-    const auto elevations = static_cast<uint32_t>(std::lround(std::sqrt(rays / 4.0)));
+    const uint32_t elevations = elevations_for(rays);
     const size_t batch = std::min<size_t>(c.list.size() - c.at, std::max(1u, wavefront.slots() / rays));
     const std::span<const uint32_t> list(c.list.data() + c.at, batch);
     if (!list.empty()) {
       wavefront.set_frame(view.records_frame, view.records_enabled);
       c.tell(0, false, false);
-      const size_t done = c.evaluator->evaluate(wavefront, automaton, c.records, list,
-                                                {.elevations = elevations,
-                                                 .azimuths = 4 * elevations,
-                                                 .rays_before = c.rays_before,
-                                                 .parts = c.parts,
-                                                 .seed = c.options.seed},
-                                                cancel);
+      const size_t done = c.evaluator.evaluate(wavefront, automaton, c.records, list,
+                                               {.elevations = elevations,
+                                                .azimuths = 4 * elevations,
+                                                .rays_before = c.rays_before,
+                                                .parts = c.parts,
+                                                .seed = c.options.seed},
+                                               cancel);
       wavefront.set_frame(view.paths_frame, view.paths_enabled);
       c.tell(c.evaluated, false);
       if (done < list.size()) return false;

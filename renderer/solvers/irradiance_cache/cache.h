@@ -72,8 +72,7 @@ class Cache {
   bool ready() const;
   /// One bounded piece of the building, cancellable between bounces; on return the wavefront's frame is that
   /// of the picture's paths. False when it was cancelled: it will be done again.
-  bool step(gpu::Device& device, gpu::ShaderCompiler& compiler, transport::Wavefront& wavefront,
-            const paths::Automaton& automaton, const CacheView& view,
+  bool step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
             const std::function<bool()>& cancel = {});
   const CacheStatus& status() const;
   const Records& records() const;

@@ -21,17 +21,14 @@ struct Evaluator::Impl {
   gpu::Resources resources;
 };
 
-Evaluator::Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler,
-                     const transport::Wavefront& wavefront, const gpu::Defines& defines)
+Evaluator::Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots)
     : impl_(std::make_unique<Impl>()) {
-  impl_->record = gpu::Kernel(device, compiler, "irradiance_cache/record.comp", defines);
-  impl_->gather = gpu::Kernel(device, compiler, "irradiance_cache/gather.comp", defines);
+  impl_->record = gpu::Kernel(device, compiler, "irradiance_cache/record.comp");
+  impl_->gather = gpu::Kernel(device, compiler, "irradiance_cache/gather.comp");
   impl_->first_hits = gpu::Buffer(
-      device,
-      {.name = "first hits of records", .bytes = uint64_t{wavefront.slots()} * sizeof(Hit), .texel = true});
+      device, {.name = "first hits of records", .bytes = uint64_t{slots} * sizeof(Hit), .texel = true});
   impl_->list = gpu::Buffer(
-      device,
-      {.name = "records to evaluate", .bytes = uint64_t{wavefront.slots()} * 4, .memory = gpu::Memory::host});
+      device, {.name = "records to evaluate", .bytes = uint64_t{slots} * 4, .memory = gpu::Memory::host});
 }
 
 Evaluator::~Evaluator() = default;

@@ -25,9 +25,8 @@ struct EvaluateOptions {
 
 class Evaluator {
  public:
-  /// Compiles and warms up. `defines`: those of the wavefront's kernels.
-  Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, const transport::Wavefront& wavefront,
-            const gpu::Defines& defines = {});
+  /// `slots`: of the wavefronts that it will be used with.
+  Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots);
   ~Evaluator();
   /// Evaluates the listed records (indices), a batch of the wavefront's slots at a time; `cancel` is asked
   /// between bounces. Returns how many of the list are done: they, and only they, are changed. The

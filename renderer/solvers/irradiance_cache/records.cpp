@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "base/error.h"
 #include "gpu/kernel.h"
@@ -47,17 +46,6 @@ Record unpack(const vec4* place, const vec4* light) {
 }
 
 }  // namespace
-
-uint32_t pack_facet(const vec3& n) {
-  vec2 p = vec2(n.x, n.y) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
-  const auto sign = [](float x) { return x >= 0 ? 1.0f : -1.0f; };
-  if (n.z < 0) p = vec2((1 - std::abs(p.y)) * sign(p.x), (1 - std::abs(p.x)) * sign(p.y));
-  const auto step = [](float x) {
-    const float most = float(k_facet_steps);
-    return static_cast<uint32_t>(std::clamp((x * 0.5f + 0.5f) * most + 0.5f, 0.0f, most));
-  };
-  return step(p.x) | step(p.y) << 11;
-}
 
 uint32_t Records::most_records(const gpu::Device& device) {
   return static_cast<uint32_t>(

@@ -5,12 +5,8 @@
 #include <vector>
 
 #include "base/math.h"
-#include "gpu/resources.h"
+#include "gpu/kernel.h"
 #include "shaders/shared/irradiance_cache.h"
-
-namespace lucerna::gpu {
-class Resources;
-}
 
 namespace lucerna::irradiance_cache {
 
@@ -18,7 +14,7 @@ namespace lucerna::irradiance_cache {
 /// side from which light is gathered.
 struct Place {
   vec3 position{0}, normal{0, 1, 0};
-  uint32_t facet = 0;  ///< geometric normal as facet_pack() of shaders/irradiance_cache/facet.glsl has it
+  uint32_t facet = 0;                         ///< geometric normal, shared::facet_pack()
   uint32_t origin = shared::k_origin_screen;  ///< shared::k_origin_*: what asked for it
 };
 
@@ -41,9 +37,6 @@ struct Record {
   uint32_t pass = 0;  ///< that placed it
   std::array<Irradiance, shared::k_part_count> parts;
 };
-
-/// As facet_pack() of shaders/irradiance_cache/facet.glsl.
-uint32_t pack_facet(const vec3& normal);
 
 class Records {
  public:
