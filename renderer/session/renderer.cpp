@@ -389,7 +389,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
 
 void Renderer::note_progress(bool at_once) {
   const transport::TransportStats& s = wavefront_->stats();
-  if (s.paths == 0 || !(at_once || ledger_.due(s.paths))) return;
+  if (s.paths == 0 || !(at_once || ledger_.due(s.paths, uint64_t{width_} * height_))) return;
   stats::Entry entry;
   entry.wall_s = seconds_;
   entry.prepared_s = prepared_s_;
@@ -435,10 +435,14 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
       adaptive_->give_back();
       return false;
     }
-    wavefront_->estimate_stopping(item.blocks, *film_, luminance_floor());
-    std::vector<float> errors;
-    for (const uint32_t tile : adaptive_->to_report())
-      errors.push_back(float(film::relative_error(*film_, adaptive_->blocks_of(tile))));
+    const std::vector<uint32_t>& tiles = adaptive_->to_report();
+    std::vector<float> errors(tiles.size(), 0.0f);
+    // One sample a pixel tells nothing of the error, and decides nothing.
+    if (adaptive_->tiles()[tiles[0]].samples + item.sample_count > 1) {
+      wavefront_->estimate_stopping(item.blocks, *film_, luminance_floor());
+      for (size_t i = 0; i < tiles.size(); ++i)
+        errors[i] = float(film::relative_error(*film_, adaptive_->blocks_of(tiles[i])));
+    }
     adaptive_->report(errors);
     return true;
   }

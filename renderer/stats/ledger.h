@@ -1,6 +1,6 @@
 #pragma once
-// What a render has cost so far and how good it is: one line each time the work has grown by a quarter, so
-// that the whole story of a long render is a few dozen lines, evenly spaced in log time.
+// What a render has cost so far and how good it is: one line each time the work has grown by a quarter or
+// half, so that the whole story of a long render is a few dozen lines, evenly spaced in log time.
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -34,9 +34,13 @@ struct Entry {
 
 class Ledger {
  public:
-  /// Whether a line is due: the first with any paths, then each time there are a quarter more.
-  bool due(uint64_t paths) const {
-    return paths > 0 && (entries_.empty() || paths >= entries_.back().paths * 5 / 4);
+  /// Whether a line is due, of a picture of so many pixels: the first with two samples a pixel (from fewer no
+  /// error can be told), then each time there are half as many more, and from 32 samples on a quarter more: a
+  /// line costs a pass over the film, which short renders would feel.
+  bool due(uint64_t paths, uint64_t pixels) const {
+    if (paths < 2 * pixels) return false;
+    const uint64_t last = entries_.empty() ? 0 : entries_.back().paths;
+    return last < 32 * pixels ? paths >= last + last / 2 : paths >= last + last / 4;
   }
   void add(const Entry& entry);
   void clear() { entries_.clear(); }

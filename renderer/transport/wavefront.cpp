@@ -100,7 +100,7 @@ struct Wavefront::Impl {
   bool trace_paths(uint32_t count, const std::function<void()>& begin,
                    const std::function<void()>& first_hits, const std::function<bool()>& cancel);
   void estimate(const gpu::Kernel& kernel, std::span<const WorkBlock> list, film::Film& film,
-                float luminance_floor);
+                float luminance_floor, const char* stage);
 
   StageSum& stage(const std::string& name, bool host) {
     for (StageSum& s : stats.stages)
@@ -323,13 +323,13 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const std::function<void()>& b
 }
 
 void Wavefront::Impl::estimate(const gpu::Kernel& kernel, std::span<const WorkBlock> list, film::Film& film,
-                               float luminance_floor) {
+                               float luminance_floor, const char* stage) {
   film.bind(film_resources);
   while (!list.empty()) {
     const size_t count = std::min<size_t>(list.size(), slots / 64);
     blocks.write(list.first(count));
     const ErrorPush push{film.width(), film.height(), uint32_t(count), luminance_floor};
-    stream.dispatch(kernel, film_resources, push, uint32_t(count + 7) / 8, "error");
+    stream.dispatch(kernel, film_resources, push, uint32_t(count + 7) / 8, stage);
     run_and_account(nullptr, nullptr);
     list = list.subspan(count);
   }
@@ -338,12 +338,12 @@ void Wavefront::Impl::estimate(const gpu::Kernel& kernel, std::span<const WorkBl
 void Wavefront::estimate(film::Film& film, float luminance_floor) {
   std::vector<WorkBlock> all;
   for (uint32_t b = 0; b < film.blocks(); ++b) all.push_back({b, 0});
-  impl_->estimate(impl_->error, all, film, luminance_floor);
+  impl_->estimate(impl_->error, all, film, luminance_floor, "ledger");
 }
 
 void Wavefront::estimate_stopping(const std::vector<WorkBlock>& blocks, film::Film& film,
                                   float luminance_floor) {
-  impl_->estimate(impl_->stopping, blocks, film, luminance_floor);
+  impl_->estimate(impl_->stopping, blocks, film, luminance_floor, "stopping");
 }
 
 void Wavefront::bind_paths(gpu::Resources& resources) const { resources = impl_->main[0]; }

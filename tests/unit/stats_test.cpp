@@ -13,7 +13,7 @@ namespace {
 Ledger render(double exponent, uint64_t paths, double wobble = 0) {
   Ledger ledger;
   for (uint64_t p = 100; p <= paths; p += 100) {
-    if (!ledger.due(p)) continue;
+    if (!ledger.due(p, 100)) continue;
     Entry e;
     e.paths = p, e.rays = 5 * p, e.samples = double(p) / 100, e.wall_s = 1e-3 * double(p);
     for (double& x : e.error)
@@ -37,13 +37,17 @@ std::vector<TileProgress> tiles(uint32_t count, double easy, double hard, double
 
 }  // namespace
 
-TEST_CASE("a line each time the work has grown by a quarter, and one for the end") {
+TEST_CASE("a line each time the work has grown by half, later by a quarter, and one for the end") {
   Ledger ledger;
-  CHECK_FALSE(ledger.due(0));
-  CHECK(ledger.due(1));
+  CHECK_FALSE(ledger.due(0, 10));
+  CHECK_FALSE(ledger.due(19, 10));  // fewer than two samples a pixel: no error can be told
+  CHECK(ledger.due(20, 10));
+  ledger.add({.paths = 20});
+  CHECK_FALSE(ledger.due(29, 10));
+  CHECK(ledger.due(30, 10));
   ledger.add({.paths = 1000});
-  CHECK_FALSE(ledger.due(1249));
-  CHECK(ledger.due(1250));
+  CHECK_FALSE(ledger.due(1249, 10));
+  CHECK(ledger.due(1250, 10));
   ledger.add({.paths = 1000, .rays = 7});  // the same moment again replaces the line
   REQUIRE(ledger.entries().size() == 1);
   CHECK(ledger.entries()[0].rays == 7);
