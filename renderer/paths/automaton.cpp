@@ -401,4 +401,16 @@ LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_
   return routes;
 }
 
+LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recursive, bool caustics) {
+  constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2, k_caustic = 1u << 3;
+  if (!recursive || (parts & k_tertiary) == 0) return {.component = {}, .parts = parts, .traced = parts};
+  // Behind ED the components are the parts, so that the rays' own routes are those of a picture of them.
+  const uint32_t gathered = parts | k_secondary | (caustics ? k_caustic : 0);
+  LookupRoutes own = lookup_routes(automaton, gathered, k_tertiary);
+  own.parts = gathered;
+  if (!caustics)
+    for (auto& component : own.component) component[3] = k_no_component;
+  return own;
+}
+
 }  // namespace lucerna::paths

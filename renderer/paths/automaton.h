@@ -82,4 +82,10 @@ struct LookupRoutes {
 /// lookup, whatever its own solver.
 LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached);
 
+/// For the rays of a cache's records, which begin in the state after ED and bring the parts that the
+/// picture's lookups read. `recursive`: their tertiary light is looked up in turn, at the first vertex behind
+/// which there is nothing else, whose parts are then gathered too (of caustics, where there is anything to
+/// make some).
+LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recursive, bool caustics);
+
 }  // namespace lucerna::paths

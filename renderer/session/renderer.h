@@ -150,6 +150,8 @@ class Renderer {
   irradiance_cache::CacheOptions cache_options() const;
   irradiance_cache::CacheView cache_view() const;
   paths::LookupRoutes wanted_routes() const;  ///< by the settings
+  paths::LookupRoutes wanted_record_routes(
+      const upload::Effects& effects) const;  ///< ... of the rays of records
   /// Adds a line to the ledger when one is due, or at once.
   void note_progress(bool at_once);
 
@@ -162,7 +164,7 @@ class Renderer {
   upload::FlatScene flat_;
   std::unique_ptr<upload::DeviceScene> device_scene_;
   std::unique_ptr<bvh::HostTracer> host_;
-  paths::LookupRoutes routes_;                      ///< of the kernels in use
+  paths::LookupRoutes routes_, record_routes_;      ///< of the kernels in use
   std::unique_ptr<irradiance_cache::Cache> cache_;  ///< null: nothing is looked up
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::unique_ptr<film::Film> film_, coarse_;

@@ -32,6 +32,18 @@ enum class Stage { probe, evaluate, done };
 /// Elevations of a level of that many rays; there are four times as many azimuths.
 uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lround(std::sqrt(rays / 4.0))); }
 
+/// As CacheFrame::routes.
+std::array<uint32_t, 16> packed(const paths::LookupRoutes& routes) {
+  std::array<uint32_t, 16> table;
+  table.fill(k_no_routes);
+  for (size_t s = 0; s < routes.component.size(); ++s) {
+    table[s] = 0;
+    for (uint32_t p = 0; p < k_part_count; ++p)
+      table[s] |= std::min<uint32_t>(routes.component[s][p], k_component_count) << (4 * p);
+  }
+  return table;
+}
+
 }  // namespace
 
 struct Cache::Impl {
@@ -42,7 +54,8 @@ struct Cache::Impl {
   gpu::Kernel radius, overlay;
   gpu::Resources resources;
   Evaluator evaluator;
-  CacheFrame told{};
+  std::array<uint32_t, 16> routes, own_routes;  // of the picture's paths, of the records'
+  bool recursive = false;
   uint32_t parts = 0;
   CacheStatus status;
   Stage stage = Stage::probe;
@@ -85,13 +98,16 @@ struct Cache::Impl {
   }
 
   /// What paths know of the cache from here on.
-  void tell(uint32_t count, bool probes, bool looks = true) {
-    CacheFrame f = told;
-    f.record_count = count;
-    f.probing = probes ? 1 : 0;
-    if (!looks) std::fill(std::begin(f.routes), std::end(f.routes), k_no_routes);
+  void tell(uint32_t probing, const std::array<uint32_t, 16>& table) {
+    CacheFrame f{};
+    std::copy(table.begin(), table.end(), f.routes);
+    f.record_count = evaluated;
+    f.normal_tolerance = k_normal_tolerance;
+    f.behind = k_behind;
+    f.probing = probing;
     frame.write(&f, sizeof f);
   }
+  void tell(uint32_t probing = k_probe_none) { tell(probing, routes); }
 
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
@@ -137,36 +153,30 @@ struct Cache::Impl {
     stage = Stage::done;
     status.stop = reason;
     asked = {};
-    tell(records.size(), false);
+    tell();
   }
 };
 
 Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
-             const paths::LookupRoutes& routes, const CacheOptions& options)
+             const paths::LookupRoutes& routes, const paths::LookupRoutes& own, const CacheOptions& options)
     : impl_(std::make_unique<Impl>(device, compiler, slots, options)) {
   Impl& c = *impl_;
   const uint32_t elevations = elevations_for(options.rays);
   if (options.rays == 0 || elevations * elevations * 4 != options.rays)
     throw_error("cache.rays", "'{}': expected four times a square, such as 256 or 1024", options.rays);
-  c.parts = routes.parts;
+  c.parts = own.parts;
+  c.routes = packed(routes), c.own_routes = packed(own);
+  c.recursive =
+      std::any_of(c.own_routes.begin(), c.own_routes.end(), [](uint32_t r) { return r != k_no_routes; });
   c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
-  c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(routes));
-  c.told.normal_tolerance = k_normal_tolerance;
-  c.told.behind = k_behind;
-  for (uint32_t s = 0; s < 16; ++s) {
-    c.told.routes[s] = k_no_routes;
-    if (s >= routes.component.size()) continue;
-    c.told.routes[s] = 0;
-    for (uint32_t p = 0; p < k_part_count; ++p)
-      c.told.routes[s] |= std::min<uint32_t>(routes.component[s][p], k_component_count) << (4 * p);
-  }
+  c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(own));
   clear();
 }
 
 Cache::~Cache() = default;
 
-gpu::Defines Cache::defines(const paths::LookupRoutes& routes) {
-  return {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", std::to_string(routes.parts)}};
+gpu::Defines Cache::defines(const paths::LookupRoutes& own) {
+  return {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", std::to_string(own.parts)}};
 }
 
 void Cache::bind(gpu::Resources& resources) const {
@@ -185,7 +195,7 @@ void Cache::clear() {
   c.stage = Stage::probe;
   c.probing = false;
   c.evaluated = 0;
-  c.tell(0, false);
+  c.tell();
 }
 
 void Cache::extend() {
@@ -218,16 +228,16 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     schedule::WorkItem item = c.picture.next();
     // Each pass looks along paths of its own.
     for (WorkBlock& b : item.blocks) b.first_sample = c.status.pass;
-    c.tell(c.evaluated, true);
+    c.tell(c.recursive && c.evaluated == 0 ? k_probe_beyond : k_probe_lookups);
     wavefront.stream().fill(c.candidates, 0);
     if (!wavefront.probe(item, cancel)) {
       c.picture = before;
-      c.tell(c.evaluated, false);
+      c.tell();
       return false;
     }
     c.collect(item.slots());
     c.status.paths += item.slots();
-    c.tell(c.evaluated, false);
+    c.tell();
     if (!c.picture.done()) return true;
     c.probing = false;
     if (double(c.status.asked) <= double(c.options.stop_share) * double(c.status.paths)) {
@@ -257,7 +267,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     const std::span<const uint32_t> list(c.list.data() + c.at, batch);
     if (!list.empty()) {
       wavefront.set_frame(view.records_frame, view.records_enabled);
-      c.tell(0, false, false);
+      c.tell(k_probe_none, c.own_routes);
       const size_t done = c.evaluator.evaluate(wavefront, automaton, c.records, list,
                                                {.elevations = elevations,
                                                 .azimuths = 4 * elevations,
@@ -266,7 +276,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
                                                 .seed = c.options.seed},
                                                cancel);
       wavefront.set_frame(view.paths_frame, view.paths_enabled);
-      c.tell(c.evaluated, false);
+      c.tell();
       if (done < list.size()) return false;
       c.at += done;
       c.status.rays += uint64_t(done) * rays;
@@ -286,7 +296,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     c.status.records = c.evaluated;
     ++c.status.pass;
     c.build_octree(wavefront);
-    c.tell(c.evaluated, false);
+    c.tell();
     c.stage = Stage::probe;
     if (c.records.size() == c.records.capacity())
       c.finish(StopReason::records);
