@@ -142,7 +142,7 @@ void Renderer::reload_shaders() {
 
 uint32_t Renderer::enabled_components() const { return plan::make_plan(settings_).enabled(); }
 
-shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, uint32_t enabled,
+shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
                                    uint32_t fallback) const {
   return transport::make_frame(flat_, camera_, automaton_,
                                {.width = width,
@@ -150,12 +150,13 @@ shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, uint32_t ena
                                 .seed = uint32_t(settings_.integer("seed")),
                                 .max_depth = uint32_t(settings_.integer("path.max_depth")),
                                 .roulette_depth = uint32_t(settings_.integer("path.roulette_depth")),
-                                .enabled = enabled,
+                                .enabled = routes.traced,
+                                .routes = routes,
                                 .fallback = fallback});
 }
 
 shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
-  return make_frame(width, height, routes_.traced, cache_ ? enabled_components() : 0);
+  return make_frame(width, height, routes_, cache_ ? enabled_components() : 0);
 }
 
 irradiance_cache::CacheOptions Renderer::cache_options() const {
@@ -176,7 +177,7 @@ irradiance_cache::CacheView Renderer::cache_view() const {
   view.paths_frame = make_frame(width_, height_);
   view.paths_enabled = enabled_components();
   // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
-  view.records_frame = make_frame(width_, height_, record_routes_.traced, record_routes_.parts);
+  view.records_frame = make_frame(width_, height_, record_routes_, record_routes_.parts);
   view.records_enabled = record_routes_.parts;
   view.width = width_, view.height = height_;
   view.scene_radius = flat_.scene_radius;

@@ -139,7 +139,8 @@ class Renderer {
   };
   void restart(Lookups lookups);
   shared::Frame make_frame(uint32_t width, uint32_t height) const;  ///< of the picture's paths
-  shared::Frame make_frame(uint32_t width, uint32_t height, uint32_t enabled, uint32_t fallback) const;
+  shared::Frame make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
+                           uint32_t fallback) const;
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
   void start_schedule();

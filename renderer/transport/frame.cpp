@@ -32,7 +32,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.max_depth = options.max_depth;
   f.roulette_depth = options.roulette_depth;
   f.scene_radius = flat.scene_radius;
-  const std::vector<uint32_t> table = paths::pack(automaton, options.enabled);
+  const std::vector<uint32_t> table = paths::pack(automaton, options.enabled, options.routes);
   assert(table.size() <= shared::k_fallback_state);
   f.automaton_states = uint32_t(table.size());
   std::copy(table.begin(), table.end(), f.automaton);

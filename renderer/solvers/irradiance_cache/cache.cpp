@@ -17,9 +17,11 @@ using namespace shared;
 
 namespace {
 
-/// Spacing of the first pass, in the scene's radius; each pass halves it down to the least.
-constexpr float k_first_spacing = 1.0f / 16, k_least_spacing = 1.0f / 512;
-constexpr float k_normal_tolerance = 0.015f;  // 1 - cos of 10 degrees
+/// Spacing of the points that are tried in the first pass, in the scene's radius; each pass quarters it, down
+/// to a share of the least radius that records may have there. Of what is tried only what is needed is kept,
+/// so that this says how finely a pass looks, not how many records it leaves.
+constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
+constexpr float k_normal_tolerance = 0.06f;  // 1 - cos of 20 degrees
 constexpr float k_behind = 0.05f;
 /// References of the octree that there is memory for, a record.
 constexpr uint32_t k_references = 16;
@@ -27,7 +29,7 @@ constexpr uint32_t k_references = 16;
 /// Records that go on with a noisy one, on either side.
 constexpr size_t k_company = 4;
 
-enum class Stage { probe, evaluate, done };
+enum class Stage { probe, measure, evaluate, done };
 
 /// Elevations of a level of that many rays; there are four times as many azimuths.
 uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lround(std::sqrt(rays / 4.0))); }
@@ -62,7 +64,7 @@ struct Cache::Impl {
   schedule::UniformSchedule picture;
   bool probing = false;  // the schedule of this pass has begun
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
-  std::vector<Place> asked;
+  std::vector<Place> asked, tried;
   uint32_t evaluated = 0;      // records up to here are complete
   std::vector<uint32_t> list;  // of this level, in the order of the records
   size_t at = 0;               // of which so many are done
@@ -137,6 +139,25 @@ struct Cache::Impl {
     return !list.empty();
   }
 
+  /// Radii of the records from `evaluated` on, by what is known of them.
+  void set_radii(transport::Wavefront& wavefront, const CacheView& view, const Cache& cache) {
+    const uint32_t count = records.size() - evaluated;
+    if (count == 0) return;
+    wavefront.bind_paths(resources);
+    cache.bind(resources);
+    const RadiusPush push{evaluated, count, options.error, options.least_pixels,
+                          options.most_radius * view.scene_radius};
+    wavefront.stream().dispatch(radius, resources, push, gpu::groups_for(count, 64), "records");
+    wavefront.stream().run();
+  }
+
+  /// The records that are added in this pass, for the next piece of work on them.
+  void list_new() {
+    list.resize(records.size() - evaluated);
+    std::iota(list.begin(), list.end(), evaluated);
+    at = 0;
+  }
+
   void collect(uint32_t slots) {
     const auto* texels = static_cast<const vec4*>(candidates.mapped());
     for (uint32_t slot = 0; slot < slots; ++slot) {
@@ -204,6 +225,7 @@ void Cache::extend() {
   c.status.stop = StopReason::building;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped.
   if (c.stage != Stage::evaluate) {
+    c.records.truncate(c.evaluated);
     c.stage = Stage::probe;
     c.probing = false;
     c.asked.clear();
@@ -244,19 +266,46 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       c.finish(StopReason::covered);
       return true;
     }
-    const float spacing =
-        view.scene_radius *
-        std::max(k_least_spacing, std::ldexp(k_first_spacing, -static_cast<int>(c.status.pass)));
-    const std::vector<Place> chosen =
-        choose_places(c.asked, {.spacing = spacing,
-                                .normal_tolerance = k_normal_tolerance,
-                                .seed = c.options.seed + c.status.pass,
-                                .most = c.records.capacity() - c.records.size()});
-    c.records.append(chosen, c.status.pass);
-    c.list.resize(c.records.size() - c.evaluated);
-    std::iota(c.list.begin(), c.list.end(), c.evaluated);
+    const Frame& f = view.paths_frame;
+    const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
+    c.tried = choose_places(
+        c.asked,
+        {.spacing = view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(c.status.pass)),
+         .spacing_of_distance = k_spacing_of_least * c.options.least_pixels * pixel,
+         .eye = f.camera_origin,
+         .parallel = f.orthographic != 0,
+         .normal_tolerance = k_normal_tolerance,
+         .seed = c.options.seed + c.status.pass,
+         .most = c.records.capacity() - c.records.size()});
+    c.records.append(c.tried, c.status.pass);
+    c.list_new();
+    c.stage = Stage::measure;
+    return true;
+  }
+  if (c.stage == Stage::measure) {
+    // How far things are around what is tried says how wide its records will be, and so which are needed.
+    const size_t batch =
+        std::min<size_t>(c.list.size() - c.at, std::max(1u, wavefront.slots() / Evaluator::k_distance_rays));
+    const std::span<const uint32_t> list(c.list.data() + c.at, batch);
+    wavefront.set_frame(view.records_frame, view.records_enabled);
+    const size_t done = c.evaluator.measure(wavefront, c.records, list, c.options.seed, cancel);
+    wavefront.set_frame(view.paths_frame, view.paths_enabled);
+    c.at += done;
+    c.status.rays += uint64_t(done) * Evaluator::k_distance_rays;
+    if (done < list.size()) return false;
+    if (c.at < c.list.size()) return true;
+    c.set_radii(wavefront, view, *this);
+    const std::vector<float> radii = c.records.radii(c.evaluated);
+    std::vector<Place> needed;
+    for (const uint32_t i : thin_out(
+             c.tried, radii,
+             {.share = c.options.overlap_share, .normal_tolerance = k_normal_tolerance, .behind = k_behind}))
+      needed.push_back(c.tried[i]);
+    c.records.truncate(c.evaluated);
+    c.records.append(needed, c.status.pass);
+    c.tried.clear();
+    c.list_new();
     c.level = c.rays_before = 0;
-    c.at = 0;
     c.stage = Stage::evaluate;
     return true;
   }
@@ -283,15 +332,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       if (c.at < c.list.size()) return true;
     }
     if (c.next_level(wavefront.slots())) return true;
-    if (c.evaluated < c.records.size()) {
-      wavefront.bind_paths(c.resources);
-      bind(c.resources);
-      const uint32_t count = c.records.size() - c.evaluated;
-      const RadiusPush push{c.evaluated, count, c.options.error, c.options.least_pixels,
-                            c.options.most_radius * view.scene_radius};
-      wavefront.stream().dispatch(c.radius, c.resources, push, gpu::groups_for(count, 64), "records");
-      wavefront.stream().run();
-    }
+    c.set_radii(wavefront, view, *this);
     c.evaluated = c.records.size();
     c.status.records = c.evaluated;
     ++c.status.pass;
