@@ -367,7 +367,8 @@ std::vector<uint32_t> brought(const Automaton& automaton, const LookupRoutes& ro
 
 }  // namespace
 
-std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes) {
+std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes,
+                           bool met) {
   std::vector<uint32_t> packed;
   const std::vector<uint32_t> looked_up = brought(automaton, routes);
   // States without a D so far: reached from the eye by G and S alone.
@@ -382,7 +383,9 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const L
     const auto& s = automaton.states[i];
     const bool on = s.accept != k_no_component && (enabled >> s.accept & 1u);
     const uint32_t component = on ? s.accept : k_component_count;
-    const uint32_t left = (s.reachable & enabled) | looked_up[i];
+    uint32_t reachable = met ? s.reachable : 0;
+    for (const uint8_t next : s.next) reachable |= automaton.states[next].reachable;
+    const uint32_t left = (reachable & enabled) | looked_up[i];
     packed.push_back(s.next[0] | s.next[1] << 8 | s.next[2] << 16 | component << 24 | (left ? 1u << 27 : 0u) |
                      (mirrors.count(static_cast<uint8_t>(i)) ? 1u << 28 : 0u) |
                      (left ? static_cast<uint32_t>(std::countr_zero(left)) : 0u) << 29);

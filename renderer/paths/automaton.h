@@ -75,7 +75,10 @@ struct LookupRoutes {
 /// component (k_component_count: none, or switched off), bit 27: something can still be brought, by an
 /// enabled component or by a lookup, bit 28: no D so far (E[SG]*), bits 29-30: component its rays are
 /// accounted to. `enabled` bit i: component i is on.
-std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes = {});
+/// `met`: there are lights that a ray can meet; where all are points or directions, a path of which nothing
+/// but its meeting light is wanted brings nothing.
+std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes = {},
+                           bool met = true);
 
 /// For `cached` components, of the enabled ones. A lookup stands at the first diffuse vertex behind which
 /// nothing but cached components has a further diffuse event: with secondary and tertiary cached at the

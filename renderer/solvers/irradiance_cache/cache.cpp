@@ -21,6 +21,10 @@ namespace {
 /// to a share of the least radius that records may have there. Of what is tried only what is needed is kept,
 /// so that this says how finely a pass looks, not how many records it leaves.
 constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
+/// Passes that ask beyond the lookup too, where the cache reads itself, and how finely they look there: what
+/// no record serves there costs time, not accuracy.
+constexpr uint32_t k_deep_passes = 3;
+constexpr float k_deep_spacing = 1.0f / 64;
 constexpr float k_normal_tolerance = 0.06f;  // 1 - cos of 20 degrees
 constexpr float k_behind = 0.05f;
 /// References of the octree that there is memory for, a record.
@@ -65,7 +69,8 @@ struct Cache::Impl {
   bool probing = false;  // the schedule of this pass has begun
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
   std::vector<Place> asked, tried;
-  uint32_t evaluated = 0;      // records up to here are complete
+  uint32_t evaluated = 0;      // records up to here have light and radius, and are in the octree
+  uint32_t pass_first = 0;     // the first record of this pass
   std::vector<uint32_t> list;  // of this level, in the order of the records
   size_t at = 0;               // of which so many are done
   uint32_t level = 0, rays_before = 0;
@@ -139,13 +144,13 @@ struct Cache::Impl {
     return !list.empty();
   }
 
-  /// Radii of the records from `evaluated` on, by what is known of them.
-  void set_radii(transport::Wavefront& wavefront, const CacheView& view, const Cache& cache) {
-    const uint32_t count = records.size() - evaluated;
+  /// Radii of the records from `first` on, by what is known of them.
+  void set_radii(transport::Wavefront& wavefront, const CacheView& view, const Cache& cache, uint32_t first) {
+    const uint32_t count = records.size() - first;
     if (count == 0) return;
     wavefront.bind_paths(resources);
     cache.bind(resources);
-    const RadiusPush push{evaluated, count, options.error, options.least_pixels,
+    const RadiusPush push{first, count, options.error, options.least_pixels,
                           options.most_radius * view.scene_radius};
     wavefront.stream().dispatch(radius, resources, push, gpu::groups_for(count, 64), "records");
     wavefront.stream().run();
@@ -250,7 +255,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     schedule::WorkItem item = c.picture.next();
     // Each pass looks along paths of its own.
     for (WorkBlock& b : item.blocks) b.first_sample = c.status.pass;
-    c.tell(c.recursive && c.evaluated == 0 ? k_probe_beyond : k_probe_lookups);
+    c.tell(c.recursive && c.status.pass < k_deep_passes ? k_probe_beyond : k_probe_lookups);
     wavefront.stream().fill(c.candidates, 0);
     if (!wavefront.probe(item, cancel)) {
       c.picture = before;
@@ -271,6 +276,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     c.tried = choose_places(
         c.asked,
         {.spacing = view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(c.status.pass)),
+         .spacing_beyond = view.scene_radius * k_deep_spacing,
          .spacing_of_distance = k_spacing_of_least * c.options.least_pixels * pixel,
          .eye = f.camera_origin,
          .parallel = f.orthographic != 0,
@@ -294,7 +300,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     c.status.rays += uint64_t(done) * Evaluator::k_distance_rays;
     if (done < list.size()) return false;
     if (c.at < c.list.size()) return true;
-    c.set_radii(wavefront, view, *this);
+    c.set_radii(wavefront, view, *this, c.evaluated);
     const std::vector<float> radii = c.records.radii(c.evaluated);
     std::vector<Place> needed;
     for (const uint32_t i : thin_out(
@@ -306,6 +312,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     c.tried.clear();
     c.list_new();
     c.level = c.rays_before = 0;
+    c.pass_first = c.evaluated;
     c.stage = Stage::evaluate;
     return true;
   }
@@ -331,13 +338,17 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       c.status.rays += uint64_t(done) * rays;
       if (c.at < c.list.size()) return true;
     }
-    if (c.next_level(wavefront.slots())) return true;
-    c.set_radii(wavefront, view, *this);
-    c.evaluated = c.records.size();
-    c.status.records = c.evaluated;
+    // A cache that reads itself does so from the second level on: the first, of few rays, then is all that is
+    // traced without the records of its own pass.
+    const bool more = c.next_level(wavefront.slots());
+    if (!more || (c.recursive && c.level == 1)) {
+      c.set_radii(wavefront, view, *this, c.pass_first);
+      c.evaluated = c.status.records = c.records.size();
+      c.build_octree(wavefront);
+      c.tell();
+    }
+    if (more) return true;
     ++c.status.pass;
-    c.build_octree(wavefront);
-    c.tell();
     c.stage = Stage::probe;
     if (c.records.size() == c.records.capacity())
       c.finish(StopReason::records);

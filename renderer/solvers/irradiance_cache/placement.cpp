@@ -48,7 +48,8 @@ std::vector<Place> choose_places(std::span<const Place> candidates, const Placem
 
   std::vector<std::vector<Place>> clusters;
   const auto reach = [&](const Place& p) {
-    return std::max(o.spacing, o.spacing_of_distance * (o.parallel ? 1 : distance(p.position, o.eye)));
+    const float seen = o.spacing_of_distance * (o.parallel ? 1 : distance(p.position, o.eye));
+    return std::max({o.spacing, seen, p.origin == shared::k_origin_recursive ? o.spacing_beyond : 0});
   };
   for (size_t first = 0; first < order.size();) {
     vec3 box_lo = candidates[order[first].second].position, box_hi = box_lo;

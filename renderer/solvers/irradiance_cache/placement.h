@@ -13,6 +13,7 @@ namespace lucerna::irradiance_cache {
 struct PlacementOptions {
   /// [m]: a chosen point covers others as near as this, and clusters are four times as wide.
   float spacing = 0.1f;
+  float spacing_beyond = 0;  ///< [m]: at least, of places that other records ask for (k_origin_recursive)
   /// At least: this share of the distance from `eye`, or of 1 m where the view is parallel.
   float spacing_of_distance = 0;
   vec3 eye{0};
