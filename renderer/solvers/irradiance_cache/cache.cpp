@@ -25,6 +25,9 @@ constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
 /// no record serves there costs time, not accuracy.
 constexpr uint32_t k_deep_passes = 3;
 constexpr float k_deep_spacing = 1.0f / 64;
+/// Noise that they may have, over that of others: a record's ray reads some of them, and a record's rays
+/// many.
+constexpr float k_deep_noise = 4;
 constexpr float k_normal_tolerance = 0.06f;  // 1 - cos of 20 degrees
 constexpr float k_behind = 0.05f;
 /// References of the octree that there is memory for, a record.
@@ -73,12 +76,13 @@ struct Cache::Impl {
   uint32_t pass_first = 0;     // the first record of this pass
   std::vector<uint32_t> list;  // of this level, in the order of the records
   size_t at = 0;               // of which so many are done
-  uint32_t level = 0, rays_before = 0;
+  uint32_t level = 0, level_done = 0, rays_before = 0;  // ... and rays of each record, in this level, so far
 
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o)
       : options(o),
         records(device, o.most_records),
-        octree(device, compiler, {.spheres = o.most_records, .references = k_references * o.most_records}),
+        octree(device, compiler,
+               {.spheres = o.most_records, .references = k_references * o.most_records, .copies = true}),
         evaluator(device, compiler, slots) {
     frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
     candidates = gpu::Buffer(device, {.name = "cache candidates",
@@ -90,11 +94,13 @@ struct Cache::Impl {
   void build_octree(transport::Wavefront& wavefront) {
     const shared::OctreeHeader& h = octree.build(wavefront.stream(), records.spheres(), {.most = evaluated});
     // What all but a few records lie between.
-    const std::vector<vec3> figures = records.figures();
+    const std::vector<Records::Figures> figures = records.figures();
+    constexpr float Records::Figures::*k_scaled[] = {
+        &Records::Figures::rays, &Records::Figures::mean_distance, &Records::Figures::error};
     for (int k = 0; k < 3 && !figures.empty(); ++k) {
       std::vector<float> values;
-      for (const vec3& f : figures)
-        if (f[k] > 0 && std::isfinite(f[k])) values.push_back(f[k]);
+      for (const Records::Figures& f : figures)
+        if (f.*k_scaled[k] > 0 && std::isfinite(f.*k_scaled[k])) values.push_back(f.*k_scaled[k]);
       std::sort(values.begin(), values.end());
       const size_t n = values.size();
       const float lo = n ? values[n / 50] : 1, hi = n ? values[n - 1 - n / 50] : 2;
@@ -118,10 +124,10 @@ struct Cache::Impl {
 
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
-  bool next_level(uint32_t slots) {
+  bool next_level() {
     const uint32_t rays = options.rays << 2 * level;
-    if (list.empty() || uint64_t{4} * rays > std::min(options.most_rays, slots)) return false;
-    const std::vector<vec3> figures = records.figures();
+    if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
+    const std::vector<Records::Figures> figures = records.figures();
     const std::vector<float> light = records.luminances();
     double sum = 0;
     for (const float l : light) sum += double(l);
@@ -133,12 +139,13 @@ struct Cache::Impl {
     size_t next = 0;  // the first that no noisy one so far has kept or passed
     for (size_t i = 0; i < list.size(); ++i) {
       const uint32_t r = list[i];
-      if (figures[r].z <= options.noise * std::max(light[r], least)) continue;
+      const float enough =
+          figures[r].origin == k_origin_recursive ? k_deep_noise * options.noise : options.noise;
+      if (figures[r].error <= enough * std::max(light[r], least)) continue;
       next = std::max(next, i > k_company ? i - k_company : 0);
       for (; next < std::min(list.size(), i + k_company + 1); ++next) kept.push_back(list[next]);
     }
     list = std::move(kept);
-    rays_before += rays;
     ++level;
     at = 0;
     return !list.empty();
@@ -207,7 +214,7 @@ gpu::Defines Cache::defines(const paths::LookupRoutes& own) {
 
 void Cache::bind(gpu::Resources& resources) const {
   const Impl& c = *impl_;
-  c.records.bind(resources);
+  c.records.bind(resources, Records::Use::look_up);
   resources.set("CacheBlock", c.frame);
   resources.set("Candidates", c.candidates);
   c.octree.bind(resources);
@@ -311,13 +318,16 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     c.records.append(needed, c.status.pass);
     c.tried.clear();
     c.list_new();
-    c.level = c.rays_before = 0;
+    c.level = c.level_done = c.rays_before = 0;
     c.pass_first = c.evaluated;
     c.stage = Stage::evaluate;
     return true;
   }
   if (c.stage == Stage::evaluate) {
-    const uint32_t rays = c.options.rays << 2 * c.level;
+    // A level of more rays than can be summed at once is done in rounds of as many.
+    const uint32_t level_rays = c.options.rays << 2 * c.level;
+    uint32_t rays = level_rays;
+    while (rays > std::min(Evaluator::k_most_rays, wavefront.slots())) rays /= 4;
     const uint32_t elevations = elevations_for(rays);
     const size_t batch = std::min<size_t>(c.list.size() - c.at, std::max(1u, wavefront.slots() / rays));
     const std::span<const uint32_t> list(c.list.data() + c.at, batch);
@@ -337,10 +347,16 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       c.at += done;
       c.status.rays += uint64_t(done) * rays;
       if (c.at < c.list.size()) return true;
+      c.rays_before += rays;
+      c.level_done += rays;
+      c.at = 0;
+      if (c.level_done < level_rays) return true;
     }
+    c.level_done = 0;
     // A cache that reads itself does so from the second level on: the first, of few rays, then is all that is
     // traced without the records of its own pass.
-    const bool more = c.next_level(wavefront.slots());
+    const bool more = c.next_level();
+    c.records.publish(wavefront.stream());
     if (!more || (c.recursive && c.level == 1)) {
       c.set_radii(wavefront, view, *this, c.pass_first);
       c.evaluated = c.status.records = c.records.size();
