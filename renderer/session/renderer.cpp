@@ -126,6 +126,7 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
                                                       std::move(trace), defines, bind);
   cache_ = std::move(cache);
+  inspector_.reset();
   routes_ = std::move(routes);
   compile_seconds_ = timer.seconds();
 }
@@ -497,11 +498,7 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
     film_->mark_tiles(marks);
   }
   wavefront_->tone_map(*film_, v, with_coarse ? coarse_.get() : nullptr);
-  if (cache_)
-    cache_->draw(*wavefront_, *film_,
-                 {.discs = settings_.boolean("overlay.records"),
-                  .overlap = settings_.boolean("overlay.overlap"),
-                  .color = uint32_t(settings_.choice("overlay.records_by"))});
+  if (cache_) draw_cache();
   return film_->read_picture();
 }
 

@@ -96,6 +96,7 @@ struct Session::Impl {
   uint64_t run_number = 0;
   bool paused = false;
   std::string reference;
+  std::optional<vec2> looked_at;
 
   std::string activity;
   float progress = -1;
@@ -325,6 +326,9 @@ void Session::set_reference(const std::filesystem::path& file) {
 }
 void Session::clear_reference() {
   impl_->post([this] { impl_->reference.clear(), impl_->publish(); });
+}
+void Session::inspect(std::optional<vec2> at) {
+  impl_->post([this, at] { impl_->looked_at = at, impl_->publish(); });
 }
 void Session::save(const std::filesystem::path& file) {
   impl_->post([file] { log::info("picture saved as {}", file.string()); });

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/timer.h"
 #include "gpu/stream.h"
 #include "schedule/uniform.h"
 #include "solvers/irradiance_cache/placement.h"
@@ -33,6 +34,20 @@ enum class Stage { probe, evaluate, done };
 uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lround(std::sqrt(rays / 4.0))); }
 
 }  // namespace
+
+const char* words(StopReason reason) {
+  switch (reason) {
+    case StopReason::covered:
+      return "Few paths still ask for records";
+    case StopReason::passes:
+      return "As many passes as are allowed";
+    case StopReason::records:
+      return "The room for records is used up";
+    case StopReason::building:
+      break;
+  }
+  return "Still building";
+}
 
 struct Cache::Impl {
   CacheOptions options;
@@ -82,6 +97,13 @@ struct Cache::Impl {
     }
     status.references = h.spheres ? double(h.references) / h.spheres : 0;
     wavefront.rebind_lookup();
+  }
+
+  CachePass& pass() { return status.passes.back(); }
+  void took(BuildStep step, double ms) { pass().ms[size_t(step)] += ms; }
+  void begin_pass() {
+    if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
+    status.passes.push_back({.number = status.pass});
   }
 
   /// What paths know of the cache from here on.
@@ -137,6 +159,7 @@ struct Cache::Impl {
     stage = Stage::done;
     status.stop = reason;
     asked = {};
+    if (!status.passes.empty()) pass().complete = true;
     tell(records.size(), false);
   }
 };
@@ -212,6 +235,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       c.picture = {((view.width + 7) / 8) * ((view.height + 7) / 8), 1, wavefront.slots()};
       c.status.asked = c.status.paths = 0;
       c.asked.clear();
+      c.begin_pass();
       c.probing = true;
     }
     const schedule::UniformSchedule before = c.picture;
@@ -219,21 +243,27 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     // Each pass looks along paths of its own.
     for (WorkBlock& b : item.blocks) b.first_sample = c.status.pass;
     c.tell(c.evaluated, true);
+    StageTimer timer(wavefront);
     wavefront.stream().fill(c.candidates, 0);
     if (!wavefront.probe(item, cancel)) {
       c.picture = before;
       c.tell(c.evaluated, false);
       return false;
     }
+    c.took(BuildStep::probe, timer.milliseconds());
     c.collect(item.slots());
     c.status.paths += item.slots();
+    c.pass().asked = c.status.asked, c.pass().paths = c.status.paths;
     c.tell(c.evaluated, false);
     if (!c.picture.done()) return true;
     c.probing = false;
+    c.pass().asked_world = uint64_t(std::count_if(c.asked.begin(), c.asked.end(),
+                                                  [](const Place& p) { return p.origin == k_origin_world; }));
     if (double(c.status.asked) <= double(c.options.stop_share) * double(c.status.paths)) {
       c.finish(StopReason::covered);
       return true;
     }
+    const Timer host;
     const float spacing =
         view.scene_radius *
         std::max(k_least_spacing, std::ldexp(k_first_spacing, -static_cast<int>(c.status.pass)));
@@ -245,6 +275,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     c.records.append(chosen, c.status.pass);
     c.list.resize(c.records.size() - c.evaluated);
     std::iota(c.list.begin(), c.list.end(), c.evaluated);
+    c.took(BuildStep::choose, host.milliseconds());
     c.level = c.rays_before = 0;
     c.at = 0;
     c.stage = Stage::evaluate;
@@ -258,6 +289,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     if (!list.empty()) {
       wavefront.set_frame(view.records_frame, view.records_enabled);
       c.tell(0, false, false);
+      StageTimer timer(wavefront);
       const size_t done = c.evaluator.evaluate(wavefront, automaton, c.records, list,
                                                {.elevations = elevations,
                                                 .azimuths = 4 * elevations,
@@ -268,11 +300,14 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       wavefront.set_frame(view.paths_frame, view.paths_enabled);
       c.tell(c.evaluated, false);
       if (done < list.size()) return false;
+      c.took(BuildStep::evaluate, timer.milliseconds());
+      c.pass().rays += uint64_t(done) * rays;
       c.at += done;
       c.status.rays += uint64_t(done) * rays;
       if (c.at < c.list.size()) return true;
     }
     if (c.next_level(wavefront.slots())) return true;
+    StageTimer timer(wavefront);
     if (c.evaluated < c.records.size()) {
       wavefront.bind_paths(c.resources);
       bind(c.resources);
@@ -282,10 +317,15 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       wavefront.stream().dispatch(c.radius, c.resources, push, gpu::groups_for(count, 64), "records");
       wavefront.stream().run();
     }
+    c.took(BuildStep::radius, timer.milliseconds());
+    c.pass().records = c.records.size() - c.evaluated;
+    c.pass().complete = true;
     c.evaluated = c.records.size();
     c.status.records = c.evaluated;
     ++c.status.pass;
+    StageTimer indexing(wavefront);
     c.build_octree(wavefront);
+    c.took(BuildStep::octree, indexing.milliseconds());
     c.tell(c.evaluated, false);
     c.stage = Stage::probe;
     if (c.records.size() == c.records.capacity())
@@ -306,7 +346,8 @@ void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const 
   wavefront.bind_paths(c.resources);
   bind(c.resources);
   film.bind(c.resources);
-  OverlayPush push{film.width(), film.height(), overlay.discs, overlay.overlap, overlay.color, 0, 1, 12};
+  OverlayPush push{film.width(),   film.height(), overlay.discs, overlay.overlap, overlay.color, 0, 1,
+                   k_overlap_scale};
   const auto [lo, hi] = scale(overlay.color);
   push.lo = lo, push.hi = hi;
   wavefront.stream().dispatch(c.overlay, c.resources, push,

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "paths/automaton.h"
+#include "solvers/irradiance_cache/build_log.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/records.h"
 #include "solvers/lookup/octree.h"
@@ -33,6 +34,8 @@ struct CacheOptions {
 };
 
 enum class StopReason { building, covered, passes, records };
+/// A sentence for people, without its full stop.
+const char* words(StopReason reason);
 
 struct CacheStatus {
   uint32_t pass = 0;  ///< complete since the building began or was extended
@@ -42,6 +45,7 @@ struct CacheStatus {
   uint64_t bytes = 0;             ///< of device memory
   double references = 0;          ///< leaves that list a record, on average
   StopReason stop = StopReason::building;
+  std::vector<CachePass> passes;  ///< since it was begun, extensions too; the last may be in progress
 };
 
 /// What the building needs to know of the picture and its scene.
