@@ -17,8 +17,9 @@ using irradiance_cache::Inspection;
 using irradiance_cache::Irradiance;
 using irradiance_cache::Record;
 
-constexpr float k_width = 316, k_row = 17, k_pad = 12;
-constexpr size_t k_weights = 6;  // shown at most
+constexpr float k_width = 296, k_row = 17, k_pad = 12;
+constexpr float k_figures = 88, k_figure = 36.5f;  // columns of the table of light
+constexpr size_t k_weights = 6;                    // shown at most
 constexpr ImU32 k_line = IM_COL32(255, 219, 115, 255);
 
 std::string metres(float m) {
@@ -33,15 +34,13 @@ std::string vector(const vec3& v, int decimals) {
                      real_text(double{v.z}, decimals));
 }
 
-/// Three figures, whatever the size.
+/// In five characters, whatever the size.
 std::string figure(float v) {
-  if (v == 0) return "0";
   const float a = std::abs(v);
-  return a >= 100      ? fmt::format("{:.0f}", v)
-         : a >= 10     ? fmt::format("{:.1f}", v)
-         : a >= 0.1f   ? fmt::format("{:.2f}", v)
-         : a >= 0.001f ? fmt::format("{:.4f}", v)
-                       : fmt::format("{:.0e}", v);
+  if (v == 0 || (a >= 100 && a < 1e5f)) return fmt::format("{:.0f}", v);
+  if (a >= 0.0095f && a < 100) return fmt::format("{:.{}f}", v, a >= 10 ? 1 : a >= 1 ? 2 : 3);
+  const int power = static_cast<int>(std::floor(std::log10(a)));
+  return fmt::format("{:.0f}e{}", double{v} / std::pow(10.0, power), power);
 }
 
 /// A gradient by channel, as the length of its luminance's.
@@ -84,32 +83,33 @@ class Card {
   }
 
   void light_heading() {
-    column(0, 96, "irradiance", colour::text_dim, Align::left);
-    column(96, 136, "R", colour::text_faint), column(136, 176, "G", colour::text_faint);
-    column(176, 216, "B", colour::text_faint);
-    column(216, 254, "turned", colour::text_faint), column(254, 292, "per m", colour::text_faint);
+    column(0, 88, "Irradiance", colour::text_dim, Align::left);
+    const char* titles[] = {"R", "G", "B", "/rad", "/m"};
+    for (int c = 0; c < 5; ++c)
+      column(k_figures + k_figure * float(c), k_figures + k_figure * float(c + 1), titles[c],
+             colour::text_faint);
     y_ += px(k_row);
   }
   void light(uint32_t part, const Irradiance& e) {
-    static constexpr const char* names[] = {"environment", "secondary", "tertiary", "caustic"};
+    static constexpr const char* names[] = {"environm.", "secondary", "tertiary", "caustic"};
     const float middle = std::floor(y_ + 0.5f * px(k_row)), x = lo_.x + px(k_pad);
     if (list_) {
       list_->AddRectFilled({x, middle - px(4)}, {x + px(8), middle + px(4)}, colour::component[part], px(2));
       // The light's own colour.
-      const float s = x + px(82);
+      const float s = x + px(74);
       list_->AddRectFilled({s, middle - px(5)}, {s + px(10), middle + px(5)}, swatch(e.value), px(2));
       list_->AddRect({s, middle - px(5)}, {s + px(10), middle + px(5)}, colour::grey(80), px(2));
     }
-    column(14, 96, names[part], colour::text_dim, Align::left);
-    for (int c = 0; c < 3; ++c)
-      column(96 + 40 * float(c), 136 + 40 * float(c), figure(e.value[c]), colour::text);
-    column(216, 254, figure(gradient(e.rotation)), colour::text);
-    column(254, 292, figure(gradient(e.translation)), colour::text);
+    column(14, 74, names[part], colour::text_dim, Align::left);
+    const float values[] = {e.value.x, e.value.y, e.value.z, gradient(e.rotation), gradient(e.translation)};
+    for (int c = 0; c < 5; ++c)
+      column(k_figures + k_figure * float(c), k_figures + k_figure * float(c + 1), figure(values[c]),
+             colour::text);
     y_ += px(k_row);
   }
   void weight(const std::string& name, float part, float of) {
     text(name, colour::text_dim, Align::left);
-    const float left = lo_.x + px(k_pad + 96), right = lo_.x + px(k_width - k_pad - 56);
+    const float left = lo_.x + px(k_pad + 64), right = lo_.x + px(k_width - k_pad - 56);
     const float middle = std::floor(y_ + 0.5f * px(k_row));
     if (list_)
       list_->AddRectFilled({left, middle - px(3)}, {left + (right - left) * part / of, middle + px(3)},
@@ -179,32 +179,55 @@ void weights(Card& card, const Inspection& found) {
   }
 }
 
+/// Where a card of that size lies in a corner and not over a place; nothing when it does in every one, or has
+/// no room.
+std::optional<ImVec2> free_corner(const Area& area, const ImVec2& size, float edge, const ImVec2& place) {
+  if (size.x + 2 * edge > area.width() || size.y + 2 * edge > area.height()) return std::nullopt;
+  const float left = area.lo.x + edge, right = area.hi.x - edge - size.x;
+  const float top = area.lo.y + edge, bottom = area.hi.y - edge - size.y, clear = px(40);
+  for (const ImVec2& lo : {ImVec2(right, top), ImVec2(left, top), ImVec2(right, bottom)}) {
+    const bool over = place.x > lo.x - clear && place.x < lo.x + size.x + clear && place.y > lo.y - clear &&
+                      place.y < lo.y + size.y + clear;
+    if (!over) return ImVec2(std::floor(lo.x), std::floor(lo.y));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void draw_inspection(Ui& ui, const Area& area) {
   const session::CacheReport* r = ui.snapshot ? ui.snapshot->cache.get() : nullptr;
   if (!r || !r->looked_at || !r->inspection.solid || !ui.snapshot->activity.empty()) return;
   const Inspection& found = r->inspection;
+  bool brief = false;
   const auto write = [&](ImDrawList* list, const ImVec2& lo) {
     Card card(list, lo);
-    if (found.record) {
+    if (found.record && brief) {
+      card.title(fmt::format("Record {}", count_text(*found.under)), metres(found.record->radius));
+    } else if (found.record) {
       fields(card, *found.under, *found.record);
       card.space(true);
     }
     weights(card, found);
     return card.bottom() - lo.y;
   };
-  const float w = px(k_width), h = write(nullptr, {0, 0}), edge = px(12);
-  if (w + 2 * edge > area.width() || h + 2 * edge > area.height()) return;
-  // At the upper right; at the left where it would lie over what is looked at.
-  const float x = area.lo.x + r->looked_at->x * area.width(), y = area.lo.y + r->looked_at->y * area.height();
-  const bool covers = x > area.hi.x - w - 8 * edge && y < area.lo.y + h + 8 * edge;
-  const ImVec2 lo(std::floor(covers ? area.lo.x + edge : area.hi.x - w - edge), std::floor(area.lo.y + edge));
-  const ImVec2 hi(lo.x + w, lo.y + h);
+  // In the corner that leaves what is looked at free; the upper right one before the others. In a small
+  // picture, where none does, the weights alone.
+  const ImVec2 at(area.lo.x + r->looked_at->x * area.width(), area.lo.y + r->looked_at->y * area.height());
+  const float w = px(k_width), edge = px(12);
+  float h = write(nullptr, {0, 0});
+  std::optional<ImVec2> lo = free_corner(area, {w, h}, edge, at);
+  if (!lo) {
+    brief = true;
+    h = write(nullptr, {0, 0});
+    lo = free_corner(area, {w, h}, edge, at);
+  }
+  if (!lo) return;
+  const ImVec2 hi(lo->x + w, lo->y + h);
   ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddRectFilled(lo, hi, colour::with_alpha(colour::bar, 0.94f), px(3));
-  list->AddRect(lo, hi, colour::hairline, px(3));
-  write(list, lo);
+  list->AddRectFilled(*lo, hi, colour::with_alpha(colour::bar, 0.94f), px(3));
+  list->AddRect(*lo, hi, colour::hairline, px(3));
+  write(list, *lo);
 }
 
 }  // namespace lucerna::ui

@@ -35,5 +35,5 @@ void main() {
       under_at = centre;
     }
   }
-  header = InspectHeader(seen.solid ? 1u : 0u, count, under, seen.size, seen.position, seen.normal, under_at);
+  header = InspectHeader(seen.solid ? 1u : 0u, count, under, seen.size, seen.depth, seen.position, seen.normal, under_at);
 }

@@ -38,7 +38,7 @@ void main() {
     vec2 along = line.to - line.from;
     float t = clamp(dot(here - line.from, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
     float away = distance(here, line.from + t * along);
-    float depth = mix(line.from_depth, line.to_depth, t);
+    float depth = depth_between(line.from_depth, line.to_depth, t);
     // A line between two places of a curved surface runs below it: that is not hidden.
     bool hidden = seen.solid && depth > 1.02 * seen.depth + 4.0 * seen.size;
     float alpha = line.alpha * (hidden ? k_hidden : 1.0);

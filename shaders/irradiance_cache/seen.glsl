@@ -33,6 +33,11 @@ bool seen_on_disc(Seen s, vec4 place, vec4 facing) {
   return abs(dot(s.position - place.xyz, facing.xyz)) < 2.0 * s.size + 0.15 * place.w && dot(s.normal, facing.xyz) > 0.7;
 }
 
+// Depth at a share t of the way between two places of the picture, on the line between them in the scene.
+float depth_between(float a, float b, float t) {
+  return frame.orthographic != 0u ? mix(a, b, t) : 1.0 / mix(1.0 / a, 1.0 / b, t);
+}
+
 // Pixels from the upper left corner, and depth; behind the eye the depth is not above 0 and the rest means nothing.
 vec3 to_picture(vec3 position, uint width, uint height) {
   vec3 away = position - frame.camera_origin;

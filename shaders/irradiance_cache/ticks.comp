@@ -9,8 +9,9 @@ layout(push_constant, scalar) uniform Push { CacheTicksPush push; };
 uniform samplerBuffer record_texels;
 layout(scalar) buffer Ticks { uint marks[]; };
 
-// Pixels: no longer than that, and none where a disc is hardly wider than its tick.
-const float k_longest = 13.0, k_least_disc = 3.0, k_half_width = 0.5, k_edge = 1.0;
+// Pixels. Normals of small discs, which lie close together, fade out, so that the structure stays readable.
+const float k_longest = 13.0, k_half_width = 0.5, k_edge = 1.0;
+const float k_least_disc = 4.0, k_full_disc = 12.0;
 
 void main() {
   uint record = global_index();
@@ -23,6 +24,7 @@ void main() {
                all(lessThan(foot.xy, vec2(push.width, push.height) + k_longest));
   vec3 tip = to_picture(place.xyz + min(0.6 * place.w, k_longest * size) * facing.xyz, push.width, push.height);
   shown = shown && tip.z > 0.0;
+  float strength = clamp((place.w / size - k_least_disc) / (k_full_disc - k_least_disc), 0.0, 1.0);
   vec2 along = tip.xy - foot.xy;
   ivec2 lo = max(ivec2(floor(min(foot.xy, tip.xy) - 2.0)), ivec2(0));
   ivec2 hi = min(ivec2(floor(max(foot.xy, tip.xy) + 2.0)), ivec2(push.width, push.height) - 1);
@@ -37,10 +39,10 @@ void main() {
     if (edge <= 0.0) continue;
     uint pixel = uint(xy.y) * push.width + uint(xy.x);
     Seen seen = seen_at(pixel, push.width, push.height);
-    if (seen.solid && mix(foot.z, tip.z, t) > 1.005 * seen.depth + 2.0 * size) continue;
+    if (seen.solid && depth_between(foot.z, tip.z, t) > 1.005 * seen.depth + 2.0 * size) continue;
     // The tick wins over all edges, and among equals the one that covers more.
     bool drawn = core > 0.2;
-    uint cover = uint((drawn ? core : edge) * 127.0 + 0.5);
+    uint cover = uint(strength * (drawn ? core : edge) * 127.0 + 0.5);
     atomicMax(marks[pixel], (drawn ? k_tick_core : 0u) | cover << k_tick_cover_shift | (k_tick_record - record));
   }
 }

@@ -17,7 +17,7 @@ void main() {
   float cover = float(mark >> k_tick_cover_shift & 0x7fu) / 127.0;
   // Lighter than the discs' ink, so that it parts from their rims.
   bool core = (mark & k_tick_core) != 0u;
-  vec3 ink = core ? mix(record_ink(k_tick_record - (mark & k_tick_record), push.color, push.lo, push.hi), vec3(1.0), 0.6)
+  vec3 ink = core ? mix(record_ink(k_tick_record - (mark & k_tick_record), push.color, push.lo, push.hi), vec3(1.0), 0.4)
                   : vec3(0.0);
   uint packed = picture[pixel];
   vec3 color = vec3(packed & 0xffu, packed >> 8 & 0xffu, packed >> 16 & 0xffu) / 255.0;

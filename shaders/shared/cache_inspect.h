@@ -20,7 +20,8 @@ struct InspectHeader {
   uint count;  ///< records that serve there; the first k_inspect_most of them are listed
   uint under;  ///< of the records whose discs are drawn there the one whose centre is nearest; k_no_record:
                ///< none
-  float size;  ///< of a pixel there [m]
+  float size;   ///< of a pixel there [m]
+  float depth;  ///< [m]
   vec3 position, normal;
   vec3 under_at;  ///< centre of `under` in the picture, and its depth
 };

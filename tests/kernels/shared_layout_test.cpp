@@ -48,7 +48,7 @@ struct SharedStruct {
 std::vector<SharedStruct> structs() {
   return {
       SHARED("cache_inspect.h", InspectPush, width, height, pixel),
-      SHARED("cache_inspect.h", InspectHeader, solid, count, under, size, position, normal, under_at),
+      SHARED("cache_inspect.h", InspectHeader, solid, count, under, size, depth, position, normal, under_at),
       SHARED("cache_inspect.h", InspectServing, record, weight, at, depth),
       SHARED("cache_inspect.h", OverlapPush, width, height),
       SHARED("cache_inspect.h", OverlapCounts, pixels, most, records),

@@ -72,7 +72,7 @@ Inspection Inspector::ask(transport::Wavefront& wavefront, const film::Film& fil
   found.solid = header->solid != 0;
   if (!found.solid) return found;
   found.position = header->position, found.normal = header->normal;
-  found.size = header->size;
+  found.size = header->size, found.depth = header->depth;
   found.count = header->count;
   const uint32_t listed = std::min(found.count, k_inspect_most);
   double sum = 0;
@@ -125,20 +125,17 @@ void Inspector::draw_lines(transport::Wavefront& wavefront, const film::Film& fi
     const vec2 inside = glm::clamp(p, vec2(-1e4f), vec2(1e5f));
     lo = glm::min(lo, inside - reach), hi = glm::max(hi, inside + reach);
   };
-  float depth = 0;
-  for (const Serving& s : found.serving)
-    if (depth == 0) depth = s.depth;  // of the heaviest, which is near: the pixel's own, nearly
   std::vector<CacheLine> list;
   for (auto s = found.serving.rbegin(); s != found.serving.rend(); ++s) {  // the heaviest on top
     if (s->weight < k_least_weight || s->depth <= 0) continue;
     const float strength = std::sqrt(s->weight / found.serving.front().weight);
     list.push_back(
-        {here, s->at, depth, s->depth, 0.4f + 1.2f * strength, 0.3f + 0.65f * strength, k_line_ink});
+        {here, s->at, found.depth, s->depth, 0.4f + 1.2f * strength, 0.3f + 0.65f * strength, k_line_ink});
     cover(s->at, 4);
     // Its centre: a point.
     list.push_back({s->at, s->at, s->depth, s->depth, 1.5f + strength, 0.5f + 0.5f * strength, k_line_ink});
   }
-  list.push_back({here, here, depth, depth, 2.0f, 1.0f, vec3(1)});
+  list.push_back({here, here, found.depth, found.depth, 2.0f, 1.0f, vec3(1)});
   if (found.record) cover(found.under_at, 1.5f * found.record->radius / std::max(found.size, 1e-20f) + 4);
 
   const vec2 first = glm::clamp(glm::floor(lo), vec2(0), vec2(width, height));

@@ -30,6 +30,7 @@ struct Inspection {
   bool solid = false;             ///< a surface is seen there; nothing below holds where not
   vec3 position{0}, normal{0};    ///< world space [m]; its mean normal
   float size = 0;                 ///< of the pixel there [m]
+  float depth = 0;                ///< along the view axis [m]
   uint32_t count = 0;             ///< records that serve
   std::vector<Serving> serving;   ///< heaviest first; no more than shared::k_inspect_most
   std::optional<uint32_t> under;  ///< the record in whose disc the pixel lies; of several the one whose
