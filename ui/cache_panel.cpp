@@ -34,7 +34,9 @@ std::string amount(double n) {
 }
 
 std::string share(double part, double of) {
-  return of > 0 ? fmt::format("{:.2f} %", 100 * part / of) : "\xE2\x80\x93";
+  if (of <= 0) return "\xE2\x80\x93";
+  const double percent = 100 * part / of;
+  return fmt::format("{:.{}f} %", percent, percent > 99.94 ? 0 : percent > 9.994 ? 1 : 2);
 }
 
 /// Text over as many lines as it takes.
@@ -108,8 +110,11 @@ void numbers(const Ui& ui, const CacheReport& r) {
                           count_text(double(last.asked_world)), 100 * ui.setting_real("cache.stop")));
   }
   gap(4);
-  paragraph(std::string(irradiance_cache::words(s.stop)) + (building ? "\xE2\x80\xA6" : "."),
-            building ? colour::accent : colour::text_dim);
+  if (building)
+    paragraph("Still building\xE2\x80\xA6", colour::accent);
+  else
+    paragraph(fmt::format("Building has stopped: {}.", irradiance_cache::words(s.stop)),
+              s.stop == StopReason::covered ? colour::text_dim : colour::warning);
 }
 
 /// How many pixels 0, 1, 2 ... records serve, in the colours of the overlay.
@@ -185,11 +190,15 @@ void passes(const CacheStatus& s) {
   const float width = ImGui::CalcItemWidth(), row = px(18);
   ImDrawList* list = ImGui::GetWindowDrawList();
   ImFont* font = theme().fonts.small;
-  const float first = px(30), each = std::floor((width - first) / 4);
+  // Where there is little room the rays are left to the tooltip.
+  const bool narrow = width < px(236);
+  const float first = px(30), each = std::floor((width - first) / (narrow ? 3 : 4));
   const auto cells = [&](const ImVec2& lo, const std::array<std::string, 5>& texts, ImU32 colour) {
     draw_text(list, {lo.x + px(14), lo.y}, {lo.x + first, lo.y + row}, texts[0], colour, Align::left, font);
+    float right = lo.x + first;
     for (size_t i = 1; i < texts.size(); ++i) {
-      const float right = lo.x + first + each * static_cast<float>(i);
+      if (narrow && i == 3) continue;
+      right += each;
       draw_text(list, {right - each, lo.y}, {right, lo.y + row}, texts[i], colour, Align::right, font);
     }
   };
@@ -207,9 +216,11 @@ void passes(const CacheStatus& s) {
     ImGui::PushID(static_cast<int>(i));
     ImGui::InvisibleButton("##pass", {width, row});
     std::string text = fmt::format(
-        "Pass {}: {} of {} paths asked for a record, {} of them behind the first surface; {} were placed.",
+        "Pass {}: {} of {} paths asked for a record, {} of them behind the first surface; {} were placed, "
+        "with "
+        "{} rays.",
         i + 1, count_text(double(p.asked)), count_text(double(p.paths)), count_text(double(p.asked_world)),
-        p.records);
+        count_text(p.records), count_text(double(p.rays)));
     for (size_t k = 0; k < p.ms.size(); ++k)
       text += fmt::format("\n{}: {}", irradiance_cache::k_build_steps[k], ms_text(p.ms[k]));
     tooltip(text);
@@ -249,8 +260,8 @@ void overlays(Ui& ui) {
 
 std::string option_name(const std::string& key) {
   static const std::map<std::string, std::string> names{{"cache.error", "Error bound"},
-                                                        {"cache.min_radius", "Least radius"},
-                                                        {"cache.max_radius", "Most radius"},
+                                                        {"cache.min_radius", "Radius \xE2\x89\xA5"},
+                                                        {"cache.max_radius", "Radius \xE2\x89\xA4"},
                                                         {"cache.rays", "First rays"},
                                                         {"cache.max_rays", "Most rays"},
                                                         {"cache.noise", "More rays above"},

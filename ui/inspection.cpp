@@ -17,9 +17,9 @@ using irradiance_cache::Inspection;
 using irradiance_cache::Irradiance;
 using irradiance_cache::Record;
 
-constexpr float k_width = 296, k_row = 17, k_pad = 12;
-constexpr float k_figures = 88, k_figure = 36.5f;  // columns of the table of light
-constexpr size_t k_weights = 6;                    // shown at most
+constexpr float k_width = 316, k_row = 17, k_pad = 12;
+constexpr float k_figures = 96, k_figure = 39;  // columns of the table of light
+constexpr size_t k_weights = 6;                 // shown at most
 constexpr ImU32 k_line = IM_COL32(255, 219, 115, 255);
 
 std::string metres(float m) {
@@ -83,7 +83,7 @@ class Card {
   }
 
   void light_heading() {
-    column(0, 88, "Irradiance", colour::text_dim, Align::left);
+    column(0, 96, "Irradiance", colour::text_dim, Align::left);
     const char* titles[] = {"R", "G", "B", "/rad", "/m"};
     for (int c = 0; c < 5; ++c)
       column(k_figures + k_figure * float(c), k_figures + k_figure * float(c + 1), titles[c],
@@ -96,11 +96,11 @@ class Card {
     if (list_) {
       list_->AddRectFilled({x, middle - px(4)}, {x + px(8), middle + px(4)}, colour::component[part], px(2));
       // The light's own colour.
-      const float s = x + px(74);
+      const float s = x + px(80);
       list_->AddRectFilled({s, middle - px(5)}, {s + px(10), middle + px(5)}, swatch(e.value), px(2));
       list_->AddRect({s, middle - px(5)}, {s + px(10), middle + px(5)}, colour::grey(80), px(2));
     }
-    column(14, 74, names[part], colour::text_dim, Align::left);
+    column(14, 80, names[part], colour::text_dim, Align::left);
     const float values[] = {e.value.x, e.value.y, e.value.z, gradient(e.rotation), gradient(e.translation)};
     for (int c = 0; c < 5; ++c)
       column(k_figures + k_figure * float(c), k_figures + k_figure * float(c + 1), figure(values[c]),

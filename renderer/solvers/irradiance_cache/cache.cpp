@@ -38,15 +38,15 @@ uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lroun
 const char* words(StopReason reason) {
   switch (reason) {
     case StopReason::covered:
-      return "Few paths still ask for records";
+      return "few paths still ask for records";
     case StopReason::passes:
-      return "As many passes as are allowed";
+      return "as many passes as are allowed";
     case StopReason::records:
-      return "The room for records is used up";
+      return "the room for records is used up";
     case StopReason::building:
       break;
   }
-  return "Still building";
+  return "it goes on";
 }
 
 struct Cache::Impl {

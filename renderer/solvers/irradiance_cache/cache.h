@@ -34,7 +34,7 @@ struct CacheOptions {
 };
 
 enum class StopReason { building, covered, passes, records };
-/// A sentence for people, without its full stop.
+/// Why building has stopped, as the rest of a sentence.
 const char* words(StopReason reason);
 
 struct CacheStatus {
