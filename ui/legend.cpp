@@ -170,8 +170,8 @@ void overlap_inks(ImDrawList* list, const ImVec2& at) {
 
 void draw_legend(Ui& ui, const Area& area) {
   const session::Snapshot* s = ui.snapshot.get();
-  if (!s || !s->activity.empty() || s->coarse) return;
-  const bool heat = s->legend.layer != 0, tiles = s->tiles && s->accuracy;
+  if (!s || !s->activity.empty() || (s->coarse && !s->cache)) return;
+  const bool heat = !s->coarse && s->legend.layer != 0, tiles = !s->coarse && s->tiles && s->accuracy;
   const session::CacheReport* cache = s->cache.get();
   const bool records = cache && (ui.setting_on("overlay.records") || ui.setting_on("overlay.normals"));
   const bool overlap = cache && ui.setting_on("overlay.overlap");

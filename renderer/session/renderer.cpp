@@ -20,8 +20,6 @@
 namespace lucerna::session {
 namespace {
 
-constexpr uint32_t k_coarse_step = 4;
-
 void require(bool go_on) {
   if (!go_on) throw Error("", "cancelled");
 }
@@ -187,8 +185,8 @@ paths::LookupRoutes Renderer::wanted_routes() const {
 
 void Renderer::make_film() {
   film_ = std::make_unique<film::Film>(*device_, width_, height_);
-  coarse_ = std::make_unique<film::Film>(*device_, std::max(1u, width_ / k_coarse_step),
-                                         std::max(1u, height_ / k_coarse_step));
+  coarse_ = std::make_unique<film::Film>(*device_, std::max(1u, width_ / shared::k_coarse_step),
+                                         std::max(1u, height_ / shared::k_coarse_step));
   restart(Lookups::extend);
 }
 

@@ -7,7 +7,7 @@ namespace lucerna::session {
 
 void Renderer::draw_cache() {
   const auto color = uint32_t(settings_.choice("overlay.records_by"));
-  cache_->draw(*wavefront_, *film_,
+  cache_->draw(*wavefront_, *film_, *coarse_,
                {.discs = settings_.boolean("overlay.records"),
                 .overlap = settings_.boolean("overlay.overlap"),
                 .color = color});
@@ -15,14 +15,14 @@ void Renderer::draw_cache() {
   const bool normals = settings_.boolean("overlay.normals");
   if (!normals && !looked_at_) return;
   if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
-  if (normals) inspector_->draw_normals(*wavefront_, *film_, *cache_, color);
+  if (normals) inspector_->draw_normals({*wavefront_, *film_, *coarse_}, *cache_, color);
   if (!looked_at_) return;
   const auto pixel = [](float place, uint32_t pixels) {
     return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
   };
-  inspection_ = inspector_->ask(*wavefront_, *film_, *cache_, pixel(looked_at_->x, film_->width()),
-                                pixel(looked_at_->y, film_->height()));
-  inspector_->draw_lines(*wavefront_, *film_, *cache_, inspection_);
+  inspection_ = inspector_->ask({*wavefront_, *film_, *coarse_}, *cache_,
+                                pixel(looked_at_->x, film_->width()), pixel(looked_at_->y, film_->height()));
+  inspector_->draw_lines({*wavefront_, *film_, *coarse_}, *cache_, inspection_);
 }
 
 std::shared_ptr<const CacheReport> Renderer::cache_report() {
@@ -37,7 +37,7 @@ std::shared_ptr<const CacheReport> Renderer::cache_report() {
   if (cache_->ready() && samples() > 0) {
     if (overlap_.first != restarts_) {
       if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
-      overlap_ = {restarts_, inspector_->overlap(*wavefront_, *film_, *cache_)};
+      overlap_ = {restarts_, inspector_->overlap({*wavefront_, *film_, *coarse_}, *cache_)};
     }
     report->overlap = overlap_.second;
   }

@@ -87,6 +87,28 @@ TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen befo
   CHECK_FALSE(report->inspection.solid);
   CHECK_FALSE(report->overlap.has_value());
   CHECK(report->status.passes.empty());
+
+  // While it is being built the coarse film shows where surfaces are.
+  r.render_coarse();
+  while (r.cache()->status().records == 0) REQUIRE(r.step());
+  REQUIRE_FALSE(r.cache()->ready());
+  REQUIRE(r.samples() == 0);
+  size_t served = 0;
+  const std::vector<Record> all = r.cache()->records().read();
+  for (const float down : {0.2f, 0.45f, 0.7f, 0.9f})
+    for (const float right : {0.2f, 0.4f, 0.6f, 0.8f}) {
+      r.inspect(vec2(right, down));
+      r.picture(true);
+      const Inspection found = r.cache_report()->inspection;
+      if (!found.solid) continue;
+      uint32_t expected = 0;
+      for (uint32_t i = 0; i < r.cache()->status().records; ++i)
+        expected += weight(all[i], found.position, found.normal) > 0;
+      CHECK(found.count == expected);
+      served += found.count > 0;
+    }
+  CHECK(served > 4);
+  CHECK_FALSE(r.cache_report()->overlap.has_value());
 }
 
 TEST_CASE(

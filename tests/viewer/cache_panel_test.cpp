@@ -107,7 +107,7 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const auto bars = [&](const char* name, bool right) {  // of the weights, in the card
-    return near_colour(test::Picture(file(name)), right ? 840 : 292, 80, right ? 1132 : 580, 460, k_gold) >
+    return near_colour(test::Picture(file(name)), right ? 820 : 292, 80, right ? 1132 : 580, 460, k_gold) >
            200;
   };
   CHECK_FALSE(bars("nothing.png", true));
@@ -119,8 +119,8 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
   CHECK(bars("asked.png", true));
   // Light by part has its component's colour.
   const test::Picture card(file("card.png"));
-  CHECK(near_colour(card, 840, 200, 870, 300, k_teal) > 30);
-  CHECK(near_colour(card, 840, 200, 870, 300, k_violet) > 30);
+  CHECK(near_colour(card, 818, 200, 860, 300, k_teal) > 30);
+  CHECK(near_colour(card, 818, 200, 860, 300, k_violet) > 30);
   const std::string script = contents(file("session.lucerna"));
   CHECK_THAT(script, Catch::Contains("set overlay.records true\nset overlay.normals true"));
   CHECK_THAT(script, !Catch::Contains("inspect"));  // looking is no deed
@@ -158,7 +158,7 @@ TEST_CASE("in the program lines lead from a point to the records that serve it")
   };
   // The picture is 524 x 408 at (280, 68): the point, the far wall, and the card.
   CHECK(differ(lines, 522, 395, 562, 435) > 40);
-  CHECK(differ(lines, 300, 150, 480, 250) == 0);
+  CHECK(differ(lines, 300, 150, 470, 250) == 0);
   CHECK(near_colour(lines, 500, 80, 800, 420, k_gold) > 100);
   CHECK(differ(normals, 290, 80, 800, 470) > 500);
 }

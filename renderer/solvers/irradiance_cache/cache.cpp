@@ -340,12 +340,14 @@ std::pair<float, float> Cache::scale(uint32_t color) const {
   return color < k_record_by_rays ? std::pair(1.0f, 2.0f) : impl_->scales[color - k_record_by_rays];
 }
 
-void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const Overlay& overlay) {
+void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
+                 const Overlay& overlay) {
   Impl& c = *impl_;
   if (!overlay.discs && !overlay.overlap) return;
   wavefront.bind_paths(c.resources);
   bind(c.resources);
   film.bind(c.resources);
+  coarse.bind_coarse(c.resources);
   OverlayPush push{film.width(),   film.height(), overlay.discs, overlay.overlap, overlay.color, 0, 1,
                    k_overlap_scale};
   const auto [lo, hi] = scale(overlay.color);

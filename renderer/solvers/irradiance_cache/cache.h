@@ -81,7 +81,8 @@ class Cache {
   const CacheStatus& status() const;
   const Records& records() const;
   /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many
-  /// serve each pixel. Needs the film's depth. `stream` is run.
+  /// serve each pixel. Needs the film's depth, and where it has no samples that of the coarse film of the
+  /// same picture (shared::k_coarse_step). The stream is run.
   struct Overlay {
     bool discs = false, overlap = false;
     uint32_t color = shared::k_record_by_pass;
@@ -89,7 +90,8 @@ class Cache {
   /// Ends of the logarithmic scale of a value that records are coloured by, from nearly all records; of rays,
   /// distance and error only. 0 < first < second.
   std::pair<float, float> scale(uint32_t color) const;
-  void draw(transport::Wavefront& wavefront, const film::Film& film, const Overlay& overlay);
+  void draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
+            const Overlay& overlay);
 
  private:
   struct Impl;

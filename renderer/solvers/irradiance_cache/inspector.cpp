@@ -38,10 +38,11 @@ struct Inspector::Impl {
     return buffer;
   }
 
-  void bind(const transport::Wavefront& wavefront, const film::Film& film, const Cache& cache) {
-    wavefront.bind_paths(resources);
+  void bind(const Shown& shown, const Cache& cache) {
+    shown.wavefront.bind_paths(resources);
     cache.bind(resources);
-    film.bind(resources);
+    shown.film.bind(resources);
+    shown.coarse.bind_coarse(resources);
   }
 
   /// What is drawn and asked is no part of the picture's cost.
@@ -55,15 +56,15 @@ Inspector::Inspector(gpu::Device& device, gpu::ShaderCompiler& compiler)
     : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {}
 Inspector::~Inspector() = default;
 
-Inspection Inspector::ask(transport::Wavefront& wavefront, const film::Film& film, const Cache& cache,
-                          uint32_t x, uint32_t y) {
+Inspection Inspector::ask(const Shown& shown, const Cache& cache, uint32_t x, uint32_t y) {
   Impl& i = *impl_;
+  const film::Film& film = shown.film;
   const gpu::Kernel& kernel = i.ready(i.inspect, "irradiance_cache/inspect.comp");
-  i.bind(wavefront, film, cache);
+  i.bind(shown, cache);
   i.resources.set("Inspection", i.ready(i.answer, "cache inspection", k_inspection_bytes, gpu::Memory::host));
   const InspectPush push{film.width(), film.height(), y * film.width() + x};
-  wavefront.stream().dispatch(kernel, i.resources, push, 1);
-  Impl::finish(wavefront.stream());
+  shown.wavefront.stream().dispatch(kernel, i.resources, push, 1);
+  Impl::finish(shown.wavefront.stream());
 
   const auto* header = static_cast<const InspectHeader*>(i.answer.mapped());
   const auto* served = reinterpret_cast<const InspectServing*>(header + 1);
@@ -92,16 +93,17 @@ Inspection Inspector::ask(transport::Wavefront& wavefront, const film::Film& fil
   return found;
 }
 
-Overlap Inspector::overlap(transport::Wavefront& wavefront, const film::Film& film, const Cache& cache) {
+Overlap Inspector::overlap(const Shown& shown, const Cache& cache) {
   Impl& i = *impl_;
+  const film::Film& film = shown.film;
   const gpu::Kernel& kernel = i.ready(i.overlap, "irradiance_cache/overlap.comp");
-  i.bind(wavefront, film, cache);
+  i.bind(shown, cache);
   const gpu::Buffer& counts = i.ready(i.counts, "cache overlap", sizeof(OverlapCounts), gpu::Memory::host);
   i.resources.set("Overlap", counts);
-  wavefront.stream().fill(counts, 0);
-  wavefront.stream().dispatch(kernel, i.resources, OverlapPush{film.width(), film.height()},
-                              gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
-  Impl::finish(wavefront.stream());
+  shown.wavefront.stream().fill(counts, 0);
+  shown.wavefront.stream().dispatch(kernel, i.resources, OverlapPush{film.width(), film.height()},
+                                    gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
+  Impl::finish(shown.wavefront.stream());
 
   const auto* c = static_cast<const OverlapCounts*>(counts.mapped());
   Overlap o;
@@ -113,10 +115,10 @@ Overlap Inspector::overlap(transport::Wavefront& wavefront, const film::Film& fi
   return o;
 }
 
-void Inspector::draw_lines(transport::Wavefront& wavefront, const film::Film& film, const Cache& cache,
-                           const Inspection& found) {
+void Inspector::draw_lines(const Shown& shown, const Cache& cache, const Inspection& found) {
   if (!found.solid) return;
   Impl& i = *impl_;
+  const film::Film& film = shown.film;
   const float width = float(film.width()), height = float(film.height());
   const vec2 here(float(found.x) + 0.5f, float(found.y) + 0.5f);
   vec2 lo = here - 4.0f, hi = here + 4.0f;
@@ -143,7 +145,7 @@ void Inspector::draw_lines(transport::Wavefront& wavefront, const film::Film& fi
   const vec2 size = last - first;
   if (size.x < 1 || size.y < 1) return;
   const gpu::Kernel& kernel = i.ready(i.lines, "irradiance_cache/lines.comp");
-  i.bind(wavefront, film, cache);
+  i.bind(shown, cache);
   gpu::Buffer& lines =
       i.ready(i.line_list, "cache lines", (2 * k_inspect_most + 1) * sizeof(CacheLine), gpu::Memory::host);
   lines.write(list.data(), list.size() * sizeof(CacheLine));
@@ -151,25 +153,25 @@ void Inspector::draw_lines(transport::Wavefront& wavefront, const film::Film& fi
   const CacheLinesPush push{
       film.width(),     film.height(),    uint32_t(first.x),     uint32_t(first.y),
       uint32_t(size.x), uint32_t(size.y), uint32_t(list.size()), found.under.value_or(k_no_record)};
-  wavefront.stream().dispatch(kernel, i.resources, push,
-                              gpu::groups_for(uint64_t(size.x) * uint64_t(size.y), 64));
-  Impl::finish(wavefront.stream());
+  shown.wavefront.stream().dispatch(kernel, i.resources, push,
+                                    gpu::groups_for(uint64_t(size.x) * uint64_t(size.y), 64));
+  Impl::finish(shown.wavefront.stream());
 }
 
-void Inspector::draw_normals(transport::Wavefront& wavefront, const film::Film& film, const Cache& cache,
-                             uint32_t color) {
+void Inspector::draw_normals(const Shown& shown, const Cache& cache, uint32_t color) {
   // Of records that are complete alone: the others have no radius yet.
   const uint32_t records = cache.status().records;
   if (records == 0) return;
   Impl& i = *impl_;
+  const film::Film& film = shown.film;
   const gpu::Kernel& ticks = i.ready(i.ticks, "irradiance_cache/ticks.comp");
   const gpu::Kernel& draw = i.ready(i.ticks_draw, "irradiance_cache/ticks_draw.comp");
-  i.bind(wavefront, film, cache);
+  i.bind(shown, cache);
   const uint64_t pixels = uint64_t{film.width()} * film.height();
   i.resources.set("Ticks", i.ready(i.marks, "cache ticks", 4 * pixels, gpu::Memory::device));
   const auto [lo, hi] = cache.scale(color);
   const CacheTicksPush push{film.width(), film.height(), records, color, lo, hi};
-  gpu::Stream& stream = wavefront.stream();
+  gpu::Stream& stream = shown.wavefront.stream();
   stream.fill(i.marks, 0);
   stream.dispatch(ticks, i.resources, push, gpu::groups_for(records, 64));
   stream.dispatch(draw, i.resources, push, gpu::groups_for(pixels, 64));

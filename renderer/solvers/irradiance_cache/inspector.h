@@ -4,9 +4,9 @@
 // the lookup's own functions (shaders/irradiance_cache/lookup.glsl), so that the answers are those of the
 // picture.
 //
-// A pixel's place in the scene is the mean over its samples, from the film's depth and normal: where no
-// sample has been taken, or most have met nothing, there is none. Kernels are compiled when they are first
-// called for.
+// A pixel's place in the scene is the mean over its samples, from the film's depth and normal: where most
+// have met nothing there is none. Before its first sample the coarse film stands for it. Kernels are compiled
+// when they are first called for.
 #include <memory>
 #include <optional>
 #include <vector>
@@ -48,27 +48,31 @@ struct Overlap {
   std::vector<uint32_t> histogram;
 };
 
+/// The picture: its wavefront, whose frame must be the picture's and whose stream is run, and its film. Where
+/// that has no samples the coarse film tells what is seen (shared::k_coarse_step).
+struct Shown {
+  transport::Wavefront& wavefront;
+  const film::Film& film;
+  const film::Film& coarse;
+};
+
 class Inspector {
  public:
   /// Both must outlive it.
   Inspector(gpu::Device& device, gpu::ShaderCompiler& compiler);
   ~Inspector();
 
-  /// The stream of the wavefront is run; its frame must be that of the film's picture. `x`, `y` are inside
-  /// the picture. Throws Error when a kernel does not compile; so do the others.
-  Inspection ask(transport::Wavefront& wavefront, const film::Film& film, const Cache& cache, uint32_t x,
-                 uint32_t y);
+  /// `x`, `y` are inside the picture. Throws Error when a kernel does not compile; so do the others.
+  Inspection ask(const Shown& shown, const Cache& cache, uint32_t x, uint32_t y);
   /// Over the film's pixels.
-  Overlap overlap(transport::Wavefront& wavefront, const film::Film& film, const Cache& cache);
+  Overlap overlap(const Shown& shown, const Cache& cache);
 
   /// Draws over the film's picture, from the pixel to each record that serves it, a line as wide and opaque
   /// as its weight says, and the border of the record in whose disc the pixel lies.
-  void draw_lines(transport::Wavefront& wavefront, const film::Film& film, const Cache& cache,
-                  const Inspection& inspection);
+  void draw_lines(const Shown& shown, const Cache& cache, const Inspection& inspection);
   /// Draws the records' normals over the film's picture, as short lines from their centres, coloured by one
   /// of shared::k_record_by_*.
-  void draw_normals(transport::Wavefront& wavefront, const film::Film& film, const Cache& cache,
-                    uint32_t color);
+  void draw_normals(const Shown& shown, const Cache& cache, uint32_t color);
 
  private:
   struct Impl;
