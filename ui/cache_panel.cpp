@@ -79,9 +79,11 @@ void numbers(const Ui& ui, const CacheReport& r) {
   value_row("Passes", fmt::format("{} of {}", s.pass, ui.setting("cache.passes")),
             "Passes that have placed records, since the building began or the camera has moved, and how many "
             "there may be.");
+  uint64_t rays = 0;  // of the records that are complete
+  for (const CachePass& p : s.passes) rays += p.complete ? p.rays : 0;
   value_row("Rays of records",
             s.records > 0 ? fmt::format("{}, {} each", amount(double(s.rays)),
-                                        count_text(std::round(double(s.rays) / s.records)))
+                                        count_text(std::round(double(rays) / s.records)))
                           : amount(double(s.rays)),
             "Rays over the records' hemispheres, without those of the paths that they begin; on average.");
   value_row(

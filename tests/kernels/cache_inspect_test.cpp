@@ -14,7 +14,7 @@ using irradiance_cache::Record;
 
 namespace {
 
-constexpr uint32_t k_size = 96;
+constexpr uint32_t k_size = 192;
 constexpr float k_tolerance = 0.015f, k_behind = 0.05f;  // of the cache: 1 - cos 10 degrees, of the radius
 
 /// Tabellion and Lamorlette's weight, as METHODS and shaders/irradiance_cache/lookup.glsl have it.
@@ -37,6 +37,7 @@ session::Renderer& bed() {
                                      {"components.tertiary", "cache"},
                                      {"cache.rays", "64"},
                                      {"cache.max_rays", "64"},
+                                     {"cache.error", "0.6"},
                                      {"samples", "4"}})
       r->settings().set(key, value);
     r->apply_settings();
@@ -118,8 +119,8 @@ TEST_CASE(
   REQUIRE(all.size() > 100);
   const scene::Camera camera = r.camera();
   size_t solid = 0, listed = 0, unders = 0;
-  for (uint32_t y = 3; y < k_size; y += 9)
-    for (uint32_t x = 4; x < k_size; x += 11) {
+  for (uint32_t y = 3; y < k_size; y += 18)
+    for (uint32_t x = 4; x < k_size; x += 22) {
       const Inspection found = ask(r, x, y);
       INFO("pixel " << x << " " << y);
       REQUIRE(found.x == x);
@@ -215,26 +216,44 @@ TEST_CASE("the overlap told of the picture is that of its pixels, counted by han
   CHECK(std::abs(int(told.most) - int(most)) <= 1);
   CHECK(std::accumulate(told.histogram.begin(), told.histogram.end(), 0ull) == told.pixels);
   for (size_t i = 0; i < histogram.size(); ++i)
-    CHECK(std::abs(int(told.histogram[i]) - int(histogram[i])) < 60);
+    CHECK(std::abs(int(told.histogram[i]) - int(histogram[i])) < 240);
 }
 
 TEST_CASE("lines go from the pixel to the records that serve it, and nowhere else") {
   session::Renderer& r = bed();
   const std::vector<uint8_t> plain = r.picture(false);
-  // The floor's middle, where the box is seen flat.
-  const Inspection found = ask(r, 44, 86);
-  REQUIRE(found.solid);
-  REQUIRE(found.count > 1);
+  // How far a place is from the line to a record, in pixels.
+  const auto from_line = [](const vec2& p, const vec2& a, const vec2& b) {
+    const vec2 along = b - a;
+    const float t = std::clamp(dot(p - a, along) / std::max(dot(along, along), 1e-9f), 0.0f, 1.0f);
+    return length(p - a - t * along);
+  };
+  // A pixel that a record serves whose centre is some way off, with nothing else drawn about the middle of
+  // the line to it: not the ring, nor other lines.
+  Inspection found;
+  vec2 here(0), centre(0);
+  for (uint32_t y = k_size - 5; y > k_size / 3 && centre == vec2(0); y -= 5)
+    for (uint32_t x = 10; x < k_size - 10 && centre == vec2(0); x += 5) {
+      found = ask(r, x, y);
+      here = vec2(float(x), float(y)) + 0.5f;
+      if (!found.solid || !found.record) continue;
+      for (const auto& s : found.serving) {
+        const vec2 middle = 0.5f * (here + s.at);
+        const bool alone = std::all_of(found.serving.begin(), found.serving.end(), [&](const auto& o) {
+          return o.record == s.record || from_line(middle, here, o.at) > 3.5f;
+        });
+        const bool inside = s.at.x > 2 && s.at.y > 2 && s.at.x < k_size - 2 && s.at.y < k_size - 2;
+        const bool off_ring =
+            std::abs(length(middle - found.under_at) - found.record->radius / found.size) > 5;
+        if (inside && alone && off_ring && s.weight > 0.02f && length(s.at - here) > 12) centre = s.at;
+      }
+    }
+  REQUIRE(centre != vec2(0));
   const std::vector<uint8_t> lined = r.picture(false);
   CHECK(r.picture(false) == lined);
-  const vec2 here(44.5f, 86.5f);
-  const auto off = [&](const vec2& p) {  // pixels from the nearest line, or the ring
+  const auto off = [&](const vec2& p) {  // pixels from the nearest line
     float nearest = length(p - here);
-    for (const auto& s : found.serving) {
-      const vec2 along = s.at - here;
-      const float t = std::clamp(dot(p - here, along) / std::max(dot(along, along), 1e-9f), 0.0f, 1.0f);
-      nearest = std::min(nearest, length(p - here - t * along));
-    }
+    for (const auto& s : found.serving) nearest = std::min(nearest, from_line(p, here, s.at));
     return nearest;
   };
   const float ring = found.record ? 1.5f * found.record->radius / found.size : 0;
@@ -244,9 +263,9 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
     INFO("pixel " << p % k_size << " " << p / k_size);
     CHECK((off(place_of(p)) < 6 || length(place_of(p) - found.under_at) < ring + 4));
   }
-  // Along the line to the heaviest something has changed everywhere.
-  for (const float t : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f}) {
-    const vec2 at = glm::floor(here + t * (found.serving[0].at - here));
+  // Along the line something has changed everywhere.
+  for (const float t : {0.0f, 0.25f, 0.5f, 0.6f, 0.75f, 1.0f}) {
+    const vec2 at = glm::floor(here + t * (centre - here));
     const uint32_t p = uint32_t(at.y) * k_size + uint32_t(at.x);
     INFO("at " << t << ": pixel " << at.x << " " << at.y);
     CHECK(std::find(list.begin(), list.end(), p) != list.end());
@@ -258,6 +277,13 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
 
 TEST_CASE("normals are short lines at the centres of records that are seen") {
   session::Renderer& r = bed();
+  // From elsewhere, so that the blocks stand before records that were asked for from where the camera was.
+  const scene::Camera kept = r.camera();
+  scene::Camera moved = kept;
+  moved.to_world[3] += vec4(-2, 1.2f, 0, 0);
+  r.set_camera(moved);
+  while (r.step()) {
+  }
   const std::vector<uint8_t> plain = r.picture(false);
   r.settings().set("overlay.normals", "true");
   r.apply_settings();
@@ -275,37 +301,49 @@ TEST_CASE("normals are short lines at the centres of records that are seen") {
   };
   const film::Image image = r.image();
   std::vector<std::pair<vec2, vec2>> seen;
-  size_t hidden = 0;
+  std::vector<vec2> hidden;  // feet
   for (const Record& record : r.cache()->records().read()) {
     const vec3 foot = project(record.place.position);
     if (foot.z <= 0 || foot.x < 0 || foot.y < 0 || foot.x >= k_size || foot.y >= k_size) continue;
     const float depth = image.depth[size_t(foot.y) * k_size + size_t(foot.x)];
     if (foot.z > 1.1f * depth) {
-      ++hidden;
+      hidden.emplace_back(foot);
       continue;
     }
     seen.emplace_back(vec2(foot),
                       vec2(project(record.place.position + 0.6f * record.radius * record.place.normal)));
   }
-  CHECK(hidden > 0);
   CHECK(seen.size() > 50);
-  size_t strays = 0;
-  for (const uint32_t p : list) {
+  const auto off = [&](const vec2& p) {  // pixels from the nearest normal that is seen
     float nearest = 1e9f;
     for (const auto& [foot, tip] : seen) {
       const vec2 along = tip - foot;
-      const float t =
-          std::clamp(dot(place_of(p) - foot, along) / std::max(dot(along, along), 1e-9f), 0.0f, 1.0f);
-      nearest = std::min(nearest, length(place_of(p) - foot - t * along));
+      const float t = std::clamp(dot(p - foot, along) / std::max(dot(along, along), 1e-9f), 0.0f, 1.0f);
+      nearest = std::min(nearest, length(p - foot - t * along));
     }
-    strays += nearest > 3;
+    return nearest;
+  };
+  size_t strays = 0, lone = 0;
+  for (const uint32_t p : list) strays += off(place_of(p)) > 3;
+  INFO(strays << " of " << list.size() << " pixels away from every normal");
+  CHECK(strays <= list.size() / 100);
+  for (const vec2& foot : hidden) {
+    if (off(foot) < 3.5f) continue;
+    ++lone;
+    const uint32_t p = uint32_t(foot.y) * k_size + uint32_t(foot.x);
+    INFO("pixel " << p % k_size << " " << p / k_size);
+    CHECK(std::find(list.begin(), list.end(), p) == list.end());
   }
-  INFO(strays << " of " << list.size() << " pixels away from every normal; " << hidden << " records hidden");
-  CHECK(strays <= list.size() / 20);
+  INFO(hidden.size() << " records hidden, " << lone << " where no other's normal is");
+  CHECK(lone > 1);
+  r.set_camera(kept);
 }
 
 TEST_CASE("the log of building adds up to what the cache holds") {
   session::Renderer& r = bed();
+  r.restart();
+  while (r.step()) {
+  }
   const auto report = r.cache_report();
   const irradiance_cache::CacheStatus& s = report->status;
   REQUIRE(s.passes.size() > 1);

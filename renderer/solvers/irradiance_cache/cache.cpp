@@ -272,7 +272,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
                                 .normal_tolerance = k_normal_tolerance,
                                 .seed = c.options.seed + c.status.pass,
                                 .most = c.records.capacity() - c.records.size()});
-    c.records.append(chosen, c.status.pass);
+    c.pass().records = c.records.append(chosen, c.status.pass);
     c.list.resize(c.records.size() - c.evaluated);
     std::iota(c.list.begin(), c.list.end(), c.evaluated);
     c.took(BuildStep::choose, host.milliseconds());
@@ -318,7 +318,6 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       wavefront.stream().run();
     }
     c.took(BuildStep::radius, timer.milliseconds());
-    c.pass().records = c.records.size() - c.evaluated;
     c.pass().complete = true;
     c.evaluated = c.records.size();
     c.status.records = c.evaluated;
