@@ -48,8 +48,8 @@ void paragraph(const std::string& text, ImU32 colour = colour::text_dim) {
 
 /// Steps of building in greys, as stages are; what the host does is bluish.
 ImU32 step_colour(size_t step) {
-  static constexpr int steps[] = {178, 140, 118, 152, 98};
-  const int v = steps[step % 5];
+  static constexpr int steps[] = {178, 140, 160, 118, 152, 98};
+  const int v = steps[step % 6];
   return step == size_t(irradiance_cache::BuildStep::choose) ? IM_COL32(v * 2 / 3, v * 5 / 6, v, 255)
                                                              : colour::grey(v);
 }
@@ -58,11 +58,12 @@ const char* step_help(size_t step) {
   static constexpr const char* texts[] = {
       "Paths from the camera, to find where records are missing.",
       "Which of the places asked for get a record. On the host.",
+      "A few rays from each of these, to see how wide its record would be and whether it is needed.",
       "Rays over the records' hemispheres, and their sums.",
       "How far each new record serves.",
       "The octree by which records are found.",
   };
-  return texts[step % 5];
+  return texts[step % 6];
 }
 
 double building_ms(const CacheStatus& s) {

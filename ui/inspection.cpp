@@ -139,7 +139,7 @@ class Card {
 void fields(Card& card, uint32_t index, const Record& r) {
   card.title(fmt::format("Record {}", count_text(index)),
              fmt::format("pass {} \xC2\xB7 {}", r.pass + 1,
-                         r.place.origin == shared::k_origin_screen ? "seen by the camera" : "behind it"));
+                         irradiance_cache::k_origins[std::min(r.place.origin, 2u)]));
   card.row("Position", vector(r.place.position, 3) + " m");
   card.row("Normal", vector(r.place.normal, 3));
   card.row("Radius", metres(r.radius));

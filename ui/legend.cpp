@@ -121,8 +121,8 @@ void record_inks(ImDrawList* list, const ImVec2& at, const session::CacheReport&
     return;
   }
   if (r.color == shared::k_record_by_origin) {
-    x = swatch(list, at, ink_of(shared::ramp_hue(shared::k_origin_screen)), "seen by the camera");
-    swatch(list, {x, at.y}, ink_of(shared::ramp_hue(shared::k_origin_world)), "behind it");
+    for (uint32_t i = 0; i < std::size(irradiance_cache::k_origins); ++i)
+      x = swatch(list, {x, at.y}, ink_of(shared::ramp_hue(i)), irradiance_cache::k_origins[i]);
     return;
   }
   std::vector<std::pair<float, std::string>> labels;

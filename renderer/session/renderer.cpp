@@ -114,11 +114,14 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
   if (settings_.boolean("sampling.coherent"))
     defines["LUCERNA_COHERENT"] = settings_.text("sampling.tile") == "8" ? "3" : "4";
   paths::LookupRoutes routes = wanted_routes();
+  paths::LookupRoutes record_routes;
   std::unique_ptr<irradiance_cache::Cache> cache;
   std::function<void(gpu::Resources&)> bind;
   if (routes.parts != 0) {
-    cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, cache_options());
-    for (const auto& [name, value] : irradiance_cache::Cache::defines(routes)) defines[name] = value;
+    record_routes = wanted_record_routes(device_scene.effects());
+    cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, record_routes,
+                                                      cache_options());
+    for (const auto& [name, value] : irradiance_cache::Cache::defines(record_routes)) defines[name] = value;
     bind = [c = cache.get()](gpu::Resources& r) { c->bind(r); };
   }
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
@@ -126,6 +129,7 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
   cache_ = std::move(cache);
   inspector_.reset();
   routes_ = std::move(routes);
+  record_routes_ = std::move(record_routes);
   compile_seconds_ = timer.seconds();
 }
 
@@ -137,7 +141,7 @@ void Renderer::reload_shaders() {
 
 uint32_t Renderer::enabled_components() const { return plan::make_plan(settings_).enabled(); }
 
-shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, uint32_t enabled,
+shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
                                    uint32_t fallback) const {
   return transport::make_frame(flat_, camera_, automaton_,
                                {.width = width,
@@ -145,12 +149,13 @@ shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, uint32_t ena
                                 .seed = uint32_t(settings_.integer("seed")),
                                 .max_depth = uint32_t(settings_.integer("path.max_depth")),
                                 .roulette_depth = uint32_t(settings_.integer("path.roulette_depth")),
-                                .enabled = enabled,
+                                .enabled = routes.traced,
+                                .routes = routes,
                                 .fallback = fallback});
 }
 
 shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
-  return make_frame(width, height, routes_.traced, cache_ ? enabled_components() : 0);
+  return make_frame(width, height, routes_, cache_ ? enabled_components() : 0);
 }
 
 irradiance_cache::CacheOptions Renderer::cache_options() const {
@@ -171,8 +176,8 @@ irradiance_cache::CacheView Renderer::cache_view() const {
   view.paths_frame = make_frame(width_, height_);
   view.paths_enabled = enabled_components();
   // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
-  view.records_frame = make_frame(width_, height_, routes_.parts, 0);
-  view.records_enabled = routes_.parts;
+  view.records_frame = make_frame(width_, height_, record_routes_, record_routes_.parts);
+  view.records_enabled = record_routes_.parts;
   view.width = width_, view.height = height_;
   view.scene_radius = flat_.scene_radius;
   return view;
@@ -181,6 +186,13 @@ irradiance_cache::CacheView Renderer::cache_view() const {
 paths::LookupRoutes Renderer::wanted_routes() const {
   const plan::Plan plan = plan::make_plan(settings_);
   return paths::lookup_routes(automaton_, plan.enabled(), plan.looked_up());
+}
+
+paths::LookupRoutes Renderer::wanted_record_routes(const upload::Effects& effects) const {
+  constexpr uint32_t k_tertiary = 1u << 2;
+  return paths::record_routes(automaton_, wanted_routes().parts,
+                              (plan::make_plan(settings_).looked_up() & k_tertiary) != 0,
+                              effects.specular || effects.solid_glass || effects.thin_glass);
 }
 
 void Renderer::make_film() {
@@ -300,8 +312,9 @@ void Renderer::apply_settings() {
   const bool cache_changed = cache_ && std::any_of(changed.begin(), changed.end(), [](const std::string& k) {
                                return k.starts_with("cache.");
                              });
-  const bool kernels = wanted_routes().component != routes_.component || cache_changed ||
-                       changed.contains("sampling.coherent") ||
+  const bool kernels = wanted_routes().component != routes_.component ||
+                       wanted_record_routes(device_scene_->effects()).component != record_routes_.component ||
+                       cache_changed || changed.contains("sampling.coherent") ||
                        (changed.contains("sampling.tile") && settings_.boolean("sampling.coherent"));
   if (changed.contains("camera")) choose_camera(settings_.text("camera"));
   if (rebuild) {

@@ -223,7 +223,7 @@ struct Session::Impl {
       irradiance_cache::CachePass p;
       p.number = i, p.complete = true, p.paths = 525000, p.asked = p.paths >> (3 * i);
       p.asked_world = p.asked / 3, p.records = i < 4 ? 2800 >> i : 0, p.rays = 340ull * p.records;
-      p.ms = {210, 12, i < 4 ? 1900.0 / (i + 1) : 0, 2, 11};
+      p.ms = {210, 12, 90, i < 4 ? 1900.0 / (i + 1) : 0, 2, 11};
       status.passes.push_back(p);
       status.records += p.records, status.rays += p.rays, status.asked = p.asked, status.paths = p.paths;
     }

@@ -7,6 +7,7 @@
 // A pixel's place in the scene is the mean over its samples, from the film's depth and normal: where most
 // have met nothing there is none. Before its first sample the coarse film stands for it. Kernels are compiled
 // when they are first called for.
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,6 +16,9 @@
 #include "solvers/irradiance_cache/cache.h"
 
 namespace lucerna::irradiance_cache {
+
+/// What asked for a record, by shared::k_origin_*.
+inline constexpr std::array<const char*, 3> k_origins{"screen", "world", "recursive"};
 
 /// A record that serves a point.
 struct Serving {
