@@ -136,6 +136,8 @@ TEST_CASE(
       std::vector<float> expected(all.size());
       for (size_t i = 0; i < all.size(); ++i)
         sum += double(expected[i] = weight(all[i], found.position, found.normal));
+      // At the very border of all that serve rounding decides.
+      if (found.count > 0 && sum < 1e-4) continue;
       size_t serve = 0;
       for (const auto& s : found.serving) {
         REQUIRE(s.record < all.size());
@@ -216,7 +218,7 @@ TEST_CASE("the overlap told of the picture is that of its pixels, counted by han
   CHECK(std::abs(int(told.most) - int(most)) <= 1);
   CHECK(std::accumulate(told.histogram.begin(), told.histogram.end(), 0ull) == told.pixels);
   for (size_t i = 0; i < histogram.size(); ++i)
-    CHECK(std::abs(int(told.histogram[i]) - int(histogram[i])) < 240);
+    CHECK(std::abs(int(told.histogram[i]) - int(histogram[i])) < int(pixels / 100));
 }
 
 TEST_CASE("lines go from the pixel to the records that serve it, and nowhere else") {
