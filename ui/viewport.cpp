@@ -242,7 +242,8 @@ void ask(Ui& ui, const Area& shown, bool active) {
   const vec2 place((at.x - shown.lo.x) / std::max(1.0f, shown.width()),
                    (at.y - shown.lo.y) / std::max(1.0f, shown.height()));
   const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
-  if (ui.shows_cache() && ui.picture_hovered && inside) {
+  const bool still = !(active && dragging()) && !ui.flight.moving();
+  if (ui.shows_cache() && ui.picture_hovered && inside && still) {
     if (active || ui.asked == place || ui.now - since < k_rest) return;
     ui.asked = place;
     ui.act("inspect.records", place.x, place.y);

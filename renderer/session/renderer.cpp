@@ -552,9 +552,13 @@ void Renderer::save(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
   if (extension == ".exr")
     film::write_exr(file, film_image());
-  else if (extension == ".png")
-    film::write_png(file, film_->width(), film_->height(), picture(false));
-  else
+  else if (extension == ".png") {
+    // Where somebody looks is no part of what is kept.
+    const std::optional<vec2> at = std::exchange(looked_at_, std::nullopt);
+    const std::vector<uint8_t> shown = picture(false);
+    looked_at_ = at;
+    film::write_png(file, film_->width(), film_->height(), shown);
+  } else
     throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);
 }
 

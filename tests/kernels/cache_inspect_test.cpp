@@ -1,10 +1,13 @@
 // links: session
 // What a person is told of the irradiance cache: which records serve a pixel, how many serve the picture,
 // what is drawn over it, and the log of its building; held against all records read back and weighed here.
+#include <unistd.h>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 
+#include "film/io/image_file.h"
 #include "session/pick.h"
 #include "session/renderer.h"
 
@@ -252,6 +255,16 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
     }
   REQUIRE(centre != vec2(0));
   const std::vector<uint8_t> lined = r.picture(false);
+  CHECK(r.picture(false) == lined);
+  // Looking is not kept in a file, nor ended by it.
+  const auto png = std::filesystem::temp_directory_path() / fmt::format("lucerna-inspect-{}.png", getpid());
+  r.save(png);
+  const film::FilmImage kept = film::read_exr(png);
+  std::filesystem::remove(png);
+  size_t other = 0;
+  for (uint32_t p = 0; p < k_size * k_size; ++p)
+    other += std::abs(kept.channels[0].second[p] - float(plain[4 * p]) / 255) > 0.004f;
+  CHECK(other == 0);
   CHECK(r.picture(false) == lined);
   const auto off = [&](const vec2& p) {  // pixels from the nearest line
     float nearest = length(p - here);

@@ -99,6 +99,9 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
       // Nothing lies over the picture yet: nothing is asked.
       "mouse.move 500 400\nwait 0.7\nscreenshot " +
       file("nothing.png") + "\nkey c\nkey n\nkey v\nkey v\nwait 0.7\nscreenshot " + file("card.png") +
+      // While the view is turned nothing is asked; when it stands still again it is.
+      "\nmouse.down\nmouse.move 520 420\nmouse.move 560 440\nwait 0.5\nscreenshot " + file("turning.png") +
+      "\nmouse.up\nwait 0.7\nscreenshot " + file("turned.png") +
       // Where the card would be in the way it makes room; away from the picture it goes.
       "\nmouse.move 1000 120\nwait 0.7\nscreenshot " + file("aside.png") +
       "\nmouse.move 640 800\nwait 0.5\nscreenshot " + file("gone.png") +
@@ -113,6 +116,8 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
   CHECK_FALSE(bars("nothing.png", true));
   CHECK(bars("card.png", true));
   CHECK_FALSE(bars("card.png", false));
+  CHECK_FALSE(bars("turning.png", true));
+  CHECK(bars("turned.png", true));
   CHECK(bars("aside.png", false));
   CHECK_FALSE(bars("aside.png", true));
   CHECK_FALSE(bars("gone.png", true));
