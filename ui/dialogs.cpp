@@ -202,7 +202,7 @@ void key_page(Ui& ui) {
         {"F", "frame the selection, or the scene"},
         {"L", "mark the lamps, to click on them"},
         {"T", "show the tiles at work"},
-        {"C, V, N", "show the records of the irradiance cache, their overlap, their normals"},
+        {"C, V, N", "show the cache's records, their overlap, their normals"},
         {"Pointer at rest", "while they are shown: which records serve there"},
         {"K", "the cache's panel, the scene's"},
         {"1 \xE2\x80\x93 9", "scene cameras"},
