@@ -163,9 +163,10 @@ void fields(Card& card, uint32_t index, const Record& r) {
   if (!any) card.note("no light", colour::text_faint);
 }
 
-void weights(Card& card, const Inspection& found) {
+void weights(Card& card, const Inspection& found, bool building) {
   if (found.count == 0) {
-    card.note("No record serves here: it is path traced.", colour::warning);
+    card.note(building ? "No record serves here yet." : "No record serves here: it is path traced.",
+              building ? colour::text_dim : colour::warning);
     return;
   }
   card.note(fmt::format("Served by {} record{}", found.count, found.count == 1 ? "" : "s"));
@@ -208,7 +209,7 @@ void draw_inspection(Ui& ui, const Area& area) {
       fields(card, *found.under, *found.record);
       card.space(true);
     }
-    weights(card, found);
+    weights(card, found, r->status.stop == irradiance_cache::StopReason::building);
     return card.bottom() - lo.y;
   };
   // In the corner that leaves what is looked at free; the upper right one before the others. In a small
