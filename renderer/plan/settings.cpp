@@ -165,6 +165,9 @@ std::vector<OptionInfo> make_options() {
                "the harmonic "
                "mean of the distances that they see, their error.",
        .restarts = false},
+      going_on(boolean("overlay.normals",
+                       "Shows over the picture the normals of the irradiance cache's "
+                       "records, as short lines from their centres.")),
       going_on(boolean("overlay.overlap", "Shows over the picture how many records serve each pixel.")),
       {.key = "about",
        .type = OptionType::text,

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/timer.h"
 #include "gpu/stream.h"
 #include "schedule/uniform.h"
 #include "solvers/irradiance_cache/placement.h"
@@ -54,6 +55,20 @@ std::array<uint32_t, 16> packed(const paths::LookupRoutes& routes) {
 }
 
 }  // namespace
+
+const char* words(StopReason reason) {
+  switch (reason) {
+    case StopReason::covered:
+      return "few paths still ask for records";
+    case StopReason::passes:
+      return "as many passes as are allowed";
+    case StopReason::records:
+      return "the room for records is used up";
+    case StopReason::building:
+      break;
+  }
+  return "it goes on";
+}
 
 struct Cache::Impl {
   CacheOptions options;
@@ -108,6 +123,13 @@ struct Cache::Impl {
     }
     status.references = h.spheres ? double(h.references) / h.spheres : 0;
     wavefront.rebind_lookup();
+  }
+
+  CachePass& pass() { return status.passes.back(); }
+  void took(BuildStep step, double ms) { pass().ms[size_t(step)] += ms; }
+  void begin_pass() {
+    if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
+    status.passes.push_back({.number = status.pass});
   }
 
   /// What paths know of the cache from here on.
@@ -186,6 +208,7 @@ struct Cache::Impl {
     stage = Stage::done;
     status.stop = reason;
     asked = {};
+    if (!status.passes.empty()) pass().complete = true;
     tell();
   }
 };
@@ -256,6 +279,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       c.picture = {((view.width + 7) / 8) * ((view.height + 7) / 8), 1, wavefront.slots()};
       c.status.asked = c.status.paths = 0;
       c.asked.clear();
+      c.begin_pass();
       c.probing = true;
     }
     const schedule::UniformSchedule before = c.picture;
@@ -263,23 +287,29 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     // Each pass looks along paths of its own.
     for (WorkBlock& b : item.blocks) b.first_sample = c.status.pass;
     c.tell(c.recursive && c.status.pass < k_deep_passes ? k_probe_beyond : k_probe_lookups);
+    StageTimer timer(wavefront);
     wavefront.stream().fill(c.candidates, 0);
     if (!wavefront.probe(item, cancel)) {
       c.picture = before;
       c.tell();
       return false;
     }
+    c.took(BuildStep::probe, timer.milliseconds());
     c.collect(item.slots());
     c.status.paths += item.slots();
+    c.pass().asked = c.status.asked, c.pass().paths = c.status.paths;
     c.tell();
     if (!c.picture.done()) return true;
     c.probing = false;
+    c.pass().asked_world = uint64_t(std::count_if(
+        c.asked.begin(), c.asked.end(), [](const Place& p) { return p.origin != k_origin_screen; }));
     if (double(c.status.asked) <= double(c.options.stop_share) * double(c.status.paths)) {
       c.finish(StopReason::covered);
       return true;
     }
     const Frame& f = view.paths_frame;
     const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
+    const Timer host;
     c.tried = choose_places(
         c.asked,
         {.spacing = view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(c.status.pass)),
@@ -292,6 +322,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
          .most = c.records.capacity() - c.records.size()});
     c.records.append(c.tried, c.status.pass);
     c.list_new();
+    c.took(BuildStep::choose, host.milliseconds());
     c.stage = Stage::measure;
     return true;
   }
@@ -301,13 +332,19 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
         std::min<size_t>(c.list.size() - c.at, std::max(1u, wavefront.slots() / Evaluator::k_distance_rays));
     const std::span<const uint32_t> list(c.list.data() + c.at, batch);
     wavefront.set_frame(view.records_frame, view.records_enabled);
+    StageTimer timer(wavefront);
     const size_t done = c.evaluator.measure(wavefront, c.records, list, c.options.seed, cancel);
     wavefront.set_frame(view.paths_frame, view.paths_enabled);
     c.at += done;
+    c.took(BuildStep::measure, timer.milliseconds());
     c.status.rays += uint64_t(done) * Evaluator::k_distance_rays;
+    c.pass().rays += uint64_t(done) * Evaluator::k_distance_rays;
     if (done < list.size()) return false;
     if (c.at < c.list.size()) return true;
+    StageTimer widths(wavefront);
     c.set_radii(wavefront, view, *this, c.evaluated);
+    c.took(BuildStep::radius, widths.milliseconds());
+    const Timer host;
     const std::vector<float> radii = c.records.radii(c.evaluated);
     std::vector<Place> needed;
     for (const uint32_t i : thin_out(
@@ -315,9 +352,10 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
              {.share = c.options.overlap_share, .normal_tolerance = k_normal_tolerance, .behind = k_behind}))
       needed.push_back(c.tried[i]);
     c.records.truncate(c.evaluated);
-    c.records.append(needed, c.status.pass);
+    c.pass().records = c.records.append(needed, c.status.pass);
     c.tried.clear();
     c.list_new();
+    c.took(BuildStep::choose, host.milliseconds());
     c.level = c.level_done = c.rays_before = 0;
     c.pass_first = c.evaluated;
     c.stage = Stage::evaluate;
@@ -334,6 +372,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     if (!list.empty()) {
       wavefront.set_frame(view.records_frame, view.records_enabled);
       c.tell(k_probe_none, c.own_routes);
+      StageTimer timer(wavefront);
       const size_t done = c.evaluator.evaluate(wavefront, automaton, c.records, list,
                                                {.elevations = elevations,
                                                 .azimuths = 4 * elevations,
@@ -344,6 +383,8 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       wavefront.set_frame(view.paths_frame, view.paths_enabled);
       c.tell();
       if (done < list.size()) return false;
+      c.took(BuildStep::evaluate, timer.milliseconds());
+      c.pass().rays += uint64_t(done) * rays;
       c.at += done;
       c.status.rays += uint64_t(done) * rays;
       if (c.at < c.list.size()) return true;
@@ -358,12 +399,17 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     const bool more = c.next_level();
     c.records.publish(wavefront.stream());
     if (!more || (c.recursive && c.level == 1)) {
+      StageTimer widths(wavefront);
       c.set_radii(wavefront, view, *this, c.pass_first);
+      c.took(BuildStep::radius, widths.milliseconds());
       c.evaluated = c.status.records = c.records.size();
+      StageTimer indexing(wavefront);
       c.build_octree(wavefront);
+      c.took(BuildStep::octree, indexing.milliseconds());
       c.tell();
     }
     if (more) return true;
+    c.pass().complete = true;
     ++c.status.pass;
     c.stage = Stage::probe;
     if (c.records.size() == c.records.capacity())
@@ -378,13 +424,16 @@ std::pair<float, float> Cache::scale(uint32_t color) const {
   return color < k_record_by_rays ? std::pair(1.0f, 2.0f) : impl_->scales[color - k_record_by_rays];
 }
 
-void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const Overlay& overlay) {
+void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
+                 const Overlay& overlay) {
   Impl& c = *impl_;
   if (!overlay.discs && !overlay.overlap) return;
   wavefront.bind_paths(c.resources);
   bind(c.resources);
   film.bind(c.resources);
-  OverlayPush push{film.width(), film.height(), overlay.discs, overlay.overlap, overlay.color, 0, 1, 12};
+  coarse.bind_coarse(c.resources);
+  OverlayPush push{film.width(),   film.height(), overlay.discs, overlay.overlap, overlay.color, 0, 1,
+                   k_overlap_scale};
   const auto [lo, hi] = scale(overlay.color);
   push.lo = lo, push.hi = hi;
   wavefront.stream().dispatch(c.overlay, c.resources, push,
