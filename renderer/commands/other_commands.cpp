@@ -66,6 +66,24 @@ void Workspace::add_other_commands() {
                 }});
   act("reference.clear", "Forgets the picture taken for the truth.", [this] { session.clear_reference(); });
 
+  registry.add({.name = "cache.save",
+                .help = "Writes the records of the irradiance cache, once they are complete, for cache.load.",
+                .parameters = {file({".cache"})},
+                .run = [this](const Arguments& a) {
+                  needs_scene();
+                  // The script of this session waits for them, as the person did.
+                  recorded_.push_back({"wait_samples 1", "wait_samples", 0});
+                  session.save_cache(a.text("file"));
+                }});
+  registry.add({.name = "cache.load",
+                .help = "Takes the records of the irradiance cache from a file of the same scene, lit alike, "
+                        "and adds what this view is missing.",
+                .parameters = {file({".cache"})},
+                .run = [this](const Arguments& a) {
+                  needs_scene();
+                  session.load_cache(a.text("file"));
+                }});
+
   registry.add({.name = "script.save",
                 .help = "Writes what was done in this session, as a script that does it again.",
                 .parameters = {file({".lucerna"})},

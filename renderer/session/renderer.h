@@ -20,7 +20,7 @@
 #include "scene/scene.h"
 #include "schedule/adaptive.h"
 #include "schedule/uniform.h"
-#include "solvers/irradiance_cache/cache.h"
+#include "solvers/irradiance_cache/file.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
 
@@ -122,6 +122,13 @@ class Renderer {
   uint32_t enabled_components() const;
   /// Null where nothing is looked up.
   const irradiance_cache::Cache* cache() const { return cache_.get(); }
+  /// Writes the records that paths look up, once they are complete. Throws Error located at `file`: there are
+  /// none, they are still being built, the file cannot be written (then what was there stays).
+  void save_cache(const std::filesystem::path& file);
+  /// Takes the records of a file in place of those there are, and begins the image anew: what this view is
+  /// missing is added first; the view that they were complete for is missing nothing. Throws Error as
+  /// irradiance_cache::read_cache and check_fits; then everything stays as it was.
+  void load_cache(const std::filesystem::path& file);
 
  private:
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
@@ -149,6 +156,9 @@ class Renderer {
   bool render_item(const std::function<bool()>& cancel);
   irradiance_cache::CacheOptions cache_options() const;
   irradiance_cache::CacheView cache_view() const;
+  irradiance_cache::Making cache_making() const;
+  /// All that decides which records this picture asks for, as text.
+  std::string cache_view_text() const;
   paths::LookupRoutes wanted_routes() const;  ///< by the settings
   /// Adds a line to the ledger when one is due, or at once.
   void note_progress(bool at_once);

@@ -328,6 +328,20 @@ void Session::save(const std::filesystem::path& file) {
   });
 }
 
+void Session::save_cache(const std::filesystem::path& file) {
+  impl_->post([file](Renderer& r) {
+    r.save_cache(file);
+    log::info("saved {}: {} records", file.string(), r.cache()->status().records);
+  });
+}
+
+void Session::load_cache(const std::filesystem::path& file) {
+  impl_->post([s = impl_.get(), file](Renderer& r) {
+    r.load_cache(file);
+    s->restarted();
+  });
+}
+
 void Session::cancel() { impl_->cancel_load = true; }
 
 std::shared_ptr<const Snapshot> Session::snapshot() const {

@@ -97,7 +97,10 @@ class Session {
   void set_reference(const std::filesystem::path& file);
   void clear_reference();
   void save(const std::filesystem::path& file);  ///< EXR or PNG of what there is
-  void cancel();                                 ///< gives up a load in progress
+  /// The records that paths look up, as a file (Renderer::save_cache, load_cache).
+  void save_cache(const std::filesystem::path& file);
+  void load_cache(const std::filesystem::path& file);
+  void cancel();  ///< gives up a load in progress
 
   /// The newest picture; null before the first. Cheap.
   std::shared_ptr<const Snapshot> snapshot() const;
