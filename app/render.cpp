@@ -299,7 +299,7 @@ int render(const RenderArguments& a) {
   sigaction(SIGINT, &before, nullptr);
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
-  if (r.adaptive() && !interrupted) report_unreached(*r.adaptive());
+  if (picture && r.adaptive() && !interrupted) report_unreached(*r.adaptive());
   for (const std::string& file : a.outputs) r.save(file);
   if (!a.ledger.empty()) write_file(a.ledger, r.ledger().csv());
   if (!a.stats.empty()) write_file(a.stats, make_stats(r, wall).dump(2) + "\n");

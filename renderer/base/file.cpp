@@ -42,10 +42,13 @@ void write_file(const fs::path& file, const std::string& bytes) {
 }
 
 std::string read_file(const fs::path& file) {
+  errno = 0;
   std::ifstream in(file, std::ios::binary);
   std::stringstream text;
   if (in && !fs::is_directory(file)) text << in.rdbuf();
-  if (!in || in.bad() || fs::is_directory(file)) throw_error(file.string(), "cannot be read");
+  if (fs::is_directory(file)) throw_error(file.string(), "cannot be read: it is a folder");
+  if (!in || in.bad())
+    throw_error(file.string(), "cannot be read{}{}", errno ? ": " : "", errno ? std::strerror(errno) : "");
   return text.str();
 }
 

@@ -97,10 +97,13 @@ class Session {
   void set_reference(const std::filesystem::path& file);
   void clear_reference();
   void save(const std::filesystem::path& file);  ///< EXR or PNG of what there is
-  /// The records that paths look up, as a file (Renderer::save_cache, load_cache).
+  /// Writes the records that paths look up (Renderer::save_cache) as soon as they are complete; given up when
+  /// another scene is loaded.
   void save_cache(const std::filesystem::path& file);
-  void load_cache(const std::filesystem::path& file);
-  void cancel();  ///< gives up a load in progress
+  /// Whether one that was asked for is neither written nor given up.
+  bool saving_cache() const;
+  void load_cache(const std::filesystem::path& file);  ///< Renderer::load_cache
+  void cancel();                                       ///< gives up a load in progress
 
   /// The newest picture; null before the first. Cheap.
   std::shared_ptr<const Snapshot> snapshot() const;
