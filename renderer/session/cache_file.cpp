@@ -63,16 +63,17 @@ void Renderer::load_cache(const std::filesystem::path& file) {
     throw Error(file.string(),
                 "nothing would look it up: no component is computed by 'cache' (components.secondary, "
                 "components.tertiary)");
-  const irradiance_cache::CacheFile saved = irradiance_cache::read_cache(file);
+  irradiance_cache::CacheFile saved = irradiance_cache::read_cache(file);
   const uint32_t room = cache_->records().capacity();
   irradiance_cache::check_fits(saved, cache_making(), room, file.string());
   // Of the view that it was complete for it lacks nothing, unless only room was missing then.
   const bool full = saved.status.stop == irradiance_cache::StopReason::records;
   const bool complete = saved.view == cache_view_text() && (!full || saved.records.size() == room);
-  cache_->restore(*wavefront_, saved.records, saved.status, complete);
+  const uint32_t count = saved.records.size();
+  cache_->restore(*wavefront_, std::move(saved.records), saved.status, complete);
   restart(Lookups::keep);
-  log::info("{}: {} records{}{}", file.string(), saved.records.size(),
-            complete ? ", all that this view asks for" : "; what this view is missing is added",
+  log::info("{}: {} records{}{}", file.string(), count,
+            complete ? ", complete for this view" : "; what this view is missing is added",
             saved.making.seed == settings_.text("seed") ? "" : " (made with seed " + saved.making.seed + ")");
 }
 

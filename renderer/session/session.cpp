@@ -61,6 +61,13 @@ struct Session::Impl {
     caches.clear();
   }
 
+  void give_up_caches(const char* why) {
+    for (const auto& file : caches)
+      log::error("{}: not written: {} before the cache was complete", file.string(), why);
+    caches_asked -= uint32_t(caches.size());
+    caches.clear();
+  }
+
   void post(std::function<void(Renderer&)> command) {
     {
       std::lock_guard lock(mutex);
@@ -231,6 +238,8 @@ void Session::Impl::run() {
     }
     lock.lock();
   }
+  lock.unlock();
+  give_up_caches("the program ended");
 }
 
 Session::Session(const Options& options) : impl_(std::make_unique<Impl>()) {
@@ -262,10 +271,7 @@ void Session::load(const std::filesystem::path& file) {
     });
     ++s->next.scene_id;
     s->restarted();
-    for (const auto& cache : s->caches)
-      log::error("{}: not written: the cache was not complete when another scene was loaded", cache.string());
-    s->caches_asked -= uint32_t(s->caches.size());
-    s->caches.clear();
+    s->give_up_caches("another scene was loaded");
     const auto count = [](uint64_t n, const char* what) {
       return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
     };

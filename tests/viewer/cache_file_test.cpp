@@ -35,7 +35,7 @@ TEST_CASE("a script saves the cache when it is complete, loads it, and goes on w
   };
   CHECK_THAT(outcome.output, Catch::Contains("early.cache: there is no cache to save"));
   CHECK_THAT(outcome.output, Catch::Contains("a.cache: will be written when the cache is complete"));
-  CHECK_THAT(outcome.output, Catch::Contains("all that this view asks for"));
+  CHECK_THAT(outcome.output, Catch::Contains("complete for this view"));
   CHECK_THAT(outcome.output, Catch::Contains("broken.cache: cut short"));
   CHECK_THAT(outcome.output, Catch::Contains("its records were made with cache.error = 0.3 (now 0.4)"));
   CHECK_FALSE(std::filesystem::exists(file("early.cache")));

@@ -200,10 +200,12 @@ void Cache::extend() {
   }
 }
 
-void Cache::restore(transport::Wavefront& wavefront, const RawRecords& raw, const CacheStatus& status,
+void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const CacheStatus& status,
                     bool complete) {
   Impl& c = *impl_;
   clear();
+  for (size_t i = 0; i < raw.lights.size(); ++i)
+    if (!(c.parts >> i / k_part_texels % k_part_count & 1)) raw.lights[i] = vec4(0);
   c.records.restore(raw);
   c.evaluated = raw.size();
   c.status.records = c.status.loaded = raw.size();

@@ -71,11 +71,10 @@ class Cache {
   /// counted anew. Work in progress is finished first.
   void extend();
   bool ready() const;
-  /// Begins anew with records from elsewhere (Records::raw, of a cache with these routes' parts), as after a
-  /// pass of building: it goes on as extend() does, or, with `complete`, is ready and stands as `status`
-  /// says.
-  void restore(transport::Wavefront& wavefront, const RawRecords& raw, const CacheStatus& status,
-               bool complete);
+  /// Begins anew with records from elsewhere (Records::raw, of a cache that has these routes' parts at
+  /// least), as after a pass of building: it goes on as extend() does, or, with `complete`, is ready and
+  /// stands as `status` says.
+  void restore(transport::Wavefront& wavefront, RawRecords raw, const CacheStatus& status, bool complete);
   /// One bounded piece of the building, cancellable between bounces; on return the wavefront's frame is that
   /// of the picture's paths. False when it was cancelled: it will be done again.
   bool step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <fstream>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -134,6 +135,29 @@ std::string part_names(uint32_t parts) {
   return names.empty() ? "no" : fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// What can be told of a file of `size` bytes by its first k_head.
+void check_head(std::string_view bytes, uint64_t size, const std::string& where) {
+  const std::string_view magic(k_magic, sizeof k_magic);
+  if (!bytes.starts_with(magic) && !magic.starts_with(bytes))
+    throw_error(where, "not an irradiance cache: expected a file that begins with '{}'", magic);
+  if (bytes.size() < k_head)
+    throw_error(where, "cut short: an irradiance cache has more than {} bytes, this file {}", k_head, size);
+  Reader head(bytes.substr(magic.size()), where);
+  uint32_t version = 0, layout = 0, record = 0;
+  uint64_t length = 0;
+  head.plain(version), head.plain(layout), head.plain(record), head.plain(length);
+  if (version != k_cache_file_version)
+    throw_error(where, "an irradiance cache in version {} of its format; expected version {}", version,
+                k_cache_file_version);
+  if (layout != k_record_layout || record != k_bytes_a_record)
+    throw_error(where,
+                "its records are laid out otherwise: layout {} of {} bytes each, expected layout {} of {}",
+                layout, record, k_record_layout, k_bytes_a_record);
+  if (size < length) throw_error(where, "cut short: {} bytes of the {} that it says it has", size, length);
+  if (size > length || length < k_head + k_checksum)
+    throw_error(where, "damaged: {} bytes, but it says that it has {}", size, length);
+}
+
 }  // namespace
 
 std::string encode(const CacheFile& cache) {
@@ -149,27 +173,7 @@ std::string encode(const CacheFile& cache) {
 }
 
 CacheFile decode(const std::string& bytes, const std::string& where) {
-  const std::string_view magic(k_magic, sizeof k_magic);
-  if (!std::string_view(bytes).starts_with(magic) && !magic.starts_with(bytes))
-    throw_error(where, "not an irradiance cache: expected a file that begins with '{}'", magic);
-  if (bytes.size() < k_head)
-    throw_error(where, "cut short: an irradiance cache has more than {} bytes, this file {}", k_head,
-                bytes.size());
-  Reader head(std::string_view(bytes).substr(magic.size()), where);
-  uint32_t version = 0, layout = 0, record = 0;
-  uint64_t length = 0;
-  head.plain(version), head.plain(layout), head.plain(record), head.plain(length);
-  if (version != k_cache_file_version)
-    throw_error(where, "an irradiance cache in version {} of its format; expected version {}", version,
-                k_cache_file_version);
-  if (layout != k_record_layout || record != k_bytes_a_record)
-    throw_error(where,
-                "its records are laid out otherwise: layout {} of {} bytes each, expected layout {} of {}",
-                layout, record, k_record_layout, k_bytes_a_record);
-  if (bytes.size() < length)
-    throw_error(where, "cut short: {} bytes of the {} that it says it has", bytes.size(), length);
-  if (bytes.size() > length || length < k_head + k_checksum)
-    throw_error(where, "damaged: {} bytes, but it says that it has {}", bytes.size(), length);
+  check_head(std::string_view(bytes).substr(0, k_head), bytes.size(), where);
   const std::string_view contents = std::string_view(bytes).substr(0, bytes.size() - k_checksum);
   uint64_t told = 0;
   std::memcpy(&told, bytes.data() + contents.size(), sizeof told);
@@ -188,7 +192,16 @@ void write_cache(const std::filesystem::path& file, const CacheFile& cache) {
   write_file(file, encode(cache));
 }
 
-CacheFile read_cache(const std::filesystem::path& file) { return decode(read_file(file), file.string()); }
+CacheFile read_cache(const std::filesystem::path& file) {
+  // What is no cache is not read to its end, however long.
+  if (std::ifstream in(file, std::ios::binary); in && std::filesystem::is_regular_file(file)) {
+    std::string head(k_head, 0);
+    in.read(head.data(), k_head);
+    head.resize(static_cast<size_t>(in.gcount()));
+    check_head(head, std::filesystem::file_size(file), file.string());
+  }
+  return decode(read_file(file), file.string());
+}
 
 void check_fits(const CacheFile& cache, const Making& wanted, uint32_t room, const std::string& where) {
   const Making& made = cache.making;
