@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/hash.h"
 #include "solvers/irradiance_cache/file.h"
 
 namespace fs = std::filesystem;
@@ -48,7 +49,7 @@ CacheFile some_cache(uint32_t records) {
 }
 
 bool same_bits(const std::vector<vec4>& a, const std::vector<vec4>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec4)) == 0;
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(vec4)) == 0);
 }
 
 std::string complaint(const std::function<void()>& act) {
@@ -153,6 +154,27 @@ TEST_CASE("a file with one byte changed is refused, wherever it is and however")
   other = bytes, other[17] = 2;
   CHECK_THAT(refusal(other), Contains("layout 1 of 576 bytes each, expected layout 1 of 320"));
   CHECK_THAT(refusal("glTF and so on"), Contains("not an irradiance cache"));
+}
+
+TEST_CASE(
+    "contents that make no sense under a right checksum are refused or read, never followed out of the "
+    "file") {
+  const std::string bytes = encode(some_cache(2));
+  size_t refused = 0, read = 0;
+  for (size_t n = 28; n + 8 < bytes.size(); ++n)
+    for (const char value : {'\0', '\x01', '\x7f', '\xff'}) {
+      std::string other = bytes;
+      other[n] = value;
+      Hash hash;
+      hash.add_bytes(other.data(), other.size() - 8);
+      const uint64_t sum = hash.low();
+      std::memcpy(other.data() + other.size() - 8, &sum, sizeof sum);
+      const std::string told = refusal(other);
+      ++(told.empty() ? read : refused);
+      REQUIRE((told.empty() || told.starts_with("a.cache: damaged: ")));
+    }
+  CHECK(refused > 50);  // lengths and counts
+  CHECK(read > 2000);   // the records' own numbers
 }
 
 TEST_CASE("what cannot be read or written says so, and leaves what was there") {

@@ -65,7 +65,7 @@ class Reader {
   }
   void raw(void* data, size_t size) {
     require(size);
-    std::memcpy(data, bytes_.data(), size);
+    if (size > 0) std::memcpy(data, bytes_.data(), size);
     bytes_.remove_prefix(size);
   }
   void text(std::string& value) {
