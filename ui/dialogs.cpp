@@ -128,8 +128,9 @@ void file_dialog(Ui& ui) {
   Dialog& dialog = ui.dialog;
   if (dialog.purpose == Dialog::Purpose::none) return;
   const Question& asked = question(dialog.purpose);
-  const char* title = "##file";
-  if (dialog.fresh) ImGui::OpenPopup(title), dialog.fresh = false, dialog.focus = true;
+  // Each has a field of its own, so that none begins with what was typed into another.
+  const std::string title = std::string("##") + asked.command;
+  if (dialog.fresh) ImGui::OpenPopup(title.c_str()), dialog.fresh = false, dialog.focus = true;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   const float width = std::min(px(560), window.x - px(48));
   ImGui::SetNextWindowPos({std::floor(0.5f * (window.x - width)), std::floor(0.18f * window.y)});
@@ -139,7 +140,7 @@ void file_dialog(Ui& ui) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(3));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
   if (ImGui::BeginPopupModal(
-          title, nullptr,
+          title.c_str(), nullptr,
           ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
     label(asked.title, colour::text, theme().fonts.strong);
     std::error_code ignored;

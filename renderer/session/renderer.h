@@ -20,6 +20,7 @@
 #include "scene/scene.h"
 #include "schedule/adaptive.h"
 #include "schedule/uniform.h"
+#include "solvers/irradiance_cache/cache.h"
 #include "solvers/irradiance_cache/file.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
@@ -153,12 +154,12 @@ class Renderer {
   schedule::AdaptiveOptions adaptive_options() const;
   /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
   std::string view_text() const;
-  bool render_item(const std::function<bool()>& cancel);
-  irradiance_cache::CacheOptions cache_options() const;
-  irradiance_cache::CacheView cache_view() const;
   irradiance_cache::Making cache_making() const;
   /// All that decides which records this picture asks for, as text.
   std::string cache_view_text() const;
+  bool render_item(const std::function<bool()>& cancel);
+  irradiance_cache::CacheOptions cache_options() const;
+  irradiance_cache::CacheView cache_view() const;
   paths::LookupRoutes wanted_routes() const;  ///< by the settings
   /// Adds a line to the ledger when one is due, or at once.
   void note_progress(bool at_once);
