@@ -98,6 +98,13 @@ class Renderer {
   /// The image with its layers and metadata (its own noise among them), as EXR files hold it.
   film::FilmImage film_image();
   void save(const std::filesystem::path& file);
+  /// Writes the records that paths look up, once they are complete. Throws Error located at `file`: there are
+  /// none, they are still being built, the file cannot be written (then what was there stays).
+  void save_cache(const std::filesystem::path& file);
+  /// Takes the records of a file in place of those there are, and begins the image anew: what this view is
+  /// missing is added first; the view that they were complete for is missing nothing. Throws Error as
+  /// irradiance_cache::read_cache and check_fits; then everything stays as it was.
+  void load_cache(const std::filesystem::path& file);
 
   /// What this image has cost and how good it was, from its start on; the last line is the present only after
   /// finish_ledger().
@@ -123,13 +130,6 @@ class Renderer {
   uint32_t enabled_components() const;
   /// Null where nothing is looked up.
   const irradiance_cache::Cache* cache() const { return cache_.get(); }
-  /// Writes the records that paths look up, once they are complete. Throws Error located at `file`: there are
-  /// none, they are still being built, the file cannot be written (then what was there stays).
-  void save_cache(const std::filesystem::path& file);
-  /// Takes the records of a file in place of those there are, and begins the image anew: what this view is
-  /// missing is added first; the view that they were complete for is missing nothing. Throws Error as
-  /// irradiance_cache::read_cache and check_fits; then everything stays as it was.
-  void load_cache(const std::filesystem::path& file);
 
  private:
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
@@ -152,11 +152,11 @@ class Renderer {
   float luminance_floor() const;
   void start_schedule();
   schedule::AdaptiveOptions adaptive_options() const;
-  /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
-  std::string view_text() const;
   irradiance_cache::Making cache_making() const;
   /// All that decides which records this picture asks for, as text.
   std::string cache_view_text() const;
+  /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
+  std::string view_text() const;
   bool render_item(const std::function<bool()>& cancel);
   irradiance_cache::CacheOptions cache_options() const;
   irradiance_cache::CacheView cache_view() const;
