@@ -10,6 +10,7 @@
 #include <set>
 
 #include "app/verbs.h"
+#include "base/file.h"
 #include "base/log.h"
 #include "base/timer.h"
 #include "bench/compare_reports.h"
@@ -167,8 +168,7 @@ int bench_matrix(const BenchArguments& a) {
   }
   if (!a.page.empty()) {
     const Json report = bench::read_report(a.page);
-    bench::write_file(fs::path(a.page) / "report.html",
-                      bench::make_page(report, fs::path(a.page) / "pictures"));
+    write_file(fs::path(a.page) / "report.html", bench::make_page(report, fs::path(a.page) / "pictures"));
     std::printf("%s\n", (fs::path(a.page) / "report.html").c_str());
     return 0;
   }

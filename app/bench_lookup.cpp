@@ -9,8 +9,8 @@
 #include "app/bench_timing.h"
 #include "app/verbs.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/math.h"
-#include "bench/folder.h"
 #include "solvers/lookup/octree.h"
 
 namespace lucerna::app {
@@ -242,7 +242,7 @@ int bench_lookup(const BenchLookupArguments& a) {
   Bench bench(device, a);
   for (const uint32_t n : a.sizes)
     for (const char* kind : {"photons", "records"}) bench.run(kind, n);
-  if (!a.json.empty()) bench::write_file(a.json, bench.to_json().dump(2) + "\n");
+  if (!a.json.empty()) write_file(a.json, bench.to_json().dump(2) + "\n");
   return 0;
 }
 

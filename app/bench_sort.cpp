@@ -8,7 +8,7 @@
 #include "app/bench_timing.h"
 #include "app/verbs.h"
 #include "base/error.h"
-#include "bench/folder.h"
+#include "base/file.h"
 #include "sort/radix_sort.h"
 
 namespace lucerna::app {
@@ -132,7 +132,7 @@ int bench_sort(const BenchSortArguments& a) {
                          {"seconds", {{"median", r.time.median}, {"low", r.time.low}, {"high", r.time.high}}},
                          {"elements_per_s", r.size / r.time.median},
                          {"factor_over_first", r.ratio}});
-  bench::write_file(a.json, j.dump(2) + "\n");
+  write_file(a.json, j.dump(2) + "\n");
   return 0;
 }
 

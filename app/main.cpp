@@ -62,6 +62,10 @@ int main_checked(int argc, char** argv) {
   render_verb->add_option("--ledger", r.ledger, "time, rays and error as they went on, as CSV");
   render_verb->add_option("--reference", r.reference,
                           "EXR of the same picture, converged: ledger and figures then tell the true error");
+  render_verb->add_option("--cache-load", r.cache_load,
+                          "begin with the records of this file, of the same scene and settings");
+  render_verb->add_option("--cache-save", r.cache_save,
+                          "write the records of the irradiance cache, once they are complete");
   render_verb->add_option("--stats", r.stats, "write figures of the run as JSON");
   render_verb->add_flag("--quiet", r.quiet, "no progress line");
   render_verb->footer(settings_help());

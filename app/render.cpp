@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "app/verbs.h"
+#include "base/file.h"
 #include "base/log.h"
 #include "base/timer.h"
 #include "session/renderer.h"
@@ -27,23 +26,6 @@ std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
       !w || !h || w > 65536 || h > 65536)
     throw_error("--size", "'{}': expected WIDTHxHEIGHT, each from 1 to 65536, such as 1280x720", text);
   return {uint32_t(w), uint32_t(h)};
-}
-
-void write_text(const std::string& file, const std::string& text) {
-  const std::string temporary = file + ".tmp";
-  std::ofstream out(temporary);
-  out << text;
-  out.close();
-  if (!out || std::rename(temporary.c_str(), file.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    throw_error(file, "cannot write here; check that the folder exists and may be written");
-  }
-}
-
-void check_folder(const std::string& file) {
-  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-  if (access(folder.empty() ? "." : folder.c_str(), W_OK) != 0 || std::filesystem::is_directory(file))
-    throw_error(file, "cannot write here; check that the folder exists and may be written");
 }
 
 void print_progress(const session::Renderer& r, double seconds, double limit, bool last) {
@@ -205,10 +187,13 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   if (const irradiance_cache::Cache* cache = r.cache()) {
     const irradiance_cache::CacheStatus& s = cache->status();
     constexpr const char* k_reasons[] = {"building", "covered", "passes", "records"};
-    j["cache"] = {
-        {"passes", s.pass}, {"records", s.records},
-        {"rays", s.rays},   {"uncovered_share", double(s.asked) / double(std::max<uint64_t>(1, s.paths))},
-        {"bytes", s.bytes}, {"stopped_by", k_reasons[size_t(s.stop)]}};
+    j["cache"] = {{"passes", s.pass},
+                  {"records", s.records},
+                  {"loaded", s.loaded},
+                  {"rays", s.rays},
+                  {"uncovered_share", double(s.asked) / double(std::max<uint64_t>(1, s.paths))},
+                  {"bytes", s.bytes},
+                  {"stopped_by", k_reasons[size_t(s.stop)]}};
   }
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
@@ -225,8 +210,12 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
 
 int render(const RenderArguments& a) {
   const auto [width, height] = parse_size(a.size);
-  if (a.outputs.empty() && a.stats.empty() && a.ledger.empty())
-    throw Error("-o", "name at least one output: OUT.exr or OUT.png, or figures alone: --stats OUT.json");
+  const bool picture = !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty();
+  if (!picture && a.cache_save.empty())
+    throw Error(
+        "-o",
+        "name at least one output: OUT.exr or OUT.png, or figures alone: --stats OUT.json, or records "
+        "alone: --cache-save OUT.cache");
   for (const std::string& file : a.outputs) {
     const auto dot = file.rfind('.');
     const std::string extension = dot == std::string::npos ? "" : file.substr(dot);
@@ -234,8 +223,9 @@ int render(const RenderArguments& a) {
       throw_error(file, "cannot write '{}' files; use .exr or .png", extension);
     film::check_writable(file);
   }
-  if (!a.stats.empty()) check_folder(a.stats);
-  if (!a.ledger.empty()) check_folder(a.ledger);
+  if (!a.stats.empty()) check_writable(a.stats);
+  if (!a.ledger.empty()) check_writable(a.ledger);
+  if (!a.cache_save.empty()) check_writable(a.cache_save);
   session::Renderer r({.device = a.device, .validation = false, .shaders = {}, .defines = {}});
   r.set_size(width, height);
   // What the command line says stands above the scene's own settings; checked before the scene is loaded.
@@ -285,11 +275,21 @@ int render(const RenderArguments& a) {
   r.apply_settings();
   if (!a.camera.empty()) r.choose_camera(a.camera);
   if (!a.reference.empty()) r.set_reference(a.reference);
+  if (!a.cache_load.empty()) r.load_cache(a.cache_load);
+  if (!a.cache_save.empty() && !r.cache())
+    throw Error("--cache-save", "no component is computed by 'cache'; add --set components.secondary=cache");
 
   const Timer timer;
   Timer since_line;
-  while (!r.done() && !interrupted && (a.seconds <= 0 || timer.seconds() < a.seconds)) {
+  bool cache_wanted = !a.cache_save.empty();
+  const auto save_cache = [&] {
+    if (cache_wanted && r.cache()->ready()) r.save_cache(a.cache_save), cache_wanted = false;
+  };
+  save_cache();
+  while ((picture || cache_wanted) && !r.done() && !interrupted &&
+         (a.seconds <= 0 || timer.seconds() < a.seconds)) {
     if (!r.step()) break;
+    save_cache();
     if (terminal && since_line.seconds() > 0.2)
       print_progress(r, timer.seconds(), a.seconds, false), since_line.restart();
   }
@@ -299,10 +299,14 @@ int render(const RenderArguments& a) {
   sigaction(SIGINT, &before, nullptr);
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
-  if (r.adaptive() && !interrupted) report_unreached(*r.adaptive());
+  if (picture && r.adaptive() && !interrupted) report_unreached(*r.adaptive());
   for (const std::string& file : a.outputs) r.save(file);
-  if (!a.ledger.empty()) write_text(a.ledger, r.ledger().csv());
-  if (!a.stats.empty()) write_text(a.stats, make_stats(r, wall).dump(2) + "\n");
+  if (!a.ledger.empty()) write_file(a.ledger, r.ledger().csv());
+  if (!a.stats.empty()) write_file(a.stats, make_stats(r, wall).dump(2) + "\n");
+  if (cache_wanted && !interrupted)
+    throw_error(a.cache_save, "not written: the cache was still being built when rendering ended");
+  if (cache_wanted)
+    std::fprintf(stderr, "lucerna: %s: not written; it was still being built\n", a.cache_save.c_str());
   if (r.stats().dropped) log::warning("{} contributions were not finite and were dropped", r.stats().dropped);
   return interrupted ? 130 : 0;
 }

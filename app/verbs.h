@@ -11,9 +11,10 @@ struct RenderArguments {
   std::string scene;
   std::vector<std::string> outputs;
   std::string size = "1280x720", camera, device, stats, ledger, reference;
-  int64_t samples = -1;         ///< -1: the settings'; with `error`, the most that a pixel may get
-  std::optional<double> error;  ///< relative error for every tile: adaptive sampling
-  double seconds = 0;           ///< 0: no time limit
+  std::string cache_load, cache_save;  ///< files of irradiance caches
+  int64_t samples = -1;                ///< -1: the settings'; with `error`, the most that a pixel may get
+  std::optional<double> error;         ///< relative error for every tile: adaptive sampling
+  double seconds = 0;                  ///< 0: no time limit
   int64_t seed = -1;
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;

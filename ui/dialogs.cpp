@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "state.h"
 #include "widgets.h"
@@ -21,14 +22,66 @@ struct Completion {
   bool folder;
 };
 
+/// What a dialog asks for, by its purpose.
+struct Question {
+  const char *title, *note;
+  const char *command, *answer;  ///< that is run with the file; the button's word for it
+  std::vector<std::string> endings;
+  bool reads;  ///< the file is there already
+};
+
+const Question& question(Dialog::Purpose purpose) {
+  using Purpose = Dialog::Purpose;
+  static const std::map<Purpose, Question> k_questions{
+      {Purpose::open,
+       {"Open a scene",
+        "A .gltf or .glb file. Tab completes; arrows choose.",
+        "scene.open",
+        "Open",
+        {".gltf", ".glb"},
+        true}},
+      {Purpose::save,
+       {"Save the picture",
+        ".exr holds all layers as floats; .png what is shown, through exposure and tone curve.",
+        "image.save",
+        "Save",
+        {".exr", ".png"},
+        false}},
+      {Purpose::script,
+       {"Save the session as a script",
+        "What was done, one command a line; lucerna --script FILE does it again.",
+        "script.save",
+        "Save",
+        {".lucerna"},
+        false}},
+      {Purpose::reference,
+       {"Load a reference",
+        "An .exr of this view and size, rendered long and with another seed.",
+        "reference.load",
+        "Load",
+        {".exr"},
+        true}},
+      {Purpose::cache_load,
+       {"Load a cache",
+        "Records of this scene, lit alike. What this view is missing is added.",
+        "cache.load",
+        "Load",
+        {".cache"},
+        true}},
+      {Purpose::cache_save,
+       {"Save the cache",
+        "The records of the irradiance cache, for this scene as it is lit now.",
+        "cache.save",
+        "Save",
+        {".cache"},
+        false}}};
+  return k_questions.at(purpose);
+}
+
 /// Files of a kind and folders that begin with what is typed.
 std::vector<Completion> completions(const std::string& typed, Dialog::Purpose purpose) {
-  std::vector<std::string> endings{".exr", ".png"};
-  if (purpose == Dialog::Purpose::open) endings = {".gltf", ".glb"};
-  if (purpose == Dialog::Purpose::script) endings = {".lucerna"};
-  if (purpose == Dialog::Purpose::reference) endings = {".exr"};
   std::vector<Completion> list;
-  for (const std::string& path : commands::paths_starting(typed, endings)) {
+  for (const std::string& path : commands::paths_starting(typed, question(purpose).endings)) {
     const bool folder = path.back() == '/';
     const size_t slash = path.rfind('/', path.size() - 2);
     list.push_back({path, slash == std::string::npos ? path : path.substr(slash + 1), folder});
@@ -74,10 +127,10 @@ int complete_field(ImGuiInputTextCallbackData* data) {
 void file_dialog(Ui& ui) {
   Dialog& dialog = ui.dialog;
   if (dialog.purpose == Dialog::Purpose::none) return;
-  const bool reference = dialog.purpose == Dialog::Purpose::reference;
-  const bool open = dialog.purpose == Dialog::Purpose::open || reference;  // the file is there
-  const char* title = "##file";
-  if (dialog.fresh) ImGui::OpenPopup(title), dialog.fresh = false, dialog.focus = true;
+  const Question& asked = question(dialog.purpose);
+  // Each has a field of its own, so that none begins with what was typed into another.
+  const std::string title = std::string("##") + asked.command;
+  if (dialog.fresh) ImGui::OpenPopup(title.c_str()), dialog.fresh = false, dialog.focus = true;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   const float width = std::min(px(560), window.x - px(48));
   ImGui::SetNextWindowPos({std::floor(0.5f * (window.x - width)), std::floor(0.18f * window.y)});
@@ -87,28 +140,14 @@ void file_dialog(Ui& ui) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(3));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
   if (ImGui::BeginPopupModal(
-          title, nullptr,
+          title.c_str(), nullptr,
           ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
-    const bool script = dialog.purpose == Dialog::Purpose::script;
-    label(reference ? "Load a reference"
-          : open    ? "Open a scene"
-          : script  ? "Save the session as a script"
-                    : "Save the picture",
-          colour::text, theme().fonts.strong);
+    label(asked.title, colour::text, theme().fonts.strong);
     std::error_code ignored;
-    if (reference)
-      label("An .exr of this view and size, rendered long and with another seed.", colour::text_dim,
-            theme().fonts.small);
-    else if (open)
-      label("A .gltf or .glb file. Tab completes; arrows choose.", colour::text_dim, theme().fonts.small);
-    else if (fs::is_regular_file(expanded(dialog.path), ignored))
+    if (!asked.reads && fs::is_regular_file(expanded(dialog.path), ignored))
       label("A file of that name exists and will be replaced.", colour::warning, theme().fonts.small);
-    else if (script)
-      label("What was done, one command a line; lucerna --script FILE does it again.", colour::text_dim,
-            theme().fonts.small);
     else
-      label(".exr holds all layers as floats; .png what is shown, through exposure and tone curve.",
-            colour::text_dim, theme().fonts.small);
+      label(asked.note, colour::text_dim, theme().fonts.small);
     ImGui::SetNextItemWidth(-1);
     if (dialog.focus) ImGui::SetKeyboardFocusHere(), dialog.to_end = true;
     dialog.focus = false;
@@ -129,7 +168,7 @@ void file_dialog(Ui& ui) {
     ImGui::BeginChild("##completions", {0, rows});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
     if (list.empty())
-      label(open ? "No such file or folder starts like that" : "A new file", colour::text_faint);
+      label(asked.reads ? "No such file or folder starts like that" : "A new file", colour::text_faint);
     for (int i = 0; i < static_cast<int>(list.size()); ++i) {
       const Completion& c = list[static_cast<size_t>(i)];
       ImGui::PushID(i);
@@ -158,7 +197,7 @@ void file_dialog(Ui& ui) {
     ImGui::SetCursorPosX(ImGui::GetWindowWidth() - 2 * w - px(24));
     if (button("##cancel", "Cancel", false, w)) done = true;
     ImGui::SameLine(0, px(8));
-    if (button("##accept", reference ? "Load" : open ? "Open" : "Save", true, w)) accept = true;
+    if (button("##accept", asked.answer, true, w)) accept = true;
     if (ui.pressed(GLFW_KEY_ESCAPE)) done = true;
     if (accept && !dialog.path.empty()) {
       const std::string file = expanded(dialog.path);
@@ -167,11 +206,7 @@ void file_dialog(Ui& ui) {
         dialog.focus = true;
         ImGui::ClearActiveID();
       } else {
-        ui.act(reference ? "reference.load"
-               : open    ? "scene.open"
-               : script  ? "script.save"
-                         : "image.save",
-               file);
+        ui.act(asked.command, file);
         done = true;
       }
     }
@@ -278,12 +313,12 @@ void Ui::start_dialog(Dialog::Purpose purpose) {
     const fs::path here =
         scene && !scene->file.empty() ? fs::path(scene->file).parent_path() : fs::path("scenes");
     if (fs::is_directory(here, error)) dialog.path = (here / "").string();
-  } else if (purpose == Dialog::Purpose::reference) {
+  } else if (purpose == Dialog::Purpose::reference || purpose == Dialog::Purpose::cache_load) {
     dialog.path = fs::current_path(error).string() + "/";
   } else if (purpose == Dialog::Purpose::script) {
     dialog.path = (scene ? scene->name : "session") + ".lucerna";
   } else if (scene) {
-    dialog.path = scene->name + ".exr";
+    dialog.path = scene->name + question(purpose).endings[0];
   }
   wake(4);
 }

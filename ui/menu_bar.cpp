@@ -86,6 +86,23 @@ void file_menu(Ui& ui) {
             reference))
     ui.act("reference.clear");
   divide();
+  const bool cached = ui.cached() && picture;
+  const char* const uncached = "No component is computed by cache.";
+  if (entry("Load cache\xE2\x80\xA6", nullptr,
+            cached
+                ? "Takes the irradiance cache's records from a file of this scene, lit alike, and adds what "
+                  "this view is missing."
+                : uncached,
+            false, cached))
+    ui.act("dialog.cache_load");
+  const bool complete = cached && ui.snapshot->preparing.empty();
+  if (entry("Save cache\xE2\x80\xA6", nullptr,
+            complete ? "Writes the irradiance cache's records, so that this scene need not gather them again."
+            : cached ? "The cache is still being built."
+                     : uncached,
+            false, complete))
+    ui.act("dialog.cache_save");
+  divide();
   if (entry("Save session as script\xE2\x80\xA6", nullptr,
             "Writes what was done in this session as commands, one a line; lucerna --script does it again."))
     ui.act("dialog.script");

@@ -41,7 +41,7 @@ class LogInbox {
 };
 
 struct Dialog {
-  enum class Purpose { none, open, save, script, reference } purpose = Purpose::none;
+  enum class Purpose { none, open, save, script, reference, cache_load, cache_save } purpose = Purpose::none;
   std::string path;
   bool fresh = false;   ///< to be opened in the next frame
   bool focus = false;   ///< its field takes the keyboard in the next frame

@@ -147,6 +147,12 @@ void add_window_commands(Ui& ui) {
       "dialog.reference", "Asks for a picture to hold this one against.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);
   add(
+      "dialog.cache_load", "Asks for records of the irradiance cache to load.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::cache_load); }, false);
+  add(
+      "dialog.cache_save", "Asks where to save the records of the irradiance cache.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::cache_save); }, false);
+  add(
       "dialog.script", "Asks where to save the session as a script.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::script); }, false);
   add(

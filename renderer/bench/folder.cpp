@@ -6,8 +6,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 
 namespace lucerna::bench {
 namespace {
@@ -47,41 +45,6 @@ void check_writable(const fs::path& folder) {
 }
 
 }  // namespace
-
-void write_file(const fs::path& file, const std::string& text) {
-  const fs::path temporary = file.parent_path() / fmt::format(".{}.{}", file.filename().string(), getpid());
-  const auto fail = [&](int code) {
-    unlink(temporary.c_str());
-    throw_error(file.string(), "cannot be written: {}", std::strerror(code));
-  };
-  const int handle = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (handle < 0) fail(errno);
-  for (size_t done = 0; done < text.size();) {
-    const ssize_t n = ::write(handle, text.data() + done, text.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) {
-      const int code = n < 0 ? errno : ENOSPC;
-      close(handle);
-      fail(code);
-    }
-    done += size_t(n);
-  }
-  if (fsync(handle) != 0) {
-    const int code = errno;
-    close(handle);
-    fail(code);
-  }
-  close(handle);
-  if (std::rename(temporary.c_str(), file.c_str()) != 0) fail(errno);
-}
-
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::stringstream text;
-  if (in && !fs::is_directory(file)) text << in.rdbuf();
-  if (!in || in.bad() || fs::is_directory(file)) throw_error(file.string(), "cannot be read");
-  return text.str();
-}
 
 Folder::Folder(const fs::path& path, const Matrix& matrix, const Json& identity) : path_(path) {
   const std::string where = path.string();

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/file.h"
 #include "bench/matrix.h"
 #include "bench/result.h"
 
@@ -15,11 +16,6 @@ namespace lucerna::bench {
 
 /// One line for a person.
 using Message = std::function<void(const std::string&)>;
-
-/// Writes a text file whole or not at all. Throws Error located at `file`.
-void write_file(const std::filesystem::path& file, const std::string& text);
-/// Throws Error located at `file` when it cannot be read.
-std::string read_file(const std::filesystem::path& file);
 
 class Folder {
  public:

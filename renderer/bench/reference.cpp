@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/hash.h"
 #include "film/io/image_file.h"
 
 namespace lucerna::bench {
@@ -12,19 +13,17 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// FNV-1a, 64 bits.
-class Hash {
+/// FNV-1a of pieces, each with its length so that they cannot run into each other.
+class Pieces {
  public:
   void add(std::string_view bytes) {
-    for (const char c : bytes) value_ = (value_ ^ uint8_t(c)) * 0x100000001b3ull;
-    // The length too, so that pieces cannot run into each other.
-    for (size_t n = bytes.size(), k = 0; k < 8; ++k, n >>= 8)
-      value_ = (value_ ^ (n & 255)) * 0x100000001b3ull;
+    hash_.add_bytes(bytes.data(), bytes.size());
+    hash_.add_value(uint64_t{bytes.size()});
   }
-  std::string text() const { return fmt::format("{:016x}", value_); }
+  std::string text() const { return fmt::format("{:016x}", hash_.low()); }
 
  private:
-  uint64_t value_ = 0xcbf29ce484222325ull;
+  Hash hash_;
 };
 
 std::string decode_uri(const std::string& uri) {
@@ -79,7 +78,7 @@ void set_aside(const fs::path& file, const std::string& why, const Message& mess
 }  // namespace
 
 std::string scene_hash(const fs::path& file) {
-  Hash hash;
+  Pieces hash;
   const std::string bytes = read_file(file);
   hash.add(bytes);
   std::set<std::string> files;
@@ -105,7 +104,7 @@ std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const s
   SettingValues values = scene.set;
   values.insert(matrix.set.begin(), matrix.set.end());  // the scene's stand
   for (const auto& [key, value] : values) j["set"][key] = value;
-  Hash hash;
+  Pieces hash;
   hash.add(j.dump());
   return hash.text();
 }

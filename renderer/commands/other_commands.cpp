@@ -66,6 +66,32 @@ void Workspace::add_other_commands() {
                 }});
   act("reference.clear", "Forgets the picture taken for the truth.", [this] { session.clear_reference(); });
 
+  const Parameter limit{.name = "limit",
+                        .type = Type::real,
+                        .help = "how long at most; 300 when not given",
+                        .lo = 1,
+                        .hi = 86400,
+                        .unit = "seconds",
+                        .optional = true};
+  registry.add({.name = "cache.save",
+                .help = "Writes the records of the irradiance cache for cache.load, as soon as they are "
+                        "complete; a script waits for that.",
+                .parameters = {file({".cache"}), limit},
+                .run =
+                    [this](const Arguments& a) {
+                      needs_scene();
+                      session.save_cache(a.text("file"));
+                    },
+                .done = [this](const Arguments&) { return !session.saving_cache(); }});
+  registry.add({.name = "cache.load",
+                .help = "Takes the records of the irradiance cache from a file of the same scene, lit alike, "
+                        "and adds what this view is missing.",
+                .parameters = {file({".cache"})},
+                .run = [this](const Arguments& a) {
+                  needs_scene();
+                  session.load_cache(a.text("file"));
+                }});
+
   registry.add({.name = "script.save",
                 .help = "Writes what was done in this session, as a script that does it again.",
                 .parameters = {file({".lucerna"})},
@@ -91,13 +117,6 @@ void Workspace::add_other_commands() {
            [this](const Arguments& a) { log::info("{}", manual(a.has("command") ? a.text("command") : "")); },
        .recorded = false});
 
-  const Parameter limit{.name = "limit",
-                        .type = Type::real,
-                        .help = "how long at most; 300 when not given",
-                        .lo = 1,
-                        .hi = 86400,
-                        .unit = "seconds",
-                        .optional = true};
   registry.add({.name = "wait",
                 .help = "In a script: lets the window run.",
                 .parameters = {{.name = "time", .type = Type::real, .lo = 0, .hi = 86400, .unit = "seconds"}},

@@ -30,23 +30,6 @@ uint64_t checksum(const std::vector<uint32_t>& words) {
 
 }  // namespace
 
-void Hash::add_bytes(const void* data, size_t bytes) {
-  const auto* p = static_cast<const unsigned char*>(data);
-  for (size_t i = 0; i < bytes; ++i) {
-    a_ = (a_ ^ p[i]) * 0x100000001b3ull;
-    b_ = (b_ ^ p[i]) * 0x100000001b3ull;
-    b_ ^= b_ >> 29;
-  }
-}
-
-void Hash::add(const std::string& text) {
-  const uint64_t length = text.size();
-  add_bytes(&length, sizeof length);
-  add_bytes(text.data(), text.size());
-}
-
-std::string Hash::hex() const { return fmt::format("{:016x}{:016x}", a_, b_); }
-
 fs::path ShaderCache::default_folder() {
   if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache)
     return fs::path(cache) / "lucerna" / "spirv";

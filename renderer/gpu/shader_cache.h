@@ -6,20 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "base/hash.h"
+
 namespace lucerna::gpu {
-
-/// 128 bits, so that two sources never share a key in practice. FNV-1a twice, from two seeds.
-class Hash {
- public:
-  /// Adds the text and its length, so that ("ab", "c") and ("a", "bc") differ.
-  void add(const std::string& text);
-  void add_bytes(const void* data, size_t bytes);
-  std::string hex() const;
-  uint64_t low() const { return a_; }
-
- private:
-  uint64_t a_ = 0xcbf29ce484222325ull, b_ = 0x9ae16a3b2f90404full;
-};
 
 /// A folder of files named by key. A file is written under a temporary name and renamed, so that a reader in
 /// another process sees a whole file or none; one that is cut short or altered counts as absent. Every

@@ -22,6 +22,7 @@
 #include "schedule/uniform.h"
 #include "session/cache_report.h"
 #include "solvers/irradiance_cache/cache.h"
+#include "solvers/irradiance_cache/file.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
 
@@ -98,6 +99,13 @@ class Renderer {
   /// The image with its layers and metadata (its own noise among them), as EXR files hold it.
   film::FilmImage film_image();
   void save(const std::filesystem::path& file);
+  /// Writes the records that paths look up, once they are complete. Throws Error located at `file`: there are
+  /// none, they are still being built, the file cannot be written (then what was there stays).
+  void save_cache(const std::filesystem::path& file);
+  /// Takes the records of a file in place of those there are, and begins the image anew: what this view is
+  /// missing is added first; the view that they were complete for is missing nothing. Throws Error as
+  /// irradiance_cache::read_cache and check_fits; then everything stays as it was.
+  void load_cache(const std::filesystem::path& file);
 
   /// What this image has cost and how good it was, from its start on; the last line is the present only after
   /// finish_ledger().
@@ -151,6 +159,9 @@ class Renderer {
   float luminance_floor() const;
   void start_schedule();
   schedule::AdaptiveOptions adaptive_options() const;
+  irradiance_cache::Making cache_making() const;
+  /// All that decides which records this picture asks for, as text.
+  std::string cache_view_text() const;
   /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
   std::string view_text() const;
   void draw_cache();  ///< over the film's picture, as the settings say

@@ -31,6 +31,7 @@ struct Session::Impl {
   std::deque<std::function<void(Renderer&)>> queue;
   bool quit = false;
   std::atomic<bool> cancel_load{false}, pending{false};
+  std::atomic<uint32_t> caches_asked{0};  // for, and not saved yet
   std::shared_ptr<const Snapshot> snapshot;
   std::shared_ptr<const scene::Scene> scene;
   plan::Settings settings;
@@ -43,6 +44,29 @@ struct Session::Impl {
   double seconds = 0;
   bool paused = false, dirty = true, coarse_wanted = false, size_known = false;
   bool filled = false;
+  std::vector<std::filesystem::path> caches;  // to be saved when complete
+
+  /// Saves what was asked for if it is complete, or cannot be.
+  void save_caches(Renderer& r) {
+    if (caches.empty() || (r.cache() && !r.cache()->ready())) return;
+    for (const std::filesystem::path& file : caches) {
+      try {
+        r.save_cache(file);
+        log::info("saved {}: {} records", file.string(), r.cache()->status().records);
+      } catch (const std::exception& e) {
+        log::error("{}", e.what());
+      }
+    }
+    caches_asked -= uint32_t(caches.size());
+    caches.clear();
+  }
+
+  void give_up_caches(const char* why) {
+    for (const auto& file : caches)
+      log::error("{}: not written: {} before the cache was complete", file.string(), why);
+    caches_asked -= uint32_t(caches.size());
+    caches.clear();
+  }
 
   void post(std::function<void(Renderer&)> command) {
     {
@@ -186,6 +210,7 @@ void Session::Impl::run() {
         } else if (work && renderer->step(cancelled)) {
           seconds += timer.seconds();
           accuracy.follow(*renderer, next.scene_id);
+          save_caches(*renderer);
         }
         // The last line of the ledger is that of the finished image.
         if (renderer->done() && !renderer->ledger().entries().empty() &&
@@ -214,6 +239,8 @@ void Session::Impl::run() {
     }
     lock.lock();
   }
+  lock.unlock();
+  give_up_caches("the program ended");
 }
 
 Session::Session(const Options& options) : impl_(std::make_unique<Impl>()) {
@@ -245,6 +272,7 @@ void Session::load(const std::filesystem::path& file) {
     });
     ++s->next.scene_id;
     s->restarted();
+    s->give_up_caches("another scene was loaded");
     const auto count = [](uint64_t n, const char* what) {
       return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
     };
@@ -330,6 +358,24 @@ void Session::save(const std::filesystem::path& file) {
   impl_->post([file](Renderer& r) {
     r.save(file);
     log::info("saved {}", file.string());
+  });
+}
+
+void Session::save_cache(const std::filesystem::path& file) {
+  ++impl_->caches_asked;
+  impl_->post([s = impl_.get(), file](Renderer& r) {
+    s->caches.push_back(file);
+    s->save_caches(r);
+    if (!s->caches.empty()) log::info("{}: will be written when the cache is complete", file.string());
+  });
+}
+
+bool Session::saving_cache() const { return impl_->caches_asked > 0; }
+
+void Session::load_cache(const std::filesystem::path& file) {
+  impl_->post([s = impl_.get(), file](Renderer& r) {
+    r.load_cache(file);
+    s->restarted();
   });
 }
 

@@ -103,7 +103,13 @@ class Session {
   /// by Snapshot::cache and drawn over the picture from now on; nothing: no longer.
   void inspect(std::optional<vec2> at);
   void save(const std::filesystem::path& file);  ///< EXR or PNG of what there is
-  void cancel();                                 ///< gives up a load in progress
+  /// Writes the records that paths look up (Renderer::save_cache) as soon as they are complete; given up when
+  /// another scene is loaded.
+  void save_cache(const std::filesystem::path& file);
+  /// Whether one that was asked for is neither written nor given up.
+  bool saving_cache() const;
+  void load_cache(const std::filesystem::path& file);  ///< Renderer::load_cache
+  void cancel();                                       ///< gives up a load in progress
 
   /// The newest picture; null before the first. Cheap.
   std::shared_ptr<const Snapshot> snapshot() const;

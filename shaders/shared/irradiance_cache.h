@@ -15,6 +15,8 @@ LUCERNA_CONST uint k_part_tertiary = 2u;   ///< the rest
 LUCERNA_CONST uint k_part_caustic = 3u;    ///< [SG]+L
 LUCERNA_CONST uint k_part_count = 4u;
 
+/// Files keep the texels below as they are: another number for another meaning of them.
+LUCERNA_CONST uint k_record_layout = 1u;
 // record_texels: k_record_texels a record.
 //   0: position xyz [m], moved off its surface by the error bound; radius of validity [m], 0: none yet
 //   1: normal xyz, unit, on the side that is lit; harmonic mean of the distances that its rays met [m]

@@ -377,6 +377,18 @@ void Session::inspect(std::optional<vec2> at) {
 void Session::save(const std::filesystem::path& file) {
   impl_->post([file] { log::info("picture saved as {}", file.string()); });
 }
+void Session::save_cache(const std::filesystem::path& file) {
+  impl_->post([file] { log::info("cache saved as {}", file.string()); });
+}
+bool Session::saving_cache() const { return false; }
+void Session::load_cache(const std::filesystem::path& file) {
+  impl_->post([this, file] {
+    if (file.string().find("missing") != std::string::npos)
+      log::error("{}: cannot be read", file.string());
+    else
+      impl_->restart(), impl_->publish();
+  });
+}
 void Session::cancel() { impl_->cancelled = true; }
 std::shared_ptr<const Snapshot> Session::snapshot() const {
   std::lock_guard lock(impl_->mutex);

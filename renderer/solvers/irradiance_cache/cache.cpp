@@ -267,9 +267,28 @@ void Cache::extend() {
   }
 }
 
+void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const CacheStatus& status,
+                    bool complete) {
+  Impl& c = *impl_;
+  clear();
+  for (size_t i = 0; i < raw.lights.size(); ++i)
+    if (!(c.parts >> i / k_part_texels % k_part_count & 1)) raw.lights[i] = vec4(0);
+  c.records.restore(raw);
+  c.evaluated = raw.size();
+  c.status.records = c.status.loaded = raw.size();
+  c.status.rays = status.rays;
+  if (raw.size() > 0) c.build_octree(wavefront);
+  c.tell();
+  if (!complete) return;
+  c.status.pass = status.pass;
+  c.status.asked = status.asked, c.status.paths = status.paths;
+  c.finish(status.stop);
+}
+
 bool Cache::ready() const { return impl_->stage == Stage::done; }
 const CacheStatus& Cache::status() const { return impl_->status; }
 const Records& Cache::records() const { return impl_->records; }
+uint32_t Cache::parts() const { return impl_->parts; }
 
 bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
                  const std::function<bool()>& cancel) {

@@ -51,6 +51,7 @@ struct CacheStatus {
   uint64_t rays = 0;              ///< of the records' own hemispheres
   uint64_t bytes = 0;             ///< of device memory
   double references = 0;          ///< leaves that list a record, on average
+  uint32_t loaded = 0;            ///< of the records, from a file; their rays count too
   StopReason stop = StopReason::building;
   std::vector<CachePass> passes;  ///< since it was begun, extensions too; the last may be in progress
 };
@@ -83,12 +84,17 @@ class Cache {
   /// counted anew. Work in progress is finished first.
   void extend();
   bool ready() const;
+  /// Begins anew with records from elsewhere (Records::raw, of a cache that has these routes' parts at
+  /// least), as after a pass of building: it goes on as extend() does, or, with `complete`, is ready and
+  /// stands as `status` says.
+  void restore(transport::Wavefront& wavefront, RawRecords raw, const CacheStatus& status, bool complete);
   /// One bounded piece of the building, cancellable between bounces; on return the wavefront's frame is that
   /// of the picture's paths. False when it was cancelled: it will be done again.
   bool step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
             const std::function<bool()>& cancel = {});
   const CacheStatus& status() const;
   const Records& records() const;
+  uint32_t parts() const;  ///< that its records hold (bits); the others are 0
   /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many
   /// serve each pixel. Needs the film's depth, and where it has no samples that of the coarse film of the
   /// same picture (shared::k_coarse_step). The stream is run.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 #include "base/error.h"
 #include "gpu/kernel.h"
@@ -99,6 +100,28 @@ Record Records::read(uint32_t index) const {
   records_.read(place, sizeof place, index * k_place_bytes);
   irradiance_.read(light, sizeof light, index * k_light_bytes);
   return unpack(place, light);
+}
+
+RawRecords Records::raw(uint32_t count) const {
+  assert(count <= size_);
+  RawRecords raw{std::vector<vec4>(size_t{count} * k_record_texels),
+                 std::vector<vec4>(size_t{count} * k_part_count * k_part_texels), std::vector<vec4>(count)};
+  if (count == 0) return raw;
+  records_.read(raw.places.data(), count * k_place_bytes);
+  irradiance_.read(raw.lights.data(), count * k_light_bytes);
+  spheres_.read(raw.spheres.data(), count * sizeof(vec4));
+  return raw;
+}
+
+void Records::restore(const RawRecords& raw) {
+  assert(raw.size() <= capacity_ && raw.places.size() == raw.size() * size_t{k_record_texels} &&
+         raw.lights.size() == raw.size() * size_t{k_part_count} * k_part_texels);
+  size_ = raw.size();
+  if (size_ == 0) return;
+  records_.write(std::span(raw.places));
+  irradiance_.write(std::span(raw.lights));
+  read_.write(std::span(raw.lights));
+  spheres_.write(std::span(raw.spheres));
 }
 
 std::vector<Records::Figures> Records::figures() const {

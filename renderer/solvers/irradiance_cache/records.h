@@ -40,6 +40,14 @@ struct Record {
   std::array<Irradiance, shared::k_part_count> parts;
 };
 
+/// All that device memory holds of some records, as it is there: what files keep.
+struct RawRecords {
+  std::vector<vec4> places;   ///< record_texels
+  std::vector<vec4> lights;   ///< irradiance_texels
+  std::vector<vec4> spheres;  ///< (position, radius)
+  uint32_t size() const { return static_cast<uint32_t>(spheres.size()); }
+};
+
 class Records {
  public:
   /// Room for `capacity` records of shared::k_record_bytes. Throws Error when that exceeds what the device
@@ -59,6 +67,10 @@ class Records {
   /// All of them, or one; for tests, files and the inspector.
   std::vector<Record> read() const;
   Record read(uint32_t index) const;
+  /// The first `count`, for files; and back, in place of all there are. At most capacity(), the lists of one
+  /// number of records (assertions).
+  RawRecords raw(uint32_t count) const;
+  void restore(const RawRecords& raw);
   /// What the overlay colours by, and what asked, of every record.
   struct Figures {
     float rays, mean_distance, error;

@@ -1,0 +1,120 @@
+#include "scene/hash.h"
+
+#include <optional>
+
+#include "base/hash.h"
+
+// Structures are taken apart by structured bindings: a field more does not compile until it is heeded here.
+namespace lucerna::scene {
+namespace {
+
+template <class... Values>
+void add_all(Hash& hash, const Values&... values) {
+  (hash.add_value(values), ...);
+}
+
+/// Hashes of images, each found once.
+class Images {
+ public:
+  explicit Images(const Scene& scene) : scene_(scene), known_(scene.images.size()) {}
+
+  uint64_t of(Id id) {
+    if (id >= known_.size()) return 0;
+    if (known_[id]) return *known_[id];
+    const auto& [name, width, height, bytes, floats] = scene_.images[id];
+    Hash hash;
+    add_all(hash, width, height);
+    hash.add_values(bytes);
+    hash.add_values(floats);
+    known_[id] = hash.low();
+    return hash.low();
+  }
+  void add(Hash& hash, const TextureUse& use) {
+    const auto& [texture, uv_set, matrix] = use;
+    hash.add_value(bool(use));
+    if (!use) return;
+    add_all(hash, uv_set, matrix);
+    const auto& [image, wrap_u, wrap_v, nearest, srgb] = scene_.textures[texture];
+    add_all(hash, of(image), wrap_u, wrap_v, nearest, srgb);
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<std::optional<uint64_t>> known_;
+};
+
+uint64_t geometry(const Scene& scene) {
+  std::vector<uint64_t> meshes;
+  for (const Mesh& mesh : scene.meshes) {
+    Hash hash;
+    for (const Primitive& primitive : mesh.primitives) {
+      const auto& [positions, normals, tangents, uv0, uv1, colors, triangles, material] = primitive;
+      hash.add_values(positions);
+      hash.add_values(normals);
+      hash.add_values(tangents);
+      hash.add_values(uv0);
+      hash.add_values(uv1);
+      hash.add_values(colors);
+      hash.add_values(triangles);
+      hash.add_value(material);
+    }
+    meshes.push_back(hash.low());
+  }
+  Hash hash;
+  for (const Instance& instance : scene.instances) {
+    const auto& [name, mesh, to_world, flipped] = instance;
+    add_all(hash, mesh < meshes.size() ? meshes[mesh] : 0, to_world, flipped);
+  }
+  return hash.low();
+}
+
+uint64_t materials(const Scene& scene, Images& images) {
+  Hash hash;
+  for (const Material& m : scene.materials) {
+    const auto& [name, base_color, base_color_texture, metallic, roughness, metallic_roughness_texture,
+                 normal_texture, normal_scale, emission, emission_texture, alpha_mode, alpha_cutoff,
+                 double_sided, unlit, ior, specular, specular_texture, specular_color, specular_color_texture,
+                 transmission, transmission_texture, thickness, attenuation_color, attenuation_distance,
+                 diffuse_transmission, diffuse_transmission_texture, diffuse_transmission_color,
+                 diffuse_transmission_color_texture] = m;
+    add_all(hash, base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
+            double_sided, unlit, ior, specular, specular_color, transmission, thickness, attenuation_color,
+            attenuation_distance, diffuse_transmission, diffuse_transmission_color);
+    for (const TextureUse* use :
+         {&base_color_texture, &metallic_roughness_texture, &normal_texture, &emission_texture,
+          &specular_texture, &specular_color_texture, &transmission_texture, &diffuse_transmission_texture,
+          &diffuse_transmission_color_texture})
+      images.add(hash, *use);
+  }
+  return hash.low();
+}
+
+uint64_t lights(const Scene& scene) {
+  Hash hash;
+  for (const Light& light : scene.lights) {
+    const auto& [name, kind, intensity, position, direction, inner_cone, outer_cone, enabled] = light;
+    hash.add_value(enabled);
+    if (enabled) add_all(hash, kind, intensity, position, direction, inner_cone, outer_cone);
+  }
+  return hash.low();
+}
+
+uint64_t environment(const Scene& scene, Images& images) {
+  const auto& [radiance, image, scale, rotation, file, given] = scene.environment;
+  Hash hash;
+  if (image != k_none)
+    add_all(hash, images.of(image), rotation);
+  else
+    hash.add_value(radiance);
+  hash.add_value(scale);
+  return hash.low();
+}
+
+}  // namespace
+
+LightHash light_hash(const Scene& scene) {
+  Images images(scene);
+  return {geometry(scene), materials(scene, images), lights(scene), environment(scene, images)};
+}
+
+}  // namespace lucerna::scene

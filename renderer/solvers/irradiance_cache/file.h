@@ -1,0 +1,55 @@
+#pragma once
+// Irradiance caches as files: all complete records, with what they were made of, so that they are read again
+// only where their light is the light. Little-endian:
+//
+//   "LUCCACHE"                                     8 bytes
+//   version of the format, layout of the records   2 x u32: k_cache_file_version, shared::k_record_layout
+//   bytes of a record, bytes of the whole file     u32, u64
+//   program's version, making, view, status        texts as u32 length and bytes, lists as u32 count and
+//   entries records                                        u32 count, then RawRecords, list by list checksum
+//   of all before                         u64: Hash::low()
+//
+// Whoever changes the meaning of a record's texels changes k_record_layout beside them.
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "solvers/irradiance_cache/cache.h"
+
+namespace lucerna::irradiance_cache {
+
+inline constexpr uint32_t k_cache_file_version = 1;
+
+/// What records are made of.
+struct Making {
+  std::string scene;                            ///< its name, for messages
+  std::map<std::string, uint64_t> hashes;       ///< of the scene: "geometry", "lights", ...
+  std::map<std::string, std::string> settings;  ///< those that decide what a record holds, by key
+  uint32_t parts = 0;                           ///< bit p: the records hold part p
+  /// Decides which of the equally good caches it is: kept, not compared.
+  std::string seed;
+};
+
+struct CacheFile {
+  std::string program;  ///< version of the one that wrote it
+  Making making;
+  /// What the picture saw when the cache was complete for it, as a text that only that view gives.
+  std::string view;
+  CacheStatus status;  ///< pass, asked, paths, rays, stop
+  RawRecords records;
+};
+
+std::string encode(const CacheFile& cache);
+/// Throws Error at `where`: not a cache, of another version or layout, cut short, damaged.
+CacheFile decode(const std::string& bytes, const std::string& where);
+
+/// Whole or not at all (write_file). Throws Error located at `file`.
+void write_cache(const std::filesystem::path& file, const CacheFile& cache);
+/// Throws Error located at `file`: cannot be read, or as decode().
+CacheFile read_cache(const std::filesystem::path& file);
+
+/// Throws Error at `where` unless these records can serve what is made like `wanted` with room for `room`
+/// records: naming what of the scene, which settings or which parts differ, or the setting that would fit.
+void check_fits(const CacheFile& cache, const Making& wanted, uint32_t room, const std::string& where);
+
+}  // namespace lucerna::irradiance_cache

@@ -1,0 +1,223 @@
+// links: irradiance_cache
+// Files of irradiance caches, without a device: what is written is what is read, to the bit; whatever is not
+// whole, not of this format or not made of the same is refused, with what was expected and what was found.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "solvers/irradiance_cache/file.h"
+
+namespace fs = std::filesystem;
+using namespace lucerna;
+using namespace lucerna::irradiance_cache;
+using Catch::Contains;
+
+namespace {
+
+/// Every texel another value; infinities, negative zeros and the bits of a NaN among them.
+CacheFile some_cache(uint32_t records) {
+  CacheFile c;
+  c.program = "1.2.3";
+  c.making.scene = "hall";
+  c.making.hashes = {{"geometry", 1}, {"lights", 0xfedcba9876543210ull}};
+  c.making.settings = {{"cache.error", "0.3"}, {"path.max_depth", "64"}};
+  c.making.parts = 0b0110;
+  c.making.seed = "7";
+  c.view = "perspective 0.8 at 1 2 3";
+  c.status.pass = 3, c.status.asked = 5, c.status.paths = 1ull << 40, c.status.rays = 123456789012ull;
+  c.status.stop = StopReason::passes;
+  float next = 1;
+  const auto fill = [&](std::vector<vec4>& list, size_t count) {
+    for (size_t i = 0; i < count; ++i, next += 4) list.emplace_back(next, next + 1, next + 2, next + 3);
+  };
+  fill(c.records.places, size_t{records} * shared::k_record_texels);
+  fill(c.records.lights, size_t{records} * shared::k_part_count * shared::k_part_texels);
+  fill(c.records.spheres, records);
+  if (records > 0) {
+    c.records.places[1].w = k_infinity;
+    c.records.lights[0].x = -0.0f;
+    const uint32_t odd = 0x7fc01234;
+    std::memcpy(&c.records.places[2].w, &odd, sizeof odd);
+  }
+  return c;
+}
+
+bool same_bits(const std::vector<vec4>& a, const std::vector<vec4>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(vec4)) == 0);
+}
+
+std::string complaint(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+std::string refusal(const std::string& bytes) {
+  return complaint([&] { decode(bytes, "a.cache"); });
+}
+
+struct Folder {
+  fs::path path;
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "lucerna-cache-XXXXXX").string();
+    path = mkdtemp(name.data());
+  }
+  ~Folder() { fs::remove_all(path); }
+};
+
+}  // namespace
+
+TEST_CASE("a cache that is written and read is the same to the bit") {
+  const Folder folder;
+  for (const uint32_t records : {0u, 1u, 3u, 1000u}) {
+    INFO(records);
+    const CacheFile c = some_cache(records);
+    const fs::path file = folder.path / "a.cache";
+    write_cache(file, c);
+    const CacheFile d = read_cache(file);
+    CHECK(d.program == c.program);
+    CHECK(d.making.scene == c.making.scene);
+    CHECK(d.making.hashes == c.making.hashes);
+    CHECK(d.making.settings == c.making.settings);
+    CHECK(d.making.parts == c.making.parts);
+    CHECK(d.making.seed == c.making.seed);
+    CHECK(d.view == c.view);
+    CHECK(d.status.pass == c.status.pass);
+    CHECK(d.status.asked == c.status.asked);
+    CHECK(d.status.paths == c.status.paths);
+    CHECK(d.status.rays == c.status.rays);
+    CHECK(d.status.stop == c.status.stop);
+    CHECK(d.records.size() == records);
+    CHECK(same_bits(d.records.places, c.records.places));
+    CHECK(same_bits(d.records.lights, c.records.lights));
+    CHECK(same_bits(d.records.spheres, c.records.spheres));
+    CHECK(encode(d) == encode(c));
+  }
+  // Nothing temporary is left.
+  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+}
+
+TEST_CASE("the format is what its header says, byte for byte") {
+  const std::string bytes = encode(some_cache(2));
+  const std::string head("LUCCACHE\1\0\0\0\1\0\0\0", 16);
+  CHECK(bytes.substr(0, 16) == head);
+  const auto number = [&](size_t at, int size) {
+    uint64_t value = 0;
+    for (int k = size - 1; k >= 0; --k) value = value << 8 | uint8_t(bytes[at + size_t(k)]);
+    return value;
+  };
+  CHECK(number(16, 4) == shared::k_record_bytes);
+  CHECK(number(20, 8) == bytes.size());
+  CHECK(number(28, 4) == 5);
+  CHECK(bytes.substr(32, 5) == "1.2.3");
+  CHECK(number(bytes.size() - 8 - 2 * shared::k_record_bytes - 4, 4) == 2);
+}
+
+TEST_CASE("a file that is cut short is refused at every length") {
+  const std::string bytes = encode(some_cache(3));
+  for (size_t n = 0; n < bytes.size(); ++n) {
+    const std::string told = refusal(bytes.substr(0, n));
+    INFO(n << ": " << told);
+    REQUIRE(told.find("a.cache: cut short: ") == 0);
+    REQUIRE_THAT(told, Contains(std::to_string(n)));
+  }
+  CHECK(refusal(bytes).empty());
+  CHECK_THAT(refusal(bytes + "x"), Contains("a.cache: damaged: ") && Contains("it says that it has"));
+}
+
+TEST_CASE("a file with one byte changed is refused, wherever it is and however") {
+  const std::string bytes = encode(some_cache(3));
+  for (size_t n = 0; n < bytes.size(); ++n)
+    for (const int change : {1, 0x80, 0xff}) {
+      std::string other = bytes;
+      other[n] = char(other[n] ^ change);
+      const std::string told = refusal(other);
+      INFO(n << " ^ " << change << ": " << told);
+      REQUIRE(told.find("a.cache: ") == 0);
+      if (n < 8) REQUIRE_THAT(told, Contains("not an irradiance cache: expected a file that begins with"));
+      if (n >= 28) REQUIRE_THAT(told, Contains("damaged: its checksum is"));
+    }
+  std::string other = bytes;
+  other[8] = 2;
+  CHECK(refusal(other) == "a.cache: an irradiance cache in version 2 of its format; expected version 1");
+  other = bytes, other[12] = 9;
+  CHECK_THAT(refusal(other), Contains("its records are laid out otherwise: layout 9 of 320 bytes each, "
+                                      "expected layout 1 of 320"));
+  other = bytes, other[17] = 2;
+  CHECK_THAT(refusal(other), Contains("layout 1 of 576 bytes each, expected layout 1 of 320"));
+  CHECK_THAT(refusal("glTF and so on"), Contains("not an irradiance cache"));
+}
+
+TEST_CASE(
+    "contents that make no sense under a right checksum are refused or read, never followed out of the "
+    "file") {
+  const std::string bytes = encode(some_cache(2));
+  size_t refused = 0, read = 0;
+  for (size_t n = 28; n + 8 < bytes.size(); ++n)
+    for (const char value : {'\0', '\x01', '\x7f', '\xff'}) {
+      std::string other = bytes;
+      other[n] = value;
+      Hash hash;
+      hash.add_bytes(other.data(), other.size() - 8);
+      const uint64_t sum = hash.low();
+      std::memcpy(other.data() + other.size() - 8, &sum, sizeof sum);
+      const std::string told = refusal(other);
+      ++(told.empty() ? read : refused);
+      REQUIRE((told.empty() || told.starts_with("a.cache: damaged: ")));
+    }
+  CHECK(refused > 50);  // lengths and counts
+  CHECK(read > 2000);   // the records' own numbers
+}
+
+TEST_CASE("what cannot be read or written says so, and leaves what was there") {
+  const Folder folder;
+  const fs::path file = folder.path / "a.cache";
+  CHECK_THAT(complaint([&] { read_cache(file); }),
+             Contains(file.string() + ": cannot be read: No such file"));
+  CHECK_THAT(complaint([&] { read_cache(folder.path); }), Contains("it is a folder"));
+  CHECK_THAT(complaint([&] { write_cache(folder.path / "no" / "a.cache", some_cache(1)); }),
+             Contains("no/a.cache: cannot be written: "));
+  // A folder of the name cannot be replaced by a file; what was written so far goes.
+  fs::create_directories(file / "inner");
+  CHECK_THAT(complaint([&] { write_cache(file, some_cache(1)); }), Contains("cannot be written"));
+  CHECK(fs::is_directory(file / "inner"));
+  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
+}
+
+TEST_CASE("a cache serves what it was made of, and says what differs") {
+  const CacheFile c = some_cache(20);
+  const auto fits = [&](const std::function<void(Making&)>& change, uint32_t room = 20) {
+    Making wanted = c.making;
+    change(wanted);
+    return complaint([&] { check_fits(c, wanted, room, "a.cache"); });
+  };
+  CHECK(fits([](Making&) {}).empty());
+  CHECK(fits([](Making& m) { m.seed = "8", m.scene = "another name"; }).empty());
+  CHECK(fits([](Making& m) { m.hashes["lights"] = 2, m.scene = "attic"; }) ==
+        "a.cache: records of another scene ('hall', this is 'attic'): they differ in lights");
+  CHECK_THAT(fits([](Making& m) { m.hashes["geometry"] = 2, m.hashes["lights"] = 2; }),
+             Contains("they differ in geometry, lights"));
+  CHECK_THAT(fits([](Making& m) { m.hashes["fog"] = 2; }), Contains("they differ in fog"));
+  CHECK(fits([](Making& m) { m.settings["cache.error"] = "0.5"; }) ==
+        "a.cache: its records were made with cache.error = 0.3 (now 0.5)");
+  CHECK_THAT(fits([](Making& m) {
+               m.settings = {{"cache.error", "1"}, {"cache.metric", "hessian"}};
+             }),
+             Contains("made with cache.error = 0.3 (now 1), cache.metric = unknown (now hessian), "
+                      "path.max_depth = 64 (now unknown)"));
+  // Parts that nobody asks for do no harm.
+  CHECK(fits([](Making& m) { m.parts = 0b0100; }).empty());
+  CHECK(fits([](Making& m) { m.parts = 0b1111; }) ==
+        "a.cache: its records hold secondary, tertiary light; the components that are looked up need "
+        "environment, caustic light too");
+  CHECK(fits([](Making&) {}, 19) ==
+        "a.cache: holds 20 records and there is room for 19; set cache.max_records to 20 or more");
+}
