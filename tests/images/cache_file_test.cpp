@@ -209,7 +209,7 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
   looked.r.load_cache(file);
   CHECK_FALSE(looked.r.cache()->ready());
   looked.finish();
-  CHECK(records(looked).size() <= saved.size() + saved.size() / 100);
+  CHECK(records(looked).size() <= saved.size() + saved.size() / 33);
   // How it is sampled has not changed.
   Bed fourth;
   fourth.set({{"sampling.mode", "adaptive"}, {"samples", "9"}, {"film.ev", "2"}});

@@ -20,6 +20,10 @@ using Catch::Contains;
 
 namespace {
 
+/// Of a record in a file: place, light and sphere.
+constexpr uint32_t k_stored_bytes =
+    16 * (shared::k_record_texels + shared::k_part_count * shared::k_part_texels + 1);
+
 /// Every texel another value; infinities, negative zeros and the bits of a NaN among them.
 CacheFile some_cache(uint32_t records) {
   CacheFile c;
@@ -114,11 +118,11 @@ TEST_CASE("the format is what its header says, byte for byte") {
     for (int k = size - 1; k >= 0; --k) value = value << 8 | uint8_t(bytes[at + size_t(k)]);
     return value;
   };
-  CHECK(number(16, 4) == shared::k_record_bytes);
+  CHECK(number(16, 4) == k_stored_bytes);
   CHECK(number(20, 8) == bytes.size());
   CHECK(number(28, 4) == 5);
   CHECK(bytes.substr(32, 5) == "1.2.3");
-  CHECK(number(bytes.size() - 8 - 2 * shared::k_record_bytes - 4, 4) == 2);
+  CHECK(number(bytes.size() - 8 - 2 * k_stored_bytes - 4, 4) == 2);
 }
 
 TEST_CASE("a file that is cut short is refused at every length") {
