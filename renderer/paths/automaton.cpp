@@ -364,7 +364,7 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled) {
   return packed;
 }
 
-LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached) {
+LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached, bool direct) {
   constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2;
   cached &= enabled;
   // Words of the secondary component go on into those of the tertiary one, and nothing traces behind a
@@ -392,6 +392,8 @@ LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_
     const bool looks = any && !left;
     for (uint32_t p = 1; looks && p < k_part_count; ++p)
       if (within(brings[p], cached)) routes.component[state][p] = brings[p], routes.parts |= 1u << p;
+    if (direct && looks && within(brings[0], enabled))
+      routes.component[state][0] = brings[0], routes.parts |= 1u;
     for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
       if (e == Event::diffuse && looks) continue;
       const uint8_t next = automaton.after(state, e);

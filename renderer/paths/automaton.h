@@ -79,7 +79,9 @@ struct LookupRoutes {
 /// For `cached` components, of the enabled ones. A lookup stands at the first diffuse vertex behind which
 /// nothing but cached components has a further diffuse event: with secondary and tertiary cached at the
 /// first, with tertiary alone at the second. Tertiary light behind a cached secondary one comes from the same
-/// lookup, whatever its own solver.
-LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached);
+/// lookup, whatever its own solver. `direct`: what is looked up holds light straight from the environment
+/// too; wherever a lookup stands it then brings that as well, to its component, as far as that is enabled.
+LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached,
+                           bool direct = false);
 
 }  // namespace lucerna::paths
