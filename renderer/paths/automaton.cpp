@@ -1,6 +1,7 @@
 #include "paths/automaton.h"
 
 #include <algorithm>
+#include <bit>
 #include <deque>
 #include <functional>
 #include <map>
@@ -341,8 +342,35 @@ class Matcher {
 
 bool matches(const std::string& expression, std::string_view word) { return Matcher(expression, word).run(); }
 
-std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled) {
+namespace {
+
+/// For each state the components (bits) that lookups bring, there or further on.
+std::vector<uint32_t> brought(const Automaton& automaton, const LookupRoutes& routes) {
+  std::vector<uint32_t> all(automaton.states.size(), 0);
+  if (routes.component.empty()) return all;
+  std::vector<bool> looks(all.size(), false);
+  for (size_t s = 0; s < all.size(); ++s)
+    for (const uint8_t c : routes.component[s])
+      if (c != k_no_component) all[s] |= 1u << c, looks[s] = true;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (size_t s = 0; s < all.size(); ++s)
+      for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
+        if (e == Event::diffuse && looks[s]) continue;  // nothing is looked up behind a lookup
+        const uint32_t more = all[s] | all[automaton.after(static_cast<uint8_t>(s), e)];
+        changed |= more != all[s];
+        all[s] = more;
+      }
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes,
+                           bool met) {
   std::vector<uint32_t> packed;
+  const std::vector<uint32_t> looked_up = brought(automaton, routes);
   // States without a D so far: reached from the eye by G and S alone.
   std::set<uint8_t> mirrors{0};
   for (bool changed = true; changed;) {
@@ -355,11 +383,12 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled) {
     const auto& s = automaton.states[i];
     const bool on = s.accept != k_no_component && (enabled >> s.accept & 1u);
     const uint32_t component = on ? s.accept : k_component_count;
-    const uint8_t account = automaton.accounted_to(static_cast<uint8_t>(i), enabled);
-    packed.push_back(s.next[0] | s.next[1] << 8 | s.next[2] << 16 | component << 24 |
-                     ((s.reachable & enabled) ? 1u << 27 : 0u) |
+    uint32_t reachable = met ? s.reachable : 0;
+    for (const uint8_t next : s.next) reachable |= automaton.states[next].reachable;
+    const uint32_t left = (reachable & enabled) | looked_up[i];
+    packed.push_back(s.next[0] | s.next[1] << 8 | s.next[2] << 16 | component << 24 | (left ? 1u << 27 : 0u) |
                      (mirrors.count(static_cast<uint8_t>(i)) ? 1u << 28 : 0u) |
-                     (account == k_no_component ? 0u : static_cast<uint32_t>(account)) << 29);
+                     (left ? static_cast<uint32_t>(std::countr_zero(left)) : 0u) << 29);
   }
   return packed;
 }
@@ -401,6 +430,18 @@ LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_
     }
   }
   return routes;
+}
+
+LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recursive, bool caustics) {
+  constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2, k_caustic = 1u << 3;
+  if (!recursive || (parts & k_tertiary) == 0) return {.component = {}, .parts = parts, .traced = parts};
+  // Behind ED the components are the parts, so that the rays' own routes are those of a picture of them.
+  const uint32_t gathered = parts | k_secondary | (caustics ? k_caustic : 0);
+  LookupRoutes own = lookup_routes(automaton, gathered, k_tertiary, (parts & 1u) != 0);
+  own.parts = gathered;
+  if (!caustics)
+    for (auto& component : own.component) component[3] = k_no_component;
+  return own;
 }
 
 }  // namespace lucerna::paths

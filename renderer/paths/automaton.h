@@ -56,11 +56,6 @@ Automaton compile_components();
 /// compile(), kept as its oracle and for one-off queries.
 bool matches(const std::string& expression, std::string_view word);
 
-/// The automaton as it is uploaded: packed[state] bits 0-7 next on D, 8-15 next on G, 16-23 next on S, 24-26
-/// component (k_component_count: none, or switched off), bit 27: an enabled component is reachable, bit 28:
-/// no D so far (E[SG]*), bits 29-30: component its rays are accounted to. `enabled` bit i: component i is on.
-std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled);
-
 /// Light arriving at a diffuse vertex, by what it has done before: straight from a light, over one diffuse
 /// event
 /// ([SG]*DL), over more, or over mirrors and glass alone ([SG]+L). Their numbers are those of the components
@@ -76,6 +71,15 @@ struct LookupRoutes {
   uint32_t traced = 0;  ///< components that paths still bring, beside the lookups (bit i)
 };
 
+/// The automaton as it is uploaded: packed[state] bits 0-7 next on D, 8-15 next on G, 16-23 next on S, 24-26
+/// component (k_component_count: none, or switched off), bit 27: something can still be brought, by an
+/// enabled component or by a lookup, bit 28: no D so far (E[SG]*), bits 29-30: component its rays are
+/// accounted to. `enabled` bit i: component i is on.
+/// `met`: there are lights that a ray can meet; where all are points or directions, a path of which nothing
+/// but its meeting light is wanted brings nothing.
+std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes = {},
+                           bool met = true);
+
 /// For `cached` components, of the enabled ones. A lookup stands at the first diffuse vertex behind which
 /// nothing but cached components has a further diffuse event: with secondary and tertiary cached at the
 /// first, with tertiary alone at the second. Tertiary light behind a cached secondary one comes from the same
@@ -83,5 +87,11 @@ struct LookupRoutes {
 /// too; wherever a lookup stands it then brings that as well, to its component, as far as that is enabled.
 LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached,
                            bool direct = false);
+
+/// For the rays of a cache's records, which begin in the state after ED and bring the parts that the
+/// picture's lookups read. `recursive`: their tertiary light is looked up in turn, at the first vertex behind
+/// which there is nothing else, whose parts are then gathered too (of caustics, where there is anything to
+/// make some).
+LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recursive, bool caustics);
 
 }  // namespace lucerna::paths

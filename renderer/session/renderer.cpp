@@ -115,18 +115,22 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
   gpu::Defines defines = options_.defines;
   if (settings_.boolean("sampling.coherent"))
     defines["LUCERNA_COHERENT"] = settings_.text("sampling.tile") == "8" ? "3" : "4";
-  paths::LookupRoutes routes = wanted_routes(device_scene.effects().sky_apart);
+  paths::LookupRoutes routes = wanted_routes(device_scene.effects());
+  paths::LookupRoutes record_routes;
   std::unique_ptr<irradiance_cache::Cache> cache;
   std::function<void(gpu::Resources&)> bind;
   if (routes.parts != 0) {
-    cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, cache_options());
-    for (const auto& [name, value] : irradiance_cache::Cache::defines(routes)) defines[name] = value;
+    record_routes = wanted_record_routes(device_scene.effects());
+    cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, record_routes,
+                                                      cache_options());
+    for (const auto& [name, value] : irradiance_cache::Cache::defines(record_routes)) defines[name] = value;
     bind = [c = cache.get()](gpu::Resources& r) { c->bind(r); };
   }
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
                                                       std::move(trace), defines, bind);
   cache_ = std::move(cache);
   routes_ = std::move(routes);
+  record_routes_ = std::move(record_routes);
   compile_seconds_ = timer.seconds();
 }
 
@@ -138,7 +142,7 @@ void Renderer::reload_shaders() {
 
 uint32_t Renderer::enabled_components() const { return plan::make_plan(settings_).enabled(); }
 
-shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, uint32_t enabled,
+shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
                                    uint32_t fallback) const {
   return transport::make_frame(flat_, camera_, automaton_,
                                {.width = width,
@@ -146,12 +150,13 @@ shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, uint32_t ena
                                 .seed = uint32_t(settings_.integer("seed")),
                                 .max_depth = uint32_t(settings_.integer("path.max_depth")),
                                 .roulette_depth = uint32_t(settings_.integer("path.roulette_depth")),
-                                .enabled = enabled,
+                                .enabled = routes.traced,
+                                .routes = routes,
                                 .fallback = fallback});
 }
 
 shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
-  return make_frame(width, height, routes_.traced, cache_ ? enabled_components() : 0);
+  return make_frame(width, height, routes_, cache_ ? enabled_components() : 0);
 }
 
 irradiance_cache::CacheOptions Renderer::cache_options() const {
@@ -172,16 +177,16 @@ irradiance_cache::CacheView Renderer::cache_view() const {
   view.paths_frame = make_frame(width_, height_);
   view.paths_enabled = enabled_components();
   // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
-  view.records_frame = make_frame(width_, height_, routes_.parts, 0);
-  view.records_enabled = routes_.parts;
+  view.records_frame = make_frame(width_, height_, record_routes_, record_routes_.parts);
+  view.records_enabled = record_routes_.parts;
   view.width = width_, view.height = height_;
   view.scene_radius = flat_.scene_radius;
   return view;
 }
 
-paths::LookupRoutes Renderer::wanted_routes(bool sky_apart) const {
+paths::LookupRoutes Renderer::wanted_routes(const upload::Effects& effects) const {
   const plan::Plan plan = plan::make_plan(settings_);
-  return paths::lookup_routes(automaton_, plan.enabled(), plan.looked_up(), sky_apart);
+  return paths::lookup_routes(automaton_, plan.enabled(), plan.looked_up(), effects.sky_apart);
 }
 
 float Renderer::wanted_sun_threshold(const plan::Settings& settings) const {
@@ -189,6 +194,13 @@ float Renderer::wanted_sun_threshold(const plan::Settings& settings) const {
   const plan::Plan plan = plan::make_plan(settings);
   const uint32_t parts = paths::lookup_routes(automaton_, plan.enabled(), plan.looked_up(), true).parts;
   return (parts >> shared::k_part_direct & 1u) != 0 ? float(settings.real("cache.environment_threshold")) : 0;
+}
+
+paths::LookupRoutes Renderer::wanted_record_routes(const upload::Effects& effects) const {
+  constexpr uint32_t k_tertiary = 1u << 2;
+  return paths::record_routes(automaton_, wanted_routes(effects).parts,
+                              (plan::make_plan(settings_).looked_up() & k_tertiary) != 0,
+                              effects.specular || effects.solid_glass || effects.thin_glass);
 }
 
 void Renderer::make_film() {
@@ -203,7 +215,7 @@ void Renderer::restart(Lookups lookups) {
   if (cache_ && lookups == Lookups::clear) cache_->clear();
   if (cache_ && lookups == Lookups::extend) cache_->extend();
   // What is switched off changes without new kernels.
-  routes_.traced = wanted_routes(flat_.effects.sky_apart).traced;
+  routes_.traced = wanted_routes(flat_.effects).traced;
   wavefront_->clear(*film_);
   wavefront_->clear(*coarse_);
   wavefront_->reset_stats();
@@ -322,7 +334,8 @@ void Renderer::apply_settings() {
     device_scene_->update_lights(*device_, flat_);
     wavefront_->rebind(*device_scene_);
   }
-  const bool kernels = wanted_routes(flat_.effects.sky_apart).component != routes_.component ||
+  const bool kernels = wanted_routes(flat_.effects).component != routes_.component ||
+                       wanted_record_routes(flat_.effects).component != record_routes_.component ||
                        cache_changed || changed.contains("sampling.coherent") ||
                        (changed.contains("sampling.tile") && settings_.boolean("sampling.coherent"));
   if (kernels) build_wavefront(*device_scene_);

@@ -139,7 +139,8 @@ class Renderer {
   };
   void restart(Lookups lookups);
   shared::Frame make_frame(uint32_t width, uint32_t height) const;  ///< of the picture's paths
-  shared::Frame make_frame(uint32_t width, uint32_t height, uint32_t enabled, uint32_t fallback) const;
+  shared::Frame make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
+                           uint32_t fallback) const;
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
   void start_schedule();
@@ -149,7 +150,9 @@ class Renderer {
   bool render_item(const std::function<bool()>& cancel);
   irradiance_cache::CacheOptions cache_options() const;
   irradiance_cache::CacheView cache_view() const;
-  paths::LookupRoutes wanted_routes(bool sky_apart) const;  ///< by the settings
+  paths::LookupRoutes wanted_routes(const upload::Effects& effects) const;  ///< by the settings
+  paths::LookupRoutes wanted_record_routes(
+      const upload::Effects& effects) const;  ///< ... of the rays of records
   /// upload::FlatScene::sun_threshold that they ask for.
   float wanted_sun_threshold(const plan::Settings& settings) const;
   /// Adds a line to the ledger when one is due, or at once.
@@ -164,7 +167,7 @@ class Renderer {
   upload::FlatScene flat_;
   std::unique_ptr<upload::DeviceScene> device_scene_;
   std::unique_ptr<bvh::HostTracer> host_;
-  paths::LookupRoutes routes_;                      ///< of the kernels in use
+  paths::LookupRoutes routes_, record_routes_;      ///< of the kernels in use
   std::unique_ptr<irradiance_cache::Cache> cache_;  ///< null: nothing is looked up
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::unique_ptr<film::Film> film_, coarse_;

@@ -32,12 +32,13 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.max_depth = options.max_depth;
   f.roulette_depth = options.roulette_depth;
   f.scene_radius = flat.scene_radius;
-  const std::vector<uint32_t> table = paths::pack(automaton, options.enabled);
+  const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);
+  const std::vector<uint32_t> table = paths::pack(automaton, options.enabled, options.routes, met);
   assert(table.size() <= shared::k_fallback_state);
   f.automaton_states = uint32_t(table.size());
   std::copy(table.begin(), table.end(), f.automaton);
   if (options.fallback != 0) {
-    const std::vector<uint32_t> all = paths::pack(automaton, options.fallback);
+    const std::vector<uint32_t> all = paths::pack(automaton, options.fallback, {}, met);
     for (size_t i = 0; i < all.size(); ++i)
       f.automaton[shared::k_fallback_state + i] =
           all[i] +

@@ -13,6 +13,7 @@ struct FrameOptions {
   uint32_t max_depth = 64;      ///< scattering events after which a path ends
   uint32_t roulette_depth = 3;  ///< events before roulette may end one
   uint32_t enabled = 15;        ///< components on (bit i)
+  paths::LookupRoutes routes;   ///< what is looked up, beside those
   /// Components of paths that a lookup has left alone (shared::k_fallback_state); 0: there are no such paths.
   uint32_t fallback = 0;
 };

@@ -97,8 +97,7 @@ struct Wavefront::Impl {
   }
 
   /// From `begin` until no path is alive. False when cancelled.
-  bool trace_paths(uint32_t count, const std::function<void()>& begin,
-                   const std::function<void()>& first_hits, const std::function<bool()>& cancel);
+  bool trace_paths(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel);
   void estimate(const gpu::Kernel& kernel, std::span<const WorkBlock> list, film::Film& film,
                 float luminance_floor, const char* stage);
 
@@ -234,28 +233,26 @@ bool Wavefront::probe(const schedule::WorkItem& item, const std::function<bool()
   w.blocks.write(std::span<const WorkBlock>(item.blocks));
   const TransportPush push{count, 0, static_cast<uint32_t>(item.blocks.size()) * 64, 0};
   const auto begin = [&] { w.stream.dispatch(w.camera, w.main[0], push, Impl::groups(count), "camera"); };
-  return w.trace_paths(count, begin, {}, cancel);
+  return w.trace_paths(count, {.begin = begin, .first_hits = {}, .end = {}}, cancel);
 }
 
 bool Wavefront::run(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel) {
   Impl& w = *impl_;
   if (count == 0 || w.enabled == 0) return true;
   if (count > w.slots) throw_error("transport", "{} paths, room for {}", count, w.slots);
-  if (!w.trace_paths(count, ends.begin, ends.first_hits, cancel)) return false;
-  ends.end();
+  if (!w.trace_paths(count, ends, cancel)) return false;
+  if (ends.end) ends.end();
   w.run_and_account(nullptr, nullptr);
   return true;
 }
 
-bool Wavefront::Impl::trace_paths(uint32_t count, const std::function<void()>& begin,
-                                  const std::function<void()>& first_hits,
-                                  const std::function<bool()>& cancel) {
+bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel) {
   Impl& w = *this;
   TransportPush push{count, 0, 64, 0};
   uint32_t closest[k_component_count] = {}, shadows[k_component_count] = {};
   closest[w.first_account] = count;
   w.stream.fill(w.counters, 0);
-  begin();
+  ends.begin();
   const uint32_t* counters = static_cast<const uint32_t*>(w.counters.mapped());
   uint32_t active = count, parity = 0, shadow_count = 0;
   bool first = true;
@@ -298,7 +295,11 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const std::function<void()>& b
       w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
               first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
       w.stats.rays += active;
-      if (first && first_hits) first_hits();
+      if (first && ends.first_hits) ends.first_hits();
+      if (ends.hits_only) {
+        w.run_and_account(closest, shadows);
+        return true;
+      }
       w.stream.fill(w.counters, 0, 0, 12);
       w.stream.fill(w.counters, 0, 4 * k_counter_rays, 32);
       push.count = active;

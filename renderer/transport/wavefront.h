@@ -48,6 +48,7 @@ struct PathEnds {
   std::function<void()>
       first_hits;             ///< reads the hits of the first rays (before they are shaded); may be empty
   std::function<void()> end;  ///< reads the radiance of every slot, by component
+  bool hits_only = false;     ///< only the first rays are traced, and nothing is shaded
 };
 
 class Wavefront {

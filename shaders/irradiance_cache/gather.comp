@@ -20,10 +20,7 @@ uniform samplerBuffer irradiance_texels;
 layout(scalar) writeonly buffer Records { vec4 records[]; };
 layout(scalar) writeonly buffer Irradiance { vec4 irradiance[]; };
 
-float inverse_distance(uint slot) {
-  vec4 hit = texelFetch(first_hit_texels, int(slot));
-  return floatBitsToUint(hit.y) == k_no_hit ? 0.0 : 1.0 / max(hit.x, 1e-30);
-}
+float inverse_distance(uint slot) { return inverse_distance(texelFetch(first_hit_texels, int(slot))); }
 vec3 cell_radiance(uint slot, uint part) { return texelFetch(radiance_texels, int(slot * k_component_count + part)).rgb; }
 float border_sine(uint j) { return sqrt(float(j) / float(push.elevations)); }
 // Integral of tan(theta) d(sin^2 theta) up to border j.

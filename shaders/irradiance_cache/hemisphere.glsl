@@ -14,4 +14,9 @@ layout(scalar) buffer RecordList { uint record_list[]; };
 uint cell_slot(uint elevation, uint azimuth, uint record) {
   return (azimuth * push.elevations + elevation) * push.records + record;
 }
+
+// Of a hit's texel; 0 where there is none.
+float inverse_distance(vec4 hit) {
+  return floatBitsToUint(hit.y) == k_no_hit ? 0.0 : 1.0 / max(hit.x, 1e-30);
+}
 #endif

@@ -1,8 +1,9 @@
 // The records of an irradiance cache. Read by C++ and GLSL.
 //
-// A record holds the irradiance of a point on a surface in parts, so that components stay apart wherever it is read. The
-// parts carry the numbers of the components that a path beginning with ED would bring them to: light that comes from the
-// hemisphere straight, over one diffuse event, over more, or over mirrors and glass alone.
+// A record holds the irradiance of a point on a surface in parts, so that components stay apart wherever it
+// is read. The parts carry the numbers of the components that a path beginning with ED would bring them to:
+// light that comes from the hemisphere straight, over one diffuse event, over more, or over mirrors and glass
+// alone.
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_H
 #define LUCERNA_SHARED_IRRADIANCE_CACHE_H
 #include "shaders/shared/compat.h"
@@ -17,43 +18,58 @@ LUCERNA_CONST uint k_part_count = 4u;
 // record_texels: k_record_texels a record.
 //   0: position xyz [m], moved off its surface by the error bound; radius of validity [m], 0: none yet
 //   1: normal xyz, unit, on the side that is lit; harmonic mean of the distances that its rays met [m]
-//   2: bits rays so far, least distance [m], standard error of the luminance of all parts' sum (irradiance), bits k_record_*
+//   2: bits rays so far, least distance [m], standard error of the luminance of all parts' sum (irradiance),
+//   bits k_record_*
 LUCERNA_CONST uint k_record_texels = 3u;
 LUCERNA_CONST uint k_record_pass = 0xffu;       ///< mask: the pass that placed it, from 0
 LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: what asked for it, k_origin_*
-LUCERNA_CONST uint k_record_facet_shift = 10u;  ///< 11 + 11 bits: the geometric normal, octahedral (Cigolle et al. 2014)
-LUCERNA_CONST uint k_origin_screen = 0u;        ///< a surface that the camera sees straight
-LUCERNA_CONST uint k_origin_world = 1u;         ///< a vertex of a longer path
+LUCERNA_CONST uint k_record_facet_shift =
+    10u;  ///< 11 + 11 bits: the geometric normal, octahedral (Cigolle et al. 2014)
+LUCERNA_CONST uint k_origin_screen = 0u;  ///< a surface that the camera sees straight
+LUCERNA_CONST uint k_origin_world = 1u;   ///< what it sees in mirrors, through glass or by one diffuse bounce
+LUCERNA_CONST uint k_origin_recursive =
+    2u;  ///< a vertex beyond the lookup: what other records' rays will ask
 
-// irradiance_texels: k_part_texels for each (record, part), record by record: 16 floats, of which 15 are used:
-//   irradiance rgb; rotational gradient rgb along the tangent, then along the bitangent; translational likewise [1/m].
-// Tangent and bitangent are make_basis() of the normal. Rotational gradient: change of the irradiance as the normal n_i
-// turns to n, by the components of n_i x n.
+// irradiance_texels: k_part_texels for each (record, part), record by record: 16 floats, of which 15 are
+// used:
+//   irradiance rgb; rotational gradient rgb along the tangent, then along the bitangent; translational
+//   likewise [1/m].
+// Tangent and bitangent are make_basis() of the normal. Rotational gradient: change of the irradiance as the
+// normal n_i turns to n, by the components of n_i x n.
 LUCERNA_CONST uint k_part_texels = 4u;
 
 /// Bytes that a record takes with its sphere; the octree's references come to that.
 LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + k_part_count * k_part_texels + 1u);
 
 // candidate_texels: 2 a path slot, all 0 where there is none:
-//   0: position, off its surface; 1 + k_origin_* where there is one    1: smooth normal on the side that asks, bits facet
+//   0: position, off its surface; 1 + k_origin_* where there is one    1: smooth normal on the side that
+//   asks, bits facet
 LUCERNA_CONST uint k_candidate_texels = 2u;
 
 LUCERNA_CONST uint k_no_routes = 0x4444u;  ///< k_component_count for every part
 
+LUCERNA_CONST uint k_probe_none = 0u;
+/// Vertices that no record serves are noted as candidates. Paths end where they look up, and sample no
+/// lights.
+LUCERNA_CONST uint k_probe_lookups = 1u;
+/// The same, and paths go on: of the diffuse vertices from the lookup on, one by chance is noted.
+LUCERNA_CONST uint k_probe_beyond = 2u;
+
 /// What paths are told of the cache.
 struct CacheFrame {
-  /// By state of the automaton, for the diffuse lobe of a vertex met in it: bits 4 p on: the component to which part p
-  /// goes; k_component_count: none. k_no_routes: no lookup there.
+  /// By state of the automaton, for the diffuse lobe of a vertex met in it: bits 4 p on: the component to
+  /// which part p goes; k_component_count: none. k_no_routes: no lookup there.
   uint routes[16];
   uint record_count;
   /// Most that the normals of a point and of a record may differ, as 1 - cos.
   float normal_tolerance;
   /// How far below a record's tangent plane, in its radius, a point may lie and still be served.
   float behind;
-  uint probing;        ///< 1: vertices that no record serves are noted as candidates
+  uint probing;  ///< k_probe_*
 };
 
-/// One level of evaluation of `records` records: entries `first` on of record_list, elevations x azimuths paths each.
+/// One level of evaluation of `records` records: entries `first` on of record_list, elevations x azimuths
+/// paths each.
 struct RecordPush {
   uint first, records;
   uint elevations, azimuths;

@@ -114,6 +114,9 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   if (l.sky && sky_known) shadow.diffuse = vec3(0.0);
 #endif
   bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
+#if LUCERNA_CACHE
+  if (cache.probing != k_probe_none) sides_agree = false;
+#endif
   bool worth = sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
   if (worth && !finite) atomicAdd(counters[k_counter_dropped], 1u);
   if (worth && finite) {

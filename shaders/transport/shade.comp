@@ -78,7 +78,8 @@ void main() {
         // What lies behind this vertex's diffuse lobe: from the records, or where there are none by going on in the
         // states that leave nothing out.
         uint routes = cache.routes[state];
-        bool looks = routes != k_no_routes && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
+        bool beyond = cache.probing == k_probe_beyond && state >= k_fallback_state;
+        bool looks = (routes != k_no_routes || beyond) && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
         bool alone = false;  // a side asks and finds nothing
         // Records stand on the smooth surface, not on its facets nor its normal map.
         vec3 smooth_side = dot(surface.normal_v, side) < 0.0 ? -surface.normal_v : surface.normal_v;
@@ -88,8 +89,12 @@ void main() {
           float sign = facing == 0 ? 1.0 : -1.0;
           Cached found = cache_lookup(surface.position, sign * smooth_side, sign * to_world[2], asks);
           bool missing = asks && found.weight <= 0.0;
-          if (missing && cache.probing != 0u && cache_can_serve(sign * smooth_side, sign * to_world[2])) {
-            candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), 1.0 + float(depth == 0u ? k_origin_screen : k_origin_world));
+          // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
+          bool notes = missing && cache.probing != k_probe_none &&
+                       !(beyond && (sample_vertex_bits(random, depth, k_pad_light_choice).x & 1u) != 0u);
+          if (notes && cache_can_serve(sign * smooth_side, sign * to_world[2])) {
+            uint origin = beyond ? k_origin_recursive : depth == 0u ? k_origin_screen : k_origin_world;
+            candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), 1.0 + float(origin));
             candidates[slot * k_candidate_texels + 1u] = vec4(sign * smooth_side, uintBitsToFloat(facet_pack(sign * side)));
           }
           alone = alone || missing;
@@ -114,7 +119,8 @@ void main() {
           direction = normalize(to_world * b.wi);
           bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
 #if LUCERNA_CACHE
-          uint next = automaton_after(state + (alone && b.event == k_event_diffuse ? k_fallback_state : 0u), b.event);
+          bool falls_back = (alone || cache.probing == k_probe_beyond) && looks && state < k_fallback_state;
+          uint next = automaton_after(state + (falls_back && b.event == k_event_diffuse ? k_fallback_state : 0u), b.event);
 #else
           uint next = automaton_after(state, b.event);
 #endif
@@ -127,6 +133,9 @@ void main() {
 #if LUCERNA_SKY_APART && !LUCERNA_EMISSIVE && !LUCERNA_SUN
           // The ray could meet no light but the sky's: only where it may go on to another is it worth tracing.
           go_on = go_on && ((sky & k_path_sky_known) == 0u || automaton_goes_on(next));
+#endif
+#if LUCERNA_CACHE
+          go_on = go_on && !(cache.probing == k_probe_lookups && looks && b.event == k_event_diffuse);
 #endif
           path.eta_scale *= b.eta2;
           // Roulette on what the path carries without the radiance scale of refraction.

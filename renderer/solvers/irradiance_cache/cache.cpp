@@ -17,9 +17,15 @@ using namespace shared;
 
 namespace {
 
-/// Spacing of the first pass, in the scene's radius; each pass halves it down to the least.
-constexpr float k_first_spacing = 1.0f / 16, k_least_spacing = 1.0f / 512;
-constexpr float k_normal_tolerance = 0.015f;  // 1 - cos of 10 degrees
+/// Spacing of the points that are tried in the first pass, in the scene's radius; each pass quarters it, down
+/// to a share of the least radius that records may have there. Of what is tried only what is needed is kept,
+/// so that this says how finely a pass looks, not how many records it leaves.
+constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
+/// Passes that ask beyond the lookup too, where the cache reads itself, and how finely they look there: what
+/// no record serves there costs time, not accuracy.
+constexpr uint32_t k_deep_passes = 3;
+constexpr float k_deep_spacing = 1.0f / 64;
+constexpr float k_normal_tolerance = 0.06f;  // 1 - cos of 20 degrees
 constexpr float k_behind = 0.05f;
 /// References of the octree that there is memory for, a record.
 constexpr uint32_t k_references = 16;
@@ -27,10 +33,22 @@ constexpr uint32_t k_references = 16;
 /// Records that go on with a noisy one, on either side.
 constexpr size_t k_company = 4;
 
-enum class Stage { probe, evaluate, done };
+enum class Stage { probe, measure, evaluate, done };
 
 /// Elevations of a level of that many rays; there are four times as many azimuths.
 uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lround(std::sqrt(rays / 4.0))); }
+
+/// As CacheFrame::routes.
+std::array<uint32_t, 16> packed(const paths::LookupRoutes& routes) {
+  std::array<uint32_t, 16> table;
+  table.fill(k_no_routes);
+  for (size_t s = 0; s < routes.component.size(); ++s) {
+    table[s] = 0;
+    for (uint32_t p = 0; p < k_part_count; ++p)
+      table[s] |= std::min<uint32_t>(routes.component[s][p], k_component_count) << (4 * p);
+  }
+  return table;
+}
 
 }  // namespace
 
@@ -42,15 +60,17 @@ struct Cache::Impl {
   gpu::Kernel radius, overlay;
   gpu::Resources resources;
   Evaluator evaluator;
-  CacheFrame told{};
+  std::array<uint32_t, 16> routes, own_routes;  // of the picture's paths, of the records'
+  bool recursive = false;
   uint32_t parts = 0;
   CacheStatus status;
   Stage stage = Stage::probe;
   schedule::UniformSchedule picture;
   bool probing = false;  // the schedule of this pass has begun
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
-  std::vector<Place> asked;
-  uint32_t evaluated = 0;      // records up to here are complete
+  std::vector<Place> asked, tried;
+  uint32_t evaluated = 0;      // records up to here have light and radius, and are in the octree
+  uint32_t pass_first = 0;     // the first record of this pass
   std::vector<uint32_t> list;  // of this level, in the order of the records
   size_t at = 0;               // of which so many are done
   uint32_t level = 0, rays_before = 0;
@@ -85,13 +105,16 @@ struct Cache::Impl {
   }
 
   /// What paths know of the cache from here on.
-  void tell(uint32_t count, bool probes, bool looks = true) {
-    CacheFrame f = told;
-    f.record_count = count;
-    f.probing = probes ? 1 : 0;
-    if (!looks) std::fill(std::begin(f.routes), std::end(f.routes), k_no_routes);
+  void tell(uint32_t probing, const std::array<uint32_t, 16>& table) {
+    CacheFrame f{};
+    std::copy(table.begin(), table.end(), f.routes);
+    f.record_count = evaluated;
+    f.normal_tolerance = k_normal_tolerance;
+    f.behind = k_behind;
+    f.probing = probing;
     frame.write(&f, sizeof f);
   }
+  void tell(uint32_t probing = k_probe_none) { tell(probing, routes); }
 
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
@@ -121,6 +144,25 @@ struct Cache::Impl {
     return !list.empty();
   }
 
+  /// Radii of the records from `first` on, by what is known of them.
+  void set_radii(transport::Wavefront& wavefront, const CacheView& view, const Cache& cache, uint32_t first) {
+    const uint32_t count = records.size() - first;
+    if (count == 0) return;
+    wavefront.bind_paths(resources);
+    cache.bind(resources);
+    const RadiusPush push{first, count, options.error, options.least_pixels,
+                          options.most_radius * view.scene_radius};
+    wavefront.stream().dispatch(radius, resources, push, gpu::groups_for(count, 64), "records");
+    wavefront.stream().run();
+  }
+
+  /// The records that are added in this pass, for the next piece of work on them.
+  void list_new() {
+    list.resize(records.size() - evaluated);
+    std::iota(list.begin(), list.end(), evaluated);
+    at = 0;
+  }
+
   void collect(uint32_t slots) {
     const auto* texels = static_cast<const vec4*>(candidates.mapped());
     for (uint32_t slot = 0; slot < slots; ++slot) {
@@ -137,36 +179,30 @@ struct Cache::Impl {
     stage = Stage::done;
     status.stop = reason;
     asked = {};
-    tell(records.size(), false);
+    tell();
   }
 };
 
 Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
-             const paths::LookupRoutes& routes, const CacheOptions& options)
+             const paths::LookupRoutes& routes, const paths::LookupRoutes& own, const CacheOptions& options)
     : impl_(std::make_unique<Impl>(device, compiler, slots, options)) {
   Impl& c = *impl_;
   const uint32_t elevations = elevations_for(options.rays);
   if (options.rays == 0 || elevations * elevations * 4 != options.rays)
     throw_error("cache.rays", "'{}': expected four times a square, such as 256 or 1024", options.rays);
-  c.parts = routes.parts;
+  c.parts = own.parts;
+  c.routes = packed(routes), c.own_routes = packed(own);
+  c.recursive =
+      std::any_of(c.own_routes.begin(), c.own_routes.end(), [](uint32_t r) { return r != k_no_routes; });
   c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
-  c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(routes));
-  c.told.normal_tolerance = k_normal_tolerance;
-  c.told.behind = k_behind;
-  for (uint32_t s = 0; s < 16; ++s) {
-    c.told.routes[s] = k_no_routes;
-    if (s >= routes.component.size()) continue;
-    c.told.routes[s] = 0;
-    for (uint32_t p = 0; p < k_part_count; ++p)
-      c.told.routes[s] |= std::min<uint32_t>(routes.component[s][p], k_component_count) << (4 * p);
-  }
+  c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(own));
   clear();
 }
 
 Cache::~Cache() = default;
 
-gpu::Defines Cache::defines(const paths::LookupRoutes& routes) {
-  return {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", std::to_string(routes.parts)}};
+gpu::Defines Cache::defines(const paths::LookupRoutes& own) {
+  return {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", std::to_string(own.parts)}};
 }
 
 void Cache::bind(gpu::Resources& resources) const {
@@ -185,7 +221,7 @@ void Cache::clear() {
   c.stage = Stage::probe;
   c.probing = false;
   c.evaluated = 0;
-  c.tell(0, false);
+  c.tell();
 }
 
 void Cache::extend() {
@@ -194,6 +230,7 @@ void Cache::extend() {
   c.status.stop = StopReason::building;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped.
   if (c.stage != Stage::evaluate) {
+    c.records.truncate(c.evaluated);
     c.stage = Stage::probe;
     c.probing = false;
     c.asked.clear();
@@ -218,35 +255,64 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     schedule::WorkItem item = c.picture.next();
     // Each pass looks along paths of its own.
     for (WorkBlock& b : item.blocks) b.first_sample = c.status.pass;
-    c.tell(c.evaluated, true);
+    c.tell(c.recursive && c.status.pass < k_deep_passes ? k_probe_beyond : k_probe_lookups);
     wavefront.stream().fill(c.candidates, 0);
     if (!wavefront.probe(item, cancel)) {
       c.picture = before;
-      c.tell(c.evaluated, false);
+      c.tell();
       return false;
     }
     c.collect(item.slots());
     c.status.paths += item.slots();
-    c.tell(c.evaluated, false);
+    c.tell();
     if (!c.picture.done()) return true;
     c.probing = false;
     if (double(c.status.asked) <= double(c.options.stop_share) * double(c.status.paths)) {
       c.finish(StopReason::covered);
       return true;
     }
-    const float spacing =
-        view.scene_radius *
-        std::max(k_least_spacing, std::ldexp(k_first_spacing, -static_cast<int>(c.status.pass)));
-    const std::vector<Place> chosen =
-        choose_places(c.asked, {.spacing = spacing,
-                                .normal_tolerance = k_normal_tolerance,
-                                .seed = c.options.seed + c.status.pass,
-                                .most = c.records.capacity() - c.records.size()});
-    c.records.append(chosen, c.status.pass);
-    c.list.resize(c.records.size() - c.evaluated);
-    std::iota(c.list.begin(), c.list.end(), c.evaluated);
+    const Frame& f = view.paths_frame;
+    const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
+    c.tried = choose_places(
+        c.asked,
+        {.spacing = view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(c.status.pass)),
+         .spacing_beyond = view.scene_radius * k_deep_spacing,
+         .spacing_of_distance = k_spacing_of_least * c.options.least_pixels * pixel,
+         .eye = f.camera_origin,
+         .parallel = f.orthographic != 0,
+         .normal_tolerance = k_normal_tolerance,
+         .seed = c.options.seed + c.status.pass,
+         .most = c.records.capacity() - c.records.size()});
+    c.records.append(c.tried, c.status.pass);
+    c.list_new();
+    c.stage = Stage::measure;
+    return true;
+  }
+  if (c.stage == Stage::measure) {
+    // How far things are around what is tried says how wide its records will be, and so which are needed.
+    const size_t batch =
+        std::min<size_t>(c.list.size() - c.at, std::max(1u, wavefront.slots() / Evaluator::k_distance_rays));
+    const std::span<const uint32_t> list(c.list.data() + c.at, batch);
+    wavefront.set_frame(view.records_frame, view.records_enabled);
+    const size_t done = c.evaluator.measure(wavefront, c.records, list, c.options.seed, cancel);
+    wavefront.set_frame(view.paths_frame, view.paths_enabled);
+    c.at += done;
+    c.status.rays += uint64_t(done) * Evaluator::k_distance_rays;
+    if (done < list.size()) return false;
+    if (c.at < c.list.size()) return true;
+    c.set_radii(wavefront, view, *this, c.evaluated);
+    const std::vector<float> radii = c.records.radii(c.evaluated);
+    std::vector<Place> needed;
+    for (const uint32_t i : thin_out(
+             c.tried, radii,
+             {.share = c.options.overlap_share, .normal_tolerance = k_normal_tolerance, .behind = k_behind}))
+      needed.push_back(c.tried[i]);
+    c.records.truncate(c.evaluated);
+    c.records.append(needed, c.status.pass);
+    c.tried.clear();
+    c.list_new();
     c.level = c.rays_before = 0;
-    c.at = 0;
+    c.pass_first = c.evaluated;
     c.stage = Stage::evaluate;
     return true;
   }
@@ -257,7 +323,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     const std::span<const uint32_t> list(c.list.data() + c.at, batch);
     if (!list.empty()) {
       wavefront.set_frame(view.records_frame, view.records_enabled);
-      c.tell(0, false, false);
+      c.tell(k_probe_none, c.own_routes);
       const size_t done = c.evaluator.evaluate(wavefront, automaton, c.records, list,
                                                {.elevations = elevations,
                                                 .azimuths = 4 * elevations,
@@ -266,27 +332,23 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
                                                 .seed = c.options.seed},
                                                cancel);
       wavefront.set_frame(view.paths_frame, view.paths_enabled);
-      c.tell(c.evaluated, false);
+      c.tell();
       if (done < list.size()) return false;
       c.at += done;
       c.status.rays += uint64_t(done) * rays;
       if (c.at < c.list.size()) return true;
     }
-    if (c.next_level(wavefront.slots())) return true;
-    if (c.evaluated < c.records.size()) {
-      wavefront.bind_paths(c.resources);
-      bind(c.resources);
-      const uint32_t count = c.records.size() - c.evaluated;
-      const RadiusPush push{c.evaluated, count, c.options.error, c.options.least_pixels,
-                            c.options.most_radius * view.scene_radius};
-      wavefront.stream().dispatch(c.radius, c.resources, push, gpu::groups_for(count, 64), "records");
-      wavefront.stream().run();
+    // A cache that reads itself does so from the second level on: the first, of few rays, then is all that is
+    // traced without the records of its own pass.
+    const bool more = c.next_level(wavefront.slots());
+    if (!more || (c.recursive && c.level == 1)) {
+      c.set_radii(wavefront, view, *this, c.pass_first);
+      c.evaluated = c.status.records = c.records.size();
+      c.build_octree(wavefront);
+      c.tell();
     }
-    c.evaluated = c.records.size();
-    c.status.records = c.evaluated;
+    if (more) return true;
     ++c.status.pass;
-    c.build_octree(wavefront);
-    c.tell(c.evaluated, false);
     c.stage = Stage::probe;
     if (c.records.size() == c.records.capacity())
       c.finish(StopReason::records);

@@ -5,6 +5,11 @@
 // A pass sends paths from the camera through the scene (one a pixel); where a diffuse vertex finds no record
 // it asks for one. Of the places asked for some are chosen (placement.h), evaluated (evaluate.h) and given a
 // radius. Passes end when few paths still ask. What no record serves is path traced.
+//
+// Where tertiary light is cached too the cache reads itself: a record's rays end where they find records of
+// earlier passes. So the first pass also asks at vertices deeper in the scene; its own records are path
+// traced to the end, and light that takes many bounces is in all later ones with no more than one
+// interpolation.
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,6 +25,8 @@ struct CacheOptions {
   float error = 0.3f;        ///< radius of a record over the harmonic mean distance of what it sees; above 0
   float least_pixels = 3;    ///< least radius as the camera sees it; 0 or more
   float most_radius = 0.1f;  ///< of the scene's radius
+  /// Share of a record's radius in which it makes others superfluous, 0..1: less means more overlap.
+  float overlap_share = 0.6f;
   /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
   /// `most_rays` and what the wavefront has slots for.
   uint32_t rays = 256, most_rays = 4096;
@@ -48,20 +55,22 @@ struct CacheStatus {
 struct CacheView {
   /// Of the picture's paths; of the records', whose components are the parts.
   shared::Frame paths_frame, records_frame;
-  uint32_t paths_enabled = 0, records_enabled = 0;
+  uint32_t paths_enabled = 0, records_enabled = 0;  ///< ... and what each may bring, in bits
   uint32_t width = 0, height = 0;
   float scene_radius = 1;
 };
 
 class Cache {
  public:
-  /// Throws Error as Records, or when an option is out of its range.
+  /// `routes`: where the picture's paths look up; `own`: where the rays of records do, and the parts that
+  /// they gather (paths::record_routes; without any lookup they are path traced). Throws Error as Records, or
+  /// when an option is out of its range.
   Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const paths::LookupRoutes& routes,
-        const CacheOptions& options);
+        const paths::LookupRoutes& own, const CacheOptions& options);
   ~Cache();
 
-  /// For the kernels of a wavefront that reads a cache with these routes.
-  static gpu::Defines defines(const paths::LookupRoutes& routes);
+  /// For the kernels of a wavefront that reads a cache with these routes of its own.
+  static gpu::Defines defines(const paths::LookupRoutes& own);
   /// Under the names of shaders/irradiance_cache/lookup.glsl.
   void bind(gpu::Resources& resources) const;
   /// Begins anew, without records.

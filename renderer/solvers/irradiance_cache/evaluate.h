@@ -36,6 +36,12 @@ class Evaluator {
                   std::span<const uint32_t> list, const EvaluateOptions& options,
                   const std::function<bool()>& cancel = {});
 
+  /// Only how far things are around the listed records: harmonic mean and least distance, from
+  /// k_distance_rays rays each. Otherwise as evaluate().
+  size_t measure(transport::Wavefront& wavefront, Records& records, std::span<const uint32_t> list,
+                 uint32_t seed, const std::function<bool()>& cancel = {});
+  static constexpr uint32_t k_distance_rays = 64;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

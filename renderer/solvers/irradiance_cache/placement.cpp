@@ -1,7 +1,10 @@
 #include "solvers/irradiance_cache/placement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <set>
+#include <unordered_map>
 
 namespace lucerna::irradiance_cache {
 namespace {
@@ -44,10 +47,13 @@ std::vector<Place> choose_places(std::span<const Place> candidates, const Placem
   std::sort(order.begin(), order.end());
 
   std::vector<std::vector<Place>> clusters;
-  const float widest = k_cluster_width * o.spacing;
-  const float near2 = o.spacing * o.spacing;
+  const auto reach = [&](const Place& p) {
+    const float seen = o.spacing_of_distance * (o.parallel ? 1 : distance(p.position, o.eye));
+    return std::max({o.spacing, seen, p.origin == shared::k_origin_recursive ? o.spacing_beyond : 0});
+  };
   for (size_t first = 0; first < order.size();) {
     vec3 box_lo = candidates[order[first].second].position, box_hi = box_lo;
+    const float widest = k_cluster_width * reach(candidates[order[first].second]);
     size_t last = first + 1;
     for (; last < order.size(); ++last) {
       const vec3& p = candidates[order[last].second].position;
@@ -62,6 +68,7 @@ std::vector<Place> choose_places(std::span<const Place> candidates, const Placem
       random = mix(random + 0x9e3779b97f4a7c15ull);
       const Place pick = left[random % left.size()];
       chosen.push_back(pick);
+      const float near2 = reach(pick) * reach(pick);
       std::erase_if(left, [&](const Place& c) {
         const vec3 d = c.position - pick.position;
         return dot(d, d) <= near2 && 1 - dot(c.normal, pick.normal) <= o.normal_tolerance;
@@ -87,6 +94,62 @@ std::vector<Place> choose_places(std::span<const Place> candidates, const Placem
   for (size_t c = 0; c < clusters.size(); ++c)
     all.insert(all.end(), clusters[c].begin(), clusters[c].begin() + std::ptrdiff_t(quota[c]));
   return all;
+}
+
+std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const float> radii,
+                               const ThinningOptions& o) {
+  std::vector<uint32_t> order(places.size()), kept;
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return radii[a] > radii[b]; });
+  // Grids of those kept, one for each power of two of what they cover: cells are as wide as that at most, so
+  // that whatever covers a point is centred in its cell or one of the 26 around it.
+  struct Cell {
+    int level;
+    int64_t x, y, z;
+    bool operator==(const Cell&) const = default;
+  };
+  struct Hash {
+    size_t operator()(const Cell& c) const {
+      return mix(mix(mix(mix(uint64_t(c.level)) + uint64_t(c.x)) + uint64_t(c.y)) + uint64_t(c.z));
+    }
+  };
+  std::unordered_map<Cell, std::vector<uint32_t>, Hash> grid;
+  std::set<int> levels;
+  const auto cell_at = [](const vec3& p, int level) {
+    const auto along = [&](float x) {
+      return static_cast<int64_t>(std::floor(std::ldexp(double(x), -level)));
+    };
+    return Cell{level, along(p.x), along(p.y), along(p.z)};
+  };
+  const auto covers = [&](uint32_t k, const Place& p) {
+    const vec3 away = p.position - places[k].position;
+    const float covered = o.share * radii[k];
+    const float turned = std::max(0.0f, 1 - dot(p.normal, places[k].normal));
+    return dot(away, away) <= covered * covered && turned <= o.share * o.share * o.normal_tolerance &&
+           dot(away, p.normal + places[k].normal) >= -2 * o.behind * radii[k];
+  };
+  for (const uint32_t i : order) {
+    const Place& p = places[i];
+    bool covered = false;
+    for (const int level : levels) {
+      const Cell at = cell_at(p.position, level);
+      for (int n = 0; n < 27 && !covered; ++n) {
+        const auto found = grid.find({level, at.x + n % 3 - 1, at.y + n / 3 % 3 - 1, at.z + n / 9 - 1});
+        covered = found != grid.end() && std::any_of(found->second.begin(), found->second.end(),
+                                                     [&](uint32_t k) { return covers(k, p); });
+      }
+      if (covered) break;
+    }
+    if (covered) continue;
+    kept.push_back(i);
+    const float reach = o.share * radii[i];
+    if (!(reach > 0) || !std::isfinite(reach)) continue;
+    const int level = static_cast<int>(std::ceil(std::log2(reach)));
+    levels.insert(level);
+    grid[cell_at(p.position, level)].push_back(i);
+  }
+  std::sort(kept.begin(), kept.end());
+  return kept;
 }
 
 }  // namespace lucerna::irradiance_cache

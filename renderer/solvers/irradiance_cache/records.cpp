@@ -110,6 +110,14 @@ std::vector<vec3> Records::figures() const {
   return all;
 }
 
+std::vector<float> Records::radii(uint32_t first) const {
+  std::vector<vec4> spheres(size_ - first);
+  spheres_.read(spheres.data(), spheres.size() * sizeof(vec4), first * sizeof(vec4));
+  std::vector<float> all;
+  for (const vec4& s : spheres) all.push_back(s.w);
+  return all;
+}
+
 std::vector<float> Records::luminances() const {
   std::vector<vec4> lights(size_t{size_} * k_part_count * k_part_texels);
   irradiance_.read(lights.data(), lights.size() * sizeof(vec4));

@@ -1,5 +1,6 @@
 #pragma once
 // The records of an irradiance cache, in device memory. Layout: shaders/shared/irradiance_cache.h.
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -51,12 +52,16 @@ class Records {
   uint32_t append(std::span<const Place> places, uint32_t pass = 0);
   /// (position, radius), for the octree.
   const gpu::Buffer& spheres() const { return spheres_; }
+  /// Keeps the first `count`.
+  void truncate(uint32_t count) { size_ = std::min(size_, count); }
   void clear() { size_ = 0; }
   /// All of them, or one; for tests, files and the inspector.
   std::vector<Record> read() const;
   Record read(uint32_t index) const;
   /// What the overlay colours by, of every record: rays, harmonic mean distance, error.
   std::vector<vec3> figures() const;
+  /// Radii of the records from `first` on.
+  std::vector<float> radii(uint32_t first) const;
   /// Luminance of the irradiance, all parts together, of every record.
   std::vector<float> luminances() const;
   /// Under the names of shaders/irradiance_cache.
