@@ -136,6 +136,10 @@ TEST_CASE("lookups stand where nothing but cached components goes on, each part 
         std::array<uint8_t, 4>{1, 2, 2, 2});
   CHECK(paths::lookup_routes(a, 0b1110, 0b0110, true).component[0] == both.component[0]);
   CHECK(paths::lookup_routes(a, 15, 0, true).parts == 0);
+  // Records' rays that end in records leave the sky to them as well: for the part that it belongs to there.
+  const auto rays = paths::record_routes(a, sky.parts, true, false);
+  CHECK(rays.component[after("D")] == std::array<uint8_t, 4>{1, 2, 2, none});
+  CHECK(rays.parts == 0b0111);
   // Nothing cached, nothing looked up.
   const auto plain = paths::lookup_routes(a, 15, 0);
   CHECK(plain.parts == 0);
