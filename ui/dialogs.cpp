@@ -202,7 +202,9 @@ void key_page(Ui& ui) {
         {"F", "frame the selection, or the scene"},
         {"L", "mark the lamps, to click on them"},
         {"T", "show the tiles at work"},
-        {"C, V", "show the records of the irradiance cache, their overlap"},
+        {"C, V, N", "show the cache's records, their overlap, their normals"},
+        {"Pointer at rest", "while they are shown: which records serve there"},
+        {"K", "the cache's panel, the scene's"},
         {"1 \xE2\x80\x93 9", "scene cameras"},
         {"", ""},
         {"Space", "pause, resume"},
@@ -330,6 +332,9 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_T)) ui.toggle("overlay.tiles");
   if (ui.cached() && ui.pressed(GLFW_KEY_C)) ui.toggle("overlay.records");
   if (ui.cached() && ui.pressed(GLFW_KEY_V)) ui.toggle("overlay.overlap");
+  if (ui.cached() && ui.pressed(GLFW_KEY_N)) ui.toggle("overlay.normals");
+  if (ui.pressed(GLFW_KEY_K))
+    ui.act("window.side", ui.cache_panel && ui.layout.right_open ? "scene" : "cache");
   if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.snapshot->paused ? "render.resume" : "render.pause");
   for (int n = 0; n < 9; ++n)
     if (ui.pressed(GLFW_KEY_1 + n) && ui.scene && n < static_cast<int>(ui.scene->cameras.size()) && ui.view)

@@ -95,13 +95,87 @@ void tile_sample(ImDrawList* list, const ImVec2& lo, uint32_t state) {
   }
 }
 
+ImU32 ink_of(const vec3& encoded) {
+  return IM_COL32(static_cast<int>(255 * encoded.x + 0.5f), static_cast<int>(255 * encoded.y + 0.5f),
+                  static_cast<int>(255 * encoded.z + 0.5f), 255);
+}
+
+/// A square of a colour and what it stands for; returns the x behind it.
+float swatch(ImDrawList* list, const ImVec2& at, ImU32 ink, const std::string& name) {
+  ImFont* font = theme().fonts.small;
+  list->AddRectFilled({at.x, at.y + px(3)}, {at.x + px(10), at.y + px(13)}, ink, px(2));
+  const float end = at.x + px(14) + text_width(name, font);
+  draw_text(list, {at.x + px(14), at.y}, {end + px(2), at.y + px(16)}, name, colour::text, Align::left, font);
+  return end + px(10);
+}
+
+/// What records are coloured by; `at` is below the title.
+void record_inks(ImDrawList* list, const ImVec2& at, const session::CacheReport& r) {
+  float x = at.x;
+  if (r.color == shared::k_record_by_pass) {
+    uint32_t most = 0;
+    for (const auto& p : r.status.passes)
+      if (p.records > 0) most = std::max(most, p.number);
+    for (uint32_t i = 0; i <= most && x < at.x + px(k_ramp_width - 24); ++i)
+      x = swatch(list, {x, at.y}, ink_of(shared::ramp_hue(i)), fmt::format("{}", i + 1));
+    return;
+  }
+  if (r.color == shared::k_record_by_origin) {
+    for (uint32_t i = 0; i < std::size(irradiance_cache::k_origins); ++i)
+      x = swatch(list, {x, at.y}, ink_of(shared::ramp_hue(i)), irradiance_cache::k_origins[i]);
+    return;
+  }
+  std::vector<std::pair<float, std::string>> labels;
+  const auto [lo, hi] = r.scale;
+  const auto text = [&](double value) {
+    if (r.color == shared::k_record_by_rays) return tick_text(value, Unit::count);
+    return fmt::format("{:.3g}{}", value, r.color == shared::k_record_by_distance ? " m" : "");
+  };
+  for (const Tick& tick : ticks(LogAxis{double{lo}, double{hi}, 0, px(k_ramp_width)}, Unit::count, px(40)))
+    labels.emplace_back(shared::ramp_position(static_cast<float>(tick.value), lo, hi, 1u),
+                        tick.labelled ? text(tick.value) : "");
+  // A scale too short for a round number shows its ends.
+  if (std::none_of(labels.begin(), labels.end(), [](const auto& l) { return !l.second.empty(); }))
+    labels = {{0.0f, text(double{lo})}, {1.0f, text(double{hi})}};
+  ramp_bar(list, at, shared::k_ramp_viridis, labels);
+}
+
+const char* record_title(uint32_t color) {
+  switch (color) {
+    case shared::k_record_by_pass:
+      return "Records, by the pass that placed them";
+    case shared::k_record_by_origin:
+      return "Records, by what asked for them";
+    case shared::k_record_by_rays:
+      return "Records, by their rays";
+    case shared::k_record_by_distance:
+      return "Records, by the mean distance they see";
+    default:
+      return "Records, by their error (irradiance)";
+  }
+}
+
+/// How many records serve a pixel.
+void overlap_inks(ImDrawList* list, const ImVec2& at) {
+  std::vector<std::pair<float, std::string>> labels;
+  for (const int n : {1, 4, 8, static_cast<int>(shared::k_overlap_scale)})
+    labels.emplace_back(
+        static_cast<float>(n) / shared::k_overlap_scale,
+        (n == static_cast<int>(shared::k_overlap_scale) ? "\xE2\x89\xA5 " : "") + fmt::format("{}", n));
+  ramp_bar(list, at, shared::k_ramp_viridis, labels);
+  swatch(list, {at.x, at.y + px(28)}, ink_of(shared::k_unserved_ink), "none: path traced");
+}
+
 }  // namespace
 
 void draw_legend(Ui& ui, const Area& area) {
   const session::Snapshot* s = ui.snapshot.get();
-  if (!s || !s->activity.empty() || s->coarse) return;
-  const bool heat = s->legend.layer != 0, tiles = s->tiles && s->accuracy;
-  if (!heat && !tiles) return;
+  if (!s || !s->activity.empty() || (s->coarse && !s->cache)) return;
+  const bool heat = !s->coarse && s->legend.layer != 0, tiles = !s->coarse && s->tiles && s->accuracy;
+  const session::CacheReport* cache = s->cache.get();
+  const bool records = cache && (ui.setting_on("overlay.records") || ui.setting_on("overlay.normals"));
+  const bool overlap = cache && ui.setting_on("overlay.overlap");
+  if (!heat && !tiles && !records && !overlap) return;
   struct Row {
     uint32_t state;
     std::string name, count;
@@ -123,8 +197,11 @@ void draw_legend(Ui& ui, const Area& area) {
   const float line = px(18), pad = px(12);
   const float heat_height = heat ? px(48) : 0;
   const float tiles_height = tiles ? px(50) + line * static_cast<float>(rows.size() + (heavy > 0)) : 0;
+  const bool numbered = records && cache->color <= shared::k_record_by_origin;
+  const float records_height = records ? px(numbered ? 40 : 48) : 0, overlap_height = overlap ? px(64) : 0;
+  const float between = px(6) * static_cast<float>(heat + tiles + records + overlap - 1);
   const float w = px(k_ramp_width) + 2 * pad,
-              h = heat_height + tiles_height + pad + (heat && tiles ? px(6) : 0);
+              h = heat_height + tiles_height + records_height + overlap_height + pad + between;
   if (h > area.height() - px(24) || w > area.width() - px(24)) return;
   const ImVec2 lo(area.lo.x + px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
   ImDrawList* list = ImGui::GetWindowDrawList();
@@ -139,7 +216,17 @@ void draw_legend(Ui& ui, const Area& area) {
   if (heat) {
     title(title_of(s->legend.layer));
     ramp_bar(list, {lo.x + pad, y}, s->legend.ramp, heat_labels(s->legend));
-    y += heat_height - px(20) + (tiles ? px(6) : 0);
+    y += heat_height - px(20) + px(6);
+  }
+  if (records) {
+    title(record_title(cache->color));
+    record_inks(list, {lo.x + pad, y}, *cache);
+    y += records_height - px(20) + px(6);
+  }
+  if (overlap) {
+    title("Records that serve a pixel");
+    overlap_inks(list, {lo.x + pad, y});
+    y += overlap_height - px(20) + px(6);
   }
   if (!tiles) return;
   const session::Accuracy& a = *s->accuracy;

@@ -139,10 +139,16 @@ std::string option_title(const std::string& key) {
   return name;
 }
 
+/// As many as its default is written with, and two at least.
+int decimals_of(const plan::OptionInfo& option) {
+  const size_t point = option.fallback.find('.');
+  return point == std::string::npos ? 2 : std::max(2, int(option.fallback.size() - point) - 1);
+}
+
 /// Whether an option has a place of its own elsewhere in the window (or none: texts that belong to the
 /// scene).
 bool placed_elsewhere(const plan::OptionInfo& option) {
-  for (const char* head : {"components.", "show.", "film.", "overlay."})
+  for (const char* head : {"components.", "show.", "film.", "overlay.", "cache."})
     if (option.key.rfind(head, 0) == 0) return true;
   return option.type == plan::OptionType::text;
 }
@@ -176,7 +182,7 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
       auto value = static_cast<float>(ui.setting_real(key));
       Slider how{.lo = static_cast<float>(option->lo),
                  .hi = static_cast<float>(option->hi),
-                 .decimals = whole ? 0 : 2,
+                 .decimals = whole ? 0 : decimals_of(*option),
                  .unit = option->unit};
       how.log = option->lo > 0 && option->hi / option->lo > 100;
       if (option->unit == key) how.unit.clear();  // "Samples 256" says it once

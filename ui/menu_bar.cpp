@@ -117,8 +117,17 @@ void view_menu(Ui& ui) {
     ui.act("window.panels", !ui.layout.panels);
   if (entry("Light", nullptr, "Components and options.", ui.layout.left_open))
     ui.act("window.fold", "left", ui.layout.left_open);
-  if (entry("Scene", nullptr, "Cameras, lights, environment, materials.", ui.layout.right_open))
-    ui.act("window.fold", "right", ui.layout.right_open);
+  // What the right panel shows; that which it shows already is folded away.
+  const auto side = [&](const char* name, const char* key, const char* help, bool cache) {
+    const bool on = ui.layout.right_open && ui.cache_panel == cache;
+    if (!entry(name, key, help, on)) return;
+    if (on)
+      ui.act("window.fold", "right", true);
+    else
+      ui.act("window.side", cache ? "cache" : "scene");
+  };
+  side("Scene", nullptr, "Cameras, lights, environment, materials.", false);
+  side("Cache", "K", "The irradiance cache: its building, its records, its options.", true);
   if (entry("Accuracy, passes and log", nullptr, "The strip at the bottom.", ui.layout.bottom_open))
     ui.act("window.fold", "bottom", ui.layout.bottom_open);
   divide();
@@ -138,7 +147,8 @@ void view_menu(Ui& ui) {
   overlay("Tiles", "T", "overlay.tiles", true);
   overlay("Cache records", "C", "overlay.records", ui.cached());
   overlay("Cache overlap", "V", "overlay.overlap", ui.cached());
-  if (ui.cached() && ui.setting_on("overlay.records")) {
+  overlay("Cache normals", "N", "overlay.normals", ui.cached());
+  if (ui.cached() && (ui.setting_on("overlay.records") || ui.setting_on("overlay.normals"))) {
     const plan::OptionInfo* by = plan::find_option("overlay.records_by");
     for (const std::string& choice : by->choices)
       if (entry(("   by " + choice).c_str(), nullptr, by->help.c_str(), ui.setting(by->key) == choice))

@@ -280,12 +280,7 @@ void objects(Ui& ui, bool reveal) {
 }  // namespace
 
 void draw_scene_panel(Ui& ui, const Area& area) {
-  if (!ui.layout.right_open) {
-    begin_panel("##scene_folded", area, colour::panel, false);
-    if (folded_strip("Scene", area.lo, area.hi, false)) ui.act("window.fold", "right", false);
-    ImGui::End();
-    return;
-  }
+  if (!ui.layout.right_open) return;
   begin_panel("##scene", area, colour::panel, true);
   if (!ui.scene) {
     bool open = true;

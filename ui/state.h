@@ -111,6 +111,16 @@ struct Ui : commands::Workspace {
   Area picture;              ///< where the picture may be
   bool picture_hovered = false;
 
+  // The irradiance cache.
+  bool cache_panel = false;  ///< the right panel shows the cache, not the scene
+  /// Whether something of the cache lies over the picture; then the pointer asks what is under it.
+  bool shows_cache() const {
+    return cached() &&
+           (setting_on("overlay.records") || setting_on("overlay.overlap") || setting_on("overlay.normals"));
+  }
+  /// Where the pointer has asked last, as inspect.records takes it.
+  std::optional<vec2> asked;
+
   // Accuracy.
   Runs runs;
   double what_if = 0.01;  ///< relative error that is asked about in uniform sampling
@@ -171,7 +181,10 @@ struct Ui : commands::Workspace {
 // The parts, each in a file of its own; called once a frame in this order. Coordinates are window pixels.
 void draw_menu_bar(Ui& ui, const Area& area);
 void draw_light_panel(Ui& ui, const Area& area);
+/// The titles of what the right panel may show; returns what is left of its area below them.
+Area draw_side_tabs(Ui& ui, const Area& area);
 void draw_scene_panel(Ui& ui, const Area& area);
+void draw_cache_panel(Ui& ui, const Area& area);
 void draw_toolbar(Ui& ui, const Area& area);
 void draw_picture(Ui& ui, const Area& area);
 void draw_accuracy(Ui& ui, const Area& area);
@@ -179,6 +192,8 @@ void draw_passes(Ui& ui, const Area& area);
 void draw_log(Ui& ui, const Area& area);
 /// Over the picture's lower left; part of draw_picture.
 void draw_legend(Ui& ui, const Area& area);
+/// What inspect.records has found, in a card over the picture; part of draw_picture.
+void draw_inspection(Ui& ui, const Area& area);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
 void handle_keys(Ui& ui);

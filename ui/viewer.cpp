@@ -157,7 +157,8 @@ class Viewer {
       draw_menu_bar(ui_, areas.bar);
       draw_light_panel(ui_, areas.left);
       draw_toolbar(ui_, areas.toolbar);
-      draw_scene_panel(ui_, areas.right);
+      const Area side = draw_side_tabs(ui_, areas.right);
+      ui_.cache_panel ? draw_cache_panel(ui_, side) : draw_scene_panel(ui_, side);
       draw_accuracy(ui_, areas.accuracy);
       draw_passes(ui_, areas.passes);
       draw_log(ui_, areas.log);

@@ -230,6 +230,29 @@ void click(Ui& ui, const Area& shown) {
   if (x >= 0 && x <= 1 && y >= 0 && y <= 1) ui.act("pick", x, y);
 }
 
+constexpr double k_rest = 0.15;  // seconds
+
+/// While something of the cache lies over the picture, a pointer at rest asks what is under it. At rest,
+/// because every question interrupts the work on the picture.
+void ask(Ui& ui, const Area& shown, bool active) {
+  static ImVec2 last;
+  static double since = 0;
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  if (at.x != last.x || at.y != last.y) last = at, since = ui.now;
+  const vec2 place((at.x - shown.lo.x) / std::max(1.0f, shown.width()),
+                   (at.y - shown.lo.y) / std::max(1.0f, shown.height()));
+  const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
+  const bool still = !(active && dragging()) && !ui.flight.moving();
+  if (ui.shows_cache() && ui.picture_hovered && inside && still) {
+    if (active || ui.asked == place || ui.now - since < k_rest) return;
+    ui.asked = place;
+    ui.act("inspect.records", place.x, place.y);
+  } else if (ui.asked) {
+    ui.asked.reset();
+    ui.act("inspect.none");
+  }
+}
+
 void empty_state(Ui& ui, const Area& area) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   const float x = 0.5f * (area.lo.x + area.hi.x), y = std::floor(area.lo.y + 0.42f * area.height());
@@ -393,6 +416,7 @@ void draw_picture(Ui& ui, const Area& area) {
   const bool waiting = ui.snapshot && !ui.snapshot->activity.empty();
   if (!shown && !waiting) empty_state(ui, area);
   draw_legend(ui, frame);
+  draw_inspection(ui, frame);
   activity_card(ui, area);
   error_strip(ui, area);
 
@@ -409,6 +433,7 @@ void draw_picture(Ui& ui, const Area& area) {
         ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))
       click(ui, frame);
   }
+  ask(ui, frame, active);
   navigate(ui, ui.picture_hovered, active);
   ImGui::End();
 }

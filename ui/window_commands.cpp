@@ -74,6 +74,11 @@ void add_window_commands(Ui& ui) {
       [&ui](const Arguments& a) { ui.layout.panels = a.boolean("on"); });
   add("window.fold", "Folds a panel, or unfolds it.", {panel, {.name = "folded", .type = Type::boolean}},
       [&ui](const Arguments& a) { open_of(ui.layout, a.text("panel")) = !a.boolean("folded"); });
+  add("window.side", "Says what the panel on the right shows, and unfolds it.",
+      {{.name = "what", .type = Type::choice, .choices = {"scene", "cache"}}}, [&ui](const Arguments& a) {
+        ui.cache_panel = a.text("what") == "cache";
+        ui.layout.right_open = true;
+      });
   add("window.split", "Sets the width of a side panel, or the height of the strip at the bottom.",
       {panel, {.name = "size", .type = Type::real, .lo = 0, .hi = 10000, .unit = "design pixels"}},
       [&ui](const Arguments& a) { size_of(ui.layout, a.text("panel")) = a.number("size"); });
@@ -95,8 +100,10 @@ void add_window_commands(Ui& ui) {
         .which = true,
         .names =
             [](const std::vector<std::string>&) {
-              return std::vector<std::string>{"Light",       "Render",    "Camera", "Lights",
-                                              "Environment", "Materials", "Objects"};
+              return std::vector<std::string>{
+                  "Light",     "Render",  "Camera", "Lights",   "Environment",
+                  "Materials", "Objects", "Cache",  "Overlays", "Passes of building",
+                  "Options"};
             }},
        {.name = "open", .type = Type::boolean}},
       [&ui](const Arguments& a) { ui.sections[a.text("section")] = a.boolean("open"); });

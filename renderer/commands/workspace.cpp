@@ -27,6 +27,7 @@ Workspace::Workspace(session::Session& s) : session(s) {
   add_document_commands();
   add_camera_commands();
   add_other_commands();
+  add_inspect_commands();
 }
 
 void Workspace::refresh(double time) {

@@ -139,6 +139,7 @@ class Workspace {
   void add_document_commands();
   void add_camera_commands();
   void add_other_commands();
+  void add_inspect_commands();
   Document& edit();  ///< the document that the running command may change
   void send(const Document& before, const Document& after);
   void record(const Line& line, uint64_t gesture);

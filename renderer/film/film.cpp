@@ -66,6 +66,12 @@ void Film::bind(gpu::Resources& r) const {
   r.set("BlockErrors", errors_);
 }
 
+void Film::bind_coarse(gpu::Resources& r) const {
+  r.set("coarse_albedo", albedo_);
+  r.set("coarse_normal", normal_);
+  r.set("CoarseCount", count_);
+}
+
 void Film::mark_tiles(std::span<const shared::TileMark> marks) { tile_marks_.write(marks); }
 
 Image Film::read() const {

@@ -60,6 +60,8 @@ class Film {
   bool fits_storage_buffers() const { return fits_storage_buffers_; }
   void clear(gpu::Stream& stream);
   void bind(gpu::Resources& resources) const;
+  /// What it knows of surfaces, under the names coarse_albedo, coarse_normal and CoarseCount.
+  void bind_coarse(gpu::Resources& resources) const;
   /// One for each block, in raster order, as the last estimates left them (all 0 where there was none).
   std::span<const shared::BlockError> errors() const;
   Image read() const;

@@ -114,7 +114,7 @@ std::vector<OptionInfo> make_options() {
        .type = OptionType::choice,
        .fallback = "4096",
        .unit = "rays",
-       .choices = {"64", "256", "1024", "4096"},
+       .choices = {"64", "256", "1024", "4096", "16384", "65536"},
        .help = "Irradiance cache: rays of the last level that a noisy record gets, each four times the one "
                "before."},
       real("cache.noise", "0.2", 0, 10, "",
@@ -127,7 +127,7 @@ std::vector<OptionInfo> make_options() {
            "Irradiance cache: texels of the environment brighter than so many times its mean radiance are no "
            "sky but a sun, and are sampled directly everywhere."),
       integer("cache.max_records", 100000, 16, 400000, "records",
-              "Irradiance cache: room for records, of 320 bytes each; building ends when it is used up."),
+              "Irradiance cache: room for records, of 576 bytes each; building ends when it is used up."),
       integer("cache.passes", 12, 1, 64, "passes", "Irradiance cache: passes of building at most."),
       real("cache.stop", "0.002", 0, 1, "",
            "Irradiance cache: building ends when no greater share of the paths still asks for records; "
@@ -171,6 +171,9 @@ std::vector<OptionInfo> make_options() {
                "the harmonic "
                "mean of the distances that they see, their error.",
        .restarts = false},
+      going_on(boolean("overlay.normals",
+                       "Shows over the picture the normals of the irradiance cache's "
+                       "records, as short lines from their centres.")),
       going_on(boolean("overlay.overlap", "Shows over the picture how many records serve each pixel.")),
       {.key = "about",
        .type = OptionType::text,

@@ -20,8 +20,6 @@
 namespace lucerna::session {
 namespace {
 
-constexpr uint32_t k_coarse_step = 4;
-
 void require(bool go_on) {
   if (!go_on) throw Error("", "cancelled");
 }
@@ -129,6 +127,7 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
                                                       std::move(trace), defines, bind);
   cache_ = std::move(cache);
+  inspector_.reset();
   routes_ = std::move(routes);
   record_routes_ = std::move(record_routes);
   compile_seconds_ = timer.seconds();
@@ -205,8 +204,8 @@ paths::LookupRoutes Renderer::wanted_record_routes(const upload::Effects& effect
 
 void Renderer::make_film() {
   film_ = std::make_unique<film::Film>(*device_, width_, height_);
-  coarse_ = std::make_unique<film::Film>(*device_, std::max(1u, width_ / k_coarse_step),
-                                         std::max(1u, height_ / k_coarse_step));
+  coarse_ = std::make_unique<film::Film>(*device_, std::max(1u, width_ / shared::k_coarse_step),
+                                         std::max(1u, height_ / shared::k_coarse_step));
   restart(Lookups::extend);
 }
 
@@ -526,11 +525,7 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
     film_->mark_tiles(marks);
   }
   wavefront_->tone_map(*film_, v, with_coarse ? coarse_.get() : nullptr);
-  if (cache_)
-    cache_->draw(*wavefront_, *film_,
-                 {.discs = settings_.boolean("overlay.records"),
-                  .overlap = settings_.boolean("overlay.overlap"),
-                  .color = uint32_t(settings_.choice("overlay.records_by"))});
+  if (cache_) draw_cache();
   return film_->read_picture();
 }
 
@@ -573,9 +568,13 @@ void Renderer::save(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
   if (extension == ".exr")
     film::write_exr(file, film_image());
-  else if (extension == ".png")
-    film::write_png(file, film_->width(), film_->height(), picture(false));
-  else
+  else if (extension == ".png") {
+    // Where somebody looks is no part of what is kept.
+    const std::optional<vec2> at = std::exchange(looked_at_, std::nullopt);
+    const std::vector<uint8_t> shown = picture(false);
+    looked_at_ = at;
+    film::write_png(file, film_->width(), film_->height(), shown);
+  } else
     throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);
 }
 

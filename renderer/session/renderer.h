@@ -20,6 +20,7 @@
 #include "scene/scene.h"
 #include "schedule/adaptive.h"
 #include "schedule/uniform.h"
+#include "session/cache_report.h"
 #include "solvers/irradiance_cache/cache.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
@@ -122,6 +123,11 @@ class Renderer {
   uint32_t enabled_components() const;
   /// Null where nothing is looked up.
   const irradiance_cache::Cache* cache() const { return cache_.get(); }
+  /// Session::inspect; pictures from now on show it.
+  void inspect(std::optional<vec2> at) { looked_at_ = at; }
+  /// Of the cache as the last picture() has shown it; null where there is none. How many records serve each
+  /// pixel is looked at once, when there are samples: a pass over the film.
+  std::shared_ptr<const CacheReport> cache_report();
 
  private:
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
@@ -147,6 +153,7 @@ class Renderer {
   schedule::AdaptiveOptions adaptive_options() const;
   /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
   std::string view_text() const;
+  void draw_cache();  ///< over the film's picture, as the settings say
   bool render_item(const std::function<bool()>& cancel);
   irradiance_cache::CacheOptions cache_options() const;
   irradiance_cache::CacheView cache_view() const;
@@ -167,8 +174,12 @@ class Renderer {
   upload::FlatScene flat_;
   std::unique_ptr<upload::DeviceScene> device_scene_;
   std::unique_ptr<bvh::HostTracer> host_;
-  paths::LookupRoutes routes_, record_routes_;      ///< of the kernels in use
-  std::unique_ptr<irradiance_cache::Cache> cache_;  ///< null: nothing is looked up
+  paths::LookupRoutes routes_, record_routes_;              ///< of the kernels in use
+  std::unique_ptr<irradiance_cache::Cache> cache_;          ///< null: nothing is looked up
+  std::unique_ptr<irradiance_cache::Inspector> inspector_;  ///< made when it is called for
+  std::optional<vec2> looked_at_;
+  irradiance_cache::Inspection inspection_;
+  std::pair<uint64_t, irradiance_cache::Overlap> overlap_{~0ull, {}};  ///< and the restart that it is of
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::unique_ptr<film::Film> film_, coarse_;
   scene::Camera camera_;

@@ -95,6 +95,7 @@ struct Session::Impl {
     if (const irradiance_cache::Cache* cache = r.cache(); cache && !cache->ready())
       next.preparing =
           fmt::format("cache, pass {}: {} records", cache->status().pass + 1, cache->records().size());
+    next.cache = r.cache_report();
     next.seconds = seconds;
     next.camera = r.camera();
     next.tracer = r.tracer_name();
@@ -319,6 +320,10 @@ void Session::set_reference(const std::filesystem::path& file) {
 
 void Session::clear_reference() {
   impl_->post([](Renderer& r) { r.clear_reference(); });
+}
+
+void Session::inspect(std::optional<vec2> at) {
+  impl_->post([at](Renderer& r) { r.inspect(at); });
 }
 
 void Session::save(const std::filesystem::path& file) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "plan/settings.h"
 #include "scene/scene.h"
 #include "session/accuracy.h"
+#include "session/cache_report.h"
 
 namespace lucerna::session {
 
@@ -61,6 +63,7 @@ struct Snapshot {
   std::array<ComponentStatus, k_components> components;
   std::vector<StageStatus> stages;
   std::shared_ptr<const Accuracy> accuracy;  ///< null before the first picture
+  std::shared_ptr<const CacheReport> cache;  ///< null where nothing is looked up in one
   double device_mb = 0, host_mb = 0;
   std::string device, tracer;
   std::string activity;  ///< "" or what is going on: "loading kitchen.gltf: textures 40 %"
@@ -96,6 +99,9 @@ class Session {
   /// Holds the picture against this one from now on (Renderer::set_reference).
   void set_reference(const std::filesystem::path& file);
   void clear_reference();
+  /// Which records of the irradiance cache serve that point of the picture (0..1 to the right and down): told
+  /// by Snapshot::cache and drawn over the picture from now on; nothing: no longer.
+  void inspect(std::optional<vec2> at);
   void save(const std::filesystem::path& file);  ///< EXR or PNG of what there is
   void cancel();                                 ///< gives up a load in progress
 

@@ -351,6 +351,8 @@ void Wavefront::bind_paths(gpu::Resources& resources) const { resources = impl_-
 const gpu::Buffer& Wavefront::hits() const { return impl_->hits; }
 gpu::Stream& Wavefront::stream() { return impl_->stream; }
 
+void Wavefront::account_stages() { impl_->run_and_account(nullptr, nullptr); }
+
 void Wavefront::clear(film::Film& film) { film.clear(impl_->stream); }
 
 void Wavefront::tone_map(film::Film& film, const film::View& view, film::Film* coarse) {

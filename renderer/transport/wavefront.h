@@ -80,6 +80,8 @@ class Wavefront {
   /// The paths' buffers, under the names of shaders/lib/wavefront.glsl, and the scene's.
   void bind_paths(gpu::Resources& resources) const;
   gpu::Stream& stream();
+  /// Runs what others have recorded on the stream and takes its stages' times into stats(), as the eye's.
+  void account_stages();
   /// shared::Hit a slot, of the rays traced last.
   const gpu::Buffer& hits() const;
   /// What the film's halves say of the noise in all its blocks, into film.errors(). Pixels darker than

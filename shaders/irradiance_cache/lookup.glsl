@@ -49,11 +49,20 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, bool asks) {
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
   found.weight = 0.0;
   OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
-  for (uint i = range.first; i < range.last; ++i) {
-    uint record = octree_sphere(i);
-    int at = int(record * k_record_texels);
-    vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
-    float weight = record_weight(x, n, place, facing);
+  for (uint i = range.first; i < range.last;) {
+    // On to the next record that serves: several are listed for one that does, and its light is dear to read.
+    uint record = 0u;
+    float weight = 0.0;
+    vec4 place = vec4(0.0), facing = vec4(0.0);
+    for (; i < range.last && weight <= 0.0; ++i) {
+      place = octree_copy(i);
+      vec3 away = x - place.xyz;
+      if (dot(away, away) < square(place.w)) {
+        record = octree_sphere(i);
+        facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
+        weight = record_weight(x, n, place, facing);
+      }
+    }
     vec3 tangent, bitangent;
     make_basis(facing.xyz, tangent, bitangent);
     vec3 turn = cross(facing.xyz, shading), away = x - place.xyz;

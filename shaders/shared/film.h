@@ -18,6 +18,8 @@ struct WorkBlock {
 };
 LUCERNA_CONST uint k_block = 8u;  ///< pixels along its side
 
+LUCERNA_CONST uint k_coarse_step = 4u;  ///< pixels of the film along the side of one of the coarse film
+
 struct FilmPush {
   uint width, height;
   uint pixel_count;      ///< slots a sample: 64 for each block of the item

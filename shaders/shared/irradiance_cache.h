@@ -38,8 +38,8 @@ LUCERNA_CONST uint k_origin_recursive =
 // normal n_i turns to n, by the components of n_i x n.
 LUCERNA_CONST uint k_part_texels = 4u;
 
-/// Bytes that a record takes with its sphere; the octree's references come to that.
-LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + k_part_count * k_part_texels + 1u);
+/// Bytes that a record takes with its sphere and its light as lookups read it; the octree's references come to that.
+LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + 2u * k_part_count * k_part_texels + 1u);
 
 // candidate_texels: 2 a path slot, all 0 where there is none:
 //   0: position, off its surface; 1 + k_origin_* where there is one    1: smooth normal on the side that
@@ -102,6 +102,6 @@ struct OverlayPush {
 
 LUCERNA_SHARED_END
 #ifdef __cplusplus
-static_assert(lucerna::shared::k_record_bytes == 320 && sizeof(lucerna::shared::RecordPush) == 32);
+static_assert(lucerna::shared::k_record_bytes == 576 && sizeof(lucerna::shared::RecordPush) == 32);
 #endif
 #endif

@@ -63,6 +63,24 @@ LUCERNA_TONE_FUNCTION float ramp_position(float value, float lo, float hi, uint 
   return t > 0.0f ? min(t, 1.0f) : 0.0f;
 }
 
+/// Distinct hues of even lightness for things that are numbered (OKLab: lightness 0.8, chroma 0.13; the golden angle keeps
+/// neighbours apart). Encoded by a square root.
+LUCERNA_TONE_FUNCTION vec3 ramp_hue(uint index) {
+  float angle = 0.9f + 2.399963f * float(index);
+  float a = 0.13f * cos(angle), b = 0.13f * sin(angle);
+  vec3 lms = vec3(0.8f + 0.3963377774f * a + 0.2158037573f * b, 0.8f - 0.1055613458f * a - 0.0638541728f * b,
+                  0.8f - 0.0894841775f * a - 1.2914855480f * b);
+  lms = lms * lms * lms;
+  vec3 linear = vec3(dot(lms, vec3(4.0767416621f, -3.3077115913f, 0.2309699292f)),
+                     dot(lms, vec3(-1.2684380046f, 2.6097574011f, -0.3413193965f)),
+                     dot(lms, vec3(-0.0041960863f, -0.7034186147f, 1.7076147010f)));
+  return sqrt(clamp(linear, vec3(0.0f), vec3(1.0f)));
+}
+
+// How many records of an irradiance cache serve a pixel: viridis up to this many, none in an ink of its own.
+LUCERNA_CONST float k_overlap_scale = 12.0f;
+LUCERNA_CONST vec3 k_unserved_ink = vec3(0.75f, 0.12f, 0.16f);
+
 // What the tiles' overlay is told of a tile.
 struct TileMark {
   float position;  ///< on k_ramp_tiles; negative: its error is not known

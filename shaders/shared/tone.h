@@ -13,11 +13,15 @@ LUCERNA_SHARED_BEGIN
 #ifdef __cplusplus
 using glm::abs;
 using glm::clamp;
+using glm::cos;
+using glm::dot;
 using glm::log2;
 using glm::max;
 using glm::min;
 using glm::mix;
 using glm::pow;
+using glm::sin;
+using glm::sqrt;
 #endif
 
 // In the order of the setting's choices (film.tone_curve).

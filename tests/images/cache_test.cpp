@@ -116,15 +116,62 @@ TEST_CASE(
   const test::Result path = test::render(r);
   r.settings["components.tertiary"] = "cache";
   // One level of rays: more for those that are still noisy would leave out some of the caustics that few rays
-  // find.
+  // find. Over the seeds the mean spreads by 5 %, that of four by 2.5 %: 3.2 standard deviations.
   r.settings["cache.rays"] = "4096";
   const test::Result cached = test::render(r);
   for (const int c : {0, 1, 3}) {
     INFO("component " << c);
     CHECK(identical(path.image.components[c], cached.image.components[c]));
   }
-  INFO(mean(cached.image.components[2]) << " of " << mean(path.image.components[2]));
-  CHECK(mean(cached.image.components[2]) == Approx(mean(path.image.components[2])).epsilon(0.05));
+  double sum = mean(cached.image.components[2]);
+  for (const char* seed : {"1", "2", "3"}) {
+    r.settings["seed"] = seed;
+    sum += mean(test::render(r).image.components[2]);
+  }
+  const test::Result truth = test::render(
+      {.scene = "glass", .width = 32, .height = 32, .samples = 4096, .settings = {{"seed", "77"}}});
+  INFO(sum / 4 << " of " << mean(truth.image.components[2]));
+  CHECK(sum / 4 == Approx(mean(truth.image.components[2])).epsilon(0.08));
+}
+
+TEST_CASE("what is seen in mirrors is looked up too, whatever else is off") {
+  // The blurred mirror of the floor shows walls whose light only records bring; paths to them carry nothing.
+  const Settings off{{"components.primary", "off"}, {"components.caustic", "off"}, {"seed", "4"}};
+  test::Render r{.scene = "teapot", .width = 64, .height = 64, .samples = 512, .settings = off};
+  const test::Result path = test::render(r);
+  r.samples = 64;
+  r.settings.insert(k_both.begin(), k_both.end());
+  const test::Result cached = test::render(r);
+  for (const int c : {1, 2}) {
+    // The lowest quarter is nearly all floor.
+    const auto floor = [&](const test::Result& result) {
+      const auto& layer = result.image.components[c];
+      return mean({layer.begin() + 48 * 64, layer.end()});
+    };
+    INFO("component " << c << ": " << floor(cached) << " of " << floor(path) << ", blocks "
+                      << block_error(cached, path, c, 64));
+    CHECK(floor(cached) == Approx(floor(path)).epsilon(0.03));
+    CHECK(block_error(cached, path, c, 64) < 0.12);
+  }
+}
+
+TEST_CASE("records that read records bring the light of those that trace their paths to the end") {
+  test::Render r{.scene = "teapot",
+                 .width = 64,
+                 .height = 64,
+                 .samples = 16,
+                 .settings = {{"seed", "5"}, {"components.secondary", "cache"}, {"cache.noise", "0.05"}}};
+  const test::Result traced = test::render(r);
+  r.settings["components.tertiary"] = "cache";
+  const test::Result recursive = test::render(r);
+  CHECK(recursive.stats.rays < traced.stats.rays);
+  for (const int c : {1, 2}) {
+    INFO("component " << c << ": " << mean(recursive.image.components[c]) << " of "
+                      << mean(traced.image.components[c]) << ", blocks "
+                      << block_error(recursive, traced, c, 64));
+    CHECK(mean(recursive.image.components[c]) == Approx(mean(traced.image.components[c])).epsilon(0.02));
+    CHECK(block_error(recursive, traced, c, 64) < 0.05);
+  }
 }
 
 TEST_CASE("switched-off light stays off, and a scene without diffuse light costs nothing") {

@@ -8,6 +8,7 @@
 
 #include "gpu/spirv.h"
 #include "kernels/gpu_support.h"
+#include "shaders/shared/cache_inspect.h"
 #include "shaders/shared/film.h"
 #include "shaders/shared/irradiance_cache.h"
 #include "shaders/shared/octree.h"
@@ -46,6 +47,14 @@ struct SharedStruct {
 
 std::vector<SharedStruct> structs() {
   return {
+      SHARED("cache_inspect.h", InspectPush, width, height, pixel),
+      SHARED("cache_inspect.h", InspectHeader, solid, count, under, size, depth, position, normal, under_at),
+      SHARED("cache_inspect.h", InspectServing, record, weight, at, depth),
+      SHARED("cache_inspect.h", OverlapPush, width, height),
+      SHARED("cache_inspect.h", OverlapCounts, pixels, most, records),
+      SHARED("cache_inspect.h", CacheLine, from, to, from_depth, to_depth, half_width, alpha, color),
+      SHARED("cache_inspect.h", CacheLinesPush, width, height, left, top, across, down, lines, ring),
+      SHARED("cache_inspect.h", CacheTicksPush, width, height, records, color, lo, hi),
       SHARED("film.h", FilmHalf, sum, compensation),
       SHARED("film.h", WorkBlock, index, first_sample),
       SHARED("film.h", BlockError, pixels, luminance, variance, fourth, relative, quadrant_pixels),

@@ -81,3 +81,47 @@ TEST_CASE("too few places are shared out over the clusters") {
   for (size_t i = 0; i < one.size(); ++i) one[i].normal = vec3(0, i % 2 ? 1 : -1, 0);
   CHECK(choose_places(one, {}).size() == 2);
 }
+
+TEST_CASE("spacing grows with the distance from the eye") {
+  std::vector<Place> points = box_points(20000, 0);
+  const vec3 eye(0, 1.5f, 2.5f);
+  const std::vector<Place> chosen =
+      choose_places(points, {.spacing = 0.02f, .spacing_of_distance = 0.1f, .eye = eye, .seed = 3});
+  size_t near_ones = 0;
+  for (const Place& c : chosen) near_ones += distance(c.position, eye) < 2;
+  CHECK(near_ones > chosen.size() / 2);
+  for (const Place& p : points)
+    REQUIRE(std::any_of(chosen.begin(), chosen.end(), [&](const Place& c) {
+      return distance(p.position, c.position) <= std::max(0.02f, 0.1f * distance(c.position, eye)) &&
+             dot(p.normal, c.normal) > 0.98f;
+    }));
+}
+
+TEST_CASE("thinning keeps what nothing wider covers, and nothing else") {
+  const std::vector<Place> points = box_points(3000, 0);
+  std::mt19937 random(9);
+  std::vector<float> radii;
+  for (size_t i = 0; i < points.size(); ++i)
+    radii.push_back(0.02f * std::pow(50.0f, float(random() >> 8) / 16777216.0f));
+  const ThinningOptions options{.share = 0.6f};
+  const std::vector<uint32_t> kept = thin_out(points, radii, options);
+  INFO(kept.size() << " of " << points.size());
+  CHECK(std::is_sorted(kept.begin(), kept.end()));
+  CHECK(kept.size() < points.size() / 2);
+  const auto covers = [&](uint32_t k, uint32_t i) {
+    const vec3 away = points[i].position - points[k].position;
+    return distance(points[i].position, points[k].position) <= options.share * radii[k] &&
+           1 - dot(points[i].normal, points[k].normal) <=
+               options.share * options.share * options.normal_tolerance &&
+           dot(away, points[i].normal + points[k].normal) >= -2 * options.behind * radii[k];
+  };
+  for (uint32_t i = 0; i < points.size(); ++i) {
+    const bool stays = std::binary_search(kept.begin(), kept.end(), i);
+    // Wider ones, or as wide and earlier, go first.
+    const bool covered = std::any_of(kept.begin(), kept.end(), [&](uint32_t k) {
+      return k != i && (radii[k] > radii[i] || (radii[k] == radii[i] && k < i)) && covers(k, i);
+    });
+    REQUIRE(stays == !covered);
+  }
+  CHECK(thin_out({}, {}, options).empty());
+}

@@ -145,3 +145,47 @@ TEST_CASE("lookups stand where nothing but cached components goes on, each part 
   CHECK(plain.parts == 0);
   CHECK(plain.traced == 15);
 }
+
+TEST_CASE(
+    "rays of records read records again where only tertiary light is left, and gather what that reads") {
+  const paths::Automaton a = paths::compile_components();
+  const uint8_t none = paths::k_no_component, d = a.after(0, paths::Event::diffuse);
+  const auto plain = paths::record_routes(a, 0b0110, false, true);
+  CHECK(plain.component.empty());
+  CHECK(plain.parts == 0b0110);
+  CHECK(plain.traced == 0b0110);
+  const auto own = paths::record_routes(a, 0b0110, true, true);
+  CHECK(own.parts == 0b1110);  // caustics on what a record sees are tertiary light for it
+  CHECK(own.traced == 0b1010);
+  CHECK(own.component[d] == std::array<uint8_t, 4>{none, 2, 2, 2});
+  CHECK(own.component[0] == std::array<uint8_t, 4>{none, none, none, none});
+  const auto matt = paths::record_routes(a, 0b0110, true, false);
+  CHECK(matt.parts == 0b0110);
+  CHECK(matt.component[d] == std::array<uint8_t, 4>{none, 2, 2, none});
+  // Without tertiary light there is nothing to read.
+  CHECK(paths::record_routes(a, 0b0010, true, true).component.empty());
+}
+
+TEST_CASE("a path lives as long as a light or a lookup can bring it something") {
+  const paths::Automaton a = paths::compile_components();
+  const uint8_t d = a.after(0, paths::Event::diffuse), dd = a.after(d, paths::Event::diffuse);
+  const auto live = [](uint32_t packed) { return (packed >> 27 & 1u) != 0; };
+  const auto account = [](uint32_t packed) { return packed >> 29 & 3u; };
+  // Everything looked up: mirrors lead to lookups, diffuse lobes to nothing more.
+  const auto routes = paths::lookup_routes(a, 0b0110, 0b0110);
+  REQUIRE(routes.traced == 0);
+  const auto looked = paths::pack(a, routes.traced, routes);
+  CHECK(live(looked[0]));
+  CHECK(account(looked[0]) == 1);
+  CHECK(live(looked[a.after(0, paths::Event::specular)]));
+  CHECK_FALSE(live(looked[d]));
+  CHECK_FALSE(live(paths::pack(a, 0)[0]));
+  // Behind a record's second diffuse event only meeting a light is wanted: nothing where none can be met.
+  const auto own = paths::record_routes(a, 0b0110, true, false);
+  CHECK(live(paths::pack(a, own.traced, own, true)[d]));
+  CHECK(live(paths::pack(a, own.traced, own, true)[dd]));
+  CHECK(live(paths::pack(a, own.traced, own, false)[d]));
+  CHECK_FALSE(live(paths::pack(a, own.traced, own, false)[dd]));
+  // A path tracer of all components always has a further vertex to go to.
+  for (const uint32_t packed : paths::pack(a, 15, {}, false)) CHECK(live(packed));
+}

@@ -96,6 +96,7 @@ struct Session::Impl {
   uint64_t run_number = 0;
   bool paused = false;
   std::string reference;
+  std::optional<vec2> looked_at;
 
   std::string activity;
   float progress = -1;
@@ -147,6 +148,9 @@ struct Session::Impl {
         s->legend = {shared::k_layer_error, shared::k_ramp_magma, true, 0.005f, 0.5f};
       s->tiles = settings.boolean("overlay.tiles");
     }
+    if (scene && width > 0 &&
+        (settings.text("components.secondary") == "cache" || settings.text("components.tertiary") == "cache"))
+      s->cache = cache();
     s->mrays_per_second = 3.42, s->rays = 1234567ull * samples;
     s->device_mb = 212, s->host_mb = 1480;
     const double shares[] = {0.618, 0.241, 0.126, 0.015}, ms[] = {412, 380, 1210, 96};
@@ -207,6 +211,47 @@ struct Session::Impl {
       a->passes.push_back({{2.0f, 60.0f + float(i % 5), 30.0f}, 1000, i + 1});
     if (a->adaptive) a->forecast = seconds_to(*a, a->target);
     return a;
+  }
+
+  /// A cache of four passes; a record in the middle of the picture is looked at where somebody looks.
+  std::shared_ptr<const CacheReport> cache() const {
+    auto c = std::make_shared<CacheReport>();
+    irradiance_cache::CacheStatus& status = c->status;
+    c->room = 100000;
+    status.pass = 4, status.bytes = 100u << 20, status.references = 7.3;
+    for (uint32_t i = 0; i < 5; ++i) {
+      irradiance_cache::CachePass p;
+      p.number = i, p.complete = true, p.paths = 525000, p.asked = p.paths >> (3 * i);
+      p.asked_world = p.asked / 3, p.records = i < 4 ? 2800 >> i : 0, p.rays = 340ull * p.records;
+      p.ms = {210, 12, 90, i < 4 ? 1900.0 / (i + 1) : 0, 2, 11};
+      status.passes.push_back(p);
+      status.records += p.records, status.rays += p.rays, status.asked = p.asked, status.paths = p.paths;
+    }
+    status.stop = irradiance_cache::StopReason::covered;
+    c->color = uint32_t(settings.choice("overlay.records_by"));
+    c->scale = {0.02f, 4};
+    if (samples > 0) {
+      irradiance_cache::Overlap o;
+      o.pixels = 500000, o.served = 480000, o.mean = 4.2, o.most = 17;
+      for (uint32_t i = 0; i < 33; ++i) o.histogram.push_back(i > 17 ? 0 : i == 0 ? 20000 : 90000 / i);
+      c->overlap = o;
+    }
+    c->looked_at = looked_at;
+    if (!looked_at) return c;
+    irradiance_cache::Inspection& found = c->inspection;
+    found.x = uint32_t(looked_at->x * float(width)), found.y = uint32_t(looked_at->y * float(height));
+    found.solid = true, found.position = {1, 0, 2}, found.normal = {0, 1, 0}, found.size = 0.003f;
+    found.count = 9;
+    for (uint32_t i = 0; i < 9; ++i)
+      found.serving.push_back({100 + 37 * i, float(9 - i) / 45, {100 + 20 * float(i), 100}, 3});
+    found.under = 100;
+    irradiance_cache::Record record;
+    record.place.position = {1.02f, 0, 1.98f}, record.radius = 0.31f, record.mean_distance = 1.03f;
+    record.least_distance = 0.42f, record.error = 0.021f, record.rays = 1280, record.pass = 1;
+    record.parts[1].value = {0.62f, 0.41f, 0.22f}, record.parts[2].value = {0.012f, 0.0031f, 0.00004f};
+    record.parts[1].translation[1] = {0.3f, 0, -0.8f};
+    found.record = record;
+    return c;
   }
 
   void restart() { samples = 0, ++run_number; }
@@ -325,6 +370,9 @@ void Session::set_reference(const std::filesystem::path& file) {
 }
 void Session::clear_reference() {
   impl_->post([this] { impl_->reference.clear(), impl_->publish(); });
+}
+void Session::inspect(std::optional<vec2> at) {
+  impl_->post([this, at] { impl_->looked_at = at, impl_->publish(); });
 }
 void Session::save(const std::filesystem::path& file) {
   impl_->post([file] { log::info("picture saved as {}", file.string()); });

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/timer.h"
 #include "gpu/stream.h"
 #include "schedule/uniform.h"
 #include "solvers/irradiance_cache/placement.h"
@@ -25,6 +26,9 @@ constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
 /// no record serves there costs time, not accuracy.
 constexpr uint32_t k_deep_passes = 3;
 constexpr float k_deep_spacing = 1.0f / 64;
+/// Noise that they may have, over that of others: a record's ray reads some of them, and a record's rays
+/// many.
+constexpr float k_deep_noise = 4;
 constexpr float k_normal_tolerance = 0.06f;  // 1 - cos of 20 degrees
 constexpr float k_behind = 0.05f;
 /// References of the octree that there is memory for, a record.
@@ -52,6 +56,20 @@ std::array<uint32_t, 16> packed(const paths::LookupRoutes& routes) {
 
 }  // namespace
 
+const char* words(StopReason reason) {
+  switch (reason) {
+    case StopReason::covered:
+      return "few paths still ask for records";
+    case StopReason::passes:
+      return "as many passes as are allowed";
+    case StopReason::records:
+      return "the room for records is used up";
+    case StopReason::building:
+      break;
+  }
+  return "it goes on";
+}
+
 struct Cache::Impl {
   CacheOptions options;
   Records records;
@@ -73,12 +91,13 @@ struct Cache::Impl {
   uint32_t pass_first = 0;     // the first record of this pass
   std::vector<uint32_t> list;  // of this level, in the order of the records
   size_t at = 0;               // of which so many are done
-  uint32_t level = 0, rays_before = 0;
+  uint32_t level = 0, level_done = 0, rays_before = 0;  // ... and rays of each record, in this level, so far
 
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o)
       : options(o),
         records(device, o.most_records),
-        octree(device, compiler, {.spheres = o.most_records, .references = k_references * o.most_records}),
+        octree(device, compiler,
+               {.spheres = o.most_records, .references = k_references * o.most_records, .copies = true}),
         evaluator(device, compiler, slots) {
     frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
     candidates = gpu::Buffer(device, {.name = "cache candidates",
@@ -90,11 +109,13 @@ struct Cache::Impl {
   void build_octree(transport::Wavefront& wavefront) {
     const shared::OctreeHeader& h = octree.build(wavefront.stream(), records.spheres(), {.most = evaluated});
     // What all but a few records lie between.
-    const std::vector<vec3> figures = records.figures();
+    const std::vector<Records::Figures> figures = records.figures();
+    constexpr float Records::Figures::*k_scaled[] = {
+        &Records::Figures::rays, &Records::Figures::mean_distance, &Records::Figures::error};
     for (int k = 0; k < 3 && !figures.empty(); ++k) {
       std::vector<float> values;
-      for (const vec3& f : figures)
-        if (f[k] > 0 && std::isfinite(f[k])) values.push_back(f[k]);
+      for (const Records::Figures& f : figures)
+        if (f.*k_scaled[k] > 0 && std::isfinite(f.*k_scaled[k])) values.push_back(f.*k_scaled[k]);
       std::sort(values.begin(), values.end());
       const size_t n = values.size();
       const float lo = n ? values[n / 50] : 1, hi = n ? values[n - 1 - n / 50] : 2;
@@ -102,6 +123,13 @@ struct Cache::Impl {
     }
     status.references = h.spheres ? double(h.references) / h.spheres : 0;
     wavefront.rebind_lookup();
+  }
+
+  CachePass& pass() { return status.passes.back(); }
+  void took(BuildStep step, double ms) { pass().ms[size_t(step)] += ms; }
+  void begin_pass() {
+    if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
+    status.passes.push_back({.number = status.pass});
   }
 
   /// What paths know of the cache from here on.
@@ -118,10 +146,10 @@ struct Cache::Impl {
 
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
-  bool next_level(uint32_t slots) {
+  bool next_level() {
     const uint32_t rays = options.rays << 2 * level;
-    if (list.empty() || uint64_t{4} * rays > std::min(options.most_rays, slots)) return false;
-    const std::vector<vec3> figures = records.figures();
+    if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
+    const std::vector<Records::Figures> figures = records.figures();
     const std::vector<float> light = records.luminances();
     double sum = 0;
     for (const float l : light) sum += double(l);
@@ -133,12 +161,13 @@ struct Cache::Impl {
     size_t next = 0;  // the first that no noisy one so far has kept or passed
     for (size_t i = 0; i < list.size(); ++i) {
       const uint32_t r = list[i];
-      if (figures[r].z <= options.noise * std::max(light[r], least)) continue;
+      const float enough =
+          figures[r].origin == k_origin_recursive ? k_deep_noise * options.noise : options.noise;
+      if (figures[r].error <= enough * std::max(light[r], least)) continue;
       next = std::max(next, i > k_company ? i - k_company : 0);
       for (; next < std::min(list.size(), i + k_company + 1); ++next) kept.push_back(list[next]);
     }
     list = std::move(kept);
-    rays_before += rays;
     ++level;
     at = 0;
     return !list.empty();
@@ -179,6 +208,7 @@ struct Cache::Impl {
     stage = Stage::done;
     status.stop = reason;
     asked = {};
+    if (!status.passes.empty()) pass().complete = true;
     tell();
   }
 };
@@ -207,7 +237,7 @@ gpu::Defines Cache::defines(const paths::LookupRoutes& own) {
 
 void Cache::bind(gpu::Resources& resources) const {
   const Impl& c = *impl_;
-  c.records.bind(resources);
+  c.records.bind(resources, Records::Use::look_up);
   resources.set("CacheBlock", c.frame);
   resources.set("Candidates", c.candidates);
   c.octree.bind(resources);
@@ -249,6 +279,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       c.picture = {((view.width + 7) / 8) * ((view.height + 7) / 8), 1, wavefront.slots()};
       c.status.asked = c.status.paths = 0;
       c.asked.clear();
+      c.begin_pass();
       c.probing = true;
     }
     const schedule::UniformSchedule before = c.picture;
@@ -256,23 +287,29 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     // Each pass looks along paths of its own.
     for (WorkBlock& b : item.blocks) b.first_sample = c.status.pass;
     c.tell(c.recursive && c.status.pass < k_deep_passes ? k_probe_beyond : k_probe_lookups);
+    StageTimer timer(wavefront);
     wavefront.stream().fill(c.candidates, 0);
     if (!wavefront.probe(item, cancel)) {
       c.picture = before;
       c.tell();
       return false;
     }
+    c.took(BuildStep::probe, timer.milliseconds());
     c.collect(item.slots());
     c.status.paths += item.slots();
+    c.pass().asked = c.status.asked, c.pass().paths = c.status.paths;
     c.tell();
     if (!c.picture.done()) return true;
     c.probing = false;
+    c.pass().asked_world = uint64_t(std::count_if(
+        c.asked.begin(), c.asked.end(), [](const Place& p) { return p.origin != k_origin_screen; }));
     if (double(c.status.asked) <= double(c.options.stop_share) * double(c.status.paths)) {
       c.finish(StopReason::covered);
       return true;
     }
     const Frame& f = view.paths_frame;
     const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
+    const Timer host;
     c.tried = choose_places(
         c.asked,
         {.spacing = view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(c.status.pass)),
@@ -285,6 +322,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
          .most = c.records.capacity() - c.records.size()});
     c.records.append(c.tried, c.status.pass);
     c.list_new();
+    c.took(BuildStep::choose, host.milliseconds());
     c.stage = Stage::measure;
     return true;
   }
@@ -294,13 +332,19 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
         std::min<size_t>(c.list.size() - c.at, std::max(1u, wavefront.slots() / Evaluator::k_distance_rays));
     const std::span<const uint32_t> list(c.list.data() + c.at, batch);
     wavefront.set_frame(view.records_frame, view.records_enabled);
+    StageTimer timer(wavefront);
     const size_t done = c.evaluator.measure(wavefront, c.records, list, c.options.seed, cancel);
     wavefront.set_frame(view.paths_frame, view.paths_enabled);
     c.at += done;
+    c.took(BuildStep::measure, timer.milliseconds());
     c.status.rays += uint64_t(done) * Evaluator::k_distance_rays;
+    c.pass().rays += uint64_t(done) * Evaluator::k_distance_rays;
     if (done < list.size()) return false;
     if (c.at < c.list.size()) return true;
+    StageTimer widths(wavefront);
     c.set_radii(wavefront, view, *this, c.evaluated);
+    c.took(BuildStep::radius, widths.milliseconds());
+    const Timer host;
     const std::vector<float> radii = c.records.radii(c.evaluated);
     std::vector<Place> needed;
     for (const uint32_t i : thin_out(
@@ -308,22 +352,27 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
              {.share = c.options.overlap_share, .normal_tolerance = k_normal_tolerance, .behind = k_behind}))
       needed.push_back(c.tried[i]);
     c.records.truncate(c.evaluated);
-    c.records.append(needed, c.status.pass);
+    c.pass().records = c.records.append(needed, c.status.pass);
     c.tried.clear();
     c.list_new();
-    c.level = c.rays_before = 0;
+    c.took(BuildStep::choose, host.milliseconds());
+    c.level = c.level_done = c.rays_before = 0;
     c.pass_first = c.evaluated;
     c.stage = Stage::evaluate;
     return true;
   }
   if (c.stage == Stage::evaluate) {
-    const uint32_t rays = c.options.rays << 2 * c.level;
+    // A level of more rays than can be summed at once is done in rounds of as many.
+    const uint32_t level_rays = c.options.rays << 2 * c.level;
+    uint32_t rays = level_rays;
+    while (rays > std::min(Evaluator::k_most_rays, wavefront.slots())) rays /= 4;
     const uint32_t elevations = elevations_for(rays);
     const size_t batch = std::min<size_t>(c.list.size() - c.at, std::max(1u, wavefront.slots() / rays));
     const std::span<const uint32_t> list(c.list.data() + c.at, batch);
     if (!list.empty()) {
       wavefront.set_frame(view.records_frame, view.records_enabled);
       c.tell(k_probe_none, c.own_routes);
+      StageTimer timer(wavefront);
       const size_t done = c.evaluator.evaluate(wavefront, automaton, c.records, list,
                                                {.elevations = elevations,
                                                 .azimuths = 4 * elevations,
@@ -334,20 +383,33 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       wavefront.set_frame(view.paths_frame, view.paths_enabled);
       c.tell();
       if (done < list.size()) return false;
+      c.took(BuildStep::evaluate, timer.milliseconds());
+      c.pass().rays += uint64_t(done) * rays;
       c.at += done;
       c.status.rays += uint64_t(done) * rays;
       if (c.at < c.list.size()) return true;
+      c.rays_before += rays;
+      c.level_done += rays;
+      c.at = 0;
+      if (c.level_done < level_rays) return true;
     }
+    c.level_done = 0;
     // A cache that reads itself does so from the second level on: the first, of few rays, then is all that is
     // traced without the records of its own pass.
-    const bool more = c.next_level(wavefront.slots());
+    const bool more = c.next_level();
+    c.records.publish(wavefront.stream());
     if (!more || (c.recursive && c.level == 1)) {
+      StageTimer widths(wavefront);
       c.set_radii(wavefront, view, *this, c.pass_first);
+      c.took(BuildStep::radius, widths.milliseconds());
       c.evaluated = c.status.records = c.records.size();
+      StageTimer indexing(wavefront);
       c.build_octree(wavefront);
+      c.took(BuildStep::octree, indexing.milliseconds());
       c.tell();
     }
     if (more) return true;
+    c.pass().complete = true;
     ++c.status.pass;
     c.stage = Stage::probe;
     if (c.records.size() == c.records.capacity())
@@ -362,13 +424,16 @@ std::pair<float, float> Cache::scale(uint32_t color) const {
   return color < k_record_by_rays ? std::pair(1.0f, 2.0f) : impl_->scales[color - k_record_by_rays];
 }
 
-void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const Overlay& overlay) {
+void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
+                 const Overlay& overlay) {
   Impl& c = *impl_;
   if (!overlay.discs && !overlay.overlap) return;
   wavefront.bind_paths(c.resources);
   bind(c.resources);
   film.bind(c.resources);
-  OverlayPush push{film.width(), film.height(), overlay.discs, overlay.overlap, overlay.color, 0, 1, 12};
+  coarse.bind_coarse(c.resources);
+  OverlayPush push{film.width(),   film.height(), overlay.discs, overlay.overlap, overlay.color, 0, 1,
+                   k_overlap_scale};
   const auto [lo, hi] = scale(overlay.color);
   push.lo = lo, push.hi = hi;
   wavefront.stream().dispatch(c.overlay, c.resources, push,

@@ -15,6 +15,7 @@
 #include <string>
 
 #include "paths/automaton.h"
+#include "solvers/irradiance_cache/build_log.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/records.h"
 #include "solvers/lookup/octree.h"
@@ -40,6 +41,8 @@ struct CacheOptions {
 };
 
 enum class StopReason { building, covered, passes, records };
+/// Why building has stopped, as the rest of a sentence.
+const char* words(StopReason reason);
 
 struct CacheStatus {
   uint32_t pass = 0;  ///< complete since the building began or was extended
@@ -49,6 +52,7 @@ struct CacheStatus {
   uint64_t bytes = 0;             ///< of device memory
   double references = 0;          ///< leaves that list a record, on average
   StopReason stop = StopReason::building;
+  std::vector<CachePass> passes;  ///< since it was begun, extensions too; the last may be in progress
 };
 
 /// What the building needs to know of the picture and its scene.
@@ -86,7 +90,8 @@ class Cache {
   const CacheStatus& status() const;
   const Records& records() const;
   /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many
-  /// serve each pixel. Needs the film's depth. `stream` is run.
+  /// serve each pixel. Needs the film's depth, and where it has no samples that of the coarse film of the
+  /// same picture (shared::k_coarse_step). The stream is run.
   struct Overlay {
     bool discs = false, overlap = false;
     uint32_t color = shared::k_record_by_pass;
@@ -94,7 +99,8 @@ class Cache {
   /// Ends of the logarithmic scale of a value that records are coloured by, from nearly all records; of rays,
   /// distance and error only. 0 < first < second.
   std::pair<float, float> scale(uint32_t color) const;
-  void draw(transport::Wavefront& wavefront, const film::Film& film, const Overlay& overlay);
+  void draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
+            const Overlay& overlay);
 
  private:
   struct Impl;

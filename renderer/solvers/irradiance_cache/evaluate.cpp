@@ -9,12 +9,6 @@ namespace lucerna::irradiance_cache {
 
 using namespace shared;
 
-namespace {
-/// lavapipe ends all loops of an invocation after 65535 iterations in all, without a word; gather.comp takes
-/// up to 12 a cell.
-constexpr uint32_t k_most_cells = 4096;
-}  // namespace
-
 struct Evaluator::Impl {
   gpu::Kernel record, gather, distances;
   gpu::Buffer first_hits, list;
@@ -39,12 +33,12 @@ size_t Evaluator::evaluate(transport::Wavefront& wavefront, const paths::Automat
                            const std::function<bool()>& cancel) {
   Impl& e = *impl_;
   const uint32_t cells = o.elevations * o.azimuths, slots = wavefront.slots();
-  const uint32_t most = std::min(slots, k_most_cells);
+  const uint32_t most = std::min(slots, k_most_rays);
   if (cells == 0 || cells > most)
     throw_error("irradiance cache", "{} x {} rays a record; there is room for 1 to {} paths", o.elevations,
                 o.azimuths, most);
   wavefront.bind_paths(e.resources);
-  records.bind(e.resources);
+  records.bind(e.resources, Records::Use::gather);
   e.resources.set("RecordList", e.list);
   e.resources.set("first_hit_texels", e.first_hits);
   gpu::Stream& stream = wavefront.stream();
@@ -80,7 +74,7 @@ size_t Evaluator::measure(transport::Wavefront& wavefront, Records& records, std
   Impl& e = *impl_;
   constexpr uint32_t k_elevations = 4, k_azimuths = k_distance_rays / k_elevations;
   wavefront.bind_paths(e.resources);
-  records.bind(e.resources);
+  records.bind(e.resources, Records::Use::gather);
   e.resources.set("RecordList", e.list);
   e.resources.set("first_hit_texels", wavefront.hits());
   gpu::Stream& stream = wavefront.stream();

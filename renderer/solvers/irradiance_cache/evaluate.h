@@ -25,6 +25,9 @@ struct EvaluateOptions {
 
 class Evaluator {
  public:
+  /// Of a record at once: lavapipe ends all loops of an invocation after 65535 iterations in all, without a
+  /// word, and gather.comp takes up to 12 a ray.
+  static constexpr uint32_t k_most_rays = 4096;
   /// `slots`: of the wavefronts that it will be used with.
   Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots);
   ~Evaluator();

@@ -59,6 +59,8 @@ Records::Records(gpu::Device& device, uint32_t capacity) : capacity_(capacity) {
   records_ = gpu::Buffer(device, {.name = "cache records", .bytes = capacity * k_place_bytes, .texel = true});
   irradiance_ =
       gpu::Buffer(device, {.name = "cache irradiance", .bytes = capacity * k_light_bytes, .texel = true});
+  read_ = gpu::Buffer(device,
+                      {.name = "cache irradiance as read", .bytes = capacity * k_light_bytes, .texel = true});
   spheres_ = gpu::Buffer(device, {.name = "cache spheres", .bytes = capacity * sizeof(vec4), .texel = true});
 }
 
@@ -99,13 +101,14 @@ Record Records::read(uint32_t index) const {
   return unpack(place, light);
 }
 
-std::vector<vec3> Records::figures() const {
+std::vector<Records::Figures> Records::figures() const {
   std::vector<vec4> places(size_t{size_} * k_record_texels);
   records_.read(places.data(), places.size() * sizeof(vec4));
-  std::vector<vec3> all;
+  std::vector<Figures> all;
   for (uint32_t i = 0; i < size_; ++i) {
     const vec4* p = &places[size_t{i} * k_record_texels];
-    all.emplace_back(float(std::bit_cast<uint32_t>(p[2].x)), p[1].w, p[2].z);
+    all.push_back({float(std::bit_cast<uint32_t>(p[2].x)), p[1].w, p[2].z,
+                   std::bit_cast<uint32_t>(p[2].w) >> k_record_origin_shift & 3u});
   }
   return all;
 }
@@ -128,10 +131,14 @@ std::vector<float> Records::luminances() const {
   return all;
 }
 
-void Records::bind(gpu::Resources& resources) const {
+void Records::publish(gpu::Stream& stream) const {
+  if (size_ > 0) stream.copy(irradiance_, read_, size_ * k_light_bytes);
+}
+
+void Records::bind(gpu::Resources& resources, Use use) const {
   resources.set("record_texels", records_);
   resources.set("Records", records_);
-  resources.set("irradiance_texels", irradiance_);
+  resources.set("irradiance_texels", use == Use::gather ? irradiance_ : read_);
   resources.set("Irradiance", irradiance_);
   resources.set("Spheres", spheres_);
 }

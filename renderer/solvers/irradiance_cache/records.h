@@ -7,6 +7,7 @@
 
 #include "base/math.h"
 #include "gpu/kernel.h"
+#include "gpu/stream.h"
 #include "shaders/shared/irradiance_cache.h"
 
 namespace lucerna::irradiance_cache {
@@ -58,18 +59,26 @@ class Records {
   /// All of them, or one; for tests, files and the inspector.
   std::vector<Record> read() const;
   Record read(uint32_t index) const;
-  /// What the overlay colours by, of every record: rays, harmonic mean distance, error.
-  std::vector<vec3> figures() const;
+  /// What the overlay colours by, and what asked, of every record.
+  struct Figures {
+    float rays, mean_distance, error;
+    uint32_t origin;
+  };
+  std::vector<Figures> figures() const;
   /// Radii of the records from `first` on.
   std::vector<float> radii(uint32_t first) const;
   /// Luminance of the irradiance, all parts together, of every record.
   std::vector<float> luminances() const;
-  /// Under the names of shaders/irradiance_cache.
-  void bind(gpu::Resources& resources) const;
+  /// Under the names of shaders/irradiance_cache: for kernels that gather, or for those that look up. These
+  /// read the light that publish() last left, so that what records gather from each other does not depend on
+  /// which of them are done.
+  enum class Use { gather, look_up };
+  void bind(gpu::Resources& resources, Use use) const;
+  void publish(gpu::Stream& stream) const;
 
  private:
   uint32_t capacity_ = 0, size_ = 0;
-  gpu::Buffer records_, irradiance_, spheres_;
+  gpu::Buffer records_, irradiance_, read_, spheres_;
 };
 
 }  // namespace lucerna::irradiance_cache

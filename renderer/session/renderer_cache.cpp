@@ -1,0 +1,47 @@
+// The cache as the renderer shows it: what lies over the picture, and what is told of it.
+#include <algorithm>
+
+#include "session/renderer.h"
+
+namespace lucerna::session {
+
+void Renderer::draw_cache() {
+  const auto color = uint32_t(settings_.choice("overlay.records_by"));
+  cache_->draw(*wavefront_, *film_, *coarse_,
+               {.discs = settings_.boolean("overlay.records"),
+                .overlap = settings_.boolean("overlay.overlap"),
+                .color = color});
+  inspection_ = {};
+  const bool normals = settings_.boolean("overlay.normals");
+  if (!normals && !looked_at_) return;
+  if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
+  if (normals) inspector_->draw_normals({*wavefront_, *film_, *coarse_}, *cache_, color);
+  if (!looked_at_) return;
+  const auto pixel = [](float place, uint32_t pixels) {
+    return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
+  };
+  inspection_ = inspector_->ask({*wavefront_, *film_, *coarse_}, *cache_,
+                                pixel(looked_at_->x, film_->width()), pixel(looked_at_->y, film_->height()));
+  inspector_->draw_lines({*wavefront_, *film_, *coarse_}, *cache_, inspection_);
+}
+
+std::shared_ptr<const CacheReport> Renderer::cache_report() {
+  if (!cache_ || !wavefront_) return nullptr;
+  auto report = std::make_shared<CacheReport>();
+  report->status = cache_->status();
+  report->room = cache_->records().capacity();
+  report->color = uint32_t(settings_.choice("overlay.records_by"));
+  report->scale = cache_->scale(report->color);
+  report->looked_at = looked_at_;
+  report->inspection = inspection_;
+  if (cache_->ready() && samples() > 0) {
+    if (overlap_.first != restarts_) {
+      if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
+      overlap_ = {restarts_, inspector_->overlap({*wavefront_, *film_, *coarse_}, *cache_)};
+    }
+    report->overlap = overlap_.second;
+  }
+  return report;
+}
+
+}  // namespace lucerna::session

@@ -1,0 +1,57 @@
+#pragma once
+// What the passes of a cache's building brought and took.
+#include <array>
+#include <cstdint>
+
+#include "transport/wavefront.h"
+
+namespace lucerna::irradiance_cache {
+
+enum class BuildStep {
+  probe,     ///< paths from the camera, to find where records are missing
+  choose,    ///< which of the places asked for get one; on the host
+  measure,   ///< a few rays from each, to see how wide its record would be and whether it is needed
+  evaluate,  ///< rays over the records' hemispheres
+  radius,    ///< how far each of them serves
+  octree     ///< how they are found
+};
+inline constexpr std::array<const char*, 6> k_build_steps{"probe",    "choose", "measure",
+                                                          "evaluate", "radius", "octree"};
+
+struct CachePass {
+  uint32_t number = 0;  ///< since the building was begun or extended; that of its records
+  bool complete = false;
+  uint64_t asked = 0, paths = 0;  ///< paths that asked for a record, paths
+  uint64_t asked_world = 0;       ///< of those that asked: not at a surface that the camera sees straight
+  uint32_t records = 0;           ///< placed
+  uint64_t rays = 0;              ///< from them
+  /// By BuildStep: device time of the stages that it ran, wall time of what the host did (its tracer too).
+  std::array<double, k_build_steps.size()> ms{};
+  double total_ms() const {
+    double sum = 0;
+    for (const double m : ms) sum += m;
+    return sum;
+  }
+};
+
+/// Time of the wavefront's stages since its making: of the device, and of the host's tracer.
+class StageTimer {
+ public:
+  explicit StageTimer(transport::Wavefront& wavefront)
+      : wavefront_(wavefront), before_((wavefront.account_stages(), total())) {}
+  double milliseconds() {
+    wavefront_.account_stages();
+    return total() - before_;
+  }
+
+ private:
+  double total() const {
+    double sum = 0;
+    for (const transport::StageSum& s : wavefront_.stats().stages) sum += s.ms;
+    return sum;
+  }
+  transport::Wavefront& wavefront_;
+  double before_;
+};
+
+}  // namespace lucerna::irradiance_cache

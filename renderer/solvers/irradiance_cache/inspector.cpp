@@ -1,0 +1,181 @@
+#include "solvers/irradiance_cache/inspector.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu/stream.h"
+#include "shaders/shared/cache_inspect.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+constexpr uint64_t k_inspection_bytes = sizeof(InspectHeader) + k_inspect_most * sizeof(InspectServing);
+constexpr vec3 k_line_ink{1.0f, 0.86f, 0.45f};
+constexpr float k_least_weight = 0.004f;  // of lines; a thinner one would not be seen
+
+}  // namespace
+
+struct Inspector::Impl {
+  gpu::Device& device;
+  gpu::ShaderCompiler& compiler;
+  gpu::Kernel inspect, overlap, lines, ticks, ticks_draw;
+  gpu::Buffer answer, counts, line_list, marks;
+  gpu::Resources resources;
+
+  const gpu::Kernel& ready(gpu::Kernel& kernel, const char* file) {
+    // What a lookup reads of a record is not called here: no part of it is compiled in.
+    if (!kernel)
+      kernel = gpu::Kernel(device, compiler, file, {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", "0u"}});
+    return kernel;
+  }
+
+  gpu::Buffer& ready(gpu::Buffer& buffer, const char* name, uint64_t bytes, gpu::Memory memory) {
+    if (!buffer || buffer.bytes() < bytes)
+      buffer = gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
+    return buffer;
+  }
+
+  void bind(const Shown& shown, const Cache& cache) {
+    shown.wavefront.bind_paths(resources);
+    cache.bind(resources);
+    shown.film.bind(resources);
+    shown.coarse.bind_coarse(resources);
+  }
+
+  /// What is drawn and asked is no part of the picture's cost.
+  static void finish(gpu::Stream& stream) {
+    stream.run();
+    stream.take_times();
+  }
+};
+
+Inspector::Inspector(gpu::Device& device, gpu::ShaderCompiler& compiler)
+    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {}
+Inspector::~Inspector() = default;
+
+Inspection Inspector::ask(const Shown& shown, const Cache& cache, uint32_t x, uint32_t y) {
+  Impl& i = *impl_;
+  const film::Film& film = shown.film;
+  const gpu::Kernel& kernel = i.ready(i.inspect, "irradiance_cache/inspect.comp");
+  i.bind(shown, cache);
+  i.resources.set("Inspection", i.ready(i.answer, "cache inspection", k_inspection_bytes, gpu::Memory::host));
+  const InspectPush push{film.width(), film.height(), y * film.width() + x};
+  shown.wavefront.stream().dispatch(kernel, i.resources, push, 1);
+  Impl::finish(shown.wavefront.stream());
+
+  const auto* header = static_cast<const InspectHeader*>(i.answer.mapped());
+  const auto* served = reinterpret_cast<const InspectServing*>(header + 1);
+  Inspection found;
+  found.x = x, found.y = y;
+  found.solid = header->solid != 0;
+  if (!found.solid) return found;
+  found.position = header->position, found.normal = header->normal;
+  found.size = header->size, found.depth = header->depth;
+  found.count = header->count;
+  const uint32_t listed = std::min(found.count, k_inspect_most);
+  double sum = 0;
+  for (uint32_t k = 0; k < listed; ++k) {
+    const InspectServing& s = served[k];
+    found.serving.push_back({s.record, s.weight, s.at, s.depth});
+    sum += double{s.weight};
+  }
+  for (Serving& s : found.serving) s.weight = float(s.weight / sum);
+  std::stable_sort(found.serving.begin(), found.serving.end(),
+                   [](const Serving& a, const Serving& b) { return a.weight > b.weight; });
+  if (header->under != k_no_record) {
+    found.under = header->under;
+    found.under_at = vec2(header->under_at);
+    found.record = cache.records().read(header->under);
+  }
+  return found;
+}
+
+Overlap Inspector::overlap(const Shown& shown, const Cache& cache) {
+  Impl& i = *impl_;
+  const film::Film& film = shown.film;
+  const gpu::Kernel& kernel = i.ready(i.overlap, "irradiance_cache/overlap.comp");
+  i.bind(shown, cache);
+  const gpu::Buffer& counts = i.ready(i.counts, "cache overlap", sizeof(OverlapCounts), gpu::Memory::host);
+  i.resources.set("Overlap", counts);
+  shown.wavefront.stream().fill(counts, 0);
+  shown.wavefront.stream().dispatch(kernel, i.resources, OverlapPush{film.width(), film.height()},
+                                    gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
+  Impl::finish(shown.wavefront.stream());
+
+  const auto* c = static_cast<const OverlapCounts*>(counts.mapped());
+  Overlap o;
+  o.histogram.assign(std::begin(c->pixels), std::end(c->pixels));
+  for (const uint32_t n : o.histogram) o.pixels += n;
+  o.served = o.pixels - o.histogram[0];
+  o.mean = o.served > 0 ? double(c->records) / double(o.served) : 0;
+  o.most = c->most;
+  return o;
+}
+
+void Inspector::draw_lines(const Shown& shown, const Cache& cache, const Inspection& found) {
+  if (!found.solid) return;
+  Impl& i = *impl_;
+  const film::Film& film = shown.film;
+  const float width = float(film.width()), height = float(film.height());
+  const vec2 here(float(found.x) + 0.5f, float(found.y) + 0.5f);
+  vec2 lo = here - 4.0f, hi = here + 4.0f;
+  const auto cover = [&](const vec2& p, float reach) {
+    // A centre may lie far outside the picture.
+    const vec2 inside = glm::clamp(p, vec2(-1e4f), vec2(1e5f));
+    lo = glm::min(lo, inside - reach), hi = glm::max(hi, inside + reach);
+  };
+  std::vector<CacheLine> list;
+  for (auto s = found.serving.rbegin(); s != found.serving.rend(); ++s) {  // the heaviest on top
+    if (s->weight < k_least_weight || s->depth <= 0) continue;
+    const float strength = std::sqrt(s->weight / found.serving.front().weight);
+    list.push_back(
+        {here, s->at, found.depth, s->depth, 0.4f + 1.2f * strength, 0.3f + 0.65f * strength, k_line_ink});
+    cover(s->at, 4);
+    // Its centre: a point.
+    list.push_back({s->at, s->at, s->depth, s->depth, 1.5f + strength, 0.5f + 0.5f * strength, k_line_ink});
+  }
+  list.push_back({here, here, found.depth, found.depth, 2.0f, 1.0f, vec3(1)});
+  if (found.record) cover(found.under_at, 1.5f * found.record->radius / std::max(found.size, 1e-20f) + 4);
+
+  const vec2 first = glm::clamp(glm::floor(lo), vec2(0), vec2(width, height));
+  const vec2 last = glm::clamp(glm::ceil(hi), vec2(0), vec2(width, height));
+  const vec2 size = last - first;
+  if (size.x < 1 || size.y < 1) return;
+  const gpu::Kernel& kernel = i.ready(i.lines, "irradiance_cache/lines.comp");
+  i.bind(shown, cache);
+  gpu::Buffer& lines =
+      i.ready(i.line_list, "cache lines", (2 * k_inspect_most + 1) * sizeof(CacheLine), gpu::Memory::host);
+  lines.write(list.data(), list.size() * sizeof(CacheLine));
+  i.resources.set("Lines", lines);
+  const CacheLinesPush push{
+      film.width(),     film.height(),    uint32_t(first.x),     uint32_t(first.y),
+      uint32_t(size.x), uint32_t(size.y), uint32_t(list.size()), found.under.value_or(k_no_record)};
+  shown.wavefront.stream().dispatch(kernel, i.resources, push,
+                                    gpu::groups_for(uint64_t(size.x) * uint64_t(size.y), 64));
+  Impl::finish(shown.wavefront.stream());
+}
+
+void Inspector::draw_normals(const Shown& shown, const Cache& cache, uint32_t color) {
+  // Of records that are complete alone: the others have no radius yet.
+  const uint32_t records = cache.status().records;
+  if (records == 0) return;
+  Impl& i = *impl_;
+  const film::Film& film = shown.film;
+  const gpu::Kernel& ticks = i.ready(i.ticks, "irradiance_cache/ticks.comp");
+  const gpu::Kernel& draw = i.ready(i.ticks_draw, "irradiance_cache/ticks_draw.comp");
+  i.bind(shown, cache);
+  const uint64_t pixels = uint64_t{film.width()} * film.height();
+  i.resources.set("Ticks", i.ready(i.marks, "cache ticks", 4 * pixels, gpu::Memory::device));
+  const auto [lo, hi] = cache.scale(color);
+  const CacheTicksPush push{film.width(), film.height(), records, color, lo, hi};
+  gpu::Stream& stream = shown.wavefront.stream();
+  stream.fill(i.marks, 0);
+  stream.dispatch(ticks, i.resources, push, gpu::groups_for(records, 64));
+  stream.dispatch(draw, i.resources, push, gpu::groups_for(pixels, 64));
+  Impl::finish(stream);
+}
+
+}  // namespace lucerna::irradiance_cache

@@ -1,0 +1,18 @@
+// What a record is coloured by in overlays.
+#ifndef LUCERNA_IRRADIANCE_CACHE_INK
+#define LUCERNA_IRRADIANCE_CACHE_INK
+#include "shaders/shared/ramp.h"
+#include "shaders/shared/irradiance_cache.h"
+
+// `by`: k_record_by_*; `lo`, `hi`: ends of the value's scale (OverlayPush). Encoded, 0..1. Uses record_texels.
+vec3 record_ink(uint record, uint by, float lo, float hi) {
+  vec4 told = texelFetch(record_texels, int(record * k_record_texels + 2u));
+  uint flags = floatBitsToUint(told.w);
+  if (by == k_record_by_pass) return ramp_hue(flags & k_record_pass);
+  if (by == k_record_by_origin) return ramp_hue((flags >> k_record_origin_shift) & 3u);
+  float value = told.z;
+  if (by == k_record_by_rays) value = float(floatBitsToUint(told.x));
+  if (by == k_record_by_distance) value = texelFetch(record_texels, int(record * k_record_texels + 1u)).w;
+  return ramp_color(k_ramp_viridis, ramp_position(value, lo, hi, 1u));
+}
+#endif

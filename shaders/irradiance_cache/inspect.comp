@@ -1,0 +1,39 @@
+// Which records serve the surface that one pixel shows, with their weights, and whose disc lies there. One invocation, and
+// the very functions that lookups use, so that the answer is theirs.
+#include "lib/invocation.glsl"
+#include "irradiance_cache/lookup.glsl"
+#include "irradiance_cache/seen.glsl"
+#include "shaders/shared/cache_inspect.h"
+layout(local_size_x = 1) in;
+layout(push_constant, scalar) uniform Push { InspectPush push; };
+layout(scalar) buffer Inspection {
+  InspectHeader header;
+  InspectServing serving[];
+};
+
+void main() {
+  if (global_index() > 0u) return;
+  Seen seen = seen_at(push.pixel, push.width, push.height);
+  uint count = 0u, under = k_no_record;
+  float nearest = k_infinity;
+  vec3 under_at = vec3(0.0);
+  OctreeRange range = cache_range(seen.position, seen.solid);
+  for (uint i = range.first; i < range.last; ++i) {
+    uint record = octree_sphere(i);
+    int at = int(record * k_record_texels);
+    vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
+    float weight = record_weight(seen.position, seen.normal, place, facing);
+    vec3 centre = to_picture(place.xyz, push.width, push.height);
+    if (weight > 0.0) {
+      if (count < k_inspect_most) serving[count] = InspectServing(record, weight, centre.xy, centre.z);
+      ++count;
+    }
+    float from = distance(seen.position, place.xyz);
+    if (from < min(place.w, nearest) && seen_on_disc(seen, place, facing)) {
+      nearest = from;
+      under = record;
+      under_at = centre;
+    }
+  }
+  header = InspectHeader(seen.solid ? 1u : 0u, count, under, seen.size, seen.depth, seen.position, seen.normal, under_at);
+}

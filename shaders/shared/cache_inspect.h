@@ -1,0 +1,78 @@
+// What a person asks of an irradiance cache at a pixel of the picture, and what is drawn to answer. Read by
+// C++ and GLSL. Places in the picture are in pixels from its upper left corner; depths are along the view
+// axis [m].
+#ifndef LUCERNA_SHARED_CACHE_INSPECT_H
+#define LUCERNA_SHARED_CACHE_INSPECT_H
+#include "shaders/shared/compat.h"
+LUCERNA_SHARED_BEGIN
+
+LUCERNA_CONST uint k_inspect_most = 256u;      ///< records listed at most
+LUCERNA_CONST uint k_no_record = 0xffffffffu;  ///< no index of a record
+
+struct InspectPush {
+  uint width, height;
+  uint pixel;
+};
+
+/// What the camera sees in a pixel.
+struct InspectHeader {
+  uint solid;  ///< 0: nothing, and then nothing else here holds
+  uint count;  ///< records that serve there; the first k_inspect_most of them are listed
+  uint under;  ///< of the records whose discs are drawn there the one whose centre is nearest; k_no_record:
+               ///< none
+  float size;   ///< of a pixel there [m]
+  float depth;  ///< [m]
+  vec3 position, normal;
+  vec3 under_at;  ///< centre of `under` in the picture, and its depth
+};
+/// A record that serves there.
+struct InspectServing {
+  uint record;
+  float weight;  ///< as lookups weigh it, above 0; not yet divided by their sum
+  vec2 at;       ///< its centre in the picture
+  float depth;   ///< of its centre; not above 0: behind the eye
+};
+
+LUCERNA_CONST uint k_overlap_bins = 33u;  ///< pixels by the records that serve them: 0, 1, ... and 32 or more
+struct OverlapPush {
+  uint width, height;
+};
+/// Counts over the picture's pixels that show a surface.
+struct OverlapCounts {
+  uint pixels[k_overlap_bins];
+  uint most;     ///< records that serve one pixel
+  uint records;  ///< sum over the pixels
+};
+
+/// A line over the picture; where a surface hides it it is faint.
+struct CacheLine {
+  vec2 from, to;
+  float from_depth, to_depth;
+  float half_width;  ///< pixels
+  float alpha;
+  vec3 color;  ///< encoded, 0..1
+};
+/// Lines, and the disc of one record, over a rectangle of the picture.
+struct CacheLinesPush {
+  uint width, height;
+  uint left, top, across, down;
+  uint lines;
+  uint ring;  ///< record whose border is drawn; k_no_record: none
+};
+
+/// Normals of records as short lines from their centres.
+struct CacheTicksPush {
+  uint width, height;
+  uint records;
+  uint color;    ///< k_record_by_*
+  float lo, hi;  ///< as OverlayPush
+};
+// A mark is what a tick leaves at a pixel: bit 31: the tick itself (else its dark edge), bits 24-30 how much
+// of the pixel it covers, below them the complement of the record's index, so that the greatest mark is what
+// is to be seen, in any order.
+LUCERNA_CONST uint k_tick_core = 0x80000000u;
+LUCERNA_CONST uint k_tick_cover_shift = 24u;
+LUCERNA_CONST uint k_tick_record = 0xffffffu;
+
+LUCERNA_SHARED_END
+#endif

@@ -1,0 +1,404 @@
+// links: session
+// What a person is told of the irradiance cache: which records serve a pixel, how many serve the picture,
+// what is drawn over it, and the log of its building; held against all records read back and weighed here.
+#include <unistd.h>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+
+#include "film/io/image_file.h"
+#include "session/pick.h"
+#include "session/renderer.h"
+
+using namespace lucerna;
+using irradiance_cache::Inspection;
+using irradiance_cache::Record;
+
+namespace {
+
+constexpr uint32_t k_size = 192;
+constexpr float k_tolerance = 0.015f, k_behind = 0.05f;  // of the cache: 1 - cos 10 degrees, of the radius
+
+/// Tabellion and Lamorlette's weight, as METHODS and shaders/irradiance_cache/lookup.glsl have it.
+float weight(const Record& r, const vec3& x, const vec3& n) {
+  const vec3 away = x - r.place.position;
+  if (r.radius <= 0 || dot(away, n + r.place.normal) < -2 * k_behind * r.radius) return 0;
+  const float far = length(away) / r.radius;
+  const float turned = std::sqrt(std::max(0.0f, 1 - dot(n, r.place.normal)) / k_tolerance);
+  return std::max(0.0f, 1 - std::max(far, turned));
+}
+
+/// One renderer for all cases: a Cornell box with secondary and tertiary light cached, finished.
+session::Renderer& bed() {
+  static const std::unique_ptr<session::Renderer> renderer = [] {
+    auto r = std::make_unique<session::Renderer>(
+        session::RendererOptions{.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+    r->set_size(k_size, k_size);
+    r->load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
+    for (const auto& [key, value] : {std::pair{"components.secondary", "cache"},
+                                     {"components.tertiary", "cache"},
+                                     {"cache.rays", "64"},
+                                     {"cache.max_rays", "64"},
+                                     {"cache.error", "0.6"},
+                                     {"samples", "4"}})
+      r->settings().set(key, value);
+    r->apply_settings();
+    return r;
+  }();
+  renderer->inspect({});
+  for (const char* key : {"overlay.records", "overlay.normals", "overlay.overlap"})
+    renderer->settings().set(key, "false");
+  renderer->apply_settings();
+  while (renderer->step()) {
+  }
+  return *renderer;
+}
+
+Inspection ask(session::Renderer& r, uint32_t x, uint32_t y) {
+  r.inspect(vec2((float(x) + 0.5f) / k_size, (float(y) + 0.5f) / k_size));
+  r.picture(false);
+  return r.cache_report()->inspection;
+}
+
+/// Changed pixels of a picture, in raster order.
+std::vector<uint32_t> changed(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+  std::vector<uint32_t> list;
+  for (uint32_t p = 0; p < k_size * k_size; ++p)
+    if (!std::equal(a.begin() + 4 * p, a.begin() + 4 * p + 4, b.begin() + 4 * p)) list.push_back(p);
+  return list;
+}
+
+vec2 place_of(uint32_t pixel) { return {float(pixel % k_size) + 0.5f, float(pixel / k_size) + 0.5f}; }
+
+}  // namespace
+
+TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen before the first sample") {
+  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  CHECK(r.cache_report() == nullptr);
+  r.set_size(32, 32);
+  r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
+  r.inspect(vec2(0.5f, 0.5f));
+  r.picture(false);
+  CHECK(r.cache_report() == nullptr);
+  r.settings().set("components.tertiary", "cache");
+  r.settings().set("overlay.normals", "true");
+  r.apply_settings();
+  r.picture(false);
+  const auto report = r.cache_report();
+  REQUIRE(report);
+  CHECK(report->looked_at == vec2(0.5f, 0.5f));
+  CHECK_FALSE(report->inspection.solid);
+  CHECK_FALSE(report->overlap.has_value());
+  CHECK(report->status.passes.empty());
+
+  // While it is being built the coarse film shows where surfaces are.
+  r.render_coarse();
+  while (r.cache()->status().records == 0) REQUIRE(r.step());
+  REQUIRE_FALSE(r.cache()->ready());
+  REQUIRE(r.samples() == 0);
+  size_t served = 0;
+  const std::vector<Record> all = r.cache()->records().read();
+  for (const float down : {0.2f, 0.45f, 0.7f, 0.9f})
+    for (const float right : {0.2f, 0.4f, 0.6f, 0.8f}) {
+      r.inspect(vec2(right, down));
+      r.picture(true);
+      const Inspection found = r.cache_report()->inspection;
+      if (!found.solid) continue;
+      uint32_t expected = 0;
+      for (uint32_t i = 0; i < r.cache()->status().records; ++i)
+        expected += weight(all[i], found.position, found.normal) > 0;
+      CHECK(found.count == expected);
+      served += found.count > 0;
+    }
+  CHECK(served > 4);
+  CHECK_FALSE(r.cache_report()->overlap.has_value());
+}
+
+TEST_CASE(
+    "the records that serve a pixel are those that all records weighed by hand say, with their weights") {
+  session::Renderer& r = bed();
+  const std::vector<Record> all = r.cache()->records().read();
+  REQUIRE(all.size() > 100);
+  const scene::Camera camera = r.camera();
+  size_t solid = 0, listed = 0, unders = 0;
+  for (uint32_t y = 3; y < k_size; y += 18)
+    for (uint32_t x = 4; x < k_size; x += 22) {
+      const Inspection found = ask(r, x, y);
+      INFO("pixel " << x << " " << y);
+      REQUIRE(found.x == x);
+      REQUIRE(found.y == y);
+      // The plain scene says what is there; pixels on edges are means.
+      const auto hit =
+          session::pick(*r.scene(), camera, (float(x) + 0.5f) / k_size, (float(y) + 0.5f) / k_size, 1);
+      if (!found.solid) continue;
+      ++solid;
+      if (hit && length(hit->position - found.position) > 3 * found.size) continue;
+      CHECK(length(found.normal) == Approx(1).margin(1e-4));
+      double sum = 0;
+      std::vector<float> expected(all.size());
+      for (size_t i = 0; i < all.size(); ++i)
+        sum += double(expected[i] = weight(all[i], found.position, found.normal));
+      // At the very border of all that serve rounding decides.
+      if (found.count > 0 && sum < 1e-4) continue;
+      size_t serve = 0;
+      for (const auto& s : found.serving) {
+        REQUIRE(s.record < all.size());
+        CHECK(s.weight == Approx(expected[s.record] / sum).margin(1e-4));
+        if (expected[s.record] > 0) ++serve;
+        // Its centre in the picture is the one from which the camera looks back at it.
+        const auto there = session::pick(*r.scene(), camera, s.at.x / k_size, s.at.y / k_size, 1);
+        const vec3 centre = all[s.record].place.position;
+        if (there && s.at.x > 0 && s.at.x < k_size && s.at.y > 0 && s.at.y < k_size) {
+          // On the ray: at its depth the ray is at the centre.
+          const vec3 eye(camera.to_world[3]), to_hit = normalize(there->position - eye);
+          CHECK(length(cross(to_hit, centre - eye)) < 2e-3f * length(centre - eye));
+        }
+        ++listed;
+      }
+      // Nobody is left out, but at the border of validity, where rounding decides.
+      for (size_t i = 0; i < all.size(); ++i)
+        if (expected[i] > 1e-5f)
+          CHECK(std::any_of(found.serving.begin(), found.serving.end(),
+                            [&](const auto& s) { return s.record == i; }));
+      CHECK(found.count == found.serving.size());
+      CHECK(serve + 1 >= found.count);
+      CHECK(std::is_sorted(found.serving.begin(), found.serving.end(),
+                           [](const auto& a, const auto& b) { return a.weight > b.weight; }));
+      if (found.under) {
+        ++unders;
+        REQUIRE(found.record);
+        const Record& u = *found.record;
+        CHECK(u.place.position == all[*found.under].place.position);
+        CHECK(u.rays == all[*found.under].rays);
+        CHECK(u.radius == all[*found.under].radius);
+        const float from = length(u.place.position - found.position);
+        CHECK(from <= u.radius);
+        for (const Record& other : all)
+          if (dot(other.place.normal, found.normal) > 0.99f &&
+              length(other.place.position - found.position) < other.radius)
+            CHECK(from <= length(other.place.position - found.position) + 1e-5f);
+      }
+    }
+  CHECK(solid > 80);
+  CHECK(listed > 80);
+  CHECK(unders > 40);
+  CHECK(r.device().validation_messages() == 0);
+}
+
+TEST_CASE("the overlap told of the picture is that of its pixels, counted by hand") {
+  session::Renderer& r = bed();
+  r.picture(false);
+  const auto report = r.cache_report();
+  REQUIRE(report->overlap);
+  const irradiance_cache::Overlap& told = *report->overlap;
+  const std::vector<Record> all = r.cache()->records().read();
+  const film::Image image = r.image();
+  const mat4& m = r.camera().to_world;
+  const float half = std::tan(0.5f * r.camera().yfov);
+  uint64_t pixels = 0, served = 0, sum = 0;
+  uint32_t most = 0;
+  std::vector<uint32_t> histogram(told.histogram.size(), 0);
+  for (uint32_t p = 0; p < k_size * k_size; ++p) {
+    if (image.depth[p] <= 0 || image.normal[p] == vec3(0)) continue;
+    const vec2 ndc = place_of(p) / float(k_size) * 2.0f - 1.0f;
+    const vec3 x =
+        vec3(m[3]) + image.depth[p] * (-normalize(vec3(m[2])) + ndc.x * half * normalize(vec3(m[0])) -
+                                       ndc.y * half * normalize(vec3(m[1])));
+    uint32_t count = 0;
+    for (const Record& record : all) count += weight(record, x, image.normal[p]) > 0;
+    ++pixels, served += count > 0, sum += count, most = std::max(most, count);
+    ++histogram[std::min<size_t>(count, histogram.size() - 1)];
+  }
+  INFO(told.pixels << " pixels, " << told.served << " served by " << told.mean << ", " << told.most
+                   << " at most; by hand " << pixels << ", " << served << ", " << double(sum) / double(served)
+                   << ", " << most);
+  CHECK(served > 1000);
+  // The camera sees past the box: pixels that few samples hit are none of those told.
+  CHECK(double(told.pixels) == Approx(double(pixels)).epsilon(0.03));
+  CHECK(double(told.served) == Approx(double(served)).epsilon(0.03));
+  CHECK(told.mean == Approx(double(sum) / double(served)).epsilon(0.01));
+  CHECK(std::abs(int(told.most) - int(most)) <= 1);
+  CHECK(std::accumulate(told.histogram.begin(), told.histogram.end(), 0ull) == told.pixels);
+  for (size_t i = 0; i < histogram.size(); ++i)
+    CHECK(std::abs(int(told.histogram[i]) - int(histogram[i])) < int(pixels / 100));
+}
+
+TEST_CASE("lines go from the pixel to the records that serve it, and nowhere else") {
+  session::Renderer& r = bed();
+  const std::vector<uint8_t> plain = r.picture(false);
+  // How far a place is from the line to a record, in pixels.
+  const auto from_line = [](const vec2& p, const vec2& a, const vec2& b) {
+    const vec2 along = b - a;
+    const float t = std::clamp(dot(p - a, along) / std::max(dot(along, along), 1e-9f), 0.0f, 1.0f);
+    return length(p - a - t * along);
+  };
+  // A pixel that a record serves whose centre is some way off, with nothing else drawn about the middle of
+  // the line to it: not the ring, nor other lines.
+  Inspection found;
+  vec2 here(0), centre(0);
+  for (uint32_t y = k_size - 5; y > k_size / 3 && centre == vec2(0); y -= 5)
+    for (uint32_t x = 10; x < k_size - 10 && centre == vec2(0); x += 5) {
+      found = ask(r, x, y);
+      here = vec2(float(x), float(y)) + 0.5f;
+      if (!found.solid || !found.record) continue;
+      for (const auto& s : found.serving) {
+        const vec2 middle = 0.5f * (here + s.at);
+        const bool alone = std::all_of(found.serving.begin(), found.serving.end(), [&](const auto& o) {
+          return o.record == s.record || from_line(middle, here, o.at) > 3.5f;
+        });
+        const bool inside = s.at.x > 2 && s.at.y > 2 && s.at.x < k_size - 2 && s.at.y < k_size - 2;
+        const bool off_ring =
+            std::abs(length(middle - found.under_at) - found.record->radius / found.size) > 5;
+        if (inside && alone && off_ring && s.weight > 0.02f && length(s.at - here) > 12) centre = s.at;
+      }
+    }
+  REQUIRE(centre != vec2(0));
+  const std::vector<uint8_t> lined = r.picture(false);
+  CHECK(r.picture(false) == lined);
+  // Looking is not kept in a file, nor ended by it.
+  const auto png = std::filesystem::temp_directory_path() / fmt::format("lucerna-inspect-{}.png", getpid());
+  r.save(png);
+  const film::FilmImage kept = film::read_exr(png);
+  std::filesystem::remove(png);
+  size_t other = 0;
+  for (uint32_t p = 0; p < k_size * k_size; ++p)
+    other += std::abs(kept.channels[0].second[p] - float(plain[4 * p]) / 255) > 0.004f;
+  CHECK(other == 0);
+  CHECK(r.picture(false) == lined);
+  const auto off = [&](const vec2& p) {  // pixels from the nearest line
+    float nearest = length(p - here);
+    for (const auto& s : found.serving) nearest = std::min(nearest, from_line(p, here, s.at));
+    return nearest;
+  };
+  const float ring = found.record ? 1.5f * found.record->radius / found.size : 0;
+  const std::vector<uint32_t> list = changed(plain, lined);
+  CHECK(list.size() > 8);
+  for (const uint32_t p : list) {
+    INFO("pixel " << p % k_size << " " << p / k_size);
+    CHECK((off(place_of(p)) < 6 || length(place_of(p) - found.under_at) < ring + 4));
+  }
+  // Along the line something has changed everywhere.
+  for (const float t : {0.0f, 0.25f, 0.5f, 0.6f, 0.75f, 1.0f}) {
+    const vec2 at = glm::floor(here + t * (centre - here));
+    const uint32_t p = uint32_t(at.y) * k_size + uint32_t(at.x);
+    INFO("at " << t << ": pixel " << at.x << " " << at.y);
+    CHECK(std::find(list.begin(), list.end(), p) != list.end());
+  }
+  r.inspect({});
+  CHECK(r.picture(false) == plain);
+  CHECK_FALSE(r.cache_report()->looked_at.has_value());
+}
+
+TEST_CASE("normals are short lines at the centres of records that are seen") {
+  session::Renderer& r = bed();
+  // From elsewhere, so that the blocks stand before records that were asked for from where the camera was.
+  const scene::Camera kept = r.camera();
+  scene::Camera moved = kept;
+  moved.to_world[3] += vec4(-2, 1.2f, 0, 0);
+  r.set_camera(moved);
+  while (r.step()) {
+  }
+  const std::vector<uint8_t> plain = r.picture(false);
+  r.settings().set("overlay.normals", "true");
+  r.apply_settings();
+  const std::vector<uint8_t> ticked = r.picture(false);
+  CHECK(r.picture(false) == ticked);
+  CHECK(r.cache()->ready());
+  const std::vector<uint32_t> list = changed(plain, ticked);
+  CHECK(list.size() > 100);
+  // Centres of records that nothing hides, and where their normals point to.
+  const mat4 to_camera = glm::inverse(r.camera().to_world);
+  const float half = std::tan(0.5f * r.camera().yfov);
+  const auto project = [&](const vec3& x) {
+    const vec3 c(to_camera * vec4(x, 1));
+    return vec3((0.5f + 0.5f * vec2(c.x, -c.y) / (-c.z * half)) * float(k_size), -c.z);
+  };
+  const film::Image image = r.image();
+  std::vector<std::pair<vec2, vec2>> seen;
+  std::vector<vec2> hidden;  // feet
+  for (const Record& record : r.cache()->records().read()) {
+    const vec3 foot = project(record.place.position);
+    if (foot.z <= 0 || foot.x < 0 || foot.y < 0 || foot.x >= k_size || foot.y >= k_size) continue;
+    const float depth = image.depth[size_t(foot.y) * k_size + size_t(foot.x)];
+    if (foot.z > 1.1f * depth) {
+      hidden.emplace_back(foot);
+      continue;
+    }
+    seen.emplace_back(vec2(foot),
+                      vec2(project(record.place.position + 0.6f * record.radius * record.place.normal)));
+  }
+  CHECK(seen.size() > 50);
+  const auto off = [&](const vec2& p) {  // pixels from the nearest normal that is seen
+    float nearest = 1e9f;
+    for (const auto& [foot, tip] : seen) {
+      const vec2 along = tip - foot;
+      const float t = std::clamp(dot(p - foot, along) / std::max(dot(along, along), 1e-9f), 0.0f, 1.0f);
+      nearest = std::min(nearest, length(p - foot - t * along));
+    }
+    return nearest;
+  };
+  size_t strays = 0, lone = 0;
+  for (const uint32_t p : list) strays += off(place_of(p)) > 3;
+  INFO(strays << " of " << list.size() << " pixels away from every normal");
+  CHECK(strays <= list.size() / 100);
+  for (const vec2& foot : hidden) {
+    if (off(foot) < 3.5f) continue;
+    ++lone;
+    const uint32_t p = uint32_t(foot.y) * k_size + uint32_t(foot.x);
+    INFO("pixel " << p % k_size << " " << p / k_size);
+    CHECK(std::find(list.begin(), list.end(), p) == list.end());
+  }
+  INFO(hidden.size() << " records hidden, " << lone << " where no other's normal is");
+  CHECK(lone > 1);
+  r.set_camera(kept);
+}
+
+TEST_CASE("the log of building adds up to what the cache holds") {
+  session::Renderer& r = bed();
+  r.restart();
+  while (r.step()) {
+  }
+  const auto report = r.cache_report();
+  const irradiance_cache::CacheStatus& s = report->status;
+  REQUIRE(s.passes.size() > 1);
+  uint64_t records = 0, rays = 0;
+  std::array<double, irradiance_cache::k_build_steps.size()> ms{};
+  for (const irradiance_cache::CachePass& p : s.passes) {
+    CHECK(p.complete);
+    CHECK(p.paths > 0);
+    CHECK(p.asked <= p.paths);
+    CHECK(p.asked_world <= p.asked);
+    records += p.records, rays += p.rays;
+    for (size_t k = 0; k < ms.size(); ++k) ms[k] += p.ms[k];
+  }
+  CHECK(records == s.records);
+  CHECK(records == r.cache()->records().size());
+  CHECK(rays == s.rays);
+  CHECK(report->room == r.cache()->records().capacity());
+  for (size_t k = 0; k < ms.size(); ++k) {
+    INFO(irradiance_cache::k_build_steps[k]);
+    CHECK(ms[k] > 0);
+  }
+  // Steps are parts of what all stages took.
+  double stages = 0;
+  for (const auto& stage : r.stats().stages) stages += stage.ms;
+  CHECK(std::accumulate(ms.begin(), ms.end(), 0.0) - ms[size_t(irradiance_cache::BuildStep::choose)] <=
+        stages);
+  if (s.stop == irradiance_cache::StopReason::covered)
+    CHECK(double(s.passes.back().asked) <= r.settings().real("cache.stop") * double(s.passes.back().paths));
+
+  // Seen from elsewhere passes are added; begun anew they are forgotten.
+  const size_t before = s.passes.size();
+  scene::Camera moved = r.camera();
+  const scene::Camera kept = moved;
+  moved.to_world[3] += vec4(0.1f, 0, 0, 0);
+  r.set_camera(moved);
+  while (r.step()) {
+  }
+  CHECK(r.cache()->status().passes.size() > before);
+  CHECK(r.cache()->status().passes[before].number == 0);
+  r.set_camera(kept);
+  r.restart();
+  CHECK(r.cache()->status().passes.empty());
+}

@@ -1,0 +1,178 @@
+// links: ui film_io
+// The panel of the irradiance cache and the card of what lies under the pointer: over a session without a
+// renderer, and in the program itself.
+#include "fake_session.h"
+#include "support.h"
+#include "ui/viewer.h"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+using namespace lucerna;
+
+namespace {
+
+bool no_display() {
+  if (!test::with_display("x").empty()) return false;
+  WARN("skipped: neither a display nor xvfb-run");
+  return true;
+}
+
+/// Runs the steps in a window of this program.
+test::Outcome window(const std::string& steps) {
+  static test::Folder folder;
+  const auto script = folder.path / "steps.txt";
+  std::ofstream(script) << steps;
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  return test::run("env LUCERNA_TEST_SCRIPT='" + script.string() + "' " +
+                   test::with_display(self + " '[inside]'"));
+}
+
+/// How many pixels of a rectangle are near a colour (0..255).
+int near_colour(const test::Picture& p, int x0, int y0, int x1, int y1, vec3 colour, float reach = 0.06f) {
+  int n = 0;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) {
+      const vec3 d = glm::abs(p.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)) - colour / 255.0f);
+      n += std::max({d.x, d.y, d.z}) < reach;
+    }
+  return n;
+}
+
+std::string contents(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+const vec3 k_gold(255, 219, 115), k_accent(112, 164, 222), k_teal(64, 184, 172), k_violet(156, 128, 224);
+
+}  // namespace
+
+TEST_CASE("inside: one window", "[.][inside]") {
+  log::set_console_level(log::Level::info);
+  ui::ViewerOptions options;
+  options.remember = false, options.scene = "hall.gltf", options.width = 1440, options.height = 900;
+  std::ifstream stream(std::getenv("LUCERNA_TEST_SCRIPT"));
+  for (std::string line; std::getline(stream, line);) options.script.push_back(line);
+  session::Session session({});
+  REQUIRE(ui::run_viewer(session, options) == 0);
+}
+
+TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, and how to") {
+  if (no_display()) return;
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  const auto outcome = window(
+      "wait_scene\nwait_samples 2\nrender.pause\nscreenshot " + file("scene.png") +
+      // The tab, then the button in the empty panel.
+      "\nmouse.move 1366 48\nmouse.down\nmouse.up\nwait 0.2\nscreenshot " + file("empty.png") +
+      "\nmouse.move 1290 154\nmouse.down\nmouse.up\nwait 0.3\nmouse.move 640 800\nwait 0.3\nscreenshot " +
+      file("cache.png") + "\nscript.save " + file("session.lucerna") + "\nkey k\nwait 0.2\nscreenshot " +
+      file("back.png") + "\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  const std::string script = contents(file("session.lucerna"));
+  CHECK_THAT(script, Catch::Contains("window.side cache"));
+  CHECK_THAT(script, Catch::Contains("set components.secondary cache\nset components.tertiary cache"));
+  const test::Picture scene(file("scene.png")), empty(file("empty.png")), cache(file("cache.png")),
+      back(file("back.png"));
+  // The line over the title of what is shown.
+  for (const auto& [picture, left] :
+       {std::pair{&scene, true}, {&empty, false}, {&cache, false}, {&back, true}}) {
+    CHECK((near_colour(*picture, 1150, 32, 1280, 36, k_accent) > 100) == left);
+    CHECK((near_colour(*picture, 1300, 32, 1435, 36, k_accent) > 100) == !left);
+  }
+  // Numbers, bars of the overlap, inks of the passes; none of them in the empty panel.
+  const vec3 unserved(191, 31, 41), first_pass(255, 154, 99);
+  CHECK(near_colour(cache, 1150, 240, 1436, 320, unserved) > 20);
+  CHECK(near_colour(empty, 1150, 240, 1436, 320, unserved) == 0);
+  CHECK(near_colour(cache, 1150, 440, 1436, 672, first_pass, 0.15f) > 20);
+  CHECK(cache.contrast(1150, 90, 1430, 240) > 0.05);
+}
+
+TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks what lies under it") {
+  if (no_display()) return;
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  const auto outcome = window(
+      "wait_scene\nwait_samples 2\nrender.pause\ncomponents.secondary cache\nwait 0.3\n"
+      // Nothing lies over the picture yet: nothing is asked.
+      "mouse.move 500 400\nwait 0.7\nscreenshot " +
+      file("nothing.png") + "\nkey c\nkey n\nkey v\nkey v\nwait 0.7\nscreenshot " + file("card.png") +
+      // While the view is turned nothing is asked; when it stands still again it is.
+      "\nmouse.down\nmouse.move 520 420\nmouse.move 560 440\nwait 0.5\nscreenshot " + file("turning.png") +
+      "\nmouse.up\nwait 0.7\nscreenshot " + file("turned.png") +
+      // Where the card would be in the way it makes room; away from the picture it goes.
+      "\nmouse.move 1000 120\nwait 0.7\nscreenshot " + file("aside.png") +
+      "\nmouse.move 640 800\nwait 0.5\nscreenshot " + file("gone.png") +
+      "\ninspect.records 0.25 0.75\nscreenshot " + file("asked.png") + "\ninspect.none\nscript.save " +
+      file("session.lucerna") + "\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  const auto bars = [&](const char* name, bool right) {  // of the weights, in the card
+    return near_colour(test::Picture(file(name)), right ? 820 : 292, 80, right ? 1132 : 580, 460, k_gold) >
+           200;
+  };
+  CHECK_FALSE(bars("nothing.png", true));
+  CHECK(bars("card.png", true));
+  CHECK_FALSE(bars("card.png", false));
+  CHECK_FALSE(bars("turning.png", true));
+  CHECK(bars("turned.png", true));
+  CHECK(bars("aside.png", false));
+  CHECK_FALSE(bars("aside.png", true));
+  CHECK_FALSE(bars("gone.png", true));
+  CHECK(bars("asked.png", true));
+  // Light by part has its component's colour.
+  const test::Picture card(file("card.png"));
+  CHECK(near_colour(card, 818, 200, 860, 300, k_teal) > 30);
+  CHECK(near_colour(card, 818, 200, 860, 300, k_violet) > 30);
+  const std::string script = contents(file("session.lucerna"));
+  CHECK_THAT(script, Catch::Contains("set overlay.records true\nset overlay.normals true"));
+  CHECK_THAT(script, !Catch::Contains("inspect"));  // looking is no deed
+}
+
+TEST_CASE("in the program lines lead from a point to the records that serve it") {
+  if (no_display()) return;
+  if (!std::filesystem::exists(LUCERNA_BINARY)) {
+    WARN("skipped: the program is not built");
+    return;
+  }
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  const auto script = folder.path / "steps.txt";
+  std::ofstream(script) << "window.size 1100 700\nwait_scene\nview.divisor 4\nwindow.side cache\n"
+                           "inspect.none\ncache.rays 64\ncache.max_rays 64\ncomponents.secondary cache\n"
+                           "components.tertiary cache\nsamples 2\nwait_samples 2\nwait 0.5\nscreenshot " +
+                               file("plain.png") + "\ninspect.records 0.5 0.85\nscreenshot " +
+                               file("lines.png") +
+                               "\ninspect.none\noverlay.normals true\nwait 0.5\nscreenshot " +
+                               file("normals.png") + "\nquit\n";
+  const auto outcome = test::run(test::with_display(
+      std::string(LUCERNA_BINARY) + " scenes/cornell/cornell.gltf --script " + script.string()));
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  const test::Picture plain(file("plain.png")), lines(file("lines.png")), normals(file("normals.png"));
+  const auto differ = [&](const test::Picture& a, int x0, int y0, int x1, int y1) {
+    int n = 0;
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) {
+        const vec3 d = glm::abs(a.at(uint32_t(x), uint32_t(y)) - plain.at(uint32_t(x), uint32_t(y)));
+        n += std::max({d.x, d.y, d.z}) > 0.1f;
+      }
+    return n;
+  };
+  // The picture is 524 x 408 at (280, 68): the point, the far wall, and the card.
+  CHECK(differ(lines, 522, 395, 562, 435) > 40);
+  CHECK(differ(lines, 300, 150, 470, 250) == 0);
+  CHECK(near_colour(lines, 500, 80, 800, 420, k_gold) > 100);
+  CHECK(differ(normals, 290, 80, 800, 470) > 500);
+}
+
+TEST_CASE("asking a cache that nobody uses is a mistake that says what to do") {
+  if (no_display()) return;
+  const auto outcome = window("wait_scene\ninspect.records 0.5 0.5\nquit\n");
+  INFO(outcome.output);
+  CHECK(outcome.status != 0);
+  CHECK_THAT(outcome.output, Catch::Contains("line 2: inspect.records: no component takes its light from the "
+                                             "cache; set components.secondary cache"));
+}
