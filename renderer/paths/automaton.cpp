@@ -393,7 +393,7 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const L
   return packed;
 }
 
-LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached) {
+LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached, bool direct) {
   constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2;
   cached &= enabled;
   // Words of the secondary component go on into those of the tertiary one, and nothing traces behind a
@@ -421,6 +421,8 @@ LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_
     const bool looks = any && !left;
     for (uint32_t p = 1; looks && p < k_part_count; ++p)
       if (within(brings[p], cached)) routes.component[state][p] = brings[p], routes.parts |= 1u << p;
+    if (direct && looks && within(brings[0], enabled))
+      routes.component[state][0] = brings[0], routes.parts |= 1u;
     for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
       if (e == Event::diffuse && looks) continue;
       const uint8_t next = automaton.after(state, e);
@@ -435,7 +437,7 @@ LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recu
   if (!recursive || (parts & k_tertiary) == 0) return {.component = {}, .parts = parts, .traced = parts};
   // Behind ED the components are the parts, so that the rays' own routes are those of a picture of them.
   const uint32_t gathered = parts | k_secondary | (caustics ? k_caustic : 0);
-  LookupRoutes own = lookup_routes(automaton, gathered, k_tertiary);
+  LookupRoutes own = lookup_routes(automaton, gathered, k_tertiary, (parts & 1u) != 0);
   own.parts = gathered;
   if (!caustics)
     for (auto& component : own.component) component[3] = k_no_component;

@@ -83,8 +83,10 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const L
 /// For `cached` components, of the enabled ones. A lookup stands at the first diffuse vertex behind which
 /// nothing but cached components has a further diffuse event: with secondary and tertiary cached at the
 /// first, with tertiary alone at the second. Tertiary light behind a cached secondary one comes from the same
-/// lookup, whatever its own solver.
-LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached);
+/// lookup, whatever its own solver. `direct`: what is looked up holds light straight from the environment
+/// too; wherever a lookup stands it then brings that as well, to its component, as far as that is enabled.
+LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached,
+                           bool direct = false);
 
 /// For the rays of a cache's records, which begin in the state after ED and bring the parts that the
 /// picture's lookups read. `recursive`: their tertiary light is looked up in turn, at the first vertex behind

@@ -120,6 +120,12 @@ std::vector<OptionInfo> make_options() {
       real("cache.noise", "0.2", 0, 10, "",
            "Irradiance cache: relative standard error of a record above which it gets another level of "
            "rays."),
+      boolean("cache.environment",
+              "Irradiance cache: records also hold the light straight from the sky, so that surfaces that it "
+              "lights need no noisy shadow rays to it."),
+      real("cache.environment_threshold", "16", 2, 1000000, "x mean",
+           "Irradiance cache: texels of the environment brighter than so many times its mean radiance are no "
+           "sky but a sun, and are sampled directly everywhere."),
       integer("cache.max_records", 100000, 16, 400000, "records",
               "Irradiance cache: room for records, of 576 bytes each; building ends when it is used up."),
       integer("cache.passes", 12, 1, 64, "passes", "Irradiance cache: passes of building at most."),

@@ -68,7 +68,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   };
   // Everything that can fail happens before the old scene is given up.
   report(0, "flattening the scene");
-  upload::FlatScene flat = upload::flatten(*scene);
+  upload::FlatScene flat = upload::flatten(*scene, wanted_sun_threshold(settings));
   report(0.2f, "building the BVH");
   const bvh::Triangles triangles{flat.positions, flat.non_opaque};
   const std::string& tracer = settings.text("tracer");
@@ -113,7 +113,7 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
   gpu::Defines defines = options_.defines;
   if (settings_.boolean("sampling.coherent"))
     defines["LUCERNA_COHERENT"] = settings_.text("sampling.tile") == "8" ? "3" : "4";
-  paths::LookupRoutes routes = wanted_routes();
+  paths::LookupRoutes routes = wanted_routes(device_scene.effects());
   paths::LookupRoutes record_routes;
   std::unique_ptr<irradiance_cache::Cache> cache;
   std::function<void(gpu::Resources&)> bind;
@@ -183,14 +183,21 @@ irradiance_cache::CacheView Renderer::cache_view() const {
   return view;
 }
 
-paths::LookupRoutes Renderer::wanted_routes() const {
+paths::LookupRoutes Renderer::wanted_routes(const upload::Effects& effects) const {
   const plan::Plan plan = plan::make_plan(settings_);
-  return paths::lookup_routes(automaton_, plan.enabled(), plan.looked_up());
+  return paths::lookup_routes(automaton_, plan.enabled(), plan.looked_up(), effects.sky_apart);
+}
+
+float Renderer::wanted_sun_threshold(const plan::Settings& settings) const {
+  if (!settings.boolean("cache.environment")) return 0;
+  const plan::Plan plan = plan::make_plan(settings);
+  const uint32_t parts = paths::lookup_routes(automaton_, plan.enabled(), plan.looked_up(), true).parts;
+  return (parts >> shared::k_part_direct & 1u) != 0 ? float(settings.real("cache.environment_threshold")) : 0;
 }
 
 paths::LookupRoutes Renderer::wanted_record_routes(const upload::Effects& effects) const {
   constexpr uint32_t k_tertiary = 1u << 2;
-  return paths::record_routes(automaton_, wanted_routes().parts,
+  return paths::record_routes(automaton_, wanted_routes(effects).parts,
                               (plan::make_plan(settings_).looked_up() & k_tertiary) != 0,
                               effects.specular || effects.solid_glass || effects.thin_glass);
 }
@@ -207,7 +214,7 @@ void Renderer::restart(Lookups lookups) {
   if (cache_ && lookups == Lookups::clear) cache_->clear();
   if (cache_ && lookups == Lookups::extend) cache_->extend();
   // What is switched off changes without new kernels.
-  routes_.traced = wanted_routes().traced;
+  routes_.traced = wanted_routes(flat_.effects).traced;
   wavefront_->clear(*film_);
   wavefront_->clear(*coarse_);
   wavefront_->reset_stats();
@@ -248,6 +255,9 @@ film::ImageError Renderer::image_error() {
 }
 
 std::optional<double> Renderer::bias(size_t component) const {
+  // Light that is looked up for a component besides its solver's, straight from the sky.
+  for (const auto& by_part : routes_.component)
+    if (by_part[shared::k_part_direct] == component) return std::nullopt;
   return plan::make_plan(settings_).bias(component);
 }
 
@@ -312,15 +322,21 @@ void Renderer::apply_settings() {
   const bool cache_changed = cache_ && std::any_of(changed.begin(), changed.end(), [](const std::string& k) {
                                return k.starts_with("cache.");
                              });
-  const bool kernels = wanted_routes().component != routes_.component ||
-                       wanted_record_routes(device_scene_->effects()).component != record_routes_.component ||
-                       cache_changed || changed.contains("sampling.coherent") ||
-                       (changed.contains("sampling.tile") && settings_.boolean("sampling.coherent"));
   if (changed.contains("camera")) choose_camera(settings_.text("camera"));
   if (rebuild) {
     install(scene_, settings_, camera_, {});
     return;
   }
+  if (const float threshold = wanted_sun_threshold(settings_); threshold != flat_.sun_threshold) {
+    flat_.sun_threshold = threshold;
+    upload::flatten_lights(*scene_, flat_);
+    device_scene_->update_lights(*device_, flat_);
+    wavefront_->rebind(*device_scene_);
+  }
+  const bool kernels = wanted_routes(flat_.effects).component != routes_.component ||
+                       wanted_record_routes(flat_.effects).component != record_routes_.component ||
+                       cache_changed || changed.contains("sampling.coherent") ||
+                       (changed.contains("sampling.tile") && settings_.boolean("sampling.coherent"));
   if (kernels) build_wavefront(*device_scene_);
   again |= kernels;
   if (changed.contains("samples") && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));

@@ -168,9 +168,11 @@ class Renderer {
   bool render_item(const std::function<bool()>& cancel);
   irradiance_cache::CacheOptions cache_options() const;
   irradiance_cache::CacheView cache_view() const;
-  paths::LookupRoutes wanted_routes() const;  ///< by the settings
+  paths::LookupRoutes wanted_routes(const upload::Effects& effects) const;  ///< by the settings
   paths::LookupRoutes wanted_record_routes(
       const upload::Effects& effects) const;  ///< ... of the rays of records
+  /// upload::FlatScene::sun_threshold that they ask for.
+  float wanted_sun_threshold(const plan::Settings& settings) const;
   /// Adds a line to the ledger when one is due, or at once.
   void note_progress(bool at_once);
 

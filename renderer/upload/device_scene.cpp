@@ -45,6 +45,8 @@ void DeviceScene::update_lights(gpu::Device& device, const FlatScene& flat) {
   light_pmf_ = upload(device, "light probabilities", flat.primitive_light_pmf, false);
   environment_texels_ = upload(device, "environment", flat.environment_texels);
   environment_alias_ = upload(device, "environment table", flat.environment_alias);
+  sun_cells_ = upload(device, "sun table", flat.sun_cells);
+  sun_pmf_ = upload(device, "sun probabilities", flat.sun_pmf);
   effects_ = flat.effects;
 }
 
@@ -59,6 +61,8 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("PrimitiveLightPmf", light_pmf_);
   r.set("environment_texels", environment_texels_);
   r.set("environment_alias", environment_alias_);
+  r.set("sun_cells", sun_cells_);
+  r.set("sun_pmf", sun_pmf_);
   r.set("bsdf_table", tables_);
   r.set("bvh_nodes", nodes_);
   r.set("bvh_triangles", bvh_triangles_);
@@ -72,6 +76,8 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_LIGHTS", e.lights);
   set("LUCERNA_EMISSIVE", e.emissive);
   set("LUCERNA_ENVIRONMENT_MAP", e.environment_map);
+  set("LUCERNA_SKY_APART", e.sky_apart);
+  set("LUCERNA_SUN", e.sun);
   set("LUCERNA_SPECULAR", e.specular);
   set("LUCERNA_SOLID_GLASS", e.solid_glass);
   set("LUCERNA_THIN_GLASS", e.thin_glass);

@@ -13,8 +13,8 @@ class DeviceScene {
   DeviceScene(gpu::Device& device, const FlatScene& flat, const bvh::BvhData& tree);
   /// Uploads lights and environment again (sizes may differ). Binds anew: call bind() afterwards.
   void update_lights(gpu::Device& device, const FlatScene& flat);
-  /// Names: scene_*, texture_bucket_N, light_alias, PrimitiveLightPmf, environment_*, bsdf_table, bvh_nodes,
-  /// bvh_triangles.
+  /// Names: scene_*, texture_bucket_N, light_alias, PrimitiveLightPmf, environment_*, sun_*, bsdf_table,
+  /// bvh_nodes, bvh_triangles.
   void bind(gpu::Resources& resources) const;
   /// #defines that compile in what the scene needs and nothing else.
   gpu::Defines defines() const;
@@ -22,7 +22,7 @@ class DeviceScene {
 
  private:
   gpu::Buffer triangles_, vertices_, tangents_, extra_, materials_, lights_, light_alias_, light_pmf_,
-      environment_texels_, environment_alias_, tables_, nodes_, bvh_triangles_;
+      environment_texels_, environment_alias_, sun_cells_, sun_pmf_, tables_, nodes_, bvh_triangles_;
   std::vector<gpu::TextureArray> buckets_;
   Effects effects_;
 };

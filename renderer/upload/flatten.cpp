@@ -153,10 +153,11 @@ void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
 
 }  // namespace
 
-FlatScene flatten(const scene::Scene& scene) {
+FlatScene flatten(const scene::Scene& scene, float sun_threshold) {
   FlatScene flat;
   flatten_geometry(scene, flat);
   flatten_materials(scene, flat);
+  flat.sun_threshold = sun_threshold;
   flatten_lights(scene, flat);
   return flat;
 }

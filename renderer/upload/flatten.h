@@ -16,9 +16,10 @@ struct Effects {
        thin_glass = false, diffuse_transmission = false, volumes = false, unlit = false, alpha = false,
        normal_maps = false, vertex_extra = false, tex_base = false, tex_metallic_roughness = false,
        tex_emission = false, tex_specular = false, tex_transmission = false, tex_diffuse_transmission = false;
-  bool uv_transforms = false;  ///< a use of a texture that is scaled, turned or shifted
-  bool tex_nearest = false;                                        ///< a texture that is not filtered
-  bool tex_wraps = false;                                          ///< a texture that does not repeat
+  bool sky_apart = false, sun = false;  ///< FlatScene::sun_threshold; texels that are brighter
+  bool uv_transforms = false;           ///< a use of a texture that is scaled, turned or shifted
+  bool tex_nearest = false;             ///< a texture that is not filtered
+  bool tex_wraps = false;               ///< a texture that does not repeat
   std::array<uint32_t, shared::k_texture_uses> texture_buckets{};  ///< by use: bit b: bucket b may be read
   bool transparent() const { return alpha || thin_glass; }
 };
@@ -43,6 +44,10 @@ struct FlatScene {
   std::vector<float> primitive_light_pmf;  ///< pmf / area
   std::vector<vec4> environment_texels, environment_alias;
   std::vector<vec4> bsdf_tables;
+  /// Above 0: the environment is two emitters (shared/scene.h), its sun the texels of more than so many times
+  /// its mean luminance.
+  float sun_threshold = 0;
+  std::vector<vec4> sun_cells, sun_pmf;
   uint32_t environment_width = 0, environment_height = 0;
   vec3 environment_radiance{0};
   float environment_rotation = 0, environment_light_pmf = 0;
@@ -51,8 +56,9 @@ struct FlatScene {
 };
 
 /// Everything. Throws Error when the scene exceeds what indices or texture arrays can hold.
-FlatScene flatten(const scene::Scene& scene);
-/// Lights and environment only (after an edit of their strength); `flat` must come from the same scene.
+FlatScene flatten(const scene::Scene& scene, float sun_threshold = 0);
+/// Lights and environment only (after an edit of their strength, or of flat.sun_threshold); `flat` must come
+/// from the same scene.
 void flatten_lights(const scene::Scene& scene, FlatScene& flat);
 
 }  // namespace lucerna::upload

@@ -13,8 +13,31 @@ namespace {
 using namespace shared;
 float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
 
-/// Radiance map and the weights of its texels: luminance under the bilinear filter's support (a 3x3 tent),
-/// times the solid angle of the texel, so that no direction with light has density 0.
+/// Solid angle over 2 pi / width.
+double row_band(uint32_t row, uint32_t h) {
+  return std::cos(k_pi * row / h) - std::cos(k_pi * (row + 1.0) / h);
+}
+
+/// Weights of texels: luminance under the bilinear filter's support (a 3x3 tent), times the solid angle of
+/// the texel, so that no direction with light has density 0.
+std::vector<double> texel_weights(const std::vector<double>& y, uint32_t w, uint32_t h) {
+  std::vector<double> weights(y.size());
+  for (uint32_t row = 0; row < h; ++row) {
+    const double band = row_band(row, h);
+    for (uint32_t column = 0; column < w; ++column) {
+      double sum = 0;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          const uint32_t r = uint32_t(std::clamp(int(row) + dy, 0, int(h) - 1)), c = (column + w + dx) % w;
+          sum += y[size_t(r) * w + c] * (dx ? 1 : 2) * (dy ? 1 : 2) / 16.0;
+        }
+      weights[size_t(row) * w + column] = sum * band;
+    }
+  }
+  return weights;
+}
+
+/// Stores the map and gives the luminances of its texels.
 std::vector<double> flatten_environment_map(const scene::Image& image, FlatScene& flat) {
   const uint32_t w = image.width, h = image.height;
   flat.environment_width = w;
@@ -27,20 +50,41 @@ std::vector<double> flatten_environment_map(const scene::Image& image, FlatScene
     flat.environment_texels[i] = vec4(c, 0);
     y[i] = luminance(c);
   }
-  std::vector<double> weights(y.size());
-  for (uint32_t row = 0; row < h; ++row) {
-    const double band = std::cos(k_pi * row / h) - std::cos(k_pi * (row + 1.0) / h);
-    for (uint32_t column = 0; column < w; ++column) {
-      double sum = 0;
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
-          const uint32_t r = uint32_t(std::clamp(int(row) + dy, 0, int(h) - 1)), c = (column + w + dx) % w;
-          sum += y[size_t(r) * w + c] * (dx ? 1 : 2) * (dy ? 1 : 2) / 16.0;
-        }
-      weights[size_t(row) * w + column] = sum * band;
-    }
+  return y;
+}
+
+/// Which texels are the sun: those above the threshold times the mean over the sphere.
+std::vector<uint8_t> sun_texels(const std::vector<double>& y, uint32_t w, uint32_t h, double threshold) {
+  double sum = 0;
+  for (uint32_t row = 0; row < h; ++row)
+    for (uint32_t column = 0; column < w; ++column) sum += y[size_t(row) * w + column] * row_band(row, h);
+  const double mean = sum / (2.0 * w);  // bands sum to 2
+  std::vector<uint8_t> sun(y.size());
+  for (size_t i = 0; i < y.size(); ++i) sun[i] = y[i] > threshold * mean;
+  return sun;
+}
+
+double sum_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum;
+}
+
+/// The sun's table and pmf, the latter without the sun's own; returns the number of its cells.
+uint32_t flatten_sun(const std::vector<double>& weights, FlatScene& flat) {
+  std::vector<double> cells;
+  std::vector<vec4> texels;
+  const double total = sum_of(weights);
+  flat.sun_pmf.assign((weights.size() + 3) / 4, vec4(0));
+  for (size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] <= 0) continue;
+    flat.sun_pmf[i / 4][int(i % 4)] = float(weights[i] / total);
+    cells.push_back(weights[i]);
+    texels.emplace_back(as_float(uint32_t(i)), 0, 0, 0);
   }
-  return weights;
+  flat.sun_cells = build_alias_table(cells);
+  flat.sun_cells.insert(flat.sun_cells.end(), texels.begin(), texels.end());
+  return uint32_t(cells.size());
 }
 
 /// Mean luminance factor of the emission texture over a triangle, by 16 points; the estimate only steers
@@ -68,6 +112,8 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
   flat.primitive_light_pmf.clear();
   flat.environment_texels.clear();
   flat.environment_alias.clear();
+  flat.sun_cells.clear();
+  flat.sun_pmf.clear();
   flat.environment_width = flat.environment_height = 0;
   std::vector<double> weights;
   const auto add = [&](uint32_t kind, vec3 a, vec4 b, vec4 c, vec4 d, double power) {
@@ -114,22 +160,37 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
   const bool map = environment.scale > 0 && !(constant && luminance(environment.radiance) <= 0);
   flat.environment_radiance = vec3(map ? environment.scale : 0);
   flat.environment_rotation = environment.rotation * k_pi / 180;
-  double environment_weight = 0;
+  double environment_weight = 0, sun_weight = 0;
+  std::vector<double> sun_weights;  // of texels
+  flat.effects.sky_apart = map && flat.sun_threshold > 0;
   if (map) {
-    const std::vector<double> texels =
+    std::vector<double> y =
         flatten_environment_map(constant ? one_texel : scene.images[environment.image], flat);
+    const uint32_t w = flat.environment_width, h = flat.environment_height;
+    // Mean radiance times solid angle through the scene's disk.
+    const auto power = [&](double sum) { return sum * 2 * k_pi / w * environment.scale * disk; };
+    std::vector<uint8_t> sun(y.size());
+    if (flat.effects.sky_apart) {
+      sun = sun_texels(y, w, h, double(flat.sun_threshold));
+      std::vector<double> of_sun(y.size());
+      for (size_t i = 0; i < y.size(); ++i)
+        if (sun[i]) std::swap(of_sun[i], y[i]);
+      sun_weights = texel_weights(of_sun, w, h);
+      sun_weight = power(sum_of(sun_weights));
+    }
+    const std::vector<double> texels = texel_weights(y, w, h);
     flat.environment_alias = build_alias_table(texels);
-    double total = 0;
-    for (double t : texels) total += t;
-    if (total > 0) {
-      for (size_t i = 0; i < texels.size(); ++i) flat.environment_texels[i].w = float(texels[i] / total);
-      // Mean radiance times solid angle through the scene's disk.
-      environment_weight = total * 2 * k_pi / flat.environment_width * environment.scale * disk;
+    const double total = sum_of(texels);
+    environment_weight = power(total);
+    for (size_t i = 0; i < texels.size(); ++i) {
+      const float pmf = total > 0 ? float(texels[i] / total) : 0;
+      flat.environment_texels[i].w = sun[i] ? -pmf : pmf;
     }
   }
+  flat.effects.sun = sun_weight > 0;
   // The environment and the sun count with the whole scene's cross-section, of which an interior receives
   // little: neither they nor the lamps get less than a share of the samples.
-  double local = 0, distant = environment_weight;
+  double local = 0, distant = environment_weight + sun_weight;
   for (size_t i = 0; i < weights.size(); ++i) {
     (is_distant(i) ? distant : local) += weights[i];
   }
@@ -139,9 +200,19 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
       weights[i] *= is_distant(i) ? share / distant : (1 - share) / local;
     }
     environment_weight *= share / distant;
+    sun_weight *= share / distant;
   }
   flat.environment_light_pmf = 0;
-  if (environment_weight > 0) {
+  if (flat.effects.sky_apart) {
+    const double all = environment_weight + sun_weight + sum_of(weights);
+    if (all > 0) flat.environment_light_pmf = float(environment_weight / all);
+    if (flat.effects.sun) {
+      const uint32_t cells = flatten_sun(sun_weights, flat);
+      add(k_light_environment, vec3(0), vec4(as_float(cells), 0, 0, 0), vec4(0), vec4(0), sun_weight);
+    }
+    if (weights.empty())
+      add(k_light_point, vec3(0), vec4(0), vec4(0), vec4(0), 1);  // dark: a table is never empty
+  } else if (environment_weight > 0) {
     add(k_light_environment, vec3(0), vec4(0), vec4(0), vec4(0), environment_weight);
     double total = 0;
     for (double w : weights) total += w;
@@ -149,6 +220,8 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
   }
   flat.light_alias = build_alias_table(weights);
   if (flat.light_alias.empty()) flat.lights.clear();
+  if (flat.effects.sun)
+    for (vec4& four : flat.sun_pmf) four *= flat.light_alias.back().z;
   flat.primitive_light_pmf.assign(emissive.empty() ? 0 : flat.triangles.size(), 0.f);
   for (size_t k = 0; k < emissive.size() && !flat.light_alias.empty(); ++k)
     flat.primitive_light_pmf[emissive[k].first] = flat.light_alias[k].z / emissive[k].second;

@@ -42,7 +42,7 @@ void main() {
   p.pdf = 0.0;
   p.pixel = 0x80000000u | record;  // sequences apart from the pixels'
   p.sample_index = sample_index;
-  p.bits = push.state | 1u << 8;
+  p.bits = push.state | k_path_sky_only | 1u << 8;
   p.medium = 0u;
   p.travelled = 0.0;
   p.eta_scale = 1.0;

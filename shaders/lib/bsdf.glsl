@@ -339,6 +339,15 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   return v;
 }
 
+// Whether it has a glossy lobe that light samples can reach.
+bool bsdf_glossy(Bsdf b) {
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+  return !b.delta && b.p_specular + b.p_specular_ms + b.p_glass + b.p_glass_ms > 0.0;
+#else
+  return false;
+#endif
+}
+
 // Draws a direction from the mixture of all lobes, then the label. u: direction; lobe: which lobe, which label.
 // Returns event k_event_null or weight 0 (absorbed) too.
 BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {

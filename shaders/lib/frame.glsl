@@ -15,6 +15,7 @@ uint automaton_after(uint state, uint event) { return event == 0u ? 1u : state; 
 uint automaton_component(uint state) { return 0u; }
 bool automaton_live(uint state) { return true; }
 bool automaton_no_diffuse(uint state) { return state == 0u; }
+bool automaton_goes_on(uint state) { return true; }
 uint automaton_account(uint state) { return 0u; }
 #else
 // One word a state (paths/automaton.h, pack()).
@@ -22,10 +23,18 @@ uint automaton_after(uint state, uint event) { return (frame.automaton[state] >>
 uint automaton_component(uint state) { return (frame.automaton[state] >> 24) & 7u; }
 bool automaton_live(uint state) { return (frame.automaton[state] & (1u << 27)) != 0u; }
 bool automaton_no_diffuse(uint state) { return (frame.automaton[state] & (1u << 28)) != 0u; }
+// Whether there is anything behind a further event that the scene's surfaces can bring about.
+bool automaton_goes_on(uint state) {
+  bool on = automaton_live(automaton_after(state, 0u));
+#if LUCERNA_SPECULAR || LUCERNA_SOLID_GLASS || LUCERNA_THIN_GLASS
+  on = on || automaton_live(automaton_after(state, 1u)) || automaton_live(automaton_after(state, 2u));
+#endif
+  return on;
+}
 uint automaton_account(uint state) { return (frame.automaton[state] >> 29) & 3u; }
 #endif
 
-uint path_automaton(PathState p) { return p.bits & 0xffu; }
+uint path_automaton(PathState p) { return p.bits & k_path_state_mask; }
 uint path_depth(PathState p) { return (p.bits >> 8) & 0xffffu; }
 uint path_nulls(PathState p) { return p.bits >> 24; }
 

@@ -27,6 +27,7 @@ struct LightSample {
   vec3 target;       // point on the triangle
   vec3 normal;       // of the triangle, unit, on our side
   vec3 offset;       // error bound of target, as Surface::offset
+  bool sky;          // of the sky, where that is apart
 };
 
 // `bits`: 32 uniform random bits; what is left of them within the entry flips its coin (exact to count / 2^32).
@@ -52,29 +53,63 @@ vec3 environment_direction(vec2 uv) {
 }
 #endif
 
+#if LUCERNA_ENVIRONMENT_MAP
+// What the map says of a direction: the four texels that it lies between and the one that it lies in.
+struct EnvironmentTexels {
+  vec4 a, b, c, d;  // upper left and right, lower left and right
+  vec2 f;           // from a to d
+  int texel;
+  float pmf;        // of that texel
+  float band;       // its row's solid angle over 2pi
+};
+EnvironmentTexels environment_texels_at(vec3 direction) {
+  EnvironmentTexels t;
+  ivec2 size = ivec2(frame.environment_width, frame.environment_height);
+  vec2 uv = environment_uv(direction);
+  vec2 at = uv * vec2(size) - 0.5;
+  ivec2 i = ivec2(floor(at));
+  t.f = at - vec2(i);
+  int x0 = (i.x + size.x) % size.x, x1 = (i.x + 1) % size.x;
+  int y0 = clamp(i.y, 0, size.y - 1), y1 = clamp(i.y + 1, 0, size.y - 1);
+  t.a = texelFetch(environment_texels, y0 * size.x + x0), t.b = texelFetch(environment_texels, y0 * size.x + x1);
+  t.c = texelFetch(environment_texels, y1 * size.x + x0), t.d = texelFetch(environment_texels, y1 * size.x + x1);
+  ivec2 cell = clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1);
+  t.texel = cell.y * size.x + cell.x;
+  t.pmf = texelFetch(environment_texels, t.texel).w;
+  // Uniform in solid angle within a texel's row band: area = 2pi/w * (cos top - cos bottom).
+  t.band = cos(k_pi * float(cell.y) / float(size.y)) - cos(k_pi * float(cell.y + 1) / float(size.y));
+  return t;
+}
+vec3 environment_mix(vec3 a, vec3 b, vec3 c, vec3 d, vec2 f) {
+  return frame.environment_radiance * mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
+}
+// A direction through a cell of the map, evenly by solid angle.
+vec3 environment_in_cell(uint cell, vec2 u) {
+  uint column = cell % frame.environment_width, row = cell / frame.environment_width;
+  float c0 = cos(k_pi * float(row) / float(frame.environment_height));
+  float c1 = cos(k_pi * float(row + 1u) / float(frame.environment_height));
+  float y = mix(c0, c1, u.y);
+  float sin_theta = sqrt(max(0.0, 1.0 - y * y));
+  float phi = ((float(column) + u.x) / float(frame.environment_width) - 0.5) * 2.0 * k_pi - frame.environment_rotation;
+  return vec3(sin_theta * cos(phi), y, sin_theta * sin(phi));
+}
+#endif
+
+#if LUCERNA_SKY_APART
+#include "lib/sky.glsl"
+#else
 // Radiance that arrives from direction -d, and the density with which sample_light chooses d.
 vec3 environment_radiance(vec3 d, out float pdf) {
   pdf = 0.0;
 #if LUCERNA_ENVIRONMENT_MAP
-  ivec2 size = ivec2(frame.environment_width, frame.environment_height);
-  vec2 uv = environment_uv(d);
-  vec2 at = uv * vec2(size) - 0.5;
-  ivec2 i = ivec2(floor(at));
-  vec2 f = at - vec2(i);
-  int x0 = (i.x + size.x) % size.x, x1 = (i.x + 1) % size.x;
-  int y0 = clamp(i.y, 0, size.y - 1), y1 = clamp(i.y + 1, 0, size.y - 1);
-  vec3 top = mix(texelFetch(environment_texels, y0 * size.x + x0).rgb, texelFetch(environment_texels, y0 * size.x + x1).rgb, f.x);
-  vec3 low = mix(texelFetch(environment_texels, y1 * size.x + x0).rgb, texelFetch(environment_texels, y1 * size.x + x1).rgb, f.x);
-  ivec2 cell = clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1);
-  float pmf = texelFetch(environment_texels, cell.y * size.x + cell.x).w;
-  // Uniform in solid angle within a texel's row band: area = 2pi/w * (cos top - cos bottom).
-  float band = cos(k_pi * float(cell.y) / float(size.y)) - cos(k_pi * float(cell.y + 1) / float(size.y));
-  pdf = frame.environment_light_pmf * pmf * float(size.x) / (2.0 * k_pi * band);
-  return frame.environment_radiance * mix(top, low, f.y);
+  EnvironmentTexels t = environment_texels_at(d);
+  pdf = frame.environment_light_pmf * t.pmf * float(frame.environment_width) / (2.0 * k_pi * t.band);
+  return environment_mix(t.a.rgb, t.b.rgb, t.c.rgb, t.d.rgb, t.f);
 #else
   return frame.environment_radiance;
 #endif
 }
+#endif
 
 #if LUCERNA_EMISSIVE
 // Density with which sample_light chooses the direction to a point on an emissive triangle.
@@ -84,8 +119,9 @@ float emissive_pdf(uint primitive, float distance2, float cos_light) {
 #endif
 
 #if LUCERNA_LIGHTS
-// Chooses by `choice` (32 bits), places by u; detail: 64 further bits (environment). Needs lib/surface.glsl before it.
-LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail) {
+// Chooses by `choice` (32 bits), places by u; detail: 64 further bits (environment). Where the sky is apart its
+// probability is sky_share, and the other lights share what is left. Needs lib/surface.glsl before it.
+LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail, float sky_share) {
   LightSample s;
   s.primitive = k_no_hit;
   s.uv = vec2(0.0);
@@ -93,11 +129,19 @@ LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail) {
   s.normal = vec3(0.0);
   s.offset = vec3(0.0);
   s.delta = true;
+  s.sky = false;
   float pmf;
   uint light = alias_choose(light_alias, frame.light_count, choice, pmf);
+#if LUCERNA_SKY_APART
+  s.sky = float(detail.y >> 8) * (1.0 / 16777216.0) < sky_share;
+  pmf *= 1.0 - sky_share;
+#endif
   int at = int(light * k_light_texels);
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
   uint kind = floatBitsToUint(a.w);
+#if LUCERNA_SKY_APART
+  if (s.sky) kind = k_light_environment;
+#endif
   // Point and spot: irradiance I/d^2; a spot falls off smoothly between its cones (glTF's recommended curve).
   vec3 to = a.xyz - position;
   float d2 = max(dot(to, to), 1e-20);
@@ -141,19 +185,19 @@ LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail) {
 #endif
 #if LUCERNA_ENVIRONMENT_MAP
   if (kind == k_light_environment) {
-    uint cells = frame.environment_width * frame.environment_height;
-    float texel_pmf;
-    uint cell = alias_choose(environment_alias, cells, detail.x, texel_pmf);
-    uint column = cell % frame.environment_width, row = cell / frame.environment_width;
-    float c0 = cos(k_pi * float(row) / float(frame.environment_height));
-    float c1 = cos(k_pi * float(row + 1u) / float(frame.environment_height));
-    float y = mix(c0, c1, u.y);
-    float sin_theta = sqrt(max(0.0, 1.0 - y * y));
-    float phi = ((float(column) + u.x) / float(frame.environment_width) - 0.5) * 2.0 * k_pi - frame.environment_rotation;
-    s.direction = vec3(sin_theta * cos(phi), y, sin_theta * sin(phi));
     s.distance = k_infinity;
     s.delta = false;
+#if LUCERNA_SKY_APART
+    s.direction = environment_in_cell(sky_or_sun_cell(s.sky, floatBitsToUint(b.x), detail.x), u);
+    Environment e = environment_radiance(s.direction);
+    s.radiance = s.sky ? e.sky : e.sun;
+    s.pdf = s.sky ? e.pdf_sky * sky_share : e.pdf_sun * (1.0 - sky_share);
+#else
+    uint cells = frame.environment_width * frame.environment_height;
+    float texel_pmf;
+    s.direction = environment_in_cell(alias_choose(environment_alias, cells, detail.x, texel_pmf), u);
     s.radiance = environment_radiance(s.direction, s.pdf);
+#endif
   }
 #endif
   return s;

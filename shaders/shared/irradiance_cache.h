@@ -9,7 +9,7 @@
 #include "shaders/shared/compat.h"
 LUCERNA_SHARED_BEGIN
 
-LUCERNA_CONST uint k_part_direct = 0u;     ///< L: in a cache, the environment's alone (E_env)
+LUCERNA_CONST uint k_part_direct = 0u;     ///< L: in a cache, the sky's alone (E_env; lib/sky.glsl)
 LUCERNA_CONST uint k_part_secondary = 1u;  ///< [SG]*DL
 LUCERNA_CONST uint k_part_tertiary = 2u;   ///< the rest
 LUCERNA_CONST uint k_part_caustic = 3u;    ///< [SG]+L

@@ -72,6 +72,15 @@ LUCERNA_CONST uint k_light_environment = 4u;
 
 // light_alias: one texel a light: (threshold, bits alias, pmf of this light, pmf of the alias).
 // environment_texels: one a texel: (radiance rgb, pmf of the texel). environment_alias: like light_alias.
+//
+// Where records hold the environment's light (LUCERNA_SKY_APART) it is two emitters: the sun, texels brighter than a
+// threshold, and the sky, the others; filtered between texels, each has its share of a direction's radiance. The pmf and
+// the alias table above are then the sky's, the pmf's sign bit tells a texel of the sun, and the sky is no entry of
+// scene_lights: light samples choose it with a probability of its own. The sun (LUCERNA_SUN) is the entry of
+// k_light_environment, with bits of the number of its cells in texel 1 x. Its cells are those from which bilinear
+// filtering reaches a texel of the sun.
+// sun_cells: alias table of the cells, like light_alias, then bits of the texel that each is.
+// sun_pmf: four texels each: pmf of the texel as the sun's, times the sun's own in light_alias.
 // bsdf_table: see renderer/upload/bsdf_table.h.
 
 /// What every kernel knows of the frame. Lengths in metres, angles in radians.
@@ -88,7 +97,7 @@ struct Frame {
   uint light_count;
   uint environment_width, environment_height;  ///< 0: there is none
   float environment_rotation; ///< radians
-  float environment_light_pmf;///< probability that the light sampler chooses the environment (0: not sampled)
+  float environment_light_pmf;///< probability that the light sampler chooses the environment, or the sky (0: not sampled)
   uint max_depth;
   uint roulette_depth;
   uint automaton_states;

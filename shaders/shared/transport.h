@@ -8,6 +8,12 @@ LUCERNA_CONST uint k_component_count = 4u;
 /// States of the automaton from here on are those of paths that a lookup left alone: nothing is cut off for them.
 LUCERNA_CONST uint k_fallback_state = 8u;
 
+// Of a path since its last scattering event, where records hold the sky's light (LUCERNA_SKY_APART):
+LUCERNA_CONST uint k_path_sky_only = 1u << 5;     ///< a record's first ray: of all lights it sees the sky alone
+LUCERNA_CONST uint k_path_sky_unasked = 1u << 6;  ///< light samples at the last vertex were of other lights only
+LUCERNA_CONST uint k_path_sky_known = 1u << 7;    ///< what the ray would bring of the sky has been looked up
+LUCERNA_CONST uint k_path_state_mask = 0x1fu;
+
 /// Bytes a path in flight takes on the device (ray, hit, shadow ray, state, queues): see PathBuffers.
 /// One path: `throughput` already divided by all probabilities.
 struct PathState {
@@ -15,7 +21,7 @@ struct PathState {
   float pdf;           ///< of the last scattered direction, mixture of all lobes, per solid angle; 0: delta or camera
   uint pixel;          ///< index into the film (y * width + x)
   uint sample_index;   ///< of the pixel
-  uint bits;           ///< 0-7 automaton state, 8-23 scattering events so far, 24-31 null events since the last one
+  uint bits;           ///< 0-4 automaton state, 5-7 k_path_*, 8-23 scattering events so far, 24-31 null events since the last
   uint medium;         ///< material whose volume the ray is in, plus 1; 0: none
   float travelled;     ///< metres since the last scattering event, over null events
   float eta_scale;     ///< product of (eta_i/eta_t)^2 that refraction has put into the throughput

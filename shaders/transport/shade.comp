@@ -8,33 +8,7 @@
 #include "irradiance_cache/lookup.glsl"
 #endif
 
-layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
-
-// Power heuristic (Veach 1997, exponent 2), as a function of the densities' ratio so that nothing overflows.
-float mis_weight(float mine, float other) {
-  float r = other / max(mine, 1e-37);
-  return 1.0 / (1.0 + r * r);
-}
-
-#if LUCERNA_EMISSIVE && (LUCERNA_TEX_EMISSION || LUCERNA_ALPHA || LUCERNA_VERTEX_EXTRA)
-#define LUCERNA_LIGHT_SURFACE 1
-// Radiance that a sampled emissive triangle sends along -direction; textures and coverage by alpha included.
-vec3 light_radiance(LightSample l) {
-  Ray towards;
-  towards.origin = l.target - l.direction * l.distance;
-  towards.direction = l.direction;
-  towards.tmax = k_infinity;
-  towards.slot = 0u;
-  Hit there;
-  there.t = l.distance;
-  there.prim = l.primitive;
-  there.u = l.uv.x;
-  there.v = l.uv.y;
-  Surface s = make_surface(towards, there);
-  bool lit = s.front || (s.flags & k_flag_double_sided) != 0u;
-  return lit ? s.emission * surface_coverage(s) : vec3(0.0);
-}
-#endif
+#include "transport/direct_light.glsl"
 
 void main() {
   uint index = global_index();
@@ -53,10 +27,7 @@ void main() {
   for (uint c = 0u; c < k_component_count; ++c) cached[c] = vec3(0.0);
 #endif
   if (hit.prim == k_no_hit) {
-    float pdf;
-    vec3 light = environment_radiance(ray.direction, pdf);
-    float weight = path.pdf > 0.0 ? mis_weight(path.pdf, pdf) : 1.0;
-    gain = path.throughput * light * weight;
+    gain = environment_met(path, ray.direction);
   }
   if (hit.prim != k_no_hit) {
     Surface surface = make_surface(ray, hit);
@@ -83,9 +54,8 @@ void main() {
       }
 #if LUCERNA_EMISSIVE
       if ((surface.flags & k_flag_emissive) != 0u && (surface.front || (surface.flags & k_flag_double_sided) != 0u)) {
-        float pdf = emissive_pdf(hit.prim, travelled * travelled, abs(dot(surface.normal_g, ray.direction)));
-        float weight = path.pdf > 0.0 ? mis_weight(path.pdf, pdf) : 1.0;
-        gain = path.throughput * surface.emission * weight;
+        gain = path.throughput * surface.emission *
+               emissive_weight(path, emissive_pdf(hit.prim, travelled * travelled, abs(dot(surface.normal_g, ray.direction))));
       }
 #endif
       bool ends = depth >= frame.max_depth;
@@ -103,67 +73,7 @@ void main() {
         Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
         vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
 
-#if LUCERNA_LIGHTS
-        uint component_d = automaton_component(automaton_after(state, k_event_diffuse));
-        uint component_g = automaton_component(automaton_after(state, k_event_glossy));
-        {
-          LightSample l = sample_light(surface.position, sample_vertex_bits(random, depth, k_pad_light_choice).x,
-                                       sample_vertex(random, depth, k_pad_light_uv),
-                                       sample_vertex_bits(random, depth, k_pad_light_detail));
-          vec3 wi = l.direction * to_world;
-          BsdfValue f = bsdf_eval(bsdf, wo, wi);
-          bool reflected = dot(l.direction, side) > 0.0;
-          bool sides_agree = reflected == (wi.z > 0.0);
-#if LUCERNA_LIGHT_SURFACE
-          if (l.primitive != k_no_hit) l.radiance = light_radiance(l);
-#endif
-          float weight = l.delta ? 1.0 : mis_weight(l.pdf, f.pdf);
-          vec3 arrives = path.throughput * l.radiance * (weight / max(l.pdf, 1e-37));
-#if LUCERNA_VOLUMES
-          uint medium = reflected ? path.medium : surface.parameters.solid ? (surface.front ? surface.material + 1u : 0u) : path.medium;
-          if (medium != 0u) arrives *= exp(-material_absorption(medium - 1u) * min(l.distance, 1e30));
-#endif
-          ShadowState shadow;
-          shadow.diffuse = component_d < k_component_count ? arrives * f.diffuse : vec3(0.0);
-          shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
-          shadow.components = component_d | component_g << 8;
-          shadow.medium = 0u;
-          bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
-#if LUCERNA_CACHE
-          if (cache.probing != k_probe_none) sides_agree = false;
-#endif
-          bool worth = sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
-          if (worth && !finite) atomicAdd(counters[k_counter_dropped], 1u);
-          if (worth && finite) {
-            Ray shadow_ray;
-            shadow_ray.origin = offset_origin(surface, l.direction);
-            shadow_ray.direction = l.direction;
-            shadow_ray.tmax = k_infinity;
-            shadow_ray.slot = slot;
-            if (l.primitive != k_no_hit) {
-              // To a point moved off the light by its own error bound, so that the light does not shadow itself.
-              vec3 to = l.target + l.normal * dot(abs(l.normal), l.offset) - shadow_ray.origin;
-              float distance = length(to);
-              shadow_ray.direction = distance > 0.0 ? to / distance : l.direction;
-              shadow_ray.tmax = distance;
-            } else if (l.distance < 1e30) {
-              shadow_ray.tmax = l.distance;
-            }
-            shadow_rays[slot].origin = shadow_ray.origin;
-            shadow_rays[slot].tmax = shadow_ray.tmax;
-            shadow_rays[slot].direction = shadow_ray.direction;
-            shadow_states[slot].diffuse = shadow.diffuse;
-            shadow_states[slot].components = shadow.components;
-#if LUCERNA_SPECULAR || LUCERNA_GLASS
-            shadow_states[slot].glossy = shadow.glossy;
-#endif
-            shadow_queue[atomicAdd(counters[k_counter_shadow], 1u)] = slot;
-            uint first = max3(shadow.diffuse) > 0.0 ? component_d : component_g;
-            atomicAdd(counters[k_counter_shadow_rays + first], 1u);
-          }
-        }
-#endif
-
+        bool sky_known = false;  // what the sky sends to the diffuse lobe has been looked up
 #if LUCERNA_CACHE
         // What lies behind this vertex's diffuse lobe: from the records, or where there are none by going on in the
         // states that leave nothing out.
@@ -194,6 +104,11 @@ void main() {
         }
         if (alone)
           for (uint c = 0u; c < k_component_count; ++c) cached[c] = vec3(0.0);
+        sky_known = looks && !alone && (routes & 15u) < k_component_count;  // part 0: k_part_direct
+#endif
+
+#if LUCERNA_LIGHTS
+        sample_direct_light(slot, path, surface, bsdf, wo, to_world, random, sky_known);
 #endif
 
         BsdfSample b = bsdf_sample(bsdf, wo, sample_vertex(random, depth, k_pad_direction), sample_vertex(random, depth, k_pad_lobe));
@@ -214,6 +129,11 @@ void main() {
           go_on = sides_agree && (!finite || max3(throughput) > 0.0) && automaton_live(next);
           if (go_on && !finite) atomicAdd(counters[k_counter_dropped], 1u);
           go_on = go_on && finite;
+          uint sky = sky_bits(bsdf, sky_known, b.event);
+#if LUCERNA_SKY_APART && !LUCERNA_EMISSIVE && !LUCERNA_SUN
+          // The ray could meet no light but the sky's: only where it may go on to another is it worth tracing.
+          go_on = go_on && ((sky & k_path_sky_known) == 0u || automaton_goes_on(next));
+#endif
 #if LUCERNA_CACHE
           go_on = go_on && !(cache.probing == k_probe_lookups && looks && b.event == k_event_diffuse);
 #endif
@@ -230,7 +150,7 @@ void main() {
           }
           path.throughput = throughput;
           path.pdf = b.pdf;
-          path.bits = next | (depth + 1u) << 8;
+          path.bits = next | sky | (depth + 1u) << 8;
           path.travelled = 0.0;
 #if LUCERNA_VOLUMES
           if (b.transmitted && surface.parameters.solid) path.medium = surface.front ? surface.material + 1u : 0u;

@@ -13,6 +13,8 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
   const char* effects[] = {"LUCERNA_LIGHTS",
                            "LUCERNA_EMISSIVE",
                            "LUCERNA_ENVIRONMENT_MAP",
+                           "LUCERNA_SKY_APART",
+                           "LUCERNA_SUN",
                            "LUCERNA_SPECULAR",
                            "LUCERNA_SOLID_GLASS",
                            "LUCERNA_THIN_GLASS",

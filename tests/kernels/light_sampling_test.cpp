@@ -27,7 +27,7 @@ struct Draw {
   vec3 target;
   uint32_t primitive;
   vec3 normal;
-  uint32_t delta;
+  uint32_t delta;  ///< 2: of the sky, where that is apart
   vec2 uv;
 };
 struct Answer {
@@ -43,7 +43,8 @@ gpu::Device& device() {
 /// A flattened scene on the device, and the kernel in the variant that the scene calls for.
 class Lights {
  public:
-  explicit Lights(const scene::Scene& scene) : flat(upload::flatten(scene)), scene_(device(), flat, {}) {
+  explicit Lights(const scene::Scene& scene, float sun_threshold = 0)
+      : flat(upload::flatten(scene, sun_threshold)), scene_(device(), flat, {}) {
     frame.light_count = static_cast<uint32_t>(flat.lights.size() / shared::k_light_texels);
     frame.environment_radiance = flat.environment_radiance;
     frame.environment_width = flat.environment_width;
@@ -58,9 +59,10 @@ class Lights {
   std::vector<Draw> draw(const vec3& position, uint32_t count, uint32_t seed) {
     return run<Draw>("0", "Draws", {count, seed, position});
   }
-  std::vector<Answer> environment(const std::vector<vec3>& directions) {
+  /// `sun`: of the sun, where that is apart.
+  std::vector<Answer> environment(const std::vector<vec3>& directions, bool sun = false) {
     std::vector<vec4> questions;
-    for (const vec3& d : directions) questions.emplace_back(d, 0);
+    for (const vec3& d : directions) questions.emplace_back(d, sun ? 1 : 0);
     return ask("1", questions);
   }
   std::vector<Answer> triangle_pdf(const std::vector<vec4>& questions) { return ask("2", questions); }
@@ -411,6 +413,88 @@ TEST_CASE("the environment's radiance is the map, bilinear, turned counter-clock
   }
   CHECK(bad == 0);
   CHECK(dark == 0);
+}
+
+TEST_CASE("sky and sun apart: two emitters that add up to the environment, each sampled by its own density") {
+  scene::Scene scene = sky(48, 24, 37);
+  scene::Light lamp;
+  lamp.intensity = vec3(300);
+  scene.lights.push_back(lamp);
+  Lights whole(scene), lights(scene, 16);
+  REQUIRE(lights.flat.effects.sky_apart);
+  REQUIRE(lights.flat.effects.sun);
+  // One texel is the sun; filtering reaches it from the eight around it.
+  CHECK(lights.flat.sun_cells.size() == 2 * 9);
+  std::vector<vec3> directions;
+  const uint32_t width = 48, height = 24;
+  constexpr int k_grid = 8;
+  std::vector<double> angles;
+  for (uint32_t y = 0; y < height * k_grid; ++y)
+    for (uint32_t x = 0; x < width * k_grid; ++x) {
+      const double theta = 0.5 * k_tau * (y + 0.5) / (height * k_grid),
+                   phi = k_tau * (x + 0.5) / (width * k_grid);
+      directions.emplace_back(std::sin(theta) * std::cos(phi), std::cos(theta),
+                              std::sin(theta) * std::sin(phi));
+      angles.push_back(std::sin(theta) * 0.5 * k_tau / (height * k_grid) * k_tau / (width * k_grid));
+    }
+  const auto both = whole.environment(directions), of_sky = lights.environment(directions),
+             of_sun = lights.environment(directions, true);
+  size_t different = 0, unsampled = 0, bright = 0;
+  double sky_light = 0, sun_light = 0, sky_chance = 0, sun_chance = 0;
+  for (size_t i = 0; i < directions.size(); ++i) {
+    different +=
+        glm::length(of_sky[i].value + of_sun[i].value - both[i].value) > 1e-5f * glm::length(both[i].value);
+    unsampled += (of_sky[i].value.x > 1e-6f && !(of_sky[i].pdf > 0)) ||
+                 (of_sun[i].value.x > 1e-6f && !(of_sun[i].pdf > 0));
+    bright += of_sun[i].value.x > 0;
+    sky_light += double(of_sky[i].value.x) * angles[i], sun_light += double(of_sun[i].value.x) * angles[i];
+    sky_chance += double(of_sky[i].pdf) * angles[i], sun_chance += double(of_sun[i].pdf) * angles[i];
+  }
+  CHECK(different == 0);
+  CHECK(unsampled == 0);
+  CHECK(double(bright) == Approx(4 * k_grid * k_grid).epsilon(0.2));  // two texels wide and high
+  CHECK(sky_chance == Approx(lights.frame.environment_light_pmf).epsilon(1e-3));
+  CHECK(sun_light > 0.2 * sky_light);
+  // Draws bring the light of each, by its share of the draws, with the densities that hitting them tells.
+  constexpr uint32_t k_draws = 1 << 18;
+  Mean sky_mean, sun_mean;
+  double sky_drawn = 0, sun_drawn = 0;
+  std::vector<vec3> again[2];
+  std::vector<float> pdfs[2];
+  for (const Draw& d : lights.draw(vec3(0), k_draws, 12)) {
+    const bool is_sky = d.delta == 2, is_sun = d.delta == 0;
+    sky_drawn += is_sky, sun_drawn += is_sun;
+    sky_mean.add(is_sky ? double(d.radiance.x) / double(d.pdf) : 0);
+    sun_mean.add(is_sun ? double(d.radiance.x) / double(d.pdf) : 0);
+    if (is_sky || is_sun) again[is_sun].push_back(d.direction), pdfs[is_sun].push_back(d.pdf);
+  }
+  Jury jury;
+  for (const auto& [what, drawn, share] :
+       {std::tuple("sky's share", sky_drawn, double(lights.frame.environment_light_pmf)),
+        std::tuple("sun's share", sun_drawn, sun_chance)})
+    jury.add(what, normal_tail((drawn / k_draws - share) / std::sqrt(share * (1 - share) / k_draws)));
+  jury.add(fmt::format("sky {} +- {}, really {}", sky_mean.value(), sky_mean.error(), sky_light),
+           mean_tail(sky_mean, sky_light, 1e-3 * sky_light));
+  jury.add(fmt::format("sun {} +- {}, really {}", sun_mean.value(), sun_mean.error(), sun_light),
+           mean_tail(sun_mean, sun_light, 1e-3 * sun_light));
+  CHECK(jury.verdict() == "");
+  CHECK(sky_mean.error() < 0.01 * sky_light);
+  CHECK(sun_mean.error() < 0.01 * sun_light);
+  for (const int sun : {0, 1}) {
+    const auto told = lights.environment(again[sun], sun == 1);
+    size_t wrong = 0;
+    for (size_t i = 0; i < told.size(); ++i) wrong += std::abs(told[i].pdf / pdfs[sun][i] - 1) > 1e-3f;
+    CHECK(double(wrong) < 1e-3 * double(told.size()));  // rounding may put a direction into the next texel
+  }
+  // A sky without anything bright has no sun, and light samples know nothing else.
+  scene.lights.clear();
+  scene.environment.image = scene::k_none;
+  scene.environment.radiance = vec3(1);
+  const upload::FlatScene even = upload::flatten(scene, 2);
+  CHECK(even.effects.sky_apart);
+  CHECK_FALSE(even.effects.sun);
+  CHECK(even.environment_light_pmf == 1);
+  CHECK(even.effects.lights);
 }
 
 TEST_CASE("lamps: intensity over distance squared, a spot's cone, the sun's irradiance") {

@@ -125,6 +125,21 @@ TEST_CASE("lookups stand where nothing but cached components goes on, each part 
   // With secondary light off there is nothing that goes on from the first: it is looked up there.
   const auto alone = paths::lookup_routes(a, 0b0100, 0b0100);
   CHECK(alone.component[0] == std::array<uint8_t, 4>{none, none, 2, none});
+  // Light straight from the environment comes along wherever there is a lookup, to the component that it
+  // belongs to there, unless that is off; without a lookup there is none.
+  const auto sky = paths::lookup_routes(a, 15, 0b0110, true);
+  CHECK(sky.traced == both.traced);
+  CHECK(sky.parts == 0b0111);
+  CHECK(sky.component[after("")] == std::array<uint8_t, 4>{0, 1, 2, none});
+  CHECK(sky.component[after("D")] == nothing);
+  CHECK(paths::lookup_routes(a, 15, 0b0100, true).component[after("SDG")] ==
+        std::array<uint8_t, 4>{1, 2, 2, 2});
+  CHECK(paths::lookup_routes(a, 0b1110, 0b0110, true).component[0] == both.component[0]);
+  CHECK(paths::lookup_routes(a, 15, 0, true).parts == 0);
+  // Records' rays that end in records leave the sky to them as well: for the part that it belongs to there.
+  const auto rays = paths::record_routes(a, sky.parts, true, false);
+  CHECK(rays.component[after("D")] == std::array<uint8_t, 4>{1, 2, 2, none});
+  CHECK(rays.parts == 0b0111);
   // Nothing cached, nothing looked up.
   const auto plain = paths::lookup_routes(a, 15, 0);
   CHECK(plain.parts == 0);

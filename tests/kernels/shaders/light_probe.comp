@@ -46,7 +46,7 @@ void main() {
   if (i >= push.count) return;
 #if TEST_ASK == 0
   vec2 u = vec2(uvec2(bits(i, 1u), bits(i, 2u)) >> 8) * (1.0 / 16777216.0);
-  LightSample s = sample_light(push.position, bits(i, 0u), u, uvec2(bits(i, 3u), bits(i, 4u)));
+  LightSample s = sample_light(push.position, bits(i, 0u), u, uvec2(bits(i, 3u), bits(i, 4u)), frame.environment_light_pmf);
   Draw d;
   d.direction = s.direction;
   d.distance = s.distance;
@@ -55,7 +55,7 @@ void main() {
   d.target = s.target;
   d.primitive = s.primitive;
   d.normal = s.normal;
-  d.delta = s.delta ? 1u : 0u;
+  d.delta = s.delta ? 1u : s.sky ? 2u : 0u;
   d.uv = s.uv;
   draws[i] = d;
 #else
@@ -63,7 +63,14 @@ void main() {
   a.value = vec3(0.0);
   vec4 q = questions[i];
 #if TEST_ASK == 1
+#if LUCERNA_SKY_APART
+  // Of the sky, or of the sun.
+  Environment e = environment_radiance(q.xyz);
+  a.value = q.w > 0.0 ? e.sun : e.sky;
+  a.pdf = q.w > 0.0 ? e.pdf_sun * (1.0 - frame.environment_light_pmf) : e.pdf_sky * frame.environment_light_pmf;
+#else
   a.value = environment_radiance(q.xyz, a.pdf);
+#endif
 #elif TEST_ASK == 2
   a.pdf = emissive_pdf(floatBitsToUint(q.x), q.y, q.z);
 #else

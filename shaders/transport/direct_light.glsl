@@ -1,0 +1,151 @@
+// Direct light, for shade.comp: emitters that a path meets and emitters that a vertex samples, weighted against each other.
+//
+// Where records hold the sky's light (LUCERNA_SKY_APART), a vertex whose diffuse lobe has looked it up (sky_known) brings it
+// by neither strategy: its light samples give the sky to the glossy lobe alone, and what a diffuse ray meets of the sky is
+// left out. The sun and all other lights are sampled as ever.
+#ifndef LUCERNA_TRANSPORT_DIRECT_LIGHT
+#define LUCERNA_TRANSPORT_DIRECT_LIGHT
+
+layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
+
+// Power heuristic (Veach 1997, exponent 2), as a function of the densities' ratio so that nothing overflows.
+float mis_weight(float mine, float other) {
+  float r = other / max(mine, 1e-37);
+  return 1.0 / (1.0 + r * r);
+}
+// Of what a path's ray meets that light samples of its last vertex would have found with density pdf.
+float met_weight(PathState path, float pdf) { return path.pdf > 0.0 ? mis_weight(path.pdf, pdf) : 1.0; }
+
+#if LUCERNA_SKY_APART
+// Probability of the sky among the lights that the path's last vertex sampled.
+float sky_share_before(PathState path) { return (path.bits & k_path_sky_unasked) != 0u ? 0.0 : frame.environment_light_pmf; }
+// ... and of a vertex itself: where the diffuse lobe knows the sky and nothing glossy asks for it, none.
+bool sky_unasked(Bsdf bsdf, bool sky_known) { return sky_known && !bsdf_glossy(bsdf); }
+#endif
+
+// k_path_sky_* of a path that leaves a vertex by that event.
+uint sky_bits(Bsdf bsdf, bool sky_known, uint event) {
+#if LUCERNA_SKY_APART
+  return (sky_unasked(bsdf, sky_known) ? k_path_sky_unasked : 0u) | (sky_known && event == k_event_diffuse ? k_path_sky_known : 0u);
+#else
+  return 0u;
+#endif
+}
+
+// What a path that leaves the scene brings.
+vec3 environment_met(PathState path, vec3 direction) {
+#if LUCERNA_SKY_APART
+  Environment e = environment_radiance(direction);
+  float sky_share = sky_share_before(path);
+  vec3 light = (path.bits & k_path_sky_known) != 0u ? vec3(0.0) : e.sky * met_weight(path, e.pdf_sky * sky_share);
+#if LUCERNA_SUN
+  light += (path.bits & k_path_sky_only) != 0u ? vec3(0.0) : e.sun * met_weight(path, e.pdf_sun * (1.0 - sky_share));
+#endif
+  return path.throughput * light;
+#else
+  float pdf;
+  vec3 light = environment_radiance(direction, pdf);
+  return path.throughput * light * met_weight(path, pdf);
+#endif
+}
+
+// Of an emissive surface that light samples find with density pdf; the sky apart, with its share of it.
+float emissive_weight(PathState path, float pdf) {
+#if LUCERNA_SKY_APART
+  return (path.bits & k_path_sky_only) != 0u ? 0.0 : met_weight(path, pdf * (1.0 - sky_share_before(path)));
+#else
+  return met_weight(path, pdf);
+#endif
+}
+
+#if LUCERNA_EMISSIVE && (LUCERNA_TEX_EMISSION || LUCERNA_ALPHA || LUCERNA_VERTEX_EXTRA)
+#define LUCERNA_LIGHT_SURFACE 1
+// Radiance that a sampled emissive triangle sends along -direction; textures and coverage by alpha included.
+vec3 light_radiance(LightSample l) {
+  Ray towards;
+  towards.origin = l.target - l.direction * l.distance;
+  towards.direction = l.direction;
+  towards.tmax = k_infinity;
+  towards.slot = 0u;
+  Hit there;
+  there.t = l.distance;
+  there.prim = l.primitive;
+  there.u = l.uv.x;
+  there.v = l.uv.y;
+  Surface s = make_surface(towards, there);
+  bool lit = s.front || (s.flags & k_flag_double_sided) != 0u;
+  return lit ? s.emission * surface_coverage(s) : vec3(0.0);
+}
+#endif
+
+#if LUCERNA_LIGHTS
+// One light sample for all lobes, queued as a shadow ray.
+void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, vec3 wo, mat3 to_world, Sampler random, bool sky_known) {
+  uint state = path_automaton(path), depth = path_depth(path);
+  uint component_d = automaton_component(automaton_after(state, k_event_diffuse));
+  uint component_g = automaton_component(automaton_after(state, k_event_glossy));
+  vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
+  float sky_share = 0.0;
+#if LUCERNA_SKY_APART
+  sky_share = sky_unasked(bsdf, sky_known) ? 0.0 : frame.environment_light_pmf;
+#endif
+  LightSample l = sample_light(surface.position, sample_vertex_bits(random, depth, k_pad_light_choice).x,
+                               sample_vertex(random, depth, k_pad_light_uv),
+                               sample_vertex_bits(random, depth, k_pad_light_detail), sky_share);
+  vec3 wi = l.direction * to_world;
+  BsdfValue f = bsdf_eval(bsdf, wo, wi);
+  bool reflected = dot(l.direction, side) > 0.0;
+  bool sides_agree = reflected == (wi.z > 0.0);
+#if LUCERNA_LIGHT_SURFACE
+  if (l.primitive != k_no_hit) l.radiance = light_radiance(l);
+#endif
+  float weight = l.delta ? 1.0 : mis_weight(l.pdf, f.pdf);
+  vec3 arrives = path.throughput * l.radiance * (weight / max(l.pdf, 1e-37));
+#if LUCERNA_VOLUMES
+  uint medium = reflected ? path.medium : surface.parameters.solid ? (surface.front ? surface.material + 1u : 0u) : path.medium;
+  if (medium != 0u) arrives *= exp(-material_absorption(medium - 1u) * min(l.distance, 1e30));
+#endif
+  ShadowState shadow;
+  shadow.diffuse = component_d < k_component_count ? arrives * f.diffuse : vec3(0.0);
+  shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
+  shadow.components = component_d | component_g << 8;
+  shadow.medium = 0u;
+#if LUCERNA_SKY_APART
+  if (l.sky && sky_known) shadow.diffuse = vec3(0.0);
+#endif
+  bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
+#if LUCERNA_CACHE
+  if (cache.probing != k_probe_none) sides_agree = false;
+#endif
+  bool worth = sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
+  if (worth && !finite) atomicAdd(counters[k_counter_dropped], 1u);
+  if (worth && finite) {
+    Ray shadow_ray;
+    shadow_ray.origin = offset_origin(surface, l.direction);
+    shadow_ray.direction = l.direction;
+    shadow_ray.tmax = k_infinity;
+    shadow_ray.slot = slot;
+    if (l.primitive != k_no_hit) {
+      // To a point moved off the light by its own error bound, so that the light does not shadow itself.
+      vec3 to = l.target + l.normal * dot(abs(l.normal), l.offset) - shadow_ray.origin;
+      float distance = length(to);
+      shadow_ray.direction = distance > 0.0 ? to / distance : l.direction;
+      shadow_ray.tmax = distance;
+    } else if (l.distance < 1e30) {
+      shadow_ray.tmax = l.distance;
+    }
+    shadow_rays[slot].origin = shadow_ray.origin;
+    shadow_rays[slot].tmax = shadow_ray.tmax;
+    shadow_rays[slot].direction = shadow_ray.direction;
+    shadow_states[slot].diffuse = shadow.diffuse;
+    shadow_states[slot].components = shadow.components;
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+    shadow_states[slot].glossy = shadow.glossy;
+#endif
+    shadow_queue[atomicAdd(counters[k_counter_shadow], 1u)] = slot;
+    uint first = max3(shadow.diffuse) > 0.0 ? component_d : component_g;
+    atomicAdd(counters[k_counter_shadow_rays + first], 1u);
+  }
+}
+#endif
+#endif

@@ -1,0 +1,297 @@
+// links: session
+// Pictures in which records hold the sky's light (cache.environment) against path-traced ones, each component
+// for itself: no light is lost or counted twice, whatever lobes and emitters meet.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+#include <map>
+
+#include "session/renderer.h"
+#include "support/render.h"
+
+using namespace lucerna;
+
+namespace {
+
+using Settings = std::map<std::string, std::string>;
+
+const Settings k_sky{
+    {"components.secondary", "cache"}, {"components.tertiary", "cache"}, {"cache.environment", "true"},
+    {"cache.error", "0.15"},           {"cache.noise", "0.1"},           {"cache.max_rays", "1024"}};
+
+struct Room {
+  bool sun = false;     ///< a patch of 2x2 texels of the sky is a thousand times brighter
+  bool patch = false;   ///< the sky is dark but for a part that the window sees
+  bool glossy = false;  ///< the floor has a rough coat
+  bool mirror = false;  ///< on the back wall
+  bool pane = false;    ///< in the window
+  bool lamp = false;    ///< a panel under the ceiling
+};
+
+/// A room of 3 x 2.5 x 3 m with a window of 1.4 x 1.2 m in its right wall; the camera looks at back wall,
+/// floor and window.
+scene::Scene make_room(const Room& room) {
+  scene::Scene s;
+  s.name = "room", s.file = "room.gltf";
+  enum { k_wall, k_floor, k_mirror, k_pane, k_lamp };
+  s.materials.resize(5);
+  for (scene::Material& m : s.materials)
+    m.base_color = vec4(0.5f, 0.5f, 0.5f, 1), m.roughness = 1, m.metallic = 0, m.specular = 0;
+  if (room.glossy)
+    s.materials[k_floor].specular = 1, s.materials[k_floor].ior = 3, s.materials[k_floor].roughness = 0.5f;
+  s.materials[k_mirror].metallic = 1, s.materials[k_mirror].roughness = 0, s.materials[k_mirror].specular = 1;
+  s.materials[k_mirror].base_color = vec4(0.9f, 0.9f, 0.9f, 1);
+  s.materials[k_pane].transmission = 1, s.materials[k_pane].roughness = 0, s.materials[k_pane].specular = 1;
+  s.materials[k_pane].base_color = vec4(0.8f, 0.9f, 1, 1);
+  s.materials[k_lamp].emission = vec3(0.5f), s.materials[k_lamp].base_color = vec4(0, 0, 0, 1);
+  const auto add = [&](vec3 a, vec3 u, vec3 v, uint32_t material) {  // counter-clockwise from its front
+    scene::Primitive p;
+    p.material = material;
+    p.positions = {a, a + u, a + u + v, a + v};
+    p.triangles = {{0, 1, 2}, {0, 2, 3}};
+    s.meshes.push_back({"quad", {p}});
+    s.instances.push_back({"quad", scene::Id(s.meshes.size() - 1), mat4(1), false});
+  };
+  const vec3 o(-1.5f, 0, -1.5f), x(3, 0, 0), y(0, 2.5f, 0), z(0, 0, 3);
+  add(o, z, x, k_floor), add(o + y, x, z, k_wall);
+  add(o, x, y, k_wall), add(o + z, y, x, k_wall), add(o, y, z, k_wall);
+  // The right wall around its window: z from -0.7 to 0.7, y from 0.8 to 2.
+  const auto right = [&](float y0, float y1, float z0, float z1, uint32_t material) {
+    add({1.5f, y0, z0}, {0, 0, z1 - z0}, {0, y1 - y0, 0}, material);
+  };
+  right(0, 0.8f, -1.5f, 1.5f, k_wall), right(2, 2.5f, -1.5f, 1.5f, k_wall);
+  right(0.8f, 2, -1.5f, -0.7f, k_wall), right(0.8f, 2, 0.7f, 1.5f, k_wall);
+  if (room.pane) right(0.8f, 2, -0.7f, 0.7f, k_pane);
+  if (room.mirror) add({-1.2f, 0.3f, -1.49f}, {1.4f, 0, 0}, {0, 1.8f, 0}, k_mirror);
+  if (room.lamp) add({-1.2f, 2.4f, -1.2f}, {2.4f, 0, 0}, {0, 0, 2.4f}, k_lamp);
+  scene::Image sky;
+  sky.name = "sky", sky.width = 32, sky.height = 16;
+  for (uint32_t row = 0; row < 16; ++row)
+    for (uint32_t column = 0; column < 32; ++column) {
+      // Towards +x (column 16) and 35 degrees up: through the window onto the floor.
+      const bool sun = room.sun && (column == 15 || column == 16) && (row == 4 || row == 5);
+      const bool patch = column >= 13 && column < 19 && row >= 4 && row < 8;
+      const float value = sun          ? 120.0f
+                          : room.sun   ? 0.5f + float(16 - row) / 16
+                          : room.patch ? (patch ? 2.0f : 0.1f)
+                                       : 1.0f;
+      sky.floats.insert(sky.floats.end(), {value, value, value, 1});
+    }
+  s.images.push_back(sky);
+  s.environment.image = 0;
+  s.environment.scale = 3;
+  s.environment.given = true;
+  scene::Camera camera;
+  camera.yfov = 1.5f;
+  camera.to_world =
+      glm::inverse(glm::lookAt(vec3(-1.3f, 1.6f, 1.35f), vec3(0.5f, 0.7f, -0.6f), vec3(0, 1, 0)));
+  s.cameras = {camera};
+  return s;
+}
+
+struct Picture {
+  film::Image image;
+  film::ImageError error;
+  std::array<bool, 4> bias_known{};
+  uint64_t rays = 0, shadow_rays = 0;
+};
+
+Picture render(const scene::Scene& scene, const Settings& settings, uint32_t samples, uint32_t size = 32) {
+  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  r.set_size(size, size);
+  r.set_scene(std::make_shared<scene::Scene>(scene));
+  for (const auto& [key, value] : settings) r.settings().set(key, value);
+  r.settings().set("samples", std::to_string(samples));
+  r.apply_settings();
+  while (r.step()) {
+  }
+  Picture p{r.image(), r.image_error(), {}, r.stats().rays, r.stats().shadow_rays};
+  for (size_t c = 0; c < 4; ++c) p.bias_known[c] = r.bias(c).has_value();
+  CHECK(r.device().validation_messages() == 0);
+  CHECK(r.stats().dropped == 0);
+  return p;
+}
+
+double mean(const std::vector<vec3>& layer) {
+  double sum = 0;
+  for (const vec3& v : layer) sum += luminance(v);
+  return sum / double(layer.size());
+}
+
+bool identical(const std::vector<vec3>& a, const std::vector<vec3>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec3)) == 0;
+}
+
+struct Mean {
+  double value = 0, noise = 0;  ///< standard error, from the two halves
+};
+/// Of the primary component in one of the 16 parts of 8x8 pixels.
+Mean part_mean(const Picture& p, uint32_t part) {
+  Mean m;
+  for (uint32_t i = 0; i < 64; ++i) {
+    const size_t pixel = size_t{part / 4 * 8 + i / 8} * 32 + part % 4 * 8 + i % 8;
+    const double y = luminance(p.image.components[0][pixel]), odd = luminance(p.image.odd_half[0][pixel]);
+    m.value += y / 64, m.noise += (y - odd) * (y - odd);
+  }
+  m.noise = std::sqrt(m.noise) / 64;
+  return m;
+}
+
+/// The means of every component agree: two-sided at 1e-4 a figure (3.9 standard errors, from the films'
+/// halves), beside 2 % of the component, which records may be off by; and the standard error is less than
+/// 1 % of the picture, so that a lost or doubled word shows. The primary component likewise in each of 16
+/// parts of the picture, within 5 %.
+void compare(const Picture& path, const Picture& cached) {
+  double whole = 0;
+  for (const auto& c : path.image.components) whole += mean(c);
+  for (int c = 0; c < 4; ++c) {
+    const double truth = mean(path.image.components[c]), value = mean(cached.image.components[c]);
+    const double noise = std::hypot(path.error.rms[c + 1] / std::sqrt(path.error.pixels),
+                                    cached.error.rms[c + 1] / std::sqrt(cached.error.pixels));
+    INFO(paths::k_component_names[c] << ": " << value << " of " << truth << ", noise of the mean " << noise);
+    CHECK(std::abs(value - truth) <= 3.9 * noise + 0.02 * truth);
+    CHECK(noise < 0.01 * whole);
+  }
+  for (uint32_t part = 0; part < 16; ++part) {
+    const Mean truth = part_mean(path, part), value = part_mean(cached, part);
+    const double noise = std::hypot(truth.noise, value.noise);
+    INFO("part " << part << ": " << value.value << " of " << truth.value << ", noise " << noise);
+    CHECK(std::abs(value.value - truth.value) <= 4.5 * noise + 0.05 * truth.value);
+  }
+}
+
+/// Median over the picture of how far the sum is from another's, relative.
+double median_difference(const Picture& a, const Picture& b) {
+  std::vector<double> all;
+  for (size_t i = 0; i < a.image.samples.size(); ++i) {
+    const double truth = luminance(test::sum_at(b.image, i));
+    all.push_back(std::abs(luminance(test::sum_at(a.image, i)) - truth) / truth);
+  }
+  std::nth_element(all.begin(), all.begin() + all.size() / 2, all.end());
+  return all[all.size() / 2];
+}
+
+}  // namespace
+
+TEST_CASE("a room under an even sky") {
+  const scene::Scene room = make_room({});
+  const Picture path = render(room, {}, 256), cached = render(room, k_sky, 16);
+  compare(path, cached);
+  // It is quiet, and says that it may be off.
+  CHECK(median_difference(cached, path) < 0.5 * median_difference(render(room, {}, 16), path));
+  CHECK_FALSE(cached.bias_known[0]);
+  CHECK_FALSE(cached.bias_known[1]);
+  CHECK(cached.bias_known[3]);
+  // What no record serves takes the sky's light from its own samples.
+  Settings few = k_sky;
+  few["cache.max_records"] = "40";
+  compare(path, render(room, few, 64));
+}
+
+TEST_CASE("a sun in the sky's image is sampled directly, by everything") {
+  const scene::Scene room = make_room({.sun = true});
+  const Picture path = render(room, {}, 256), cached = render(room, k_sky, 64);
+  compare(path, cached);
+}
+
+TEST_CASE("a lamp beside the sky") {
+  const scene::Scene room = make_room({.lamp = true});
+  compare(render(room, {}, 256), render(room, k_sky, 64));
+}
+
+TEST_CASE("glossy lobes beside the diffuse one see the sky themselves, also through a pane") {
+  const scene::Scene room = make_room({.patch = true, .glossy = true, .pane = true});
+  const Picture path = render(room, {}, 512);
+  compare(path, render(room, k_sky, 256));
+  // At the second diffuse vertex the sky's light is secondary.
+  Settings second = k_sky;
+  second["components.secondary"] = "path";
+  const Picture tertiary = render(room, second, 64);
+  compare(path, tertiary);
+  CHECK(tertiary.bias_known[0]);
+  CHECK_FALSE(tertiary.bias_known[1]);
+}
+
+TEST_CASE("a mirror shows the sky and what it lights") {
+  const scene::Scene room = make_room({.mirror = true});
+  compare(render(room, {}, 256), render(room, k_sky, 32));
+}
+
+TEST_CASE("under a constant environment a cached picture is exact at one sample") {
+  scene::Scene plane;
+  plane.name = "plane", plane.file = "plane.gltf";
+  plane.materials.resize(1);
+  plane.materials[0].base_color = vec4(0.5f, 0.25f, 0.125f, 1), plane.materials[0].metallic = 0,
+  plane.materials[0].specular = 0;
+  scene::Primitive p;
+  p.positions = {{-50, 0, -50}, {-50, 0, 50}, {50, 0, 50}, {50, 0, -50}};
+  p.triangles = {{0, 1, 2}, {0, 2, 3}};
+  plane.meshes.push_back({"plane", {p}});
+  plane.instances.push_back({"plane", 0, mat4(1), false});
+  plane.environment.radiance = vec3(2), plane.environment.given = true;
+  scene::Camera camera;
+  camera.to_world = glm::inverse(glm::lookAt(vec3(0, 3, 0), vec3(0), vec3(0, 0, 1)));
+  plane.cameras = {camera};
+  Settings settings = k_sky;
+  // Nothing is near: the greatest radius it is.
+  settings["cache.rays"] = "64";
+  const Picture cached = render(plane, settings, 1, 16);
+  size_t off = 0;
+  for (const vec3& v : cached.image.components[0])
+    off += glm::length(v / vec3(1, 0.5f, 0.25f) - vec3(1)) > 1e-5f;
+  CHECK(off == 0);
+  for (const int c : {1, 2, 3}) CHECK(mean(cached.image.components[c]) == 0);
+  settings["cache.environment"] = "false";
+  const Picture sampled = render(plane, settings, 1, 16);
+  CHECK(cached.shadow_rays < sampled.shadow_rays);
+  CHECK(glm::length(sampled.image.components[0][0] - vec3(1, 0.5f, 0.25f)) > 1e-3f);
+}
+
+TEST_CASE("without a sky, or without a cache, cache.environment changes nothing") {
+  test::Render r{.scene = "cornell", .width = 16, .height = 16, .samples = 2, .settings = k_sky};
+  r.settings["cache.passes"] = "1";
+  const test::Result on = test::render(r);
+  r.settings["cache.environment"] = "false";
+  const test::Result off = test::render(r);
+  for (int c = 0; c < 4; ++c) CHECK(identical(on.image.components[c], off.image.components[c]));
+  const scene::Scene room = make_room({.sun = true});
+  const Picture plain = render(room, {}, 4), asked = render(room, {{"cache.environment", "true"}}, 4);
+  for (int c = 0; c < 4; ++c) CHECK(identical(plain.image.components[c], asked.image.components[c]));
+  CHECK(asked.bias_known[0]);
+}
+
+TEST_CASE("the option can be switched while a scene is shown") {
+  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  r.set_size(16, 16);
+  r.set_scene(std::make_shared<scene::Scene>(make_room({.sun = true})));
+  const auto finish = [&] {
+    r.settings().set("samples", "2");
+    r.apply_settings();
+    while (r.step()) {
+    }
+    return r.image();
+  };
+  for (const auto& [key, value] : k_sky) r.settings().set(key, value);
+  for (const char* key : {"cache.rays", "cache.max_rays"}) r.settings().set(key, "64");
+  r.settings().set("cache.passes", "1");
+  const film::Image first = finish();
+  r.settings().set("cache.environment_threshold", "1000");
+  const film::Image no_sun = finish();
+  CHECK_FALSE(identical(no_sun.components[0], first.components[0]));
+  r.settings().set("cache.environment", "false");
+  finish();
+  r.set_environment(3, 20);
+  r.settings().set("cache.environment", "true");
+  r.settings().set("cache.environment_threshold", "16");
+  finish();
+  r.set_environment(3, 0);
+  const film::Image again = finish();
+  for (int c = 0; c < 4; ++c) CHECK(identical(again.components[c], first.components[c]));
+  // No sky left, and back.
+  r.set_environment(0, 0);
+  CHECK(mean(finish().components[0]) == 0);
+  r.set_environment(3, 0);
+  CHECK(identical(finish().components[1], first.components[1]));
+  CHECK(r.device().validation_messages() == 0);
+}
