@@ -117,7 +117,7 @@ std::vector<OptionInfo> make_options() {
        .choices = {"64", "256", "1024", "4096", "16384", "65536"},
        .help = "Irradiance cache: rays of the last level that a noisy record gets, each four times the one "
                "before."},
-      real("cache.noise", "0.2", 0, 10, "",
+      real("cache.noise", "0.1", 0, 10, "",
            "Irradiance cache: relative standard error of a record above which it gets another level of "
            "rays."),
       boolean("cache.environment",

@@ -88,7 +88,6 @@ struct Cache::Impl {
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
   std::vector<Place> asked, tried;
   uint32_t evaluated = 0;      // records up to here have light and radius, and are in the octree
-  uint32_t pass_first = 0;     // the first record of this pass
   std::vector<uint32_t> list;  // of this level, in the order of the records
   size_t at = 0;               // of which so many are done
   uint32_t level = 0, level_done = 0, rays_before = 0;  // ... and rays of each record, in this level, so far
@@ -108,7 +107,12 @@ struct Cache::Impl {
 
   void build_octree(transport::Wavefront& wavefront) {
     const shared::OctreeHeader& h = octree.build(wavefront.stream(), records.spheres(), {.most = evaluated});
-    // What all but a few records lie between.
+    status.references = h.spheres ? double(h.references) / h.spheres : 0;
+    wavefront.rebind_lookup();
+  }
+
+  /// What all but a few records lie between.
+  void set_scales() {
     const std::vector<Records::Figures> figures = records.figures();
     constexpr float Records::Figures::*k_scaled[] = {
         &Records::Figures::rays, &Records::Figures::mean_distance, &Records::Figures::error};
@@ -121,8 +125,6 @@ struct Cache::Impl {
       const float lo = n ? values[n / 50] : 1, hi = n ? values[n - 1 - n / 50] : 2;
       scales[k] = {lo, std::max(hi, 1.01f * lo)};
     }
-    status.references = h.spheres ? double(h.references) / h.spheres : 0;
-    wavefront.rebind_lookup();
   }
 
   CachePass& pass() { return status.passes.back(); }
@@ -278,6 +280,7 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
   c.status.records = c.status.loaded = raw.size();
   c.status.rays = status.rays;
   if (raw.size() > 0) c.build_octree(wavefront);
+  c.set_scales();
   c.tell();
   if (!complete) return;
   c.status.pass = status.pass;
@@ -376,7 +379,6 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     c.list_new();
     c.took(BuildStep::choose, host.milliseconds());
     c.level = c.level_done = c.rays_before = 0;
-    c.pass_first = c.evaluated;
     c.stage = Stage::evaluate;
     return true;
   }
@@ -413,13 +415,14 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       if (c.level_done < level_rays) return true;
     }
     c.level_done = 0;
-    // A cache that reads itself does so from the second level on: the first, of few rays, then is all that is
-    // traced without the records of its own pass.
+    // Radii come from the first level alone: the nearest thing that any ray met comes nearer with every ray,
+    // and records that shrank would leave gaps. A cache that reads itself does so from the second level on:
+    // the first, of few rays, then is all that is traced without the records of its own pass.
     const bool more = c.next_level();
     c.records.publish(wavefront.stream());
-    if (!more || (c.recursive && c.level == 1)) {
+    if (c.evaluated < c.records.size()) {
       StageTimer widths(wavefront);
-      c.set_radii(wavefront, view, *this, c.pass_first);
+      c.set_radii(wavefront, view, *this, c.evaluated);
       c.took(BuildStep::radius, widths.milliseconds());
       c.evaluated = c.status.records = c.records.size();
       StageTimer indexing(wavefront);
@@ -428,6 +431,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       c.tell();
     }
     if (more) return true;
+    c.set_scales();
     c.pass().complete = true;
     ++c.status.pass;
     c.stage = Stage::probe;

@@ -33,7 +33,7 @@ struct CacheOptions {
   uint32_t rays = 256, most_rays = 4096;
   /// Relative standard error of its luminance above which a record gets another level. Records darker than a
   /// tenth of the mean are held against that.
-  float noise = 0.2f;
+  float noise = 0.1f;
   uint32_t most_records = 100000;
   uint32_t most_passes = 12;
   float stop_share = 0.002f;  ///< building ends when no more of the paths than this ask for records
