@@ -2,12 +2,12 @@
 // Irradiance caches as files: all complete records, with what they were made of, so that they are read again
 // only where their light is the light. Little-endian:
 //
-//   "LUCCACHE"                                     8 bytes
-//   version of the format, layout of the records   2 x u32: k_cache_file_version, shared::k_record_layout
-//   bytes of a record, bytes of the whole file     u32, u64
-//   program's version, making, view, status        texts as u32 length and bytes, lists as u32 count and
-//   entries records                                        u32 count, then RawRecords, list by list checksum
-//   of all before                         u64: Hash::low()
+//   8 bytes      "LUCCACHE"
+//   2 x u32      version of the format, layout of the records: k_cache_file_version, shared::k_record_layout
+//   u32, u64     bytes of a record, bytes of the whole file
+//   entries      program's version, making, view, status; texts as u32 length and bytes, lists as u32 count
+//   u32, texels  the records: RawRecords, list by list
+//   u64          checksum of all before, Hash::low()
 //
 // Whoever changes the meaning of a record's texels changes k_record_layout beside them.
 #include <filesystem>
