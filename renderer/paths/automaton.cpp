@@ -207,12 +207,6 @@ uint8_t Automaton::classify(std::string_view word) const {
   return states[state].accept;
 }
 
-uint8_t Automaton::accounted_to(uint8_t state, uint32_t enabled) const {
-  for (uint8_t c = 0; c < k_component_count; ++c)
-    if ((states[state].reachable & enabled) >> c & 1u) return c;
-  return k_no_component;
-}
-
 Automaton compile(const std::vector<std::string>& expressions) {
   Nfa nfa;
   Subset start;

@@ -38,9 +38,6 @@ struct Automaton {
   uint8_t after(uint8_t state, Event event) const { return states[state].next[static_cast<int>(event)]; }
   /// Component of a word such as "EGDL" (it must start with E and end with L), or k_no_component.
   uint8_t classify(std::string_view word) const;
-  /// The lowest enabled component (bit i: component i) still reachable from a state, 0..3, or k_no_component:
-  /// the one its rays are accounted to.
-  uint8_t accounted_to(uint8_t state, uint32_t enabled = 0b1111) const;
 };
 
 /// Compiles expressions (all starting with E and ending with L) into one automaton, minimized.
@@ -74,7 +71,7 @@ struct LookupRoutes {
 /// The automaton as it is uploaded: packed[state] bits 0-7 next on D, 8-15 next on G, 16-23 next on S, 24-26
 /// component (k_component_count: none, or switched off), bit 27: something can still be brought, by an
 /// enabled component or by a lookup, bit 28: no D so far (E[SG]*), bits 29-30: component its rays are
-/// accounted to. `enabled` bit i: component i is on.
+/// accounted to, the lowest of those. `enabled` bit i: component i is on.
 /// `met`: there are lights that a ray can meet; where all are points or directions, a path of which nothing
 /// but its meeting light is wanted brings nothing.
 std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes = {},

@@ -1,14 +1,13 @@
 // links: film_io
 // Caches as files on the command line: rendering with a saved one gives the same picture without gathering
 // anything; what cannot serve ends with one located line and status 1.
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "film/io/image_file.h"
+#include "support/folder.h"
 #include "support/run.h"
 
 namespace fs = std::filesystem;
@@ -17,13 +16,7 @@ using Catch::Contains;
 
 namespace {
 
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "lucerna-cli-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
+struct Folder : test::Folder {
   std::string operator/(const char* name) const { return (path / name).string(); }
 };
 

@@ -1,13 +1,12 @@
 // links: session
 // Caches as files, through the renderer: a loaded one shows the picture of the one that was saved, bit for
 // bit; what does not fit is refused, and nothing is lost by that.
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
 
 #include "base/file.h"
+#include "support/folder.h"
 #include "support/render.h"
 
 namespace fs = std::filesystem;
@@ -18,15 +17,6 @@ namespace {
 
 using Settings = std::map<std::string, std::string>;
 const Settings k_both{{"components.secondary", "cache"}, {"components.tertiary", "cache"}};
-
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "lucerna-cache-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
-};
 
 /// A closed room of four metres with a block in it, lit by a lamp under its ceiling; two cameras.
 scene::Scene room() {
@@ -121,7 +111,7 @@ irradiance_cache::RawRecords records(const Bed& bed) {
 }  // namespace
 
 TEST_CASE("a loaded cache shows the picture of the one that was saved, to the bit, and gathers nothing") {
-  const Folder folder;
+  const test::Folder folder;
   const fs::path file = folder.path / "a.cache", again = folder.path / "b.cache";
   Bed first;
   const film::Image picture = first.finish();
@@ -157,7 +147,7 @@ TEST_CASE("a loaded cache shows the picture of the one that was saved, to the bi
 }
 
 TEST_CASE("a loaded cache goes on: what another view is missing is added, and all that was saved stays") {
-  const Folder folder;
+  const test::Folder folder;
   const fs::path file = folder.path / "a.cache";
   Bed first;
   first.finish();
@@ -232,7 +222,7 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
 }
 
 TEST_CASE("what does not fit is refused, and neither picture nor records are lost by it") {
-  const Folder folder;
+  const test::Folder folder;
   const fs::path file = folder.path / "a.cache", broken = folder.path / "broken.cache";
   Bed first;
   first.finish();
@@ -284,7 +274,7 @@ TEST_CASE("what does not fit is refused, and neither picture nor records are los
 }
 
 TEST_CASE("a cache is of its scene as it is lit; without one, or before it is built, there is none to save") {
-  const Folder folder;
+  const test::Folder folder;
   const fs::path file = folder.path / "a.cache";
   session::Renderer empty({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
   CHECK_THROWS_WITH(empty.save_cache(file), Contains("load a scene first"));
@@ -325,7 +315,7 @@ TEST_CASE("a cache is of its scene as it is lit; without one, or before it is bu
 }
 
 TEST_CASE("the cache of a scene without diffuse surfaces is saved and loaded like any other") {
-  const Folder folder;
+  const test::Folder folder;
   const fs::path file = folder.path / "a.cache";
   scene::Scene mirrors = room();
   mirrors.materials[0].metallic = 1, mirrors.materials[0].roughness = 0.1f;

@@ -22,7 +22,7 @@ void write_text(const fs::path& path, const std::string& text) {
 
 std::vector<fs::path> cached_files(const test::OwnCache& cache) {
   std::vector<fs::path> found;
-  for (const auto& entry : fs::recursive_directory_iterator(cache.folder.path()))
+  for (const auto& entry : fs::recursive_directory_iterator(cache.folder.path))
     if (entry.is_regular_file()) found.push_back(entry.path());
   return found;
 }
@@ -65,17 +65,17 @@ TEST_CASE("an error names the file and the line") {
 
 TEST_CASE("files below the root are called shaders/...; includes are found from the root and from the file") {
   const test::OwnCache cache;
-  const test::TemporaryFolder root;
-  write_text(root.path() / "a/kernel.comp",
+  const test::Folder root;
+  write_text(root.path / "a/kernel.comp",
              "#include \"b/common.glsl\"\n#include \"beside.glsl\"\n#include \"shaders/b/common.glsl\"\n"
              "layout(local_size_x = 1) in;\nbuffer Target { float target[]; };\n"
              "void main() { target[0] = common_value() + beside(); }\n");
-  write_text(root.path() / "a/beside.glsl", "float beside() {\n  return 1.0 SPOIL;\n}\n");
+  write_text(root.path / "a/beside.glsl", "float beside() {\n  return 1.0 SPOIL;\n}\n");
   // No newline at the end, a guard, and an include of the file itself.
-  write_text(root.path() / "b/common.glsl",
+  write_text(root.path / "b/common.glsl",
              "#ifndef COMMON\n#define COMMON\n#include \"b/common.glsl\"\nfloat common_value() { return 2.0; "
              "}\n#endif");
-  ShaderCompiler compiler(root.path());
+  ShaderCompiler compiler(root.path);
   CHECK_NOTHROW(compiler.compile("a/kernel.comp", {{"SPOIL", ""}}));
   CHECK_NOTHROW(compiler.compile("shaders/a/kernel.comp", {{"SPOIL", ""}}));
   CHECK_THAT(error_of([&] {
@@ -83,7 +83,7 @@ TEST_CASE("files below the root are called shaders/...; includes are found from 
              }),
              Contains("shaders/a/beside.glsl:2: ") && Contains("wrong"));
 
-  write_text(root.path() / "lost.comp", "void main() {}\n\n#include \"nowhere.glsl\"\n");
+  write_text(root.path / "lost.comp", "void main() {}\n\n#include \"nowhere.glsl\"\n");
   CHECK_THAT(error_of([&] { compiler.compile("lost.comp"); }),
              Contains("shaders/lost.comp:3: ") && Contains("nowhere.glsl"));
 }
@@ -105,19 +105,19 @@ TEST_CASE("dependencies are the files to watch") {
 
 TEST_CASE("a changed include is seen; a file that does not compile is still watched") {
   const test::OwnCache cache;
-  const test::TemporaryFolder root;
+  const test::Folder root;
   const std::string body =
       "#include \"value.glsl\"\nbuffer T { float t[]; };\nvoid main() { t[0] = VALUE; }\n";
-  write_text(root.path() / "k.comp", body);
-  write_text(root.path() / "value.glsl", "#define VALUE 1.0\n");
-  ShaderCompiler compiler(root.path());
+  write_text(root.path / "k.comp", body);
+  write_text(root.path / "value.glsl", "#define VALUE 1.0\n");
+  ShaderCompiler compiler(root.path);
   const auto first = compiler.compile("k.comp");
-  write_text(root.path() / "value.glsl", "#define VALUE 2.0\n");
+  write_text(root.path / "value.glsl", "#define VALUE 2.0\n");
   CHECK(compiler.compile("k.comp") != first);
-  write_text(root.path() / "value.glsl", "#define VALUE oops\n");
+  write_text(root.path / "value.glsl", "#define VALUE oops\n");
   CHECK_THROWS_AS(compiler.compile("k.comp"), Error);
   CHECK(compiler.dependencies("k.comp").size() == 2);
-  write_text(root.path() / "value.glsl", "#define VALUE 1.0\n");
+  write_text(root.path / "value.glsl", "#define VALUE 1.0\n");
   CHECK(compiler.compile("k.comp") == first);
   CHECK(compiler.cache_hits() == 1);
 }

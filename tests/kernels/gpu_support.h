@@ -5,6 +5,7 @@
 #include <string>
 
 #include "gpu/stream.h"
+#include "support/folder.h"
 
 namespace lucerna::test {
 
@@ -21,31 +22,11 @@ inline std::string shader(const std::string& file) {
   return std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/" + file;
 }
 
-/// A folder of this test's own, removed at the end.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "lucerna-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make a temporary folder");
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// Keeps a test's shaders out of the user's disk cache, and old SPIR-V out of the test.
 struct OwnCache {
-  OwnCache() { setenv("XDG_CACHE_HOME", folder.path().c_str(), 1); }
+  OwnCache() { setenv("XDG_CACHE_HOME", folder.path.c_str(), 1); }
   ~OwnCache() { unsetenv("XDG_CACHE_HOME"); }
-  TemporaryFolder folder;
+  Folder folder;
 };
 inline const OwnCache own_cache;
 

@@ -108,10 +108,10 @@ std::vector<uint32_t> compile(const SharedStruct& s, const std::filesystem::path
 }  // namespace
 
 TEST_CASE("shared structs are laid out alike in C++ and GLSL") {
-  const test::TemporaryFolder temporary;
+  const test::Folder temporary;
   for (const SharedStruct& s : structs()) {
     INFO(s.header << ": " << s.name);
-    const auto words = compile(s, temporary.path());
+    const auto words = compile(s, temporary.path);
     CHECK(spirv::struct_stride(words, s.name) == s.bytes);
     const auto members = spirv::struct_members(words, s.name);
     REQUIRE(members.size() == s.members.size());

@@ -57,7 +57,7 @@ TEST_CASE("Half a result and a wrong one are told apart from a whole one") {
 }
 
 TEST_CASE("A bench goes on with the cells that are whole and measures the others again") {
-  const test::BenchFolder temporary;
+  const test::Folder temporary;
   const Matrix m = test::small_matrix();
   const auto cells = m.cells();
   const std::map<std::string, std::string> hashes = {{"cornell", "0123456789abcdef"},
@@ -91,7 +91,7 @@ TEST_CASE("A bench goes on with the cells that are whole and measures the others
 }
 
 TEST_CASE("A folder that is not this bench's is refused and left as it was") {
-  const test::BenchFolder temporary;
+  const test::Folder temporary;
   const Matrix m = test::small_matrix();
   { const Folder folder(temporary / "mine", m, k_identity); }
   Matrix other = m;
@@ -118,7 +118,7 @@ TEST_CASE("A folder that is not this bench's is refused and left as it was") {
 }
 
 TEST_CASE("The scene's hash sees every file that the scene is made of") {
-  const test::BenchFolder temporary;
+  const test::Folder temporary;
   const auto write = [&](const char* name, const std::string& text) {
     std::ofstream(temporary / name) << text;
   };
@@ -143,7 +143,7 @@ TEST_CASE("The scene's hash sees every file that the scene is made of") {
 }
 
 TEST_CASE("A reference serves when it is whole and made of the same; otherwise it is set aside") {
-  const test::BenchFolder temporary;
+  const test::Folder temporary;
   Matrix m = test::small_matrix();
   SceneEntry scene = m.scenes[0];
   scene.reference_samples = 100;
@@ -155,10 +155,10 @@ TEST_CASE("A reference serves when it is whole and made of the same; otherwise i
         image.channels.emplace_back(layer + std::string(c), std::vector<float>(16 * width, value));
     describe_reference(image.metadata, {.file = {}, .key = with_key, .samples = samples, .seconds = 12});
     image.metadata["noise"] = film::noise_text({0.1, 0.1, 0.1, 0.1, 0.1});
-    film::write_exr(reference_file(temporary.path(), scene), image);
+    film::write_exr(reference_file(temporary.path, scene), image);
   };
   Told told;
-  const auto find = [&] { return find_reference(temporary.path(), scene, key, told.message); };
+  const auto find = [&] { return find_reference(temporary.path, scene, key, told.message); };
   CHECK_FALSE(find());
   CHECK(told.lines.empty());
   write(key, 128, 2);
@@ -174,8 +174,8 @@ TEST_CASE("A reference serves when it is whole and made of the same; otherwise i
     CHECK_FALSE(find());
     REQUIRE(told.lines.size() == size_t(++old));
     CHECK_THAT(told.lines.back(), Contains(why) && Contains("made anew"));
-    CHECK_FALSE(fs::exists(reference_file(temporary.path(), scene)));
-    CHECK(fs::exists(reference_file(temporary.path(), scene).string() +
+    CHECK_FALSE(fs::exists(reference_file(temporary.path, scene)));
+    CHECK(fs::exists(reference_file(temporary.path, scene).string() +
                      (old == 1 ? ".old" : ".old" + std::to_string(old))));
   };
   write("of something else", 128, 2);
@@ -189,8 +189,8 @@ TEST_CASE("A reference serves when it is whole and made of the same; otherwise i
   write("", 128, 2);
   set_aside("no reference of a bench");
   write(key, 128, 2);
-  const std::string bytes = read_file(reference_file(temporary.path(), scene));
-  std::ofstream(reference_file(temporary.path(), scene)) << bytes.substr(0, bytes.size() / 2);
+  const std::string bytes = read_file(reference_file(temporary.path, scene));
+  std::ofstream(reference_file(temporary.path, scene)) << bytes.substr(0, bytes.size() / 2);
   set_aside("cornell-16x16.exr");
 
   // What makes another picture makes another key.

@@ -114,13 +114,13 @@ TEST_CASE("The table has a line for each cell and repeat and as many fields ever
 }
 
 TEST_CASE("The page stands alone, is well-formed and holds every number of its tables") {
-  const test::BenchFolder folder;
+  const test::Folder folder;
   film::write_png(folder / "cornell.plain.png", 16, 16, std::vector<uint8_t>(16 * 16 * 4, 128));
   film::FilmImage error{.width = 16, .height = 16};
   error.channels.emplace_back("error", std::vector<float>(256, 0.03f));
   film::write_exr(folder / "cornell.plain.exr", error);
   const Json r = report();
-  const std::string html = make_page(r, folder.path());
+  const std::string html = make_page(r, folder.path);
   CHECK(html.starts_with("<!DOCTYPE html>"));
   CHECK(unbalanced(html.substr(html.find('\n'))) == "");
   for (const char* outside : {"http:", "https:", "<script", "<link", "url(", "@import", "file:"})
@@ -163,11 +163,11 @@ TEST_CASE("A page of a bench that is not complete says so; an empty one is a pag
 }
 
 TEST_CASE("Reports are written and read; others are refused") {
-  const test::BenchFolder folder;
+  const test::Folder folder;
   const Json r = report();
   std::filesystem::create_directories(folder / "pictures");
-  write_report(folder.path(), r);
-  CHECK(read_report(folder.path()) == r);
+  write_report(folder.path, r);
+  CHECK(read_report(folder.path) == r);
   CHECK(read_report(folder / "report.json") == r);
   const std::string whole = read_file(folder / "report.json");
   std::ofstream(folder / "half.json") << whole.substr(0, whole.size() / 2);

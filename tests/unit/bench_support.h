@@ -9,6 +9,7 @@
 
 #include "bench/report.h"
 #include "bench/result.h"
+#include "support/folder.h"
 
 namespace lucerna::test {
 
@@ -82,25 +83,5 @@ inline nlohmann::ordered_json fake_about() {
        {{"cpu", "A Processor"}, {"cores", 2}, {"memory_gib", 3.5}, {"system", "A System"}, {"load", 0.25}}},
       {"device", {{"name", "a device"}, {"driver", "a driver"}}}};
 }
-
-/// A folder of its own, removed in the end.
-class BenchFolder {
- public:
-  BenchFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "lucerna-bench-XXXXXX").string();
-    path_ = ::mkdtemp(pattern.data());
-  }
-  ~BenchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  BenchFolder(const BenchFolder&) = delete;
-  BenchFolder& operator=(const BenchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace lucerna::test

@@ -2,7 +2,6 @@
 // Files of irradiance caches, without a device: what is written is what is read, to the bit; whatever is not
 // whole, not of this format or not made of the same is refused, with what was expected and what was found.
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -12,6 +11,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "solvers/irradiance_cache/file.h"
+#include "support/folder.h"
 
 namespace fs = std::filesystem;
 using namespace lucerna;
@@ -68,19 +68,10 @@ std::string refusal(const std::string& bytes) {
   return complaint([&] { decode(bytes, "a.cache"); });
 }
 
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "lucerna-cache-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path); }
-};
-
 }  // namespace
 
 TEST_CASE("a cache that is written and read is the same to the bit") {
-  const Folder folder;
+  const test::Folder folder;
   for (const uint32_t records : {0u, 1u, 3u, 1000u}) {
     INFO(records);
     const CacheFile c = some_cache(records);
@@ -182,7 +173,7 @@ TEST_CASE(
 }
 
 TEST_CASE("what cannot be read or written says so, and leaves what was there") {
-  const Folder folder;
+  const test::Folder folder;
   const fs::path file = folder.path / "a.cache";
   CHECK_THAT(complaint([&] { read_cache(file); }),
              Contains(file.string() + ": cannot be read: No such file"));

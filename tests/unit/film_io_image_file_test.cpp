@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "film/io/image_file.h"
+#include "support/folder.h"
 
 namespace fs = std::filesystem;
 using namespace lucerna;
@@ -19,17 +20,10 @@ using film::FilmImage;
 namespace {
 
 /// A folder of its own for each test case, removed afterwards.
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "lucerna-film-XXXXXX").string();
-    REQUIRE(mkdtemp(name.data()));
-    path = name;
-  }
+struct Folder : test::Folder {
   ~Folder() {
     std::error_code ignored;
     fs::permissions(path, fs::perms::owner_all, ignored);
-    fs::remove_all(path, ignored);
   }
   size_t entries() const {
     return static_cast<size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator()));

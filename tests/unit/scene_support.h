@@ -1,7 +1,6 @@
 #pragma once
 // Tiny glTF files, made where they are needed.
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -12,6 +11,7 @@
 
 #include "base/error.h"
 #include "scene/io/load.h"
+#include "support/folder.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 // OpenImageIO 2.4 loses the text of an error when a PNG is cut short.
@@ -22,24 +22,7 @@ namespace lucerna::test {
 
 using nlohmann::json;
 
-/// A folder of its own for each object, removed with it.
-class TempFolder {
- public:
-  TempFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "lucerna-scene-XXXXXX").string();
-    path_ = ::mkdtemp(pattern.data());
-  }
-  ~TempFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
+using TempFolder = Folder;
 
 inline void write(const std::filesystem::path& path, const void* data, size_t size) {
   std::ofstream(path, std::ios::binary)

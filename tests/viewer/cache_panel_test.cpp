@@ -18,27 +18,6 @@ bool no_display() {
   return true;
 }
 
-/// Runs the steps in a window of this program.
-test::Outcome window(const std::string& steps) {
-  static test::Folder folder;
-  const auto script = folder.path / "steps.txt";
-  std::ofstream(script) << steps;
-  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-  return test::run("env LUCERNA_TEST_SCRIPT='" + script.string() + "' " +
-                   test::with_display(self + " '[inside]'"));
-}
-
-/// How many pixels of a rectangle are near a colour (0..255).
-int near_colour(const test::Picture& p, int x0, int y0, int x1, int y1, vec3 colour, float reach = 0.06f) {
-  int n = 0;
-  for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) {
-      const vec3 d = glm::abs(p.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)) - colour / 255.0f);
-      n += std::max({d.x, d.y, d.z}) < reach;
-    }
-  return n;
-}
-
 std::string contents(const std::string& file) {
   std::ifstream in(file);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -62,7 +41,7 @@ TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, 
   if (no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
-  const auto outcome = window(
+  const auto outcome = test::window(
       "wait_scene\nwait_samples 2\nrender.pause\nscreenshot " + file("scene.png") +
       // The tab, then the button in the empty panel.
       "\nmouse.move 1366 48\nmouse.down\nmouse.up\nwait 0.2\nscreenshot " + file("empty.png") +
@@ -79,14 +58,14 @@ TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, 
   // The line over the title of what is shown.
   for (const auto& [picture, left] :
        {std::pair{&scene, true}, {&empty, false}, {&cache, false}, {&back, true}}) {
-    CHECK((near_colour(*picture, 1150, 32, 1280, 36, k_accent) > 100) == left);
-    CHECK((near_colour(*picture, 1300, 32, 1435, 36, k_accent) > 100) == !left);
+    CHECK((test::near_colour(*picture, 1150, 32, 1280, 36, k_accent) > 100) == left);
+    CHECK((test::near_colour(*picture, 1300, 32, 1435, 36, k_accent) > 100) == !left);
   }
   // Numbers, bars of the overlap, inks of the passes; none of them in the empty panel.
   const vec3 unserved(191, 31, 41), first_pass(255, 154, 99);
-  CHECK(near_colour(cache, 1150, 240, 1436, 320, unserved) > 20);
-  CHECK(near_colour(empty, 1150, 240, 1436, 320, unserved) == 0);
-  CHECK(near_colour(cache, 1150, 440, 1436, 672, first_pass, 0.15f) > 20);
+  CHECK(test::near_colour(cache, 1150, 240, 1436, 320, unserved) > 20);
+  CHECK(test::near_colour(empty, 1150, 240, 1436, 320, unserved) == 0);
+  CHECK(test::near_colour(cache, 1150, 440, 1436, 672, first_pass, 0.15f) > 20);
   CHECK(cache.contrast(1150, 90, 1430, 240) > 0.05);
 }
 
@@ -94,7 +73,7 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
   if (no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
-  const auto outcome = window(
+  const auto outcome = test::window(
       "wait_scene\nwait_samples 2\nrender.pause\ncomponents.secondary cache\nwait 0.3\n"
       // Nothing lies over the picture yet: nothing is asked.
       "mouse.move 500 400\nwait 0.7\nscreenshot " +
@@ -110,8 +89,8 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const auto bars = [&](const char* name, bool right) {  // of the weights, in the card
-    return near_colour(test::Picture(file(name)), right ? 820 : 292, 80, right ? 1132 : 580, 460, k_gold) >
-           200;
+    return test::near_colour(test::Picture(file(name)), right ? 820 : 292, 80, right ? 1132 : 580, 460,
+                             k_gold) > 200;
   };
   CHECK_FALSE(bars("nothing.png", true));
   CHECK(bars("card.png", true));
@@ -124,8 +103,8 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
   CHECK(bars("asked.png", true));
   // Light by part has its component's colour.
   const test::Picture card(file("card.png"));
-  CHECK(near_colour(card, 818, 200, 860, 300, k_teal) > 30);
-  CHECK(near_colour(card, 818, 200, 860, 300, k_violet) > 30);
+  CHECK(test::near_colour(card, 818, 200, 860, 300, k_teal) > 30);
+  CHECK(test::near_colour(card, 818, 200, 860, 300, k_violet) > 30);
   const std::string script = contents(file("session.lucerna"));
   CHECK_THAT(script, Catch::Contains("set overlay.records true\nset overlay.normals true"));
   CHECK_THAT(script, !Catch::Contains("inspect"));  // looking is no deed
@@ -164,13 +143,13 @@ TEST_CASE("in the program lines lead from a point to the records that serve it")
   // The picture is 524 x 408 at (280, 68): the point, the far wall, and the card.
   CHECK(differ(lines, 522, 395, 562, 435) > 40);
   CHECK(differ(lines, 300, 150, 470, 250) == 0);
-  CHECK(near_colour(lines, 500, 80, 800, 420, k_gold) > 100);
+  CHECK(test::near_colour(lines, 500, 80, 800, 420, k_gold) > 100);
   CHECK(differ(normals, 290, 80, 800, 470) > 500);
 }
 
 TEST_CASE("asking a cache that nobody uses is a mistake that says what to do") {
   if (no_display()) return;
-  const auto outcome = window("wait_scene\ninspect.records 0.5 0.5\nquit\n");
+  const auto outcome = test::window("wait_scene\ninspect.records 0.5 0.5\nquit\n");
   INFO(outcome.output);
   CHECK(outcome.status != 0);
   CHECK_THAT(outcome.output, Catch::Contains("line 2: inspect.records: no component takes its light from the "

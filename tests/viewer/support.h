@@ -3,15 +3,18 @@
 // drawn.
 #include <sys/wait.h>
 #include <unistd.h>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "base/math.h"
 #include "film/io/image_file.h"
+#include "support/folder.h"
 
 namespace lucerna::test {
 
@@ -59,18 +62,16 @@ inline Outcome run(const std::string& command, int seconds = 120) {
   return outcome;
 }
 
-/// An empty folder that goes away with the object.
-struct Folder {
-  std::filesystem::path path;
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "lucerna-viewer-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  ~Folder() {
-    std::error_code error;
-    std::filesystem::remove_all(path, error);
-  }
-};
+/// Runs the steps in a window of the test program itself, in its case '[inside]'; `environment`: NAME=value,
+/// for the shell.
+inline Outcome window(const std::string& steps, const std::string& environment = "") {
+  static Folder folder;
+  const auto script = folder.path / "steps.txt";
+  std::ofstream(script) << steps;
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  return run("env LUCERNA_TEST_SCRIPT='" + script.string() + "' " + environment + " " +
+             with_display(self + " '[inside]'"));
+}
 
 /// A PNG of the window as numbers 0..1 (encoded values).
 struct Picture {
@@ -91,5 +92,16 @@ struct Picture {
     return n > 0 ? std::sqrt(std::max(0.0, squares / n - sum / n * (sum / n))) : 0;
   }
 };
+
+/// How many pixels of a rectangle are near a colour (0..255).
+inline int near_colour(const Picture& p, int x0, int y0, int x1, int y1, vec3 colour, float reach = 0.06f) {
+  int n = 0;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) {
+      const vec3 d = glm::abs(p.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)) - colour / 255.0f);
+      n += std::max({d.x, d.y, d.z}) < reach;
+    }
+  return n;
+}
 
 }  // namespace lucerna::test

@@ -18,12 +18,7 @@ namespace {
 
 /// Runs the steps in a window of this program; SCENE and steps travel in the environment.
 test::Outcome window(const std::string& scene, const std::string& steps, const std::string& more = "") {
-  static test::Folder folder;
-  const auto script = folder.path / "steps.txt";
-  std::ofstream(script) << steps;
-  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-  return test::run("env LUCERNA_TEST_SCENE='" + scene + "' LUCERNA_TEST_SCRIPT='" + script.string() + "' " +
-                   more + " " + test::with_display(self + " '[inside]'"));
+  return test::window(steps, "LUCERNA_TEST_SCENE='" + scene + "' " + more);
 }
 
 bool no_display() { return test::with_display("x").empty(); }
@@ -273,17 +268,6 @@ TEST_CASE("a dropped scene opens; what cannot be opened is an error over the sce
 
 namespace {
 
-/// How many pixels of a rectangle are near a colour (0..255).
-int near_colour(const test::Picture& p, int x0, int y0, int x1, int y1, vec3 colour, float reach = 0.09f) {
-  int n = 0;
-  for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) {
-      const vec3 d = glm::abs(p.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)) - colour / 255.0f);
-      n += std::max({d.x, d.y, d.z}) < reach;
-    }
-  return n;
-}
-
 std::vector<std::string> lines_of(const std::string& file) {
   std::ifstream in(file);
   std::vector<std::string> lines;
@@ -317,21 +301,23 @@ TEST_CASE("in mid-render the strip shows error over time, the forecast and the p
   const vec3 amber(235, 168, 66), teal(64, 184, 172), violet(156, 128, 224), coral(242, 116, 94);
   for (const vec3& c : {amber, teal, violet, coral}) {
     INFO(c.x);
-    CHECK(near_colour(uniform, 56, 730, 560, 880, c) > 20);  // its line
+    CHECK(test::near_colour(uniform, 56, 730, 560, 880, c, 0.09f) > 20);  // its line
   }
-  CHECK(near_colour(uniform, 56, 730, 560, 880, {92, 131, 175}) > 400);       // the target's line and its tag
-  CHECK(near_colour(uniform, 56, 730, 560, 880, {65, 65, 65}, 0.03f) > 150);  // the forecast's fan
-  CHECK(near_colour(uniform, 590, 710, 760, 880, {178, 178, 178}, 0.02f) > 40);  // stages, stacked
-  CHECK(uniform.contrast(770, 710, 1000, 880) > 0.05);                           // their names and times
+  CHECK(test::near_colour(uniform, 56, 730, 560, 880, {92, 131, 175}, 0.09f) >
+        400);  // the target's line and its tag
+  CHECK(test::near_colour(uniform, 56, 730, 560, 880, {65, 65, 65}, 0.03f) > 150);     // the forecast's fan
+  CHECK(test::near_colour(uniform, 590, 710, 760, 880, {178, 178, 178}, 0.02f) > 40);  // stages, stacked
+  CHECK(uniform.contrast(770, 710, 1000, 880) > 0.05);  // their names and times
   // The faint line.
   const auto faint = [](const test::Picture& p) {
-    return near_colour(p, 60, 732, 500, 870, {92, 92, 92}, 0.04f);
+    return test::near_colour(p, 60, 732, 500, 870, {92, 92, 92}, 0.04f);
   };
   CHECK(faint(earlier) > faint(cleared) + 20);
   // Lower left of the picture: ramps of both legends.
-  CHECK(near_colour(legend, 288, 380, 580, 660, {254, 159, 109}, 0.05f) > 20);  // magma
-  CHECK(near_colour(legend, 288, 380, 580, 660, {176, 42, 45}, 0.05f) > 10);    // tiles, far from the target
-  CHECK(near_colour(uniform, 288, 380, 580, 660, {254, 159, 109}, 0.05f) == 0);
+  CHECK(test::near_colour(legend, 288, 380, 580, 660, {254, 159, 109}, 0.05f) > 20);  // magma
+  CHECK(test::near_colour(legend, 288, 380, 580, 660, {176, 42, 45}, 0.05f) >
+        10);  // tiles, far from the target
+  CHECK(test::near_colour(uniform, 288, 380, 580, 660, {254, 159, 109}, 0.05f) == 0);
 }
 
 TEST_CASE("the target's line is dragged: a question in uniform sampling, the setting in adaptive") {
@@ -349,7 +335,7 @@ TEST_CASE("the target's line is dragged: a question in uniform sampling, the set
   const test::Picture first(png);
   int line = 0;
   for (int y = 730; y < 880; ++y)
-    if (near_colour(first, 100, y, 400, y + 1, {92, 131, 175}, 0.12f) > 200) line = y;
+    if (test::near_colour(first, 100, y, 400, y + 1, {92, 131, 175}, 0.12f) > 200) line = y;
   REQUIRE(line > 0);
   const auto drag = [&](int from, int by) {
     return fmt::format("mouse.move 200 {}\nmouse.down\nmouse.move 200 {}\nmouse.move 200 {}\nmouse.up\n",
@@ -374,7 +360,7 @@ TEST_CASE("the target's line is dragged: a question in uniform sampling, the set
   const test::Picture second(png);
   int adaptive = 0;
   for (int y = 730; y < 880; ++y)
-    if (near_colour(second, 100, y, 400, y + 1, {92, 131, 175}, 0.12f) > 200) adaptive = y;
+    if (test::near_colour(second, 100, y, 400, y + 1, {92, 131, 175}, 0.12f) > 200) adaptive = y;
   REQUIRE(adaptive > 0);
   const auto set = window("hall.gltf", start + "sampling.mode adaptive\nsampling.target_error 0.1\n" +
                                            "wait_samples 32\nwait 0.3\n" + drag(adaptive, 30) +

@@ -31,6 +31,8 @@ constexpr float k_deep_spacing = 1.0f / 64;
 constexpr float k_deep_noise = 4;
 constexpr float k_normal_tolerance = 0.06f;  // 1 - cos of 20 degrees
 constexpr float k_behind = 0.05f;
+/// Of its radius: where a record makes others superfluous.
+constexpr float k_overlap_share = 0.6f;
 /// References of the octree that there is memory for, a record.
 constexpr uint32_t k_references = 16;
 
@@ -129,6 +131,10 @@ struct Cache::Impl {
 
   CachePass& pass() { return status.passes.back(); }
   void took(BuildStep step, double ms) { pass().ms[size_t(step)] += ms; }
+  void spent(size_t done, uint32_t rays) {
+    pass().rays += uint64_t(done) * rays;
+    status.rays += uint64_t(done) * rays;
+  }
   void begin_pass() {
     if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
     status.passes.push_back({.number = status.pass});
@@ -171,20 +177,21 @@ struct Cache::Impl {
     }
     list = std::move(kept);
     ++level;
-    at = 0;
     return !list.empty();
   }
 
-  /// Radii of the records from `first` on, by what is known of them.
-  void set_radii(transport::Wavefront& wavefront, const CacheView& view, const Cache& cache, uint32_t first) {
-    const uint32_t count = records.size() - first;
+  /// Radii of the records that are added in this pass, by what is known of them.
+  void set_radii(transport::Wavefront& wavefront, const CacheView& view, const Cache& cache) {
+    const uint32_t count = records.size() - evaluated;
     if (count == 0) return;
+    StageTimer timer(wavefront);
     wavefront.bind_paths(resources);
     cache.bind(resources);
-    const RadiusPush push{first, count, options.error, options.least_pixels,
+    const RadiusPush push{evaluated, count, options.error, options.least_pixels,
                           options.most_radius * view.scene_radius};
     wavefront.stream().dispatch(radius, resources, push, gpu::groups_for(count, 64), "records");
     wavefront.stream().run();
+    took(BuildStep::radius, timer.milliseconds());
   }
 
   /// The records that are added in this pass, for the next piece of work on them.
@@ -359,19 +366,16 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     wavefront.set_frame(view.paths_frame, view.paths_enabled);
     c.at += done;
     c.took(BuildStep::measure, timer.milliseconds());
-    c.status.rays += uint64_t(done) * Evaluator::k_distance_rays;
-    c.pass().rays += uint64_t(done) * Evaluator::k_distance_rays;
+    c.spent(done, Evaluator::k_distance_rays);
     if (done < list.size()) return false;
     if (c.at < c.list.size()) return true;
-    StageTimer widths(wavefront);
-    c.set_radii(wavefront, view, *this, c.evaluated);
-    c.took(BuildStep::radius, widths.milliseconds());
+    c.set_radii(wavefront, view, *this);
     const Timer host;
     const std::vector<float> radii = c.records.radii(c.evaluated);
     std::vector<Place> needed;
-    for (const uint32_t i : thin_out(
-             c.tried, radii,
-             {.share = c.options.overlap_share, .normal_tolerance = k_normal_tolerance, .behind = k_behind}))
+    for (const uint32_t i :
+         thin_out(c.tried, radii,
+                  {.share = k_overlap_share, .normal_tolerance = k_normal_tolerance, .behind = k_behind}))
       needed.push_back(c.tried[i]);
     c.records.truncate(c.evaluated);
     c.pass().records = c.records.append(needed, c.status.pass);
@@ -405,9 +409,8 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       c.tell();
       if (done < list.size()) return false;
       c.took(BuildStep::evaluate, timer.milliseconds());
-      c.pass().rays += uint64_t(done) * rays;
       c.at += done;
-      c.status.rays += uint64_t(done) * rays;
+      c.spent(done, rays);
       if (c.at < c.list.size()) return true;
       c.rays_before += rays;
       c.level_done += rays;
@@ -421,9 +424,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     const bool more = c.next_level();
     c.records.publish(wavefront.stream());
     if (c.evaluated < c.records.size()) {
-      StageTimer widths(wavefront);
-      c.set_radii(wavefront, view, *this, c.evaluated);
-      c.took(BuildStep::radius, widths.milliseconds());
+      c.set_radii(wavefront, view, *this);
       c.evaluated = c.status.records = c.records.size();
       StageTimer indexing(wavefront);
       c.build_octree(wavefront);

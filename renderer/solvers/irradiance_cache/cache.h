@@ -26,8 +26,6 @@ struct CacheOptions {
   float error = 0.3f;        ///< radius of a record over the harmonic mean distance of what it sees; above 0
   float least_pixels = 3;    ///< least radius as the camera sees it; 0 or more
   float most_radius = 0.1f;  ///< of the scene's radius
-  /// Share of a record's radius in which it makes others superfluous, 0..1: less means more overlap.
-  float overlap_share = 0.6f;
   /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
   /// `most_rays` and what the wavefront has slots for.
   uint32_t rays = 256, most_rays = 4096;

@@ -13,6 +13,36 @@ struct Evaluator::Impl {
   gpu::Kernel record, gather, distances;
   gpu::Buffer first_hits, list;
   gpu::Resources resources;
+
+  /// Rays of the listed records by `push` (whose range is filled in), a batch of the wavefront's slots at a
+  /// time, summed by `kernel`: `gather`, of what they bring, or `distances`, of their first hits alone.
+  size_t gather_by(const gpu::Kernel& kernel, transport::Wavefront& wavefront, Records& records,
+                   std::span<const uint32_t> all, RecordPush push, const std::function<bool()>& cancel) {
+    wavefront.bind_paths(resources);
+    records.bind(resources, Records::Use::gather);
+    resources.set("RecordList", list);
+    const bool hits_only = &kernel == &distances;
+    resources.set("first_hit_texels", hits_only ? wavefront.hits() : first_hits);
+    const uint32_t cells = push.elevations * push.azimuths;
+    gpu::Stream& stream = wavefront.stream();
+    size_t done = 0;
+    while (done < all.size()) {
+      push.records = static_cast<uint32_t>(std::min<size_t>(all.size() - done, wavefront.slots() / cells));
+      const uint32_t rays = push.records * cells;
+      list.write(all.subspan(done, push.records));
+      transport::PathEnds ends{
+          .begin = [&] { stream.dispatch(record, resources, push, gpu::groups_for(rays, 64), "records"); },
+          .first_hits = {},
+          .end =
+              [&] { stream.dispatch(kernel, resources, push, gpu::groups_for(push.records, 64), "records"); },
+          .hits_only = hits_only};
+      if (!hits_only)
+        ends.first_hits = [&] { stream.copy(wavefront.hits(), first_hits, uint64_t{rays} * sizeof(Hit)); };
+      if (!wavefront.run(rays, ends, cancel)) break;
+      done += push.records;
+    }
+    return done;
+  }
 };
 
 Evaluator::Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots)
@@ -32,72 +62,26 @@ size_t Evaluator::evaluate(transport::Wavefront& wavefront, const paths::Automat
                            Records& records, std::span<const uint32_t> list, const EvaluateOptions& o,
                            const std::function<bool()>& cancel) {
   Impl& e = *impl_;
-  const uint32_t cells = o.elevations * o.azimuths, slots = wavefront.slots();
-  const uint32_t most = std::min(slots, k_most_rays);
+  const uint32_t cells = o.elevations * o.azimuths, most = std::min(wavefront.slots(), k_most_rays);
   if (cells == 0 || cells > most)
     throw_error("irradiance cache", "{} x {} rays a record; there is room for 1 to {} paths", o.elevations,
                 o.azimuths, most);
-  wavefront.bind_paths(e.resources);
-  records.bind(e.resources, Records::Use::gather);
-  e.resources.set("RecordList", e.list);
-  e.resources.set("first_hit_texels", e.first_hits);
-  gpu::Stream& stream = wavefront.stream();
-  size_t done = 0;
-  while (done < list.size()) {
-    const auto batch = static_cast<uint32_t>(std::min<size_t>(list.size() - done, slots / cells));
-    e.list.write(list.subspan(done, batch));
-    const RecordPush push{0,
-                          batch,
-                          o.elevations,
-                          o.azimuths,
-                          o.rays_before,
-                          o.parts,
-                          automaton.after(0, paths::Event::diffuse),
-                          o.seed};
-    const transport::PathEnds ends{
-        .begin =
-            [&] {
-              stream.dispatch(e.record, e.resources, push, gpu::groups_for(uint64_t{batch} * cells, 64),
-                              "records");
-            },
-        .first_hits =
-            [&] { stream.copy(wavefront.hits(), e.first_hits, uint64_t{batch} * cells * sizeof(Hit)); },
-        .end = [&] { stream.dispatch(e.gather, e.resources, push, gpu::groups_for(batch, 64), "records"); }};
-    if (!wavefront.run(batch * cells, ends, cancel)) break;
-    done += batch;
-  }
-  return done;
+  return e.gather_by(e.gather, wavefront, records, list,
+                     {.elevations = o.elevations,
+                      .azimuths = o.azimuths,
+                      .rays_before = o.rays_before,
+                      .parts = o.parts,
+                      .state = automaton.after(0, paths::Event::diffuse),
+                      .seed = o.seed},
+                     cancel);
 }
 
 size_t Evaluator::measure(transport::Wavefront& wavefront, Records& records, std::span<const uint32_t> list,
                           uint32_t seed, const std::function<bool()>& cancel) {
   Impl& e = *impl_;
   constexpr uint32_t k_elevations = 4, k_azimuths = k_distance_rays / k_elevations;
-  wavefront.bind_paths(e.resources);
-  records.bind(e.resources, Records::Use::gather);
-  e.resources.set("RecordList", e.list);
-  e.resources.set("first_hit_texels", wavefront.hits());
-  gpu::Stream& stream = wavefront.stream();
-  size_t done = 0;
-  while (done < list.size()) {
-    const auto batch =
-        static_cast<uint32_t>(std::min<size_t>(list.size() - done, wavefront.slots() / k_distance_rays));
-    e.list.write(list.subspan(done, batch));
-    const RecordPush push{0, batch, k_elevations, k_azimuths, 0, 0, 0, seed};
-    const transport::PathEnds ends{
-        .begin =
-            [&] {
-              stream.dispatch(e.record, e.resources, push,
-                              gpu::groups_for(uint64_t{batch} * k_distance_rays, 64), "records");
-            },
-        .first_hits = {},
-        .end =
-            [&] { stream.dispatch(e.distances, e.resources, push, gpu::groups_for(batch, 64), "records"); },
-        .hits_only = true};
-    if (!wavefront.run(batch * k_distance_rays, ends, cancel)) break;
-    done += batch;
-  }
-  return done;
+  return e.gather_by(e.distances, wavefront, records, list,
+                     {.elevations = k_elevations, .azimuths = k_azimuths, .seed = seed}, cancel);
 }
 
 }  // namespace lucerna::irradiance_cache
