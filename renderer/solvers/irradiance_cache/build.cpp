@@ -1,0 +1,268 @@
+#include "solvers/irradiance_cache/build.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "base/timer.h"
+#include "gpu/stream.h"
+#include "solvers/irradiance_cache/placement.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+/// Spacing of the points that are tried in the first pass, in the scene's radius; each pass quarters it, down
+/// to a share of the least radius that records may have there. Of what is tried only what is needed is kept,
+/// so that this says how finely a pass looks, not how many records it leaves.
+constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
+/// Passes that ask beyond the lookup too, where the cache reads itself, and how finely they look there: what
+/// no record serves there costs time, not accuracy.
+constexpr uint32_t k_deep_passes = 3;
+constexpr float k_deep_spacing = 1.0f / 64;
+/// Noise that they may have, over that of others: a record's ray reads some of them, and a record's rays
+/// many.
+constexpr float k_deep_noise = 4;
+/// Of its radius: where a record makes others superfluous.
+constexpr float k_overlap_share = 0.6f;
+
+/// Records that go on with a noisy one, on either side.
+constexpr size_t k_company = 4;
+
+}  // namespace
+
+uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lround(std::sqrt(rays / 4.0))); }
+
+bool Cache::Impl::probe(const Work& w) {
+  if (!probing) {
+    picture = {((w.view.width + 7) / 8) * ((w.view.height + 7) / 8), 1, w.wavefront.slots()};
+    begin_pass();
+  }
+  const schedule::UniformSchedule before = picture;
+  schedule::WorkItem item = picture.next();
+  // Each pass looks along paths of its own.
+  for (WorkBlock& b : item.blocks) b.first_sample = status.pass;
+  tell(recursive && status.pass < k_deep_passes ? k_probe_beyond : k_probe_lookups);
+  StageTimer timer(w.wavefront);
+  w.wavefront.stream().fill(candidates, 0);
+  const bool complete = w.wavefront.probe(item, w.cancel);
+  tell();
+  if (!complete) {
+    picture = before;
+    return false;
+  }
+  took(BuildStep::probe, timer.milliseconds());
+  collect(item.slots());
+  if (picture.done()) choose(w);
+  return true;
+}
+
+void Cache::Impl::begin_pass() {
+  if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
+  status.passes.push_back({.number = status.pass});
+  status.asked = status.paths = 0;
+  asked.clear();
+  probing = true;
+}
+
+void Cache::Impl::collect(uint32_t slots) {
+  const auto* texels = static_cast<const vec4*>(candidates.mapped());
+  for (uint32_t slot = 0; slot < slots; ++slot) {
+    const vec4& place = texels[size_t{slot} * k_candidate_texels];
+    if (place.w == 0) continue;
+    ++status.asked;
+    const vec4& facing = texels[size_t{slot} * k_candidate_texels + 1];
+    asked.push_back(
+        {vec3(place), vec3(facing), std::bit_cast<uint32_t>(facing.w), static_cast<uint32_t>(place.w) - 1});
+  }
+  status.paths += slots;
+  pass().asked = status.asked, pass().paths = status.paths;
+}
+
+/// Which of the places asked for are tried.
+void Cache::Impl::choose(const Work& w) {
+  probing = false;
+  pass().asked_world = uint64_t(
+      std::count_if(asked.begin(), asked.end(), [](const Place& p) { return p.origin != k_origin_screen; }));
+  if (double(status.asked) <= double(options.stop_share) * double(status.paths))
+    return finish(StopReason::covered);
+  const Frame& f = w.view.paths_frame;
+  const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
+  const Timer host;
+  tried = choose_places(asked, {.spacing = w.view.scene_radius *
+                                           std::ldexp(k_first_spacing, -2 * static_cast<int>(status.pass)),
+                                .spacing_beyond = w.view.scene_radius * k_deep_spacing,
+                                .spacing_of_distance = k_spacing_of_least * options.least_pixels * pixel,
+                                .eye = f.camera_origin,
+                                .parallel = f.orthographic != 0,
+                                .normal_tolerance = k_normal_tolerance,
+                                .seed = options.seed + status.pass,
+                                .most = records.capacity() - records.size()});
+  records.append(tried, status.pass);
+  list_new();
+  took(BuildStep::choose, host.milliseconds());
+  stage = Stage::measure;
+}
+
+/// How far things are around what is tried says how wide its records will be, and so which are needed.
+bool Cache::Impl::measure(const Work& w) {
+  const size_t batch =
+      std::min<size_t>(list.size() - at, std::max(1u, w.wavefront.slots() / Evaluator::k_distance_rays));
+  w.wavefront.set_frame(w.view.records_frame, w.view.records_enabled);
+  StageTimer timer(w.wavefront);
+  const size_t done =
+      evaluator.measure(w.wavefront, records, std::span(list).subspan(at, batch), options.seed, w.cancel);
+  w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
+  at += done;
+  took(BuildStep::measure, timer.milliseconds());
+  spent(done, Evaluator::k_distance_rays);
+  if (done < batch) return false;
+  if (at == list.size()) {
+    set_radii(w);
+    thin();
+  }
+  return true;
+}
+
+void Cache::Impl::thin() {
+  const Timer host;
+  const std::vector<float> radii = records.radii(evaluated);
+  std::vector<Place> needed;
+  for (const uint32_t i :
+       thin_out(tried, radii,
+                {.share = k_overlap_share, .normal_tolerance = k_normal_tolerance, .behind = k_behind}))
+    needed.push_back(tried[i]);
+  records.truncate(evaluated);
+  pass().records = records.append(needed, status.pass);
+  tried.clear();
+  list_new();
+  took(BuildStep::choose, host.milliseconds());
+  level = level_done = rays_before = 0;
+  stage = Stage::evaluate;
+}
+
+bool Cache::Impl::evaluate(const Work& w) {
+  // A level of more rays than can be summed at once is done in rounds of as many.
+  const uint32_t level_rays = options.rays << 2 * level;
+  uint32_t rays = level_rays;
+  while (rays > std::min(Evaluator::k_most_rays, w.wavefront.slots())) rays /= 4;
+  const uint32_t elevations = elevations_for(rays);
+  const size_t batch = std::min<size_t>(list.size() - at, std::max(1u, w.wavefront.slots() / rays));
+  if (batch > 0) {
+    w.wavefront.set_frame(w.view.records_frame, w.view.records_enabled);
+    tell(k_probe_none, own_routes);
+    StageTimer timer(w.wavefront);
+    const size_t done =
+        evaluator.evaluate(w.wavefront, w.automaton, records, std::span(list).subspan(at, batch),
+                           {.elevations = elevations,
+                            .azimuths = 4 * elevations,
+                            .rays_before = rays_before,
+                            .parts = parts,
+                            .seed = options.seed},
+                           w.cancel);
+    w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
+    tell();
+    if (done < batch) return false;
+    took(BuildStep::evaluate, timer.milliseconds());
+    at += done;
+    spent(done, rays);
+    if (at < list.size()) return true;
+    rays_before += rays;
+    level_done += rays;
+    at = 0;
+    if (level_done < level_rays) return true;
+  }
+  level_done = 0;
+  const bool more = next_level();
+  publish_level(w);
+  if (!more) end_pass();
+  return true;
+}
+
+void Cache::Impl::publish_level(const Work& w) {
+  records.publish(w.wavefront.stream());
+  // Radii come from the first level alone: the nearest thing that any ray met comes nearer with every ray,
+  // and records that shrank would leave gaps. A cache that reads itself does so from the second level on:
+  // the first, of few rays, then is all that is traced without the records of its own pass.
+  if (evaluated == records.size()) return;
+  set_radii(w);
+  evaluated = status.records = records.size();
+  StageTimer timer(w.wavefront);
+  build_octree(w.wavefront);
+  took(BuildStep::octree, timer.milliseconds());
+  tell();
+}
+
+void Cache::Impl::end_pass() {
+  set_scales();
+  pass().complete = true;
+  ++status.pass;
+  stage = Stage::probe;
+  if (records.size() == records.capacity())
+    finish(StopReason::records);
+  else if (status.pass >= options.most_passes)
+    finish(StopReason::passes);
+}
+
+bool Cache::Impl::next_level() {
+  const uint32_t rays = options.rays << 2 * level;
+  if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
+  const std::vector<Records::Figures> figures = records.figures();
+  const std::vector<float> light = records.luminances();
+  double sum = 0;
+  for (const float l : light) sum += double(l);
+  const float least = 0.1f * float(sum / double(light.size()));
+  // Light that few rays find (a caustic) is looked for wherever a record near by has found it: one that has
+  // not would else stop, content with its darkness. The list is in Morton order, so that neighbours in it
+  // are near.
+  std::vector<uint32_t> kept;
+  size_t next = 0;  // the first that no noisy one so far has kept or passed
+  for (size_t i = 0; i < list.size(); ++i) {
+    const uint32_t r = list[i];
+    const float enough =
+        figures[r].origin == k_origin_recursive ? k_deep_noise * options.noise : options.noise;
+    if (figures[r].error <= enough * std::max(light[r], least)) continue;
+    next = std::max(next, i > k_company ? i - k_company : 0);
+    for (; next < std::min(list.size(), i + k_company + 1); ++next) kept.push_back(list[next]);
+  }
+  list = std::move(kept);
+  ++level;
+  return !list.empty();
+}
+
+void Cache::Impl::set_radii(const Work& w) {
+  const uint32_t count = records.size() - evaluated;
+  if (count == 0) return;
+  StageTimer timer(w.wavefront);
+  w.wavefront.bind_paths(resources);
+  bind(resources);
+  const RadiusPush push{evaluated, count, options.error, options.least_pixels,
+                        options.most_radius * w.view.scene_radius};
+  w.wavefront.stream().dispatch(radius, resources, push, gpu::groups_for(count, 64), "records");
+  w.wavefront.stream().run();
+  took(BuildStep::radius, timer.milliseconds());
+}
+
+void Cache::Impl::list_new() {
+  list.resize(records.size() - evaluated);
+  std::iota(list.begin(), list.end(), evaluated);
+  at = 0;
+}
+
+void Cache::Impl::finish(StopReason reason) {
+  stage = Stage::done;
+  status.stop = reason;
+  asked = {};
+  if (!status.passes.empty()) pass().complete = true;
+  tell();
+}
+
+void Cache::Impl::spent(size_t done, uint32_t rays) {
+  pass().rays += uint64_t(done) * rays;
+  status.rays += uint64_t(done) * rays;
+}
+
+}  // namespace lucerna::irradiance_cache

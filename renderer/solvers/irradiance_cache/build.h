@@ -1,0 +1,93 @@
+#pragma once
+// What a cache holds while it is built, and the stages of a pass: probe (where do paths find no record?),
+// choose, measure (how far are things around what is tried?), thin, evaluate level by level, index. Internal
+// to the cache: cache.h is what others see.
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "schedule/uniform.h"
+#include "solvers/irradiance_cache/cache.h"
+
+namespace lucerna::irradiance_cache {
+
+enum class Stage { probe, measure, evaluate, done };
+
+/// Most that the normals of a point and of its record may differ, as 1 - cos: 20 degrees.
+inline constexpr float k_normal_tolerance = 0.06f;
+/// How far below a record's plane, in its radius, points may lie.
+inline constexpr float k_behind = 0.05f;
+
+/// Elevations of a level of that many rays; there are four times as many azimuths.
+uint32_t elevations_for(uint32_t rays);
+
+struct Cache::Impl {
+  /// What a piece of work is done with.
+  struct Work {
+    transport::Wavefront& wavefront;
+    const paths::Automaton& automaton;
+    const CacheView& view;
+    const std::function<bool()>& cancel;
+  };
+
+  CacheOptions options;
+  Records records;
+  lookup::Octree octree;
+  gpu::Buffer frame, candidates;
+  gpu::Kernel radius, overlay;
+  gpu::Resources resources;
+  Evaluator evaluator;
+  std::array<uint32_t, 16> routes{}, own_routes{};  // of the picture's paths, of the records'
+  bool recursive = false;
+  uint32_t parts = 0;
+  CacheStatus status;
+  Stage stage = Stage::probe;
+  schedule::UniformSchedule picture;
+  bool probing = false;  // the schedule of this pass has begun
+  std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
+  std::vector<Place> asked, tried;
+  uint32_t evaluated = 0;      // records up to here have light and radius, and are in the octree
+  std::vector<uint32_t> list;  // of this level, in the order of the records
+  size_t at = 0;               // of which so many are done
+  uint32_t level = 0, level_done = 0, rays_before = 0;  // ... and rays of each record, in this level, so far
+
+  Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o);
+
+  /// One bounded piece of a stage each; false when it was cancelled, and is to be done again. A stage that is
+  /// complete hands over to the next.
+  bool probe(const Work& work);
+  bool measure(const Work& work);
+  bool evaluate(const Work& work);
+  void finish(StopReason reason);
+
+  /// What lookup.glsl reads.
+  void bind(gpu::Resources& to) const;
+  void build_octree(transport::Wavefront& wavefront);
+  /// What all but a few records lie between.
+  void set_scales();
+  /// What paths know of the cache from here on.
+  void tell(uint32_t probing, const std::array<uint32_t, 16>& table);
+  void tell(uint32_t probing = shared::k_probe_none) { tell(probing, routes); }
+
+ private:
+  void begin_pass();
+  void collect(uint32_t slots);
+  void choose(const Work& work);
+  void thin();
+  void end_pass();
+  /// The records of this pass that are still too noisy, for four times as many rays. False when there are
+  /// none.
+  bool next_level();
+  /// Lights and radii of this level, for those who look up.
+  void publish_level(const Work& work);
+  /// Radii of the records that are added in this pass, by what is known of them.
+  void set_radii(const Work& work);
+  /// The records that are added in this pass, for the next piece of work on them.
+  void list_new();
+  CachePass& pass() { return status.passes.back(); }
+  void took(BuildStep step, double ms) { pass().ms[size_t(step)] += ms; }
+  void spent(size_t done, uint32_t rays);
+};
+
+}  // namespace lucerna::irradiance_cache
