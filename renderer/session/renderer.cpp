@@ -121,7 +121,8 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
     record_routes = wanted_record_routes(device_scene.effects());
     cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, record_routes,
                                                       cache_options());
-    for (const auto& [name, value] : irradiance_cache::Cache::defines(record_routes)) defines[name] = value;
+    for (const auto& [name, value] : irradiance_cache::Cache::defines(record_routes, cache_options().metric))
+      defines[name] = value;
     bind = [c = cache.get()](gpu::Resources& r) { c->bind(r); };
   }
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
@@ -159,7 +160,8 @@ shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
 }
 
 irradiance_cache::CacheOptions Renderer::cache_options() const {
-  return {.error = float(settings_.real("cache.error")),
+  return {.metric = irradiance_cache::Metric(settings_.choice("cache.metric")),
+          .error = float(settings_.real("cache.error")),
           .least_pixels = float(settings_.real("cache.min_radius")),
           .most_radius = float(settings_.real("cache.max_radius")),
           .rays = uint32_t(std::stoul(settings_.text("cache.rays"))),

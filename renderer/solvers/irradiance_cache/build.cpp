@@ -31,6 +31,11 @@ constexpr float k_overlap_share = 0.6f;
 
 /// Records that go on with a noisy one, on either side.
 constexpr size_t k_company = 4;
+/// Of metric `hessian`, over `error`: makes about as many records as the split sphere does with the same.
+constexpr float k_hessian_reach = 0.5f;
+/// Of metric `hessian`, over the nearest thing: how far a place that is tried would serve. The first level
+/// has more rays, which meet nearer things.
+constexpr float k_tried_near = 0.8f;
 
 }  // namespace
 
@@ -121,7 +126,7 @@ bool Cache::Impl::measure(const Work& w) {
   spent(done, Evaluator::k_distance_rays);
   if (done < batch) return false;
   if (at == list.size()) {
-    set_radii(w);
+    set_radii(w, false);
     thin();
   }
   return true;
@@ -161,7 +166,8 @@ bool Cache::Impl::evaluate(const Work& w) {
                             .azimuths = 4 * elevations,
                             .rays_before = rays_before,
                             .parts = parts,
-                            .seed = options.seed},
+                            .seed = options.seed,
+                            .hessian = options.metric == Metric::hessian && level == 0 && level_done == 0},
                            w.cancel);
     w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
     tell();
@@ -188,7 +194,7 @@ void Cache::Impl::publish_level(const Work& w) {
   // and records that shrank would leave gaps. A cache that reads itself does so from the second level on:
   // the first, of few rays, then is all that is traced without the records of its own pass.
   if (evaluated == records.size()) return;
-  set_radii(w);
+  set_radii(w, true);
   evaluated = status.records = records.size();
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
@@ -212,9 +218,7 @@ bool Cache::Impl::next_level() {
   if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
   const std::vector<Records::Figures> figures = records.figures();
   const std::vector<float> light = records.luminances();
-  double sum = 0;
-  for (const float l : light) sum += double(l);
-  const float least = 0.1f * float(sum / double(light.size()));
+  const float least = dark();
   // Light that few rays find (a caustic) is looked for wherever a record near by has found it: one that has
   // not would else stop, content with its darkness. The list is in Morton order, so that neighbours in it
   // are near.
@@ -233,15 +237,35 @@ bool Cache::Impl::next_level() {
   return !list.empty();
 }
 
-void Cache::Impl::set_radii(const Work& w) {
+float Cache::Impl::dark() const {
+  const std::vector<float> light = records.luminances();
+  double sum = 0;
+  for (const float l : light) sum += double(l);
+  return 0.1f * float(sum / double(light.size()));
+}
+
+void Cache::Impl::set_radii(const Work& w, bool lit) {
   const uint32_t count = records.size() - evaluated;
   if (count == 0) return;
   StageTimer timer(w.wavefront);
   w.wavefront.bind_paths(resources);
   bind(resources);
-  const RadiusPush push{evaluated, count, options.error, options.least_pixels,
-                        options.most_radius * w.view.scene_radius};
-  w.wavefront.stream().dispatch(radius, resources, push, gpu::groups_for(count, 64), "records");
+  const float most = options.most_radius * w.view.scene_radius;
+  const uint32_t groups = gpu::groups_for(count, 64);
+  if (lit && options.metric == Metric::hessian) {
+    const EllipsePush push{evaluated,
+                           count,
+                           k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
+                           options.least_pixels,
+                           most,
+                           dark()};
+    w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
+  } else {
+    const RadiusPush push{evaluated,     count,
+                          options.error, options.least_pixels,
+                          most,          options.metric == Metric::hessian ? k_tried_near : 1.0f};
+    w.wavefront.stream().dispatch(radius, resources, push, groups, "records");
+  }
   w.wavefront.stream().run();
   took(BuildStep::radius, timer.milliseconds());
 }

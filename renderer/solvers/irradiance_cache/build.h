@@ -35,7 +35,7 @@ struct Cache::Impl {
   Records records;
   lookup::Octree octree;
   gpu::Buffer frame, candidates;
-  gpu::Kernel radius, overlay;
+  gpu::Kernel radius, ellipse, overlay;
   gpu::Resources resources;
   Evaluator evaluator;
   std::array<uint32_t, 16> routes{}, own_routes{};  // of the picture's paths, of the records'
@@ -81,8 +81,11 @@ struct Cache::Impl {
   bool next_level();
   /// Lights and radii of this level, for those who look up.
   void publish_level(const Work& work);
-  /// Radii of the records that are added in this pass, by what is known of them.
-  void set_radii(const Work& work);
+  /// Irradiance, luminance: what records of less are held against, because what they miss is seen less.
+  float dark() const;
+  /// Radii of the records that are added in this pass, by what is known of them: `lit` after their first
+  /// level.
+  void set_radii(const Work& work, bool lit);
   /// The records that are added in this pass, for the next piece of work on them.
   void list_new();
   CachePass& pass() { return status.passes.back(); }

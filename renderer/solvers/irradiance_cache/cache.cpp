@@ -101,14 +101,18 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
   c.recursive =
       std::any_of(c.own_routes.begin(), c.own_routes.end(), [](uint32_t r) { return r != k_no_routes; });
   c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
-  c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(own));
+  c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(own, options.metric));
+  if (options.metric == Metric::hessian)
+    c.ellipse = gpu::Kernel(device, compiler, "irradiance_cache/ellipse.comp");
   clear();
 }
 
 Cache::~Cache() = default;
 
-gpu::Defines Cache::defines(const paths::LookupRoutes& own) {
-  return {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", std::to_string(own.parts)}};
+gpu::Defines Cache::defines(const paths::LookupRoutes& own, Metric metric) {
+  return {{"LUCERNA_CACHE", "1"},
+          {"LUCERNA_CACHE_PARTS", std::to_string(own.parts)},
+          {"LUCERNA_CACHE_ELLIPSES", metric == Metric::hessian ? "1" : "0"}};
 }
 
 void Cache::Impl::bind(gpu::Resources& to) const {

@@ -22,8 +22,18 @@
 
 namespace lucerna::irradiance_cache {
 
+/// What decides how far a record serves.
+enum class Metric : uint32_t {
+  split_sphere,  ///< how far things are that it sees (G. Ward, F. Rubinstein and R. Clear, 1988)
+  hessian,       ///< how its irradiance bends (shaders/irradiance_cache/hessian.comp); radii are of ellipses
+};
+
 struct CacheOptions {
-  float error = 0.3f;        ///< radius of a record over the harmonic mean distance of what it sees; above 0
+  Metric metric = Metric::split_sphere;
+  /// Above 0; radii are in proportion to it. Split sphere: radius of a record over the harmonic mean distance
+  /// of what it sees. Hessian: so that the integral of its relative error over its ellipse is pi/4 of the
+  /// fourth power of half of this, in squares of the scene's radius.
+  float error = 0.3f;
   float least_pixels = 3;    ///< least radius as the camera sees it; 0 or more
   float most_radius = 0.1f;  ///< of the scene's radius
   /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
@@ -72,8 +82,8 @@ class Cache {
         const paths::LookupRoutes& own, const CacheOptions& options);
   ~Cache();
 
-  /// For the kernels of a wavefront that reads a cache with these routes of its own.
-  static gpu::Defines defines(const paths::LookupRoutes& own);
+  /// For the kernels of a wavefront that reads a cache with these routes of its own and this metric.
+  static gpu::Defines defines(const paths::LookupRoutes& own, Metric metric);
   /// Under the names of shaders/irradiance_cache/lookup.glsl.
   void bind(gpu::Resources& resources) const;
   /// Begins anew, without records.
