@@ -65,7 +65,7 @@ class Renderer {
   void set_environment(float scale, float rotation_degrees);
   void reload_shaders();
   /// Begins the image anew, and what it looks up.
-  void restart() { restart(Lookups::clear); }
+  void restart() { restart(irradiance_cache::spoilt_by_edit("restart")); }
   /// Images begun so far.
   uint64_t restarts() const { return restarts_; }
   /// Passes over the picture, or over the tiles at work, that are complete.
@@ -140,18 +140,15 @@ class Renderer {
  private:
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
   void install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings, scene::Camera camera,
-               const Progress& progress);
-  void build_wavefront(const upload::DeviceScene& device_scene);
+               const Progress& progress,
+               irradiance_cache::Spoilt spoilt = irradiance_cache::spoilt_by_edit("scene"));
+  /// `keep`: of the same scene, so that records serve on. Returns what of them does not.
+  irradiance_cache::Spoilt build_wavefront(const upload::DeviceScene& device_scene, bool keep);
   /// The scene with other lights or another environment: uploads these anew.
-  void relight(std::shared_ptr<const scene::Scene> edited);
-  void make_film();
-  /// What a change leaves of the records that paths look up.
-  enum class Lookups {
-    keep,    ///< nothing that they depend on has changed
-    extend,  ///< seen from elsewhere: the same, and more where some are missing
-    clear    ///< other light, surfaces or options
-  };
-  void restart(Lookups lookups);
+  void relight(std::shared_ptr<const scene::Scene> edited, irradiance_cache::Spoilt spoilt);
+  void make_film(irradiance_cache::Spoilt spoilt);
+  /// `spoilt`: of the records that paths look up.
+  void restart(irradiance_cache::Spoilt spoilt);
   shared::Frame make_frame(uint32_t width, uint32_t height) const;  ///< of the picture's paths
   shared::Frame make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
                            uint32_t fallback) const;

@@ -102,7 +102,7 @@ void Cache::Impl::choose(const Work& w) {
                                 .seed = options.seed + status.pass,
                                 .most = records.capacity() - records.size()});
   records.append(tried, status.pass);
-  list_new();
+  list_until(records.size());
   took(BuildStep::choose, host.milliseconds());
   stage = Stage::measure;
 }
@@ -138,7 +138,7 @@ void Cache::Impl::thin() {
   records.truncate(evaluated);
   pass().records = records.append(needed, status.pass);
   tried.clear();
-  list_new();
+  list_until(records.size());
   took(BuildStep::choose, host.milliseconds());
   level = level_done = rays_before = 0;
   stage = Stage::evaluate;
@@ -187,9 +187,14 @@ void Cache::Impl::publish_level(const Work& w) {
   // Radii come from the first level alone: the nearest thing that any ray met comes nearer with every ray,
   // and records that shrank would leave gaps. A cache that reads itself does so from the second level on:
   // the first, of few rays, then is all that is traced without the records of its own pass.
-  if (evaluated == records.size()) return;
-  set_radii(w);
-  evaluated = status.records = records.size();
+  ++status.published;
+  if (evaluated == until) return;
+  if (until > kept) {
+    set_radii(w);
+    hold();
+  }
+  evaluated = status.records = until;
+  kept = std::max(kept, evaluated);
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
   took(BuildStep::octree, timer.milliseconds());
@@ -199,7 +204,13 @@ void Cache::Impl::publish_level(const Work& w) {
 void Cache::Impl::end_pass() {
   set_scales();
   pass().complete = true;
+  if (status.relighting > 0) return relight_pass();
+  if (evaluated > (ends.empty() ? 0 : ends.back())) ends.push_back(evaluated);
   ++status.pass;
+  next_pass();
+}
+
+void Cache::Impl::next_pass() {
   stage = Stage::probe;
   if (records.size() == records.capacity())
     finish(StopReason::records);
@@ -213,8 +224,8 @@ bool Cache::Impl::next_level() {
   const std::vector<Records::Figures> figures = records.figures();
   const std::vector<float> light = records.luminances();
   double sum = 0;
-  for (const float l : light) sum += double(l);
-  const float least = 0.1f * float(sum / double(light.size()));
+  for (uint32_t r = 0; r < until; ++r) sum += double(light[r]);
+  const float least = 0.1f * float(sum / until);
   // Light that few rays find (a caustic) is looked for wherever a record near by has found it: one that has
   // not would else stop, content with its darkness. The list is in Morton order, so that neighbours in it
   // are near.
@@ -234,7 +245,7 @@ bool Cache::Impl::next_level() {
 }
 
 void Cache::Impl::set_radii(const Work& w) {
-  const uint32_t count = records.size() - evaluated;
+  const uint32_t count = until - evaluated;
   if (count == 0) return;
   StageTimer timer(w.wavefront);
   w.wavefront.bind_paths(resources);
@@ -246,8 +257,9 @@ void Cache::Impl::set_radii(const Work& w) {
   took(BuildStep::radius, timer.milliseconds());
 }
 
-void Cache::Impl::list_new() {
-  list.resize(records.size() - evaluated);
+void Cache::Impl::list_until(uint32_t end) {
+  until = end;
+  list.resize(until - evaluated);
   std::iota(list.begin(), list.end(), evaluated);
   at = 0;
 }

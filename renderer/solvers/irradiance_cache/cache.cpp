@@ -124,17 +124,20 @@ void Cache::clear() {
   Impl& c = *impl_;
   c.records.clear();
   c.asked.clear();
-  c.status = {.bytes = c.status.bytes};
+  c.status = {.bytes = c.status.bytes, .published = c.status.published};
   c.stage = Stage::probe;
   c.probing = false;
-  c.evaluated = 0;
+  c.evaluated = c.kept = c.until = 0;
+  c.ends.clear();
+  c.hold();
+  c.stopped = StopReason::building;
   c.tell();
 }
 
 void Cache::extend() {
   Impl& c = *impl_;
   c.status.pass = 0;
-  c.status.stop = StopReason::building;
+  c.status.stop = c.stopped = StopReason::building;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped.
   if (c.stage != Stage::evaluate) {
     c.records.truncate(c.evaluated);
@@ -150,9 +153,8 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
   clear();
   for (size_t i = 0; i < raw.lights.size(); ++i)
     if (!(c.parts >> i / k_part_texels % k_part_count & 1)) raw.lights[i] = vec4(0);
-  c.records.restore(raw);
-  c.evaluated = raw.size();
-  c.status.records = c.status.loaded = raw.size();
+  c.take(raw);
+  c.status.loaded = raw.size();
   c.status.rays = status.rays;
   if (raw.size() > 0) c.build_octree(wavefront);
   c.set_scales();
