@@ -183,6 +183,7 @@ irradiance_cache::CacheView Renderer::cache_view() const {
   view.records_enabled = record_routes_.parts;
   view.width = width_, view.height = height_;
   view.scene_radius = flat_.scene_radius;
+  view.dark = !flat_.effects.lights;
   return view;
 }
 
@@ -415,6 +416,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   const bool prepares = cache_ && !cache_->ready();
   const bool progress = render_item(cancel);
   seconds_ += timer.seconds();
+  if (prepares && cache_->ready()) warn_of_full_cache();
   if (prepares)
     prepared_s_ = seconds_, prepared_rays_ = stats().rays;
   else if (progress)

@@ -157,6 +157,7 @@ class Renderer {
   void start_schedule();
   schedule::AdaptiveOptions adaptive_options() const;
   irradiance_cache::Making cache_making() const;
+  void warn_of_full_cache();
   /// All that decides which records this picture asks for, as text.
   std::string cache_view_text() const;
   /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
@@ -185,6 +186,7 @@ class Renderer {
   paths::LookupRoutes routes_, record_routes_;              ///< of the kernels in use
   std::unique_ptr<irradiance_cache::Cache> cache_;          ///< null: nothing is looked up
   std::unique_ptr<irradiance_cache::Inspector> inspector_;  ///< made when it is called for
+  uint32_t full_at_ = 0;  ///< records at which a person was last told that there is no room for more
   std::optional<vec2> looked_at_;
   irradiance_cache::Inspection inspection_;
   std::pair<uint64_t, irradiance_cache::Overlap> overlap_{~0ull, {}};  ///< and the restart that it is of

@@ -67,6 +67,8 @@ struct Cache::Impl {
   bool evaluate(const Work& work);
   void finish(StopReason reason);
   void relight();
+  /// The records of the next pass that stand without light; after the last, building goes on where it was.
+  void relight_pass();
 
   /// Records that are evaluated hold what this cache gathers, and no more.
   void hold() { held = parts, held_recursive = recursive; }
@@ -88,8 +90,6 @@ struct Cache::Impl {
   void thin();
   void end_pass();
   void next_pass();
-  /// The records of the next pass that stand without light; after the last, building goes on where it was.
-  void relight_pass();
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
   bool next_level();

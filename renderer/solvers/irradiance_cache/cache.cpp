@@ -39,6 +39,8 @@ const char* words(StopReason reason) {
       return "as many passes as are allowed";
     case StopReason::records:
       return "the room for records is used up";
+    case StopReason::dark:
+      return "there is no light in the scene";
     case StopReason::building:
       break;
   }
@@ -140,10 +142,11 @@ void Cache::extend() {
   c.status.stop = c.stopped = StopReason::building;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped.
   if (c.stage != Stage::evaluate) {
-    c.records.truncate(c.evaluated);
+    c.records.truncate(c.kept);
     c.stage = Stage::probe;
     c.probing = false;
     c.asked.clear();
+    if (c.status.relighting > 0) c.relight_pass();  // they have been waiting in the dark
   }
 }
 
@@ -173,6 +176,7 @@ uint32_t Cache::parts() const { return impl_->parts; }
 bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
                  const std::function<bool()>& cancel) {
   const Impl::Work work{wavefront, automaton, view, cancel};
+  if (view.dark) impl_->finish(StopReason::dark);
   switch (impl_->stage) {
     case Stage::probe:
       return impl_->probe(work);

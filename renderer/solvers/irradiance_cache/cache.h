@@ -39,7 +39,7 @@ struct CacheOptions {
   uint32_t seed = 1;
 };
 
-enum class StopReason { building, covered, passes, records };
+enum class StopReason { building, covered, passes, records, dark };
 /// Why building has stopped, as the rest of a sentence.
 const char* words(StopReason reason);
 
@@ -66,6 +66,7 @@ struct CacheView {
   uint32_t paths_enabled = 0, records_enabled = 0;  ///< ... and what each may bring, in bits
   uint32_t width = 0, height = 0;
   float scene_radius = 1;
+  bool dark = false;  ///< the scene has no light: nothing is placed, and what there is waits to be relit
 };
 
 class Cache {

@@ -22,7 +22,7 @@ void Cache::Impl::take(const RawRecords& raw) {
 
 void Cache::Impl::relight() {
   if (status.relighting == 0) {
-    stopped = status.stop;
+    stopped = status.stop == StopReason::dark ? StopReason::building : status.stop;
     // A pass that has its first level has places and radii, and is complete when it is relit. Of one before
     // that nothing is left; its places are asked for again.
     if (evaluated > (ends.empty() ? 0 : ends.back())) ends.push_back(evaluated), ++status.pass;
@@ -43,6 +43,8 @@ void Cache::Impl::relight() {
 void Cache::Impl::relight_pass() {
   if (evaluated < kept) {
     const uint32_t end = *std::upper_bound(ends.begin(), ends.end(), evaluated);
+    if (!status.passes.empty() && status.passes.back().relit && status.passes.back().rays == 0)
+      status.passes.pop_back();  // that one waited in the dark
     status.passes.push_back(
         {.number = records.read(evaluated).pass, .relit = true, .records = end - evaluated});
     list_until(end);
