@@ -63,6 +63,9 @@ class Renderer {
   void choose_camera(const std::string& name);
   void set_light(uint32_t index, const scene::Light& light);
   void set_environment(float scale, float rotation_degrees);
+  /// Throws Error when there is no such material, or when textures or what a surface lets through (alpha
+  /// mode, transmission, thickness) would be others: these are the scene's shape, as rays find it.
+  void set_material(uint32_t index, const scene::Material& material);
   void reload_shaders();
   /// Begins the image anew, and what it looks up.
   void restart() { restart(irradiance_cache::spoilt_by_edit("restart")); }
@@ -144,7 +147,8 @@ class Renderer {
                irradiance_cache::Spoilt spoilt = irradiance_cache::spoilt_by_edit("scene"));
   /// `keep`: of the same scene, so that records serve on. Returns what of them does not.
   irradiance_cache::Spoilt build_wavefront(const upload::DeviceScene& device_scene, bool keep);
-  /// The scene with other lights or another environment: uploads these anew.
+  /// The scene with other lights or another environment: uploads these anew. Kernels are made for what it
+  /// calls for now.
   void relight(std::shared_ptr<const scene::Scene> edited, irradiance_cache::Spoilt spoilt);
   void make_film(irradiance_cache::Spoilt spoilt);
   /// `spoilt`: of the records that paths look up.
@@ -183,6 +187,7 @@ class Renderer {
   upload::FlatScene flat_;
   std::unique_ptr<upload::DeviceScene> device_scene_;
   std::unique_ptr<bvh::HostTracer> host_;
+  gpu::Defines compiled_;                                   ///< of the scene, in the kernels in use
   paths::LookupRoutes routes_, record_routes_;              ///< of the kernels in use
   std::unique_ptr<irradiance_cache::Cache> cache_;          ///< null: nothing is looked up
   std::unique_ptr<irradiance_cache::Inspector> inspector_;  ///< made when it is called for

@@ -328,6 +328,13 @@ void Session::set_environment(float scale, float rotation_degrees) {
   });
 }
 
+void Session::set_material(uint32_t index, const scene::Material& material) {
+  impl_->post([s = impl_.get(), index, material](Renderer& r) {
+    r.set_material(index, material);
+    s->restarted();
+  });
+}
+
 void Session::set_paused(bool paused) {
   impl_->post([s = impl_.get(), paused](Renderer&) { s->paused = paused; });
 }

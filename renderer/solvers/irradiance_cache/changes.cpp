@@ -11,6 +11,7 @@ constexpr Change k_changes[] = {
     {"size", false, k_spoils_coverage, "more pixels ask at more places"},
     {"lamp", false, k_spoils_light, "other light on the same surfaces"},
     {"environment", false, k_spoils_light, "other light on the same surfaces"},
+    {"colour", false, k_spoils_light, "of a material, or its emission: other light on the same surfaces"},
     {"material", false, k_spoils_light_and_coverage, "what was a mirror may be diffuse now, and asks"},
     {"scene", false, k_spoils_all, "other surfaces"},
     {"shaders", false, k_spoils_all, "whatever they compute"},
