@@ -174,6 +174,14 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
       {"shaders", [&] { bed.r.reload_shaders(); }},
       {"restart", [&] { bed.r.restart(); }},
   };
+  const std::map<std::string_view, std::function<void()>> undo{
+      {"camera", [&] { bed.r.choose_camera("front"); }},
+      {"size", [&] { bed.r.set_size(24, 24); }},
+      {"lamp", [&] { bed.set_lamp(vec3(5)); }},
+      {"environment", [&] { bed.r.set_environment(1, 0); }},
+      {"colour", [&] { bed.r.set_material(1, room().materials[1]); }},
+      {"material", [&] { bed.r.set_material(1, room().materials[1]); }},
+  };
   const std::map<std::string_view, Settings> settings{
       {"components.", {{"components.primary", "off"}}},
       {"samples", {{"samples", "3"}}},
@@ -200,21 +208,19 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
   for (const irradiance_cache::Change& row : irradiance_cache::changes()) {
     INFO("row '" << row.what << "'" << (row.setting ? ", a setting" : ""));
     if (row.what == "scene") continue;  // see below
-    // Back to the base, whatever the row before did.
-    bed.r.set_size(24, 24);
-    bed.r.choose_camera("front");
-    bed.r.set_environment(1, 0);
-    bed.set_lamp(vec3(5));
-    bed.r.set_material(1, room().materials[1]);
-    Settings all;
-    for (const plan::OptionInfo& o : plan::options()) all[o.key] = o.key == "camera" ? "front" : o.fallback;
-    for (const auto& [key, value] : k_base) all[key] = value;
-    bed.set(all);
-    bed.r.choose_camera("front");
     bed.r.load_cache(file);
     REQUIRE(bed.r.cache()->ready());
     REQUIRE(same_records(bed.records(), base));
 
+    const auto take_back = [&] {
+      if (!row.setting) return undo.contains(row.what) ? undo.at(row.what)() : void();
+      Settings before;
+      for (const auto& [key, value] : settings.at(row.what))
+        before[key] = k_base.contains(key) ? k_base.at(key)
+                      : key == "camera"    ? "front"
+                                           : plan::find_option(key)->fallback;
+      bed.set(before);
+    };
     if (row.setting) {
       REQUIRE(settings.contains(row.what));
       bed.set(settings.at(row.what));
@@ -227,6 +233,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
     if (s.places) {
       CHECK(bed.r.cache()->records().size() == 0);
       CHECK(bed.status().rays == 0);
+      take_back();
       continue;
     }
     CHECK(bed.status().relighting == (s.light ? base.size() : 0));
@@ -243,6 +250,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
     if (!s.light && !s.coverage) CHECK(bed.status().rays == base_rays);
     if (s.light) CHECK(bed.status().rays >= uint64_t{64} * base.size());
     CHECK(bed.status().relighting == 0);
+    take_back();
   }
   // Another scene, be it the same again.
   bed.r.set_scene(std::make_shared<scene::Scene>(room()));

@@ -8,9 +8,9 @@
 //             level, in the order in which the records came, so that those that read others find them relit
 //   places    where records lie and how far they serve: the cache begins anew
 //
-// Lights and materials move no surface: whatever rays measured of the scene's shape stays true. (A light
-// group would be a part of its own - shared::k_part_count - and a change of its strength would spoil nothing
-// but a factor: a row "lamp" that names the group would then spoil no light of the other parts.)
+// Lights and materials move no surface: whatever rays measured of the scene's shape stays true. With light
+// groups (shaders/shared/irradiance_cache.h) a change of one group's strength would spoil nothing at all, and
+// one of its lamps the light of its parts alone.
 #include <span>
 #include <string_view>
 
