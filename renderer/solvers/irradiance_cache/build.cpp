@@ -107,7 +107,7 @@ void Cache::Impl::choose(const Work& w) {
                                 .seed = options.seed + status.pass,
                                 .most = records.capacity() - records.size()});
   records.append(tried, status.pass);
-  list_new();
+  list_until(records.size());
   took(BuildStep::choose, host.milliseconds());
   stage = Stage::measure;
 }
@@ -143,7 +143,7 @@ void Cache::Impl::thin() {
   records.truncate(evaluated);
   pass().records = records.append(needed, status.pass);
   tried.clear();
-  list_new();
+  list_until(records.size());
   took(BuildStep::choose, host.milliseconds());
   level = level_done = rays_before = 0;
   stage = Stage::evaluate;
@@ -193,9 +193,14 @@ void Cache::Impl::publish_level(const Work& w) {
   // Radii come from the first level alone: the nearest thing that any ray met comes nearer with every ray,
   // and records that shrank would leave gaps. A cache that reads itself does so from the second level on:
   // the first, of few rays, then is all that is traced without the records of its own pass.
-  if (evaluated == records.size()) return;
-  set_radii(w, true);
-  evaluated = status.records = records.size();
+  ++status.published;
+  if (evaluated == until) return;
+  if (until > kept) {
+    set_radii(w, true);
+    hold();
+  }
+  evaluated = status.records = until;
+  kept = std::max(kept, evaluated);
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
   took(BuildStep::octree, timer.milliseconds());
@@ -205,7 +210,13 @@ void Cache::Impl::publish_level(const Work& w) {
 void Cache::Impl::end_pass() {
   set_scales();
   pass().complete = true;
+  if (status.relighting > 0) return relight_pass();
+  if (evaluated > (ends.empty() ? 0 : ends.back())) ends.push_back(evaluated);
   ++status.pass;
+  next_pass();
+}
+
+void Cache::Impl::next_pass() {
   stage = Stage::probe;
   if (records.size() == records.capacity())
     finish(StopReason::records);
@@ -240,12 +251,12 @@ bool Cache::Impl::next_level() {
 float Cache::Impl::dark() const {
   const std::vector<float> light = records.luminances();
   double sum = 0;
-  for (const float l : light) sum += double(l);
-  return 0.1f * float(sum / double(light.size()));
+  for (uint32_t r = 0; r < until; ++r) sum += double(light[r]);
+  return 0.1f * float(sum / until);
 }
 
 void Cache::Impl::set_radii(const Work& w, bool lit) {
-  const uint32_t count = records.size() - evaluated;
+  const uint32_t count = until - evaluated;
   if (count == 0) return;
   StageTimer timer(w.wavefront);
   w.wavefront.bind_paths(resources);
@@ -270,8 +281,9 @@ void Cache::Impl::set_radii(const Work& w, bool lit) {
   took(BuildStep::radius, timer.milliseconds());
 }
 
-void Cache::Impl::list_new() {
-  list.resize(records.size() - evaluated);
+void Cache::Impl::list_until(uint32_t end) {
+  until = end;
+  list.resize(until - evaluated);
   std::iota(list.begin(), list.end(), evaluated);
   at = 0;
 }

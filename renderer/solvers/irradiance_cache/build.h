@@ -47,9 +47,15 @@ struct Cache::Impl {
   bool probing = false;  // the schedule of this pass has begun
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
   std::vector<Place> asked, tried;
-  uint32_t evaluated = 0;      // records up to here have light and radius, and are in the octree
-  std::vector<uint32_t> list;  // of this level, in the order of the records
-  size_t at = 0;               // of which so many are done
+  uint32_t evaluated = 0;       // records up to here have light and radius, and are in the octree
+  uint32_t kept = 0;            // ... and up to here place and radius: more, while they are relit
+  uint32_t until = 0;           // those of the pass in progress end here
+  std::vector<uint32_t> ends;   // of the records of each complete pass
+  uint32_t held = 0;            // parts that all complete records hold; `parts` at least
+  bool held_recursive = false;  // ... gathered as `recursive` says
+  StopReason stopped = StopReason::building;            // why building had stopped before records were relit
+  std::vector<uint32_t> list;                           // of this level, in the order of the records
+  size_t at = 0;                                        // of which so many are done
   uint32_t level = 0, level_done = 0, rays_before = 0;  // ... and rays of each record, in this level, so far
 
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o);
@@ -60,7 +66,14 @@ struct Cache::Impl {
   bool measure(const Work& work);
   bool evaluate(const Work& work);
   void finish(StopReason reason);
+  void relight();
+  /// The records of the next pass that stand without light; after the last, building goes on where it was.
+  void relight_pass();
 
+  /// Records that are evaluated hold what this cache gathers, and no more.
+  void hold() { held = parts, held_recursive = recursive; }
+  /// Complete records from elsewhere, in place of all.
+  void take(const RawRecords& raw);
   /// What lookup.glsl reads.
   void bind(gpu::Resources& to) const;
   void build_octree(transport::Wavefront& wavefront);
@@ -76,6 +89,7 @@ struct Cache::Impl {
   void choose(const Work& work);
   void thin();
   void end_pass();
+  void next_pass();
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
   bool next_level();
@@ -86,8 +100,8 @@ struct Cache::Impl {
   /// Radii of the records that are added in this pass, by what is known of them: `lit` after their first
   /// level.
   void set_radii(const Work& work, bool lit);
-  /// The records that are added in this pass, for the next piece of work on them.
-  void list_new();
+  /// The records of this pass, which end there, for the next piece of work on them.
+  void list_until(uint32_t end);
   CachePass& pass() { return status.passes.back(); }
   void took(BuildStep step, double ms) { pass().ms[size_t(step)] += ms; }
   void spent(size_t done, uint32_t rays);

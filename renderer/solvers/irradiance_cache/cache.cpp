@@ -39,6 +39,8 @@ const char* words(StopReason reason) {
       return "as many passes as are allowed";
     case StopReason::records:
       return "the room for records is used up";
+    case StopReason::dark:
+      return "there is no light in the scene";
     case StopReason::building:
       break;
   }
@@ -128,23 +130,27 @@ void Cache::clear() {
   Impl& c = *impl_;
   c.records.clear();
   c.asked.clear();
-  c.status = {.bytes = c.status.bytes};
+  c.status = {.bytes = c.status.bytes, .published = c.status.published};
   c.stage = Stage::probe;
   c.probing = false;
-  c.evaluated = 0;
+  c.evaluated = c.kept = c.until = 0;
+  c.ends.clear();
+  c.hold();
+  c.stopped = StopReason::building;
   c.tell();
 }
 
 void Cache::extend() {
   Impl& c = *impl_;
   c.status.pass = 0;
-  c.status.stop = StopReason::building;
+  c.status.stop = c.stopped = StopReason::building;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped.
   if (c.stage != Stage::evaluate) {
-    c.records.truncate(c.evaluated);
+    c.records.truncate(c.kept);
     c.stage = Stage::probe;
     c.probing = false;
     c.asked.clear();
+    if (c.status.relighting > 0) c.relight_pass();  // they have been waiting in the dark
   }
 }
 
@@ -154,9 +160,8 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
   clear();
   for (size_t i = 0; i < raw.lights.size(); ++i)
     if (!(c.parts >> i / k_part_texels % k_part_count & 1)) raw.lights[i] = vec4(0);
-  c.records.restore(raw);
-  c.evaluated = raw.size();
-  c.status.records = c.status.loaded = raw.size();
+  c.take(raw);
+  c.status.loaded = raw.size();
   c.status.rays = status.rays;
   if (raw.size() > 0) c.build_octree(wavefront);
   c.set_scales();
@@ -175,6 +180,7 @@ uint32_t Cache::parts() const { return impl_->parts; }
 bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
                  const std::function<bool()>& cancel) {
   const Impl::Work work{wavefront, automaton, view, cancel};
+  if (view.dark) impl_->finish(StopReason::dark);
   switch (impl_->stage) {
     case Stage::probe:
       return impl_->probe(work);

@@ -16,6 +16,7 @@
 
 #include "paths/automaton.h"
 #include "solvers/irradiance_cache/build_log.h"
+#include "solvers/irradiance_cache/changes.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/records.h"
 #include "solvers/lookup/octree.h"
@@ -48,7 +49,7 @@ struct CacheOptions {
   uint32_t seed = 1;
 };
 
-enum class StopReason { building, covered, passes, records };
+enum class StopReason { building, covered, passes, records, dark };
 /// Why building has stopped, as the rest of a sentence.
 const char* words(StopReason reason);
 
@@ -60,8 +61,12 @@ struct CacheStatus {
   uint64_t bytes = 0;             ///< of device memory
   double references = 0;          ///< leaves that list a record, on average
   uint32_t loaded = 0;            ///< of the records, from a file; their rays count too
+  /// Not 0: so many records keep their places and are relit, `records` of them so far.
+  uint32_t relighting = 0;
+  uint64_t published = 0;  ///< levels whose light lookups have been given; never goes back
   StopReason stop = StopReason::building;
-  std::vector<CachePass> passes;  ///< since it was begun, extensions too; the last may be in progress
+  /// Since it was begun or relit, extensions too; the last may be in progress.
+  std::vector<CachePass> passes;
 };
 
 /// What the building needs to know of the picture and its scene.
@@ -71,6 +76,7 @@ struct CacheView {
   uint32_t paths_enabled = 0, records_enabled = 0;  ///< ... and what each may bring, in bits
   uint32_t width = 0, height = 0;
   float scene_radius = 1;
+  bool dark = false;  ///< the scene has no light: nothing is placed, and what there is waits to be relit
 };
 
 class Cache {
@@ -91,6 +97,15 @@ class Cache {
   /// Goes on building with what there is, for a picture from elsewhere or of another size: its passes are
   /// counted anew. Work in progress is finished first.
   void extend();
+  /// Other light on the same surfaces: places and radii stay, and all light is gathered anew, pass by pass as
+  /// the records came; then building goes on where it was, or is complete as it was. Meanwhile those that are
+  /// relit serve, and no others. The outcome is that of a cache built in this light, to the bit where places
+  /// do not depend on light.
+  void relight();
+  /// In place of its own, the records of another cache of the same scene, made for other lookups, options or
+  /// kernels: as far as passes are complete. Returns what of them does not serve here, for the caller to see
+  /// to: coverage, light, or places, where there is no room for them; then this is as after clear().
+  Spoilt adopt(transport::Wavefront& wavefront, const Cache& other);
   bool ready() const;
   /// Begins anew with records from elsewhere (Records::raw, of a cache that has these routes' parts at
   /// least), as after a pass of building: it goes on as extend() does, or, with `complete`, is ready and

@@ -182,9 +182,9 @@ CacheFile decode(const std::string& bytes, const std::string& where) {
   CacheFile cache;
   Reader reader(contents.substr(k_head), where);
   fields(reader, cache);
-  if (cache.status.stop > StopReason::records)
+  if (cache.status.stop > StopReason::dark)
     throw_error(where, "damaged: a reason to stop numbered {}, expected 0 to {}", int(cache.status.stop),
-                int(StopReason::records));
+                int(StopReason::dark));
   return cache;
 }
 
