@@ -137,8 +137,8 @@ TEST_CASE(
   INFO(mean(cached.components[2]) << " of " << mean(path.components[2]));
   CHECK(mean(cached.components[2]) == Approx(mean(path.components[2])).epsilon(0.03));
 
-  // Behind glass, where few rays find the light that is focused: by one level of 1024 rays the mean spreads by
-  // 10 %; 2.5 standard deviations for this seed.
+  // Behind glass, where few rays find the light that is focused: by one level of 1024 rays the mean spreads
+  // by 10 %; 2.5 standard deviations for this seed.
   test::Render r{.scene = "glass", .width = 32, .height = 32, .samples = 64, .settings = {}};
   const test::Result plain = test::render(r);
   r.settings = {{"components.tertiary", "cache"}, {"cache.rays", "1024"}, {"cache.max_rays", "1024"}};
