@@ -189,12 +189,12 @@ void Cache::Impl::publish_level(const Work& w) {
   // the first, of few rays, then is all that is traced without the records of its own pass.
   ++status.published;
   if (evaluated == until) return;
-  if (until > kept) {
+  if (until > standing) {
     set_radii(w);
     hold();
   }
   evaluated = status.records = until;
-  kept = std::max(kept, evaluated);
+  standing = std::max(standing, evaluated);
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
   took(BuildStep::octree, timer.milliseconds());
