@@ -168,6 +168,9 @@ bool Cache::Impl::evaluate(const Work& w) {
     if (done < batch) return false;
     took(BuildStep::evaluate, timer.milliseconds());
     at += done;
+    if (status.relighting > 0 && level == 0)
+      status.relit = (float(evaluated) + float(until - evaluated) * float(at) / float(list.size())) /
+                     float(status.relighting);
     spent(done, rays);
     if (at < list.size()) return true;
     rays_before += rays;

@@ -32,7 +32,7 @@ void Cache::Impl::relight() {
   evaluated = 0;
   hold();
   status.stop = StopReason::building;
-  status.records = 0, status.relighting = standing, status.rays = 0;
+  status.records = 0, status.relighting = standing, status.relit = 0, status.rays = 0;
   status.passes.clear();
   tell();
   relight_pass();
