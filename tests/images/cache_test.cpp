@@ -137,8 +137,8 @@ TEST_CASE(
   INFO(mean(cached.components[2]) << " of " << mean(path.components[2]));
   CHECK(mean(cached.components[2]) == Approx(mean(path.components[2])).epsilon(0.03));
 
-  // Behind glass, where few rays find the light that is focused: by one level of 1024 rays the mean spreads by
-  // 10 %; 2.5 standard deviations for this seed.
+  // Behind glass, where few rays find the light that is focused: by one level of 1024 rays the mean spreads
+  // by 10 %; 2.5 standard deviations for this seed.
   test::Render r{.scene = "glass", .width = 32, .height = 32, .samples = 64, .settings = {}};
   const test::Result plain = test::render(r);
   r.settings = {{"components.tertiary", "cache"}, {"cache.rays", "1024"}, {"cache.max_rays", "1024"}};
@@ -221,7 +221,8 @@ TEST_CASE("light does not leak through a wall of a millimetre") {
   // Radii as wide as they may be, so that only what limits them keeps records from reaching through.
   Settings wide = k_both;
   wide["cache.error"] = "1", wide["cache.max_radius"] = "1";
-  const film::Image path = render_scene(divided_room(), {}, 512), cached = render_scene(divided_room(), wide, 16);
+  const film::Image path = render_scene(divided_room(), {}, 512),
+                    cached = render_scene(divided_room(), wide, 16);
   // Columns of the picture by their distance from the wall, which stands in its middle: floors left (dark)
   // and right.
   const auto column_mean = [](const film::Image& image, int component, uint32_t from, uint32_t to) {
