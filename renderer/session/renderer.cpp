@@ -128,6 +128,8 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
                                                       std::move(trace), defines, bind);
   cache_ = std::move(cache);
   inspector_.reset();
+  placement_view_.reset();
+  heed_pauses();
   routes_ = std::move(routes);
   record_routes_ = std::move(record_routes);
   compile_seconds_ = timer.seconds();
@@ -320,8 +322,9 @@ void Renderer::apply_settings() {
   }
   const bool rebuild = changed.contains("tracer") || changed.contains("path.batch");
   const bool cache_changed = cache_ && std::any_of(changed.begin(), changed.end(), [](const std::string& k) {
-                               return k.starts_with("cache.");
+                               return k.starts_with("cache.") && plan::find_option(k)->restarts;
                              });
+  heed_pauses();
   if (changed.contains("camera")) choose_camera(settings_.text("camera"));
   if (rebuild) {
     install(scene_, settings_, camera_, {});

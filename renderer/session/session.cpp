@@ -30,6 +30,7 @@ struct Session::Impl {
   std::condition_variable wake;
   std::deque<std::function<void(Renderer&)>> queue;
   bool quit = false;
+  uint64_t posted = 0;
   std::atomic<bool> cancel_load{false}, pending{false};
   std::atomic<uint32_t> caches_asked{0};  // for, and not saved yet
   std::shared_ptr<const Snapshot> snapshot;
@@ -72,6 +73,7 @@ struct Session::Impl {
     {
       std::lock_guard lock(mutex);
       queue.push_back(std::move(command));
+      ++posted;
       pending = true;
     }
     wake.notify_one();
@@ -118,7 +120,9 @@ struct Session::Impl {
     next.preparing.clear();
     if (const irradiance_cache::Cache* cache = r.cache(); cache && !cache->ready())
       next.preparing =
-          fmt::format("cache, pass {}: {} records", cache->status().pass + 1, cache->records().size());
+          cache->status().waits
+              ? fmt::format("cache waits: {}", stage_words(*cache->status().last))
+              : fmt::format("cache, pass {}: {} records", cache->status().pass + 1, cache->records().size());
     next.cache = r.cache_report();
     next.seconds = seconds;
     next.camera = r.camera();
@@ -159,8 +163,8 @@ void Session::Impl::run() {
   setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), k_nice);
   std::unique_ptr<Renderer> renderer;
   try {
-    renderer =
-        std::make_unique<Renderer>(RendererOptions{options.device, options.validation, options.shaders, {}});
+    renderer = std::make_unique<Renderer>(
+        RendererOptions{options.device, options.validation, options.shaders, {}, true});
     next.device = renderer->device().info().name;
     publish();
   } catch (const std::exception& e) {
@@ -188,11 +192,13 @@ void Session::Impl::run() {
       }
       next.activity.clear();
       next.progress = -1;
+      ++next.commands;
       dirty = true;
       lock.lock();
     }
     pending = false;
-    const bool work = renderer && renderer->ready() && !paused && !renderer->done();
+    const bool work =
+        renderer && renderer->ready() && !paused && !renderer->done() && !renderer->cache_waits();
     if (!work && !dirty) {
       wake.wait(lock, [&] { return quit || !queue.empty(); });
       continue;
@@ -217,7 +223,8 @@ void Session::Impl::run() {
             renderer->ledger().entries().back().paths != renderer->stats().paths)
           renderer->finish_ledger();
         if (!filled && renderer->samples() > 0) filled = changed = true;
-        if (changed || since_publish.seconds() > k_publish_seconds || renderer->done()) {
+        if (changed || since_publish.seconds() > k_publish_seconds || renderer->done() ||
+            renderer->cache_waits()) {
           const bool numbers = since_numbers.seconds() > k_numbers_seconds || renderer->done();
           if (numbers) since_numbers.restart();
           fill_snapshot(*renderer, numbers);
@@ -377,6 +384,25 @@ void Session::load_cache(const std::filesystem::path& file) {
     r.load_cache(file);
     s->restarted();
   });
+}
+
+void Session::step_cache() {
+  impl_->post([s = impl_.get()](Renderer& r) {
+    r.step_cache();
+    s->paused = false;
+  });
+}
+
+void Session::run_cache() {
+  impl_->post([s = impl_.get()](Renderer& r) {
+    r.run_cache();
+    s->paused = false;
+  });
+}
+
+uint64_t Session::commands() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->posted;
 }
 
 void Session::cancel() { impl_->cancel_load = true; }

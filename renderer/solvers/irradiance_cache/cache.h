@@ -12,12 +12,14 @@
 // interpolation.
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "paths/automaton.h"
 #include "solvers/irradiance_cache/build_log.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/records.h"
+#include "solvers/irradiance_cache/stages.h"
 #include "solvers/lookup/octree.h"
 
 namespace lucerna::irradiance_cache {
@@ -51,6 +53,8 @@ struct CacheStatus {
   double references = 0;          ///< leaves that list a record, on average
   uint32_t loaded = 0;            ///< of the records, from a file; their rays count too
   StopReason stop = StopReason::building;
+  bool waits = false;             ///< building has come to a pause (Cache::pause)
+  std::optional<StageDone> last;  ///< the stage that has ended last, since it was begun
   std::vector<CachePass> passes;  ///< since it was begun, extensions too; the last may be in progress
 };
 
@@ -79,15 +83,23 @@ class Cache {
   /// Begins anew, without records.
   void clear();
   /// Goes on building with what there is, for a picture from elsewhere or of another size: its passes are
-  /// counted anew. Work in progress is finished first.
+  /// counted anew. Work in progress is finished first. While building waits it goes on waiting.
   void extend();
+  /// Building is to wait after every stage or pass from now on: step() then does nothing until go_on(). What
+  /// is built is the same, bit for bit. Off in the beginning.
+  void pause(PauseAfter after);
+  /// Goes on: to the end of the next stage, which may be one in progress, and waits there; or until building
+  /// is complete, whatever pause() has said. Nothing where it is complete already.
+  void go_on(bool one_stage);
+  /// For who watches; views of what the cache holds until it is changed.
+  PlacementShown placement() const;
   bool ready() const;
   /// Begins anew with records from elsewhere (Records::raw, of a cache that has these routes' parts at
   /// least), as after a pass of building: it goes on as extend() does, or, with `complete`, is ready and
   /// stands as `status` says.
   void restore(transport::Wavefront& wavefront, RawRecords raw, const CacheStatus& status, bool complete);
   /// One bounded piece of the building, cancellable between bounces; on return the wavefront's frame is that
-  /// of the picture's paths. False when it was cancelled: it will be done again.
+  /// of the picture's paths. False when it was cancelled: it will be done again; or while it waits.
   bool step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
             const std::function<bool()>& cancel = {});
   const CacheStatus& status() const;
