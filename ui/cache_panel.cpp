@@ -258,12 +258,19 @@ void stage_strip(const CacheReport& r) {
       "Records have got their radii, and an octree in which they are found.",
   };
   const int last = s.last ? static_cast<int>(s.last->stage) : -1;
-  const float width = ImGui::CalcItemWidth(), height = px(20), pitch = (width + px(2)) / n;
+  const float width = ImGui::CalcItemWidth(), height = px(20);
+  // What the names leave over is shared out.
+  ImFont* font = theme().fonts.small;
+  float left = width - px(2) * static_cast<float>(n - 1);
+  for (const char* name : irradiance_cache::k_build_stages) left -= text_width(name, font);
   const ImVec2 lo = ImGui::GetCursorScreenPos();
+  float x = lo.x;
   ImDrawList* list = ImGui::GetWindowDrawList();
   for (int i = 0; i < n; ++i) {
-    const ImVec2 a(std::floor(lo.x + pitch * static_cast<float>(i)), lo.y),
-        b(std::floor(lo.x + pitch * static_cast<float>(i + 1)) - px(2), lo.y + height);
+    const char* name = irradiance_cache::k_build_stages[static_cast<size_t>(i)];
+    const float end = x + text_width(name, font) + left / static_cast<float>(n);
+    const ImVec2 a(std::floor(x), lo.y), b(std::floor(end), lo.y + height);
+    x = end + px(2);
     ImGui::SetCursorScreenPos(a);
     ImGui::PushID(i);
     ImGui::InvisibleButton("##stage", {b.x - a.x, height});
@@ -272,7 +279,7 @@ void stage_strip(const CacheReport& r) {
     const bool now = i == last;
     list->AddRectFilled(a, b, now ? colour::accent_dim : i < last ? colour::fill : colour::field, px(2));
     if (now) list->AddRectFilled({a.x, b.y - px(2)}, b, colour::accent, px(1));
-    draw_text(list, a, b, irradiance_cache::k_build_stages[static_cast<size_t>(i)],
+    draw_text(list, a, b, name,
               now        ? colour::text
               : i < last ? colour::text_dim
                          : colour::text_faint,

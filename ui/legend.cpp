@@ -171,11 +171,11 @@ void overlap_inks(ImDrawList* list, const ImVec2& at) {
 const char* placement_title(irradiance_cache::PlacementShow drawn) {
   switch (drawn) {
     case irradiance_cache::PlacementShow::candidates:
-      return "Places that asked for a record, by what asked";
+      return "Candidates, by what asks for a record";
     case irradiance_cache::PlacementShow::clusters:
-      return "Places that asked, by cluster";
+      return "Candidates, by their cluster";
     default:
-      return "Places of the last pass, radius as measured";
+      return "Places that were tried, with their radii";
   }
 }
 

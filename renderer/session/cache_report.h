@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "solvers/irradiance_cache/placement_view.h"
+#include "solvers/irradiance_cache/inspector.h"
 
 namespace lucerna::session {
 

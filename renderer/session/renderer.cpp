@@ -14,6 +14,7 @@
 #include "scene/io/load.h"
 #include "session/accuracy.h"
 #include "shaders/shared/film.h"
+#include "solvers/irradiance_cache/placement_view.h"
 #include "stats/forecast.h"
 #include "transport/frame.h"
 

@@ -26,6 +26,10 @@
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
 
+namespace lucerna::irradiance_cache {
+class PlacementView;
+}
+
 namespace lucerna::session {
 
 struct RendererOptions {

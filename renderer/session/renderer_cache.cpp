@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "session/renderer.h"
+#include "solvers/irradiance_cache/placement_view.h"
 
 namespace lucerna::session {
 

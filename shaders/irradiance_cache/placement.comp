@@ -10,8 +10,8 @@ layout(scalar) readonly buffer Places { PlacedPoint places[]; };
 layout(scalar) buffer Marks { uint marks[]; };
 
 // Pixels. Rings of small discs, which lie close together, fade out, so that the structure stays readable.
-const float k_rejected_dot = 1.0, k_tried_dot = 1.2, k_chosen_dot = 1.7, k_edge = 1.0, k_half_ring = 0.4;
-const float k_least_ring = 4.0, k_full_ring = 14.0, k_faint = 0.35;
+const float k_rejected_dot = 0.6, k_tried_dot = 0.75, k_edge = 0.7, k_half_ring = 0.4;  // dots: of push.tried_dot
+const float k_least_ring = 4.0, k_full_ring = 30.0, k_faint = 0.35;
 const int k_most_cells = 16384;  // of the pixels that one invocation looks at; lavapipe ends long loops
 
 void mark(uint pixel, uint rank, float cover, uint point) {
@@ -37,19 +37,23 @@ void main() {
   vec3 a = to_picture(from, push.width, push.height), b = to_picture(to, push.width, push.height);
   vec2 film = vec2(push.width, push.height);
   float size = 2.0 * length(frame.camera_up) / film.y * (frame.orthographic != 0u ? 1.0 : a.z);
-  float strength = ring ? clamp((radius / size - k_least_ring) / (k_full_ring - k_least_ring), 0.0, 1.0) : 1.0;
+  // By how wide the ring is seen: many lie one behind the other on surfaces seen at a grazing angle.
+  vec3 away = frame.orthographic != 0u ? frame.camera_forward : normalize(place.position - frame.camera_origin);
+  float wide = radius / size * abs(dot(place.normal, away));
+  float strength = ring ? clamp((wide - k_least_ring) / (k_full_ring - k_least_ring), 0.0, 1.0) : 1.0;
   bool chosen = kind == k_placed_chosen, plain = kind == k_placed_candidate;
   uint rank = chosen                      ? k_rank_chosen
               : kind == k_placed_tried    ? k_rank_tried
               : kind == k_placed_rejected ? k_rank_rejected
                                           : k_rank_candidate;
-  float half_width = chosen ? k_chosen_dot : kind == k_placed_tried ? k_tried_dot : plain ? push.dot : k_rejected_dot;
+  float half_width = push.tried_dot * (chosen ? 1.0 : kind == k_placed_tried ? k_tried_dot : k_rejected_dot);
+  if (plain) half_width = push.dot;
   if (ring) {
     rank = chosen ? k_rank_ring : k_rank_faint_ring;
     half_width = k_half_ring;
     strength *= chosen ? 1.0 : k_faint;
   }
-  float edge_width = plain || ring && !chosen ? 0.0 : k_edge;
+  float edge_width = chosen || kind == k_placed_tried && !ring ? k_edge : 0.0;
   float reach = half_width + edge_width + 1.0;
   bool shown = a.z > 0.0 && b.z > 0.0 && strength > 0.0 && all(greaterThan(max(a.xy, b.xy), vec2(-reach))) &&
                all(lessThan(min(a.xy, b.xy), film + reach));
@@ -70,8 +74,10 @@ void main() {
     // Hidden is what lies both behind the surface that the pixel shows and below its plane: depth alone would hide what
     // lies on a surface seen at a grazing angle, where it changes much within a pixel.
     float below = dot(seen.position - mix(from, to, t), seen.normal);
-    if (seen.solid && depth_between(a.z, b.z, t) > 1.005 * seen.depth + 2.0 * size && below > 2.0 * seen.size + 0.15 * radius)
-      continue;
+    if (seen.solid && depth_between(a.z, b.z, t) > 1.005 * seen.depth + 2.0 * size && below > 1.2 * seen.size) continue;
+    // Rings lie on surfaces that face as their places do, as discs of records; elsewhere they would hang in the air.
+    bool on = seen.solid && abs(below) < 2.0 * seen.size + 0.1 * radius && dot(seen.normal, place.normal) > 0.7;
+    if (ring && !on) continue;
     bool drawn = core > 0.2 || edge_width == 0.0;
     mark(pixel, drawn ? rank : k_rank_edge, strength * (drawn ? core : edge), point);
   }

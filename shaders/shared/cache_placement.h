@@ -28,6 +28,7 @@ struct PlacementPush {
   uint count;
   uint segments;    ///< of a ring; 0: dots
   float dot;        ///< radius of a candidate's dot [pixels]
+  float tried_dot;  ///< ... of a chosen place's; others that were tried are smaller
   uint by_cluster;  ///< not 0: candidates are coloured by their clusters, else by what asked for them
 };
 

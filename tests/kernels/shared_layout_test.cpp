@@ -57,7 +57,7 @@ std::vector<SharedStruct> structs() {
       SHARED("cache_inspect.h", CacheLinesPush, width, height, left, top, across, down, lines, ring),
       SHARED("cache_inspect.h", CacheTicksPush, width, height, records, color, lo, hi),
       SHARED("cache_placement.h", PlacedPoint, position, bits, normal, radius),
-      SHARED("cache_placement.h", PlacementPush, width, height, count, segments, dot, by_cluster),
+      SHARED("cache_placement.h", PlacementPush, width, height, count, segments, dot, tried_dot, by_cluster),
       SHARED("film.h", FilmHalf, sum, compensation),
       SHARED("film.h", WorkBlock, index, first_sample),
       SHARED("film.h", BlockError, pixels, luminance, variance, fourth, relative, quadrant_pixels),

@@ -15,17 +15,11 @@ namespace {
 constexpr size_t k_most_points = 1u << 20;
 static_assert(k_most_points <= k_mark_point);
 /// Dots of candidates, in pixels: as wide as the room between them allows.
-constexpr float k_least_dot = 0.5f, k_most_dot = 1.5f, k_dot_of_room = 0.25f;
+constexpr float k_least_dot = 0.6f, k_most_dot = 1.5f, k_dot_of_room = 0.25f;
+/// ... and of what is chosen.
+constexpr float k_least_tried = 1.3f, k_most_tried = 2.2f, k_tried_of_room = 0.2f;
 
 }  // namespace
-
-PlacementShow placement_drawn(PlacementShow show, const PlacementShown& placement) {
-  if (show == PlacementShow::off || placement.candidates.empty()) return PlacementShow::off;
-  const PlacementShow known = placement.cluster.empty() ? PlacementShow::candidates
-                              : placement.radii.empty() ? PlacementShow::clusters
-                                                        : PlacementShow::chosen;
-  return show == PlacementShow::stage ? known : std::min(show, known);
-}
 
 std::vector<PlacedPoint> placement_points(PlacementShow drawn, const PlacementShown& placement, size_t most,
                                           uint32_t& rings) {
@@ -107,12 +101,15 @@ void PlacementView::draw(const Shown& shown, const Cache& cache, PlacementShow s
   shown.coarse.bind_coarse(i.resources);
   i.resources.set("Places", i.points);
   i.resources.set("Marks", i.marks);
-  const float room = std::sqrt(float(pixels) / float(std::max<size_t>(1, placement.candidates.size())));
+  const auto room = [&](size_t points) {
+    return std::sqrt(float(pixels) / float(std::max<size_t>(1, points)));
+  };
   PlacementPush push{film.width(),
                      film.height(),
                      i.count,
                      0,
-                     std::clamp(k_dot_of_room * room, k_least_dot, k_most_dot),
+                     std::clamp(k_dot_of_room * room(placement.candidates.size()), k_least_dot, k_most_dot),
+                     std::clamp(k_tried_of_room * room(placement.tried.size()), k_least_tried, k_most_tried),
                      drawn == PlacementShow::clusters};
   gpu::Stream& stream = shown.wavefront.stream();
   stream.fill(i.marks, 0);

@@ -11,18 +11,6 @@
 
 namespace lucerna::irradiance_cache {
 
-/// The values of the setting overlay.placement, in its order.
-enum class PlacementShow {
-  off,
-  stage,       ///< as much as is known
-  candidates,  ///< places asked for, by what asked
-  clusters,    ///< the same by their clusters, and what of them is tried
-  chosen       ///< what was tried, chosen or not, with the radii
-};
-
-/// What of it there is to be drawn: never `stage`, and `off` where nothing has been asked for.
-PlacementShow placement_drawn(PlacementShow show, const PlacementShown& placement);
-
 /// The points to draw, those with a ring first; their number is returned by `rings`. No more than `most`:
 /// candidates are left out evenly, then of what is tried the last. Pure.
 std::vector<shared::PlacedPoint> placement_points(PlacementShow drawn, const PlacementShown& placement,

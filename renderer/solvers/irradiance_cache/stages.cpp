@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lucerna::irradiance_cache {
 
 std::string stage_words(const StageDone& done) {
@@ -9,6 +11,14 @@ std::string stage_words(const StageDone& done) {
   if (done.stage == BuildStage::evaluate)
     return fmt::format("{} level {}, pass {}", name, done.level, done.pass + 1);
   return fmt::format("{}, pass {}", name, done.pass + 1);
+}
+
+PlacementShow placement_drawn(PlacementShow show, const PlacementShown& placement) {
+  if (show == PlacementShow::off || placement.candidates.empty()) return PlacementShow::off;
+  const PlacementShow known = placement.cluster.empty() ? PlacementShow::candidates
+                              : placement.radii.empty() ? PlacementShow::clusters
+                                                        : PlacementShow::chosen;
+  return show == PlacementShow::stage ? known : std::min(show, known);
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -79,4 +79,16 @@ struct PlacementShown {
   uint64_t version = 0;               ///< another number where any of them has changed
 };
 
+/// The values of the setting overlay.placement, in its order.
+enum class PlacementShow {
+  off,
+  stage,       ///< as much as is known
+  candidates,  ///< places asked for, by what asked
+  clusters,    ///< the same by their clusters, and what of them is tried
+  chosen       ///< what was tried, chosen or not, with the radii
+};
+
+/// What of it there is to be drawn: never `stage`, and `off` where nothing has been asked for.
+PlacementShow placement_drawn(PlacementShow show, const PlacementShown& placement);
+
 }  // namespace lucerna::irradiance_cache
