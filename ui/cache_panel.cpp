@@ -279,6 +279,8 @@ void stage_strip(const CacheReport& r) {
     const bool now = i == last;
     list->AddRectFilled(a, b, now ? colour::accent_dim : i < last ? colour::fill : colour::field, px(2));
     if (now) list->AddRectFilled({a.x, b.y - px(2)}, b, colour::accent, px(1));
+    // Where there is no room for all, only the one that matters is named.
+    if (left < 0 && !now) continue;
     draw_text(list, a, b, name,
               now        ? colour::text
               : i < last ? colour::text_dim
@@ -293,12 +295,14 @@ void steps(Ui& ui, const CacheReport& r) {
   const CacheStatus& s = r.status;
   const float width = ImGui::CalcItemWidth();
   const plan::OptionInfo& pause = *plan::find_option("cache.pause");
-  static constexpr const char* names[] = {"No pause", "Each pass", "Each stage"};
+  static constexpr const char* names[2][3] = {{"No pause", "Each pass", "Each stage"},
+                                              {"Off", "Pass", "Stage"}};
+  const bool narrow = width < px(236);
   const float third = std::floor((width - px(8)) / 3);
   for (size_t i = 0; i < pause.choices.size(); ++i) {
     if (i > 0) ImGui::SameLine(0, px(4));
-    if (button(("##pause" + pause.choices[i]).c_str(), names[i], ui.setting(pause.key) == pause.choices[i],
-               third))
+    if (button(("##pause" + pause.choices[i]).c_str(), names[narrow][i],
+               ui.setting(pause.key) == pause.choices[i], third))
       ui.act("set", pause.key, pause.choices[i]);
     tooltip(pause.help + " R builds anew.");
   }
