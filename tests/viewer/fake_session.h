@@ -323,9 +323,9 @@ struct Session::Impl {
         if (!commands.empty()) command = std::move(commands.front()), commands.pop_front();
       }
       if (command) {
-        command();
         ++done;
-        publish();
+        command();
+        if (snapshot && snapshot->commands < done) publish();
         continue;
       }
       if (!scene || paused || waits() || width == 0 ||
