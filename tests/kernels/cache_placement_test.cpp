@@ -213,6 +213,9 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   work(r);
   REQUIRE(r.cache_waits());
   CHECK(status(r).last->stage == BuildStage::probe);
+  set(r, "overlay.placement", "stage");  // what is shown does not matter
+  CHECK(r.cache_waits());
+  set(r, "overlay.placement", "off");
   set(r, "cache.pause", "stage");
   CHECK(r.cache_waits());
   set(r, "cache.pause", "off");

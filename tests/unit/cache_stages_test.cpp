@@ -61,6 +61,8 @@ TEST_CASE("a step waits at the next end of a stage where nothing else would; run
   int at = 0;
   pauses.step();
   CHECK(go(pauses, at, 5) == 1);
+  pauses.set(PauseAfter::off);  // as it was: no reason to go on
+  CHECK(pauses.waits());
   pauses.step();
   CHECK(go(pauses, at, 5) == 1);
   pauses.set(PauseAfter::stage);

@@ -40,10 +40,10 @@ enum class PauseAfter { off, pass, stage };
 /// Decides when building waits. It never waits once it is complete.
 class Pauses {
  public:
-  /// Holds from the next end of a stage on; `off` also ends a pause.
+  /// Holds from the next end of a stage on; to change it to `off` also ends a pause.
   void set(PauseAfter after) {
+    if (after_ != after && after == PauseAfter::off) waits_ = false;
     after_ = after;
-    if (after == PauseAfter::off) waits_ = false;
   }
   PauseAfter after() const { return after_; }
   /// Goes on to the end of the next stage and waits there, whatever is set.
