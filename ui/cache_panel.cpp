@@ -113,7 +113,9 @@ void numbers(const Ui& ui, const CacheReport& r) {
                           count_text(double(last.asked_world)), 100 * ui.setting_real("cache.stop")));
   }
   gap(4);
-  if (building)
+  if (s.waits)
+    paragraph("Building waits: X goes on to the next stage, G to the end.", colour::accent);
+  else if (building)
     paragraph("Still building\xE2\x80\xA6", colour::accent);
   else
     paragraph(fmt::format("Building has stopped: {}.", irradiance_cache::words(s.stop)),
@@ -243,6 +245,105 @@ void passes(const CacheStatus& s) {
   }
 }
 
+/// The stages of a pass in a row: what is done, and what has ended last.
+void stage_strip(const CacheReport& r) {
+  const CacheStatus& s = r.status;
+  constexpr int n = static_cast<int>(irradiance_cache::k_build_stages.size());
+  static constexpr const char* texts[] = {
+      "Paths from the camera ask where they find no record: candidates.",
+      "Candidates in Morton order are cut into clusters; of each, points are tried until all are covered.",
+      "A few rays from what is tried: how wide would its records be?",
+      "What a wider one makes superfluous is rejected, the rest chosen.",
+      "Rays over the hemispheres of the records, a level of four times as many after the other.",
+      "Records have got their radii, and an octree in which they are found.",
+  };
+  const int last = s.last ? static_cast<int>(s.last->stage) : -1;
+  const float width = ImGui::CalcItemWidth(), height = px(20);
+  // What the names leave over is shared out.
+  ImFont* font = theme().fonts.small;
+  float left = width - px(2) * static_cast<float>(n - 1);
+  for (const char* name : irradiance_cache::k_build_stages) left -= text_width(name, font);
+  const ImVec2 lo = ImGui::GetCursorScreenPos();
+  float x = lo.x;
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  for (int i = 0; i < n; ++i) {
+    const char* name = irradiance_cache::k_build_stages[static_cast<size_t>(i)];
+    const float end = x + text_width(name, font) + left / static_cast<float>(n);
+    const ImVec2 a(std::floor(x), lo.y), b(std::floor(end), lo.y + height);
+    x = end + px(2);
+    ImGui::SetCursorScreenPos(a);
+    ImGui::PushID(i);
+    ImGui::InvisibleButton("##stage", {b.x - a.x, height});
+    tooltip(texts[i]);
+    ImGui::PopID();
+    const bool now = i == last;
+    list->AddRectFilled(a, b, now ? colour::accent_dim : i < last ? colour::fill : colour::field, px(2));
+    if (now) list->AddRectFilled({a.x, b.y - px(2)}, b, colour::accent, px(1));
+    // Where there is no room for all, only the one that matters is named.
+    if (left < 0 && !now) continue;
+    draw_text(list, a, b, name,
+              now        ? colour::text
+              : i < last ? colour::text_dim
+                         : colour::text_faint,
+              Align::centre, theme().fonts.small);
+  }
+  ImGui::SetCursorScreenPos({lo.x, lo.y + height + px(6)});
+}
+
+/// Leads building from stage to stage.
+void steps(Ui& ui, const CacheReport& r) {
+  const CacheStatus& s = r.status;
+  const float width = ImGui::CalcItemWidth();
+  const plan::OptionInfo& pause = *plan::find_option("cache.pause");
+  static constexpr const char* names[2][3] = {{"No pause", "Each pass", "Each stage"},
+                                              {"Off", "Pass", "Stage"}};
+  const bool narrow = width < px(236);
+  const float third = std::floor((width - px(8)) / 3);
+  for (size_t i = 0; i < pause.choices.size(); ++i) {
+    if (i > 0) ImGui::SameLine(0, px(4));
+    if (button(("##pause" + pause.choices[i]).c_str(), names[narrow][i],
+               ui.setting(pause.key) == pause.choices[i], third))
+      ui.act("set", pause.key, pause.choices[i]);
+    tooltip(pause.help + " R builds anew.");
+  }
+  gap(4);
+  const bool building = s.stop == StopReason::building;
+  const float half = std::floor((width - px(4)) / 2);
+  ImGui::BeginDisabled(!building);
+  if (button("##step", "Next stage", false, half)) ui.act("cache.step");
+  tooltip(building ? "Goes on to the end of the next stage and waits there. X."
+                   : "The cache is complete. R builds it anew, a turn of the camera adds what is missing.");
+  ImGui::SameLine(0, px(4));
+  if (button("##run", "Go on", false, half)) ui.act("cache.run");
+  tooltip(building ? "Goes on without a pause until the cache is complete. G." : "The cache is complete.");
+  ImGui::EndDisabled();
+  gap(8);
+  stage_strip(r);
+  const std::string none = "\xE2\x80\x93";
+  if (s.last) {
+    const irradiance_cache::StageDone& last = *s.last;
+    value_row(s.waits ? "Waits after" : "Ended last", irradiance_cache::stage_words(last),
+              "The stage of building that has ended last.", s.waits ? colour::accent : colour::text);
+    value_row("It took",
+              last.rays > 0 ? fmt::format("{}, {} rays", ms_text(last.ms), amount(double(last.rays)))
+                            : ms_text(last.ms),
+              "Device time, and wall time of what the host did; rays from records.");
+  } else {
+    value_row("Ended last", none, "No stage of building has ended yet.", colour::text_faint);
+    value_row("It took", none, "", colour::text_faint);
+  }
+  const CachePass* pass = s.passes.empty() ? nullptr : &s.passes.back();
+  const auto count = [&](const char* name, double n, bool known, const char* help) {
+    value_row(name, known ? count_text(n) : none, help, known ? colour::text : colour::text_faint);
+  };
+  const bool chosen = pass && pass->clusters > 0;
+  count("Candidates", pass ? double(pass->asked) : 0, pass != nullptr,
+        "Places where paths of this pass found no record.");
+  count("Clusters", pass ? pass->clusters : 0, chosen, "That they were cut into.");
+  count("Tried", pass ? pass->tried : 0, chosen, "Of the candidates.");
+  count("Chosen", pass ? pass->records : 0, pass && pass->records > 0, "Of what was tried: new records.");
+}
+
 void overlays(Ui& ui) {
   const float width = ImGui::CalcItemWidth(), each = std::floor((width - px(8)) / 3);
   const auto toggle = [&](const char* name, const char* key, const std::string& option) {
@@ -256,6 +357,7 @@ void overlays(Ui& ui) {
   toggle("Normals", "N", "overlay.normals");
   gap(4);
   option_control(ui, "overlay.records_by", "Coloured by");
+  option_control(ui, "overlay.placement", "Placement");
   if (!ui.shows_cache()) return;
   gap(4);
   paragraph("Rest the pointer in the picture to see which records serve there.", colour::text_faint);
@@ -282,7 +384,8 @@ std::string option_name(const std::string& key) {
 
 void options(Ui& ui) {
   for (const plan::OptionInfo& option : plan::options())
-    if (option.key.rfind("cache.", 0) == 0 && option.type != plan::OptionType::text)
+    if (option.key.rfind("cache.", 0) == 0 && option.key != "cache.pause" &&
+        option.type != plan::OptionType::text)
       option_control(ui, option.key, option_name(option.key));
 }
 
@@ -355,10 +458,14 @@ void draw_cache_panel(Ui& ui, const Area& area) {
       paragraph(ui.scene ? "Nothing has been asked of it yet." : "No scene is open.", colour::text_faint);
     });
   } else {
-    block("Cache", r->status.stop == StopReason::building ? "building" : "complete", [&] {
+    const char* state = r->status.waits                          ? "waits"
+                        : r->status.stop == StopReason::building ? "building"
+                                                                 : "complete";
+    block("Cache", state, [&] {
       numbers(ui, *r);
       overlap_bars(*r);
     });
+    block("Steps of building", "", [&] { steps(ui, *r); });
     block("Overlays", "", [&] { overlays(ui); });
     if (!r->status.passes.empty())
       block("Passes of building", "", [&] {

@@ -6,6 +6,7 @@
 
 #include "chart.h"
 #include "film/overlay.h"
+#include "shaders/shared/cache_placement.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -166,6 +167,49 @@ void overlap_inks(ImDrawList* list, const ImVec2& at) {
   swatch(list, {at.x, at.y + px(28)}, ink_of(shared::k_unserved_ink), "none: path traced");
 }
 
+/// What has become of places; returns the title, draws below it when there is a list.
+const char* placement_title(irradiance_cache::PlacementShow drawn) {
+  switch (drawn) {
+    case irradiance_cache::PlacementShow::candidates:
+      return "Candidates, by what asks for a record";
+    case irradiance_cache::PlacementShow::clusters:
+      return "Candidates, by their cluster";
+    default:
+      return "Places that were tried, with their radii";
+  }
+}
+
+void placement_inks(ImDrawList* list, const ImVec2& at, const session::CacheReport& r) {
+  float x = at.x;
+  const irradiance_cache::CachePass* pass = r.status.passes.empty() ? nullptr : &r.status.passes.back();
+  if (r.placement == irradiance_cache::PlacementShow::candidates) {
+    for (uint32_t i = 0; i < std::size(irradiance_cache::k_origins); ++i)
+      x = swatch(list, {x, at.y}, ink_of(shared::ramp_hue(i)), irradiance_cache::k_origins[i]);
+    return;
+  }
+  const auto counted = [&](const char* name, uint32_t n) {
+    return pass ? fmt::format("{} {}", count_text(n), name) : std::string(name);
+  };
+  if (r.placement == irradiance_cache::PlacementShow::clusters) {
+    for (uint32_t i = 0; i < 5; ++i) {
+      list->AddRectFilled({x, at.y + px(3)}, {x + px(10), at.y + px(13)},
+                          ink_of(shared::placed_cluster_ink(i)), px(2));
+      x += px(12);
+    }
+    const std::string text = counted("clusters", pass ? pass->clusters : 0);
+    draw_text(list, {x + px(2), at.y}, {x + px(120), at.y + px(16)}, text, colour::text, Align::left,
+              theme().fonts.small);
+    x += px(14) + text_width(text, theme().fonts.small);
+    swatch(list, {x, at.y}, ink_of(shared::k_tried_ink), counted("tried", pass ? pass->tried : 0));
+    return;
+  }
+  const bool thinned = pass && pass->records > 0;
+  if (thinned) x = swatch(list, {x, at.y}, ink_of(shared::k_chosen_ink), counted("chosen", pass->records));
+  swatch(
+      list, {x, at.y}, ink_of(thinned ? shared::k_rejected_ink : shared::k_tried_ink),
+      thinned ? counted("rejected", pass->tried - pass->records) : counted("tried", pass ? pass->tried : 0));
+}
+
 }  // namespace
 
 void draw_legend(Ui& ui, const Area& area) {
@@ -175,7 +219,8 @@ void draw_legend(Ui& ui, const Area& area) {
   const session::CacheReport* cache = s->cache.get();
   const bool records = cache && (ui.setting_on("overlay.records") || ui.setting_on("overlay.normals"));
   const bool overlap = cache && ui.setting_on("overlay.overlap");
-  if (!heat && !tiles && !records && !overlap) return;
+  const bool placement = cache && cache->placement != irradiance_cache::PlacementShow::off;
+  if (!heat && !tiles && !records && !overlap && !placement) return;
   struct Row {
     uint32_t state;
     std::string name, count;
@@ -198,10 +243,11 @@ void draw_legend(Ui& ui, const Area& area) {
   const float heat_height = heat ? px(48) : 0;
   const float tiles_height = tiles ? px(50) + line * static_cast<float>(rows.size() + (heavy > 0)) : 0;
   const bool numbered = records && cache->color <= shared::k_record_by_origin;
-  const float records_height = records ? px(numbered ? 40 : 48) : 0, overlap_height = overlap ? px(64) : 0;
-  const float between = px(6) * static_cast<float>(heat + tiles + records + overlap - 1);
-  const float w = px(k_ramp_width) + 2 * pad,
-              h = heat_height + tiles_height + records_height + overlap_height + pad + between;
+  const float records_height = records ? px(numbered ? 40 : 48) : 0, overlap_height = overlap ? px(64) : 0,
+              placement_height = placement ? px(40) : 0;
+  const float between = px(6) * static_cast<float>(heat + tiles + records + overlap + placement - 1);
+  const float w = px(k_ramp_width) + 2 * pad, h = heat_height + tiles_height + records_height +
+                                                  overlap_height + placement_height + pad + between;
   if (h > area.height() - px(24) || w > area.width() - px(24)) return;
   const ImVec2 lo(area.lo.x + px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
   ImDrawList* list = ImGui::GetWindowDrawList();
@@ -222,6 +268,11 @@ void draw_legend(Ui& ui, const Area& area) {
     title(record_title(cache->color));
     record_inks(list, {lo.x + pad, y}, *cache);
     y += records_height - px(20) + px(6);
+  }
+  if (placement) {
+    title(placement_title(cache->placement));
+    placement_inks(list, {lo.x + pad, y}, *cache);
+    y += placement_height - px(20) + px(6);
   }
   if (overlap) {
     title("Records that serve a pixel");

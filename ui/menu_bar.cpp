@@ -165,6 +165,9 @@ void view_menu(Ui& ui) {
   overlay("Cache records", "C", "overlay.records", ui.cached());
   overlay("Cache overlap", "V", "overlay.overlap", ui.cached());
   overlay("Cache normals", "N", "overlay.normals", ui.cached());
+  if (const plan::OptionInfo* placement = plan::find_option("overlay.placement"); entry(
+          "Cache placement", "P", placement->help.c_str(), ui.setting(placement->key) != "off", ui.cached()))
+    ui.act("set", placement->key, ui.setting(placement->key) == "off" ? "stage" : "off");
   if (ui.cached() && (ui.setting_on("overlay.records") || ui.setting_on("overlay.normals"))) {
     const plan::OptionInfo* by = plan::find_option("overlay.records_by");
     for (const std::string& choice : by->choices)
@@ -193,6 +196,14 @@ void render_menu(Ui& ui) {
   if (entry("Start again", "R", "Throws the samples away and starts the picture anew.", false,
             ui.snapshot != nullptr))
     ui.act("render.restart");
+  if (entry("Next stage of the cache", "X",
+            "Goes on building the irradiance cache to the end of the next stage and waits there.", false,
+            ui.cached()))
+    ui.act("cache.step");
+  if (entry("Go on with the cache", "G",
+            "Goes on building the irradiance cache without a pause until it is complete.", false,
+            ui.cached()))
+    ui.act("cache.run");
   if (entry("Reload shaders", "F5", "Compiles the shaders again; when that fails the old ones stay."))
     ui.act("shaders.reload");
   divide();

@@ -17,7 +17,7 @@ bool worth_keeping(const Run& run) {
 
 /// Settings that change what is shown, not what is computed.
 bool only_shown(const std::string& key) {
-  for (const char* head : {"film.", "show.", "overlay.", "camera", "about"})
+  for (const char* head : {"film.", "show.", "overlay.", "camera", "about", "cache.pause"})
     if (key.starts_with(head)) return true;
   return false;
 }

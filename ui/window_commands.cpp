@@ -100,10 +100,18 @@ void add_window_commands(Ui& ui) {
         .which = true,
         .names =
             [](const std::vector<std::string>&) {
-              return std::vector<std::string>{
-                  "Light",     "Render",  "Camera", "Lights",   "Environment",
-                  "Materials", "Objects", "Cache",  "Overlays", "Passes of building",
-                  "Options"};
+              return std::vector<std::string>{"Light",
+                                              "Render",
+                                              "Camera",
+                                              "Lights",
+                                              "Environment",
+                                              "Materials",
+                                              "Objects",
+                                              "Cache",
+                                              "Overlays",
+                                              "Passes of building",
+                                              "Steps of building",
+                                              "Options"};
             }},
        {.name = "open", .type = Type::boolean}},
       [&ui](const Arguments& a) { ui.sections[a.text("section")] = a.boolean("open"); });

@@ -15,9 +15,7 @@ void Workspace::add_inspect_commands() {
                       {.name = "down", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture heights"}},
        .run =
            [this, place](const Arguments& a) {
-             needs_scene();
-             if (setting("components.secondary") != "cache" && setting("components.tertiary") != "cache")
-               throw Error("", "no component takes its light from the cache; set components.secondary cache");
+             needs_cache();
              session.inspect(place(a));
            },
        .done =

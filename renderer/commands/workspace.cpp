@@ -32,6 +32,7 @@ Workspace::Workspace(session::Session& s) : session(s) {
   add_camera_commands();
   add_other_commands();
   add_inspect_commands();
+  add_cache_commands();
 }
 
 void Workspace::refresh(double time) {

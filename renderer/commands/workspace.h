@@ -154,6 +154,7 @@ class Workspace {
   void add_camera_commands();
   void add_other_commands();
   void add_inspect_commands();
+  void add_cache_commands();
   Document& edit();  ///< the document that the running command may change
   void send(const Document& before, const Document& after);
   void record(const Line& line, uint64_t gesture);
@@ -162,6 +163,10 @@ class Workspace {
   std::pair<float, float> environment_() const;
   void needs_view() const;
   void needs_scene() const;
+  void needs_cache() const;
+  /// Whether the newest picture knows what all commands so far have brought.
+  bool up_to_date() const { return snapshot && snapshot->commands >= session.commands(); }
+  bool cache_waits() const { return snapshot && snapshot->cache && snapshot->cache->status.waits; }
   uint32_t light_index(const std::string& which) const;
   uint32_t material_index(const std::string& which) const;
   int camera_index(const std::string& which) const;

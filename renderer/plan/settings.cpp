@@ -140,6 +140,13 @@ std::vector<OptionInfo> make_options() {
            "Irradiance cache: building ends when no greater share of the paths still asks for records; "
            "these are "
            "path traced."),
+      {.key = "cache.pause",
+       .type = OptionType::choice,
+       .fallback = "off",
+       .choices = {"off", "pass", "stage"},
+       .help = "Irradiance cache: building waits after every pass, or every stage of it, for cache.step or "
+               "cache.run. In the window and its scripts alone: batch rendering goes on.",
+       .restarts = false},
       {.key = "tracer",
        .type = OptionType::choice,
        .fallback = "auto",
@@ -181,6 +188,14 @@ std::vector<OptionInfo> make_options() {
       going_on(boolean("overlay.normals",
                        "Shows over the picture the normals of the irradiance cache's "
                        "records, as short lines from their centres.")),
+      {.key = "overlay.placement",
+       .type = OptionType::choice,
+       .fallback = "off",
+       .choices = {"off", "stage", "candidates", "clusters", "chosen"},
+       .help = "Shows over the picture how the last pass of building chose the places of the irradiance "
+               "cache's records: the candidates that asked, their clusters with what is tried, or what of "
+               "that is chosen; stage: as far as building has come.",
+       .restarts = false},
       going_on(boolean("overlay.overlap", "Shows over the picture how many records serve each pixel.")),
       {.key = "about",
        .type = OptionType::text,

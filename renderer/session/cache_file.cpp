@@ -22,8 +22,8 @@ irradiance_cache::Making Renderer::cache_making() const {
                    {"lights", hash.lights},
                    {"environment", hash.environment}};
   for (const plan::OptionInfo& o : plan::options())
-    if ((o.key.starts_with("cache.") && !k_amounts.contains(o.key)) || o.key == "path.max_depth" ||
-        o.key == "path.roulette_depth")
+    if ((o.key.starts_with("cache.") && o.restarts && !k_amounts.contains(o.key)) ||
+        o.key == "path.max_depth" || o.key == "path.roulette_depth")
       making.settings[o.key] = settings_.text(o.key);
   making.parts = cache_->parts();
   making.seed = settings_.text("seed");

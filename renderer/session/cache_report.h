@@ -9,7 +9,9 @@ namespace lucerna::session {
 
 struct CacheReport {
   irradiance_cache::CacheStatus status;
-  uint32_t room = 0;  ///< records that there is room for
+  irradiance_cache::PlacementShow placement =
+      irradiance_cache::PlacementShow::off;  ///< what of it lies over the picture; never `stage`
+  uint32_t room = 0;                         ///< records that there is room for
   /// Of the pixels of the picture, as their first samples see the scene; none while it is being built.
   std::optional<irradiance_cache::Overlap> overlap;
   uint32_t color = 0;                   ///< shared::k_record_by_*: what the overlay colours records by

@@ -14,6 +14,7 @@
 #include "scene/io/load.h"
 #include "session/accuracy.h"
 #include "shaders/shared/film.h"
+#include "solvers/irradiance_cache/placement_view.h"
 #include "stats/forecast.h"
 #include "transport/frame.h"
 
@@ -132,6 +133,8 @@ irradiance_cache::Spoilt Renderer::build_wavefront(const upload::DeviceScene& de
   cache_ = std::move(cache);
   inspector_.reset();
   compiled_ = device_scene.defines();
+  placement_view_.reset();
+  heed_pauses();
   routes_ = std::move(routes);
   record_routes_ = std::move(record_routes);
   compile_seconds_ = timer.seconds();
@@ -333,9 +336,10 @@ void Renderer::apply_settings() {
   bool cache_changed = false;
   irradiance_cache::Spoilt spoilt;
   for (const std::string& key : changed) {
-    cache_changed |= cache_ && key.starts_with("cache.");
+    cache_changed |= cache_ && key.starts_with("cache.") && plan::find_option(key)->restarts;
     spoilt |= irradiance_cache::spoilt_by_setting(key);
   }
+  heed_pauses();
   if (changed.contains("camera")) choose_camera(settings_.text("camera"));
   if (rebuild) {
     install(scene_, settings_, camera_, {}, spoilt);

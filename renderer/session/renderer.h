@@ -26,6 +26,10 @@
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
 
+namespace lucerna::irradiance_cache {
+class PlacementView;
+}
+
 namespace lucerna::session {
 
 struct RendererOptions {
@@ -33,6 +37,7 @@ struct RendererOptions {
   bool validation = false;
   std::filesystem::path shaders;
   gpu::Defines defines;  ///< further #defines for the transport's kernels (tests)
+  bool pauses = false;   ///< the setting cache.pause is heeded: step() may wait for step_cache()
 };
 
 /// fraction 0..1 and what is going on; returning false cancels (an Error "cancelled" is thrown).
@@ -89,7 +94,8 @@ class Renderer {
   std::vector<film::TileError> tile_errors() const;
   /// What these errors, which are of the noise, do not tell: plan::Plan::bias of the settings in force.
   std::optional<double> bias(size_t component) const;
-  /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled.
+  /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled, or
+  /// while building of the cache waits.
   bool step(const std::function<bool()>& cancel = {});
   /// A quick image of a quarter of the resolution, for display until the film is filled.
   void render_coarse(const std::function<bool()>& cancel = {});
@@ -136,6 +142,11 @@ class Renderer {
   const irradiance_cache::Cache* cache() const { return cache_.get(); }
   /// Session::inspect; pictures from now on show it.
   void inspect(std::optional<vec2> at) { looked_at_ = at; }
+  /// Whether building of the cache waits for one of these (Session::step_cache), and these; nothing where
+  /// nothing is looked up.
+  bool cache_waits() const { return cache_ && cache_->status().waits; }
+  void step_cache();
+  void run_cache();
   /// Of the cache as the last picture() has shown it; null where there is none. How many records serve each
   /// pixel is looked at once, when there are samples: a pass over the film.
   std::shared_ptr<const CacheReport> cache_report();
@@ -166,7 +177,8 @@ class Renderer {
   std::string cache_view_text() const;
   /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
   std::string view_text() const;
-  void draw_cache();  ///< over the film's picture, as the settings say
+  void heed_pauses();  ///< tells the cache of the settings'
+  void draw_cache();   ///< over the film's picture, as the settings say
   bool render_item(const std::function<bool()>& cancel);
   irradiance_cache::CacheOptions cache_options() const;
   irradiance_cache::CacheView cache_view() const;
@@ -187,10 +199,11 @@ class Renderer {
   upload::FlatScene flat_;
   std::unique_ptr<upload::DeviceScene> device_scene_;
   std::unique_ptr<bvh::HostTracer> host_;
-  gpu::Defines compiled_;                                   ///< of the scene, in the kernels in use
-  paths::LookupRoutes routes_, record_routes_;              ///< of the kernels in use
-  std::unique_ptr<irradiance_cache::Cache> cache_;          ///< null: nothing is looked up
-  std::unique_ptr<irradiance_cache::Inspector> inspector_;  ///< made when it is called for
+  gpu::Defines compiled_;                                            ///< of the scene, in the kernels in use
+  paths::LookupRoutes routes_, record_routes_;                       ///< of the kernels in use
+  std::unique_ptr<irradiance_cache::Cache> cache_;                   ///< null: nothing is looked up
+  std::unique_ptr<irradiance_cache::Inspector> inspector_;           ///< made when it is called for
+  std::unique_ptr<irradiance_cache::PlacementView> placement_view_;  ///< the same
   uint32_t full_at_ = 0;  ///< records at which a person was last told that there is no room for more
   std::optional<vec2> looked_at_;
   irradiance_cache::Inspection inspection_;

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "session/renderer.h"
+#include "solvers/irradiance_cache/placement_view.h"
 
 namespace lucerna::session {
 
@@ -17,7 +18,26 @@ void Renderer::warn_of_full_cache() {
   full_at_ = at;
 }
 
+void Renderer::heed_pauses() {
+  if (cache_ && options_.pauses) cache_->pause(irradiance_cache::PauseAfter(settings_.choice("cache.pause")));
+}
+
+void Renderer::step_cache() {
+  if (cache_) cache_->go_on(true);
+}
+
+void Renderer::run_cache() {
+  if (cache_) cache_->go_on(false);
+}
+
 void Renderer::draw_cache() {
+  const auto placement = irradiance_cache::PlacementShow(settings_.choice("overlay.placement"));
+  if (placement != irradiance_cache::PlacementShow::off) {
+    if (!placement_view_)
+      placement_view_ = std::make_unique<irradiance_cache::PlacementView>(*device_, *compiler_);
+    // Below the others, for it dims the picture.
+    placement_view_->draw({*wavefront_, *film_, *coarse_}, *cache_, placement);
+  }
   const auto color = uint32_t(settings_.choice("overlay.records_by"));
   cache_->draw(*wavefront_, *film_, *coarse_,
                {.discs = settings_.boolean("overlay.records"),
@@ -41,6 +61,8 @@ std::shared_ptr<const CacheReport> Renderer::cache_report() {
   if (!cache_ || !wavefront_) return nullptr;
   auto report = std::make_shared<CacheReport>();
   report->status = cache_->status();
+  report->placement = irradiance_cache::placement_drawn(
+      irradiance_cache::PlacementShow(settings_.choice("overlay.placement")), cache_->placement());
   report->room = cache_->records().capacity();
   report->color = uint32_t(settings_.choice("overlay.records_by"));
   report->scale = cache_->scale(report->color);

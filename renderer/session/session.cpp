@@ -30,6 +30,7 @@ struct Session::Impl {
   std::condition_variable wake;
   std::deque<std::function<void(Renderer&)>> queue;
   bool quit = false;
+  uint64_t posted = 0;
   std::atomic<bool> cancel_load{false}, pending{false};
   std::atomic<uint32_t> caches_asked{0};  // for, and not saved yet
   std::shared_ptr<const Snapshot> snapshot;
@@ -73,6 +74,7 @@ struct Session::Impl {
     {
       std::lock_guard lock(mutex);
       queue.push_back(std::move(command));
+      ++posted;
       pending = true;
     }
     wake.notify_one();
@@ -120,7 +122,8 @@ struct Session::Impl {
     if (const irradiance_cache::Cache* cache = r.cache(); cache && !cache->ready()) {
       const irradiance_cache::CacheStatus& c = cache->status();
       next.preparing =
-          c.relighting > 0
+          c.waits ? fmt::format("cache waits: {}", stage_words(*c.last))
+          : c.relighting > 0
               ? fmt::format("cache: relighting {} records, {:.0f} %", c.relighting, 100 * c.relit)
               : fmt::format("cache, pass {}: {} records", c.pass + 1, cache->records().size());
     }
@@ -164,8 +167,8 @@ void Session::Impl::run() {
   setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), k_nice);
   std::unique_ptr<Renderer> renderer;
   try {
-    renderer =
-        std::make_unique<Renderer>(RendererOptions{options.device, options.validation, options.shaders, {}});
+    renderer = std::make_unique<Renderer>(
+        RendererOptions{options.device, options.validation, options.shaders, {}, true});
     next.device = renderer->device().info().name;
     publish();
   } catch (const std::exception& e) {
@@ -193,11 +196,13 @@ void Session::Impl::run() {
       }
       next.activity.clear();
       next.progress = -1;
+      ++next.commands;
       dirty = true;
       lock.lock();
     }
     pending = false;
-    const bool work = renderer && renderer->ready() && !paused && !renderer->done();
+    const bool work =
+        renderer && renderer->ready() && !paused && !renderer->done() && !renderer->cache_waits();
     if (!work && !dirty) {
       wake.wait(lock, [&] { return quit || !queue.empty(); });
       continue;
@@ -228,7 +233,8 @@ void Session::Impl::run() {
             renderer->ledger().entries().back().paths != renderer->stats().paths)
           renderer->finish_ledger();
         if (!filled && renderer->samples() > 0) filled = changed = true;
-        if (changed || since_publish.seconds() > k_publish_seconds || renderer->done()) {
+        if (changed || since_publish.seconds() > k_publish_seconds || renderer->done() ||
+            renderer->cache_waits()) {
           const bool numbers = since_numbers.seconds() > k_numbers_seconds || renderer->done();
           if (numbers) since_numbers.restart();
           fill_snapshot(*renderer, numbers);
@@ -395,6 +401,25 @@ void Session::load_cache(const std::filesystem::path& file) {
     r.load_cache(file);
     s->restarted();
   });
+}
+
+void Session::step_cache() {
+  impl_->post([s = impl_.get()](Renderer& r) {
+    r.step_cache();
+    s->paused = false;
+  });
+}
+
+void Session::run_cache() {
+  impl_->post([s = impl_.get()](Renderer& r) {
+    r.run_cache();
+    s->paused = false;
+  });
+}
+
+uint64_t Session::commands() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->posted;
 }
 
 void Session::cancel() { impl_->cancel_load = true; }

@@ -46,6 +46,7 @@ struct Legend {
 struct Snapshot {
   uint64_t id = 0;                 ///< grows with every published snapshot
   uint64_t scene_id = 0;           ///< grows when another scene is loaded
+  uint64_t commands = 0;           ///< carried out before it was made (Session::commands)
   uint32_t width = 0, height = 0;  ///< of the picture
   std::vector<uint8_t> rgba;       ///< width * height * 4, sRGB, top row first; tone-mapped
   Legend legend;                   ///< of the picture, where it is a heat map
@@ -110,7 +111,15 @@ class Session {
   /// Whether one that was asked for is neither written nor given up.
   bool saving_cache() const;
   void load_cache(const std::filesystem::path& file);  ///< Renderer::load_cache
-  void cancel();                                       ///< gives up a load in progress
+  /// While building of the irradiance cache waits, or before: goes on to the end of its next stage and waits
+  /// there, or goes on until it is complete, whatever the setting cache.pause says. Rendering that was paused
+  /// goes on too.
+  void step_cache();
+  void run_cache();
+  void cancel();  ///< gives up a load in progress
+
+  /// Commands given so far: a snapshot of as many knows what they have brought.
+  uint64_t commands() const;
 
   /// The newest picture; null before the first. Cheap.
   std::shared_ptr<const Snapshot> snapshot() const;

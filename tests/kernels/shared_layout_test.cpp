@@ -9,6 +9,7 @@
 #include "gpu/spirv.h"
 #include "kernels/gpu_support.h"
 #include "shaders/shared/cache_inspect.h"
+#include "shaders/shared/cache_placement.h"
 #include "shaders/shared/film.h"
 #include "shaders/shared/irradiance_cache.h"
 #include "shaders/shared/octree.h"
@@ -55,6 +56,8 @@ std::vector<SharedStruct> structs() {
       SHARED("cache_inspect.h", CacheLine, from, to, from_depth, to_depth, half_width, alpha, color),
       SHARED("cache_inspect.h", CacheLinesPush, width, height, left, top, across, down, lines, ring),
       SHARED("cache_inspect.h", CacheTicksPush, width, height, records, color, lo, hi),
+      SHARED("cache_placement.h", PlacedPoint, position, bits, normal, radius),
+      SHARED("cache_placement.h", PlacementPush, width, height, count, segments, dot, tried_dot, by_cluster),
       SHARED("film.h", FilmHalf, sum, compensation),
       SHARED("film.h", WorkBlock, index, first_sample),
       SHARED("film.h", BlockError, pixels, luminance, variance, fourth, relative, quadrant_pixels),

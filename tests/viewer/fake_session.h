@@ -97,6 +97,10 @@ struct Session::Impl {
   bool paused = false;
   std::string reference;
   std::optional<vec2> looked_at;
+  // Building of the cache, as far as it has come since it was to wait: six stages, then it is complete.
+  uint32_t stages = 0;
+  bool cache_runs = false;
+  uint64_t posted = 0, done = 0;
 
   std::string activity;
   float progress = -1;
@@ -112,6 +116,7 @@ struct Session::Impl {
   void post(std::function<void()> command) {
     std::lock_guard lock(mutex);
     commands.push_back(std::move(command));
+    ++posted;
     wake.notify_all();
   }
 
@@ -120,6 +125,7 @@ struct Session::Impl {
     s->id = ++id, s->scene_id = scene_id, s->camera = camera, s->activity = activity, s->progress = progress;
     s->device = "llvmpipe (LLVM 15.0.6, 256 bits)", s->tracer = "host";
     s->max_samples = static_cast<uint32_t>(settings.integer("samples"));
+    s->commands = done;
     s->samples = samples, s->paused = paused, s->finished = scene && samples >= s->max_samples;
     s->coarse = samples == 0;
     if (scene && width > 0) {
@@ -213,6 +219,14 @@ struct Session::Impl {
     return a;
   }
 
+  bool cached() const {
+    return settings.text("components.secondary") == "cache" ||
+           settings.text("components.tertiary") == "cache";
+  }
+  bool waits() const {
+    return cached() && !cache_runs && settings.text("cache.pause") != "off" && stages < 6;
+  }
+
   /// A cache of four passes; a record in the middle of the picture is looked at where somebody looks.
   std::shared_ptr<const CacheReport> cache() const {
     auto c = std::make_shared<CacheReport>();
@@ -228,6 +242,22 @@ struct Session::Impl {
       status.records += p.records, status.rays += p.rays, status.asked = p.asked, status.paths = p.paths;
     }
     status.stop = irradiance_cache::StopReason::covered;
+    c->placement = irradiance_cache::PlacementShow(settings.choice("overlay.placement"));
+    status.last =
+        irradiance_cache::StageDone{.stage = irradiance_cache::BuildStage::probe, .pass = 4, .ms = 210};
+    if (waits()) {
+      status.waits = true, status.stop = irradiance_cache::StopReason::building;
+      status.passes.resize(1), status.pass = status.records = 0;
+      irradiance_cache::CachePass& pass = status.passes[0];
+      pass.complete = false;
+      pass.clusters = stages > 0 ? 412 : 0, pass.tried = stages > 0 ? 5210 : 0;
+      pass.records = stages > 2 ? pass.records : 0;
+      status.last = {.stage = irradiance_cache::BuildStage(stages), .level = 1, .ms = 12.5, .rays = 1000};
+      if (c->placement != irradiance_cache::PlacementShow::off)
+        c->placement = stages == 0   ? irradiance_cache::PlacementShow::candidates
+                       : stages == 1 ? irradiance_cache::PlacementShow::clusters
+                                     : irradiance_cache::PlacementShow::chosen;
+    }
     c->color = uint32_t(settings.choice("overlay.records_by"));
     c->scale = {0.02f, 4};
     if (samples > 0) {
@@ -254,7 +284,7 @@ struct Session::Impl {
     return c;
   }
 
-  void restart() { samples = 0, ++run_number; }
+  void restart() { samples = stages = 0, cache_runs = false, ++run_number; }
 
   void load(const std::filesystem::path& file) {
     cancelled = false;
@@ -293,10 +323,13 @@ struct Session::Impl {
         if (!commands.empty()) command = std::move(commands.front()), commands.pop_front();
       }
       if (command) {
+        ++done;
         command();
+        if (snapshot && snapshot->commands < done) publish();
         continue;
       }
-      if (!scene || paused || width == 0 || samples >= static_cast<uint32_t>(settings.integer("samples")))
+      if (!scene || paused || waits() || width == 0 ||
+          samples >= static_cast<uint32_t>(settings.integer("samples")))
         continue;
       ++samples;
       publish();
@@ -399,6 +432,16 @@ void Session::load_cache(const std::filesystem::path& file) {
     else
       impl_->restart(), impl_->publish();
   });
+}
+void Session::step_cache() {
+  impl_->post([this] { ++impl_->stages, impl_->paused = false; });
+}
+void Session::run_cache() {
+  impl_->post([this] { impl_->cache_runs = true, impl_->paused = false; });
+}
+uint64_t Session::commands() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->posted;
 }
 void Session::cancel() { impl_->cancelled = true; }
 std::shared_ptr<const Snapshot> Session::snapshot() const {

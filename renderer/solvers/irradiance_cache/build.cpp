@@ -61,7 +61,15 @@ bool Cache::Impl::probe(const Work& w) {
   }
   took(BuildStep::probe, timer.milliseconds());
   collect(item.slots());
-  if (picture.done()) choose(w);
+  if (!picture.done()) return true;
+  probing = false;
+  pass().asked_world = uint64_t(
+      std::count_if(asked.begin(), asked.end(), [](const Place& p) { return p.origin != k_origin_screen; }));
+  if (double(status.asked) <= double(options.stop_share) * double(status.paths))
+    finish(StopReason::covered);
+  else
+    stage = Stage::choose;
+  ended(BuildStage::probe);
   return true;
 }
 
@@ -69,7 +77,8 @@ void Cache::Impl::begin_pass() {
   if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
   status.passes.push_back({.number = status.pass});
   status.asked = status.paths = 0;
-  asked.clear();
+  forget_placement();
+  ms_before = 0, rays_at_end = 0;
   probing = true;
 }
 
@@ -85,31 +94,33 @@ void Cache::Impl::collect(uint32_t slots) {
   }
   status.paths += slots;
   pass().asked = status.asked, pass().paths = status.paths;
+  ++placement_version;
 }
 
 /// Which of the places asked for are tried.
-void Cache::Impl::choose(const Work& w) {
-  probing = false;
-  pass().asked_world = uint64_t(
-      std::count_if(asked.begin(), asked.end(), [](const Place& p) { return p.origin != k_origin_screen; }));
-  if (double(status.asked) <= double(options.stop_share) * double(status.paths))
-    return finish(StopReason::covered);
+bool Cache::Impl::choose(const Work& w) {
   const Frame& f = w.view.paths_frame;
   const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
   const Timer host;
-  tried = choose_places(asked, {.spacing = w.view.scene_radius *
-                                           std::ldexp(k_first_spacing, -2 * static_cast<int>(status.pass)),
-                                .spacing_beyond = w.view.scene_radius * k_deep_spacing,
-                                .spacing_of_distance = k_spacing_of_least * options.least_pixels * pixel,
-                                .eye = f.camera_origin,
-                                .parallel = f.orthographic != 0,
-                                .normal_tolerance = k_normal_tolerance,
-                                .seed = options.seed + status.pass,
-                                .most = records.capacity() - records.size()});
+  tried = choose_places(
+      asked,
+      {.spacing = w.view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(status.pass)),
+       .spacing_beyond = w.view.scene_radius * k_deep_spacing,
+       .spacing_of_distance = k_spacing_of_least * options.least_pixels * pixel,
+       .eye = f.camera_origin,
+       .parallel = f.orthographic != 0,
+       .normal_tolerance = k_normal_tolerance,
+       .seed = options.seed + status.pass,
+       .most = records.capacity() - records.size()},
+      &clusters);
+  pass().tried = uint32_t(tried.size());
+  pass().clusters = clusters.empty() ? 0 : 1 + *std::max_element(clusters.begin(), clusters.end());
   records.append(tried, status.pass);
   list_until(records.size());
   took(BuildStep::choose, host.milliseconds());
   stage = Stage::measure;
+  ended(BuildStage::choose);
+  return true;
 }
 
 /// How far things are around what is tried says how wide its records will be, and so which are needed.
@@ -127,26 +138,27 @@ bool Cache::Impl::measure(const Work& w) {
   if (done < batch) return false;
   if (at == list.size()) {
     set_radii(w, false);
-    thin();
+    tried_radii = records.radii(evaluated);
+    stage = Stage::thin;
+    ended(BuildStage::measure);
   }
   return true;
 }
 
-void Cache::Impl::thin() {
+bool Cache::Impl::thin() {
   const Timer host;
-  const std::vector<float> radii = records.radii(evaluated);
+  kept = thin_out(tried, tried_radii,
+                  {.share = k_overlap_share, .normal_tolerance = k_normal_tolerance, .behind = k_behind});
   std::vector<Place> needed;
-  for (const uint32_t i :
-       thin_out(tried, radii,
-                {.share = k_overlap_share, .normal_tolerance = k_normal_tolerance, .behind = k_behind}))
-    needed.push_back(tried[i]);
+  for (const uint32_t i : kept) needed.push_back(tried[i]);
   records.truncate(evaluated);
   pass().records = records.append(needed, status.pass);
-  tried.clear();
   list_until(records.size());
   took(BuildStep::choose, host.milliseconds());
   level = level_done = rays_before = 0;
   stage = Stage::evaluate;
+  ended(BuildStage::thin);
+  return true;
 }
 
 bool Cache::Impl::evaluate(const Work& w) {
@@ -185,10 +197,41 @@ bool Cache::Impl::evaluate(const Work& w) {
     if (level_done < level_rays) return true;
   }
   level_done = 0;
-  const bool more = next_level();
-  publish_level(w);
-  if (!more) end_pass();
+  const uint32_t done_level = level + 1;
+  more_levels = next_level();
+  const bool first = evaluated < until;
+  if (first)
+    stage = Stage::index;
+  else
+    publish_level(w);
+  ended(BuildStage::evaluate, !first && !more_levels);
+  status.last->level = done_level;
+  if (!first && !more_levels) end_pass();
   return true;
+}
+
+/// Records of the first level get their radii and become those that paths find.
+bool Cache::Impl::index(const Work& w) {
+  stage = Stage::evaluate;
+  publish_level(w);
+  ended(BuildStage::octree, !more_levels);
+  if (!more_levels) end_pass();
+  return true;
+}
+
+void Cache::Impl::ended(BuildStage which, bool last) {
+  const double ms = pass().total_ms();
+  status.last = StageDone{
+      .stage = which, .pass = pass().number, .ms = ms - ms_before, .rays = pass().rays - rays_at_end};
+  ms_before = ms, rays_at_end = pass().rays;
+  ++placement_version;
+  if (stage != Stage::done) pauses.ended(last);
+  status.waits = pauses.waits();
+}
+
+void Cache::Impl::forget_placement() {
+  asked.clear(), tried.clear(), clusters.clear(), kept.clear(), tried_radii.clear();
+  ++placement_version;
 }
 
 void Cache::Impl::publish_level(const Work& w) {
@@ -237,17 +280,17 @@ bool Cache::Impl::next_level() {
   // Light that few rays find (a caustic) is looked for wherever a record near by has found it: one that has
   // not would else stop, content with its darkness. The list is in Morton order, so that neighbours in it
   // are near.
-  std::vector<uint32_t> kept;
-  size_t next = 0;  // the first that no noisy one so far has kept or passed
+  std::vector<uint32_t> longer;
+  size_t next = 0;  // the first that no noisy one so far has longer or passed
   for (size_t i = 0; i < list.size(); ++i) {
     const uint32_t r = list[i];
     const float enough =
         figures[r].origin == k_origin_recursive ? k_deep_noise * options.noise : options.noise;
     if (figures[r].error <= enough * std::max(light[r], least)) continue;
     next = std::max(next, i > k_company ? i - k_company : 0);
-    for (; next < std::min(list.size(), i + k_company + 1); ++next) kept.push_back(list[next]);
+    for (; next < std::min(list.size(), i + k_company + 1); ++next) longer.push_back(list[next]);
   }
-  list = std::move(kept);
+  list = std::move(longer);
   ++level;
   return !list.empty();
 }
@@ -295,7 +338,8 @@ void Cache::Impl::list_until(uint32_t end) {
 void Cache::Impl::finish(StopReason reason) {
   stage = Stage::done;
   status.stop = reason;
-  asked = {};
+  pauses.complete();
+  status.waits = false;
   if (!status.passes.empty()) pass().complete = true;
   tell();
 }

@@ -12,7 +12,7 @@
 
 namespace lucerna::irradiance_cache {
 
-enum class Stage { probe, measure, evaluate, done };
+enum class Stage { probe, choose, measure, thin, evaluate, index, done };
 
 /// Most that the normals of a point and of its record may differ, as 1 - cos: 20 degrees.
 inline constexpr float k_normal_tolerance = 0.06f;
@@ -46,7 +46,13 @@ struct Cache::Impl {
   schedule::UniformSchedule picture;
   bool probing = false;  // the schedule of this pass has begun
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
-  std::vector<Place> asked, tried;
+  std::vector<Place> asked, tried;  // kept for who watches until the next pass begins; so are these
+  std::vector<uint32_t> clusters, kept;
+  std::vector<float> tried_radii;
+  uint64_t placement_version = 0;  // grows with every change of them
+  Pauses pauses;
+  double ms_before = 0;  // of this pass, at the end of the stage that ended last
+  uint64_t rays_at_end = 0;
   uint32_t evaluated = 0;       // records up to here have light and radius, and are in the octree
   uint32_t standing = 0;        // ... and up to here place and radius: more, while they are relit
   uint32_t until = 0;           // those of the pass in progress end here
@@ -57,20 +63,25 @@ struct Cache::Impl {
   std::vector<uint32_t> list;                           // of this level, in the order of the records
   size_t at = 0;                                        // of which so many are done
   uint32_t level = 0, level_done = 0, rays_before = 0;  // ... and rays of each record, in this level, so far
+  bool more_levels = false;
 
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o);
 
   /// One bounded piece of a stage each; false when it was cancelled, and is to be done again. A stage that is
   /// complete hands over to the next.
   bool probe(const Work& work);
+  bool choose(const Work& work);
   bool measure(const Work& work);
+  bool thin();
   bool evaluate(const Work& work);
+  bool index(const Work& work);
   void finish(StopReason reason);
   /// What is placed and not evaluated is dropped, and what was asked for.
   void drop_pass();
   void relight();
   /// The records of the next pass that stand without light; after the last, building goes on where it was.
   void relight_pass();
+  void forget_placement();
 
   /// Records that are evaluated hold what this cache gathers, and no more.
   void hold() { held = parts, held_recursive = recursive; }
@@ -88,10 +99,10 @@ struct Cache::Impl {
  private:
   void begin_pass();
   void collect(uint32_t slots);
-  void choose(const Work& work);
-  void thin();
   void end_pass();
   void next_pass();
+  /// Building may wait here; `last`: of its pass.
+  void ended(BuildStage stage, bool last = false);
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
   bool next_level();

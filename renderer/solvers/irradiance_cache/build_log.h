@@ -24,6 +24,8 @@ struct CachePass {
   bool relit = false;             ///< its records were placed before; their light was gathered anew
   uint64_t asked = 0, paths = 0;  ///< paths that asked for a record, paths
   uint64_t asked_world = 0;       ///< of those that asked: not at a surface that the camera sees straight
+  uint32_t clusters = 0;          ///< that what was asked for was cut into
+  uint32_t tried = 0;             ///< places of these that were measured
   uint32_t records = 0;           ///< placed, or relit
   uint64_t rays = 0;              ///< from them
   /// By BuildStep: device time of the stages that it ran, wall time of what the host did (its tracer too).

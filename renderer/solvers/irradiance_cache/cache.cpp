@@ -129,7 +129,8 @@ void Cache::bind(gpu::Resources& resources) const { impl_->bind(resources); }
 void Cache::clear() {
   Impl& c = *impl_;
   c.records.clear();
-  c.asked.clear();
+  c.forget_placement();
+  c.pauses.dropped();
   c.status = {.bytes = c.status.bytes, .published = c.status.published};
   c.stage = Stage::probe;
   c.probing = false;
@@ -144,15 +145,16 @@ void Cache::Impl::drop_pass() {
   records.truncate(standing);
   stage = Stage::probe;
   probing = false;
-  asked.clear();
+  forget_placement();
 }
 
 void Cache::extend() {
   Impl& c = *impl_;
   c.status.pass = 0;
   c.status.stop = c.stopped = StopReason::building;
-  // Records that are being evaluated stay so; what was asked for from where the camera was is dropped.
-  if (c.stage != Stage::evaluate) {
+  // Records that are being evaluated stay so; what was asked for from where the camera was is dropped, unless
+  // somebody is looking at it, maybe from all sides.
+  if (c.stage != Stage::evaluate && c.stage != Stage::index && !c.status.waits) {
     c.drop_pass();
     if (c.status.relighting > 0) c.relight_pass();  // they have been waiting in the dark
   }
@@ -177,21 +179,47 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
 }
 
 bool Cache::ready() const { return impl_->stage == Stage::done; }
+void Cache::pause(PauseAfter after) {
+  impl_->pauses.set(after);
+  impl_->status.waits = impl_->pauses.waits();
+}
+
+void Cache::go_on(bool one_stage) {
+  if (ready()) return;
+  if (one_stage)
+    impl_->pauses.step();
+  else
+    impl_->pauses.run();
+  impl_->status.waits = false;
+}
+
+PlacementShown Cache::placement() const {
+  const Impl& c = *impl_;
+  return {c.asked, c.clusters, c.tried, c.tried_radii, c.kept, c.placement_version};
+}
+
 const CacheStatus& Cache::status() const { return impl_->status; }
 const Records& Cache::records() const { return impl_->records; }
 uint32_t Cache::parts() const { return impl_->parts; }
 
 bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
                  const std::function<bool()>& cancel) {
+  if (impl_->status.waits) return false;
   const Impl::Work work{wavefront, automaton, view, cancel};
   if (view.dark) impl_->finish(StopReason::dark);
   switch (impl_->stage) {
     case Stage::probe:
       return impl_->probe(work);
+    case Stage::choose:
+      return impl_->choose(work);
     case Stage::measure:
       return impl_->measure(work);
+    case Stage::thin:
+      return impl_->thin();
     case Stage::evaluate:
       return impl_->evaluate(work);
+    case Stage::index:
+      return impl_->index(work);
     case Stage::done:
       break;
   }

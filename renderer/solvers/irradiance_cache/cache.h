@@ -12,6 +12,7 @@
 // interpolation.
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "paths/automaton.h"
@@ -19,6 +20,7 @@
 #include "solvers/irradiance_cache/changes.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/records.h"
+#include "solvers/irradiance_cache/stages.h"
 #include "solvers/lookup/octree.h"
 
 namespace lucerna::irradiance_cache {
@@ -66,6 +68,8 @@ struct CacheStatus {
   float relit = 0;         ///< share of these that has its first level, those under way included
   uint64_t published = 0;  ///< levels whose light lookups have been given; never goes back
   StopReason stop = StopReason::building;
+  bool waits = false;             ///< building has come to a pause (Cache::pause)
+  std::optional<StageDone> last;  ///< the stage that has ended last, since it was begun
   /// Since it was begun or relit, extensions too; the last may be in progress.
   std::vector<CachePass> passes;
 };
@@ -96,7 +100,7 @@ class Cache {
   /// Begins anew, without records.
   void clear();
   /// Goes on building with what there is, for a picture from elsewhere or of another size: its passes are
-  /// counted anew. Work in progress is finished first.
+  /// counted anew. Work in progress is finished first. While building waits it goes on waiting.
   void extend();
   /// Other light on the same surfaces: places and radii stay, and all light is gathered anew, pass by pass as
   /// the records came; then building goes on where it was, or is complete as it was. Meanwhile those that are
@@ -107,13 +111,21 @@ class Cache {
   /// kernels: as far as passes are complete. Returns what of them does not serve here, for the caller to see
   /// to: coverage, light, or places, where there is no room for them; then this is as after clear().
   Spoilt adopt(transport::Wavefront& wavefront, const Cache& other);
+  /// Building is to wait after every stage or pass from now on: step() then does nothing until go_on(). What
+  /// is built is the same, bit for bit. Off in the beginning.
+  void pause(PauseAfter after);
+  /// Goes on: to the end of the next stage, which may be one in progress, and waits there; or until building
+  /// is complete, whatever pause() has said. Nothing where it is complete already.
+  void go_on(bool one_stage);
+  /// For who watches; views of what the cache holds until it is changed.
+  PlacementShown placement() const;
   bool ready() const;
   /// Begins anew with records from elsewhere (Records::raw, of a cache that has these routes' parts at
   /// least), as after a pass of building: it goes on as extend() does, or, with `complete`, is ready and
   /// stands as `status` says.
   void restore(transport::Wavefront& wavefront, RawRecords raw, const CacheStatus& status, bool complete);
   /// One bounded piece of the building, cancellable between bounces; on return the wavefront's frame is that
-  /// of the picture's paths. False when it was cancelled: it will be done again.
+  /// of the picture's paths. False when it was cancelled: it will be done again; or while it waits.
   bool step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
             const std::function<bool()>& cancel = {});
   const CacheStatus& status() const;

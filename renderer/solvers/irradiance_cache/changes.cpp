@@ -37,6 +37,7 @@ constexpr Change k_changes[] = {
     {"cache.passes", true, k_spoils_coverage, "when building ends"},
     {"cache.stop", true, k_spoils_coverage, "when building ends"},
     {"cache.max_records", true, k_spoils_coverage, "room; all, where there are more records than that"},
+    {"cache.pause", true, k_spoils_nothing, "where building waits to be looked at"},
     {"cache.", true, k_spoils_all, "where records lie and how far they serve: radii, metric, placement"},
 };
 

@@ -30,7 +30,9 @@ uint64_t mix(uint64_t x) {  // splitmix64's finalizer
 
 }  // namespace
 
-std::vector<Place> choose_places(std::span<const Place> candidates, const PlacementOptions& o) {
+std::vector<Place> choose_places(std::span<const Place> candidates, const PlacementOptions& o,
+                                 std::vector<uint32_t>* cluster) {
+  if (cluster) cluster->assign(candidates.size(), 0);
   if (candidates.empty() || o.most == 0) return {};
   vec3 lo = candidates[0].position, hi = lo;
   for (const Place& c : candidates) lo = glm::min(lo, c.position), hi = glm::max(hi, c.position);
@@ -62,6 +64,8 @@ std::vector<Place> choose_places(std::span<const Place> candidates, const Placem
       box_lo = l, box_hi = h;
     }
     std::vector<Place> left, chosen;
+    for (size_t i = first; cluster && i < last; ++i)
+      (*cluster)[order[i].second] = static_cast<uint32_t>(clusters.size());
     for (size_t i = first; i < last; ++i) left.push_back(candidates[order[i].second]);
     uint64_t random = mix(order[first].first * 0x9e3779b97f4a7c15ull + o.seed);
     while (!left.empty()) {

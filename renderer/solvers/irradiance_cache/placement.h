@@ -24,8 +24,9 @@ struct PlacementOptions {
 };
 
 /// In Morton order of the candidates; the same for the same candidates in any thread and on any machine. Ties
-/// of the code go by the candidates' order.
-std::vector<Place> choose_places(std::span<const Place> candidates, const PlacementOptions& options);
+/// of the code go by the candidates' order. `cluster` is told the cluster of each candidate, for who watches.
+std::vector<Place> choose_places(std::span<const Place> candidates, const PlacementOptions& options,
+                                 std::vector<uint32_t>* cluster = nullptr);
 
 struct ThinningOptions {
   /// Of its radius: where a record that is kept makes others superfluous. The less, the more overlap.

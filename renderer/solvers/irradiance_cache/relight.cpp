@@ -29,6 +29,8 @@ void Cache::Impl::relight() {
   }
   standing = ends.empty() ? 0 : ends.back();
   drop_pass();
+  pauses.dropped();
+  status.waits = false;
   evaluated = 0;
   hold();
   status.stop = StopReason::building;
@@ -46,6 +48,7 @@ void Cache::Impl::relight_pass() {
     status.passes.push_back(
         {.number = records.read(evaluated).pass, .relit = true, .records = end - evaluated});
     list_until(end);
+    ms_before = 0, rays_at_end = 0;
     level = level_done = rays_before = 0;
     stage = Stage::evaluate;
     return;

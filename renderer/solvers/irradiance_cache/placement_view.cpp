@@ -1,0 +1,127 @@
+#include "solvers/irradiance_cache/placement_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gpu/stream.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+/// Points drawn at most: of a picture's pixels, all of which may ask in the first pass, one in some.
+constexpr size_t k_most_points = 1u << 20;
+static_assert(k_most_points <= k_mark_point);
+/// Dots of candidates, in pixels: as wide as the room between them allows.
+constexpr float k_least_dot = 0.6f, k_most_dot = 1.5f, k_dot_of_room = 0.25f;
+/// ... and of what is chosen.
+constexpr float k_least_tried = 1.3f, k_most_tried = 2.2f, k_tried_of_room = 0.2f;
+
+}  // namespace
+
+std::vector<PlacedPoint> placement_points(PlacementShow drawn, const PlacementShown& placement, size_t most,
+                                          uint32_t& rings) {
+  std::vector<PlacedPoint> points;
+  rings = 0;
+  if (drawn == PlacementShow::off) return points;
+  const auto bits = [](uint32_t kind, const Place& p) { return kind | p.origin << k_placed_origin_shift; };
+  if (drawn != PlacementShow::candidates) {
+    std::vector<bool> kept(placement.tried.size(), false);
+    for (const uint32_t i : placement.kept) kept[i] = true;
+    const bool outcome = drawn == PlacementShow::chosen, thinned = !placement.kept.empty();
+    for (size_t i = 0; i < std::min(most, placement.tried.size()); ++i) {
+      const Place& p = placement.tried[i];
+      const uint32_t kind = !outcome || !thinned ? k_placed_tried
+                            : kept[i]            ? k_placed_chosen
+                                                 : k_placed_rejected;
+      const bool ring = outcome && kind != k_placed_rejected;
+      points.push_back({p.position, bits(kind, p), p.normal, ring ? placement.radii[i] : 0});
+    }
+    std::stable_partition(points.begin(), points.end(), [](const PlacedPoint& p) { return p.radius > 0; });
+    while (rings < points.size() && points[rings].radius > 0) ++rings;
+  }
+  if (drawn == PlacementShow::chosen || points.size() == most) return points;
+  const size_t room = most - points.size(), all = placement.candidates.size();
+  const size_t stride = (all + room - 1) / room;
+  points.reserve(points.size() + all / stride + 1);
+  for (size_t i = 0; i < all; i += stride) {
+    const Place& p = placement.candidates[i];
+    const uint32_t cluster = placement.cluster.empty() ? 0 : 1 + placement.cluster[i];
+    points.push_back(
+        {p.position, bits(k_placed_candidate, p) | cluster << k_placed_cluster_shift, p.normal, 0});
+  }
+  return points;
+}
+
+struct PlacementView::Impl {
+  gpu::Device& device;
+  gpu::ShaderCompiler& compiler;
+  gpu::Kernel mark, lay;
+  gpu::Buffer points, marks;
+  gpu::Resources resources;
+  uint64_t version = 0;  // of what is in `points`, and how it was to be shown
+  PlacementShow drawn = PlacementShow::off;
+  uint32_t count = 0, rings = 0;
+
+  static void make_room(gpu::Device& device, gpu::Buffer& buffer, const char* name, uint64_t bytes,
+                        gpu::Memory memory) {
+    if (!buffer || buffer.bytes() < bytes)
+      buffer = gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
+  }
+};
+
+PlacementView::PlacementView(gpu::Device& device, gpu::ShaderCompiler& compiler)
+    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}}) {}
+PlacementView::~PlacementView() = default;
+
+void PlacementView::draw(const Shown& shown, const Cache& cache, PlacementShow show) {
+  Impl& i = *impl_;
+  const PlacementShown placement = cache.placement();
+  const PlacementShow drawn = placement_drawn(show, placement);
+  if (drawn == PlacementShow::off) return;
+  const film::Film& film = shown.film;
+  const uint64_t pixels = uint64_t{film.width()} * film.height();
+  if (!i.mark) {
+    i.mark = gpu::Kernel(i.device, i.compiler, "irradiance_cache/placement.comp");
+    i.lay = gpu::Kernel(i.device, i.compiler, "irradiance_cache/placement_draw.comp");
+  }
+  if (i.version != placement.version || i.drawn != drawn) {
+    const std::vector<PlacedPoint> points = placement_points(drawn, placement, k_most_points, i.rings);
+    const uint64_t bytes = points.size() * sizeof(PlacedPoint);
+    Impl::make_room(i.device, i.points, "cache placement", bytes + bytes / 4, gpu::Memory::host);
+    i.points.write(points.data(), bytes);
+    i.count = uint32_t(points.size());
+    i.version = placement.version, i.drawn = drawn;
+  }
+  Impl::make_room(i.device, i.marks, "cache placement marks", 4 * pixels, gpu::Memory::device);
+  shown.wavefront.bind_paths(i.resources);
+  film.bind(i.resources);
+  shown.coarse.bind_coarse(i.resources);
+  i.resources.set("Places", i.points);
+  i.resources.set("Marks", i.marks);
+  const auto room = [&](size_t points) {
+    return std::sqrt(float(pixels) / float(std::max<size_t>(1, points)));
+  };
+  PlacementPush push{film.width(),
+                     film.height(),
+                     i.count,
+                     0,
+                     std::clamp(k_dot_of_room * room(placement.candidates.size()), k_least_dot, k_most_dot),
+                     std::clamp(k_tried_of_room * room(placement.tried.size()), k_least_tried, k_most_tried),
+                     drawn == PlacementShow::clusters};
+  gpu::Stream& stream = shown.wavefront.stream();
+  stream.fill(i.marks, 0);
+  stream.dispatch(i.mark, i.resources, push, gpu::groups_for(i.count, 64));
+  if (i.rings > 0) {
+    push.count = i.rings, push.segments = k_ring_segments;
+    stream.dispatch(i.mark, i.resources, push, gpu::groups_for(uint64_t{i.rings} * k_ring_segments, 64));
+  }
+  stream.dispatch(i.lay, i.resources, push, gpu::groups_for(pixels, 64));
+  // What is drawn is no part of the picture's cost.
+  stream.run();
+  stream.take_times();
+}
+
+}  // namespace lucerna::irradiance_cache

@@ -1,0 +1,64 @@
+// How the places of an irradiance cache's records are drawn while they are being chosen. Read by C++ and
+// GLSL.
+#ifndef LUCERNA_SHARED_CACHE_PLACEMENT_H
+#define LUCERNA_SHARED_CACHE_PLACEMENT_H
+#include "shaders/shared/ramp.h"
+LUCERNA_SHARED_BEGIN
+
+// What has become of a place, in the order in which one is drawn over another.
+LUCERNA_CONST uint k_placed_candidate = 0u;  ///< asked for
+LUCERNA_CONST uint k_placed_rejected = 1u;   ///< tried, and not needed beside wider ones
+LUCERNA_CONST uint k_placed_tried = 2u;      ///< drawn from its cluster
+LUCERNA_CONST uint k_placed_chosen = 3u;     ///< becomes a record
+LUCERNA_CONST uint k_placed_mask = 3u;
+LUCERNA_CONST uint k_placed_origin_shift = 2u;   ///< 2 bits: k_origin_*
+LUCERNA_CONST uint k_placed_cluster_shift = 4u;  ///< the rest: 1 + its cluster; 0: not known
+
+/// A place to be drawn; those with a radius get a ring in their plane.
+struct PlacedPoint {
+  vec3 position;
+  uint bits;  ///< k_placed_*
+  vec3 normal;
+  float radius;  ///< [m]; 0: no ring
+};
+
+/// The dots of all points, or with `segments` the rings of the first `count`.
+struct PlacementPush {
+  uint width, height;
+  uint count;
+  uint segments;    ///< of a ring; 0: dots
+  float dot;        ///< radius of a candidate's dot [pixels]
+  float tried_dot;  ///< ... of a chosen place's; others that were tried are smaller
+  uint by_cluster;  ///< not 0: candidates are coloured by their clusters, else by what asked for them
+};
+
+// A mark is what a point leaves at a pixel: bits 29-31 a rank, bits 22-28 how much of the pixel it covers,
+// below them the complement of the point's index, so that the greatest mark is what is to be seen, in any
+// order.
+LUCERNA_CONST uint k_mark_rank_shift = 29u;
+LUCERNA_CONST uint k_mark_cover_shift = 22u;
+LUCERNA_CONST uint k_mark_point = 0x3fffffu;  ///< also the most points there may be
+LUCERNA_CONST uint k_rank_candidate = 1u;
+LUCERNA_CONST uint k_rank_edge = 2u;        ///< dark, around what is tried
+LUCERNA_CONST uint k_rank_faint_ring = 3u;  ///< of what is only tried
+LUCERNA_CONST uint k_rank_rejected = 4u;
+LUCERNA_CONST uint k_rank_ring = 5u;
+LUCERNA_CONST uint k_rank_tried = 6u;
+LUCERNA_CONST uint k_rank_chosen = 7u;
+
+LUCERNA_CONST uint k_ring_segments = 32u;
+
+/// Inks of what is tried, encoded 0..1; the legend has them too. Chosen: the accent of records that light.
+LUCERNA_CONST vec3 k_tried_ink = vec3(1.0f, 1.0f, 1.0f);
+LUCERNA_CONST vec3 k_chosen_ink = vec3(1.0f, 0.86f, 0.45f);
+LUCERNA_CONST vec3 k_rejected_ink = vec3(0.62f, 0.62f, 0.62f);
+/// Clusters are numbered along a curve; those side by side differ in hue, or at least in lightness.
+LUCERNA_TONE_FUNCTION vec3 placed_cluster_ink(uint cluster) {
+  return (1.0f - 0.2f * float(cluster % 3u)) * ramp_hue(cluster);
+}
+
+LUCERNA_SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(lucerna::shared::PlacedPoint) == 32);
+#endif
+#endif
