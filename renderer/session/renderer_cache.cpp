@@ -6,6 +6,9 @@
 namespace lucerna::session {
 
 void Renderer::draw_cache() {
+  if (const uint32_t of = uint32_t(settings_.choice("overlay.discontinuity")); of > 0)
+    cache_->draw_discontinuity(*wavefront_, *film_, cache_view(), irradiance_cache::Discontinuity::Of(of - 1),
+                               uint32_t(settings_.integer("overlay.discontinuity_level")));
   const auto color = uint32_t(settings_.choice("overlay.records_by"));
   cache_->draw(*wavefront_, *film_, *coarse_,
                {.discs = settings_.boolean("overlay.records"),

@@ -56,6 +56,8 @@ LUCERNA_CONST uint k_probe_none = 0u;
 LUCERNA_CONST uint k_probe_lookups = 1u;
 /// The same, and paths go on: of the diffuse vertices from the lookup on, one by chance is noted.
 LUCERNA_CONST uint k_probe_beyond = 2u;
+/// The first vertex that looks up is noted, whether records serve it or not, and paths end at their first.
+LUCERNA_CONST uint k_probe_screen = 3u;
 
 /// What paths are told of the cache.
 struct CacheFrame {

@@ -1,13 +1,11 @@
 #include "solvers/irradiance_cache/build.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
 #include "base/timer.h"
 #include "gpu/stream.h"
-#include "solvers/irradiance_cache/placement.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -38,9 +36,12 @@ uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lroun
 
 bool Cache::Impl::probe(const Work& w) {
   if (!probing) {
+    if (stale) screen.begin(w.view.paths_frame), stale = false;
     picture = {((w.view.width + 7) / 8) * ((w.view.height + 7) / 8), 1, w.wavefront.slots()};
     begin_pass();
   }
+  bool cancelled = false;
+  if (!look(w, cancelled)) return !cancelled;
   const schedule::UniformSchedule before = picture;
   schedule::WorkItem item = picture.next();
   // Each pass looks along paths of its own.
@@ -55,7 +56,7 @@ bool Cache::Impl::probe(const Work& w) {
     return false;
   }
   took(BuildStep::probe, timer.milliseconds());
-  collect(item.slots());
+  collect(w, item.slots());
   if (picture.done()) choose(w);
   return true;
 }
@@ -64,46 +65,91 @@ void Cache::Impl::begin_pass() {
   if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
   status.passes.push_back({.number = status.pass});
   status.asked = status.paths = 0;
-  asked.clear();
+  placement.clear();
   probing = true;
+  looked = false;
 }
 
-void Cache::Impl::collect(uint32_t slots) {
-  const auto* texels = static_cast<const vec4*>(candidates.mapped());
-  for (uint32_t slot = 0; slot < slots; ++slot) {
-    const vec4& place = texels[size_t{slot} * k_candidate_texels];
-    if (place.w == 0) continue;
-    ++status.asked;
-    const vec4& facing = texels[size_t{slot} * k_candidate_texels + 1];
-    asked.push_back(
-        {vec3(place), vec3(facing), std::bit_cast<uint32_t>(facing.w), static_cast<uint32_t>(place.w) - 1});
+bool Cache::Impl::looks_first() const {
+  return options.screen.density > 0 && routes[0] != k_no_routes && status.pass == 0;
+}
+
+ReachOptions Cache::Impl::reach(const CacheView& view) const {
+  const Frame& f = view.paths_frame;
+  const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
+  return {.spacing = view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(status.pass)),
+          .spacing_beyond = view.scene_radius * k_deep_spacing,
+          .spacing_of_distance = k_spacing_of_least * options.least_pixels * pixel,
+          .eye = f.camera_origin,
+          .parallel = f.orthographic != 0};
+}
+
+float Cache::Impl::least_luminance() const {
+  double sum = 0;
+  const std::vector<float> light = records.luminances();
+  for (const float l : light) sum += double(l);
+  return light.empty() ? 1.0f : 0.1f * float(sum / double(light.size()));
+}
+
+bool Cache::Impl::see(transport::Wavefront& wavefront, const CacheView& view,
+                      const std::function<bool()>& cancel) {
+  if (stale) screen.begin(view.paths_frame), stale = false;
+  tell(k_probe_screen);
+  const bool complete = screen.see(wavefront, candidates, cancel);
+  tell();
+  return complete;
+}
+
+bool Cache::Impl::look(const Work& w, bool& cancelled) {
+  // The first pass looks at the geometry; later ones at what the records make of it.
+  const bool geometry = looks_first();
+  const bool irradiance = options.screen.density > 0 && options.screen.irradiance_weight > 0 &&
+                          routes[0] != k_no_routes && status.pass > 0 && evaluated > 0;
+  if (looked || !(geometry || irradiance)) return true;
+  StageTimer timer(w.wavefront);
+  if (!screen.seen()) {
+    cancelled = !see(w.wavefront, w.view, w.cancel);
+  } else {
+    const Discontinuity::Of of = geometry ? Discontinuity::Of::geometry : Discontinuity::Of::irradiance;
+    gpu::Stream& stream = w.wavefront.stream();
+    screen.look_up(stream, [this](gpu::Resources& r) { bind(r); });
+    screen.measure(stream, of, options.screen, least_luminance());
+    screen.dither(stream, of, options.screen, k_spacing_of_least * options.least_pixels,
+                  options.seed + status.pass);
+    pass().screen = placement.collect(stream, screen.screen(), reach(w.view));
+    looked = true;
   }
+  took(BuildStep::screen, timer.milliseconds());
+  return false;
+}
+
+void Cache::Impl::collect(const Work& w, uint32_t slots) {
+  StageTimer timer(w.wavefront);
+  const std::array<uint32_t, 3> by_origin =
+      placement.collect(w.wavefront.stream(), candidates, slots, !looks_first(), reach(w.view));
+  took(BuildStep::choose, timer.milliseconds());
+  status.asked += by_origin[0] + by_origin[1] + by_origin[2];
   status.paths += slots;
   pass().asked = status.asked, pass().paths = status.paths;
+  pass().asked_world += by_origin[1] + by_origin[2];
+  pass().candidates = placement.size();
 }
 
 /// Which of the places asked for are tried.
 void Cache::Impl::choose(const Work& w) {
   probing = false;
-  pass().asked_world = uint64_t(
-      std::count_if(asked.begin(), asked.end(), [](const Place& p) { return p.origin != k_origin_screen; }));
-  if (double(status.asked) <= double(options.stop_share) * double(status.paths))
+  if (double(status.asked) <= double(options.stop_share) * double(status.paths) &&
+      double(pass().screen) <= double(options.stop_share) * double(screen.points()))
     return finish(StopReason::covered);
-  const Frame& f = w.view.paths_frame;
-  const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
-  const Timer host;
-  tried = choose_places(asked, {.spacing = w.view.scene_radius *
-                                           std::ldexp(k_first_spacing, -2 * static_cast<int>(status.pass)),
-                                .spacing_beyond = w.view.scene_radius * k_deep_spacing,
-                                .spacing_of_distance = k_spacing_of_least * options.least_pixels * pixel,
-                                .eye = f.camera_origin,
-                                .parallel = f.orthographic != 0,
-                                .normal_tolerance = k_normal_tolerance,
-                                .seed = options.seed + status.pass,
-                                .most = records.capacity() - records.size()});
+  const Timer wall;
+  tried = placement.choose(w.wavefront.stream(), {.normal_tolerance = k_normal_tolerance,
+                                                  .seed = options.seed + status.pass,
+                                                  .most = records.capacity() - records.size()});
+  pass().tried = uint32_t(tried.size());
+  status.bytes = own_bytes + screen.bytes() + placement.bytes();
   records.append(tried, status.pass);
   list_new();
-  took(BuildStep::choose, host.milliseconds());
+  took(BuildStep::choose, wall.milliseconds());
   stage = Stage::measure;
 }
 
@@ -212,9 +258,7 @@ bool Cache::Impl::next_level() {
   if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
   const std::vector<Records::Figures> figures = records.figures();
   const std::vector<float> light = records.luminances();
-  double sum = 0;
-  for (const float l : light) sum += double(l);
-  const float least = 0.1f * float(sum / double(light.size()));
+  const float least = least_luminance();
   // Light that few rays find (a caustic) is looked for wherever a record near by has found it: one that has
   // not would else stop, content with its darkness. The list is in Morton order, so that neighbours in it
   // are near.
@@ -255,7 +299,6 @@ void Cache::Impl::list_new() {
 void Cache::Impl::finish(StopReason reason) {
   stage = Stage::done;
   status.stop = reason;
-  asked = {};
   if (!status.passes.empty()) pass().complete = true;
   tell();
 }

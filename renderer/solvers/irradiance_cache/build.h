@@ -46,13 +46,19 @@ struct Cache::Impl {
   schedule::UniformSchedule picture;
   bool probing = false;  // the schedule of this pass has begun
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
-  std::vector<Place> asked, tried;
+  Discontinuity screen;
+  Placement placement;
+  bool looked = false;     // at the picture, in this pass: the screen-space stage is done
+  bool stale = true;       // ... and what it has seen is not this picture
+  uint64_t own_bytes = 0;  // of device memory, without those two
+  std::vector<Place> tried;
   uint32_t evaluated = 0;      // records up to here have light and radius, and are in the octree
   std::vector<uint32_t> list;  // of this level, in the order of the records
   size_t at = 0;               // of which so many are done
   uint32_t level = 0, level_done = 0, rays_before = 0;  // ... and rays of each record, in this level, so far
 
-  Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o);
+  Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const paths::LookupRoutes& own,
+       const CacheOptions& o);
 
   /// One bounded piece of a stage each; false when it was cancelled, and is to be done again. A stage that is
   /// complete hands over to the next.
@@ -61,6 +67,10 @@ struct Cache::Impl {
   bool evaluate(const Work& work);
   void finish(StopReason reason);
 
+  /// One piece of looking at the picture's points; false when it was cancelled.
+  bool see(transport::Wavefront& wavefront, const CacheView& view, const std::function<bool()>& cancel);
+  /// Luminance that darker irradiance is held against: a tenth of the records' mean.
+  float least_luminance() const;
   /// What lookup.glsl reads.
   void bind(gpu::Resources& to) const;
   void build_octree(transport::Wavefront& wavefront);
@@ -72,7 +82,11 @@ struct Cache::Impl {
 
  private:
   void begin_pass();
-  void collect(uint32_t slots);
+  /// The screen-space stage; true when there is nothing left of it to do. `cancelled` is set when it was.
+  bool look(const Work& work, bool& cancelled);
+  bool looks_first() const;  ///< what the camera sees straight asks by dithering alone in this pass
+  ReachOptions reach(const CacheView& view) const;
+  void collect(const Work& work, uint32_t slots);
   void choose(const Work& work);
   void thin();
   void end_pass();

@@ -16,6 +16,7 @@
 
 #include "paths/automaton.h"
 #include "solvers/irradiance_cache/build_log.h"
+#include "solvers/irradiance_cache/discontinuity.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/records.h"
 #include "solvers/lookup/octree.h"
@@ -36,6 +37,7 @@ struct CacheOptions {
   uint32_t most_passes = 12;
   float stop_share = 0.002f;  ///< building ends when no more of the paths than this ask for records
   uint32_t seed = 1;
+  DiscontinuityOptions screen;
 };
 
 enum class StopReason { building, covered, passes, records };
@@ -105,6 +107,14 @@ class Cache {
   std::pair<float, float> scale(uint32_t color) const;
   void draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
             const Overlay& overlay);
+  /// Lays over the film's picture what of it the screen-space stage sees: the discontinuity of the geometry,
+  /// or of the irradiance that the present records give, at a level of its pyramid. The wavefront's frame is
+  /// the view's. The stream is run.
+  void draw_discontinuity(transport::Wavefront& wavefront, const film::Film& film, const CacheView& view,
+                          Discontinuity::Of of, uint32_t level);
+  /// What has been chosen of the candidates of the present pass, until the next one begins to collect; empty
+  /// before. Read from the device.
+  Choice choice() const;
 
  private:
   struct Impl;
