@@ -256,6 +256,9 @@ void overlays(Ui& ui) {
   toggle("Normals", "N", "overlay.normals");
   gap(4);
   option_control(ui, "overlay.records_by", "Coloured by");
+  option_control(ui, "overlay.discontinuity", "Detail of");
+  if (ui.setting("overlay.discontinuity") != "off")
+    option_control(ui, "overlay.discontinuity_level", "Level");
   if (!ui.shows_cache()) return;
   gap(4);
   paragraph("Rest the pointer in the picture to see which records serve there.", colour::text_faint);
@@ -270,7 +273,12 @@ std::string option_name(const std::string& key) {
                                                         {"cache.noise", "More rays above"},
                                                         {"cache.max_records", "Room"},
                                                         {"cache.passes", "Most passes"},
-                                                        {"cache.stop", "Stop at"}};
+                                                        {"cache.stop", "Stop at"},
+                                                        {"cache.candidates", "Candidates"},
+                                                        {"cache.candidates_falloff", "Falling off"},
+                                                        {"cache.depth_weight", "Steps weigh"},
+                                                        {"cache.normal_weight", "Turns weigh"},
+                                                        {"cache.irradiance_weight", "Light weighs"}};
   if (const auto found = names.find(key); found != names.end()) return found->second;
   std::string name = key.substr(key.find('.') + 1);
   std::replace_if(

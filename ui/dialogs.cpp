@@ -238,6 +238,7 @@ void key_page(Ui& ui) {
         {"L", "mark the lamps, to click on them"},
         {"T", "show the tiles at work"},
         {"C, V, N", "show the cache's records, their overlap, their normals"},
+        {"G", "show detail of geometry, of irradiance, neither: by it the cache picks candidates"},
         {"Pointer at rest", "while they are shown: which records serve there"},
         {"K", "the cache's panel, the scene's"},
         {"1 \xE2\x80\x93 9", "scene cameras"},
@@ -368,6 +369,13 @@ void handle_keys(Ui& ui) {
   if (ui.cached() && ui.pressed(GLFW_KEY_C)) ui.toggle("overlay.records");
   if (ui.cached() && ui.pressed(GLFW_KEY_V)) ui.toggle("overlay.overlap");
   if (ui.cached() && ui.pressed(GLFW_KEY_N)) ui.toggle("overlay.normals");
+  if (ui.cached() && ui.pressed(GLFW_KEY_G)) {
+    const std::string of = ui.setting("overlay.discontinuity");
+    ui.act("set", "overlay.discontinuity",
+           of == "off"        ? "geometry"
+           : of == "geometry" ? "irradiance"
+                              : "off");
+  }
   if (ui.pressed(GLFW_KEY_K))
     ui.act("window.side", ui.cache_panel && ui.layout.right_open ? "scene" : "cache");
   if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.snapshot->paused ? "render.resume" : "render.pause");

@@ -171,6 +171,13 @@ void view_menu(Ui& ui) {
       if (entry(("   by " + choice).c_str(), nullptr, by->help.c_str(), ui.setting(by->key) == choice))
         ui.act("set", by->key, choice);
   }
+  const plan::OptionInfo* detail = plan::find_option("overlay.discontinuity");
+  for (const std::string& of : {std::string("geometry"), std::string("irradiance")}) {
+    const bool on = ui.setting(detail->key) == of;
+    if (entry(("Cache detail of " + of).c_str(), of == "geometry" ? "G" : nullptr, detail->help.c_str(), on,
+              ui.cached()))
+      ui.act("set", detail->key, on ? "off" : of);
+  }
   if (entry("Forget earlier renders", nullptr,
             "Takes the lines of earlier renders out of the plot of accuracy.", false,
             !ui.runs.earlier().empty()))

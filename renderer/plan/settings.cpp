@@ -198,7 +198,7 @@ std::vector<OptionInfo> make_options() {
        .help = "Shows over the picture how much geometry, or the irradiance that the present records give, "
                "changes there: by this the irradiance cache picks candidates in the picture.",
        .restarts = false},
-      going_on(integer("overlay.discontinuity_level", 0, 0, 24, "",
+      going_on(integer("overlay.discontinuity_level", 0, 0, 12, "",
                        "Level of the discontinuity's pyramid that is shown: its cells are 2 to that power "
                        "pixels wide.")),
       {.key = "about",

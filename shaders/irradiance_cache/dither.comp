@@ -37,18 +37,20 @@ void main() {
   float depth = texelFetch(surface_texels, int(point * k_surface_texels)).w;
   vec2 light = lit[point];
 
+  float width = push.pixel * (push.parallel != 0u ? 1.0 : depth);  // of what a point stands for [m]
   float sum = 0.0, probability = push.density;
   uint drawn = push.levels, first = 0u;
   for (uint k = 0u; k < push.levels; ++k) {
     uvec2 cells = (uvec2(push.across, push.down) + (1u << k) - 1u) >> k, cell = xy >> k;
     float detail = details[first + cell.y * cells.x + cell.x];
-    sum += k < push.first_level ? 0.0 : probability * detail;
+    bool draws = k >= push.first_level && width * float(1u << k) >= push.finest;
+    sum += draws ? probability * detail : 0.0;
     drawn = threshold < sum && drawn == push.levels ? k : drawn;
     first += cells.x * cells.y;
     probability *= push.falloff;
   }
-  float width = push.pixel * float(1u << min(drawn, 31u)) * (push.parallel != 0u ? 1.0 : depth);
-  bool wanted = push.spacing > 0.0 ? light.x >= 0.0 && light.y > push.spacing * width : light.x < 0.0;
+  float least = push.spacing * width * float(1u << min(drawn, 31u));
+  bool wanted = push.spacing > 0.0 ? light.x >= 0.0 && light.y > least : light.x < 0.0;
   bool takes = depth >= 0.0 && drawn < push.levels && wanted;
   taken[point] = takes ? 1u : 0u;
   taken_levels[point] = drawn;

@@ -48,6 +48,7 @@ struct DitherPush {
   float falloff;     ///< of a point's probability from one level to the next
   float pixel;       ///< as in DetailPush
   uint parallel;
+  float finest;   ///< cells narrower than that do not draw [m]
   float spacing;  ///< a record nearer than that share of a cell's width satisfies it; 0: any that serves does
   uint key;       ///< of the thresholds
 };

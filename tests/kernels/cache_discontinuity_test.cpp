@@ -119,8 +119,9 @@ struct Bench {
     screen.measure(stream, of, o, least);
     stream.run();
   }
-  std::vector<uint32_t> dither(Of of, const DiscontinuityOptions& o, uint32_t seed, float least_width = 0) {
-    screen.dither(stream, of, o, least_width, seed);
+  std::vector<uint32_t> dither(Of of, const DiscontinuityOptions& o, uint32_t seed, float least_width = 0,
+                               float finest = 0) {
+    screen.dither(stream, of, o, least_width, finest, seed);
     stream.run();
     return screen.taken();
   }
@@ -304,6 +305,12 @@ TEST_CASE("thresholds are spread over blocks, follow the seed, and leave alone w
   CHECK(bench.dither(Of::geometry, o, 4) != taken);
   // Levels finer than what a record covers at least do not draw.
   for (const uint32_t level : bench.dither(Of::geometry, o, 3, 3)) REQUIRE(level >= 2);
+  // ... nor, here, those of cells narrower than a metre: level 4 is 0.75 m wide where the wall is 3 m away.
+  const std::vector<uint32_t> wide = bench.dither(Of::geometry, {.density = 0.5f, .falloff = 1}, 3, 0, 1.0f);
+  for (uint32_t i = 0; i < wide.size(); ++i)
+    if (wide[i] < bench.screen.levels())
+      REQUIRE(v.pixel() * v.surfaces[2 * i].w * float(1u << wide[i]) >= 0.999f);
+  CHECK(std::count(wide.begin(), wide.end(), bench.screen.levels()) == 0);
 
   // Served: geometry asks no more, irradiance where the nearest record is farther than half a cell.
   for (uint32_t i = 0; i < 64 * 64; ++i) v.lit[i] = vec2(i % 3 ? 1 : -1, i % 2 ? 1e-6f : 1e6f);

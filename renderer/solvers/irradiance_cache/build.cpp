@@ -21,6 +21,11 @@ constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
 /// no record serves there costs time, not accuracy.
 constexpr uint32_t k_deep_passes = 3;
 constexpr float k_deep_spacing = 1.0f / 64;
+/// Width of the finest cells of the picture that ask, in the spacing of the pass: gaps about finer detail are
+/// left to later passes, whose records read those of the first and are cheaper.
+constexpr float k_finest_of_spacing = 0.5f;
+/// Passes that go on for the irradiance that the records give, when few paths ask.
+constexpr uint32_t k_refining_passes = 4;
 /// Noise that they may have, over that of others: a record's ray reads some of them, and a record's rays
 /// many.
 constexpr float k_deep_noise = 4;
@@ -115,7 +120,7 @@ bool Cache::Impl::look(const Work& w, bool& cancelled) {
     screen.look_up(stream, [this](gpu::Resources& r) { bind(r); });
     screen.measure(stream, of, options.screen, least_luminance());
     screen.dither(stream, of, options.screen, k_spacing_of_least * options.least_pixels,
-                  options.seed + status.pass);
+                  k_finest_of_spacing * reach(w.view).spacing, options.seed + status.pass);
     pass().screen = placement.collect(stream, screen.screen(), reach(w.view));
     looked = true;
   }
@@ -139,7 +144,8 @@ void Cache::Impl::collect(const Work& w, uint32_t slots) {
 void Cache::Impl::choose(const Work& w) {
   probing = false;
   if (double(status.asked) <= double(options.stop_share) * double(status.paths) &&
-      double(pass().screen) <= double(options.stop_share) * double(screen.points()))
+      (status.pass >= k_refining_passes ||
+       double(pass().screen) <= double(options.stop_share) * double(screen.points())))
     return finish(StopReason::covered);
   const Timer wall;
   tried = placement.choose(w.wavefront.stream(), {.normal_tolerance = k_normal_tolerance,

@@ -132,7 +132,7 @@ void Discontinuity::measure(gpu::Stream& stream, Of of, const DiscontinuityOptio
 }
 
 void Discontinuity::dither(gpu::Stream& stream, Of of, const DiscontinuityOptions& o, float least_width,
-                           uint32_t seed) {
+                           float finest, uint32_t seed) {
   Impl& d = *impl_;
   d.resources.set("surface_texels", d.surfaces);
   d.resources.set("Lit", d.lit);
@@ -150,6 +150,7 @@ void Discontinuity::dither(gpu::Stream& stream, Of of, const DiscontinuityOption
                         .falloff = o.falloff,
                         .pixel = d.pixel,
                         .parallel = d.parallel,
+                        .finest = finest,
                         .spacing = of == Of::irradiance ? k_cell_share : 0,
                         .key = seed};
   d.run(stream, d.ready(d.dither, "dither"), &push, sizeof push, d.points());

@@ -57,9 +57,9 @@ class Discontinuity {
   void measure(gpu::Stream& stream, Of of, const DiscontinuityOptions& options, float least = 1e-6f);
   /// Draws candidates from the pyramid that was measured last: of geometry where no record serves, of
   /// irradiance where no record that serves is nearer than half a cell. Levels whose cells are narrower than
-  /// `least_width` points do not draw. The same for the same seed.
+  /// `least_width` points, or than `finest` [m], do not draw. The same for the same seed.
   void dither(gpu::Stream& stream, Of of, const DiscontinuityOptions& options, float least_width,
-              uint32_t seed);
+              float finest, uint32_t seed);
   /// For Placement::collect, after dither().
   Placement::Screen screen() const;
   /// Lays a level of the pyramid that was measured last over a picture of the frame's size, as colours
