@@ -3,7 +3,7 @@
 // A point's probability is density * falloff^k * detail at level k, summed over the levels. With a falloff of 1/4 every
 // cell in which detail is full asks for as many, at every scale; cells about an edge are full up to the distance of their
 // own width, so that the density of candidates falls with the square of the distance from the edge, as the density of
-// records does whose radii grow with the distances that they see.
+// records does whose radii grow with the distances that they see. What is flat has a density of its own on top.
 //
 // One threshold a point decides for all levels: they have intervals of 0..1, one after the other, as long as their
 // probabilities. Thresholds are the radical inverse of the points' Morton codes, in which every block of 2^j x 2^j has its
@@ -49,6 +49,11 @@ void main() {
     first += cells.x * cells.y;
     probability *= push.falloff;
   }
+  // Where nothing changes too, or records would be few and far between there, each alone with its noise.
+  float side = width / max(push.flat_side, width);
+  uint flat_level = uint(max(ceil(-log2(side)), 0.0));
+  bool flat_draws = push.flat_side > 0.0 && drawn == push.levels && threshold < sum + push.density * side * side;
+  drawn = flat_draws ? min(flat_level, push.levels - 1u) : drawn;
   float least = push.spacing * width * float(1u << min(drawn, 31u));
   bool wanted = push.spacing > 0.0 ? light.x >= 0.0 && light.y > least : light.x < 0.0;
   bool takes = depth >= 0.0 && drawn < push.levels && wanted;

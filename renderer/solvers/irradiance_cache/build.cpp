@@ -119,8 +119,12 @@ bool Cache::Impl::look(const Work& w, bool& cancelled) {
     gpu::Stream& stream = w.wavefront.stream();
     screen.look_up(stream, [this](gpu::Resources& r) { bind(r); });
     screen.measure(stream, of, options.screen, least_luminance());
-    screen.dither(stream, of, options.screen, k_spacing_of_least * options.least_pixels,
-                  k_finest_of_spacing * reach(w.view).spacing, options.seed + status.pass);
+    const float spacing = reach(w.view).spacing;
+    screen.dither(stream, of, options.screen,
+                  {.least_width = k_spacing_of_least * options.least_pixels,
+                   .finest = k_finest_of_spacing * spacing,
+                   .flat_side = geometry ? spacing : 0},
+                  options.seed + status.pass);
     pass().screen = placement.collect(stream, screen.screen(), reach(w.view));
     looked = true;
   }

@@ -131,8 +131,8 @@ void Discontinuity::measure(gpu::Stream& stream, Of of, const DiscontinuityOptio
   }
 }
 
-void Discontinuity::dither(gpu::Stream& stream, Of of, const DiscontinuityOptions& o, float least_width,
-                           float finest, uint32_t seed) {
+void Discontinuity::dither(gpu::Stream& stream, Of of, const DiscontinuityOptions& o, const Scale& scale,
+                           uint32_t seed) {
   Impl& d = *impl_;
   d.resources.set("surface_texels", d.surfaces);
   d.resources.set("Lit", d.lit);
@@ -140,7 +140,7 @@ void Discontinuity::dither(gpu::Stream& stream, Of of, const DiscontinuityOption
   d.resources.set("Taken", d.taken);
   d.resources.set("TakenLevels", d.taken_levels);
   uint32_t first_level = 0;
-  while (first_level + 1 < d.levels() && float(1u << first_level) < least_width / float(d.stride))
+  while (first_level + 1 < d.levels() && float(1u << first_level) < scale.least_width / float(d.stride))
     ++first_level;
   const DitherPush push{.across = d.across,
                         .down = d.down,
@@ -150,7 +150,8 @@ void Discontinuity::dither(gpu::Stream& stream, Of of, const DiscontinuityOption
                         .falloff = o.falloff,
                         .pixel = d.pixel,
                         .parallel = d.parallel,
-                        .finest = finest,
+                        .finest = scale.finest,
+                        .flat_side = scale.flat_side,
                         .spacing = of == Of::irradiance ? k_cell_share : 0,
                         .key = seed};
   d.run(stream, d.ready(d.dither, "dither"), &push, sizeof push, d.points());

@@ -56,10 +56,16 @@ class Discontinuity {
   /// The pyramid. Irradiance darker than `least` is held against that (luminance, above 0).
   void measure(gpu::Stream& stream, Of of, const DiscontinuityOptions& options, float least = 1e-6f);
   /// Draws candidates from the pyramid that was measured last: of geometry where no record serves, of
-  /// irradiance where no record that serves is nearer than half a cell. Levels whose cells are narrower than
-  /// `least_width` points, or than `finest` [m], do not draw. The same for the same seed.
-  void dither(gpu::Stream& stream, Of of, const DiscontinuityOptions& options, float least_width,
-              float finest, uint32_t seed);
+  /// irradiance where no record that serves is nearer than half a cell. The same for the same seed.
+  struct Scale {
+    float least_width = 0;  ///< cells narrower than that do not draw [pixels]
+    float finest = 0;       ///< ... nor those narrower than that [m]
+    /// Side of a square in which as many candidates are drawn as in a cell of full detail, whatever the
+    /// detail [m]; 0: none where there is none.
+    float flat_side = 0;
+  };
+  void dither(gpu::Stream& stream, Of of, const DiscontinuityOptions& options, const Scale& scale,
+              uint32_t seed);
   /// For Placement::collect, after dither().
   Placement::Screen screen() const;
   /// Lays a level of the pyramid that was measured last over a picture of the frame's size, as colours
