@@ -186,7 +186,7 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   if (!r.adaptive()) j["forecast"] = make_forecast(r.ledger());
   if (const irradiance_cache::Cache* cache = r.cache()) {
     const irradiance_cache::CacheStatus& s = cache->status();
-    constexpr const char* k_reasons[] = {"building", "covered", "passes", "records"};
+    constexpr const char* k_reasons[] = {"building", "covered", "passes", "records", "dark"};
     j["cache"] = {{"passes", s.pass},
                   {"records", s.records},
                   {"loaded", s.loaded},

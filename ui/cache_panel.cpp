@@ -265,7 +265,8 @@ void overlays(Ui& ui) {
 }
 
 std::string option_name(const std::string& key) {
-  static const std::map<std::string, std::string> names{{"cache.error", "Error bound"},
+  static const std::map<std::string, std::string> names{{"cache.metric", "Metric"},
+                                                        {"cache.error", "Error bound"},
                                                         {"cache.min_radius", "Radius \xE2\x89\xA5"},
                                                         {"cache.max_radius", "Radius \xE2\x89\xA4"},
                                                         {"cache.rays", "First rays"},

@@ -142,7 +142,9 @@ void fields(Card& card, uint32_t index, const Record& r) {
                          irradiance_cache::k_origins[std::min(r.place.origin, 2u)]));
   card.row("Position", vector(r.place.position, 3) + " m");
   card.row("Normal", vector(r.place.normal, 3));
-  card.row("Radius", metres(r.radius));
+  card.row("Radius", r.lesser_radius < r.radius
+                         ? fmt::format("{} x {}", metres(r.lesser_radius), metres(r.radius))
+                         : metres(r.radius));
   card.row("Mean distance (harmonic)", metres(r.mean_distance));
   card.row("Least distance", metres(r.least_distance));
   card.row("Rays", count_text(r.rays));

@@ -48,6 +48,8 @@ const char* const k_full = R"({
      "set": {"sampling.mode": "adaptive", "sampling.max_samples": 4096, "sampling.tile": 8}},
     {"name": "cache", "about": "as plain, secondary and tertiary light from an irradiance cache",
      "set": {"components.secondary": "cache", "components.tertiary": "cache"}},
+    {"name": "cache-hessian", "about": "as cache, records that serve in ellipses, by how their light bends",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian"}},
     {"name": "cache-sky", "about": "as cache, the sky's light on diffuse surfaces too",
      "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.environment": true}},
     {"name": "coherent", "about": "as plain, the pixels of a tile share their sequences",

@@ -36,20 +36,35 @@ void Workspace::needs_scene() const {
   if (loading()) throw Error("", "a scene is being loaded; wait_scene first");
 }
 
-uint32_t Workspace::light_index(const std::string& which) const {
-  needs_scene();
-  const auto& list = scene->lights;
-  std::vector<std::string> names;
-  for (const scene::Light& light : list) names.push_back(light.name);
+namespace {
+
+/// Of the `kind` ("light") that is named so, or has that number from 1.
+uint32_t index_of(const char* kind, const std::string& which, const std::vector<std::string>& names) {
   const auto found = std::find(names.begin(), names.end(), which);
   if (found != names.end()) return static_cast<uint32_t>(found - names.begin());
   double number = 0;
   if (read_number(which, number)) {
-    if (number >= 1 && number <= static_cast<double>(list.size()) && number == std::floor(number))
+    if (number >= 1 && number <= static_cast<double>(names.size()) && number == std::floor(number))
       return static_cast<uint32_t>(number) - 1;
-    throw Error("", fmt::format("there is no light {}; the scene has {}", which, list.size()));
+    throw Error("", fmt::format("there is no {} {}; the scene has {}", kind, which, names.size()));
   }
-  throw Error("", fmt::format("the scene has no light '{}'{}", which, suggestion(which, names)));
+  throw Error("", fmt::format("the scene has no {} '{}'{}", kind, which, suggestion(which, names)));
+}
+
+}  // namespace
+
+uint32_t Workspace::light_index(const std::string& which) const {
+  needs_scene();
+  std::vector<std::string> names;
+  for (const scene::Light& light : scene->lights) names.push_back(light.name);
+  return index_of("light", which, names);
+}
+
+uint32_t Workspace::material_index(const std::string& which) const {
+  needs_scene();
+  std::vector<std::string> names;
+  for (const scene::Material& material : scene->materials) names.push_back(material.name);
+  return index_of("material", which, names);
 }
 
 void Workspace::add_document_commands() {
@@ -132,6 +147,46 @@ void Workspace::add_document_commands() {
              }
              light.intensity = tint * strength;
              if (a.has("on")) light.enabled = a.boolean("on");
+           },
+       .undoable = true});
+
+  const auto material_names = [this](const std::vector<std::string>&) {
+    std::vector<std::string> names;
+    if (scene)
+      for (const scene::Material& material : scene->materials)
+        if (!material.name.empty()) names.push_back(material.name);
+    return names;
+  };
+  registry.add(
+      {.name = "material.set",
+       .help =
+           "Changes a material of the scene; textures go on multiplying it. What is not given stays as it "
+           "is.",
+       .parameters = {{.name = "material",
+                       .help = "its name, or its number from 1",
+                       .which = true,
+                       .names = material_names},
+                      {.name = "color",
+                       .type = Type::vector,
+                       .help = "linear; share of the light that is reflected",
+                       .lo = 0,
+                       .hi = 1,
+                       .optional = true},
+                      {.name = "roughness", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
+                      {.name = "metallic", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
+                      {.name = "emission",
+                       .type = Type::vector,
+                       .help = "linear; emitted radiance",
+                       .lo = 0,
+                       .hi = 1e9,
+                       .optional = true}},
+       .run =
+           [this](const Arguments& a) {
+             Document::Material& m = edit().materials[material_index(a.text("material"))];
+             if (a.has("color")) m.color = a.vector("color");
+             if (a.has("roughness")) m.roughness = a.number("roughness");
+             if (a.has("metallic")) m.metallic = a.number("metallic");
+             if (a.has("emission")) m.emission = a.vector("emission");
            },
        .undoable = true});
 

@@ -16,6 +16,10 @@ namespace {
 constexpr double k_patience = 2.0;
 constexpr size_t k_steps = 500;  // that can be undone
 
+Document::Material editable(const scene::Material& m) {
+  return {vec3(m.base_color), m.roughness, m.metallic, m.emission};
+}
+
 }  // namespace
 
 const char* kind_name(Kind kind) {
@@ -54,6 +58,11 @@ void Workspace::drop_taken() {
     return scene->lights[index].intensity == edit.value.intensity &&
            scene->lights[index].enabled == edit.value.enabled;
   });
+  std::erase_if(pending_materials_, [&](const auto& entry) {
+    const auto& [index, edit] = entry;
+    return !scene || index >= scene->materials.size() || over(edit.since) ||
+           editable(scene->materials[index]) == edit.value;
+  });
   if (pending_environment_) {
     const bool taken = scene && scene->environment.scale == pending_environment_->scale &&
                        scene->environment.rotation == pending_environment_->rotation;
@@ -68,7 +77,7 @@ void Workspace::follow_scene() {
   view = make_viewpoint(snapshot->camera, bounds);
   speed = walking_speed(view->extent);
   selection = {};
-  pending_lights_.clear(), pending_environment_.reset();
+  pending_lights_.clear(), pending_materials_.clear(), pending_environment_.reset();
   undo_.clear(), redo_.clear();
   solo_ = -1;
   scene_camera = -1;
@@ -91,6 +100,8 @@ Document Workspace::document() const {
       const scene::Light l = light(i);
       d.lights.push_back({l.intensity, l.enabled});
     }
+  if (scene)
+    for (uint32_t i = 0; i < scene->materials.size(); ++i) d.materials.push_back(editable(material(i)));
   std::tie(d.environment_scale, d.environment_rotation) = environment_();
   d.solo = solo_;
   d.shown_before = shown_before_;
@@ -113,6 +124,16 @@ scene::Light Workspace::light(uint32_t index) const {
   if (const auto found = pending_lights_.find(index); found != pending_lights_.end())
     light.intensity = found->second.value.intensity, light.enabled = found->second.value.enabled;
   return light;
+}
+
+scene::Material Workspace::material(uint32_t index) const {
+  scene::Material m = scene->materials.at(index);
+  if (const auto found = pending_materials_.find(index); found != pending_materials_.end()) {
+    const Document::Material& edit = found->second.value;
+    m.base_color = vec4(edit.color, m.base_color.w);
+    m.roughness = edit.roughness, m.metallic = edit.metallic, m.emission = edit.emission;
+  }
+  return m;
 }
 
 std::pair<float, float> Workspace::environment_() const {
@@ -140,6 +161,12 @@ void Workspace::send(const Document& before, const Document& after) {
       if (i < before.lights.size() && before.lights[i] == after.lights[i]) continue;
       pending_lights_[i] = {after.lights[i], now};
       session.set_light(i, light(i));
+    }
+  if (scene)
+    for (uint32_t i = 0; i < std::min(after.materials.size(), scene->materials.size()); ++i) {
+      if (i < before.materials.size() && before.materials[i] == after.materials[i]) continue;
+      pending_materials_[i] = {after.materials[i], now};
+      session.set_material(i, material(i));
     }
   if (before.environment_scale != after.environment_scale ||
       before.environment_rotation != after.environment_rotation) {

@@ -22,8 +22,17 @@ struct Document {
     bool enabled = true;
     bool operator==(const Light& o) const { return intensity == o.intensity && enabled == o.enabled; }
   };
+  struct Material {
+    vec3 color{1};  ///< the rest as scene::Material
+    float roughness = 1, metallic = 0;
+    vec3 emission{0};
+    bool operator==(const Material& o) const {
+      return color == o.color && roughness == o.roughness && metallic == o.metallic && emission == o.emission;
+    }
+  };
   std::map<std::string, std::string> settings;  ///< by key
   std::vector<Light> lights;                    ///< of the scene, in its order
+  std::vector<Material> materials;              ///< likewise
   float environment_scale = 1;
   float environment_rotation = 0;                          ///< degrees
   int solo = -1;                                           ///< component shown alone, or -1
@@ -70,6 +79,7 @@ class Workspace {
   double setting_real(const std::string& key) const;
   bool setting_on(const std::string& key) const { return setting(key) == "true"; }
   scene::Light light(uint32_t index) const;
+  scene::Material material(uint32_t index) const;
   float environment_scale() const { return environment_().first; }
   float environment_rotation() const { return environment_().second; }
   int solo() const { return solo_; }
@@ -131,6 +141,10 @@ class Workspace {
     Document::Light value;
     double since;
   };
+  struct PendingMaterial {
+    Document::Material value;
+    double since;
+  };
   struct PendingEnvironment {
     float scale, rotation;
     double since;
@@ -149,6 +163,7 @@ class Workspace {
   void needs_view() const;
   void needs_scene() const;
   uint32_t light_index(const std::string& which) const;
+  uint32_t material_index(const std::string& which) const;
   int camera_index(const std::string& which) const;
   Selection selection_of(const std::string& kind, const std::string& which) const;
   void moved();
@@ -156,6 +171,7 @@ class Workspace {
   plan::Settings known_;
   std::map<std::string, Pending> pending_;
   std::map<uint32_t, PendingLight> pending_lights_;
+  std::map<uint32_t, PendingMaterial> pending_materials_;
   std::optional<PendingEnvironment> pending_environment_;
   int solo_ = -1;
   std::array<bool, session::k_components> shown_before_{};

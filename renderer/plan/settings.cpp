@@ -96,10 +96,16 @@ std::vector<OptionInfo> make_options() {
               "Vertex from which Russian roulette may end a path."),
       integer("path.batch", 131072, 1024, 4194304, "paths",
               "Paths in flight at once; sets the memory of the path state."),
+      {.key = "cache.metric",
+       .type = OptionType::choice,
+       .fallback = "split-sphere",
+       .choices = {"split-sphere", "hessian"},
+       .help = "Irradiance cache: what decides how far a record serves. split-sphere: how far things are "
+               "that it sees; hessian: how its light bends from place to place, with ellipses that are "
+               "longer where it bends less."},
       real("cache.error", "0.3", 0.01, 1, "",
-           "Irradiance cache: radius of a record over the harmonic mean distance of what it sees. "
-           "Smaller: more "
-           "records, less error."),
+           "Irradiance cache: how far records serve, by either metric. Smaller: more records, less error. "
+           "split-sphere: radius over the harmonic mean distance of what a record sees."),
       real("cache.min_radius", "3", 0, 100, "pixels",
            "Irradiance cache: least radius of a record, as the camera sees it."),
       real("cache.max_radius", "0.1", 0.001, 1, "of the scene's radius",
@@ -127,7 +133,7 @@ std::vector<OptionInfo> make_options() {
            "Irradiance cache: texels of the environment brighter than so many times its mean radiance are no "
            "sky but a sun, and are sampled directly everywhere."),
       integer("cache.max_records", 100000, 16, 400000, "records",
-              "Irradiance cache: room for records, of 576 bytes each; building ends when it is used up."),
+              "Irradiance cache: room for records, of 592 bytes each; building ends when it is used up."),
       integer("cache.passes", 12, 1, 64, "passes", "Irradiance cache: passes of building at most."),
       real("cache.stop", "0.002", 0, 1, "",
            "Irradiance cache: building ends when no greater share of the paths still asks for records; "

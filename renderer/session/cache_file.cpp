@@ -73,7 +73,7 @@ void Renderer::load_cache(const std::filesystem::path& file) {
   const bool complete = saved.view == cache_view_text() && (!full || saved.records.size() == room);
   const uint32_t count = saved.records.size();
   cache_->restore(*wavefront_, std::move(saved.records), saved.status, complete);
-  restart(Lookups::keep);
+  restart(irradiance_cache::k_spoils_nothing);
   log::info("{}: {} records{}{}", file.string(), count,
             complete ? ", complete for this view" : "; what this view is missing is added",
             saved.making.seed == settings_.text("seed") ? "" : " (made with seed " + saved.making.seed + ")");

@@ -62,7 +62,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
 }
 
 void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings,
-                       scene::Camera camera, const Progress& progress) {
+                       scene::Camera camera, const Progress& progress, irradiance_cache::Spoilt spoilt) {
   const auto report = [&](float fraction, const char* what) {
     require(!progress || progress(fraction, what));
   };
@@ -88,7 +88,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   std::swap(host_, host);
   std::swap(settings_, settings);
   try {
-    build_wavefront(*device_scene);
+    spoilt |= build_wavefront(*device_scene, !spoilt.places);
   } catch (...) {
     std::swap(host_, host);
     std::swap(settings_, settings);
@@ -98,10 +98,10 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   flat_ = std::move(flat);
   device_scene_ = std::move(device_scene);
   camera_ = std::move(camera);
-  make_film();
+  make_film(spoilt);
 }
 
-void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
+irradiance_cache::Spoilt Renderer::build_wavefront(const upload::DeviceScene& device_scene, bool keep) {
   const Timer timer;
   transport::HostTrace trace;
   if (host_) {
@@ -121,22 +121,27 @@ void Renderer::build_wavefront(const upload::DeviceScene& device_scene) {
     record_routes = wanted_record_routes(device_scene.effects());
     cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, record_routes,
                                                       cache_options());
-    for (const auto& [name, value] : irradiance_cache::Cache::defines(record_routes)) defines[name] = value;
+    for (const auto& [name, value] : irradiance_cache::Cache::defines(record_routes, cache_options().metric))
+      defines[name] = value;
     bind = [c = cache.get()](gpu::Resources& r) { c->bind(r); };
   }
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
                                                       std::move(trace), defines, bind);
+  irradiance_cache::Spoilt spoilt = irradiance_cache::k_spoils_all;
+  if (keep && cache && cache_) spoilt = cache->adopt(*wavefront_, *cache_);
   cache_ = std::move(cache);
   inspector_.reset();
+  compiled_ = device_scene.defines();
   routes_ = std::move(routes);
   record_routes_ = std::move(record_routes);
   compile_seconds_ = timer.seconds();
+  return spoilt;
 }
 
 void Renderer::reload_shaders() {
   if (!device_scene_) return;
-  build_wavefront(*device_scene_);
-  restart();
+  build_wavefront(*device_scene_, false);
+  restart(irradiance_cache::spoilt_by_edit("shaders"));
 }
 
 uint32_t Renderer::enabled_components() const { return plan::make_plan(settings_).enabled(); }
@@ -159,7 +164,8 @@ shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
 }
 
 irradiance_cache::CacheOptions Renderer::cache_options() const {
-  return {.error = float(settings_.real("cache.error")),
+  return {.metric = irradiance_cache::Metric(settings_.choice("cache.metric")),
+          .error = float(settings_.real("cache.error")),
           .least_pixels = float(settings_.real("cache.min_radius")),
           .most_radius = float(settings_.real("cache.max_radius")),
           .rays = uint32_t(std::stoul(settings_.text("cache.rays"))),
@@ -186,6 +192,7 @@ irradiance_cache::CacheView Renderer::cache_view() const {
   view.records_enabled = record_routes_.parts;
   view.width = width_, view.height = height_;
   view.scene_radius = flat_.scene_radius;
+  view.dark = !flat_.effects.lights;
   return view;
 }
 
@@ -208,17 +215,21 @@ paths::LookupRoutes Renderer::wanted_record_routes(const upload::Effects& effect
                               effects.specular || effects.solid_glass || effects.thin_glass);
 }
 
-void Renderer::make_film() {
+void Renderer::make_film(irradiance_cache::Spoilt spoilt) {
   film_ = std::make_unique<film::Film>(*device_, width_, height_);
   coarse_ = std::make_unique<film::Film>(*device_, std::max(1u, width_ / shared::k_coarse_step),
                                          std::max(1u, height_ / shared::k_coarse_step));
-  restart(Lookups::extend);
+  restart(spoilt);
 }
 
-void Renderer::restart(Lookups lookups) {
+void Renderer::restart(irradiance_cache::Spoilt spoilt) {
   if (!wavefront_ || !film_) return;
-  if (cache_ && lookups == Lookups::clear) cache_->clear();
-  if (cache_ && lookups == Lookups::extend) cache_->extend();
+  if (cache_ && spoilt.places) {
+    cache_->clear();
+  } else if (cache_) {
+    if (spoilt.light) cache_->relight();
+    if (spoilt.coverage) cache_->extend();
+  }
   // What is switched off changes without new kernels.
   routes_.traced = wanted_routes(flat_.effects).traced;
   wavefront_->clear(*film_);
@@ -325,12 +336,15 @@ void Renderer::apply_settings() {
       again |= plan::find_option(key)->restarts;
   }
   const bool rebuild = changed.contains("tracer") || changed.contains("path.batch");
-  const bool cache_changed = cache_ && std::any_of(changed.begin(), changed.end(), [](const std::string& k) {
-                               return k.starts_with("cache.");
-                             });
+  bool cache_changed = false;
+  irradiance_cache::Spoilt spoilt;
+  for (const std::string& key : changed) {
+    cache_changed |= cache_ && key.starts_with("cache.");
+    spoilt |= irradiance_cache::spoilt_by_setting(key);
+  }
   if (changed.contains("camera")) choose_camera(settings_.text("camera"));
   if (rebuild) {
-    install(scene_, settings_, camera_, {});
+    install(scene_, settings_, camera_, {}, spoilt);
     return;
   }
   if (const float threshold = wanted_sun_threshold(settings_); threshold != flat_.sun_threshold) {
@@ -343,15 +357,11 @@ void Renderer::apply_settings() {
                        wanted_record_routes(flat_.effects).component != record_routes_.component ||
                        cache_changed || changed.contains("sampling.coherent") ||
                        (changed.contains("sampling.tile") && settings_.boolean("sampling.coherent"));
-  if (kernels) build_wavefront(*device_scene_);
+  if (kernels) spoilt |= build_wavefront(*device_scene_, !spoilt.places);
   again |= kernels;
   if (changed.contains("samples") && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
   if (retarget && !again && adaptive_) adaptive_->retarget(adaptive_options());
-  // Records hold what the scene sends, whoever samples the picture and however long.
-  const bool spoils = std::any_of(changed.begin(), changed.end(), [](const std::string& k) {
-    return !k.starts_with("sampling.") && k != "samples" && k != "camera";
-  });
-  if (again) restart(spoils ? Lookups::clear : Lookups::keep);
+  if (again) restart(spoilt);
   applied_ = settings_.all();
 }
 
@@ -361,30 +371,31 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
   width_ = width;
   height_ = height;
   if (!wavefront_) return;
+  const irradiance_cache::Spoilt spoilt = irradiance_cache::spoilt_by_edit("size");
   try {
-    make_film();
+    make_film(spoilt);
   } catch (...) {
     width_ = old_width, height_ = old_height;
-    make_film();
+    make_film(spoilt);
     throw;
   }
 }
 
 void Renderer::set_camera(const scene::Camera& camera) {
   camera_ = camera;
-  restart(Lookups::extend);
+  restart(irradiance_cache::spoilt_by_edit("camera"));
 }
 
 void Renderer::choose_camera(const std::string& name) {
   camera_ = scene::find_camera(*scene_, name);
-  restart(Lookups::extend);
+  restart(irradiance_cache::spoilt_by_edit("camera"));
 }
 
 void Renderer::set_light(uint32_t index, const scene::Light& light) {
   if (!scene_ || index >= scene_->lights.size()) throw_error("light", "there is no light {}", index);
   auto edited = std::make_shared<scene::Scene>(*scene_);
   edited->lights[index] = light;
-  relight(edited);
+  relight(edited, irradiance_cache::spoilt_by_edit("lamp"));
 }
 
 void Renderer::set_environment(float scale, float rotation_degrees) {
@@ -392,21 +403,51 @@ void Renderer::set_environment(float scale, float rotation_degrees) {
   auto edited = std::make_shared<scene::Scene>(*scene_);
   edited->environment.scale = scale;
   edited->environment.rotation = rotation_degrees;
-  relight(edited);
+  relight(edited, irradiance_cache::spoilt_by_edit("environment"));
 }
 
-void Renderer::relight(std::shared_ptr<const scene::Scene> edited) {
+void Renderer::set_material(uint32_t index, const scene::Material& material) {
+  if (!scene_ || index >= scene_->materials.size()) throw_error("material", "there is no material {}", index);
+  auto edited = std::make_shared<scene::Scene>(*scene_);
+  scene::Material& m = edited->materials[index];
+  const scene::Material before = std::exchange(m, material);
+  const auto same_use = [](const scene::TextureUse& a, const scene::TextureUse& b) {
+    return a.texture == b.texture && a.uv_set == b.uv_set && a.m == b.m;
+  };
+  bool same = m.alpha_mode == before.alpha_mode && (m.transmission > 0) == (before.transmission > 0) &&
+              (m.thickness > 0) == (before.thickness > 0);
+  for (const auto use :
+       {&scene::Material::base_color_texture, &scene::Material::metallic_roughness_texture,
+        &scene::Material::normal_texture, &scene::Material::emission_texture,
+        &scene::Material::specular_texture, &scene::Material::specular_color_texture,
+        &scene::Material::transmission_texture, &scene::Material::diffuse_transmission_texture,
+        &scene::Material::diffuse_transmission_color_texture})
+    same &= same_use(m.*use, before.*use);
+  if (!same)
+    throw_error("material", "'{}': its textures, alpha mode, transmission and thickness cannot be changed",
+                before.name);
+  upload::flatten_factors(*edited, flat_);
+  device_scene_->update_materials(*device_, flat_);
+  // Where there was a diffuse colour there is one still, and no other lobe: the same places ask.
+  const auto diffuse = [](const scene::Material& x) {
+    return luminance(vec3(x.base_color)) > 0 && x.metallic < 1;
+  };
+  const bool colour = diffuse(before) && diffuse(material) && before.metallic == material.metallic &&
+                      before.unlit == material.unlit &&
+                      before.diffuse_transmission == material.diffuse_transmission &&
+                      before.transmission == material.transmission;
+  relight(edited, irradiance_cache::spoilt_by_edit(colour ? "colour" : "material"));
+}
+
+void Renderer::relight(std::shared_ptr<const scene::Scene> edited, irradiance_cache::Spoilt spoilt) {
   scene_ = std::move(edited);
-  const upload::Effects before = flat_.effects;
   upload::flatten_lights(*scene_, flat_);
   device_scene_->update_lights(*device_, flat_);
-  const upload::Effects& now = flat_.effects;
-  if (before.lights != now.lights || before.emissive != now.emissive ||
-      before.environment_map != now.environment_map)
-    build_wavefront(*device_scene_);
+  if (device_scene_->defines() != compiled_)
+    spoilt |= build_wavefront(*device_scene_, true);
   else
     wavefront_->rebind(*device_scene_);
-  restart();
+  restart(spoilt);
 }
 
 bool Renderer::step(const std::function<bool()>& cancel) {
@@ -414,6 +455,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   const bool prepares = cache_ && !cache_->ready();
   const bool progress = render_item(cancel);
   seconds_ += timer.seconds();
+  if (prepares && cache_->ready()) warn_of_full_cache();
   if (prepares)
     prepared_s_ = seconds_, prepared_rays_ = stats().rays;
   else if (progress)

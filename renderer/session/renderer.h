@@ -63,9 +63,12 @@ class Renderer {
   void choose_camera(const std::string& name);
   void set_light(uint32_t index, const scene::Light& light);
   void set_environment(float scale, float rotation_degrees);
+  /// Throws Error when there is no such material, or when textures or what a surface lets through (alpha
+  /// mode, transmission, thickness) would be others: these are the scene's shape, as rays find it.
+  void set_material(uint32_t index, const scene::Material& material);
   void reload_shaders();
   /// Begins the image anew, and what it looks up.
-  void restart() { restart(Lookups::clear); }
+  void restart() { restart(irradiance_cache::spoilt_by_edit("restart")); }
   /// Images begun so far.
   uint64_t restarts() const { return restarts_; }
   /// Passes over the picture, or over the tiles at work, that are complete.
@@ -140,18 +143,16 @@ class Renderer {
  private:
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
   void install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings, scene::Camera camera,
-               const Progress& progress);
-  void build_wavefront(const upload::DeviceScene& device_scene);
-  /// The scene with other lights or another environment: uploads these anew.
-  void relight(std::shared_ptr<const scene::Scene> edited);
-  void make_film();
-  /// What a change leaves of the records that paths look up.
-  enum class Lookups {
-    keep,    ///< nothing that they depend on has changed
-    extend,  ///< seen from elsewhere: the same, and more where some are missing
-    clear    ///< other light, surfaces or options
-  };
-  void restart(Lookups lookups);
+               const Progress& progress,
+               irradiance_cache::Spoilt spoilt = irradiance_cache::spoilt_by_edit("scene"));
+  /// `keep`: of the same scene, so that records serve on. Returns what of them does not.
+  irradiance_cache::Spoilt build_wavefront(const upload::DeviceScene& device_scene, bool keep);
+  /// The scene with other lights or another environment: uploads these anew. Kernels are made for what it
+  /// calls for now.
+  void relight(std::shared_ptr<const scene::Scene> edited, irradiance_cache::Spoilt spoilt);
+  void make_film(irradiance_cache::Spoilt spoilt);
+  /// `spoilt`: of the records that paths look up.
+  void restart(irradiance_cache::Spoilt spoilt);
   shared::Frame make_frame(uint32_t width, uint32_t height) const;  ///< of the picture's paths
   shared::Frame make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
                            uint32_t fallback) const;
@@ -160,6 +161,7 @@ class Renderer {
   void start_schedule();
   schedule::AdaptiveOptions adaptive_options() const;
   irradiance_cache::Making cache_making() const;
+  void warn_of_full_cache();
   /// All that decides which records this picture asks for, as text.
   std::string cache_view_text() const;
   /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
@@ -185,9 +187,11 @@ class Renderer {
   upload::FlatScene flat_;
   std::unique_ptr<upload::DeviceScene> device_scene_;
   std::unique_ptr<bvh::HostTracer> host_;
+  gpu::Defines compiled_;                                   ///< of the scene, in the kernels in use
   paths::LookupRoutes routes_, record_routes_;              ///< of the kernels in use
   std::unique_ptr<irradiance_cache::Cache> cache_;          ///< null: nothing is looked up
   std::unique_ptr<irradiance_cache::Inspector> inspector_;  ///< made when it is called for
+  uint32_t full_at_ = 0;  ///< records at which a person was last told that there is no room for more
   std::optional<vec2> looked_at_;
   irradiance_cache::Inspection inspection_;
   std::pair<uint64_t, irradiance_cache::Overlap> overlap_{~0ull, {}};  ///< and the restart that it is of

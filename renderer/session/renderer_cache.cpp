@@ -1,9 +1,21 @@
 // The cache as the renderer shows it: what lies over the picture, and what is told of it.
 #include <algorithm>
 
+#include "base/log.h"
 #include "session/renderer.h"
 
 namespace lucerna::session {
+
+void Renderer::warn_of_full_cache() {
+  const bool full = cache_->status().stop == irradiance_cache::StopReason::records;
+  const uint32_t at = full ? cache_->status().records : 0;
+  if (full && at != full_at_)
+    log::warning(
+        "the irradiance cache is full with {} records: where none serves, light is path traced, which is as "
+        "right and slower; cache.max_records gives it more room",
+        at);
+  full_at_ = at;
+}
 
 void Renderer::draw_cache() {
   if (const uint32_t of = uint32_t(settings_.choice("overlay.discontinuity")); of > 0)

@@ -44,6 +44,7 @@ struct Session::Impl {
   double seconds = 0;
   bool paused = false, dirty = true, coarse_wanted = false, size_known = false;
   bool filled = false;
+  uint64_t levels_shown = 0;                  // of the cache, by the coarse picture
   std::vector<std::filesystem::path> caches;  // to be saved when complete
 
   /// Saves what was asked for if it is complete, or cannot be.
@@ -116,9 +117,12 @@ struct Session::Impl {
     next.paused = paused;
     next.finished = r.done();
     next.preparing.clear();
-    if (const irradiance_cache::Cache* cache = r.cache(); cache && !cache->ready())
-      next.preparing =
-          fmt::format("cache, pass {}: {} records", cache->status().pass + 1, cache->records().size());
+    if (const irradiance_cache::Cache* cache = r.cache(); cache && !cache->ready()) {
+      const irradiance_cache::CacheStatus& c = cache->status();
+      next.preparing = c.relighting > 0
+                           ? fmt::format("cache: {} of {} records relit", c.records, c.relighting)
+                           : fmt::format("cache, pass {}: {} records", c.pass + 1, cache->records().size());
+    }
     next.cache = r.cache_report();
     next.seconds = seconds;
     next.camera = r.camera();
@@ -209,6 +213,12 @@ void Session::Impl::run() {
           changed = true;
         } else if (work && renderer->step(cancelled)) {
           seconds += timer.seconds();
+          // While the cache is built or relit the coarse picture shows what has come of it.
+          if (const irradiance_cache::Cache* cache = renderer->cache();
+              cache && !cache->ready() && cache->status().published != levels_shown) {
+            levels_shown = cache->status().published;
+            coarse_wanted = true;
+          }
           accuracy.follow(*renderer, next.scene_id);
           save_caches(*renderer);
         }
@@ -314,6 +324,13 @@ void Session::set_light(uint32_t index, const scene::Light& light) {
 void Session::set_environment(float scale, float rotation_degrees) {
   impl_->post([s = impl_.get(), scale, rotation_degrees](Renderer& r) {
     r.set_environment(scale, rotation_degrees);
+    s->restarted();
+  });
+}
+
+void Session::set_material(uint32_t index, const scene::Material& material) {
+  impl_->post([s = impl_.get(), index, material](Renderer& r) {
+    r.set_material(index, material);
     s->restarted();
   });
 }

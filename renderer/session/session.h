@@ -93,6 +93,7 @@ class Session {
   void set_size(uint32_t width, uint32_t height);
   void set_light(uint32_t index, const scene::Light& light);
   void set_environment(float scale, float rotation_degrees);
+  void set_material(uint32_t index, const scene::Material& material);  ///< Renderer::set_material
   void set_paused(bool paused);
   void restart();         ///< throws the samples away and starts anew
   void reload_shaders();  ///< compiles again; on error the old kernels stay and the message is logged

@@ -50,6 +50,12 @@ void DeviceScene::update_lights(gpu::Device& device, const FlatScene& flat) {
   effects_ = flat.effects;
 }
 
+void DeviceScene::update_materials(gpu::Device& device, const FlatScene& flat) {
+  materials_ = upload(device, "scene materials", flat.materials);
+  tables_ = upload(device, "albedo tables", flat.bsdf_tables);
+  effects_ = flat.effects;
+}
+
 void DeviceScene::bind(gpu::Resources& r) const {
   r.set("scene_triangles", triangles_);
   r.set("scene_vertices", vertices_);

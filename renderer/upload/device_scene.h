@@ -13,6 +13,8 @@ class DeviceScene {
   DeviceScene(gpu::Device& device, const FlatScene& flat, const bvh::BvhData& tree);
   /// Uploads lights and environment again (sizes may differ). Binds anew: call bind() afterwards.
   void update_lights(gpu::Device& device, const FlatScene& flat);
+  /// Uploads materials again, as update_lights().
+  void update_materials(gpu::Device& device, const FlatScene& flat);
   /// Names: scene_*, texture_bucket_N, light_alias, PrimitiveLightPmf, environment_*, sun_*, bsdf_table,
   /// bvh_nodes, bvh_triangles.
   void bind(gpu::Resources& resources) const;

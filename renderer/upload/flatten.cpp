@@ -76,11 +76,16 @@ void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
   flat.scene_radius = box.empty() ? 1.f : std::max(box.radius(), 1e-6f);
 }
 
-void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
-  const TextureMap textures = pack_textures(scene, flat.buckets);
+}  // namespace
+
+void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
   std::vector<float> glass_iors;
   Effects& e = flat.effects;
-  for (const scene::Material& m : scene.materials) {
+  e.specular = e.solid_glass = e.thin_glass = e.diffuse_transmission = false;
+  e.volumes = e.unlit = e.alpha = false;
+  flat.materials.resize(scene.materials.size() * k_material_texels);
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const scene::Material& m = scene.materials[i];
     const bool solid = m.transmission > 0 && m.thickness > 0, thin = m.transmission > 0 && m.thickness <= 0;
     const bool rough_glass = solid;
     float row = -1;
@@ -101,9 +106,7 @@ void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
     if (solid && std::isfinite(m.attenuation_distance) && m.attenuation_distance > 0)
       for (int k = 0; k < 3; ++k)
         absorption[k] = -std::log(std::clamp(m.attenuation_color[k], 1e-6f, 1.f)) / m.attenuation_distance;
-    const size_t first = flat.materials.size();
-    flat.materials.resize(first + k_material_texels);
-    vec4* out = flat.materials.data() + first;
+    vec4* out = flat.materials.data() + i * k_material_texels;
     out[k_material_base] = m.base_color;
     out[k_material_emission] = vec4(m.unlit ? vec3(0) : m.emission, as_float(flags));
     out[k_material_surface] = vec4(m.metallic, m.roughness, m.ior, m.specular);
@@ -111,6 +114,27 @@ void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
     out[k_material_volume] = vec4(absorption, row);
     out[k_material_diffuse_t] = vec4(m.diffuse_transmission_color, m.diffuse_transmission);
     out[k_material_detail] = vec4(m.normal_scale, m.alpha_cutoff, 0, 0);
+    e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && m.transmission < 1));
+    e.solid_glass |= solid;
+    e.thin_glass |= thin;
+    e.diffuse_transmission |= m.diffuse_transmission > 0;
+    e.volumes |= any(absorption);
+    e.unlit |= m.unlit;
+    e.alpha |= m.alpha_mode != scene::AlphaMode::opaque;
+  }
+  if (flat.bsdf_tables.empty() || flat.glass_iors != glass_iors)
+    flat.bsdf_tables = build_bsdf_tables(glass_iors);
+  flat.glass_iors = std::move(glass_iors);
+}
+
+namespace {
+
+void flatten_textures(const scene::Scene& scene, FlatScene& flat) {
+  const TextureMap textures = pack_textures(scene, flat.buckets);
+  Effects& e = flat.effects;
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const scene::Material& m = scene.materials[i];
+    vec4* out = flat.materials.data() + i * k_material_texels;
     const scene::TextureUse* uses[k_texture_uses] = {&m.base_color_texture,
                                                      &m.metallic_roughness_texture,
                                                      &m.normal_texture,
@@ -134,13 +158,6 @@ void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
       e.tex_nearest |= texture.nearest;
       e.tex_wraps |= texture.wrap_u != scene::Wrap::repeat || texture.wrap_v != scene::Wrap::repeat;
     }
-    e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && m.transmission < 1));
-    e.solid_glass |= solid;
-    e.thin_glass |= thin;
-    e.diffuse_transmission |= m.diffuse_transmission > 0;
-    e.volumes |= any(absorption);
-    e.unlit |= m.unlit;
-    e.alpha |= m.alpha_mode != scene::AlphaMode::opaque;
     e.tex_base |= bool(m.base_color_texture);
     e.tex_metallic_roughness |= bool(m.metallic_roughness_texture);
     e.tex_emission |= bool(m.emission_texture);
@@ -148,7 +165,6 @@ void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
     e.tex_transmission |= bool(m.transmission_texture);
     e.tex_diffuse_transmission |= m.diffuse_transmission_texture || m.diffuse_transmission_color_texture;
   }
-  flat.bsdf_tables = build_bsdf_tables(glass_iors);
 }
 
 }  // namespace
@@ -156,7 +172,8 @@ void flatten_materials(const scene::Scene& scene, FlatScene& flat) {
 FlatScene flatten(const scene::Scene& scene, float sun_threshold) {
   FlatScene flat;
   flatten_geometry(scene, flat);
-  flatten_materials(scene, flat);
+  flatten_factors(scene, flat);
+  flatten_textures(scene, flat);
   flat.sun_threshold = sun_threshold;
   flatten_lights(scene, flat);
   return flat;

@@ -44,6 +44,7 @@ struct FlatScene {
   std::vector<float> primitive_light_pmf;  ///< pmf / area
   std::vector<vec4> environment_texels, environment_alias;
   std::vector<vec4> bsdf_tables;
+  std::vector<float> glass_iors;  ///< that they are for
   /// Above 0: the environment is two emitters (shared/scene.h), its sun the texels of more than so many times
   /// its mean luminance.
   float sun_threshold = 0;
@@ -57,6 +58,9 @@ struct FlatScene {
 
 /// Everything. Throws Error when the scene exceeds what indices or texture arrays can hold.
 FlatScene flatten(const scene::Scene& scene, float sun_threshold = 0);
+/// Materials without their textures only (after an edit that leaves textures, alpha mode and transmission as
+/// they were); flatten_lights() then, if emission has changed. `flat` must come from the same scene.
+void flatten_factors(const scene::Scene& scene, FlatScene& flat);
 /// Lights and environment only (after an edit of their strength, or of flat.sun_threshold); `flat` must come
 /// from the same scene.
 void flatten_lights(const scene::Scene& scene, FlatScene& flat);

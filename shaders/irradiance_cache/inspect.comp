@@ -22,14 +22,15 @@ void main() {
     uint record = octree_sphere(i);
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
-    float weight = record_weight(seen.position, seen.normal, place, facing);
+    vec4 shape = record_shape(record, place);
+    float weight = record_weight(seen.position, seen.normal, place, facing, shape);
     vec3 centre = to_picture(place.xyz, push.width, push.height);
     if (weight > 0.0) {
       if (count < k_inspect_most) serving[count] = InspectServing(record, weight, centre.xy, centre.z);
       ++count;
     }
     float from = distance(seen.position, place.xyz);
-    if (from < min(place.w, nearest) && seen_on_disc(seen, place, facing)) {
+    if (from < nearest && seen_on_disc(seen, place, facing, shape)) {
       nearest = from;
       under = record;
       under_at = centre;

@@ -27,8 +27,9 @@ void main() {
   if (push.ring != k_no_record) {
     vec4 place = texelFetch(record_texels, int(push.ring * k_record_texels));
     vec4 facing = texelFetch(record_texels, int(push.ring * k_record_texels + 1u));
-    float away = abs(distance(seen.position, place.xyz) - place.w + 0.5 * seen.size) / seen.size;
-    if (seen.solid && seen_on_disc(seen, place, facing)) {
+    vec4 shape = texelFetch(record_texels, int(push.ring * k_record_texels + 3u));
+    float away = abs(distance(seen.position, place.xyz) - seen_reach(seen, place, shape) + 0.5 * seen.size) / seen.size;
+    if (seen.solid && seen_on_plane(seen, place, facing, shape)) {
       color = lay(color, vec3(0.0), 0.6 * clamp(2.5 - away, 0.0, 1.0));
       color = lay(color, vec3(1.0), clamp(1.5 - away, 0.0, 1.0));
     }

@@ -19,9 +19,11 @@ void main() {
   for (uint p = 0u; p < k_part_count; ++p) light += luminance(found.part[p]);
   OctreeRange range = cache_range(place.xyz, solid && found.weight > 0.0);
   for (uint i = range.first; i < range.last; ++i) {
-    int at = int(octree_sphere(i) * k_record_texels);
-    vec4 record = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
-    if (record_weight(place.xyz, normal, record, facing) > 0.0) nearest = min(nearest, distance(place.xyz, record.xyz));
+    uint record = octree_sphere(i);
+    int at = int(record * k_record_texels);
+    vec4 centre = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
+    float weight = record_weight(place.xyz, normal, centre, facing, record_shape(record, centre));
+    if (weight > 0.0) nearest = min(nearest, distance(place.xyz, centre.xyz));
   }
   lit[point] = vec2(found.weight > 0.0 ? light : -1.0, nearest);
 }

@@ -1,11 +1,13 @@
 // Irradiance at a point from the records around it (METHODS 3.1): the mean of what each extrapolates by its gradients,
 // with a weight that falls to 0 at the border of its validity (E. Tabellion and A. Lamorlette, 2004), so that no seam
-// shows. LUCERNA_CACHE_PARTS: bit p: part p is read.
+// shows. LUCERNA_CACHE_PARTS: bit p: part p is read. LUCERNA_CACHE_ELLIPSES:
+// 1 where records may be ellipses.
 #ifndef LUCERNA_IRRADIANCE_CACHE_LOOKUP
 #define LUCERNA_IRRADIANCE_CACHE_LOOKUP
 #include "shaders/shared/irradiance_cache.h"
 #include "lib/math.glsl"
 #include "lib/octree.glsl"
+#include "irradiance_cache/ellipse.glsl"
 #include "shaders/shared/facet.h"
 
 layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
@@ -24,12 +26,25 @@ struct Cached {
   float weight;  // 0: no record serves here
 };
 
+// A record's texel 3. Compiled in where records may be ellipses alone: of spheres `place` tells all.
+vec4 record_shape(uint record, vec4 place) {
+#if LUCERNA_CACHE_ELLIPSES
+  return texelFetch(record_texels, int(record * k_record_texels + 3u));
+#else
+  return vec4(0.0, 0.0, 0.0, place.w);
+#endif
+}
+
 // Weight of a record, 0..1, at a point with that geometric normal.
-float record_weight(vec3 x, vec3 n, vec4 place, vec4 facing) {
+float record_weight(vec3 x, vec3 n, vec4 place, vec4 facing, vec4 shape) {
   vec3 away = x - place.xyz;
+#if LUCERNA_CACHE_ELLIPSES
+  float far = record_distance(away, shape);
+#else
   float far = length(away) / place.w;
+#endif
   float turned = sqrt(max(0.0, 1.0 - dot(n, facing.xyz)) / cache.normal_tolerance);
-  bool before = dot(away, n + facing.xyz) >= -2.0 * cache.behind * place.w;
+  bool before = dot(away, n + facing.xyz) >= -2.0 * cache.behind * shape.w;
   return place.w > 0.0 && before ? max(0.0, 1.0 - max(far, turned)) : 0.0;
 }
 
@@ -60,7 +75,7 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, bool asks) {
       if (dot(away, away) < square(place.w)) {
         record = octree_sphere(i);
         facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
-        weight = record_weight(x, n, place, facing);
+        weight = record_weight(x, n, place, facing, record_shape(record, place));
       }
     }
     vec3 tangent, bitangent;

@@ -14,9 +14,10 @@ void main() {
   uint overlap = 0u;
   OctreeRange range = cache_range(seen.position, seen.solid);
   for (uint i = range.first; i < range.last; ++i) {
-    int at = int(octree_sphere(i) * k_record_texels);
+    uint record = octree_sphere(i);
+    int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
-    overlap += record_weight(seen.position, seen.normal, place, facing) > 0.0 ? 1u : 0u;
+    overlap += record_weight(seen.position, seen.normal, place, facing, record_shape(record, place)) > 0.0 ? 1u : 0u;
   }
   if (!seen.solid) return;
   atomicAdd(counts.pixels[min(overlap, k_overlap_bins - 1u)], 1u);

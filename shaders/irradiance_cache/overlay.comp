@@ -21,15 +21,16 @@ void main() {
     uint record = octree_sphere(i);
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
-    overlap += record_weight(seen.position, seen.normal, place, facing) > 0.0 ? 1u : 0u;
-    float from = distance(seen.position, place.xyz);
+    vec4 shape = record_shape(record, place);
+    overlap += record_weight(seen.position, seen.normal, place, facing, shape) > 0.0 ? 1u : 0u;
+    float from = distance(seen.position, place.xyz), reach = seen_reach(seen, place, shape);
     vec3 ink = record_ink(record, push.color, push.lo, push.hi);
     // Discs of a few pixels fade, so that many of them far away do not become fog.
-    float strength = clamp((place.w / seen.size - 2.0) / 8.0, 0.2, 1.0);
-    float rim = clamp(1.25 - abs(place.w - 0.5 * seen.size - from) / seen.size, 0.0, 1.0) * 0.8 * strength;
+    float strength = clamp((shape.w / seen.size - 2.0) / 8.0, 0.2, 1.0);
+    float rim = clamp(1.25 - abs(reach - 0.5 * seen.size - from) / seen.size, 0.0, 1.0) * 0.8 * strength;
     float dot_ = clamp(2.0 - from / seen.size, 0.0, 1.0) * max(strength, 0.5);
-    float inside = from < place.w ? 0.06 : 0.0;
-    float alpha = push.discs != 0u && seen_on_disc(seen, place, facing) ? max(max(rim, dot_), inside) : 0.0;
+    float inside = from < reach ? 0.06 : 0.0;
+    float alpha = push.discs != 0u && seen_on_plane(seen, place, facing, shape) ? max(max(rim, dot_), inside) : 0.0;
     over += (1.0 - over.a) * vec4(ink * alpha, alpha);
   }
   uint packed = picture[pixel];

@@ -19,7 +19,8 @@ void main() {
   float seen = frame.orthographic != 0u ? 1.0 : distance(place.xyz, frame.camera_origin);
   float pixel = 2.0 * seen * length(frame.camera_up) / float(frame.height);
   float least = min(push.least_pixels * pixel, push.most);
-  float radius = max(min(push.error * facing.w, min(push.most, nearest)), least);
+  float radius = max(min(push.error * facing.w, min(push.most, push.near * nearest)), least);
   records[at].w = radius;
+  records[at + 3] = vec4(0.0, 0.0, 0.0, radius);
   spheres[push.first + index] = vec4(place.xyz, radius);
 }

@@ -18,19 +18,12 @@ void main() {
   uint record = record_list[push.first + slot % push.records];
   vec4 place = texelFetch(record_texels, int(record * k_record_texels));
   vec3 normal = texelFetch(record_texels, int(record * k_record_texels + 1u)).xyz;
-  // Jitter inside the cell by hashing alone: a low-discrepancy sequence would correlate with the cells' order.
-  uint sample_index = push.rays_before + cell;
-  uint key = hash_combine(hash_combine(hash_mix(push.seed + 0x2c1b3c6du), record), sample_index);
-  vec2 jitter = to_unit(uvec2(key, hash_mix(key ^ 0x9e3779b9u)));
-  // The cosine from what is missing to 1, so that it is never 0.
-  float sine = sqrt((float(elevation) + jitter.x) / float(push.elevations));
-  float cosine = sqrt((float(push.elevations - elevation) - jitter.x) / float(push.elevations));
-  float phi = 2.0 * k_pi * (float(azimuth) + jitter.y) / float(push.azimuths);
+  CellRay along = cell_ray(elevation, azimuth, record);
   vec3 tangent, bitangent;
   make_basis(normal, tangent, bitangent);
   Ray ray;
   ray.origin = place.xyz;
-  ray.direction = normalize(sine * (cos(phi) * tangent + sin(phi) * bitangent) + cosine * normal);
+  ray.direction = normalize(along.sine * (cos(along.phi) * tangent + sin(along.phi) * bitangent) + along.cosine * normal);
   // Below the facet there is no light, and the facet itself is not what the record sees: as path tracing has it.
   uint flags = floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 2u)).w);
   bool above = dot(ray.direction, facet_unpack(flags >> k_record_facet_shift)) > 0.0;
@@ -41,7 +34,7 @@ void main() {
   p.throughput = vec3(above ? 1.0 : 0.0);
   p.pdf = 0.0;
   p.pixel = 0x80000000u | record;  // sequences apart from the pixels'
-  p.sample_index = sample_index;
+  p.sample_index = push.rays_before + cell;
   p.bits = push.state | k_path_sky_only | 1u << 8;
   p.medium = 0u;
   p.travelled = 0.0;

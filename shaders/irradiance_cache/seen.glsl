@@ -4,6 +4,7 @@
 #define LUCERNA_IRRADIANCE_CACHE_SEEN
 #include "lib/frame.glsl"
 #include "lib/film.glsl"
+#include "irradiance_cache/ellipse.glsl"
 
 uniform samplerBuffer coarse_albedo, coarse_normal;
 layout(scalar) readonly buffer CoarseCount { uint coarse_count[]; };
@@ -38,10 +39,20 @@ Seen seen_at(uint pixel, uint width, uint height) {
   return s;
 }
 
-// Whether a record's disc is drawn there: discs follow the surface where it is curved, and a pixel's depth is a mean over
-// its samples, so off the record's plane too.
-bool seen_on_disc(Seen s, vec4 place, vec4 facing) {
-  return abs(dot(s.position - place.xyz, facing.xyz)) < 2.0 * s.size + 0.15 * place.w && dot(s.normal, facing.xyz) > 0.7;
+// How far a record serves towards there. `shape`: record_shape() of lookup.glsl.
+float seen_reach(Seen s, vec4 place, vec4 shape) {
+  vec3 away = s.position - place.xyz;
+  float of_reach = record_distance(away, shape);
+  return of_reach > 1e-6 ? length(away) / of_reach : shape.w;
+}
+
+// Whether a record's disc could be drawn there, were it endless: discs follow the surface where it is curved, and a pixel's
+// depth is a mean over its samples, so off the record's plane too.
+bool seen_on_plane(Seen s, vec4 place, vec4 facing, vec4 shape) {
+  return abs(dot(s.position - place.xyz, facing.xyz)) < 2.0 * s.size + 0.15 * shape.w && dot(s.normal, facing.xyz) > 0.7;
+}
+bool seen_on_disc(Seen s, vec4 place, vec4 facing, vec4 shape) {
+  return record_distance(s.position - place.xyz, shape) < 1.0 && seen_on_plane(s, place, facing, shape);
 }
 
 // Depth at a share t of the way between two places of the picture, on the line between them in the scene.

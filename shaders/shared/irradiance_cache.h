@@ -14,15 +14,25 @@ LUCERNA_CONST uint k_part_secondary = 1u;  ///< [SG]*DL
 LUCERNA_CONST uint k_part_tertiary = 2u;   ///< the rest
 LUCERNA_CONST uint k_part_caustic = 3u;    ///< [SG]+L
 LUCERNA_CONST uint k_part_count = 4u;
+// A light group would be further parts: the automaton's accepting states split by the group of the light that is met,
+// as they are by component, k_part_count of them for each group. A group's strength is then a factor by part in
+// lookup.glsl, and changing it spoils no record (solvers/irradiance_cache/changes.h).
 
 /// Files keep the texels below as they are: another number for another meaning of them.
-LUCERNA_CONST uint k_record_layout = 1u;
+LUCERNA_CONST uint k_record_layout = 2u;
 // record_texels: k_record_texels a record.
-//   0: position xyz [m], moved off its surface by the error bound; radius of validity [m], 0: none yet
+//   0: position xyz [m], moved off its surface by the error bound; radius of validity, the greater of an
+//   ellipse [m], 0: none yet
 //   1: normal xyz, unit, on the side that is lit; harmonic mean of the distances that its rays met [m]
 //   2: bits rays so far, least distance [m], standard error of the luminance of all parts' sum (irradiance),
 //   bits k_record_*
-LUCERNA_CONST uint k_record_texels = 3u;
+//   3: the ellipse of validity: the direction of its greater axis, as long as the root of 1/r^2 - 1/R^2 (0 of
+//   a circle); its lesser radius r [m]. Of metric `hessian`, between a record's first level and its
+//   radius: the Hessian of its luminance in tangent and bitangent, xx, xy, yy [1/m^2], and the greatest r at
+//   which such an ellipse holds nothing that a ray met [m]
+LUCERNA_CONST uint k_record_texels = 4u;
+/// Most of the greater radius over the lesser.
+LUCERNA_CONST float k_record_ratio = 2.0f;
 LUCERNA_CONST uint k_record_pass = 0xffu;       ///< mask: the pass that placed it, from 0
 LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: what asked for it, k_origin_*
 LUCERNA_CONST uint k_record_facet_shift =
@@ -88,6 +98,14 @@ struct RadiusPush {
   float error;         ///< radius over harmonic mean distance
   float least_pixels;  ///< as the camera sees them
   float most;          ///< [m]
+  float near;          ///< ... and over the distance of the nearest thing
+};
+
+struct EllipsePush {
+  uint first, count;  ///< records
+  float reach;        ///< fourth root of 4/pi times the integral of a record's relative error [m^(1/2)]
+  float least_pixels, most;  ///< as RadiusPush, of the lesser radius and of both
+  float dark;                ///< irradiance, luminance: records that have less are held against it
 };
 
 // What the overlay colours records by.
@@ -106,6 +124,6 @@ struct OverlayPush {
 
 LUCERNA_SHARED_END
 #ifdef __cplusplus
-static_assert(lucerna::shared::k_record_bytes == 576 && sizeof(lucerna::shared::RecordPush) == 32);
+static_assert(lucerna::shared::k_record_bytes == 592 && sizeof(lucerna::shared::RecordPush) == 32);
 #endif
 #endif

@@ -54,6 +54,7 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
                            {"LUCERNA_COHERENT", on[0] == '1' ? "4" : "0"},
                            {"LUCERNA_CACHE", on},
                            {"LUCERNA_CACHE_PARTS", "15u"},
+                           {"LUCERNA_CACHE_ELLIPSES", on},
                            {"LUCERNA_NEIGHBOURS", on[0] == '1' ? "27" : "0"}};
       for (const char* use : uses) defines["LUCERNA_" + std::string(use) + "_BUCKETS"] = "63u";
       for (const char* effect : effects) defines[effect] = on;

@@ -102,7 +102,7 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
 
 TEST_CASE("the format is what its header says, byte for byte") {
   const std::string bytes = encode(some_cache(2));
-  const std::string head("LUCCACHE\1\0\0\0\1\0\0\0", 16);
+  const std::string head("LUCCACHE\1\0\0\0\2\0\0\0", 16);
   CHECK(bytes.substr(0, 16) == head);
   const auto number = [&](size_t at, int size) {
     uint64_t value = 0;
@@ -144,10 +144,10 @@ TEST_CASE("a file with one byte changed is refused, wherever it is and however")
   other[8] = 2;
   CHECK(refusal(other) == "a.cache: an irradiance cache in version 2 of its format; expected version 1");
   other = bytes, other[12] = 9;
-  CHECK_THAT(refusal(other), Contains("its records are laid out otherwise: layout 9 of 320 bytes each, "
-                                      "expected layout 1 of 320"));
+  CHECK_THAT(refusal(other), Contains("its records are laid out otherwise: layout 9 of 336 bytes each, "
+                                      "expected layout 2 of 336"));
   other = bytes, other[17] = 2;
-  CHECK_THAT(refusal(other), Contains("layout 1 of 576 bytes each, expected layout 1 of 320"));
+  CHECK_THAT(refusal(other), Contains("layout 2 of 592 bytes each, expected layout 2 of 336"));
   CHECK_THAT(refusal("glTF and so on"), Contains("not an irradiance cache"));
 }
 

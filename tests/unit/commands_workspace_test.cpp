@@ -60,6 +60,11 @@ struct Bench {
       for (size_t i = 0; i < scene->lights.size(); ++i)
         if (!(Document::Light{scene->lights[i].intensity, scene->lights[i].enabled} == d.lights[i]))
           return false;
+      for (size_t i = 0; i < scene->materials.size(); ++i) {
+        const scene::Material& m = scene->materials[i];
+        if (!(Document::Material{vec3(m.base_color), m.roughness, m.metallic, m.emission} == d.materials[i]))
+          return false;
+      }
       return scene->environment.scale == d.environment_scale &&
              scene->environment.rotation == d.environment_rotation;
     });
@@ -115,6 +120,32 @@ TEST_CASE("edits are seen at once, reach the session, and are undone and done ag
   b.run("undo");
   b.run("film.ev -1");  // a new step ends what could be done again
   CHECK_FALSE(b.work.can_redo());
+}
+
+TEST_CASE("materials are edited like lights, and keep what is not given") {
+  Bench b;
+  b.open();
+  const Document before = b.work.document();
+  REQUIRE(before.materials.size() == b.work.scene->materials.size());
+  b.run("material.set 1 color=0.1,0.2,0.3 roughness=0.25");
+  b.run("material.set 1 metallic=1 emission=0,2,0");
+  const scene::Material m = b.work.material(0);
+  CHECK(vec3(m.base_color) == vec3(0.1f, 0.2f, 0.3f));
+  CHECK(m.base_color.w == b.work.scene->materials[0].base_color.w);
+  CHECK(m.roughness == 0.25f);
+  CHECK(m.metallic == 1);
+  CHECK(m.emission == vec3(0, 2, 0));
+  REQUIRE(b.settled());
+  CHECK(b.session.scene()->materials[0].roughness == 0.25f);
+  b.run("undo"), b.run("undo");
+  CHECK(b.work.document() == before);
+  REQUIRE(b.settled());
+  const std::string count = std::to_string(before.materials.size());
+  CHECK_THAT(b.failure("material.set 99 metallic=1"),
+             Contains("there is no material 99; the scene has " + count));
+  CHECK_THAT(b.failure("material.set marmalade metallic=1"),
+             Contains("the scene has no material 'marmalade'"));
+  CHECK_THAT(b.failure("material.set 1 color=1,2,0"), Contains("color"));
 }
 
 TEST_CASE("a drag is one step; another drag, another control or no drag is another") {

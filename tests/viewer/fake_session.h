@@ -350,6 +350,17 @@ void Session::set_environment(float scale, float rotation) {
     impl_->restart(), impl_->publish();
   });
 }
+void Session::set_material(uint32_t index, const scene::Material& material) {
+  impl_->post([this, index, material] {
+    auto edited = std::make_shared<scene::Scene>(*impl_->scene);
+    edited->materials[index] = material;
+    {
+      std::lock_guard lock(impl_->mutex);
+      impl_->scene = edited;
+    }
+    impl_->restart(), impl_->publish();
+  });
+}
 void Session::set_paused(bool paused) {
   impl_->post([this, paused] { impl_->paused = paused, impl_->publish(); });
 }

@@ -34,6 +34,11 @@ constexpr float k_overlap_share = 0.6f;
 
 /// Records that go on with a noisy one, on either side.
 constexpr size_t k_company = 4;
+/// Of metric `hessian`, over `error`: makes about as many records as the split sphere does with the same.
+constexpr float k_hessian_reach = 0.5f;
+/// Of metric `hessian`, over the nearest thing: how far a place that is tried would serve. The first level
+/// has more rays, which meet nearer things.
+constexpr float k_tried_near = 0.8f;
 
 }  // namespace
 
@@ -89,13 +94,6 @@ ReachOptions Cache::Impl::reach(const CacheView& view) const {
           .parallel = f.orthographic != 0};
 }
 
-float Cache::Impl::least_luminance() const {
-  double sum = 0;
-  const std::vector<float> light = records.luminances();
-  for (const float l : light) sum += double(l);
-  return light.empty() ? 1.0f : 0.1f * float(sum / double(light.size()));
-}
-
 bool Cache::Impl::see(transport::Wavefront& wavefront, const CacheView& view,
                       const std::function<bool()>& cancel) {
   if (stale) screen.begin(view.paths_frame), stale = false;
@@ -118,7 +116,7 @@ bool Cache::Impl::look(const Work& w, bool& cancelled) {
     const Discontinuity::Of of = geometry ? Discontinuity::Of::geometry : Discontinuity::Of::irradiance;
     gpu::Stream& stream = w.wavefront.stream();
     screen.look_up(stream, [this](gpu::Resources& r) { bind(r); });
-    screen.measure(stream, of, options.screen, least_luminance());
+    screen.measure(stream, of, options.screen, dark());
     const float spacing = reach(w.view).spacing;
     screen.dither(stream, of, options.screen,
                   {.least_width = k_spacing_of_least * options.least_pixels,
@@ -158,7 +156,7 @@ void Cache::Impl::choose(const Work& w) {
   pass().tried = uint32_t(tried.size());
   status.bytes = own_bytes + screen.bytes() + placement.bytes();
   records.append(tried, status.pass);
-  list_new();
+  list_until(records.size());
   took(BuildStep::choose, wall.milliseconds());
   stage = Stage::measure;
 }
@@ -177,7 +175,7 @@ bool Cache::Impl::measure(const Work& w) {
   spent(done, Evaluator::k_distance_rays);
   if (done < batch) return false;
   if (at == list.size()) {
-    set_radii(w);
+    set_radii(w, false);
     thin();
   }
   return true;
@@ -194,7 +192,7 @@ void Cache::Impl::thin() {
   records.truncate(evaluated);
   pass().records = records.append(needed, status.pass);
   tried.clear();
-  list_new();
+  list_until(records.size());
   took(BuildStep::choose, host.milliseconds());
   level = level_done = rays_before = 0;
   stage = Stage::evaluate;
@@ -217,7 +215,8 @@ bool Cache::Impl::evaluate(const Work& w) {
                             .azimuths = 4 * elevations,
                             .rays_before = rays_before,
                             .parts = parts,
-                            .seed = options.seed},
+                            .seed = options.seed,
+                            .hessian = options.metric == Metric::hessian && level == 0 && level_done == 0},
                            w.cancel);
     w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
     tell();
@@ -243,9 +242,14 @@ void Cache::Impl::publish_level(const Work& w) {
   // Radii come from the first level alone: the nearest thing that any ray met comes nearer with every ray,
   // and records that shrank would leave gaps. A cache that reads itself does so from the second level on:
   // the first, of few rays, then is all that is traced without the records of its own pass.
-  if (evaluated == records.size()) return;
-  set_radii(w);
-  evaluated = status.records = records.size();
+  ++status.published;
+  if (evaluated == until) return;
+  if (until > kept) {
+    set_radii(w, true);
+    hold();
+  }
+  evaluated = status.records = until;
+  kept = std::max(kept, evaluated);
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
   took(BuildStep::octree, timer.milliseconds());
@@ -255,7 +259,13 @@ void Cache::Impl::publish_level(const Work& w) {
 void Cache::Impl::end_pass() {
   set_scales();
   pass().complete = true;
+  if (status.relighting > 0) return relight_pass();
+  if (evaluated > (ends.empty() ? 0 : ends.back())) ends.push_back(evaluated);
   ++status.pass;
+  next_pass();
+}
+
+void Cache::Impl::next_pass() {
   stage = Stage::probe;
   if (records.size() == records.capacity())
     finish(StopReason::records);
@@ -268,7 +278,7 @@ bool Cache::Impl::next_level() {
   if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
   const std::vector<Records::Figures> figures = records.figures();
   const std::vector<float> light = records.luminances();
-  const float least = least_luminance();
+  const float least = dark();
   // Light that few rays find (a caustic) is looked for wherever a record near by has found it: one that has
   // not would else stop, content with its darkness. The list is in Morton order, so that neighbours in it
   // are near.
@@ -287,21 +297,42 @@ bool Cache::Impl::next_level() {
   return !list.empty();
 }
 
-void Cache::Impl::set_radii(const Work& w) {
-  const uint32_t count = records.size() - evaluated;
+float Cache::Impl::dark() const {
+  const std::vector<float> light = records.luminances();
+  double sum = 0;
+  for (uint32_t r = 0; r < until; ++r) sum += double(light[r]);
+  return until > 0 ? 0.1f * float(sum / until) : 1.0f;
+}
+
+void Cache::Impl::set_radii(const Work& w, bool lit) {
+  const uint32_t count = until - evaluated;
   if (count == 0) return;
   StageTimer timer(w.wavefront);
   w.wavefront.bind_paths(resources);
   bind(resources);
-  const RadiusPush push{evaluated, count, options.error, options.least_pixels,
-                        options.most_radius * w.view.scene_radius};
-  w.wavefront.stream().dispatch(radius, resources, push, gpu::groups_for(count, 64), "records");
+  const float most = options.most_radius * w.view.scene_radius;
+  const uint32_t groups = gpu::groups_for(count, 64);
+  if (lit && options.metric == Metric::hessian) {
+    const EllipsePush push{evaluated,
+                           count,
+                           k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
+                           options.least_pixels,
+                           most,
+                           dark()};
+    w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
+  } else {
+    const RadiusPush push{evaluated,     count,
+                          options.error, options.least_pixels,
+                          most,          options.metric == Metric::hessian ? k_tried_near : 1.0f};
+    w.wavefront.stream().dispatch(radius, resources, push, groups, "records");
+  }
   w.wavefront.stream().run();
   took(BuildStep::radius, timer.milliseconds());
 }
 
-void Cache::Impl::list_new() {
-  list.resize(records.size() - evaluated);
+void Cache::Impl::list_until(uint32_t end) {
+  until = end;
+  list.resize(until - evaluated);
   std::iota(list.begin(), list.end(), evaluated);
   at = 0;
 }

@@ -35,7 +35,7 @@ struct Cache::Impl {
   Records records;
   lookup::Octree octree;
   gpu::Buffer frame, candidates;
-  gpu::Kernel radius, overlay;
+  gpu::Kernel radius, ellipse, overlay;
   gpu::Resources resources;
   Evaluator evaluator;
   std::array<uint32_t, 16> routes{}, own_routes{};  // of the picture's paths, of the records'
@@ -52,9 +52,15 @@ struct Cache::Impl {
   bool stale = true;       // ... and what it has seen is not this picture
   uint64_t own_bytes = 0;  // of device memory, without those two
   std::vector<Place> tried;
-  uint32_t evaluated = 0;      // records up to here have light and radius, and are in the octree
-  std::vector<uint32_t> list;  // of this level, in the order of the records
-  size_t at = 0;               // of which so many are done
+  uint32_t evaluated = 0;       // records up to here have light and radius, and are in the octree
+  uint32_t kept = 0;            // ... and up to here place and radius: more, while they are relit
+  uint32_t until = 0;           // those of the pass in progress end here
+  std::vector<uint32_t> ends;   // of the records of each complete pass
+  uint32_t held = 0;            // parts that all complete records hold; `parts` at least
+  bool held_recursive = false;  // ... gathered as `recursive` says
+  StopReason stopped = StopReason::building;            // why building had stopped before records were relit
+  std::vector<uint32_t> list;                           // of this level, in the order of the records
+  size_t at = 0;                                        // of which so many are done
   uint32_t level = 0, level_done = 0, rays_before = 0;  // ... and rays of each record, in this level, so far
 
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const paths::LookupRoutes& own,
@@ -66,11 +72,18 @@ struct Cache::Impl {
   bool measure(const Work& work);
   bool evaluate(const Work& work);
   void finish(StopReason reason);
+  void relight();
+  /// The records of the next pass that stand without light; after the last, building goes on where it was.
+  void relight_pass();
 
+  /// Irradiance, luminance: what records of less are held against, because what they miss is seen less.
+  float dark() const;
   /// One piece of looking at the picture's points; false when it was cancelled.
   bool see(transport::Wavefront& wavefront, const CacheView& view, const std::function<bool()>& cancel);
-  /// Luminance that darker irradiance is held against: a tenth of the records' mean.
-  float least_luminance() const;
+  /// Records that are evaluated hold what this cache gathers, and no more.
+  void hold() { held = parts, held_recursive = recursive; }
+  /// Complete records from elsewhere, in place of all.
+  void take(const RawRecords& raw);
   /// What lookup.glsl reads.
   void bind(gpu::Resources& to) const;
   void build_octree(transport::Wavefront& wavefront);
@@ -90,15 +103,17 @@ struct Cache::Impl {
   void choose(const Work& work);
   void thin();
   void end_pass();
+  void next_pass();
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
   bool next_level();
   /// Lights and radii of this level, for those who look up.
   void publish_level(const Work& work);
-  /// Radii of the records that are added in this pass, by what is known of them.
-  void set_radii(const Work& work);
-  /// The records that are added in this pass, for the next piece of work on them.
-  void list_new();
+  /// Radii of the records that are added in this pass, by what is known of them: `lit` after their first
+  /// level.
+  void set_radii(const Work& work, bool lit);
+  /// The records of this pass, which end there, for the next piece of work on them.
+  void list_until(uint32_t end);
   CachePass& pass() { return status.passes.back(); }
   void took(BuildStep step, double ms) { pass().ms[size_t(step)] += ms; }
   void spent(size_t done, uint32_t rays);

@@ -39,6 +39,8 @@ const char* words(StopReason reason) {
       return "as many passes as are allowed";
     case StopReason::records:
       return "the room for records is used up";
+    case StopReason::dark:
+      return "there is no light in the scene";
     case StopReason::building:
       break;
   }
@@ -52,7 +54,7 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
       octree(device, compiler,
              {.spheres = o.most_records, .references = k_references * o.most_records, .copies = true}),
       evaluator(device, compiler, slots),
-      screen(device, compiler, defines(own)),
+      screen(device, compiler, defines(own, o.metric)),
       placement(device, compiler) {
   frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
   candidates = gpu::Buffer(device, {.name = "cache candidates",
@@ -105,14 +107,18 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
   c.recursive =
       std::any_of(c.own_routes.begin(), c.own_routes.end(), [](uint32_t r) { return r != k_no_routes; });
   c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
-  c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(own));
+  c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(own, options.metric));
+  if (options.metric == Metric::hessian)
+    c.ellipse = gpu::Kernel(device, compiler, "irradiance_cache/ellipse.comp");
   clear();
 }
 
 Cache::~Cache() = default;
 
-gpu::Defines Cache::defines(const paths::LookupRoutes& own) {
-  return {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", std::to_string(own.parts)}};
+gpu::Defines Cache::defines(const paths::LookupRoutes& own, Metric metric) {
+  return {{"LUCERNA_CACHE", "1"},
+          {"LUCERNA_CACHE_PARTS", std::to_string(own.parts)},
+          {"LUCERNA_CACHE_ELLIPSES", metric == Metric::hessian ? "1" : "0"}};
 }
 
 void Cache::Impl::bind(gpu::Resources& to) const {
@@ -129,24 +135,28 @@ void Cache::clear() {
   c.records.clear();
   c.placement.clear();
   c.stale = true;
-  c.status = {.bytes = c.status.bytes};
+  c.status = {.bytes = c.status.bytes, .published = c.status.published};
   c.stage = Stage::probe;
   c.probing = false;
-  c.evaluated = 0;
+  c.evaluated = c.kept = c.until = 0;
+  c.ends.clear();
+  c.hold();
+  c.stopped = StopReason::building;
   c.tell();
 }
 
 void Cache::extend() {
   Impl& c = *impl_;
   c.status.pass = 0;
-  c.status.stop = StopReason::building;
+  c.status.stop = c.stopped = StopReason::building;
   c.stale = true;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped.
   if (c.stage != Stage::evaluate) {
-    c.records.truncate(c.evaluated);
+    c.records.truncate(c.kept);
     c.stage = Stage::probe;
     c.probing = false;
     c.placement.clear();
+    if (c.status.relighting > 0) c.relight_pass();  // they have been waiting in the dark
   }
 }
 
@@ -156,9 +166,8 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
   clear();
   for (size_t i = 0; i < raw.lights.size(); ++i)
     if (!(c.parts >> i / k_part_texels % k_part_count & 1)) raw.lights[i] = vec4(0);
-  c.records.restore(raw);
-  c.evaluated = raw.size();
-  c.status.records = c.status.loaded = raw.size();
+  c.take(raw);
+  c.status.loaded = raw.size();
   c.status.rays = status.rays;
   if (raw.size() > 0) c.build_octree(wavefront);
   c.set_scales();
@@ -177,6 +186,7 @@ uint32_t Cache::parts() const { return impl_->parts; }
 bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
                  const std::function<bool()>& cancel) {
   const Impl::Work work{wavefront, automaton, view, cancel};
+  if (view.dark) impl_->finish(StopReason::dark);
   switch (impl_->stage) {
     case Stage::probe:
       return impl_->probe(work);
@@ -201,7 +211,7 @@ void Cache::draw_discontinuity(transport::Wavefront& wavefront, const film::Film
   c.screen.look_up(stream, [&](gpu::Resources& r) { bind(r); });
   DiscontinuityOptions options = c.options.screen;
   if (options.irradiance_weight <= 0) options.irradiance_weight = DiscontinuityOptions{}.irradiance_weight;
-  c.screen.measure(stream, of, options, c.least_luminance());
+  c.screen.measure(stream, of, options, c.dark());
   c.screen.draw(stream, film.picture(), level);
   stream.run();
   stream.take_times();

@@ -16,6 +16,7 @@
 
 #include "paths/automaton.h"
 #include "solvers/irradiance_cache/build_log.h"
+#include "solvers/irradiance_cache/changes.h"
 #include "solvers/irradiance_cache/discontinuity.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/records.h"
@@ -23,8 +24,18 @@
 
 namespace lucerna::irradiance_cache {
 
+/// What decides how far a record serves.
+enum class Metric : uint32_t {
+  split_sphere,  ///< how far things are that it sees (G. Ward, F. Rubinstein and R. Clear, 1988)
+  hessian,       ///< how its irradiance bends (shaders/irradiance_cache/hessian.comp); radii are of ellipses
+};
+
 struct CacheOptions {
-  float error = 0.3f;        ///< radius of a record over the harmonic mean distance of what it sees; above 0
+  Metric metric = Metric::split_sphere;
+  /// Above 0; radii are in proportion to it. Split sphere: radius of a record over the harmonic mean distance
+  /// of what it sees. Hessian: so that the integral of its relative error over its ellipse is pi/4 of the
+  /// fourth power of half of this, in squares of the scene's radius.
+  float error = 0.3f;
   float least_pixels = 3;    ///< least radius as the camera sees it; 0 or more
   float most_radius = 0.1f;  ///< of the scene's radius
   /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
@@ -40,7 +51,7 @@ struct CacheOptions {
   DiscontinuityOptions screen;
 };
 
-enum class StopReason { building, covered, passes, records };
+enum class StopReason { building, covered, passes, records, dark };
 /// Why building has stopped, as the rest of a sentence.
 const char* words(StopReason reason);
 
@@ -52,8 +63,12 @@ struct CacheStatus {
   uint64_t bytes = 0;             ///< of device memory
   double references = 0;          ///< leaves that list a record, on average
   uint32_t loaded = 0;            ///< of the records, from a file; their rays count too
+  /// Not 0: so many records keep their places and are relit, `records` of them so far.
+  uint32_t relighting = 0;
+  uint64_t published = 0;  ///< levels whose light lookups have been given; never goes back
   StopReason stop = StopReason::building;
-  std::vector<CachePass> passes;  ///< since it was begun, extensions too; the last may be in progress
+  /// Since it was begun or relit, extensions too; the last may be in progress.
+  std::vector<CachePass> passes;
 };
 
 /// What the building needs to know of the picture and its scene.
@@ -63,6 +78,7 @@ struct CacheView {
   uint32_t paths_enabled = 0, records_enabled = 0;  ///< ... and what each may bring, in bits
   uint32_t width = 0, height = 0;
   float scene_radius = 1;
+  bool dark = false;  ///< the scene has no light: nothing is placed, and what there is waits to be relit
 };
 
 class Cache {
@@ -74,8 +90,8 @@ class Cache {
         const paths::LookupRoutes& own, const CacheOptions& options);
   ~Cache();
 
-  /// For the kernels of a wavefront that reads a cache with these routes of its own.
-  static gpu::Defines defines(const paths::LookupRoutes& own);
+  /// For the kernels of a wavefront that reads a cache with these routes of its own and this metric.
+  static gpu::Defines defines(const paths::LookupRoutes& own, Metric metric);
   /// Under the names of shaders/irradiance_cache/lookup.glsl.
   void bind(gpu::Resources& resources) const;
   /// Begins anew, without records.
@@ -83,6 +99,15 @@ class Cache {
   /// Goes on building with what there is, for a picture from elsewhere or of another size: its passes are
   /// counted anew. Work in progress is finished first.
   void extend();
+  /// Other light on the same surfaces: places and radii stay, and all light is gathered anew, pass by pass as
+  /// the records came; then building goes on where it was, or is complete as it was. Meanwhile those that are
+  /// relit serve, and no others. The outcome is that of a cache built in this light, to the bit where places
+  /// do not depend on light.
+  void relight();
+  /// In place of its own, the records of another cache of the same scene, made for other lookups, options or
+  /// kernels: as far as passes are complete. Returns what of them does not serve here, for the caller to see
+  /// to: coverage, light, or places, where there is no room for them; then this is as after clear().
+  Spoilt adopt(transport::Wavefront& wavefront, const Cache& other);
   bool ready() const;
   /// Begins anew with records from elsewhere (Records::raw, of a cache that has these routes' parts at
   /// least), as after a pass of building: it goes on as extend() does, or, with `complete`, is ready and

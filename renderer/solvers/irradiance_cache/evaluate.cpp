@@ -10,14 +10,18 @@ namespace lucerna::irradiance_cache {
 using namespace shared;
 
 struct Evaluator::Impl {
-  gpu::Kernel record, gather, distances;
+  gpu::Device& device;
+  gpu::ShaderCompiler& compiler;
+  gpu::Kernel record, gather, distances, hessian;
   gpu::Buffer first_hits, list;
   gpu::Resources resources;
 
   /// Rays of the listed records by `push` (whose range is filled in), a batch of the wavefront's slots at a
   /// time, summed by `kernel`: `gather`, of what they bring, or `distances`, of their first hits alone.
-  size_t gather_by(const gpu::Kernel& kernel, transport::Wavefront& wavefront, Records& records,
-                   std::span<const uint32_t> all, RecordPush push, const std::function<bool()>& cancel) {
+  /// `then` comes after it, where it is.
+  size_t gather_by(const gpu::Kernel& kernel, const gpu::Kernel* then, transport::Wavefront& wavefront,
+                   Records& records, std::span<const uint32_t> all, RecordPush push,
+                   const std::function<bool()>& cancel) {
     wavefront.bind_paths(resources);
     records.bind(resources, Records::Use::gather);
     resources.set("RecordList", list);
@@ -34,7 +38,11 @@ struct Evaluator::Impl {
           .begin = [&] { stream.dispatch(record, resources, push, gpu::groups_for(rays, 64), "records"); },
           .first_hits = {},
           .end =
-              [&] { stream.dispatch(kernel, resources, push, gpu::groups_for(push.records, 64), "records"); },
+              [&] {
+                const uint32_t groups = gpu::groups_for(push.records, 64);
+                stream.dispatch(kernel, resources, push, groups, "records");
+                if (then) stream.dispatch(*then, resources, push, groups, "records");
+              },
           .hits_only = hits_only};
       if (!hits_only)
         ends.first_hits = [&] { stream.copy(wavefront.hits(), first_hits, uint64_t{rays} * sizeof(Hit)); };
@@ -46,7 +54,7 @@ struct Evaluator::Impl {
 };
 
 Evaluator::Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots)
-    : impl_(std::make_unique<Impl>()) {
+    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}}) {
   impl_->record = gpu::Kernel(device, compiler, "irradiance_cache/record.comp");
   impl_->gather = gpu::Kernel(device, compiler, "irradiance_cache/gather.comp");
   impl_->distances = gpu::Kernel(device, compiler, "irradiance_cache/distances.comp");
@@ -66,7 +74,8 @@ size_t Evaluator::evaluate(transport::Wavefront& wavefront, const paths::Automat
   if (cells == 0 || cells > most)
     throw_error("irradiance cache", "{} x {} rays a record; there is room for 1 to {} paths", o.elevations,
                 o.azimuths, most);
-  return e.gather_by(e.gather, wavefront, records, list,
+  if (o.hessian && !e.hessian) e.hessian = gpu::Kernel(e.device, e.compiler, "irradiance_cache/hessian.comp");
+  return e.gather_by(e.gather, o.hessian ? &e.hessian : nullptr, wavefront, records, list,
                      {.elevations = o.elevations,
                       .azimuths = o.azimuths,
                       .rays_before = o.rays_before,
@@ -80,7 +89,7 @@ size_t Evaluator::measure(transport::Wavefront& wavefront, Records& records, std
                           uint32_t seed, const std::function<bool()>& cancel) {
   Impl& e = *impl_;
   constexpr uint32_t k_elevations = 4, k_azimuths = k_distance_rays / k_elevations;
-  return e.gather_by(e.distances, wavefront, records, list,
+  return e.gather_by(e.distances, nullptr, wavefront, records, list,
                      {.elevations = k_elevations, .azimuths = k_azimuths, .seed = seed}, cancel);
 }
 

@@ -21,6 +21,8 @@ struct EvaluateOptions {
   uint32_t parts =
       0b1110;  ///< bit p: shared::k_part_* p is gathered; they must be enabled in the wavefront's frame
   uint32_t seed = 1;
+  /// Leaves the Hessian of these rays alone, too, where the ellipse of validity will be: of a first level.
+  bool hessian = false;
 };
 
 class Evaluator {

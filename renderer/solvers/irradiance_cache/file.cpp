@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they lie in memory");
 // A record that grows or shrinks is refused by its size; this asks whether k_record_layout, too, is right.
-static_assert(k_record_texels == 3 && k_part_texels == 4 && k_part_count == 4 && k_record_layout == 1);
+static_assert(k_record_texels == 4 && k_part_texels == 4 && k_part_count == 4 && k_record_layout == 2);
 
 constexpr char k_magic[8] = {'L', 'U', 'C', 'C', 'A', 'C', 'H', 'E'};
 constexpr size_t k_head = sizeof k_magic + 3 * sizeof(uint32_t) + sizeof(uint64_t);
@@ -182,9 +182,9 @@ CacheFile decode(const std::string& bytes, const std::string& where) {
   CacheFile cache;
   Reader reader(contents.substr(k_head), where);
   fields(reader, cache);
-  if (cache.status.stop > StopReason::records)
+  if (cache.status.stop > StopReason::dark)
     throw_error(where, "damaged: a reason to stop numbered {}, expected 0 to {}", int(cache.status.stop),
-                int(StopReason::records));
+                int(StopReason::dark));
   return cache;
 }
 

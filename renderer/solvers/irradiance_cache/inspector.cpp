@@ -28,7 +28,9 @@ struct Inspector::Impl {
   const gpu::Kernel& ready(gpu::Kernel& kernel, const char* file) {
     // What a lookup reads of a record is not called here: no part of it is compiled in.
     if (!kernel)
-      kernel = gpu::Kernel(device, compiler, file, {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", "0u"}});
+      kernel = gpu::Kernel(
+          device, compiler, file,
+          {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", "0u"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
     return kernel;
   }
 

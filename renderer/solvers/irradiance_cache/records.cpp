@@ -33,6 +33,9 @@ Record unpack(const vec4* place, const vec4* light) {
   r.place.facet = flags >> k_record_facet_shift;
   r.place.origin = flags >> k_record_origin_shift & 3u;
   r.error = place[2].z;
+  const vec3 stretch(place[3]);
+  r.lesser_radius = place[3].w;
+  r.along = length(stretch) > 0 ? normalize(stretch) : vec3(0);
   const auto [t, b] = basis(r.place.normal);
   for (uint32_t p = 0; p < k_part_count; ++p) {
     const float* f = &light[p * k_part_texels].x;
@@ -75,6 +78,7 @@ uint32_t Records::append(std::span<const Place> places, uint32_t pass) {
     const uint32_t flags =
         std::min(pass, k_record_pass) | p.origin << k_record_origin_shift | p.facet << k_record_facet_shift;
     texels.emplace_back(0.0f, 0.0f, 0.0f, std::bit_cast<float>(flags));
+    texels.emplace_back(0.0f);
   }
   records_.write(texels.data(), texels.size() * sizeof(vec4), size_ * k_place_bytes);
   const std::vector<vec4> dark(size_t{fitting} * k_part_count * k_part_texels, vec4(0));

@@ -32,7 +32,9 @@ struct Irradiance {
 /// A record read back.
 struct Record {
   Place place;
-  float radius = 0;          ///< of validity [m]; 0: none yet
+  float radius = 0;          ///< of validity [m], of an ellipse the greater; 0: none yet
+  float lesser_radius = 0;   ///< [m]
+  vec3 along{0};             ///< unit, the ellipse's greater axis; 0 of a circle
   float mean_distance = 0;   ///< harmonic mean of what its rays met [m]; infinite where they met nothing
   float least_distance = 0;  ///< [m]
   float error = 0;           ///< standard error of the luminance of value, all evaluated parts together

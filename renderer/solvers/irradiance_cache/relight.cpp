@@ -1,0 +1,93 @@
+// Records that outlive a change: relit where they are, or taken over by a cache made for other lookups.
+#include <algorithm>
+#include <bit>
+
+#include "solvers/irradiance_cache/build.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+void Cache::Impl::take(const RawRecords& raw) {
+  records.restore(raw);
+  evaluated = kept = until = status.records = raw.size();
+  // Passes end where the number of the next record's is another.
+  const auto pass_of = [&](uint32_t r) {
+    return std::bit_cast<uint32_t>(raw.places[size_t{r} * k_record_texels + 2].w) & k_record_pass;
+  };
+  ends.clear();
+  for (uint32_t r = 1; r <= raw.size(); ++r)
+    if (r == raw.size() || pass_of(r) != pass_of(r - 1)) ends.push_back(r);
+}
+
+void Cache::Impl::relight() {
+  if (status.relighting == 0) {
+    stopped = status.stop == StopReason::dark ? StopReason::building : status.stop;
+    // A pass that has its first level has places and radii, and is complete when it is relit. Of one before
+    // that nothing is left; its places are asked for again.
+    if (evaluated > (ends.empty() ? 0 : ends.back())) ends.push_back(evaluated), ++status.pass;
+  }
+  kept = ends.empty() ? 0 : ends.back();
+  records.truncate(kept);
+  placement.clear(), tried.clear();
+  probing = false;
+  evaluated = 0;
+  hold();
+  status.stop = StopReason::building;
+  status.records = 0, status.relighting = kept, status.rays = 0;
+  status.passes.clear();
+  tell();
+  relight_pass();
+}
+
+void Cache::Impl::relight_pass() {
+  if (evaluated < kept) {
+    const uint32_t end = *std::upper_bound(ends.begin(), ends.end(), evaluated);
+    if (!status.passes.empty() && status.passes.back().relit && status.passes.back().rays == 0)
+      status.passes.pop_back();  // that one waited in the dark
+    status.passes.push_back(
+        {.number = records.read(evaluated).pass, .relit = true, .records = end - evaluated});
+    list_until(end);
+    level = level_done = rays_before = 0;
+    stage = Stage::evaluate;
+    return;
+  }
+  status.relighting = 0;
+  if (stopped != StopReason::building)
+    finish(stopped);
+  else
+    next_pass();
+}
+
+void Cache::relight() { impl_->relight(); }
+
+Spoilt Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {
+  Impl& c = *impl_;
+  const Impl& o = *other.impl_;
+  clear();
+  const uint32_t count = o.ends.empty() ? 0 : o.ends.back();
+  if (count > c.records.capacity()) return k_spoils_all;
+  c.take(o.records.raw(count));
+  c.ends = o.ends;
+  c.held = o.held, c.held_recursive = o.held_recursive;
+  const uint64_t bytes = c.status.bytes, published = c.status.published;
+  c.status = o.status;
+  c.status.bytes = bytes, c.status.published = published + 1;
+  c.status.records = count, c.status.relighting = 0;
+  if (!c.status.passes.empty() && !c.status.passes.back().complete) c.status.passes.pop_back();
+  if (count > 0) c.build_octree(wavefront);
+  c.set_scales();
+  c.tell();
+  const bool relit = o.status.relighting > 0;  // and some are not yet
+  const StopReason stop = relit ? o.stopped : o.status.stop;
+  if (stop != StopReason::building) c.finish(stop);
+  Spoilt lacks;
+  const uint32_t tertiary = 1u << k_part_tertiary;
+  lacks.light =
+      relit || (c.parts & ~c.held) != 0 || (c.recursive != c.held_recursive && (c.parts & tertiary) != 0);
+  for (size_t s = 0; s < c.routes.size(); ++s)
+    lacks.coverage |= c.routes[s] != k_no_routes && o.routes[s] == k_no_routes;
+  return lacks;
+}
+
+}  // namespace lucerna::irradiance_cache

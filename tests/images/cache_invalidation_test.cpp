@@ -1,0 +1,468 @@
+// links: session
+// What a change leaves of an irradiance cache: every row of irradiance_cache::changes(), and that a cache
+// which is relit where it stands is the one that would have been built in that light.
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <set>
+
+#include "session/renderer.h"
+#include "support/folder.h"
+
+using namespace lucerna;
+using irradiance_cache::RawRecords;
+using irradiance_cache::Spoilt;
+using irradiance_cache::StopReason;
+
+namespace {
+
+using Settings = std::map<std::string, std::string>;
+
+/// A room of four metres, open above to an uneven sky, with a block, a lamp and two cameras.
+scene::Scene room() {
+  scene::Scene s;
+  s.name = "room", s.file = "room.gltf";
+  s.materials.resize(2);
+  for (scene::Material& m : s.materials)
+    m.base_color = vec4(0.7f, 0.6f, 0.5f, 1), m.roughness = 1, m.metallic = 0, m.specular = 0;
+  s.materials[1].base_color = vec4(0.2f, 0.5f, 0.8f, 1);
+  s.materials[1].double_sided = true;  // it may shine
+  const auto box = [&](vec3 lo, vec3 hi, bool open, uint32_t material) {
+    scene::Primitive p;
+    p.material = material;
+    for (int k = 0; k < 8; ++k)
+      p.positions.emplace_back(k & 1 ? hi.x : lo.x, k & 2 ? hi.y : lo.y, k & 4 ? hi.z : lo.z);
+    for (const auto& [a, b, c, d] : {std::array{2u, 3u, 7u, 6u},
+                                     {0u, 1u, 3u, 2u},
+                                     {4u, 6u, 7u, 5u},
+                                     {0u, 2u, 6u, 4u},
+                                     {1u, 5u, 7u, 3u},
+                                     {0u, 4u, 5u, 1u}})
+      p.triangles.emplace_back(a, b, c), p.triangles.emplace_back(a, c, d);
+    if (open) p.triangles.erase(p.triangles.begin(), p.triangles.begin() + 2);
+    s.meshes.push_back({"box", {p}});
+    s.instances.push_back({"box", scene::Id(s.meshes.size() - 1), mat4(1), false});
+  };
+  box({-2, 0, -2}, {2, 2.5f, 2}, true, 0);
+  box({-0.5f, 0, -1}, {0.5f, 1, 0}, false, 1);
+  s.lights.push_back({.name = "lamp", .intensity = vec3(5), .position = {1, 2, 1}});
+  scene::Image sky;
+  sky.name = "sky", sky.width = 8, sky.height = 4;
+  for (int i = 0; i < 32; ++i) {
+    const float value = 0.2f + 0.1f * float(i % 8);
+    sky.floats.insert(sky.floats.end(), {value, value, 1.5f * value, 1});
+  }
+  s.images.push_back(sky);
+  s.environment.image = 0, s.environment.given = true;
+  for (const vec3 eye : {vec3(0, 1.5f, 1.9f), vec3(-1, 2.2f, -1)}) {
+    scene::Camera c;
+    c.name = s.cameras.empty() ? "front" : "above";
+    c.yfov = 1.3f;
+    c.to_world[3] = vec4(eye, 1);
+    s.cameras.push_back(c);
+  }
+  // The second looks down.
+  s.cameras[1].to_world[1] = vec4(0, 0, -1, 0), s.cameras[1].to_world[2] = vec4(0, 1, 0, 0);
+  return s;
+}
+
+const Settings k_base{{"components.secondary", "cache"},
+                      {"components.tertiary", "cache"},
+                      {"cache.rays", "64"},
+                      {"cache.max_rays", "256"},
+                      {"cache.error", "0.6"},
+                      {"cache.max_records", "5000"},
+                      {"samples", "2"},
+                      {"path.batch", "8192"}};
+
+struct Bed {
+  session::Renderer r;
+  explicit Bed(const Settings& more = {})
+      : r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}}) {
+    r.set_size(24, 24);
+    r.settings().set("path.batch", "8192");
+    r.set_scene(std::make_shared<scene::Scene>(room()));
+    set(k_base);
+    if (!more.empty()) set(more);
+  }
+  ~Bed() { CHECK(r.device().validation_messages() == 0); }
+  void set(const Settings& settings) {
+    for (const auto& [key, value] : settings) r.settings().set(key, value);
+    r.apply_settings();
+  }
+  film::Image finish() {
+    while (r.step()) {
+    }
+    return r.image();
+  }
+  const irradiance_cache::CacheStatus& status() const { return r.cache()->status(); }
+  RawRecords records() const { return r.cache()->records().raw(r.cache()->records().size()); }
+  void set_lamp(vec3 intensity, bool enabled = true) {
+    scene::Light lamp = r.scene()->lights[0];
+    lamp.intensity = intensity, lamp.enabled = enabled;
+    r.set_light(0, lamp);
+  }
+  void paint(uint32_t material, vec3 color, float metallic = 0, vec3 emission = vec3(0)) {
+    scene::Material m = r.scene()->materials[material];
+    m.base_color = vec4(color, 1), m.metallic = metallic, m.emission = emission;
+    r.set_material(material, m);
+  }
+};
+
+bool begins(const std::vector<vec4>& a, const std::vector<vec4>& b) {
+  return a.size() >= b.size() && std::memcmp(a.data(), b.data(), b.size() * sizeof(vec4)) == 0;
+}
+/// Whether the first records of `all` are where those of `some` are, and serve as far: position and radius,
+/// normal, origin, facet and pass, to the bit.
+bool same_places(const RawRecords& all, const RawRecords& some) {
+  if (!begins(all.spheres, some.spheres)) return false;
+  for (size_t r = 0; r < some.spheres.size(); ++r) {
+    const vec4 *a = &all.places[r * shared::k_record_texels], *b = &some.places[r * shared::k_record_texels];
+    if (std::memcmp(&a[0], &b[0], sizeof(vec4)) || std::memcmp(&a[1], &b[1], sizeof(vec3)) ||
+        std::memcmp(&a[2].w, &b[2].w, sizeof(float)))
+      return false;
+  }
+  return true;
+}
+bool same_records(const RawRecords& all, const RawRecords& some) {
+  return begins(all.places, some.places) && begins(all.lights, some.lights) &&
+         begins(all.spheres, some.spheres);
+}
+bool same(const film::Image& a, const film::Image& b) {
+  for (size_t c = 0; c < a.components.size(); ++c)
+    if (a.components[c].size() != b.components[c].size() ||
+        std::memcmp(a.components[c].data(), b.components[c].data(), a.components[c].size() * sizeof(vec3)))
+      return false;
+  return a.samples == b.samples;
+}
+
+double mean(const film::Image& image, int component) {
+  double sum = 0;
+  for (const vec3& v : image.components[component]) sum += luminance(v);
+  return sum / double(image.samples.size());
+}
+
+}  // namespace
+
+TEST_CASE("every kind of change spoils what its row says, and nothing else") {
+  const test::Folder folder;
+  const auto file = folder.path / "base.cache";
+  Bed bed;
+  bed.finish();
+  bed.r.save_cache(file);
+  const RawRecords base = bed.records();
+  const uint64_t base_rays = bed.status().rays;
+  REQUIRE(base.size() > 100);
+  REQUIRE(bed.status().stop == StopReason::covered);
+
+  // A change of each kind; for settings, values that differ from k_base and the defaults.
+  const std::map<std::string_view, std::function<void()>> edits{
+      {"camera", [&] { bed.r.choose_camera("above"); }},
+      {"size", [&] { bed.r.set_size(40, 24); }},
+      {"lamp",
+       [&] {
+         bed.set_lamp({9, 2, 1});
+       }},
+      {"environment", [&] { bed.r.set_environment(2, 90); }},
+      {"colour",
+       [&] {
+         bed.paint(1, {0.9f, 0.1f, 0.1f});
+       }},
+      {"material",
+       [&] {
+         bed.paint(1, {0.9f, 0.9f, 0.9f}, 1);
+       }},
+      {"shaders", [&] { bed.r.reload_shaders(); }},
+      {"restart", [&] { bed.r.restart(); }},
+  };
+  const std::map<std::string_view, std::function<void()>> undo{
+      {"camera", [&] { bed.r.choose_camera("front"); }},
+      {"size", [&] { bed.r.set_size(24, 24); }},
+      {"lamp", [&] { bed.set_lamp(vec3(5)); }},
+      {"environment", [&] { bed.r.set_environment(1, 0); }},
+      {"colour", [&] { bed.r.set_material(1, room().materials[1]); }},
+      {"material", [&] { bed.r.set_material(1, room().materials[1]); }},
+  };
+  const std::map<std::string_view, Settings> settings{
+      {"components.", {{"components.primary", "off"}}},
+      {"samples", {{"samples", "3"}}},
+      {"sampling.", {{"sampling.mode", "adaptive"}, {"sampling.max_samples", "64"}}},
+      {"film.", {{"film.ev", "1"}, {"film.layer", "depth"}}},
+      {"show.", {{"show.primary", "false"}}},
+      {"overlay.", {{"overlay.records", "true"}, {"overlay.overlap", "true"}}},
+      {"about", {{"about", "nothing"}}},
+      {"camera", {{"camera", "above"}}},
+      {"tracer", {{"tracer", "host"}}},
+      {"path.batch", {{"path.batch", "4096"}}},
+      {"path.roulette_depth", {{"path.roulette_depth", "7"}}},
+      {"path.max_depth", {{"path.max_depth", "5"}}},
+      {"seed", {{"seed", "3"}}},
+      {"cache.rays", {{"cache.rays", "256"}, {"cache.max_rays", "1024"}}},
+      {"cache.max_rays", {{"cache.max_rays", "1024"}}},
+      {"cache.noise", {{"cache.noise", "0.2"}}},
+      {"cache.environment", {{"cache.environment", "true"}}},
+      {"cache.passes", {{"cache.passes", "3"}}},
+      {"cache.stop", {{"cache.stop", "0.01"}}},
+      {"cache.max_records", {{"cache.max_records", "6000"}}},
+      {"cache.", {{"cache.error", "0.4"}}},
+  };
+  for (const irradiance_cache::Change& row : irradiance_cache::changes()) {
+    INFO("row '" << row.what << "'" << (row.setting ? ", a setting" : ""));
+    if (row.what == "scene") continue;  // see below
+    bed.r.load_cache(file);
+    REQUIRE(bed.r.cache()->ready());
+    REQUIRE(same_records(bed.records(), base));
+
+    const auto take_back = [&] {
+      if (!row.setting) return undo.contains(row.what) ? undo.at(row.what)() : void();
+      Settings before;
+      for (const auto& [key, value] : settings.at(row.what))
+        before[key] = k_base.contains(key) ? k_base.at(key)
+                      : key == "camera"    ? "front"
+                                           : plan::find_option(key)->fallback;
+      bed.set(before);
+    };
+    if (row.setting) {
+      REQUIRE(settings.contains(row.what));
+      bed.set(settings.at(row.what));
+    } else {
+      REQUIRE(edits.contains(row.what));
+      edits.at(row.what)();
+    }
+    const Spoilt& s = row.spoils;
+    CHECK(bed.r.cache()->ready() == (s == irradiance_cache::k_spoils_nothing));
+    if (s.places) {
+      CHECK(bed.r.cache()->records().size() == 0);
+      CHECK(bed.status().rays == 0);
+      take_back();
+      continue;
+    }
+    CHECK(bed.status().relighting == (s.light ? base.size() : 0));
+    CHECK(bed.status().records == (s.light ? 0 : base.size()));
+    bed.finish();
+    CHECK(bed.r.cache()->ready());
+    const RawRecords now = bed.records();
+    INFO(now.size() << " records of " << base.size() << ", rays " << bed.status().rays << " of "
+                    << base_rays);
+    CHECK(same_places(now, base));
+    CHECK(begins(now.lights, base.lights) == !s.light);
+    if (!s.coverage) CHECK(now.size() == base.size());
+    if (!s.light) CHECK(bed.status().rays >= base_rays);
+    if (!s.light && !s.coverage) CHECK(bed.status().rays == base_rays);
+    if (s.light) CHECK(bed.status().rays >= uint64_t{64} * base.size());
+    CHECK(bed.status().relighting == 0);
+    take_back();
+  }
+  // Another scene, be it the same again.
+  bed.r.set_scene(std::make_shared<scene::Scene>(room()));
+  bed.set(k_base);
+  CHECK(bed.r.cache()->records().size() == 0);
+}
+
+TEST_CASE("every setting has a row, and those of the cache that are not named spoil all") {
+  std::set<std::string_view> named;
+  for (const irradiance_cache::Change& row : irradiance_cache::changes()) {
+    CHECK(named.insert(row.what).second == (row.what != "camera" || !row.setting));
+    CHECK_FALSE(row.why.empty());
+    // Places without light or coverage make no sense.
+    if (row.spoils.places) CHECK(row.spoils == irradiance_cache::k_spoils_all);
+  }
+  for (const plan::OptionInfo& o : plan::options()) {
+    bool found = false;
+    for (const irradiance_cache::Change& row : irradiance_cache::changes())
+      found |= row.setting && o.key.starts_with(row.what);
+    INFO(o.key);
+    CHECK(found);
+    // What does not begin the picture anew cannot spoil records.
+    if (!o.restarts) CHECK(irradiance_cache::spoilt_by_setting(o.key) == irradiance_cache::k_spoils_nothing);
+  }
+  CHECK(irradiance_cache::spoilt_by_setting("cache.of_tomorrow") == irradiance_cache::k_spoils_all);
+  CHECK(irradiance_cache::spoilt_by_setting("unheard.of") == irradiance_cache::k_spoils_all);
+}
+
+TEST_CASE("a cache that is relit is the one that would have been built in that light, to the bit") {
+  Bed relit;
+  relit.finish();
+  const RawRecords before = relit.records();
+  const auto compare = [&](const char* what, const std::function<void(Bed&)>& change) {
+    INFO(what);
+    change(relit);
+    REQUIRE_FALSE(relit.r.cache()->ready());
+    const film::Image picture = relit.finish();
+    Bed fresh;
+    change(fresh);
+    const film::Image expected = fresh.finish();
+    CHECK(same_places(relit.records(), before));
+    CHECK_FALSE(begins(relit.records().lights, before.lights));
+    CHECK(same_records(relit.records(), fresh.records()));
+    CHECK(relit.records().size() == fresh.records().size());
+    CHECK(relit.status().stop == fresh.status().stop);
+    CHECK(same(picture, expected));
+    // What is spent is the rays of the records, without those that tried places.
+    CHECK(relit.status().rays < fresh.status().rays);
+  };
+  compare("another colour of the lamp", [](Bed& b) { b.set_lamp({1, 4, 2}); });
+  // Other kernels: no lamp is compiled in.
+  compare("the lamp off", [](Bed& b) { b.set_lamp({1, 4, 2}, false); });
+  compare("the sky brighter and turned", [](Bed& b) {
+    b.set_lamp({1, 4, 2}, false);
+    b.r.set_environment(3, 120);
+  });
+  // Taken back it is the cache that there was.
+  relit.paint(1, vec3(room().materials[1].base_color));
+  relit.r.set_environment(1, 0);
+  relit.set_lamp(vec3(5));
+  relit.finish();
+  CHECK(same_records(relit.records(), before));
+}
+
+TEST_CASE("a material that shines, mirrors, or is diffuse again brings its light and its records") {
+  Bed bed;
+  bed.finish();
+  const RawRecords base = bed.records();
+  // A mirror asks for no records; those on it stay and harm nobody.
+  bed.paint(1, {0.9f, 0.9f, 0.9f}, 1);
+  const film::Image mirror = bed.finish();
+  CHECK(same_places(bed.records(), base));
+  CHECK(mean(mirror, 3) > 0);
+  bed.paint(1, {0, 0, 0}, 0, {500, 0, 0});
+  const film::Image lamp = bed.finish();
+  CHECK(same_places(bed.records(), base));
+  // The block's light is in the records of the walls.
+  double red = 0, green = 0;
+  for (const auto& r : bed.r.cache()->records().read())
+    red += double(r.parts[1].value.x), green += double(r.parts[1].value.y);
+  CHECK(red > 2 * green);
+  // Begun as a mirror, it has no records until it is painted.
+  Bed second;
+  second.paint(1, {0.9f, 0.9f, 0.9f}, 1);
+  second.finish();
+  const uint32_t without = second.records().size();
+  second.paint(1, {0.2f, 0.5f, 0.8f});
+  CHECK(second.status().relighting == without);
+  second.finish();
+  CHECK(second.records().size() > without);
+  // What rays find as the scene's shape is not edited; nothing has changed then.
+  scene::Material glass = second.r.scene()->materials[1];
+  glass.name = "block", glass.transmission = 1;
+  CHECK_THROWS_WITH(second.r.set_material(1, glass), Catch::Contains("cannot be changed"));
+  CHECK_THROWS_WITH(second.r.set_material(7, glass), Catch::Contains("there is no material 7"));
+  CHECK(second.r.cache()->ready());
+  CHECK(second.r.scene()->materials[1].transmission == 0);
+}
+
+TEST_CASE("another colour brings the light of a cache built with it") {
+  // Which paths go on depends on what they carry, so that a few records are placed elsewhere.
+  Bed relit, fresh;
+  relit.finish();
+  const RawRecords before = relit.records();
+  relit.paint(1, {0.9f, 0.1f, 0.1f});
+  fresh.paint(1, {0.9f, 0.1f, 0.1f});
+  const film::Image picture = relit.finish(), expected = fresh.finish();
+  CHECK(same_places(relit.records(), before));
+  CHECK(std::abs(int(relit.records().size()) - int(fresh.records().size())) <= int(before.size() / 20));
+  for (const int c : {1, 2}) CHECK(mean(picture, c) == Approx(mean(expected, c)).epsilon(0.03));
+}
+
+TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
+  Bed straight, bed;
+  const film::Image before = straight.finish();
+  straight.set_lamp({9, 2, 1});
+  const film::Image expected = straight.finish();
+  bed.finish();
+  // Another light in the middle of relighting, and every other piece of work cancelled.
+  bed.set_lamp({0, 0, 7});
+  for (int i = 0; i < 3; ++i) bed.r.step();
+  CHECK(bed.status().relighting > 0);
+  // What is relit serves and is counted; the picture waits.
+  CHECK(bed.status().records <= bed.status().relighting);
+  CHECK(bed.r.samples() == 0);
+  bed.set_lamp({9, 2, 1});
+  int cancelled = 0;
+  uint64_t published = bed.status().published;
+  uint32_t records = 0, levels = 0;
+  for (int i = 0; !bed.r.cache()->ready(); ++i) {
+    cancelled += !bed.r.step([&] { return i % 2 == 1; });
+    CHECK(bed.status().published >= published);
+    levels += bed.status().published > published;
+    published = bed.status().published;
+    if (bed.status().relighting > 0) {
+      CHECK(bed.status().records >= records);
+      records = bed.status().records;
+    }
+  }
+  CHECK(cancelled > 2);
+  CHECK(levels > 2);  // progress is seen
+  CHECK(same(expected, bed.finish()));
+  CHECK(same_records(bed.records(), straight.records()));
+
+  // The camera moves while records are relit: they are, and then more are placed.
+  bed.set_lamp(vec3(5));
+  bed.r.step();
+  bed.r.choose_camera("above");
+  CHECK(bed.status().relighting > 0);
+  bed.finish();
+  const RawRecords more = bed.records();
+  CHECK(same_places(more, straight.records()));
+  CHECK(more.size() > straight.records().size());
+  // ... and none of them has light of before: back in front nothing is missing but little.
+  bed.r.choose_camera("front");
+  bed.finish();
+  CHECK(bed.records().size() <= more.size() + more.size() / 20);
+
+  // In the middle of building: what has been placed stays, the rest is built in the new light.
+  Bed building;
+  while (building.r.cache()->records().size() == 0 || building.status().records < 20) building.r.step();
+  building.set_lamp({9, 2, 1});
+  CHECK_FALSE(building.r.cache()->ready());
+  building.finish();
+  CHECK(building.status().stop == StopReason::covered);
+  for (const auto& record : building.r.cache()->records().read()) {
+    CHECK(record.rays >= 64);
+    CHECK(record.radius > 0);
+  }
+
+  // Built without an interruption the first picture is still what it was.
+  Bed again;
+  CHECK(same(before, again.finish()));
+}
+
+TEST_CASE("components that are switched off leave records whole, and find them when they are back") {
+  Bed bed;
+  const film::Image both = bed.finish();
+  const RawRecords base = bed.records();
+  const uint64_t rays = bed.status().rays;
+  for (const Settings& off : {Settings{{"components.tertiary", "off"}},
+                              {{"components.secondary", "off"}},
+                              {{"components.primary", "off"}, {"components.caustic", "off"}}}) {
+    INFO(off.begin()->first);
+    bed.set(off);
+    CHECK(bed.r.cache()->ready());
+    bed.finish();
+    CHECK(same_records(bed.records(), base));
+    bed.set({{"components.primary", "path"},
+             {"components.caustic", "path"},
+             {"components.secondary", "cache"},
+             {"components.tertiary", "cache"}});
+    CHECK(bed.r.cache()->ready());
+    CHECK(same(both, bed.finish()));
+    CHECK(bed.status().rays == rays);
+  }
+  // Relit while tertiary light is off, records lack it: back on, they are relit again.
+  bed.set({{"components.tertiary", "off"}});
+  bed.set_lamp({9, 2, 1});
+  bed.finish();
+  bed.set({{"components.tertiary", "cache"}});
+  CHECK(bed.status().relighting == base.size());
+  const film::Image relit = bed.finish();
+  Bed fresh;
+  fresh.set_lamp({9, 2, 1});
+  CHECK(same(relit, fresh.finish()));
+  // Tertiary light is path traced behind the records, or theirs is read: gathered otherwise.
+  bed.set({{"components.tertiary", "path"}});
+  CHECK(bed.status().relighting == base.size());
+  bed.finish();
+  CHECK(same_places(bed.records(), base));
+  // Fewer than there are: there is no room to keep them.
+  bed.set({{"cache.max_records", std::to_string(base.size() - 1)}});
+  CHECK(bed.r.cache()->records().size() == 0);
+}

@@ -1,0 +1,332 @@
+// links: session
+// Where an irradiance cache could go wrong: walls between light and dark, corners, normal maps, coordinates
+// far from the origin, too little room, nothing to do. Everywhere the picture is that of the path tracer
+// within a stated bias, because what no record can serve is path traced.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "base/log.h"
+#include "session/renderer.h"
+
+using namespace lucerna;
+using irradiance_cache::StopReason;
+
+namespace {
+
+using Settings = std::map<std::string, std::string>;
+constexpr uint32_t k_size = 32;
+
+const Settings k_both{
+    {"components.secondary", "cache"}, {"components.tertiary", "cache"}, {"cache.max_records", "20000"}};
+/// Radii as wide as they may be, so that only what limits them keeps records from reaching where they must
+/// not.
+const Settings k_wide{{"components.secondary", "cache"},
+                      {"components.tertiary", "cache"},
+                      {"cache.max_records", "20000"},
+                      {"cache.error", "1"},
+                      {"cache.max_radius", "1"},
+                      {"cache.min_radius", "0.5"},
+                      {"cache.rays", "1024"},
+                      {"cache.max_rays", "1024"}};
+
+/// A closed room of 2 x 1 x 2 m around `at`, its corner o, with a lit panel under the ceiling's right half;
+/// the camera is under the ceiling and looks down: right is +x, up in the picture -z. Its materials: 0 walls,
+/// 1 panel.
+struct Room {
+  scene::Scene s;
+  vec3 at;
+  explicit Room(vec3 place = vec3(0), bool lit = true) : at(place) {
+    s.name = "room", s.file = "room.gltf";
+    s.materials.resize(2);
+    for (scene::Material& m : s.materials)
+      m.base_color = vec4(0.7f, 0.7f, 0.7f, 1), m.roughness = 1, m.metallic = 0, m.specular = 0;
+    s.materials[1].emission = vec3(lit ? 10.0f : 0.0f), s.materials[1].base_color = vec4(0, 0, 0, 1);
+    s.environment.given = true;
+    const vec3 x(2, 0, 0), y(0, 1, 0), z(0, 0, 2), o(-1, 0, -1);
+    quad(o, z, x), quad(o + y, x, z);
+    quad(o, x, y), quad(o + z, y, x);
+    quad(o, y, z), quad(o + x, z, y);
+    quad({0.3f, 0.99f, -0.5f}, {0.6f, 0, 0}, {0, 0, 1}, 1);
+    scene::Camera camera;
+    camera.yfov = 1.4f;
+    camera.to_world =
+        mat4(vec4(1, 0, 0, 0), vec4(0, 0, -1, 0), vec4(0, 1, 0, 0), vec4(at + vec3(0, 0.98f, 0), 1));
+    s.cameras = {camera};
+  }
+  /// A parallelogram, counter-clockwise from its front, textured from 0 to 1.
+  void quad(vec3 a, vec3 u, vec3 v, uint32_t material = 0) {
+    scene::Primitive p;
+    p.material = material;
+    a += at;
+    p.positions = {a, a + u, a + u + v, a + v};
+    p.normals.assign(4, normalize(cross(u, v)));
+    p.tangents.assign(4, vec4(normalize(u), 1));
+    p.uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    p.triangles = {{0, 1, 2}, {0, 2, 3}};
+    s.meshes.push_back({"quad", {p}});
+    s.instances.push_back({"quad", scene::Id(s.meshes.size() - 1), mat4(1), false});
+  }
+  /// A wall in the middle, from z0 to z1 and up to `height`, so thick; with 0 a single sheet.
+  void wall(float z0, float z1, float height, float thickness) {
+    const vec3 w(0, 0, z1), z(0, 0, z0 - z1), h(0, height, 0), t(thickness / 2, 0, 0);
+    quad(w - t, h, z);
+    if (thickness <= 0) return;
+    quad(w + t, z, h);
+    quad(w + h - t, 2.0f * t, z);
+    quad(vec3(0, 0, z1) - t, 2.0f * t, h), quad(vec3(0, 0, z0) - t, h, 2.0f * t);
+  }
+};
+
+struct Picture {
+  film::Image image;
+  irradiance_cache::CacheStatus cache;
+  double rays_a_path = 0;  ///< of the picture's
+  uint64_t prepared_rays = 0;
+};
+
+Picture render(const scene::Scene& scene, const Settings& settings, uint32_t samples) {
+  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  r.set_size(k_size, k_size);
+  r.set_scene(std::make_shared<scene::Scene>(scene));
+  for (const auto& [key, value] : settings) r.settings().set(key, value);
+  r.settings().set("samples", std::to_string(samples));
+  r.apply_settings();
+  while (r.step()) {
+  }
+  r.finish_ledger();
+  CHECK(r.device().validation_messages() == 0);
+  CHECK(r.stats().dropped == 0);
+  Picture p{r.image(), {}, 0, r.ledger().entries().back().prepared_rays};
+  if (r.cache()) p.cache = r.cache()->status();
+  p.rays_a_path = double(r.stats().rays - p.prepared_rays) / double(r.stats().paths);
+  return p;
+}
+
+struct Mean {
+  double value = 0, noise = 0;  ///< standard error, from the two halves
+};
+/// Of a component over a block of 8x8 pixels, without the `middle` columns on either side of the picture's
+/// middle.
+Mean block_mean(const Picture& p, int component, uint32_t across, uint32_t down, uint32_t middle = 0) {
+  Mean m;
+  int count = 0;
+  for (uint32_t i = 0; i < 64; ++i) {
+    const uint32_t x = across * 8 + i % 8;
+    if (x + middle >= k_size / 2 && x < k_size / 2 + middle) continue;
+    const size_t pixel = size_t{down * 8 + i / 8} * k_size + x;
+    const double y = luminance(p.image.components[component][pixel]),
+                 odd = luminance(p.image.odd_half[component][pixel]);
+    m.value += y, m.noise += (y - odd) * (y - odd), ++count;
+  }
+  m.value /= count, m.noise = std::sqrt(m.noise) / count;
+  return m;
+}
+
+/// Every block of secondary and tertiary light is the path tracer's within `bias` of it and the noise of
+/// both: 4.5 standard errors, 3e-4 for all 32 of them together. Returns the root mean square of what blocks
+/// are off by, the noise taken off, over the layers' means.
+double compare(const Picture& path, const Picture& cached, double bias, uint32_t middle = 0) {
+  double sum = 0;
+  for (const int c : {1, 2}) {
+    double squares = 0, mean = 0;
+    for (uint32_t down = 0; down < k_size / 8; ++down)
+      for (uint32_t across = 0; across < k_size / 8; ++across) {
+        const Mean truth = block_mean(path, c, across, down, middle),
+                   value = block_mean(cached, c, across, down, middle);
+        const double noise = std::hypot(truth.noise, value.noise), off = value.value - truth.value;
+        INFO("component " << c << ", block " << across << ", " << down << ": " << value.value << " of "
+                          << truth.value << ", noise " << noise);
+        CHECK(std::abs(off) <= bias * truth.value + 4.5 * noise);
+        CHECK(truth.value > 0);
+        squares += (off * off - noise * noise) / 16, mean += truth.value / 16;
+      }
+    sum += std::sqrt(std::max(0.0, squares)) / mean / 2;
+  }
+  return sum;
+}
+
+/// What is logged as a warning or an error while it lives.
+struct Complaints {
+  std::vector<std::string> lines;
+  int token = log::add_listener([this](log::Level level, const std::string& line) {
+    if (level >= log::Level::warning) lines.push_back(line);
+  });
+  ~Complaints() { log::remove_listener(token); }
+};
+
+/// The wall at x = 1 of the room, with a normal map of 8 x 8 texels: a quarter of them straight, the others
+/// tilted by `degrees` in different directions.
+scene::Scene mapped_room(float degrees) {
+  Room room;
+  scene::Scene& s = room.s;
+  scene::Image map;
+  map.name = "tilted", map.width = map.height = 8;
+  const float tilt = degrees * k_pi / 180;
+  for (int i = 0; i < 64; ++i) {
+    const int kind = i % 2 + 2 * (i / 8 % 2), turn = (i / 2 + i / 16) % 4;
+    const float a = turn * k_pi / 2 + 0.4f, t = kind == 0 ? 0 : tilt;
+    const vec3 n(std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t));
+    for (int k = 0; k < 3; ++k) map.bytes.push_back(uint8_t(std::lround(127.5f * n[k] + 127.5f)));
+    map.bytes.push_back(255);
+  }
+  s.images = {map};
+  s.textures = {{.image = 0, .nearest = true}};
+  s.materials.push_back(s.materials[0]);
+  s.materials.back().normal_texture.texture = 0;
+  // In the room, before its back wall, the whole of the camera's view.
+  room.quad({-0.99f, 0.01f, -0.98f}, {1.98f, 0, 0}, {0, 0.98f, 0}, 2);
+  s.cameras[0].to_world = mat4(1);
+  s.cameras[0].to_world[3] = vec4(0, 0.5f, 0.2f, 1);
+  s.cameras[0].yfov = 0.7f;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("light does not leak through walls, around their ends, or far from the origin") {
+  struct Place {
+    const char* what;
+    vec3 at;
+    float z0, z1, height, thickness;
+  };
+  for (const Place& p :
+       {Place{"a sheet", {0, 0, 0}, -1, 1, 0.9f, 0},
+        Place{"a millimetre, with a door", {0, 0, 0}, -1, 0.5f, 0.9f, 0.001f},
+        Place{"five centimetres, ten kilometres away", {1e4f, 1e4f, -1e4f}, -1, 0.5f, 0.9f, 0.05f}}) {
+    INFO(p.what);
+    Room room(p.at);
+    room.wall(p.z0, p.z1, p.height, p.thickness);
+    const Picture path = render(room.s, {}, 256), cached = render(room.s, k_wide, 16);
+    // A record serves half a pixel around it at least (cache.min_radius), through whatever stands there: what
+    // the columns at the wall show is left out.
+    const double off = compare(path, cached, 0.2, 1);
+    INFO("off by " << off);
+    CHECK(off < 0.06);
+    CHECK(cached.cache.records > 50);
+    // The left half is dark, so that light would be seen there.
+    CHECK(block_mean(path, 1, 1, 1).value < 0.5 * block_mean(path, 1, 2, 1).value);
+    // And it is looked up: not all of it is path traced.
+    CHECK(cached.rays_a_path < 0.7 * path.rays_a_path);
+  }
+}
+
+TEST_CASE("normal maps tilt what records bring as far as they can, and beyond that light is path traced") {
+  double rays[3];
+  int i = 0;
+  for (const float degrees : {0.0f, 12.0f, 45.0f}) {
+    INFO(degrees << " degrees");
+    const scene::Scene room = mapped_room(degrees);
+    const Picture path = render(room, {}, 128), cached = render(room, k_both, 32);
+    const double off = compare(path, cached, 0.08);
+    INFO("off by " << off);
+    CHECK(off < 0.05);
+    rays[i++] = cached.rays_a_path / path.rays_a_path;
+  }
+  INFO("rays a path over those of the path tracer: " << rays[0] << ", " << rays[1] << ", " << rays[2]);
+  // Within the records' reach nothing is traced that is not on the straight wall; three quarters of the steep
+  // one are.
+  CHECK(rays[1] < rays[0] + 0.05);
+  CHECK(rays[2] > rays[0] + 0.3);
+}
+
+TEST_CASE("the smaller the error bound, the nearer the picture comes to the path tracer's") {
+  Room room;
+  room.wall(-1, 0.5f, 0.6f, 0.1f);
+  const Picture path = render(room.s, {}, 512);
+  double before = 1;
+  // Radii in all their bounds; what records may be off by in a block, and in all.
+  struct Bound {
+    const char *error, *least, *most;
+    double block, all;
+  };
+  for (const auto& [error, least, most, block, all] : {Bound{"1", "16", "0.5", 4, 0.4},
+                                                       {"0.4", "2", "0.1", 0.1, 0.02},
+                                                       {"0.15", "0.5", "0.1", 0.05, 0.015}}) {
+    INFO("error bound " << error);
+    Settings settings = k_both;
+    settings["cache.error"] = error, settings["cache.min_radius"] = least;
+    settings["cache.max_radius"] = most;
+    settings["cache.noise"] = "0.02", settings["cache.max_rays"] = "1024";
+    const Picture cached = render(room.s, settings, 16);
+    const double off = compare(path, cached, block);
+    UNSCOPED_INFO("error bound " << error << ": " << cached.cache.records << " records, off by " << off);
+    CHECK(off < all);
+    // So much is left of records' noise.
+    CHECK(off < std::max(0.015, 0.3 * before));
+    before = off;
+  }
+}
+
+TEST_CASE("a cache with too little room says so once, and what it cannot hold is path traced") {
+  Room room;
+  room.wall(-1, 0.5f, 0.6f, 0.1f);
+  Settings settings = k_both;
+  settings["cache.max_records"] = "40";
+  const Complaints complaints;
+  const Picture path = render(room.s, {}, 256), cached = render(room.s, settings, 128);
+  CHECK(cached.cache.stop == StopReason::records);
+  CHECK(cached.cache.records == 40);
+  CHECK(compare(path, cached, 0.1) < 0.04);
+  REQUIRE(complaints.lines.size() == 1);
+  CHECK_THAT(complaints.lines[0], Catch::Contains("the irradiance cache is full with 40 records") &&
+                                      Catch::Contains("path traced") && Catch::Contains("cache.max_records"));
+}
+
+TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing and says nothing") {
+  const Complaints complaints;
+  Room mirrors;
+  mirrors.s.materials[0].metallic = 1, mirrors.s.materials[0].roughness = 0.2f;
+  const Picture none = render(mirrors.s, k_both, 4), same = render(mirrors.s, {}, 4);
+  CHECK(none.cache.records == 0);
+  CHECK(none.cache.rays == 0);
+  CHECK(none.cache.stop == StopReason::covered);
+  CHECK(none.image.components[0] == same.image.components[0]);
+
+  const Picture dark = render(Room(vec3(0), false).s, k_both, 4);
+  CHECK(dark.cache.records == 0);
+  CHECK(dark.cache.rays == 0);
+  CHECK(dark.cache.stop == StopReason::dark);
+  CHECK(dark.prepared_rays == 0);
+  for (const auto& component : dark.image.components)
+    for (const vec3& v : component) REQUIRE(v == vec3(0));
+
+  // A lamp that goes off leaves records to be relit when it is back, wherever the camera has gone.
+  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  r.set_size(24, 24);
+  Room room(vec3(0), false);
+  room.s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {0.5f, 0.8f, 0.5f}});
+  r.set_scene(std::make_shared<scene::Scene>(room.s));
+  for (const auto& [key, value] : k_wide) r.settings().set(key, value);
+  r.settings().set("samples", "2");
+  r.apply_settings();
+  const auto finish = [&] {
+    while (r.step()) {
+    }
+    return r.image();
+  };
+  const film::Image lit = finish();
+  const uint32_t records = r.cache()->status().records;
+  REQUIRE(records > 20);
+  scene::Light lamp = room.s.lights[0];
+  lamp.enabled = false;
+  r.set_light(0, lamp);
+  for (int move = 0; move < 2; ++move) {
+    const film::Image off = finish();
+    CHECK(r.cache()->ready());
+    CHECK(r.cache()->status().rays == 0);
+    CHECK(r.cache()->status().passes.size() <= 1);
+    for (const auto& component : off.components)
+      for (const vec3& v : component) REQUIRE(v == vec3(0));
+    r.set_camera(room.s.cameras[0]);
+  }
+  finish();
+  lamp.enabled = true;
+  r.set_light(0, lamp);
+  CHECK(r.cache()->status().relighting == records);
+  const film::Image again = finish();
+  for (size_t c = 0; c < 4; ++c)
+    for (size_t i = 0; i < lit.samples.size(); ++i)
+      CHECK(luminance(again.components[c][i]) ==
+            Approx(luminance(lit.components[c][i])).epsilon(0.2).margin(0.01));
+  CHECK(complaints.lines.empty());
+}
