@@ -230,7 +230,11 @@ TEST_CASE("candidates are collected in the order of their slots, those seen stra
     }
     const uint32_t each = by_origin[1] + by_origin[2] + (screen_too ? by_origin[0] : 0);
     REQUIRE(bench.placement.size() == 2 * each);
+    CHECK(bench.placement.choice().candidates.size() == 2 * each);
+    CHECK(bench.placement.choice().cluster.empty());
+    CHECK(bench.placement.clusters() == 0);
     bench.placement.choose(bench.stream, {});
+    CHECK(bench.placement.clusters() == bench.placement.choice().cluster.back() + 1);
     // Twice along a line: sorted, each place comes twice.
     const Choice all = bench.placement.choice();
     uint32_t at = 0;

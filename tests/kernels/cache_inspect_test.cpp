@@ -433,7 +433,7 @@ TEST_CASE("detail of the geometry is dark on walls and bright at edges, and wide
 TEST_CASE("what is chosen of a pass's candidates can be read until the next pass") {
   session::Renderer& r = bed();
   r.restart();
-  while (r.cache()->choice().candidates.empty()) REQUIRE(r.step());
+  while (r.cache()->choice().chosen.empty()) REQUIRE(r.step());
   const irradiance_cache::Choice all = r.cache()->choice();
   const irradiance_cache::CachePass& pass = r.cache()->status().passes.back();
   CHECK(all.candidates.size() == pass.candidates);

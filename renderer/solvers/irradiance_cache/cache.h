@@ -137,8 +137,8 @@ class Cache {
   /// the view's. The stream is run.
   void draw_discontinuity(transport::Wavefront& wavefront, const film::Film& film, const CacheView& view,
                           Discontinuity::Of of, uint32_t level);
-  /// What has been chosen of the candidates of the present pass, until the next one begins to collect; empty
-  /// before. Read from the device.
+  /// The candidates of the present pass so far, and what has been chosen of them, until the next pass begins;
+  /// Placement::choice(). Read from the device.
   Choice choice() const;
 
  private:

@@ -206,6 +206,7 @@ void Placement::add(gpu::Stream& stream, std::span<const Place> list) {
 std::vector<Place> Placement::choose(gpu::Stream& stream, const ChoiceOptions& o) {
   Impl& p = *impl_;
   p.picks.clear(), p.first_starts.clear();
+  p.sorted = nullptr;
   if (p.size == 0 || o.most == 0) return {};
   uint32_t n = p.size;
   for (gpu::Buffer& e : p.entries) p.ensure(e, "candidates' keys", uint64_t{n} * sizeof(SortEntry64));
@@ -286,11 +287,15 @@ std::vector<Place> Placement::choose(gpu::Stream& stream, const ChoiceOptions& o
 Choice Placement::choice() const {
   const Impl& p = *impl_;
   Choice all;
-  if (!p.sorted) return all;
+  if (p.size == 0) return all;
   std::vector<vec4> places(p.size), facings(p.size);
-  std::vector<SortEntry64> entries(p.size);
   p.places.read(places.data(), p.size * sizeof(vec4));
   p.facings.read(facings.data(), p.size * sizeof(vec4));
+  if (!p.sorted) {
+    for (uint32_t i = 0; i < p.size; ++i) all.candidates.push_back(place_of(places[i], facings[i]));
+    return all;
+  }
+  std::vector<SortEntry64> entries(p.size);
   p.sorted->read(entries.data(), p.size * sizeof(SortEntry64));
   std::vector<uint32_t> rank_of(p.size);
   for (uint32_t i = 0, cluster = 0; i < p.size; ++i) {
@@ -303,6 +308,8 @@ Choice Placement::choice() const {
   for (const uint32_t pick : p.picks) all.chosen.push_back(rank_of[pick]);
   return all;
 }
+
+uint32_t Placement::clusters() const { return uint32_t(impl_->first_starts.size()); }
 
 std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const float> radii,
                                const ThinningOptions& o) {

@@ -66,8 +66,10 @@ class Placement {
   /// In Morton order; the same for the same candidates on any device. A place covers those of its cluster
   /// that are no farther than both reaches. The stream is run.
   std::vector<Place> choose(gpu::Stream& stream, const ChoiceOptions& options);
-  /// As choose() has last seen the candidates; reads them from the device.
+  /// As choose() has last seen the candidates; before, those there are in the order in which they were
+  /// collected, without clusters. Reads them from the device.
   Choice choice() const;
+  uint32_t clusters() const;  ///< of the last choice; 0 before
 
  private:
   struct Impl;
