@@ -104,8 +104,9 @@ std::vector<OptionInfo> make_options() {
                "that it sees; hessian: how its light bends from place to place, with ellipses that are "
                "longer where it bends less."},
       real("cache.error", "0.3", 0.01, 1, "",
-           "Irradiance cache: how far records serve, by either metric. Smaller: more records, less error. "
-           "split-sphere: radius over the harmonic mean distance of what a record sees."),
+           "Irradiance cache: how far records serve: radii are in proportion to it, by either metric. "
+           "Smaller: more records, less error. split-sphere: radius over the harmonic mean distance of what "
+           "a record sees."),
       real("cache.min_radius", "3", 0, 100, "pixels",
            "Irradiance cache: least radius of a record, as the camera sees it."),
       real("cache.max_radius", "0.1", 0.001, 1, "of the scene's radius",

@@ -119,9 +119,10 @@ struct Session::Impl {
     next.preparing.clear();
     if (const irradiance_cache::Cache* cache = r.cache(); cache && !cache->ready()) {
       const irradiance_cache::CacheStatus& c = cache->status();
-      next.preparing = c.relighting > 0
-                           ? fmt::format("cache: {} of {} records relit", c.records, c.relighting)
-                           : fmt::format("cache, pass {}: {} records", c.pass + 1, cache->records().size());
+      next.preparing =
+          c.relighting > 0
+              ? fmt::format("cache: relighting {} records, {:.0f} %", c.relighting, 100 * c.relit)
+              : fmt::format("cache, pass {}: {} records", c.pass + 1, cache->records().size());
     }
     next.cache = r.cache_report();
     next.seconds = seconds;

@@ -381,6 +381,7 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
   int cancelled = 0;
   uint64_t published = bed.status().published;
   uint32_t records = 0, levels = 0;
+  float share = 0;
   for (int i = 0; !bed.r.cache()->ready(); ++i) {
     cancelled += !bed.r.step([&] { return i % 2 == 1; });
     CHECK(bed.status().published >= published);
@@ -389,10 +390,13 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
     if (bed.status().relighting > 0) {
       CHECK(bed.status().records >= records);
       records = bed.status().records;
+      CHECK(bed.status().relit >= share);
+      share = bed.status().relit;
     }
   }
   CHECK(cancelled > 2);
   CHECK(levels > 2);  // progress is seen
+  CHECK(share > 0.9f);
   CHECK(same(expected, bed.finish()));
   CHECK(same_records(bed.records(), straight.records()));
 

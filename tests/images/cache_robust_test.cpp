@@ -196,7 +196,7 @@ TEST_CASE("light does not leak through walls, around their ends, or far from the
     INFO(p.what);
     Room room(p.at);
     room.wall(p.z0, p.z1, p.height, p.thickness);
-    const Picture path = render(room.s, {}, 256), cached = render(room.s, k_wide, 16);
+    const Picture path = render(room.s, {}, 128), cached = render(room.s, k_wide, 16);
     // A record serves half a pixel around it at least (cache.min_radius), through whatever stands there: what
     // the columns at the wall show is left out.
     const double off = compare(path, cached, 0.2, 1);
@@ -263,7 +263,7 @@ TEST_CASE("a cache with too little room says so once, and what it cannot hold is
   Settings settings = k_both;
   settings["cache.max_records"] = "40";
   const Complaints complaints;
-  const Picture path = render(room.s, {}, 256), cached = render(room.s, settings, 128);
+  const Picture path = render(room.s, {}, 128), cached = render(room.s, settings, 64);
   CHECK(cached.cache.stop == StopReason::records);
   CHECK(cached.cache.records == 40);
   CHECK(compare(path, cached, 0.1) < 0.04);

@@ -223,6 +223,9 @@ bool Cache::Impl::evaluate(const Work& w) {
     if (done < batch) return false;
     took(BuildStep::evaluate, timer.milliseconds());
     at += done;
+    if (status.relighting > 0 && level == 0)
+      status.relit = (float(evaluated) + float(until - evaluated) * float(at) / float(list.size())) /
+                     float(status.relighting);
     spent(done, rays);
     if (at < list.size()) return true;
     rays_before += rays;
@@ -244,12 +247,13 @@ void Cache::Impl::publish_level(const Work& w) {
   // the first, of few rays, then is all that is traced without the records of its own pass.
   ++status.published;
   if (evaluated == until) return;
-  if (until > kept) {
+  // Ellipses are by the light; circles stand.
+  if (until > standing || options.metric == Metric::hessian) {
     set_radii(w, true);
     hold();
   }
   evaluated = status.records = until;
-  kept = std::max(kept, evaluated);
+  standing = std::max(standing, evaluated);
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
   took(BuildStep::octree, timer.milliseconds());

@@ -53,7 +53,7 @@ struct Cache::Impl {
   uint64_t own_bytes = 0;  // of device memory, without those two
   std::vector<Place> tried;
   uint32_t evaluated = 0;       // records up to here have light and radius, and are in the octree
-  uint32_t kept = 0;            // ... and up to here place and radius: more, while they are relit
+  uint32_t standing = 0;        // ... and up to here place and radius: more, while they are relit
   uint32_t until = 0;           // those of the pass in progress end here
   std::vector<uint32_t> ends;   // of the records of each complete pass
   uint32_t held = 0;            // parts that all complete records hold; `parts` at least
@@ -72,6 +72,8 @@ struct Cache::Impl {
   bool measure(const Work& work);
   bool evaluate(const Work& work);
   void finish(StopReason reason);
+  /// What is placed and not evaluated is dropped, and what was asked for.
+  void drop_pass();
   void relight();
   /// The records of the next pass that stand without light; after the last, building goes on where it was.
   void relight_pass();

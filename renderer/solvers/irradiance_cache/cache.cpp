@@ -138,11 +138,18 @@ void Cache::clear() {
   c.status = {.bytes = c.status.bytes, .published = c.status.published};
   c.stage = Stage::probe;
   c.probing = false;
-  c.evaluated = c.kept = c.until = 0;
+  c.evaluated = c.standing = c.until = 0;
   c.ends.clear();
   c.hold();
   c.stopped = StopReason::building;
   c.tell();
+}
+
+void Cache::Impl::drop_pass() {
+  records.truncate(standing);
+  stage = Stage::probe;
+  probing = false;
+  placement.clear(), tried.clear();
 }
 
 void Cache::extend() {
@@ -152,10 +159,7 @@ void Cache::extend() {
   c.stale = true;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped.
   if (c.stage != Stage::evaluate) {
-    c.records.truncate(c.kept);
-    c.stage = Stage::probe;
-    c.probing = false;
-    c.placement.clear();
+    c.drop_pass();
     if (c.status.relighting > 0) c.relight_pass();  // they have been waiting in the dark
   }
 }

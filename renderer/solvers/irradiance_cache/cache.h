@@ -65,6 +65,7 @@ struct CacheStatus {
   uint32_t loaded = 0;            ///< of the records, from a file; their rays count too
   /// Not 0: so many records keep their places and are relit, `records` of them so far.
   uint32_t relighting = 0;
+  float relit = 0;         ///< share of these that has its first level, those under way included
   uint64_t published = 0;  ///< levels whose light lookups have been given; never goes back
   StopReason stop = StopReason::building;
   /// Since it was begun or relit, extensions too; the last may be in progress.

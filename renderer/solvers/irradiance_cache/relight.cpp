@@ -10,7 +10,7 @@ using namespace shared;
 
 void Cache::Impl::take(const RawRecords& raw) {
   records.restore(raw);
-  evaluated = kept = until = status.records = raw.size();
+  evaluated = standing = until = status.records = raw.size();
   // Passes end where the number of the next record's is another.
   const auto pass_of = [&](uint32_t r) {
     return std::bit_cast<uint32_t>(raw.places[size_t{r} * k_record_texels + 2].w) & k_record_pass;
@@ -27,21 +27,19 @@ void Cache::Impl::relight() {
     // that nothing is left; its places are asked for again.
     if (evaluated > (ends.empty() ? 0 : ends.back())) ends.push_back(evaluated), ++status.pass;
   }
-  kept = ends.empty() ? 0 : ends.back();
-  records.truncate(kept);
-  placement.clear(), tried.clear();
-  probing = false;
+  standing = ends.empty() ? 0 : ends.back();
+  drop_pass();
   evaluated = 0;
   hold();
   status.stop = StopReason::building;
-  status.records = 0, status.relighting = kept, status.rays = 0;
+  status.records = 0, status.relighting = standing, status.relit = 0, status.rays = 0;
   status.passes.clear();
   tell();
   relight_pass();
 }
 
 void Cache::Impl::relight_pass() {
-  if (evaluated < kept) {
+  if (evaluated < standing) {
     const uint32_t end = *std::upper_bound(ends.begin(), ends.end(), evaluated);
     if (!status.passes.empty() && status.passes.back().relit && status.passes.back().rays == 0)
       status.passes.pop_back();  // that one waited in the dark

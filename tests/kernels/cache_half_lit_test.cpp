@@ -1,0 +1,83 @@
+// links: irradiance_cache scene_io bvh_embree
+// A record under a sky of which one half shines: irradiance and rotational gradient have a closed form, for
+// any normal, and nothing depends on the place.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/cache.h"
+
+using namespace lucerna;
+using irradiance_cache::Place;
+using irradiance_cache::Record;
+
+namespace {
+
+/// The mean of a figure over records, within 3.9 standard errors (1e-4, two-sided) and what the sky's texels
+/// blur, `slack`.
+template <class Value>
+void expect(const char* what, const std::vector<Record>& records, size_t first, size_t count, double truth,
+            double slack, const Value& value) {
+  double sum = 0, squares = 0;
+  for (size_t i = first; i < first + count; ++i) {
+    const double v = value(records[i]);
+    sum += v, squares += v * v;
+  }
+  const double mean = sum / double(count);
+  const double deviation =
+      std::sqrt(std::max(0.0, squares / double(count) - mean * mean) / double(count - 1));
+  INFO(what << ": " << mean << " +- " << deviation << ", expected " << truth);
+  CHECK(std::abs(mean - truth) <= 3.9 * deviation + slack);
+}
+
+}  // namespace
+
+TEST_CASE("half of the sky shines: irradiance and its change with the normal are those of the closed form") {
+  scene::Scene scene = test::CacheBed::load("furnace-disk");
+  for (scene::Material& m : scene.materials) m.emission = vec3(0);
+  scene::Image sky;
+  sky.name = "half", sky.width = 64, sky.height = 32;
+  for (uint32_t row = 0; row < sky.height; ++row)
+    for (uint32_t column = 0; column < sky.width; ++column) {  // its middle is +x
+      const float l = column >= sky.width / 4 && column < 3 * sky.width / 4 ? 2.0f : 0.0f;
+      sky.floats.insert(sky.floats.end(), {l, 0.5f * l, 0, 1});
+    }
+  scene.images.push_back(sky);
+  scene.environment.image = static_cast<scene::Id>(scene.images.size() - 1);
+  scene.environment.given = true;
+  test::CacheBed bed(scene);
+  constexpr uint32_t k_direct = 1;
+  bed.set_frame(k_direct);
+
+  // Above the disk, which lies at 2 m: from there nothing but sky is above these planes.
+  constexpr size_t k_repeats = 64;
+  const std::vector<vec3> normals{
+      {0, 1, 0}, normalize(vec3(0.2f, 1, 0.1f)), normalize(vec3(-0.15f, 1, -0.2f))};
+  std::vector<Place> places;
+  for (const vec3& n : normals)
+    for (size_t i = 0; i < k_repeats; ++i) places.push_back({vec3(0, 500, 0), n});
+  const auto records = bed.evaluate(places, {.elevations = 16, .azimuths = 64, .parts = k_direct});
+  // E(n) = pi L (1 + n.x) / 2 for radiance L where x > 0; (n_i x n) . g is its change, so that g = n x (pi
+  // L/2) x.
+  const double half = 3.14159265358979 * 2 / 2;
+  for (size_t k = 0; k < normals.size(); ++k) {
+    const vec3 n = normals[k];
+    INFO("normal " << n.x << ", " << n.y << ", " << n.z);
+    const vec3 g = cross(n, vec3(float(half), 0, 0));
+    const double slack = 0.005 * half;
+    const auto one = [&](const char* what, double truth, const auto& value) {
+      expect(what, records, k * k_repeats, k_repeats, truth, slack, value);
+    };
+    one("irradiance", half * (1 + double(n.x)), [](const Record& r) { return double(r.parts[0].value.x); });
+    one("its green", half / 2 * (1 + double(n.x)),
+        [](const Record& r) { return double(r.parts[0].value.y); });
+    one("its blue", 0, [](const Record& r) { return double(r.parts[0].value.z); });
+    for (int axis = 0; axis < 3; ++axis)
+      one("rotation", double(g[axis]), [&](const Record& r) { return double(r.parts[0].rotation[0][axis]); });
+    // The sky is as far away from everywhere.
+    for (size_t i = k * k_repeats; i < (k + 1) * k_repeats; ++i) {
+      CHECK(records[i].parts[0].translation[0] == vec3(0));
+      CHECK(std::isinf(records[i].mean_distance));
+    }
+  }
+  CHECK(bed.device.validation_messages() == 0);
+}
