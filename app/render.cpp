@@ -194,6 +194,15 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
                   {"uncovered_share", double(s.asked) / double(std::max<uint64_t>(1, s.paths))},
                   {"bytes", s.bytes},
                   {"stopped_by", k_reasons[size_t(s.stop)]}};
+    for (const irradiance_cache::CachePass& p : s.passes)
+      j["cache"]["building"].push_back({{"asked", p.asked},
+                                        {"asked_world", p.asked_world},
+                                        {"screen", p.screen},
+                                        {"candidates", p.candidates},
+                                        {"tried", p.tried},
+                                        {"records", p.records},
+                                        {"rays", p.rays},
+                                        {"ms", p.total_ms()}});
   }
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});

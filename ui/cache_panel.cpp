@@ -114,7 +114,7 @@ void numbers(const Ui& ui, const CacheReport& r) {
   }
   gap(4);
   if (s.waits)
-    paragraph("Building waits: X goes on to the next stage, G to the end.", colour::accent);
+    paragraph("Building waits: X goes on to the next stage, J to the end.", colour::accent);
   else if (building)
     paragraph("Still building\xE2\x80\xA6", colour::accent);
   else
@@ -315,7 +315,7 @@ void steps(Ui& ui, const CacheReport& r) {
                    : "The cache is complete. R builds it anew, a turn of the camera adds what is missing.");
   ImGui::SameLine(0, px(4));
   if (button("##run", "Go on", false, half)) ui.act("cache.run");
-  tooltip(building ? "Goes on without a pause until the cache is complete. G." : "The cache is complete.");
+  tooltip(building ? "Goes on without a pause until the cache is complete. J." : "The cache is complete.");
   ImGui::EndDisabled();
   gap(8);
   stage_strip(r);
@@ -358,6 +358,9 @@ void overlays(Ui& ui) {
   gap(4);
   option_control(ui, "overlay.records_by", "Coloured by");
   option_control(ui, "overlay.placement", "Placement");
+  option_control(ui, "overlay.discontinuity", "Detail of");
+  if (ui.setting("overlay.discontinuity") != "off")
+    option_control(ui, "overlay.discontinuity_level", "Level");
   if (!ui.shows_cache()) return;
   gap(4);
   paragraph("Rest the pointer in the picture to see which records serve there.", colour::text_faint);
@@ -373,7 +376,12 @@ std::string option_name(const std::string& key) {
                                                         {"cache.noise", "More rays above"},
                                                         {"cache.max_records", "Room"},
                                                         {"cache.passes", "Most passes"},
-                                                        {"cache.stop", "Stop at"}};
+                                                        {"cache.stop", "Stop at"},
+                                                        {"cache.candidates", "Candidates"},
+                                                        {"cache.candidates_falloff", "Falling off"},
+                                                        {"cache.depth_weight", "Steps weigh"},
+                                                        {"cache.normal_weight", "Turns weigh"},
+                                                        {"cache.irradiance_weight", "Light weighs"}};
   if (const auto found = names.find(key); found != names.end()) return found->second;
   std::string name = key.substr(key.find('.') + 1);
   std::replace_if(

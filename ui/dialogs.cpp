@@ -238,9 +238,10 @@ void key_page(Ui& ui) {
         {"L", "mark the lamps, to click on them"},
         {"T", "show the tiles at work"},
         {"C, V, N", "show the cache's records, their overlap, their normals"},
+        {"G", "show detail of geometry, of irradiance, neither (the cache places by it)"},
         {"Pointer at rest", "while they are shown: which records serve there"},
         {"P", "show how the places of the cache's records are chosen"},
-        {"X, G", "building the cache: on to the next stage, to the end"},
+        {"X, J", "building the cache: on to the next stage, to the end"},
         {"K", "the cache's panel, the scene's"},
         {"1 \xE2\x80\x93 9", "scene cameras"},
         {"", ""},
@@ -373,7 +374,14 @@ void handle_keys(Ui& ui) {
   if (ui.cached() && ui.pressed(GLFW_KEY_P))
     ui.act("set", "overlay.placement", ui.setting("overlay.placement") == "off" ? "stage" : "off");
   if (ui.cached() && ui.pressed(GLFW_KEY_X)) ui.act("cache.step");
-  if (ui.cached() && ui.pressed(GLFW_KEY_G)) ui.act("cache.run");
+  if (ui.cached() && ui.pressed(GLFW_KEY_J)) ui.act("cache.run");
+  if (ui.cached() && ui.pressed(GLFW_KEY_G)) {
+    const std::string of = ui.setting("overlay.discontinuity");
+    ui.act("set", "overlay.discontinuity",
+           of == "off"        ? "geometry"
+           : of == "geometry" ? "irradiance"
+                              : "off");
+  }
   if (ui.pressed(GLFW_KEY_K))
     ui.act("window.side", ui.cache_panel && ui.layout.right_open ? "scene" : "cache");
   if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.snapshot->paused ? "render.resume" : "render.pause");

@@ -210,6 +210,16 @@ void placement_inks(ImDrawList* list, const ImVec2& at, const session::CacheRepo
       thinned ? counted("rejected", pass->tried - pass->records) : counted("tried", pass ? pass->tried : 0));
 }
 
+/// How much geometry or irradiance changes in a cell.
+void discontinuity_inks(ImDrawList* list, const ImVec2& at) {
+  ramp_bar(list, at, shared::k_ramp_magma,
+           {{0.0f, "0 flat"}, {0.25f, "0.25"}, {0.5f, "0.5"}, {0.75f, "0.75"}, {1.0f, "1 full"}});
+}
+
+std::string discontinuity_title(const std::string& of, uint32_t level) {
+  return fmt::format("Detail of {}, cells of {} pixel{}", of, 1u << level, level == 0 ? "" : "s");
+}
+
 }  // namespace
 
 void draw_legend(Ui& ui, const Area& area) {
@@ -220,7 +230,9 @@ void draw_legend(Ui& ui, const Area& area) {
   const bool records = cache && (ui.setting_on("overlay.records") || ui.setting_on("overlay.normals"));
   const bool overlap = cache && ui.setting_on("overlay.overlap");
   const bool placement = cache && cache->placement != irradiance_cache::PlacementShow::off;
-  if (!heat && !tiles && !records && !overlap && !placement) return;
+  const std::string detail = cache ? ui.setting("overlay.discontinuity") : "off";
+  const bool detailed = detail != "off";
+  if (!heat && !tiles && !records && !overlap && !placement && !detailed) return;
   struct Row {
     uint32_t state;
     std::string name, count;
@@ -244,10 +256,12 @@ void draw_legend(Ui& ui, const Area& area) {
   const float tiles_height = tiles ? px(50) + line * static_cast<float>(rows.size() + (heavy > 0)) : 0;
   const bool numbered = records && cache->color <= shared::k_record_by_origin;
   const float records_height = records ? px(numbered ? 40 : 48) : 0, overlap_height = overlap ? px(64) : 0,
-              placement_height = placement ? px(40) : 0;
-  const float between = px(6) * static_cast<float>(heat + tiles + records + overlap + placement - 1);
+              placement_height = placement ? px(40) : 0, detail_height = detailed ? px(48) : 0;
+  const float between =
+      px(6) * static_cast<float>(heat + tiles + records + overlap + placement + detailed - 1);
   const float w = px(k_ramp_width) + 2 * pad, h = heat_height + tiles_height + records_height +
-                                                  overlap_height + placement_height + pad + between;
+                                                  overlap_height + placement_height + detail_height + pad +
+                                                  between;
   if (h > area.height() - px(24) || w > area.width() - px(24)) return;
   const ImVec2 lo(area.lo.x + px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
   ImDrawList* list = ImGui::GetWindowDrawList();
@@ -278,6 +292,11 @@ void draw_legend(Ui& ui, const Area& area) {
     title("Records that serve a pixel");
     overlap_inks(list, {lo.x + pad, y});
     y += overlap_height - px(20) + px(6);
+  }
+  if (detailed) {
+    title(discontinuity_title(detail, static_cast<uint32_t>(ui.setting_real("overlay.discontinuity_level"))));
+    discontinuity_inks(list, {lo.x + pad, y});
+    y += detail_height - px(20) + px(6);
   }
   if (!tiles) return;
   const session::Accuracy& a = *s->accuracy;

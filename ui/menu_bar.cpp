@@ -174,6 +174,13 @@ void view_menu(Ui& ui) {
       if (entry(("   by " + choice).c_str(), nullptr, by->help.c_str(), ui.setting(by->key) == choice))
         ui.act("set", by->key, choice);
   }
+  const plan::OptionInfo* detail = plan::find_option("overlay.discontinuity");
+  for (const std::string& of : {std::string("geometry"), std::string("irradiance")}) {
+    const bool on = ui.setting(detail->key) == of;
+    if (entry(("Cache detail of " + of).c_str(), of == "geometry" ? "G" : nullptr, detail->help.c_str(), on,
+              ui.cached()))
+      ui.act("set", detail->key, on ? "off" : of);
+  }
   if (entry("Forget earlier renders", nullptr,
             "Takes the lines of earlier renders out of the plot of accuracy.", false,
             !ui.runs.earlier().empty()))
@@ -200,7 +207,7 @@ void render_menu(Ui& ui) {
             "Goes on building the irradiance cache to the end of the next stage and waits there.", false,
             ui.cached()))
     ui.act("cache.step");
-  if (entry("Go on with the cache", "G",
+  if (entry("Go on with the cache", "J",
             "Goes on building the irradiance cache without a pause until it is complete.", false,
             ui.cached()))
     ui.act("cache.run");

@@ -140,6 +140,22 @@ std::vector<OptionInfo> make_options() {
            "Irradiance cache: building ends when no greater share of the paths still asks for records; "
            "these are "
            "path traced."),
+      real("cache.candidates", "1", 0, 16, "a cell",
+           "Irradiance cache: candidates for records, on every scale, in a cell of the picture in which "
+           "geometry or irradiance changes fully; few fall on smooth walls. 0: every pixel that no record "
+           "serves asks."),
+      real("cache.candidates_falloff", "0.25", 0, 1, "a level",
+           "Irradiance cache: of a pixel's probability to be a candidate, from each scale to the next, twice "
+           "as wide. 0.25: as many candidates a cell on all; less: denser about edges, sparser elsewhere."),
+      real("cache.depth_weight", "3", 0, 1000, "",
+           "Irradiance cache: how much a step between neighbouring surfaces counts as detail, for its height "
+           "in cells; 3: a third of a cell counts fully."),
+      real("cache.normal_weight", "3", 0, 1000, "",
+           "Irradiance cache: how much a turn of the surface counts as detail, a radian; 3: 20 degrees count "
+           "fully."),
+      real("cache.irradiance_weight", "1", 0, 1000, "",
+           "Irradiance cache: how much a relative difference of irradiance between neighbouring cells counts "
+           "as detail in later passes; 0: not at all."),
       {.key = "cache.pause",
        .type = OptionType::choice,
        .fallback = "off",
@@ -197,6 +213,16 @@ std::vector<OptionInfo> make_options() {
                "that is chosen; stage: as far as building has come.",
        .restarts = false},
       going_on(boolean("overlay.overlap", "Shows over the picture how many records serve each pixel.")),
+      {.key = "overlay.discontinuity",
+       .type = OptionType::choice,
+       .fallback = "off",
+       .choices = {"off", "geometry", "irradiance"},
+       .help = "Shows over the picture how much geometry, or the irradiance that the present records give, "
+               "changes there: by this the irradiance cache picks candidates in the picture.",
+       .restarts = false},
+      going_on(integer("overlay.discontinuity_level", 0, 0, 12, "",
+                       "Level of the discontinuity's pyramid that is shown: its cells are 2 to that power "
+                       "pixels wide.")),
       {.key = "about",
        .type = OptionType::text,
        .fallback = "",

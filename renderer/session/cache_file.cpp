@@ -9,7 +9,9 @@ namespace lucerna::session {
 namespace {
 
 /// Options of the cache that decide how many records there are, not what one holds.
-const std::set<std::string> k_amounts{"cache.max_records", "cache.passes", "cache.stop"};
+const std::set<std::string> k_amounts{
+    "cache.max_records",        "cache.passes",       "cache.stop",          "cache.candidates",
+    "cache.candidates_falloff", "cache.depth_weight", "cache.normal_weight", "cache.irradiance_weight"};
 
 }  // namespace
 

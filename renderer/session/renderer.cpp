@@ -177,7 +177,13 @@ irradiance_cache::CacheOptions Renderer::cache_options() const {
           .most_records = uint32_t(settings_.integer("cache.max_records")),
           .most_passes = uint32_t(settings_.integer("cache.passes")),
           .stop_share = float(settings_.real("cache.stop")),
-          .seed = uint32_t(settings_.integer("seed"))};
+          .seed = uint32_t(settings_.integer("seed")),
+          .screen = {.density = float(settings_.real("cache.candidates")),
+                     .falloff = float(settings_.real("cache.candidates_falloff")),
+                     .depth_weight = float(settings_.real("cache.depth_weight")),
+                     .normal_weight = float(settings_.real("cache.normal_weight")),
+                     .irradiance_weight = float(settings_.real("cache.irradiance_weight")),
+                     .irradiance_noise = 2 * float(settings_.real("cache.noise"))}};
 }
 
 irradiance_cache::CacheView Renderer::cache_view() const {

@@ -31,6 +31,9 @@ void Renderer::run_cache() {
 }
 
 void Renderer::draw_cache() {
+  if (const uint32_t of = uint32_t(settings_.choice("overlay.discontinuity")); of > 0)
+    cache_->draw_discontinuity(*wavefront_, *film_, cache_view(), irradiance_cache::Discontinuity::Of(of - 1),
+                               uint32_t(settings_.integer("overlay.discontinuity_level")));
   const auto placement = irradiance_cache::PlacementShow(settings_.choice("overlay.placement"));
   if (placement != irradiance_cache::PlacementShow::off) {
     if (!placement_view_)
@@ -61,8 +64,9 @@ std::shared_ptr<const CacheReport> Renderer::cache_report() {
   if (!cache_ || !wavefront_) return nullptr;
   auto report = std::make_shared<CacheReport>();
   report->status = cache_->status();
-  report->placement = irradiance_cache::placement_drawn(
-      irradiance_cache::PlacementShow(settings_.choice("overlay.placement")), cache_->placement());
+  const auto placement = irradiance_cache::PlacementShow(settings_.choice("overlay.placement"));
+  if (placement != irradiance_cache::PlacementShow::off)
+    report->placement = irradiance_cache::placement_drawn(placement, cache_->placement());
   report->room = cache_->records().capacity();
   report->color = uint32_t(settings_.choice("overlay.records_by"));
   report->scale = cache_->scale(report->color);

@@ -50,7 +50,8 @@ LUCERNA_CONST uint k_origin_recursive =
 // normal n_i turns to n, by the components of n_i x n.
 LUCERNA_CONST uint k_part_texels = 4u;
 
-/// Bytes that a record takes with its sphere and its light as lookups read it; the octree's references come to that.
+/// Bytes that a record takes with its sphere and its light as lookups read it; the octree's references come
+/// to that.
 LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + 2u * k_part_count * k_part_texels + 1u);
 
 // candidate_texels: 2 a path slot, all 0 where there is none:
@@ -66,6 +67,8 @@ LUCERNA_CONST uint k_probe_none = 0u;
 LUCERNA_CONST uint k_probe_lookups = 1u;
 /// The same, and paths go on: of the diffuse vertices from the lookup on, one by chance is noted.
 LUCERNA_CONST uint k_probe_beyond = 2u;
+/// The first vertex that looks up is noted, whether records serve it or not, and paths end at their first.
+LUCERNA_CONST uint k_probe_screen = 3u;
 
 /// What paths are told of the cache.
 struct CacheFrame {

@@ -68,6 +68,7 @@ scene::Scene room() {
 const Settings k_base{{"components.secondary", "cache"},
                       {"components.tertiary", "cache"},
                       {"cache.rays", "64"},
+                      {"cache.irradiance_weight", "0"},  // records are placed alike in any light
                       {"cache.max_rays", "256"},
                       {"cache.error", "0.6"},
                       {"cache.max_records", "5000"},

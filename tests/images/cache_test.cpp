@@ -254,8 +254,6 @@ TEST_CASE("light does not leak through a wall of a millimetre") {
   };
   for (const char* metric : {"split-sphere", "hessian"}) {
     wide["cache.metric"] = metric;
-    // The Hessian's ellipses may be wider in the dark.
-    const double tolerance = metric == std::string("hessian") ? 0.2 : 0.12;
     const film::Image cached = render_scene(divided_room(), wide, 16);
     for (const int c : {1, 2})
       for (const auto& [from, to] : {std::pair{8u, 20u}, {20u, 26u}, {26u, 30u}, {34u, 38u}, {38u, 44u}}) {
@@ -263,7 +261,9 @@ TEST_CASE("light does not leak through a wall of a millimetre") {
         INFO(metric << ", component " << c << ", columns " << from << " to " << to << ": " << value << " of "
                     << truth);
         CHECK(truth > 0);
-        CHECK(value == Approx(truth).epsilon(tolerance));
+        // Few records and wide ones: their noise, and behind the wall the path tracer's. What leaked would be
+        // a multiple.
+        CHECK(value == Approx(truth).epsilon(0.3));
       }
   }
   // The dark half is dark: what leaked would show.

@@ -402,3 +402,51 @@ TEST_CASE("the log of building adds up to what the cache holds") {
   r.restart();
   CHECK(r.cache()->status().passes.empty());
 }
+
+TEST_CASE("detail of the geometry is dark on walls and bright at edges, and wider at coarser levels") {
+  session::Renderer& r = bed();
+  r.settings().set("overlay.discontinuity", "off");
+  r.apply_settings();
+  const std::vector<uint8_t> plain = r.picture(false);
+  const auto bright_share = [&](const char* of, const char* level) {
+    r.settings().set("overlay.discontinuity", of);
+    r.settings().set("overlay.discontinuity_level", level);
+    r.apply_settings();
+    const std::vector<uint8_t> seen = r.picture(false);
+    CHECK(seen != plain);
+    uint32_t bright = 0;
+    for (uint32_t p = 0; p < k_size * k_size; ++p) bright += seen[4 * p] > 150;
+    return double(bright) / (k_size * k_size);
+  };
+  const double fine = bright_share("geometry", "0"), coarse = bright_share("geometry", "4");
+  const double light = bright_share("irradiance", "0");
+  INFO(fine << " of the picture bright, " << coarse << " of it at level 4, " << light << " by irradiance");
+  CHECK(fine > 0.01);
+  CHECK(fine < 0.1);
+  CHECK(coarse > 4 * fine);
+  CHECK(light < fine);
+  r.settings().set("overlay.discontinuity", "off");
+  r.apply_settings();
+  CHECK(r.picture(false) == plain);
+}
+
+TEST_CASE("what is chosen of a pass's candidates can be read until the next pass") {
+  session::Renderer& r = bed();
+  r.restart();
+  while (r.cache()->choice().chosen.empty()) REQUIRE(r.step());
+  const irradiance_cache::Choice all = r.cache()->choice();
+  const irradiance_cache::CachePass& pass = r.cache()->status().passes.back();
+  CHECK(all.candidates.size() == pass.candidates);
+  CHECK(all.cluster.size() == pass.candidates);
+  CHECK(all.chosen.size() == pass.tried);
+  CHECK(std::is_sorted(all.cluster.begin(), all.cluster.end()));
+  CHECK(std::is_sorted(all.chosen.begin(), all.chosen.end()));
+  // The picture asks by dithering: a small share of its pixels, all of them on what it shows.
+  size_t screen = 0;
+  for (const irradiance_cache::Place& p : all.candidates) screen += p.origin == shared::k_origin_screen;
+  CHECK(screen == pass.screen);
+  CHECK(screen > 100);
+  CHECK(screen < k_size * k_size / 8);
+  while (r.step()) {
+  }
+}

@@ -31,6 +31,7 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
                            "LUCERNA_SORT_WIDE",
                            "LUCERNA_OCTREE_SINGLE",
                            "LUCERNA_COPIES",
+                           "LUCERNA_FROM_SCREEN",
                            "LUCERNA_UV_TRANSFORMS",
                            "LUCERNA_TEX_NEAREST",
                            "LUCERNA_TEX_WRAPS",

@@ -10,9 +10,11 @@
 #include "kernels/gpu_support.h"
 #include "shaders/shared/cache_inspect.h"
 #include "shaders/shared/cache_placement.h"
+#include "shaders/shared/discontinuity.h"
 #include "shaders/shared/film.h"
 #include "shaders/shared/irradiance_cache.h"
 #include "shaders/shared/octree.h"
+#include "shaders/shared/placement.h"
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
@@ -58,6 +60,13 @@ std::vector<SharedStruct> structs() {
       SHARED("cache_inspect.h", CacheTicksPush, width, height, records, color, lo, hi),
       SHARED("cache_placement.h", PlacedPoint, position, bits, normal, radius),
       SHARED("cache_placement.h", PlacementPush, width, height, count, segments, dot, tried_dot, by_cluster),
+      SHARED("discontinuity.h", SeePush, first, count, across, down, stride),
+      SHARED("discontinuity.h", LitPush, count),
+      SHARED("discontinuity.h", DetailPush, across, down, level, first, finer, pixel, parallel, depth_weight,
+             normal_weight, irradiance_weight, irradiance_noise, least),
+      SHARED("discontinuity.h", DitherPush, across, down, levels, first_level, density, falloff, pixel,
+             parallel, finest, flat_side, spacing, key),
+      SHARED("discontinuity.h", DiscontinuityDrawPush, width, height, across, down, stride, level, first),
       SHARED("film.h", FilmHalf, sum, compensation),
       SHARED("film.h", WorkBlock, index, first_sample),
       SHARED("film.h", BlockError, pixels, luminance, variance, fourth, relative, quadrant_pixels),
@@ -71,6 +80,10 @@ std::vector<SharedStruct> structs() {
       SHARED("irradiance_cache.h", RadiusPush, first, count, error, least_pixels, most, near),
       SHARED("irradiance_cache.h", EllipsePush, first, count, reach, least_pixels, most, dark),
       SHARED("irradiance_cache.h", OverlayPush, width, height, discs, overlap, color, lo, hi, overlap_most),
+      SHARED("placement.h", CollectPush, count, to, screen_too, parallel, spacing, spacing_beyond,
+             spacing_of_distance, cell, pixel, eye),
+      SHARED("placement.h", PlacementGrid, origin, scale, exponent),
+      SHARED("placement.h", ChoosePush, count, seed, normal_tolerance),
       SHARED("ray.h", Ray, origin, tmax, direction, slot),
       SHARED("ray.h", Hit, t, prim, u, v),
       SHARED("scene.h", Frame, camera_origin, width, camera_right, height, camera_up, orthographic,

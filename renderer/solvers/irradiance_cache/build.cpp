@@ -1,13 +1,11 @@
 #include "solvers/irradiance_cache/build.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
 #include "base/timer.h"
 #include "gpu/stream.h"
-#include "solvers/irradiance_cache/placement.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -23,6 +21,11 @@ constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
 /// no record serves there costs time, not accuracy.
 constexpr uint32_t k_deep_passes = 3;
 constexpr float k_deep_spacing = 1.0f / 64;
+/// Width of the finest cells of the picture that ask, in the spacing of the pass: gaps about finer detail are
+/// left to later passes, whose records read those of the first and are cheaper.
+constexpr float k_finest_of_spacing = 0.5f;
+/// Passes that go on for the irradiance that the records give, when few paths ask.
+constexpr uint32_t k_refining_passes = 4;
 /// Noise that they may have, over that of others: a record's ray reads some of them, and a record's rays
 /// many.
 constexpr float k_deep_noise = 4;
@@ -43,9 +46,12 @@ uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lroun
 
 bool Cache::Impl::probe(const Work& w) {
   if (!probing) {
+    if (stale) screen.begin(w.view.paths_frame), stale = false;
     picture = {((w.view.width + 7) / 8) * ((w.view.height + 7) / 8), 1, w.wavefront.slots()};
     begin_pass();
   }
+  bool cancelled = false;
+  if (!look(w, cancelled)) return !cancelled;
   const schedule::UniformSchedule before = picture;
   schedule::WorkItem item = picture.next();
   // Each pass looks along paths of its own.
@@ -60,12 +66,12 @@ bool Cache::Impl::probe(const Work& w) {
     return false;
   }
   took(BuildStep::probe, timer.milliseconds());
-  collect(item.slots());
+  collect(w, item.slots());
   if (!picture.done()) return true;
   probing = false;
-  pass().asked_world = uint64_t(
-      std::count_if(asked.begin(), asked.end(), [](const Place& p) { return p.origin != k_origin_screen; }));
-  if (double(status.asked) <= double(options.stop_share) * double(status.paths))
+  if (double(status.asked) <= double(options.stop_share) * double(status.paths) &&
+      (status.pass >= k_refining_passes ||
+       double(pass().screen) <= double(options.stop_share) * double(screen.points())))
     finish(StopReason::covered);
   else
     stage = Stage::choose;
@@ -80,44 +86,84 @@ void Cache::Impl::begin_pass() {
   forget_placement();
   ms_before = 0, rays_at_end = 0;
   probing = true;
+  looked = false;
 }
 
-void Cache::Impl::collect(uint32_t slots) {
-  const auto* texels = static_cast<const vec4*>(candidates.mapped());
-  for (uint32_t slot = 0; slot < slots; ++slot) {
-    const vec4& place = texels[size_t{slot} * k_candidate_texels];
-    if (place.w == 0) continue;
-    ++status.asked;
-    const vec4& facing = texels[size_t{slot} * k_candidate_texels + 1];
-    asked.push_back(
-        {vec3(place), vec3(facing), std::bit_cast<uint32_t>(facing.w), static_cast<uint32_t>(place.w) - 1});
+bool Cache::Impl::looks_first() const {
+  return options.screen.density > 0 && routes[0] != k_no_routes && status.pass == 0;
+}
+
+ReachOptions Cache::Impl::reach(const CacheView& view) const {
+  const Frame& f = view.paths_frame;
+  const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
+  return {.spacing = view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(status.pass)),
+          .spacing_beyond = view.scene_radius * k_deep_spacing,
+          .spacing_of_distance = k_spacing_of_least * options.least_pixels * pixel,
+          .eye = f.camera_origin,
+          .parallel = f.orthographic != 0};
+}
+
+bool Cache::Impl::see(transport::Wavefront& wavefront, const CacheView& view,
+                      const std::function<bool()>& cancel) {
+  if (stale) screen.begin(view.paths_frame), stale = false;
+  tell(k_probe_screen);
+  const bool complete = screen.see(wavefront, candidates, cancel);
+  tell();
+  return complete;
+}
+
+bool Cache::Impl::look(const Work& w, bool& cancelled) {
+  // The first pass looks at the geometry; later ones at what the records make of it.
+  const bool geometry = looks_first();
+  const bool irradiance = options.screen.density > 0 && options.screen.irradiance_weight > 0 &&
+                          routes[0] != k_no_routes && status.pass > 0 && evaluated > 0;
+  if (looked || !(geometry || irradiance)) return true;
+  StageTimer timer(w.wavefront);
+  if (!screen.seen()) {
+    cancelled = !see(w.wavefront, w.view, w.cancel);
+  } else {
+    const Discontinuity::Of of = geometry ? Discontinuity::Of::geometry : Discontinuity::Of::irradiance;
+    gpu::Stream& stream = w.wavefront.stream();
+    screen.look_up(stream, [this](gpu::Resources& r) { bind(r); });
+    screen.measure(stream, of, options.screen, dark());
+    const float spacing = reach(w.view).spacing;
+    screen.dither(stream, of, options.screen,
+                  {.least_width = k_spacing_of_least * options.least_pixels,
+                   .finest = k_finest_of_spacing * spacing,
+                   .flat_side = geometry ? spacing : 0},
+                  options.seed + status.pass);
+    pass().screen = placement.collect(stream, screen.screen(), reach(w.view));
+    looked = true;
   }
+  took(BuildStep::screen, timer.milliseconds());
+  return false;
+}
+
+void Cache::Impl::collect(const Work& w, uint32_t slots) {
+  StageTimer timer(w.wavefront);
+  const std::array<uint32_t, 3> by_origin =
+      placement.collect(w.wavefront.stream(), candidates, slots, !looks_first(), reach(w.view));
+  took(BuildStep::choose, timer.milliseconds());
+  status.asked += by_origin[0] + by_origin[1] + by_origin[2];
   status.paths += slots;
   pass().asked = status.asked, pass().paths = status.paths;
+  pass().asked_world += by_origin[1] + by_origin[2];
+  pass().candidates = placement.size();
   ++placement_version;
 }
 
 /// Which of the places asked for are tried.
 bool Cache::Impl::choose(const Work& w) {
-  const Frame& f = w.view.paths_frame;
-  const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
-  const Timer host;
-  tried = choose_places(
-      asked,
-      {.spacing = w.view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(status.pass)),
-       .spacing_beyond = w.view.scene_radius * k_deep_spacing,
-       .spacing_of_distance = k_spacing_of_least * options.least_pixels * pixel,
-       .eye = f.camera_origin,
-       .parallel = f.orthographic != 0,
-       .normal_tolerance = k_normal_tolerance,
-       .seed = options.seed + status.pass,
-       .most = records.capacity() - records.size()},
-      &clusters);
+  const Timer wall;
+  tried = placement.choose(w.wavefront.stream(), {.normal_tolerance = k_normal_tolerance,
+                                                  .seed = options.seed + status.pass,
+                                                  .most = records.capacity() - records.size()});
   pass().tried = uint32_t(tried.size());
-  pass().clusters = clusters.empty() ? 0 : 1 + *std::max_element(clusters.begin(), clusters.end());
+  pass().clusters = placement.clusters();
+  status.bytes = own_bytes + screen.bytes() + placement.bytes();
   records.append(tried, status.pass);
   list_until(records.size());
-  took(BuildStep::choose, host.milliseconds());
+  took(BuildStep::choose, wall.milliseconds());
   stage = Stage::measure;
   ended(BuildStage::choose);
   return true;
@@ -230,7 +276,8 @@ void Cache::Impl::ended(BuildStage which, bool last) {
 }
 
 void Cache::Impl::forget_placement() {
-  asked.clear(), tried.clear(), clusters.clear(), kept.clear(), tried_radii.clear();
+  placement.clear();
+  tried.clear(), kept.clear(), tried_radii.clear();
   ++placement_version;
 }
 
@@ -299,7 +346,7 @@ float Cache::Impl::dark() const {
   const std::vector<float> light = records.luminances();
   double sum = 0;
   for (uint32_t r = 0; r < until; ++r) sum += double(light[r]);
-  return 0.1f * float(sum / until);
+  return until > 0 ? 0.1f * float(sum / until) : 1.0f;
 }
 
 void Cache::Impl::set_radii(const Work& w, bool lit) {

@@ -46,10 +46,18 @@ struct Cache::Impl {
   schedule::UniformSchedule picture;
   bool probing = false;  // the schedule of this pass has begun
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
-  std::vector<Place> asked, tried;  // kept for who watches until the next pass begins; so are these
-  std::vector<uint32_t> clusters, kept;
+  Discontinuity screen;
+  Placement placement;
+  bool looked = false;     // at the picture, in this pass: the screen-space stage is done
+  bool stale = true;       // ... and what it has seen is not this picture
+  uint64_t own_bytes = 0;  // of device memory, without those two
+  // Kept for who watches until the next pass begins:
+  std::vector<Place> tried;
+  std::vector<uint32_t> kept;
   std::vector<float> tried_radii;
-  uint64_t placement_version = 0;  // grows with every change of them
+  uint64_t placement_version = 0;  // grows with every change of them and of the candidates
+  Choice shown;                    // the candidates as they were last asked for
+  uint64_t shown_version = ~0ull;
   Pauses pauses;
   double ms_before = 0;  // of this pass, at the end of the stage that ended last
   uint64_t rays_at_end = 0;
@@ -65,7 +73,8 @@ struct Cache::Impl {
   uint32_t level = 0, level_done = 0, rays_before = 0;  // ... and rays of each record, in this level, so far
   bool more_levels = false;
 
-  Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o);
+  Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const paths::LookupRoutes& own,
+       const CacheOptions& o);
 
   /// One bounded piece of a stage each; false when it was cancelled, and is to be done again. A stage that is
   /// complete hands over to the next.
@@ -83,6 +92,10 @@ struct Cache::Impl {
   void relight_pass();
   void forget_placement();
 
+  /// Irradiance, luminance: what records of less are held against, because what they miss is seen less.
+  float dark() const;
+  /// One piece of looking at the picture's points; false when it was cancelled.
+  bool see(transport::Wavefront& wavefront, const CacheView& view, const std::function<bool()>& cancel);
   /// Records that are evaluated hold what this cache gathers, and no more.
   void hold() { held = parts, held_recursive = recursive; }
   /// Complete records from elsewhere, in place of all.
@@ -98,7 +111,11 @@ struct Cache::Impl {
 
  private:
   void begin_pass();
-  void collect(uint32_t slots);
+  /// The screen-space stage; true when there is nothing left of it to do. `cancelled` is set when it was.
+  bool look(const Work& work, bool& cancelled);
+  bool looks_first() const;  ///< what the camera sees straight asks by dithering alone in this pass
+  ReachOptions reach(const CacheView& view) const;
+  void collect(const Work& work, uint32_t slots);
   void end_pass();
   void next_pass();
   /// Building may wait here; `last`: of its pass.
@@ -108,8 +125,6 @@ struct Cache::Impl {
   bool next_level();
   /// Lights and radii of this level, for those who look up.
   void publish_level(const Work& work);
-  /// Irradiance, luminance: what records of less are held against, because what they miss is seen less.
-  float dark() const;
   /// Radii of the records that are added in this pass, by what is known of them: `lit` after their first
   /// level.
   void set_radii(const Work& work, bool lit);

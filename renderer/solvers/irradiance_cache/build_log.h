@@ -9,13 +9,14 @@ namespace lucerna::irradiance_cache {
 
 enum class BuildStep {
   probe,     ///< paths from the camera, to find where records are missing
-  choose,    ///< which of the places asked for get one; on the host
+  screen,    ///< where geometry or irradiance changes in the picture
+  choose,    ///< which of the places asked for get one
   measure,   ///< a few rays from each, to see how wide its record would be and whether it is needed
   evaluate,  ///< rays over the records' hemispheres
   radius,    ///< how far each of them serves
   octree     ///< how they are found
 };
-inline constexpr std::array<const char*, 6> k_build_steps{"probe",    "choose", "measure",
+inline constexpr std::array<const char*, 7> k_build_steps{"probe",    "screen", "choose", "measure",
                                                           "evaluate", "radius", "octree"};
 
 struct CachePass {
@@ -24,8 +25,10 @@ struct CachePass {
   bool relit = false;             ///< its records were placed before; their light was gathered anew
   uint64_t asked = 0, paths = 0;  ///< paths that asked for a record, paths
   uint64_t asked_world = 0;       ///< of those that asked: not at a surface that the camera sees straight
-  uint32_t clusters = 0;          ///< that what was asked for was cut into
-  uint32_t tried = 0;             ///< places of these that were measured
+  uint64_t screen = 0;            ///< candidates by dithering the picture
+  uint64_t candidates = 0;        ///< in all
+  uint32_t clusters = 0;          ///< that they were cut into
+  uint32_t tried = 0;             ///< chosen of them, and measured
   uint32_t records = 0;           ///< placed, or relit
   uint64_t rays = 0;              ///< from them
   /// By BuildStep: device time of the stages that it ran, wall time of what the host did (its tracer too).

@@ -47,17 +47,21 @@ const char* words(StopReason reason) {
   return "it goes on";
 }
 
-Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheOptions& o)
+Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
+                  const paths::LookupRoutes& own, const CacheOptions& o)
     : options(o),
       records(device, o.most_records),
       octree(device, compiler,
              {.spheres = o.most_records, .references = k_references * o.most_records, .copies = true}),
-      evaluator(device, compiler, slots) {
+      evaluator(device, compiler, slots),
+      screen(device, compiler, defines(own, o.metric)),
+      placement(device, compiler) {
   frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
   candidates = gpu::Buffer(device, {.name = "cache candidates",
                                     .bytes = uint64_t{slots} * 16 * k_candidate_texels,
-                                    .memory = gpu::Memory::host});
-  status.bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + octree.bytes();
+                                    .memory = gpu::Memory::host,
+                                    .texel = true});
+  status.bytes = own_bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + octree.bytes();
 }
 
 void Cache::Impl::build_octree(transport::Wavefront& wavefront) {
@@ -93,7 +97,7 @@ void Cache::Impl::tell(uint32_t probing, const std::array<uint32_t, 16>& table) 
 
 Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
              const paths::LookupRoutes& routes, const paths::LookupRoutes& own, const CacheOptions& options)
-    : impl_(std::make_unique<Impl>(device, compiler, slots, options)) {
+    : impl_(std::make_unique<Impl>(device, compiler, slots, own, options)) {
   Impl& c = *impl_;
   const uint32_t elevations = elevations_for(options.rays);
   if (options.rays == 0 || elevations * elevations * 4 != options.rays)
@@ -131,6 +135,7 @@ void Cache::clear() {
   c.records.clear();
   c.forget_placement();
   c.pauses.dropped();
+  c.stale = true;
   c.status = {.bytes = c.status.bytes, .published = c.status.published};
   c.stage = Stage::probe;
   c.probing = false;
@@ -152,6 +157,7 @@ void Cache::extend() {
   Impl& c = *impl_;
   c.status.pass = 0;
   c.status.stop = c.stopped = StopReason::building;
+  c.stale = true;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped, unless
   // somebody is looking at it, maybe from all sides.
   if (c.stage != Stage::evaluate && c.stage != Stage::index && !c.status.waits) {
@@ -193,9 +199,11 @@ void Cache::go_on(bool one_stage) {
   impl_->status.waits = false;
 }
 
-PlacementShown Cache::placement() const {
-  const Impl& c = *impl_;
-  return {c.asked, c.clusters, c.tried, c.tried_radii, c.kept, c.placement_version};
+PlacementShown Cache::placement() {
+  Impl& c = *impl_;
+  if (c.shown_version != c.placement_version)
+    c.shown = c.placement.choice(), c.shown_version = c.placement_version;
+  return {c.shown.candidates, c.shown.cluster, c.tried, c.tried_radii, c.kept, c.placement_version};
 }
 
 const CacheStatus& Cache::status() const { return impl_->status; }
@@ -224,6 +232,23 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
       break;
   }
   return true;
+}
+
+Choice Cache::choice() const { return impl_->placement.choice(); }
+
+void Cache::draw_discontinuity(transport::Wavefront& wavefront, const film::Film& film, const CacheView& view,
+                               Discontinuity::Of of, uint32_t level) {
+  Impl& c = *impl_;
+  while (c.stale || !c.screen.seen())
+    if (!c.see(wavefront, view, {})) return;
+  gpu::Stream& stream = wavefront.stream();
+  c.screen.look_up(stream, [&](gpu::Resources& r) { bind(r); });
+  DiscontinuityOptions options = c.options.screen;
+  if (options.irradiance_weight <= 0) options.irradiance_weight = DiscontinuityOptions{}.irradiance_weight;
+  c.screen.measure(stream, of, options, c.dark());
+  c.screen.draw(stream, film.picture(), level);
+  stream.run();
+  stream.take_times();
 }
 
 std::pair<float, float> Cache::scale(uint32_t color) const {

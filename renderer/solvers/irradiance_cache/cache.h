@@ -18,6 +18,7 @@
 #include "paths/automaton.h"
 #include "solvers/irradiance_cache/build_log.h"
 #include "solvers/irradiance_cache/changes.h"
+#include "solvers/irradiance_cache/discontinuity.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/records.h"
 #include "solvers/irradiance_cache/stages.h"
@@ -49,6 +50,7 @@ struct CacheOptions {
   uint32_t most_passes = 12;
   float stop_share = 0.002f;  ///< building ends when no more of the paths than this ask for records
   uint32_t seed = 1;
+  DiscontinuityOptions screen;
 };
 
 enum class StopReason { building, covered, passes, records, dark };
@@ -117,8 +119,9 @@ class Cache {
   /// Goes on: to the end of the next stage, which may be one in progress, and waits there; or until building
   /// is complete, whatever pause() has said. Nothing where it is complete already.
   void go_on(bool one_stage);
-  /// For who watches; views of what the cache holds until it is changed.
-  PlacementShown placement() const;
+  /// For who watches; views of what the cache holds until it is changed. Candidates are read from the device
+  /// when there are others than before.
+  PlacementShown placement();
   bool ready() const;
   /// Begins anew with records from elsewhere (Records::raw, of a cache that has these routes' parts at
   /// least), as after a pass of building: it goes on as extend() does, or, with `complete`, is ready and
@@ -143,6 +146,14 @@ class Cache {
   std::pair<float, float> scale(uint32_t color) const;
   void draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
             const Overlay& overlay);
+  /// Lays over the film's picture what of it the screen-space stage sees: the discontinuity of the geometry,
+  /// or of the irradiance that the present records give, at a level of its pyramid. The wavefront's frame is
+  /// the view's. The stream is run.
+  void draw_discontinuity(transport::Wavefront& wavefront, const film::Film& film, const CacheView& view,
+                          Discontinuity::Of of, uint32_t level);
+  /// The candidates of the present pass so far, and what has been chosen of them, until the next pass begins;
+  /// Placement::choice(). Read from the device.
+  Choice choice() const;
 
  private:
   struct Impl;

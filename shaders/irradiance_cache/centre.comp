@@ -1,0 +1,34 @@
+// Source of the screen-space stage: a ray through the centre of every pixel, or of every point of its grid. The path ends
+// where it meets something diffuse, which is noted (k_probe_screen), or is turned aside.
+#define LUCERNA_PUSH SeePush
+#include "shaders/shared/discontinuity.h"
+#include "lib/wavefront.glsl"
+
+void main() {
+  uint slot = global_index();
+  if (slot >= push.count) return;
+  uint point = push.first + slot;
+  uvec2 at = uvec2(point % push.across, point / push.across) * push.stride + push.stride / 2u;
+  uvec2 xy = min(at, uvec2(frame.width, frame.height) - 1u);
+  vec2 ndc = (vec2(xy) + 0.5) / vec2(frame.width, frame.height) * 2.0 - 1.0;
+  vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;
+  Ray ray;
+  ray.origin = frame.camera_origin + (frame.orthographic != 0u ? shift : vec3(0.0));
+  ray.direction = normalize(frame.camera_forward + (frame.orthographic != 0u ? vec3(0.0) : shift));
+  ray.tmax = k_infinity;
+  ray.slot = slot;
+  rays[slot] = ray;
+  PathState p;
+  p.throughput = vec3(1.0);
+  p.pdf = 0.0;
+  p.pixel = xy.y * frame.width + xy.x;
+  p.sample_index = 0u;
+  p.bits = 0u;
+  p.medium = 0u;
+  p.travelled = 0.0;
+  p.eta_scale = 1.0;
+  p.pad0 = 0.0;
+  p.pad1 = 0.0;
+  paths[slot] = p;
+  for (uint c = 0u; c < k_component_count; ++c) radiance[slot * k_component_count + c].rgb = vec3(0.0);
+}

@@ -1,0 +1,36 @@
+// Appends candidates to those there are, in the order of their slots or, with LUCERNA_FROM_SCREEN, of the points of the
+// screen-space stage.
+#include "shaders/shared/placement.h"
+#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/discontinuity.h"
+#include "lib/invocation.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { CollectPush push; };
+uniform samplerBuffer candidate_texels;
+uniform samplerBuffer surface_texels;
+layout(scalar) readonly buffer Taken { uint taken[]; };
+layout(scalar) readonly buffer TakenBefore { uint taken_before[]; };
+layout(scalar) readonly buffer TakenLevels { uint taken_levels[]; };
+layout(scalar) writeonly buffer Places { vec4 places[]; };
+layout(scalar) writeonly buffer Facings { vec4 facings[]; };
+
+void main() {
+  uint index = global_index();
+  if (index >= push.count) return;
+  if (taken[index] == 0u) return;
+#if LUCERNA_FROM_SCREEN
+  vec4 place = texelFetch(surface_texels, int(index * k_surface_texels));
+  vec4 facing = texelFetch(surface_texels, int(index * k_surface_texels + 1u));
+  uint origin = k_origin_screen;
+  float reach = push.cell * push.pixel * float(1u << min(taken_levels[index], 31u)) * (push.parallel != 0u ? 1.0 : place.w);
+#else
+  vec4 place = texelFetch(candidate_texels, int(index * k_candidate_texels));
+  vec4 facing = texelFetch(candidate_texels, int(index * k_candidate_texels + 1u));
+  uint origin = uint(place.w) - 1u;
+  float reach = origin == k_origin_recursive ? max(push.spacing, push.spacing_beyond) : push.spacing;
+#endif
+  float seen = push.parallel != 0u ? 1.0 : distance(place.xyz, push.eye);
+  uint to = push.to + taken_before[index];
+  places[to] = vec4(place.xyz, max(reach, push.spacing_of_distance * seen));
+  facings[to] = vec4(facing.xyz, uintBitsToFloat(floatBitsToUint(facing.w) | origin << k_place_origin_shift));
+}

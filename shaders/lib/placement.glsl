@@ -1,0 +1,17 @@
+// What the kernels share that choose among candidates.
+#ifndef LUCERNA_LIB_PLACEMENT
+#define LUCERNA_LIB_PLACEMENT
+#include "shaders/shared/placement.h"
+#include "shaders/shared/sort.h"
+#include "lib/invocation.glsl"
+
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { ChoosePush push; };
+layout(scalar) buffer Grid { PlacementGrid grid; };
+uniform samplerBuffer place_texels;
+uniform samplerBuffer facing_texels;
+uniform usamplerBuffer entry_texels;  // sorted: low and high word of the key, candidate
+
+// Exponent of the greatest power of two that is not above a normal x > 0.
+int exponent_of(float x) { return int(floatBitsToUint(x) >> 23 & 0xffu) - 127; }
+#endif
