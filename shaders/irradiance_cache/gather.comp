@@ -29,6 +29,9 @@ float tangent_integral(uint j) {
   return asin(sqrt(u)) - sqrt(u * (1.0 - u));
 }
 
+// Inverse distances of the first level, over their mean, that gradients are made of at most.
+const float k_steepest = 10.0;
+
 void main() {
   uint index = global_index();
   if (index >= push.records) return;
@@ -73,6 +76,10 @@ void main() {
   records[at + 2].y = then > 0.0 ? min(told.y, nearest) : nearest;
   records[at + 2].z = sqrt(square(now * error) + (then > 0.0 ? square(then * told.z) : 0.0));
 
+  // What is nearer than the record reaches changes within its reach, not along all of it: its slope there is no slope for
+  // the whole disc, and one ray that meets a crack would else tilt the light of all. In the first level, which says how far
+  // the record reaches, a share of the mean distance stands for that.
+  float steepest = push.rays_before > 0u ? 1.0 / place.w : k_steepest * inverse_sum / cells;
   for (uint p = 0u; p < k_part_count; ++p) {
     if ((push.parts >> p & 1u) == 0u) continue;
     vec3 rotation_t = vec3(0.0), rotation_b = vec3(0.0), translation_t = vec3(0.0), translation_b = vec3(0.0);
@@ -87,8 +94,8 @@ void main() {
         float inverse_here = inverse_distance(slot);
         turn += float(m) * (tangent_integral(j + 1u) - tangent_integral(j)) * (l - mean[p]);
         float s = border_sine(j);
-        along += s * (1.0 - s * s) * max(inverse_here, below_inverse) * (j > 0u ? l - below : vec3(0.0));
-        across += (border_sine(j + 1u) - s) * max(inverse_here, inverse_distance(aside)) * (l - beside);
+        along += s * (1.0 - s * s) * min(max(inverse_here, below_inverse), steepest) * (j > 0u ? l - below : vec3(0.0));
+        across += (border_sine(j + 1u) - s) * min(max(inverse_here, inverse_distance(aside)), steepest) * (l - beside);
         below = l;
         below_inverse = inverse_here;
       }

@@ -83,35 +83,6 @@ TEST_CASE("a stage is told with its level and pass") {
   CHECK(stage_words({.stage = BuildStage::evaluate, .level = 3}) == "evaluate level 3, pass 1");
 }
 
-TEST_CASE("clusters are told of every candidate, and are no wider than they may be") {
-  std::vector<Place> candidates;
-  for (int i = 0; i < 400; ++i)
-    candidates.push_back({vec3(float(i * 37 % 400) * 0.01f, float(i % 7) * 0.01f, 0), vec3(0, 1, 0)});
-  const PlacementOptions options{.spacing = 0.1f, .seed = 3};
-  std::vector<uint32_t> cluster;
-  const std::vector<Place> tried = choose_places(candidates, options, &cluster);
-  REQUIRE(cluster.size() == candidates.size());
-  const uint32_t clusters = 1 + *std::max_element(cluster.begin(), cluster.end());
-  CHECK(clusters >= 10);  // 4 m, 0.4 m each at most
-  CHECK(clusters <= tried.size());
-  for (uint32_t c = 0; c < clusters; ++c) {
-    vec3 lo(1e9f), hi(-1e9f);
-    for (size_t i = 0; i < candidates.size(); ++i)
-      if (cluster[i] == c)
-        lo = glm::min(lo, candidates[i].position), hi = glm::max(hi, candidates[i].position);
-    REQUIRE(lo.x <= hi.x);  // none is empty
-    CHECK(hi.x - lo.x <= 0.4001f);
-    // Each has a place that is tried.
-    CHECK(std::any_of(tried.begin(), tried.end(), [&](const Place& p) {
-      return glm::all(glm::greaterThanEqual(p.position, lo)) && glm::all(glm::lessThanEqual(p.position, hi));
-    }));
-  }
-  // To ask changes nothing.
-  const std::vector<Place> alone = choose_places(candidates, options);
-  REQUIRE(alone.size() == tried.size());
-  for (size_t i = 0; i < alone.size(); ++i) CHECK(alone[i].position == tried[i].position);
-}
-
 TEST_CASE("as much of the placement is drawn as is known and asked for") {
   const std::vector<Place> candidates = row(6, shared::k_origin_world),
                            tried = row(3, shared::k_origin_world);

@@ -199,7 +199,7 @@ void Cache::go_on(bool one_stage) {
   impl_->status.waits = false;
 }
 
-PlacementShown Cache::placement() {
+PlacementShown Cache::placement() const {
   Impl& c = *impl_;
   if (c.shown_version != c.placement_version)
     c.shown = c.placement.choice(), c.shown_version = c.placement_version;

@@ -121,7 +121,7 @@ class Cache {
   void go_on(bool one_stage);
   /// For who watches; views of what the cache holds until it is changed. Candidates are read from the device
   /// when there are others than before.
-  PlacementShown placement();
+  PlacementShown placement() const;
   bool ready() const;
   /// Begins anew with records from elsewhere (Records::raw, of a cache that has these routes' parts at
   /// least), as after a pass of building: it goes on as extend() does, or, with `complete`, is ready and

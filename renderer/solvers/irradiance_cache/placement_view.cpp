@@ -76,7 +76,7 @@ PlacementView::PlacementView(gpu::Device& device, gpu::ShaderCompiler& compiler)
     : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}}) {}
 PlacementView::~PlacementView() = default;
 
-void PlacementView::draw(const Shown& shown, Cache& cache, PlacementShow show) {
+void PlacementView::draw(const Shown& shown, const Cache& cache, PlacementShow show) {
   Impl& i = *impl_;
   const PlacementShown placement = cache.placement();
   const PlacementShow drawn = placement_drawn(show, placement);

@@ -23,7 +23,7 @@ class PlacementView {
   ~PlacementView();
   /// Over the film's picture, which is dimmed where there is anything to draw; the stream is run. Throws
   /// Error when a kernel does not compile.
-  void draw(const Shown& shown, Cache& cache, PlacementShow show);
+  void draw(const Shown& shown, const Cache& cache, PlacementShow show);
 
  private:
   struct Impl;
