@@ -29,7 +29,7 @@ float tangent_integral(uint j) {
   return asin(sqrt(u)) - sqrt(u * (1.0 - u));
 }
 
-// Inverse distances of the first level, over their mean, that gradients are made of at most.
+// Inverse distances of the first level, over the mean of those that are not 0, that gradients are made of at most.
 const float k_steepest = 10.0;
 
 void main() {
@@ -41,7 +41,7 @@ void main() {
 
   vec3 mean[k_part_count];
   for (uint p = 0u; p < k_part_count; ++p) mean[p] = vec3(0.0);
-  float inverse_sum = 0.0, inverse_most = 0.0, scatter = 0.0;
+  float inverse_sum = 0.0, inverse_most = 0.0, hits = 0.0, scatter = 0.0;
   for (uint j = 0u; j < m; ++j) {
     float before = 0.0;
     for (uint k = 0u; k <= n; ++k) {  // round to the first again, for the difference between last and first
@@ -57,6 +57,7 @@ void main() {
       before = bright;
       float inverse = counts * inverse_distance(slot);
       inverse_sum += inverse;
+      hits += inverse > 0.0 ? 1.0 : 0.0;
       inverse_most = max(inverse_most, inverse);
     }
   }
@@ -78,8 +79,8 @@ void main() {
 
   // What is nearer than the record reaches changes within its reach, not along all of it: its slope there is no slope for
   // the whole disc, and one ray that meets a crack would else tilt the light of all. In the first level, which says how far
-  // the record reaches, a share of the mean distance stands for that.
-  float steepest = push.rays_before > 0u ? 1.0 / place.w : k_steepest * inverse_sum / cells;
+  // the record reaches, a share of the mean distance of what is there stands for that.
+  float steepest = push.rays_before > 0u ? 1.0 / place.w : k_steepest * inverse_sum / max(hits, 1.0);
   for (uint p = 0u; p < k_part_count; ++p) {
     if ((push.parts >> p & 1u) == 0u) continue;
     vec3 rotation_t = vec3(0.0), rotation_b = vec3(0.0), translation_t = vec3(0.0), translation_b = vec3(0.0);

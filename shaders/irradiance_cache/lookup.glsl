@@ -44,8 +44,10 @@ float record_weight(vec3 x, vec3 n, vec4 place, vec4 facing, vec4 shape) {
   float far = length(away) / place.w;
 #endif
   float turned = sqrt(max(0.0, 1.0 - dot(n, facing.xyz)) / cache.normal_tolerance);
-  bool before = dot(away, n + facing.xyz) >= -2.0 * cache.behind * shape.w;
-  return place.w > 0.0 && before ? max(0.0, 1.0 - max(far, turned)) : 0.0;
+  // Points of one smooth surface lie in the plane between their normals' planes; what lies off it, on either side, is another
+  // surface, or a step.
+  bool level = abs(dot(away, n + facing.xyz)) <= 2.0 * cache.off_plane * shape.w;
+  return place.w > 0.0 && level ? max(0.0, 1.0 - max(far, turned)) : 0.0;
 }
 
 // Whether a record at a point with that geometric normal could serve that shading normal.

@@ -78,8 +78,9 @@ struct CacheFrame {
   uint record_count;
   /// Most that the normals of a point and of a record may differ, as 1 - cos.
   float normal_tolerance;
-  /// How far below a record's tangent plane, in its radius, a point may lie and still be served.
-  float behind;
+  /// How far off the plane between its own and a record's tangent plane, in the record's radius, a point may lie
+  /// and still be served.
+  float off_plane;
   uint probing;  ///< k_probe_*
 };
 

@@ -18,12 +18,12 @@ using irradiance_cache::Record;
 namespace {
 
 constexpr uint32_t k_size = 192;
-constexpr float k_tolerance = 0.015f, k_behind = 0.05f;  // of the cache: 1 - cos 10 degrees, of the radius
+constexpr float k_tolerance = 0.06f, k_off_plane = 0.03f;  // of the cache: 1 - cos 20 degrees, of the radius
 
 /// Tabellion and Lamorlette's weight, as METHODS and shaders/irradiance_cache/lookup.glsl have it.
 float weight(const Record& r, const vec3& x, const vec3& n) {
   const vec3 away = x - r.place.position;
-  if (r.radius <= 0 || dot(away, n + r.place.normal) < -2 * k_behind * r.radius) return 0;
+  if (r.radius <= 0 || std::abs(dot(away, n + r.place.normal)) > 2 * k_off_plane * r.radius) return 0;
   const float far = length(away) / r.radius;
   const float turned = std::sqrt(std::max(0.0f, 1 - dot(n, r.place.normal)) / k_tolerance);
   return std::max(0.0f, 1 - std::max(far, turned));
@@ -99,8 +99,8 @@ TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen befo
   REQUIRE(r.samples() == 0);
   size_t served = 0;
   const std::vector<Record> all = r.cache()->records().read();
-  for (const float down : {0.2f, 0.45f, 0.7f, 0.9f})
-    for (const float right : {0.2f, 0.4f, 0.6f, 0.8f}) {
+  for (const float down : {0.1f, 0.2f, 0.3f, 0.45f, 0.6f, 0.7f, 0.8f, 0.9f})
+    for (const float right : {0.1f, 0.2f, 0.4f, 0.5f, 0.6f, 0.8f, 0.9f}) {
       r.inspect(vec2(right, down));
       r.picture(true);
       const Inspection found = r.cache_report()->inspection;

@@ -153,7 +153,7 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
     const irradiance_cache::PlacementShown p = r.cache()->placement();
     const irradiance_cache::CachePass& pass = status(r).passes.back();
     INFO(stage_words(last));
-    CHECK(p.candidates.size() == pass.asked);
+    CHECK(p.candidates.size() == pass.candidates);
     CHECK(p.tried.size() == pass.tried);
     CHECK(p.cluster.empty() == (last.stage == BuildStage::probe));
     CHECK(p.radii.empty() == (last.stage <= BuildStage::choose));

@@ -74,7 +74,7 @@ std::vector<SharedStruct> structs() {
       SHARED("film.h", FilmPush, width, height, pixel_count, sample_count),
       SHARED("film.h", TonePush, width, height, layer, show, curve, exposure, scale, coarse_width,
              coarse_height, use_coarse_film),
-      SHARED("irradiance_cache.h", CacheFrame, routes, record_count, normal_tolerance, behind, probing),
+      SHARED("irradiance_cache.h", CacheFrame, routes, record_count, normal_tolerance, off_plane, probing),
       SHARED("irradiance_cache.h", RecordPush, first, records, elevations, azimuths, rays_before, parts,
              state, seed),
       SHARED("irradiance_cache.h", RadiusPush, first, count, error, least_pixels, most, near),

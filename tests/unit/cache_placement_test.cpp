@@ -47,7 +47,7 @@ TEST_CASE("thinning keeps what nothing wider covers, and nothing else") {
     return distance(points[i].position, points[k].position) <= options.share * radii[k] &&
            1 - dot(points[i].normal, points[k].normal) <=
                options.share * options.share * options.normal_tolerance &&
-           dot(away, points[i].normal + points[k].normal) >= -2 * options.behind * radii[k];
+           std::abs(dot(away, points[i].normal + points[k].normal)) <= 2 * options.off_plane * radii[k];
   };
   for (uint32_t i = 0; i < points.size(); ++i) {
     const bool stays = std::binary_search(kept.begin(), kept.end(), i);

@@ -59,7 +59,7 @@ TEST_CASE("keys and commands lead from stage to stage, and the panel says where 
   const auto outcome = test::window(
       std::string(k_start) + "screenshot " + file("probe.png") + "\nkey x\nwait_cache\nscreenshot " +
       file("choose.png") + "\ncache.step\ncache.step limit=20\nscreenshot " + file("thin.png") +
-      "\nkey p\nscreenshot " + file("plain.png") + "\nkey g\nwait_cache\nwait_samples 3\nscreenshot " +
+      "\nkey p\nscreenshot " + file("plain.png") + "\nkey j\nwait_cache\nwait_samples 3\nscreenshot " +
       file("complete.png") + "\nscript.save " + file("session.lucerna") + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);

@@ -16,8 +16,8 @@ enum class Stage { probe, choose, measure, thin, evaluate, index, done };
 
 /// Most that the normals of a point and of its record may differ, as 1 - cos: 20 degrees.
 inline constexpr float k_normal_tolerance = 0.06f;
-/// How far below a record's plane, in its radius, points may lie.
-inline constexpr float k_behind = 0.05f;
+/// How far off a record's plane, in its radius, points may lie: what a lamp's panel in a ceiling may not.
+inline constexpr float k_off_plane = 0.03f;
 
 /// Elevations of a level of that many rays; there are four times as many azimuths.
 uint32_t elevations_for(uint32_t rays);

@@ -90,7 +90,7 @@ void Cache::Impl::tell(uint32_t probing, const std::array<uint32_t, 16>& table) 
   std::copy(table.begin(), table.end(), f.routes);
   f.record_count = evaluated;
   f.normal_tolerance = k_normal_tolerance;
-  f.behind = k_behind;
+  f.off_plane = k_off_plane;
   f.probing = probing;
   frame.write(&f, sizeof f);
 }

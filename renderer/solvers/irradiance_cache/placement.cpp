@@ -341,7 +341,7 @@ std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const fl
     const float covered = o.share * radii[k];
     const float turned = std::max(0.0f, 1 - dot(p.normal, places[k].normal));
     return dot(away, away) <= covered * covered && turned <= o.share * o.share * o.normal_tolerance &&
-           dot(away, p.normal + places[k].normal) >= -2 * o.behind * radii[k];
+           std::abs(dot(away, p.normal + places[k].normal)) <= 2 * o.off_plane * radii[k];
   };
   for (const uint32_t i : order) {
     const Place& p = places[i];

@@ -79,7 +79,7 @@ class Placement {
 struct ThinningOptions {
   /// Of its radius: where a record that is kept makes others superfluous. The less, the more overlap.
   float share = 0.6f;
-  float normal_tolerance = 0.015f, behind = 0.05f;  ///< as the lookup has them
+  float normal_tolerance = 0.015f, off_plane = 0.03f;  ///< as the lookup has them
 };
 
 /// Of records whose radii are known those that are needed, the widest first: indices in rising order. A
