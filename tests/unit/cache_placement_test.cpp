@@ -59,3 +59,15 @@ TEST_CASE("thinning keeps what nothing wider covers, and nothing else") {
   }
   CHECK(thin_out({}, {}, options).empty());
 }
+
+TEST_CASE("thinning leaves a panel above a ceiling its own record") {
+  // Both face down; the ceiling's record is as wide as a lamp.
+  const std::vector<Place> points{{vec3(0), vec3(0, -1, 0)}, {vec3(0.2f, 0.03f, 0), vec3(0, -1, 0)}};
+  const std::vector<float> radii{0.6f, 0.05f};
+  CHECK(thin_out(points, radii, {}).size() == 2);
+  // Below the ceiling, hanging from it, too; in its plane not.
+  CHECK(thin_out(std::vector<Place>{points[0], {vec3(0.2f, -0.03f, 0), vec3(0, -1, 0)}}, radii, {}).size() ==
+        2);
+  CHECK(thin_out(std::vector<Place>{points[0], {vec3(0.2f, 0.001f, 0), vec3(0, -1, 0)}}, radii, {}).size() ==
+        1);
+}

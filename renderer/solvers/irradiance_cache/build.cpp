@@ -193,8 +193,9 @@ bool Cache::Impl::measure(const Work& w) {
 
 bool Cache::Impl::thin() {
   const Timer host;
-  kept = thin_out(tried, tried_radii,
-                  {.share = k_overlap_share, .normal_tolerance = k_normal_tolerance, .off_plane = k_off_plane});
+  kept =
+      thin_out(tried, tried_radii,
+               {.share = k_overlap_share, .normal_tolerance = k_normal_tolerance, .off_plane = k_off_plane});
   std::vector<Place> needed;
   for (const uint32_t i : kept) needed.push_back(tried[i]);
   records.truncate(evaluated);
