@@ -1,4 +1,4 @@
-// Commands that lead the building of the irradiance cache from stage to stage.
+// Commands that keep the irradiance cache and lead its building from stage to stage.
 #include "base/error.h"
 #include "commands/workspace.h"
 
@@ -11,13 +11,25 @@ void Workspace::needs_cache() const {
 }
 
 void Workspace::add_cache_commands() {
-  const Parameter limit{.name = "limit",
-                        .type = Type::real,
-                        .help = "how long at most; 300 when not given",
-                        .lo = 1,
-                        .hi = 86400,
-                        .unit = "seconds",
-                        .optional = true};
+  const Parameter limit = time_limit();
+  registry.add({.name = "cache.save",
+                .help = "Writes the records of the irradiance cache for cache.load, as soon as they are "
+                        "complete; a script waits for that.",
+                .parameters = {file_named({".cache"}), limit},
+                .run =
+                    [this](const Arguments& a) {
+                      needs_scene();
+                      session.save_cache(a.text("file"));
+                    },
+                .done = [this](const Arguments&) { return !session.saving_cache(); }});
+  registry.add({.name = "cache.load",
+                .help = "Takes the records of the irradiance cache from a file of the same scene, lit alike, "
+                        "and adds what this view is missing.",
+                .parameters = {file_named({".cache"})},
+                .run = [this](const Arguments& a) {
+                  needs_scene();
+                  session.load_cache(a.text("file"));
+                }});
   // True once building waits or is complete, with all in force that was commanded.
   const auto stands = [this](const Arguments&) {
     return up_to_date() && !camera_moved && snapshot->cache &&

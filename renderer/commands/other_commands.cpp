@@ -28,13 +28,10 @@ void Workspace::add_other_commands() {
            run();
          }});
   };
-  const auto file = [](std::vector<std::string> endings) {
-    return Parameter{.name = "file", .type = Type::file, .choices = std::move(endings)};
-  };
 
   registry.add({.name = "scene.open",
                 .help = "Opens a glTF scene. The one shown stays until the new one is ready, or if it fails.",
-                .parameters = {file({".gltf", ".glb"})},
+                .parameters = {file_named({".gltf", ".glb"})},
                 .run = [this](const Arguments& a) {
                   opening_ = true, open_failed_ = false;
                   errors_at_open_ = error_count;
@@ -53,48 +50,23 @@ void Workspace::add_other_commands() {
       [this] { session.reload_shaders(); });
   registry.add({.name = "image.save",
                 .help = "Writes the picture as it is: all layers as EXR, or what is shown as PNG.",
-                .parameters = {file({".exr", ".png"})},
+                .parameters = {file_named({".exr", ".png"})},
                 .run = [this](const Arguments& a) { session.save(a.text("file")); }});
 
   registry.add({.name = "reference.load",
                 .help = "Takes a picture for the truth, to hold this one against: an EXR with all layers, of "
                         "the same scene, view and size.",
-                .parameters = {file({".exr"})},
+                .parameters = {file_named({".exr"})},
                 .run = [this](const Arguments& a) {
                   needs_scene();
                   session.set_reference(a.text("file"));
                 }});
   act("reference.clear", "Forgets the picture taken for the truth.", [this] { session.clear_reference(); });
 
-  const Parameter limit{.name = "limit",
-                        .type = Type::real,
-                        .help = "how long at most; 300 when not given",
-                        .lo = 1,
-                        .hi = 86400,
-                        .unit = "seconds",
-                        .optional = true};
-  registry.add({.name = "cache.save",
-                .help = "Writes the records of the irradiance cache for cache.load, as soon as they are "
-                        "complete; a script waits for that.",
-                .parameters = {file({".cache"}), limit},
-                .run =
-                    [this](const Arguments& a) {
-                      needs_scene();
-                      session.save_cache(a.text("file"));
-                    },
-                .done = [this](const Arguments&) { return !session.saving_cache(); }});
-  registry.add({.name = "cache.load",
-                .help = "Takes the records of the irradiance cache from a file of the same scene, lit alike, "
-                        "and adds what this view is missing.",
-                .parameters = {file({".cache"})},
-                .run = [this](const Arguments& a) {
-                  needs_scene();
-                  session.load_cache(a.text("file"));
-                }});
-
+  const Parameter limit = time_limit();
   registry.add({.name = "script.save",
                 .help = "Writes what was done in this session, as a script that does it again.",
-                .parameters = {file({".lucerna"})},
+                .parameters = {file_named({".lucerna"})},
                 .run =
                     [this](const Arguments& a) {
                       save_script(a.text("file"));

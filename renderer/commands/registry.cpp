@@ -105,6 +105,20 @@ size_t name_end(const Word& word) {
 
 }  // namespace
 
+Parameter time_limit() {
+  return {.name = "limit",
+          .type = Type::real,
+          .help = "how long at most; 300 when not given",
+          .lo = 1,
+          .hi = 86400,
+          .unit = "seconds",
+          .optional = true};
+}
+
+Parameter file_named(std::vector<std::string> endings) {
+  return {.name = "file", .type = Type::file, .choices = std::move(endings)};
+}
+
 double Arguments::real(const std::string& name) const {
   double value = 0;
   read_number(values_.at(name), value);

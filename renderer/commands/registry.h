@@ -45,6 +45,11 @@ struct Parameter {
   std::function<std::vector<std::string>(const std::vector<std::string>&)> names = {};
 };
 
+/// How long a script waits for a command to be done: "limit", which may be left out.
+Parameter time_limit();
+/// A "file" whose name has one of these endings.
+Parameter file_named(std::vector<std::string> endings);
+
 /// The values of one command, checked. Asking for a parameter that was not given is a logic error (throws
 /// std::out_of_range); has() says.
 class Arguments {

@@ -133,4 +133,11 @@ void Buffer::read(void* data, uint64_t size, uint64_t offset) const {
   }
 }
 
+void make_room(Device& device, Buffer& buffer, BufferDesc desc) {
+  desc.bytes = (desc.bytes + 15) / 16 * 16;
+  if (buffer && buffer.bytes() >= desc.bytes) return;
+  buffer = {};  // its memory first
+  buffer = Buffer(device, desc);
+}
+
 }  // namespace lucerna::gpu

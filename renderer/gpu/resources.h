@@ -63,6 +63,10 @@ class Buffer {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Room for desc.bytes, rounded up to texels: a new buffer in place of one that is smaller, without what was
+/// in it.
+void make_room(Device& device, Buffer& buffer, BufferDesc desc);
+
 enum class TexelFormat { rgba8_unorm, rgba8_srgb, rgba16f, rgba32f };
 
 struct TextureArrayDesc {

@@ -433,14 +433,13 @@ TEST_CASE("detail of the geometry is dark on walls and bright at edges, and wide
 TEST_CASE("what is chosen of a pass's candidates can be read until the next pass") {
   session::Renderer& r = bed();
   r.restart();
-  while (r.cache()->choice().chosen.empty()) REQUIRE(r.step());
-  const irradiance_cache::Choice all = r.cache()->choice();
+  while (r.cache()->placement().tried.empty()) REQUIRE(r.step());
+  const irradiance_cache::PlacementShown all = r.cache()->placement();
   const irradiance_cache::CachePass& pass = r.cache()->status().passes.back();
   CHECK(all.candidates.size() == pass.candidates);
   CHECK(all.cluster.size() == pass.candidates);
-  CHECK(all.chosen.size() == pass.tried);
+  CHECK(all.tried.size() == pass.tried);
   CHECK(std::is_sorted(all.cluster.begin(), all.cluster.end()));
-  CHECK(std::is_sorted(all.chosen.begin(), all.chosen.end()));
   // The picture asks by dithering: a small share of its pixels, all of them on what it shows.
   size_t screen = 0;
   for (const irradiance_cache::Place& p : all.candidates) screen += p.origin == shared::k_origin_screen;

@@ -21,17 +21,16 @@ constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
 /// no record serves there costs time, not accuracy.
 constexpr uint32_t k_deep_passes = 3;
 constexpr float k_deep_spacing = 1.0f / 64;
+/// Noise that records may have which only others read, over that of others: a record's ray reads some of
+/// them, and a record's rays many.
+constexpr float k_deep_noise = 4;
 /// Width of the finest cells of the picture that ask, in the spacing of the pass: gaps about finer detail are
 /// left to later passes, whose records read those of the first and are cheaper.
 constexpr float k_finest_of_spacing = 0.5f;
 /// Passes that go on for the irradiance that the records give, when few paths ask.
 constexpr uint32_t k_refining_passes = 4;
-/// Noise that they may have, over that of others: a record's ray reads some of them, and a record's rays
-/// many.
-constexpr float k_deep_noise = 4;
 /// Of its radius: where a record makes others superfluous.
 constexpr float k_overlap_share = 0.6f;
-
 /// Records that go on with a noisy one, on either side.
 constexpr size_t k_company = 4;
 /// Of metric `hessian`, over `error`: makes about as many records as the split sphere does with the same.
@@ -46,7 +45,6 @@ uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lroun
 
 bool Cache::Impl::probe(const Work& w) {
   if (!probing) {
-    if (stale) screen.begin(w.view.paths_frame), stale = false;
     picture = {((w.view.width + 7) / 8) * ((w.view.height + 7) / 8), 1, w.wavefront.slots()};
     begin_pass();
   }
@@ -119,13 +117,13 @@ bool Cache::Impl::look(const Work& w, bool& cancelled) {
                           routes[0] != k_no_routes && status.pass > 0 && evaluated > 0;
   if (looked || !(geometry || irradiance)) return true;
   StageTimer timer(w.wavefront);
-  if (!screen.seen()) {
+  if (stale || !screen.seen()) {
     cancelled = !see(w.wavefront, w.view, w.cancel);
   } else {
     const Discontinuity::Of of = geometry ? Discontinuity::Of::geometry : Discontinuity::Of::irradiance;
     gpu::Stream& stream = w.wavefront.stream();
     screen.look_up(stream, [this](gpu::Resources& r) { bind(r); });
-    screen.measure(stream, of, options.screen, dark());
+    screen.measure(stream, of, options.screen, dark(records.luminances()));
     const float spacing = reach(w.view).spacing;
     screen.dither(stream, of, options.screen,
                   {.least_width = k_spacing_of_least * options.least_pixels,
@@ -306,7 +304,7 @@ void Cache::Impl::end_pass() {
   set_scales();
   pass().complete = true;
   if (status.relighting > 0) return relight_pass();
-  if (evaluated > (ends.empty() ? 0 : ends.back())) ends.push_back(evaluated);
+  if (evaluated > complete()) ends.push_back(evaluated);
   ++status.pass;
   next_pass();
 }
@@ -324,12 +322,12 @@ bool Cache::Impl::next_level() {
   if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
   const std::vector<Records::Figures> figures = records.figures();
   const std::vector<float> light = records.luminances();
-  const float least = dark();
+  const float least = dark(light);
   // Light that few rays find (a caustic) is looked for wherever a record near by has found it: one that has
   // not would else stop, content with its darkness. The list is in Morton order, so that neighbours in it
   // are near.
   std::vector<uint32_t> longer;
-  size_t next = 0;  // the first that no noisy one so far has longer or passed
+  size_t next = 0;  // the first that no noisy one so far has kept or passed
   for (size_t i = 0; i < list.size(); ++i) {
     const uint32_t r = list[i];
     const float enough =
@@ -343,8 +341,7 @@ bool Cache::Impl::next_level() {
   return !list.empty();
 }
 
-float Cache::Impl::dark() const {
-  const std::vector<float> light = records.luminances();
+float Cache::Impl::dark(std::span<const float> light) const {
   double sum = 0;
   for (uint32_t r = 0; r < until; ++r) sum += double(light[r]);
   return until > 0 ? 0.1f * float(sum / until) : 1.0f;
@@ -364,7 +361,7 @@ void Cache::Impl::set_radii(const Work& w, bool lit) {
                            k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
                            options.least_pixels,
                            most,
-                           dark()};
+                           dark(records.luminances())};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
   } else {
     const RadiusPush push{evaluated,     count,

@@ -93,7 +93,10 @@ struct Cache::Impl {
   void forget_placement();
 
   /// Irradiance, luminance: what records of less are held against, because what they miss is seen less.
-  float dark() const;
+  /// `light`: Records::luminances().
+  float dark(std::span<const float> light) const;
+  /// Records of complete passes.
+  uint32_t complete() const { return ends.empty() ? 0 : ends.back(); }
   /// One piece of looking at the picture's points; false when it was cancelled.
   bool see(transport::Wavefront& wavefront, const CacheView& view, const std::function<bool()>& cancel);
   /// Records that are evaluated hold what this cache gathers, and no more.

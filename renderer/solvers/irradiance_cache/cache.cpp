@@ -185,6 +185,7 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
 }
 
 bool Cache::ready() const { return impl_->stage == Stage::done; }
+
 void Cache::pause(PauseAfter after) {
   impl_->pauses.set(after);
   impl_->status.waits = impl_->pauses.waits();
@@ -234,8 +235,6 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
   return true;
 }
 
-Choice Cache::choice() const { return impl_->placement.choice(); }
-
 void Cache::draw_discontinuity(transport::Wavefront& wavefront, const film::Film& film, const CacheView& view,
                                Discontinuity::Of of, uint32_t level) {
   Impl& c = *impl_;
@@ -245,7 +244,7 @@ void Cache::draw_discontinuity(transport::Wavefront& wavefront, const film::Film
   c.screen.look_up(stream, [&](gpu::Resources& r) { bind(r); });
   DiscontinuityOptions options = c.options.screen;
   if (options.irradiance_weight <= 0) options.irradiance_weight = DiscontinuityOptions{}.irradiance_weight;
-  c.screen.measure(stream, of, options, c.dark());
+  c.screen.measure(stream, of, options, c.dark(c.records.luminances()));
   c.screen.draw(stream, film.picture(), level);
   stream.run();
   stream.take_times();

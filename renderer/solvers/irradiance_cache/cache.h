@@ -151,9 +151,6 @@ class Cache {
   /// the view's. The stream is run.
   void draw_discontinuity(transport::Wavefront& wavefront, const film::Film& film, const CacheView& view,
                           Discontinuity::Of of, uint32_t level);
-  /// The candidates of the present pass so far, and what has been chosen of them, until the next pass begins;
-  /// Placement::choice(). Read from the device.
-  Choice choice() const;
 
  private:
   struct Impl;

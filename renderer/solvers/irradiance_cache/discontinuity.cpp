@@ -39,9 +39,7 @@ struct Discontinuity::Impl {
     return kernel;
   }
   void ensure(gpu::Buffer& buffer, const char* name, uint64_t bytes) {
-    if (buffer && buffer.bytes() >= bytes) return;
-    buffer = {};
-    buffer = gpu::Buffer(device, {.name = name, .bytes = (bytes + 15) / 16 * 16, .texel = true});
+    gpu::make_room(device, buffer, {.name = name, .bytes = bytes, .texel = true});
   }
   void run(gpu::Stream& stream, const gpu::Kernel& kernel, const void* push, size_t bytes, uint32_t items) {
     stream.dispatch(kernel, resources, push, bytes, gpu::groups_for(items, 64), k_stage);

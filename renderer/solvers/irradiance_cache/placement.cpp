@@ -35,7 +35,7 @@ Place place_of(const vec4& place, const vec4& facing) {
 }
 
 /// When there are more than `most`: whole ranks (the first of every cluster, the second, ...) while they fit,
-/// and of the next one evenly over the clusters. `ranks`, from 1, by cluster; returns how many of each.
+/// and of the next one evenly over the clusters. `having`: by cluster; returns how many of each.
 std::vector<size_t> share_out(const std::vector<size_t>& having, size_t most) {
   std::vector<size_t> quota(having.size(), 0);
   for (size_t left = most, rank = 0; left > 0; ++rank) {
@@ -88,9 +88,7 @@ struct Placement::Impl {
   }
 
   void ensure(gpu::Buffer& buffer, const char* name, uint64_t bytes) {
-    if (buffer && buffer.bytes() >= bytes) return;
-    buffer = {};
-    buffer = gpu::Buffer(device, {.name = name, .bytes = (bytes + 15) / 16 * 16, .texel = true});
+    gpu::make_room(device, buffer, {.name = name, .bytes = bytes, .texel = true});
   }
 
   /// Room for that many candidates; what there is stays.
@@ -107,6 +105,16 @@ struct Placement::Impl {
       }
       *buffer = std::move(larger);
     }
+  }
+
+  /// All candidates, in the order in which they were collected.
+  std::vector<Place> read() const {
+    std::vector<vec4> where(size), facing(size);
+    places.read(where.data(), size * sizeof(vec4));
+    facings.read(facing.data(), size * sizeof(vec4));
+    std::vector<Place> all;
+    for (uint32_t i = 0; i < size; ++i) all.push_back(place_of(where[i], facing[i]));
+    return all;
   }
 
   uint32_t sum() const { return *static_cast<const uint32_t*>(total.mapped()); }
@@ -276,11 +284,9 @@ std::vector<Place> Placement::choose(gpu::Stream& stream, const ChoiceOptions& o
   for (uint32_t c = 0; c < clusters; ++c)
     for (uint32_t i = starts[c]; i < starts[c + 1]; ++i)
       if (ranks[i] > 0 && ranks[i] <= quota[c]) p.picks.push_back(entries[i].value);
-  std::vector<vec4> places(p.size), facings(p.size);
-  p.places.read(places.data(), p.size * sizeof(vec4));
-  p.facings.read(facings.data(), p.size * sizeof(vec4));
+  const std::vector<Place> collected = p.read();
   std::vector<Place> all;
-  for (const uint32_t i : p.picks) all.push_back(place_of(places[i], facings[i]));
+  for (const uint32_t i : p.picks) all.push_back(collected[i]);
   return all;
 }
 
@@ -288,11 +294,9 @@ Choice Placement::choice() const {
   const Impl& p = *impl_;
   Choice all;
   if (p.size == 0) return all;
-  std::vector<vec4> places(p.size), facings(p.size);
-  p.places.read(places.data(), p.size * sizeof(vec4));
-  p.facings.read(facings.data(), p.size * sizeof(vec4));
+  std::vector<Place> collected = p.read();
   if (!p.sorted) {
-    for (uint32_t i = 0; i < p.size; ++i) all.candidates.push_back(place_of(places[i], facings[i]));
+    all.candidates = std::move(collected);
     return all;
   }
   std::vector<SortEntry64> entries(p.size);
@@ -301,7 +305,7 @@ Choice Placement::choice() const {
   for (uint32_t i = 0, cluster = 0; i < p.size; ++i) {
     const uint32_t source = entries[i].value;
     rank_of[source] = i;
-    all.candidates.push_back(place_of(places[source], facings[source]));
+    all.candidates.push_back(collected[source]);
     if (cluster + 1 < p.first_starts.size() && i == p.first_starts[cluster + 1]) ++cluster;
     all.cluster.push_back(cluster);
   }

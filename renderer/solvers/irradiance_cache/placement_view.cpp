@@ -64,12 +64,6 @@ struct PlacementView::Impl {
   uint64_t version = 0;  // of what is in `points`, and how it was to be shown
   PlacementShow drawn = PlacementShow::off;
   uint32_t count = 0, rings = 0;
-
-  static void make_room(gpu::Device& device, gpu::Buffer& buffer, const char* name, uint64_t bytes,
-                        gpu::Memory memory) {
-    if (!buffer || buffer.bytes() < bytes)
-      buffer = gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
-  }
 };
 
 PlacementView::PlacementView(gpu::Device& device, gpu::ShaderCompiler& compiler)
@@ -90,12 +84,13 @@ void PlacementView::draw(const Shown& shown, const Cache& cache, PlacementShow s
   if (i.version != placement.version || i.drawn != drawn) {
     const std::vector<PlacedPoint> points = placement_points(drawn, placement, k_most_points, i.rings);
     const uint64_t bytes = points.size() * sizeof(PlacedPoint);
-    Impl::make_room(i.device, i.points, "cache placement", bytes + bytes / 4, gpu::Memory::host);
+    gpu::make_room(i.device, i.points,
+                   {.name = "cache placement", .bytes = bytes + bytes / 4, .memory = gpu::Memory::host});
     i.points.write(points.data(), bytes);
     i.count = uint32_t(points.size());
     i.version = placement.version, i.drawn = drawn;
   }
-  Impl::make_room(i.device, i.marks, "cache placement marks", 4 * pixels, gpu::Memory::device);
+  gpu::make_room(i.device, i.marks, {.name = "cache placement marks", .bytes = 4 * pixels});
   shown.wavefront.bind_paths(i.resources);
   film.bind(i.resources);
   shown.coarse.bind_coarse(i.resources);

@@ -25,9 +25,9 @@ void Cache::Impl::relight() {
     stopped = status.stop == StopReason::dark ? StopReason::building : status.stop;
     // A pass that has its first level has places and radii, and is complete when it is relit. Of one before
     // that nothing is left; its places are asked for again.
-    if (evaluated > (ends.empty() ? 0 : ends.back())) ends.push_back(evaluated), ++status.pass;
+    if (evaluated > complete()) ends.push_back(evaluated), ++status.pass;
   }
-  standing = ends.empty() ? 0 : ends.back();
+  standing = complete();
   drop_pass();
   pauses.dropped();
   status.waits = false;
@@ -66,7 +66,7 @@ Spoilt Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {
   Impl& c = *impl_;
   const Impl& o = *other.impl_;
   clear();
-  const uint32_t count = o.ends.empty() ? 0 : o.ends.back();
+  const uint32_t count = o.complete();
   if (count > c.records.capacity()) return k_spoils_all;
   c.take(o.records.raw(count));
   c.ends = o.ends;
