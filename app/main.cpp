@@ -151,6 +151,28 @@ int main_checked(int argc, char** argv) {
       ->check(CLI::Range(1u, 1u << 22))
       ->capture_default_str();
   measured(lookup_verb, bl, 1, "seed of spheres and points");
+  BenchInterpolationArguments bi;
+  CLI::App* interpolation_verb = bench_verb->add_subcommand(
+      "interpolation",
+      "lookups a second in the irradiance cache of a scene, by how its records' overlap is held down");
+  interpolation_verb->add_option("SCENE", bi.scene, "glTF scene")->required();
+  interpolation_verb->add_option("--width", bi.width, "of the picture")
+      ->check(CLI::Range(16u, 4096u))
+      ->capture_default_str();
+  interpolation_verb->add_option("--height", bi.height, "its height")
+      ->check(CLI::Range(16u, 4096u))
+      ->capture_default_str();
+  interpolation_verb->add_option("--samples", bi.samples, "samples a pixel")
+      ->check(CLI::Range(1u, 1u << 20))
+      ->capture_default_str();
+  interpolation_verb->add_option("--set", bi.set, "KEY=VALUE, as of render")->allow_extra_args(false);
+  interpolation_verb->add_option("--reference", bi.reference,
+                                 "EXR of the same picture, converged: tells errors too");
+  interpolation_verb->add_option("--repeats", bi.repeats, "measurements of each figure")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  interpolation_verb->add_option("--json", bi.json, "file to write the figures to");
+  interpolation_verb->add_option("--device", bi.device, "as above");
   app.require_subcommand(0, 1);
 
   try {
@@ -170,6 +192,8 @@ int main_checked(int argc, char** argv) {
   if (*sort_verb) return bench_sort(bs);
   if (bl.device.empty()) bl.device = device;
   if (*lookup_verb) return bench_lookup(bl);
+  if (bi.device.empty()) bi.device = device;
+  if (*interpolation_verb) return bench_interpolation(bi);
   if (*bench_verb) {
     if (bm.device.empty()) bm.device = device;
     for (int i = 0; i < argc; ++i) bm.command += std::string(i ? " " : "") + (i ? argv[i] : "lucerna");

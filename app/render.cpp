@@ -194,6 +194,8 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
                   {"uncovered_share", double(s.asked) / double(std::max<uint64_t>(1, s.paths))},
                   {"bytes", s.bytes},
                   {"stopped_by", k_reasons[size_t(s.stop)]}};
+    if (const auto overlap = r.cache_report()->overlap)
+      j["cache"]["overlap"] = {{"mean", overlap->mean}, {"most", overlap->most}, {"listed", overlap->listed}};
     for (const irradiance_cache::CachePass& p : s.passes)
       j["cache"]["building"].push_back({{"asked", p.asked},
                                         {"asked_world", p.asked_world},

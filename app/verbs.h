@@ -52,6 +52,16 @@ struct BenchLookupArguments {
 };
 int bench_lookup(const BenchLookupArguments& arguments);
 
+struct BenchInterpolationArguments {
+  std::string device, scene;
+  uint32_t width = 256, height = 256, samples = 1;
+  std::string reference;  ///< EXR of the same picture, converged; empty: errors are not told
+  std::vector<std::string> set;
+  int repeats = 7;
+  std::string json;  ///< file to write the figures to; empty: none
+};
+int bench_interpolation(const BenchInterpolationArguments& arguments);
+
 struct BenchArguments {
   std::string matrix;  ///< file; or one of the two built in
   bool quick = false, full = false;

@@ -111,6 +111,13 @@ std::vector<OptionInfo> make_options() {
            "Irradiance cache: least radius of a record, as the camera sees it."),
       real("cache.max_radius", "0.1", 0.001, 1, "of the scene's radius",
            "Irradiance cache: greatest radius of a record."),
+      boolean("cache.neighbours",
+              "Irradiance cache: records reach no farther than the nearest others in different directions: "
+              "fewer serve a point, which is faster and closer to the light there."),
+      real("cache.thinning", "0.6", 0, 1, "of the radius",
+           "Irradiance cache: within that a record makes others superfluous that are tried with it. Less: "
+           "more "
+           "records, and more of them serve a point; 0: all that are tried are kept."),
       {.key = "cache.rays",
        .type = OptionType::choice,
        .fallback = "256",

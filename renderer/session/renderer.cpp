@@ -174,6 +174,8 @@ irradiance_cache::CacheOptions Renderer::cache_options() const {
           .rays = uint32_t(std::stoul(settings_.text("cache.rays"))),
           .most_rays = uint32_t(std::stoul(settings_.text("cache.max_rays"))),
           .noise = float(settings_.real("cache.noise")),
+          .thinning = float(settings_.real("cache.thinning")),
+          .neighbours = settings_.boolean("cache.neighbours"),
           .most_records = uint32_t(settings_.integer("cache.max_records")),
           .most_passes = uint32_t(settings_.integer("cache.passes")),
           .stop_share = float(settings_.real("cache.stop")),

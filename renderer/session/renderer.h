@@ -140,6 +140,8 @@ class Renderer {
   uint32_t enabled_components() const;
   /// Null where nothing is looked up.
   const irradiance_cache::Cache* cache() const { return cache_.get(); }
+  /// Looks up the cache's light at every pixel that has samples, and forgets it: to be timed.
+  void look_up_picture();
   /// Session::inspect; pictures from now on show it.
   void inspect(std::optional<vec2> at) { looked_at_ = at; }
   /// Whether building of the cache waits for one of these (Session::step_cache), and these; nothing where

@@ -60,6 +60,13 @@ void Renderer::draw_cache() {
   inspector_->draw_lines({*wavefront_, *film_, *coarse_}, *cache_, inspection_);
 }
 
+void Renderer::look_up_picture() {
+  if (!cache_ || !wavefront_) return;
+  if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
+  inspector_->look_up({*wavefront_, *film_, *coarse_}, *cache_,
+                      irradiance_cache::Cache::defines(record_routes_, cache_options().metric));
+}
+
 std::shared_ptr<const CacheReport> Renderer::cache_report() {
   if (!cache_ || !wavefront_) return nullptr;
   auto report = std::make_shared<CacheReport>();

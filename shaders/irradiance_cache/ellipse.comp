@@ -7,9 +7,9 @@
 // (Schwarzhaupt et al. 2012; the same error for every record is what costs the fewest records). Bounded as radius.comp has
 // it. What is darker than `dark` is held against that: it may miss as much as would be seen elsewhere.
 #include "shaders/shared/irradiance_cache.h"
-#include "lib/frame.glsl"
 #include "lib/invocation.glsl"
 #include "irradiance_cache/ellipse.glsl"
+#include "irradiance_cache/least_radius.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { EllipsePush push; };
 uniform samplerBuffer record_texels, irradiance_texels;
@@ -28,9 +28,7 @@ void main() {
     light += luminance(texelFetch(irradiance_texels, int((record * k_part_count + p) * k_part_texels)).rgb);
   Principal p = principal_curvatures(bends.xyz);
 
-  float seen = frame.orthographic != 0u ? 1.0 : distance(place.xyz, frame.camera_origin);
-  float pixel = 2.0 * seen * length(frame.camera_up) / float(frame.height);
-  float least = min(push.least_pixels * pixel, push.most);
+  float least = least_radius(place.xyz, push.least_pixels, push.most);
   float bends_by = p.strongest / max(max(light, push.dark), 1e-30);
   float minor = bends_by > 0.0 ? push.reach * inversesqrt(sqrt(bends_by * p.ratio)) : push.most;
   minor = min(minor, bends.w);

@@ -22,5 +22,6 @@ void main() {
   if (!seen.solid) return;
   atomicAdd(counts.pixels[min(overlap, k_overlap_bins - 1u)], 1u);
   atomicAdd(counts.records, overlap);
+  atomicAdd(counts.listed, range.last - range.first);
   atomicMax(counts.most, overlap);
 }

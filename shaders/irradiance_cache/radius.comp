@@ -2,8 +2,8 @@
 // least some pixels wide as the camera sees it, and no wider than the nearest thing that a ray met, so that nothing stands
 // between a record and a point that it serves.
 #include "shaders/shared/irradiance_cache.h"
-#include "lib/frame.glsl"
 #include "lib/invocation.glsl"
+#include "irradiance_cache/least_radius.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { RadiusPush push; };
 uniform samplerBuffer record_texels;
@@ -16,9 +16,7 @@ void main() {
   int at = int((push.first + index) * k_record_texels);
   vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
   float nearest = texelFetch(record_texels, at + 2).y;
-  float seen = frame.orthographic != 0u ? 1.0 : distance(place.xyz, frame.camera_origin);
-  float pixel = 2.0 * seen * length(frame.camera_up) / float(frame.height);
-  float least = min(push.least_pixels * pixel, push.most);
+  float least = least_radius(place.xyz, push.least_pixels, push.most);
   float radius = max(min(push.error * facing.w, min(push.most, push.near * nearest)), least);
   records[at].w = radius;
   records[at + 3] = vec4(0.0, 0.0, 0.0, radius);

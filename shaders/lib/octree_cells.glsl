@@ -6,18 +6,33 @@
 // u * edge, likewise for the centre, and |x - c| <= r (1 + 4u). So q(x) lies within safe_radius(r) + 2u * edge of q(c), on
 // every axis and in the distance. The differences below err by another u * edge each, the root by 4u of its value. A
 // margin of 32u * edge covers all.
+//
+// LUCERNA_OCTREE_DISCS: 1 where spheres are asked for only near the plane through their centre, within `disc_thickness` of
+// their radius on either side: only the cells are visited that this slab passes through, some of each row.
 #ifndef LUCERNA_LIB_OCTREE_CELLS
 #define LUCERNA_LIB_OCTREE_CELLS
 #include "lib/octree_build.glsl"
 #include "lib/octree.glsl"
 
+#if LUCERNA_OCTREE_DISCS
+uniform samplerBuffer disc_normals;
+// A hundredth of a leaf is far more than rounding makes of coordinates in leaves from the centre.
+const float k_slab_margin = 0.01;
+// Below that a row runs along the slab.
+const float k_steep = 0.05;
+#endif
+
 struct SphereCells {
   ivec3 first, last;   // box of cells, both included
   vec3 centre;         // in leaves from the origin
   float square;        // of the radius, enlarged, in leaves
+#if LUCERNA_OCTREE_DISCS
+  vec3 normal;         // unit
+  float half_;         // of the slab's thickness, enlarged, in leaves
+#endif
 };
 
-SphereCells sphere_cells(vec4 s) {
+SphereCells sphere_cells(vec4 s, uint index) {
   precise vec3 offset = s.xyz - octree.origin, centre = offset * octree.inverse_leaf;
   precise float enlarged = safe_radius(s.w) + octree.edge * (32.0 / 16777216.0), radius = enlarged * octree.inverse_leaf;
   precise float square = radius * radius;
@@ -27,7 +42,31 @@ SphereCells sphere_cells(vec4 s) {
   precise vec3 low = centre - radius, high = centre + radius;
 #endif
   ivec3 most = ivec3(int(octree.cells) - 1);
-  return SphereCells(clamp(ivec3(floor(low)), ivec3(0), most), clamp(ivec3(floor(high)), ivec3(0), most), centre, square);
+  SphereCells c;
+  c.first = clamp(ivec3(floor(low)), ivec3(0), most);
+  c.last = clamp(ivec3(floor(high)), ivec3(0), most);
+  c.centre = centre;
+  c.square = square;
+#if LUCERNA_OCTREE_DISCS
+  c.normal = texelFetch(disc_normals, int(push.normal_stride * index + push.normal_at)).xyz;
+  c.half_ = push.thickness * radius + k_slab_margin;
+#endif
+  return c;
+}
+
+// Cells that a sphere overlaps, at most, where they are 2^k leaves wide.
+uint most_cells(SphereCells c, uint k) {
+  uvec3 n = uvec3((c.last >> k) - (c.first >> k) + 1);
+#if LUCERNA_OCTREE_DISCS
+  // Along the axis that the slab crosses most steeply, in every column of the two others.
+  vec3 a = abs(c.normal);
+  float most = max(max(a.x, a.y), a.z);
+  uint across = uint(min((ldexp(2.0 * c.half_, -int(k)) + a.x + a.y + a.z - most) / most, 65536.0)) + 2u;
+  if (a.x == most) n.x = min(n.x, across);
+  else if (a.y == most) n.y = min(n.y, across);
+  else n.z = min(n.z, across);
+#endif
+  return n.x * n.y * n.z;
 }
 
 // Rows of the box along x.
@@ -49,7 +88,20 @@ ivec2 row_cells(SphereCells c, ivec2 row) {
   precise vec2 d = max(max(low, high), 0.0), dd = d * d;
   precise float left = c.square - dd.x, rest = left - dd.y, half_chord = sqrt(max(rest, 0.0));
   precise float from = c.centre.x - half_chord, to = c.centre.x + half_chord;
-  return rest < 0.0 ? ivec2(1, 0) : ivec2(max(c.first.x, int(floor(from))), min(c.last.x, int(floor(to))));
+#if LUCERNA_OCTREE_DISCS
+  // The slab: |n.x x + v| <= half, where v goes over what the row's square makes of the other axes.
+  precise vec2 middle = vec2(row) + 0.5 - c.centre.yz, parts = c.normal.yz * middle, spreads = abs(c.normal.yz);
+  precise float v = parts.x + parts.y, slack = c.half_ + 0.5 * (spreads.x + spreads.y);
+  if (abs(c.normal.x) >= k_steep) {
+    precise float one = (-slack - v) / c.normal.x, other = (slack - v) / c.normal.x;
+    from = max(from, c.centre.x + min(one, other));
+    to = min(to, c.centre.x + max(one, other));
+  } else if (abs(v) > slack + abs(c.normal.x) * half_chord) {
+    rest = -1.0;
+  }
+#endif
+  return rest < 0.0 || to < from ? ivec2(1, 0)
+                                 : ivec2(max(c.first.x, int(floor(from))), min(c.last.x, int(floor(to))));
 #endif
 }
 #endif

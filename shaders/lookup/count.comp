@@ -7,7 +7,7 @@ void main() {
   uint i = global_index();
   if (i >= sphere_count()) return;
   vec4 s = texelFetch(spheres, int(i));
-  SphereCells c = sphere_cells(s);
+  SphereCells c = sphere_cells(s, i);
   uint rows = usable(s) ? row_count(c) : 0u, found = 0u;
   ivec2 row = c.first.yz;
   for (uint k = 0u; k < rows; ++k) {

@@ -1,5 +1,4 @@
-// Octree, step 3: the references that every run takes at the level wanted and at all coarser ones, at most: the cells of
-// the spheres' boxes. Sums stay at 2^32 - 1 once they are there, and a level is as good as unaffordable where one sphere
+// Octree, step 3: the references that every run takes at the level wanted and at all coarser ones, at most (most_cells). Sums stay at 2^32 - 1 once they are there, and a level is as good as unaffordable where one sphere
 // overlaps more leaves than an invocation may visit (see lib/runs.glsl).
 #include "lib/octree_cells.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
@@ -12,12 +11,12 @@ void main() {
   for (uint k = 0u; k <= k_octree_levels; ++k) need[k] = 0u;
   for (uint i = run.first; i < run.end; ++i) {
     vec4 s = texelFetch(spheres, int(i));
-    SphereCells c = sphere_cells(s);
+    SphereCells c = sphere_cells(s, i);
     bool used = usable(s);
     [[unroll]] for (uint k = 0u; k <= k_octree_levels; ++k) {
-      uvec3 n = uvec3((c.last >> k) - (c.first >> k) + 1);
-      uint cells = n.x * n.y * n.z, sum = need[k] + (used ? cells : 0u);
-      need[k] = sum < need[k] || (used && cells > k_longest_run) ? 0xffffffffu : sum;
+      uvec2 rows = uvec2((c.last.yz >> k) - (c.first.yz >> k) + 1);
+      uint cells = most_cells(c, k), sum = need[k] + (used ? cells : 0u);
+      need[k] = sum < need[k] || (used && max(cells, rows.x * rows.y) > k_longest_run) ? 0xffffffffu : sum;
     }
   }
   for (uint k = 0u; k <= k_octree_levels; ++k)

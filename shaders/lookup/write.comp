@@ -8,7 +8,7 @@ void main() {
   uint i = global_index();
   if (i >= sphere_count()) return;
   vec4 s = texelFetch(spheres, int(i));
-  SphereCells c = sphere_cells(s);
+  SphereCells c = sphere_cells(s, i);
   uvec4 four = texelFetch(sphere_places, int(i >> 2));
   uvec2 two = (i & 2u) != 0u ? four.zw : four.xy;
   uint place = (i & 1u) != 0u ? two.y : two.x;

@@ -42,6 +42,7 @@ struct OverlapCounts {
   uint pixels[k_overlap_bins];
   uint most;     ///< records that serve one pixel
   uint records;  ///< sum over the pixels
+  uint listed;   ///< likewise, of those that the octree lists there
 };
 
 /// A line over the picture; where a surface hides it it is faint.

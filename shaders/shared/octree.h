@@ -20,7 +20,7 @@ struct OctreeHeader {
   uint cells;           ///< leaves along the root's edge, 1 << level; 0: no sphere, every query is empty
   uint spheres;         ///< that are in it: radius >= 0, all finite
   uint references;      ///< that were written
-  uint needed;          ///< references that `wanted_level` takes at most (boxes of the spheres; 2^32 - 1: or more)
+  uint needed;          ///< references that `wanted_level` takes at most (2^32 - 1: or more)
   uint capacity;        ///< references that there is memory for
   uint leaves;          ///< that are not empty
   uint slots;           ///< of the hash table in use: a power of two, more than `leaves`
@@ -34,6 +34,9 @@ struct OctreePush {
   uint capacity;        ///< references
   uint slot_capacity;   ///< slots of the hash table, a power of two
   float scale;          ///< leaves are no larger than this times the mean diameter
+  uint normal_stride;   ///< of discs: sphere i's normal is texel normal_stride * i + normal_at of disc_normals
+  uint normal_at;
+  float thickness;      ///< of discs: half of the slab's, of the radius
 };
 
 LUCERNA_SHARED_END

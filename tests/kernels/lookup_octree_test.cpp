@@ -203,6 +203,74 @@ TEST_CASE("copies of the spheres lie in the order of the lists") {
   CHECK(d.found > 20000);
 }
 
+TEST_CASE("discs are found near their planes, in fewer leaves than their spheres") {
+  Bench bench;
+  constexpr uint32_t k_discs = 3000, k_points = 40000;
+  std::mt19937 random(20);
+  for (const vec3 centre : {vec3(0), vec3(10000, -9000, 12000)}) {
+    const Spheres spheres = mixed_spheres(k_discs, centre, 10, 21);
+    // Along the axes and the cells' diagonals, nearly along them, and anywhere; two texels a disc, as records
+    // have more than one.
+    std::vector<vec4> normals(2 * k_discs, vec4(9));
+    for (uint32_t i = 0; i < k_discs; ++i) {
+      vec3 n(uniform(random) - 0.5f, uniform(random) - 0.5f, uniform(random) - 0.5f);
+      if (i % 4 == 1) n[i / 4 % 3] = 0;
+      if (i % 4 == 2) n = vec3(i & 4 ? 1 : -1, i & 8 ? 1 : -1, i & 16 ? 1 : 0);
+      if (i % 4 == 3) n = 1e-3f * n, n[i / 4 % 3] = 1;
+      normals[2 * i + 1] = vec4(glm::normalize(n), 0);
+    }
+    Points points(k_points);
+    for (uint32_t k = 0; k < k_points; ++k) {
+      // In the slab, on its borders, or anywhere about the disc.
+      const uint32_t i = random() % k_discs;
+      const vec3 n(normals[2 * i + 1]), d = vec3(uniform(random), uniform(random), uniform(random)) - 0.5f;
+      const float height = k % 3 == 0 ? 2 * uniform(random) - 1 : k % 3 == 1 ? 0.2f : -0.2f;
+      const vec3 flat = d - glm::dot(d, n) * n;
+      points[k] = vec4(vec3(spheres[i]) + spheres[i].w * (1.9f * flat + height * n), 0);
+    }
+    gpu::Buffer texels = bench.texels("normals", normals.size() * sizeof(vec4));
+    texels.write(std::span<const vec4>(normals));
+    std::vector<vec4> plain;  // as the probe reads them
+    for (uint32_t i = 0; i < k_discs; ++i) plain.push_back(normals[2 * i + 1]);
+    gpu::Buffer probed = bench.texels("normals", plain.size() * sizeof(vec4));
+    probed.write(std::span<const vec4>(plain));
+    bench.upload(spheres);
+    const lookup::Discs discs{.normals = texels, .stride = 2, .at = 1, .thickness = 0.2f};
+    Octree octree(bench.device, bench.compiler,
+                  {.spheres = k_discs, .references = 2000000, .leaf_scale = 0.5f, .discs = true});
+    octree.build(bench.stream, bench.spheres, {.most = k_discs}, &discs);
+    const Octree whole = bench.build(spheres, 2000000, 0.5f);
+    REQUIRE(octree.header().level == whole.header().level);
+    CHECK(octree.header().references < whole.header().references * 6 / 10);
+    CHECK(octree.header().references <= octree.header().needed);
+    gpu::Kernel probe(bench.device, bench.compiler, test::shader("octree_probe.comp"),
+                      {{"LUCERNA_DISCS", "1"}});
+    gpu::Buffer in = bench.texels("points", points.size() * sizeof(vec4)),
+                out = bench.texels("found", points.size() * sizeof(Found));
+    in.write(std::span<const vec4>(points));
+    gpu::Resources r;
+    octree.bind(r);
+    r.set("spheres", bench.spheres);
+    r.set("normals", probed);
+    r.set("points", in);
+    r.set("Found", out);
+    bench.stream.dispatch(probe, r, k_points, gpu::groups_for(k_points, 64));
+    bench.stream.run();
+    const Differences d = compare(out.read_all<Found>(), points, [&](const vec4& x) {
+      Found f{};
+      for (uint32_t i = 0; i < k_discs; ++i) {
+        if (!contains(spheres[i], x)) continue;
+        const vec3 off = (vec3(x) - vec3(spheres[i])) * vec3(plain[i]);
+        if (std::abs(off.x + off.y + off.z) <= 0.2f * spheres[i].w) add(f, i);
+      }
+      return f;
+    });
+    CHECK(d.wrong == 0);
+    CHECK(d.unordered == 0);
+    CHECK(d.found > 20000);
+  }
+}
+
 TEST_CASE("an octree that no buffer can hold is refused") {
   Bench bench;
   const uint32_t most = Octree::most_references(bench.device);

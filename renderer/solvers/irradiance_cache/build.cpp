@@ -29,8 +29,6 @@ constexpr float k_deep_noise = 4;
 constexpr float k_finest_of_spacing = 0.5f;
 /// Passes that go on for the irradiance that the records give, when few paths ask.
 constexpr uint32_t k_refining_passes = 4;
-/// Of its radius: where a record makes others superfluous.
-constexpr float k_overlap_share = 0.6f;
 /// Records that go on with a noisy one, on either side.
 constexpr size_t k_company = 4;
 /// Of metric `hessian`, over `error`: makes about as many records as the split sphere does with the same.
@@ -158,7 +156,7 @@ bool Cache::Impl::choose(const Work& w) {
                                                   .most = records.capacity() - records.size()});
   pass().tried = uint32_t(tried.size());
   pass().clusters = placement.clusters();
-  status.bytes = own_bytes + screen.bytes() + placement.bytes();
+  status.bytes = own_bytes + screen.bytes() + placement.bytes() + neighbours.bytes();
   records.append(tried, status.pass);
   list_until(records.size());
   took(BuildStep::choose, wall.milliseconds());
@@ -193,7 +191,7 @@ bool Cache::Impl::thin() {
   const Timer host;
   kept =
       thin_out(tried, tried_radii,
-               {.share = k_overlap_share, .normal_tolerance = k_normal_tolerance, .off_plane = k_off_plane});
+               {.share = options.thinning, .normal_tolerance = k_normal_tolerance, .off_plane = k_off_plane});
   std::vector<Place> needed;
   for (const uint32_t i : kept) needed.push_back(tried[i]);
   records.truncate(evaluated);
@@ -288,16 +286,31 @@ void Cache::Impl::publish_level(const Work& w) {
   ++status.published;
   if (evaluated == until) return;
   // Ellipses are by the light; circles stand.
-  if (until > standing || options.metric == Metric::hessian) {
+  const bool anew = until > standing || options.metric == Metric::hessian;
+  if (anew) {
     set_radii(w, true);
     hold();
   }
+  const uint32_t first = evaluated;
   evaluated = status.records = until;
   standing = std::max(standing, evaluated);
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
+  if (anew && options.neighbours) {
+    bound_radii(w, first);
+    build_octree(w.wavefront);
+  }
   took(BuildStep::octree, timer.milliseconds());
   tell();
+}
+
+void Cache::Impl::bound_radii(const Work& w, uint32_t first) {
+  neighbours.bound(w.wavefront.stream(), [&](gpu::Resources& to) { w.wavefront.bind_paths(to), bind(to); },
+                   {.first = first,
+                    .count = evaluated,
+                    .least_pixels = options.least_pixels,
+                    .most = options.most_radius * w.view.scene_radius});
+  status.bytes = own_bytes + screen.bytes() + placement.bytes() + neighbours.bytes();
 }
 
 void Cache::Impl::end_pass() {

@@ -9,6 +9,7 @@
 
 #include "schedule/uniform.h"
 #include "solvers/irradiance_cache/cache.h"
+#include "solvers/irradiance_cache/neighbours.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -48,6 +49,7 @@ struct Cache::Impl {
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
   Discontinuity screen;
   Placement placement;
+  Neighbours neighbours;
   bool looked = false;     // at the picture, in this pass: the screen-space stage is done
   bool stale = true;       // ... and what it has seen is not this picture
   uint64_t own_bytes = 0;  // of device memory, without those two
@@ -131,6 +133,8 @@ struct Cache::Impl {
   /// Radii of the records that are added in this pass, by what is known of them: `lit` after their first
   /// level.
   void set_radii(const Work& work, bool lit);
+  /// ... of those from `first` on by the records around, that they be no wider than they need be.
+  void bound_radii(const Work& work, uint32_t first);
   /// The records of this pass, which end there, for the next piece of work on them.
   void list_until(uint32_t end);
   CachePass& pass() { return status.passes.back(); }

@@ -17,6 +17,12 @@ namespace {
 /// References of the octree that there is memory for, a record.
 constexpr uint32_t k_references = 16;
 
+/// Of a record's radius: how far off its plane it serves at most. Off the plane between its own and the
+/// point's it is `off_plane`; half of what the normals differ by turns that away from its own.
+float slab_thickness(float off_plane, float normal_tolerance) {
+  return off_plane + 0.5f * std::sqrt(2 * normal_tolerance);
+}
+
 /// As CacheFrame::routes.
 std::array<uint32_t, 16> packed(const paths::LookupRoutes& routes) {
   std::array<uint32_t, 16> table;
@@ -52,10 +58,15 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
     : options(o),
       records(device, o.most_records),
       octree(device, compiler,
-             {.spheres = o.most_records, .references = k_references * o.most_records, .copies = true}),
+             {.spheres = o.most_records,
+              .references = k_references * o.most_records,
+              .leaf_scale = getenv("LS") ? float(atof(getenv("LS"))) : 1.0f,
+              .copies = true,
+              .discs = true}),
       evaluator(device, compiler, slots),
       screen(device, compiler, defines(own, o.metric)),
-      placement(device, compiler) {
+      placement(device, compiler),
+      neighbours(device, compiler, defines(own, o.metric)) {
   frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
   candidates = gpu::Buffer(device, {.name = "cache candidates",
                                     .bytes = uint64_t{slots} * 16 * k_candidate_texels,
@@ -65,7 +76,10 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
 }
 
 void Cache::Impl::build_octree(transport::Wavefront& wavefront) {
-  const shared::OctreeHeader& h = octree.build(wavefront.stream(), records.spheres(), {.most = evaluated});
+  const lookup::Discs discs = records.discs(slab_thickness(k_off_plane, k_normal_tolerance));
+  const shared::OctreeHeader& h =
+      octree.build(wavefront.stream(), records.spheres(), {.most = evaluated}, &discs);
+  if (getenv("OD")) fprintf(stderr, "octree: spheres %u refs %u needed %u cap %u level %u wanted %u leaf %g meand %g edge %g leaves %u\n", h.spheres, h.references, h.needed, h.capacity, h.level, h.wanted_level, h.leaf, h.mean_diameter, h.edge, h.leaves);
   status.references = h.spheres ? double(h.references) / h.spheres : 0;
   wavefront.rebind_lookup();
 }

@@ -46,6 +46,10 @@ struct CacheOptions {
   /// Relative standard error of its luminance above which a record gets another level. Records darker than a
   /// tenth of the mean are held against that.
   float noise = 0.1f;
+  /// Of its radius: where a record makes others superfluous that are not yet evaluated, 0..1. The less, the
+  /// more records; 0: none goes.
+  float thinning = 0.6f;
+  bool neighbours = true;  ///< radii are bounded by the records around
   uint32_t most_records = 100000;
   uint32_t most_passes = 12;
   float stop_share = 0.002f;  ///< building ends when no more of the paths than this ask for records

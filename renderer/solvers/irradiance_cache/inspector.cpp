@@ -21,8 +21,8 @@ constexpr float k_least_weight = 0.004f;  // of lines; a thinner one would not b
 struct Inspector::Impl {
   gpu::Device& device;
   gpu::ShaderCompiler& compiler;
-  gpu::Kernel inspect, overlap, lines, ticks, ticks_draw;
-  gpu::Buffer answer, counts, line_list, marks;
+  gpu::Kernel inspect, overlap, lookups, lines, ticks, ticks_draw;
+  gpu::Buffer answer, counts, looked_up, line_list, marks;
   gpu::Resources resources;
 
   const gpu::Kernel& ready(gpu::Kernel& kernel, const char* file) {
@@ -55,7 +55,7 @@ struct Inspector::Impl {
 };
 
 Inspector::Inspector(gpu::Device& device, gpu::ShaderCompiler& compiler)
-    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {}
+    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {}
 Inspector::~Inspector() = default;
 
 Inspection Inspector::ask(const Shown& shown, const Cache& cache, uint32_t x, uint32_t y) {
@@ -113,8 +113,22 @@ Overlap Inspector::overlap(const Shown& shown, const Cache& cache) {
   for (const uint32_t n : o.histogram) o.pixels += n;
   o.served = o.pixels - o.histogram[0];
   o.mean = o.served > 0 ? double(c->records) / double(o.served) : 0;
+  o.listed = o.pixels > 0 ? double(c->listed) / double(o.pixels) : 0;
   o.most = c->most;
   return o;
+}
+
+void Inspector::look_up(const Shown& shown, const Cache& cache, const gpu::Defines& defines) {
+  Impl& i = *impl_;
+  const film::Film& film = shown.film;
+  const uint64_t pixels = uint64_t{film.width()} * film.height();
+  if (!i.lookups) i.lookups = gpu::Kernel(i.device, i.compiler, "irradiance_cache/lookups.comp", defines);
+  i.bind(shown, cache);
+  gpu::make_room(i.device, i.looked_up, {.name = "cache lookups", .bytes = pixels * sizeof(float)});
+  i.resources.set("LookedUp", i.looked_up);
+  shown.wavefront.stream().dispatch(i.lookups, i.resources, OverlapPush{film.width(), film.height()},
+                                    gpu::groups_for(pixels, 64));
+  Impl::finish(shown.wavefront.stream());
 }
 
 void Inspector::draw_lines(const Shown& shown, const Cache& cache, const Inspection& found) {

@@ -47,6 +47,7 @@ struct Inspection {
 struct Overlap {
   uint64_t pixels = 0, served = 0;  ///< that show a surface; of these with a record at least
   double mean = 0;                  ///< records, over the pixels that are served
+  double listed = 0;  ///< records that a lookup goes through, over the pixels that show a surface
   uint32_t most = 0;
   /// Pixels that 0, 1, ... records serve; the last counts all that more do.
   std::vector<uint32_t> histogram;
@@ -70,6 +71,9 @@ class Inspector {
   Inspection ask(const Shown& shown, const Cache& cache, uint32_t x, uint32_t y);
   /// Over the film's pixels.
   Overlap overlap(const Shown& shown, const Cache& cache);
+  /// A lookup at every pixel of the film that shows a surface, of which nothing is kept: to be timed.
+  /// `defines`: Cache::defines(); those of the first call count.
+  void look_up(const Shown& shown, const Cache& cache, const gpu::Defines& defines);
 
   /// Draws over the film's picture, from the pixel to each record that serves it, a line as wide and opaque
   /// as its weight says, and the border of the record in whose disc the pixel lies.

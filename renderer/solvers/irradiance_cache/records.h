@@ -9,6 +9,7 @@
 #include "gpu/kernel.h"
 #include "gpu/stream.h"
 #include "shaders/shared/irradiance_cache.h"
+#include "solvers/lookup/octree.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -64,6 +65,10 @@ class Records {
   uint32_t append(std::span<const Place> places, uint32_t pass = 0);
   /// (position, radius), for the octree.
   const gpu::Buffer& spheres() const { return spheres_; }
+  /// ... that know in which plane records lie.
+  lookup::Discs discs(float thickness) const {
+    return {.normals = records_, .stride = shared::k_record_texels, .at = 1, .thickness = thickness};
+  }
   /// Keeps the first `count`.
   void truncate(uint32_t count) { size_ = std::min(size_, count); }
   void clear() { size_ = 0; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace lucerna::lookup {
 
@@ -30,7 +31,8 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
   const gpu::Defines defines{{"LUCERNA_OCTREE_GROUP", std::to_string(group_for(device)) + "u"},
                              {"LUCERNA_OCTREE_WANTED", std::to_string(wanted_for(device)) + "u"},
                              {"LUCERNA_OCTREE_RUNS", std::to_string(runs) + "u"},
-                             {"LUCERNA_OCTREE_SINGLE", options.single_reference ? "1" : "0"}};
+                             {"LUCERNA_OCTREE_SINGLE", options.single_reference ? "1" : "0"},
+                             {"LUCERNA_OCTREE_DISCS", options.discs ? "1" : "0"}};
   const std::pair<gpu::Kernel*, const char*> kernels[] = {
       {&bounds_, "bounds"}, {&grid_, "grid"},     {&levels_, "levels"}, {&choose_, "choose"},
       {&count_, "count"},   {&write_, "write"},   {&heads_, "heads"},   {&leaves_, "leaves"},
@@ -62,7 +64,8 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
 }
 
 const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer& spheres,
-                                          const sort::Count& count) {
+                                          const sort::Count& count, const Discs* discs) {
+  assert(options_.discs == (discs != nullptr));
   if (count.most > options_.spheres || spheres.bytes() / sizeof(vec4) < count.most)
     throw_error("octree", "{} spheres were given; it was made for {}, and '{}' has room for {}", count.most,
                 options_.spheres, spheres.name(), spheres.bytes() / sizeof(vec4));
@@ -80,9 +83,15 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
   r.set("slot_leaf_texels", slot_leaves_);
   r.set("Slots", slots_);
   r.set("Copies", copies_);
-  const shared::OctreePush push{
-      count.most, count.buffer ? uint32_t(count.offset / 4) : shared::k_sort_count_here,
-      std::max(options_.references, 1u), uint32_t(slots_.bytes() / sizeof(uvec4)), options_.leaf_scale};
+  const shared::OctreePush push{count.most,
+                                count.buffer ? uint32_t(count.offset / 4) : shared::k_sort_count_here,
+                                std::max(options_.references, 1u),
+                                uint32_t(slots_.bytes() / sizeof(uvec4)),
+                                options_.leaf_scale,
+                                discs ? discs->stride : 0,
+                                discs ? discs->at : 0,
+                                discs ? discs->thickness : 0};
+  if (discs) r.set("disc_normals", discs->normals);
   const auto run = [&](const gpu::Kernel& kernel, uint32_t groups) {
     // Those that use no push constant have none.
     stream.dispatch(kernel, r, &push, kernel.push_constant_bytes(), groups, k_stage);

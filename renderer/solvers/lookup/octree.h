@@ -27,6 +27,17 @@ struct OctreeOptions {
   /// Each sphere is listed once, in the leaf of its centre: the plain grid that the bench compares with.
   /// Queries must then visit the neighbours.
   bool single_reference = false;
+  /// Spheres are asked for only near a plane through their centre: builds are given Discs, and points farther
+  /// off may not find them. Fewer leaves list them, so that leaves can be smaller.
+  bool discs = false;
+};
+
+/// Where discs lie: sphere i is found where |dot(x - centre, normal)| <= thickness * radius, its normal being
+/// texel stride * i + at, unit.
+struct Discs {
+  const gpu::Buffer& normals;
+  uint32_t stride = 1, at = 0;
+  float thickness = 0;
 };
 
 class Octree {
@@ -43,8 +54,9 @@ class Octree {
   /// lists grow longer, results stay the same, and the header says so (`level` < `wanted_level`, `needed` >
   /// `capacity`). Only when not even one leaf can list every sphere, `overflow` is not 0, and the spheres of
   /// the highest indices are missing.
-  const shared::OctreeHeader& build(gpu::Stream& stream, const gpu::Buffer& spheres,
-                                    const sort::Count& count);
+  /// `discs`: if and only if the options say that there are.
+  const shared::OctreeHeader& build(gpu::Stream& stream, const gpu::Buffer& spheres, const sort::Count& count,
+                                    const Discs* discs = nullptr);
 
   /// Of the last build.
   const shared::OctreeHeader& header() const { return header_; }

@@ -7,6 +7,9 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { uint count; };
 uniform samplerBuffer points;
 uniform samplerBuffer spheres;
+#if LUCERNA_DISCS
+uniform samplerBuffer normals;
+#endif
 layout(scalar) writeonly buffer Found { uvec4 found[]; };
 
 void main() {
@@ -25,6 +28,11 @@ void main() {
     precise vec3 d = x - s.xyz, dd = d * d;
     precise float square = dd.x + dd.y, all = square + dd.z, limit = s.w * s.w;
     bool inside = all <= limit && s.w >= 0.0;
+#if LUCERNA_DISCS
+    precise vec3 off = d * texelFetch(normals, int(sphere)).xyz;
+    precise float sum_off = off.x + off.y, away = sum_off + off.z, thick = 0.2 * s.w;
+    inside = inside && abs(away) <= thick;
+#endif
     n += inside ? 1u : 0u;
     sum += inside ? (sphere + 1u) * 2654435761u : 0u;
     unordered |= i > range.first && sphere <= previous ? 1u : 0u;

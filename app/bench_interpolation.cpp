@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/bench_timing.h"
+#include "app/verbs.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "session/renderer.h"
+
+namespace lucerna::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Who keeps records from serving the same points twice.
+struct Way {
+  const char* name;
+  bool neighbours, thinned;
+};
+constexpr Way k_ways[] = {{"as they were placed", false, false},
+                          {"bounded by neighbours", true, false},
+                          {"thinned", false, true},
+                          {"thinned and bounded", true, true}};
+
+struct Candidate {
+  const Way& way;
+  std::unique_ptr<session::Renderer> renderer;
+  Timed timed;
+};
+
+Json figures(const Candidate& c, const Timing& t) {
+  session::Renderer& r = *c.renderer;
+  const auto report = r.cache_report();
+  const irradiance_cache::Overlap& o = *report->overlap;
+  Json j{{"way", c.way.name},
+         {"records", report->status.records},
+         {"rays", report->status.rays},
+         {"served_by_mean", o.mean},
+         {"served_by_most", o.most},
+         {"listed", o.listed},
+         {"lookups_per_s", double(o.pixels) / t.median},
+         {"lookups_s", {{"median", t.median}, {"low", t.low}, {"high", t.high}}}};
+  if (!r.ledger().entries().empty() && r.ledger().entries().back().truth)
+    j["relative_error"] = (*r.ledger().entries().back().truth)[0];
+  return j;
+}
+
+}  // namespace
+
+int bench_interpolation(const BenchInterpolationArguments& a) {
+  std::vector<Candidate> candidates;
+  for (const Way& way : k_ways) {
+    auto r = std::make_unique<session::Renderer>(
+        session::RendererOptions{.device = a.device, .validation = false, .shaders = {}, .defines = {}});
+    r->set_size(a.width, a.height);
+    r->load(a.scene);
+    std::vector<std::string> settings{"components.secondary=cache", "components.tertiary=cache",
+                                      "samples=" + std::to_string(a.samples)};
+    settings.insert(settings.end(), a.set.begin(), a.set.end());
+    settings.push_back(std::string("cache.neighbours=") + (way.neighbours ? "true" : "false"));
+    if (!way.thinned) settings.push_back("cache.thinning=0");
+    for (const std::string& setting : settings) {
+      const size_t at = setting.find('=');
+      if (at == std::string::npos) throw_error("--set", "'{}': expected key=value", setting);
+      r->settings().set(setting.substr(0, at), setting.substr(at + 1), "--set");
+    }
+    r->apply_settings();
+    if (!a.reference.empty()) r->set_reference(a.reference);
+    while (!r->done())
+      if (!r->step()) break;
+    session::Renderer* const renderer = r.get();
+    candidates.push_back({way, std::move(r), {{}, [renderer] { renderer->look_up_picture(); }}});
+  }
+  std::vector<Timed> timed;
+  for (const Candidate& c : candidates) timed.push_back(c.timed);
+  const std::vector<Timing> times = take_turns(timed, a.repeats);
+
+  Json all{{"scene", a.scene},
+           {"device", candidates.front().renderer->device().info().name},
+           {"width", a.width},
+           {"height", a.height},
+           {"repeats", a.repeats}};
+  std::printf("a lookup for every pixel, median of %d (range), %s, on %s\n", a.repeats, a.scene.c_str(),
+              candidates.front().renderer->device().info().name.c_str());
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    const Json j = figures(candidates[i], times[i]);
+    std::printf("%s",
+                fmt::format("  {:<22} {:>7} records  {:>4.1f} serve a pixel, {} at most, of {:>5.1f} listed  "
+                            "{:>7.3f} M lookups/s ({:.3f} to {:.3f})  {:.2f} times as fast as the first{}\n",
+                            candidates[i].way.name, j["records"].get<uint32_t>(),
+                            j["served_by_mean"].get<double>(), j["served_by_most"].get<uint32_t>(),
+                            j["listed"].get<double>(), 1e-6 * j["lookups_per_s"].get<double>(),
+                            1e-6 * j["lookups_per_s"].get<double>() * times[i].median / times[i].high,
+                            1e-6 * j["lookups_per_s"].get<double>() * times[i].median / times[i].low,
+                            times[0].median / times[i].median,
+                            j.contains("relative_error")
+                                ? fmt::format("  relative error {:.4f}", j["relative_error"].get<double>())
+                                : "")
+                    .c_str());
+    all["ways"].push_back(j);
+  }
+  if (!a.json.empty()) write_file(a.json, all.dump(2) + "\n");
+  return 0;
+}
+
+}  // namespace lucerna::app

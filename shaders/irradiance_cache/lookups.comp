@@ -1,0 +1,18 @@
+// What a lookup costs: one at every surface that the camera sees, as paths make them. Only to be timed.
+#include "lib/invocation.glsl"
+#include "irradiance_cache/lookup.glsl"
+#include "irradiance_cache/seen.glsl"
+#include "shaders/shared/cache_inspect.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { OverlapPush push; };
+layout(scalar) writeonly buffer LookedUp { float looked_up[]; };
+
+void main() {
+  uint pixel = global_index();
+  if (pixel >= push.width * push.height) return;
+  Seen seen = seen_at(pixel, push.width, push.height);
+  Cached found = cache_lookup(seen.position, seen.normal, seen.normal, seen.solid);
+  float light = 0.0;
+  for (uint p = 0u; p < k_part_count; ++p) light += luminance(found.part[p]);
+  looked_up[pixel] = light;
+}
