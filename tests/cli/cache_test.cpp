@@ -3,9 +3,9 @@
 // anything; what cannot serve ends with one located line and status 1.
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/file.h"
 #include "film/io/image_file.h"
 #include "support/folder.h"
 #include "support/run.h"
@@ -19,11 +19,6 @@ namespace {
 struct Folder : test::Folder {
   std::string operator/(const char* name) const { return (path / name).string(); }
 };
-
-std::string read(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 const std::string k_scene = std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf";
 const std::string k_cached =
@@ -44,9 +39,9 @@ TEST_CASE("a picture rendered with a saved cache is the same, and nothing is gat
   REQUIRE(used.status == 0);
   const film::FilmImage a = film::read_exr(f / "a.exr"), b = film::read_exr(f / "b.exr");
   CHECK(a.channels == b.channels);
-  CHECK(read(f / "a.cache") == read(f / "b.cache"));
-  const auto first = nlohmann::json::parse(read(f / "a.json")),
-             second = nlohmann::json::parse(read(f / "b.json"));
+  CHECK(read_file(f / "a.cache") == read_file(f / "b.cache"));
+  const auto first = nlohmann::json::parse(read_file(f / "a.json")),
+             second = nlohmann::json::parse(read_file(f / "b.json"));
   CHECK(first["cache"]["loaded"] == 0);
   CHECK(second["cache"]["loaded"] == first["cache"]["records"]);
   CHECK(second["cache"]["records"] == first["cache"]["records"]);
@@ -60,10 +55,10 @@ TEST_CASE("a picture rendered with a saved cache is the same, and nothing is gat
                                    (f / "c.cache"));
   INFO(only.out);
   CHECK(only.status == 0);
-  CHECK(read(f / "c.cache") == read(f / "a.cache"));
+  CHECK(read_file(f / "c.cache") == read_file(f / "a.cache"));
 
   // What does not fit; the file that is to be written is then untouched.
-  const std::string kept = read(f / "b.cache");
+  const std::string kept = read_file(f / "b.cache");
   const auto refused = [&](const std::string& arguments, const std::string& expected) {
     const test::Run r =
         test::run("render " + arguments + " -o " + (f / "never.exr") + " --cache-save " + (f / "b.cache"));
@@ -72,7 +67,7 @@ TEST_CASE("a picture rendered with a saved cache is the same, and nothing is gat
     CHECK_THAT(r.out, Contains("lucerna: ") && Contains(expected));
     CHECK(std::count(r.out.begin(), r.out.end(), '\n') == 1);
     CHECK_FALSE(fs::exists(f / "never.exr"));
-    CHECK(read(f / "b.cache") == kept);
+    CHECK(read_file(f / "b.cache") == kept);
   };
   const std::string with = "--cache-load " + (f / "a.cache"), a_cache = f / "a.cache";
   refused(k_scene + k_cached + with + " --set cache.error=0.2",

@@ -3,18 +3,15 @@
 // for itself: no light is lost or counted twice, whatever lobes and emitters meet.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
-#include <map>
 
-#include "session/renderer.h"
 #include "support/render.h"
+#include "support/rooms.h"
 
 using namespace lucerna;
+using test::identical, test::mean, test::Mean, test::Result, test::Settings;
 
 namespace {
-
-using Settings = std::map<std::string, std::string>;
 
 const Settings k_sky{
     {"components.secondary", "cache"}, {"components.tertiary", "cache"}, {"cache.environment", "true"},
@@ -35,23 +32,16 @@ scene::Scene make_room(const Room& room) {
   scene::Scene s;
   s.name = "room", s.file = "room.gltf";
   enum { k_wall, k_floor, k_mirror, k_pane, k_lamp };
-  s.materials.resize(5);
-  for (scene::Material& m : s.materials)
-    m.base_color = vec4(0.5f, 0.5f, 0.5f, 1), m.roughness = 1, m.metallic = 0, m.specular = 0;
+  s.materials.assign(5, test::diffuse(vec3(0.5f)));
   if (room.glossy)
     s.materials[k_floor].specular = 1, s.materials[k_floor].ior = 3, s.materials[k_floor].roughness = 0.5f;
   s.materials[k_mirror].metallic = 1, s.materials[k_mirror].roughness = 0, s.materials[k_mirror].specular = 1;
   s.materials[k_mirror].base_color = vec4(0.9f, 0.9f, 0.9f, 1);
   s.materials[k_pane].transmission = 1, s.materials[k_pane].roughness = 0, s.materials[k_pane].specular = 1;
   s.materials[k_pane].base_color = vec4(0.8f, 0.9f, 1, 1);
-  s.materials[k_lamp].emission = vec3(0.5f), s.materials[k_lamp].base_color = vec4(0, 0, 0, 1);
-  const auto add = [&](vec3 a, vec3 u, vec3 v, uint32_t material) {  // counter-clockwise from its front
-    scene::Primitive p;
-    p.material = material;
-    p.positions = {a, a + u, a + u + v, a + v};
-    p.triangles = {{0, 1, 2}, {0, 2, 3}};
-    s.meshes.push_back({"quad", {p}});
-    s.instances.push_back({"quad", scene::Id(s.meshes.size() - 1), mat4(1), false});
+  s.materials[k_lamp] = test::diffuse(vec3(0), vec3(0.5f));
+  const auto add = [&](const vec3& a, const vec3& u, const vec3& v, uint32_t material) {
+    test::add_quad(s, a, u, v, material);
   };
   const vec3 o(-1.5f, 0, -1.5f), x(3, 0, 0), y(0, 2.5f, 0), z(0, 0, 3);
   add(o, z, x, k_floor), add(o + y, x, z, k_wall);
@@ -90,59 +80,15 @@ scene::Scene make_room(const Room& room) {
   return s;
 }
 
-struct Picture {
-  film::Image image;
-  film::ImageError error;
-  std::array<bool, 4> bias_known{};
-  uint64_t rays = 0, shadow_rays = 0;
-};
-
-Picture render(const scene::Scene& scene, const Settings& settings, uint32_t samples, uint32_t size = 32) {
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
-  r.set_size(size, size);
-  r.set_scene(std::make_shared<scene::Scene>(scene));
-  for (const auto& [key, value] : settings) r.settings().set(key, value);
-  r.settings().set("samples", std::to_string(samples));
-  r.apply_settings();
-  while (r.step()) {
-  }
-  Picture p{r.image(), r.image_error(), {}, r.stats().rays, r.stats().shadow_rays};
-  for (size_t c = 0; c < 4; ++c) p.bias_known[c] = r.bias(c).has_value();
-  CHECK(r.device().validation_messages() == 0);
-  CHECK(r.stats().dropped == 0);
-  return p;
-}
-
-double mean(const std::vector<vec3>& layer) {
-  double sum = 0;
-  for (const vec3& v : layer) sum += luminance(v);
-  return sum / double(layer.size());
-}
-
-bool identical(const std::vector<vec3>& a, const std::vector<vec3>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec3)) == 0;
-}
-
-struct Mean {
-  double value = 0, noise = 0;  ///< standard error, from the two halves
-};
-/// Of the primary component in one of the 16 parts of 8x8 pixels.
-Mean part_mean(const Picture& p, uint32_t part) {
-  Mean m;
-  for (uint32_t i = 0; i < 64; ++i) {
-    const size_t pixel = size_t{part / 4 * 8 + i / 8} * 32 + part % 4 * 8 + i % 8;
-    const double y = luminance(p.image.components[0][pixel]), odd = luminance(p.image.odd_half[0][pixel]);
-    m.value += y / 64, m.noise += (y - odd) * (y - odd);
-  }
-  m.noise = std::sqrt(m.noise) / 64;
-  return m;
+Result render(const scene::Scene& scene, const Settings& settings, uint32_t samples, uint32_t size = 32) {
+  return test::render(scene, settings, samples, size);
 }
 
 /// The means of every component agree: two-sided at 1e-4 a figure (3.9 standard errors, from the films'
 /// halves), beside 2 % of the component, which records may be off by; and the standard error is less than
 /// 1 % of the picture, so that a lost or doubled word shows. The primary component likewise in each of 16
 /// parts of the picture, within 5 %.
-void compare(const Picture& path, const Picture& cached) {
+void compare(const Result& path, const Result& cached) {
   double whole = 0;
   for (const auto& c : path.image.components) whole += mean(c);
   for (int c = 0; c < 4; ++c) {
@@ -154,7 +100,8 @@ void compare(const Picture& path, const Picture& cached) {
     CHECK(noise < 0.01 * whole);
   }
   for (uint32_t part = 0; part < 16; ++part) {
-    const Mean truth = part_mean(path, part), value = part_mean(cached, part);
+    const Mean truth = test::block_mean(path.image, 0, part % 4, part / 4),
+               value = test::block_mean(cached.image, 0, part % 4, part / 4);
     const double noise = std::hypot(truth.noise, value.noise);
     INFO("part " << part << ": " << value.value << " of " << truth.value << ", noise " << noise);
     CHECK(std::abs(value.value - truth.value) <= 4.5 * noise + 0.05 * truth.value);
@@ -162,7 +109,7 @@ void compare(const Picture& path, const Picture& cached) {
 }
 
 /// Median over the picture of how far the sum is from another's, relative.
-double median_difference(const Picture& a, const Picture& b) {
+double median_difference(const Result& a, const Result& b) {
   std::vector<double> all;
   for (size_t i = 0; i < a.image.samples.size(); ++i) {
     const double truth = luminance(test::sum_at(b.image, i));
@@ -176,7 +123,7 @@ double median_difference(const Picture& a, const Picture& b) {
 
 TEST_CASE("a room under an even sky") {
   const scene::Scene room = make_room({});
-  const Picture path = render(room, {}, 256), cached = render(room, k_sky, 16);
+  const Result path = render(room, {}, 256), cached = render(room, k_sky, 16);
   compare(path, cached);
   // It is quiet, and says that it may be off.
   CHECK(median_difference(cached, path) < 0.5 * median_difference(render(room, {}, 16), path));
@@ -191,7 +138,7 @@ TEST_CASE("a room under an even sky") {
 
 TEST_CASE("a sun in the sky's image is sampled directly, by everything") {
   const scene::Scene room = make_room({.sun = true});
-  const Picture path = render(room, {}, 256), cached = render(room, k_sky, 64);
+  const Result path = render(room, {}, 256), cached = render(room, k_sky, 64);
   compare(path, cached);
 }
 
@@ -202,12 +149,12 @@ TEST_CASE("a lamp beside the sky") {
 
 TEST_CASE("glossy lobes beside the diffuse one see the sky themselves, also through a pane") {
   const scene::Scene room = make_room({.patch = true, .glossy = true, .pane = true});
-  const Picture path = render(room, {}, 512);
+  const Result path = render(room, {}, 512);
   compare(path, render(room, k_sky, 256));
   // At the second diffuse vertex the sky's light is secondary.
   Settings second = k_sky;
   second["components.secondary"] = "path";
-  const Picture tertiary = render(room, second, 64);
+  const Result tertiary = render(room, second, 64);
   compare(path, tertiary);
   CHECK(tertiary.bias_known[0]);
   CHECK_FALSE(tertiary.bias_known[1]);
@@ -221,14 +168,8 @@ TEST_CASE("a mirror shows the sky and what it lights") {
 TEST_CASE("under a constant environment a cached picture is exact at one sample") {
   scene::Scene plane;
   plane.name = "plane", plane.file = "plane.gltf";
-  plane.materials.resize(1);
-  plane.materials[0].base_color = vec4(0.5f, 0.25f, 0.125f, 1), plane.materials[0].metallic = 0,
-  plane.materials[0].specular = 0;
-  scene::Primitive p;
-  p.positions = {{-50, 0, -50}, {-50, 0, 50}, {50, 0, 50}, {50, 0, -50}};
-  p.triangles = {{0, 1, 2}, {0, 2, 3}};
-  plane.meshes.push_back({"plane", {p}});
-  plane.instances.push_back({"plane", 0, mat4(1), false});
+  plane.materials = {test::diffuse({0.5f, 0.25f, 0.125f})};
+  test::add_quad(plane, {-50, 0, -50}, {0, 0, 100}, {100, 0, 0});
   plane.environment.radiance = vec3(2), plane.environment.given = true;
   scene::Camera camera;
   camera.to_world = glm::inverse(glm::lookAt(vec3(0, 3, 0), vec3(0), vec3(0, 0, 1)));
@@ -236,15 +177,15 @@ TEST_CASE("under a constant environment a cached picture is exact at one sample"
   Settings settings = k_sky;
   // Nothing is near: the greatest radius it is.
   settings["cache.rays"] = "64";
-  const Picture cached = render(plane, settings, 1, 16);
+  const Result cached = render(plane, settings, 1, 16);
   size_t off = 0;
   for (const vec3& v : cached.image.components[0])
     off += glm::length(v / vec3(1, 0.5f, 0.25f) - vec3(1)) > 1e-5f;
   CHECK(off == 0);
   for (const int c : {1, 2, 3}) CHECK(mean(cached.image.components[c]) == 0);
   settings["cache.environment"] = "false";
-  const Picture sampled = render(plane, settings, 1, 16);
-  CHECK(cached.shadow_rays < sampled.shadow_rays);
+  const Result sampled = render(plane, settings, 1, 16);
+  CHECK(cached.stats.shadow_rays < sampled.stats.shadow_rays);
   CHECK(glm::length(sampled.image.components[0][0] - vec3(1, 0.5f, 0.25f)) > 1e-3f);
 }
 
@@ -256,7 +197,7 @@ TEST_CASE("without a sky, or without a cache, cache.environment changes nothing"
   const test::Result off = test::render(r);
   for (int c = 0; c < 4; ++c) CHECK(identical(on.image.components[c], off.image.components[c]));
   const scene::Scene room = make_room({.sun = true});
-  const Picture plain = render(room, {}, 4), asked = render(room, {{"cache.environment", "true"}}, 4);
+  const Result plain = render(room, {}, 4), asked = render(room, {{"cache.environment", "true"}}, 4);
   for (int c = 0; c < 4; ++c) CHECK(identical(plain.image.components[c], asked.image.components[c]));
   CHECK(asked.bias_known[0]);
 }
@@ -266,11 +207,8 @@ TEST_CASE("the option can be switched while a scene is shown") {
   r.set_size(16, 16);
   r.set_scene(std::make_shared<scene::Scene>(make_room({.sun = true})));
   const auto finish = [&] {
-    r.settings().set("samples", "2");
-    r.apply_settings();
-    while (r.step()) {
-    }
-    return r.image();
+    test::set(r, {{"samples", "2"}});
+    return test::finish(r);
   };
   for (const auto& [key, value] : k_sky) r.settings().set(key, value);
   for (const char* key : {"cache.rays", "cache.max_rays"}) r.settings().set(key, "64");

@@ -2,68 +2,19 @@
 // What a change leaves of an irradiance cache: every row of irradiance_cache::changes(), and that a cache
 // which is relit where it stands is the one that would have been built in that light.
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <set>
 
-#include "session/renderer.h"
+#include "images/cache_support.h"
 #include "support/folder.h"
+#include "support/rooms.h"
 
 using namespace lucerna;
 using irradiance_cache::RawRecords;
 using irradiance_cache::Spoilt;
 using irradiance_cache::StopReason;
+using test::begins_with, test::identical, test::Settings;
 
 namespace {
-
-using Settings = std::map<std::string, std::string>;
-
-/// A room of four metres, open above to an uneven sky, with a block, a lamp and two cameras.
-scene::Scene room() {
-  scene::Scene s;
-  s.name = "room", s.file = "room.gltf";
-  s.materials.resize(2);
-  for (scene::Material& m : s.materials)
-    m.base_color = vec4(0.7f, 0.6f, 0.5f, 1), m.roughness = 1, m.metallic = 0, m.specular = 0;
-  s.materials[1].base_color = vec4(0.2f, 0.5f, 0.8f, 1);
-  s.materials[1].double_sided = true;  // it may shine
-  const auto box = [&](vec3 lo, vec3 hi, bool open, uint32_t material) {
-    scene::Primitive p;
-    p.material = material;
-    for (int k = 0; k < 8; ++k)
-      p.positions.emplace_back(k & 1 ? hi.x : lo.x, k & 2 ? hi.y : lo.y, k & 4 ? hi.z : lo.z);
-    for (const auto& [a, b, c, d] : {std::array{2u, 3u, 7u, 6u},
-                                     {0u, 1u, 3u, 2u},
-                                     {4u, 6u, 7u, 5u},
-                                     {0u, 2u, 6u, 4u},
-                                     {1u, 5u, 7u, 3u},
-                                     {0u, 4u, 5u, 1u}})
-      p.triangles.emplace_back(a, b, c), p.triangles.emplace_back(a, c, d);
-    if (open) p.triangles.erase(p.triangles.begin(), p.triangles.begin() + 2);
-    s.meshes.push_back({"box", {p}});
-    s.instances.push_back({"box", scene::Id(s.meshes.size() - 1), mat4(1), false});
-  };
-  box({-2, 0, -2}, {2, 2.5f, 2}, true, 0);
-  box({-0.5f, 0, -1}, {0.5f, 1, 0}, false, 1);
-  s.lights.push_back({.name = "lamp", .intensity = vec3(5), .position = {1, 2, 1}});
-  scene::Image sky;
-  sky.name = "sky", sky.width = 8, sky.height = 4;
-  for (int i = 0; i < 32; ++i) {
-    const float value = 0.2f + 0.1f * float(i % 8);
-    sky.floats.insert(sky.floats.end(), {value, value, 1.5f * value, 1});
-  }
-  s.images.push_back(sky);
-  s.environment.image = 0, s.environment.given = true;
-  for (const vec3 eye : {vec3(0, 1.5f, 1.9f), vec3(-1, 2.2f, -1)}) {
-    scene::Camera c;
-    c.name = s.cameras.empty() ? "front" : "above";
-    c.yfov = 1.3f;
-    c.to_world[3] = vec4(eye, 1);
-    s.cameras.push_back(c);
-  }
-  // The second looks down.
-  s.cameras[1].to_world[1] = vec4(0, 0, -1, 0), s.cameras[1].to_world[2] = vec4(0, 1, 0, 0);
-  return s;
-}
 
 const Settings k_base{{"components.secondary", "cache"},
                       {"components.tertiary", "cache"},
@@ -75,28 +26,13 @@ const Settings k_base{{"components.secondary", "cache"},
                       {"samples", "2"},
                       {"path.batch", "8192"}};
 
-struct Bed {
-  session::Renderer r;
-  explicit Bed(const Settings& more = {})
-      : r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}}) {
-    r.set_size(24, 24);
-    r.settings().set("path.batch", "8192");
-    r.set_scene(std::make_shared<scene::Scene>(room()));
+scene::Scene room() { return test::block_room(true); }
+
+struct Bed : test::CacheRenderer {
+  explicit Bed(const Settings& more = {}) : CacheRenderer(room(), 24) {
     set(k_base);
     if (!more.empty()) set(more);
   }
-  ~Bed() { CHECK(r.device().validation_messages() == 0); }
-  void set(const Settings& settings) {
-    for (const auto& [key, value] : settings) r.settings().set(key, value);
-    r.apply_settings();
-  }
-  film::Image finish() {
-    while (r.step()) {
-    }
-    return r.image();
-  }
-  const irradiance_cache::CacheStatus& status() const { return r.cache()->status(); }
-  RawRecords records() const { return r.cache()->records().raw(r.cache()->records().size()); }
   void set_lamp(vec3 intensity, bool enabled = true) {
     scene::Light lamp = r.scene()->lights[0];
     lamp.intensity = intensity, lamp.enabled = enabled;
@@ -109,13 +45,10 @@ struct Bed {
   }
 };
 
-bool begins(const std::vector<vec4>& a, const std::vector<vec4>& b) {
-  return a.size() >= b.size() && std::memcmp(a.data(), b.data(), b.size() * sizeof(vec4)) == 0;
-}
 /// Whether the first records of `all` are where those of `some` are, and serve as far: position and radius,
 /// normal, origin, facet and pass, to the bit.
 bool same_places(const RawRecords& all, const RawRecords& some) {
-  if (!begins(all.spheres, some.spheres)) return false;
+  if (!begins_with(all.spheres, some.spheres)) return false;
   for (size_t r = 0; r < some.spheres.size(); ++r) {
     const vec4 *a = &all.places[r * shared::k_record_texels], *b = &some.places[r * shared::k_record_texels];
     if (std::memcmp(&a[0], &b[0], sizeof(vec4)) || std::memcmp(&a[1], &b[1], sizeof(vec3)) ||
@@ -124,23 +57,8 @@ bool same_places(const RawRecords& all, const RawRecords& some) {
   }
   return true;
 }
-bool same_records(const RawRecords& all, const RawRecords& some) {
-  return begins(all.places, some.places) && begins(all.lights, some.lights) &&
-         begins(all.spheres, some.spheres);
-}
-bool same(const film::Image& a, const film::Image& b) {
-  for (size_t c = 0; c < a.components.size(); ++c)
-    if (a.components[c].size() != b.components[c].size() ||
-        std::memcmp(a.components[c].data(), b.components[c].data(), a.components[c].size() * sizeof(vec3)))
-      return false;
-  return a.samples == b.samples;
-}
 
-double mean(const film::Image& image, int component) {
-  double sum = 0;
-  for (const vec3& v : image.components[component]) sum += luminance(v);
-  return sum / double(image.samples.size());
-}
+double mean(const film::Image& image, int component) { return test::mean(image.components[component]); }
 
 }  // namespace
 
@@ -212,7 +130,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
     if (row.what == "scene") continue;  // see below
     bed.r.load_cache(file);
     REQUIRE(bed.r.cache()->ready());
-    REQUIRE(same_records(bed.records(), base));
+    REQUIRE(begins_with(bed.records(), base));
 
     const auto take_back = [&] {
       if (!row.setting) return undo.contains(row.what) ? undo.at(row.what)() : void();
@@ -246,7 +164,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
     INFO(now.size() << " records of " << base.size() << ", rays " << bed.status().rays << " of "
                     << base_rays);
     CHECK(same_places(now, base));
-    CHECK(begins(now.lights, base.lights) == !s.light);
+    CHECK(begins_with(now.lights, base.lights) == !s.light);
     if (!s.coverage) CHECK(now.size() == base.size());
     if (!s.light) CHECK(bed.status().rays >= base_rays);
     if (!s.light && !s.coverage) CHECK(bed.status().rays == base_rays);
@@ -294,11 +212,11 @@ TEST_CASE("a cache that is relit is the one that would have been built in that l
     change(fresh);
     const film::Image expected = fresh.finish();
     CHECK(same_places(relit.records(), before));
-    CHECK_FALSE(begins(relit.records().lights, before.lights));
-    CHECK(same_records(relit.records(), fresh.records()));
+    CHECK_FALSE(begins_with(relit.records().lights, before.lights));
+    CHECK(begins_with(relit.records(), fresh.records()));
     CHECK(relit.records().size() == fresh.records().size());
     CHECK(relit.status().stop == fresh.status().stop);
-    CHECK(same(picture, expected));
+    CHECK(identical(picture, expected));
     // What is spent is the rays of the records, without those that tried places.
     CHECK(relit.status().rays < fresh.status().rays);
   };
@@ -314,7 +232,7 @@ TEST_CASE("a cache that is relit is the one that would have been built in that l
   relit.r.set_environment(1, 0);
   relit.set_lamp(vec3(5));
   relit.finish();
-  CHECK(same_records(relit.records(), before));
+  CHECK(begins_with(relit.records(), before));
 }
 
 TEST_CASE("a material that shines, mirrors, or is diffuse again brings its light and its records") {
@@ -398,8 +316,8 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
   CHECK(cancelled > 2);
   CHECK(levels > 2);  // progress is seen
   CHECK(share > 0.9f);
-  CHECK(same(expected, bed.finish()));
-  CHECK(same_records(bed.records(), straight.records()));
+  CHECK(identical(expected, bed.finish()));
+  CHECK(begins_with(bed.records(), straight.records()));
 
   // The camera moves while records are relit: they are, and then more are placed.
   bed.set_lamp(vec3(5));
@@ -429,7 +347,7 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
 
   // Built without an interruption the first picture is still what it was.
   Bed again;
-  CHECK(same(before, again.finish()));
+  CHECK(identical(before, again.finish()));
 }
 
 TEST_CASE("components that are switched off leave records whole, and find them when they are back") {
@@ -444,13 +362,13 @@ TEST_CASE("components that are switched off leave records whole, and find them w
     bed.set(off);
     CHECK(bed.r.cache()->ready());
     bed.finish();
-    CHECK(same_records(bed.records(), base));
+    CHECK(begins_with(bed.records(), base));
     bed.set({{"components.primary", "path"},
              {"components.caustic", "path"},
              {"components.secondary", "cache"},
              {"components.tertiary", "cache"}});
     CHECK(bed.r.cache()->ready());
-    CHECK(same(both, bed.finish()));
+    CHECK(identical(both, bed.finish()));
     CHECK(bed.status().rays == rays);
   }
   // Relit while tertiary light is off, records lack it: back on, they are relit again.
@@ -462,7 +380,7 @@ TEST_CASE("components that are switched off leave records whole, and find them w
   const film::Image relit = bed.finish();
   Bed fresh;
   fresh.set_lamp({9, 2, 1});
-  CHECK(same(relit, fresh.finish()));
+  CHECK(identical(relit, fresh.finish()));
   // Tertiary light is path traced behind the records, or theirs is read: gathered otherwise.
   bed.set({{"components.tertiary", "path"}});
   CHECK(bed.status().relighting == base.size());

@@ -6,14 +6,15 @@
 #include <cmath>
 
 #include "base/log.h"
-#include "session/renderer.h"
+#include "support/render.h"
+#include "support/rooms.h"
 
 using namespace lucerna;
 using irradiance_cache::StopReason;
+using test::block_mean, test::Mean, test::Result, test::Settings;
 
 namespace {
 
-using Settings = std::map<std::string, std::string>;
 constexpr uint32_t k_size = 32;
 
 const Settings k_both{
@@ -29,110 +30,26 @@ const Settings k_wide{{"components.secondary", "cache"},
                       {"cache.rays", "1024"},
                       {"cache.max_rays", "1024"}};
 
-/// A closed room of 2 x 1 x 2 m around `at`, its corner o, with a lit panel under the ceiling's right half;
-/// the camera is under the ceiling and looks down: right is +x, up in the picture -z. Its materials: 0 walls,
-/// 1 panel.
-struct Room {
-  scene::Scene s;
-  vec3 at;
-  explicit Room(vec3 place = vec3(0), bool lit = true) : at(place) {
-    s.name = "room", s.file = "room.gltf";
-    s.materials.resize(2);
-    for (scene::Material& m : s.materials)
-      m.base_color = vec4(0.7f, 0.7f, 0.7f, 1), m.roughness = 1, m.metallic = 0, m.specular = 0;
-    s.materials[1].emission = vec3(lit ? 10.0f : 0.0f), s.materials[1].base_color = vec4(0, 0, 0, 1);
-    s.environment.given = true;
-    const vec3 x(2, 0, 0), y(0, 1, 0), z(0, 0, 2), o(-1, 0, -1);
-    quad(o, z, x), quad(o + y, x, z);
-    quad(o, x, y), quad(o + z, y, x);
-    quad(o, y, z), quad(o + x, z, y);
-    quad({0.3f, 0.99f, -0.5f}, {0.6f, 0, 0}, {0, 0, 1}, 1);
-    scene::Camera camera;
-    camera.yfov = 1.4f;
-    camera.to_world =
-        mat4(vec4(1, 0, 0, 0), vec4(0, 0, -1, 0), vec4(0, 1, 0, 0), vec4(at + vec3(0, 0.98f, 0), 1));
-    s.cameras = {camera};
-  }
-  /// A parallelogram, counter-clockwise from its front, textured from 0 to 1.
-  void quad(vec3 a, vec3 u, vec3 v, uint32_t material = 0) {
-    scene::Primitive p;
-    p.material = material;
-    a += at;
-    p.positions = {a, a + u, a + u + v, a + v};
-    p.normals.assign(4, normalize(cross(u, v)));
-    p.tangents.assign(4, vec4(normalize(u), 1));
-    p.uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    p.triangles = {{0, 1, 2}, {0, 2, 3}};
-    s.meshes.push_back({"quad", {p}});
-    s.instances.push_back({"quad", scene::Id(s.meshes.size() - 1), mat4(1), false});
-  }
-  /// A wall in the middle, from z0 to z1 and up to `height`, so thick; with 0 a single sheet.
-  void wall(float z0, float z1, float height, float thickness) {
-    const vec3 w(0, 0, z1), z(0, 0, z0 - z1), h(0, height, 0), t(thickness / 2, 0, 0);
-    quad(w - t, h, z);
-    if (thickness <= 0) return;
-    quad(w + t, z, h);
-    quad(w + h - t, 2.0f * t, z);
-    quad(vec3(0, 0, z1) - t, 2.0f * t, h), quad(vec3(0, 0, z0) - t, h, 2.0f * t);
-  }
-};
+using Room = test::PanelRoom;
 
-struct Picture {
-  film::Image image;
-  irradiance_cache::CacheStatus cache;
-  double rays_a_path = 0;  ///< of the picture's
-  uint64_t prepared_rays = 0;
-};
-
-Picture render(const scene::Scene& scene, const Settings& settings, uint32_t samples) {
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
-  r.set_size(k_size, k_size);
-  r.set_scene(std::make_shared<scene::Scene>(scene));
-  for (const auto& [key, value] : settings) r.settings().set(key, value);
-  r.settings().set("samples", std::to_string(samples));
-  r.apply_settings();
-  while (r.step()) {
-  }
-  r.finish_ledger();
-  CHECK(r.device().validation_messages() == 0);
-  CHECK(r.stats().dropped == 0);
-  Picture p{r.image(), {}, 0, r.ledger().entries().back().prepared_rays};
-  if (r.cache()) p.cache = r.cache()->status();
-  p.rays_a_path = double(r.stats().rays - p.prepared_rays) / double(r.stats().paths);
-  return p;
+Result render(const scene::Scene& scene, const Settings& settings, uint32_t samples) {
+  return test::render(scene, settings, samples, k_size);
 }
 
-struct Mean {
-  double value = 0, noise = 0;  ///< standard error, from the two halves
-};
-/// Of a component over a block of 8x8 pixels, without the `middle` columns on either side of the picture's
-/// middle.
-Mean block_mean(const Picture& p, int component, uint32_t across, uint32_t down, uint32_t middle = 0) {
-  Mean m;
-  int count = 0;
-  for (uint32_t i = 0; i < 64; ++i) {
-    const uint32_t x = across * 8 + i % 8;
-    if (x + middle >= k_size / 2 && x < k_size / 2 + middle) continue;
-    const size_t pixel = size_t{down * 8 + i / 8} * k_size + x;
-    const double y = luminance(p.image.components[component][pixel]),
-                 odd = luminance(p.image.odd_half[component][pixel]);
-    m.value += y, m.noise += (y - odd) * (y - odd), ++count;
-  }
-  m.value /= count, m.noise = std::sqrt(m.noise) / count;
-  return m;
-}
+/// Of the picture's.
+double rays_a_path(const Result& r) { return double(r.stats.rays - r.prepared_rays) / double(r.stats.paths); }
 
 /// Every block of secondary and tertiary light is the path tracer's within `bias` of it and the noise of
 /// both: 4.5 standard errors, 3e-4 for all 32 of them together. Returns the root mean square of what blocks
 /// are off by, the noise taken off, over the layers' means.
-double compare(const Picture& path, const Picture& cached, double bias, uint32_t middle = 0) {
+double compare(const Result& path, const Result& cached, double bias, uint32_t middle = 0) {
   double sum = 0;
   for (const int c : {1, 2}) {
     double squares = 0, mean = 0;
     for (uint32_t down = 0; down < k_size / 8; ++down)
       for (uint32_t across = 0; across < k_size / 8; ++across) {
-        const Mean truth = block_mean(path, c, across, down, middle),
-                   value = block_mean(cached, c, across, down, middle);
+        const Mean truth = block_mean(path.image, c, across, down, middle),
+                   value = block_mean(cached.image, c, across, down, middle);
         const double noise = std::hypot(truth.noise, value.noise), off = value.value - truth.value;
         INFO("component " << c << ", block " << across << ", " << down << ": " << value.value << " of "
                           << truth.value << ", noise " << noise);
@@ -196,7 +113,7 @@ TEST_CASE("light does not leak through walls, around their ends, or far from the
     INFO(p.what);
     Room room(p.at);
     room.wall(p.z0, p.z1, p.height, p.thickness);
-    const Picture path = render(room.s, {}, 128), cached = render(room.s, k_wide, 16);
+    const Result path = render(room.s, {}, 128), cached = render(room.s, k_wide, 16);
     // A record serves half a pixel around it at least (cache.min_radius), through whatever stands there: what
     // the columns at the wall show is left out.
     const double off = compare(path, cached, 0.2, 1);
@@ -204,9 +121,9 @@ TEST_CASE("light does not leak through walls, around their ends, or far from the
     CHECK(off < 0.06);
     CHECK(cached.cache.records > 50);
     // The left half is dark, so that light would be seen there.
-    CHECK(block_mean(path, 1, 1, 1).value < 0.5 * block_mean(path, 1, 2, 1).value);
+    CHECK(block_mean(path.image, 1, 1, 1).value < 0.5 * block_mean(path.image, 1, 2, 1).value);
     // And it is looked up: not all of it is path traced.
-    CHECK(cached.rays_a_path < 0.7 * path.rays_a_path);
+    CHECK(rays_a_path(cached) < 0.7 * rays_a_path(path));
   }
 }
 
@@ -216,11 +133,11 @@ TEST_CASE("normal maps tilt what records bring as far as they can, and beyond th
   for (const float degrees : {0.0f, 12.0f, 45.0f}) {
     INFO(degrees << " degrees");
     const scene::Scene room = mapped_room(degrees);
-    const Picture path = render(room, {}, 128), cached = render(room, k_both, 32);
+    const Result path = render(room, {}, 128), cached = render(room, k_both, 32);
     const double off = compare(path, cached, 0.08);
     INFO("off by " << off);
     CHECK(off < 0.05);
-    rays[i++] = cached.rays_a_path / path.rays_a_path;
+    rays[i++] = rays_a_path(cached) / rays_a_path(path);
   }
   INFO("rays a path over those of the path tracer: " << rays[0] << ", " << rays[1] << ", " << rays[2]);
   // Within the records' reach nothing is traced that is not on the straight wall; three quarters of the steep
@@ -232,7 +149,7 @@ TEST_CASE("normal maps tilt what records bring as far as they can, and beyond th
 TEST_CASE("the smaller the error bound, the nearer the picture comes to the path tracer's") {
   Room room;
   room.wall(-1, 0.5f, 0.6f, 0.1f);
-  const Picture path = render(room.s, {}, 512);
+  const Result path = render(room.s, {}, 512);
   double before = 1;
   // Radii in all their bounds; what records may be off by in a block, and in all.
   struct Bound {
@@ -247,7 +164,7 @@ TEST_CASE("the smaller the error bound, the nearer the picture comes to the path
     settings["cache.error"] = error, settings["cache.min_radius"] = least;
     settings["cache.max_radius"] = most;
     settings["cache.noise"] = "0.02", settings["cache.max_rays"] = "1024";
-    const Picture cached = render(room.s, settings, 16);
+    const Result cached = render(room.s, settings, 16);
     const double off = compare(path, cached, block);
     UNSCOPED_INFO("error bound " << error << ": " << cached.cache.records << " records, off by " << off);
     CHECK(off < all);
@@ -263,7 +180,7 @@ TEST_CASE("a cache with too little room says so once, and what it cannot hold is
   Settings settings = k_both;
   settings["cache.max_records"] = "40";
   const Complaints complaints;
-  const Picture path = render(room.s, {}, 128), cached = render(room.s, settings, 64);
+  const Result path = render(room.s, {}, 128), cached = render(room.s, settings, 64);
   CHECK(cached.cache.stop == StopReason::records);
   CHECK(cached.cache.records == 40);
   CHECK(compare(path, cached, 0.1) < 0.04);
@@ -276,13 +193,13 @@ TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing a
   const Complaints complaints;
   Room mirrors;
   mirrors.s.materials[0].metallic = 1, mirrors.s.materials[0].roughness = 0.2f;
-  const Picture none = render(mirrors.s, k_both, 4), same = render(mirrors.s, {}, 4);
+  const Result none = render(mirrors.s, k_both, 4), same = render(mirrors.s, {}, 4);
   CHECK(none.cache.records == 0);
   CHECK(none.cache.rays == 0);
   CHECK(none.cache.stop == StopReason::covered);
   CHECK(none.image.components[0] == same.image.components[0]);
 
-  const Picture dark = render(Room(vec3(0), false).s, k_both, 4);
+  const Result dark = render(Room(vec3(0), false).s, k_both, 4);
   CHECK(dark.cache.records == 0);
   CHECK(dark.cache.rays == 0);
   CHECK(dark.cache.stop == StopReason::dark);
@@ -296,22 +213,16 @@ TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing a
   Room room(vec3(0), false);
   room.s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {0.5f, 0.8f, 0.5f}});
   r.set_scene(std::make_shared<scene::Scene>(room.s));
-  for (const auto& [key, value] : k_wide) r.settings().set(key, value);
   r.settings().set("samples", "2");
-  r.apply_settings();
-  const auto finish = [&] {
-    while (r.step()) {
-    }
-    return r.image();
-  };
-  const film::Image lit = finish();
+  test::set(r, k_wide);
+  const film::Image lit = test::finish(r);
   const uint32_t records = r.cache()->status().records;
   REQUIRE(records > 20);
   scene::Light lamp = room.s.lights[0];
   lamp.enabled = false;
   r.set_light(0, lamp);
   for (int move = 0; move < 2; ++move) {
-    const film::Image off = finish();
+    const film::Image off = test::finish(r);
     CHECK(r.cache()->ready());
     CHECK(r.cache()->status().rays == 0);
     CHECK(r.cache()->status().passes.size() <= 1);
@@ -319,11 +230,11 @@ TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing a
       for (const vec3& v : component) REQUIRE(v == vec3(0));
     r.set_camera(room.s.cameras[0]);
   }
-  finish();
+  test::finish(r);
   lamp.enabled = true;
   r.set_light(0, lamp);
   CHECK(r.cache()->status().relighting == records);
-  const film::Image again = finish();
+  const film::Image again = test::finish(r);
   for (size_t c = 0; c < 4; ++c)
     for (size_t i = 0; i < lit.samples.size(); ++i)
       CHECK(luminance(again.components[c][i]) ==

@@ -1,27 +1,14 @@
 // links: session
 // Pictures with the irradiance cache against path-traced ones: each component for itself.
 #include <catch2/catch.hpp>
-#include <cstring>
 
-#include "support/render.h"
+#include "images/cache_support.h"
+#include "support/rooms.h"
 
 using namespace lucerna;
+using test::identical, test::k_cached, test::mean, test::Settings;
 
 namespace {
-
-using Settings = std::map<std::string, std::string>;
-
-const Settings k_both{{"components.secondary", "cache"}, {"components.tertiary", "cache"}};
-
-bool identical(const std::vector<vec3>& a, const std::vector<vec3>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec3)) == 0;
-}
-
-double mean(const std::vector<vec3>& layer) {
-  double sum = 0;
-  for (const vec3& v : layer) sum += luminance(v);
-  return sum / double(layer.size());
-}
 
 /// Root mean square of the differences of 8x8 blocks' means, over the mean.
 double block_error(const test::Result& a, const test::Result& b, int component, uint32_t width) {
@@ -44,62 +31,20 @@ double block_error(const test::Result& a, const test::Result& b, int component, 
 /// A closed room, 2 m wide, cut in two by a wall 1 mm thick that leaves 10 cm under the ceiling; a panel
 /// lights one half. The camera stands on the wall's edge and looks down at both floors.
 scene::Scene divided_room() {
-  scene::Scene s;
-  s.name = "divided", s.file = "divided.gltf";
-  s.materials.resize(2);
-  for (scene::Material& m : s.materials)
-    m.base_color = vec4(0.7f, 0.7f, 0.7f, 1), m.roughness = 1, m.metallic = 0, m.specular = 0;
-  s.materials[1].emission = vec3(10);
-  s.materials[1].base_color = vec4(0, 0, 0, 1);
-  const auto add = [&](vec3 a, vec3 b, vec3 c,
-                       uint32_t material) {  // a parallelogram, counter-clockwise from its front
-    scene::Primitive p;
-    p.material = material;
-    p.positions = {a, b, b + c - a, c};
-    p.triangles = {{0, 1, 2}, {0, 2, 3}};
-    s.meshes.push_back({"quad", {p}});
-    s.instances.push_back({"quad", scene::Id(s.meshes.size() - 1), mat4(1), false});
-  };
-  const auto wall = [&](vec3 origin, vec3 u, vec3 v) { add(origin, origin + u, origin + v, 0); };
-  const vec3 x(2, 0, 0), y(0, 1, 0), z(0, 0, 2), o(-1, 0, -1);
-  wall(o, z, x), wall(o + y, x, z);  // floor, ceiling
-  wall(o, x, y), wall(o + z, y, x);  // back, front
-  wall(o, y, z), wall(o + x, z, y);  // left, right
-  const vec3 h(0, 0.9f, 0), t(0.0005f, 0, 0), w(0, 0, -1);
-  wall(w - t, z, h), wall(w + t, h, z), wall(w + h - t, z, 2.0f * t);
-  add({0.3f, 0.999f, -0.5f}, {0.9f, 0.999f, -0.5f}, {0.3f, 0.999f, 0.5f}, 1);
-  scene::Camera camera;
-  camera.yfov = 1.4f;
-  // Looks down: its right is x, its up -z.
-  camera.to_world = mat4(vec4(1, 0, 0, 0), vec4(0, 0, -1, 0), vec4(0, 1, 0, 0), vec4(0, 0.98f, 0, 1));
-  s.cameras = {camera};
-  return s;
+  test::PanelRoom room(vec3(0), true, 0.001f);
+  room.wall(-1, 1, 0.9f, 0.001f);
+  return room.s;
 }
 
 /// The same room without the wall, its left and right side of rough metal: of the light on a surface a good
 /// part has come over it.
 scene::Scene metal_room() {
-  scene::Scene s = divided_room();
-  s.name = "metal";
+  scene::Scene s = test::PanelRoom(vec3(0), true, 0.001f).s;
   s.materials.push_back(s.materials[0]);
   s.materials[2].base_color = vec4(0.9f, 0.9f, 0.9f, 1);
   s.materials[2].metallic = 1, s.materials[2].roughness = 0.4f;
   for (const int side : {4, 5}) s.meshes[side].primitives[0].material = 2;
-  s.instances.erase(s.instances.begin() + 6, s.instances.begin() + 9);
   return s;
-}
-
-film::Image render_scene(const scene::Scene& scene, const Settings& settings, uint32_t samples,
-                         uint32_t size = 64) {
-  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
-  r.set_size(size, size);
-  r.set_scene(std::make_shared<scene::Scene>(scene));
-  for (const auto& [key, value] : settings) r.settings().set(key, value);
-  r.settings().set("samples", std::to_string(samples));
-  r.apply_settings();
-  while (r.step()) {
-  }
-  return r.image();
 }
 
 }  // namespace
@@ -109,7 +54,7 @@ TEST_CASE("the cache brings the light of its components, and no other changes") 
   const test::Result path = test::render(r);
   r.samples = 16;
   const test::Result few = test::render(r);
-  r.settings.insert(k_both.begin(), k_both.end());
+  r.settings.insert(k_cached.begin(), k_cached.end());
   const test::Result cached = test::render(r);
   CHECK(cached.validation_messages == 0);
   CHECK(cached.stats.dropped == 0);
@@ -127,8 +72,8 @@ TEST_CASE("the cache brings the light of its components, and no other changes") 
 TEST_CASE(
     "tertiary light alone is looked up at the second diffuse vertex, behind path-traced secondary light") {
   const scene::Scene room = metal_room();
-  const film::Image path = render_scene(room, {}, 256, 32),
-                    cached = render_scene(room, {{"components.tertiary", "cache"}}, 256, 32);
+  const film::Image path = test::render(room, {}, 256, 32).image,
+                    cached = test::render(room, {{"components.tertiary", "cache"}}, 256, 32).image;
   for (const int c : {0, 1, 3}) {
     INFO("component " << c);
     CHECK(identical(path.components[c], cached.components[c]));
@@ -158,7 +103,7 @@ TEST_CASE("what is seen in mirrors is looked up too, whatever else is off") {
   test::Render r{.scene = "teapot", .width = 64, .height = 64, .samples = 512, .settings = off};
   const test::Result path = test::render(r);
   r.samples = 64;
-  r.settings.insert(k_both.begin(), k_both.end());
+  r.settings.insert(k_cached.begin(), k_cached.end());
   const test::Result cached = test::render(r);
   for (const int c : {1, 2}) {
     // The lowest quarter is nearly all floor.
@@ -193,7 +138,7 @@ TEST_CASE("records that read records bring the light of those that trace their p
 }
 
 TEST_CASE("switched-off light stays off") {
-  test::Render r{.scene = "cornell", .width = 32, .height = 32, .samples = 4, .settings = k_both};
+  test::Render r{.scene = "cornell", .width = 32, .height = 32, .samples = 4, .settings = k_cached};
   r.settings["components.tertiary"] = "off";
   const test::Result no_tertiary = test::render(r);
   CHECK(mean(no_tertiary.image.components[1]) > 0);
@@ -206,7 +151,7 @@ TEST_CASE("switched-off light stays off") {
 }
 
 TEST_CASE("a cached picture does not depend on how its work was cut") {
-  test::Render r{.scene = "cornell", .width = 40, .height = 40, .samples = 4, .settings = k_both};
+  test::Render r{.scene = "cornell", .width = 40, .height = 40, .samples = 4, .settings = k_cached};
   r.settings["cache.rays"] = "64";
   const test::Result whole = test::render(r);
   r.settings["path.batch"] = "2048";
@@ -221,7 +166,7 @@ TEST_CASE("records that serve in ellipses bring the same light, whatever way wor
   test::Render r{.scene = "cornell", .width = 64, .height = 64, .samples = 512, .settings = {{"seed", "3"}}};
   const test::Result path = test::render(r);
   r.samples = 16;
-  r.settings.insert(k_both.begin(), k_both.end());
+  r.settings.insert(k_cached.begin(), k_cached.end());
   r.settings["cache.metric"] = "hessian";
   const test::Result cached = test::render(r);
   CHECK(cached.validation_messages == 0);
@@ -241,9 +186,9 @@ TEST_CASE("records that serve in ellipses bring the same light, whatever way wor
 
 TEST_CASE("light does not leak through a wall of a millimetre") {
   // Radii as wide as they may be, so that only what limits them keeps records from reaching through.
-  Settings wide = k_both;
+  Settings wide = k_cached;
   wide["cache.error"] = "1", wide["cache.max_radius"] = "1";
-  const film::Image path = render_scene(divided_room(), {}, 512);
+  const film::Image path = test::render(divided_room(), {}, 512, 64).image;
   // Columns of the picture by their distance from the wall, which stands in its middle: floors left (dark)
   // and right.
   const auto column_mean = [](const film::Image& image, int component, uint32_t from, uint32_t to) {
@@ -254,7 +199,7 @@ TEST_CASE("light does not leak through a wall of a millimetre") {
   };
   for (const char* metric : {"split-sphere", "hessian"}) {
     wide["cache.metric"] = metric;
-    const film::Image cached = render_scene(divided_room(), wide, 16);
+    const film::Image cached = test::render(divided_room(), wide, 16, 64).image;
     for (const int c : {1, 2})
       for (const auto& [from, to] : {std::pair{8u, 20u}, {20u, 26u}, {26u, 30u}, {34u, 38u}, {38u, 44u}}) {
         const double truth = column_mean(path, c, from, to), value = column_mean(cached, c, from, to);

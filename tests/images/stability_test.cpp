@@ -70,10 +70,8 @@ Outcome render(const scene::Scene& s) {
   r.set_scene(std::make_shared<scene::Scene>(s));
   r.settings().set("samples", "16");
   r.apply_settings();
-  while (r.step()) {
-  }
   Outcome o;
-  const film::Image image = r.image();
+  const film::Image image = test::finish(r);
   for (const auto& component : image.components)
     for (const vec3& v : component)
       for (int k = 0; k < 3; ++k) {

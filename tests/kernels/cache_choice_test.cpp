@@ -8,33 +8,12 @@
 
 #include "kernels/gpu_support.h"
 #include "solvers/irradiance_cache/placement.h"
+#include "support/records.h"
 
 using namespace lucerna;
 using namespace lucerna::irradiance_cache;
 
 namespace {
-
-/// Points on the inner walls of a box, `offset` away from the origin.
-std::vector<Place> box_points(size_t count, float offset, float reach) {
-  std::mt19937 random(5);
-  const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
-  std::vector<Place> points;
-  for (size_t i = 0; i < count; ++i) {
-    const int axis = int(random() % 3);
-    const bool upper = random() % 2;
-    Place p;
-    p.position = vec3(unit() * 4, unit() * 3, unit() * 5);
-    p.position[axis] = upper ? (axis == 0 ? 4.0f : axis == 1 ? 3.0f : 5.0f) : 0.0f;
-    p.position += vec3(offset);
-    p.normal = vec3(0);
-    p.normal[axis] = upper ? -1.0f : 1.0f;
-    p.reach = reach;
-    p.facet = uint32_t(i) & 0x3fffff;
-    p.origin = uint32_t(i % 3);
-    points.push_back(p);
-  }
-  return points;
-}
 
 uint32_t mix(uint32_t x) {
   x ^= x >> 16, x *= 0x7feb352du;
@@ -145,7 +124,7 @@ TEST_CASE("the device chooses as the host does") {
   for (const size_t count : {size_t{1}, size_t{2}, size_t{239}, size_t{240}, size_t{241}, size_t{3000}})
     for (const float offset : {0.0f, 10000.0f})
       for (const bool mixed : {false, true}) {
-        std::vector<Place> points = box_points(count, offset, 0.3f);
+        std::vector<Place> points = test::box_points(count, offset, 0.3f);
         for (Place& p : points)
           if (mixed) p.reach = 0.02f * std::pow(50.0f, float(random() >> 8) / 16777216.0f);
         const ChoiceOptions options{.seed = uint32_t(count) + mixed};
@@ -164,7 +143,7 @@ TEST_CASE("the device chooses as the host does") {
 
 TEST_CASE("every point that asked is near a chosen one that faces as it does") {
   Bench bench;
-  const std::vector<Place> points = box_points(20000, 0, 0.25f);
+  const std::vector<Place> points = test::box_points(20000, 0, 0.25f);
   const std::vector<Place> chosen = bench.choose(points, {.seed = 3});
   INFO(chosen.size() << " of " << points.size());
   size_t uncovered = 0;
@@ -186,7 +165,7 @@ TEST_CASE("every point that asked is near a chosen one that faces as it does") {
 
 TEST_CASE("too few places are shared out over the clusters") {
   Bench bench;
-  const std::vector<Place> points = box_points(20000, 0, 0.1f);
+  const std::vector<Place> points = test::box_points(20000, 0, 0.1f);
   const std::vector<Place> few = bench.choose(points, {.most = 200});
   CHECK(few.size() <= 200);
   CHECK(few.size() > 150);

@@ -17,16 +17,9 @@ namespace {
 template <class Value>
 void expect(const char* what, const std::vector<Record>& records, size_t first, size_t count, double truth,
             double slack, const Value& value) {
-  double sum = 0, squares = 0;
-  for (size_t i = first; i < first + count; ++i) {
-    const double v = value(records[i]);
-    sum += v, squares += v * v;
-  }
-  const double mean = sum / double(count);
-  const double deviation =
-      std::sqrt(std::max(0.0, squares / double(count) - mean * mean) / double(count - 1));
-  INFO(what << ": " << mean << " +- " << deviation << ", expected " << truth);
-  CHECK(std::abs(mean - truth) <= 3.9 * deviation + slack);
+  const test::Moments m = test::moments(records, first, count, value);
+  INFO(what << ": " << m.mean << " +- " << m.deviation << ", expected " << truth);
+  CHECK(std::abs(m.mean - truth) <= 3.9 * m.deviation + slack);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "support/cache.h"
+#include "support/rooms.h"
 
 using namespace lucerna;
 using irradiance_cache::Place;
@@ -45,14 +46,8 @@ std::array<double, 6> differences(const Function& f, double x, double y, double 
           (n + s - 2 * o) / (h * h)};
 }
 
-/// Irradiance from scenes/furnace-disk: a disk of radius 1 and radiance 10 (red), 2 m above the floor, at a
-/// distance d from its axis.
-double disk_irradiance(double d) {
-  const double t = 5 + d * d;
-  return pi * 10 / 2 * (1 - (3 + d * d) / std::sqrt(t * t - 4 * d * d));
-}
-/// The same where x < 0 is hidden 1 m above the floor: a half plane in front of the disk. Midpoint rule over
-/// the strips of the disk that are seen, each in closed form.
+/// disk_irradiance() where x < 0 is hidden 1 m above the floor: a half plane in front of the disk. Midpoint
+/// rule over the strips of the disk that are seen, each in closed form.
 double half_hidden_irradiance(double x, double y) {
   constexpr int k_strips = 4000;
   const double lo = std::max(-1.0, -x);  // through the half plane's edge, twice as far
@@ -102,17 +97,11 @@ Bent mean_hessian(test::CacheBed& bed, const vec3& at, uint32_t elevations, size
   return mean;
 }
 
+/// Double-sided and black, but for what it emits.
 void add_quad(scene::Scene& s, const vec3& a, const vec3& b, const vec3& c, const vec3& emission) {
-  scene::Material m;
-  m.base_color = vec4(0, 0, 0, 1), m.roughness = 1, m.metallic = 0, m.specular = 0;
-  m.emission = emission, m.double_sided = true;
-  scene::Primitive p;
-  p.material = scene::Id(s.materials.size());
-  p.positions = {a, b, b + c - a, c};
-  p.triangles = {{0, 1, 2}, {0, 2, 3}};
-  s.materials.push_back(m);
-  s.meshes.push_back({"quad", {p}});
-  s.instances.push_back({"quad", scene::Id(s.meshes.size() - 1), mat4(1), false});
+  s.materials.push_back(test::diffuse(vec3(0), emission));
+  s.materials.back().double_sided = true;
+  test::add_quad(s, a, b - a, c - a, uint32_t(s.materials.size() - 1));
 }
 
 struct Shape {
@@ -211,7 +200,7 @@ TEST_CASE("a hemisphere's Hessian is that of the irradiance, the nearer the more
     test::CacheBed bed(half ? hidden : open);
     bed.set_frame(k_direct);
     const auto irradiance = [&](double x, double y) {
-      return k_luminance * (half ? half_hidden_irradiance(x, y) : disk_irradiance(std::hypot(x, y)));
+      return k_luminance * (half ? half_hidden_irradiance(x, y) : test::disk_irradiance(std::hypot(x, y)));
     };
     std::array<double, 3> misses{};
     double strongest = 0;

@@ -3,7 +3,6 @@
 // what it has done is drawn where it is, hidden behind what is in front.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <thread>
 
@@ -11,6 +10,7 @@
 #include "session/renderer.h"
 #include "session/session.h"
 #include "shaders/shared/cache_placement.h"
+#include "support/records.h"
 
 using namespace lucerna;
 using irradiance_cache::BuildStage;
@@ -63,13 +63,6 @@ void build_to(session::Renderer& r, BuildStage stage) {
     REQUIRE(r.cache_waits());
     r.step_cache();
   }
-}
-
-bool same(const irradiance_cache::RawRecords& a, const irradiance_cache::RawRecords& b) {
-  const auto equal = [](const std::vector<vec4>& x, const std::vector<vec4>& y) {
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(vec4)) == 0;
-  };
-  return equal(a.places, b.places) && equal(a.lights, b.lights) && equal(a.spheres, b.spheres);
 }
 
 /// Where a point lies in the picture, and its depth.
@@ -190,7 +183,7 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   }
   CHECK(r.done());
   REQUIRE(r.cache()->records().size() == count);
-  CHECK(same(r.cache()->records().raw(count), all));
+  CHECK(test::identical(r.cache()->records().raw(count), all));
   CHECK(r.picture(false) == picture);
 
   // After a pass alone; then on to the end.
@@ -203,7 +196,7 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   r.run_cache();
   work(r);
   CHECK(r.done());
-  CHECK(same(r.cache()->records().raw(count), all));
+  CHECK(test::identical(r.cache()->records().raw(count), all));
 
   // A step where nothing is set; and the setting ends a pause.
   set(r, "cache.pause", "off");
@@ -221,7 +214,7 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   set(r, "cache.pause", "off");
   CHECK_FALSE(r.cache_waits());
   work(r);
-  CHECK(same(r.cache()->records().raw(count), all));
+  CHECK(test::identical(r.cache()->records().raw(count), all));
 }
 
 TEST_CASE("who renders without a person waits for none") {

@@ -10,6 +10,7 @@
 using namespace lucerna;
 using irradiance_cache::Place;
 using irradiance_cache::Record;
+using test::disk_irradiance, test::moments, test::Moments;
 
 namespace {
 
@@ -32,25 +33,6 @@ std::array<double, 3> disk_vector(double x) {
       sum[2] += 10 * solid * dz / std::sqrt(d2);
     }
   return sum;
-}
-
-double disk_irradiance(double d) {
-  const double h = 2, r = 1, t = h * h + d * d + r * r;
-  return pi * 10 / 2 * (1 - (h * h + d * d - r * r) / std::sqrt(t * t - 4 * d * d * r * r));
-}
-
-struct Moments {
-  double mean = 0, deviation = 0;  ///< of the mean
-};
-template <class Value>
-Moments moments(const std::vector<Record>& records, size_t first, size_t count, const Value& value) {
-  double sum = 0, squares = 0;
-  for (size_t i = first; i < first + count; ++i) {
-    const double v = value(records[i]);
-    sum += v, squares += v * v;
-  }
-  const double mean = sum / double(count);
-  return {mean, std::sqrt(std::max(0.0, squares / double(count) - mean * mean) / double(count - 1))};
 }
 
 }  // namespace

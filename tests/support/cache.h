@@ -1,5 +1,6 @@
 #pragma once
 // Records of an irradiance cache in a scene of scenes/, evaluated through the wavefront.
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -60,5 +61,28 @@ class CacheBed {
   transport::Wavefront wavefront;
   irradiance_cache::Evaluator evaluator;
 };
+
+/// Irradiance (red) from scenes/furnace-disk: a disk of radius 1 and radiance 10, 2 m above the floor, at a
+/// distance d from its axis.
+inline double disk_irradiance(double d) {
+  const double h = 2, r = 1, t = h * h + d * d + r * r;
+  return double{k_pi} * 10 / 2 * (1 - (h * h + d * d - r * r) / std::sqrt(t * t - 4 * d * d * r * r));
+}
+
+struct Moments {
+  double mean = 0, deviation = 0;  ///< of the mean
+};
+/// Of a figure over `count` records.
+template <class Value>
+Moments moments(const std::vector<irradiance_cache::Record>& records, size_t first, size_t count,
+                const Value& value) {
+  double sum = 0, squares = 0;
+  for (size_t i = first; i < first + count; ++i) {
+    const double v = value(records[i]);
+    sum += v, squares += v * v;
+  }
+  const double mean = sum / double(count);
+  return {mean, std::sqrt(std::max(0.0, squares / double(count) - mean * mean) / double(count - 1))};
+}
 
 }  // namespace lucerna::test

@@ -1,5 +1,10 @@
 #pragma once
-// Renders a scene through the real program, for tests: one renderer a call, small pictures, fixed samples.
+// Renders a scene through the real program, for tests: one renderer a call, small pictures, fixed samples;
+// and what of pictures is compared.
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
 #include <map>
 #include <string>
 
@@ -7,36 +12,73 @@
 
 namespace lucerna::test {
 
+using Settings = std::map<std::string, std::string>;
+
 struct Render {
   std::string scene;  ///< "cornell": scenes/cornell/cornell.gltf
   uint32_t width = 64, height = 64, samples = 16;
-  std::map<std::string, std::string> settings;
+  Settings settings;
   gpu::Defines defines;
   std::string camera;
 };
 
 struct Result {
   film::Image image;
+  film::ImageError error;
   transport::TransportStats stats;
+  uint64_t prepared_rays = 0;  ///< of stats.rays those before the first sample: of records
   uint64_t validation_messages = 0;
   std::string tracer;
+  irradiance_cache::CacheStatus cache;  ///< of the one that was looked up, if one was
+  std::array<bool, 4> bias_known{};
 };
 
-inline Result render(const Render& r) {
+inline void set(session::Renderer& renderer, const Settings& settings) {
+  for (const auto& [key, value] : settings) renderer.settings().set(key, value);
+  renderer.apply_settings();
+}
+
+inline film::Image finish(session::Renderer& renderer) {
+  while (renderer.step()) {
+  }
+  return renderer.image();
+}
+
+/// `made`: the scene, instead of the one that is named.
+inline Result render(const Render& r, const scene::Scene* made = nullptr) {
   session::Renderer renderer({.device = "cpu", .validation = true, .shaders = {}, .defines = r.defines});
   for (const char* key : {"tracer", "path.batch"})
     if (const auto at = r.settings.find(key); at != r.settings.end())
       renderer.settings().set(key, at->second);
   renderer.set_size(r.width, r.height);
-  renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + r.scene + "/" + r.scene + ".gltf");
-  for (const auto& [key, value] : r.settings) renderer.settings().set(key, value);
-  renderer.settings().set("samples", std::to_string(r.samples));
-  renderer.apply_settings();
+  if (made)
+    renderer.set_scene(std::make_shared<scene::Scene>(*made));
+  else
+    renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + r.scene + "/" + r.scene + ".gltf");
+  Settings settings = r.settings;
+  settings["samples"] = std::to_string(r.samples);
+  set(renderer, settings);
   if (!r.camera.empty()) renderer.choose_camera(r.camera);
-  while (renderer.step()) {
-  }
-  return {renderer.image(), renderer.stats(), renderer.device().validation_messages(),
-          renderer.tracer_name()};
+  Result result;
+  result.image = finish(renderer);
+  result.error = renderer.image_error();
+  renderer.finish_ledger();
+  result.stats = renderer.stats();
+  result.prepared_rays = renderer.ledger().entries().back().prepared_rays;
+  result.validation_messages = renderer.device().validation_messages();
+  result.tracer = renderer.tracer_name();
+  if (renderer.cache()) result.cache = renderer.cache()->status();
+  for (size_t c = 0; c < 4; ++c) result.bias_known[c] = renderer.bias(c).has_value();
+  return result;
+}
+
+/// A scene made by the test, in a square picture; nothing is dropped, and the device has nothing to say.
+inline Result render(const scene::Scene& scene, const Settings& settings, uint32_t samples, uint32_t size) {
+  const Result r =
+      render({.scene = {}, .width = size, .height = size, .samples = samples, .settings = settings}, &scene);
+  CHECK(r.validation_messages == 0);
+  CHECK(r.stats.dropped == 0);
+  return r;
 }
 
 /// The sum of all components at a pixel.
@@ -44,6 +86,46 @@ inline vec3 sum_at(const film::Image& image, size_t pixel) {
   vec3 sum(0);
   for (const auto& c : image.components) sum += c[pixel];
   return sum;
+}
+
+/// To the bit.
+inline bool identical(const std::vector<vec3>& a, const std::vector<vec3>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec3)) == 0;
+}
+inline bool identical(const film::Image& a, const film::Image& b) {
+  for (int c = 0; c < film::k_components; ++c)
+    if (!identical(a.components[c], b.components[c]) || !identical(a.odd_half[c], b.odd_half[c]))
+      return false;
+  return a.samples == b.samples && identical(a.albedo, b.albedo) && identical(a.normal, b.normal);
+}
+
+/// Of the luminance of a layer.
+inline double mean(const std::vector<vec3>& layer) {
+  double sum = 0;
+  for (const vec3& v : layer) sum += luminance(v);
+  return sum / double(layer.size());
+}
+
+struct Mean {
+  double value = 0, noise = 0;  ///< standard error, from the two halves
+};
+
+/// Of the luminance of a component over a block of 8x8 pixels, without the `middle` columns on either side of
+/// the picture's middle.
+inline Mean block_mean(const film::Image& image, int component, uint32_t across, uint32_t down,
+                       uint32_t middle = 0) {
+  Mean m;
+  int count = 0;
+  for (uint32_t i = 0; i < 64; ++i) {
+    const uint32_t x = across * 8 + i % 8;
+    if (x + middle >= image.width / 2 && x < image.width / 2 + middle) continue;
+    const size_t pixel = size_t{down * 8 + i / 8} * image.width + x;
+    const double y = luminance(image.components[component][pixel]),
+                 odd = luminance(image.odd_half[component][pixel]);
+    m.value += y, m.noise += (y - odd) * (y - odd), ++count;
+  }
+  m.value /= count, m.noise = std::sqrt(m.noise) / count;
+  return m;
 }
 
 }  // namespace lucerna::test

@@ -12,6 +12,7 @@
 #include "base/hash.h"
 #include "solvers/irradiance_cache/file.h"
 #include "support/folder.h"
+#include "support/records.h"
 
 namespace fs = std::filesystem;
 using namespace lucerna;
@@ -52,10 +53,6 @@ CacheFile some_cache(uint32_t records) {
   return c;
 }
 
-bool same_bits(const std::vector<vec4>& a, const std::vector<vec4>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(vec4)) == 0);
-}
-
 std::string complaint(const std::function<void()>& act) {
   try {
     act();
@@ -91,9 +88,7 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
     CHECK(d.status.rays == c.status.rays);
     CHECK(d.status.stop == c.status.stop);
     CHECK(d.records.size() == records);
-    CHECK(same_bits(d.records.places, c.records.places));
-    CHECK(same_bits(d.records.lights, c.records.lights));
-    CHECK(same_bits(d.records.spheres, c.records.spheres));
+    CHECK(test::identical(d.records, c.records));
     CHECK(encode(d) == encode(c));
   }
   // Nothing temporary is left.

@@ -5,34 +5,13 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "support/records.h"
+
 using namespace lucerna;
 using namespace lucerna::irradiance_cache;
 
-namespace {
-
-/// Points on the inner walls of a box, `offset` away from the origin.
-std::vector<Place> box_points(size_t count, float offset) {
-  std::mt19937 random(5);
-  const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
-  std::vector<Place> points;
-  for (size_t i = 0; i < count; ++i) {
-    const int axis = int(random() % 3);
-    const bool upper = random() % 2;
-    Place p;
-    p.position = vec3(unit() * 4, unit() * 3, unit() * 5);
-    p.position[axis] = upper ? (axis == 0 ? 4.0f : axis == 1 ? 3.0f : 5.0f) : 0.0f;
-    p.position += vec3(offset);
-    p.normal = vec3(0);
-    p.normal[axis] = upper ? -1.0f : 1.0f;
-    points.push_back(p);
-  }
-  return points;
-}
-
-}  // namespace
-
 TEST_CASE("thinning keeps what nothing wider covers, and nothing else") {
-  const std::vector<Place> points = box_points(3000, 0);
+  const std::vector<Place> points = test::box_points(3000);
   std::mt19937 random(9);
   std::vector<float> radii;
   for (size_t i = 0; i < points.size(); ++i)

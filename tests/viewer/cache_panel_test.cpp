@@ -1,44 +1,18 @@
 // links: ui film_io
 // The panel of the irradiance cache and the card of what lies under the pointer: over a session without a
 // renderer, and in the program itself.
-#include "fake_session.h"
-#include "support.h"
-#include "ui/viewer.h"
-
-#include <catch2/catch.hpp>
-#include <fstream>
+#include "inside.h"
 
 using namespace lucerna;
 
 namespace {
 
-bool no_display() {
-  if (!test::with_display("x").empty()) return false;
-  WARN("skipped: neither a display nor xvfb-run");
-  return true;
-}
-
-std::string contents(const std::string& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 const vec3 k_gold(255, 219, 115), k_accent(112, 164, 222), k_teal(64, 184, 172), k_violet(156, 128, 224);
 
 }  // namespace
 
-TEST_CASE("inside: one window", "[.][inside]") {
-  log::set_console_level(log::Level::info);
-  ui::ViewerOptions options;
-  options.remember = false, options.scene = "hall.gltf", options.width = 1440, options.height = 900;
-  std::ifstream stream(std::getenv("LUCERNA_TEST_SCRIPT"));
-  for (std::string line; std::getline(stream, line);) options.script.push_back(line);
-  session::Session session({});
-  REQUIRE(ui::run_viewer(session, options) == 0);
-}
-
 TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, and how to") {
-  if (no_display()) return;
+  if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto outcome = test::window(
@@ -51,7 +25,7 @@ TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, 
       file("back.png") + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
-  const std::string script = contents(file("session.lucerna"));
+  const std::string script = read_file(file("session.lucerna"));
   CHECK_THAT(script, Catch::Contains("window.side cache"));
   CHECK_THAT(script, Catch::Contains("set components.secondary cache\nset components.tertiary cache"));
   const test::Picture scene(file("scene.png")), empty(file("empty.png")), cache(file("cache.png")),
@@ -71,7 +45,7 @@ TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, 
 }
 
 TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks what lies under it") {
-  if (no_display()) return;
+  if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto outcome = test::window(
@@ -106,29 +80,22 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
   const test::Picture card(file("card.png"));
   CHECK(test::near_colour(card, 818, 200, 860, 300, k_teal) > 30);
   CHECK(test::near_colour(card, 818, 200, 860, 300, k_violet) > 30);
-  const std::string script = contents(file("session.lucerna"));
+  const std::string script = read_file(file("session.lucerna"));
   CHECK_THAT(script, Catch::Contains("set overlay.records true\nset overlay.normals true"));
   CHECK_THAT(script, !Catch::Contains("inspect"));  // looking is no deed
 }
 
 TEST_CASE("in the program lines lead from a point to the records that serve it") {
-  if (no_display()) return;
-  if (!std::filesystem::exists(LUCERNA_BINARY)) {
-    WARN("skipped: the program is not built");
-    return;
-  }
+  if (test::no_program()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
-  const auto script = folder.path / "steps.txt";
-  std::ofstream(script) << "window.size 1100 700\nwait_scene\nview.divisor 4\nwindow.side cache\n"
-                           "inspect.none\ncache.rays 64\ncache.max_rays 64\ncomponents.secondary cache\n"
-                           "components.tertiary cache\nsamples 2\nwait_samples 2\nwait 0.5\nscreenshot " +
-                               file("plain.png") + "\ninspect.records 0.5 0.85\nscreenshot " +
-                               file("lines.png") +
-                               "\ninspect.none\noverlay.normals true\nwait 0.5\nscreenshot " +
-                               file("normals.png") + "\nquit\n";
-  const auto outcome = test::run(test::with_display(
-      std::string(LUCERNA_BINARY) + " scenes/cornell/cornell.gltf --script " + script.string()));
+  const auto outcome = test::program(
+      "scenes/cornell/cornell.gltf",
+      "window.size 1100 700\nwait_scene\nview.divisor 4\nwindow.side cache\n"
+      "inspect.none\ncache.rays 64\ncache.max_rays 64\ncomponents.secondary cache\n"
+      "components.tertiary cache\nsamples 2\nwait_samples 2\nwait 0.5\nscreenshot " +
+          file("plain.png") + "\ninspect.records 0.5 0.85\nscreenshot " + file("lines.png") +
+          "\ninspect.none\noverlay.normals true\nwait 0.5\nscreenshot " + file("normals.png") + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const test::Picture plain(file("plain.png")), lines(file("lines.png")), normals(file("normals.png"));
@@ -149,7 +116,7 @@ TEST_CASE("in the program lines lead from a point to the records that serve it")
 }
 
 TEST_CASE("asking a cache that nobody uses is a mistake that says what to do") {
-  if (no_display()) return;
+  if (test::no_display()) return;
   const auto outcome = test::window("wait_scene\ninspect.records 0.5 0.5\nquit\n");
   INFO(outcome.output);
   CHECK(outcome.status != 0);

@@ -1,27 +1,11 @@
 // links: ui film_io
 // Building of the irradiance cache led from stage to stage, by keys, buttons and commands: over a session
 // without a renderer, and in the program itself.
-#include "fake_session.h"
-#include "support.h"
-#include "ui/viewer.h"
-
-#include <catch2/catch.hpp>
-#include <fstream>
+#include "inside.h"
 
 using namespace lucerna;
 
 namespace {
-
-bool no_display() {
-  if (!test::with_display("x").empty()) return false;
-  WARN("skipped: neither a display nor xvfb-run");
-  return true;
-}
-
-std::string contents(const std::string& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// The middle of the line under the stage that has ended last, in the strip of stages; -1: there is none.
 int marked_stage(const test::Picture& p) {
@@ -42,18 +26,8 @@ const char* const k_start =
 
 }  // namespace
 
-TEST_CASE("inside: one window", "[.][inside]") {
-  log::set_console_level(log::Level::info);
-  ui::ViewerOptions options;
-  options.remember = false, options.scene = "hall.gltf", options.width = 1440, options.height = 900;
-  std::ifstream stream(std::getenv("LUCERNA_TEST_SCRIPT"));
-  for (std::string line; std::getline(stream, line);) options.script.push_back(line);
-  session::Session session({});
-  REQUIRE(ui::run_viewer(session, options) == 0);
-}
-
 TEST_CASE("keys and commands lead from stage to stage, and the panel says where building waits") {
-  if (no_display()) return;
+  if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto outcome = test::window(
@@ -75,14 +49,14 @@ TEST_CASE("keys and commands lead from stage to stage, and the panel says where 
   CHECK(test::near_colour(thin, 280, 560, 600, 680, chosen) > 40);
   CHECK(test::near_colour(probe, 280, 560, 600, 680, chosen) == 0);
   CHECK(test::near_colour(plain, 280, 560, 600, 680, chosen) == 0);
-  const std::string script = contents(file("session.lucerna"));
+  const std::string script = read_file(file("session.lucerna"));
   CHECK_THAT(script, Catch::Contains("set cache.pause stage"));
   CHECK_THAT(script, Catch::Contains("cache.step\ncache.step\ncache.step limit=20\n"));
   CHECK_THAT(script, Catch::Contains("set overlay.placement off\ncache.run"));
 }
 
 TEST_CASE("a script that waits for a picture while the cache waits is told so") {
-  if (no_display()) return;
+  if (test::no_display()) return;
   auto outcome = test::window(std::string(k_start) + "wait_samples 2\nquit\n");
   INFO(outcome.output);
   CHECK(outcome.status != 0);
@@ -97,23 +71,18 @@ TEST_CASE("a script that waits for a picture while the cache waits is told so") 
 }
 
 TEST_CASE("in the program candidates, clusters and what is chosen lie over the picture in their turn") {
-  if (no_display()) return;
-  if (!std::filesystem::exists(LUCERNA_BINARY)) {
-    WARN("skipped: the program is not built");
-    return;
-  }
+  if (test::no_program()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
-  const auto script = folder.path / "steps.txt";
-  std::ofstream(script) << "window.size 1100 700\nwait_scene\nview.divisor 4\nwindow.side cache\nsamples 2\n"
-                           "cache.rays 64\ncache.max_rays 64\ncache.pause stage\noverlay.placement stage\n"
-                           "components.secondary cache\ncomponents.tertiary cache\nwait_cache\nscreenshot " +
-                               file("candidates.png") + "\ncache.step\nscreenshot " + file("clusters.png") +
-                               "\ncache.step\ncache.step\nscreenshot " + file("chosen.png") +
-                               "\ncamera.orbit 0.3 0\nwait_cache\nwait 0.5\nscreenshot " +
-                               file("turned.png") + "\ncache.run\nwait_samples 2\nquit\n";
-  const auto outcome = test::run(test::with_display(
-      std::string(LUCERNA_BINARY) + " scenes/cornell/cornell.gltf --script " + script.string()));
+  const auto outcome =
+      test::program("scenes/cornell/cornell.gltf",
+                    "window.size 1100 700\nwait_scene\nview.divisor 4\nwindow.side cache\nsamples 2\n"
+                    "cache.rays 64\ncache.max_rays 64\ncache.pause stage\noverlay.placement stage\n"
+                    "components.secondary cache\ncomponents.tertiary cache\nwait_cache\nscreenshot " +
+                        file("candidates.png") + "\ncache.step\nscreenshot " + file("clusters.png") +
+                        "\ncache.step\ncache.step\nscreenshot " + file("chosen.png") +
+                        "\ncamera.orbit 0.3 0\nwait_cache\nwait 0.5\nscreenshot " + file("turned.png") +
+                        "\ncache.run\nwait_samples 2\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   // The picture is 524 x 408 at (280, 68).

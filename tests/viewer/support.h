@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <algorithm>
 #include <array>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +13,7 @@
 #include <fstream>
 #include <string>
 
+#include "base/file.h"
 #include "base/math.h"
 #include "film/io/image_file.h"
 #include "support/folder.h"
@@ -44,6 +46,19 @@ inline std::string with_display(const std::string& command) {
          " -s '-screen 0 1600x1000x24' " + command;
 }
 
+/// Says so where a test is skipped because no window can be opened.
+inline bool no_display() {
+  if (!with_display("x").empty()) return false;
+  WARN("skipped: neither a display nor xvfb-run");
+  return true;
+}
+/// ... or because there is no program to open one.
+inline bool no_program() {
+  if (std::filesystem::exists(LUCERNA_BINARY)) return no_display();
+  WARN("skipped: the program is not built");
+  return true;
+}
+
 struct Outcome {
   int status = -1;
   std::string output;
@@ -62,15 +77,26 @@ inline Outcome run(const std::string& command, int seconds = 120) {
   return outcome;
 }
 
-/// Runs the steps in a window of the test program itself, in its case '[inside]'; `environment`: NAME=value,
-/// for the shell.
-inline Outcome window(const std::string& steps, const std::string& environment = "") {
-  static Folder folder;
+/// A file of these steps, until the next ones.
+inline std::string script_of(const std::string& steps) {
+  static const Folder folder;
   const auto script = folder.path / "steps.txt";
   std::ofstream(script) << steps;
+  return script.string();
+}
+
+/// Runs the steps in a window of the test program itself, in its case '[inside]' (inside.h); `environment`:
+/// NAME=value, for the shell.
+inline Outcome window(const std::string& steps, const std::string& environment = "") {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-  return run("env LUCERNA_TEST_SCRIPT='" + script.string() + "' " + environment + " " +
+  return run("env LUCERNA_TEST_SCRIPT='" + script_of(steps) + "' " + environment + " " +
              with_display(self + " '[inside]'"));
+}
+
+/// Runs the steps in a window of the program, which is given `arguments`.
+inline Outcome program(const std::string& arguments, const std::string& steps, int seconds = 120) {
+  return run(with_display(std::string(LUCERNA_BINARY) + " " + arguments + " --script " + script_of(steps)),
+             seconds);
 }
 
 /// A PNG of the window as numbers 0..1 (encoded values).

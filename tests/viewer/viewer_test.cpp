@@ -2,41 +2,22 @@
 // The program as a person starts it: a window, a scene, a few samples, a screenshot, the end.
 #include "support.h"
 
-#include <catch2/catch.hpp>
-#include <fstream>
-
 using namespace lucerna;
 
 namespace {
 
-bool available() {
-  if (!std::filesystem::exists(LUCERNA_BINARY)) {
-    WARN("skipped: the program is not built");
-    return false;
-  }
-  if (test::with_display("x").empty()) {
-    WARN("skipped: neither a display nor xvfb-run");
-    return false;
-  }
-  return true;
-}
-
-test::Outcome viewer(const test::Folder& folder, const std::string& arguments, const std::string& steps) {
-  const auto script = folder.path / "steps.txt";
-  std::ofstream(script) << steps;
-  return test::run(
-      test::with_display(std::string(LUCERNA_BINARY) + " " + arguments + " --script " + script.string()),
-      400);
+test::Outcome viewer(const std::string& arguments, const std::string& steps) {
+  return test::program(arguments, steps, 400);
 }
 
 }  // namespace
 
 TEST_CASE("the viewer starts, renders cornell, saves a screenshot and quits") {
-  if (!available()) return;
+  if (test::no_program()) return;
   const test::Folder folder;
   const auto png = folder.path / "window.png";
   const auto outcome = viewer(
-      folder, "scenes/cornell/cornell.gltf",
+      "scenes/cornell/cornell.gltf",
       "window.size 1100 700\nwait_scene\nwait_samples 1\ncamera.orbit 0.05 0\nwait_samples 1\nscreenshot " +
           png.string() + "\nquit 0\n");
   INFO(outcome.output);
@@ -59,10 +40,10 @@ TEST_CASE("the viewer starts, renders cornell, saves a screenshot and quits") {
 }
 
 TEST_CASE("a scene that is not there is an error in the window, and the script's failure the exit status") {
-  if (!available()) return;
+  if (test::no_program()) return;
   const test::Folder folder;
   const auto png = folder.path / "window.png";
-  const auto shown = viewer(folder, "no/such/scene.gltf", "wait 2\nscreenshot " + png.string() + "\nquit\n");
+  const auto shown = viewer("no/such/scene.gltf", "wait 2\nscreenshot " + png.string() + "\nquit\n");
   INFO(shown.output);
   REQUIRE(shown.status == 0);
   CHECK_THAT(shown.output, Catch::Contains("no/such/scene.gltf"));
@@ -70,22 +51,22 @@ TEST_CASE("a scene that is not there is an error in the window, and the script's
   const vec3 strip = window.at(1084, 72);
   CHECK(strip.x > 1.5f * strip.y);
 
-  const auto failed = viewer(folder, "no/such/scene.gltf", "wait_scene\nquit\n");
+  const auto failed = viewer("no/such/scene.gltf", "wait_scene\nquit\n");
   INFO(failed.output);
   CHECK(failed.status == 1);
-  const auto mistyped = viewer(folder, "scenes/cornell/cornell.gltf --set film.evv=2", "quit\n");
+  const auto mistyped = viewer("scenes/cornell/cornell.gltf --set film.evv=2", "quit\n");
   CHECK(mistyped.status == 1);
   CHECK_THAT(mistyped.output,
              Catch::Contains("--set: set: there is no setting 'film.evv'; did you mean 'film.ev'?"));
 }
 
 TEST_CASE("a broken file that is dropped leaves the scene, and a click selects what is under it") {
-  if (!available()) return;
+  if (test::no_program()) return;
   const test::Folder folder;
   const auto broken = folder.path / "broken.glb", png = folder.path / "window.png";
   const auto session = folder.path / "session.lucerna";
   std::ofstream(broken, std::ios::binary) << "glTF\2 and then nothing that it says";
-  const auto outcome = viewer(folder, "scenes/cornell/cornell.gltf",
+  const auto outcome = viewer("scenes/cornell/cornell.gltf",
                               "window.size 1100 700\nwait_scene\nwait_samples 1\ndrop " + broken.string() +
                                   "\nwait_load\nwait_samples 1\npick 0.5 0.145\nscreenshot " + png.string() +
                                   "\nscript.save " + session.string() + "\nquit\n");
@@ -95,18 +76,16 @@ TEST_CASE("a broken file that is dropped leaves the scene, and a click selects w
   const test::Picture window(png);
   const vec3 strip = window.at(790, 72);
   CHECK(strip.x > 1.5f * strip.y);
-  CHECK(window.contrast(300, 120, 780, 480) > 0.05);  // the box is still there
-  std::ifstream in(session);
-  const std::string script((std::istreambuf_iterator<char>(in)), {});
-  CHECK_THAT(script, Catch::EndsWith("select object 4\n"));  // the lamp
+  CHECK(window.contrast(300, 120, 780, 480) > 0.05);                     // the box is still there
+  CHECK_THAT(read_file(session), Catch::EndsWith("select object 4\n"));  // the lamp
 }
 
 TEST_CASE("a reference is loaded for a picture of its size, and refused with both sizes for another") {
-  if (!available()) return;
+  if (test::no_program()) return;
   const test::Folder folder;
   const std::string exr = (folder.path / "ref.exr").string(), png = (folder.path / "window.png").string();
   const auto outcome = viewer(
-      folder, "scenes/cornell/cornell.gltf",
+      "scenes/cornell/cornell.gltf",
       "window.size 1100 700\nwait_scene\nreference.load " + exr +
           "\nwait 0.5\nview.size 96 64\nwait 0.5\nsamples 8\nwait_samples 8\nimage.save " + exr +
           "\nwait 0.5\nsamples 64\nreference.load " + exr + "\nwait_samples 64\nwait 0.7\nscreenshot " + png +

@@ -1,15 +1,11 @@
 // links: ui film_io
 // The window over a session without a renderer: panels, steps, errors. Each case runs this executable again
 // under a display.
-#include "fake_session.h"
+#include "inside.h"
 #include "round_trip.h"
-#include "support.h"
 #include "ui/layout.h"
 #include "ui/runner.h"
-#include "ui/viewer.h"
 
-#include <catch2/catch.hpp>
-#include <fstream>
 #include <sstream>
 
 using namespace lucerna;
@@ -21,25 +17,14 @@ test::Outcome window(const std::string& scene, const std::string& steps, const s
   return test::window(steps, "LUCERNA_TEST_SCENE='" + scene + "' " + more);
 }
 
-bool no_display() { return test::with_display("x").empty(); }
+std::vector<std::string> lines_of(const std::string& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
 
 }  // namespace
-
-TEST_CASE("inside: one window", "[.][inside]") {
-  log::set_console_level(log::Level::info);
-  ui::ViewerOptions options;
-  options.remember = false;
-  if (const char* scene = std::getenv("LUCERNA_TEST_SCENE")) options.scene = scene;
-  if (const char* scale = std::getenv("LUCERNA_TEST_SCALE")) options.scale = std::stof(scale);
-  if (const char* size = std::getenv("LUCERNA_TEST_SIZE"))
-    std::sscanf(size, "%dx%d", &options.width, &options.height);
-  if (const char* script = std::getenv("LUCERNA_TEST_SCRIPT")) {
-    std::ifstream stream(script);
-    for (std::string line; std::getline(stream, line);) options.script.push_back(line);
-  }
-  session::Session session({});
-  REQUIRE(ui::run_viewer(session, options) == 0);
-}
 
 TEST_CASE("a script is checked before it runs") {
   session::Session session({});
@@ -104,10 +89,7 @@ TEST_CASE("percentiles") {
 }
 
 TEST_CASE("a picture is shown, panels hide, and the window is saved at its size") {
-  if (no_display()) {
-    WARN("skipped: neither a display nor xvfb-run");
-    return;
-  }
+  if (test::no_display()) return;
   const test::Folder folder;
   const std::string a = (folder.path / "a.png").string(), b = (folder.path / "b.png").string();
   const auto outcome =
@@ -132,10 +114,7 @@ TEST_CASE("a picture is shown, panels hide, and the window is saved at its size"
 }
 
 TEST_CASE("an error is shown over the old scene, and a script that fails says where") {
-  if (no_display()) {
-    WARN("skipped: neither a display nor xvfb-run");
-    return;
-  }
+  if (test::no_display()) return;
   const test::Folder folder;
   const std::string a = (folder.path / "a.png").string(), b = (folder.path / "b.png").string();
   const auto outcome =
@@ -156,10 +135,7 @@ TEST_CASE("an error is shown over the old scene, and a script that fails says wh
 }
 
 TEST_CASE("an empty window, a cancelled load, and every step run") {
-  if (no_display()) {
-    WARN("skipped: neither a display nor xvfb-run");
-    return;
-  }
+  if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto outcome =
@@ -183,10 +159,7 @@ TEST_CASE("an empty window, a cancelled load, and every step run") {
 }
 
 TEST_CASE("mouse, keys and console act by commands, which a saved session holds") {
-  if (no_display()) {
-    WARN("skipped: neither a display nor xvfb-run");
-    return;
-  }
+  if (test::no_display()) return;
   const test::Folder folder;
   const std::string saved = (folder.path / "session.lucerna").string();
   const auto outcome =
@@ -206,9 +179,7 @@ TEST_CASE("mouse, keys and console act by commands, which a saved session holds"
                  saved + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
-  std::ifstream in(saved);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  const std::vector<std::string> lines = lines_of(saved);
   INFO(lines.size());
   REQUIRE(lines.size() == 11);
   CHECK_THAT(lines[1], Catch::StartsWith("scene.open ") && Catch::EndsWith("hall.gltf"));
@@ -236,10 +207,7 @@ TEST_CASE("mouse, keys and console act by commands, which a saved session holds"
 }
 
 TEST_CASE("a dropped scene opens; what cannot be opened is an error over the scene that stays") {
-  if (no_display()) {
-    WARN("skipped: neither a display nor xvfb-run");
-    return;
-  }
+  if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto outcome = window(
@@ -261,27 +229,12 @@ TEST_CASE("a dropped scene opens; what cannot be opened is an error over the sce
   CHECK(strip("jpg.png"));
   CHECK_FALSE(strip("other.png"));  // a scene that opens takes the messages away
   CHECK(test::Picture(file("missing.png")).contrast(400, 300, 900, 500) > 0.02);
-  std::ifstream in(file("session.lucerna"));
-  const std::string script((std::istreambuf_iterator<char>(in)), {});
+  const std::string script = read_file(file("session.lucerna"));
   CHECK_THAT(script, Catch::Contains("missing.glb\nscene.open") && Catch::Contains("other.gltf\nwait_scene"));
 }
 
-namespace {
-
-std::vector<std::string> lines_of(const std::string& file) {
-  std::ifstream in(file);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
-
-}  // namespace
-
 TEST_CASE("in mid-render the strip shows error over time, the forecast and the passes") {
-  if (no_display()) {
-    WARN("skipped: neither a display nor xvfb-run");
-    return;
-  }
+  if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   // 1440 x 900: the strip is 224 high; accuracy 0..576, passes 576..1008.
@@ -321,10 +274,7 @@ TEST_CASE("in mid-render the strip shows error over time, the forecast and the p
 }
 
 TEST_CASE("the target's line is dragged: a question in uniform sampling, the setting in adaptive") {
-  if (no_display()) {
-    WARN("skipped: neither a display nor xvfb-run");
-    return;
-  }
+  if (test::no_display()) return;
   const test::Folder folder;
   const std::string saved = (folder.path / "session.lucerna").string();
   const std::string png = (folder.path / "a.png").string();

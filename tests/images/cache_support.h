@@ -1,0 +1,29 @@
+#pragma once
+// Pictures with the irradiance cache, for tests that edit what they show.
+#include "support/records.h"
+#include "support/render.h"
+
+namespace lucerna::test {
+
+/// All that may be looked up.
+inline const Settings k_cached{{"components.secondary", "cache"}, {"components.tertiary", "cache"}};
+
+/// Shows a scene of the test's; when it goes the device must have had nothing to say.
+struct CacheRenderer {
+  session::Renderer r;
+  CacheRenderer(const scene::Scene& scene, uint32_t size)
+      : r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}}) {
+    r.set_size(size, size);
+    r.settings().set("path.batch", "8192");
+    r.set_scene(std::make_shared<scene::Scene>(scene));
+  }
+  ~CacheRenderer() { CHECK(r.device().validation_messages() == 0); }
+  void set(const Settings& settings) { test::set(r, settings); }
+  film::Image finish() { return test::finish(r); }
+  const irradiance_cache::CacheStatus& status() const { return r.cache()->status(); }
+  irradiance_cache::RawRecords records() const {
+    return r.cache()->records().raw(r.cache()->records().size());
+  }
+};
+
+}  // namespace lucerna::test

@@ -1,0 +1,47 @@
+#pragma once
+// Records of an irradiance cache in tests: places for them, and whether two caches hold the same.
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "solvers/irradiance_cache/records.h"
+
+namespace lucerna::test {
+
+/// Points on the inner walls of a box of 4 x 3 x 5 m, `offset` away from the origin; facets and origins are
+/// all there are.
+inline std::vector<irradiance_cache::Place> box_points(size_t count, float offset = 0, float reach = 0) {
+  std::mt19937 random(5);
+  const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
+  std::vector<irradiance_cache::Place> points;
+  for (size_t i = 0; i < count; ++i) {
+    const int axis = int(random() % 3);
+    const bool upper = random() % 2;
+    irradiance_cache::Place p;
+    p.position = vec3(unit() * 4, unit() * 3, unit() * 5);
+    p.position[axis] = upper ? (axis == 0 ? 4.0f : axis == 1 ? 3.0f : 5.0f) : 0.0f;
+    p.position += vec3(offset);
+    p.normal = vec3(0);
+    p.normal[axis] = upper ? -1.0f : 1.0f;
+    p.reach = reach;
+    p.facet = uint32_t(i) & 0x3fffff;
+    p.origin = uint32_t(i % 3);
+    points.push_back(p);
+  }
+  return points;
+}
+
+/// Whether the first of `all` are `some`, to the bit.
+inline bool begins_with(const std::vector<vec4>& all, const std::vector<vec4>& some) {
+  return all.size() >= some.size() &&
+         (some.empty() || std::memcmp(all.data(), some.data(), some.size() * sizeof(vec4)) == 0);
+}
+inline bool begins_with(const irradiance_cache::RawRecords& all, const irradiance_cache::RawRecords& some) {
+  return begins_with(all.places, some.places) && begins_with(all.lights, some.lights) &&
+         begins_with(all.spheres, some.spheres);
+}
+inline bool identical(const irradiance_cache::RawRecords& a, const irradiance_cache::RawRecords& b) {
+  return begins_with(a, b) && begins_with(b, a);
+}
+
+}  // namespace lucerna::test
