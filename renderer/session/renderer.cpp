@@ -229,6 +229,7 @@ void Renderer::make_film(irradiance_cache::Spoilt spoilt) {
 
 void Renderer::restart(irradiance_cache::Spoilt spoilt) {
   if (!wavefront_ || !film_) return;
+  if (cache_) cache_->look_from(cache_view());
   if (cache_ && spoilt.places) {
     cache_->clear();
   } else if (cache_) {

@@ -35,6 +35,12 @@ vec4 record_shape(uint record, vec4 place) {
 #endif
 }
 
+// How far off the plane between its own and a record's tangent plane a point may lie and be served [m]. `radius`: the lesser.
+float record_off_plane(vec3 position, float radius) {
+  float least = min(cache.least_of_distance * (cache.parallel != 0u ? 1.0 : distance(position, cache.eye)), cache.least_most);
+  return radius * (radius <= 1.001 * least ? cache.off_plane_least : cache.off_plane);
+}
+
 // Weight of a record, 0..1, at a point with that geometric normal.
 float record_weight(vec3 x, vec3 n, vec4 place, vec4 facing, vec4 shape) {
   vec3 away = x - place.xyz;
@@ -46,7 +52,7 @@ float record_weight(vec3 x, vec3 n, vec4 place, vec4 facing, vec4 shape) {
   float turned = sqrt(max(0.0, 1.0 - dot(n, facing.xyz)) / cache.normal_tolerance);
   // Points of one smooth surface lie in the plane between their normals' planes; what lies off it, on either side, is another
   // surface, or a step.
-  bool level = abs(dot(away, n + facing.xyz)) <= 2.0 * cache.off_plane * shape.w;
+  bool level = abs(dot(away, n + facing.xyz)) <= 2.0 * record_off_plane(place.xyz, shape.w);
   return place.w > 0.0 && level ? max(0.0, 1.0 - max(far, turned)) : 0.0;
 }
 

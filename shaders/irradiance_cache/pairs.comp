@@ -1,6 +1,5 @@
 // Which of the new records would serve at another's place, and how far from their centres: one invocation for each record,
 // at whose place the octree knows whoever may. LUCERNA_WRITE: 0 counts them, 1 writes them where the sum of the counts says.
-#define LUCERNA_DIFFUSE_TRANSMISSION 0
 #include "irradiance_cache/lookup.glsl"
 #include "lib/invocation.glsl"
 #include "shaders/shared/neighbours.h"

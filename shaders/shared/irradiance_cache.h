@@ -82,6 +82,13 @@ struct CacheFrame {
   /// and still be served.
   float off_plane;
   uint probing;  ///< k_probe_*
+  /// The same of records no wider than the least radius that a record has there: steps of surfaces that small
+  /// are not seen, and would else ask for ever.
+  float off_plane_least;
+  float least_of_distance;  ///< the least radius, of the distance from `eye`; where `parallel`, in metres
+  float least_most;         ///< ... at most [m]
+  uint parallel;
+  vec3 eye;
 };
 
 /// One level of evaluation of `records` records: entries `first` on of record_list, elevations x azimuths

@@ -18,14 +18,19 @@ using irradiance_cache::Record;
 namespace {
 
 constexpr uint32_t k_size = 192;
-constexpr float k_tolerance = 0.06f, k_off_plane = 0.03f;  // of the cache: 1 - cos 20 degrees, of the radius
+// Of the cache: 1 - cos 20 degrees; of the radius, and of the least radius there is, which is so many pixels.
+constexpr float k_tolerance = 0.06f, k_off_plane = 0.03f, k_off_plane_least = 0.16f, k_least_pixels = 3;
 
 /// Tabellion and Lamorlette's weight, as METHODS and shaders/irradiance_cache/lookup.glsl have it.
-float weight(const Record& r, const vec3& x, const vec3& n) {
-  const vec3 away = x - r.place.position;
-  if (r.radius <= 0 || std::abs(dot(away, n + r.place.normal)) > 2 * k_off_plane * r.radius) return 0;
-  const float far = length(away) / r.radius;
-  const float turned = std::sqrt(std::max(0.0f, 1 - dot(n, r.place.normal)) / k_tolerance);
+float weight(const Record& record, const vec3& x, const vec3& n, const session::Renderer& r) {
+  const vec3 away = x - record.place.position, eye(r.camera().to_world[3]);
+  const float least = k_least_pixels * 2 * std::tan(0.5f * r.camera().yfov) / float(r.film().height()) *
+                      distance(record.place.position, eye);
+  const float off_plane = record.radius <= 1.001f * least ? k_off_plane_least : k_off_plane;
+  if (record.radius <= 0 || std::abs(dot(away, n + record.place.normal)) > 2 * off_plane * record.radius)
+    return 0;
+  const float far = length(away) / record.radius;
+  const float turned = std::sqrt(std::max(0.0f, 1 - dot(n, record.place.normal)) / k_tolerance);
   return std::max(0.0f, 1 - std::max(far, turned));
 }
 
@@ -107,7 +112,7 @@ TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen befo
       if (!found.solid) continue;
       uint32_t expected = 0;
       for (uint32_t i = 0; i < r.cache()->status().records; ++i)
-        expected += weight(all[i], found.position, found.normal) > 0;
+        expected += weight(all[i], found.position, found.normal, r) > 0;
       CHECK(found.count == expected);
       served += found.count > 0;
     }
@@ -138,7 +143,7 @@ TEST_CASE(
       double sum = 0;
       std::vector<float> expected(all.size());
       for (size_t i = 0; i < all.size(); ++i)
-        sum += double(expected[i] = weight(all[i], found.position, found.normal));
+        sum += double(expected[i] = weight(all[i], found.position, found.normal, r));
       // At the very border of all that serve rounding decides.
       if (found.count > 0 && sum < 1e-4) continue;
       size_t serve = 0;
@@ -206,7 +211,7 @@ TEST_CASE("the overlap told of the picture is that of its pixels, counted by han
         vec3(m[3]) + image.depth[p] * (-normalize(vec3(m[2])) + ndc.x * half * normalize(vec3(m[0])) -
                                        ndc.y * half * normalize(vec3(m[1])));
     uint32_t count = 0;
-    for (const Record& record : all) count += weight(record, x, image.normal[p]) > 0;
+    for (const Record& record : all) count += weight(record, x, image.normal[p], r) > 0;
     ++pixels, served += count > 0, sum += count, most = std::max(most, count);
     ++histogram[std::min<size_t>(count, histogram.size() - 1)];
   }

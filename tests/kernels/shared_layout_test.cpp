@@ -13,6 +13,7 @@
 #include "shaders/shared/discontinuity.h"
 #include "shaders/shared/film.h"
 #include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/neighbours.h"
 #include "shaders/shared/octree.h"
 #include "shaders/shared/placement.h"
 #include "shaders/shared/ramp.h"
@@ -54,7 +55,7 @@ std::vector<SharedStruct> structs() {
       SHARED("cache_inspect.h", InspectHeader, solid, count, under, size, depth, position, normal, under_at),
       SHARED("cache_inspect.h", InspectServing, record, weight, at, depth),
       SHARED("cache_inspect.h", OverlapPush, width, height),
-      SHARED("cache_inspect.h", OverlapCounts, pixels, most, records),
+      SHARED("cache_inspect.h", OverlapCounts, pixels, most, records, listed),
       SHARED("cache_inspect.h", CacheLine, from, to, from_depth, to_depth, half_width, alpha, color),
       SHARED("cache_inspect.h", CacheLinesPush, width, height, left, top, across, down, lines, ring),
       SHARED("cache_inspect.h", CacheTicksPush, width, height, records, color, lo, hi),
@@ -74,12 +75,14 @@ std::vector<SharedStruct> structs() {
       SHARED("film.h", FilmPush, width, height, pixel_count, sample_count),
       SHARED("film.h", TonePush, width, height, layer, show, curve, exposure, scale, coarse_width,
              coarse_height, use_coarse_film),
-      SHARED("irradiance_cache.h", CacheFrame, routes, record_count, normal_tolerance, off_plane, probing),
+      SHARED("irradiance_cache.h", CacheFrame, routes, record_count, normal_tolerance, off_plane, probing,
+             off_plane_least, least_of_distance, least_most, parallel, eye),
       SHARED("irradiance_cache.h", RecordPush, first, records, elevations, azimuths, rays_before, parts,
              state, seed),
       SHARED("irradiance_cache.h", RadiusPush, first, count, error, least_pixels, most, near),
       SHARED("irradiance_cache.h", EllipsePush, first, count, reach, least_pixels, most, dark),
       SHARED("irradiance_cache.h", OverlayPush, width, height, discs, overlap, color, lo, hi, overlap_most),
+      SHARED("neighbours.h", NeighbourPush, first, count, pairs, apart, gap, least_pixels, most),
       SHARED("placement.h", CollectPush, count, to, screen_too, parallel, spacing, spacing_beyond,
              spacing_of_distance, cell, pixel, eye),
       SHARED("placement.h", PlacementGrid, origin, scale, exponent),
@@ -99,7 +102,8 @@ std::vector<SharedStruct> structs() {
       SHARED("sort.h", SortPush, count, count_at, shift, bins, high_word),
       SHARED("octree.h", OctreeHeader, origin, leaf, inverse_leaf, edge, mean_diameter, level, wanted_level,
              cells, spheres, references, needed, capacity, leaves, slots, slot_shift, overflow),
-      SHARED("octree.h", OctreePush, count, count_at, capacity, slot_capacity, scale),
+      SHARED("octree.h", OctreePush, count, count_at, capacity, slot_capacity, scale, normal_stride,
+             normal_at, thickness),
       SHARED("trace.h", TracePush, count, use_queue),
       SHARED("transport.h", PathState, throughput, pdf, pixel, sample_index, bits, medium, travelled,
              eta_scale, pad0, pad1),

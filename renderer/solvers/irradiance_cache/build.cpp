@@ -90,13 +90,11 @@ bool Cache::Impl::looks_first() const {
 }
 
 ReachOptions Cache::Impl::reach(const CacheView& view) const {
-  const Frame& f = view.paths_frame;
-  const float pixel = 2 * glm::length(f.camera_up) / float(f.height);  // at 1 m, or everywhere
   return {.spacing = view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(status.pass)),
           .spacing_beyond = view.scene_radius * k_deep_spacing,
-          .spacing_of_distance = k_spacing_of_least * options.least_pixels * pixel,
-          .eye = f.camera_origin,
-          .parallel = f.orthographic != 0};
+          .spacing_of_distance = k_spacing_of_least * least.of_distance,
+          .eye = least.eye,
+          .parallel = least.parallel};
 }
 
 bool Cache::Impl::see(transport::Wavefront& wavefront, const CacheView& view,
@@ -189,9 +187,10 @@ bool Cache::Impl::measure(const Work& w) {
 
 bool Cache::Impl::thin() {
   const Timer host;
-  kept =
-      thin_out(tried, tried_radii,
-               {.share = options.thinning, .normal_tolerance = k_normal_tolerance, .off_plane = k_off_plane});
+  std::vector<float> off_planes;
+  for (size_t i = 0; i < tried.size(); ++i) off_planes.push_back(off_plane(tried[i], tried_radii[i]));
+  kept = thin_out(tried, tried_radii, off_planes,
+                  {.share = options.thinning, .normal_tolerance = k_normal_tolerance});
   std::vector<Place> needed;
   for (const uint32_t i : kept) needed.push_back(tried[i]);
   records.truncate(evaluated);

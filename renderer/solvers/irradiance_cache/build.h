@@ -19,6 +19,20 @@ enum class Stage { probe, choose, measure, thin, evaluate, index, done };
 inline constexpr float k_normal_tolerance = 0.06f;
 /// How far off a record's plane, in its radius, points may lie: what a lamp's panel in a ceiling may not.
 inline constexpr float k_off_plane = 0.03f;
+/// The same of records of the least radius. With one of three pixels: half a pixel.
+inline constexpr float k_off_plane_least = 0.16f;
+
+/// What the least radius of records depends on.
+struct LeastRadius {
+  vec3 eye{0};
+  bool parallel = false;
+  float of_distance = 0;  ///< of the distance from `eye`; where `parallel`, in metres
+  float most = 0;         ///< [m]
+  float at(const vec3& position) const {
+    return std::min(of_distance * (parallel ? 1 : distance(position, eye)), most);
+  }
+  bool operator==(const LeastRadius&) const = default;
+};
 
 /// Elevations of a level of that many rays; there are four times as many azimuths.
 uint32_t elevations_for(uint32_t rays);
@@ -42,6 +56,7 @@ struct Cache::Impl {
   std::array<uint32_t, 16> routes{}, own_routes{};  // of the picture's paths, of the records'
   bool recursive = false;
   uint32_t parts = 0;
+  LeastRadius least;
   CacheStatus status;
   Stage stage = Stage::probe;
   schedule::UniformSchedule picture;
@@ -87,6 +102,7 @@ struct Cache::Impl {
   bool evaluate(const Work& work);
   bool index(const Work& work);
   void finish(StopReason reason);
+  void look_from(const CacheView& view);
   /// What is placed and not evaluated is dropped, and what was asked for.
   void drop_pass();
   void relight();
@@ -120,6 +136,10 @@ struct Cache::Impl {
   bool look(const Work& work, bool& cancelled);
   bool looks_first() const;  ///< what the camera sees straight asks by dithering alone in this pass
   ReachOptions reach(const CacheView& view) const;
+  /// How far off its plane a record of that radius serves [m], as lookup.glsl has it.
+  float off_plane(const Place& place, float radius) const {
+    return radius * (radius <= 1.001f * least.at(place.position) ? k_off_plane_least : k_off_plane);
+  }
   void collect(const Work& work, uint32_t slots);
   void end_pass();
   void next_pass();

@@ -60,7 +60,7 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
       octree(device, compiler,
              {.spheres = o.most_records,
               .references = k_references * o.most_records,
-              .leaf_scale = getenv("LS") ? float(atof(getenv("LS"))) : 1.0f,
+              .leaf_scale = 1,
               .copies = true,
               .discs = true}),
       evaluator(device, compiler, slots),
@@ -76,10 +76,10 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
 }
 
 void Cache::Impl::build_octree(transport::Wavefront& wavefront) {
-  const lookup::Discs discs = records.discs(slab_thickness(k_off_plane, k_normal_tolerance));
+  const lookup::Discs discs =
+      records.discs(slab_thickness(std::max(k_off_plane, k_off_plane_least), k_normal_tolerance));
   const shared::OctreeHeader& h =
       octree.build(wavefront.stream(), records.spheres(), {.most = evaluated}, &discs);
-  if (getenv("OD")) fprintf(stderr, "octree: spheres %u refs %u needed %u cap %u level %u wanted %u leaf %g meand %g edge %g leaves %u\n", h.spheres, h.references, h.needed, h.capacity, h.level, h.wanted_level, h.leaf, h.mean_diameter, h.edge, h.leaves);
   status.references = h.spheres ? double(h.references) / h.spheres : 0;
   wavefront.rebind_lookup();
 }
@@ -104,7 +104,9 @@ void Cache::Impl::tell(uint32_t probing, const std::array<uint32_t, 16>& table) 
   std::copy(table.begin(), table.end(), f.routes);
   f.record_count = evaluated;
   f.normal_tolerance = k_normal_tolerance;
-  f.off_plane = k_off_plane;
+  f.off_plane = k_off_plane, f.off_plane_least = k_off_plane_least;
+  f.least_of_distance = least.of_distance, f.least_most = least.most;
+  f.eye = least.eye, f.parallel = least.parallel;
   f.probing = probing;
   frame.write(&f, sizeof f);
 }
@@ -198,6 +200,19 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
   c.finish(status.stop);
 }
 
+void Cache::Impl::look_from(const CacheView& view) {
+  const Frame& f = view.paths_frame;
+  const LeastRadius now{.eye = f.camera_origin,
+                        .parallel = f.orthographic != 0,
+                        .of_distance = options.least_pixels * 2 * glm::length(f.camera_up) / float(f.height),
+                        .most = options.most_radius * view.scene_radius};
+  if (now == least) return;
+  least = now;
+  tell();
+}
+
+void Cache::look_from(const CacheView& view) { impl_->look_from(view); }
+
 bool Cache::ready() const { return impl_->stage == Stage::done; }
 
 void Cache::pause(PauseAfter after) {
@@ -229,6 +244,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
                  const std::function<bool()>& cancel) {
   if (impl_->status.waits) return false;
   const Impl::Work work{wavefront, automaton, view, cancel};
+  impl_->look_from(view);
   if (view.dark) impl_->finish(StopReason::dark);
   switch (impl_->stage) {
     case Stage::probe:

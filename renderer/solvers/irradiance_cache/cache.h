@@ -103,6 +103,9 @@ class Cache {
   static gpu::Defines defines(const paths::LookupRoutes& own, Metric metric);
   /// Under the names of shaders/irradiance_cache/lookup.glsl.
   void bind(gpu::Resources& resources) const;
+  /// Which records are the least that there may be, and so serve coarsely, depends on who looks. Call it
+  /// whenever the view is another; step() does.
+  void look_from(const CacheView& view);
   /// Begins anew, without records.
   void clear();
   /// Goes on building with what there is, for a picture from elsewhere or of another size: its passes are

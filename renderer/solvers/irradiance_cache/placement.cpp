@@ -316,7 +316,7 @@ Choice Placement::choice() const {
 uint32_t Placement::clusters() const { return uint32_t(impl_->first_starts.size()); }
 
 std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const float> radii,
-                               const ThinningOptions& o) {
+                               std::span<const float> off_planes, const ThinningOptions& o) {
   std::vector<uint32_t> order(places.size()), kept;
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return radii[a] > radii[b]; });
@@ -345,7 +345,7 @@ std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const fl
     const float covered = o.share * radii[k];
     const float turned = std::max(0.0f, 1 - dot(p.normal, places[k].normal));
     return dot(away, away) <= covered * covered && turned <= o.share * o.share * o.normal_tolerance &&
-           std::abs(dot(away, p.normal + places[k].normal)) <= 2 * o.off_plane * radii[k];
+           std::abs(dot(away, p.normal + places[k].normal)) <= 2 * off_planes[k];
   };
   for (const uint32_t i : order) {
     const Place& p = places[i];

@@ -79,13 +79,14 @@ class Placement {
 struct ThinningOptions {
   /// Of its radius: where a record that is kept makes others superfluous. The less, the more overlap.
   float share = 0.6f;
-  float normal_tolerance = 0.015f, off_plane = 0.03f;  ///< as the lookup has them
+  float normal_tolerance = 0.015f;  ///< as the lookup has it
 };
 
 /// Of records whose radii are known those that are needed, the widest first: indices in rising order. A
 /// record goes when another that is kept would serve its place with a weight of at least 1 - share. On the
 /// host: it is a decision after the other, over what has been chosen.
+/// `off_planes`: how far off the plane between its own and a place's tangent plane each serves [m].
 std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const float> radii,
-                               const ThinningOptions& options);
+                               std::span<const float> off_planes, const ThinningOptions& options);
 
 }  // namespace lucerna::irradiance_cache
