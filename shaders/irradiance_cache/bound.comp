@@ -65,7 +65,7 @@ void main() {
     if (gap <= push.gap) reach = uintBitsToFloat(pair.x & (1u << k_neighbour_distance_bits) - 1u);
   }
 
-  float least = least_radius(place.xyz, push.least_pixels, push.most);
+  float least = least_radius(place.xyz);
   vec4 shape = texelFetch(record_texels, at + 3);
   // Of an ellipse both radii, in proportion, as far as the least allows.
   float factor = min(1.0, max(reach, least / shape.w));

@@ -28,7 +28,7 @@ void main() {
     light += luminance(texelFetch(irradiance_texels, int((record * k_part_count + p) * k_part_texels)).rgb);
   Principal p = principal_curvatures(bends.xyz);
 
-  float least = least_radius(place.xyz, push.least_pixels, push.most);
+  float least = least_radius(place.xyz);
   float bends_by = p.strongest / max(max(light, push.dark), 1e-30);
   float minor = bends_by > 0.0 ? push.reach * inversesqrt(sqrt(bends_by * p.ratio)) : push.most;
   minor = min(minor, bends.w);

@@ -1,11 +1,12 @@
-// The least radius of a record: some pixels wide as the camera sees it, and no more than the greatest.
+// What kernels are told of the cache, and the least radius of its records: some pixels wide as the camera sees it, and no
+// more than the greatest.
 #ifndef LUCERNA_IRRADIANCE_CACHE_LEAST_RADIUS
 #define LUCERNA_IRRADIANCE_CACHE_LEAST_RADIUS
-#include "lib/frame.glsl"
+#include "shaders/shared/irradiance_cache.h"
 
-float least_radius(vec3 position, float least_pixels, float most) {
-  float seen = frame.orthographic != 0u ? 1.0 : distance(position, frame.camera_origin);
-  float pixel = 2.0 * seen * length(frame.camera_up) / float(frame.height);
-  return min(least_pixels * pixel, most);
+layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
+
+float least_radius(vec3 position) {
+  return min(cache.least_of_distance * (cache.parallel != 0u ? 1.0 : distance(position, cache.eye)), cache.least_most);
 }
 #endif

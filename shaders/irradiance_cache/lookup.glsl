@@ -8,9 +8,9 @@
 #include "lib/math.glsl"
 #include "lib/octree.glsl"
 #include "irradiance_cache/ellipse.glsl"
+#include "irradiance_cache/least_radius.glsl"
 #include "shaders/shared/facet.h"
 
-layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
 uniform samplerBuffer record_texels;
 uniform samplerBuffer irradiance_texels;
 layout(scalar) writeonly buffer Candidates { vec4 candidates[]; };
@@ -37,8 +37,7 @@ vec4 record_shape(uint record, vec4 place) {
 
 // How far off the plane between its own and a record's tangent plane a point may lie and be served [m]. `radius`: the lesser.
 float record_off_plane(vec3 position, float radius) {
-  float least = min(cache.least_of_distance * (cache.parallel != 0u ? 1.0 : distance(position, cache.eye)), cache.least_most);
-  return radius * (radius <= 1.001 * least ? cache.off_plane_least : cache.off_plane);
+  return radius * (radius <= 1.001 * least_radius(position) ? cache.off_plane_least : cache.off_plane);
 }
 
 // Weight of a record, 0..1, at a point with that geometric normal.

@@ -16,7 +16,7 @@ void main() {
   int at = int((push.first + index) * k_record_texels);
   vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
   float nearest = texelFetch(record_texels, at + 2).y;
-  float least = least_radius(place.xyz, push.least_pixels, push.most);
+  float least = least_radius(place.xyz);
   float radius = max(min(push.error * facing.w, min(push.most, push.near * nearest)), least);
   records[at].w = radius;
   records[at + 3] = vec4(0.0, 0.0, 0.0, radius);

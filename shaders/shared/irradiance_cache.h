@@ -105,15 +105,14 @@ struct RecordPush {
 struct RadiusPush {
   uint first, count;   ///< records
   float error;         ///< radius over harmonic mean distance
-  float least_pixels;  ///< as the camera sees them
-  float most;          ///< [m]
-  float near;          ///< ... and over the distance of the nearest thing
+  float most;         ///< [m]
+  float near;         ///< ... and over the distance of the nearest thing
 };
 
 struct EllipsePush {
   uint first, count;  ///< records
   float reach;        ///< fourth root of 4/pi times the integral of a record's relative error [m^(1/2)]
-  float least_pixels, most;  ///< as RadiusPush, of the lesser radius and of both
+  float most;         ///< [m]
   float dark;                ///< irradiance, luminance: records that have less are held against it
 };
 

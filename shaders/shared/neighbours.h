@@ -15,7 +15,6 @@ struct NeighbourPush {
   uint pairs;    ///< bound.comp: of all
   float apart;   ///< cosine of the least angle between two neighbours' directions
   float gap;     ///< greatest angle between directions next to each other, all around a record that is bounded [radians]
-  float least_pixels, most;  ///< as RadiusPush
 };
 
 LUCERNA_SHARED_END

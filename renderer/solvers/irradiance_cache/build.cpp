@@ -304,11 +304,8 @@ void Cache::Impl::publish_level(const Work& w) {
 }
 
 void Cache::Impl::bound_radii(const Work& w, uint32_t first) {
-  neighbours.bound(w.wavefront.stream(), [&](gpu::Resources& to) { w.wavefront.bind_paths(to), bind(to); },
-                   {.first = first,
-                    .count = evaluated,
-                    .least_pixels = options.least_pixels,
-                    .most = options.most_radius * w.view.scene_radius});
+  neighbours.bound(
+      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, first, evaluated);
   status.bytes = own_bytes + screen.bytes() + placement.bytes() + neighbours.bytes();
 }
 
@@ -363,22 +360,15 @@ void Cache::Impl::set_radii(const Work& w, bool lit) {
   const uint32_t count = until - evaluated;
   if (count == 0) return;
   StageTimer timer(w.wavefront);
-  w.wavefront.bind_paths(resources);
   bind(resources);
-  const float most = options.most_radius * w.view.scene_radius;
   const uint32_t groups = gpu::groups_for(count, 64);
   if (lit && options.metric == Metric::hessian) {
-    const EllipsePush push{evaluated,
-                           count,
-                           k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
-                           options.least_pixels,
-                           most,
-                           dark(records.luminances())};
+    const EllipsePush push{evaluated, count, k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
+                           least.most, dark(records.luminances())};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
   } else {
-    const RadiusPush push{evaluated,     count,
-                          options.error, options.least_pixels,
-                          most,          options.metric == Metric::hessian ? k_tried_near : 1.0f};
+    const RadiusPush push{evaluated, count, options.error, least.most,
+                          options.metric == Metric::hessian ? k_tried_near : 1.0f};
     w.wavefront.stream().dispatch(radius, resources, push, groups, "records");
   }
   w.wavefront.stream().run();

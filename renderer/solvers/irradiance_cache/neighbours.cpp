@@ -52,28 +52,28 @@ Neighbours::Neighbours(gpu::Device& device, gpu::ShaderCompiler& compiler, const
 }
 Neighbours::~Neighbours() = default;
 
-void Neighbours::bound(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind,
-                       const Options& o) {
+void Neighbours::bound(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind, uint32_t first,
+                       uint32_t count) {
   Impl& i = *impl_;
-  if (o.count <= o.first) return;
+  if (count <= first) return;
   const auto room = [&](gpu::Buffer& buffer, const char* name, uint64_t bytes) {
     gpu::make_room(i.device, buffer, {.name = name, .bytes = bytes, .texel = true});
   };
-  room(i.counts, "neighbours' counts", uint64_t{o.count} * 4);
-  room(i.before, "neighbours before", uint64_t{o.count} * 4);
+  room(i.counts, "neighbours' counts", uint64_t{count} * 4);
+  room(i.before, "neighbours before", uint64_t{count} * 4);
   bind(i.resources);
   i.resources.set("PairCounts", i.counts);
   i.resources.set("PairsBefore", i.before);
-  NeighbourPush push{o.first, o.count, 0, k_apart, k_gap, o.least_pixels, o.most};
-  stream.dispatch(i.counting, i.resources, push, gpu::groups_for(o.count, 64), k_stage);
-  i.prefix_sum.encode(stream, i.counts, i.before, {.most = o.count}, &i.total, 0, k_stage);
+  NeighbourPush push{first, count, 0, k_apart, k_gap};
+  stream.dispatch(i.counting, i.resources, push, gpu::groups_for(count, 64), k_stage);
+  i.prefix_sum.encode(stream, i.counts, i.before, {.most = count}, &i.total, 0, k_stage);
   stream.run();
   push.pairs = *static_cast<const uint32_t*>(i.total.mapped());
   if (push.pairs == 0) return;
   for (gpu::Buffer& buffer : i.pairs) room(buffer, "neighbours", uint64_t{push.pairs} * sizeof(SortEntry64));
   i.resources.set("Pairs", i.pairs[0]);
-  stream.dispatch(i.writing, i.resources, push, gpu::groups_for(o.count, 64), k_stage);
-  const uint32_t bounded = o.count - o.first;
+  stream.dispatch(i.writing, i.resources, push, gpu::groups_for(count, 64), k_stage);
+  const uint32_t bounded = count - first;
   const gpu::Buffer& sorted = i.sorter.encode(stream, i.pairs[0], i.pairs[1], {.most = push.pairs},
                                               k_neighbour_distance_bits + std::bit_width(bounded), k_stage);
   i.resources.set("pair_texels", sorted);

@@ -12,18 +12,14 @@ namespace lucerna::irradiance_cache {
 
 class Neighbours {
  public:
-  struct Options {
-    uint32_t first = 0, count = 0;     ///< records; those from `first` on are bounded
-    float least_pixels = 0, most = 0;  ///< shared::RadiusPush
-  };
-
   /// `defines`: Cache::defines().
   Neighbours(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& defines);
   ~Neighbours();
-  /// Shrinks radii where records stand all around, never below least_pixels as the camera sees them; of
-  /// ellipses both in proportion. `bind`: the frame, and the records in an octree with the radii that they
-  /// have. On the device; the stream is run.
-  void bound(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind, const Options& options);
+  /// Shrinks the radii of records `first` to `count` where records stand all around, never below the least
+  /// (shared::CacheFrame); of ellipses both in proportion. `bind`: what lookup.glsl reads, with `count`
+  /// records in the octree. On the device; the stream is run.
+  void bound(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind, uint32_t first,
+             uint32_t count);
   uint64_t bytes() const;
 
  private:

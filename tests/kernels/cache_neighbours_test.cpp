@@ -1,0 +1,177 @@
+// links: irradiance_cache
+// Radii bounded by neighbours in different directions, against the same done plainly on the host.
+#include <algorithm>
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "kernels/gpu_support.h"
+#include "solvers/irradiance_cache/cache.h"
+#include "solvers/irradiance_cache/neighbours.h"
+#include "solvers/lookup/octree.h"
+
+using namespace lucerna;
+using irradiance_cache::Metric;
+using irradiance_cache::Neighbours;
+using irradiance_cache::Place;
+using irradiance_cache::RawRecords;
+using irradiance_cache::Records;
+
+namespace {
+
+constexpr float k_normal_tolerance = 0.06f, k_off_plane = 0.03f, k_least = 0.06f;
+// As neighbours.cpp has them, in degrees.
+const double k_apart = std::acos(0.643) * 180 / std::numbers::pi, k_gap = 2.1 * 180 / std::numbers::pi;
+
+struct Disc {
+  Place place;
+  float radius;
+};
+
+struct Bed {
+  test::SilentDevice silent;
+  gpu::Device& device = silent.device;
+  gpu::ShaderCompiler compiler;
+  gpu::Stream stream{device};
+  gpu::Defines defines = irradiance_cache::Cache::defines({}, Metric::split_sphere);
+  Neighbours neighbours{device, compiler, defines};
+
+  /// Radii of all, of which those from `first` on were to be bounded.
+  std::vector<float> bound(const std::vector<Disc>& discs, uint32_t first) {
+    const auto count = uint32_t(discs.size());
+    Records records(device, count);
+    std::vector<Place> places;
+    for (const Disc& d : discs) places.push_back(d.place);
+    records.append(places);
+    RawRecords raw = records.raw(count);
+    for (uint32_t i = 0; i < count; ++i) {
+      raw.places[4 * i].w = discs[i].radius;
+      raw.places[4 * i + 3] = vec4(0, 0, 0, discs[i].radius);
+      raw.spheres[i] = vec4(discs[i].place.position, discs[i].radius);
+    }
+    records.restore(raw);
+    shared::CacheFrame frame{};
+    frame.record_count = count;
+    frame.normal_tolerance = k_normal_tolerance;
+    frame.off_plane = frame.off_plane_least = k_off_plane;
+    frame.parallel = 1, frame.least_of_distance = k_least, frame.least_most = 1;
+    gpu::Buffer block(device, {.name = "frame", .bytes = sizeof frame}),
+        candidates(device, {.name = "candidates", .bytes = 16, .texel = true});
+    block.write(&frame, sizeof frame);
+    lookup::Octree octree(device, compiler,
+                          {.spheres = count, .references = 64 * count, .copies = true, .discs = true});
+    const lookup::Discs planes = records.discs(0.3f);
+    octree.build(stream, records.spheres(), {.most = count}, &planes);
+    neighbours.bound(
+        stream,
+        [&](gpu::Resources& to) {
+          records.bind(to, Records::Use::look_up);
+          to.set("CacheBlock", block);
+          to.set("Candidates", candidates);
+          octree.bind(to);
+        },
+        first, count);
+    const std::vector<float> radii = records.radii(0);
+    const std::vector<irradiance_cache::Record> all = records.read();
+    for (uint32_t i = 0; i < count; ++i) {
+      CHECK(all[i].radius == radii[i]);
+      CHECK(all[i].lesser_radius == radii[i]);
+    }
+    return radii;
+  }
+};
+
+/// The angle of a direction in the plane of record i, in degrees.
+double angle_of(const vec3& away, const vec3& normal) {
+  const vec3 side = std::abs(normal.y) > 0.9f ? vec3(1, 0, 0) : vec3(0, 1, 0);
+  const vec3 t = normalize(cross(side, normal)), b = cross(normal, t);
+  return std::atan2(double(dot(away, b)), double(dot(away, t))) * 180 / std::numbers::pi;
+}
+
+double bounded_plainly(const std::vector<Disc>& discs, size_t i) {
+  const Disc& own = discs[i];
+  std::vector<std::pair<double, size_t>> served;
+  for (size_t j = 0; j < discs.size(); ++j) {
+    const vec3 away = discs[j].place.position - own.place.position;
+    const vec3 &n = own.place.normal, &m = discs[j].place.normal;
+    const double far = double(length(away)) / double(own.radius);
+    if (j != i && far < 1 && 1 - dot(n, m) < k_normal_tolerance &&
+        std::abs(dot(away, n + m)) <= 2 * k_off_plane * own.radius)
+      served.push_back({far, j});
+  }
+  std::sort(served.begin(), served.end());
+  std::vector<double> around;
+  for (const auto& [far, j] : served) {
+    if (around.size() == 7) break;
+    const double angle = angle_of(discs[j].place.position - own.place.position, own.place.normal);
+    const auto between = [](double a, double b) {
+      const double d = std::abs(a - b);
+      return std::min(d, 360 - d);
+    };
+    if (std::any_of(around.begin(), around.end(), [&](double a) { return between(a, angle) < k_apart; }))
+      continue;
+    around.push_back(angle);
+    std::vector<double> sorted = around;
+    std::sort(sorted.begin(), sorted.end());
+    double gap = sorted.front() + 360 - sorted.back();
+    for (size_t k = 1; k < sorted.size(); ++k) gap = std::max(gap, sorted[k] - sorted[k - 1]);
+    if (gap <= k_gap)
+      return std::min(double(own.radius), std::max(far * double(own.radius), double(k_least)));
+  }
+  return own.radius;
+}
+
+}  // namespace
+
+TEST_CASE("a record in a lattice reaches its neighbours, one at the border as far as it did") {
+  Bed bed;
+  constexpr int k_side = 9;
+  constexpr float k_spacing = 0.1f, k_radius = 0.29f;
+  std::vector<Disc> discs;
+  for (int y = 0; y < k_side; ++y)
+    for (int x = 0; x < k_side; ++x)
+      discs.push_back(
+          {{vec3(k_spacing * (float(x) + 0.5f * float(y % 2)), 1, k_spacing * std::sqrt(0.75f) * float(y)),
+            vec3(0, 1, 0)},
+           k_radius});
+  const std::vector<float> radii = bed.bound(discs, 0);
+  for (int y = 0; y < k_side; ++y)
+    for (int x = 0; x < k_side; ++x) {
+      INFO(x << ", " << y);
+      const bool inside = x > 0 && y > 0 && x + 1 < k_side && y + 1 < k_side;
+      const bool edge = y == 0 || y + 1 == k_side;
+      if (inside) CHECK(radii[size_t(y * k_side + x)] == Approx(k_spacing).epsilon(1e-4));
+      if (edge) CHECK(radii[size_t(y * k_side + x)] == k_radius);
+    }
+}
+
+TEST_CASE("neighbours on other surfaces do not count, and radii are as the host finds them") {
+  Bed bed;
+  std::mt19937 random(7);
+  const auto uniform = [&] { return float(random() >> 8) / 16777216.0f; };
+  std::vector<Disc> discs;
+  // A floor, a shelf 5 cm above it, and a wall; radii over one decade.
+  for (int i = 0; i < 3000; ++i) {
+    const float u = 2 * uniform(), v = 2 * uniform(), radius = 0.05f * std::pow(10.0f, uniform());
+    const bool wall = i % 3 == 2;
+    const Place place{wall ? vec3(0, u, v) : vec3(u, i % 3 == 1 ? 0.05f : 0.0f, v),
+                      wall ? vec3(1, 0, 0) : vec3(0, 1, 0)};
+    discs.push_back({place, radius});
+  }
+  constexpr uint32_t k_first = 500;
+  const std::vector<float> radii = bed.bound(discs, k_first);
+  size_t shrunk = 0, least = 0, wrong = 0;
+  for (uint32_t i = 0; i < discs.size(); ++i) {
+    const double expected = i < k_first ? double(discs[i].radius) : bounded_plainly(discs, i);
+    wrong += std::abs(double(radii[i]) - expected) > 1e-4 * expected;
+    shrunk += radii[i] < discs[i].radius;
+    least += radii[i] == k_least;
+  }
+  CHECK(wrong == 0);
+  CHECK(shrunk > 1000);
+  CHECK(least > 0);
+  CHECK(shrunk < discs.size() - k_first);  // some stand alone
+  CHECK(bed.bound(discs, k_first) == radii);
+}
