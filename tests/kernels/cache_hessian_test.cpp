@@ -114,7 +114,7 @@ struct Bending {
   float bound, irradiance;
 };
 std::vector<Shape> ellipses(test::CacheBed& bed, const std::vector<Bending>& bending,
-                            const shared::EllipsePush& how) {
+                            const shared::EllipsePush& how, float least = 0) {
   const auto count = static_cast<uint32_t>(bending.size());
   Records records(bed.device, count);
   records.append(std::vector<Place>(count, Place{vec3(0, 0, 5), vec3(0, 1, 0)}));
@@ -126,8 +126,12 @@ std::vector<Shape> ellipses(test::CacheBed& bed, const std::vector<Bending>& ben
   records.restore(raw);
   const gpu::Kernel kernel(bed.device, bed.compiler, "irradiance_cache/ellipse.comp");
   gpu::Resources resources;
-  bed.wavefront.bind_paths(resources);
   records.bind(resources, Records::Use::look_up);
+  shared::CacheFrame frame{};
+  frame.parallel = 1, frame.least_of_distance = least, frame.least_most = how.most;
+  gpu::Buffer block(bed.device, {.name = "frame", .bytes = sizeof frame});
+  block.write(&frame, sizeof frame);
+  resources.set("CacheBlock", block);
   shared::EllipsePush push = how;
   push.first = 0, push.count = count;
   bed.wavefront.stream().dispatch(kernel, resources, push, gpu::groups_for(count, 64), "test");
@@ -138,7 +142,7 @@ std::vector<Shape> ellipses(test::CacheBed& bed, const std::vector<Bending>& ben
   for (size_t i = 0; i < count; ++i) CHECK(radii[i] == shapes[i].greater);
   return shapes;
 }
-constexpr shared::EllipsePush k_free{0, 0, 0.3f, 0, 100, 0};
+constexpr shared::EllipsePush k_free{0, 0, 0.3f, 100, 0};
 
 }  // namespace
 
@@ -324,9 +328,9 @@ TEST_CASE("ellipses are bounded: in length, in width, by what is near, in the da
   test::CacheBed bed(test::CacheBed::load("furnace-disk"), 1024);
   bed.set_frame(k_direct);
   const float none = std::numeric_limits<float>::infinity();
-  const shared::EllipsePush how{0, 0, 0.3f, 0, 2, 0.1f};
-  const auto one = [&](const Bending& b, const shared::EllipsePush& push) {
-    return ellipses(bed, {b}, push)[0];
+  const shared::EllipsePush how{0, 0, 0.3f, 2, 0.1f};
+  const auto one = [&](const Bending& b, const shared::EllipsePush& push, float least = 0) {
+    return ellipses(bed, {b}, push, least)[0];
   };
   // Nothing bends, black or not: as wide as may be, and round.
   for (const Bending& b : {Bending{vec3(0), none, 1}, Bending{vec3(0), none, 0}}) {
@@ -346,10 +350,9 @@ TEST_CASE("ellipses are bounded: in length, in width, by what is near, in the da
   const Shape slight = one({vec3(1e-6f, 0, 0), none, 1}, how);
   CHECK(slight.greater == 2);
   CHECK(slight.lesser == 2);
-  // A pixel of this frame is large: the least radius is at most the greatest.
-  shared::EllipsePush pixels = how;
-  pixels.least_pixels = 1e6f;
-  CHECK(one({vec3(9, 0, 0), none, 1}, pixels).lesser == 2);
+  // Not narrower than the least radius; that is at most the greatest.
+  CHECK(one({vec3(9, 0, 0), 0.05f, 1}, how, 0.5f).lesser == 0.5f);
+  CHECK(one({vec3(9, 0, 0), none, 1}, how, 1e6f).lesser == 2);
   // What is dark is held against what is told to be.
   CHECK(one({vec3(9, 0, 0), none, 0}, how).lesser == one({vec3(9, 0, 0), none, 0.1f}, how).lesser);
   CHECK(one({vec3(9, 0, 0), none, 0.2f}, how).lesser > one({vec3(9, 0, 0), none, 0.1f}, how).lesser);
