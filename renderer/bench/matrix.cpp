@@ -86,6 +86,13 @@ std::string read_name(const Node& node) {
   return name;
 }
 
+std::string read_curve(const Node& node) {
+  const std::string curve = node.text();
+  if (curve.empty() || curve.size() > 40)
+    throw_error(node.where(), "'{}': expected a text of 1 to 40 characters", curve);
+  return curve;
+}
+
 void read_budgets(const Node& node, std::array<std::vector<double>, 3>& budgets) {
   node.only({"samples", "errors", "seconds"});
   for (size_t kind = 0; kind < budgets.size(); ++kind) {
@@ -181,13 +188,14 @@ Matrix parse_matrix(const std::string& text, const std::string& where, const fs:
 
   std::set<std::string> names;
   for (const Node& node : top.at("settings").list()) {
-    node.only({"name", "about", "set", "budget"});
+    node.only({"name", "about", "set", "curve", "budget"});
     Setting s;
     s.name = read_name(node.at("name"));
     if (!names.insert(s.name).second)
       throw_error(node.where() + ".name", "there are two settings '{}'", s.name);
     if (node.has("about")) s.about = node.at("about").text();
     if (node.has("set")) s.set = node.at("set").settings();
+    if (node.has("curve")) s.curve = read_curve(node.at("curve"));
     const bool adaptive = effective(m.set, s.set, "sampling.mode") == "adaptive";
     s.budget = adaptive ? BudgetKind::errors : BudgetKind::samples;
     if (node.has("budget")) {
@@ -272,6 +280,7 @@ nlohmann::ordered_json to_json(const Matrix& m) {
   for (const Setting& s : m.settings) {
     Json setting{{"name", s.name}, {"about", s.about}, {"set", Json::object()}};
     for (const auto& [key, value] : s.set) setting["set"][key] = value;
+    if (!s.curve.empty()) setting["curve"] = s.curve;
     setting["budget"] = k_budget_names[size_t(s.budget)];
     j["settings"].push_back(std::move(setting));
   }

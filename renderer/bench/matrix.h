@@ -32,6 +32,9 @@ using SettingValues = std::map<std::string, std::string>;
 struct Setting {
   std::string name, about;
   SettingValues set;
+  /// "" or the curve that it is a point of: settings of one curve differ in how many records the irradiance
+  /// cache comes to, and the report joins them by a line, error against records.
+  std::string curve;
   BudgetKind budget = BudgetKind::samples;
 };
 
@@ -83,7 +86,8 @@ Matrix parse_matrix(const std::string& text, const std::string& where, const std
 Matrix read_matrix(const std::filesystem::path& file);
 
 /// "quick": three scenes in small pictures, within ten minutes on two cores. "full": larger, with the atrium
-/// and more budgets; an hour and more. Scenes are taken from `scenes`.
+/// and more budgets; an hour and more. "cache": cached light alone, its error against the cache's records by
+/// either metric. Scenes are taken from `scenes`.
 Matrix builtin_matrix(const std::string& name, const std::filesystem::path& scenes);
 
 /// The matrix with every default written out; parse_matrix() reads it back to the same.

@@ -59,12 +59,63 @@ const char* const k_full = R"({
   ]
 })";
 
+/// Cached light alone is held against the reference, of records so little noisy that it is the interpolation
+/// that errs.
+const char* const k_cache = R"({
+  "name": "cache",
+  "repeats": 3,
+  "warmup": 1,
+  "reference": {"samples": 4096},
+  "set": {"components.primary": "off", "components.caustic": "off", "cache.noise": 0.03,
+          "cache.max_rays": 16384},
+  "budgets": {"samples": [256]},
+  "scenes": [
+    {"file": "cornell/cornell.gltf", "size": "128x128"},
+    {"file": "teapot/teapot.gltf", "size": "128x128"},
+    {"file": "hall/hall.gltf", "size": "160x90", "reference_samples": 8192}
+  ],
+  "settings": [
+    {"name": "plain", "about": "path tracing, no cache"},
+    {"name": "split-60", "about": "cache, records reach as far as things are away", "curve": "split sphere",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
+             "cache.error": 0.6}},
+    {"name": "split-40", "about": "cache, records reach as far as things are away", "curve": "split sphere",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
+             "cache.error": 0.4}},
+    {"name": "split-30", "about": "cache, records reach as far as things are away", "curve": "split sphere",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
+             "cache.error": 0.3}},
+    {"name": "split-20", "about": "cache, records reach as far as things are away", "curve": "split sphere",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
+             "cache.error": 0.2}},
+    {"name": "split-15", "about": "cache, records reach as far as things are away", "curve": "split sphere",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
+             "cache.error": 0.15}},
+    {"name": "hessian-60", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
+             "cache.error": 0.6}},
+    {"name": "hessian-40", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
+             "cache.error": 0.4}},
+    {"name": "hessian-30", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
+             "cache.error": 0.3}},
+    {"name": "hessian-20", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
+             "cache.error": 0.2}},
+    {"name": "hessian-15", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
+             "cache.error": 0.15}}
+  ]
+})";
+
 }  // namespace
 
 Matrix builtin_matrix(const std::string& name, const std::filesystem::path& scenes) {
-  if (name != "quick" && name != "full")
-    throw_error("bench", "there is no matrix '{}'; there are quick and full", name);
-  return parse_matrix(name == "quick" ? k_quick : k_full, name, scenes);
+  for (const auto& [known, text] :
+       {std::pair("quick", k_quick), std::pair("full", k_full), std::pair("cache", k_cache)})
+    if (name == known) return parse_matrix(text, name, scenes);
+  throw_error("bench", "there is no matrix '{}'; there are quick, full and cache", name);
 }
 
 const char* const k_matrix_help = R"(
@@ -79,8 +130,10 @@ A matrix file is a JSON object; an unknown key is an error:
   budgets    what ends a render; lists of {"samples": [..], "errors": [..], "seconds": [..]}
   scenes     [{"file": F.gltf (relative to the matrix file), "size": "WxH", "name", "camera", "set", "budgets",
               "reference_samples"}]
-  settings   [{"name", "about", "set": {..}, "budget": "samples" | "errors" | "seconds"}]; the first is what the
-              others are held against. Without "budget", adaptive settings take errors, the others samples.
+  settings   [{"name", "about", "set": {..}, "curve", "budget": "samples" | "errors" | "seconds"}]; the first is
+              what the others are held against. Without "budget", adaptive settings take errors, the others
+              samples. Settings of one "curve" (a text) differ in how many records the irradiance cache comes to;
+              the page joins them by a line, error against records.
 The smallest one:
   {"budgets": {"samples": [64], "errors": [0.1]},
    "scenes": [{"file": "cornell.gltf", "size": "128x128"}],

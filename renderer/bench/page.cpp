@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "bench/html.h"
-#include "bench/plot.h"
+#include "bench/page_plots.h"
 #include "bench/thumbnails.h"
 
 namespace lucerna::bench {
@@ -16,9 +16,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr uint32_t k_picture_width = 344;  ///< at most, on the page
 
-std::string text_of(const Json& j, const char* key) { return j.value(key, std::string()); }
-double median_of(const Json& j) { return j.at("median").get<double>(); }
-
 /// "4.12 s" with the range of the repeats in small.
 template <class F>
 std::string with_range(const Json& spread, F format, const std::string& mark = "") {
@@ -28,14 +25,6 @@ std::string with_range(const Json& spread, F format, const std::string& mark = "
 
 std::string key_of(size_t setting) {
   return fmt::format("<span class=\"key\" style=\"background:{}\"></span>", setting_colour(setting));
-}
-
-/// The place of a setting in the matrix, which decides its colour.
-size_t index_of(const Json& report, const std::string& setting) {
-  const Json& settings = report.at("matrix").at("settings");
-  for (size_t k = 0; k < settings.size(); ++k)
-    if (text_of(settings[k], "name") == setting) return k;
-  return 0;
 }
 
 /// A ratio, accented when it is a gain beyond the noise and dim when it is none.
@@ -90,7 +79,8 @@ std::string heading(const Json& report) {
     html += fmt::format(
         "<tr><td class=\"l\">{}{}</td><td class=\"l\" style=\"white-space:normal\">{}</td><td "
         "class=\"l\"><code>{}</code></td></tr>\n",
-        key_of(k), escape(text_of(s, "name")), escape(text_of(s, "about")), set.empty() ? "–" : escape(set));
+        key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")), escape(text_of(s, "about")),
+        set.empty() ? "–" : escape(set));
   }
   return html + "</table>\n";
 }
@@ -173,43 +163,6 @@ std::string index_table(const Json& report) {
   return html + "</table></div>\n";
 }
 
-PlotLine line_of(const Json& report, const Json& setting, const char* curve, const char* cell_figure) {
-  const std::string name = text_of(setting, "name");
-  PlotLine line{.name = name, .colour = setting_colour(index_of(report, name))};
-  for (const Json& p : setting.at(curve))
-    line.points.push_back(
-        {p[0].get<double>(), {p[1].get<double>(), p[2].get<double>(), p[3].get<double>(), 1}});
-  for (const Json& cell : setting.at("cells")) {
-    const double seconds = median_of(cell.at("wall_s")), error = median_of(cell.at(cell_figure));
-    if (seconds > 0 && error > 0)
-      line.dots.push_back({seconds, error,
-                           fmt::format("{}, {}: {} in {}", name, text_of(cell, "budget"), percent_text(error),
-                                       seconds_text(seconds))});
-  }
-  return line;
-}
-
-std::string plots(const Json& report, const Json& scene) {
-  const std::string name = text_of(scene, "name");
-  std::string html = "<div class=\"plots\">\n";
-  const std::vector<double> marks = {0.05, 0.02, 0.01};
-  struct View {
-    const char *curve, *figure, *axis, *caption;
-  };
-  for (const View& v :
-       {View{"curve", "true", "true error, whole picture",
-             "True error of the whole picture. The band is the range over the repeats, circles are the ends "
-             "of renders; the dotted lines are 5, 2 and 1 %."},
-        View{"tiles_curve", "tiles_decile", "error of nine tiles in ten",
-             "Estimated error that nine tiles in ten are under: the difficult parts of the picture."}}) {
-    std::vector<PlotLine> lines;
-    for (const Json& s : scene.at("settings")) lines.push_back(line_of(report, s, v.curve, v.figure));
-    const std::string svg = make_plot(lines, marks, name + ": " + v.axis + " against seconds", v.axis);
-    if (!svg.empty()) html += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, v.caption);
-  }
-  return html + "</div>\n";
-}
-
 std::string pictures(const Json& scene, const fs::path& folder) {
   const std::string name = text_of(scene, "name");
   uint32_t width = 0, height = 0;
@@ -245,19 +198,36 @@ std::string pictures(const Json& scene, const fs::path& folder) {
       html, magma_gradient(), percent_text(scale));
 }
 
+/// Of the irradiance cache; 0 without one, and in reports from before they were counted.
+double records_of(const Json& cell) { return cell.contains("records") ? median_of(cell.at("records")) : 0; }
+
+bool has_records(const Json& scene) {
+  for (const Json& s : scene.at("settings"))
+    for (const Json& c : s.at("cells"))
+      if (records_of(c) > 0) return true;
+  return false;
+}
+
+std::string records_cells(const Json& cell) {
+  return fmt::format("<td>{:.0f}</td><td>{}</td>", records_of(cell),
+                     count_text(median_of(cell.at("cache_rays"))));
+}
+
 std::string cells_table(const Json& report, const Json& scene) {
   std::string html =
       "<div class=\"wrap\"><table><tr><th class=\"l\">setting</th><th "
       "class=\"l\">budget</th><th>seconds</th><th>samples<br/>a pixel</th><th>rays</th><th>rays a "
       "second</th><th>error<br/>estimated</th><th>error<br/>true</th><th>nine tiles<br/>in ten "
-      "under</th><th>not<br/>reached</th></tr>\n";
+      "under</th><th>not<br/>reached</th>";
+  const bool cached = has_records(scene);
+  html += cached ? "<th>records</th><th>their rays</th></tr>\n" : "</tr>\n";
   for (const Json& s : scene.at("settings")) {
     for (const Json& c : s.at("cells")) {
       const double seconds = median_of(c.at("wall_s"));
       html += fmt::format(
           "<tr><td class=\"l\">{}{}</td><td "
           "class=\"l\">{}</td><td>{}</td><td>{:.4g}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</"
-          "td><td>{}</td></tr>\n",
+          "td><td>{}</td>",
           key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")),
           escape(text_of(c, "budget")), with_range(c.at("wall_s"), seconds_text), median_of(c.at("samples")),
           count_text(median_of(c.at("rays"))), count_text(median_of(c.at("rays")) / seconds),
@@ -268,6 +238,8 @@ std::string cells_table(const Json& report, const Json& scene) {
           median_of(c.at("tiles_over")) > 0 ? fmt::format("{:.0f} tile{}", median_of(c.at("tiles_over")),
                                                           median_of(c.at("tiles_over")) == 1 ? "" : "s")
                                             : "–");
+      if (cached) html += records_of(c) > 0 ? records_cells(c) : "<td>–</td><td>–</td>";
+      html += "</tr>\n";
     }
   }
   return html + "</table></div>\n";

@@ -26,6 +26,15 @@ void widen(double& lo, double& hi, double factor, double margin) {
 
 std::string short_number(double x) { return fmt::format("{:.6g}", x); }
 
+const char* across_text(Across across) {
+  return across == Across::records ? "records of the irradiance cache" : "seconds of rendering";
+}
+
+/// Thousands of records as "5 k": the whole number would not fit between two ticks.
+std::string tick_text(double x, Across across) {
+  return across == Across::records && x >= 1000 ? short_number(x / 1000) + " k" : short_number(x);
+}
+
 /// 1-2-5 ticks, thinned to powers of ten when they would crowd.
 std::vector<double> axis_ticks(const Axis& axis, double gap) {
   std::vector<double> ticks = log_ticks(axis.lo, axis.hi);
@@ -40,17 +49,17 @@ std::vector<double> axis_ticks(const Axis& axis, double gap) {
 
 std::string path_of(const PlotLine& line, const Axis& x, const Axis& y) {
   std::string path;
-  for (const Band& b : line.points)
-    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x.at(b.seconds), y.at(b.error.median));
+  for (const PlotLine::Point& p : line.points)
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x.at(p.across), y.at(p.error.median));
   return path;
 }
 
 std::string band_of(const PlotLine& line, const Axis& x, const Axis& y) {
   std::string path;
-  for (const Band& b : line.points)
-    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x.at(b.seconds), y.at(b.error.high));
-  for (auto b = line.points.rbegin(); b != line.points.rend(); ++b)
-    path += fmt::format(" L{:.1f} {:.1f}", x.at(b->seconds), y.at(b->error.low));
+  for (const PlotLine::Point& p : line.points)
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x.at(p.across), y.at(p.error.high));
+  for (auto p = line.points.rbegin(); p != line.points.rend(); ++p)
+    path += fmt::format(" L{:.1f} {:.1f}", x.at(p->across), y.at(p->error.low));
   return path + " Z";
 }
 
@@ -97,15 +106,15 @@ std::vector<double> spread_labels(const std::vector<double>& at, double gap, dou
 }
 
 std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<double>& marks,
-                      const std::string& title, const std::string& error_axis) {
+                      const std::string& title, const std::string& error_axis, Across across) {
   Axis x{1e300, 0, k_left, k_width - k_right}, y{1e300, 0, k_height - k_bottom, k_top};
-  const auto include = [&](double seconds, double low, double high) {
-    x.lo = std::min(x.lo, seconds), x.hi = std::max(x.hi, seconds);
+  const auto include = [&](double at, double low, double high) {
+    x.lo = std::min(x.lo, at), x.hi = std::max(x.hi, at);
     y.lo = std::min(y.lo, low), y.hi = std::max(y.hi, high);
   };
   for (const PlotLine& line : lines) {
-    for (const Band& b : line.points) include(b.seconds, b.error.low, b.error.high);
-    for (const PlotLine::Dot& d : line.dots) include(d.seconds, d.error, d.error);
+    for (const PlotLine::Point& p : line.points) include(p.across, p.error.low, p.error.high);
+    for (const PlotLine::Dot& d : line.dots) include(d.across, d.error, d.error);
   }
   if (!(x.hi > 0) || !(y.lo > 0)) return "";
   widen(x.lo, x.hi, 4, 1.1), widen(y.lo, y.hi, 4, 1.12);
@@ -118,7 +127,7 @@ std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<doub
     svg += fmt::format(
         "<path d=\"M{0:.1f} {1} V{2}\" stroke=\"#2b2b2b\"/><text x=\"{0:.1f}\" y=\"{3}\" fill=\"#a09f9d\" "
         "text-anchor=\"middle\">{4}</text>\n",
-        x.at(t), y.to, y.from, y.from + 17, short_number(t));
+        x.at(t), y.to, y.from, y.from + 17, tick_text(t, across));
   for (const double t : axis_ticks(y, 15))
     svg += fmt::format(
         "<path d=\"M{0} {1:.1f} H{2}\" stroke=\"#2b2b2b\"/><text x=\"{3}\" y=\"{4:.1f}\" fill=\"#a09f9d\" "
@@ -129,9 +138,9 @@ std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<doub
       svg += fmt::format("<path d=\"M{} {:.1f} H{}\" stroke=\"#8a8988\" stroke-dasharray=\"1 4\"/>\n", x.from,
                          y.at(t), x.to);
   svg += fmt::format(
-      "<text x=\"{}\" y=\"{}\" fill=\"#a09f9d\" text-anchor=\"end\">seconds of rendering</text>\n"
+      "<text x=\"{}\" y=\"{}\" fill=\"#a09f9d\" text-anchor=\"end\">{}</text>\n"
       "<text x=\"{}\" y=\"{}\" fill=\"#e2e1df\">{}</text>\n",
-      x.to, k_height - 8, k_left, k_top - 12, escape(error_axis));
+      x.to, k_height - 8, across_text(across), k_left, k_top - 12, escape(error_axis));
 
   std::vector<double> ends;
   std::vector<size_t> labelled;
@@ -158,9 +167,9 @@ std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<doub
           "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"#191919\" stroke=\"{}\" "
           "stroke-width=\"1.75\">"
           "<title>{}</title></circle>\n",
-          x.at(d.seconds), y.at(d.error), line.colour, escape(d.title));
+          x.at(d.across), y.at(d.error), line.colour, escape(d.title));
     // From the end of the line to its name.
-    const double from = x.at(line.points.empty() ? line.dots.back().seconds : line.points.back().seconds);
+    const double from = x.at(line.points.empty() ? line.dots.back().across : line.points.back().across);
     svg += fmt::format(
         "<path d=\"M{:.1f} {:.1f} L{:.1f} {:.1f}\" stroke=\"{}\" stroke-opacity=\"0.35\" "
         "stroke-dasharray=\"2 3\"/><text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>\n",

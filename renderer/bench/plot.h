@@ -1,5 +1,5 @@
 #pragma once
-// Error against time on log axes, as inline SVG.
+// Error against time or against the irradiance cache's records on log axes, as inline SVG.
 #include <string>
 #include <vector>
 
@@ -7,12 +7,19 @@
 
 namespace lucerna::bench {
 
+/// What the error is plotted against.
+enum class Across { seconds, records };
+
 struct PlotLine {
   std::string name, colour;
-  std::vector<Band> points;  ///< median as a line, low and high as a band
+  struct Point {
+    double across = 0;  ///< seconds or records, above 0
+    Spread error;
+  };
+  std::vector<Point> points;  ///< median as a line, low and high as a band; from left to right
   /// Ends of renders, with what the pointer is told.
   struct Dot {
-    double seconds = 0, error = 0;
+    double across = 0, error = 0;
     std::string title;
   };
   std::vector<Dot> dots;
@@ -22,7 +29,8 @@ struct PlotLine {
 /// a dotted line at each of `marks`. `title` is for those who cannot see it. "" when there is nothing to
 /// draw.
 std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<double>& marks,
-                      const std::string& title, const std::string& error_axis);
+                      const std::string& title, const std::string& error_axis,
+                      Across across = Across::seconds);
 
 /// The ticks 1, 2, 5 times powers of ten within [lo, hi], both above 0.
 std::vector<double> log_ticks(double lo, double hi);

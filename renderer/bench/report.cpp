@@ -183,6 +183,8 @@ Json cells_json(const Matrix& m, size_t scene, size_t setting, const Group& grou
     add("tiles_decile", [](const Result& r) { return r.tiles_decile; });
     add("heavy_tiles", [](const Result& r) { return r.heavy_tiles; });
     add("tiles_over", [](const Result& r) { return r.tiles_over; });
+    add("records", [](const Result& r) { return r.records; });
+    add("cache_rays", [](const Result& r) { return r.cache_rays; });
     for (size_t k = 1; k < stats::k_layers; ++k) {
       Json& layer = cell["components"][stats::k_layer_names[k]];
       layer["true"] = to_json(spread(collect(results, [&](const Result& r) { return r.truth[k]; })));
@@ -367,16 +369,18 @@ Json make_report(const Matrix& m, const RunSummary& summary, const Json& about) 
 std::string make_csv(const Json& report) {
   std::string text =
       "scene,setting,budget,repeat,seed,tracer,wall_s,device_s,setup_s,rays,paths,samples,mse,relmse,"
-      "in_reference_noise,tiles_median,tiles_decile,tiles_worst,heavy_tiles,tiles_over";
+      "in_reference_noise,tiles_median,tiles_decile,tiles_worst,heavy_tiles,tiles_over,records,"
+      "cache_rays";
   for (const char* what : {"estimated", "true", "device_s"})
     for (const char* layer : stats::k_layer_names) text += fmt::format(",{}_{}", what, layer);
   text += ",forecast_s,forecast_rays\n";
   for (const Json& entry : report.at("results")) {
     const Result r = result_from_json(entry, "results");
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.scene, r.setting,
-                        r.budget, r.repeat, r.seed, r.tracer, r.wall_s, r.device_s, r.setup_s, r.rays,
-                        r.paths, r.samples, r.mse, r.relmse, int(r.in_reference_noise), r.tiles_median,
-                        r.tiles_decile, r.tiles_worst, r.heavy_tiles, r.tiles_over);
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.scene, r.setting,
+                    r.budget, r.repeat, r.seed, r.tracer, r.wall_s, r.device_s, r.setup_s, r.rays, r.paths,
+                    r.samples, r.mse, r.relmse, int(r.in_reference_noise), r.tiles_median, r.tiles_decile,
+                    r.tiles_worst, r.heavy_tiles, r.tiles_over, r.records, r.cache_rays);
     for (const Layers* layers : {&r.estimated, &r.truth, &r.component_s})
       for (const double x : *layers) text += fmt::format(",{}", x);
     text +=

@@ -21,6 +21,7 @@ struct Writer {
     for (size_t k = 0; k < x.size(); ++k) json[key][stats::k_layer_names[k]] = x[k];
   }
   void operator()(const char* key, const stats::Band& x) { json[key] = {x.low, x.middle, x.high}; }
+  void later(const char* key, const uint64_t& x) { json[key] = x; }
 };
 
 struct Reader {
@@ -57,6 +58,10 @@ struct Reader {
     if (!list.is_array() || list.size() != 3) throw_error(where, "'{}': expected three numbers", key);
     x = {number(key, list[0]), number(key, list[1]), number(key, list[2])};
   }
+  /// What older files are without.
+  void later(const char* key, uint64_t& x) const {
+    if (json.contains(key)) (*this)(key, x);
+  }
 };
 
 template <class V, class P>
@@ -75,6 +80,7 @@ void visit_result(V& v, R& r) {
   v("mse", r.mse), v("relmse", r.relmse), v("in_reference_noise", r.in_reference_noise);
   v("tiles_median", r.tiles_median), v("tiles_decile", r.tiles_decile), v("tiles_worst", r.tiles_worst);
   v("heavy_tiles", r.heavy_tiles), v("tiles_over", r.tiles_over), v("dropped", r.dropped);
+  v.later("records", r.records), v.later("cache_rays", r.cache_rays);
 }
 
 template <class V, class F>

@@ -50,13 +50,16 @@ struct Result {
   uint64_t heavy_tiles = 0;                                    ///< whose light comes in rare large amounts
   uint64_t tiles_over = 0;  ///< adaptive: over the target with all the samples they may have
   uint64_t dropped = 0;     ///< contributions that were not finite
+  /// Of the irradiance cache in the end, and the rays of their hemispheres; 0 without a cache, and in files
+  /// from before they were counted.
+  uint64_t records = 0, cache_rays = 0;
   std::optional<ForecastResult> forecast;
   std::vector<CurvePoint> curve;
 };
 
 nlohmann::ordered_json to_json(const Result& result);
 /// Throws Error, located at `where`, for anything that to_json() does not write: half a file, missing or
-/// wrong values, a curve that does not go forward.
+/// wrong values (only records and cache_rays may be missing), a curve that does not go forward.
 Result parse_result(const std::string& text, const std::string& where);
 Result result_from_json(const nlohmann::ordered_json& json, const std::string& where);
 

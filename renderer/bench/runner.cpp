@@ -228,6 +228,8 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   for (const film::TileError& t : tiles) result.heavy_tiles += t.heavy_tailed;
   if (r->adaptive()) result.tiles_over = r->adaptive()->count(schedule::TileState::capped);
   result.dropped = r->stats().dropped;
+  if (const auto* cache = r->cache())
+    result.records = cache->status().records, result.cache_rays = cache->status().rays;
   result.forecast = make_forecast(r->ledger(), r->adaptive() != nullptr);
   if (cell.repeat == 0 && cell.budget + 1 == matrix_.budgets(cell.scene, cell.setting).size())
     save_pictures(*r, cell, truth);

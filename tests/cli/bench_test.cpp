@@ -135,6 +135,32 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
   CHECK(count_files(folder + "/cells") == 9);
 }
 
+TEST_CASE("bench counts the records of the irradiance cache and plots the error against them") {
+  const Place place;
+  std::ofstream(place / "m.json")
+      << R"({"warmup": 1, "reference": {"samples": 256}, "budgets": {"samples": [4]}, "set": {"cache.noise": 0,)"
+      << R"("components.primary": "off", "components.caustic": "off"}, "scenes": [{"file": ")"
+      << LUCERNA_SOURCE_DIR << R"(/scenes/cornell/cornell.gltf", "size": "16x16"}], "settings": [)"
+      << R"({"name": "plain"}, {"name": "wide", "curve": "c", "set": {"components.secondary": "cache",)"
+      << R"("cache.error": 0.9}}, {"name": "narrow", "curve": "c", "set": {"components.secondary": "cache",)"
+      << R"("cache.error": 0.3, "cache.min_radius": 1}}]})";
+  const std::string folder = place / "r";
+  const Run r = run("bench " + (place / "m.json") + " --quiet --report " + folder);
+  INFO(r.out);
+  REQUIRE(r.status == 0);
+  std::map<std::string, double> records;
+  for (const auto& result : read_json(folder + "/report.json")["results"]) {
+    if (result["repeat"] == 0) records[result["setting"]] = result["records"];
+    CHECK((result["cache_rays"] > 0) == (result["setting"] != "plain"));
+  }
+  CHECK(records["plain"] == 0);
+  CHECK(records["wide"] > 0);
+  CHECK(records["narrow"] > records["wide"]);
+  std::ifstream page(folder + "/report.html");
+  const std::string html((std::istreambuf_iterator<char>(page)), {});
+  CHECK_THAT(html, Contains("cornell: true error of the whole picture against records"));
+}
+
 TEST_CASE("bench stops at Ctrl-C with what is finished, and goes on from there") {
   const Place place;
   const std::string folder = place / "r";
@@ -161,6 +187,8 @@ TEST_CASE("bench refuses bad input before any work") {
   const std::string good = place.matrix("m.json", 16, 64);
   refused("", "name one matrix");
   refused("--quick --full", "name one matrix");
+  refused("--quick --cache", "name one matrix");
+  refused("--full --cache", "name one matrix");
   refused(place / "no.json", "no.json");
   std::ofstream(place / "bad.json") << "{\"scenes\": [],\n \"setings\": []}";
   refused(place / "bad.json", "unknown key 'setings'");

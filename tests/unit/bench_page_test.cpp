@@ -152,6 +152,104 @@ TEST_CASE("The page stands alone, is well-formed and holds every number of its t
     CHECK_THAT(html, Contains(word));
 }
 
+namespace {
+
+const char* const k_curves_matrix = R"({
+  "name": "curves", "budgets": {"samples": [16, 64]},
+  "scenes": [{"file": "cornell/cornell.gltf", "size": "16x16"}, {"file": "glass/glass.gltf", "size": "24x16"}],
+  "settings": [{"name": "plain"},
+               {"name": "split-60", "curve": "split sphere"}, {"name": "split-30", "curve": "split sphere"},
+               {"name": "hessian-60", "curve": "hessian"}, {"name": "hessian-30", "curve": "hessian"},
+               {"name": "lone", "curve": "of one"}]
+})";
+
+/// Records on cornell alone; the second setting of a curve has four times the first's, of the smaller budget
+/// a thousand more. Repeats differ in both.
+Json report_of_curves(bool with_records = true) {
+  const Matrix m = parse_matrix(k_curves_matrix, "m", std::string(LUCERNA_SOURCE_DIR) + "/scenes");
+  RunSummary s = test::fake_summary(m, 1);
+  for (const Cell& c : m.cells()) {
+    Result& r = s.results.at(m.id(c));
+    if (c.setting == 0 || c.scene != 0 || !with_records) continue;
+    const bool fine = r.setting.ends_with("-30"), hessian = r.setting.starts_with("hessian");
+    r.records =
+        uint64_t((hessian ? 300 : 500) * (fine ? 4 : 1) + 10 * (c.repeat - 1) + (c.budget ? 0 : 1000));
+    r.cache_rays = 256 * r.records;
+    r.truth[0] = (fine ? 0.03 : 0.06) * (hessian ? 0.8 : 1) * (1 + 0.1 * (c.repeat - 1));
+  }
+  return make_report(m, s, test::fake_about());
+}
+
+/// The plots against records: from <svg to </svg>.
+std::vector<std::string> record_plots(const std::string& html) {
+  std::vector<std::string> found;
+  for (size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1)) {
+    const std::string svg = html.substr(at, html.find("</svg>", at) - at);
+    if (svg.find(">records of the irradiance cache<") != std::string::npos) found.push_back(svg);
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("Error against records: a line for each curve, on the scenes that have them") {
+  const Json r = report_of_curves();
+  const Json& cell = r["scenes"][0]["settings"][2]["cells"][1];
+  CHECK(cell["records"]["median"] == 2000);
+  CHECK(cell["records"]["low"] == 1990);
+  CHECK(cell["records"]["high"] == 2010);
+  CHECK(cell["cache_rays"]["median"] == 512000);
+  CHECK_THAT(make_csv(r), Contains(",records,cache_rays,") && Contains(",2010,514560,"));
+  const std::string html = make_page(r, "/no/pictures");
+  CHECK(unbalanced(html.substr(html.find('\n'))) == "");
+  const auto plots = record_plots(html);
+  REQUIRE(plots.size() == 1);
+  const std::string& svg = plots[0];
+  CHECK_THAT(svg, Contains("cornell: true error of the whole picture against records"));
+  for (const char* dot :
+       {"<title>split-60: 500 records, 6.00 %</title>", "<title>split-30: 2000 records, 3.00 %<",
+        "<title>hessian-60: 300 records, 4.80 %<", "<title>hessian-30: 1200 records, 2.40 %<"})
+    CHECK_THAT(svg, Contains(dot));
+  CHECK(count(svg, "<circle") == 4);
+  // A line and a band each; their names at their ends. One point makes no curve, no curve no line.
+  CHECK(count(svg, "fill=\"none\"") == 2);
+  CHECK(count(svg, "fill-opacity=\"0.16\"") == 2);
+  CHECK_THAT(svg, Contains(">split sphere</text>") && Contains(">hessian</text>"));
+  CHECK_THAT(svg, !Contains("lone") && !Contains("of one") && !Contains("plain"));
+  CHECK_THAT(svg, Contains(">500</text>") && Contains(">2 k</text>") && !Contains("seconds"));
+  // The settings of a curve share its colour.
+  CHECK(svg.find(setting_colour(1)) != std::string::npos);
+  CHECK(svg.find(setting_colour(2)) != std::string::npos);
+  CHECK(svg.find(setting_colour(3)) == std::string::npos);
+  CHECK_THAT(html, Contains("<th>records</th>") && Contains("<td>2000</td><td>512 k</td>"));
+}
+
+TEST_CASE("A curve goes from few records to many, its band over the repeats") {
+  Json r = report_of_curves();
+  Json& settings = r["matrix"]["settings"];
+  std::swap(r["scenes"][0]["settings"][1], r["scenes"][0]["settings"][2]);
+  const std::string svg = record_plots(make_page(r, "/no/pictures")).at(0);
+  CHECK(settings[1]["name"] == "split-60");
+  CHECK(svg.find("split-60: ") < svg.find("split-30: "));
+  // An error that the reference's noise hides is no point: one of the two is left, and no line.
+  r["scenes"][0]["settings"][1]["cells"][1]["in_reference_noise"] = true;
+  const std::string one = record_plots(make_page(r, "/no/pictures")).at(0);
+  CHECK(one.find("split") == std::string::npos);
+  CHECK_THAT(one, Contains(">hessian</text>"));
+}
+
+TEST_CASE("Without records, or in a report from before they were counted, there is no such plot") {
+  Json r = report_of_curves(false);
+  CHECK(record_plots(make_page(r, "/no/pictures")).empty());
+  r = report_of_curves();
+  for (Json& s : r["scenes"][0]["settings"])
+    for (Json& cell : s["cells"]) cell.erase("records"), cell.erase("cache_rays");
+  const std::string html = make_page(r, "/no/pictures");
+  CHECK(record_plots(html).empty());
+  CHECK_THAT(html, !Contains("<th>records</th>"));
+  CHECK(record_plots(make_page(report(), "/no/pictures")).empty());
+}
+
 TEST_CASE("A page of a bench that is not complete says so; an empty one is a page too") {
   const std::string part = make_page(report(4, 7), "/no/pictures");
   CHECK_THAT(part, Contains("Not complete: 7 of 18"));

@@ -1,0 +1,22 @@
+#pragma once
+// The plots of one scene on the page, and what they share with its tables.
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace lucerna::bench {
+
+/// "" where there is no such text.
+std::string text_of(const nlohmann::ordered_json& json, const char* key);
+/// Of {median, low, high}.
+double median_of(const nlohmann::ordered_json& spread);
+/// The curve that the setting is a point of; "" where it is of none.
+std::string curve_of(const nlohmann::ordered_json& report, const std::string& setting);
+/// The place of a setting in the matrix, where the settings of one curve have one place: it decides the
+/// colour.
+size_t index_of(const nlohmann::ordered_json& report, const std::string& setting);
+
+/// The scene's plots: true error and that of nine tiles in ten against seconds, and true error against the
+/// irradiance cache's records where a curve has two settings or more with records.
+std::string plots(const nlohmann::ordered_json& report, const nlohmann::ordered_json& scene);
+
+}  // namespace lucerna::bench
