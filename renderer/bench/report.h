@@ -16,7 +16,7 @@ inline constexpr double k_targets[] = {0.05, 0.02, 0.01};
 ///   matrix, complete, cells {done, total}, references [{scene, file, samples, seconds, noise ..}],
 ///   scenes [{name, size, noise {time, index, rate}, fixed_s, settings [summary]}],
 ///   index [{setting, value, scenes}], results [as in cells/].
-/// A summary of a setting on a scene: cells [{budget, wall_s, rays .. as {median, low, high}}],
+/// A summary of a setting on a scene: cells [{budget, wall_s, rays, records .. as {median, low, high}}],
 ///   time_to [{error, kind, seconds {median, low, high}, ratio, noise}] of the whole picture's true error,
 ///   time_common {error, seconds, first_seconds, ratio, noise} at the smallest error that it and the first
 ///   setting have both reached, tiles_time_to and tiles_time_common, the same of the estimated error that

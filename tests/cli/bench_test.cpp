@@ -138,7 +138,7 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
 TEST_CASE("bench counts the records of the irradiance cache and plots the error against them") {
   const Place place;
   std::ofstream(place / "m.json")
-      << R"({"warmup": 1, "reference": {"samples": 256}, "budgets": {"samples": [4]}, "set": {"cache.noise": 0,)"
+      << R"({"warmup": 1, "reference": {"samples": 1024}, "budgets": {"samples": [4]}, "set": {"cache.rays": 64, "cache.max_rays": 64,)"
       << R"("components.primary": "off", "components.caustic": "off"}, "scenes": [{"file": ")"
       << LUCERNA_SOURCE_DIR << R"(/scenes/cornell/cornell.gltf", "size": "16x16"}], "settings": [)"
       << R"({"name": "plain"}, {"name": "wide", "curve": "c", "set": {"components.secondary": "cache",)"
@@ -149,7 +149,9 @@ TEST_CASE("bench counts the records of the irradiance cache and plots the error 
   INFO(r.out);
   REQUIRE(r.status == 0);
   std::map<std::string, double> records;
-  for (const auto& result : read_json(folder + "/report.json")["results"]) {
+  const auto report = read_json(folder + "/report.json");
+  REQUIRE(report["results"].size() == 9);
+  for (const auto& result : report["results"]) {
     if (result["repeat"] == 0) records[result["setting"]] = result["records"];
     CHECK((result["cache_rays"] > 0) == (result["setting"] != "plain"));
   }
