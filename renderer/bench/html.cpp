@@ -89,6 +89,7 @@ td { text-align: right; padding: 5px 12px; border-bottom: 1px solid #2c2c2c; whi
   vertical-align: baseline; }
 th.l, td.l { text-align: left; }
 td:first-child, th:first-child { padding-left: 0; }
+td.wide { white-space: normal; min-width: 16em; }
 tr.first td { border-top: 1px solid #4a4a4a; }
 td.scene { font-weight: 600; }
 .key { display: inline-block; width: 14px; height: 3px; border-radius: 1px; margin-right: 8px;

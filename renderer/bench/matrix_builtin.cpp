@@ -69,7 +69,7 @@ const char* const k_cache = R"({
   "reference": {"samples": 16384},
   "set": {"components.primary": "off", "components.caustic": "off", "cache.noise": 0.03,
           "cache.max_rays": 16384, "cache.min_radius": 0, "cache.max_radius": 1, "cache.neighbours": false},
-  "budgets": {"samples": [128]},
+  "budgets": {"samples": [256]},
   "scenes": [
     {"file": "cornell/cornell.gltf", "size": "128x128"},
     {"file": "teapot/teapot.gltf", "size": "128x128"},

@@ -77,8 +77,8 @@ std::string heading(const Json& report) {
     for (const auto& [key, value] : s.at("set").items())
       set += fmt::format("{}{}={}", set.empty() ? "" : ", ", key, value.get<std::string>());
     html += fmt::format(
-        "<tr><td class=\"l\">{}{}</td><td class=\"l\" style=\"white-space:normal\">{}</td><td "
-        "class=\"l\"><code>{}</code></td></tr>\n",
+        "<tr><td class=\"l\">{}{}</td><td class=\"l wide\">{}</td><td class=\"l "
+        "wide\"><code>{}</code></td></tr>\n",
         key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")), escape(text_of(s, "about")),
         set.empty() ? "–" : escape(set));
   }
