@@ -35,9 +35,13 @@ std::string tick_text(double x, Across across) {
   return across == Across::records && x >= 1000 ? short_number(x / 1000) + " k" : short_number(x);
 }
 
-/// 1-2-5 ticks, thinned to powers of ten when they would crowd.
+/// 1-2-5 ticks, thinned to powers of ten when they would crowd; of a short axis more than these.
 std::vector<double> axis_ticks(const Axis& axis, double gap) {
   std::vector<double> ticks = log_ticks(axis.lo, axis.hi);
+  if (ticks.size() < 3)
+    for (const double more : {3.0, 4.0, 7.0})
+      for (double t = more * std::pow(10.0, std::floor(std::log10(axis.lo))); t < axis.hi; t *= 10)
+        if (t > axis.lo) ticks.push_back(t);
   const double a_factor_of_two = std::abs(axis.at(2 * axis.lo) - axis.from);
   if (a_factor_of_two < gap)
     std::erase_if(ticks, [](double t) {

@@ -322,4 +322,8 @@ TEST_CASE("Small parts of the page") {
   CHECK(at[3] <= 120.01);
   CHECK(make_plot({}, {}, "t", "e").empty());
   CHECK(make_plot({{"none", "#fff", {}, {}}}, {}, "t", "e").empty());
+  // A short axis has more ticks than 1, 2 and 5.
+  const PlotLine line{"a", "#fff", {{2100, {0.04, 0.03, 0.05, 3}}, {6100, {0.02, 0.02, 0.02, 3}}}, {}};
+  CHECK_THAT(make_plot({line}, {}, "t", "e", Across::records), Contains(">3 k<") && Contains(">7 k<"));
+  CHECK_THAT(make_plot({line}, {}, "t", "e"), Contains(">3000<") && Contains("seconds of rendering"));
 }
