@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "support/run.h"
@@ -55,4 +56,25 @@ TEST_CASE("the bench of lookups finds the same spheres every way, and writes wha
   check_parts(r.out, {"300 photons", "300 records", "octree", "27 cells", "references a sphere"});
   check_parts(file.text(), {"\"queries_per_s\"", "\"references_per_sphere\"", "\"found_per_query\""});
   CHECK(run("bench lookup --sizes 0").status == 1);
+}
+
+TEST_CASE("the bench of interpolation tells how overlap is held down in a scene, and what it costs") {
+  const File file;
+  const std::string scene = std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf";
+  const Run r = run(
+      "bench interpolation " + scene +
+      " --width 48 --height 48 --repeats 1 --set cache.rays=64 --set cache.max_rays=64 --json " + file.path);
+  INFO(r.out);
+  CHECK(r.status == 0);
+  check_parts(r.out, {"as they were placed", "bounded by neighbours", "thinned and bounded", "M lookups/s"});
+  const auto json = nlohmann::json::parse(file.text());
+  REQUIRE(json["ways"].size() == 4);
+  // Thinning leaves fewer records, and either lets fewer serve a pixel.
+  const auto serving = [&](size_t way) { return json["ways"][way]["served_by_mean"].get<double>(); };
+  CHECK(json["ways"][2]["records"] < json["ways"][0]["records"]);
+  CHECK(serving(1) < serving(0));
+  CHECK(serving(2) < serving(0));
+  CHECK(run("bench interpolation /no/such.gltf").status == 1);
+  CHECK(run("bench interpolation " + scene + " --set cache.thinning=2").status == 1);
+  CHECK(run("bench interpolation " + scene + " --set nothing").status == 1);
 }
