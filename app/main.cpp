@@ -96,7 +96,7 @@ int main_checked(int argc, char** argv) {
   bench_verb->add_flag("--full", bm.full, "larger pictures, the atrium too, more budgets; hours");
   bench_verb->add_flag("--cache", bm.cache,
                        "error of cached light against the records of the irradiance cache, by either metric; "
-                       "about an hour on two cores");
+                       "two hours and more");
   bench_verb->add_option("--report", bm.report, "folder to write to and to go on in; new, empty or a bench's")
       ->capture_default_str();
   bench_verb->add_option("--references", bm.references,
