@@ -63,14 +63,13 @@ int bench_interpolation(const BenchInterpolationArguments& a) {
     settings.push_back(std::string("cache.neighbours=") + (way.neighbours ? "true" : "false"));
     if (!way.thinned) settings.push_back("cache.thinning=0");
     for (const std::string& setting : settings) {
-      const size_t at = setting.find('=');
-      if (at == std::string::npos) throw_error("--set", "'{}': expected key=value", setting);
-      r->settings().set(setting.substr(0, at), setting.substr(at + 1), "--set");
+      const auto [key, value] = plan::split_change(setting, "--set");
+      r->settings().set(key, value, "--set");
     }
     r->apply_settings();
     if (!a.reference.empty()) r->set_reference(a.reference);
-    while (!r->done())
-      if (!r->step()) break;
+    while (!r->done() && r->step()) {
+    }
     session::Renderer* const renderer = r.get();
     candidates.push_back({way, std::move(r), {{}, [renderer] { renderer->look_up_picture(); }}});
   }

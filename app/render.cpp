@@ -241,11 +241,7 @@ int render(const RenderArguments& a) {
   r.set_size(width, height);
   // What the command line says stands above the scene's own settings; checked before the scene is loaded.
   std::vector<std::pair<std::string, std::string>> changes;
-  for (const std::string& change : a.set) {
-    const size_t at = change.find('=');
-    if (at == std::string::npos) throw_error("--set", "'{}': expected key=value", change);
-    changes.emplace_back(change.substr(0, at), change.substr(at + 1));
-  }
+  for (const std::string& change : a.set) changes.push_back(plan::split_change(change, "--set"));
   if (a.samples != -1) {
     changes.emplace_back("samples", std::to_string(a.samples));
     if (a.error) changes.emplace_back("sampling.max_samples", std::to_string(a.samples));

@@ -58,9 +58,8 @@ class Viewer {
                                           const std::vector<std::string>& changes) {
     std::vector<std::string> lines;
     for (const std::string& change : changes) {
-      const size_t at = change.find('=');
-      if (at == std::string::npos) throw_error("--set", "'{}': expected key=value", change);
-      lines.push_back(commands::line("set", change.substr(0, at), change.substr(at + 1)));
+      const auto [key, value] = plan::split_change(change, "--set");
+      lines.push_back(commands::line("set", key, value));
       registry.parse(lines.back(), "--set");
     }
     return lines;

@@ -140,4 +140,8 @@ void make_room(Device& device, Buffer& buffer, BufferDesc desc) {
   buffer = Buffer(device, desc);
 }
 
+void make_texel_room(Device& device, Buffer& buffer, const char* name, uint64_t bytes) {
+  make_room(device, buffer, {.name = name, .bytes = bytes, .texel = true});
+}
+
 }  // namespace lucerna::gpu

@@ -67,6 +67,9 @@ class Buffer {
 /// in it.
 void make_room(Device& device, Buffer& buffer, BufferDesc desc);
 
+/// The same for a buffer in device memory that is read as texels, too.
+void make_texel_room(Device& device, Buffer& buffer, const char* name, uint64_t bytes);
+
 enum class TexelFormat { rgba8_unorm, rgba8_srgb, rgba16f, rgba32f };
 
 struct TextureArrayDesc {

@@ -278,6 +278,12 @@ std::string describe_values(const OptionInfo& o) {
   }
 }
 
+std::pair<std::string, std::string> split_change(const std::string& change, const std::string& where) {
+  const size_t at = change.find('=');
+  if (at == std::string::npos) throw_error(where, "'{}': expected key=value", change);
+  return {change.substr(0, at), change.substr(at + 1)};
+}
+
 const OptionInfo* find_option(const std::string& key) {
   for (const OptionInfo& option : options())
     if (option.key == key) return &option;

@@ -4,6 +4,7 @@
 // Error that says what is valid.
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -27,6 +28,8 @@ struct OptionInfo {
 const std::vector<OptionInfo>& options();
 /// What values an option takes, for people: "path|off", "true|false", "1 to 64 vertices"; "" for a text.
 std::string describe_values(const OptionInfo& option);
+/// Key and value of "KEY=VALUE", unchecked. Without a '=': an Error located at `where`.
+std::pair<std::string, std::string> split_change(const std::string& change, const std::string& where);
 /// Null when there is no such key.
 const OptionInfo* find_option(const std::string& key);
 

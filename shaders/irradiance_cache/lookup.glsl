@@ -40,14 +40,19 @@ float record_off_plane(vec3 position, float radius) {
   return radius * (radius <= 1.001 * least_radius(position) ? cache.off_plane_least : cache.off_plane);
 }
 
+// How far along a record's reach a point lies that is `away` from its centre: 0 there, 1 where it serves no more.
+float record_far(vec3 away, vec4 place, vec4 shape) {
+#if LUCERNA_CACHE_ELLIPSES
+  return record_distance(away, shape);
+#else
+  return length(away) / place.w;
+#endif
+}
+
 // Weight of a record, 0..1, at a point with that geometric normal.
 float record_weight(vec3 x, vec3 n, vec4 place, vec4 facing, vec4 shape) {
   vec3 away = x - place.xyz;
-#if LUCERNA_CACHE_ELLIPSES
-  float far = record_distance(away, shape);
-#else
-  float far = length(away) / place.w;
-#endif
+  float far = record_far(away, place, shape);
   float turned = sqrt(max(0.0, 1.0 - dot(n, facing.xyz)) / cache.normal_tolerance);
   // Points of one smooth surface lie in the plane between their normals' planes; what lies off it, on either side, is another
   // surface, or a step.

@@ -25,11 +25,7 @@ void main() {
     vec4 place = octree_copy(i), facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
     vec4 shape = record_shape(record, place);
     vec3 away = x - place.xyz;
-#if LUCERNA_CACHE_ELLIPSES
-    float far = record_distance(away, shape);
-#else
-    float far = length(away) / place.w;
-#endif
+    float far = record_far(away, place, shape);
     if (record < push.first || record == index || far >= 1.0 || record_weight(x, n, place, facing, shape) <= 0.0) continue;
 #if LUCERNA_WRITE
     uint own = record - push.first;

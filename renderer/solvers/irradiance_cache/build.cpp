@@ -154,7 +154,7 @@ bool Cache::Impl::choose(const Work& w) {
                                                   .most = records.capacity() - records.size()});
   pass().tried = uint32_t(tried.size());
   pass().clusters = placement.clusters();
-  status.bytes = own_bytes + screen.bytes() + placement.bytes() + neighbours.bytes();
+  count_bytes();
   records.append(tried, status.pass);
   list_until(records.size());
   took(BuildStep::choose, wall.milliseconds());
@@ -295,7 +295,7 @@ void Cache::Impl::publish_level(const Work& w) {
   standing = std::max(standing, evaluated);
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
-  if (anew && options.neighbours) {
+  if (anew && neighbours) {
     bound_radii(w, first);
     build_octree(w.wavefront);
   }
@@ -304,9 +304,9 @@ void Cache::Impl::publish_level(const Work& w) {
 }
 
 void Cache::Impl::bound_radii(const Work& w, uint32_t first) {
-  neighbours.bound(
+  neighbours->bound(
       w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, first, evaluated);
-  status.bytes = own_bytes + screen.bytes() + placement.bytes() + neighbours.bytes();
+  count_bytes();
 }
 
 void Cache::Impl::end_pass() {

@@ -3,6 +3,7 @@
 // choose, measure (how far are things around what is tried?), thin, evaluate level by level, index. Internal
 // to the cache: cache.h is what others see.
 #include <array>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -64,10 +65,10 @@ struct Cache::Impl {
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
   Discontinuity screen;
   Placement placement;
-  Neighbours neighbours;
-  bool looked = false;     // at the picture, in this pass: the screen-space stage is done
-  bool stale = true;       // ... and what it has seen is not this picture
-  uint64_t own_bytes = 0;  // of device memory, without those two
+  std::optional<Neighbours> neighbours;  // only where radii are bounded
+  bool looked = false;                   // at the picture, in this pass: the screen-space stage is done
+  bool stale = true;                     // ... and what it has seen is not this picture
+  uint64_t own_bytes = 0;                // of device memory, without what count_bytes() adds
   // Kept for who watches until the next pass begins:
   std::vector<Place> tried;
   std::vector<uint32_t> kept;
@@ -102,6 +103,8 @@ struct Cache::Impl {
   bool evaluate(const Work& work);
   bool index(const Work& work);
   void finish(StopReason reason);
+  /// Tells the status what the cache takes: its own, and what grows while records are placed.
+  void count_bytes();
   void look_from(const CacheView& view);
   /// What is placed and not evaluated is dropped, and what was asked for.
   void drop_pass();

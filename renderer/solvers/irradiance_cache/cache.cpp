@@ -60,19 +60,24 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
       octree(device, compiler,
              {.spheres = o.most_records,
               .references = k_references * o.most_records,
-              .leaf_scale = 1,
               .copies = true,
               .discs = true}),
       evaluator(device, compiler, slots),
       screen(device, compiler, defines(own, o.metric)),
-      placement(device, compiler),
-      neighbours(device, compiler, defines(own, o.metric)) {
+      placement(device, compiler) {
+  if (o.neighbours) neighbours.emplace(device, compiler, defines(own, o.metric));
   frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
   candidates = gpu::Buffer(device, {.name = "cache candidates",
                                     .bytes = uint64_t{slots} * 16 * k_candidate_texels,
                                     .memory = gpu::Memory::host,
                                     .texel = true});
-  status.bytes = own_bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + octree.bytes();
+  own_bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + octree.bytes();
+  status.bytes = own_bytes;
+}
+
+void Cache::Impl::count_bytes() {
+  status.bytes =
+      own_bytes + screen.bytes() + placement.bytes() + (neighbours ? neighbours->bytes() : uint64_t{0});
 }
 
 void Cache::Impl::build_octree(transport::Wavefront& wavefront) {

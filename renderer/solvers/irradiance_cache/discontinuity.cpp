@@ -38,9 +38,6 @@ struct Discontinuity::Impl {
       kernel = gpu::Kernel(device, compiler, std::string("irradiance_cache/") + name + ".comp", defines);
     return kernel;
   }
-  void ensure(gpu::Buffer& buffer, const char* name, uint64_t bytes) {
-    gpu::make_room(device, buffer, {.name = name, .bytes = bytes, .texel = true});
-  }
   void run(gpu::Stream& stream, const gpu::Kernel& kernel, const void* push, size_t bytes, uint32_t items) {
     stream.dispatch(kernel, resources, push, bytes, gpu::groups_for(items, 64), k_stage);
   }
@@ -67,11 +64,12 @@ void Discontinuity::begin(const Frame& frame) {
     d.first.push_back(d.first.back() + d.cells(level));
     if (d.cells(level) <= 1) break;
   }
-  d.ensure(d.surfaces, "surfaces of the picture", uint64_t{d.points()} * k_surface_texels * sizeof(vec4));
-  d.ensure(d.lit, "irradiance of the picture", uint64_t{d.points()} * sizeof(vec2));
-  d.ensure(d.details, "discontinuity", uint64_t{d.first.back()} * sizeof(float));
-  d.ensure(d.taken, "points taken", uint64_t{d.points()} * sizeof(uint32_t));
-  d.ensure(d.taken_levels, "levels of points", uint64_t{d.points()} * sizeof(uint32_t));
+  gpu::make_texel_room(d.device, d.surfaces, "surfaces of the picture",
+                       uint64_t{d.points()} * k_surface_texels * sizeof(vec4));
+  gpu::make_texel_room(d.device, d.lit, "irradiance of the picture", uint64_t{d.points()} * sizeof(vec2));
+  gpu::make_texel_room(d.device, d.details, "discontinuity", uint64_t{d.first.back()} * sizeof(float));
+  gpu::make_texel_room(d.device, d.taken, "points taken", uint64_t{d.points()} * sizeof(uint32_t));
+  gpu::make_texel_room(d.device, d.taken_levels, "levels of points", uint64_t{d.points()} * sizeof(uint32_t));
 }
 
 bool Discontinuity::seen() const { return impl_->points() > 0 && impl_->done == impl_->points(); }

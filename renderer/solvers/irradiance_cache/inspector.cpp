@@ -35,8 +35,7 @@ struct Inspector::Impl {
   }
 
   gpu::Buffer& ready(gpu::Buffer& buffer, const char* name, uint64_t bytes, gpu::Memory memory) {
-    if (!buffer || buffer.bytes() < bytes)
-      buffer = gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
+    gpu::make_room(device, buffer, {.name = name, .bytes = bytes, .memory = memory});
     return buffer;
   }
 
@@ -124,8 +123,8 @@ void Inspector::look_up(const Shown& shown, const Cache& cache, const gpu::Defin
   const uint64_t pixels = uint64_t{film.width()} * film.height();
   if (!i.lookups) i.lookups = gpu::Kernel(i.device, i.compiler, "irradiance_cache/lookups.comp", defines);
   i.bind(shown, cache);
-  gpu::make_room(i.device, i.looked_up, {.name = "cache lookups", .bytes = pixels * sizeof(float)});
-  i.resources.set("LookedUp", i.looked_up);
+  i.resources.set("LookedUp",
+                  i.ready(i.looked_up, "cache lookups", pixels * sizeof(float), gpu::Memory::device));
   shown.wavefront.stream().dispatch(i.lookups, i.resources, OverlapPush{film.width(), film.height()},
                                     gpu::groups_for(pixels, 64));
   Impl::finish(shown.wavefront.stream());

@@ -56,11 +56,8 @@ void Neighbours::bound(gpu::Stream& stream, const std::function<void(gpu::Resour
                        uint32_t count) {
   Impl& i = *impl_;
   if (count <= first) return;
-  const auto room = [&](gpu::Buffer& buffer, const char* name, uint64_t bytes) {
-    gpu::make_room(i.device, buffer, {.name = name, .bytes = bytes, .texel = true});
-  };
-  room(i.counts, "neighbours' counts", uint64_t{count} * 4);
-  room(i.before, "neighbours before", uint64_t{count} * 4);
+  gpu::make_texel_room(i.device, i.counts, "neighbours' counts", uint64_t{count} * 4);
+  gpu::make_texel_room(i.device, i.before, "neighbours before", uint64_t{count} * 4);
   bind(i.resources);
   i.resources.set("PairCounts", i.counts);
   i.resources.set("PairsBefore", i.before);
@@ -70,7 +67,8 @@ void Neighbours::bound(gpu::Stream& stream, const std::function<void(gpu::Resour
   stream.run();
   push.pairs = *static_cast<const uint32_t*>(i.total.mapped());
   if (push.pairs == 0) return;
-  for (gpu::Buffer& buffer : i.pairs) room(buffer, "neighbours", uint64_t{push.pairs} * sizeof(SortEntry64));
+  for (gpu::Buffer& buffer : i.pairs)
+    gpu::make_texel_room(i.device, buffer, "neighbours", uint64_t{push.pairs} * sizeof(SortEntry64));
   i.resources.set("Pairs", i.pairs[0]);
   stream.dispatch(i.writing, i.resources, push, gpu::groups_for(count, 64), k_stage);
   const uint32_t bounded = count - first;

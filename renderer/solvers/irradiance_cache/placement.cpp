@@ -87,10 +87,6 @@ struct Placement::Impl {
     run_bounds = small("candidates' bounds", k_bounds_runs * 32, gpu::Memory::device);
   }
 
-  void ensure(gpu::Buffer& buffer, const char* name, uint64_t bytes) {
-    gpu::make_room(device, buffer, {.name = name, .bytes = bytes, .texel = true});
-  }
-
   /// Room for that many candidates; what there is stays.
   void reserve(gpu::Stream& stream, uint32_t candidates) {
     const uint64_t bytes = uint64_t{candidates} * sizeof(vec4);
@@ -122,7 +118,7 @@ struct Placement::Impl {
   /// Appends what `flags` mark, by a kernel that reads them.
   uint32_t append(gpu::Stream& stream, const gpu::Kernel& kernel, const gpu::Buffer& flags,
                   CollectPush push) {
-    ensure(before, "candidates before", uint64_t{push.count} * 4);
+    gpu::make_texel_room(device, before, "candidates before", uint64_t{push.count} * 4);
     prefix_sum.encode(stream, flags, before, {.most = push.count}, &total, 0, k_stage);
     stream.run();
     const uint32_t added = sum();
@@ -177,7 +173,7 @@ std::array<uint32_t, 3> Placement::collect(gpu::Stream& stream, const gpu::Buffe
   if (slots == 0) return {};
   CollectPush push = Impl::push_of(reach, slots);
   push.screen_too = screen_too;
-  p.ensure(p.taken, "slots that ask", uint64_t{slots} * 4);
+  gpu::make_texel_room(p.device, p.taken, "slots that ask", uint64_t{slots} * 4);
   p.resources.set("candidate_texels", candidates);
   p.resources.set("Taken", p.taken);
   p.resources.set("Asked", p.asked);
@@ -217,12 +213,13 @@ std::vector<Place> Placement::choose(gpu::Stream& stream, const ChoiceOptions& o
   p.sorted = nullptr;
   if (p.size == 0 || o.most == 0) return {};
   uint32_t n = p.size;
-  for (gpu::Buffer& e : p.entries) p.ensure(e, "candidates' keys", uint64_t{n} * sizeof(SortEntry64));
+  for (gpu::Buffer& e : p.entries)
+    gpu::make_texel_room(p.device, e, "candidates' keys", uint64_t{n} * sizeof(SortEntry64));
   for (auto [buffer, name] : {std::pair{&p.head_flags, "heads of clusters"},
                               {&p.head_sums, "heads' sums"},
                               {&p.cluster_starts, "clusters"},
                               {&p.ranks, "candidates' ranks"}})
-    p.ensure(*buffer, name, uint64_t{n} * 4);
+    gpu::make_texel_room(p.device, *buffer, name, uint64_t{n} * 4);
   gpu::Resources& r = p.resources;
   r.set("Grid", p.grid_buffer);
   r.set("place_texels", p.places);
