@@ -1,0 +1,153 @@
+#!/usr/bin/python3
+"""How long Lucerna and Blender's Cycles take to the same error of the whole picture, one after the other.
+
+  tests/cycles/race.py scenes/cornell/cornell.gltf --error 0.002 --set components.secondary=cache --set components.tertiary=cache
+  tests/cycles/race.py scenes/window/window.gltf --error 0.01 --size 256x256 --reference-samples 16384 --set cache.environment=true
+
+Error: the mean over pixels and channels of (t - r1)(t - r2) / (r^2 + 0.01), r = (r1 + r2) / 2, without the worst 0.1 % of
+the pixels. r1 and r2 are two independent long pictures, so that their own noise adds nothing to the mean. Each renderer is
+held against its own ones (Lucerna's by path tracing, without --set); what their means differ by is printed, and by how much
+each would miss the other's.
+
+The samples that reach the error are found first, by pilots; then both render with those, --repeats times in turns. Time
+is that of the rendering: Lucerna's with building the cache, without loading the scene; Cycles' without copying the scene and
+building its acceleration structure. Kernels are compiled before.
+"""
+import argparse
+import json
+import math
+import os
+import sys
+import tempfile
+from statistics import median
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
+import exr  # noqa: E402
+from compare import Job  # noqa: E402
+
+EPSILON, TRIMMED = 0.01, 0.001
+
+
+def arguments():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("scene", metavar="SCENE")
+    p.add_argument("--error", type=float, required=True, help="relative mean squared error to reach")
+    p.add_argument("--size", default="256x256", help="WxH")
+    p.add_argument("--samples", type=int, default=32, help="of the first pilots")
+    p.add_argument("--most-samples", type=int, default=16384, help="no more than these are tried")
+    p.add_argument("--reference-samples", type=int, default=4096, help="of each of two pictures by either renderer")
+    p.add_argument("--camera", default="")
+    p.add_argument("--depth", type=int, default=64)
+    p.add_argument("--threads", type=int, default=2)
+    p.add_argument("--program", default=os.path.join(HERE, "..", "..", "build", "release", "bin", "lucerna"))
+    p.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="passed on to Lucerna")
+    p.add_argument("--repeats", type=int, default=3)
+    p.add_argument("--keep", metavar="DIR", help="where the pictures go; references already there are used again")
+    p.add_argument("--json", metavar="FILE", help="write all figures there")
+    a = p.parse_args()
+    a.without, a.cycles_samples = "", None
+    return a
+
+
+class Racer:
+    """A renderer: its references, and pictures with as many samples as one asks for."""
+
+    def __init__(self, job, name):
+        self.job, self.name, self.references = job, name, []
+
+    def render(self, samples, seed):
+        """The picture and what making it took [s]."""
+        a = self.job.a
+        if self.name == "cycles":
+            a.cycles_samples = samples
+            seconds = self.job.cycles([seed])["render_s"]
+        else:
+            seconds = self.job.lucerna(seed, samples)["render_s"]
+        return exr.rgb(self.job.path(self.name, samples, seed)), seconds
+
+    def make_references(self):
+        a, chosen = self.job.a, self.job.a.set
+        a.set = []
+        for seed in (1001, 1002):
+            path = self.job.path(self.name, a.reference_samples, seed)
+            if not os.path.exists(path):
+                self.render(a.reference_samples, seed)
+            self.references.append(exr.rgb(path))
+        a.set = chosen
+
+    def error(self, picture):
+        return relative_mse(picture, *self.references)
+
+    def samples_for(self, error):
+        """Samples that reach it, with the pilots as (samples, error, seconds)."""
+        samples, pilots = self.job.a.samples, []
+        for _ in range(8):
+            picture, seconds = self.render(samples, 1)
+            pilots.append((samples, self.error(picture), seconds))
+            print(f"  {self.name}: {samples} samples, error {pilots[-1][1]:.6f}, {seconds:.2f} s", file=sys.stderr, flush=True)
+            found = pilots[-1][1]
+            # By 1 / samples. What more samples do not mend (a cache's own error) would call for ever more.
+            if 0.9 * error < found <= error or (found <= error and samples == 1):
+                break
+            more = max(1, math.ceil(samples * found / error * 1.02))
+            if more > self.job.a.most_samples or more in [p[0] for p in pilots]:
+                break
+            samples = more
+        reached = [p[0] for p in pilots if p[1] <= error]
+        return (min(reached) if reached else None), pilots
+
+
+def relative_mse(t, r1, r2):
+    r = (r1 + r2) / 2
+    each = np.sort((((t - r1) * (t - r2)) / (r * r + EPSILON)).mean(axis=2).ravel())
+    return float(each[:len(each) - max(1, int(TRIMMED * len(each)))].mean())
+
+
+def main():
+    a = arguments()
+    folder = a.keep or tempfile.mkdtemp(prefix="lucerna-cycles-")
+    os.makedirs(folder, exist_ok=True)
+    job = Job(a, a.scene, folder)
+    racers = [Racer(job, "lucerna"), Racer(job, "cycles")]
+    job.lucerna(0, samples=1)  # kernels compiled and cached, files read once
+    result = {"scene": job.name, "size": job.size, "error": a.error, "set": a.set, "threads": a.threads}
+    for r in racers:
+        r.make_references()
+        print(f"  {r.name}: references there", file=sys.stderr, flush=True)
+    for r, other in zip(racers, reversed(racers)):
+        samples, pilots = r.samples_for(a.error)
+        result[r.name] = {"samples": samples, "pilots": pilots, "runs": [],
+                          "reference_against_other": relative_mse(r.references[0], *other.references),
+                          "reference_mean": r.references[0].mean(axis=(0, 1)).round(6).tolist()}
+    if all(result[r.name]["samples"] for r in racers):
+        for i in range(a.repeats):
+            for r in racers:
+                picture, seconds = r.render(result[r.name]["samples"], 100 + i)
+                result[r.name]["runs"].append((r.error(picture), seconds))
+        for r in racers:
+            result[r.name]["seconds"] = median(s for _, s in result[r.name]["runs"])
+            result[r.name]["error"] = median(e for e, _ in result[r.name]["runs"])
+        result["ratio"] = result["cycles"]["seconds"] / result["lucerna"]["seconds"]
+    for r in racers:
+        f = result[r.name]
+        if "seconds" in f:
+            print(f"{job.name} {job.size} {r.name:8} error {f['error']:.6f} with {f['samples']} samples in {f['seconds']:.2f} s "
+                  f"({', '.join(f'{s:.2f}' for _, s in f['runs'])}); its reference against the other's {f['reference_against_other']:.6f}")
+        else:
+            last = f["pilots"][-1]
+            print(f"{job.name} {job.size} {r.name:8} "
+                  + (f"reaches {a.error} with {f['samples']} samples" if f["samples"] else
+                     f"does NOT reach {a.error}: {last[1]:.6f} with {last[0]} samples in {last[2]:.2f} s"))
+    if "ratio" in result:
+        print(f"{job.name}: Lucerna is there {result['ratio']:.2f} times as fast")
+    if a.json:
+        with open(a.json, "w") as f:
+            json.dump(result, f, indent=1)
+    return 0 if "ratio" in result else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
