@@ -132,8 +132,9 @@ std::vector<OptionInfo> make_options() {
        .help = "Irradiance cache: rays of the last level that a noisy record gets, each four times the one "
                "before."},
       real("cache.noise", "0.1", 0, 10, "",
-           "Irradiance cache: relative standard error of a record above which it gets another level of "
-           "rays."),
+           "Irradiance cache: relative standard error above which a record with a radius of 3 % of the "
+           "picture's height gets more rays than the first level. Wider ones get more of them, narrower ones "
+           "fewer, for what they are worth to the picture."),
       boolean("cache.environment",
               "Irradiance cache: records also hold the light straight from the sky, so that surfaces that it "
               "lights need no noisy shadow rays to it."),

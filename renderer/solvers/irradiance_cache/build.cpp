@@ -27,6 +27,9 @@ constexpr float k_deep_noise = 4;
 /// Width of the finest cells of the picture that ask, in the spacing of the pass: gaps about finer detail are
 /// left to later passes, whose records read those of the first and are cheaper.
 constexpr float k_finest_of_spacing = 0.5f;
+/// Radius, over the height of the picture at its distance, of a record of which the option `noise` is true
+/// after the first level; and how far from the option others may be.
+constexpr float k_noisy_radius = 0.03f, k_most_shift = 4;
 /// Passes that go on for the irradiance that the records give, when few paths ask.
 constexpr uint32_t k_refining_passes = 4;
 /// Records that go on with a noisy one, on either side.
@@ -240,12 +243,13 @@ bool Cache::Impl::evaluate(const Work& w) {
   }
   level_done = 0;
   const uint32_t done_level = level + 1;
-  more_levels = next_level();
   const bool first = evaluated < until;
-  if (first)
+  if (first) {
     stage = Stage::index;
-  else
+  } else {
+    more_levels = next_level(w.view);
     publish_level(w);
+  }
   ended(BuildStage::evaluate, !first && !more_levels);
   status.last->level = done_level;
   if (!first && !more_levels) end_pass();
@@ -256,6 +260,7 @@ bool Cache::Impl::evaluate(const Work& w) {
 bool Cache::Impl::index(const Work& w) {
   stage = Stage::evaluate;
   publish_level(w);
+  more_levels = next_level(w.view);
   ended(BuildStage::octree, !more_levels);
   if (!more_levels) end_pass();
   return true;
@@ -326,12 +331,24 @@ void Cache::Impl::next_pass() {
     finish(StopReason::passes);
 }
 
-bool Cache::Impl::next_level() {
+/// What noise a record may have and be done, over the option. One more level is worth what it takes from the
+/// picture's squared error, per ray: with n rays so far, noise^2 A / n where A is how much of the picture the
+/// record serves. Equal worth is noise in proportion to sqrt(n) / sqrt(A): rays go where many pixels read
+/// them, in proportion to the standard deviation of one ray and to the radius as the camera sees it.
+float Cache::Impl::share_of_noise(const Records::Figures& record, const Frame& camera) const {
+  if (record.origin == k_origin_recursive) return k_deep_noise;
+  const float height =
+      2 * glm::length(camera.camera_up) * (least.parallel ? 1 : distance(record.position, least.eye));
+  return std::clamp(std::ldexp(k_noisy_radius, static_cast<int>(level)) * height / record.radius,
+                    1 / k_most_shift, k_most_shift);
+}
+
+bool Cache::Impl::next_level(const CacheView& view) {
   const uint32_t rays = options.rays << 2 * level;
   if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
   const std::vector<Records::Figures> figures = records.figures();
   const std::vector<float> light = records.luminances();
-  const float least = dark(light);
+  const float darkest = dark(light);
   // Light that few rays find (a caustic) is looked for wherever a record near by has found it: one that has
   // not would else stop, content with its darkness. The list is in Morton order, so that neighbours in it
   // are near.
@@ -339,9 +356,8 @@ bool Cache::Impl::next_level() {
   size_t next = 0;  // the first that no noisy one so far has kept or passed
   for (size_t i = 0; i < list.size(); ++i) {
     const uint32_t r = list[i];
-    const float enough =
-        figures[r].origin == k_origin_recursive ? k_deep_noise * options.noise : options.noise;
-    if (figures[r].error <= enough * std::max(light[r], least)) continue;
+    const float noise = options.noise * share_of_noise(figures[r], view.paths_frame);
+    if (figures[r].error <= noise * std::max(light[r], darkest)) continue;
     next = std::max(next, i > k_company ? i - k_company : 0);
     for (; next < std::min(list.size(), i + k_company + 1); ++next) longer.push_back(list[next]);
   }

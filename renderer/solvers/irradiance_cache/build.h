@@ -148,9 +148,10 @@ struct Cache::Impl {
   void next_pass();
   /// Building may wait here; `last`: of its pass.
   void ended(BuildStage stage, bool last = false);
+  float share_of_noise(const Records::Figures& record, const shared::Frame& camera) const;
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
-  bool next_level();
+  bool next_level(const CacheView& view);
   /// Lights and radii of this level, for those who look up.
   void publish_level(const Work& work);
   /// Radii of the records that are added in this pass, by what is known of them: `lit` after their first

@@ -43,7 +43,9 @@ struct CacheOptions {
   /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
   /// `most_rays` and what the wavefront has slots for.
   uint32_t rays = 256, most_rays = 4096;
-  /// Relative standard error of its luminance above which a record gets another level. Records darker than a
+  /// Relative standard error of its luminance above which a record gets another level: after the first, and
+  /// with a radius of 3 % of the picture's height, as the camera sees it. In proportion to one over the
+  /// radius and to the square root of the rays so far (build.cpp, share_of_noise()). Records darker than a
   /// tenth of the mean are held against that.
   float noise = 0.1f;
   /// Of its radius: where a record makes others superfluous that are not yet evaluated, 0..1. The less, the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 
 #include "base/error.h"
 #include "gpu/kernel.h"
@@ -135,7 +136,8 @@ std::vector<Records::Figures> Records::figures() const {
   for (uint32_t i = 0; i < size_; ++i) {
     const vec4* p = &places[size_t{i} * k_record_texels];
     all.push_back({float(std::bit_cast<uint32_t>(p[2].x)), p[1].w, p[2].z,
-                   std::bit_cast<uint32_t>(p[2].w) >> k_record_origin_shift & 3u});
+                   std::bit_cast<uint32_t>(p[2].w) >> k_record_origin_shift & 3u, vec3(p[0]),
+                   std::sqrt(p[0].w * p[3].w)});
   }
   return all;
 }

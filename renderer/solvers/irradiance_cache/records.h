@@ -83,6 +83,8 @@ class Records {
   struct Figures {
     float rays, mean_distance, error;
     uint32_t origin;
+    vec3 position;
+    float radius;  ///< of a circle as large as where it serves [m]; 0: nowhere yet
   };
   std::vector<Figures> figures() const;
   /// Radii of the records from `first` on.
