@@ -169,6 +169,7 @@ shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
 irradiance_cache::CacheOptions Renderer::cache_options() const {
   return {.metric = irradiance_cache::Metric(settings_.choice("cache.metric")),
           .error = float(settings_.real("cache.error")),
+          .nearest = float(settings_.real("cache.nearest")),
           .least_pixels = float(settings_.real("cache.min_radius")),
           .most_radius = float(settings_.real("cache.max_radius")),
           .rays = uint32_t(std::stoul(settings_.text("cache.rays"))),

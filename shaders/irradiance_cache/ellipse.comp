@@ -31,7 +31,7 @@ void main() {
   float least = least_radius(place.xyz);
   float bends_by = p.strongest / max(max(light, push.dark), 1e-30);
   float minor = bends_by > 0.0 ? push.reach * inversesqrt(sqrt(bends_by * p.ratio)) : push.most;
-  minor = min(minor, bends.w);
+  minor = min(minor, push.near * bends.w);
   float major = clamp(p.ratio * minor, least, push.most);
   minor = clamp(minor, least, push.most);
   vec3 tangent, bitangent;

@@ -78,8 +78,8 @@ struct CacheFrame {
   uint record_count;
   /// Most that the normals of a point and of a record may differ, as 1 - cos.
   float normal_tolerance;
-  /// How far off the plane between its own and a record's tangent plane, in the record's radius, a point may lie
-  /// and still be served.
+  /// How far off the plane between its own and a record's tangent plane, in the record's radius, a point may
+  /// lie and still be served.
   float off_plane;
   uint probing;  ///< k_probe_*
   /// The same of records no wider than the least radius that a record has there: steps of surfaces that small
@@ -103,8 +103,8 @@ struct RecordPush {
 };
 
 struct RadiusPush {
-  uint first, count;   ///< records
-  float error;         ///< radius over harmonic mean distance
+  uint first, count;  ///< records
+  float error;        ///< radius over harmonic mean distance
   float most;         ///< [m]
   float near;         ///< ... and over the distance of the nearest thing
 };
@@ -113,7 +113,8 @@ struct EllipsePush {
   uint first, count;  ///< records
   float reach;        ///< fourth root of 4/pi times the integral of a record's relative error [m^(1/2)]
   float most;         ///< [m]
-  float dark;                ///< irradiance, luminance: records that have less are held against it
+  float dark;         ///< irradiance, luminance: records that have less are held against it
+  float near;         ///< lesser radius over the greatest that holds nothing that a ray met, at most
 };
 
 // What the overlay colours records by.

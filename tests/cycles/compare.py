@@ -40,6 +40,19 @@ from figures import figures  # noqa: E402
 from reduce import FEATURES  # noqa: E402
 from reduce import reduced  # noqa: E402
 
+
+def common_arguments(p):
+    """What every script that renders with both takes."""
+    p.add_argument("--camera", default="")
+    p.add_argument("--depth", type=int, default=64)
+    p.add_argument("--threads", type=int, default=2)
+    p.add_argument("--program", default=os.path.join(HERE, "..", "..", "build", "release", "bin", "lucerna"))
+    p.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="passed on to Lucerna")
+    p.add_argument("--repeats", type=int, default=3)
+    p.add_argument("--keep", metavar="DIR", help="where the pictures go; those already there are used again")
+    p.add_argument("--json", metavar="FILE", help="write all figures there")
+
+
 def arguments():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("scenes", nargs="+", metavar="SCENE")
@@ -47,18 +60,11 @@ def arguments():
     p.add_argument("--samples", type=int, default=256, help="of each picture of Lucerna, and of Cycles unless ...")
     p.add_argument("--cycles-samples", type=int)
     p.add_argument("--seeds", type=int, default=2, help="pictures of each renderer")
-    p.add_argument("--camera", default="")
-    p.add_argument("--depth", type=int, default=64)
-    p.add_argument("--threads", type=int, default=2)
-    p.add_argument("--program", default=os.path.join(HERE, "..", "..", "build", "release", "bin", "lucerna"))
-    p.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="passed on to Lucerna")
     p.add_argument("--leave-out", action="append", default=[], metavar="X0,Y0,X1,Y1")
     p.add_argument("--without", default="", metavar="FEATURE,...",
                    help="render a reduced copy, to find what differs: " + ", ".join(FEATURES))
     p.add_argument("--speed", action="store_true")
-    p.add_argument("--repeats", type=int, default=3)
-    p.add_argument("--keep", metavar="DIR", help="where the pictures go; those already there are used again")
-    p.add_argument("--json", metavar="FILE", help="write all figures there")
+    common_arguments(p)
     return p.parse_args()
 
 
@@ -74,15 +80,15 @@ def camera_aspect(path, name):
 
 
 class Job:
-    """One scene, rendered by either program."""
+    """One scene, rendered by either program. `a`: size and common_arguments()."""
 
-    def __init__(self, a, scene, folder):
+    def __init__(self, a, scene, folder, without=""):
         self.a, self.scene, self.folder = a, scene, folder
         self.name = os.path.splitext(os.path.basename(scene))[0]
-        if a.without:
-            self.folder = os.path.join(folder, self.name + "-without-" + a.without.replace(",", "-"))
+        if without:
+            self.folder = os.path.join(folder, self.name + "-without-" + without.replace(",", "-"))
             os.makedirs(self.folder, exist_ok=True)
-            self.scene = reduced(scene, a.without.split(","), self.folder)
+            self.scene = reduced(scene, without.split(","), self.folder)
         if a.size == "auto":
             aspect = camera_aspect(scene, a.camera)
             w, h = (160, round(160 / aspect)) if aspect >= 1 else (round(160 * aspect), 160)
@@ -95,16 +101,15 @@ class Job:
         camera = "-" + self.a.camera if self.a.camera else ""
         return os.path.join(self.folder, f"{self.name}{camera}-{self.size}-{renderer}-{samples}-{seed}.exr")
 
-    def lucerna(self, seed, samples=0):
-        """Renders one picture; its samples/s."""
-        samples = samples or self.a.samples
+    def lucerna(self, seed, samples, settings=()):
+        """Renders one picture; its samples/s. `settings`: KEY=VALUE, beside those that both take."""
         out, stats = self.path("lucerna", samples, seed), os.path.join(self.folder, self.name + "-stats.json")
         command = [self.a.program, "render", self.scene, "-o", out, "--size", self.size, "--samples",
                    str(samples), "--seed", str(seed), "--stats", stats, "--quiet",
                    "--set", f"path.max_depth={self.a.depth}"]
         if self.a.camera:
             command += ["--camera", self.a.camera]
-        for s in self.a.set:
+        for s in settings:
             command += ["--set", s]
         # Lavapipe and Embree's pool both follow the affinity; lavapipe also reads a variable.
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -120,9 +125,8 @@ class Job:
                 "cpu_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, "tracer": found.get("tracer"), "device": found.get("device"),
                 "stages_ms": stages}
 
-    def cycles(self, seeds):
+    def cycles(self, seeds, samples):
         """Renders one picture a seed in one session of Blender; samples/s of the first."""
-        samples = self.a.cycles_samples or self.a.samples
         command = ["blender", "-b", "--factory-startup", "-P", os.path.join(HERE, "blender_scene.py"), "--", self.scene,
                    self.path("cycles", samples, "SEED"), "--size", self.size, "--samples", str(samples), "--depth",
                    str(self.a.depth), "--seeds", ",".join(str(s) for s in seeds), "--threads", str(self.a.threads)]
@@ -139,11 +143,11 @@ def compare(job):
     a, seeds = job.a, range(job.a.seeds)
     for seed in seeds:
         if not os.path.exists(job.path("lucerna", a.samples, seed)):
-            job.lucerna(seed)
+            job.lucerna(seed, a.samples, a.set)
     samples = a.cycles_samples or a.samples
     missing = [s for s in seeds if not os.path.exists(job.path("cycles", samples, s))]
     if missing:
-        job.cycles(missing)
+        job.cycles(missing, samples)
     ours = [exr.rgb(job.path("lucerna", a.samples, s)) for s in seeds]
     theirs = [exr.rgb(job.path("cycles", samples, s)) for s in seeds]
     finite = np.isfinite(np.stack(ours)).all(axis=(0, 3))
@@ -175,12 +179,13 @@ def print_pictures(results):
 
 def speed(job):
     ours, theirs = [], []
-    job.lucerna(0, samples=1)   # kernels compiled and cached, files read once
-    start = job.lucerna(0, samples=1)["cpu_s"]
-    for i in range(job.a.repeats):
-        ours.append(job.lucerna(i))
+    a = job.a
+    job.lucerna(0, 1, a.set)   # kernels compiled and cached, files read once
+    start = job.lucerna(0, 1, a.set)["cpu_s"]
+    for i in range(a.repeats):
+        ours.append(job.lucerna(i, a.samples, a.set))
         ours[-1]["cpu_s"] = max(ours[-1]["cpu_s"] - start, 1e-3)
-        theirs.append(job.cycles([i]))
+        theirs.append(job.cycles([i], a.cycles_samples or a.samples))
     work = job.width * job.height * job.a.samples
     result = {"scene": job.name, "size": job.size, "samples": job.a.samples, "threads": job.a.threads}
     for name, runs in (("lucerna", ours), ("cycles", theirs)):
@@ -212,7 +217,7 @@ def main():
     os.makedirs(folder, exist_ok=True)
     results = []
     for scene in a.scenes:
-        job = Job(a, scene, folder)
+        job = Job(a, scene, folder, a.without)
         results.append(speed(job) if a.speed else compare(job))
         print(f"{job.name} done", file=sys.stderr, flush=True)
     (print_speed if a.speed else print_pictures)(results)

@@ -57,6 +57,24 @@ def block_figures(ours, theirs, keep, tolerance=0.01):
             "outside": round(float(outside.mean()), 4), "worst": worst}
 
 
+def smooth(x):
+    """The mean of 3 x 3 pixels, by channel."""
+    h, w = x.shape[:2]
+    p = np.pad(x, ((1, 1), (1, 1), (0, 0)), mode="edge")
+    return sum(p[i:i + h, j:j + w] for i in range(3) for j in range(3)) / 9
+
+
+def relative_mse(picture, first, second, eps=0.01, trimmed=0.001):
+    """The mean over pixels and channels of (t - r1)(t - r2) / (r^2 + eps), without the worst `trimmed` of the pixels.
+
+    `first` and `second`, r1 and r2, are independent, so that their own noise adds nothing to the mean. r is their mean
+    over 3 x 3 pixels: were it of the pixel alone, noise would divide by what it has itself made small or large.
+    """
+    r = smooth((first + second) / 2)
+    each = np.sort(((picture - first) * (picture - second) / (r * r + eps)).mean(axis=2).ravel())
+    return float(each[:len(each) - max(1, int(trimmed * len(each)))].mean())
+
+
 def figures(ours, theirs, keep, eps=0.01):
     """Everything compare.py prints of one scene; `ours` and `theirs` are Estimates, `keep` a mask of pixels."""
     o, t = ours.mean[keep], theirs.mean[keep]

@@ -4,10 +4,9 @@
   tests/cycles/race.py scenes/cornell/cornell.gltf --error 0.002 --set components.secondary=cache --set components.tertiary=cache
   tests/cycles/race.py scenes/window/window.gltf --error 0.01 --size 256x256 --reference-samples 16384 --set cache.environment=true
 
-Error: the mean over pixels and channels of (t - r1)(t - r2) / (r^2 + 0.01), r = (r1 + r2) / 2, without the worst 0.1 % of
-the pixels. r1 and r2 are two independent long pictures, so that their own noise adds nothing to the mean. Each renderer is
-held against its own ones (Lucerna's by path tracing, without --set); what their means differ by is printed, and by how much
-each would miss the other's.
+Error: the relative mean squared one of figures.py, by two independent long pictures: by 0.01 and the worst 0.1 % of the
+pixels left out. Each renderer is held against its own ones (Lucerna's by path tracing, without --set). By how much they
+miss each other's, and the ratio of their means, is printed.
 
 The samples that reach the error are found first, by pilots; then both render with those, --repeats times in turns. Time
 is that of the rendering: Lucerna's with building the cache, without loading the scene; Cycles' without copying the scene and
@@ -21,14 +20,12 @@ import sys
 import tempfile
 from statistics import median
 
-import numpy as np
-
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 import exr  # noqa: E402
 from compare import Job  # noqa: E402
-
-EPSILON, TRIMMED = 0.01, 0.001
+from compare import common_arguments  # noqa: E402
+from figures import relative_mse  # noqa: E402
 
 
 def arguments():
@@ -39,17 +36,8 @@ def arguments():
     p.add_argument("--samples", type=int, default=32, help="of the first pilots")
     p.add_argument("--most-samples", type=int, default=16384, help="no more than these are tried")
     p.add_argument("--reference-samples", type=int, default=4096, help="of each of two pictures by either renderer")
-    p.add_argument("--camera", default="")
-    p.add_argument("--depth", type=int, default=64)
-    p.add_argument("--threads", type=int, default=2)
-    p.add_argument("--program", default=os.path.join(HERE, "..", "..", "build", "release", "bin", "lucerna"))
-    p.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="passed on to Lucerna")
-    p.add_argument("--repeats", type=int, default=3)
-    p.add_argument("--keep", metavar="DIR", help="where the pictures go; references already there are used again")
-    p.add_argument("--json", metavar="FILE", help="write all figures there")
-    a = p.parse_args()
-    a.without, a.cycles_samples = "", None
-    return a
+    common_arguments(p)
+    return p.parse_args()
 
 
 class Racer:
@@ -58,37 +46,32 @@ class Racer:
     def __init__(self, job, name):
         self.job, self.name, self.references = job, name, []
 
-    def render(self, samples, seed):
-        """The picture and what making it took [s]."""
-        a = self.job.a
+    def render(self, samples, seeds, settings=()):
+        """Renders a picture a seed; what making the first took [s]."""
         if self.name == "cycles":
-            a.cycles_samples = samples
-            seconds = self.job.cycles([seed])["render_s"]
-        else:
-            seconds = self.job.lucerna(seed, samples)["render_s"]
-        return exr.rgb(self.job.path(self.name, samples, seed)), seconds
+            return self.job.cycles(seeds, samples)["render_s"]
+        return [self.job.lucerna(seed, samples, settings)["render_s"] for seed in seeds][0]
+
+    def run(self, samples, seed):
+        """The error of a picture, and what making it took [s]."""
+        seconds = self.render(samples, [seed], self.job.a.set)
+        return relative_mse(exr.rgb(self.job.path(self.name, samples, seed)), *self.references), seconds
 
     def make_references(self):
-        a, chosen = self.job.a, self.job.a.set
-        a.set = []
-        for seed in (1001, 1002):
-            path = self.job.path(self.name, a.reference_samples, seed)
-            if not os.path.exists(path):
-                self.render(a.reference_samples, seed)
-            self.references.append(exr.rgb(path))
-        a.set = chosen
-
-    def error(self, picture):
-        return relative_mse(picture, *self.references)
+        samples = self.job.a.reference_samples
+        paths = {seed: self.job.path(self.name, samples, seed) for seed in (1001, 1002)}
+        missing = [seed for seed, path in paths.items() if not os.path.exists(path)]
+        if missing:
+            self.render(samples, missing)
+        self.references = [exr.rgb(path) for path in paths.values()]
 
     def samples_for(self, error):
         """Samples that reach it, with the pilots as (samples, error, seconds)."""
         samples, pilots = self.job.a.samples, []
         for _ in range(8):
-            picture, seconds = self.render(samples, 1)
-            pilots.append((samples, self.error(picture), seconds))
-            print(f"  {self.name}: {samples} samples, error {pilots[-1][1]:.6f}, {seconds:.2f} s", file=sys.stderr, flush=True)
-            found = pilots[-1][1]
+            found, seconds = self.run(samples, 1)
+            pilots.append((samples, found, seconds))
+            print(f"  {self.name}: {samples} samples, error {found:.6f}, {seconds:.2f} s", file=sys.stderr, flush=True)
             # By 1 / samples. What more samples do not mend (a cache's own error) would call for ever more.
             if 0.9 * error < found <= error or (found <= error and samples == 1):
                 break
@@ -100,19 +83,13 @@ class Racer:
         return (min(reached) if reached else None), pilots
 
 
-def relative_mse(t, r1, r2):
-    r = (r1 + r2) / 2
-    each = np.sort((((t - r1) * (t - r2)) / (r * r + EPSILON)).mean(axis=2).ravel())
-    return float(each[:len(each) - max(1, int(TRIMMED * len(each)))].mean())
-
-
 def main():
     a = arguments()
     folder = a.keep or tempfile.mkdtemp(prefix="lucerna-cycles-")
     os.makedirs(folder, exist_ok=True)
     job = Job(a, a.scene, folder)
     racers = [Racer(job, "lucerna"), Racer(job, "cycles")]
-    job.lucerna(0, samples=1)  # kernels compiled and cached, files read once
+    job.lucerna(0, 1, a.set)  # kernels compiled and cached, files read once
     result = {"scene": job.name, "size": job.size, "error": a.error, "set": a.set, "threads": a.threads}
     for r in racers:
         r.make_references()
@@ -125,12 +102,14 @@ def main():
     if all(result[r.name]["samples"] for r in racers):
         for i in range(a.repeats):
             for r in racers:
-                picture, seconds = r.render(result[r.name]["samples"], 100 + i)
-                result[r.name]["runs"].append((r.error(picture), seconds))
+                result[r.name]["runs"].append(r.run(result[r.name]["samples"], 100 + i))
         for r in racers:
             result[r.name]["seconds"] = median(s for _, s in result[r.name]["runs"])
             result[r.name]["error"] = median(e for e, _ in result[r.name]["runs"])
         result["ratio"] = result["cycles"]["seconds"] / result["lucerna"]["seconds"]
+    means = [result[r.name]["reference_mean"] for r in racers]
+    print(f"{job.name} {job.size} references: Lucerna's mean over Cycles' "
+          + " ".join(f"{ours / theirs:.4f}" for ours, theirs in zip(*means) if theirs > 0))
     for r in racers:
         f = result[r.name]
         if "seconds" in f:

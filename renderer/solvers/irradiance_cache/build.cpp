@@ -30,6 +30,10 @@ constexpr float k_finest_of_spacing = 0.5f;
 /// Radius, over the height of the picture at its distance, of a record of which the option `noise` is true
 /// after the first level; and how far from the option others may be.
 constexpr float k_noisy_radius = 0.03f, k_most_shift = 4;
+/// From this pass on each looks along up to twice as many paths a pixel as the one before, up to so many in
+/// all, until so many of the pixels' number ask: what then is left is fine detail.
+constexpr uint32_t k_looks_once = 3, k_most_looks = 16;
+constexpr float k_enough_ask = 0.1f;
 /// Passes that go on for the irradiance that the records give, when few paths ask.
 constexpr uint32_t k_refining_passes = 4;
 /// Records that go on with a noisy one, on either side.
@@ -54,7 +58,7 @@ bool Cache::Impl::probe(const Work& w) {
   const schedule::UniformSchedule before = picture;
   schedule::WorkItem item = picture.next();
   // Each pass looks along paths of its own.
-  for (WorkBlock& b : item.blocks) b.first_sample = status.pass;
+  for (WorkBlock& b : item.blocks) b.first_sample += looked_along;
   tell(recursive && status.pass < k_deep_passes ? k_probe_beyond : k_probe_lookups);
   StageTimer timer(w.wavefront);
   w.wavefront.stream().fill(candidates, 0);
@@ -67,10 +71,20 @@ bool Cache::Impl::probe(const Work& w) {
   took(BuildStep::probe, timer.milliseconds());
   collect(w, item.slots());
   if (!picture.done()) return true;
+  const bool covered = double(status.asked) <= double(options.stop_share) * double(status.paths);
+  // Few that ask show where gaps are, not how wide they are: each would get a record that serves little else.
+  const uint32_t most = status.pass < k_looks_once
+                            ? 1
+                            : std::min(k_most_looks, 2u << std::min(status.pass - k_looks_once, 16u));
+  if (!covered && picture.complete() < most &&
+      double(status.asked) * picture.complete() < double(k_enough_ask) * double(status.paths)) {
+    picture.set_samples(2 * picture.complete());
+    return true;
+  }
+  looked_along += picture.complete();
   probing = false;
-  if (double(status.asked) <= double(options.stop_share) * double(status.paths) &&
-      (status.pass >= k_refining_passes ||
-       double(pass().screen) <= double(options.stop_share) * double(screen.points())))
+  if (covered && (status.pass >= k_refining_passes ||
+                  double(pass().screen) <= double(options.stop_share) * double(screen.points())))
     finish(StopReason::covered);
   else
     stage = Stage::choose;
@@ -337,8 +351,7 @@ void Cache::Impl::next_pass() {
 /// them, in proportion to the standard deviation of one ray and to the radius as the camera sees it.
 float Cache::Impl::share_of_noise(const Records::Figures& record, const Frame& camera) const {
   if (record.origin == k_origin_recursive) return k_deep_noise;
-  const float height =
-      2 * glm::length(camera.camera_up) * (least.parallel ? 1 : distance(record.position, least.eye));
+  const float height = 2 * glm::length(camera.camera_up) * least.scale(record.position);
   return std::clamp(std::ldexp(k_noisy_radius, static_cast<int>(level)) * height / record.radius,
                     1 / k_most_shift, k_most_shift);
 }
@@ -379,12 +392,17 @@ void Cache::Impl::set_radii(const Work& w, bool lit) {
   bind(resources);
   const uint32_t groups = gpu::groups_for(count, 64);
   if (lit && options.metric == Metric::hessian) {
-    const EllipsePush push{evaluated, count, k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
-                           least.most, dark(records.luminances())};
+    const EllipsePush push{evaluated,
+                           count,
+                           k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
+                           least.most,
+                           dark(records.luminances()),
+                           options.nearest};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
   } else {
-    const RadiusPush push{evaluated, count, options.error, least.most,
-                          options.metric == Metric::hessian ? k_tried_near : 1.0f};
+    const RadiusPush push{
+        evaluated, count, options.error, least.most,
+        options.metric == Metric::hessian ? k_tried_near * options.nearest : options.nearest};
     w.wavefront.stream().dispatch(radius, resources, push, groups, "records");
   }
   w.wavefront.stream().run();

@@ -29,9 +29,9 @@ struct LeastRadius {
   bool parallel = false;
   float of_distance = 0;  ///< of the distance from `eye`; where `parallel`, in metres
   float most = 0;         ///< [m]
-  float at(const vec3& position) const {
-    return std::min(of_distance * (parallel ? 1 : distance(position, eye)), most);
-  }
+  /// What grows in proportion to the distance from the eye, over that.
+  float scale(const vec3& position) const { return parallel ? 1 : distance(position, eye); }
+  float at(const vec3& position) const { return std::min(of_distance * scale(position), most); }
   bool operator==(const LeastRadius&) const = default;
 };
 
@@ -61,7 +61,8 @@ struct Cache::Impl {
   CacheStatus status;
   Stage stage = Stage::probe;
   schedule::UniformSchedule picture;
-  bool probing = false;  // the schedule of this pass has begun
+  bool probing = false;       // the schedule of this pass has begun
+  uint32_t looked_along = 0;  // paths a pixel of the passes before
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
   Discontinuity screen;
   Placement placement;

@@ -72,7 +72,7 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
                                     .memory = gpu::Memory::host,
                                     .texel = true});
   own_bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + octree.bytes();
-  status.bytes = own_bytes;
+  count_bytes();
 }
 
 void Cache::Impl::count_bytes() {
@@ -160,6 +160,7 @@ void Cache::clear() {
   c.status = {.bytes = c.status.bytes, .published = c.status.published};
   c.stage = Stage::probe;
   c.probing = false;
+  c.looked_along = 0;
   c.evaluated = c.standing = c.until = 0;
   c.ends.clear();
   c.hold();
@@ -176,7 +177,7 @@ void Cache::Impl::drop_pass() {
 
 void Cache::extend() {
   Impl& c = *impl_;
-  c.status.pass = 0;
+  c.status.pass = c.looked_along = 0;
   c.status.stop = c.stopped = StopReason::building;
   c.stale = true;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped, unless

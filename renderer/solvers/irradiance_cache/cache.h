@@ -2,9 +2,10 @@
 // The irradiance cache as a solver: built in passes before the picture is begun, then only read, so that the
 // picture does not depend on the order in which records came (METHODS 3.2).
 //
-// A pass sends paths from the camera through the scene (one a pixel); where a diffuse vertex finds no record
-// it asks for one. Of the places asked for some are chosen (placement.h), evaluated (evaluate.h) and given a
-// radius. Passes end when few paths still ask. What no record serves is path traced.
+// A pass sends paths from the camera through the scene (one a pixel, and more while few of them ask); where a
+// diffuse vertex finds no record it asks for one. Of the places asked for some are chosen (placement.h),
+// evaluated (evaluate.h) and given a radius. Passes end when few paths still ask. What no record serves is
+// path traced.
 //
 // Where tertiary light is cached too the cache reads itself: a record's rays end where they find records of
 // earlier passes. So the first pass also asks at vertices deeper in the scene; its own records are path
@@ -38,6 +39,9 @@ struct CacheOptions {
   /// of what it sees. Hessian: so that the integral of its relative error over its ellipse is pi/4 of the
   /// fourth power of half of this, in squares of the scene's radius.
   float error = 0.3f;
+  /// Of a radius, an ellipse's lesser one, over the distance of the nearest thing that the record's rays met:
+  /// at most 1. What is near changes within that distance, of which the mean distance tells little.
+  float nearest = 1;
   float least_pixels = 3;    ///< least radius as the camera sees it; 0 or more
   float most_radius = 0.1f;  ///< of the scene's radius
   /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
