@@ -30,8 +30,8 @@ constexpr float k_finest_of_spacing = 0.5f;
 /// Radius, over the height of the picture at its distance, of a record of which the option `noise` is true
 /// after the first level; and how far from the option others may be.
 constexpr float k_noisy_radius = 0.03f, k_most_shift = 4;
-/// From this pass on each looks along up to twice as many paths a pixel as the one before, up to so many in
-/// all, until so many of the pixels' number ask: what then is left is fine detail.
+/// Passes that look along one path a pixel; paths a pixel that later ones look along at most, until so many
+/// of the pixels' number ask.
 constexpr uint32_t k_looks_once = 3, k_most_looks = 16;
 constexpr float k_enough_ask = 0.1f;
 /// Passes that go on for the irradiance that the records give, when few paths ask.
@@ -43,6 +43,14 @@ constexpr float k_hessian_reach = 0.5f;
 /// Of metric `hessian`, over the nearest thing: how far a place that is tried would serve. The first level
 /// has more rays, which meet nearer things.
 constexpr float k_tried_near = 0.8f;
+
+/// Paths a pixel that a pass looks along at most: twice as many as the one before, once what is left is fine
+/// detail.
+uint32_t most_looks(uint32_t pass) {
+  uint32_t looks = 1;
+  for (uint32_t p = k_looks_once; p <= pass && looks < k_most_looks; ++p) looks *= 2;
+  return looks;
+}
 
 }  // namespace
 
@@ -73,10 +81,7 @@ bool Cache::Impl::probe(const Work& w) {
   if (!picture.done()) return true;
   const bool covered = double(status.asked) <= double(options.stop_share) * double(status.paths);
   // Few that ask show where gaps are, not how wide they are: each would get a record that serves little else.
-  const uint32_t most = status.pass < k_looks_once
-                            ? 1
-                            : std::min(k_most_looks, 2u << std::min(status.pass - k_looks_once, 16u));
-  if (!covered && picture.complete() < most &&
+  if (!covered && picture.complete() < most_looks(status.pass) &&
       double(status.asked) * picture.complete() < double(k_enough_ask) * double(status.paths)) {
     picture.set_samples(2 * picture.complete());
     return true;
@@ -400,9 +405,8 @@ void Cache::Impl::set_radii(const Work& w, bool lit) {
                            options.nearest};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
   } else {
-    const RadiusPush push{
-        evaluated, count, options.error, least.most,
-        options.metric == Metric::hessian ? k_tried_near * options.nearest : options.nearest};
+    const RadiusPush push{evaluated, count, options.error, least.most,
+                          options.nearest * (options.metric == Metric::hessian ? k_tried_near : 1)};
     w.wavefront.stream().dispatch(radius, resources, push, groups, "records");
   }
   w.wavefront.stream().run();
