@@ -6,13 +6,11 @@
 #include "shaders/shared/neighbours.h"
 #include "lib/invocation.glsl"
 #include "lib/math.glsl"
-#include "irradiance_cache/least_radius.glsl"
+#include "irradiance_cache/shrink.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { NeighbourPush push; };
 uniform samplerBuffer record_texels;
 uniform usamplerBuffer pair_texels;  // SortEntry64, sorted
-layout(scalar) writeonly buffer Records { vec4 records[]; };
-layout(scalar) writeonly buffer Spheres { vec4 spheres[]; };  // of the octree
 
 // The first pair of a record, or of one after it.
 uint first_pair(uint own) {
@@ -65,12 +63,5 @@ void main() {
     if (gap <= push.gap) reach = uintBitsToFloat(pair.x & (1u << k_neighbour_distance_bits) - 1u);
   }
 
-  float least = least_radius(place.xyz);
-  vec4 shape = texelFetch(record_texels, at + 3);
-  // Of an ellipse both radii, in proportion, as far as the least allows.
-  float factor = min(1.0, max(reach, least / shape.w));
-  float radius = factor * place.w;
-  records[at].w = radius;
-  records[at + 3] = vec4(shape.xyz / factor, factor * shape.w);
-  spheres[record] = vec4(place.xyz, radius);
+  shrink_record(record, place, texelFetch(record_texels, at + 3), reach);
 }

@@ -109,6 +109,13 @@ struct RadiusPush {
   float near;         ///< ... and over the distance of the nearest thing
 };
 
+struct ClampPush {
+  uint count;  ///< records
+  float near;  ///< lesser radius over the distance of the nearest thing, at most
+};
+/// Of a record that none clamps: the bits of infinity.
+LUCERNA_CONST uint k_no_bound = 0x7f800000u;
+
 struct EllipsePush {
   uint first, count;  ///< records
   float reach;        ///< fourth root of 4/pi times the integral of a record's relative error [m^(1/2)]

@@ -200,6 +200,8 @@ bool Cache::Impl::measure(const Work& w) {
   if (done < batch) return false;
   if (at == list.size()) {
     set_radii(w, false);
+    build_octree(w.wavefront, until);
+    clamp_radii(w, until);
     tried_radii = records.radii(evaluated);
     stage = Stage::thin;
     ended(BuildStage::measure);
@@ -271,7 +273,7 @@ bool Cache::Impl::evaluate(const Work& w) {
   }
   ended(BuildStage::evaluate, !first && !more_levels);
   status.last->level = done_level;
-  if (!first && !more_levels) end_pass();
+  if (!first && !more_levels) end_pass(w);
   return true;
 }
 
@@ -281,7 +283,7 @@ bool Cache::Impl::index(const Work& w) {
   publish_level(w);
   more_levels = next_level(w.view);
   ended(BuildStage::octree, !more_levels);
-  if (!more_levels) end_pass();
+  if (!more_levels) end_pass(w);
   return true;
 }
 
@@ -323,6 +325,7 @@ void Cache::Impl::publish_level(const Work& w) {
     bound_radii(w, first);
     build_octree(w.wavefront);
   }
+  if (anew) clamp_radii(w, evaluated);
   took(BuildStep::octree, timer.milliseconds());
   tell();
 }
@@ -333,7 +336,9 @@ void Cache::Impl::bound_radii(const Work& w, uint32_t first) {
   count_bytes();
 }
 
-void Cache::Impl::end_pass() {
+void Cache::Impl::end_pass(const Work& w) {
+  // The levels' rays have met more than the first's. Records that are relit stay as they are: nobody would fill gaps.
+  if (level > 0 && status.relighting == 0) clamp_radii(w, evaluated);
   set_scales();
   pass().complete = true;
   if (status.relighting > 0) return relight_pass();
@@ -411,6 +416,17 @@ void Cache::Impl::set_radii(const Work& w, bool lit) {
   }
   w.wavefront.stream().run();
   took(BuildStep::radius, timer.milliseconds());
+}
+
+void Cache::Impl::clamp_radii(const Work& w, uint32_t count) {
+  bind(resources);
+  resources.set("Bounds", bounds);
+  const ClampPush push{count, options.nearest * (options.metric == Metric::hessian ? k_tried_near : 1)};
+  const uint32_t groups = gpu::groups_for(count, 64);
+  w.wavefront.stream().dispatch(clamp_find, resources, push, groups, "records");
+  w.wavefront.stream().dispatch(clamp_radius, resources, push, groups, "records");
+  w.wavefront.stream().run();
+  build_octree(w.wavefront);
 }
 
 void Cache::Impl::list_until(uint32_t end) {

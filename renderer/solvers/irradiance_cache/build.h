@@ -51,7 +51,8 @@ struct Cache::Impl {
   Records records;
   lookup::Octree octree;
   gpu::Buffer frame, candidates;
-  gpu::Kernel radius, ellipse, overlay;
+  gpu::Buffer bounds;  // of radii; between two clamp_radii() none
+  gpu::Kernel radius, ellipse, clamp_find, clamp_radius, overlay;
   gpu::Resources resources;
   Evaluator evaluator;
   std::array<uint32_t, 16> routes{}, own_routes{};  // of the picture's paths, of the records'
@@ -127,7 +128,8 @@ struct Cache::Impl {
   void take(const RawRecords& raw);
   /// What lookup.glsl reads.
   void bind(gpu::Resources& to) const;
-  void build_octree(transport::Wavefront& wavefront);
+  void build_octree(transport::Wavefront& wavefront) { build_octree(wavefront, evaluated); }
+  void build_octree(transport::Wavefront& wavefront, uint32_t count);
   /// What all but a few records lie between.
   void set_scales();
   /// What paths know of the cache from here on.
@@ -145,7 +147,7 @@ struct Cache::Impl {
     return radius * (radius <= 1.001f * least.at(place.position) ? k_off_plane_least : k_off_plane);
   }
   void collect(const Work& work, uint32_t slots);
-  void end_pass();
+  void end_pass(const Work& work);
   void next_pass();
   /// Building may wait here; `last`: of its pass.
   void ended(BuildStage stage, bool last = false);
@@ -160,6 +162,9 @@ struct Cache::Impl {
   void set_radii(const Work& work, bool lit);
   /// ... of those from `first` on by the records around, that they be no wider than they need be.
   void bound_radii(const Work& work, uint32_t first);
+  /// ... of the first `count`, of which all are in the octree, by what is nearest to any of them
+  /// (clamp_find.comp). Afterwards it holds those that are evaluated.
+  void clamp_radii(const Work& work, uint32_t count);
   /// The records of this pass, which end there, for the next piece of work on them.
   void list_until(uint32_t end);
   CachePass& pass() { return status.passes.back(); }

@@ -71,7 +71,11 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
                                     .bytes = uint64_t{slots} * 16 * k_candidate_texels,
                                     .memory = gpu::Memory::host,
                                     .texel = true});
-  own_bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + octree.bytes();
+  bounds = gpu::Buffer(device, {.name = "bounds of radii",
+                                .bytes = uint64_t{o.most_records} * 4,
+                                .memory = gpu::Memory::host});
+  std::fill_n(static_cast<uint32_t*>(bounds.mapped()), o.most_records, k_no_bound);
+  own_bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + bounds.bytes() + octree.bytes();
   count_bytes();
 }
 
@@ -80,11 +84,11 @@ void Cache::Impl::count_bytes() {
       own_bytes + screen.bytes() + placement.bytes() + (neighbours ? neighbours->bytes() : uint64_t{0});
 }
 
-void Cache::Impl::build_octree(transport::Wavefront& wavefront) {
+void Cache::Impl::build_octree(transport::Wavefront& wavefront, uint32_t count) {
   const lookup::Discs discs =
       records.discs(slab_thickness(std::max(k_off_plane, k_off_plane_least), k_normal_tolerance));
   const shared::OctreeHeader& h =
-      octree.build(wavefront.stream(), records.spheres(), {.most = evaluated}, &discs);
+      octree.build(wavefront.stream(), records.spheres(), {.most = count}, &discs);
   status.references = h.spheres ? double(h.references) / h.spheres : 0;
   wavefront.rebind_lookup();
 }
@@ -129,6 +133,9 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
       std::any_of(c.own_routes.begin(), c.own_routes.end(), [](uint32_t r) { return r != k_no_routes; });
   c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
   c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(own, options.metric));
+  c.clamp_find =
+      gpu::Kernel(device, compiler, "irradiance_cache/clamp_find.comp", defines(own, options.metric));
+  c.clamp_radius = gpu::Kernel(device, compiler, "irradiance_cache/clamp_radius.comp");
   if (options.metric == Metric::hessian)
     c.ellipse = gpu::Kernel(device, compiler, "irradiance_cache/ellipse.comp");
   clear();

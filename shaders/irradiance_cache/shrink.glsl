@@ -1,0 +1,18 @@
+// Records of lesser reach than they have.
+#ifndef LUCERNA_IRRADIANCE_CACHE_SHRINK
+#define LUCERNA_IRRADIANCE_CACHE_SHRINK
+#include "irradiance_cache/least_radius.glsl"
+
+layout(scalar) writeonly buffer Records { vec4 records[]; };
+layout(scalar) writeonly buffer Spheres { vec4 spheres[]; };  // of the octree
+
+// `place`, `shape`: texels 0 and 3. No wider than `factor` of what it is, but for the least; of an ellipse both radii, in
+// proportion.
+void shrink_record(uint record, vec4 place, vec4 shape, float factor) {
+  factor = min(1.0, max(factor, least_radius(place.xyz) / shape.w));
+  float radius = factor * place.w;
+  records[record * k_record_texels].w = radius;
+  records[record * k_record_texels + 3u] = vec4(shape.xyz / factor, factor * shape.w);
+  spheres[record] = vec4(place.xyz, radius);
+}
+#endif
