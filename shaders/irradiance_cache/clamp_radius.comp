@@ -13,5 +13,5 @@ void main() {
   bounds[index] = k_no_bound;
   int at = int(index * k_record_texels);
   vec4 place = texelFetch(record_texels, at), shape = texelFetch(record_texels, at + 3);
-  shrink_record(index, place, shape, bound / shape.w);
+  if (bound < shape.w) shrink_record(index, place, shape, bound / shape.w);
 }

@@ -12,7 +12,7 @@ void shrink_record(uint record, vec4 place, vec4 shape, float factor) {
   factor = min(1.0, max(factor, least_radius(place.xyz) / shape.w));
   float radius = factor * place.w;
   records[record * k_record_texels].w = radius;
-  records[record * k_record_texels + 3u] = vec4(shape.xyz / factor, factor * shape.w);
+  records[record * k_record_texels + 3u] = vec4(factor > 0.0 ? shape.xyz / factor : vec3(0.0), factor * shape.w);
   spheres[record] = vec4(place.xyz, radius);
 }
 #endif

@@ -200,8 +200,7 @@ bool Cache::Impl::measure(const Work& w) {
   if (done < batch) return false;
   if (at == list.size()) {
     set_radii(w, false);
-    build_octree(w.wavefront, until);
-    clamp_radii(w, until);
+    clamp_radii(w, until, false);
     tried_radii = records.radii(evaluated);
     stage = Stage::thin;
     ended(BuildStage::measure);
@@ -305,8 +304,8 @@ void Cache::Impl::forget_placement() {
 
 void Cache::Impl::publish_level(const Work& w) {
   records.publish(w.wavefront.stream());
-  // Radii come from the first level alone: the nearest thing that any ray met comes nearer with every ray,
-  // and records that shrank would leave gaps. A cache that reads itself does so from the second level on:
+  // Radii come from the first level; what the rays of later ones meet clamps them at the end of the pass, and
+  // the next one fills the gaps. A cache that reads itself does so from the second level on:
   // the first, of few rays, then is all that is traced without the records of its own pass.
   ++status.published;
   if (evaluated == until) return;
@@ -325,8 +324,8 @@ void Cache::Impl::publish_level(const Work& w) {
     bound_radii(w, first);
     build_octree(w.wavefront);
   }
-  if (anew) clamp_radii(w, evaluated);
   took(BuildStep::octree, timer.milliseconds());
+  if (anew) clamp_radii(w, evaluated, true);
   tell();
 }
 
@@ -337,8 +336,9 @@ void Cache::Impl::bound_radii(const Work& w, uint32_t first) {
 }
 
 void Cache::Impl::end_pass(const Work& w) {
-  // The levels' rays have met more than the first's. Records that are relit stay as they are: nobody would fill gaps.
-  if (level > 0 && status.relighting == 0) clamp_radii(w, evaluated);
+  // The levels' rays have met more than the first's. Records that are relit stay as they are: nobody would
+  // fill gaps.
+  if (level > 0 && status.relighting == 0) clamp_radii(w, evaluated, true);
   set_scales();
   pass().complete = true;
   if (status.relighting > 0) return relight_pass();
@@ -395,6 +395,10 @@ float Cache::Impl::dark(std::span<const float> light) const {
   return until > 0 ? 0.1f * float(sum / until) : 1.0f;
 }
 
+float Cache::Impl::nearest_share(bool lit) const {
+  return options.nearest * (options.metric == Metric::hessian && !lit ? k_tried_near : 1);
+}
+
 void Cache::Impl::set_radii(const Work& w, bool lit) {
   const uint32_t count = until - evaluated;
   if (count == 0) return;
@@ -410,23 +414,20 @@ void Cache::Impl::set_radii(const Work& w, bool lit) {
                            options.nearest};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
   } else {
-    const RadiusPush push{evaluated, count, options.error, least.most,
-                          options.nearest * (options.metric == Metric::hessian ? k_tried_near : 1)};
+    const RadiusPush push{evaluated, count, options.error, least.most, nearest_share(lit)};
     w.wavefront.stream().dispatch(radius, resources, push, groups, "records");
   }
   w.wavefront.stream().run();
   took(BuildStep::radius, timer.milliseconds());
 }
 
-void Cache::Impl::clamp_radii(const Work& w, uint32_t count) {
-  bind(resources);
-  resources.set("Bounds", bounds);
-  const ClampPush push{count, options.nearest * (options.metric == Metric::hessian ? k_tried_near : 1)};
-  const uint32_t groups = gpu::groups_for(count, 64);
-  w.wavefront.stream().dispatch(clamp_find, resources, push, groups, "records");
-  w.wavefront.stream().dispatch(clamp_radius, resources, push, groups, "records");
-  w.wavefront.stream().run();
+void Cache::Impl::clamp_radii(const Work& w, uint32_t count, bool lit) {
+  StageTimer timer(w.wavefront);
+  if (count > evaluated) build_octree(w.wavefront, count);
+  clamping.clamp(
+      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, count, nearest_share(lit));
   build_octree(w.wavefront);
+  took(BuildStep::radius, timer.milliseconds());
 }
 
 void Cache::Impl::list_until(uint32_t end) {

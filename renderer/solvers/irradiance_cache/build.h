@@ -10,6 +10,7 @@
 
 #include "schedule/uniform.h"
 #include "solvers/irradiance_cache/cache.h"
+#include "solvers/irradiance_cache/clamping.h"
 #include "solvers/irradiance_cache/neighbours.h"
 
 namespace lucerna::irradiance_cache {
@@ -51,8 +52,7 @@ struct Cache::Impl {
   Records records;
   lookup::Octree octree;
   gpu::Buffer frame, candidates;
-  gpu::Buffer bounds;  // of radii; between two clamp_radii() none
-  gpu::Kernel radius, ellipse, clamp_find, clamp_radius, overlay;
+  gpu::Kernel radius, ellipse, overlay;
   gpu::Resources resources;
   Evaluator evaluator;
   std::array<uint32_t, 16> routes{}, own_routes{};  // of the picture's paths, of the records'
@@ -67,6 +67,7 @@ struct Cache::Impl {
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
   Discontinuity screen;
   Placement placement;
+  Clamping clamping;
   std::optional<Neighbours> neighbours;  // only where radii are bounded
   bool looked = false;                   // at the picture, in this pass: the screen-space stage is done
   bool stale = true;                     // ... and what it has seen is not this picture
@@ -162,9 +163,11 @@ struct Cache::Impl {
   void set_radii(const Work& work, bool lit);
   /// ... of those from `first` on by the records around, that they be no wider than they need be.
   void bound_radii(const Work& work, uint32_t first);
-  /// ... of the first `count`, of which all are in the octree, by what is nearest to any of them
-  /// (clamp_find.comp). Afterwards it holds those that are evaluated.
-  void clamp_radii(const Work& work, uint32_t count);
+  /// ... of the first `count`, those that are evaluated at least, by what is nearest to any of them; the
+  /// octree is built anew.
+  void clamp_radii(const Work& work, uint32_t count, bool lit);
+  /// Greatest radius, of ellipses the lesser, over the distance of the nearest thing.
+  float nearest_share(bool lit) const;
   /// The records of this pass, which end there, for the next piece of work on them.
   void list_until(uint32_t end);
   CachePass& pass() { return status.passes.back(); }

@@ -64,18 +64,16 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
               .discs = true}),
       evaluator(device, compiler, slots),
       screen(device, compiler, defines(own, o.metric)),
-      placement(device, compiler) {
+      placement(device, compiler),
+      clamping(device, compiler, o.most_records, defines(own, o.metric)) {
   if (o.neighbours) neighbours.emplace(device, compiler, defines(own, o.metric));
   frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
   candidates = gpu::Buffer(device, {.name = "cache candidates",
                                     .bytes = uint64_t{slots} * 16 * k_candidate_texels,
                                     .memory = gpu::Memory::host,
                                     .texel = true});
-  bounds = gpu::Buffer(device, {.name = "bounds of radii",
-                                .bytes = uint64_t{o.most_records} * 4,
-                                .memory = gpu::Memory::host});
-  std::fill_n(static_cast<uint32_t*>(bounds.mapped()), o.most_records, k_no_bound);
-  own_bytes = uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + bounds.bytes() + octree.bytes();
+  own_bytes =
+      uint64_t{o.most_records} * k_record_bytes + candidates.bytes() + clamping.bytes() + octree.bytes();
   count_bytes();
 }
 
@@ -133,9 +131,6 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
       std::any_of(c.own_routes.begin(), c.own_routes.end(), [](uint32_t r) { return r != k_no_routes; });
   c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
   c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(own, options.metric));
-  c.clamp_find =
-      gpu::Kernel(device, compiler, "irradiance_cache/clamp_find.comp", defines(own, options.metric));
-  c.clamp_radius = gpu::Kernel(device, compiler, "irradiance_cache/clamp_radius.comp");
   if (options.metric == Metric::hessian)
     c.ellipse = gpu::Kernel(device, compiler, "irradiance_cache/ellipse.comp");
   clear();

@@ -1,0 +1,175 @@
+// links: irradiance_cache
+// Radii clamped by what other records know to be near, against the same done plainly on the host.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "kernels/gpu_support.h"
+#include "solvers/irradiance_cache/cache.h"
+#include "solvers/irradiance_cache/clamping.h"
+#include "solvers/lookup/octree.h"
+
+using namespace lucerna;
+using irradiance_cache::Clamping;
+using irradiance_cache::Metric;
+using irradiance_cache::Place;
+using irradiance_cache::RawRecords;
+using irradiance_cache::Record;
+using irradiance_cache::Records;
+
+namespace {
+
+constexpr float k_normal_tolerance = 0.06f, k_off_plane = 0.03f, k_least = 0.01f;
+
+struct Disc {
+  Place place;
+  float radius, nearest;
+  float stretch = 1;  ///< greater radius over the lesser, along x
+};
+
+/// Where record i serves, as lookup.glsl has it.
+bool serves(const Disc& i, const Place& at) {
+  const vec3 away = at.position - i.place.position;
+  const vec3 unit = away / i.radius;
+  const double far = std::hypot(double(unit.x) / double(i.stretch), double(unit.y), double(unit.z));
+  const float off = i.radius * (i.radius <= 1.001f * k_least ? 2 * k_off_plane : k_off_plane);
+  return far < 1 && 1 - dot(at.normal, i.place.normal) < k_normal_tolerance &&
+         std::abs(dot(away, at.normal + i.place.normal)) <= 2 * off;
+}
+
+float clamped_plainly(const std::vector<Disc>& discs, size_t i, float near) {
+  float bound = discs[i].radius;
+  for (const Disc& j : discs)
+    if (serves(discs[i], j.place))
+      bound = std::min(bound, near * (j.nearest + distance(j.place.position, discs[i].place.position)));
+  return std::max(bound, std::min(k_least, discs[i].radius));
+}
+
+struct Bed {
+  test::SilentDevice silent;
+  gpu::Device& device = silent.device;
+  gpu::ShaderCompiler compiler;
+  gpu::Stream stream{device};
+  Clamping clamping;
+
+  Bed(uint32_t capacity, Metric metric)
+      : clamping(device, compiler, capacity, irradiance_cache::Cache::defines({}, metric)) {}
+
+  std::vector<Record> clamp(const std::vector<Disc>& discs, float near) {
+    const auto count = uint32_t(discs.size());
+    Records records(device, count);
+    std::vector<Place> places;
+    for (const Disc& d : discs) places.push_back(d.place);
+    records.append(places);
+    RawRecords raw = records.raw(count);
+    for (uint32_t i = 0; i < count; ++i) {
+      const float minor = discs[i].radius, major = minor * discs[i].stretch;
+      raw.places[4 * i].w = major;
+      raw.places[4 * i + 2].y = discs[i].nearest;
+      raw.places[4 * i + 3] =
+          vec4(std::sqrt(std::max(0.0f, 1 / (minor * minor) - 1 / (major * major))), 0, 0, minor);
+      raw.spheres[i] = vec4(discs[i].place.position, major);
+    }
+    records.restore(raw);
+    shared::CacheFrame frame{};
+    frame.record_count = count;
+    frame.normal_tolerance = k_normal_tolerance;
+    frame.off_plane = k_off_plane, frame.off_plane_least = 2 * k_off_plane;
+    frame.parallel = 1, frame.least_of_distance = k_least, frame.least_most = 1;
+    gpu::Buffer block(device, {.name = "frame", .bytes = sizeof frame}),
+        candidates(device, {.name = "candidates", .bytes = 16, .texel = true});
+    block.write(&frame, sizeof frame);
+    lookup::Octree octree(device, compiler,
+                          {.spheres = count, .references = 64 * count, .copies = true, .discs = true});
+    const lookup::Discs planes = records.discs(0.3f);
+    octree.build(stream, records.spheres(), {.most = count}, &planes);
+    clamping.clamp(
+        stream,
+        [&](gpu::Resources& to) {
+          records.bind(to, Records::Use::look_up);
+          to.set("CacheBlock", block);
+          to.set("Candidates", candidates);
+          octree.bind(to);
+        },
+        count, near);
+    // The octree is told as well.
+    const std::vector<float> radii = records.radii(0);
+    const RawRecords after = records.raw(count);
+    for (uint32_t i = 0; i < count; ++i) {
+      CHECK(after.spheres[i].w == radii[i]);
+      CHECK(vec3(after.spheres[i]) == discs[i].place.position);
+    }
+    return records.read();
+  }
+};
+
+/// Discs on two floors and a slope; every other one knows of nothing.
+std::vector<Disc> many(uint32_t count, float stretch) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> any(0, 1);
+  std::vector<Disc> discs;
+  for (uint32_t i = 0; i < count; ++i) {
+    Disc d;
+    const float x = any(random), z = any(random);
+    const float turned = i % 3 == 2 ? 0.2f : 0.0f;
+    d.place.position = vec3(x, i % 3 == 1 ? 0.02f : 0.0f, z);
+    d.place.normal = vec3(std::sin(turned), std::cos(turned), 0);
+    d.radius = 0.02f + 0.3f * any(random) * any(random);
+    d.stretch = stretch;
+    d.nearest = i % 2 ? std::numeric_limits<float>::infinity() : 0.4f * any(random) * any(random);
+    discs.push_back(d);
+  }
+  return discs;
+}
+
+}  // namespace
+
+TEST_CASE("one that has met a narrow thing tells those that would serve across it") {
+  Bed bed(8, Metric::split_sphere);
+  const vec3 up(0, 1, 0);
+  std::vector<Disc> discs{
+      {{vec3(0, 0, 0), up}, 1.0f, 5.0f},                              // told by the next
+      {{vec3(0.3f, 0, 0), up}, 0.2f, 0.1f},                           // whose own is less than that allows
+      {{vec3(0, 0, 0.5f), up}, 0.4f, 5.0f},                           // does not reach so far
+      {{vec3(0, -0.5f, 0), up}, 0.7f, 5.0f},                          // another floor
+      {{vec3(0.2f, 0, 0.1f), normalize(vec3(1, 1, 0))}, 0.7f, 5.0f},  // another slope
+      {{vec3(5, 0, 0), up}, 1.0f, std::numeric_limits<float>::infinity()},  // alone under the sky
+      {{vec3(8, 0, 0), up}, 0.3f, 0.001f},                                  // at least the least
+      {{vec3(9, 0, 0), up}, 0.005f, 0.001f},                                // ... and never more than it was
+  };
+  const std::vector<Record> all = bed.clamp(discs, 1);
+  const float expected[] = {0.4f, 0.1f, 0.4f, 0.7f, 0.7f, 1.0f, 0.01f, 0.005f};
+  for (size_t i = 0; i < discs.size(); ++i) {
+    INFO("record " << i);
+    CHECK(all[i].radius == Approx(expected[i]).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("radii are clamped as on the host, of circles and of ellipses, twice in a row") {
+  for (const Metric metric : {Metric::split_sphere, Metric::hessian}) {
+    const float stretch = metric == Metric::hessian ? 1.6f : 1.0f;
+    for (const float near : {1.0f, 0.5f}) {
+      std::vector<Disc> discs = many(3000, stretch);
+      Bed bed(uint32_t(discs.size()), metric);
+      for (int time = 0; time < 2; ++time) {
+        const std::vector<Record> all = bed.clamp(discs, near);
+        int wrong = 0, clamped = 0;
+        std::vector<Disc> after = discs;
+        for (size_t i = 0; i < discs.size(); ++i) {
+          const float expected = clamped_plainly(discs, i, near);
+          wrong += std::abs(all[i].lesser_radius - expected) > 1e-5f * expected;
+          wrong += std::abs(all[i].radius - stretch * expected) > 1e-4f * expected;
+          clamped += expected < discs[i].radius;
+          after[i].radius = all[i].lesser_radius;
+        }
+        INFO("stretch " << stretch << ", near " << near << ", time " << time << ": " << clamped
+                        << " clamped, " << wrong << " wrong");
+        CHECK(wrong <= 3);  // at the very border of where another serves
+        if (time == 0) CHECK(clamped > 1000);
+        discs = after;
+      }
+    }
+  }
+}
