@@ -43,5 +43,17 @@ inline bool begins_with(const irradiance_cache::RawRecords& all, const irradianc
 inline bool identical(const irradiance_cache::RawRecords& a, const irradiance_cache::RawRecords& b) {
   return begins_with(a, b) && begins_with(b, a);
 }
+/// Whether the first of `all` are those of `some`, light aside: places, normals, origins, facets and passes,
+/// to the bit. They may serve less far.
+inline bool keeps_places(const irradiance_cache::RawRecords& all, const irradiance_cache::RawRecords& some) {
+  bool same = all.size() >= some.size();
+  for (size_t r = 0; same && r < some.size(); ++r) {
+    const vec4 *a = &all.places[r * shared::k_record_texels], *b = &some.places[r * shared::k_record_texels];
+    same = std::memcmp(&a[0], &b[0], sizeof(vec3)) == 0 && a[0].w <= b[0].w &&
+           std::memcmp(&a[1], &b[1], sizeof(vec3)) == 0 &&
+           std::memcmp(&a[2].w, &b[2].w, sizeof(float)) == 0 && all.spheres[r] == vec4(vec3(b[0]), a[0].w);
+  }
+  return same;
+}
 
 }  // namespace lucerna::test
