@@ -107,11 +107,10 @@ std::vector<OptionInfo> make_options() {
            "Irradiance cache: how far records serve: radii are in proportion to it, by either metric. "
            "Smaller: more records, less error. split-sphere: radius over the harmonic mean distance of what "
            "a record sees."),
-      real(
-          "cache.nearest", "1", 0.1, 1, "of the distance",
-          "Irradiance cache: greatest radius of a record over the distance of the nearest thing that it or a "
-          "record that it reaches sees. Less: more records, and less error, where narrow things stand before "
-          "a surface."),
+      real("cache.nearest", "1", 0.1, 1, "of the distance",
+           "Irradiance cache: greatest radius of a record over the distance of the nearest thing that it or "
+           "a record that it reaches sees. Less: more records, and less error, where narrow things stand "
+           "before a surface."),
       real("cache.min_radius", "3", 0, 100, "pixels",
            "Irradiance cache: least radius of a record, as the camera sees it."),
       real("cache.max_radius", "0.1", 0.001, 1, "of the scene's radius",

@@ -6,28 +6,19 @@
 #include <limits>
 #include <random>
 
-#include "kernels/gpu_support.h"
-#include "solvers/irradiance_cache/cache.h"
+#include "kernels/cache_records_support.h"
 #include "solvers/irradiance_cache/clamping.h"
-#include "solvers/lookup/octree.h"
 
 using namespace lucerna;
 using irradiance_cache::Clamping;
 using irradiance_cache::Metric;
 using irradiance_cache::Place;
-using irradiance_cache::RawRecords;
 using irradiance_cache::Record;
-using irradiance_cache::Records;
+using Disc = test::RecordDisc;
 
 namespace {
 
 constexpr float k_normal_tolerance = 0.06f, k_off_plane = 0.03f, k_least = 0.01f;
-
-struct Disc {
-  Place place;
-  float radius, nearest;
-  float stretch = 1;  ///< greater radius over the lesser, along x
-};
 
 /// Where record i serves, as lookup.glsl has it.
 bool serves(const Disc& i, const Place& at) {
@@ -47,61 +38,18 @@ float clamped_plainly(const std::vector<Disc>& discs, size_t i, float near) {
   return std::max(bound, std::min(k_least, discs[i].radius));
 }
 
-struct Bed {
-  test::SilentDevice silent;
-  gpu::Device& device = silent.device;
-  gpu::ShaderCompiler compiler;
-  gpu::Stream stream{device};
+struct Bed : test::RecordBed {
   Clamping clamping;
 
   Bed(uint32_t capacity, Metric metric)
       : clamping(device, compiler, capacity, irradiance_cache::Cache::defines({}, metric)) {}
 
   std::vector<Record> clamp(const std::vector<Disc>& discs, float near) {
-    const auto count = uint32_t(discs.size());
-    Records records(device, count);
-    std::vector<Place> places;
-    for (const Disc& d : discs) places.push_back(d.place);
-    records.append(places);
-    RawRecords raw = records.raw(count);
-    for (uint32_t i = 0; i < count; ++i) {
-      const float minor = discs[i].radius, major = minor * discs[i].stretch;
-      raw.places[4 * i].w = major;
-      raw.places[4 * i + 2].y = discs[i].nearest;
-      raw.places[4 * i + 3] =
-          vec4(std::sqrt(std::max(0.0f, 1 / (minor * minor) - 1 / (major * major))), 0, 0, minor);
-      raw.spheres[i] = vec4(discs[i].place.position, major);
-    }
-    records.restore(raw);
     shared::CacheFrame frame{};
-    frame.record_count = count;
     frame.normal_tolerance = k_normal_tolerance;
     frame.off_plane = k_off_plane, frame.off_plane_least = 2 * k_off_plane;
-    frame.parallel = 1, frame.least_of_distance = k_least, frame.least_most = 1;
-    gpu::Buffer block(device, {.name = "frame", .bytes = sizeof frame}),
-        candidates(device, {.name = "candidates", .bytes = 16, .texel = true});
-    block.write(&frame, sizeof frame);
-    lookup::Octree octree(device, compiler,
-                          {.spheres = count, .references = 64 * count, .copies = true, .discs = true});
-    const lookup::Discs planes = records.discs(0.3f);
-    octree.build(stream, records.spheres(), {.most = count}, &planes);
-    clamping.clamp(
-        stream,
-        [&](gpu::Resources& to) {
-          records.bind(to, Records::Use::look_up);
-          to.set("CacheBlock", block);
-          to.set("Candidates", candidates);
-          octree.bind(to);
-        },
-        count, near);
-    // The octree is told as well.
-    const std::vector<float> radii = records.radii(0);
-    const RawRecords after = records.raw(count);
-    for (uint32_t i = 0; i < count; ++i) {
-      CHECK(after.spheres[i].w == radii[i]);
-      CHECK(vec3(after.spheres[i]) == discs[i].place.position);
-    }
-    return records.read();
+    return change(discs, k_least, frame,
+                  [&](const auto& bind) { clamping.clamp(stream, bind, uint32_t(discs.size()), near); });
   }
 };
 

@@ -7,17 +7,14 @@
 #include <numbers>
 #include <random>
 
-#include "kernels/gpu_support.h"
-#include "solvers/irradiance_cache/cache.h"
+#include "kernels/cache_records_support.h"
 #include "solvers/irradiance_cache/neighbours.h"
-#include "solvers/lookup/octree.h"
 
 using namespace lucerna;
 using irradiance_cache::Metric;
 using irradiance_cache::Neighbours;
 using irradiance_cache::Place;
-using irradiance_cache::RawRecords;
-using irradiance_cache::Records;
+using Disc = test::RecordDisc;
 
 namespace {
 
@@ -25,59 +22,20 @@ constexpr float k_normal_tolerance = 0.06f, k_off_plane = 0.03f, k_least = 0.06f
 // As neighbours.cpp has them, in degrees.
 const double k_apart = std::acos(0.643) * 180 / std::numbers::pi, k_gap = 2.1 * 180 / std::numbers::pi;
 
-struct Disc {
-  Place place;
-  float radius;
-};
-
-struct Bed {
-  test::SilentDevice silent;
-  gpu::Device& device = silent.device;
-  gpu::ShaderCompiler compiler;
-  gpu::Stream stream{device};
-  gpu::Defines defines = irradiance_cache::Cache::defines({}, Metric::split_sphere);
-  Neighbours neighbours{device, compiler, defines};
+struct Bed : test::RecordBed {
+  Neighbours neighbours{device, compiler, irradiance_cache::Cache::defines({}, Metric::split_sphere)};
 
   /// Radii of all, of which those from `first` on were to be bounded.
   std::vector<float> bound(const std::vector<Disc>& discs, uint32_t first) {
-    const auto count = uint32_t(discs.size());
-    Records records(device, count);
-    std::vector<Place> places;
-    for (const Disc& d : discs) places.push_back(d.place);
-    records.append(places);
-    RawRecords raw = records.raw(count);
-    for (uint32_t i = 0; i < count; ++i) {
-      raw.places[4 * i].w = discs[i].radius;
-      raw.places[4 * i + 3] = vec4(0, 0, 0, discs[i].radius);
-      raw.spheres[i] = vec4(discs[i].place.position, discs[i].radius);
-    }
-    records.restore(raw);
     shared::CacheFrame frame{};
-    frame.record_count = count;
     frame.normal_tolerance = k_normal_tolerance;
     frame.off_plane = frame.off_plane_least = k_off_plane;
-    frame.parallel = 1, frame.least_of_distance = k_least, frame.least_most = 1;
-    gpu::Buffer block(device, {.name = "frame", .bytes = sizeof frame}),
-        candidates(device, {.name = "candidates", .bytes = 16, .texel = true});
-    block.write(&frame, sizeof frame);
-    lookup::Octree octree(device, compiler,
-                          {.spheres = count, .references = 64 * count, .copies = true, .discs = true});
-    const lookup::Discs planes = records.discs(0.3f);
-    octree.build(stream, records.spheres(), {.most = count}, &planes);
-    neighbours.bound(
-        stream,
-        [&](gpu::Resources& to) {
-          records.bind(to, Records::Use::look_up);
-          to.set("CacheBlock", block);
-          to.set("Candidates", candidates);
-          octree.bind(to);
-        },
-        first, count);
-    const std::vector<float> radii = records.radii(0);
-    const std::vector<irradiance_cache::Record> all = records.read();
-    for (uint32_t i = 0; i < count; ++i) {
-      CHECK(all[i].radius == radii[i]);
-      CHECK(all[i].lesser_radius == radii[i]);
+    std::vector<float> radii;
+    for (const irradiance_cache::Record& r : change(discs, k_least, frame, [&](const auto& bind) {
+           neighbours.bound(stream, bind, first, uint32_t(discs.size()));
+         })) {
+      CHECK(r.lesser_radius == r.radius);
+      radii.push_back(r.radius);
     }
     return radii;
   }

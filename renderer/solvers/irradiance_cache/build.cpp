@@ -305,8 +305,8 @@ void Cache::Impl::forget_placement() {
 void Cache::Impl::publish_level(const Work& w) {
   records.publish(w.wavefront.stream());
   // Radii come from the first level; what the rays of later ones meet clamps them at the end of the pass, and
-  // the next one fills the gaps. A cache that reads itself does so from the second level on:
-  // the first, of few rays, then is all that is traced without the records of its own pass.
+  // the next one fills the gaps. A cache that reads itself does so from the second level on: the first, of
+  // few rays, then is all that is traced without the records of its own pass.
   ++status.published;
   if (evaluated == until) return;
   // Ellipses are by the light; circles stand.
@@ -385,8 +385,9 @@ bool Cache::Impl::next_level(const CacheView& view) {
     for (; next < std::min(list.size(), i + k_company + 1); ++next) longer.push_back(list[next]);
   }
   list = std::move(longer);
+  if (list.empty()) return false;
   ++level;
-  return !list.empty();
+  return true;
 }
 
 float Cache::Impl::dark(std::span<const float> light) const {
@@ -411,7 +412,7 @@ void Cache::Impl::set_radii(const Work& w, bool lit) {
                            k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
                            least.most,
                            dark(records.luminances()),
-                           options.nearest};
+                           nearest_share(lit)};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
   } else {
     const RadiusPush push{evaluated, count, options.error, least.most, nearest_share(lit)};

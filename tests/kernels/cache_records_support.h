@@ -1,0 +1,72 @@
+#pragma once
+// Records on the device that tests make of places and radii, in an octree, as kernels look them up that bound
+// radii.
+#include <functional>
+#include <vector>
+
+#include "kernels/gpu_support.h"
+#include "solvers/irradiance_cache/cache.h"
+#include "solvers/lookup/octree.h"
+
+namespace lucerna::test {
+
+/// Records of circles, or of ellipses that are longest along their tangent.
+struct RecordDisc {
+  irradiance_cache::Place place;
+  float radius;       ///< of an ellipse the lesser [m]
+  float nearest = 0;  ///< of what its rays met [m]
+  float stretch = 1;  ///< greater radius over the lesser
+};
+
+struct RecordBed {
+  SilentDevice silent;
+  gpu::Device& device = silent.device;
+  gpu::ShaderCompiler compiler;
+  gpu::Stream stream{device};
+
+  /// What `change`, told how lookup.glsl's resources are bound, makes of them. The octree has been told every
+  /// radius (checks). `least`: least radius [m]; `frame`: what the test wants otherwise than 0 besides that.
+  std::vector<irradiance_cache::Record> change(
+      const std::vector<RecordDisc>& discs, float least, shared::CacheFrame frame,
+      const std::function<void(const std::function<void(gpu::Resources&)>& bind)>& change) {
+    const auto count = uint32_t(discs.size());
+    irradiance_cache::Records records(device, count);
+    std::vector<irradiance_cache::Place> places;
+    for (const RecordDisc& d : discs) places.push_back(d.place);
+    records.append(places);
+    irradiance_cache::RawRecords raw = records.raw(count);
+    for (uint32_t i = 0; i < count; ++i) {
+      const float minor = discs[i].radius, major = minor * discs[i].stretch;
+      vec4* const texels = &raw.places[i * shared::k_record_texels];
+      texels[0].w = major;
+      texels[2].y = discs[i].nearest;
+      texels[3] = vec4(std::sqrt(std::max(0.0f, 1 / (minor * minor) - 1 / (major * major))), 0, 0, minor);
+      raw.spheres[i] = vec4(discs[i].place.position, major);
+    }
+    records.restore(raw);
+    frame.record_count = count;
+    frame.parallel = 1, frame.least_of_distance = least, frame.least_most = 1;
+    gpu::Buffer block(device, {.name = "frame", .bytes = sizeof frame}),
+        candidates(device, {.name = "candidates", .bytes = 16, .texel = true});
+    block.write(&frame, sizeof frame);
+    lookup::Octree octree(device, compiler,
+                          {.spheres = count, .references = 64 * count, .copies = true, .discs = true});
+    const lookup::Discs planes = records.discs(0.3f);
+    octree.build(stream, records.spheres(), {.most = count}, &planes);
+    change([&](gpu::Resources& to) {
+      records.bind(to, irradiance_cache::Records::Use::look_up);
+      to.set("CacheBlock", block);
+      to.set("Candidates", candidates);
+      octree.bind(to);
+    });
+    const std::vector<float> radii = records.radii(0);
+    const irradiance_cache::RawRecords after = records.raw(count);
+    for (uint32_t i = 0; i < count; ++i) {
+      CHECK(after.spheres[i].w == radii[i]);
+      CHECK(vec3(after.spheres[i]) == discs[i].place.position);
+    }
+    return records.read();
+  }
+};
+
+}  // namespace lucerna::test
