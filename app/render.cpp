@@ -196,7 +196,9 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
                   {"stopped_by", k_reasons[size_t(s.stop)]}};
     if (const auto overlap = r.cache_report()->overlap)
       j["cache"]["overlap"] = {{"mean", overlap->mean}, {"most", overlap->most}, {"listed", overlap->listed}};
-    for (const irradiance_cache::CachePass& p : s.passes)
+    for (const irradiance_cache::CachePass& p : s.passes) {
+      nlohmann::ordered_json steps;
+      for (size_t k = 0; k < p.ms.size(); ++k) steps[irradiance_cache::k_build_steps[k]] = p.ms[k];
       j["cache"]["building"].push_back({{"asked", p.asked},
                                         {"asked_world", p.asked_world},
                                         {"screen", p.screen},
@@ -204,7 +206,9 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
                                         {"tried", p.tried},
                                         {"records", p.records},
                                         {"rays", p.rays},
-                                        {"ms", p.total_ms()}});
+                                        {"ms", p.total_ms()},
+                                        {"ms_of", steps}});
+    }
   }
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
