@@ -17,7 +17,8 @@
 // On lavapipe all loops of an invocation together end, silently, after 65535 iterations.
 //
 // Contract: every sphere (c, r) with dot(x - c, x - c) <= r * r, in float as written here or exactly, is in the range,
-// once; others may be. The order is that of the spheres' indices. Points outside the root have an empty range.
+// once; others may be. The order is that of the spheres' indices. Points outside the root have an empty range. A leaf that
+// is split has one reference of its own, to no sphere: it lies in no range, but may share a texel with the end of one.
 //
 // The host binds these by Octree::bind().
 #ifndef LUCERNA_LIB_OCTREE
@@ -25,7 +26,7 @@
 #include "shaders/shared/octree.h"
 
 layout(scalar) readonly buffer OctreeHeaders { OctreeHeader octree; };
-uniform usamplerBuffer octree_slots;        // code, first, last, 0
+uniform usamplerBuffer octree_slots;        // code, first, last, levels by which it is split (then it lists nothing)
 uniform usamplerBuffer octree_references;   // (code, sphere) pairs, two a texel
 uniform samplerBuffer octree_copies;        // centre, radius; in the order of the references
 
@@ -38,11 +39,25 @@ uint octree_spread(uint x) {
   x = (x | x << 4) & 0x030c30c3u;
   return (x | x << 2) & 0x09249249u;
 }
+// Of every third bit.
+uint octree_compact(uint x) {
+  x &= 0x09249249u;
+  x = (x | x >> 2) & 0x030c30c3u;
+  x = (x | x >> 4) & 0x0300f00fu;
+  x = (x | x >> 8) & 0x030000ffu;
+  return (x | x >> 16) & 0x3ffu;
+}
+uvec3 octree_decode(uint code) {
+  return uvec3(octree_compact(code), octree_compact(code >> 1), octree_compact(code >> 2));
+}
 uint octree_code(uvec3 cell) {
   return octree_spread(cell.x) | octree_spread(cell.y) << 1 | octree_spread(cell.z) << 2;
 }
-// The references of a leaf.
-OctreeRange octree_leaf(uint code) {
+// The same of a leaf that is `split` levels finer than most: above all codes of coarser ones.
+uint octree_split_code(uvec3 cell, uint split) { return octree_code(cell) | 1u << 3u * (octree.level + split); }
+
+// The slot of a leaf: code, first reference, behind the last, levels by which it is split.
+uvec4 octree_slot(uint code) {
   uint slot = (code * k_octree_hash) >> octree.slot_shift;
   uvec4 found = texelFetch(octree_slots, int(slot));
   // A slot is free before the table has been gone through, because it has more slots than leaves.
@@ -50,6 +65,11 @@ OctreeRange octree_leaf(uint code) {
     slot = (slot + 1u) & (octree.slots - 1u);
     found = texelFetch(octree_slots, int(slot));
   }
+  return found;
+}
+// The references of a leaf that is not split.
+OctreeRange octree_leaf(uint code) {
+  uvec4 found = octree_slot(code);
   return OctreeRange(found.y, found.z);
 }
 
@@ -59,12 +79,18 @@ vec3 octree_cell(vec3 x) {
   precise vec3 offset = x - octree.origin;
   return floor(offset * octree.inverse_leaf);
 }
+// ... of leaves `split` levels finer, of which 2^split lie in each of those.
+vec3 octree_cell(vec3 x, uint split) {
+  precise vec3 offset = x - octree.origin;
+  return floor(offset * ldexp(octree.inverse_leaf, int(split)));
+}
 
 OctreeRange octree_find(vec3 x) {
   vec3 cell = octree_cell(x);
   bool inside = all(greaterThanEqual(cell, vec3(0.0))) && all(lessThan(cell, vec3(float(octree.cells))));
-  OctreeRange range = octree_leaf(octree_code(uvec3(inside ? cell : vec3(0.0))));
-  return OctreeRange(range.first, inside ? range.last : range.first);
+  uvec4 found = octree_slot(octree_code(uvec3(inside ? cell : vec3(0.0))));
+  if (inside && found.w > 0u) found = octree_slot(octree_split_code(uvec3(octree_cell(x, found.w)), found.w));
+  return OctreeRange(found.y, inside ? found.z : found.y);
 }
 
 uvec2 octree_two_spheres(uint even_reference) { return texelFetch(octree_references, int(even_reference >> 1)).yw; }

@@ -32,19 +32,21 @@ struct SphereCells {
 #endif
 };
 
-SphereCells sphere_cells(vec4 s, uint index) {
-  precise vec3 offset = s.xyz - octree.origin, centre = offset * octree.inverse_leaf;
-  precise float enlarged = safe_radius(s.w) + octree.edge * (32.0 / 16777216.0), radius = enlarged * octree.inverse_leaf;
+// Those from `lowest` to `highest`, both included, of the cells that are `split` levels finer than the leaves; lengths are in
+// such cells.
+SphereCells sphere_cells(vec4 s, uint index, uint split, ivec3 lowest, ivec3 highest) {
+  float inverse_leaf = ldexp(octree.inverse_leaf, int(split));
+  precise vec3 offset = s.xyz - octree.origin, centre = offset * inverse_leaf;
+  precise float enlarged = safe_radius(s.w) + octree.edge * (32.0 / 16777216.0), radius = enlarged * inverse_leaf;
   precise float square = radius * radius;
 #if LUCERNA_OCTREE_SINGLE
   precise vec3 low = centre, high = centre;
 #else
   precise vec3 low = centre - radius, high = centre + radius;
 #endif
-  ivec3 most = ivec3(int(octree.cells) - 1);
   SphereCells c;
-  c.first = clamp(ivec3(floor(low)), ivec3(0), most);
-  c.last = clamp(ivec3(floor(high)), ivec3(0), most);
+  c.first = clamp(ivec3(floor(low)), lowest, highest);
+  c.last = clamp(ivec3(floor(high)), lowest, highest);
   c.centre = centre;
   c.square = square;
 #if LUCERNA_OCTREE_DISCS
@@ -52,6 +54,14 @@ SphereCells sphere_cells(vec4 s, uint index) {
   c.half_ = push.thickness * radius + k_slab_margin;
 #endif
   return c;
+}
+SphereCells sphere_cells(vec4 s, uint index) {
+  return sphere_cells(s, index, 0u, ivec3(0), ivec3(int(octree.cells) - 1));
+}
+// The cells of a leaf that is split by `split` levels.
+SphereCells sphere_cells(vec4 s, uint index, uint code, uint split) {
+  ivec3 low = ivec3(octree_decode(code) << split);
+  return sphere_cells(s, index, split, low, low + int(1u << split) - 1);
 }
 
 // Cells that a sphere overlaps, at most, where they are 2^k leaves wide.

@@ -11,6 +11,7 @@ uint reference_count() { return min(octree.references, push.capacity); }
 
 uvec2 pair_of(uvec4 two, uint index) { return (index & 1u) != 0u ? two.zw : two.xy; }
 uint reference_code(uint index) { return pair_of(texelFetch(octree_references, int(index >> 1)), index).x; }
+uint reference_sphere(uint index) { return pair_of(texelFetch(octree_references, int(index >> 1)), index).y; }
 uvec2 leaf_pair(uint index) { return pair_of(texelFetch(leaf_texels, int(index >> 1)), index); }
 
 // Size of the hash table for that many leaves, as a power of two: half full at most, if there is memory; never full.

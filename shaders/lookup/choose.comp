@@ -21,7 +21,7 @@ void main() {
     for (uint i = 0u; i < 16u; ++i) need = saturating_sum(need, needs[coarser * 16u + i]);
     if (coarser == 0u) octree.needed = need;
     chosen = coarser;
-    if (need <= octree.capacity) break;
+    if (need <= push.level_capacity) break;
   }
   octree.overflow = need > octree.capacity ? need - octree.capacity : 0u;
   octree.level = level - chosen;

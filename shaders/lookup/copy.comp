@@ -8,7 +8,9 @@ void main() {
   Run run = own_run(global_index(), reference_count());
   for (uint at = run.first; at < run.end; at += 2u) {
     uvec4 two = texelFetch(octree_references, int(at >> 1));
-    copies[at] = texelFetch(spheres, int(two.y));
-    if (at + 1u < run.end) copies[at + 1u] = texelFetch(spheres, int(two.w));
+    // What says that a leaf is split is no sphere, and nobody asks for it.
+    uvec2 two_spheres = uvec2((two.y & k_octree_split) != 0u ? 0u : two.y, (two.w & k_octree_split) != 0u ? 0u : two.w);
+    copies[at] = texelFetch(spheres, int(two_spheres.x));
+    if (at + 1u < run.end) copies[at + 1u] = texelFetch(spheres, int(two_spheres.y));
   }
 }

@@ -1,7 +1,9 @@
-// Octree, step 11: into every slot of the hash table what a query asks for.
+// Octree, step 11: into every slot of the hash table what a query asks for: code, first, last, and by how many levels the
+// leaf is split. Of those that are about to be split LeafSplits says it, of those that are the only reference that they have.
 #include "lib/octree_leaves.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
 uniform usamplerBuffer slot_leaf_texels;
+layout(scalar) readonly buffer LeafSplits { uint leaf_splits[]; };
 layout(scalar) writeonly buffer Slots { uvec4 slots[]; };
 
 void main() {
@@ -14,6 +16,9 @@ void main() {
     bool there = leaf != k_octree_no_leaf;
     uvec2 own = leaf_pair(there ? leaf : 0u);
     uint next = there && leaf + 1u < octree.leaves ? leaf_pair(leaf + 1u).y : reference_count();
-    slots[at] = there ? uvec4(own, next, 0u) : uvec4(k_octree_no_leaf, 0u, 0u, 0u);
+    uint sphere = reference_sphere(own.y);
+    bool split = there && (sphere & k_octree_split) != 0u;
+    uint levels = split ? sphere & ~k_octree_split : there && push.most_split > 0u ? leaf_splits[leaf] : 0u;
+    slots[at] = there ? uvec4(own, split ? own.y : next, levels) : uvec4(k_octree_no_leaf, 0u, 0u, 0u);
   }
 }

@@ -1,4 +1,5 @@
-// Octree, step 3: the references that every run takes at the level wanted and at all coarser ones, at most (most_cells). Sums stay at 2^32 - 1 once they are there, and a level is as good as unaffordable where one sphere
+// Octree, step 3: the references that every run takes at the level wanted and at all coarser ones, at most (most_cells).
+// Sums stay at 2^32 - 1 once they are there, and a level is as good as unaffordable where one sphere
 // overlaps more leaves than an invocation may visit (see lib/runs.glsl).
 #include "lib/octree_cells.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;

@@ -6,6 +6,8 @@ LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_octree_levels = 10u;            ///< the finest: 1024 leaves along the root's edge, codes of 30 bits
 LUCERNA_CONST uint k_octree_no_leaf = 0xffffffffu;   ///< no code, no index
+LUCERNA_CONST uint k_octree_split = 0x80000000u;     ///< for a sphere: the leaf is split, by the levels below
+LUCERNA_CONST uint k_octree_most_split = 4u;         ///< levels
 LUCERNA_CONST uint k_octree_hash = 0x9e3779b1u;      ///< a code's hash is the upper bits of its product with this
 
 /// The result of a build. Lengths in metres, in world space.
@@ -25,6 +27,8 @@ struct OctreeHeader {
   uint leaves;          ///< that are not empty
   uint slots;           ///< of the hash table in use: a power of two, more than `leaves`
   uint slot_shift;      ///< a code's hash is shifted right by this
+  uint split;           ///< levels by which leaves are split at most
+  uint split_references;///< that are written with those of split leaves, and one for each of these
   uint overflow;        ///< references that not even a single leaf could hold: that many are missing
 };
 
@@ -33,6 +37,9 @@ struct OctreePush {
   uint count_at;        ///< word of SphereCount that holds their number; k_sort_count_here: `count` does
   uint capacity;        ///< references
   uint slot_capacity;   ///< slots of the hash table, a power of two
+  uint level_capacity;  ///< references of unsplit leaves, unless there is but one leaf
+  uint most_split;      ///< levels by which crowded leaves are split at most
+  uint crowd;           ///< spheres that a leaf lists before it is split
   float scale;          ///< leaves are no larger than this times the mean diameter
   uint normal_stride;   ///< of discs: sphere i's normal is texel normal_stride * i + normal_at of disc_normals
   uint normal_at;

@@ -17,6 +17,9 @@ namespace {
 /// References of the octree that there is memory for, a record.
 constexpr uint32_t k_references = 16;
 
+/// Records that a leaf of it lists before it is split.
+constexpr uint32_t k_crowd = 16;
+
 /// Of a record's radius: how far off its plane it serves at most. Off the plane between its own and the
 /// point's it is `off_plane`; half of what the normals differ by turns that away from its own.
 float slab_thickness(float off_plane, float normal_tolerance) {
@@ -61,7 +64,8 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
              {.spheres = o.most_records,
               .references = k_references * o.most_records,
               .copies = true,
-              .discs = true}),
+              .discs = true,
+              .crowd = k_crowd}),
       evaluator(device, compiler, slots),
       screen(device, compiler, defines(own, o.metric)),
       placement(device, compiler),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <limits>
 
 namespace lucerna::lookup {
 
@@ -33,10 +34,21 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
                              {"LUCERNA_OCTREE_RUNS", std::to_string(runs) + "u"},
                              {"LUCERNA_OCTREE_SINGLE", options.single_reference ? "1" : "0"},
                              {"LUCERNA_OCTREE_DISCS", options.discs ? "1" : "0"}};
-  const std::pair<gpu::Kernel*, const char*> kernels[] = {
-      {&bounds_, "bounds"}, {&grid_, "grid"},     {&levels_, "levels"}, {&choose_, "choose"},
-      {&count_, "count"},   {&write_, "write"},   {&heads_, "heads"},   {&leaves_, "leaves"},
-      {&clear_, "clear"},   {&insert_, "insert"}, {&expand_, "expand"}, {&copy_, "copy"}};
+  const std::pair<gpu::Kernel*, const char*> kernels[] = {{&bounds_, "bounds"},
+                                                          {&grid_, "grid"},
+                                                          {&levels_, "levels"},
+                                                          {&choose_, "choose"},
+                                                          {&count_, "count"},
+                                                          {&write_, "write"},
+                                                          {&heads_, "heads"},
+                                                          {&leaves_, "leaves"},
+                                                          {&clear_, "clear"},
+                                                          {&insert_, "insert"},
+                                                          {&expand_, "expand"},
+                                                          {&copy_, "copy"},
+                                                          {&crowd_, "crowd"},
+                                                          {&split_count_, "split_count"},
+                                                          {&split_write_, "split_write"}};
   for (const auto& [kernel, name] : kernels)
     *kernel = gpu::Kernel(device, compiler, std::string("lookup/") + name + ".comp", defines);
 
@@ -54,6 +66,7 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
   slot_leaves_ = buffer("leaves of slots", slots * sizeof(uint32_t));
   slots_ = buffer("slots", slots * sizeof(uvec4));
   copies_ = buffer("copies", options.copies ? references * sizeof(vec4) : 0);
+  splits_ = buffer("splits", (options.crowd > 0 ? references : 1) * sizeof(uint32_t));
   unused_ = buffer("unused count", sizeof(uint32_t));
   references_ = &pairs_[0];
   // Until something is built: no cells, and a table of which every slot is free.
@@ -83,14 +96,21 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
   r.set("slot_leaf_texels", slot_leaves_);
   r.set("Slots", slots_);
   r.set("Copies", copies_);
-  const shared::OctreePush push{count.most,
-                                count.buffer ? uint32_t(count.offset / 4) : shared::k_sort_count_here,
-                                std::max(options_.references, 1u),
-                                uint32_t(slots_.bytes() / sizeof(uvec4)),
-                                options_.leaf_scale,
-                                discs ? discs->stride : 0,
-                                discs ? discs->at : 0,
-                                discs ? discs->thickness : 0};
+  r.set("LeafSplits", splits_);
+  r.set("SplitReferences", splits_);
+  r.set("split_places", splits_);
+  r.set("octree_slots", slots_);
+  shared::OctreePush push{count.most,
+                          count.buffer ? uint32_t(count.offset / 4) : shared::k_sort_count_here,
+                          std::max(options_.references, 1u),
+                          uint32_t(slots_.bytes() / sizeof(uvec4)),
+                          std::max(options_.crowd > 0 ? options_.references / 2 : options_.references, 1u),
+                          0,
+                          options_.crowd,
+                          options_.leaf_scale,
+                          discs ? discs->stride : 0,
+                          discs ? discs->at : 0,
+                          discs ? discs->thickness : 0};
   if (discs) r.set("disc_normals", discs->normals);
   const auto run = [&](const gpu::Kernel& kernel, uint32_t groups) {
     // Those that use no push constant have none.
@@ -110,23 +130,64 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
 
   const sort::Count written{push.capacity, &header_buffer_, offsetof(shared::OctreeHeader, references)};
   references_ = &sorter_.encode(stream, pairs_[0], pairs_[1], written, 3 * header_.level, k_stage);
-  // What the sort leaves behind has room for one leaf a reference, and so for all.
-  const gpu::Buffer& leaves = references_ == &pairs_[0] ? pairs_[1] : pairs_[0];
-  r.set("octree_references", *references_);
-  r.set("Leaves", leaves);
-  r.set("leaf_texels", leaves);
-  run(heads_, groups_);
-  prefix_sum_.encode(stream, run_leaves_, run_leaves_, {.most = uint32_t(run_leaves_.bytes() / 4)},
-                     &header_buffer_, offsetof(shared::OctreeHeader, leaves), k_stage);
-  run(leaves_, groups_);
-  run(clear_, groups_);
-  run(insert_, groups_);
-  run(expand_, groups_);
+  const auto cut = [&] {
+    // What the sort leaves behind has room for one leaf a reference, and so for all.
+    const gpu::Buffer& leaves = references_ == &pairs_[0] ? pairs_[1] : pairs_[0];
+    r.set("octree_references", *references_);
+    r.set("Leaves", leaves);
+    r.set("leaf_texels", leaves);
+    run(heads_, groups_);
+    prefix_sum_.encode(stream, run_leaves_, run_leaves_, {.most = uint32_t(run_leaves_.bytes() / 4)},
+                       &header_buffer_, offsetof(shared::OctreeHeader, leaves), k_stage);
+    run(leaves_, groups_);
+    run(clear_, groups_);
+    run(insert_, groups_);
+    if (push.most_split == 0) run(expand_, groups_);
+  };
+  if (options_.crowd > 0 && header_.overflow == 0) push.most_split = most_split();
+  cut();
+  while (push.most_split > 0) {
+    const uint32_t groups = gpu::groups_for(header_.references, 64);
+    run(crowd_, groups);  // there are no more leaves
+    run(expand_, groups_);
+    run(split_count_, groups);
+    prefix_sum_.encode(stream, splits_, splits_, {.most = header_.references}, &header_buffer_,
+                       offsetof(shared::OctreeHeader, split_references), k_stage);
+    stream.run();
+    shared::OctreeHeader now;
+    header_buffer_.read(&now, sizeof(now));
+    if (now.split_references > header_.capacity) {
+      if (--push.most_split == 0) run(expand_, groups_);
+      continue;
+    }
+    header_.split = push.most_split;
+    push.most_split = 0;
+    if (now.split_references == header_.references) break;  // none is
+    r.set("References", references_ == &pairs_[0] ? pairs_[1] : pairs_[0]);
+    run(split_write_, groups);
+    stream.run();
+    header_.references = now.split_references;
+    header_buffer_.write(&header_.references, sizeof(uint32_t), offsetof(shared::OctreeHeader, references));
+    const bool second = references_ == &pairs_[0];
+    references_ = &sorter_.encode(stream, pairs_[second], pairs_[!second], written,
+                                  3 * (header_.level + header_.split) + 1, k_stage);
+    cut();
+  }
   if (options_.copies) run(copy_, groups_);
   stream.run();
+  const uint32_t split = header_.split;
   header_buffer_.read(&header_, sizeof(header_));
+  header_.split = split;
   header_.references = std::min(header_.references, header_.capacity);
   return header_;
+}
+
+uint32_t Octree::most_split() const {
+  uint32_t levels = std::min(shared::k_octree_levels - header_.level, shared::k_octree_most_split);
+  // What is counted must fit into 32 bits: all spheres in all cells of their leaf, and the leaf's own one.
+  while (((uint64_t{1} << 3 * levels) + 1) * header_.references > std::numeric_limits<uint32_t>::max())
+    --levels;
+  return levels;
 }
 
 void Octree::bind(gpu::Resources& resources) const {
@@ -145,7 +206,7 @@ uint32_t Octree::most_references(const gpu::Device& device) {
 uint64_t Octree::bytes() const {
   uint64_t sum = 0;
   for (const gpu::Buffer* b : {&header_buffer_, &run_bounds_, &run_needs_, &run_leaves_, &sphere_references_,
-                               &pairs_[0], &pairs_[1], &slot_leaves_, &slots_, &copies_})
+                               &pairs_[0], &pairs_[1], &slot_leaves_, &slots_, &copies_, &splits_})
     sum += b->bytes();
   return sum;
 }

@@ -4,10 +4,11 @@
 // radius.
 //
 // Only leaves exist, all of one level, each with the list of every sphere that overlaps it, so that a query
-// is one hash lookup and one loop (shaders/lib/octree.glsl, where the contract of a query stands). Everything
-// is built on the device: references are counted, placed by a prefix sum, written, sorted by the Morton code
-// of their leaf, and cut into leaves. No order comes from atomics: two builds of the same spheres are the
-// same byte for byte.
+// is one hash lookup and one loop (shaders/lib/octree.glsl, where the contract of a query stands). Where that
+// is asked for, leaves that list many spheres much smaller than most are split into leaves of a finer level,
+// and a query there is two lookups. Everything is built on the device: references are counted, placed by a
+// prefix sum, written, sorted by the Morton code of their leaf, and cut into leaves. No order comes from
+// atomics: two builds of the same spheres are the same byte for byte.
 #include "gpu/stream.h"
 #include "shaders/shared/octree.h"
 #include "sort/radix_sort.h"
@@ -30,6 +31,10 @@ struct OctreeOptions {
   /// Spheres are asked for only near a plane through their centre: builds are given Discs, and points farther
   /// off may not find them. Fewer leaves list them, so that leaves can be smaller.
   bool discs = false;
+  /// Leaves that list more spheres than that are split, by up to shared::k_octree_most_split levels, until
+  /// they are as `leaf_scale` says of the spheres that they list themselves; half of the references are kept
+  /// for that. 0: none is. Not with `single_reference`.
+  uint32_t crowd = 0;
 };
 
 /// Where discs lie: sphere i is found where |dot(x - centre, normal)| <= thickness * radius, its normal being
@@ -48,7 +53,8 @@ class Octree {
   /// Builds it from `spheres`, a texel buffer of (centre, radius) in metres. Spheres whose radius is
   /// negative, or that are not finite, are left out; indices are places in the buffer. Runs the stream, with
   /// all that was recorded before, and reads the header back twice: when the level is known, because it says
-  /// how many bits are to be sorted by, and at the end.
+  /// how many bits are to be sorted by, and at the end; and for every number of levels that it tries to split
+  /// crowded leaves by.
   ///
   /// Where memory does not suffice for the level that the spheres call for, the finest that fits is taken:
   /// lists grow longer, results stay the same, and the header says so (`level` < `wanted_level`, `needed` >
@@ -73,9 +79,10 @@ class Octree {
   sort::PrefixSum prefix_sum_;
   sort::RadixSort sorter_;
   gpu::Kernel bounds_, grid_, levels_, choose_, count_, write_, heads_, leaves_, clear_, insert_, expand_,
-      copy_;
+      copy_, crowd_, split_count_, split_write_;
   gpu::Buffer header_buffer_, run_bounds_, run_needs_, run_leaves_, sphere_references_, unused_;
-  gpu::Buffer pairs_[2], slot_leaves_, slots_, copies_;
+  gpu::Buffer pairs_[2], slot_leaves_, slots_, copies_, splits_;
+  uint32_t most_split() const;
   const gpu::Buffer* references_ = nullptr;  ///< one of pairs_
   shared::OctreeHeader header_{};
 };
