@@ -199,7 +199,8 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
     for (const irradiance_cache::CachePass& p : s.passes) {
       nlohmann::ordered_json steps;
       for (size_t k = 0; k < p.ms.size(); ++k) steps[irradiance_cache::k_build_steps[k]] = p.ms[k];
-      j["cache"]["building"].push_back({{"asked", p.asked},
+      j["cache"]["building"].push_back({{"paths", p.paths},
+                                        {"asked", p.asked},
                                         {"asked_world", p.asked_world},
                                         {"screen", p.screen},
                                         {"candidates", p.candidates},
