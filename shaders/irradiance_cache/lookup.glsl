@@ -77,19 +77,19 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, bool asks) {
   found.weight = 0.0;
   OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
-    // On to the next record that serves: several are listed for one that does, and its light is dear to read.
-    uint record = 0u;
-    float weight = 0.0;
-    vec4 place = vec4(0.0), facing = vec4(0.0);
-    for (; i < range.last && weight <= 0.0; ++i) {
+    // On to the next sphere that holds the point: ten are listed for each, and lanes wait for the longest list.
+    uint at = i;
+    vec4 place = vec4(0.0);
+    bool within = false;
+    for (; i < range.last && !within; ++i) {
+      at = i;
       place = octree_copy(i);
-      vec3 away = x - place.xyz;
-      if (dot(away, away) < square(place.w)) {
-        record = octree_sphere(i);
-        facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
-        weight = record_weight(x, n, place, facing, record_shape(record, place));
-      }
+      vec3 off_centre = x - place.xyz;
+      within = dot(off_centre, off_centre) < square(place.w);
     }
+    uint record = octree_sphere(at);
+    vec4 facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
+    float weight = within ? record_weight(x, n, place, facing, record_shape(record, place)) : 0.0;
     vec3 tangent, bitangent;
     make_basis(facing.xyz, tangent, bitangent);
     vec3 turn = cross(facing.xyz, shading), away = x - place.xyz;

@@ -423,12 +423,17 @@ void Cache::Impl::set_radii(const Work& w, bool lit) {
 }
 
 void Cache::Impl::clamp_radii(const Work& w, uint32_t count, bool lit) {
+  const auto index_first = [&](uint32_t n) {
+    StageTimer timer(w.wavefront);
+    build_octree(w.wavefront, n);
+    took(BuildStep::octree, timer.milliseconds());
+  };
+  if (count > evaluated) index_first(count);
   StageTimer timer(w.wavefront);
-  if (count > evaluated) build_octree(w.wavefront, count);
   clamping.clamp(
       w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, count, nearest_share(lit));
-  build_octree(w.wavefront);
   took(BuildStep::radius, timer.milliseconds());
+  index_first(evaluated);
 }
 
 void Cache::Impl::list_until(uint32_t end) {
