@@ -69,6 +69,8 @@ LUCERNA_CONST uint k_probe_lookups = 1u;
 LUCERNA_CONST uint k_probe_beyond = 2u;
 /// The first vertex that looks up is noted, whether records serve it or not, and paths end at their first.
 LUCERNA_CONST uint k_probe_screen = 3u;
+/// The last vertex that looks up is noted, whether records serve it or not. Paths end as in k_probe_lookups.
+LUCERNA_CONST uint k_probe_reads = 4u;
 
 /// What paths are told of the cache.
 struct CacheFrame {
@@ -115,6 +117,14 @@ struct ClampPush {
 };
 /// Of a record that none clamps: the bits of infinity.
 LUCERNA_CONST uint k_no_bound = 0x7f800000u;
+
+/// How much of the picture reads a record: of `pixels` pixels, of which those before are `first`.
+struct WorthPush {
+  uint pixels;
+  uint first;
+};
+LUCERNA_CONST uint k_worth_steps = 256u;          ///< that a pixel of which a record has all is
+LUCERNA_CONST uint k_worth_there = 0x40000000u;   ///< a place is one; above the 22 bits of its normal
 
 struct EllipsePush {
   uint first, count;  ///< records

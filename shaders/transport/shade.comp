@@ -90,7 +90,7 @@ void main() {
           Cached found = cache_lookup(surface.position, sign * smooth_side, sign * to_world[2], asks);
           bool missing = asks && found.weight <= 0.0;
           // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
-          bool notes = (missing || (asks && cache.probing == k_probe_screen)) && cache.probing != k_probe_none &&
+          bool notes = (missing || (asks && cache.probing >= k_probe_screen)) && cache.probing != k_probe_none &&
                        !(beyond && (sample_vertex_bits(random, depth, k_pad_light_choice).x & 1u) != 0u);
           if (notes && cache_can_serve(sign * smooth_side, sign * to_world[2])) {
             uint origin = beyond ? k_origin_recursive : depth == 0u ? k_origin_screen : k_origin_world;
@@ -136,7 +136,7 @@ void main() {
 #endif
 #if LUCERNA_CACHE
           go_on = go_on && cache.probing != k_probe_screen &&
-                  !(cache.probing == k_probe_lookups && looks && b.event == k_event_diffuse);
+                  !((cache.probing == k_probe_lookups || cache.probing == k_probe_reads) && looks && b.event == k_event_diffuse);
 #endif
           path.eta_scale *= b.eta2;
           // Roulette on what the path carries without the radiance scale of refraction.

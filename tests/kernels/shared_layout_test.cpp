@@ -81,6 +81,7 @@ std::vector<SharedStruct> structs() {
              state, seed),
       SHARED("irradiance_cache.h", RadiusPush, first, count, error, most, near),
       SHARED("irradiance_cache.h", ClampPush, count, near),
+      SHARED("irradiance_cache.h", WorthPush, pixels, first),
       SHARED("irradiance_cache.h", EllipsePush, first, count, reach, most, dark, near),
       SHARED("irradiance_cache.h", OverlayPush, width, height, discs, overlap, color, lo, hi, overlap_most),
       SHARED("neighbours.h", NeighbourPush, first, count, pairs, apart, gap),

@@ -21,15 +21,14 @@ constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
 /// no record serves there costs time, not accuracy.
 constexpr uint32_t k_deep_passes = 3;
 constexpr float k_deep_spacing = 1.0f / 64;
-/// Noise that records may have which only others read, over that of others: a record's ray reads some of
-/// them, and a record's rays many.
-constexpr float k_deep_noise = 4;
 /// Width of the finest cells of the picture that ask, in the spacing of the pass: gaps about finer detail are
 /// left to later passes, whose records read those of the first and are cheaper.
 constexpr float k_finest_of_spacing = 0.5f;
-/// Radius, over the height of the picture at its distance, of a record of which the option `noise` is true
-/// after the first level; and how far from the option others may be.
-constexpr float k_noisy_radius = 0.03f, k_most_shift = 4;
+/// How much of the picture reads a record (Worth) of which the option `noise` is true after the first level,
+/// in squares of the picture's height: about what one does with a radius of 3 % of that. And how far from the
+/// option others may be.
+constexpr float k_noisy_worth = 0.03f * 0.03f * 0.5f;
+constexpr float k_most_shift = 4;
 /// Passes that look along one path a pixel; paths a pixel that later ones look along at most, until so many
 /// of the pixels' number ask.
 constexpr uint32_t k_looks_once = 3, k_most_looks = 16;
@@ -226,7 +225,20 @@ bool Cache::Impl::thin() {
   return true;
 }
 
+bool Cache::Impl::see_reads(const Work& w) {
+  if (reads_stale) reads.begin(w.view.paths_frame), reads_stale = false;
+  StageTimer timer(w.wavefront);
+  w.wavefront.set_frame(reads.frame(), w.view.paths_enabled);
+  tell(k_probe_reads);
+  const bool complete = reads.see(w.wavefront, candidates, w.cancel);
+  tell();
+  w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
+  took(BuildStep::probe, timer.milliseconds());
+  return complete;
+}
+
 bool Cache::Impl::evaluate(const Work& w) {
+  if (reads_stale || !reads.seen()) return see_reads(w);
   // A level of more rays than can be summed at once is done in rounds of as many.
   const uint32_t level_rays = options.rays << 2 * level;
   uint32_t rays = level_rays;
@@ -267,7 +279,7 @@ bool Cache::Impl::evaluate(const Work& w) {
   if (first) {
     stage = Stage::index;
   } else {
-    more_levels = next_level(w.view);
+    more_levels = next_level();
     publish_level(w);
   }
   ended(BuildStage::evaluate, !first && !more_levels);
@@ -280,7 +292,11 @@ bool Cache::Impl::evaluate(const Work& w) {
 bool Cache::Impl::index(const Work& w) {
   stage = Stage::evaluate;
   publish_level(w);
-  more_levels = next_level(w.view);
+  StageTimer timer(w.wavefront);
+  worth = reads.measure(
+      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, evaluated);
+  took(BuildStep::probe, timer.milliseconds());
+  more_levels = next_level();
   ended(BuildStage::octree, !more_levels);
   if (!more_levels) end_pass(w);
   return true;
@@ -356,17 +372,14 @@ void Cache::Impl::next_pass() {
 }
 
 /// What noise a record may have and be done, over the option. One more level is worth what it takes from the
-/// picture's squared error, per ray: with n rays so far, noise^2 A / n where A is how much of the picture the
-/// record serves. Equal worth is noise in proportion to sqrt(n) / sqrt(A): rays go where many pixels read
-/// them, in proportion to the standard deviation of one ray and to the radius as the camera sees it.
-float Cache::Impl::share_of_noise(const Records::Figures& record, const Frame& camera) const {
-  if (record.origin == k_origin_recursive) return k_deep_noise;
-  const float height = 2 * glm::length(camera.camera_up) * least.scale(record.position);
-  return std::clamp(std::ldexp(k_noisy_radius, static_cast<int>(level)) * height / record.radius,
+/// picture's squared error, per ray: with n rays so far, noise^2 A / n where A is how much of the picture reads
+/// the record (Worth). Equal worth is noise in proportion to sqrt(n) / sqrt(A).
+float Cache::Impl::share_of_noise(uint32_t record) const {
+  return std::clamp(std::ldexp(std::sqrt(k_noisy_worth / std::max(worth[record], 1e-12f)), int(level)),
                     1 / k_most_shift, k_most_shift);
 }
 
-bool Cache::Impl::next_level(const CacheView& view) {
+bool Cache::Impl::next_level() {
   const uint32_t rays = options.rays << 2 * level;
   if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
   const std::vector<Records::Figures> figures = records.figures();
@@ -379,7 +392,7 @@ bool Cache::Impl::next_level(const CacheView& view) {
   size_t next = 0;  // the first that no noisy one so far has kept or passed
   for (size_t i = 0; i < list.size(); ++i) {
     const uint32_t r = list[i];
-    const float noise = options.noise * share_of_noise(figures[r], view.paths_frame);
+    const float noise = options.noise * share_of_noise(r);
     if (figures[r].error <= noise * std::max(light[r], darkest)) continue;
     next = std::max(next, i > k_company ? i - k_company : 0);
     for (; next < std::min(list.size(), i + k_company + 1); ++next) longer.push_back(list[next]);

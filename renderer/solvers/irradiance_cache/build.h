@@ -12,6 +12,7 @@
 #include "solvers/irradiance_cache/cache.h"
 #include "solvers/irradiance_cache/clamping.h"
 #include "solvers/irradiance_cache/neighbours.h"
+#include "solvers/irradiance_cache/worth.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -68,6 +69,9 @@ struct Cache::Impl {
   Discontinuity screen;
   Placement placement;
   Clamping clamping;
+  Worth reads;
+  bool reads_stale = true;   // what it has seen is not this picture
+  std::vector<float> worth;  // of the records that are evaluated, by it
   std::optional<Neighbours> neighbours;  // only where radii are bounded
   bool looked = false;                   // at the picture, in this pass: the screen-space stage is done
   bool stale = true;                     // ... and what it has seen is not this picture
@@ -152,10 +156,12 @@ struct Cache::Impl {
   void next_pass();
   /// Building may wait here; `last`: of its pass.
   void ended(BuildStage stage, bool last = false);
-  float share_of_noise(const Records::Figures& record, const shared::Frame& camera) const;
+  float share_of_noise(uint32_t record) const;
+  /// One piece of looking where the picture reads records; false when it was cancelled.
+  bool see_reads(const Work& work);
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
-  bool next_level(const CacheView& view);
+  bool next_level();
   /// Lights and radii of this level, for those who look up.
   void publish_level(const Work& work);
   /// Radii of the records that are added in this pass, by what is known of them: `lit` after their first

@@ -69,7 +69,8 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
       evaluator(device, compiler, slots),
       screen(device, compiler, defines(own, o.metric)),
       placement(device, compiler),
-      clamping(device, compiler, o.most_records, defines(own, o.metric)) {
+      clamping(device, compiler, o.most_records, defines(own, o.metric)),
+      reads(device, compiler, o.most_records, defines(own, o.metric)) {
   if (o.neighbours) neighbours.emplace(device, compiler, defines(own, o.metric));
   frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
   candidates = gpu::Buffer(device, {.name = "cache candidates",
@@ -83,7 +84,7 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
 
 void Cache::Impl::count_bytes() {
   status.bytes =
-      own_bytes + screen.bytes() + placement.bytes() + (neighbours ? neighbours->bytes() : uint64_t{0});
+      own_bytes + screen.bytes() + placement.bytes() + reads.bytes() + (neighbours ? neighbours->bytes() : uint64_t{0});
 }
 
 void Cache::Impl::build_octree(transport::Wavefront& wavefront, uint32_t count) {
@@ -162,7 +163,7 @@ void Cache::clear() {
   c.records.clear();
   c.forget_placement();
   c.pauses.dropped();
-  c.stale = true;
+  c.stale = c.reads_stale = true;
   c.status = {.bytes = c.status.bytes, .published = c.status.published};
   c.stage = Stage::probe;
   c.probing = false;
@@ -185,7 +186,7 @@ void Cache::extend() {
   Impl& c = *impl_;
   c.status.pass = c.looked_along = 0;
   c.status.stop = c.stopped = StopReason::building;
-  c.stale = true;
+  c.stale = c.reads_stale = true;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped, unless
   // somebody is looking at it, maybe from all sides.
   if (c.stage != Stage::evaluate && c.stage != Stage::index && !c.status.waits) {

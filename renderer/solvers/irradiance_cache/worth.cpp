@@ -1,0 +1,70 @@
+#include "solvers/irradiance_cache/worth.h"
+
+#include <algorithm>
+
+#include "shaders/shared/irradiance_cache.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+constexpr const char* k_stage = "worth";
+constexpr uint32_t k_paths = 2;  ///< a pixel
+
+}  // namespace
+
+Worth::Worth(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t capacity,
+             const gpu::Defines& defines)
+    : device_(device),
+      keeping_(device, compiler, "irradiance_cache/worth_keep.comp", defines),
+      adding_(device, compiler, "irradiance_cache/worth_add.comp", defines),
+      sums_(device,
+            {.name = "worth of records", .bytes = uint64_t{capacity} * 4, .memory = gpu::Memory::host}) {}
+
+uint32_t Worth::blocks() const {
+  return (frame_.width + k_block - 1) / k_block * ((frame_.height + k_block - 1) / k_block);
+}
+
+void Worth::begin(const Frame& frame) {
+  frame_ = frame;
+  for (uint32_t k = 2; pixels() > k_most_pixels; ++k)
+    frame_.width = std::max(frame.width / k, 1u), frame_.height = std::max(frame.height / k, 1u);
+  done_ = 0;
+  gpu::make_texel_room(device_, places_, "places that look up", uint64_t{pixels()} * k_paths * sizeof(vec4));
+}
+
+bool Worth::see(transport::Wavefront& wavefront, const gpu::Buffer& candidates,
+                const std::function<bool()>& cancel) {
+  schedule::WorkItem item{{}, k_paths};
+  const uint32_t end = std::min(blocks(), done_ + std::max(1u, wavefront.slots() / (64 * k_paths)));
+  for (uint32_t b = done_; b < end; ++b) item.blocks.push_back({b, 0});
+  gpu::Stream& stream = wavefront.stream();
+  stream.fill(candidates, 0);
+  if (!wavefront.probe(item, cancel)) return false;
+  resources_.set("candidate_texels", candidates);
+  resources_.set("Places", places_);
+  const WorthPush push{64 * (end - done_), 64 * done_};
+  stream.dispatch(keeping_, resources_, push, gpu::groups_for(item.slots(), 64), k_stage);
+  stream.run();
+  done_ = end;
+  return true;
+}
+
+std::vector<float> Worth::measure(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind,
+                                  uint32_t count) {
+  bind(resources_);
+  resources_.set("place_texels", places_);
+  resources_.set("Sums", sums_);
+  stream.fill(sums_, 0);
+  stream.dispatch(adding_, resources_, WorthPush{pixels(), 0}, gpu::groups_for(pixels(), 64), k_stage);
+  stream.run();
+  const uint32_t* const sums = static_cast<const uint32_t*>(sums_.mapped());
+  const float pixel = 1.0f / (float(k_worth_steps) * float(frame_.height) * float(frame_.height));
+  std::vector<float> worth(count);
+  std::transform(sums, sums + count, worth.begin(), [&](uint32_t sum) { return pixel * float(sum); });
+  return worth;
+}
+
+}  // namespace lucerna::irradiance_cache
