@@ -137,8 +137,8 @@ std::vector<OptionInfo> make_options() {
                "before."},
       real("cache.noise", "0.1", 0, 10, "",
            "Irradiance cache: relative standard error above which a record with a radius of 3 % of the "
-           "picture's height gets more rays than the first level. Wider ones get more of them, narrower ones "
-           "fewer, for what they are worth to the picture."),
+           "picture's height gets more rays than the first level. Those that more of the picture reads get "
+           "more of them, others fewer, for what they are worth to it."),
       boolean("cache.environment",
               "Irradiance cache: records also hold the light straight from the sky, so that surfaces that it "
               "lights need no noisy shadow rays to it."),

@@ -1,9 +1,10 @@
 // links: session
-// Which records get how many rays: those that serve more of the picture stop at less noise, by the rule that
-// cache.h states. Computed again here from what records tell.
+// Which records get how many rays: those that more of the picture reads stop at less noise, by the rule that
+// cache.h states; and how much of the picture that is. Computed again here from what records tell.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "cache_support.h"
@@ -11,7 +12,7 @@
 
 using namespace lucerna;
 
-TEST_CASE("the more of the picture a record serves, the less noise it has when it is done") {
+TEST_CASE("the more of the picture reads a record, the less noise it has when it is done") {
   constexpr float k_noise = 0.05f;
   const scene::Scene room = test::block_room();
   test::CacheRenderer shown(room, 64);
@@ -19,10 +20,12 @@ TEST_CASE("the more of the picture a record serves, the less noise it has when i
   shown.set({{"cache.noise", std::to_string(k_noise)},
              {"cache.min_radius", "1"},
              {"cache.max_rays", "16384"},
+             {"cache.passes", "1"},
              {"samples", "1"}});
   shown.finish();
-  REQUIRE(shown.status().stop == irradiance_cache::StopReason::covered);
   const std::vector<irradiance_cache::Record> records = shown.r.cache()->records().read();
+  const std::vector<float>& worth = shown.r.cache()->worth();
+  REQUIRE(worth.size() == records.size());
 
   const auto light = [](const irradiance_cache::Record& r) {
     float sum = 0;
@@ -31,23 +34,72 @@ TEST_CASE("the more of the picture a record serves, the less noise it has when i
   };
   double mean = 0;
   for (const irradiance_cache::Record& r : records) mean += double(light(r)) / double(records.size());
-  const vec3 eye = room.cameras[0].to_world[3];
-  const float tall = 2 * std::tan(room.cameras[0].yfov / 2);
-  int narrower = 0, wider = 0;  // that one noise for all would stop later, sooner
-  for (const irradiance_cache::Record& r : records) {
-    // Dark records stop earlier, deep ones by another rule.
-    if (double(light(r)) < 0.5 * mean || r.place.origin == shared::k_origin_recursive) continue;
-    const float radius = r.radius / (tall * distance(r.place.position, eye));
+  int less = 0, more = 0, none = 0;  // that one noise for all would stop later, sooner; that nobody reads
+  for (size_t i = 0; i < records.size(); ++i) {
+    const irradiance_cache::Record& r = records[i];
+    // Dark records stop earlier.
+    if (double(light(r)) < 0.5 * mean) continue;
     const int level = r.rays == 256 ? 0 : r.rays == 1280 ? 1 : r.rays == 5376 ? 2 : 3;
     if (level == 3) continue;  // there are no more rays to be had
-    const float share = std::clamp(std::ldexp(0.03f, level) / radius, 0.25f, 4.0f);
-    INFO("a radius of " << radius << " of the picture's height, " << r.rays << " rays");
+    const float share = std::ldexp(0.03f * std::sqrt(0.5f / std::max(worth[i], 1e-20f)), level);
+    INFO(worth[i] << " of the picture, " << r.rays << " rays");
     CHECK(r.error <= 1.001f * k_noise * share * light(r));
-    narrower += r.error > k_noise * light(r);
-    wider += r.rays > 256 && share < 1;
+    less += r.error > k_noise * light(r);
+    more += r.rays > 256 && share < 1;
+    none += worth[i] <= 0;
   }
-  // Both sides of the rule are met.
-  INFO(narrower << " narrower and " << wider << " wider ones, of " << records.size());
-  CHECK(narrower > 5);
-  CHECK(wider > 5);
+  // Both sides of the rule are met, and its end.
+  INFO(less << " less and " << more << " more, " << none << " that nobody reads, of " << records.size());
+  CHECK(less > 5);
+  CHECK(more > 5);
+  CHECK(none > 0);
+}
+
+TEST_CASE("how much of the picture reads a record: the square of its share, summed over the pixels") {
+  const test::PanelRoom room;
+  constexpr uint32_t k_size = 64;
+  test::CacheRenderer shown(room.s, k_size);
+  shown.set(test::k_cached);
+  // One level, so that radii stay as they were when it was measured.
+  shown.set({{"cache.max_rays", "256"}, {"samples", "1"}});
+  shown.finish();
+  const std::vector<irradiance_cache::Record> records = shown.r.cache()->records().read();
+  const std::vector<float>& worth = shown.r.cache()->worth();
+  REQUIRE(worth.size() == records.size());
+
+  // The camera sees the floor alone: a record's weight there falls from its centre to its border.
+  const float half = 0.98f * std::tan(0.7f);
+  constexpr int k_points = 64;  // a pixel
+  std::mt19937 random(3);
+  const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
+  std::vector<double> expected(records.size());
+  for (uint32_t y = 0; y < k_size; ++y)
+    for (uint32_t x = 0; x < k_size; ++x) {
+      std::vector<double> share(records.size());
+      for (int k = 0; k < k_points; ++k) {
+        const vec3 at(half * (2 * (float(x) + unit()) / k_size - 1), 0,
+                      half * (2 * (float(y) + unit()) / k_size - 1));
+        std::vector<std::pair<size_t, float>> serve;
+        float all = 0;
+        for (size_t i = 0; i < records.size(); ++i) {
+          const vec3 centre = records[i].place.position;
+          if (records[i].place.normal.y < 0.9f || centre.y > 0.01f) continue;
+          const float weight = 1 - distance(vec3(centre.x, 0, centre.z), at) / records[i].radius;
+          if (weight > 0) serve.push_back({i, weight}), all += weight;
+        }
+        for (const auto& [i, weight] : serve) share[i] += double(weight / all) / k_points;
+      }
+      for (size_t i = 0; i < records.size(); ++i) expected[i] += share[i] * share[i] / (k_size * k_size);
+    }
+  double all = 0, measured = 0, off = 0;
+  for (size_t i = 0; i < records.size(); ++i) {
+    all += expected[i], measured += double(worth[i]);
+    // A pair of points a pixel says it with some noise, and in steps of 1/256 of a pixel.
+    off += std::abs(expected[i] - double(worth[i]));
+    if (expected[i] == 0) CHECK(worth[i] < 1e-6f);
+  }
+  INFO(records.size() << " records, " << measured << " where " << all << " is expected, off by " << off);
+  CHECK(all > 0.05);
+  CHECK(measured == Approx(all).epsilon(0.03));
+  CHECK(off < 0.15 * all);
 }

@@ -25,10 +25,8 @@ constexpr float k_deep_spacing = 1.0f / 64;
 /// left to later passes, whose records read those of the first and are cheaper.
 constexpr float k_finest_of_spacing = 0.5f;
 /// How much of the picture reads a record (Worth) of which the option `noise` is true after the first level,
-/// in squares of the picture's height: about what one does with a radius of 3 % of that. And how far from the
-/// option others may be.
+/// in squares of the picture's height: about what one does with a radius of 3 % of that.
 constexpr float k_noisy_worth = 0.03f * 0.03f * 0.5f;
-constexpr float k_most_shift = 4;
 /// Passes that look along one path a pixel; paths a pixel that later ones look along at most, until so many
 /// of the pixels' number ask.
 constexpr uint32_t k_looks_once = 3, k_most_looks = 16;
@@ -372,11 +370,12 @@ void Cache::Impl::next_pass() {
 }
 
 /// What noise a record may have and be done, over the option. One more level is worth what it takes from the
-/// picture's squared error, per ray: with n rays so far, noise^2 A / n where A is how much of the picture reads
-/// the record (Worth). Equal worth is noise in proportion to sqrt(n) / sqrt(A).
+/// picture's squared error, per ray: with n rays so far, noise^2 A / n where A is how much of the picture
+/// reads the record (Worth). Equal worth is noise in proportion to sqrt(n) / sqrt(A).
 float Cache::Impl::share_of_noise(uint32_t record) const {
-  return std::clamp(std::ldexp(std::sqrt(k_noisy_worth / std::max(worth[record], 1e-12f)), int(level)),
-                    1 / k_most_shift, k_most_shift);
+  // Nobody reads some: those stop at the first level.
+  constexpr float k_least = 1e-20f;
+  return std::ldexp(std::sqrt(k_noisy_worth / std::max(worth[record], k_least)), int(level));
 }
 
 bool Cache::Impl::next_level() {

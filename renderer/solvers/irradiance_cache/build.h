@@ -70,8 +70,8 @@ struct Cache::Impl {
   Placement placement;
   Clamping clamping;
   Worth reads;
-  bool reads_stale = true;   // what it has seen is not this picture
-  std::vector<float> worth;  // of the records that are evaluated, by it
+  bool reads_stale = true;               // what it has seen is not this picture
+  std::vector<float> worth;              // of the records that are evaluated, by it
   std::optional<Neighbours> neighbours;  // only where radii are bounded
   bool looked = false;                   // at the picture, in this pass: the screen-space stage is done
   bool stale = true;                     // ... and what it has seen is not this picture

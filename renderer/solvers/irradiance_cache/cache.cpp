@@ -83,8 +83,8 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
 }
 
 void Cache::Impl::count_bytes() {
-  status.bytes =
-      own_bytes + screen.bytes() + placement.bytes() + reads.bytes() + (neighbours ? neighbours->bytes() : uint64_t{0});
+  status.bytes = own_bytes + screen.bytes() + placement.bytes() + reads.bytes() +
+                 (neighbours ? neighbours->bytes() : uint64_t{0});
 }
 
 void Cache::Impl::build_octree(transport::Wavefront& wavefront, uint32_t count) {
@@ -251,6 +251,7 @@ PlacementShown Cache::placement() const {
 
 const CacheStatus& Cache::status() const { return impl_->status; }
 const Records& Cache::records() const { return impl_->records; }
+const std::vector<float>& Cache::worth() const { return impl_->worth; }
 uint32_t Cache::parts() const { return impl_->parts; }
 
 bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,

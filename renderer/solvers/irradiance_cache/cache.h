@@ -48,9 +48,9 @@ struct CacheOptions {
   /// `most_rays` and what the wavefront has slots for.
   uint32_t rays = 256, most_rays = 4096;
   /// Relative standard error of its luminance above which a record gets another level: after the first, and
-  /// with a radius of 3 % of the picture's height, as the camera sees it. In proportion to one over the
-  /// radius and to the square root of the rays so far (build.cpp, share_of_noise()). Records darker than a
-  /// tenth of the mean are held against that.
+  /// when as much of the picture reads it as one with a radius of 3 % of the picture's height. In proportion
+  /// to one over the square root of how much does (worth()) and to the square root of the rays so far.
+  /// Records darker than a tenth of the mean are held against that.
   float noise = 0.1f;
   /// Of its radius: where a record makes others superfluous that are not yet evaluated, 0..1. The less, the
   /// more records; 0: none goes.
@@ -146,6 +146,8 @@ class Cache {
             const std::function<bool()>& cancel = {});
   const CacheStatus& status() const;
   const Records& records() const;
+  /// Of the records, when the last pass had its first level: how much of the picture reads them (worth.h).
+  const std::vector<float>& worth() const;
   uint32_t parts() const;  ///< that its records hold (bits); the others are 0
   /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many
   /// serve each pixel. Needs the film's depth, and where it has no samples that of the coarse film of the
