@@ -1,11 +1,9 @@
-// Appends candidates to those there are, in the order of their slots or, with LUCERNA_FROM_SCREEN, of the points of the
+// Appends candidates to those there are, in the order of slot_of() or, with LUCERNA_FROM_SCREEN, of the points of the
 // screen-space stage.
 #include "shaders/shared/placement.h"
 #include "shaders/shared/irradiance_cache.h"
 #include "shaders/shared/discontinuity.h"
-#include "lib/invocation.glsl"
-layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push { CollectPush push; };
+#include "irradiance_cache/collect.glsl"
 uniform samplerBuffer candidate_texels;
 uniform samplerBuffer surface_texels;
 layout(scalar) readonly buffer Taken { uint taken[]; };
@@ -24,8 +22,8 @@ void main() {
   uint origin = k_origin_screen;
   float reach = push.cell * push.pixel * float(1u << min(taken_levels[index], 31u)) * (push.parallel != 0u ? 1.0 : place.w);
 #else
-  vec4 place = texelFetch(candidate_texels, int(index * k_candidate_texels));
-  vec4 facing = texelFetch(candidate_texels, int(index * k_candidate_texels + 1u));
+  int slot = int(slot_of(index) * k_candidate_texels);
+  vec4 place = texelFetch(candidate_texels, slot), facing = texelFetch(candidate_texels, slot + 1);
   uint origin = uint(place.w) - 1u;
   float reach = origin == k_origin_recursive ? max(push.spacing, push.spacing_beyond) : push.spacing;
 #endif

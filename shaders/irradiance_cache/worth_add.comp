@@ -17,9 +17,17 @@ Reader reader(uint at) {
   return Reader(place.xyz, facet_unpack(bits), (bits & k_worth_there) != 0u);
 }
 
-float weight_at(Reader r, uint record, vec4 place, vec4 facing, vec4 shape) {
+// Of the record in place i of the octree's lists; 0: it does not serve there.
+float weight_at(Reader r, uint i) {
+  uint record = octree_sphere(i);
+  vec4 place = octree_copy(i), facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
   vec3 away = r.x - place.xyz;
-  return dot(away, away) < square(place.w) ? record_weight(r.x, r.n, place, facing, shape) : 0.0;
+  return dot(away, away) < square(place.w) ? record_weight(r.x, r.n, place, facing, record_shape(record, place)) : 0.0;
+}
+float weight_of_all(Reader r, OctreeRange range) {
+  float sum = 0.0;
+  for (uint i = range.first; i < range.last; ++i) sum += weight_at(r, i);
+  return sum;
 }
 
 void main() {
@@ -27,27 +35,12 @@ void main() {
   if (pixel >= push.pixels) return;
   Reader one = reader(2u * pixel), other = reader(2u * pixel + 1u);
   bool both = one.there && other.there;
-  float all_other = 0.0;
-  OctreeRange range = cache_range(other.x, both);
+  float all_other = weight_of_all(other, cache_range(other.x, both));
+  OctreeRange range = cache_range(one.x, both && all_other > 0.0);
+  float all_one = weight_of_all(one, range);
   for (uint i = range.first; i < range.last; ++i) {
-    vec4 place = octree_copy(i);
-    uint record = octree_sphere(i);
-    vec4 facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
-    all_other += weight_at(other, record, place, facing, record_shape(record, place));
-  }
-  range = cache_range(one.x, both && all_other > 0.0);
-  float all_one = 0.0;
-  for (uint i = range.first; i < range.last; ++i) {
-    vec4 place = octree_copy(i);
-    uint record = octree_sphere(i);
-    vec4 facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
-    all_one += weight_at(one, record, place, facing, record_shape(record, place));
-  }
-  for (uint i = range.first; i < range.last; ++i) {
-    vec4 place = octree_copy(i);
-    uint record = octree_sphere(i);
-    vec4 facing = texelFetch(record_texels, int(record * k_record_texels + 1u)), shape = record_shape(record, place);
-    float share = weight_at(one, record, place, facing, shape) * weight_at(other, record, place, facing, shape);
-    if (share > 0.0) atomicAdd(sums[record], uint(share / (all_one * all_other) * float(k_worth_steps) + 0.5));
+    float product = weight_at(one, i) * weight_at(other, i);
+    if (product > 0.0)
+      atomicAdd(sums[octree_sphere(i)], uint(product / (all_one * all_other) * float(k_worth_steps) + 0.5));
   }
 }

@@ -26,6 +26,13 @@ Run own_run(uint index, uint count) {
   return run_of(index, run_count(count, length), length, count);
 }
 
+// Of two pairs, and of four words, in a texel.
+uvec2 pair_of(uvec4 two, uint index) { return (index & 1u) != 0u ? two.zw : two.xy; }
+uint word_of(uvec4 four, uint index) {
+  uvec2 two = (index & 2u) != 0u ? four.zw : four.xy;
+  return (index & 1u) != 0u ? two.y : two.x;
+}
+
 bool finite(float x) { return abs(x) <= 3.4e38; }
 // Spheres without extent or place are left out.
 bool usable(vec4 s) { return s.w >= 0.0 && finite(s.x) && finite(s.y) && finite(s.z) && finite(s.w); }

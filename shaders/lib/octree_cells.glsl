@@ -114,4 +114,33 @@ ivec2 row_cells(SphereCells c, ivec2 row) {
                                  : ivec2(max(c.first.x, int(floor(from))), min(c.last.x, int(floor(to))));
 #endif
 }
+
+// How many cells a sphere overlaps.
+uint cell_count(SphereCells c) {
+  uint rows = row_count(c), found = 0u;
+  ivec2 row = c.first.yz;
+  for (uint k = 0u; k < rows; ++k) {
+    ivec2 cells = row_cells(c, row);
+    found += uint(max(cells.y - cells.x + 1, 0));
+    row = next_row(c, row);
+  }
+  return found;
+}
+
+// One cell after the other, over all rows: in a loop for each row lanes would wait for the longest of every one.
+struct CellWalk {
+  uint rows;          // that are left, with this one
+  ivec2 row, cells;   // (y, z); this cell and the row's last, none where the first is beyond the last
+};
+CellWalk first_cell(SphereCells c) { return CellWalk(row_count(c), c.first.yz, row_cells(c, c.first.yz)); }
+bool at_cell(CellWalk w) { return w.cells.x <= w.cells.y; }
+uvec3 cell_of(CellWalk w) { return uvec3(w.cells.x, w.row); }
+void next_cell(SphereCells c, inout CellWalk w) {
+  w.cells.x++;
+  if (w.cells.x > w.cells.y) {
+    w.rows--;
+    w.row = next_row(c, w.row);
+    w.cells = row_cells(c, w.row);
+  }
+}
 #endif

@@ -9,10 +9,12 @@ uniform usamplerBuffer leaf_texels;         // (code, first reference) pairs
 
 uint reference_count() { return min(octree.references, push.capacity); }
 
-uvec2 pair_of(uvec4 two, uint index) { return (index & 1u) != 0u ? two.zw : two.xy; }
-uint reference_code(uint index) { return pair_of(texelFetch(octree_references, int(index >> 1)), index).x; }
-uint reference_sphere(uint index) { return pair_of(texelFetch(octree_references, int(index >> 1)), index).y; }
+uvec2 reference_pair(uint index) { return pair_of(texelFetch(octree_references, int(index >> 1)), index); }
+uint reference_code(uint index) { return reference_pair(index).x; }
+uint reference_sphere(uint index) { return reference_pair(index).y; }
 uvec2 leaf_pair(uint index) { return pair_of(texelFetch(leaf_texels, int(index >> 1)), index); }
+// Behind a leaf's last reference.
+uint leaf_end(uint leaf) { return leaf + 1u < octree.leaves ? leaf_pair(leaf + 1u).y : reference_count(); }
 
 // Size of the hash table for that many leaves, as a power of two: half full at most, if there is memory; never full.
 uint table_bits(uint leaves) {

@@ -7,13 +7,5 @@ void main() {
   uint i = global_index();
   if (i >= sphere_count()) return;
   vec4 s = texelFetch(spheres, int(i));
-  SphereCells c = sphere_cells(s, i);
-  uint rows = usable(s) ? row_count(c) : 0u, found = 0u;
-  ivec2 row = c.first.yz;
-  for (uint k = 0u; k < rows; ++k) {
-    ivec2 cells = row_cells(c, row);
-    found += uint(max(cells.y - cells.x + 1, 0));
-    row = next_row(c, row);
-  }
-  sphere_references[i] = found;
+  sphere_references[i] = usable(s) ? cell_count(sphere_cells(s, i)) : 0u;
 }

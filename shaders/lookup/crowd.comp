@@ -9,7 +9,7 @@ const uint k_sampled = 64u;
 void main() {
   uint leaf = global_index();
   if (leaf >= octree.leaves) return;
-  uint first = leaf_pair(leaf).y, last = leaf + 1u < octree.leaves ? leaf_pair(leaf + 1u).y : reference_count();
+  uint first = leaf_pair(leaf).y, last = leaf_end(leaf);
   uint n = last - first, sampled = min(n, k_sampled);
   float sum = 0.0;
   for (uint k = 0u; k < sampled; ++k)

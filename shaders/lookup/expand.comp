@@ -15,10 +15,9 @@ void main() {
     uint leaf = (at & 1u) != 0u ? two.y : two.x;
     bool there = leaf != k_octree_no_leaf;
     uvec2 own = leaf_pair(there ? leaf : 0u);
-    uint next = there && leaf + 1u < octree.leaves ? leaf_pair(leaf + 1u).y : reference_count();
     uint sphere = reference_sphere(own.y);
     bool split = there && (sphere & k_octree_split) != 0u;
     uint levels = split ? sphere & ~k_octree_split : there && push.most_split > 0u ? leaf_splits[leaf] : 0u;
-    slots[at] = there ? uvec4(own, split ? own.y : next, levels) : uvec4(k_octree_no_leaf, 0u, 0u, 0u);
+    slots[at] = there ? uvec4(own, split ? own.y : leaf_end(leaf), levels) : uvec4(k_octree_no_leaf, 0u, 0u, 0u);
   }
 }

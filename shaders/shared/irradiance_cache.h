@@ -118,13 +118,13 @@ struct ClampPush {
 /// Of a record that none clamps: the bits of infinity.
 LUCERNA_CONST uint k_no_bound = 0x7f800000u;
 
-/// How much of the picture reads a record: of `pixels` pixels, of which those before are `first`.
+/// How much of the picture reads a record.
 struct WorthPush {
   uint pixels;
-  uint first;
+  uint first;  ///< pixels before these
 };
-LUCERNA_CONST uint k_worth_steps = 256u;          ///< that a pixel of which a record has all is
-LUCERNA_CONST uint k_worth_there = 0x40000000u;   ///< a place is one; above the 22 bits of its normal
+LUCERNA_CONST uint k_worth_steps = 256u;         ///< that a pixel of which a record has all is
+LUCERNA_CONST uint k_worth_there = 0x40000000u;  ///< a place is one; above the 22 bits of its normal
 
 struct EllipsePush {
   uint first, count;  ///< records

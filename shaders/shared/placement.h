@@ -18,6 +18,7 @@ LUCERNA_CONST uint k_bounds_runs = 1024u;
 /// How far candidates of paths stand for others: the greatest of these.
 struct CollectPush {
   uint count;            ///< slots, or points of the grid
+  uint samples;          ///< paths a pixel in the slots
   uint to;               ///< place of the first one that is collected
   uint screen_too;       ///< 0: what the camera sees straight is left out
   uint parallel;         ///< the view: distances are from the eye, or 1 m

@@ -23,6 +23,7 @@ TEST_CASE("the more of the picture reads a record, the less noise it has when it
              {"cache.passes", "1"},
              {"samples", "1"}});
   shown.finish();
+  REQUIRE(shown.status().stop == irradiance_cache::StopReason::passes);
   const std::vector<irradiance_cache::Record> records = shown.r.cache()->records().read();
   const std::vector<float>& worth = shown.r.cache()->worth();
   REQUIRE(worth.size() == records.size());

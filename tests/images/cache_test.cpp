@@ -162,6 +162,17 @@ TEST_CASE("a cached picture does not depend on how its work was cut") {
   CHECK_FALSE(identical(whole.image.components[1], other.image.components[1]));
 }
 
+TEST_CASE(
+    "records do not depend on how many blocks are looked along at once, when pixels are several times") {
+  test::Render r{.scene = "cornell", .width = 24, .height = 24, .samples = 1, .settings = k_cached};
+  r.settings.insert(
+      {{"cache.rays", "64"}, {"cache.error", "0.1"}, {"cache.min_radius", "0.5"}, {"cache.stop", "0.0001"}});
+  const test::Result whole = test::render(r);
+  r.settings["path.batch"] = "2048";
+  const test::Result cut = test::render(r);
+  for (int c = 0; c < 4; ++c) CHECK(identical(whole.image.components[c], cut.image.components[c]));
+}
+
 TEST_CASE("records that serve in ellipses bring the same light, whatever way work was cut") {
   test::Render r{.scene = "cornell", .width = 64, .height = 64, .samples = 512, .settings = {{"seed", "3"}}};
   const test::Result path = test::render(r);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "kernels/gpu_support.h"
@@ -184,6 +185,33 @@ TEST_CASE("too few places are shared out over the clusters") {
   CHECK(bench.choose(one, {}).size() == 2);
 }
 
+TEST_CASE("candidates are collected block by block, whatever number of blocks is looked along at once") {
+  // Slots are sample by sample, in each block by block: what `number` says of one is its place among all.
+  constexpr uint32_t k_samples = 3, k_blocks = 4;
+  const auto order = [&](uint32_t at_once) {
+    Bench bench;
+    for (uint32_t first = 0; first < k_blocks; first += at_once) {
+      std::vector<vec4> slots;
+      for (uint32_t sample = 0; sample < k_samples; ++sample)
+        for (uint32_t pixel = 64 * first; pixel < 64 * (first + at_once); ++pixel) {
+          const uint32_t number = (pixel / 64 * k_samples + sample) * 64 + pixel % 64;
+          slots.push_back(vec4(float(number), 0, 0, 1));
+          slots.push_back(vec4(0, 1, 0, 0));
+        }
+      gpu::Buffer buffer(bench.silent.device,
+                         {.name = "slots", .bytes = slots.size() * sizeof(vec4), .texel = true});
+      buffer.write(std::span<const vec4>(slots));
+      bench.placement.collect(bench.stream, buffer, 64 * at_once * k_samples, k_samples, true, {});
+    }
+    std::vector<float> found;
+    for (const Place& p : bench.placement.choice().candidates) found.push_back(p.position.x);
+    return found;
+  };
+  std::vector<float> expected(64 * k_blocks * k_samples);
+  std::iota(expected.begin(), expected.end(), 0.0f);
+  for (const uint32_t at_once : {1u, 2u, 4u}) CHECK(order(at_once) == expected);
+}
+
 TEST_CASE("candidates are collected in the order of their slots, those seen straight if they are to be") {
   Bench bench;
   std::vector<vec4> slots(2 * 200, vec4(0));
@@ -204,7 +232,7 @@ TEST_CASE("candidates are collected in the order of their slots, those seen stra
   for (const bool screen_too : {true, false}) {
     bench.placement.clear();
     for (int twice = 0; twice < 2; ++twice) {
-      const auto asked = bench.placement.collect(bench.stream, buffer, 200, screen_too, reach);
+      const auto asked = bench.placement.collect(bench.stream, buffer, 200, 1, screen_too, reach);
       for (int k = 0; k < 3; ++k) CHECK(asked[size_t(k)] == by_origin[k]);
     }
     const uint32_t each = by_origin[1] + by_origin[2] + (screen_too ? by_origin[0] : 0);

@@ -59,13 +59,15 @@ struct RecordBed {
       to.set("Candidates", candidates);
       octree.bind(to);
     });
+    const std::vector<irradiance_cache::Record> all = records.read();
     const std::vector<float> radii = records.radii(0);
     const irradiance_cache::RawRecords after = records.raw(count);
     for (uint32_t i = 0; i < count; ++i) {
+      CHECK(all[i].radius == radii[i]);
       CHECK(after.spheres[i].w == radii[i]);
       CHECK(vec3(after.spheres[i]) == discs[i].place.position);
     }
-    return records.read();
+    return all;
   }
 };
 

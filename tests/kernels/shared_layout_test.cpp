@@ -85,7 +85,7 @@ std::vector<SharedStruct> structs() {
       SHARED("irradiance_cache.h", EllipsePush, first, count, reach, most, dark, near),
       SHARED("irradiance_cache.h", OverlayPush, width, height, discs, overlap, color, lo, hi, overlap_most),
       SHARED("neighbours.h", NeighbourPush, first, count, pairs, apart, gap),
-      SHARED("placement.h", CollectPush, count, to, screen_too, parallel, spacing, spacing_beyond,
+      SHARED("placement.h", CollectPush, count, samples, to, screen_too, parallel, spacing, spacing_beyond,
              spacing_of_distance, cell, pixel, eye),
       SHARED("placement.h", PlacementGrid, origin, scale, exponent),
       SHARED("placement.h", ChoosePush, count, seed, normal_tolerance),

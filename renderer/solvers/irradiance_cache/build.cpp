@@ -74,7 +74,7 @@ bool Cache::Impl::probe(const Work& w) {
     return false;
   }
   took(BuildStep::probe, timer.milliseconds());
-  collect(w, item.slots());
+  collect(w, item);
   if (!picture.done()) return true;
   const bool covered = double(status.asked) <= double(options.stop_share) * double(status.paths);
   // Few that ask show where gaps are, not how wide they are: each would get a record that serves little else.
@@ -152,13 +152,13 @@ bool Cache::Impl::look(const Work& w, bool& cancelled) {
   return false;
 }
 
-void Cache::Impl::collect(const Work& w, uint32_t slots) {
+void Cache::Impl::collect(const Work& w, const schedule::WorkItem& item) {
   StageTimer timer(w.wavefront);
-  const std::array<uint32_t, 3> by_origin =
-      placement.collect(w.wavefront.stream(), candidates, slots, !looks_first(), reach(w.view));
+  const std::array<uint32_t, 3> by_origin = placement.collect(
+      w.wavefront.stream(), candidates, item.slots(), item.sample_count, !looks_first(), reach(w.view));
   took(BuildStep::choose, timer.milliseconds());
   status.asked += by_origin[0] + by_origin[1] + by_origin[2];
-  status.paths += slots;
+  status.paths += item.slots();
   pass().asked = status.asked, pass().paths = status.paths;
   pass().asked_world += by_origin[1] + by_origin[2];
   pass().candidates = placement.size();

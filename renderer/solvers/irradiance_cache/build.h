@@ -151,7 +151,7 @@ struct Cache::Impl {
   float off_plane(const Place& place, float radius) const {
     return radius * (radius <= 1.001f * least.at(place.position) ? k_off_plane_least : k_off_plane);
   }
-  void collect(const Work& work, uint32_t slots);
+  void collect(const Work& work, const schedule::WorkItem& item);
   void end_pass(const Work& work);
   void next_pass();
   /// Building may wait here; `last`: of its pass.

@@ -168,10 +168,11 @@ uint64_t Placement::bytes() const {
 }
 
 std::array<uint32_t, 3> Placement::collect(gpu::Stream& stream, const gpu::Buffer& candidates, uint32_t slots,
-                                           bool screen_too, const ReachOptions& reach) {
+                                           uint32_t samples, bool screen_too, const ReachOptions& reach) {
   Impl& p = *impl_;
   if (slots == 0) return {};
   CollectPush push = Impl::push_of(reach, slots);
+  push.samples = samples;
   push.screen_too = screen_too;
   gpu::make_texel_room(p.device, p.taken, "slots that ask", uint64_t{slots} * 4);
   p.resources.set("candidate_texels", candidates);

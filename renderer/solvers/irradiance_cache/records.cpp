@@ -135,9 +135,7 @@ std::vector<Records::Figures> Records::figures() const {
   std::vector<Figures> all;
   for (uint32_t i = 0; i < size_; ++i) {
     const vec4* p = &places[size_t{i} * k_record_texels];
-    all.push_back({float(std::bit_cast<uint32_t>(p[2].x)), p[1].w, p[2].z,
-                   std::bit_cast<uint32_t>(p[2].w) >> k_record_origin_shift & 3u, vec3(p[0]),
-                   std::sqrt(p[0].w * p[3].w)});
+    all.push_back({float(std::bit_cast<uint32_t>(p[2].x)), p[1].w, p[2].z});
   }
   return all;
 }

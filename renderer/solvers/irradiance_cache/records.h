@@ -79,12 +79,9 @@ class Records {
   /// number of records (assertions).
   RawRecords raw(uint32_t count) const;
   void restore(const RawRecords& raw);
-  /// What the overlay colours by, and what asked, of every record.
+  /// What the overlay colours by, of every record.
   struct Figures {
     float rays, mean_distance, error;
-    uint32_t origin;
-    vec3 position;
-    float radius;  ///< of a circle as large as where it serves [m]; 0: nowhere yet
   };
   std::vector<Figures> figures() const;
   /// Radii of the records from `first` on.

@@ -16,6 +16,15 @@ uint32_t wanted_for(const gpu::Device& device) { return device.info().is_cpu ? 1
 uint32_t runs_for(const gpu::Device& device) { return device.info().is_cpu ? 4096 : 16384; }
 uint32_t group_for(const gpu::Device& device) { return device.info().is_cpu ? 8 : 64; }
 
+/// Levels by which leaves may be split.
+uint32_t most_split(const shared::OctreeHeader& header) {
+  uint32_t levels = std::min(shared::k_octree_levels - header.level, shared::k_octree_most_split);
+  // What is counted must fit into 32 bits: all spheres in all cells of their leaf, and the leaf's own one.
+  while (((uint64_t{1} << 3 * levels) + 1) * header.references > std::numeric_limits<uint32_t>::max())
+    --levels;
+  return levels;
+}
+
 }  // namespace
 
 Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeOptions& options)
@@ -144,7 +153,7 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
     run(insert_, groups_);
     if (push.most_split == 0) run(expand_, groups_);
   };
-  if (options_.crowd > 0 && header_.overflow == 0) push.most_split = most_split();
+  if (options_.crowd > 0 && header_.overflow == 0) push.most_split = most_split(header_);
   cut();
   while (push.most_split > 0) {
     const uint32_t groups = gpu::groups_for(header_.references, 64);
@@ -180,14 +189,6 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
   header_.split = split;
   header_.references = std::min(header_.references, header_.capacity);
   return header_;
-}
-
-uint32_t Octree::most_split() const {
-  uint32_t levels = std::min(shared::k_octree_levels - header_.level, shared::k_octree_most_split);
-  // What is counted must fit into 32 bits: all spheres in all cells of their leaf, and the leaf's own one.
-  while (((uint64_t{1} << 3 * levels) + 1) * header_.references > std::numeric_limits<uint32_t>::max())
-    --levels;
-  return levels;
 }
 
 void Octree::bind(gpu::Resources& resources) const {

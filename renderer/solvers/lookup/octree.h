@@ -82,7 +82,6 @@ class Octree {
       copy_, crowd_, split_count_, split_write_;
   gpu::Buffer header_buffer_, run_bounds_, run_needs_, run_leaves_, sphere_references_, unused_;
   gpu::Buffer pairs_[2], slot_leaves_, slots_, copies_, splits_;
-  uint32_t most_split() const;
   const gpu::Buffer* references_ = nullptr;  ///< one of pairs_
   shared::OctreeHeader header_{};
 };
