@@ -6,6 +6,7 @@
 
 #include "base/timer.h"
 #include "gpu/stream.h"
+#include "solvers/irradiance_cache/noise.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -33,8 +34,6 @@ constexpr uint32_t k_looks_once = 3, k_most_looks = 16;
 constexpr float k_enough_ask = 0.1f;
 /// Passes that go on for the irradiance that the records give, when few paths ask.
 constexpr uint32_t k_refining_passes = 4;
-/// Records that go on with a noisy one, on either side.
-constexpr size_t k_company = 4;
 /// Of metric `hessian`, over `error`: makes about as many records as the split sphere does with the same.
 constexpr float k_hessian_reach = 0.5f;
 /// Of metric `hessian`, over the nearest thing: how far a place that is tried would serve. The first level
@@ -383,19 +382,11 @@ bool Cache::Impl::next_level() {
   if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
   const std::vector<Records::Figures> figures = records.figures();
   const std::vector<float> light = records.luminances();
-  const float darkest = dark(light);
-  // Light that few rays find (a caustic) is looked for wherever a record near by has found it: one that has
-  // not would else stop, content with its darkness. The list is in Morton order, so that neighbours in it
-  // are near.
+  std::vector<Noise> noises;
+  for (const uint32_t r : list)
+    noises.push_back({figures[r].error, light[r], options.noise * share_of_noise(r)});
   std::vector<uint32_t> longer;
-  size_t next = 0;  // the first that no noisy one so far has kept or passed
-  for (size_t i = 0; i < list.size(); ++i) {
-    const uint32_t r = list[i];
-    const float noise = options.noise * share_of_noise(r);
-    if (figures[r].error <= noise * std::max(light[r], darkest)) continue;
-    next = std::max(next, i > k_company ? i - k_company : 0);
-    for (; next < std::min(list.size(), i + k_company + 1); ++next) longer.push_back(list[next]);
-  }
+  for (const uint32_t i : too_noisy(noises, dark(light))) longer.push_back(list[i]);
   list = std::move(longer);
   if (list.empty()) return false;
   ++level;

@@ -50,7 +50,7 @@ struct CacheOptions {
   /// Relative standard error of its luminance above which a record gets another level: after the first, and
   /// when as much of the picture reads it as one with a radius of 3 % of the picture's height. In proportion
   /// to one over the square root of how much does (worth()) and to the square root of the rays so far.
-  /// Records darker than a tenth of the mean are held against that.
+  /// Records darker than a tenth of the mean are held against that. Judged by the records around (noise.h).
   float noise = 0.1f;
   /// Of its radius: where a record makes others superfluous that are not yet evaluated, 0..1. The less, the
   /// more records; 0: none goes.

@@ -1,0 +1,25 @@
+#include "solvers/irradiance_cache/noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::irradiance_cache {
+
+std::vector<uint32_t> too_noisy(std::span<const Noise> list, float darkest) {
+  std::vector<uint32_t> found;
+  for (size_t i = 0; i < list.size(); ++i) {
+    double squares = 0, light = 0;
+    size_t others = 0;
+    const size_t end = std::min(list.size(), i + k_around + 1);
+    for (size_t k = i > k_around ? i - k_around : 0; k < end; ++k) {
+      if (k == i && list.size() > 1) continue;
+      squares += double(list[k].error) * double(list[k].error), light += double(list[k].light), ++others;
+    }
+    const double error = std::sqrt(squares / double(others));
+    if (error > double(list[i].bound) * std::max(light / double(others), double(darkest)))
+      found.push_back(uint32_t(i));
+  }
+  return found;
+}
+
+}  // namespace lucerna::irradiance_cache
