@@ -123,7 +123,7 @@ TEST_CASE("records that read records bring the light of those that trace their p
                  .width = 64,
                  .height = 64,
                  .samples = 16,
-                 .settings = {{"seed", "5"}, {"components.secondary", "cache"}, {"cache.noise", "0.05"}}};
+                 .settings = {{"seed", "5"}, {"components.secondary", "cache"}, {"cache.noise", "0.03"}}};
   const test::Result traced = test::render(r);
   r.settings["components.tertiary"] = "cache";
   const test::Result recursive = test::render(r);
