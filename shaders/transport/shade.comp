@@ -81,6 +81,7 @@ void main() {
         bool beyond = cache.probing == k_probe_beyond && state >= k_fallback_state;
         bool looks = (routes != k_no_routes || beyond) && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
         bool alone = false;  // a side asks and finds nothing
+        bool notes_all = cache.probing == k_probe_screen || cache.probing == k_probe_reads;
         // Records stand on the smooth surface, not on its facets nor its normal map.
         vec3 smooth_side = dot(surface.normal_v, side) < 0.0 ? -surface.normal_v : surface.normal_v;
         for (int facing = 0; facing < k_cache_sides; ++facing) {
@@ -90,7 +91,7 @@ void main() {
           Cached found = cache_lookup(surface.position, sign * smooth_side, sign * to_world[2], asks);
           bool missing = asks && found.weight <= 0.0;
           // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
-          bool notes = (missing || (asks && cache.probing >= k_probe_screen)) && cache.probing != k_probe_none &&
+          bool notes = (missing || (asks && notes_all)) && cache.probing != k_probe_none &&
                        !(beyond && (sample_vertex_bits(random, depth, k_pad_light_choice).x & 1u) != 0u);
           if (notes && cache_can_serve(sign * smooth_side, sign * to_world[2])) {
             uint origin = beyond ? k_origin_recursive : depth == 0u ? k_origin_screen : k_origin_world;

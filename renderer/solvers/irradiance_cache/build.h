@@ -31,9 +31,9 @@ struct LeastRadius {
   bool parallel = false;
   float of_distance = 0;  ///< of the distance from `eye`; where `parallel`, in metres
   float most = 0;         ///< [m]
-  /// What grows in proportion to the distance from the eye, over that.
-  float scale(const vec3& position) const { return parallel ? 1 : distance(position, eye); }
-  float at(const vec3& position) const { return std::min(of_distance * scale(position), most); }
+  float at(const vec3& position) const {
+    return std::min(of_distance * (parallel ? 1 : distance(position, eye)), most);
+  }
   bool operator==(const LeastRadius&) const = default;
 };
 
