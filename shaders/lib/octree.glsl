@@ -26,7 +26,7 @@
 #include "shaders/shared/octree.h"
 
 layout(scalar) readonly buffer OctreeHeaders { OctreeHeader octree; };
-uniform usamplerBuffer octree_slots;        // code, first, last, levels by which it is split (then it lists nothing)
+uniform usamplerBuffer octree_slots;        // code, first, last, how it is split (then it lists nothing); 0: it is not
 uniform usamplerBuffer octree_references;   // (code, sphere) pairs, two a texel
 uniform samplerBuffer octree_copies;        // centre, radius; in the order of the references
 
@@ -53,10 +53,17 @@ uvec3 octree_decode(uint code) {
 uint octree_code(uvec3 cell) {
   return octree_spread(cell.x) | octree_spread(cell.y) << 1 | octree_spread(cell.z) << 2;
 }
-// The same of a leaf that is `split` levels finer than most: above all codes of coarser ones.
-uint octree_split_code(uvec3 cell, uint split) { return octree_code(cell) | 1u << 3u * (octree.level + split); }
+// Of a leaf that is split, k_octree_split aside: the levels, and the first code of its cells, which are a multiple of 8.
+uint octree_split_levels(uint split) { return split & k_octree_split_levels; }
+uint octree_split_first(uint split) { return split & ~(k_octree_split | k_octree_split_levels); }
+// The code of a cell in a split leaf: above those of all whole leaves, and counted within the leaf, so that the bits of a
+// code do not bound how fine a cell is in the root.
+uint octree_split_code(uvec3 cell, uint split) {
+  uvec3 within = cell & ((1u << octree_split_levels(split)) - 1u);
+  return (1u << 3u * octree.level) + octree_split_first(split) + octree_code(within);
+}
 
-// The slot of a leaf: code, first reference, behind the last, levels by which it is split.
+// The slot of a leaf: code, first reference, behind the last, how it is split.
 uvec4 octree_slot(uint code) {
   uint slot = (code * k_octree_hash) >> octree.slot_shift;
   uvec4 found = texelFetch(octree_slots, int(slot));
@@ -89,7 +96,8 @@ OctreeRange octree_find(vec3 x) {
   vec3 cell = octree_cell(x);
   bool inside = all(greaterThanEqual(cell, vec3(0.0))) && all(lessThan(cell, vec3(float(octree.cells))));
   uvec4 found = octree_slot(octree_code(uvec3(inside ? cell : vec3(0.0))));
-  if (inside && found.w > 0u) found = octree_slot(octree_split_code(uvec3(octree_cell(x, found.w)), found.w));
+  if (inside && found.w > 0u)
+    found = octree_slot(octree_split_code(uvec3(octree_cell(x, octree_split_levels(found.w))), found.w));
   return OctreeRange(found.y, inside ? found.z : found.y);
 }
 

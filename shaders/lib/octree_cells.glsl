@@ -58,10 +58,10 @@ SphereCells sphere_cells(vec4 s, uint index, uint split, ivec3 lowest, ivec3 hig
 SphereCells sphere_cells(vec4 s, uint index) {
   return sphere_cells(s, index, 0u, ivec3(0), ivec3(int(octree.cells) - 1));
 }
-// The cells of a leaf that is split by `split` levels.
-SphereCells sphere_cells(vec4 s, uint index, uint code, uint split) {
-  ivec3 low = ivec3(octree_decode(code) << split);
-  return sphere_cells(s, index, split, low, low + int(1u << split) - 1);
+// The cells of a leaf that is split by `levels`.
+SphereCells sphere_cells(vec4 s, uint index, uint code, uint levels) {
+  ivec3 low = ivec3(octree_decode(code) << levels);
+  return sphere_cells(s, index, levels, low, low + int(1u << levels) - 1);
 }
 
 // Cells that a sphere overlaps, at most, where they are 2^k leaves wide.

@@ -3,7 +3,8 @@
 // that all of them together call for are too large.
 #include "lib/octree_leaves.glsl"
 layout(local_size_x = 64) in;
-layout(scalar) writeonly buffer LeafSplits { uint leaf_splits[]; };
+layout(scalar) writeonly buffer LeafSplits { uint leaf_splits[]; };   // levels
+layout(scalar) writeonly buffer LeafCells { uint leaf_cells[]; };     // that each is split into; 0: it is not
 const uint k_sampled = 64u;
 
 void main() {
@@ -17,5 +18,7 @@ void main() {
   float mean = sum / float(sampled);
   uint levels = 0u;
   for (float cell = octree.leaf; levels < push.most_split && cell > push.scale * mean; cell *= 0.5) levels++;
-  leaf_splits[leaf] = n > push.crowd ? levels : 0u;
+  levels = n > push.crowd ? levels : 0u;
+  leaf_splits[leaf] = levels;
+  leaf_cells[leaf] = levels > 0u ? 1u << 3u * levels : 0u;
 }

@@ -1,9 +1,10 @@
-// Octree, step 11: into every slot of the hash table what a query asks for: code, first, last, and by how many levels the
-// leaf is split. Of those that are about to be split LeafSplits says it, of those that are the only reference that they have.
+// Octree, step 11: into every slot of the hash table what a query asks for: code, first, last, and how the leaf is split. Of
+// those that are about to be split LeafSplits and LeafCells say it, of those that are the only reference that they have.
 #include "lib/octree_leaves.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
 uniform usamplerBuffer slot_leaf_texels;
 layout(scalar) readonly buffer LeafSplits { uint leaf_splits[]; };
+layout(scalar) readonly buffer LeafCells { uint leaf_cells[]; };   // prefix sum
 layout(scalar) writeonly buffer Slots { uvec4 slots[]; };
 
 void main() {
@@ -17,7 +18,8 @@ void main() {
     uvec2 own = leaf_pair(there ? leaf : 0u);
     uint sphere = reference_sphere(own.y);
     bool split = there && (sphere & k_octree_split) != 0u;
-    uint levels = split ? sphere & ~k_octree_split : there && push.most_split > 0u ? leaf_splits[leaf] : 0u;
-    slots[at] = there ? uvec4(own, split ? own.y : leaf_end(leaf), levels) : uvec4(k_octree_no_leaf, 0u, 0u, 0u);
+    uint levels = there && !split && push.most_split > 0u ? leaf_splits[leaf] : 0u;
+    uint how = split ? sphere & ~k_octree_split : levels > 0u ? leaf_cells[leaf] | levels : 0u;
+    slots[at] = there ? uvec4(own, split ? own.y : leaf_end(leaf), how) : uvec4(k_octree_no_leaf, 0u, 0u, 0u);
   }
 }

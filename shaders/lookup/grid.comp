@@ -46,7 +46,7 @@ void main() {
   o.wanted_level = o.level;
   o.cells = n > 0.0 ? 1u << o.level : 0u;
   o.spheres = uint(n);
-  o.references = o.needed = o.leaves = o.overflow = o.split = o.split_references = 0u;
+  o.references = o.needed = o.leaves = o.overflow = o.split = o.split_references = o.split_cells = 0u;
   o.capacity = push.capacity;
   o.slots = 2u;
   o.slot_shift = 31u;

@@ -11,6 +11,6 @@ void main() {
   uvec4 leaf = octree_slot(own.x);
   uint found = 1u;
   if (leaf.w > 0u)
-    found = cell_count(sphere_cells(texelFetch(spheres, int(own.y)), own.y, own.x, leaf.w)) + (leaf.y == i ? 1u : 0u);
+    found = cell_count(sphere_cells(texelFetch(spheres, int(own.y)), own.y, own.x, octree_split_levels(leaf.w))) + (leaf.y == i ? 1u : 0u);
   split_references[i] = found;
 }

@@ -18,7 +18,7 @@ void main() {
     references[place] = SortPair(own.x, k_octree_split | leaf.w);
     place++;
   }
-  SphereCells c = sphere_cells(texelFetch(spheres, int(own.y)), own.y, own.x, leaf.w);
+  SphereCells c = sphere_cells(texelFetch(spheres, int(own.y)), own.y, own.x, octree_split_levels(leaf.w));
   for (CellWalk w = first_cell(c); w.rows > 0u; next_cell(c, w)) {
     if (at_cell(w)) {
       references[place] = SortPair(octree_split_code(cell_of(w), leaf.w), own.y);

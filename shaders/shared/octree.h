@@ -6,8 +6,9 @@ LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_octree_levels = 10u;            ///< the finest: 1024 leaves along the root's edge, codes of 30 bits
 LUCERNA_CONST uint k_octree_no_leaf = 0xffffffffu;   ///< no code, no index
-LUCERNA_CONST uint k_octree_split = 0x80000000u;     ///< for a sphere: the leaf is split, by the levels below
-LUCERNA_CONST uint k_octree_most_split = 4u;         ///< levels
+LUCERNA_CONST uint k_octree_split = 0x80000000u;     ///< for a sphere: the leaf is split, as the bits below say
+LUCERNA_CONST uint k_octree_split_levels = 7u;       ///< of these: by so many levels; the others: its cells' first code
+LUCERNA_CONST uint k_octree_most_split = 4u;         ///< levels; leaves may so come to be finer than k_octree_levels
 LUCERNA_CONST uint k_octree_hash = 0x9e3779b1u;      ///< a code's hash is the upper bits of its product with this
 
 /// The result of a build. Lengths in metres, in world space.
@@ -29,6 +30,7 @@ struct OctreeHeader {
   uint slot_shift;      ///< a code's hash is shifted right by this
   uint split;           ///< levels by which leaves are split at most
   uint split_references;///< that are written with those of split leaves, and one for each of these
+  uint split_cells;     ///< that all split leaves have together
   uint overflow;        ///< references that not even a single leaf could hold: that many are missing
 };
 

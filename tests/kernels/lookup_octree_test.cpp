@@ -477,9 +477,12 @@ TEST_CASE("two builds are the same byte for byte, and an octree can be built aga
 }
 
 TEST_CASE("lists are short in a crowd of small spheres among large ones, once its leaves are split") {
+  // In the second, things stand so far away that leaves are the finest there are without being split.
+  const float far = GENERATE(0.0f, 500.0f);
   const vec3 corner(0.3f, 0.2f, 7);
   Spheres spheres = mixed_spheres(2000, vec3(0), 20, 16);
   for (vec4& s : spheres) s.w = 0.6f;
+  if (far > 0) spheres.push_back(vec4(far, 0, far, 0.6f));
   std::mt19937 random(17);
   for (int i = 0; i < 20000; ++i)
     spheres.push_back(vec4(corner + vec3(uniform(random), uniform(random), uniform(random)), 0.03f));

@@ -104,7 +104,7 @@ std::vector<SharedStruct> structs() {
       SHARED("sort.h", SortPush, count, count_at, shift, bins, high_word),
       SHARED("octree.h", OctreeHeader, origin, leaf, inverse_leaf, edge, mean_diameter, level, wanted_level,
              cells, spheres, references, needed, capacity, leaves, slots, slot_shift, split, split_references,
-             overflow),
+             split_cells, overflow),
       SHARED("octree.h", OctreePush, count, count_at, capacity, slot_capacity, level_capacity, most_split,
              crowd, scale, normal_stride, normal_at, thickness),
       SHARED("trace.h", TracePush, count, use_queue),

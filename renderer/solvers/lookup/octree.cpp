@@ -16,13 +16,18 @@ uint32_t wanted_for(const gpu::Device& device) { return device.info().is_cpu ? 1
 uint32_t runs_for(const gpu::Device& device) { return device.info().is_cpu ? 4096 : 16384; }
 uint32_t group_for(const gpu::Device& device) { return device.info().is_cpu ? 8 : 64; }
 
-/// Levels by which leaves may be split.
+/// Levels by which leaves may be split. What is counted must fit into 32 bits: all spheres in all cells of
+/// their leaf, and the leaf's own one.
 uint32_t most_split(const shared::OctreeHeader& header) {
-  uint32_t levels = std::min(shared::k_octree_levels - header.level, shared::k_octree_most_split);
-  // What is counted must fit into 32 bits: all spheres in all cells of their leaf, and the leaf's own one.
+  uint32_t levels = shared::k_octree_most_split;
   while (((uint64_t{1} << 3 * levels) + 1) * header.references > std::numeric_limits<uint32_t>::max())
     --levels;
   return levels;
+}
+
+/// The cells' codes lie above those of whole leaves, and a reference must have room to say so.
+uint64_t codes(const shared::OctreeHeader& header) {
+  return (uint64_t{1} << 3 * header.level) + header.split_cells;
 }
 
 }  // namespace
@@ -76,6 +81,7 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
   slots_ = buffer("slots", slots * sizeof(uvec4));
   copies_ = buffer("copies", options.copies ? references * sizeof(vec4) : 0);
   splits_ = buffer("splits", (options.crowd > 0 ? references : 1) * sizeof(uint32_t));
+  leaf_cells_ = buffer("cells of leaves", (options.crowd > 0 ? references : 1) * sizeof(uint32_t));
   unused_ = buffer("unused count", sizeof(uint32_t));
   references_ = &pairs_[0];
   // Until something is built: no cells, and a table of which every slot is free.
@@ -106,6 +112,7 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
   r.set("Slots", slots_);
   r.set("Copies", copies_);
   r.set("LeafSplits", splits_);
+  r.set("LeafCells", leaf_cells_);
   r.set("SplitReferences", splits_);
   r.set("split_places", splits_);
   r.set("octree_slots", slots_);
@@ -158,6 +165,9 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
   while (push.most_split > 0) {
     const uint32_t groups = gpu::groups_for(header_.references, 64);
     run(crowd_, groups);  // there are no more leaves
+    prefix_sum_.encode(stream, leaf_cells_, leaf_cells_,
+                       {header_.references, &header_buffer_, offsetof(shared::OctreeHeader, leaves)},
+                       &header_buffer_, offsetof(shared::OctreeHeader, split_cells), k_stage);
     run(expand_, groups_);
     run(split_count_, groups);
     prefix_sum_.encode(stream, splits_, splits_, {.most = header_.references}, &header_buffer_,
@@ -165,7 +175,7 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
     stream.run();
     shared::OctreeHeader now;
     header_buffer_.read(&now, sizeof(now));
-    if (now.split_references > header_.capacity) {
+    if (now.split_references > header_.capacity || codes(now) > shared::k_octree_split) {
       if (--push.most_split == 0) run(expand_, groups_);
       continue;
     }
@@ -179,7 +189,7 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
     header_buffer_.write(&header_.references, sizeof(uint32_t), offsetof(shared::OctreeHeader, references));
     const bool second = references_ == &pairs_[0];
     references_ = &sorter_.encode(stream, pairs_[second], pairs_[!second], written,
-                                  3 * (header_.level + header_.split) + 1, k_stage);
+                                  uint32_t(std::bit_width(codes(now) - 1)), k_stage);
     cut();
   }
   if (options_.copies) run(copy_, groups_);
@@ -206,8 +216,9 @@ uint32_t Octree::most_references(const gpu::Device& device) {
 
 uint64_t Octree::bytes() const {
   uint64_t sum = 0;
-  for (const gpu::Buffer* b : {&header_buffer_, &run_bounds_, &run_needs_, &run_leaves_, &sphere_references_,
-                               &pairs_[0], &pairs_[1], &slot_leaves_, &slots_, &copies_, &splits_})
+  for (const gpu::Buffer* b :
+       {&header_buffer_, &run_bounds_, &run_needs_, &run_leaves_, &sphere_references_, &pairs_[0], &pairs_[1],
+        &slot_leaves_, &slots_, &copies_, &splits_, &leaf_cells_})
     sum += b->bytes();
   return sum;
 }

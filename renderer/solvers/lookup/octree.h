@@ -81,7 +81,7 @@ class Octree {
   gpu::Kernel bounds_, grid_, levels_, choose_, count_, write_, heads_, leaves_, clear_, insert_, expand_,
       copy_, crowd_, split_count_, split_write_;
   gpu::Buffer header_buffer_, run_bounds_, run_needs_, run_leaves_, sphere_references_, unused_;
-  gpu::Buffer pairs_[2], slot_leaves_, slots_, copies_, splits_;
+  gpu::Buffer pairs_[2], slot_leaves_, slots_, copies_, splits_, leaf_cells_;
   const gpu::Buffer* references_ = nullptr;  ///< one of pairs_
   shared::OctreeHeader header_{};
 };
