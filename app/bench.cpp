@@ -71,12 +71,12 @@ class Listening {
 };
 
 bench::Matrix choose_matrix(const BenchArguments& a) {
-  if (int(a.quick) + int(a.full) + int(a.cache) + int(!a.matrix.empty()) != 1)
+  if (a.built_in.size() + size_t(!a.matrix.empty()) != 1)
     throw Error("bench",
-                "name one matrix: a MATRIX.json, --quick, --full or --cache (see lucerna bench --help)");
-  const char* const built_in = a.quick ? "quick" : a.full ? "full" : "cache";
+                "name one matrix: a MATRIX.json, --quick, --full, --cache or --indirect "
+                "(see lucerna bench --help)");
   bench::Matrix m = a.matrix.empty()
-                        ? bench::builtin_matrix(built_in, fs::path(LUCERNA_SOURCE_DIR) / "scenes")
+                        ? bench::builtin_matrix(a.built_in[0], fs::path(LUCERNA_SOURCE_DIR) / "scenes")
                         : bench::read_matrix(a.matrix);
   if (a.repeats > 0) m.repeats = a.repeats;
   return m;

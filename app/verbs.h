@@ -63,8 +63,8 @@ struct BenchInterpolationArguments {
 int bench_interpolation(const BenchInterpolationArguments& arguments);
 
 struct BenchArguments {
-  std::string matrix;  ///< file; or one of the three built in
-  bool quick = false, full = false, cache = false;
+  std::string matrix;                 ///< file; or
+  std::vector<std::string> built_in;  ///< the name of a built-in one; more than one matrix is refused
   std::string report = "report", references, device;  ///< references "": in the report folder
   int repeats = 0;                                    ///< 0: the matrix's
   bool quiet = false;

@@ -22,6 +22,14 @@ double median_variance(size_t n) {
   return n < 6 ? k_small[n] : 1.5708 / double(n);
 }
 
+/// error^2 * t by the mean of its logarithm over the last factor of four of the time.
+double log_constant(std::span<const Point> curve) {
+  double sum = 0, count = 0;
+  for (const Point& p : curve)
+    if (p.seconds >= curve.back().seconds / 4) sum += 2 * std::log(p.error) + std::log(p.seconds), ++count;
+  return sum / count;
+}
+
 }  // namespace
 
 Reach time_to(std::span<const Point> curve, double target) {
@@ -33,13 +41,9 @@ Reach time_to(std::span<const Point> curve, double target) {
     const Point &a = curve[reached - 1], &b = curve[reached];
     return {ReachKind::measured, log_line(a.error, a.seconds, b.error, b.seconds, target)};
   }
-  // The mean of log(error^2 t) over the last factor of four of the time.
-  double sum = 0, count = 0;
-  for (const Point& p : curve)
-    if (p.seconds >= curve.back().seconds / 4) sum += 2 * std::log(p.error) + std::log(p.seconds), ++count;
   // Never before the end, where it was seen not to be reached.
   return {ReachKind::extrapolated,
-          std::max(curve.back().seconds, std::exp(sum / count - 2 * std::log(target)))};
+          std::max(curve.back().seconds, std::exp(log_constant(curve) - 2 * std::log(target)))};
 }
 
 std::optional<double> error_at(std::span<const Point> curve, double seconds) {
@@ -49,6 +53,24 @@ std::optional<double> error_at(std::span<const Point> curve, double seconds) {
   if (i == curve.size()) return curve.back().error;
   const Point &a = curve[i - 1], &b = curve[i];
   return log_line(a.seconds, a.error, b.seconds, b.error, seconds);
+}
+
+ErrorAfter error_after(std::span<const Point> curve, double seconds) {
+  if (const auto error = error_at(curve, seconds)) return {ReachKind::measured, *error};
+  if (curve.empty() || seconds < curve.front().seconds) return {};
+  return {ReachKind::extrapolated, std::exp((log_constant(curve) - std::log(seconds)) / 2)};
+}
+
+std::optional<double> power_of_time(std::span<const Point> curve) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (const Point& p : curve) {
+    if (p.seconds < curve.back().seconds / 16) continue;
+    const double x = std::log(p.seconds), y = 2 * std::log(p.error);
+    ++n, sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  const double spread = n * sxx - sx * sx;
+  if (n < 3 || !(spread > 0)) return std::nullopt;
+  return (n * sxy - sx * sy) / spread;
 }
 
 std::optional<double> performance_index(double mean_squared_error, double seconds) {

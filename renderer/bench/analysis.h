@@ -31,6 +31,18 @@ Reach time_to(std::span<const Point> curve, double target);
 /// The error after so many seconds, interpolated in the logarithms; nothing outside the curve.
 std::optional<double> error_at(std::span<const Point> curve, double seconds);
 
+/// The error after so many seconds, and beyond the curve's end by error^2 * t = constant as in time_to();
+/// nothing before its begin.
+struct ErrorAfter {
+  ReachKind kind = ReachKind::unknown;  ///< measured or extrapolated
+  double error = 0;
+};
+ErrorAfter error_after(std::span<const Point> curve, double seconds);
+
+/// The power of t that error^2 falls with over the last factor of 16 of the time, by least squares of the
+/// logarithms: -1 for plain Monte Carlo, on which extrapolation rests. Nothing for fewer than three points.
+std::optional<double> power_of_time(std::span<const Point> curve);
+
 /// METHODS 7: 1 / (mean squared error * seconds), which for plain Monte Carlo does not depend on the time.
 /// Nothing when either is not above 0.
 std::optional<double> performance_index(double mean_squared_error, double seconds);

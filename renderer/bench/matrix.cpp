@@ -168,7 +168,7 @@ Matrix parse_matrix(const std::string& text, const std::string& where, const fs:
   Matrix m;
   m.name = top.has("name") ? top.at("name").text() : fs::path(where).stem().string();
   if (top.has("about")) top.at("about").text();
-  if (top.has("repeats")) m.repeats = int(top.at("repeats").count(3, 100));
+  if (top.has("repeats")) m.repeats = int(top.at("repeats").count(1, 100));
   if (top.has("warmup")) m.warmup = top.at("warmup").count(1, 4096);
   if (top.has("seed")) m.seed = top.at("seed").count(0, 4e9);
   uint32_t reference_samples = 4096;

@@ -110,21 +110,53 @@ const char* const k_cache = R"({
   ]
 })";
 
+/// Cached light alone, to an error that is hard to see: each scene with what leads there, found by trying.
+const char* const k_indirect = R"({
+  "name": "indirect",
+  "repeats": 3,
+  "warmup": 1,
+  "reference": {"samples": 512},
+  "set": {"components.primary": "off", "components.caustic": "off"},
+  "budgets": {"seconds": [60]},
+  "scenes": [
+    {"file": "teapot/teapot.gltf", "size": "512x512", "budgets": {"samples": [16], "seconds": [40]},
+     "set": {"cache.noise": 0.2}},
+    {"file": "hall/hall.gltf", "size": "512x512", "budgets": {"samples": [256], "seconds": [60]},
+     "set": {"cache.noise": 0.008, "cache.max_rays": 65536, "cache.error": 0.15, "cache.min_radius": 1,
+             "cache.max_records": 300000, "cache.stop": 0.0003}},
+    {"file": "sun-patch/sun-patch.gltf", "size": "512x512", "budgets": {"samples": [256], "seconds": [60]},
+     "set": {"cache.noise": 0.01, "cache.max_rays": 65536, "cache.error": 0.2, "cache.min_radius": 1,
+             "cache.max_records": 300000, "cache.stop": 0.0005}},
+    {"file": "atrium/atrium.gltf", "size": "512x512", "budgets": {"samples": [768], "seconds": [60]},
+     "set": {"cache.noise": 0.0025, "cache.max_rays": 65536, "cache.error": 0.13, "cache.min_radius": 1.1,
+             "cache.max_records": 400000, "cache.passes": 9}},
+    {"file": "classroom/classroom.gltf", "size": "512x512", "budgets": {"samples": [256], "seconds": [60]},
+     "set": {"cache.noise": 0.01, "cache.max_rays": 65536, "cache.error": 0.2, "cache.nearest": 0.6,
+             "cache.min_radius": 1, "cache.max_records": 400000, "cache.stop": 0.0005, "cache.passes": 18}}
+  ],
+  "settings": [
+    {"name": "plain", "about": "path tracing", "budget": "seconds"},
+    {"name": "cache", "about": "secondary and tertiary light from an irradiance cache, built anew",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache"}}
+  ]
+})";
+
 }  // namespace
 
 Matrix builtin_matrix(const std::string& name, const std::filesystem::path& scenes) {
-  for (const auto& [known, text] :
-       {std::pair("quick", k_quick), std::pair("full", k_full), std::pair("cache", k_cache)})
+  for (const auto& [known, text] : {std::pair("quick", k_quick), std::pair("full", k_full),
+                                    std::pair("cache", k_cache), std::pair("indirect", k_indirect)})
     if (name == known) return parse_matrix(text, name, scenes);
-  throw_error("bench", "there is no matrix '{}'; there are quick, full and cache", name);
+  throw_error("bench", "there is no matrix '{}'; there are quick, full, cache and indirect", name);
 }
 
 const char* const k_matrix_help = R"(
 A matrix file is a JSON object; an unknown key is an error:
   name       of the matrix [the file's]
   about      a text, for people
-  repeats    renders of each cell, 3 to 100 [3]
-  warmup     samples a pixel rendered before the clock runs, in every cell [8]
+  repeats    renders of each cell, 1 to 100 [3]; with 1 it stays unknown what of a factor is noise
+  warmup     samples a pixel rendered before the clock runs, in every cell (of a cache that is long in building only
+             its first passes) [8]
   seed       of the first repeat; every further one has the next [1]
   reference  {"samples": N, "seed": N}: of the long plain path-traced renders taken for the truth [4096, 900001]
   set        {"KEY": VALUE}: settings for all cells and references (keys: lucerna render --help)

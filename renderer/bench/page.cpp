@@ -27,6 +27,10 @@ std::string key_of(size_t setting) {
   return fmt::format("<span class=\"key\" style=\"background:{}\"></span>", setting_colour(setting));
 }
 
+std::string times_text(int times) {
+  return times == 1 ? "once" : times == 2 ? "twice" : fmt::format("{} times", times);
+}
+
 /// A ratio, accented when it is a gain beyond the noise and dim when it is none.
 std::string ratio_cell(const Json& entry, bool extrapolated) {
   if (!entry.contains("ratio")) return "<span class=\"noise\">1</span>";
@@ -52,7 +56,7 @@ std::string heading(const Json& report) {
   const Json& m = report.at("matrix");
   const std::string plain = escape(text_of(m.at("settings").at(0), "name"));
   html += fmt::format(
-      "<p class=\"lead\">{} scene{} {} rendered with {} setting{} of the renderer, each {} times, and held "
+      "<p class=\"lead\">{} scene{} {} rendered with {} setting{} of the renderer, each {}, and held "
       "against a picture that was rendered much longer. <b>Error</b> is the distance from that picture: the "
       "root mean square of the difference in brightness, over the mean brightness. At 5 % noise is plainly "
       "seen, at 2 % on a second look, at 1 % hardly.</p>\n<p>What to read: how soon a setting reaches an "
@@ -61,7 +65,7 @@ std::string heading(const Json& report) {
       "gains beyond it are <span class=\"win\">blue</span>.</p>\n",
       m.at("scenes").size(), m.at("scenes").size() == 1 ? "" : "s",
       m.at("scenes").size() == 1 ? "was" : "were", m.at("settings").size(),
-      m.at("settings").size() == 1 ? "" : "s", m.at("repeats").get<int>(), plain);
+      m.at("settings").size() == 1 ? "" : "s", times_text(m.at("repeats").get<int>()), plain);
   const auto found = findings(report);
   if (!found.empty()) {
     html += "<ul class=\"found\">";
@@ -85,10 +89,16 @@ std::string heading(const Json& report) {
   return html + "</table>\n";
 }
 
+/// An error as a measure gives it: relative mean squared errors as they are, others in per cent.
+std::string error_text(const std::string& measure, double error) {
+  return measure == "relmse_time" ? fmt::format("{:.3g}", error) : fmt::format("{:.4g} %", 100 * error);
+}
+
 std::string time_table(const Json& report, const std::string& measure) {
   std::string html = "<div class=\"wrap\"><table><tr><th class=\"l\">scene</th><th class=\"l\">setting</th>";
-  for (const char* target : {"5 %", "2 %", "1 %"})
-    html += fmt::format("<th>time to {}</th><th>factor</th>", target);
+  for (const Json& e : report.at("scenes").at(0).at("settings").at(0).at(measure + "_to"))
+    html +=
+        fmt::format("<th>time to {}</th><th>factor</th>", error_text(measure, e.at("error").get<double>()));
   html += "<th>factor at the smallest<br/>error both reached</th></tr>\n";
   for (const Json& scene : report.at("scenes")) {
     bool first = true;
@@ -110,14 +120,70 @@ std::string time_table(const Json& report, const std::string& measure) {
                             ratio_cell(e, text_of(e, "ratio_kind") == "extrapolated"));
       }
       const std::string common = measure + "_common";
-      html += s.contains(common)
-                  ? fmt::format("<td>{}<br/><small>at {:.4g} %</small></td></tr>\n",
-                                ratio_cell(s.at(common), false), 100 * s.at(common).at("error").get<double>())
-                  : "<td class=\"noise\">–</td></tr>\n";
+      html += s.contains(common) ? fmt::format("<td>{}<br/><small>at {}</small></td></tr>\n",
+                                               ratio_cell(s.at(common), false),
+                                               error_text(measure, s.at(common).at("error").get<double>()))
+                                 : "<td class=\"noise\">–</td></tr>\n";
       first = false;
     }
   }
   return html + "</table></div>\n";
+}
+
+/// Nothing for reports from before it was measured.
+std::string relative_times(const Json& report) {
+  for (const Json& scene : report.at("scenes"))
+    for (const Json& s : scene.at("settings"))
+      if (!s.contains("relmse_time_to") || !s.contains("relmse_end")) return "";
+  const std::string first = escape(text_of(report.at("matrix").at("settings").at(0), "name"));
+  std::string html = fmt::format(
+      "<h3>Every pixel by its own brightness, relative mean squared error</h3>\n<p class=\"dim\">The mean "
+      "over "
+      "the pixels and colours of (t − r₁)(t − r₂) / (r² + 0.01), t the picture, r₁ and r₂ the two halves of "
+      "the "
+      "reference, which are independent, so that its noise adds nothing; r is their mean over the "
+      "neighbours. "
+      "Left "
+      "out is 0.1 % of the pixels, those whose neighbours are worst. 0.0004 is 2 % of a pixel’s "
+      "brightness.</p>\n"
+      "{}<div class=\"wrap\"><table><tr><th class=\"l\">scene</th><th class=\"l\">setting</th><th>rendered "
+      "for</th><th>error in the end</th><th>of {} by then</th><th>times</th><th>falls as</th><th>known "
+      "to</th></tr>\n",
+      time_table(report, "relmse_time"), first);
+  for (const Json& scene : report.at("scenes")) {
+    std::string noise = "–";
+    for (const Json& r : report.at("references"))
+      if (text_of(r, "scene") == text_of(scene, "name") && r.contains("relmse_noise"))
+        noise = fmt::format("± {:.2g}", r.at("relmse_noise").get<double>());
+    const char* row = " class=\"first\"";
+    for (const Json& s : scene.at("settings")) {
+      const Json& end = s.at("relmse_end");
+      const auto plain = [](double x) { return fmt::format("{:.3g}", x); };
+      html +=
+          fmt::format("<tr{}><td class=\"l scene\">{}</td><td class=\"l\">{}{}</td><td>{}</td><td>{}</td>",
+                      row, *row ? escape(text_of(scene, "name")) : "",
+                      key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")),
+                      seconds_text(end.at("seconds").get<double>()), with_range(end.at("relmse"), plain));
+      const double own = median_of(end.at("relmse"));
+      html += !end.contains("first")
+                  ? "<td></td><td></td>"
+                  : fmt::format(
+                        "<td>{}</td><td>{}</td>",
+                        with_range(end.at("first"), plain, text_of(end, "kind") == "extrapolated" ? "~" : ""),
+                        own > 0 ? ratio_text(median_of(end.at("first")) / own) : "–");
+      html += s.contains("relmse_power")
+                  ? fmt::format("<td>t<sup>{:.2f}</sup></td>", median_of(s.at("relmse_power")))
+                  : "<td class=\"noise\">–</td>";
+      html += fmt::format("<td>{}</td></tr>\n", noise);
+      row = "";
+    }
+  }
+  return html +
+         "</table></div>\n<p class=\"dim\">“Known to” is the standard error that the references’ noise "
+         "leaves. "
+         "Extrapolated times (~) may be trusted where the error falls as t<sup>−1</sup>, as that of plain "
+         "sampling "
+         "does.</p>\n";
 }
 
 std::string times(const Json& report) {
@@ -129,7 +195,7 @@ std::string times(const Json& report) {
          "<h3>Nine tiles in ten, estimated error</h3>\n<p class=\"dim\">The renderer’s own estimate for "
          "tiles of 16×16 pixels, each relative to its own brightness: what the eye meets in the difficult "
          "corners, and what adaptive sampling works on.</p>\n" +
-         time_table(report, "tiles_time");
+         time_table(report, "tiles_time") + relative_times(report);
 }
 
 std::string index_table(const Json& report) {

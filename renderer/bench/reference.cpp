@@ -100,10 +100,12 @@ std::string scene_hash(const fs::path& file) {
 
 std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const std::string& scene_hash) {
   Json j{{"scene", scene_hash},    {"width", scene.width},          {"height", scene.height},
-         {"camera", scene.camera}, {"seed", matrix.reference_seed}, {"version", LUCERNA_VERSION}};
+         {"camera", scene.camera}, {"seed", matrix.reference_seed}, {"version", LUCERNA_VERSION},
+         {"halves", true}};
   SettingValues values = scene.set;
   values.insert(matrix.set.begin(), matrix.set.end());  // the scene's stand
-  for (const auto& [key, value] : values) j["set"][key] = value;
+  for (const auto& [key, value] : values)
+    if (!key.starts_with("cache.")) j["set"][key] = value;
   Pieces hash;
   hash.add(j.dump());
   return hash.text();
@@ -117,6 +119,37 @@ void describe_reference(std::map<std::string, std::string>& metadata, const Refe
   metadata["bench.key"] = info.key;
   metadata["bench.samples"] = std::to_string(info.samples);
   metadata["bench.seconds"] = fmt::format("{}", info.seconds);
+}
+
+void add_odd_half(film::FilmImage& reference, const film::Image& image) {
+  for (int k = 0; k < 3; ++k) {
+    std::vector<float> channel(image.samples.size(), 0);
+    for (const auto& component : image.odd_half)
+      for (size_t i = 0; i < channel.size(); ++i) channel[i] += component[i][k];
+    reference.channels.emplace_back(std::string("odd.") + "RGB"[k], std::move(channel));
+  }
+}
+
+film::ReferencePair read_halves(const film::FilmImage& reference, const std::string& where) {
+  const std::vector<float>* samples = reference.find("samples");
+  if (!samples) throw_error(where, "no channel 'samples'; the halves of the samples cannot be told");
+  film::ReferencePair pair{.width = reference.width,
+                           .first = std::vector<vec3>(samples->size()),
+                           .second = std::vector<vec3>(samples->size())};
+  for (int k = 0; k < 3; ++k) {
+    const std::string name(1, "RGB"[k]);
+    const std::vector<float>*all = reference.find(name), *odd = reference.find("odd." + name);
+    if (!all || !odd)
+      throw_error(where, "no channel '{}'; a reference holds the mean of all samples and of the odd ones",
+                  all ? "odd." + name : name);
+    for (size_t i = 0; i < samples->size(); ++i) {
+      const double n = (*samples)[i], n_odd = std::floor(n / 2);
+      if (!(n_odd >= 1)) throw_error(where, "pixel {} has {} samples; halves need two", i, n);
+      pair.first[i][k] = (*odd)[i];
+      pair.second[i][k] = float((n * double{(*all)[i]} - n_odd * double{(*odd)[i]}) / (n - n_odd));
+    }
+  }
+  return pair;
 }
 
 std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneEntry& scene,
@@ -136,6 +169,7 @@ std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneE
     info.seconds = std::strtod(told("bench.seconds").c_str(), nullptr);
     info.seed = uint32_t(std::strtoul(told("seed").c_str(), nullptr, 10));
     const film::Reference reference = film::read_reference(info.file, scene.width, scene.height);
+    if (info.key == key) info.relmse_noise = film::relative_mse_noise(read_halves(image, info.file.string()));
     if (info.key.empty())
       why = "no reference of a bench";
     else if (info.key != key)

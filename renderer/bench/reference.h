@@ -7,7 +7,9 @@
 
 #include "bench/folder.h"
 #include "bench/matrix.h"
+#include "film/film.h"
 #include "film/io/reference.h"
+#include "film/io/relative_mse.h"
 
 namespace lucerna::bench {
 
@@ -17,7 +19,8 @@ namespace lucerna::bench {
 std::string scene_hash(const std::filesystem::path& file);
 
 /// What a reference of that scene must have been made of to serve: scene, settings, size, camera, seed and
-/// program version, as a hash. Not the number of samples: more are always welcome.
+/// program version, as a hash. Not the number of samples: more are always welcome; nor what says how an
+/// irradiance cache is built (cache.*), for references have none.
 std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const std::string& scene_hash);
 
 /// "cornell-128x128.exr".
@@ -30,6 +33,7 @@ struct ReferenceInfo {
   uint32_t samples = 0, seed = 0;
   double seconds = 0;          ///< that it took
   film::LayerFigures noise{};  ///< its own, rms over mean luminance
+  double relmse_noise = 0;     ///< film::relative_mse_noise() of its halves
 };
 
 /// The reference if it is there and serves: its key matches, it has at least the samples wanted, and the
@@ -40,5 +44,14 @@ std::optional<ReferenceInfo> find_reference(const std::filesystem::path& folder,
 
 /// Metadata to write with the picture of a new reference.
 void describe_reference(std::map<std::string, std::string>& metadata, const ReferenceInfo& info);
+
+/// The layer "odd" of a reference: the mean over its odd samples of all components together. They are a
+/// sequence of their own (film.h), so that either half of the samples is a reference independent of the
+/// other.
+void add_odd_half(film::FilmImage& reference, const film::Image& image);
+
+/// Both halves. Throws Error located at `where` when the layer "odd" or the samples are missing, or a pixel
+/// has fewer than two samples.
+film::ReferencePair read_halves(const film::FilmImage& reference, const std::string& where);
 
 }  // namespace lucerna::bench

@@ -53,6 +53,14 @@ Curve tiles_curve(const Result& r) {
   return curve;
 }
 
+/// Of the roots, so that its square falls as one over the time like that of the other errors.
+Curve relmse_curve(const Result& r) {
+  Curve curve;
+  for (const CurvePoint& p : r.curve)
+    if (p.relmse > 0) curve.push_back({p.wall_s, std::sqrt(p.relmse)});
+  return curve;
+}
+
 Json curve_json(const std::vector<Curve>& curves) {
   Json list = Json::array();
   for (const Band& b : common_curve(curves, k_curve_steps))
@@ -82,12 +90,28 @@ Reached reached(const std::vector<Curve>& curves, double target) {
   return {kind, spread(seconds), seconds};
 }
 
+/// What errors are called in the report.
+struct Scale {
+  std::vector<double> targets;  ///< of the curves
+  bool squared = false;         ///< the report gives their squares
+  double shown(double error) const { return squared ? error * error : error; }
+  double from_shown(double error) const { return squared ? std::sqrt(error) : error; }
+};
+
+Scale rms_scale() { return {{std::begin(k_targets), std::end(k_targets)}, false}; }
+
+Scale relmse_scale() {
+  Scale scale{{}, true};
+  for (const double target : k_relmse_targets) scale.targets.push_back(std::sqrt(target));
+  return scale;
+}
+
 /// A repeat's time to all targets as one figure, for the noise of times.
-std::vector<double> mean_times(const std::vector<Curve>& curves) {
+std::vector<double> mean_times(const std::vector<Curve>& curves, const Scale& scale) {
   std::vector<double> times;
   for (const Curve& c : curves) {
     double sum = 0, count = 0;
-    for (const double target : k_targets)
+    for (const double target : scale.targets)
       if (const Reach r = time_to(c, target); r.kind != ReachKind::unknown)
         sum += std::log(r.seconds), ++count;
     if (count > 0) times.push_back(std::exp(sum / count));
@@ -120,11 +144,11 @@ void add_time_ratio(Json& json, const Reached& here, const Reached& there,
 }
 
 Json times_json(const std::vector<Curve>& curves, const std::vector<Curve>& baseline, bool is_baseline,
-                const std::optional<double>& noise) {
+                const std::optional<double>& noise, const Scale& scale) {
   Json list = Json::array();
-  for (const double target : k_targets) {
+  for (const double target : scale.targets) {
     const Reached here = reached(curves, target), there = reached(baseline, target);
-    Json entry{{"error", target}, {"kind", k_kinds[size_t(here.kind)]}};
+    Json entry{{"error", scale.shown(target)}, {"kind", k_kinds[size_t(here.kind)]}};
     if (here.kind != ReachKind::unknown) entry["seconds"] = to_json(here.seconds);
     if (!is_baseline && here.kind != ReachKind::unknown && there.kind != ReachKind::unknown) {
       add_time_ratio(entry, here, there, noise);
@@ -144,7 +168,7 @@ double round_up(double x) {
 /// The smallest error that half the repeats of both settings have reached for good, and how much sooner: the
 /// one ratio that rests on nothing but measurements.
 std::optional<Json> common_json(const std::vector<Curve>& curves, const std::vector<Curve>& baseline,
-                                const std::optional<double>& noise) {
+                                const std::optional<double>& noise, const Scale& scale) {
   double error = 0;
   for (const auto* setting : {&curves, &baseline}) {
     std::vector<double> last;
@@ -154,10 +178,12 @@ std::optional<Json> common_json(const std::vector<Curve>& curves, const std::vec
     error = std::max(error, spread(std::move(last)).median);
   }
   for (; error < 2; error *= 1.05) {
-    const double target = round_up(error);
+    const double target = scale.from_shown(round_up(scale.shown(error)));
     const Reached here = reached(curves, target), there = reached(baseline, target);
     if (here.kind != ReachKind::measured || there.kind != ReachKind::measured) continue;
-    Json entry{{"error", target}, {"seconds", here.seconds.median}, {"first_seconds", there.seconds.median}};
+    Json entry{{"error", scale.shown(target)},
+               {"seconds", here.seconds.median},
+               {"first_seconds", there.seconds.median}};
     add_time_ratio(entry, here, there, noise);
     return entry;
   }
@@ -180,6 +206,7 @@ Json cells_json(const Matrix& m, size_t scene, size_t setting, const Group& grou
     add("estimated", [](const Result& r) { return r.estimated[0]; });
     add("true", [](const Result& r) { return r.truth[0]; });
     add("relmse", [](const Result& r) { return r.relmse; });
+    add("relmse_all", [](const Result& r) { return r.relmse_all; });
     add("tiles_decile", [](const Result& r) { return r.tiles_decile; });
     add("heavy_tiles", [](const Result& r) { return r.heavy_tiles; });
     add("tiles_over", [](const Result& r) { return r.tiles_over; });
@@ -245,24 +272,51 @@ std::vector<double> fixed_times(const std::vector<std::vector<Curve>>& settings)
   return times;
 }
 
+/// What the relative error came to, and the first setting's after as many seconds.
+void add_relmse_end(Json& e, const std::vector<const Result*>& results, const std::vector<Curve>& curves,
+                    const std::vector<Curve>& baseline, bool is_baseline) {
+  std::vector<double> powers, theirs;
+  for (const Curve& c : curves)
+    if (const auto power = power_of_time(c)) powers.push_back(*power);
+  if (!powers.empty()) e["relmse_power"] = to_json(spread(std::move(powers)));
+  const double seconds = spread(collect(results, [](const Result& r) { return r.wall_s; })).median;
+  e["relmse_end"] = {{"seconds", seconds},
+                     {"relmse", to_json(spread(collect(results, [](const Result& r) { return r.relmse; })))}};
+  if (is_baseline) return;
+  ReachKind kind = ReachKind::measured;
+  for (const Curve& c : baseline) {
+    const ErrorAfter error = error_after(c, seconds);
+    if (error.kind == ReachKind::unknown) continue;
+    theirs.push_back(error.error * error.error);
+    kind = std::max(kind, error.kind);
+  }
+  if (theirs.empty()) return;
+  e["relmse_end"]["first"] = to_json(spread(std::move(theirs)));
+  e["relmse_end"]["kind"] = k_kinds[size_t(kind)];
+}
+
 Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, double reference_noise,
                 std::vector<std::optional<double>>& relative_indices) {
   const size_t n = groups.size();
-  std::vector<std::vector<Curve>> curves(n), tiles(n);
-  std::vector<std::vector<double>> times, tile_times, rates, pis(n);
+  const Scale rms = rms_scale(), squared = relmse_scale();
+  std::vector<std::vector<Curve>> curves(n), tiles(n), relative(n);
+  std::vector<std::vector<double>> times, tile_times, relative_times, rates, pis(n);
   for (size_t k = 0; k < n; ++k) {
     for (const Result* r : groups[k].largest()) {
       curves[k].push_back(true_curve(*r, reference_noise));
       tiles[k].push_back(tiles_curve(*r));
+      relative[k].push_back(relmse_curve(*r));
     }
-    times.push_back(mean_times(curves[k]));
-    tile_times.push_back(mean_times(tiles[k]));
+    times.push_back(mean_times(curves[k], rms));
+    tile_times.push_back(mean_times(tiles[k], rms));
+    relative_times.push_back(mean_times(relative[k], squared));
     rates.push_back(collect(groups[k].largest(), [](const Result& r) { return double(r.rays) / r.wall_s; }));
     pis[k] = indices(groups[k].largest());
   }
   const auto repeats = size_t(m.repeats);
   const auto time_noise = noise_ratio(times, repeats), tile_noise = noise_ratio(tile_times, repeats),
-             index_noise = noise_ratio(pis, repeats), rate_noise = noise_ratio(rates, repeats);
+             relative_noise = noise_ratio(relative_times, repeats), index_noise = noise_ratio(pis, repeats),
+             rate_noise = noise_ratio(rates, repeats);
   const SceneEntry& scene = m.scenes[s];
   Json j{{"name", scene.name},
          {"file", scene.file.string()},
@@ -272,6 +326,7 @@ Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, dou
     if (x) j["noise"][name] = *x;
   };
   add_noise("time", time_noise), add_noise("tiles_time", tile_noise);
+  add_noise("relmse_time", relative_noise);
   add_noise("index", index_noise), add_noise("rate", rate_noise);
   const std::vector<double> fixed = fixed_times(curves);
   double best = 0;
@@ -280,11 +335,15 @@ Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, dou
     if (groups[k].largest().empty()) continue;
     Json e{{"name", m.settings[k].name}, {"tracer", groups[k].largest()[0]->tracer}};
     e["cells"] = cells_json(m, s, k, groups[k]);
-    e["time_to"] = times_json(curves[k], curves[0], k == 0, time_noise);
-    e["tiles_time_to"] = times_json(tiles[k], tiles[0], k == 0, tile_noise);
+    e["time_to"] = times_json(curves[k], curves[0], k == 0, time_noise, rms);
+    e["tiles_time_to"] = times_json(tiles[k], tiles[0], k == 0, tile_noise, rms);
+    e["relmse_time_to"] = times_json(relative[k], relative[0], k == 0, relative_noise, squared);
+    add_relmse_end(e, groups[k].largest(), relative[k], relative[0], k == 0);
     if (k > 0) {
-      if (auto common = common_json(curves[k], curves[0], time_noise)) e["time_common"] = *common;
-      if (auto common = common_json(tiles[k], tiles[0], tile_noise)) e["tiles_time_common"] = *common;
+      if (auto common = common_json(curves[k], curves[0], time_noise, rms)) e["time_common"] = *common;
+      if (auto common = common_json(tiles[k], tiles[0], tile_noise, rms)) e["tiles_time_common"] = *common;
+      if (auto common = common_json(relative[k], relative[0], relative_noise, squared))
+        e["relmse_time_common"] = *common;
     }
     for (const double t : fixed) {
       std::vector<double> errors;
@@ -332,6 +391,7 @@ Json make_report(const Matrix& m, const RunSummary& summary, const Json& about) 
                                     {"seed", r.seed},
                                     {"seconds", r.seconds},
                                     {"noise", noise},
+                                    {"relmse_noise", r.relmse_noise},
                                     {"key", r.key}});
   }
   report["scenes"] = Json::array();
@@ -368,7 +428,8 @@ Json make_report(const Matrix& m, const RunSummary& summary, const Json& about) 
 
 std::string make_csv(const Json& report) {
   std::string text =
-      "scene,setting,budget,repeat,seed,tracer,wall_s,device_s,setup_s,rays,paths,samples,mse,relmse,"
+      "scene,setting,budget,repeat,seed,tracer,wall_s,device_s,setup_s,rays,paths,samples,mse,relmse,relmse_"
+      "all,"
       "in_reference_noise,tiles_median,tiles_decile,tiles_worst,heavy_tiles,tiles_over,records,"
       "cache_rays";
   for (const char* what : {"estimated", "true", "device_s"})
@@ -376,11 +437,11 @@ std::string make_csv(const Json& report) {
   text += ",forecast_s,forecast_rays\n";
   for (const Json& entry : report.at("results")) {
     const Result r = result_from_json(entry, "results");
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.scene, r.setting,
-                    r.budget, r.repeat, r.seed, r.tracer, r.wall_s, r.device_s, r.setup_s, r.rays, r.paths,
-                    r.samples, r.mse, r.relmse, int(r.in_reference_noise), r.tiles_median, r.tiles_decile,
-                    r.tiles_worst, r.heavy_tiles, r.tiles_over, r.records, r.cache_rays);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.scene,
+                        r.setting, r.budget, r.repeat, r.seed, r.tracer, r.wall_s, r.device_s, r.setup_s,
+                        r.rays, r.paths, r.samples, r.mse, r.relmse, r.relmse_all, int(r.in_reference_noise),
+                        r.tiles_median, r.tiles_decile, r.tiles_worst, r.heavy_tiles, r.tiles_over, r.records,
+                        r.cache_rays);
     for (const Layers* layers : {&r.estimated, &r.truth, &r.component_s})
       for (const double x : *layers) text += fmt::format(",{}", x);
     text +=

@@ -11,6 +11,8 @@ namespace lucerna::bench {
 
 /// The errors that times are given for.
 inline constexpr double k_targets[] = {0.05, 0.02, 0.01};
+/// And relative mean squared errors: 2 % and less of a pixel's own brightness in the end.
+inline constexpr double k_relmse_targets[] = {0.01, 0.002, 0.0004};
 
 /// `about`: what stands at its head as it is (version, date, command, machine, device ...). The rest:
 ///   matrix, complete, cells {done, total}, references [{scene, file, samples, seconds, noise ..}],
@@ -20,7 +22,10 @@ inline constexpr double k_targets[] = {0.05, 0.02, 0.01};
 ///   time_to [{error, kind, seconds {median, low, high}, ratio, noise}] of the whole picture's true error,
 ///   time_common {error, seconds, first_seconds, ratio, noise} at the smallest error that it and the first
 ///   setting have both reached, tiles_time_to and tiles_time_common, the same of the estimated error that
-///   nine tiles in ten are under, error_at [{seconds, error}], curve [[seconds, median, low, high]] and
+///   nine tiles in ten are under, relmse_time_to and relmse_time_common, the same of the relative mean
+///   squared error (Result::relmse), relmse_power (of the time, that it falls with: -1 where extrapolation
+///   may be trusted), relmse_end {seconds, relmse, first, kind}: what it is in the end, and the first
+///   setting's after as many seconds, error_at [{seconds, error}], curve [[seconds, median, low, high]] and
 ///   tiles_curve, index {pi, relative, ratio, noise}, rays_per_s, forecast {seconds, rays: ratio to what it
 ///   came to}.
 /// Ratios are the first setting's time over this one's, above 1: sooner; `noise` says that a ratio is not to

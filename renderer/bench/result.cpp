@@ -21,7 +21,10 @@ struct Writer {
     for (size_t k = 0; k < x.size(); ++k) json[key][stats::k_layer_names[k]] = x[k];
   }
   void operator()(const char* key, const stats::Band& x) { json[key] = {x.low, x.middle, x.high}; }
-  void later(const char* key, const uint64_t& x) { json[key] = x; }
+  template <class T>
+  void later(const char* key, const T& x) {
+    (*this)(key, x);
+  }
 };
 
 struct Reader {
@@ -59,7 +62,8 @@ struct Reader {
     x = {number(key, list[0]), number(key, list[1]), number(key, list[2])};
   }
   /// What older files are without.
-  void later(const char* key, uint64_t& x) const {
+  template <class T>
+  void later(const char* key, T& x) const {
     if (json.contains(key)) (*this)(key, x);
   }
 };
@@ -67,7 +71,7 @@ struct Reader {
 template <class V, class P>
 void visit_point(V& v, P& p) {
   v("wall_s", p.wall_s), v("device_s", p.device_s), v("rays", p.rays), v("samples", p.samples);
-  v("estimated", p.estimated), v("true", p.truth), v("tiles", p.tiles);
+  v("estimated", p.estimated), v("true", p.truth), v("tiles", p.tiles), v.later("relmse", p.relmse);
 }
 
 template <class V, class R>
@@ -77,7 +81,8 @@ void visit_result(V& v, R& r) {
   v("tracer", r.tracer), v("wall_s", r.wall_s), v("device_s", r.device_s), v("setup_s", r.setup_s);
   v("rays", r.rays), v("paths", r.paths), v("samples", r.samples);
   v("estimated", r.estimated), v("true", r.truth), v("component_s", r.component_s);
-  v("mse", r.mse), v("relmse", r.relmse), v("in_reference_noise", r.in_reference_noise);
+  v("mse", r.mse), v("relmse", r.relmse), v.later("relmse_all", r.relmse_all);
+  v("in_reference_noise", r.in_reference_noise);
   v("tiles_median", r.tiles_median), v("tiles_decile", r.tiles_decile), v("tiles_worst", r.tiles_worst);
   v("heavy_tiles", r.heavy_tiles), v("tiles_over", r.tiles_over), v("dropped", r.dropped);
   v.later("records", r.records), v.later("cache_rays", r.cache_rays);

@@ -22,6 +22,7 @@ struct CurvePoint {
   Layers estimated{};  ///< rms error over mean luminance, by the render itself
   Layers truth{};      ///< the same against the reference, its noise taken off; 0: lost in that noise
   double tiles = 0;    ///< estimated relative error that nine tiles in ten are under
+  double relmse = 0;   ///< as Result::relmse
 };
 
 /// What was foretold when a tenth of the render's time was over, against what it came to.
@@ -43,8 +44,10 @@ struct Result {
   uint64_t rays = 0, paths = 0;
   double samples = 0;
   Layers estimated{}, truth{}, component_s{};
-  double mse = 0;                   ///< squared true rms error in luminance, the reference's noise taken off
-  double relmse = 0;                ///< film/io/compare.h with its epsilon; the reference's noise is in it
+  double mse = 0;  ///< squared true rms error in luminance, the reference's noise taken off
+  /// Relative mean squared error of R, G, B against the reference's halves, without the worst pixels
+  /// (film/io/relative_mse.h), and with them; 0: less than nothing, lost in their noise.
+  double relmse = 0, relmse_all = 0;
   bool in_reference_noise = false;  ///< truth not to be told from the reference's own noise
   double tiles_median = 0, tiles_decile = 0, tiles_worst = 0;  ///< estimated relative errors of tiles
   uint64_t heavy_tiles = 0;                                    ///< whose light comes in rare large amounts
@@ -59,7 +62,8 @@ struct Result {
 
 nlohmann::ordered_json to_json(const Result& result);
 /// Throws Error, located at `where`, for anything that to_json() does not write: half a file, missing or
-/// wrong values (only records and cache_rays may be missing), a curve that does not go forward.
+/// wrong values (only records, cache_rays, relmse_all and a point's relmse may be missing), a curve that does
+/// not go forward.
 Result parse_result(const std::string& text, const std::string& where);
 Result result_from_json(const nlohmann::ordered_json& json, const std::string& where);
 

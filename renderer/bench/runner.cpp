@@ -6,7 +6,6 @@
 #include "base/log.h"
 #include "base/timer.h"
 #include "bench/time_left.h"
-#include "film/io/compare.h"
 #include "session/renderer.h"
 #include "stats/forecast.h"
 
@@ -58,14 +57,23 @@ double decile(std::vector<film::TileError> tiles, double share) {
   return sorted[std::min(sorted.size() - 1, size_t(double(sorted.size()) * share))];
 }
 
-CurvePoint make_point(const Renderer& r, const stats::Entry& e) {
+film::RelativeMse relative_mse(const Renderer& r, const film::ReferencePair& halves) {
+  const film::Image image = r.image();
+  std::vector<vec3> sum(image.samples.size(), vec3(0));
+  for (const auto& component : image.components)
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
+  return film::relative_mse(sum, halves);
+}
+
+CurvePoint make_point(const Renderer& r, const stats::Entry& e, const film::ReferencePair& halves) {
   return {.wall_s = e.wall_s,
           .device_s = e.device_s,
           .rays = e.rays,
           .samples = e.samples,
           .estimated = e.error,
           .truth = e.truth.value_or(Layers{}),
-          .tiles = decile(r.tile_errors(), 0.9)};
+          .tiles = decile(r.tile_errors(), 0.9),
+          .relmse = std::max(0.0, relative_mse(r, halves).trimmed)};
 }
 
 /// What could be foretold at a tenth of the time; nothing when the ledger had no line by then.
@@ -107,6 +115,12 @@ class Run {
   ReferenceInfo make_reference(const SceneEntry& scene, const std::string& key);
   Result render(const Cell& cell, const ReferenceInfo& reference, const std::string& scene_hash);
   void save_pictures(Renderer& r, const Cell& cell, const film::FilmImage& reference);
+  /// A cache that is long in building has run all its kernels after two passes: it is built for the clock.
+  bool warm(const Renderer& r, double seconds) const {
+    const auto* cache = r.cache();
+    const bool long_building = cache && !cache->ready() && cache->status().pass >= 2 && seconds > 20;
+    return long_building || r.samples() >= matrix_.warmup;
+  }
   /// Steps on; throws Interrupted when the person wants to stop.
   bool step(Renderer& r) {
     if (hooks_.interrupted() || !r.step(hooks_.interrupted)) {
@@ -160,6 +174,8 @@ ReferenceInfo Run::make_reference(const SceneEntry& scene, const std::string& ke
                      .seconds = timer.seconds()};
   film::FilmImage image = r->film_image();
   describe_reference(image.metadata, info);
+  add_odd_half(image, r->image());
+  info.relmse_noise = film::relative_mse_noise(read_halves(image, info.file.string()));
   film::write_exr(info.file, image);
   const film::Reference reference = film::read_reference(info.file, scene.width, scene.height);
   for (size_t k = 0; k < info.noise.size() && reference.noise; ++k)
@@ -178,10 +194,12 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   if (budget.kind == BudgetKind::errors) values["sampling.target_error"] = fmt::format("{}", budget.value);
 
   const Timer setup;
+  const film::FilmImage truth = film::read_exr(reference.file);
+  const film::ReferencePair halves = read_halves(truth, reference.file.string());
   const auto r = make_renderer(scene, values, options_.device);
   r->set_reference(reference.file);
   // The device compiles its kernels when they first run, and the machine's clocks and caches warm up.
-  while (r->samples() < matrix_.warmup && !r->done() && step(*r)) tell(0);
+  while (!warm(*r, setup.seconds()) && !r->done() && step(*r)) tell(0);
   r->image_error();
   Result result{.scene = scene.name,
                 .setting = setting.name,
@@ -204,13 +222,14 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
     // A step that wrote into the ledger also held the picture against the reference; that is not rendering.
     seconds = entries.size() > lines ? entries.back().wall_s : seconds + timer.seconds();
     // Before every pixel has a sample it is not the same picture.
-    if (entries.size() > lines && r->samples() > 0) result.curve.push_back(make_point(*r, entries.back()));
+    if (entries.size() > lines && r->samples() > 0)
+      result.curve.push_back(make_point(*r, entries.back(), halves));
     tell(fraction_done(*r, budget, seconds));
   }
   r->finish_ledger();
   const stats::Entry& last = entries.back();
   if (!result.curve.empty() && result.curve.back().wall_s >= last.wall_s) result.curve.pop_back();
-  result.curve.push_back(make_point(*r, last));
+  result.curve.push_back(make_point(*r, last, halves));
 
   result.wall_s = last.wall_s, result.device_s = last.device_s;
   result.rays = last.rays, result.paths = last.paths, result.samples = last.samples;
@@ -220,8 +239,8 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   result.mse = rms * rms;
   // The reference's noise is itself known to a tenth or two; what is left of less than that is nothing.
   result.in_reference_noise = result.truth[0] < 0.7 * reference.noise[0];
-  const film::FilmImage truth = film::read_exr(reference.file);
-  result.relmse = film::compare(r->film_image(), truth).relmse;
+  const film::RelativeMse relative = relative_mse(*r, halves);
+  result.relmse = std::max(0.0, relative.trimmed), result.relmse_all = std::max(0.0, relative.all);
   const std::vector<film::TileError> tiles = r->tile_errors();
   result.tiles_median = decile(tiles, 0.5), result.tiles_decile = decile(tiles, 0.9);
   result.tiles_worst = decile(tiles, 1);

@@ -78,6 +78,7 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
   CHECK(report["results"].size() == 9);
   CHECK(report["references"][0]["samples"] == 1024);
   CHECK(report["references"][0]["noise"]["sum"] > 0);
+  CHECK(report["references"][0]["relmse_noise"] > 0);
   for (const auto& r : report["results"]) {
     CHECK(r["wall_s"] > 0);
     CHECK(r["rays"] > 0);
@@ -191,6 +192,7 @@ TEST_CASE("bench refuses bad input before any work") {
   refused("--quick --full", "name one matrix");
   refused("--quick --cache", "name one matrix");
   refused("--full --cache", "name one matrix");
+  refused(good + " --indirect", "name one matrix");
   refused(place / "no.json", "no.json");
   std::ofstream(place / "bad.json") << "{\"scenes\": [],\n \"setings\": []}";
   refused(place / "bad.json", "unknown key 'setings'");
@@ -200,7 +202,7 @@ TEST_CASE("bench refuses bad input before any work") {
   refused(good + " --report " + good, "is a file");
   std::ofstream(place / "letter.txt") << "dear";
   refused(good + " --report " + place.path.string(), "which no bench made");
-  refused(good + " --repeats 2 --report " + (place / "r"), "--repeats");
+  refused(good + " --repeats 0 --report " + (place / "r"), "--repeats");
   refused(good + " --device nothing --report " + (place / "r"), "nothing");
   CHECK_FALSE(fs::exists(place / "r"));
   refused("--compare " + (place / "a") + " " + (place / "b"), "cannot be read");

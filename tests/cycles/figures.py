@@ -57,22 +57,25 @@ def block_figures(ours, theirs, keep, tolerance=0.01):
             "outside": round(float(outside.mean()), 4), "worst": worst}
 
 
-def smooth(x):
-    """The mean of 3 x 3 pixels, by channel."""
+def around(x):
+    """The mean of a pixel's eight neighbours, as far as they are in the picture, by channel."""
     h, w = x.shape[:2]
-    p = np.pad(x, ((1, 1), (1, 1), (0, 0)), mode="edge")
-    return sum(p[i:i + h, j:j + w] for i in range(3) for j in range(3)) / 9
+    p, one = np.pad(x, ((1, 1), (1, 1), (0, 0))), np.pad(np.ones((h, w, 1)), ((1, 1), (1, 1), (0, 0)))
+    places = [(i, j) for i in range(3) for j in range(3) if (i, j) != (1, 1)]
+    return sum(p[i:i + h, j:j + w] for i, j in places) / sum(one[i:i + h, j:j + w] for i, j in places)
 
 
 def relative_mse(picture, first, second, eps=0.01, trimmed=0.001):
-    """The mean over pixels and channels of (t - r1)(t - r2) / (r^2 + eps), without the worst `trimmed` of the pixels.
+    """The mean over pixels and channels of (t - r1)(t - r2) / (r^2 + eps), without the `trimmed` of the pixels whose
+    eight neighbours are worst: as film/io/relative_mse.h has it, and why.
 
     `first` and `second`, r1 and r2, are independent, so that their own noise adds nothing to the mean. r is their mean
-    over 3 x 3 pixels: were it of the pixel alone, noise would divide by what it has itself made small or large.
+    over the pixel's neighbours: were it of the pixel itself, noise would divide by what it has made small or large.
     """
-    r = smooth((first + second) / 2)
-    each = np.sort(((picture - first) * (picture - second) / (r * r + eps)).mean(axis=2).ravel())
-    return float(each[:len(each) - max(1, int(trimmed * len(each)))].mean())
+    r = around((first + second) / 2)
+    each = ((picture - first) * (picture - second) / (r * r + eps)).mean(axis=2)
+    calm = np.argsort(around(each[:, :, None]).ravel(), kind="stable")[:each.size - int(np.ceil(trimmed * each.size))]
+    return float(each.ravel()[calm].mean())
 
 
 def figures(ours, theirs, keep, eps=0.01):

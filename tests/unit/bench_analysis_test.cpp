@@ -51,6 +51,27 @@ TEST_CASE("Time to an error: bounds, going up again, nothing") {
   CHECK(time_to(c, 0).kind == ReachKind::unknown);
 }
 
+TEST_CASE("Error after a time that was not rendered is foretold by error^2 t = constant") {
+  const auto c = curve(0.3, 0.5, 1, 64);
+  CHECK(error_after(c, 10).kind == ReachKind::measured);
+  CHECK(error_after(c, 10).error == Approx(0.3 / std::sqrt(10)));
+  CHECK(error_after(c, 6400).kind == ReachKind::extrapolated);
+  CHECK(error_after(c, 6400).error == Approx(0.3 / 80));
+  CHECK(error_after(c, 0.5).kind == ReachKind::unknown);
+  CHECK(error_after({}, 1).kind == ReachKind::unknown);
+}
+
+TEST_CASE("The power of the time that error^2 falls with") {
+  for (const double exponent : {0.25, 0.5, 0.6})
+    CHECK(*power_of_time(curve(0.3, exponent, 1, 64)) == Approx(-2 * exponent));
+  // What was before the last factor of 16 has no say.
+  std::vector<Point> late = curve(0.3, 0.5, 4, 64);
+  late.insert(late.begin(), {3.9, 7});
+  CHECK(*power_of_time(late) == Approx(-1));
+  CHECK_FALSE(power_of_time(curve(0.3, 0.5, 1, 2)));
+  CHECK_FALSE(power_of_time({}));
+}
+
 TEST_CASE("Error at a time") {
   const auto c = curve(0.3, 0.5, 1, 64);
   CHECK(*error_at(c, 10) == Approx(0.3 / std::sqrt(10)));

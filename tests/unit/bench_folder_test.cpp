@@ -157,11 +157,15 @@ TEST_CASE("A reference serves when it is whole and made of the same; otherwise i
   SceneEntry scene = m.scenes[0];
   scene.reference_samples = 100;
   const std::string key = reference_key(m, scene, "hash");
-  const auto write = [&](const std::string& with_key, uint32_t samples, float value, uint32_t width = 16) {
+  const auto write = [&](const std::string& with_key, uint32_t samples, float value, uint32_t width = 16,
+                         bool halves = true) {
     film::FilmImage image{.width = width, .height = 16};
     for (const char* layer : {"", "primary.", "secondary.", "tertiary.", "caustic."})
       for (const char* c : {"R", "G", "B"})
         image.channels.emplace_back(layer + std::string(c), std::vector<float>(16 * width, value));
+    for (const char* c : {"odd.R", "odd.G", "odd.B"})
+      if (halves) image.channels.emplace_back(c, std::vector<float>(16 * width, value + 1));
+    image.channels.emplace_back("samples", std::vector<float>(16 * width, float(samples)));
     describe_reference(image.metadata, {.file = {}, .key = with_key, .samples = samples, .seconds = 12});
     image.metadata["noise"] = film::noise_text({0.1, 0.1, 0.1, 0.1, 0.1});
     film::write_exr(reference_file(temporary.path, scene), image);
@@ -175,6 +179,8 @@ TEST_CASE("A reference serves when it is whole and made of the same; otherwise i
   REQUIRE(found);
   CHECK(found->samples == 128);
   CHECK(found->noise[0] == Approx(0.05));
+  // Halves that are 2 apart: their variance is 2 everywhere, over a mean of 2 squared.
+  CHECK(found->relmse_noise == Approx(2 / 4.01 / std::sqrt(3) / 16));
   CHECK(told.lines.empty());
 
   int old = 0;
@@ -197,6 +203,8 @@ TEST_CASE("A reference serves when it is whole and made of the same; otherwise i
   set_aside("24x16");
   write("", 128, 2);
   set_aside("no reference of a bench");
+  write(key, 128, 2, 16, false);
+  set_aside("no channel 'odd.R'");
   write(key, 128, 2);
   const std::string bytes = read_file(reference_file(temporary.path, scene));
   std::ofstream(reference_file(temporary.path, scene)) << bytes.substr(0, bytes.size() / 2);
@@ -207,6 +215,10 @@ TEST_CASE("A reference serves when it is whole and made of the same; otherwise i
   SceneEntry changed = scene;
   changed.set["path.max_depth"] = "3";
   CHECK(reference_key(m, changed, "hash") != key);
+  changed.set = scene.set;
+  changed.set["cache.noise"] = "0.3";  // references have no cache
+  CHECK(reference_key(m, changed, "hash") == key);
+  changed.set["path.max_depth"] = "3";
   m.set["path.max_depth"] = "3";
   CHECK(reference_key(m, scene, "hash") == reference_key(m, changed, "hash"));
   CHECK(reference_key(m, scene, "hash") != key);

@@ -114,7 +114,7 @@ TEST_CASE("The matrix of the cache holds both metrics against one another, and c
 }
 
 TEST_CASE("The built-in matrices are good ones") {
-  for (const char* name : {"quick", "full", "cache"}) {
+  for (const char* name : {"quick", "full", "cache", "indirect"}) {
     const Matrix m = builtin_matrix(name, k_scenes);
     CHECK(m.name == name);
     CHECK(m.repeats >= 3);
@@ -122,6 +122,9 @@ TEST_CASE("The built-in matrices are good ones") {
     CHECK(m.settings.front().set.empty());
   }
   CHECK(builtin_matrix("quick", k_scenes).scenes.size() == 3);
+  const Matrix indirect = builtin_matrix("indirect", k_scenes);
+  CHECK(indirect.scenes.size() == 5);
+  CHECK(indirect.set == SettingValues{{"components.caustic", "off"}, {"components.primary", "off"}});
   CHECK_THROWS_AS(builtin_matrix("slow", k_scenes), Error);
 }
 
@@ -143,7 +146,7 @@ TEST_CASE("Bad matrices are refused with their place") {
   refused("{\n  \"name\": \"m\",\n  oops\n}", "m.json", "line 3");
   refused("[1]", "m.json", "expected an object");
   refused(with("\"warmup\"", "\"warm\""), "m.json: ", "unknown key 'warm'");
-  refused(with("\"repeats\": 4", "\"repeats\": 2"), "m.json: repeats", "from 3 to 100");
+  refused(with("\"repeats\": 4", "\"repeats\": 0"), "m.json: repeats", "from 1 to 100");
   refused(with("\"repeats\": 4", "\"repeats\": \"x\""), "m.json: repeats", "found \"x\"");
   refused(with("\"repeats\": 4", "\"repeats\": 3.5"), "m.json: repeats", "whole number");
   refused(with("\"seed\": 99", "\"seed\": 12"), "m.json: reference.seed", "seed of a repeat");

@@ -68,6 +68,18 @@ TEST_CASE("Figures: times, ratios, index and forecast are those of the made-up r
   CHECK(adaptive["tiles_time_to"][0]["seconds"]["median"].get<double>() == Approx(14.44).epsilon(0.05));
   CHECK(adaptive["time_common"]["error"].get<double>() == Approx(0.048));
   CHECK(adaptive["time_common"]["ratio"].get<double>() == Approx(4));
+  // Relative squared errors are made a hundredth of .19^2 / t: .0004 after .9025 s, adaptive after a quarter.
+  CHECK(plain["relmse_time_to"][2]["error"].get<double>() == Approx(0.0004));
+  CHECK(plain["relmse_time_to"][2]["seconds"]["median"].get<double>() == Approx(0.9025));
+  CHECK(adaptive["relmse_time_to"][2]["kind"] == "at_once");
+  CHECK(adaptive["relmse_time_common"]["ratio"].get<double>() == Approx(4));
+  CHECK(adaptive["relmse_time_common"]["error"].get<double>() == Approx(0.000023));
+  CHECK(plain["relmse_power"]["median"].get<double>() == Approx(-1));
+  CHECK_FALSE(plain["relmse_end"].contains("first"));
+  CHECK(adaptive["relmse_end"]["seconds"].get<double>() == Approx(16));
+  CHECK(adaptive["relmse_end"]["relmse"]["median"].get<double>() == Approx(0.000361 / 16 / 4));
+  CHECK(adaptive["relmse_end"]["first"]["median"].get<double>() == Approx(0.000361 / 16));
+  CHECK(adaptive["relmse_end"]["kind"] == "measured");
   CHECK(adaptive["index"]["relative"].get<double>() == Approx(100));
   CHECK(plain["index"]["relative"].get<double>() == Approx(25));
   CHECK(adaptive["index"]["ratio"].get<double>() == Approx(4));
@@ -105,6 +117,22 @@ TEST_CASE("An error lost in the reference's noise counts as not measured") {
   CHECK_THAT(make_page(r, "/no/pictures"), Contains("in the reference’s noise"));
 }
 
+TEST_CASE("What the first setting comes to in a longer time is foretold; older reports are shown without") {
+  const Matrix m = test::small_matrix();
+  bench::RunSummary s = test::fake_summary(m, 4);
+  std::erase_if(s.results, [](const auto& r) { return r.first.starts_with("cornell.plain.1"); });
+  Json r = make_report(m, s, test::fake_about());
+  const Json& end = r["scenes"][0]["settings"][1]["relmse_end"];
+  CHECK(end["kind"] == "extrapolated");
+  CHECK(end["first"]["median"].get<double>() == Approx(0.000361 / 16));
+  const std::string heading = "relative mean squared error";
+  const std::string html = make_page(r, "/no/pictures");
+  CHECK_THAT(html, Contains(heading) && Contains("± 1.2e-05") && Contains("t<sup>-1.00</sup>") &&
+                       Contains("time to 0.0004"));
+  r["scenes"][0]["settings"][1].erase("relmse_end");
+  CHECK_THAT(make_page(r, "/no/pictures"), !Contains(heading));
+}
+
 TEST_CASE("The table has a line for each cell and repeat and as many fields everywhere") {
   const std::string csv = make_csv(report());
   CHECK(count(csv, "\n") == 19);
@@ -134,7 +162,7 @@ TEST_CASE("The page stands alone, is well-formed and holds every number of its t
   CHECK_THAT(html, Contains("small &lt;&amp;&gt; matrix"));
   for (const Json& scene : r["scenes"]) {
     for (const Json& s : scene["settings"]) {
-      for (const char* measure : {"time_to", "tiles_time_to"})
+      for (const char* measure : {"time_to", "tiles_time_to", "relmse_time_to"})
         for (const Json& e : s[measure]) {
           CHECK_THAT(html, Contains(seconds_text(e["seconds"]["median"].get<double>())));
           CHECK_THAT(html, Contains(seconds_text(e["seconds"]["high"].get<double>())));

@@ -37,6 +37,7 @@ inline bench::Result fake_result(const bench::Matrix& m, const bench::Cell& cell
     for (size_t k = 0; k < p.truth.size(); ++k)
       p.truth[k] = c / std::sqrt(t) / double(k + 1), p.estimated[k] = 1.05 * p.truth[k];
     p.tiles = 2 * p.truth[0];
+    p.relmse = 0.01 * p.truth[0] * p.truth[0];
     r.curve.push_back(p);
   }
   const bench::CurvePoint& last = r.curve.back();
@@ -45,7 +46,7 @@ inline bench::Result fake_result(const bench::Matrix& m, const bench::Cell& cell
   r.samples = last.samples, r.truth = last.truth, r.estimated = last.estimated,
   r.component_s[0] = last.device_s;
   for (size_t k = 1; k < r.component_s.size(); ++k) r.component_s[k] = last.device_s / 4;
-  r.mse = 0.25 * last.truth[0] * last.truth[0], r.relmse = 2 * r.mse;
+  r.mse = 0.25 * last.truth[0] * last.truth[0], r.relmse = last.relmse, r.relmse_all = 2 * r.relmse;
   r.tiles_median = 1.5 * last.truth[0], r.tiles_decile = last.tiles, r.tiles_worst = 4 * last.truth[0];
   r.forecast = bench::ForecastResult{.at_s = 0.1 * seconds,
                                      .seconds = {0.8 * seconds, 1.1 * seconds, 1.5 * seconds},
@@ -69,7 +70,8 @@ inline bench::RunSummary fake_summary(const bench::Matrix& m, double gain, size_
                             .samples = 4096,
                             .seed = 900001,
                             .seconds = 77,
-                            .noise = {0.004, 0.003, 0.002, 0.001, 0.001}});
+                            .noise = {0.004, 0.003, 0.002, 0.001, 0.001},
+                            .relmse_noise = 0.0000123});
   return s;
 }
 

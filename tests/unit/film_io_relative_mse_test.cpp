@@ -1,0 +1,85 @@
+// links: film_io
+#include "film/io/relative_mse.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+using namespace lucerna;
+using film::ReferencePair;
+using film::RelativeMse;
+
+namespace {
+
+std::vector<vec3> flat(size_t pixels, const vec3& colour) { return std::vector<vec3>(pixels, colour); }
+
+/// `colour` with normal noise of that standard deviation, a value of its own each channel.
+std::vector<vec3> noisy(size_t pixels, float colour, float deviation, uint32_t seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal(colour, deviation);
+  std::vector<vec3> values(pixels);
+  for (vec3& v : values)
+    for (int k = 0; k < 3; ++k) v[k] = normal(random);
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("Against references without noise it is the relative mean squared error") {
+  const vec3 r(1, 0, 2), t(1.5f, 0.1f, 2);
+  const ReferencePair references{16, flat(256, r), flat(256, r)};
+  const RelativeMse e = film::relative_mse(flat(256, t), references);
+  CHECK(e.all == Approx((0.25 / 1.01 + 0.01 / 0.01 + 0) / 3));
+  CHECK(e.trimmed == Approx(e.all));
+  CHECK(film::relative_mse_noise(references) == 0);
+  CHECK(film::relative_mse(flat(256, r), references).all == 0);
+  CHECK(film::relative_mse(flat(256, t), references, {.epsilon = 1}).all ==
+        Approx((0.25 / 2 + 0.01 / 1 + 0) / 3));
+}
+
+TEST_CASE("The noise of the references adds nothing, to the trimmed mean either") {
+  // Of 256 x 256 pixels with a noise of 30 % in either reference: three colours a pixel make (.09 / 1.01)^2 /
+  // 3 the variance of a product, so that the mean's standard error is .0002. Bound: five of them.
+  constexpr uint32_t k_size = 256, k_pixels = k_size * k_size;
+  const double sigma = 0.09 / 1.01 / std::sqrt(3) / k_size;
+  for (const uint32_t seed : {1u, 2u, 3u}) {
+    const ReferencePair references{k_size, noisy(k_pixels, 1, 0.3f, 10 * seed),
+                                   noisy(k_pixels, 1, 0.3f, 10 * seed + 1)};
+    CHECK(std::abs(film::relative_mse(flat(k_pixels, vec3(1)), references).trimmed) < 5 * sigma);
+    CHECK(film::relative_mse(flat(k_pixels, vec3(1.1f)), references).trimmed ==
+          Approx(0.01 / 1.01).epsilon(0.02).margin(5 * (sigma + 0.2 * 0.3 / std::sqrt(6.0) / k_size)));
+    // What is foretold of that error; colours count as one there, so that it is on the safe side.
+    CHECK(film::relative_mse_noise(references) > 0.7 * sigma);
+    CHECK(film::relative_mse_noise(references) < 2 * sigma);
+    // A share that leaves out half the picture would show a choice by the pixels' own products.
+    CHECK(std::abs(film::relative_mse(flat(k_pixels, vec3(1)), references, {.trimmed_share = 0.5}).trimmed) <
+          5 * sigma * std::sqrt(2));
+  }
+}
+
+TEST_CASE("A spot of bad pixels is left out by its neighbours, a single one is not") {
+  constexpr uint32_t k_width = 50, k_pixels = 50 * 40;
+  const ReferencePair references{k_width, flat(k_pixels, vec3(1)), flat(k_pixels, vec3(1))};
+  std::vector<vec3> picture = flat(k_pixels, vec3(1));
+  // Two of 2000 pixels are left out: those two in the middle of a spot of 3 x 4.
+  for (uint32_t y = 10; y < 13; ++y)
+    for (uint32_t x = 20; x < 24; ++x) picture[y * k_width + x] = vec3(2);
+  const RelativeMse spot = film::relative_mse(picture, references);
+  CHECK(spot.all == Approx(12 / 1.01 / k_pixels));
+  CHECK(spot.trimmed == Approx(10 / 1.01 / (k_pixels - 2)));
+  picture = flat(k_pixels, vec3(1));
+  picture[7 * k_width + 49] = vec3(2);
+  CHECK(film::relative_mse(picture, references).trimmed == Approx(1 / 1.01 / (k_pixels - 2)));
+}
+
+TEST_CASE("Small and empty pictures") {
+  const ReferencePair one{1, flat(1, vec3(1)), flat(1, vec3(1))};
+  CHECK(film::relative_mse(flat(1, vec3(2)), one).all == Approx(1 / 1.01));
+  CHECK(film::relative_mse(flat(1, vec3(2)), one).trimmed == 0);  // the one pixel is left out
+  CHECK(film::relative_mse(flat(1, vec3(2)), one, {.trimmed_share = 0}).trimmed == Approx(1 / 1.01));
+  const ReferencePair column{1, flat(3, vec3(1)), flat(3, vec3(1))};
+  CHECK(film::relative_mse(flat(3, vec3(2)), column, {.trimmed_share = 0}).trimmed == Approx(1 / 1.01));
+  CHECK(film::relative_mse({}, {}).all == 0);
+  CHECK(film::relative_mse({}, {}).trimmed == 0);
+  CHECK(film::relative_mse_noise({}) == 0);
+}
