@@ -62,6 +62,7 @@ ErrorAfter error_after(std::span<const Point> curve, double seconds) {
 }
 
 std::optional<double> power_of_time(std::span<const Point> curve) {
+  if (curve.empty() || curve.front().seconds > curve.back().seconds / 16) return std::nullopt;
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (const Point& p : curve) {
     if (p.seconds < curve.back().seconds / 16) continue;

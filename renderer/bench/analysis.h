@@ -40,7 +40,8 @@ struct ErrorAfter {
 ErrorAfter error_after(std::span<const Point> curve, double seconds);
 
 /// The power of t that error^2 falls with over the last factor of 16 of the time, by least squares of the
-/// logarithms: -1 for plain Monte Carlo, on which extrapolation rests. Nothing for fewer than three points.
+/// logarithms: -1 for plain Monte Carlo, on which extrapolation rests. Nothing for fewer than three points,
+/// nor for a curve that begins later than that: building a cache is no part of how sampling goes on.
 std::optional<double> power_of_time(std::span<const Point> curve);
 
 /// METHODS 7: 1 / (mean squared error * seconds), which for plain Monte Carlo does not depend on the time.

@@ -138,14 +138,10 @@ std::string relative_times(const Json& report) {
   const std::string first = escape(text_of(report.at("matrix").at("settings").at(0), "name"));
   std::string html = fmt::format(
       "<h3>Every pixel by its own brightness, relative mean squared error</h3>\n<p class=\"dim\">The mean "
-      "over "
-      "the pixels and colours of (t − r₁)(t − r₂) / (r² + 0.01), t the picture, r₁ and r₂ the two halves of "
-      "the "
-      "reference, which are independent, so that its noise adds nothing; r is their mean over the "
-      "neighbours. "
-      "Left "
-      "out is 0.1 % of the pixels, those whose neighbours are worst. 0.0004 is 2 % of a pixel’s "
-      "brightness.</p>\n"
+      "over the pixels and colours of (t − r₁)(t − r₂) / (r² + 0.01), t the picture, r₁ and r₂ the halves of "
+      "the reference, which are independent, so that its noise adds nothing; r is their mean over the "
+      "neighbours. Left out is 0.1 % of the pixels, those whose neighbours are worst. 0.0004 is 2 % of a "
+      "pixel’s brightness.</p>\n"
       "{}<div class=\"wrap\"><table><tr><th class=\"l\">scene</th><th class=\"l\">setting</th><th>rendered "
       "for</th><th>error in the end</th><th>of {} by then</th><th>times</th><th>falls as</th><th>known "
       "to</th></tr>\n",
@@ -180,10 +176,8 @@ std::string relative_times(const Json& report) {
   }
   return html +
          "</table></div>\n<p class=\"dim\">“Known to” is the standard error that the references’ noise "
-         "leaves. "
-         "Extrapolated times (~) may be trusted where the error falls as t<sup>−1</sup>, as that of plain "
-         "sampling "
-         "does.</p>\n";
+         "leaves. Extrapolated times (~) may be trusted where the error falls as t<sup>−1</sup>, as that of "
+         "plain sampling does.</p>\n";
 }
 
 std::string times(const Json& report) {

@@ -69,6 +69,8 @@ TEST_CASE("The power of the time that error^2 falls with") {
   late.insert(late.begin(), {3.9, 7});
   CHECK(*power_of_time(late) == Approx(-1));
   CHECK_FALSE(power_of_time(curve(0.3, 0.5, 1, 2)));
+  CHECK(power_of_time(curve(0.3, 0.5, 4, 64)));
+  CHECK_FALSE(power_of_time(curve(0.3, 0.5, 5, 64)));
   CHECK_FALSE(power_of_time({}));
 }
 
