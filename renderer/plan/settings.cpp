@@ -141,7 +141,8 @@ std::vector<OptionInfo> make_options() {
            "more of them, others fewer, for what they are worth to it."),
       boolean("cache.environment",
               "Irradiance cache: records also hold the light straight from the sky, so that surfaces that it "
-              "lights need no noisy shadow rays to it."),
+              "lights need no noisy shadow rays to it. Where secondary light is cached, only while primary "
+              "light is on."),
       real("cache.environment_threshold", "16", 2, 1000000, "x mean",
            "Irradiance cache: texels of the environment brighter than so many times its mean radiance are no "
            "sky but a sun, and are sampled directly everywhere."),

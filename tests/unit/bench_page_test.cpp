@@ -95,13 +95,37 @@ TEST_CASE("Figures: times, ratios, index and forecast are those of the made-up r
 
 TEST_CASE("A gain within the noise is not told as a gain") {
   const auto told = findings(report(1.01));
-  REQUIRE(told.size() == 4);
+  REQUIRE(told.size() == 6);
   for (const std::string& line : told) CHECK_THAT(line, Contains("by more than the measurement’s noise"));
   const auto gain = findings(report(4));
   CHECK_THAT(
       gain[0],
       Contains("adaptive brings the whole picture to 4.8 % in 3.92 s, plain in 15.7 s: 4.00 times sooner"));
-  CHECK_THAT(findings(report(0.25))[0], Contains("times later"));
+  CHECK_THAT(
+      gain[2],
+      Contains(
+          "adaptive ends with a relative squared error of 5.64e-06 after 16.0 s, plain then has 2.26e-05: "
+          "4.00 times less"));
+  const auto loss = findings(report(0.25));
+  CHECK_THAT(loss[0], Contains("times later"));
+  CHECK_THAT(loss[2], Contains("times more"));
+}
+
+TEST_CASE("Gains of one repeat are told, with what they lack; what is foretold is said to be") {
+  Json r = report(4);
+  r["matrix"]["repeats"] = 1;
+  for (Json& scene : r["scenes"]) {
+    scene.erase("noise");
+    for (Json& s : scene["settings"])
+      for (const char* measure : {"time_common", "tiles_time_common"})
+        if (s.contains(measure)) s[measure].erase("noise");
+  }
+  r["scenes"][0]["settings"][1]["relmse_end"]["kind"] = "extrapolated";
+  const auto told = findings(r);
+  REQUIRE(told.size() == 7);
+  CHECK_THAT(told[0], Contains("4.00 times sooner"));
+  CHECK_THAT(told[2], Contains("plain would then have 2.26e-05"));
+  CHECK_THAT(told[6], Contains("one repeat"));
 }
 
 TEST_CASE("An error lost in the reference's noise counts as not measured") {
