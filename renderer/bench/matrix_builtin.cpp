@@ -130,9 +130,9 @@ const char* const k_indirect = R"({
     {"file": "atrium/atrium.gltf", "size": "512x512", "budgets": {"samples": [1152], "seconds": [60]},
      "set": {"cache.noise": 0.0025, "cache.max_rays": 65536, "cache.error": 0.17, "cache.min_radius": 1.5,
              "cache.max_records": 400000, "cache.passes": 11}},
-    {"file": "classroom/classroom.gltf", "size": "512x512", "budgets": {"samples": [256], "seconds": [60]},
-     "set": {"cache.noise": 0.01, "cache.max_rays": 65536, "cache.error": 0.2, "cache.nearest": 0.6,
-             "cache.min_radius": 1, "cache.max_records": 400000, "cache.stop": 0.0005, "cache.passes": 18}}
+    {"file": "classroom/classroom.gltf", "size": "512x512", "budgets": {"samples": [192], "seconds": [60]},
+     "set": {"cache.noise": 0.0025, "cache.max_rays": 65536, "cache.error": 0.13, "cache.nearest": 0.6,
+             "cache.min_radius": 0.8, "cache.max_records": 400000, "cache.stop": 0.0005, "cache.passes": 18}}
   ],
   "settings": [
     {"name": "plain", "about": "path tracing", "budget": "seconds"},
