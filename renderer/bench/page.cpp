@@ -160,13 +160,12 @@ std::string relative_times(const Json& report) {
                       row, *row ? escape(text_of(scene, "name")) : "",
                       key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")),
                       seconds_text(end.at("seconds").get<double>()), with_range(end.at("relmse"), plain));
-      const double own = median_of(end.at("relmse"));
       html += !end.contains("first")
                   ? "<td></td><td></td>"
                   : fmt::format(
                         "<td>{}</td><td>{}</td>",
                         with_range(end.at("first"), plain, text_of(end, "kind") == "extrapolated" ? "~" : ""),
-                        own > 0 ? ratio_text(median_of(end.at("first")) / own) : "–");
+                        end.contains("ratio") ? ratio_text(end.at("ratio").get<double>()) : "–");
       html += s.contains("relmse_power")
                   ? fmt::format("<td>t<sup>{:.2f}</sup></td>", median_of(s.at("relmse_power")))
                   : "<td class=\"noise\">–</td>";

@@ -274,14 +274,15 @@ std::vector<double> fixed_times(const std::vector<std::vector<Curve>>& settings)
 
 /// What the relative error came to, and the first setting's after as many seconds.
 void add_relmse_end(Json& e, const std::vector<const Result*>& results, const std::vector<Curve>& curves,
-                    const std::vector<Curve>& baseline, bool is_baseline) {
+                    const std::vector<Curve>& baseline, bool is_baseline,
+                    const std::optional<double>& noise) {
   std::vector<double> powers, theirs;
   for (const Curve& c : curves)
     if (const auto power = power_of_time(c)) powers.push_back(*power);
   if (!powers.empty()) e["relmse_power"] = to_json(spread(std::move(powers)));
   const double seconds = spread(collect(results, [](const Result& r) { return r.wall_s; })).median;
-  e["relmse_end"] = {{"seconds", seconds},
-                     {"relmse", to_json(spread(collect(results, [](const Result& r) { return r.relmse; })))}};
+  const Spread own = spread(collect(results, [](const Result& r) { return r.relmse; }));
+  e["relmse_end"] = {{"seconds", seconds}, {"relmse", to_json(own)}};
   if (is_baseline) return;
   ReachKind kind = ReachKind::measured;
   for (const Curve& c : baseline) {
@@ -291,8 +292,11 @@ void add_relmse_end(Json& e, const std::vector<const Result*>& results, const st
     kind = std::max(kind, error.kind);
   }
   if (theirs.empty()) return;
-  e["relmse_end"]["first"] = to_json(spread(std::move(theirs)));
+  const Spread first = spread(std::move(theirs));
+  e["relmse_end"]["first"] = to_json(first);
   e["relmse_end"]["kind"] = k_kinds[size_t(kind)];
+  // An error after a time scatters as the time to an error does, for it falls as one over it.
+  if (own.median > 0) add_ratio(e["relmse_end"], first.median / own.median, noise);
 }
 
 Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, double reference_noise,
@@ -338,7 +342,7 @@ Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, dou
     e["time_to"] = times_json(curves[k], curves[0], k == 0, time_noise, rms);
     e["tiles_time_to"] = times_json(tiles[k], tiles[0], k == 0, tile_noise, rms);
     e["relmse_time_to"] = times_json(relative[k], relative[0], k == 0, relative_noise, squared);
-    add_relmse_end(e, groups[k].largest(), relative[k], relative[0], k == 0);
+    add_relmse_end(e, groups[k].largest(), relative[k], relative[0], k == 0, relative_noise);
     if (k > 0) {
       if (auto common = common_json(curves[k], curves[0], time_noise, rms)) e["time_common"] = *common;
       if (auto common = common_json(tiles[k], tiles[0], tile_noise, rms)) e["tiles_time_common"] = *common;

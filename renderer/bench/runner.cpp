@@ -65,7 +65,7 @@ film::RelativeMse relative_mse(const Renderer& r, const film::ReferencePair& hal
   return film::relative_mse(sum, halves);
 }
 
-CurvePoint make_point(const Renderer& r, const stats::Entry& e, const film::ReferencePair& halves) {
+CurvePoint make_point(const Renderer& r, const stats::Entry& e, const film::RelativeMse& relative) {
   return {.wall_s = e.wall_s,
           .device_s = e.device_s,
           .rays = e.rays,
@@ -73,7 +73,7 @@ CurvePoint make_point(const Renderer& r, const stats::Entry& e, const film::Refe
           .estimated = e.error,
           .truth = e.truth.value_or(Layers{}),
           .tiles = decile(r.tile_errors(), 0.9),
-          .relmse = std::max(0.0, relative_mse(r, halves).trimmed)};
+          .relmse = std::max(0.0, relative.trimmed)};
 }
 
 /// What could be foretold at a tenth of the time; nothing when the ledger had no line by then.
@@ -223,13 +223,14 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
     seconds = entries.size() > lines ? entries.back().wall_s : seconds + timer.seconds();
     // Before every pixel has a sample it is not the same picture.
     if (entries.size() > lines && r->samples() > 0)
-      result.curve.push_back(make_point(*r, entries.back(), halves));
+      result.curve.push_back(make_point(*r, entries.back(), relative_mse(*r, halves)));
     tell(fraction_done(*r, budget, seconds));
   }
   r->finish_ledger();
   const stats::Entry& last = entries.back();
   if (!result.curve.empty() && result.curve.back().wall_s >= last.wall_s) result.curve.pop_back();
-  result.curve.push_back(make_point(*r, last, halves));
+  const film::RelativeMse relative = relative_mse(*r, halves);
+  result.curve.push_back(make_point(*r, last, relative));
 
   result.wall_s = last.wall_s, result.device_s = last.device_s;
   result.rays = last.rays, result.paths = last.paths, result.samples = last.samples;
@@ -239,7 +240,6 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   result.mse = rms * rms;
   // The reference's noise is itself known to a tenth or two; what is left of less than that is nothing.
   result.in_reference_noise = result.truth[0] < 0.7 * reference.noise[0];
-  const film::RelativeMse relative = relative_mse(*r, halves);
   result.relmse = std::max(0.0, relative.trimmed), result.relmse_all = std::max(0.0, relative.all);
   const std::vector<film::TileError> tiles = r->tile_errors();
   result.tiles_median = decile(tiles, 0.5), result.tiles_decile = decile(tiles, 0.9);

@@ -80,6 +80,8 @@ TEST_CASE("Figures: times, ratios, index and forecast are those of the made-up r
   CHECK(adaptive["relmse_end"]["relmse"]["median"].get<double>() == Approx(0.000361 / 16 / 4));
   CHECK(adaptive["relmse_end"]["first"]["median"].get<double>() == Approx(0.000361 / 16));
   CHECK(adaptive["relmse_end"]["kind"] == "measured");
+  CHECK(adaptive["relmse_end"]["ratio"].get<double>() == Approx(4));
+  CHECK(adaptive["relmse_end"]["noise"] == false);
   CHECK(adaptive["index"]["relative"].get<double>() == Approx(100));
   CHECK(plain["index"]["relative"].get<double>() == Approx(25));
   CHECK(adaptive["index"]["ratio"].get<double>() == Approx(4));
@@ -117,7 +119,7 @@ TEST_CASE("Gains of one repeat are told, with what they lack; what is foretold i
   for (Json& scene : r["scenes"]) {
     scene.erase("noise");
     for (Json& s : scene["settings"])
-      for (const char* measure : {"time_common", "tiles_time_common"})
+      for (const char* measure : {"time_common", "tiles_time_common", "relmse_end"})
         if (s.contains(measure)) s[measure].erase("noise");
   }
   r["scenes"][0]["settings"][1]["relmse_end"]["kind"] = "extrapolated";
