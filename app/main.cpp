@@ -102,9 +102,8 @@ int main_checked(int argc, char** argv) {
            "error of cached light against the records of the irradiance cache, by either metric; two hours "
            "and more");
   built_in("indirect",
-           "how much sooner than path tracing cached light is right to 2 % in five interiors; five hours and "
-           "more, "
-           "with --repeats 1 two");
+           "how much sooner than path tracing cached light is right to 2 % in five interiors; two and a "
+           "half hours, with --repeats 1 one");
   bench_verb->add_option("--report", bm.report, "folder to write to and to go on in; new, empty or a bench's")
       ->capture_default_str();
   bench_verb->add_option("--references", bm.references,

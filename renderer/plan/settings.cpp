@@ -94,8 +94,10 @@ std::vector<OptionInfo> make_options() {
       integer("path.max_depth", 64, 1, 1024, "vertices", "Scattering events after which a path ends."),
       integer("path.roulette_depth", 4, 1, 1024, "vertices",
               "Vertex from which Russian roulette may end a path."),
-      integer("path.batch", 131072, 1024, 4194304, "paths",
-              "Paths in flight at once; sets the memory of the path state."),
+      integer(
+          "path.batch", 131072, 1024, 4194304, "paths",
+          "Paths in flight at once; sets the memory of the path state. Never fewer than 4096 where light is "
+          "cached."),
       {.key = "cache.metric",
        .type = OptionType::choice,
        .fallback = "split-sphere",
@@ -135,7 +137,7 @@ std::vector<OptionInfo> make_options() {
        .choices = {"64", "256", "1024", "4096", "16384", "65536"},
        .help = "Irradiance cache: rays of the last level that a noisy record gets, each four times the one "
                "before."},
-      real("cache.noise", "0.1", 0, 10, "",
+      real("cache.noise", "0.03", 0, 10, "",
            "Irradiance cache: relative standard error above which a record with a radius of 3 % of the "
            "picture's height gets more rays than the first level. Those that more of the picture reads get "
            "more of them, others fewer, for what they are worth to it."),
@@ -146,8 +148,10 @@ std::vector<OptionInfo> make_options() {
       real("cache.environment_threshold", "16", 2, 1000000, "x mean",
            "Irradiance cache: texels of the environment brighter than so many times its mean radiance are no "
            "sky but a sun, and are sampled directly everywhere."),
-      integer("cache.max_records", 100000, 16, 400000, "records",
-              "Irradiance cache: room for records, of 592 bytes each; building ends when it is used up."),
+      integer(
+          "cache.max_records", 300000, 16, 400000, "records",
+          "Irradiance cache: room for records, of 592 bytes each and 1.9 kB with the tree that finds them; "
+          "building ends when it is used up."),
       integer("cache.passes", 12, 1, 64, "passes", "Irradiance cache: passes of building at most."),
       real("cache.stop", "0.002", 0, 1, "",
            "Irradiance cache: building ends when no greater share of the paths still asks for records; "

@@ -110,7 +110,7 @@ irradiance_cache::Spoilt Renderer::build_wavefront(const upload::DeviceScene& de
                                  std::span<shared::Hit> hits, const uint32_t* queue, uint32_t count,
                                  bool coherent) { host->trace(query, rays, hits, queue, count, coherent); };
   }
-  const uint32_t slots = uint32_t(settings_.integer("path.batch")) / 64 * 64;
+  uint32_t slots = uint32_t(settings_.integer("path.batch")) / 64 * 64;
   gpu::Defines defines = options_.defines;
   if (settings_.boolean("sampling.coherent"))
     defines["LUCERNA_COHERENT"] = settings_.text("sampling.tile") == "8" ? "3" : "4";
@@ -119,6 +119,7 @@ irradiance_cache::Spoilt Renderer::build_wavefront(const upload::DeviceScene& de
   std::unique_ptr<irradiance_cache::Cache> cache;
   std::function<void(gpu::Resources&)> bind;
   if (routes.parts != 0) {
+    slots = std::max(slots, irradiance_cache::Cache::k_least_slots);
     record_routes = wanted_record_routes(device_scene.effects());
     cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, record_routes,
                                                       cache_options());

@@ -239,7 +239,7 @@ bool Cache::Impl::evaluate(const Work& w) {
   // A level of more rays than can be summed at once is done in rounds of as many.
   const uint32_t level_rays = options.rays << 2 * level;
   uint32_t rays = level_rays;
-  while (rays > std::min(Evaluator::k_most_rays, w.wavefront.slots())) rays /= 4;
+  while (rays > Evaluator::k_most_rays) rays /= 4;
   const uint32_t elevations = elevations_for(rays);
   const size_t batch = std::min<size_t>(list.size() - at, std::max(1u, w.wavefront.slots() / rays));
   if (batch > 0) {

@@ -127,6 +127,8 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
              const paths::LookupRoutes& routes, const paths::LookupRoutes& own, const CacheOptions& options)
     : impl_(std::make_unique<Impl>(device, compiler, slots, own, options)) {
   Impl& c = *impl_;
+  if (slots < k_least_slots)
+    throw_error("irradiance cache", "room for {} paths in flight; {} are needed", slots, k_least_slots);
   const uint32_t elevations = elevations_for(options.rays);
   if (options.rays == 0 || elevations * elevations * 4 != options.rays)
     throw_error("cache.rays", "'{}': expected four times a square, such as 256 or 1024", options.rays);

@@ -45,18 +45,18 @@ struct CacheOptions {
   float least_pixels = 3;    ///< least radius as the camera sees it; 0 or more
   float most_radius = 0.1f;  ///< of the scene's radius
   /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
-  /// `most_rays` and what the wavefront has slots for.
+  /// `most_rays`; what is more than k_least_slots is gathered in rounds of as many.
   uint32_t rays = 256, most_rays = 4096;
   /// Relative standard error of its luminance above which a record gets another level: after the first, and
   /// when as much of the picture reads it as one with a radius of 3 % of the picture's height. In proportion
   /// to one over the square root of how much does (worth()) and to the square root of the rays so far.
   /// Records darker than a tenth of the mean are held against that. Judged by the records around (noise.h).
-  float noise = 0.1f;
+  float noise = 0.03f;
   /// Of its radius: where a record makes others superfluous that are not yet evaluated, 0..1. The less, the
   /// more records; 0: none goes.
   float thinning = 0.6f;
-  bool neighbours = true;  ///< radii are bounded by the records around
-  uint32_t most_records = 100000;
+  bool neighbours = false;  ///< radii are bounded by the records around
+  uint32_t most_records = 300000;
   uint32_t most_passes = 12;
   float stop_share = 0.002f;  ///< building ends when no more of the paths than this ask for records
   uint32_t seed = 1;
@@ -98,6 +98,11 @@ struct CacheView {
 
 class Cache {
  public:
+  /// Rays of a record that are gathered at once, at most: no fewer whatever slots there are, because records
+  /// would depend on them.
+  static constexpr uint32_t k_least_slots = Evaluator::k_most_rays;
+
+  /// `slots`: of the wavefronts that it will be used with, k_least_slots or more.
   /// `routes`: where the picture's paths look up; `own`: where the rays of records do, and the parts that
   /// they gather (paths::record_routes; without any lookup they are path traced). Throws Error as Records, or
   /// when an option is out of its range.
