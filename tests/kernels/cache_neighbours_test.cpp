@@ -20,7 +20,7 @@ namespace {
 
 constexpr float k_normal_tolerance = 0.06f, k_off_plane = 0.03f, k_least = 0.06f;
 // As neighbours.cpp has them, in degrees.
-const double k_apart = std::acos(0.643) * 180 / std::numbers::pi, k_gap = 2.1 * 180 / std::numbers::pi;
+const double k_apart = std::acos(0.643) * 180 / std::numbers::pi, k_gap = 3.0 * 180 / std::numbers::pi;
 
 struct Bed : test::RecordBed {
   Neighbours neighbours{device, compiler, irradiance_cache::Cache::defines({}, Metric::split_sphere)};

@@ -328,13 +328,12 @@ void Cache::Impl::publish_level(const Work& w) {
     set_radii(w, true);
     hold();
   }
-  const uint32_t first = evaluated;
   evaluated = status.records = until;
   standing = std::max(standing, evaluated);
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
   if (anew && neighbours) {
-    bound_radii(w, first);
+    bound_radii(w);
     build_octree(w.wavefront);
   }
   took(BuildStep::octree, timer.milliseconds());
@@ -342,9 +341,9 @@ void Cache::Impl::publish_level(const Work& w) {
   tell();
 }
 
-void Cache::Impl::bound_radii(const Work& w, uint32_t first) {
+void Cache::Impl::bound_radii(const Work& w) {
   neighbours->bound(
-      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, first, evaluated);
+      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, 0, evaluated);
   count_bytes();
 }
 

@@ -167,8 +167,8 @@ struct Cache::Impl {
   /// Radii of the records that are added in this pass, by what is known of them: `lit` after their first
   /// level.
   void set_radii(const Work& work, bool lit);
-  /// ... of those from `first` on by the records around, that they be no wider than they need be.
-  void bound_radii(const Work& work, uint32_t first);
+  /// ... of all, also of earlier passes, by the records around, that they be no wider than they need be.
+  void bound_radii(const Work& work);
   /// ... of the first `count`, those that are evaluated at least, by what is nearest to any of them; the
   /// octree is built anew.
   void clamp_radii(const Work& work, uint32_t count, bool lit);

@@ -16,8 +16,9 @@ namespace {
 constexpr const char* k_stage = "neighbours";
 /// cos 50 degrees: up to seven stand apart by that.
 constexpr float k_apart = 0.643f;
-/// 120 degrees: with three evenly around.
-constexpr float k_gap = 2.1f;
+/// Not quite 180 degrees: no half plane is without any. To ask for more leaves records wider than they need
+/// be: with 120 degrees lookups gain only half as much.
+constexpr float k_gap = 3.0f;
 
 }  // namespace
 
