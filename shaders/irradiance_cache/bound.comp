@@ -28,8 +28,7 @@ uint first_pair(uint own) {
 void main() {
   uint index = global_index();
   if (index >= push.count) return;
-  uint record = push.first + index;
-  int at = int(record * k_record_texels);
+  int at = int(index * k_record_texels);
   vec4 place = texelFetch(record_texels, at);
   vec3 tangent, bitangent;
   make_basis(texelFetch(record_texels, at + 1).xyz, tangent, bitangent);
@@ -63,5 +62,5 @@ void main() {
     if (gap <= push.gap) reach = uintBitsToFloat(pair.x & (1u << k_neighbour_distance_bits) - 1u);
   }
 
-  shrink_record(record, place, texelFetch(record_texels, at + 3), reach);
+  shrink_record(index, place, texelFetch(record_texels, at + 3), reach);
 }

@@ -1,4 +1,4 @@
-// Which of the new records would serve at another's place, and how far from their centres: one invocation for each record,
+// Which records would serve at another's place, and how far from their centres: one invocation for each record,
 // at whose place the octree knows whoever may. LUCERNA_WRITE: 0 counts them, 1 writes them where the sum of the counts says.
 #include "irradiance_cache/lookup.glsl"
 #include "lib/invocation.glsl"
@@ -26,11 +26,10 @@ void main() {
     vec4 shape = record_shape(record, place);
     vec3 away = x - place.xyz;
     float far = record_far(away, place, shape);
-    if (record < push.first || record == index || far >= 1.0 || record_weight(x, n, place, facing, shape) <= 0.0) continue;
+    if (record == index || far >= 1.0 || record_weight(x, n, place, facing, shape) <= 0.0) continue;
 #if LUCERNA_WRITE
-    uint own = record - push.first;
-    pairs[to + found] = SortEntry64(floatBitsToUint(far) | own << k_neighbour_distance_bits,
-                                    own >> (32u - k_neighbour_distance_bits), index, 0u);
+    pairs[to + found] = SortEntry64(floatBitsToUint(far) | record << k_neighbour_distance_bits,
+                                    record >> (32u - k_neighbour_distance_bits), index, 0u);
 #endif
     ++found;
   }

@@ -10,8 +10,7 @@ LUCERNA_CONST uint k_neighbours = 7u;
 LUCERNA_CONST uint k_neighbour_distance_bits = 30u;
 
 struct NeighbourPush {
-  uint first;    ///< records from there on are bounded
-  uint count;    ///< pairs.comp: all records; bound.comp: those that are bounded
+  uint count;    ///< of the records
   uint pairs;    ///< bound.comp: of all
   float apart;   ///< cosine of the least angle between two neighbours' directions
   float gap;     ///< greatest angle between directions next to each other, all around a record that is bounded [radians]

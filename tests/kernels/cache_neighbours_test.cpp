@@ -25,14 +25,14 @@ const double k_apart = std::acos(0.643) * 180 / std::numbers::pi, k_gap = 3.0 * 
 struct Bed : test::RecordBed {
   Neighbours neighbours{device, compiler, irradiance_cache::Cache::defines({}, Metric::split_sphere)};
 
-  /// Radii of all, of which those from `first` on were to be bounded.
-  std::vector<float> bound(const std::vector<Disc>& discs, uint32_t first) {
+  /// Radii of all.
+  std::vector<float> bound(const std::vector<Disc>& discs) {
     shared::CacheFrame frame{};
     frame.normal_tolerance = k_normal_tolerance;
     frame.off_plane = frame.off_plane_least = k_off_plane;
     std::vector<float> radii;
     for (const irradiance_cache::Record& r : change(discs, k_least, frame, [&](const auto& bind) {
-           neighbours.bound(stream, bind, first, uint32_t(discs.size()));
+           neighbours.bound(stream, bind, uint32_t(discs.size()));
          })) {
       CHECK(r.lesser_radius == r.radius);
       radii.push_back(r.radius);
@@ -94,7 +94,7 @@ TEST_CASE("a record in a lattice reaches its neighbours, one at the border as fa
           {{vec3(k_spacing * (float(x) + 0.5f * float(y % 2)), 1, k_spacing * std::sqrt(0.75f) * float(y)),
             vec3(0, 1, 0)},
            k_radius});
-  const std::vector<float> radii = bed.bound(discs, 0);
+  const std::vector<float> radii = bed.bound(discs);
   for (int y = 0; y < k_side; ++y)
     for (int x = 0; x < k_side; ++x) {
       INFO(x << ", " << y);
@@ -118,11 +118,10 @@ TEST_CASE("neighbours on other surfaces do not count, and radii are as the host 
                       wall ? vec3(1, 0, 0) : vec3(0, 1, 0)};
     discs.push_back({place, radius});
   }
-  constexpr uint32_t k_first = 500;
-  const std::vector<float> radii = bed.bound(discs, k_first);
+  const std::vector<float> radii = bed.bound(discs);
   size_t shrunk = 0, least = 0, wrong = 0;
   for (uint32_t i = 0; i < discs.size(); ++i) {
-    const double expected = i < k_first ? double(discs[i].radius) : bounded_plainly(discs, i);
+    const double expected = bounded_plainly(discs, i);
     wrong += std::abs(double(radii[i]) - expected) > 1e-4 * expected;
     shrunk += radii[i] < discs[i].radius;
     least += radii[i] == k_least;
@@ -130,6 +129,6 @@ TEST_CASE("neighbours on other surfaces do not count, and radii are as the host 
   CHECK(wrong == 0);
   CHECK(shrunk > 1000);
   CHECK(least > 0);
-  CHECK(shrunk < discs.size() - k_first);  // some stand alone
-  CHECK(bed.bound(discs, k_first) == radii);
+  CHECK(shrunk < discs.size());  // some stand alone
+  CHECK(bed.bound(discs) == radii);
 }

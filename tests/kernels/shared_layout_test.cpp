@@ -84,7 +84,7 @@ std::vector<SharedStruct> structs() {
       SHARED("irradiance_cache.h", WorthPush, pixels, first),
       SHARED("irradiance_cache.h", EllipsePush, first, count, reach, most, dark, near),
       SHARED("irradiance_cache.h", OverlayPush, width, height, discs, overlap, color, lo, hi, overlap_most),
-      SHARED("neighbours.h", NeighbourPush, first, count, pairs, apart, gap),
+      SHARED("neighbours.h", NeighbourPush, count, pairs, apart, gap),
       SHARED("placement.h", CollectPush, count, samples, to, screen_too, parallel, spacing, spacing_beyond,
              spacing_of_distance, cell, pixel, eye),
       SHARED("placement.h", PlacementGrid, origin, scale, exponent),

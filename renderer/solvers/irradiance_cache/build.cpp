@@ -343,7 +343,7 @@ void Cache::Impl::publish_level(const Work& w) {
 
 void Cache::Impl::bound_radii(const Work& w) {
   neighbours->bound(
-      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, 0, evaluated);
+      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, evaluated);
   count_bytes();
 }
 

@@ -33,33 +33,33 @@ enum class Metric : uint32_t {
   hessian,       ///< how its irradiance bends (shaders/irradiance_cache/hessian.comp); radii are of ellipses
 };
 
+/// As the registry has them, where their ranges and defaults stand (plan/settings.cpp).
 struct CacheOptions {
   Metric metric = Metric::split_sphere;
   /// Above 0; radii are in proportion to it. Split sphere: radius of a record over the harmonic mean distance
   /// of what it sees. Hessian: so that the integral of its relative error over its ellipse is pi/4 of the
   /// fourth power of half of this, in squares of the scene's radius.
-  float error = 0.3f;
+  float error = 0;
   /// Of a radius, an ellipse's lesser one, over the distance of the nearest thing that the record's rays met:
   /// at most 1. What is near changes within that distance, of which the mean distance tells little.
-  float nearest = 1;
-  float least_pixels = 3;    ///< least radius as the camera sees it; 0 or more
-  float most_radius = 0.1f;  ///< of the scene's radius
+  float nearest = 0;
+  float least_pixels = 0;  ///< least radius as the camera sees it; 0 or more
+  float most_radius = 0;   ///< of the scene's radius
   /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
   /// `most_rays`; what is more than k_least_slots is gathered in rounds of as many.
-  uint32_t rays = 256, most_rays = 4096;
+  uint32_t rays = 0, most_rays = 0;
   /// Relative standard error of its luminance above which a record gets another level: after the first, and
   /// when as much of the picture reads it as one with a radius of 3 % of the picture's height. In proportion
   /// to one over the square root of how much does (worth()) and to the square root of the rays so far.
   /// Records darker than a tenth of the mean are held against that. Judged by the records around (noise.h).
-  float noise = 0.03f;
+  float noise = 0;
   /// Of its radius: where a record makes others superfluous that are not yet evaluated, 0..1. The less, the
   /// more records; 0: none goes.
-  float thinning = 0.6f;
+  float thinning = 0;
   bool neighbours = false;  ///< radii are bounded by the records around
-  uint32_t most_records = 300000;
-  uint32_t most_passes = 12;
-  float stop_share = 0.002f;  ///< building ends when no more of the paths than this ask for records
-  uint32_t seed = 1;
+  uint32_t most_records = 0, most_passes = 0;
+  float stop_share = 0;  ///< building ends when no more of the paths than this ask for records
+  uint32_t seed = 0;
   DiscontinuityOptions screen;
 };
 

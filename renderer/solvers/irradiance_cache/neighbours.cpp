@@ -53,16 +53,16 @@ Neighbours::Neighbours(gpu::Device& device, gpu::ShaderCompiler& compiler, const
 }
 Neighbours::~Neighbours() = default;
 
-void Neighbours::bound(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind, uint32_t first,
+void Neighbours::bound(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind,
                        uint32_t count) {
   Impl& i = *impl_;
-  if (count <= first) return;
+  if (count == 0) return;
   gpu::make_texel_room(i.device, i.counts, "neighbours' counts", uint64_t{count} * 4);
   gpu::make_texel_room(i.device, i.before, "neighbours before", uint64_t{count} * 4);
   bind(i.resources);
   i.resources.set("PairCounts", i.counts);
   i.resources.set("PairsBefore", i.before);
-  NeighbourPush push{first, count, 0, k_apart, k_gap};
+  NeighbourPush push{count, 0, k_apart, k_gap};
   stream.dispatch(i.counting, i.resources, push, gpu::groups_for(count, 64), k_stage);
   i.prefix_sum.encode(stream, i.counts, i.before, {.most = count}, &i.total, 0, k_stage);
   stream.run();
@@ -72,12 +72,10 @@ void Neighbours::bound(gpu::Stream& stream, const std::function<void(gpu::Resour
     gpu::make_texel_room(i.device, buffer, "neighbours", uint64_t{push.pairs} * sizeof(SortEntry64));
   i.resources.set("Pairs", i.pairs[0]);
   stream.dispatch(i.writing, i.resources, push, gpu::groups_for(count, 64), k_stage);
-  const uint32_t bounded = count - first;
   const gpu::Buffer& sorted = i.sorter.encode(stream, i.pairs[0], i.pairs[1], {.most = push.pairs},
-                                              k_neighbour_distance_bits + std::bit_width(bounded), k_stage);
+                                              k_neighbour_distance_bits + std::bit_width(count), k_stage);
   i.resources.set("pair_texels", sorted);
-  push.count = bounded;
-  stream.dispatch(i.bounding, i.resources, push, gpu::groups_for(bounded, 64), k_stage);
+  stream.dispatch(i.bounding, i.resources, push, gpu::groups_for(count, 64), k_stage);
   stream.run();
 }
 

@@ -15,11 +15,10 @@ class Neighbours {
   /// `defines`: Cache::defines().
   Neighbours(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& defines);
   ~Neighbours();
-  /// Shrinks the radii of records `first` to `count` where records stand all around, never below the least
-  /// (shared::CacheFrame); of ellipses both in proportion. `bind`: what lookup.glsl reads, with `count`
-  /// records in the octree. On the device; the stream is run.
-  void bound(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind, uint32_t first,
-             uint32_t count);
+  /// Shrinks the radii of the first `count` records where records stand all around, never below the least
+  /// (shared::CacheFrame); of ellipses both in proportion. `bind`: what lookup.glsl reads, with these records
+  /// in the octree. On the device; the stream is run.
+  void bound(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind, uint32_t count);
   uint64_t bytes() const;
 
  private:
