@@ -8,19 +8,25 @@
 
 #include "cache_support.h"
 #include "solvers/irradiance_cache/build.h"
+#include "support/neighbours.h"
 #include "support/rooms.h"
 
 using namespace lucerna;
 
 namespace {
 
-/// Whether a record would serve at another's place, where the least radius is 0.
-bool serves(const irradiance_cache::Record& record, const irradiance_cache::Place& at) {
+/// How far another's place is, of the record's reach.
+float far_of(const irradiance_cache::Record& record, const irradiance_cache::Place& at) {
   const vec3 away = at.position - record.place.position;
   const float along = dot(away, record.along), squared = dot(away, away) - along * along;
-  const float far =
-      std::hypot(along / record.radius, std::sqrt(std::max(0.0f, squared)) / record.lesser_radius);
-  return far < 1 && 1 - dot(at.normal, record.place.normal) < irradiance_cache::k_normal_tolerance &&
+  return std::hypot(along / record.radius, std::sqrt(std::max(0.0f, squared)) / record.lesser_radius);
+}
+
+/// Whether a record would serve there, where the least radius is 0.
+bool serves(const irradiance_cache::Record& record, const irradiance_cache::Place& at) {
+  const vec3 away = at.position - record.place.position;
+  return far_of(record, at) < 1 &&
+         1 - dot(at.normal, record.place.normal) < irradiance_cache::k_normal_tolerance &&
          std::abs(dot(away, at.normal + record.place.normal)) <=
              2 * irradiance_cache::k_off_plane * record.lesser_radius;
 }
@@ -69,6 +75,42 @@ TEST_CASE("records reach no farther than a share of what is nearest to them or t
       CHECK(double(all.size()) > 1.5 * double(count));
       count = all.size();
     }
+  }
+}
+
+// Those of the first pass are the widest, and most who stand around them come later.
+TEST_CASE("with cache.neighbours no record reaches beyond those all around it, of whatever pass") {
+  for (const char* metric : {"split-sphere", "hessian"}) {
+    test::CacheRenderer shown(test::block_room(), 24);
+    shown.set(test::k_cached);
+    shown.set({{"cache.neighbours", "true"},
+               {"cache.metric", metric},
+               {"cache.thinning", "0"},
+               {"cache.min_radius", "0"},
+               {"cache.max_rays", "256"},
+               {"cache.passes", "4"},
+               {"samples", "1"}});
+    shown.finish();
+    const std::vector<irradiance_cache::Record> all = shown.r.cache()->records().read();
+    const auto& passes = shown.status().passes;
+    REQUIRE(passes.size() == 4);
+    const size_t of_first = passes[0].records;
+    size_t beyond = 0, surrounded = 0;
+    for (size_t i = 0; i < all.size(); ++i) {
+      std::vector<test::Neighbour> served;
+      for (size_t j = 0; j < all.size(); ++j)
+        if (i != j && serves(all[i], all[j].place))
+          served.push_back(
+              {double(far_of(all[i], all[j].place)),
+               test::angle_in_plane(all[j].place.position - all[i].place.position, all[i].place.normal)});
+      beyond += test::share_by_neighbours(served) < 0.999;
+      surrounded += served.size() > 3;
+    }
+    INFO(metric << ": of " << all.size() << " records, " << of_first << " of the first pass, " << beyond
+                << " reach too far; " << surrounded << " would serve more than three others");
+    CHECK(beyond == 0);
+    CHECK(of_first < all.size());
+    CHECK(surrounded > 0);
   }
 }
 

@@ -1,14 +1,13 @@
 // links: irradiance_cache
 // Radii bounded by neighbours in different directions, against the same done plainly on the host.
 #include <algorithm>
-#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "kernels/cache_records_support.h"
 #include "solvers/irradiance_cache/neighbours.h"
+#include "support/neighbours.h"
 
 using namespace lucerna;
 using irradiance_cache::Metric;
@@ -19,8 +18,6 @@ using Disc = test::RecordDisc;
 namespace {
 
 constexpr float k_normal_tolerance = 0.06f, k_off_plane = 0.03f, k_least = 0.06f;
-// As neighbours.cpp has them, in degrees.
-const double k_apart = std::acos(0.643) * 180 / std::numbers::pi, k_gap = 3.0 * 180 / std::numbers::pi;
 
 struct Bed : test::RecordBed {
   Neighbours neighbours{device, compiler, irradiance_cache::Cache::defines({}, Metric::split_sphere)};
@@ -41,44 +38,19 @@ struct Bed : test::RecordBed {
   }
 };
 
-/// The angle of a direction in the plane of record i, in degrees.
-double angle_of(const vec3& away, const vec3& normal) {
-  const vec3 side = std::abs(normal.y) > 0.9f ? vec3(1, 0, 0) : vec3(0, 1, 0);
-  const vec3 t = normalize(cross(side, normal)), b = cross(normal, t);
-  return std::atan2(double(dot(away, b)), double(dot(away, t))) * 180 / std::numbers::pi;
-}
-
 double bounded_plainly(const std::vector<Disc>& discs, size_t i) {
   const Disc& own = discs[i];
-  std::vector<std::pair<double, size_t>> served;
+  std::vector<test::Neighbour> served;
   for (size_t j = 0; j < discs.size(); ++j) {
     const vec3 away = discs[j].place.position - own.place.position;
     const vec3 &n = own.place.normal, &m = discs[j].place.normal;
     const double far = double(length(away)) / double(own.radius);
     if (j != i && far < 1 && 1 - dot(n, m) < k_normal_tolerance &&
         std::abs(dot(away, n + m)) <= 2 * k_off_plane * own.radius)
-      served.push_back({far, j});
+      served.push_back({far, test::angle_in_plane(away, n)});
   }
-  std::sort(served.begin(), served.end());
-  std::vector<double> around;
-  for (const auto& [far, j] : served) {
-    if (around.size() == 7) break;
-    const double angle = angle_of(discs[j].place.position - own.place.position, own.place.normal);
-    const auto between = [](double a, double b) {
-      const double d = std::abs(a - b);
-      return std::min(d, 360 - d);
-    };
-    if (std::any_of(around.begin(), around.end(), [&](double a) { return between(a, angle) < k_apart; }))
-      continue;
-    around.push_back(angle);
-    std::vector<double> sorted = around;
-    std::sort(sorted.begin(), sorted.end());
-    double gap = sorted.front() + 360 - sorted.back();
-    for (size_t k = 1; k < sorted.size(); ++k) gap = std::max(gap, sorted[k] - sorted[k - 1]);
-    if (gap <= k_gap)
-      return std::min(double(own.radius), std::max(far * double(own.radius), double(k_least)));
-  }
-  return own.radius;
+  const double share = test::share_by_neighbours(served);
+  return std::min(double(own.radius), std::max(share * double(own.radius), double(k_least)));
 }
 
 }  // namespace
