@@ -9,13 +9,6 @@
 namespace lucerna::bench {
 namespace {
 
-/// Where the straight line through two points of a log-log plot is at x; a == b: there.
-double log_line(double xa, double ya, double xb, double yb, double x) {
-  if (xa == xb) return ya;
-  return std::exp(std::log(ya) + (std::log(yb) - std::log(ya)) * (std::log(x) - std::log(xa)) /
-                                     (std::log(xb) - std::log(xa)));
-}
-
 /// Variance of the median of n values of a normal distribution of variance 1.
 double median_variance(size_t n) {
   static constexpr double k_small[] = {0, 1, 0.5, 0.4487, 0.2982, 0.2868};
@@ -31,6 +24,12 @@ double log_constant(std::span<const Point> curve) {
 }
 
 }  // namespace
+
+double log_line(double xa, double ya, double xb, double yb, double x) {
+  if (xa == xb) return ya;
+  return std::exp(std::log(ya) + (std::log(yb) - std::log(ya)) * (std::log(x) - std::log(xa)) /
+                                     (std::log(xb) - std::log(xa)));
+}
 
 Reach time_to(std::span<const Point> curve, double target) {
   if (curve.empty() || !(target > 0)) return {};

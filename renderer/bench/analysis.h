@@ -25,6 +25,10 @@ struct Reach {
   double seconds = 0;
 };
 
+/// Where the straight line through two points (xa, ya), (xb, yb) of a log-log plot is at x, all above 0; with
+/// xa == xb: at ya.
+double log_line(double xa, double ya, double xb, double yb, double x);
+
 /// When the error is `target` for good: the curve's last passage through it, interpolated in the logarithms.
 Reach time_to(std::span<const Point> curve, double target);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "bench/html.h"
@@ -25,51 +26,116 @@ std::string scene_line(const Json& scene, const std::vector<std::string>& found,
                        : fmt::format("{}: {}.", name, fmt::join(found, "; "));
 }
 
+/// What settings were found to do, one after the other; of those of one curve the one that does best.
+class Found {
+ public:
+  explicit Found(const Json& report) : report_(report) {}
+  void add(const std::string& setting, double ratio, std::string text) {
+    const std::string curve = curve_of(report_, setting);
+    const auto same = [&](const Told& t) { return !curve.empty() && t.curve == curve; };
+    const auto at = std::find_if(told_.begin(), told_.end(), same);
+    if (at == told_.end())
+      told_.push_back({curve, ratio, std::move(text)});
+    else if (ratio > at->ratio)
+      *at = {curve, ratio, std::move(text)};
+  }
+  std::vector<std::string> texts() const {
+    std::vector<std::string> all;
+    for (const Told& t : told_) all.push_back(t.text);
+    return all;
+  }
+
+ private:
+  struct Told {
+    std::string curve;
+    double ratio;
+    std::string text;
+  };
+  const Json& report_;
+  std::vector<Told> told_;
+};
+
 /// What is to be said of one measure of one scene; only what was measured, never what was extrapolated.
-std::string finding(const Json& scene, const std::string& first, const char* measure, const char* what) {
-  std::vector<std::string> found;
+std::string finding(const Json& report, const Json& scene, const std::string& first, const char* measure,
+                    const char* what) {
+  Found found(report);
   size_t compared = 0;
   for (const Json& setting : scene.at("settings")) {
     if (!setting.contains(measure)) continue;
     const Json& common = setting.at(measure);
     ++compared;
     if (common.value("noise", false)) continue;
-    found.push_back(fmt::format("{} brings {} to {:.4g} % in {}, {} in {}: {}", text_of(setting, "name"),
-                                what, 100 * common.at("error").get<double>(),
-                                seconds_text(common.at("seconds").get<double>()), first,
-                                seconds_text(common.at("first_seconds").get<double>()),
-                                gain_text(common.at("ratio").get<double>(), "sooner", "later")));
+    const double ratio = common.at("ratio").get<double>();
+    found.add(
+        text_of(setting, "name"), ratio,
+        fmt::format("{} brings {} to {:.4g} % in {}, {} in {}: {}", text_of(setting, "name"), what,
+                    100 * common.at("error").get<double>(), seconds_text(common.at("seconds").get<double>()),
+                    first, seconds_text(common.at("first_seconds").get<double>()),
+                    gain_text(ratio, "sooner", "later")));
   }
   if (compared == 0)
     return scene_line(
         scene, {}, fmt::format("no error of {} was reached both by {} and by another setting", what, first));
   return scene_line(
-      scene, found,
+      scene, found.texts(),
       fmt::format("for {}, no setting differs from {} by more than the measurement’s noise", what, first));
 }
 
 /// What the settings' relative squared errors come to, against the first setting's after the same time;
 /// marked where the latter is foretold from an earlier one. "" for reports from before it was measured.
-std::string relative_finding(const Json& scene, const std::string& first) {
-  std::vector<std::string> found;
+std::string relative_finding(const Json& report, const Json& scene, const std::string& first) {
+  Found found(report);
   size_t compared = 0;
   for (const Json& setting : scene.at("settings")) {
     if (!setting.contains("relmse_end") || !setting.at("relmse_end").contains("ratio")) continue;
     const Json& end = setting.at("relmse_end");
     ++compared;
     if (end.value("noise", false)) continue;
-    found.push_back(fmt::format(
-        "{} ends with a relative squared error of {:.3g} after {}, {} {} {:.3g}: {}",
-        text_of(setting, "name"), median_of(end.at("relmse")), seconds_text(end.at("seconds").get<double>()),
-        first, text_of(end, "kind") == "extrapolated" ? "would then have" : "then has",
-        median_of(end.at("first")), gain_text(end.at("ratio").get<double>(), "less", "more")));
+    const double ratio = end.at("ratio").get<double>();
+    found.add(text_of(setting, "name"), ratio,
+              fmt::format("{} ends with a relative squared error of {:.3g} after {}, {} {} {:.3g}: {}",
+                          text_of(setting, "name"), median_of(end.at("relmse")),
+                          seconds_text(end.at("seconds").get<double>()), first,
+                          text_of(end, "kind") == "extrapolated" ? "would then have" : "then has",
+                          median_of(end.at("first")), gain_text(ratio, "less", "more")));
   }
   if (compared == 0) return "";
   return scene_line(
-      scene, found,
+      scene, found.texts(),
       fmt::format("for the relative squared error, no setting differs from {} by more than the measurement’s "
                   "noise",
                   first));
+}
+
+/// The fewest records with which a curve has that error, which is no less than its least; interpolated in the
+/// logarithms. Its fewest where it begins with less.
+double records_to(const PlotLine& curve, double error) {
+  const auto at = std::find_if(curve.points.begin(), curve.points.end(),
+                               [&](const PlotLine::Point& p) { return p.error.median <= error; });
+  if (at == curve.points.begin()) return at->across;
+  const PlotLine::Point &a = *(at - 1), &b = *at;
+  return log_line(a.error.median, a.across, b.error.median, b.across, error);
+}
+
+double least_error(const PlotLine& curve) {
+  double least = curve.points.front().error.median;
+  for (const PlotLine::Point& p : curve.points) least = std::min(least, p.error.median);
+  return least;
+}
+
+/// What each further curve makes of its records, against the first, at the least error that both come to; ""
+/// where there are no two.
+std::string records_finding(const Json& report, const Json& scene) {
+  const std::vector<PlotLine> curves = record_curves(report, scene);
+  std::vector<std::string> found;
+  for (size_t i = 1; i < curves.size(); ++i) {
+    const double error = std::max(least_error(curves[0]), least_error(curves[i]));
+    const double first = records_to(curves[0], error), own = records_to(curves[i], error);
+    found.push_back(fmt::format(
+        "{} brings the whole picture to {:.3g} % with {:.0f} records, {} with {:.0f}: {}", curves[i].name,
+        100 * error, own, curves[0].name, first, gain_text(first / own, "fewer", "more")));
+  }
+  return found.empty() ? "" : scene_line(scene, found, "");
 }
 
 }  // namespace
@@ -80,9 +146,10 @@ std::vector<std::string> findings(const Json& report) {
     const Json& settings = scene.at("settings");
     if (settings.size() < 2) continue;
     const std::string first = text_of(report.at("matrix").at("settings").at(0), "name");
-    lines.push_back(finding(scene, first, "time_common", "the whole picture"));
-    lines.push_back(finding(scene, first, "tiles_time_common", "nine tiles in ten"));
-    if (std::string line = relative_finding(scene, first); !line.empty()) lines.push_back(std::move(line));
+    lines.push_back(finding(report, scene, first, "time_common", "the whole picture"));
+    lines.push_back(finding(report, scene, first, "tiles_time_common", "nine tiles in ten"));
+    for (std::string line : {relative_finding(report, scene, first), records_finding(report, scene)})
+      if (!line.empty()) lines.push_back(std::move(line));
   }
   if (!lines.empty() && report.at("matrix").at("repeats").get<int>() < 2)
     lines.push_back("Of one repeat each: what of these factors is noise is not known.");

@@ -34,8 +34,8 @@ PlotLine line_of(const Json& report, const Json& setting, const char* curve, con
   return line;
 }
 
-/// The curves of a scene that have two points or more, each the largest budget of a setting. An error that is
-/// lost in the reference's noise is no point.
+}  // namespace
+
 std::vector<PlotLine> record_curves(const Json& report, const Json& scene) {
   const double floor = 0.7 * scene.value("reference_noise", 0.0);
   std::vector<PlotLine> curves;
@@ -64,6 +64,8 @@ std::vector<PlotLine> record_curves(const Json& report, const Json& scene) {
   }
   return curves;
 }
+
+namespace {
 
 std::string figure(const std::string& svg, const char* caption) {
   return svg.empty() ? "" : fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, caption);

@@ -2,6 +2,9 @@
 // The plots of one scene on the page, and what they share with its tables.
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
+
+#include "bench/plot.h"
 
 namespace lucerna::bench {
 
@@ -14,6 +17,11 @@ std::string curve_of(const nlohmann::ordered_json& report, const std::string& se
 /// The place of a setting in the matrix, where the settings of one curve have one place: it decides the
 /// colour.
 size_t index_of(const nlohmann::ordered_json& report, const std::string& setting);
+
+/// True error against records: the curves of a scene that have two points or more, each the largest budget of
+/// a setting, from few records to many. An error that is lost in the reference's noise is no point.
+std::vector<PlotLine> record_curves(const nlohmann::ordered_json& report,
+                                    const nlohmann::ordered_json& scene);
 
 /// The scene's plots: true error and that of nine tiles in ten against seconds, and true error against the
 /// irradiance cache's records where a curve has two settings or more with records.
