@@ -100,11 +100,11 @@ std::vector<OptionInfo> make_options() {
           "cached."),
       {.key = "cache.metric",
        .type = OptionType::choice,
-       .fallback = "split-sphere",
+       .fallback = "hessian",
        .choices = {"split-sphere", "hessian"},
-       .help = "Irradiance cache: what decides how far a record serves. split-sphere: how far things are "
-               "that it sees; hessian: how its light bends from place to place, with ellipses that are "
-               "longer where it bends less."},
+       .help = "Irradiance cache: what decides how far a record serves. hessian: how its light bends from "
+               "place to place, with ellipses that are longer where it bends less; split-sphere: how far "
+               "things are that it sees, in whatever light."},
       real("cache.error", "0.3", 0.01, 1, "",
            "Irradiance cache: how far records serve: radii are in proportion to it, by either metric. "
            "Smaller: more records, less error. split-sphere: radius over the harmonic mean distance of what "

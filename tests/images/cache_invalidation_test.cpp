@@ -19,7 +19,9 @@ namespace {
 const Settings k_base{{"components.secondary", "cache"},
                       {"components.tertiary", "cache"},
                       {"cache.rays", "64"},
-                      {"cache.irradiance_weight", "0"},  // records are placed alike in any light
+                      // Records are placed alike in any light, and reach alike.
+                      {"cache.irradiance_weight", "0"},
+                      {"cache.metric", "split-sphere"},
                       {"cache.max_rays", "256"},
                       {"cache.error", "0.6"},
                       {"cache.max_records", "5000"},
@@ -275,6 +277,37 @@ TEST_CASE("another colour brings the light of a cache built with it") {
   CHECK(same_places(relit.records(), before));
   CHECK(std::abs(int(relit.records().size()) - int(fresh.records().size())) <= int(before.size() / 20));
   for (const int c : {1, 2}) CHECK(mean(picture, c) == Approx(mean(expected, c)).epsilon(0.03));
+}
+
+TEST_CASE("ellipses that other light makes smaller leave no gaps") {
+  const Settings ellipses{{"cache.metric", "hessian"}, {"cache.min_radius", "1"}};
+  Bed relit(ellipses), fresh(ellipses);
+  relit.finish();
+  uint32_t records = relit.records().size();
+  const auto move_lamp = [](Bed& b, vec3 to) {
+    scene::Light lamp = b.r.scene()->lights[0];
+    lamp.position = to;
+    b.r.set_light(0, lamp);
+  };
+  move_lamp(fresh, {-1.4f, 0.3f, 0.8f});
+  const film::Image expected = fresh.finish();
+  // There and back and there again: passes are counted anew each time.
+  for (int round = 0; round < 5; ++round) {
+    move_lamp(relit, round % 2 ? vec3(1, 2, 1) : vec3(-1.4f, 0.3f, 0.8f));
+    CHECK(relit.status().relighting == records);
+    const film::Image picture = relit.finish();
+    const irradiance_cache::CachePass& last = relit.status().passes.back();
+    INFO("round " << round << ": " << records << " records, then " << relit.records().size() << "; of "
+                  << last.paths << " paths in the end " << last.asked << " asked");
+    CHECK(relit.status().stop == StopReason::covered);
+    CHECK(last.paths > 0);
+    CHECK(double(last.asked) <= 0.002 * double(last.paths));
+    CHECK((round > 0 || relit.records().size() > records));
+    CHECK(relit.records().size() < 2 * fresh.records().size());
+    if (round % 2 == 0)
+      for (const int c : {1, 2}) CHECK(mean(picture, c) == Approx(mean(expected, c)).epsilon(0.03));
+    records = relit.records().size();
+  }
 }
 
 TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {

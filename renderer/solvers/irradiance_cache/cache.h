@@ -125,7 +125,7 @@ class Cache {
   /// Other light on the same surfaces: places and radii stay, and all light is gathered anew, pass by pass as
   /// the records came; then building goes on where it was, or is complete as it was. Meanwhile those that are
   /// relit serve, and no others. The outcome is that of a cache built in this light, to the bit where places
-  /// do not depend on light.
+  /// do not depend on light. Ellipses do: they are made anew, and passes added where they leave gaps.
   void relight();
   /// In place of its own, the records of another cache of the same scene, made for other lookups, options or
   /// kernels: as far as passes are complete. Returns what of them does not serve here, for the caller to see

@@ -54,10 +54,12 @@ void Cache::Impl::relight_pass() {
     return;
   }
   status.relighting = 0;
-  if (stopped != StopReason::building)
-    finish(stopped);
-  else
-    next_pass();
+  if (stopped == StopReason::building) return next_pass();
+  if (options.metric != Metric::hessian) return finish(stopped);
+  // Ellipses are by the light: where they no longer reach is asked for as if it had come into view.
+  stopped = StopReason::building;
+  status.pass = looked_along = 0;
+  next_pass();
 }
 
 void Cache::relight() { impl_->relight(); }
