@@ -73,8 +73,8 @@ TEST_CASE("how much of the picture reads a record: the square of its share, summ
   constexpr uint32_t k_size = 64;
   test::CacheRenderer shown(room.s, k_size);
   shown.set(test::k_cached);
-  // One level, so that radii stay as they were when it was measured.
-  shown.set({{"cache.max_rays", "256"}, {"samples", "1"}});
+  // One level, so that radii stay as they were when it was measured; circles, as below.
+  shown.set({{"cache.max_rays", "256"}, {"cache.metric", "split-sphere"}, {"samples", "1"}});
   shown.finish();
   const std::vector<irradiance_cache::Record> records = shown.r.cache()->records().read();
   const std::vector<float>& worth = shown.r.cache()->worth();
