@@ -99,8 +99,8 @@ int main_checked(int argc, char** argv) {
   built_in("quick", "three scenes in small pictures, under ten minutes on two cores");
   built_in("full", "larger pictures, the atrium too, more budgets; hours");
   built_in("cache",
-           "error of cached light against the records of the irradiance cache, by either metric; two hours "
-           "and more");
+           "error of cached light against the records of the irradiance cache, by either metric; an hour "
+           "and a quarter, with --repeats 1 over half of one");
   built_in("indirect",
            "how much sooner than path tracing cached light is right to 2 % in five interiors; two and a "
            "half hours, with --repeats 1 one");
