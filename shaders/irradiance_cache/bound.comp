@@ -33,6 +33,11 @@ void main() {
   vec3 tangent, bitangent;
   make_basis(texelFetch(record_texels, at + 1).xyz, tangent, bitangent);
 
+  // Directions are an ellipse's own, in which it is a circle: along its greater axis others would seem crowded.
+  vec4 shape = texelFetch(record_texels, at + 3);
+  vec2 axis = vec2(dot(shape.xyz, tangent), dot(shape.xyz, bitangent));
+  float squeeze = dot(axis, axis) > 0.0 ? (1.0 - shape.w / place.w) / dot(axis, axis) : 0.0;
+
   vec2 towards[k_neighbours];
   uint count = 0u;
   float reach = 1.0;
@@ -41,6 +46,7 @@ void main() {
     uvec4 pair = texelFetch(pair_texels, int(i));
     vec3 away = texelFetch(record_texels, int(pair.z * k_record_texels)).xyz - place.xyz;
     vec2 flat_ = vec2(dot(away, tangent), dot(away, bitangent));
+    flat_ -= squeeze * dot(flat_, axis) * axis;
     // Two in one place are one.
     if (dot(flat_, flat_) <= 0.0) continue;
     vec2 direction = normalize(flat_);
@@ -62,5 +68,5 @@ void main() {
     if (gap <= push.gap) reach = uintBitsToFloat(pair.x & (1u << k_neighbour_distance_bits) - 1u);
   }
 
-  shrink_record(index, place, texelFetch(record_texels, at + 3), reach);
+  shrink_record(index, place, shape, reach);
 }

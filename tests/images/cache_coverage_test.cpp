@@ -22,6 +22,11 @@ float far_of(const irradiance_cache::Record& record, const irradiance_cache::Pla
   return std::hypot(along / record.radius, std::sqrt(std::max(0.0f, squared)) / record.lesser_radius);
 }
 
+/// The way there as the record's ellipse has it, in which it is a circle.
+vec3 in_circle(const irradiance_cache::Record& record, const vec3& away) {
+  return away - (1 - record.lesser_radius / record.radius) * dot(away, record.along) * record.along;
+}
+
 /// Whether a record would serve there, where the least radius is 0.
 bool serves(const irradiance_cache::Record& record, const irradiance_cache::Place& at) {
   const vec3 away = at.position - record.place.position;
@@ -102,7 +107,8 @@ TEST_CASE("with cache.neighbours no record reaches beyond those all around it, o
         if (i != j && serves(all[i], all[j].place))
           served.push_back(
               {double(far_of(all[i], all[j].place)),
-               test::angle_in_plane(all[j].place.position - all[i].place.position, all[i].place.normal)});
+               test::angle_in_plane(in_circle(all[i], all[j].place.position - all[i].place.position),
+                                    all[i].place.normal)});
       beyond += test::share_by_neighbours(served) < 0.999;
       surrounded += served.size() > 3;
     }
