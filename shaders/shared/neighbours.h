@@ -5,7 +5,7 @@
 LUCERNA_SHARED_BEGIN
 
 /// Neighbours of a record that are looked at in different directions.
-LUCERNA_CONST uint k_neighbours = 7u;
+LUCERNA_CONST uint k_neighbours = 12u;
 /// A pair's key: the record, above that many bits of its distance. A float below 1 has as many.
 LUCERNA_CONST uint k_neighbour_distance_bits = 30u;
 

@@ -25,12 +25,12 @@ inline double angle_in_plane(const vec3& away, const vec3& normal) {
 /// The share of its radius that a record keeps; 1 where they do not stand all around.
 inline double share_by_neighbours(std::vector<Neighbour> served) {
   // As neighbours.cpp has them, in degrees.
-  const double k_apart = std::acos(0.643) * 180 / std::numbers::pi, k_gap = 3.0 * 180 / std::numbers::pi;
+  const double k_apart = std::acos(0.866) * 180 / std::numbers::pi, k_gap = 3.0 * 180 / std::numbers::pi;
   std::stable_sort(served.begin(), served.end(),
                    [](const Neighbour& a, const Neighbour& b) { return a.far < b.far; });
   std::vector<double> around;
   for (const Neighbour& n : served) {
-    if (around.size() == 7) break;
+    if (around.size() == 12) break;
     const auto close = [&](double angle) {
       const double d = std::abs(angle - n.angle);
       return std::min(d, 360 - d) < k_apart;

@@ -14,8 +14,9 @@ using namespace shared;
 namespace {
 
 constexpr const char* k_stage = "neighbours";
-/// cos 50 degrees: up to seven stand apart by that.
-constexpr float k_apart = 0.643f;
+/// cos 30 degrees: up to twelve stand apart by that. By more, those that would close the ring are passed over
+/// for farther ones, and records stay wider.
+constexpr float k_apart = 0.866f;
 /// Not quite 180 degrees: no half plane is without any. To ask for more leaves records wider than they need
 /// be: with 120 degrees lookups gain only half as much.
 constexpr float k_gap = 3.0f;
