@@ -61,9 +61,10 @@ TEST_CASE("the bench of lookups finds the same spheres every way, and writes wha
 TEST_CASE("the bench of interpolation tells how overlap is held down in a scene, and what it costs") {
   const File file;
   const std::string scene = std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf";
-  const Run r = run(
-      "bench interpolation " + scene +
-      " --width 48 --height 48 --repeats 1 --set cache.rays=64 --set cache.max_rays=64 --json " + file.path);
+  const Run r = run("bench interpolation " + scene +
+                    " --width 48 --height 48 --repeats 1 --set cache.rays=64 --set cache.max_rays=64 --set "
+                    "cache.min_radius=1 --json " +
+                    file.path);
   INFO(r.out);
   CHECK(r.status == 0);
   check_parts(r.out, {"as they were placed", "bounded by neighbours", "thinned and bounded", "M lookups/s"});
