@@ -118,9 +118,8 @@ double records_to(const PlotLine& curve, double error) {
 }
 
 double least_error(const PlotLine& curve) {
-  double least = curve.points.front().error.median;
-  for (const PlotLine::Point& p : curve.points) least = std::min(least, p.error.median);
-  return least;
+  return std::ranges::min(curve.points, {}, [](const PlotLine::Point& p) { return p.error.median; })
+      .error.median;
 }
 
 /// What each further curve makes of its records, against the first, at the least error that both come to; ""

@@ -15,13 +15,6 @@ using namespace lucerna;
 
 namespace {
 
-/// How far another's place is, of the record's reach.
-float far_of(const irradiance_cache::Record& record, const irradiance_cache::Place& at) {
-  const vec3 away = at.position - record.place.position;
-  const float along = dot(away, record.along), squared = dot(away, away) - along * along;
-  return std::hypot(along / record.radius, std::sqrt(std::max(0.0f, squared)) / record.lesser_radius);
-}
-
 /// The way there as the record's ellipse has it, in which it is a circle.
 vec3 in_circle(const irradiance_cache::Record& record, const vec3& away) {
   return away - (1 - record.lesser_radius / record.radius) * dot(away, record.along) * record.along;
@@ -30,7 +23,7 @@ vec3 in_circle(const irradiance_cache::Record& record, const vec3& away) {
 /// Whether a record would serve there, where the least radius is 0.
 bool serves(const irradiance_cache::Record& record, const irradiance_cache::Place& at) {
   const vec3 away = at.position - record.place.position;
-  return far_of(record, at) < 1 &&
+  return test::far_of(record, at.position) < 1 &&
          1 - dot(at.normal, record.place.normal) < irradiance_cache::k_normal_tolerance &&
          std::abs(dot(away, at.normal + record.place.normal)) <=
              2 * irradiance_cache::k_off_plane * record.lesser_radius;
@@ -106,7 +99,7 @@ TEST_CASE("with cache.neighbours no record reaches beyond those all around it, o
       for (size_t j = 0; j < all.size(); ++j)
         if (i != j && serves(all[i], all[j].place))
           served.push_back(
-              {double(far_of(all[i], all[j].place)),
+              {double(test::far_of(all[i], all[j].place.position)),
                test::angle_in_plane(in_circle(all[i], all[j].place.position - all[i].place.position),
                                     all[i].place.normal)});
       beyond += test::share_by_neighbours(served) < 0.999;

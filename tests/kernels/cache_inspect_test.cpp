@@ -10,6 +10,7 @@
 #include "film/io/image_file.h"
 #include "session/pick.h"
 #include "session/renderer.h"
+#include "support/records.h"
 
 using namespace lucerna;
 using irradiance_cache::Inspection;
@@ -20,14 +21,6 @@ namespace {
 constexpr uint32_t k_size = 192;
 // Of the cache: 1 - cos 20 degrees; of the radius, and of the least radius there is, which is so many pixels.
 constexpr float k_tolerance = 0.06f, k_off_plane = 0.03f, k_off_plane_least = 0.16f, k_least_pixels = 3;
-// Of a normal that is drawn, in pixels.
-constexpr float k_longest_tick = 13;
-
-/// A distance from a record over its reach there.
-float far_of(const Record& record, const vec3& away) {
-  const float along = dot(away, record.along), squared = dot(away, away) - along * along;
-  return std::hypot(along / record.radius, std::sqrt(std::max(0.0f, squared)) / record.lesser_radius);
-}
 
 /// Tabellion and Lamorlette's weight, as METHODS and shaders/irradiance_cache/lookup.glsl have it.
 float weight(const Record& record, const vec3& x, const vec3& n, const session::Renderer& r) {
@@ -38,7 +31,7 @@ float weight(const Record& record, const vec3& x, const vec3& n, const session::
   if (record.radius <= 0 ||
       std::abs(dot(away, n + record.place.normal)) > 2 * off_plane * record.lesser_radius)
     return 0;
-  const float far = far_of(record, away);
+  const float far = test::far_of(record, x);
   const float turned = std::sqrt(std::max(0.0f, 1 - dot(n, record.place.normal)) / k_tolerance);
   return std::max(0.0f, 1 - std::max(far, turned));
 }
@@ -189,8 +182,7 @@ TEST_CASE(
         const float from = length(u.place.position - found.position);
         CHECK(from <= u.radius);
         for (const Record& other : all)
-          if (dot(other.place.normal, found.normal) > 0.99f &&
-              far_of(other, found.position - other.place.position) < 1)
+          if (dot(other.place.normal, found.normal) > 0.99f && test::far_of(other, found.position) < 1)
             CHECK(from <= length(other.place.position - found.position) + 1e-5f);
       }
     }
@@ -329,14 +321,16 @@ TEST_CASE("normals are short lines at the centres of records that are seen") {
     return vec3((0.5f + 0.5f * vec2(c.x, -c.y) / (-c.z * half)) * float(k_size), -c.z);
   };
   const film::Image image = r.image();
-  std::vector<std::pair<vec2, vec2>> seen;
-  std::vector<vec2> hidden;     // feet
-  std::vector<vec2> beside_it;  // ... beyond the picture's border, where nobody knows whether they are hidden
+  // From foot to tip; beyond the picture's border nobody knows whether they are hidden.
+  std::vector<std::pair<vec2, vec2>> seen, beyond;
+  std::vector<vec2> hidden;  // feet
   for (const Record& record : r.cache()->records().read()) {
     const vec3 foot = project(record.place.position);
     if (foot.z <= 0) continue;
+    const std::pair line(vec2(foot),
+                         vec2(project(record.place.position + 0.6f * record.radius * record.place.normal)));
     if (foot.x < 0 || foot.y < 0 || foot.x >= k_size || foot.y >= k_size) {
-      beside_it.emplace_back(foot);
+      beyond.push_back(line);
       continue;
     }
     const float depth = image.depth[size_t(foot.y) * k_size + size_t(foot.x)];
@@ -344,13 +338,12 @@ TEST_CASE("normals are short lines at the centres of records that are seen") {
       hidden.emplace_back(foot);
       continue;
     }
-    seen.emplace_back(vec2(foot),
-                      vec2(project(record.place.position + 0.6f * record.radius * record.place.normal)));
+    seen.push_back(line);
   }
   CHECK(seen.size() > 50);
-  const auto off = [&](const vec2& p) {  // pixels from the nearest normal that is seen
+  const auto off = [](const vec2& p, const auto& lines) {  // pixels from the nearest
     float nearest = 1e9f;
-    for (const auto& [foot, tip] : seen) {
+    for (const auto& [foot, tip] : lines) {
       const vec2 along = tip - foot;
       const float t = std::clamp(dot(p - foot, along) / std::max(dot(along, along), 1e-9f), 0.0f, 1.0f);
       nearest = std::min(nearest, length(p - foot - t * along));
@@ -358,12 +351,11 @@ TEST_CASE("normals are short lines at the centres of records that are seen") {
     return nearest;
   };
   size_t strays = 0, lone = 0;
-  for (const uint32_t p : list) strays += off(place_of(p)) > 3;
+  for (const uint32_t p : list) strays += off(place_of(p), seen) > 3;
   INFO(strays << " of " << list.size() << " pixels away from every normal");
   CHECK(strays <= list.size() / 100);
   for (const vec2& foot : hidden) {
-    const auto near = [&](const vec2& other) { return length(foot - other) < 3.5f + k_longest_tick; };
-    if (off(foot) < 3.5f || std::any_of(beside_it.begin(), beside_it.end(), near)) continue;
+    if (std::min(off(foot, seen), off(foot, beyond)) < 3.5f) continue;
     ++lone;
     const uint32_t p = uint32_t(foot.y) * k_size + uint32_t(foot.x);
     INFO("pixel " << p % k_size << " " << p / k_size);

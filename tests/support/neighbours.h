@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "shaders/shared/neighbours.h"
 
 namespace lucerna::test {
 
@@ -30,7 +31,7 @@ inline double share_by_neighbours(std::vector<Neighbour> served) {
                    [](const Neighbour& a, const Neighbour& b) { return a.far < b.far; });
   std::vector<double> around;
   for (const Neighbour& n : served) {
-    if (around.size() == 12) break;
+    if (around.size() == shared::k_neighbours) break;
     const auto close = [&](double angle) {
       const double d = std::abs(angle - n.angle);
       return std::min(d, 360 - d) < k_apart;

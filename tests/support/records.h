@@ -1,5 +1,7 @@
 #pragma once
 // Records of an irradiance cache in tests: places for them, and whether two caches hold the same.
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <random>
 #include <vector>
@@ -29,6 +31,13 @@ inline std::vector<irradiance_cache::Place> box_points(size_t count, float offse
     points.push_back(p);
   }
   return points;
+}
+
+/// How far a place is from a record, over its reach there: 1 at the border of its ellipse.
+inline float far_of(const irradiance_cache::Record& record, const vec3& at) {
+  const vec3 away = at - record.place.position;
+  const float along = dot(away, record.along), squared = dot(away, away) - along * along;
+  return std::hypot(along / record.radius, std::sqrt(std::max(0.0f, squared)) / record.lesser_radius);
 }
 
 /// Whether the first of `all` are `some`, to the bit.

@@ -113,6 +113,11 @@ struct Cache::Impl {
   /// Tells the status what the cache takes: its own, and what grows while records are placed.
   void count_bytes();
   void look_from(const CacheView& view);
+  /// Building goes on; passes are counted, and the picture looked along, from the beginning.
+  void count_anew() {
+    status.pass = looked_along = 0;
+    status.stop = stopped = StopReason::building;
+  }
   /// What is placed and not evaluated is dropped, and what was asked for.
   void drop_pass();
   void relight();

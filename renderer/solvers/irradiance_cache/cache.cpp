@@ -186,8 +186,7 @@ void Cache::Impl::drop_pass() {
 
 void Cache::extend() {
   Impl& c = *impl_;
-  c.status.pass = c.looked_along = 0;
-  c.status.stop = c.stopped = StopReason::building;
+  c.count_anew();
   c.stale = c.reads_stale = true;
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped, unless
   // somebody is looking at it, maybe from all sides.

@@ -4,8 +4,9 @@
 //
 // Of a record a change may spoil three things, each without the ones before it:
 //   coverage  records serve on as they are; the picture may ask where none serves, so passes are added
-//   light     places, radii and distances stand; the rays over the hemispheres are traced again, level by
-//             level, in the order in which the records came, so that those that read others find them relit
+//   light     places and distances stand, and radii unless the light decides them (Metric::hessian); the
+//             rays over the hemispheres are traced again, level by level, in the order in which the records
+//             came, so that those that read others find them relit
 //   places    where records lie and how far they serve: the cache begins anew
 //
 // Lights and materials move no surface: whatever rays measured of the scene's shape stays true. With light

@@ -57,8 +57,7 @@ void Cache::Impl::relight_pass() {
   if (stopped == StopReason::building) return next_pass();
   if (options.metric != Metric::hessian) return finish(stopped);
   // Ellipses are by the light: where they no longer reach is asked for as if it had come into view.
-  stopped = StopReason::building;
-  status.pass = looked_along = 0;
+  count_anew();
   next_pass();
 }
 
