@@ -98,7 +98,7 @@ void numbers(const Ui& ui, const CacheReport& r) {
         "Overlap", fmt::format("{:.1f} on average, {} at most", o.mean, o.most),
         "Records that serve a point, over the pixels that one serves at least, as the camera sees them.");
     value_row("Not served", share(double(o.pixels - o.served), double(o.pixels)),
-              "Pixels showing a surface that no record serves: it is path traced there, or not diffuse.");
+              "Pixels showing something diffuse that no record serves: it is path traced there.");
   } else {
     value_row("Overlap", "\xE2\x80\x93", "Known when the picture has its first samples.", colour::text_faint);
     value_row("Not served", "\xE2\x80\x93", "Known when the picture has its first samples.",

@@ -166,6 +166,15 @@ void fields(Card& card, uint32_t index, const Record& r) {
 }
 
 void weights(Card& card, const Inspection& found, bool building) {
+  if (found.asks == shared::k_asks_nothing) {
+    card.note("Nothing diffuse: no record is asked.", colour::text_dim);
+    return;
+  }
+  if (found.asks == shared::k_asks_in_vain) {
+    card.note("The normal map is too steep for records.", colour::warning);
+    card.note("It is path traced here.", colour::warning);
+    return;
+  }
   if (found.count == 0) {
     card.note(building ? "No record serves here yet." : "No record serves here: it is path traced.",
               building ? colour::text_dim : colour::warning);

@@ -42,10 +42,10 @@ void Renderer::draw_cache() {
     placement_view_->draw({*wavefront_, *film_, *coarse_}, *cache_, placement);
   }
   const auto color = uint32_t(settings_.choice("overlay.records_by"));
+  const bool overlap = settings_.boolean("overlay.overlap");
+  if (overlap || looked_at_) cache_->look_at_picture(*wavefront_, cache_view());
   cache_->draw(*wavefront_, *film_, *coarse_,
-               {.discs = settings_.boolean("overlay.records"),
-                .overlap = settings_.boolean("overlay.overlap"),
-                .color = color});
+               {.discs = settings_.boolean("overlay.records"), .overlap = overlap, .color = color});
   inspection_ = {};
   const bool normals = settings_.boolean("overlay.normals");
   if (!normals && !looked_at_) return;
@@ -63,6 +63,7 @@ void Renderer::draw_cache() {
 void Renderer::look_up_picture() {
   if (!cache_ || !wavefront_) return;
   if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
+  cache_->look_at_picture(*wavefront_, cache_view());
   inspector_->look_up({*wavefront_, *film_, *coarse_}, *cache_,
                       irradiance_cache::Cache::defines(record_routes_, cache_options().metric));
 }
@@ -82,6 +83,7 @@ std::shared_ptr<const CacheReport> Renderer::cache_report() {
   if (cache_->ready() && samples() > 0) {
     if (overlap_.first != restarts_) {
       if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
+      cache_->look_at_picture(*wavefront_, cache_view());
       overlap_ = {restarts_, inspector_->overlap({*wavefront_, *film_, *coarse_}, *cache_)};
     }
     report->overlap = overlap_.second;

@@ -2,7 +2,7 @@
 // the very functions that lookups use, so that the answer is theirs.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/seen.glsl"
+#include "irradiance_cache/asking.glsl"
 #include "shaders/shared/cache_inspect.h"
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push { InspectPush push; };
@@ -14,6 +14,8 @@ layout(scalar) buffer Inspection {
 void main() {
   if (global_index() > 0u) return;
   Seen seen = seen_at(push.pixel, push.width, push.height);
+  Asking a = asking_at(push.pixel, push.width, push.grid, seen);
+  if (a.asks) seen.position = a.position, seen.normal = a.normal;
   uint count = 0u, under = k_no_record;
   float nearest = k_infinity;
   vec3 under_at = vec3(0.0);
@@ -23,7 +25,7 @@ void main() {
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
     vec4 shape = record_shape(record, place);
-    float weight = record_weight(seen.position, seen.normal, place, facing, shape);
+    float weight = a.answerable ? record_weight(seen.position, seen.normal, place, facing, shape) : 0.0;
     vec3 centre = to_picture(place.xyz, push.width, push.height);
     if (weight > 0.0) {
       if (count < k_inspect_most) serving[count] = InspectServing(record, weight, centre.xy, centre.z);
@@ -36,5 +38,6 @@ void main() {
       under_at = centre;
     }
   }
-  header = InspectHeader(seen.solid ? 1u : 0u, count, under, seen.size, seen.depth, seen.position, seen.normal, under_at);
+  uint asks = a.answerable ? k_asks : a.asks ? k_asks_in_vain : k_asks_nothing;
+  header = InspectHeader(seen.solid ? 1u : 0u, asks, count, under, seen.size, seen.depth, seen.position, seen.normal, under_at);
 }

@@ -1,7 +1,8 @@
-// How many records serve the surfaces that the camera sees: pixels by their number. Integers are summed, in any order.
+// How many records serve the diffuse surfaces that the camera sees: pixels by their number. Integers are summed, in any
+// order.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/seen.glsl"
+#include "irradiance_cache/asking.glsl"
 #include "shaders/shared/cache_inspect.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlapPush push; };
@@ -10,16 +11,16 @@ layout(scalar) buffer Overlap { OverlapCounts counts; };
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
-  Seen seen = seen_at(pixel, push.width, push.height);
+  Asking a = asking_at(pixel, push.width, push.grid, seen_at(pixel, push.width, push.height));
   uint overlap = 0u;
-  OctreeRange range = cache_range(seen.position, seen.solid);
+  OctreeRange range = cache_range(a.position, a.answerable);
   for (uint i = range.first; i < range.last; ++i) {
     uint record = octree_sphere(i);
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
-    overlap += record_weight(seen.position, seen.normal, place, facing, record_shape(record, place)) > 0.0 ? 1u : 0u;
+    overlap += record_weight(a.position, a.normal, place, facing, record_shape(record, place)) > 0.0 ? 1u : 0u;
   }
-  if (!seen.solid) return;
+  if (!a.asks) return;
   atomicAdd(counts.pixels[min(overlap, k_overlap_bins - 1u)], 1u);
   atomicAdd(counts.records, overlap);
   atomicAdd(counts.listed, range.last - range.first);

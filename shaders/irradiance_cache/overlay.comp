@@ -1,9 +1,9 @@
 // Draws the records over the picture, where the surfaces that the camera sees are: each as the disc of its validity with
-// a mark at its centre, and how many serve a pixel as a heat map. The place on the surface comes from the film's depth, so
-// that what is hidden stays hidden.
+// a mark at its centre, and how many serve a pixel as a heat map. Where discs are drawn the place on the surface comes from the
+// film's depth, so that what is hidden stays hidden.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/seen.glsl"
+#include "irradiance_cache/asking.glsl"
 #include "irradiance_cache/ink.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlayPush push; };
@@ -14,15 +14,16 @@ void main() {
   if (pixel >= push.width * push.height) return;
   Seen seen = seen_at(pixel, push.width, push.height);
 
+  Asking a = asking_at(pixel, push.width, push.grid, seen);
   uint overlap = 0u;
   vec4 over = vec4(0.0);  // premultiplied
-  OctreeRange range = cache_range(seen.position, seen.solid);
+  OctreeRange range = cache_range(a.asks ? a.position : seen.position, a.asks || seen.solid);
   for (uint i = range.first; i < range.last; ++i) {
     uint record = octree_sphere(i);
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
     vec4 shape = record_shape(record, place);
-    overlap += record_weight(seen.position, seen.normal, place, facing, shape) > 0.0 ? 1u : 0u;
+    overlap += a.answerable && record_weight(a.position, a.normal, place, facing, shape) > 0.0 ? 1u : 0u;
     float from = distance(seen.position, place.xyz), reach = seen_reach(seen, place, shape);
     vec3 ink = record_ink(record, push.color, push.lo, push.hi);
     // Discs of a few pixels fade, so that many of them far away do not become fog.
@@ -30,12 +31,12 @@ void main() {
     float rim = clamp(1.25 - abs(reach - 0.5 * seen.size - from) / seen.size, 0.0, 1.0) * 0.8 * strength;
     float dot_ = clamp(2.0 - from / seen.size, 0.0, 1.0) * max(strength, 0.5);
     float inside = from < reach ? 0.06 : 0.0;
-    float alpha = push.discs != 0u && seen_on_plane(seen, place, facing, shape) ? max(max(rim, dot_), inside) : 0.0;
+    float alpha = push.discs != 0u && seen.solid && seen_on_plane(seen, place, facing, shape) ? max(max(rim, dot_), inside) : 0.0;
     over += (1.0 - over.a) * vec4(ink * alpha, alpha);
   }
   uint packed = picture[pixel];
   vec3 color = vec3(packed & 0xffu, packed >> 8 & 0xffu, packed >> 16 & 0xffu) / 255.0;
-  if (push.overlap != 0u && seen.solid) {
+  if (push.overlap != 0u && a.asks) {
     // One colour a count up to the scale's end, none served in red.
     vec3 ink = overlap == 0u ? k_unserved_ink : ramp_color(k_ramp_viridis, float(overlap) / push.overlap_most);
     color = mix(color, ink, 0.8);

@@ -13,9 +13,10 @@ void main() {
   if (slot >= push.count) return;
   vec4 place = texelFetch(candidate_texels, int(slot * k_candidate_texels));
   vec4 facing = texelFetch(candidate_texels, int(slot * k_candidate_texels + 1u));
-  bool met = place.w == 1.0 + float(k_origin_screen);
+  float screen = 1.0 + float(k_origin_screen);
   float depth = max(dot(place.xyz - frame.camera_origin, frame.camera_forward), 0.0);
   uint at = (push.first + slot) * k_surface_texels;
-  surfaces[at] = met ? vec4(place.xyz, depth) : vec4(0.0, 0.0, 0.0, -1.0);
+  bool met = abs(place.w) == screen;
+  surfaces[at] = met ? vec4(place.xyz, place.w > 0.0 ? depth : k_surface_bent) : vec4(0.0, 0.0, 0.0, k_surface_none);
   surfaces[at + 1u] = met ? facing : vec4(0.0);
 }

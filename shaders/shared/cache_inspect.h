@@ -4,6 +4,7 @@
 #ifndef LUCERNA_SHARED_CACHE_INSPECT_H
 #define LUCERNA_SHARED_CACHE_INSPECT_H
 #include "shaders/shared/compat.h"
+#include "shaders/shared/discontinuity.h"
 LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_inspect_most = 256u;      ///< records listed at most
@@ -12,17 +13,22 @@ LUCERNA_CONST uint k_no_record = 0xffffffffu;  ///< no index of a record
 struct InspectPush {
   uint width, height;
   uint pixel;
+  SightGrid grid;
 };
 
+LUCERNA_CONST uint k_asks_nothing = 0u;  ///< nothing diffuse is seen
+LUCERNA_CONST uint k_asks_in_vain = 1u;  ///< no record can serve so steep a normal map (k_surface_bent)
+LUCERNA_CONST uint k_asks = 2u;
 /// What the camera sees in a pixel.
 struct InspectHeader {
   uint solid;  ///< 0: nothing, and then nothing else here holds
+  uint asks;   ///< k_asks_*
   uint count;  ///< records that serve there; the first k_inspect_most of them are listed
   uint under;  ///< of the records whose discs are drawn there the one whose centre is nearest; k_no_record:
                ///< none
   float size;   ///< of a pixel there [m]
   float depth;  ///< [m]
-  vec3 position, normal;
+  vec3 position, normal;  ///< as lookups are asked there; where nothing asks, of what is seen
   vec3 under_at;  ///< centre of `under` in the picture, and its depth
 };
 /// A record that serves there.
@@ -36,8 +42,9 @@ struct InspectServing {
 LUCERNA_CONST uint k_overlap_bins = 33u;  ///< pixels by the records that serve them: 0, 1, ... and 32 or more
 struct OverlapPush {
   uint width, height;
+  SightGrid grid;
 };
-/// Counts over the picture's pixels that show a surface.
+/// Counts over the picture's pixels that show something diffuse.
 struct OverlapCounts {
   uint pixels[k_overlap_bins];
   uint most;     ///< records that serve one pixel

@@ -7,6 +7,7 @@
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_H
 #define LUCERNA_SHARED_IRRADIANCE_CACHE_H
 #include "shaders/shared/compat.h"
+#include "shaders/shared/discontinuity.h"
 LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_part_direct = 0u;     ///< L: in a cache, the sky's alone (E_env; lib/sky.glsl)
@@ -67,7 +68,8 @@ LUCERNA_CONST uint k_probe_none = 0u;
 LUCERNA_CONST uint k_probe_lookups = 1u;
 /// The same, and paths go on: of the diffuse vertices from the lookup on, one by chance is noted.
 LUCERNA_CONST uint k_probe_beyond = 2u;
-/// The first vertex that looks up is noted, whether records serve it or not, and paths end at their first.
+/// The first vertex is noted where it is diffuse, whether paths look up there and records serve it or not,
+/// and paths end there; where no record can serve its normal map, with an origin below 0.
 LUCERNA_CONST uint k_probe_screen = 3u;
 /// The last vertex that looks up is noted, whether records serve it or not. Paths end as in k_probe_lookups.
 LUCERNA_CONST uint k_probe_reads = 4u;
@@ -146,6 +148,7 @@ struct OverlayPush {
   uint color;           ///< k_record_by_*
   float lo, hi;         ///< of the value, logarithmic; 0 < lo < hi
   float overlap_most;   ///< records at the upper end of the heat map
+  SightGrid grid;
 };
 
 LUCERNA_SHARED_END

@@ -79,7 +79,8 @@ void main() {
         // states that leave nothing out.
         uint routes = cache.routes[state];
         bool beyond = cache.probing == k_probe_beyond && state >= k_fallback_state;
-        bool looks = (routes != k_no_routes || beyond) && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
+        bool screen = cache.probing == k_probe_screen && depth == 0u;
+        bool looks = (routes != k_no_routes || beyond || screen) && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
         bool alone = false;  // a side asks and finds nothing
         bool notes_all = cache.probing == k_probe_screen || cache.probing == k_probe_reads;
         // Records stand on the smooth surface, not on its facets nor its normal map.
@@ -93,9 +94,10 @@ void main() {
           // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
           bool notes = (missing || (asks && notes_all)) && cache.probing != k_probe_none &&
                        !(beyond && (sample_vertex_bits(random, depth, k_pad_light_choice).x & 1u) != 0u);
-          if (notes && cache_can_serve(sign * smooth_side, sign * to_world[2])) {
+          bool servable = cache_can_serve(sign * smooth_side, sign * to_world[2]);
+          if (notes && (servable || screen)) {
             uint origin = beyond ? k_origin_recursive : depth == 0u ? k_origin_screen : k_origin_world;
-            candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), 1.0 + float(origin));
+            candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), servable ? 1.0 + float(origin) : -1.0 - float(origin));
             candidates[slot * k_candidate_texels + 1u] = vec4(sign * smooth_side, uintBitsToFloat(facet_pack(sign * side)));
           }
           alone = alone || missing;

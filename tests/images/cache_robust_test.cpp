@@ -71,33 +71,6 @@ struct Complaints {
   ~Complaints() { log::remove_listener(token); }
 };
 
-/// The wall at x = 1 of the room, with a normal map of 8 x 8 texels: a quarter of them straight, the others
-/// tilted by `degrees` in different directions.
-scene::Scene mapped_room(float degrees) {
-  Room room;
-  scene::Scene& s = room.s;
-  scene::Image map;
-  map.name = "tilted", map.width = map.height = 8;
-  const float tilt = degrees * k_pi / 180;
-  for (int i = 0; i < 64; ++i) {
-    const int kind = i % 2 + 2 * (i / 8 % 2), turn = (i / 2 + i / 16) % 4;
-    const float a = turn * k_pi / 2 + 0.4f, t = kind == 0 ? 0 : tilt;
-    const vec3 n(std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t));
-    for (int k = 0; k < 3; ++k) map.bytes.push_back(uint8_t(std::lround(127.5f * n[k] + 127.5f)));
-    map.bytes.push_back(255);
-  }
-  s.images = {map};
-  s.textures = {{.image = 0, .nearest = true}};
-  s.materials.push_back(s.materials[0]);
-  s.materials.back().normal_texture.texture = 0;
-  // In the room, before its back wall, the whole of the camera's view.
-  room.quad({-0.99f, 0.01f, -0.98f}, {1.98f, 0, 0}, {0, 0.98f, 0}, 2);
-  s.cameras[0].to_world = mat4(1);
-  s.cameras[0].to_world[3] = vec4(0, 0.5f, 0.2f, 1);
-  s.cameras[0].yfov = 0.7f;
-  return s;
-}
-
 }  // namespace
 
 TEST_CASE("light does not leak through walls, around their ends, or far from the origin") {
@@ -132,7 +105,7 @@ TEST_CASE("normal maps tilt what records bring as far as they can, and beyond th
   int i = 0;
   for (const float degrees : {0.0f, 12.0f, 45.0f}) {
     INFO(degrees << " degrees");
-    const scene::Scene room = mapped_room(degrees);
+    const scene::Scene room = test::mapped_room(degrees);
     const Result path = render(room, {}, 128), cached = render(room, k_both, 32);
     const double off = compare(path, cached, 0.08);
     INFO("off by " << off);

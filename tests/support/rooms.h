@@ -1,6 +1,7 @@
 #pragma once
 // Scenes that tests make themselves, of quads and boxes: rooms in which light goes to and fro.
 #include <array>
+#include <cmath>
 
 #include "base/math.h"
 #include "scene/scene.h"
@@ -117,5 +118,32 @@ struct PanelRoom {
     quad(vec3(0, 0, z1) - t, 2.0f * t, h), quad(vec3(0, 0, z0) - t, h, 2.0f * t);
   }
 };
+
+/// That room with another wall before its back wall, all that its camera sees, which has material 2 and a
+/// normal map of 8 x 8 texels: a quarter of them straight, the others tilted by `degrees` in different
+/// directions.
+inline scene::Scene mapped_room(float degrees) {
+  PanelRoom room;
+  scene::Scene& s = room.s;
+  scene::Image map;
+  map.name = "tilted", map.width = map.height = 8;
+  const float tilt = degrees * k_pi / 180;
+  for (int i = 0; i < 64; ++i) {
+    const int kind = i % 2 + 2 * (i / 8 % 2), turn = (i / 2 + i / 16) % 4;
+    const float a = turn * k_pi / 2 + 0.4f, t = kind == 0 ? 0 : tilt;
+    const vec3 n(std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t));
+    for (int k = 0; k < 3; ++k) map.bytes.push_back(uint8_t(std::lround(127.5f * n[k] + 127.5f)));
+    map.bytes.push_back(255);
+  }
+  s.images = {map};
+  s.textures = {{.image = 0, .nearest = true}};
+  s.materials.push_back(s.materials[0]);
+  s.materials.back().normal_texture.texture = 0;
+  room.quad({-0.99f, 0.01f, -0.98f}, {1.98f, 0, 0}, {0, 0.98f, 0}, 2);
+  s.cameras[0].to_world = mat4(1);
+  s.cameras[0].to_world[3] = vec4(0, 0.5f, 0.2f, 1);
+  s.cameras[0].yfov = 0.7f;
+  return s;
+}
 
 }  // namespace lucerna::test

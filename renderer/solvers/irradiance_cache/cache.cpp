@@ -280,11 +280,25 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
   return true;
 }
 
+void Cache::look_at_picture(transport::Wavefront& wavefront, const CacheView& view) {
+  Impl& c = *impl_;
+  if (!ready() || (!c.stale && c.screen.seen())) return;
+  c.see_all(wavefront, view);
+  wavefront.stream().take_times();
+}
+
+SightGrid Cache::bind_sight(gpu::Resources& to) const {
+  const Impl& c = *impl_;
+  const SightGrid grid = c.stale ? SightGrid{0, 1} : c.screen.grid();
+  // Kernels name it whether they read it or not.
+  to.set("surface_texels", grid.across > 0 ? c.screen.surfaces() : c.candidates);
+  return grid;
+}
+
 void Cache::draw_discontinuity(transport::Wavefront& wavefront, const film::Film& film, const CacheView& view,
                                Discontinuity::Of of, uint32_t level) {
   Impl& c = *impl_;
-  while (c.stale || !c.screen.seen())
-    if (!c.see(wavefront, view, {})) return;
+  c.see_all(wavefront, view);
   gpu::Stream& stream = wavefront.stream();
   c.screen.look_up(stream, [&](gpu::Resources& r) { bind(r); });
   DiscontinuityOptions options = c.options.screen;
@@ -307,10 +321,10 @@ void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const 
   bind(c.resources);
   film.bind(c.resources);
   coarse.bind_coarse(c.resources);
-  OverlayPush push{film.width(),   film.height(), overlay.discs, overlay.overlap, overlay.color, 0, 1,
-                   k_overlap_scale};
   const auto [lo, hi] = scale(overlay.color);
-  push.lo = lo, push.hi = hi;
+  const OverlayPush push{
+      film.width(), film.height(),   overlay.discs,          overlay.overlap, overlay.color, lo,
+      hi,           k_overlap_scale, bind_sight(c.resources)};
   wavefront.stream().dispatch(c.overlay, c.resources, push,
                               gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
   wavefront.stream().run();

@@ -154,9 +154,16 @@ class Cache {
   /// Of the records, when the last pass had its first level: how much of the picture reads them (worth.h).
   const std::vector<float>& worth() const;
   uint32_t parts() const;  ///< that its records hold (bits); the others are 0
+  /// Looks through the centre of every pixel, for bind_sight(), unless that has been done: while the cache is
+  /// being built its own passes do. The wavefront's frame is the view's.
+  void look_at_picture(transport::Wavefront& wavefront, const CacheView& view);
+  /// For shaders/irradiance_cache/asking.glsl: where pixels ask for records; before that is known nobody has
+  /// looked.
+  shared::SightGrid bind_sight(gpu::Resources& resources) const;
   /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many
   /// serve each pixel. Needs the film's depth, and where it has no samples that of the coarse film of the
-  /// same picture (shared::k_coarse_step). The stream is run.
+  /// same picture (shared::k_coarse_step); where pixels ask is what look_at_picture() has seen. The stream
+  /// is run.
   struct Overlay {
     bool discs = false, overlap = false;
     uint32_t color = shared::k_record_by_pass;

@@ -73,6 +73,10 @@ void Discontinuity::begin(const Frame& frame) {
 }
 
 bool Discontinuity::seen() const { return impl_->points() > 0 && impl_->done == impl_->points(); }
+SightGrid Discontinuity::grid() const {
+  return seen() ? SightGrid{impl_->across, impl_->stride} : SightGrid{0, 1};
+}
+const gpu::Buffer& Discontinuity::surfaces() const { return impl_->surfaces; }
 uint32_t Discontinuity::across() const { return impl_->across; }
 uint32_t Discontinuity::down() const { return impl_->down; }
 uint32_t Discontinuity::points() const { return impl_->points(); }

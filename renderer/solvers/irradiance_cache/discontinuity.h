@@ -51,6 +51,10 @@ class Discontinuity {
   /// have been told k_probe_screen, and note what they meet in `candidates`. False when it was cancelled.
   bool see(transport::Wavefront& wavefront, const gpu::Buffer& candidates,
            const std::function<bool()>& cancel = {});
+  /// What has been seen of the points (k_surface_texels each), and how they lie over the picture; a grid of
+  /// none, and no buffer to be read, before all are seen.
+  shared::SightGrid grid() const;
+  const gpu::Buffer& surfaces() const;
   /// What the records give at the points; `bind` as Cache::bind.
   void look_up(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind);
   /// The pyramid. Irradiance darker than `least` is held against that (luminance, above 0).

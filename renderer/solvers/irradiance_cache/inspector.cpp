@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "gpu/stream.h"
-#include "shaders/shared/cache_inspect.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -39,11 +38,12 @@ struct Inspector::Impl {
     return buffer;
   }
 
-  void bind(const Shown& shown, const Cache& cache) {
+  SightGrid bind(const Shown& shown, const Cache& cache) {
     shown.wavefront.bind_paths(resources);
     cache.bind(resources);
     shown.film.bind(resources);
     shown.coarse.bind_coarse(resources);
+    return cache.bind_sight(resources);
   }
 
   /// What is drawn and asked is no part of the picture's cost.
@@ -61,9 +61,8 @@ Inspection Inspector::ask(const Shown& shown, const Cache& cache, uint32_t x, ui
   Impl& i = *impl_;
   const film::Film& film = shown.film;
   const gpu::Kernel& kernel = i.ready(i.inspect, "irradiance_cache/inspect.comp");
-  i.bind(shown, cache);
+  const InspectPush push{film.width(), film.height(), y * film.width() + x, i.bind(shown, cache)};
   i.resources.set("Inspection", i.ready(i.answer, "cache inspection", k_inspection_bytes, gpu::Memory::host));
-  const InspectPush push{film.width(), film.height(), y * film.width() + x};
   shown.wavefront.stream().dispatch(kernel, i.resources, push, 1);
   Impl::finish(shown.wavefront.stream());
 
@@ -73,6 +72,7 @@ Inspection Inspector::ask(const Shown& shown, const Cache& cache, uint32_t x, ui
   found.x = x, found.y = y;
   found.solid = header->solid != 0;
   if (!found.solid) return found;
+  found.asks = header->asks;
   found.position = header->position, found.normal = header->normal;
   found.size = header->size, found.depth = header->depth;
   found.count = header->count;
@@ -98,11 +98,11 @@ Overlap Inspector::overlap(const Shown& shown, const Cache& cache) {
   Impl& i = *impl_;
   const film::Film& film = shown.film;
   const gpu::Kernel& kernel = i.ready(i.overlap, "irradiance_cache/overlap.comp");
-  i.bind(shown, cache);
+  const OverlapPush push{film.width(), film.height(), i.bind(shown, cache)};
   const gpu::Buffer& counts = i.ready(i.counts, "cache overlap", sizeof(OverlapCounts), gpu::Memory::host);
   i.resources.set("Overlap", counts);
   shown.wavefront.stream().fill(counts, 0);
-  shown.wavefront.stream().dispatch(kernel, i.resources, OverlapPush{film.width(), film.height()},
+  shown.wavefront.stream().dispatch(kernel, i.resources, push,
                                     gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
   Impl::finish(shown.wavefront.stream());
 
@@ -122,11 +122,10 @@ void Inspector::look_up(const Shown& shown, const Cache& cache, const gpu::Defin
   const film::Film& film = shown.film;
   const uint64_t pixels = uint64_t{film.width()} * film.height();
   if (!i.lookups) i.lookups = gpu::Kernel(i.device, i.compiler, "irradiance_cache/lookups.comp", defines);
-  i.bind(shown, cache);
+  const OverlapPush push{film.width(), film.height(), i.bind(shown, cache)};
   i.resources.set("LookedUp",
                   i.ready(i.looked_up, "cache lookups", pixels * sizeof(float), gpu::Memory::device));
-  shown.wavefront.stream().dispatch(i.lookups, i.resources, OverlapPush{film.width(), film.height()},
-                                    gpu::groups_for(pixels, 64));
+  shown.wavefront.stream().dispatch(i.lookups, i.resources, push, gpu::groups_for(pixels, 64));
   Impl::finish(shown.wavefront.stream());
 }
 

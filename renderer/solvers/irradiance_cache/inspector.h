@@ -4,15 +4,18 @@
 // the lookup's own functions (shaders/irradiance_cache/lookup.glsl), so that the answers are those of the
 // picture.
 //
-// A pixel's place in the scene is the mean over its samples, from the film's depth and normal: where most
-// have met nothing there is none. Before its first sample the coarse film stands for it. Kernels are compiled
-// when they are first called for.
+// A pixel asks for records where a path through its centre does, on the smooth surface, as the cache itself
+// has looked at the picture (Cache::look_at_picture). What is drawn, and what is asked before the cache has
+// looked, is at the mean over the pixel's samples, from the film's depth and normal: where most have met
+// nothing there is none. Before its first sample the coarse film stands for it. Kernels are compiled when
+// they are first called for.
 #include <array>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "film/film.h"
+#include "shaders/shared/cache_inspect.h"
 #include "solvers/irradiance_cache/cache.h"
 
 namespace lucerna::irradiance_cache {
@@ -32,7 +35,8 @@ struct Serving {
 struct Inspection {
   uint32_t x = 0, y = 0;          ///< the pixel
   bool solid = false;             ///< a surface is seen there; nothing below holds where not
-  vec3 position{0}, normal{0};    ///< world space [m]; its mean normal
+  uint32_t asks = 0;              ///< shared::k_asks_*
+  vec3 position{0}, normal{0};    ///< world space [m]; where records are asked for and with which normal
   float size = 0;                 ///< of the pixel there [m]
   float depth = 0;                ///< along the view axis [m]
   uint32_t count = 0;             ///< records that serve
@@ -43,11 +47,11 @@ struct Inspection {
   vec2 under_at{0};               ///< its centre in the picture [pixels]
 };
 
-/// How many records serve the pixels that show a surface.
+/// How many records serve the pixels that show a diffuse surface, and so ask for them.
 struct Overlap {
-  uint64_t pixels = 0, served = 0;  ///< that show a surface; of these with a record at least
+  uint64_t pixels = 0, served = 0;  ///< that ask; of these with a record at least
   double mean = 0;                  ///< records, over the pixels that are served
-  double listed = 0;  ///< records that a lookup goes through, over the pixels that show a surface
+  double listed = 0;                ///< records that a lookup goes through, over the pixels that ask
   uint32_t most = 0;
   /// Pixels that 0, 1, ... records serve; the last counts all that more do.
   std::vector<uint32_t> histogram;
@@ -71,7 +75,7 @@ class Inspector {
   Inspection ask(const Shown& shown, const Cache& cache, uint32_t x, uint32_t y);
   /// Over the film's pixels.
   Overlap overlap(const Shown& shown, const Cache& cache);
-  /// A lookup at every pixel of the film that shows a surface, of which nothing is kept: to be timed.
+  /// A lookup at every pixel of the film that asks, of which nothing is kept: to be timed.
   /// `defines`: Cache::defines(); those of the first call count.
   void look_up(const Shown& shown, const Cache& cache, const gpu::Defines& defines);
 
