@@ -394,6 +394,12 @@ void Wavefront::tone_map(film::Film& film, const film::View& view, film::Film* c
 
 const TransportStats& Wavefront::stats() const { return impl_->stats; }
 void Wavefront::reset_stats() { impl_->stats = {}; }
+void Wavefront::uncounted(const std::function<void()>& trace) {
+  const TransportStats kept = impl_->stats;
+  trace();
+  stream().take_times();
+  impl_->stats = kept;
+}
 double Wavefront::compile_seconds() const { return impl_->compile_seconds; }
 
 }  // namespace lucerna::transport

@@ -97,6 +97,8 @@ class Wavefront {
 
   const TransportStats& stats() const;
   void reset_stats();
+  /// What `trace` runs here is no part of the picture's cost: stats() stay as they are.
+  void uncounted(const std::function<void()>& trace);
   double compile_seconds() const;
 
  private:

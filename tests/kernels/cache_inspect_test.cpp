@@ -294,7 +294,9 @@ TEST_CASE("it is told who serves what the camera sees where only later vertices 
   std::filesystem::remove(file);
   test::finish(r);
   REQUIRE(r.cache()->status().loaded > 0);
+  const uint64_t rays = r.stats().rays;
   CHECK(r.cache_report()->overlap->histogram == told.histogram);
+  CHECK(r.stats().rays == rays);
 }
 
 TEST_CASE("lines go from the pixel to the records that serve it, and nowhere else") {

@@ -132,9 +132,12 @@ struct Cache::Impl {
   uint32_t complete() const { return ends.empty() ? 0 : ends.back(); }
   /// One piece of looking at the picture's points; false when it was cancelled.
   bool see(transport::Wavefront& wavefront, const CacheView& view, const std::function<bool()>& cancel);
-  /// ... or all of them.
+  /// ... or all of them, for somebody who watches.
   void see_all(transport::Wavefront& wavefront, const CacheView& view) {
-    while (stale || !screen.seen()) see(wavefront, view, {});
+    if (!stale && screen.seen()) return;
+    wavefront.uncounted([&] {
+      while (stale || !screen.seen()) see(wavefront, view, {});
+    });
   }
   /// Records that are evaluated hold what this cache gathers, and no more.
   void hold() { held = parts, held_recursive = recursive; }

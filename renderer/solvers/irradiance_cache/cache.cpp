@@ -282,9 +282,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
 
 void Cache::look_at_picture(transport::Wavefront& wavefront, const CacheView& view) {
   Impl& c = *impl_;
-  if (!ready() || (!c.stale && c.screen.seen())) return;
-  c.see_all(wavefront, view);
-  wavefront.stream().take_times();
+  if (ready()) c.see_all(wavefront, view);
 }
 
 SightGrid Cache::bind_sight(gpu::Resources& to) const {
