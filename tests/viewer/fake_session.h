@@ -270,7 +270,8 @@ struct Session::Impl {
     if (!looked_at) return c;
     irradiance_cache::Inspection& found = c->inspection;
     found.x = uint32_t(looked_at->x * float(width)), found.y = uint32_t(looked_at->y * float(height));
-    found.solid = true, found.position = {1, 0, 2}, found.normal = {0, 1, 0}, found.size = 0.003f;
+    found.solid = true, found.asks = shared::k_asks, found.position = {1, 0, 2}, found.normal = {0, 1, 0},
+    found.size = 0.003f;
     found.count = 9;
     for (uint32_t i = 0; i < 9; ++i)
       found.serving.push_back({100 + 37 * i, float(9 - i) / 45, {100 + 20 * float(i), 100}, 3});
