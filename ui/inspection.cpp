@@ -167,7 +167,7 @@ void fields(Card& card, uint32_t index, const Record& r) {
 
 void weights(Card& card, const Inspection& found, bool building) {
   if (found.asks == shared::k_asks_nothing) {
-    card.note("Nothing diffuse: no record is asked.", colour::text_dim);
+    card.note("Nothing diffuse: no record is asked for.", colour::text_dim);
     return;
   }
   if (found.asks == shared::k_asks_in_vain) {

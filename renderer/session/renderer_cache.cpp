@@ -30,6 +30,13 @@ void Renderer::run_cache() {
   if (cache_) cache_->go_on(false);
 }
 
+irradiance_cache::Shown Renderer::shown() { return {*wavefront_, *film_, *coarse_}; }
+
+irradiance_cache::Inspector& Renderer::inspector() {
+  if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
+  return *inspector_;
+}
+
 void Renderer::draw_cache() {
   if (const uint32_t of = uint32_t(settings_.choice("overlay.discontinuity")); of > 0)
     cache_->draw_discontinuity(*wavefront_, *film_, cache_view(), irradiance_cache::Discontinuity::Of(of - 1),
@@ -39,7 +46,7 @@ void Renderer::draw_cache() {
     if (!placement_view_)
       placement_view_ = std::make_unique<irradiance_cache::PlacementView>(*device_, *compiler_);
     // Below the others, for it dims the picture.
-    placement_view_->draw({*wavefront_, *film_, *coarse_}, *cache_, placement);
+    placement_view_->draw(shown(), *cache_, placement);
   }
   const auto color = uint32_t(settings_.choice("overlay.records_by"));
   const bool overlap = settings_.boolean("overlay.overlap");
@@ -48,23 +55,20 @@ void Renderer::draw_cache() {
                {.discs = settings_.boolean("overlay.records"), .overlap = overlap, .color = color});
   inspection_ = {};
   const bool normals = settings_.boolean("overlay.normals");
-  if (!normals && !looked_at_) return;
-  if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
-  if (normals) inspector_->draw_normals({*wavefront_, *film_, *coarse_}, *cache_, color);
+  if (normals) inspector().draw_normals(shown(), *cache_, color);
   if (!looked_at_) return;
   const auto pixel = [](float place, uint32_t pixels) {
     return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
   };
-  inspection_ = inspector_->ask({*wavefront_, *film_, *coarse_}, *cache_,
-                                pixel(looked_at_->x, film_->width()), pixel(looked_at_->y, film_->height()));
-  inspector_->draw_lines({*wavefront_, *film_, *coarse_}, *cache_, inspection_);
+  inspection_ = inspector().ask(shown(), *cache_, pixel(looked_at_->x, film_->width()),
+                                pixel(looked_at_->y, film_->height()));
+  inspector().draw_lines(shown(), *cache_, inspection_);
 }
 
 void Renderer::look_up_picture() {
   if (!cache_ || !wavefront_) return;
-  if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
   cache_->look_at_picture(*wavefront_, cache_view());
-  inspector_->look_up({*wavefront_, *film_, *coarse_}, *cache_,
+  inspector().look_up(shown(), *cache_,
                       irradiance_cache::Cache::defines(record_routes_, cache_options().metric));
 }
 
@@ -82,9 +86,8 @@ std::shared_ptr<const CacheReport> Renderer::cache_report() {
   report->inspection = inspection_;
   if (cache_->ready() && samples() > 0) {
     if (overlap_.first != restarts_) {
-      if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
       cache_->look_at_picture(*wavefront_, cache_view());
-      overlap_ = {restarts_, inspector_->overlap({*wavefront_, *film_, *coarse_}, *cache_)};
+      overlap_ = {restarts_, inspector().overlap(shown(), *cache_)};
     }
     report->overlap = overlap_.second;
   }

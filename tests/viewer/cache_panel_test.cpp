@@ -7,7 +7,8 @@ using namespace lucerna;
 
 namespace {
 
-const vec3 k_gold(255, 219, 115), k_accent(112, 164, 222), k_teal(64, 184, 172), k_violet(156, 128, 224);
+const vec3 k_gold(255, 219, 115), k_accent(112, 164, 222), k_teal(64, 184, 172), k_violet(156, 128, 224),
+    k_warning(222, 178, 88);
 
 }  // namespace
 
@@ -59,7 +60,10 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
       // Where the card would be in the way it makes room; away from the picture it goes.
       "\nmouse.move 1000 120\nwait 0.7\nscreenshot " + file("aside.png") +
       "\nmouse.move 640 800\nwait 0.5\nscreenshot " + file("gone.png") +
-      "\ninspect.records 0.25 0.75\nscreenshot " + file("asked.png") + "\ninspect.none\nscript.save " +
+      "\ninspect.records 0.25 0.75\nscreenshot " + file("asked.png") +
+      // Where nothing asks for records, or in vain, it says so in place of weights.
+      "\ninspect.records 0.02 0.5\nscreenshot " + file("mirror.png") +
+      "\ninspect.records 0.98 0.5\nscreenshot " + file("steep.png") + "\ninspect.none\nscript.save " +
       file("session.lucerna") + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
@@ -76,6 +80,14 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
   CHECK_FALSE(bars("aside.png", true));
   CHECK_FALSE(bars("gone.png", true));
   CHECK(bars("asked.png", true));
+  for (const bool steep : {false, true}) {
+    const char* name = steep ? "steep.png" : "mirror.png";
+    INFO(name);
+    CHECK_FALSE(bars(name, true));
+    const test::Picture note(file(name));
+    CHECK(note.contrast(820, 84, 1132, 108) > 0.05);
+    CHECK((test::near_colour(note, 820, 82, 1132, 124, k_warning) > 50) == steep);
+  }
   // Light by part has its component's colour.
   const test::Picture card(file("card.png"));
   CHECK(test::near_colour(card, 818, 200, 860, 300, k_teal) > 30);

@@ -272,6 +272,10 @@ struct Session::Impl {
     found.x = uint32_t(looked_at->x * float(width)), found.y = uint32_t(looked_at->y * float(height));
     found.solid = true, found.asks = shared::k_asks, found.position = {1, 0, 2}, found.normal = {0, 1, 0},
     found.size = 0.003f;
+    // A mirror at the left border, a steep normal map at the right.
+    if (looked_at->x < 0.05f) found.asks = shared::k_asks_nothing;
+    if (looked_at->x > 0.95f) found.asks = shared::k_asks_in_vain;
+    if (found.asks != shared::k_asks) return c;
     found.count = 9;
     for (uint32_t i = 0; i < 9; ++i)
       found.serving.push_back({100 + 37 * i, float(9 - i) / 45, {100 + 20 * float(i), 100}, 3});

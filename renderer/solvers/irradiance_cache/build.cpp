@@ -117,7 +117,7 @@ ReachOptions Cache::Impl::reach(const CacheView& view) const {
 
 bool Cache::Impl::see(transport::Wavefront& wavefront, const CacheView& view,
                       const std::function<bool()>& cancel) {
-  if (stale) screen.begin(view.paths_frame), stale = false;
+  if (!screen.begun()) screen.begin(view.paths_frame);
   tell(k_probe_screen);
   const bool complete = screen.see(wavefront, candidates, cancel);
   tell();
@@ -131,7 +131,7 @@ bool Cache::Impl::look(const Work& w, bool& cancelled) {
                           routes[0] != k_no_routes && status.pass > 0 && evaluated > 0;
   if (looked || !(geometry || irradiance)) return true;
   StageTimer timer(w.wavefront);
-  if (stale || !screen.seen()) {
+  if (!screen.seen()) {
     cancelled = !see(w.wavefront, w.view, w.cancel);
   } else {
     const Discontinuity::Of of = geometry ? Discontinuity::Of::geometry : Discontinuity::Of::irradiance;
@@ -223,7 +223,7 @@ bool Cache::Impl::thin() {
 }
 
 bool Cache::Impl::see_reads(const Work& w) {
-  if (reads_stale) reads.begin(w.view.paths_frame), reads_stale = false;
+  if (!reads.begun()) reads.begin(w.view.paths_frame);
   StageTimer timer(w.wavefront);
   w.wavefront.set_frame(reads.frame(), w.view.paths_enabled);
   tell(k_probe_reads);
@@ -235,7 +235,7 @@ bool Cache::Impl::see_reads(const Work& w) {
 }
 
 bool Cache::Impl::evaluate(const Work& w) {
-  if (reads_stale || !reads.seen()) return see_reads(w);
+  if (!reads.seen()) return see_reads(w);
   // A level of more rays than can be summed at once is done in rounds of as many.
   const uint32_t level_rays = options.rays << 2 * level;
   uint32_t rays = level_rays;

@@ -70,11 +70,9 @@ struct Cache::Impl {
   Placement placement;
   Clamping clamping;
   Worth reads;
-  bool reads_stale = true;               // what it has seen is not this picture
   std::vector<float> worth;              // of the records that are evaluated, by it
   std::optional<Neighbours> neighbours;  // only where radii are bounded
   bool looked = false;                   // at the picture, in this pass: the screen-space stage is done
-  bool stale = true;                     // ... and what it has seen is not this picture
   uint64_t own_bytes = 0;                // of device memory, without what count_bytes() adds
   // Kept for who watches until the next pass begins:
   std::vector<Place> tried;
@@ -118,6 +116,8 @@ struct Cache::Impl {
     status.pass = looked_along = 0;
     status.stop = stopped = StopReason::building;
   }
+  /// The picture is another: what has been seen of it is forgotten.
+  void look_elsewhere() { screen.forget(), reads.forget(); }
   /// What is placed and not evaluated is dropped, and what was asked for.
   void drop_pass();
   void relight();
@@ -134,9 +134,9 @@ struct Cache::Impl {
   bool see(transport::Wavefront& wavefront, const CacheView& view, const std::function<bool()>& cancel);
   /// ... or all of them, for somebody who watches.
   void see_all(transport::Wavefront& wavefront, const CacheView& view) {
-    if (!stale && screen.seen()) return;
+    if (screen.seen()) return;
     wavefront.uncounted([&] {
-      while (stale || !screen.seen()) see(wavefront, view, {});
+      while (!screen.seen()) see(wavefront, view, {});
     });
   }
   /// Records that are evaluated hold what this cache gathers, and no more.

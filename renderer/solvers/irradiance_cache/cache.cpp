@@ -165,7 +165,7 @@ void Cache::clear() {
   c.records.clear();
   c.forget_placement();
   c.pauses.dropped();
-  c.stale = c.reads_stale = true;
+  c.look_elsewhere();
   c.status = {.bytes = c.status.bytes, .published = c.status.published};
   c.stage = Stage::probe;
   c.probing = false;
@@ -187,7 +187,7 @@ void Cache::Impl::drop_pass() {
 void Cache::extend() {
   Impl& c = *impl_;
   c.count_anew();
-  c.stale = c.reads_stale = true;
+  c.look_elsewhere();
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped, unless
   // somebody is looking at it, maybe from all sides.
   if (c.stage != Stage::evaluate && c.stage != Stage::index && !c.status.waits) {
@@ -287,7 +287,7 @@ void Cache::look_at_picture(transport::Wavefront& wavefront, const CacheView& vi
 
 SightGrid Cache::bind_sight(gpu::Resources& to) const {
   const Impl& c = *impl_;
-  const SightGrid grid = c.stale ? SightGrid{0, 1} : c.screen.grid();
+  const SightGrid grid = c.screen.grid();
   // Kernels name it whether they read it or not.
   to.set("surface_texels", grid.across > 0 ? c.screen.surfaces() : c.candidates);
   return grid;
@@ -320,9 +320,11 @@ void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const 
   film.bind(c.resources);
   coarse.bind_coarse(c.resources);
   const auto [lo, hi] = scale(overlay.color);
-  const OverlayPush push{
-      film.width(), film.height(),   overlay.discs,          overlay.overlap, overlay.color, lo,
-      hi,           k_overlap_scale, bind_sight(c.resources)};
+  const SightGrid sight = bind_sight(c.resources);
+  const OverlayPush push{film.width(), film.height(), overlay.discs, overlay.overlap, overlay.color, lo, hi,
+                         k_overlap_scale,
+                         // Discs are drawn where the film's surfaces are.
+                         overlay.overlap ? sight : k_no_sight};
   wavefront.stream().dispatch(c.overlay, c.resources, push,
                               gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
   wavefront.stream().run();

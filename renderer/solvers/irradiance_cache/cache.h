@@ -122,10 +122,11 @@ class Cache {
   /// Goes on building with what there is, for a picture from elsewhere or of another size: its passes are
   /// counted anew. Work in progress is finished first. While building waits it goes on waiting.
   void extend();
-  /// Other light on the same surfaces: places and radii stay, and all light is gathered anew, pass by pass as
-  /// the records came; then building goes on where it was, or is complete as it was. Meanwhile those that are
-  /// relit serve, and no others. The outcome is that of a cache built in this light, to the bit where places
-  /// do not depend on light. Ellipses do: they are made anew, and passes added where they leave gaps.
+  /// Other light on the same surfaces, of which those that were diffuse are so still (else extend() too):
+  /// places and radii stay, and all light is gathered anew, pass by pass as the records came; then building
+  /// goes on where it was, or is complete as it was. Meanwhile those that are relit serve, and no others. The
+  /// outcome is that of a cache built in this light, to the bit where places do not depend on light. Ellipses
+  /// do: they are made anew, and passes added where they leave gaps.
   void relight();
   /// In place of its own, the records of another cache of the same scene, made for other lookups, options or
   /// kernels: as far as passes are complete. Returns what of them does not serve here, for the caller to see
@@ -157,8 +158,7 @@ class Cache {
   /// Looks through the centre of every pixel, for bind_sight(), unless that has been done: while the cache is
   /// being built its own passes do. The wavefront's frame is the view's.
   void look_at_picture(transport::Wavefront& wavefront, const CacheView& view);
-  /// For shaders/irradiance_cache/asking.glsl: where pixels ask for records; before that is known nobody has
-  /// looked.
+  /// For shaders/irradiance_cache/asking.glsl: where pixels ask for records; k_no_sight before that is known.
   shared::SightGrid bind_sight(gpu::Resources& resources) const;
   /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many
   /// serve each pixel. Needs the film's depth, and where it has no samples that of the coarse film of the

@@ -24,7 +24,7 @@ struct Discontinuity::Impl {
   gpu::Resources resources;
   uint32_t width = 0, height = 0, stride = 1, across = 0, down = 0, done = 0;
   float pixel = 1;
-  bool parallel = false;
+  bool parallel = false, begun = false;
   std::vector<uint32_t> first;  // entry of each level in `details`; then their sum
 
   uint32_t points() const { return across * down; }
@@ -51,6 +51,7 @@ Discontinuity::~Discontinuity() = default;
 
 void Discontinuity::begin(const Frame& frame) {
   Impl& d = *impl_;
+  d.begun = false;
   d.width = frame.width, d.height = frame.height;
   d.parallel = frame.orthographic != 0;
   for (d.stride = 1;; ++d.stride) {
@@ -70,11 +71,14 @@ void Discontinuity::begin(const Frame& frame) {
   gpu::make_texel_room(d.device, d.details, "discontinuity", uint64_t{d.first.back()} * sizeof(float));
   gpu::make_texel_room(d.device, d.taken, "points taken", uint64_t{d.points()} * sizeof(uint32_t));
   gpu::make_texel_room(d.device, d.taken_levels, "levels of points", uint64_t{d.points()} * sizeof(uint32_t));
+  d.begun = true;
 }
 
-bool Discontinuity::seen() const { return impl_->points() > 0 && impl_->done == impl_->points(); }
+void Discontinuity::forget() { impl_->begun = false; }
+bool Discontinuity::begun() const { return impl_->begun; }
+bool Discontinuity::seen() const { return impl_->begun && impl_->done == impl_->points(); }
 SightGrid Discontinuity::grid() const {
-  return seen() ? SightGrid{impl_->across, impl_->stride} : SightGrid{0, 1};
+  return seen() ? SightGrid{impl_->across, impl_->stride} : k_no_sight;
 }
 const gpu::Buffer& Discontinuity::surfaces() const { return impl_->surfaces; }
 uint32_t Discontinuity::across() const { return impl_->across; }

@@ -32,6 +32,9 @@ struct DiscontinuityOptions {
   bool operator==(const DiscontinuityOptions&) const = default;
 };
 
+/// Nobody has looked.
+inline constexpr shared::SightGrid k_no_sight{0, 1};
+
 class Discontinuity {
  public:
   enum class Of { geometry, irradiance };
@@ -45,14 +48,17 @@ class Discontinuity {
 
   /// Forgets what was seen: the picture is to be that of `frame`. Throws Error when there is no memory.
   void begin(const shared::Frame& frame);
+  /// ... and is not to be looked at yet.
+  void forget();
+  bool begun() const;
   /// Whether all points of the picture have been looked at.
   bool seen() const;
   /// Sends the next rays, as many as there are slots. The wavefront's frame is the picture's, its kernels
   /// have been told k_probe_screen, and note what they meet in `candidates`. False when it was cancelled.
   bool see(transport::Wavefront& wavefront, const gpu::Buffer& candidates,
            const std::function<bool()>& cancel = {});
-  /// What has been seen of the points (k_surface_texels each), and how they lie over the picture; a grid of
-  /// none, and no buffer to be read, before all are seen.
+  /// What has been seen of the points (k_surface_texels each), and how they lie over the picture;
+  /// k_no_sight, and no buffer to be read, before all are seen.
   shared::SightGrid grid() const;
   const gpu::Buffer& surfaces() const;
   /// What the records give at the points; `bind` as Cache::bind.

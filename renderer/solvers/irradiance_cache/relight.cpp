@@ -61,10 +61,7 @@ void Cache::Impl::relight_pass() {
   next_pass();
 }
 
-void Cache::relight() {
-  impl_->relight();
-  impl_->stale = true;  // a material may be diffuse now, or no longer
-}
+void Cache::relight() { impl_->relight(); }
 
 Spoilt Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {
   Impl& c = *impl_;

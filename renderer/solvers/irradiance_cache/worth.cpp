@@ -28,11 +28,13 @@ uint32_t Worth::blocks() const {
 }
 
 void Worth::begin(const Frame& frame) {
+  begun_ = false;
   frame_ = frame;
   for (uint32_t k = 2; pixels() > k_most_pixels; ++k)
     frame_.width = std::max(frame.width / k, 1u), frame_.height = std::max(frame.height / k, 1u);
   done_ = 0;
   gpu::make_texel_room(device_, places_, "places that look up", uint64_t{pixels()} * k_paths * sizeof(vec4));
+  begun_ = true;
 }
 
 bool Worth::see(transport::Wavefront& wavefront, const gpu::Buffer& candidates,

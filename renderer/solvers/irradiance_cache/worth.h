@@ -22,7 +22,9 @@ class Worth {
   /// Forgets what was seen: the picture is to be that of `frame`, in larger pixels where there are more than
   /// k_most_pixels.
   void begin(const shared::Frame& frame);
-  bool seen() const { return pixels() > 0 && done_ == blocks(); }
+  void forget() { begun_ = false; }
+  bool begun() const { return begun_; }
+  bool seen() const { return begun_ && done_ == blocks(); }
   /// Sends the next paths, as many as there are slots. The wavefront's frame is to be frame(), its kernels
   /// have been told k_probe_reads, and note where they look up in `candidates`. False when it was cancelled.
   bool see(transport::Wavefront& wavefront, const gpu::Buffer& candidates,
@@ -44,6 +46,7 @@ class Worth {
   gpu::Buffer places_, sums_;
   gpu::Resources resources_;
   shared::Frame frame_{};
+  bool begun_ = false;
   uint32_t done_ = 0;  // blocks
 };
 
