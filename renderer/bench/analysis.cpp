@@ -15,8 +15,10 @@ double median_variance(size_t n) {
   return n < 6 ? k_small[n] : 1.5708 / double(n);
 }
 
-/// error^2 * t by the mean of its logarithm over the last factor of four of the time.
-double log_constant(std::span<const Point> curve) {
+/// error^2 * t by the mean of its logarithm over the last factor of four of the time; nothing where the curve
+/// has not seen all of that.
+std::optional<double> log_constant(std::span<const Point> curve) {
+  if (curve.empty() || curve.front().seconds > curve.back().seconds / 4) return std::nullopt;
   double sum = 0, count = 0;
   for (const Point& p : curve)
     if (p.seconds >= curve.back().seconds / 4) sum += 2 * std::log(p.error) + std::log(p.seconds), ++count;
@@ -40,9 +42,11 @@ Reach time_to(std::span<const Point> curve, double target) {
     const Point &a = curve[reached - 1], &b = curve[reached];
     return {ReachKind::measured, log_line(a.error, a.seconds, b.error, b.seconds, target)};
   }
+  const auto constant = log_constant(curve);
+  if (!constant) return {};
   // Never before the end, where it was seen not to be reached.
   return {ReachKind::extrapolated,
-          std::max(curve.back().seconds, std::exp(log_constant(curve) - 2 * std::log(target)))};
+          std::max(curve.back().seconds, std::exp(*constant - 2 * std::log(target)))};
 }
 
 std::optional<double> error_at(std::span<const Point> curve, double seconds) {
@@ -56,8 +60,9 @@ std::optional<double> error_at(std::span<const Point> curve, double seconds) {
 
 ErrorAfter error_after(std::span<const Point> curve, double seconds) {
   if (const auto error = error_at(curve, seconds)) return {ReachKind::measured, *error};
-  if (curve.empty() || seconds < curve.front().seconds) return {};
-  return {ReachKind::extrapolated, std::exp((log_constant(curve) - std::log(seconds)) / 2)};
+  const auto constant = log_constant(curve);
+  if (!constant || seconds < curve.front().seconds) return {};
+  return {ReachKind::extrapolated, std::exp((*constant - std::log(seconds)) / 2)};
 }
 
 std::optional<double> power_of_time(std::span<const Point> curve) {

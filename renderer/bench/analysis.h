@@ -16,8 +16,9 @@ struct Point {
 enum class ReachKind {
   measured,      ///< the curve passes through the error
   at_once,       ///< under it from the first point on: the time is an upper bound
-  extrapolated,  ///< not reached: by error^2 * t = constant, from the last quarter of the time
-  unknown        ///< no curve
+  extrapolated,  ///< not reached: by error^2 * t = constant, from the last factor of four of the time
+  unknown  ///< no curve; or not reached, by one that begins later than that: building a cache is no part
+           ///< of how sampling goes on
 };
 
 struct Reach {
@@ -35,8 +36,8 @@ Reach time_to(std::span<const Point> curve, double target);
 /// The error after so many seconds, interpolated in the logarithms; nothing outside the curve.
 std::optional<double> error_at(std::span<const Point> curve, double seconds);
 
-/// The error after so many seconds, and beyond the curve's end by error^2 * t = constant as in time_to();
-/// nothing before its begin.
+/// The error after so many seconds, and beyond the curve's end by error^2 * t = constant as in time_to(),
+/// where that is known; nothing before its begin.
 struct ErrorAfter {
   ReachKind kind = ReachKind::unknown;  ///< measured or extrapolated
   double error = 0;
@@ -45,7 +46,7 @@ ErrorAfter error_after(std::span<const Point> curve, double seconds);
 
 /// The power of t that error^2 falls with over the last factor of 16 of the time, by least squares of the
 /// logarithms: -1 for plain Monte Carlo, on which extrapolation rests. Nothing for fewer than three points,
-/// nor for a curve that begins later than that: building a cache is no part of how sampling goes on.
+/// nor for a curve that begins later than that.
 std::optional<double> power_of_time(std::span<const Point> curve);
 
 /// METHODS 7: 1 / (mean squared error * seconds), which for plain Monte Carlo does not depend on the time.

@@ -36,6 +36,13 @@ TEST_CASE("Time to an error that is not reached is foretold by error^2 t = const
   // Noisy: the mean over the last points, never before the end.
   const std::vector<Point> noisy = {{1, 0.30}, {2, 0.18}, {4, 0.19}, {8, 0.10}};
   CHECK(time_to(noisy, 0.0999).seconds >= 8);
+  // A cache that is built for 20 s: what its samples do is seen from then on, too late to say how they go on.
+  CHECK(time_to(curve(0.3, 0.5, 2, 8), 0.01).kind == ReachKind::extrapolated);
+  const std::vector<Point> built = {{20, 0.10}, {21, 0.07}, {24, 0.04}};
+  CHECK(time_to(built, 0.05).kind == ReachKind::measured);
+  CHECK(time_to(built, 0.01).kind == ReachKind::unknown);
+  CHECK(error_after(built, 22).kind == ReachKind::measured);
+  CHECK(error_after(built, 100).kind == ReachKind::unknown);
 }
 
 TEST_CASE("Time to an error: bounds, going up again, nothing") {
