@@ -15,14 +15,21 @@ double median_variance(size_t n) {
   return n < 6 ? k_small[n] : 1.5708 / double(n);
 }
 
+/// The curve over the last `factor` of its time; nothing where it begins later than that.
+std::span<const Point> last_factor(std::span<const Point> curve, double factor) {
+  if (curve.empty() || curve.front().seconds > curve.back().seconds / factor) return {};
+  const auto from = std::ranges::lower_bound(curve, curve.back().seconds / factor, {}, &Point::seconds);
+  return {from, curve.end()};
+}
+
 /// error^2 * t by the mean of its logarithm over the last factor of four of the time; nothing where the curve
 /// has not seen all of that.
 std::optional<double> log_constant(std::span<const Point> curve) {
-  if (curve.empty() || curve.front().seconds > curve.back().seconds / 4) return std::nullopt;
-  double sum = 0, count = 0;
-  for (const Point& p : curve)
-    if (p.seconds >= curve.back().seconds / 4) sum += 2 * std::log(p.error) + std::log(p.seconds), ++count;
-  return sum / count;
+  const auto last = last_factor(curve, 4);
+  if (last.empty()) return std::nullopt;
+  double sum = 0;
+  for (const Point& p : last) sum += 2 * std::log(p.error) + std::log(p.seconds);
+  return sum / double(last.size());
 }
 
 }  // namespace
@@ -66,10 +73,8 @@ ErrorAfter error_after(std::span<const Point> curve, double seconds) {
 }
 
 std::optional<double> power_of_time(std::span<const Point> curve) {
-  if (curve.empty() || curve.front().seconds > curve.back().seconds / 16) return std::nullopt;
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (const Point& p : curve) {
-    if (p.seconds < curve.back().seconds / 16) continue;
+  for (const Point& p : last_factor(curve, 16)) {
     const double x = std::log(p.seconds), y = 2 * std::log(p.error);
     ++n, sx += x, sy += y, sxx += x * x, sxy += x * y;
   }

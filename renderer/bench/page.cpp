@@ -183,8 +183,9 @@ std::string times(const Json& report) {
   return "<h2>Time to an error</h2>\n<p>Seconds of rendering, loading and compiling left out: median of the "
          "repeats, the range below it. <b>~</b> marks errors that were not reached: the time is what it "
          "would be if the squared error went on falling as one over the time. <b>&lt;</b>: reached before "
-         "the first measurement. <b>–</b>: not reached, nor to be foretold, for most of the time went by "
-         "before the first sample (as in building a cache).</p>\n<h3>The whole picture, true error</h3>\n" +
+         "the first measurement. <b>–</b>: not reached, nor to be foretold: most of the time went by "
+         "before the first sample (as in building a cache), or the reference’s noise hides the "
+         "error.</p>\n<h3>The whole picture, true error</h3>\n" +
          time_table(report, "time") +
          "<h3>Nine tiles in ten, estimated error</h3>\n<p class=\"dim\">The renderer’s own estimate for "
          "tiles of 16×16 pixels, each relative to its own brightness: what the eye meets in the difficult "

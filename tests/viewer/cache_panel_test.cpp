@@ -87,6 +87,8 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
     const test::Picture note(file(name));
     CHECK(note.contrast(820, 84, 1132, 108) > 0.05);
     CHECK((test::near_colour(note, 820, 82, 1132, 124, k_warning) > 50) == steep);
+    // Its second line: one that is merely not served has but one.
+    CHECK((test::near_colour(note, 820, 107, 1132, 124, k_warning) > 20) == steep);
   }
   // Light by part has its component's colour.
   const test::Picture card(file("card.png"));

@@ -48,7 +48,7 @@ class Discontinuity {
 
   /// Forgets what was seen: the picture is to be that of `frame`. Throws Error when there is no memory.
   void begin(const shared::Frame& frame);
-  /// ... and is not to be looked at yet.
+  /// Forgets what was seen; see() wants begin() again.
   void forget();
   bool begun() const;
   /// Whether all points of the picture have been looked at.
