@@ -13,10 +13,10 @@ from shapes import box, chamfer, lathe, quad, rotate, slab, translate
 
 WIDTH, DEPTH, HEIGHT, WALL = 4.4, 5.6, 2.9, 0.24
 DOOR = (-0.58, 0.44, 2.12)                   # x from, to, and height of the opening in the far wall
-OPEN = 50.0                                  # degrees; the leaf hangs at the right and opens away from the room
+OPEN = 46.0                                  # degrees; the leaf hangs at the left and opens into the room
 LINING = 0.03
 LOBBY = (-1.62, 1.15, -4.60, 2.55)            # x from, to, the far wall's z, and height
-LAMP = (-0.88, -3.86)                        # x, z of the shaft
+LAMP = (0.36, -3.86)                        # x, z of the shaft
 SHAFT, MOUTH, RISE = 0.24, 0.17, 1.30        # the shaft's half width, the mouth's radius, the lamp's height over it
 DADO = 0.88
 
@@ -24,7 +24,7 @@ DADO = 0.88
 def materials(s):
     def matt(name, *c, double=False):
         s.material(name, c, lambert=True, double=double)
-    matt("wall", 0.60, 0.615, 0.58)
+    matt("wall", 0.64, 0.665, 0.635)
     matt("lobby wall", 0.80, 0.77, 0.71)
     matt("ceiling", 0.78, 0.775, 0.76)
     matt("woodwork", 0.72, 0.71, 0.685)
@@ -45,7 +45,7 @@ def materials(s):
     matt("moss", 0.20, 0.26, 0.12)
     matt("glaze", 0.16, 0.30, 0.33)
     matt("leaf", 0.15, 0.25, 0.09, double=True)
-    s.material("lamp", (0, 0, 0), lambert=True, emit=(1.0, 0.70, 0.40), strength=24000.0)
+    s.material("lamp", (0, 0, 0), lambert=True, emit=(1.0, 0.77, 0.51), strength=24000.0)
 
 
 def building(s):
@@ -114,9 +114,9 @@ def woodwork(s):
     frame = [chamfer((x0 - 0.004, -0.012, -t - 0.003), (x0 + g, top + 0.001, 0.003), 0.002),
              chamfer((x1 - g, -0.012, -t - 0.003), (x1 + 0.004, top + 0.001, 0.003), 0.002),
              chamfer((x0 - 0.002, top - g, -t - 0.002), (x1 + 0.002, top + 0.004, 0.002), 0.002),
-             chamfer((x0 + g - 0.003, -0.011, -t + 0.055), (x0 + g + 0.012, top - g + 0.001, -t + 0.10), 0.002),
-             chamfer((x1 - g - 0.012, -0.011, -t + 0.055), (x1 - g + 0.003, top - g + 0.001, -t + 0.10), 0.002),
-             chamfer((x0 + g - 0.002, top - g - 0.012, -t + 0.056), (x1 - g + 0.002, top - g + 0.002, -t + 0.099), 0.002)]
+             chamfer((x0 + g - 0.003, -0.011, -0.100), (x0 + g + 0.012, top - g + 0.001, -0.055), 0.002),
+             chamfer((x1 - g - 0.012, -0.011, -0.100), (x1 - g + 0.003, top - g + 0.001, -0.055), 0.002),
+             chamfer((x0 + g - 0.002, top - g - 0.012, -0.099), (x1 - g + 0.002, top - g + 0.002, -0.056), 0.002)]
     sill = chamfer((x0 + 0.002, -0.03, -t - 0.02), (x1 - 0.002, 0.007, 0.02), 0.004)
     trim = rooms.architrave(x1 - x0, top, 0.085, 0.026)
     s.mesh("door frame", [(join(frame + [trim.moved(translate(x0, 0, 0)),
@@ -125,23 +125,54 @@ def woodwork(s):
     s.place("door frame", (0, 0, -d))
     leaf, knobs = rooms.door(x1 - x0 - 2 * g - 0.006, top - g - 0.012, ((0.105, 0.42), (0.51, 0.925)))
     s.mesh("door", [(leaf, "woodwork"), (knobs, "brass")])
-    s.place("door", (x1 - g - 0.003, 0.009, -d - t + 0.015), 180 - OPEN)
+    s.place("door", (x0 + g + 0.003, 0.009, -d - 0.015), -OPEN)
 
 
 def furnish(s):
     w, d = WIDTH / 2, DEPTH / 2
+    # a chair turned to the light, with a rug in the way of it
     s.mesh("chair", [(f.wooden_chair(), "oak")])
-    s.place("chair", (-1.55, -0.001, -1.95), 62)
-    s.mesh("side table", [(f.table(0.80, 0.36, 0.76), "walnut")])
-    s.place("side table", (1.28, 0, -d + 0.25))
-    s.mesh("vase", [(f.vase(0.27), "glaze")])
-    s.place("vase", (1.14, 0.7592, -d + 0.25))
-    frame, mat, art = rooms.picture(0.56, 0.70, 0.035, 0.08)
-    s.mesh("picture", [(frame, "walnut"), (mat, "paper"), (art, "ochre")])
-    s.place("picture", (1.28, 1.66, -d))
-    field, border = f.rug(2.1, 1.35)
-    s.mesh("rug", [(field, "red wool"), (border, "cream wool")])
-    s.place("rug", (0.25, 0, -1.05), -4)
+    s.place("chair", (1.02, -0.001, -1.12), -152)
+    field, border = f.rug(2.2, 1.45)
+    inner, band = f.rug(1.72, 0.97, 0.0155, 0.05)
+    s.mesh("rug", [(field, "red wool"), (border, "cream wool"), (join([band]), "ochre"), (inner, "red wool")])
+    s.place("rug", (0.62, 0, -0.95), -5)
+    # at the right wall a table with a vase and books, a picture over it
+    s.mesh("side table", [(f.table(0.92, 0.36, 0.78), "walnut")])
+    s.place("side table", (w - 0.235, 0, -1.62), -90)
+    top = 0.7792
+    rs = np.random.RandomState(4)
+    s.mesh("vase", [(f.vase(0.30), "glaze")])
+    at = (w - 0.24, top, -1.78)
+    s.place("vase", at)
+    twigs, leaves = [], []
+    for k in range(7):
+        a, r = 2.4 * k, rs.uniform(0.06, 0.17)
+        end = np.array([r * np.cos(a), 0.29 + rs.uniform(0.18, 0.36), r * np.sin(a)])
+        foot = np.array([0.006 * np.cos(a), 0.12, 0.006 * np.sin(a)])
+        neck = np.array([0.014 * np.cos(a), 0.30, 0.014 * np.sin(a)])
+        twigs.append(f.tube([foot, neck, end], 0.0024, 6, 0.12))
+        for j in range(8):
+            p = neck + (end - neck) * (0.25 + 0.75 * j / 7)
+            leaves.append(f.leaf(rs.uniform(0.055, 0.085), 0.030, 0.5, 6).moved(
+                translate(*p) @ rotate("y", 137.5 * j + 40 * k)))
+    s.mesh("twigs", [(join(twigs + leaves), "leaf")])
+    s.place("twigs", at)
+    for k, (tone, size, yaw) in enumerate((("blue", (0.17, 0.034, 0.24), 62), ("ochre", (0.15, 0.026, 0.21), 78))):
+        cover, pages = f.flat_book(*size)
+        s.mesh(f"book {k}", [(cover, tone), (pages, "paper")])
+        s.place(f"book {k}", (w - 0.23, top + 0.0338 * k, -1.36), yaw)
+    frame, mat, art = rooms.picture(0.72, 0.56, 0.035, 0.075)
+    hill = join([box((-0.245, -0.165, 0.0090), (0.245, -0.04, 0.0106), "-z"),
+                 box((-0.245, -0.041, 0.0090), (0.02, 0.012, 0.0103), "-z")])
+    s.mesh("picture", [(frame, "walnut"), (mat, "paper"), (art, "cream wool"), (hill, "moss")])
+    s.place("picture", (w, 1.66, -1.62), -90)
+    frame, mat, art = rooms.picture(0.46, 0.60, 0.028, 0.07)
+    shape = lathe([(0.0, 0.0), (0.08, 0.0), (0.08, 0.0022), (0, 0.0022)], 40).moved(
+        translate(0.01, 0.04, 0.0090) @ rotate("x", 90))
+    s.mesh("print", [(frame, "oak"), (mat, "paper"), (art, "blue"), (shape, "ochre")])
+    s.place("print", (1.30, 1.66, -d))
+    s.place("print", (-1.45, 1.66, -d))
 
 
 def main():
@@ -150,10 +181,10 @@ def main():
     building(s)
     woodwork(s)
     furnish(s)
-    s.camera("main", (0.75, 1.65, 2.50), (-0.15, 1.65, -2.8), yfov=58.0)
+    s.camera("main", (-0.45, 1.65, 2.50), (0.42, 1.65, -2.8), yfov=56.0)
     s.write("A room lit through a door that stands ajar, by a lamp in a shaft that lights a pool of the next room's floor and "
             "nothing else: nearly all light has been reflected more than twice, and few rays of a record find the pool.",
-            {"film.ev": 4.0})
+            {"film.ev": 4.4})
 
 
 if __name__ == "__main__":
