@@ -16,7 +16,7 @@ DOOR = (-0.58, 0.44, 2.12)                   # x from, to, and height of the ope
 OPEN = 46.0                                  # degrees; the leaf hangs at the left and opens into the room
 LINING = 0.03
 LOBBY = (-1.62, 1.15, -4.60, 2.55)            # x from, to, the far wall's z, and height
-LAMP = (0.36, -3.86)                        # x, z of the shaft
+LAMP = (-0.20, -3.86)                        # x, z of the shaft
 SHAFT, MOUTH, RISE = 0.24, 0.17, 1.30        # the shaft's half width, the mouth's radius, the lamp's height over it
 DADO = 0.88
 
@@ -24,7 +24,7 @@ DADO = 0.88
 def materials(s):
     def matt(name, *c, double=False):
         s.material(name, c, lambert=True, double=double)
-    matt("wall", 0.64, 0.665, 0.635)
+    matt("wall", 0.45, 0.52, 0.50)
     matt("lobby wall", 0.80, 0.77, 0.71)
     matt("ceiling", 0.78, 0.775, 0.76)
     matt("woodwork", 0.72, 0.71, 0.685)
@@ -44,6 +44,8 @@ def materials(s):
     matt("ochre", 0.60, 0.38, 0.12)
     matt("moss", 0.20, 0.26, 0.12)
     matt("glaze", 0.16, 0.30, 0.33)
+    matt("terracotta", 0.46, 0.22, 0.125)
+    matt("soil", 0.08, 0.055, 0.04)
     matt("leaf", 0.15, 0.25, 0.09, double=True)
     s.material("lamp", (0, 0, 0), lambert=True, emit=(1.0, 0.77, 0.51), strength=24000.0)
 
@@ -130,12 +132,17 @@ def woodwork(s):
 
 def furnish(s):
     w, d = WIDTH / 2, DEPTH / 2
+    # a plant in the dark corner
+    pot, soil = f.pot(0.19, 0.34)
+    s.mesh("plant", [(pot, "terracotta"), (soil, "soil"),
+                     (f.plant(np.random.RandomState(8), 34, 0.95, 0.085, 0.8).moved(translate(0, 0.31, 0)), "leaf")])
+    s.place("plant", (-1.62, -0.001, -2.24))
     # a chair turned to the light, with a rug in the way of it
     s.mesh("chair", [(f.wooden_chair(), "oak")])
-    s.place("chair", (1.02, -0.001, -1.12), -152)
+    s.place("chair", (1.02, 0.012, -1.12), -152)
     field, border = f.rug(2.2, 1.45)
-    inner, band = f.rug(1.72, 0.97, 0.0155, 0.05)
-    s.mesh("rug", [(field, "red wool"), (border, "cream wool"), (join([band]), "ochre"), (inner, "red wool")])
+    inner, band = (m.moved(translate(0, 0.003, 0)) for m in f.rug(1.72, 0.97, 0.013, 0.05))
+    s.mesh("rug", [(field, "red wool"), (border, "cream wool"), (band, "ochre"), (inner, "red wool")])
     s.place("rug", (0.62, 0, -0.95), -5)
     # at the right wall a table with a vase and books, a picture over it
     s.mesh("side table", [(f.table(0.92, 0.36, 0.78), "walnut")])
@@ -184,7 +191,7 @@ def main():
     s.camera("main", (-0.45, 1.65, 2.50), (0.42, 1.65, -2.8), yfov=56.0)
     s.write("A room lit through a door that stands ajar, by a lamp in a shaft that lights a pool of the next room's floor and "
             "nothing else: nearly all light has been reflected more than twice, and few rays of a record find the pool.",
-            {"film.ev": 4.4})
+            {"film.ev": 4.0})
 
 
 if __name__ == "__main__":

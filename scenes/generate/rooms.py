@@ -1,4 +1,4 @@
-"""Rooms: thick walls with openings, planked floors, skirtings, wainscots, cornices, windows, doors, radiators.
+"""Rooms: thick walls with openings, planked floors, skirtings, cornices, wainscots, windows, doors, radiators.
 
 Each function returns a Mesh in metres. What stands on a surface is sunk into it by a millimetre where it is placed, and
 members that cross differ in depth, so that no two faces share a plane.
