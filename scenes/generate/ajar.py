@@ -113,8 +113,8 @@ def woodwork(s):
     s.place("lobby skirting", (middle, 0, (far - d - t) / 2))
     # the lining of the opening, stops on it, mouldings on both sides, the threshold
     g = LINING
-    frame = [chamfer((x0 - 0.004, -0.012, -t - 0.003), (x0 + g, top + 0.001, 0.003), 0.002),
-             chamfer((x1 - g, -0.012, -t - 0.003), (x1 + 0.004, top + 0.001, 0.003), 0.002),
+    frame = [chamfer((x0 - 0.004, -0.026, -t - 0.003), (x0 + g, top + 0.001, 0.003), 0.002),
+             chamfer((x1 - g, -0.026, -t - 0.003), (x1 + 0.004, top + 0.001, 0.003), 0.002),
              chamfer((x0 - 0.002, top - g, -t - 0.002), (x1 + 0.002, top + 0.004, 0.002), 0.002),
              chamfer((x0 + g - 0.003, -0.011, -0.100), (x0 + g + 0.012, top - g + 0.001, -0.055), 0.002),
              chamfer((x1 - g - 0.012, -0.011, -0.100), (x1 - g + 0.003, top - g + 0.001, -0.055), 0.002),
