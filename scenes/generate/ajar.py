@@ -189,8 +189,8 @@ def main():
     woodwork(s)
     furnish(s)
     s.camera("main", (-0.45, 1.65, 2.50), (0.42, 1.65, -2.8), yfov=56.0)
-    s.write("A room lit through a door that stands ajar, by a lamp in a shaft that lights a pool of the next room's floor and "
-            "nothing else: nearly all light has been reflected more than twice, and few rays of a record find the pool.",
+    s.write("A room lit through a door that stands ajar, by a lamp in a shaft that lights a pool of the next room's floor "
+            "and nothing else: nearly all light has been reflected more than twice, and few rays of a record find the pool.",
             {"film.ev": 4.0})
 
 
