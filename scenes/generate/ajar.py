@@ -189,6 +189,7 @@ def main():
     woodwork(s)
     furnish(s)
     s.camera("main", (-0.45, 1.65, 2.50), (0.42, 1.65, -2.8), yfov=56.0)
+    s.camera("lobby", (0.95, 1.65, -4.40), (-0.80, 1.65, -3.45), yfov=74.0)
     s.write("A room lit through a door that stands ajar, by a lamp in a shaft that lights a pool of the next room's floor "
             "and nothing else: nearly all light has been reflected more than twice, and few rays of a record find the pool.",
             {"film.ev": 4.0})
