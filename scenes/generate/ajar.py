@@ -33,7 +33,7 @@ def materials(s):
     for k, c in enumerate(((0.66, 0.56, 0.43), (0.63, 0.525, 0.395), (0.685, 0.585, 0.455), (0.645, 0.545, 0.415))):
         matt(f"lobby boards {k}", *c)
     matt("dark", 0.06, 0.05, 0.045)
-    matt("baffle", 0.03, 0.03, 0.03)
+    matt("baffle", 0, 0, 0)   # so that no light leaves the shaft but the lamp's own
     matt("oak", 0.36, 0.22, 0.115)
     matt("walnut", 0.19, 0.11, 0.065)
     matt("brass", 0.50, 0.36, 0.14)
