@@ -33,7 +33,7 @@ def materials(s):
     for k, c in enumerate(((0.66, 0.56, 0.43), (0.63, 0.525, 0.395), (0.685, 0.585, 0.455), (0.645, 0.545, 0.415))):
         matt(f"lobby boards {k}", *c)
     matt("dark", 0.06, 0.05, 0.045)
-    matt("baffle", 0.03, 0.03, 0.03)
+    matt("baffle", 0, 0, 0)   # so that no light leaves the shaft but the lamp's own
     matt("oak", 0.36, 0.22, 0.115)
     matt("walnut", 0.19, 0.11, 0.065)
     matt("brass", 0.50, 0.36, 0.14)
@@ -113,8 +113,8 @@ def woodwork(s):
     s.place("lobby skirting", (middle, 0, (far - d - t) / 2))
     # the lining of the opening, stops on it, mouldings on both sides, the threshold
     g = LINING
-    frame = [chamfer((x0 - 0.004, -0.012, -t - 0.003), (x0 + g, top + 0.001, 0.003), 0.002),
-             chamfer((x1 - g, -0.012, -t - 0.003), (x1 + 0.004, top + 0.001, 0.003), 0.002),
+    frame = [chamfer((x0 - 0.004, -0.026, -t - 0.003), (x0 + g, top + 0.001, 0.003), 0.002),
+             chamfer((x1 - g, -0.026, -t - 0.003), (x1 + 0.004, top + 0.001, 0.003), 0.002),
              chamfer((x0 - 0.002, top - g, -t - 0.002), (x1 + 0.002, top + 0.004, 0.002), 0.002),
              chamfer((x0 + g - 0.003, -0.011, -0.100), (x0 + g + 0.012, top - g + 0.001, -0.055), 0.002),
              chamfer((x1 - g - 0.012, -0.011, -0.100), (x1 - g + 0.003, top - g + 0.001, -0.055), 0.002),
@@ -189,8 +189,9 @@ def main():
     woodwork(s)
     furnish(s)
     s.camera("main", (-0.45, 1.65, 2.50), (0.42, 1.65, -2.8), yfov=56.0)
-    s.write("A room lit through a door that stands ajar, by a lamp in a shaft that lights a pool of the next room's floor and "
-            "nothing else: nearly all light has been reflected more than twice, and few rays of a record find the pool.",
+    s.camera("lobby", (0.95, 1.65, -4.40), (-0.80, 1.65, -3.45), yfov=74.0)
+    s.write("A room lit through a door that stands ajar, by a lamp in a shaft that lights a pool of the next room's floor "
+            "and nothing else: nearly all light has been reflected more than twice, and few rays of a record find the pool.",
             {"film.ev": 4.0})
 
 
