@@ -1,18 +1,21 @@
-// The shares that every record has in the two lookups of a pixel, multiplied, and added up over the pixels: one invocation a
-// pixel. In whole steps, so that no order matters.
+// The shares that every record has in the two lookups of a pixel, multiplied, and added up over the pixels; and the shares in
+// the lookups that the paths go on to, by how much of the irradiance at the first they are to bring. One invocation a pixel.
+// In whole steps, so that no order matters.
 #include "irradiance_cache/lookup.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { WorthPush push; };
-uniform samplerBuffer place_texels;   // position; bits: normal, k_worth_there
-layout(scalar) buffer Sums { uint sums[]; };
+uniform samplerBuffer place_texels, next_place_texels;  // position; bits: normal, k_worth_there
+layout(scalar) buffer Sums { uint sums[]; };  // 2 a record: of 64 bits, the lower ones first
+
+// Of the light that falls on what a record's ray meets, how much comes back: a wall's albedo.
+const float k_returned = 0.5;
 
 struct Reader {
   vec3 x, n;
   bool there;
 };
-Reader reader(uint at) {
-  vec4 place = texelFetch(place_texels, int(at));
+Reader reader(vec4 place) {
   uint bits = floatBitsToUint(place.w);
   return Reader(place.xyz, facet_unpack(bits), (bits & k_worth_there) != 0u);
 }
@@ -24,23 +27,51 @@ float weight_at(Reader r, uint i) {
   vec3 away = r.x - place.xyz;
   return dot(away, away) < square(place.w) ? record_weight(r.x, r.n, place, facing, record_shape(record, place)) : 0.0;
 }
-float weight_of_all(Reader r, OctreeRange range) {
-  float sum = 0.0;
-  for (uint i = range.first; i < range.last; ++i) sum += weight_at(r, i);
-  return sum;
+struct Read {
+  float weights;  // of all that serve there; 0: none does
+  float light;    // irradiance, luminance
+};
+Read read_at(Reader r, OctreeRange range) {
+  Read all = Read(0.0, 0.0);
+  for (uint i = range.first; i < range.last; ++i) {
+    float weight = weight_at(r, i), light = 0.0;
+    for (uint p = 0u; p < k_part_count; ++p)
+      light += luminance(texelFetch(irradiance_texels, int((octree_sphere(i) * k_part_count + p) * k_part_texels)).rgb);
+    all.weights += weight;
+    all.light += weight > 0.0 ? weight * light : 0.0;
+  }
+  all.light /= max(all.weights, 1e-30);
+  return all;
+}
+
+// `scale`: of each record's share in either.
+void add(Reader one, Read all_one, OctreeRange range, Reader other, Read all_other, float scale) {
+  for (uint i = range.first; i < range.last; ++i) {
+    float product = weight_at(one, i) * weight_at(other, i);
+    if (product <= 0.0) continue;
+    uint steps = uint(scale * product / (all_one.weights * all_other.weights) * float(k_worth_steps) + 0.5);
+    uint to = 2u * octree_sphere(i), before = atomicAdd(sums[to], steps);
+    if (before + steps < before) atomicAdd(sums[to + 1u], 1u);
+  }
 }
 
 void main() {
   uint pixel = global_index();
   if (pixel >= push.pixels) return;
-  Reader one = reader(2u * pixel), other = reader(2u * pixel + 1u);
+  Reader one = reader(texelFetch(place_texels, int(2u * pixel))), other = reader(texelFetch(place_texels, int(2u * pixel + 1u)));
   bool both = one.there && other.there;
-  float all_other = weight_of_all(other, cache_range(other.x, both));
-  OctreeRange range = cache_range(one.x, both && all_other > 0.0);
-  float all_one = weight_of_all(one, range);
-  for (uint i = range.first; i < range.last; ++i) {
-    float product = weight_at(one, i) * weight_at(other, i);
-    if (product > 0.0)
-      atomicAdd(sums[octree_sphere(i)], uint(product / (all_one * all_other) * float(k_worth_steps) + 0.5));
-  }
+  Read all_other = read_at(other, cache_range(other.x, both));
+  OctreeRange range = cache_range(one.x, both && all_other.weights > 0.0);
+  Read all_one = read_at(one, range);
+  add(one, all_one, range, other, all_other, 1.0);
+  if (push.next == 0u || all_one.weights <= 0.0 || all_other.weights <= 0.0) return;
+  Reader next = reader(texelFetch(next_place_texels, int(2u * pixel))),
+         next_other = reader(texelFetch(next_place_texels, int(2u * pixel + 1u)));
+  bool both_next = next.there && next_other.there;
+  Read all_next_other = read_at(next_other, cache_range(next_other.x, both_next));
+  range = cache_range(next.x, both_next && all_next_other.weights > 0.0);
+  Read all_next = read_at(next, range);
+  float brings = min(k_returned * all_next.light / max(all_one.light, 1e-30), k_worth_most);
+  float other_brings = min(k_returned * all_next_other.light / max(all_other.light, 1e-30), k_worth_most);
+  add(next, all_next, range, next_other, all_next_other, brings * other_brings);
 }

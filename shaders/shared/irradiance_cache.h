@@ -77,6 +77,9 @@ LUCERNA_CONST uint k_probe_beyond = 2u;
 LUCERNA_CONST uint k_probe_screen = 3u;
 /// The last vertex that looks up is noted, whether records serve it or not. Paths end as in k_probe_lookups.
 LUCERNA_CONST uint k_probe_reads = 4u;
+/// The same of what records' rays read: paths go on where they look up, and the next vertex that is diffuse
+/// is noted, where they end.
+LUCERNA_CONST uint k_probe_next = 5u;
 
 /// What paths are told of the cache.
 struct CacheFrame {
@@ -129,8 +132,12 @@ LUCERNA_CONST uint k_no_bound = 0x7f800000u;
 struct WorthPush {
   uint pixels;
   uint first;  ///< pixels before these
+  uint next;   ///< not 0: there are next places too
 };
 LUCERNA_CONST uint k_worth_steps = 256u;         ///< that a pixel of which a record has all is
+/// Most that a record is to bring through another one, over the irradiance of that: its square in steps is
+/// less than 2^32.
+LUCERNA_CONST float k_worth_most = 2048.0f;
 LUCERNA_CONST uint k_worth_there = 0x40000000u;  ///< a place is one; above the 22 bits of its normal
 
 struct EllipsePush {

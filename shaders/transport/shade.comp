@@ -80,9 +80,10 @@ void main() {
         uint routes = cache.routes[state];
         bool beyond = cache.probing == k_probe_beyond && state >= k_fallback_state;
         bool screen = cache.probing == k_probe_screen && depth == 0u;
-        bool looks = (routes != k_no_routes || beyond || screen) && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
+        bool next_read = cache.probing == k_probe_next && state >= k_fallback_state;
+        bool looks = (routes != k_no_routes || beyond || next_read || screen) && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
         bool alone = false;  // a side asks and finds nothing
-        bool notes_all = cache.probing == k_probe_screen || cache.probing == k_probe_reads;
+        bool notes_all = cache.probing == k_probe_screen || cache.probing == k_probe_reads || next_read;
         // Records stand on the smooth surface, not on its facets nor its normal map.
         vec3 smooth_side = dot(surface.normal_v, side) < 0.0 ? -surface.normal_v : surface.normal_v;
         for (int facing = 0; facing < k_cache_sides; ++facing) {
@@ -98,6 +99,7 @@ void main() {
           bool missing = asks && found.weight <= 0.0;
           // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
           bool notes = (missing || (asks && notes_all)) && cache.probing != k_probe_none &&
+                       (cache.probing != k_probe_next || next_read) &&
                        !(beyond && (sample_vertex_bits(random, depth, k_pad_light_choice).x & 1u) != 0u);
           bool servable = cache_can_serve(sign * smooth_side, sign * to_world[2]);
           if (notes && (servable || screen)) {
@@ -127,7 +129,7 @@ void main() {
           direction = normalize(to_world * b.wi);
           bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
 #if LUCERNA_CACHE
-          bool falls_back = (alone || cache.probing == k_probe_beyond) && looks && state < k_fallback_state;
+          bool falls_back = (alone || cache.probing == k_probe_beyond || cache.probing == k_probe_next) && looks && state < k_fallback_state;
           uint next = automaton_after(state + (falls_back && b.event == k_event_diffuse ? k_fallback_state : 0u), b.event);
 #else
           uint next = automaton_after(state, b.event);
@@ -143,8 +145,8 @@ void main() {
           go_on = go_on && ((sky & k_path_sky_known) == 0u || automaton_goes_on(next));
 #endif
 #if LUCERNA_CACHE
-          go_on = go_on && cache.probing != k_probe_screen &&
-                  !((cache.probing == k_probe_lookups || cache.probing == k_probe_reads) && looks && b.event == k_event_diffuse);
+          bool ends_here = cache.probing == k_probe_lookups || cache.probing == k_probe_reads || next_read;
+          go_on = go_on && cache.probing != k_probe_screen && !(ends_here && looks && b.event == k_event_diffuse);
 #endif
           path.eta_scale *= b.eta2;
           // Roulette on what the path carries without the radiance scale of refraction.

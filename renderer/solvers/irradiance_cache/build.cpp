@@ -247,9 +247,8 @@ bool Cache::Impl::see_reads(const Work& w) {
   if (!reads.begun()) reads.begin(w.view.paths_frame);
   StageTimer timer(w.wavefront);
   w.wavefront.set_frame(reads.frame(), w.view.paths_enabled);
-  tell(k_probe_reads);
-  const bool complete = reads.see(w.wavefront, candidates, w.cancel);
-  tell();
+  const bool complete = reads.see(
+      w.wavefront, candidates, recursive, [this](uint32_t probing) { tell(probing); }, w.cancel);
   w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
   took(BuildStep::probe, timer.milliseconds());
   return complete;

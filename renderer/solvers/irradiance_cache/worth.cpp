@@ -21,7 +21,7 @@ Worth::Worth(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t capaci
       keeping_(device, compiler, "irradiance_cache/worth_keep.comp", defines),
       adding_(device, compiler, "irradiance_cache/worth_add.comp", defines),
       sums_(device,
-            {.name = "worth of records", .bytes = uint64_t{capacity} * 4, .memory = gpu::Memory::host}) {}
+            {.name = "worth of records", .bytes = uint64_t{capacity} * 8, .memory = gpu::Memory::host}) {}
 
 uint32_t Worth::blocks() const {
   return (frame_.width + k_block - 1) / k_block * ((frame_.height + k_block - 1) / k_block);
@@ -37,19 +37,28 @@ void Worth::begin(const Frame& frame) {
   begun_ = true;
 }
 
-bool Worth::see(transport::Wavefront& wavefront, const gpu::Buffer& candidates,
-                const std::function<bool()>& cancel) {
+bool Worth::see(transport::Wavefront& wavefront, const gpu::Buffer& candidates, bool next,
+                const std::function<void(uint32_t probing)>& tell, const std::function<bool()>& cancel) {
   schedule::WorkItem item{{}, k_paths};
   const uint32_t end = std::min(blocks(), done_ + std::max(1u, wavefront.slots() / (64 * k_paths)));
   for (uint32_t b = done_; b < end; ++b) item.blocks.push_back({b, 0});
   gpu::Stream& stream = wavefront.stream();
-  stream.fill(candidates, 0);
-  if (!wavefront.probe(item, cancel)) return false;
-  resources_.set("candidate_texels", candidates);
-  resources_.set("Places", places_);
-  const WorthPush push{64 * (end - done_), 64 * done_};
-  stream.dispatch(keeping_, resources_, push, gpu::groups_for(item.slots(), 64), k_stage);
-  stream.run();
+  next_ = next;
+  if (next) gpu::make_texel_room(device_, next_places_, "places that records' rays look up", places_.bytes());
+  for (const auto& [probing, to] :
+       {std::pair{k_probe_reads, &places_}, std::pair{k_probe_next, &next_places_}}) {
+    if (probing == k_probe_next && !next) continue;
+    stream.fill(candidates, 0);
+    tell(probing);
+    const bool complete = wavefront.probe(item, cancel);
+    tell(k_probe_none);
+    if (!complete) return false;
+    resources_.set("candidate_texels", candidates);
+    resources_.set("Places", *to);
+    const WorthPush push{64 * (end - done_), 64 * done_, next};
+    stream.dispatch(keeping_, resources_, push, gpu::groups_for(item.slots(), 64), k_stage);
+    stream.run();
+  }
   done_ = end;
   return true;
 }
@@ -58,14 +67,15 @@ std::vector<float> Worth::measure(gpu::Stream& stream, const std::function<void(
                                   uint32_t count) {
   bind(resources_);
   resources_.set("place_texels", places_);
+  resources_.set("next_place_texels", next_ ? next_places_ : places_);
   resources_.set("Sums", sums_);
   stream.fill(sums_, 0);
-  stream.dispatch(adding_, resources_, WorthPush{pixels(), 0}, gpu::groups_for(pixels(), 64), k_stage);
+  stream.dispatch(adding_, resources_, WorthPush{pixels(), 0, next_}, gpu::groups_for(pixels(), 64), k_stage);
   stream.run();
-  const uint32_t* const sums = static_cast<const uint32_t*>(sums_.mapped());
+  const uint64_t* const sums = static_cast<const uint64_t*>(sums_.mapped());
   const float pixel = 1.0f / (float(k_worth_steps) * float(frame_.height) * float(frame_.height));
   std::vector<float> worth(count);
-  std::transform(sums, sums + count, worth.begin(), [&](uint32_t sum) { return pixel * float(sum); });
+  std::transform(sums, sums + count, worth.begin(), [&](uint64_t sum) { return pixel * float(sum); });
   return worth;
 }
 

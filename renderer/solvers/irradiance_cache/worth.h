@@ -4,6 +4,10 @@
 // share that the record has in them. Two independent paths are sent through every pixel; where both look up,
 // the product of the record's shares in the two lookups is, on average, that square: whatever mirrors, glass
 // or a coat's reflection lie between, and however much of a record's disc is hidden.
+//
+// Where records' rays end in other records these are read by the picture too, once removed: a few records in
+// a bright room next door may light all of a dark one. So the paths go on by one diffuse event, and the
+// shares of records there count as well, by how much of the irradiance at the first lookup they are to bring.
 #include <functional>
 #include <vector>
 
@@ -26,9 +30,10 @@ class Worth {
   bool begun() const { return begun_; }
   bool seen() const { return begun_ && done_ == blocks(); }
   /// Sends the next paths, as many as there are slots. The wavefront's frame is to be frame(), its kernels
-  /// have been told k_probe_reads, and note where they look up in `candidates`. False when it was cancelled.
-  bool see(transport::Wavefront& wavefront, const gpu::Buffer& candidates,
-           const std::function<bool()>& cancel = {});
+  /// note in `candidates` where they look up once they have been told k_probe_reads, and where the paths go
+  /// on to with k_probe_next. `next`: that counts too. False when it was cancelled.
+  bool see(transport::Wavefront& wavefront, const gpu::Buffer& candidates, bool next,
+           const std::function<void(uint32_t probing)>& tell, const std::function<bool()>& cancel = {});
   const shared::Frame& frame() const { return frame_; }
 
   /// Of the first `count` records the sum over the pixels of the squared share, in squares of the picture's
@@ -36,17 +41,17 @@ class Worth {
   /// whatever the order in which invocations add.
   std::vector<float> measure(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind,
                              uint32_t count);
-  uint64_t bytes() const { return places_.bytes() + sums_.bytes(); }
+  uint64_t bytes() const { return places_.bytes() + next_places_.bytes() + sums_.bytes(); }
 
  private:
   uint32_t blocks() const;
   uint32_t pixels() const { return 64 * blocks(); }
   gpu::Device& device_;
   gpu::Kernel keeping_, adding_;
-  gpu::Buffer places_, sums_;
+  gpu::Buffer places_, next_places_, sums_;
   gpu::Resources resources_;
   shared::Frame frame_{};
-  bool begun_ = false;
+  bool begun_ = false, next_ = false;
   uint32_t done_ = 0;  // blocks
 };
 
