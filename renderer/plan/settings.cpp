@@ -132,7 +132,7 @@ std::vector<OptionInfo> make_options() {
        .help = "Irradiance cache: rays from a record over its hemisphere, at first."},
       {.key = "cache.max_rays",
        .type = OptionType::choice,
-       .fallback = "4096",
+       .fallback = "65536",
        .unit = "rays",
        .choices = {"64", "256", "1024", "4096", "16384", "65536"},
        .help = "Irradiance cache: rays of the last level that a noisy record gets, each four times the one "
