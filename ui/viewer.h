@@ -18,6 +18,7 @@ struct ViewerOptions {
   std::vector<std::string> set;        ///< settings, KEY=VALUE each, above those of the scene
   std::vector<std::string> script;     ///< steps carried out in order, one command a line; see script.h
   std::string script_name = "script";  ///< for messages: "NAME: line 3: ..."
+  bool stay = false;                   ///< the window stays open when the script has ended
 };
 
 /// Opens the window and runs until it is closed or the script quits. Returns the exit status: 0, the value

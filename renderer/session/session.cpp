@@ -168,7 +168,7 @@ void Session::Impl::run() {
   std::unique_ptr<Renderer> renderer;
   try {
     renderer = std::make_unique<Renderer>(
-        RendererOptions{options.device, options.validation, options.shaders, {}, true});
+        RendererOptions{options.device, options.validation, options.shaders, {}, true, options.scenes});
     next.device = renderer->device().info().name;
     publish();
   } catch (const std::exception& e) {

@@ -12,6 +12,7 @@
 
 #include "gpu/device.h"
 #include "plan/settings.h"
+#include "scene/io/load.h"
 #include "scene/scene.h"
 #include "session/accuracy.h"
 #include "session/cache_report.h"
@@ -76,7 +77,8 @@ struct Snapshot {
 struct Options {
   std::string device;  ///< gpu::DeviceOptions::selector
   bool validation = false;
-  std::filesystem::path shaders;  ///< empty: ShaderCompiler::default_root()
+  std::filesystem::path shaders;   ///< empty: ShaderCompiler::default_root()
+  scene::LoadOptions scenes = {};  ///< what scenes may read and take
 };
 
 class Session {
