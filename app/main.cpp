@@ -39,7 +39,8 @@ int main_checked(int argc, char** argv) {
   std::vector<std::string> set;
   app.add_option("--set", set, "viewer: KEY=VALUE; see below")->allow_extra_args(false);
   app.add_option("--script", script,
-                 "viewer: file with commands, one a line; 'help' under the log lists them");
+                 "viewer: file with commands, one a line; 'help' under the log lists them. Its end ends the "
+                 "program, with 1 after an error");
   app.add_flag("-v,--verbose", verbose, "say more on standard error");
   bool stay = false;
   // CLI11's ranges let a NaN through.
@@ -252,6 +253,7 @@ int main_checked(int argc, char** argv) {
     std::ifstream in(script);
     if (!in) throw Error(script, "cannot be read");
     for (std::string line; std::getline(in, line);) options.script.push_back(line);
+    if (options.script.empty()) options.script.emplace_back();  // an empty script ends, too
     options.script_name = script;
   }
   return ui::run_viewer(session, options);

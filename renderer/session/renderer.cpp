@@ -38,10 +38,9 @@ Renderer::~Renderer() = default;
 
 void Renderer::load(const std::filesystem::path& file, const Progress& progress) {
   const Timer timer;
-  auto scene =
-      std::make_shared<scene::Scene>(scene::load(file, options_.scenes, [&](float fraction, const std::string& what) {
-        return !progress || progress(0.6f * fraction, what);
-      }));
+  auto scene = std::make_shared<scene::Scene>(scene::load(
+      file, options_.scenes,
+      [&](float fraction, const std::string& what) { return !progress || progress(0.6f * fraction, what); }));
   scene::add_default_light(*scene);
   for (std::string& line : plan::unreachable_light(plan::make_plan(settings_), *scene))
     scene->warnings.push_back(std::move(line));
