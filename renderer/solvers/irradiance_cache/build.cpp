@@ -137,7 +137,7 @@ bool Cache::Impl::look(const Work& w, bool& cancelled) {
     const Discontinuity::Of of = geometry ? Discontinuity::Of::geometry : Discontinuity::Of::irradiance;
     gpu::Stream& stream = w.wavefront.stream();
     screen.look_up(stream, [this](gpu::Resources& r) { bind(r); });
-    screen.measure(stream, of, options.screen, dark(records.luminances()));
+    screen.measure(stream, of, options.screen, dark(records.luminances(), evaluated));
     const float spacing = reach(w.view).spacing;
     screen.dither(stream, of, options.screen,
                   {.least_width = k_spacing_of_least * options.least_pixels,
@@ -385,17 +385,16 @@ bool Cache::Impl::next_level() {
   for (const uint32_t r : list)
     noises.push_back({figures[r].error, light[r], options.noise * share_of_noise(r)});
   std::vector<uint32_t> longer;
-  for (const uint32_t i : too_noisy(noises, dark(light))) longer.push_back(list[i]);
+  for (const uint32_t i : too_noisy(noises, dark(light, evaluated))) longer.push_back(list[i]);
   list = std::move(longer);
   if (list.empty()) return false;
   ++level;
   return true;
 }
 
-float Cache::Impl::dark(std::span<const float> light) const {
-  double sum = 0;
-  for (uint32_t r = 0; r < until; ++r) sum += double(light[r]);
-  return until > 0 ? 0.1f * float(sum / until) : 1.0f;
+float Cache::Impl::dark(std::span<const float> light, uint32_t count) const {
+  const std::span<const float> lit = light.first(count);
+  return lit.empty() ? 1.0f : 0.1f * float(std::accumulate(lit.begin(), lit.end(), 0.0) / double(count));
 }
 
 float Cache::Impl::nearest_share(bool lit) const {
@@ -413,7 +412,7 @@ void Cache::Impl::set_radii(const Work& w, bool lit) {
                            count,
                            k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
                            least.most,
-                           dark(records.luminances()),
+                           dark(records.luminances(), until),
                            nearest_share(lit)};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
   } else {

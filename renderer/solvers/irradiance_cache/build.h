@@ -125,9 +125,9 @@ struct Cache::Impl {
   void relight_pass();
   void forget_placement();
 
-  /// Irradiance, luminance: what records of less are held against, because what they miss is seen less.
-  /// `light`: Records::luminances().
-  float dark(std::span<const float> light) const;
+  /// Irradiance, luminance: what records of less are held against, because what they miss is seen less. Of the
+  /// first `count`, which have light; `light`: Records::luminances().
+  float dark(std::span<const float> light, uint32_t count) const;
   /// Records of complete passes.
   uint32_t complete() const { return ends.empty() ? 0 : ends.back(); }
   /// One piece of looking at the picture's points; false when it was cancelled.

@@ -179,6 +179,7 @@ void Cache::clear() {
 
 void Cache::Impl::drop_pass() {
   records.truncate(standing);
+  list_until(standing);
   stage = Stage::probe;
   probing = false;
   forget_placement();
@@ -301,7 +302,7 @@ void Cache::draw_discontinuity(transport::Wavefront& wavefront, const film::Film
   c.screen.look_up(stream, [&](gpu::Resources& r) { bind(r); });
   DiscontinuityOptions options = c.options.screen;
   if (options.irradiance_weight <= 0) options.irradiance_weight = DiscontinuityOptions{}.irradiance_weight;
-  c.screen.measure(stream, of, options, c.dark(c.records.luminances()));
+  c.screen.measure(stream, of, options, c.dark(c.records.luminances(), c.evaluated));
   c.screen.draw(stream, film.picture(), level);
   stream.run();
   stream.take_times();

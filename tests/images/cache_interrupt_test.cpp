@@ -1,0 +1,188 @@
+// links: session
+// Edits that come while an irradiance cache is being built, as somebody makes them who drags a lamp: at every
+// stage of every pass every kind of change, and a long seeded run of all of them. What comes out is the
+// picture of the scene as it is then, and nothing on the way shows what is not there.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "images/cache_support.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+using test::Settings;
+
+namespace {
+
+/// Everything over the picture that reads what is being built.
+const Settings k_shown{{"components.secondary", "cache"},
+                       {"components.tertiary", "cache"},
+                       {"cache.rays", "64"},
+                       {"cache.max_rays", "256"},
+                       {"cache.error", "0.6"},
+                       {"cache.max_records", "2000"},
+                       {"cache.passes", "2"},
+                       {"samples", "1"},
+                       {"overlay.records", "true"},
+                       {"overlay.normals", "true"},
+                       {"overlay.overlap", "true"},
+                       {"overlay.placement", "stage"},
+                       {"overlay.discontinuity", "irradiance"}};
+
+struct Bed {
+  session::Renderer r{{.device = "cpu", .validation = true, .shaders = {}, .defines = {}, .pauses = true}};
+  const scene::Scene before = room();
+
+  /// There is a second lamp, something that shines and something that glosses, whatever is edited: so edits
+  /// need no other kernels, but for those that are meant to.
+  static scene::Scene room() {
+    scene::Scene s = test::block_room(true);
+    s.lights.push_back(s.lights[0]);
+    s.lights[1].name = "other", s.lights[1].intensity = vec3(1), s.lights[1].position.x = -1;
+    s.materials.push_back(test::diffuse({0.5f, 0.5f, 0.5f}, vec3(1)));
+    s.materials[2].metallic = 0.5f;
+    test::add_quad(s, {1, 1, -1.9f}, {0.3f, 0, 0}, {0, 0.3f, 0}, 2);
+    return s;
+  }
+
+  Bed() {
+    r.set_size(16, 16);
+    r.settings().set("path.batch", "4096");
+    r.set_scene(std::make_shared<scene::Scene>(before));
+    test::set(r, k_shown);
+    r.inspect(vec2(0.4f, 0.6f));
+  }
+  ~Bed() { CHECK(r.device().validation_messages() == 0); }
+
+  /// The edits, each with a strength that makes it another one.
+  static constexpr int k_kinds = 10;
+  static const char* name(int kind) {
+    constexpr const char* k_names[k_kinds] = {"lamp",     "lamp off", "environment", "colour",  "mirror",
+                                              "emission", "camera",   "size",        "setting", "kernels"};
+    return k_names[kind];
+  }
+  void edit(int kind, float by) {
+    scene::Light lamp = before.lights[0];
+    scene::Material material = before.materials[1];
+    switch (kind) {
+      case 0:
+        lamp.intensity = vec3(1 + by), lamp.position.x = 0.3f * by;
+        return r.set_light(0, lamp);
+      case 1:
+        lamp.enabled = false;
+        return r.set_light(0, lamp);
+      case 2:
+        return r.set_environment(by, 30 * by);
+      case 3:
+        material.base_color = vec4(0.1f + 0.1f * by, 0.3f, 0.2f, 1);
+        return r.set_material(1, material);
+      case 4:
+        material.metallic = 1;
+        return r.set_material(1, material);
+      case 5:
+        material.emission = vec3(by);
+        return r.set_material(1, material);
+      case 6:
+        return r.choose_camera(by > 2 ? "above" : "front");
+      case 7:
+        return r.set_size(16 + 8 * uint32_t(by), 16);
+      case 8:
+        return test::set(r, {{"cache.noise", by > 2 ? "0.2" : "0.03"}});
+      default:
+        return test::set(r, {{"sampling.coherent", by > 2 ? "true" : "false"}});
+    }
+  }
+  void undo() {
+    r.set_light(0, before.lights[0]);
+    r.set_environment(1, 0);
+    r.set_material(1, before.materials[1]);
+    r.choose_camera("front");
+    r.set_size(16, 16);
+  }
+
+  /// Whoever watches sees a picture and is told of records that are there.
+  void watch() {
+    REQUIRE(r.picture(false).size() == size_t{4} * r.film().width() * r.film().height());
+    const auto report = r.cache_report();
+    REQUIRE(report);
+    const irradiance_cache::CacheStatus& s = report->status;
+    CHECK(s.records <= r.cache()->records().size());
+    for (const irradiance_cache::Record& record : r.cache()->records().read())
+      REQUIRE(std::isfinite(record.radius));
+  }
+
+  /// Builds to the end and renders; the picture is a picture.
+  void finish() {
+    test::set(r, {{"cache.pause", "off"}});
+    const film::Image image = test::finish(r);
+    REQUIRE(r.cache()->ready());
+    for (const auto& component : image.components)
+      for (const vec3& v : component) REQUIRE((v.x >= 0 && v.x < 1e4f && v.y >= 0 && v.z >= 0));
+  }
+};
+
+/// Where building is, so that a failure says where it was interrupted.
+std::string where(const session::Renderer& r) {
+  const irradiance_cache::CacheStatus& s = r.cache()->status();
+  return s.last ? irradiance_cache::stage_words(*s.last) : "the beginning";
+}
+
+}  // namespace
+
+TEST_CASE("whatever is changed at whatever stage of the building, it goes on from there") {
+  Bed bed;
+  session::Renderer& r = bed.r;
+  uint32_t interrupted = 0;
+  for (int kind = 0; kind < Bed::k_kinds; ++kind) {
+    // As many stages as there are; the last edit finds a finished cache. Kernels take their time.
+    for (int stages = 1; stages < 40; stages += kind == 9 ? 4 : 1) {
+      bed.undo();
+      test::set(r, {{"cache.pause", "stage"}, {"cache.noise", "0.03"}});
+      r.restart();
+      for (int stage = 0; stage < stages && !r.cache()->ready(); ++stage) {
+        while (r.step()) {
+        }
+        if (stage + 1 < stages) r.step_cache();
+      }
+      INFO("a change of " << Bed::name(kind) << " after " << where(r));
+      const bool complete = r.cache()->ready();
+      bed.edit(kind, 5);
+      bed.watch();
+      r.step_cache();
+      for (int piece = 0; piece < 3; ++piece) r.step();
+      ++interrupted;
+      if (complete) break;
+    }
+    bed.finish();
+    bed.watch();
+  }
+  // Two passes of some six stages each, and every kind.
+  CHECK(interrupted > 9 * Bed::k_kinds);
+}
+
+TEST_CASE("three hundred edits while a cache is built end in the picture of the scene as it is then") {
+  Bed bed;
+  session::Renderer& r = bed.r;
+  std::mt19937 random(7);
+  const auto below = [&](uint32_t n) { return uint32_t(random() % n); };
+  for (int i = 0; i < 300; ++i) {
+    const int kind = i % 25 == 24 ? 9 : int(below(9));
+    INFO("edit " << i << ", " << Bed::name(kind) << ", after " << where(r));
+    bed.edit(kind, float(below(4)));
+    for (uint32_t piece = below(6); piece > 0; --piece) r.step();
+    if (below(6) == 0) bed.watch();
+  }
+  bed.undo();
+  // The same scene with a cache that has lived through nothing: secondary and tertiary light are its, but for
+  // where records happen to lie.
+  test::set(r, {{"cache.rays", "1024"}, {"cache.max_rays", "1024"}, {"samples", "16"}});
+  bed.finish();
+  const film::Image lived = r.image();
+  r.restart();
+  bed.finish();
+  const film::Image fresh = r.image();
+  for (const int c : {1, 2}) {
+    INFO("component " << c);
+    CHECK(test::mean(lived.components[c]) == Approx(test::mean(fresh.components[c])).epsilon(0.05));
+  }
+  CHECK(test::identical(lived.components[0], fresh.components[0]));
+}
