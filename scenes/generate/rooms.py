@@ -1,4 +1,4 @@
-"""Rooms: thick walls with openings, planked floors, skirtings, windows, doors, radiators.
+"""Rooms: thick walls with openings, planked floors, skirtings, cornices, wainscots, windows, doors, radiators.
 
 Each function returns a Mesh in metres. What stands on a surface is sunk into it by a millimetre where it is placed, and
 members that cross differ in depth, so that no two faces share a plane.
@@ -65,6 +65,38 @@ def skirting(width, depth, height=0.11, thick=0.016, gaps=None):
             if name[1] == "z":
                 lo, hi = (a, lo[1], lo[0]), (b, hi[1], hi[0])
             parts.append(chamfer(lo, hi, 0.004))
+    return join(parts)
+
+
+def cornice(width, depth, height):
+    """The moulding between a room's walls and its ceiling, about the y axis."""
+    w, d, parts = width / 2, depth / 2, []
+    for at, yaw, length in (((0, 0, -d), 0, width), ((0, 0, d), 180, width), ((-w, 0, 0), 90, depth),
+                            ((w, 0, 0), -90, depth)):
+        crown = join([chamfer((-length / 2 - 0.01, height - 0.10, -0.004),
+                              (length / 2 + 0.01, height - 0.055, 0.03), 0.008),
+                      chamfer((-length / 2 - 0.01, height - 0.06, -0.004), (length / 2 + 0.01, height + 0.004, 0.075),
+                              0.012)])
+        if yaw in (90, -90):   # the mitres' faces must not lie in one plane
+            crown = crown.moved(translate(0, 0.0015, 0.0015))
+        parts.append(crown.moved(translate(*at) @ rotate("y", yaw)))
+    return join(parts)
+
+
+def wainscot(length, panels, height):
+    """Panelling along x to a wall's lower `height`, centred, out in +z from the wall's face."""
+    parts = [box((-length / 2, -0.001, -0.002), (length / 2, height, 0.010), "-x +x -z")]
+    stile = 0.10
+    step = length / panels
+    for i in range(panels + 1):
+        x = -length / 2 + i * step
+        a, b = max(x - stile / 2, -length / 2), min(x + stile / 2, length / 2)
+        parts.append(chamfer((a, 0.13, 0.0), (b, height - 0.001, 0.024), 0.004))
+    for a, b in ((0.0, 0.16), (height - 0.13, height)):
+        parts.append(chamfer((-length / 2 + 0.0005, a - 0.001, 0.001), (length / 2 - 0.0005, b, 0.0255), 0.004))
+    parts.append(chamfer((-length / 2 + 0.001, -0.001, 0.002), (length / 2 - 0.001, 0.13, 0.036), 0.006))
+    parts.append(chamfer((-length / 2 + 0.001, height - 0.006, -0.001), (length / 2 - 0.001, height + 0.022, 0.048),
+                         0.008))
     return join(parts)
 
 

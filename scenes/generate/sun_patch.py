@@ -44,22 +44,6 @@ def materials(s):
     s.material("brass", (0.80, 0.62, 0.32), rough=0.45, metal=1.0)
 
 
-def wainscot(length, panels):
-    """Panelling along x, centred, out in +z from the wall's face."""
-    parts = [box((-length / 2, -0.001, -0.002), (length / 2, DADO, 0.010), "-x +x -z")]
-    stile = 0.10
-    step = length / panels
-    for i in range(panels + 1):
-        x = -length / 2 + i * step
-        a, b = max(x - stile / 2, -length / 2), min(x + stile / 2, length / 2)
-        parts.append(chamfer((a, 0.13, 0.0), (b, DADO - 0.001, 0.024), 0.004))
-    for a, b in ((0.0, 0.16), (DADO - 0.13, DADO)):
-        parts.append(chamfer((-length / 2 + 0.0005, a - 0.001, 0.001), (length / 2 - 0.0005, b, 0.0255), 0.004))
-    parts.append(chamfer((-length / 2 + 0.001, -0.001, 0.002), (length / 2 - 0.001, 0.13, 0.036), 0.006))
-    parts.append(chamfer((-length / 2 + 0.001, DADO - 0.006, -0.001), (length / 2 - 0.001, DADO + 0.022, 0.048), 0.008))
-    return join(parts)
-
-
 def architecture(s):
     x0, x1, top = DOOR
     holes = {"-x": [WINDOW], "-z": [(x0, x1, -0.2, top)]}
@@ -74,23 +58,13 @@ def architecture(s):
     s.place("boards", (0, -0.02, 0))
     # cornice, wainscot, door
     w, d = WIDTH / 2, DEPTH / 2
-    parts = []
-    for at, yaw, length in (((0, 0, -d), 0, WIDTH), ((0, 0, d), 180, WIDTH), ((-w, 0, 0), 90, DEPTH),
-                            ((w, 0, 0), -90, DEPTH)):
-        crown = join([chamfer((-length / 2 - 0.01, HEIGHT - 0.10, -0.004),
-                              (length / 2 + 0.01, HEIGHT - 0.055, 0.03), 0.008),
-                      chamfer((-length / 2 - 0.01, HEIGHT - 0.06, -0.004), (length / 2 + 0.01, HEIGHT + 0.004, 0.075),
-                              0.012)])
-        if yaw in (90, -90):   # the mitres' faces must not lie in one plane
-            crown = crown.moved(translate(0, 0.0015, 0.0015))
-        parts.append(crown.moved(translate(*at) @ rotate("y", yaw)))
-    s.mesh("cornice", [(join(parts), "ceiling")])
+    s.mesh("cornice", [(rooms.cornice(WIDTH, DEPTH, HEIGHT), "ceiling")])
     s.place("cornice")
     left, right = x0 - 0.088 + w, w - x1 - 0.088
-    s.mesh("wainscot left", [(wainscot(left, 4), "woodwork")])
-    s.mesh("wainscot right", [(wainscot(right, 1), "woodwork")])
-    s.mesh("wainscot side", [(wainscot(DEPTH - 0.10, 7), "woodwork")])
-    s.mesh("wainscot near", [(wainscot(WIDTH, 6), "woodwork")])
+    s.mesh("wainscot left", [(rooms.wainscot(left, 4, DADO), "woodwork")])
+    s.mesh("wainscot right", [(rooms.wainscot(right, 1, DADO), "woodwork")])
+    s.mesh("wainscot side", [(rooms.wainscot(DEPTH - 0.10, 7, DADO), "woodwork")])
+    s.mesh("wainscot near", [(rooms.wainscot(WIDTH, 6, DADO), "woodwork")])
     s.place("wainscot left", (-w + left / 2, 0, -d))
     s.place("wainscot right", (w - right / 2, 0, -d))
     s.place("wainscot side", (-w, 0, 0), 90)

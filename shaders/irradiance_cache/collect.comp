@@ -11,6 +11,7 @@ layout(scalar) readonly buffer TakenBefore { uint taken_before[]; };
 layout(scalar) readonly buffer TakenLevels { uint taken_levels[]; };
 layout(scalar) writeonly buffer Places { vec4 places[]; };
 layout(scalar) writeonly buffer Facings { vec4 facings[]; };
+layout(scalar) writeonly buffer Media { uint media[]; };
 
 void main() {
   uint index = global_index();
@@ -19,16 +20,17 @@ void main() {
 #if LUCERNA_FROM_SCREEN
   vec4 place = texelFetch(surface_texels, int(index * k_surface_texels));
   vec4 facing = texelFetch(surface_texels, int(index * k_surface_texels + 1u));
-  uint origin = k_origin_screen;
+  uint origin = k_origin_screen, medium = 0u;  // as the camera is
   float reach = push.cell * push.pixel * float(1u << min(taken_levels[index], 31u)) * (push.parallel != 0u ? 1.0 : place.w);
 #else
   int slot = int(slot_of(index) * k_candidate_texels);
   vec4 place = texelFetch(candidate_texels, slot), facing = texelFetch(candidate_texels, slot + 1);
-  uint origin = uint(place.w) - 1u;
+  uint told = uint(place.w) - 1u, origin = told % k_candidate_medium, medium = told / k_candidate_medium;
   float reach = origin == k_origin_recursive ? max(push.spacing, push.spacing_beyond) : push.spacing;
 #endif
   float seen = push.parallel != 0u ? 1.0 : distance(place.xyz, push.eye);
   uint to = push.to + taken_before[index];
   places[to] = vec4(place.xyz, max(reach, push.spacing_of_distance * seen));
+  media[to] = medium;
   facings[to] = vec4(facing.xyz, uintBitsToFloat(floatBitsToUint(facing.w) | origin << k_place_origin_shift));
 }

@@ -13,7 +13,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { DetailPush push; };
 uniform samplerBuffer surface_texels;
-layout(scalar) readonly buffer Lit { vec2 lit[]; };
+layout(scalar) readonly buffer Lit { vec3 lit[]; };
 layout(scalar) buffer Details { float details[]; };
 
 uvec2 cells_of(uint level) { return (uvec2(push.across, push.down) + (1u << level) - 1u) >> level; }
@@ -27,13 +27,14 @@ uint middle(uvec2 cell) {
 struct Point {
   vec4 place;
   vec3 normal;
-  float light;
+  float light, error;
 };
 Point point_at(uint index) {
   Point p;
   p.place = texelFetch(surface_texels, int(index * k_surface_texels));
   p.normal = texelFetch(surface_texels, int(index * k_surface_texels + 1u)).xyz;
   p.light = lit[index].x;
+  p.error = lit[index].z;
   return p;
 }
 
@@ -45,8 +46,12 @@ float change(Point p, Point q) {
   float geometry = max(push.depth_weight * off / max(width, 1e-30), push.normal_weight * distance(p.normal, q.normal));
   if (push.irradiance_weight <= 0.0) return both ? min(geometry, 1.0) : 0.0;
   bool same = both && geometry < 1.0 && p.light >= 0.0 && q.light >= 0.0;
-  float light = abs(p.light - q.light) / max(max(p.light, q.light), push.least);
-  return same ? clamp(push.irradiance_weight * (light - push.irradiance_noise), 0.0, 1.0) : 0.0;
+  float whole = max(max(p.light, q.light), push.least);
+  float light = abs(p.light - q.light) / whole;
+  // A record that has met much light by chance is not to be surrounded by others for that: these would dilute what it has too
+  // much of, and nothing would make up for what others have missed.
+  float noise = max(push.irradiance_noise, 2.0 * length(vec2(p.error, q.error)) / whole);
+  return same ? clamp(push.irradiance_weight * (light - noise), 0.0, 1.0) : 0.0;
 }
 
 void main() {

@@ -16,7 +16,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { DitherPush push; };
 uniform samplerBuffer surface_texels;
-layout(scalar) readonly buffer Lit { vec2 lit[]; };
+layout(scalar) readonly buffer Lit { vec3 lit[]; };
 layout(scalar) readonly buffer Details { float details[]; };
 layout(scalar) writeonly buffer Taken { uint taken[]; };            // 0 or 1
 layout(scalar) writeonly buffer TakenLevels { uint taken_levels[]; };
@@ -35,7 +35,7 @@ void main() {
   uint shuffled = owen_scramble(spread(xy.x) | spread(xy.y) << 1, push.key);
   float threshold = float(bitfieldReverse(shuffled) >> 8) * (1.0 / 16777216.0);
   float depth = texelFetch(surface_texels, int(point * k_surface_texels)).w;
-  vec2 light = lit[point];
+  vec3 light = lit[point];
 
   float width = push.pixel * (push.parallel != 0u ? 1.0 : depth);  // of what a point stands for [m]
   float sum = 0.0, probability = push.density;

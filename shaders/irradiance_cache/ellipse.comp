@@ -1,4 +1,6 @@
-// The ellipse within which a record serves, from the Hessian of its irradiance E (hessian.comp). At an offset of (x, y) along
+// The ellipse within which a record serves, from the Hessian of the irradiance E (hessian.comp, pool.comp). Both are of pilot
+// rays: with the record's own a record that has met much light by chance would reach less far than one that has missed it, and
+// what is interpolated would be too dark. At an offset of (x, y) along
 // the Hessian's axes extrapolation misses (|l1| x^2 + |l2| y^2) / 2. The integral of that, relative to E, over an ellipse
 // with axes R1/R2 = sqrt(l2/l1) is pi/4 l1^1.5 l2^-0.5 R1^4 / E. Held to pi/4 reach^4 for every record it gives
 //
@@ -12,7 +14,7 @@
 #include "irradiance_cache/least_radius.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { EllipsePush push; };
-uniform samplerBuffer record_texels, irradiance_texels;
+uniform samplerBuffer record_texels;
 layout(scalar) writeonly buffer Records { vec4 records[]; };
 layout(scalar) writeonly buffer Spheres { vec4 spheres[]; };  // of the octree
 
@@ -21,17 +23,15 @@ void main() {
   if (index >= push.count) return;
   uint record = push.first + index;
   int at = int(record * k_record_texels);
-  vec4 place = texelFetch(record_texels, at), bends = texelFetch(record_texels, at + 3);
+  vec4 place = texelFetch(record_texels, at), bends = texelFetch(record_texels, at + 4);
   vec3 normal = texelFetch(record_texels, at + 1).xyz;
-  float light = 0.0;
-  for (uint p = 0u; p < k_part_count; ++p)
-    light += luminance(texelFetch(irradiance_texels, int((record * k_part_count + p) * k_part_texels)).rgb);
+  float nearest = texelFetch(record_texels, at + 2).y, holds_nothing = texelFetch(record_texels, at + 5).y;
   Principal p = principal_curvatures(bends.xyz);
 
   float least = least_radius(place.xyz);
-  float bends_by = p.strongest / max(max(light, push.dark), 1e-30);
+  float bends_by = p.strongest / max(max(bends.w, push.dark), 1e-30);
   float minor = bends_by > 0.0 ? push.reach * inversesqrt(sqrt(bends_by * p.ratio)) : push.most;
-  minor = min(minor, push.near * bends.w);
+  minor = min(minor, holds_nothing > 0.0 ? push.near * holds_nothing : push.near_tried * nearest);
   float major = clamp(p.ratio * minor, least, push.most);
   minor = clamp(minor, least, push.most);
   vec3 tangent, bitangent;

@@ -28,7 +28,7 @@ struct CellRay {
 CellRay cell_ray(uint elevation, uint azimuth, uint record) {
   // Jitter inside the cell by hashing alone: a low-discrepancy sequence would correlate with the cells' order.
   uint sample_index = push.rays_before + azimuth * push.elevations + elevation;
-  uint key = hash_combine(hash_combine(hash_mix(push.seed + 0x2c1b3c6du), record), sample_index);
+  uint key = hash_combine(hash_combine(hash_mix(push.seed + (push.pilot != 0u ? 0x6d2b79f5u : 0x2c1b3c6du)), record), sample_index);
   vec2 jitter = to_unit(uvec2(key, hash_mix(key ^ 0x9e3779b9u)));
   // The cosine from what is missing to 1, so that it is never 0.
   return CellRay(sqrt((float(elevation) + jitter.x) / float(push.elevations)),

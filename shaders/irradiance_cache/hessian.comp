@@ -8,13 +8,12 @@
 // distances it is what comes into view, or goes out of it, behind the nearer one. The mean radiance is taken off first: as
 // the mesh is closed that changes nothing but what rounding does.
 //
-// Leaves the Hessian of the luminance of all parts together, and a bound: see k_record_texels, texel 3.
+// Leaves the Hessian of the luminance of all parts together, and that luminance: see k_record_texels, texel 4.
 #define LUCERNA_PUSH RecordPush
 #include "shaders/shared/irradiance_cache.h"
 #include "lib/wavefront.glsl"
 #include "irradiance_cache/hemisphere.glsl"
 #include "irradiance_cache/form_factor.glsl"
-#include "irradiance_cache/ellipse.glsl"
 
 uniform samplerBuffer first_hit_texels;
 layout(scalar) writeonly buffer Records { vec4 records[]; };
@@ -87,16 +86,5 @@ void main() {
       da = -bc;
     }
   }
-
-  // Nothing that a ray met may lie within the validity of the record, so that nothing stands between it and a point that it
-  // serves.
-  Principal p = principal_curvatures(hessian);
-  float squeeze = 1.0 - 1.0 / square(p.ratio), least = k_infinity;
-  for (uint k = 0u; k < n; ++k)
-    for (uint j = 0u; j < m; ++j) {
-      float near = cell_near(cell_slot(j, k, index));
-      float reach = sqrt(1.0 - squeeze * square(dot(cell_direction(j, k, record).xy, p.along)));
-      least = min(least, near > 0.0 ? reach / near : k_infinity);
-    }
-  records[record * k_record_texels + 3u] = vec4(hessian, least);
+  records[record * k_record_texels + 4u] = vec4(hessian, k_pi * mean);
 }

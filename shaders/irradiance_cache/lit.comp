@@ -1,12 +1,12 @@
-// Irradiance as the present records give it at the points of the screen-space stage, and how near the nearest of those
-// that serve is.
+// Irradiance as the present records give it at the points of the screen-space stage, what its noise is, and how near the
+// nearest of those that serve is. The camera is in no medium.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "shaders/shared/discontinuity.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { LitPush push; };
 uniform samplerBuffer surface_texels;
-layout(scalar) writeonly buffer Lit { vec2 lit[]; };  // luminance, -1 where none serves; distance of the nearest [m]
+layout(scalar) writeonly buffer Lit { vec3 lit[]; };  // luminance, -1 where none serves; distance of the nearest [m]; standard error
 
 void main() {
   uint point = global_index();
@@ -14,8 +14,8 @@ void main() {
   vec4 place = texelFetch(surface_texels, int(point * k_surface_texels));
   vec3 normal = texelFetch(surface_texels, int(point * k_surface_texels + 1u)).xyz;
   bool solid = place.w >= 0.0;
-  Cached found = cache_lookup(place.xyz, normal, normal, solid);
-  float light = 0.0, nearest = k_infinity;
+  Cached found = cache_lookup(place.xyz, normal, normal, 0u, solid);
+  float light = 0.0, nearest = k_infinity, weights = 0.0, variance = 0.0;
   for (uint p = 0u; p < k_part_count; ++p) light += luminance(found.part[p]);
   OctreeRange range = cache_range(place.xyz, solid && found.weight > 0.0);
   for (uint i = range.first; i < range.last; ++i) {
@@ -24,6 +24,8 @@ void main() {
     vec4 centre = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
     float weight = record_weight(place.xyz, normal, centre, facing, record_shape(record, centre));
     if (weight > 0.0) nearest = min(nearest, distance(place.xyz, centre.xyz));
+    weights += weight;
+    variance += square(weight * texelFetch(record_texels, at + 2).z);
   }
-  lit[point] = vec2(found.weight > 0.0 ? light : -1.0, nearest);
+  lit[point] = vec3(found.weight > 0.0 ? light : -1.0, nearest, weights > 0.0 ? sqrt(variance) / weights : 0.0);
 }

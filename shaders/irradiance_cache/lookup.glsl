@@ -35,6 +35,8 @@ vec4 record_shape(uint record, vec4 place) {
 #endif
 }
 
+uint record_medium(uint record) { return floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 5u)).x); }
+
 // How far off the plane between its own and a record's tangent plane a point may lie and be served [m]. `radius`: the lesser.
 float record_off_plane(vec3 position, float radius) {
   return radius * (radius <= 1.001 * least_radius(position) ? cache.off_plane_least : cache.off_plane);
@@ -71,7 +73,8 @@ OctreeRange cache_range(vec3 x, bool asks) {
 
 // `n`: geometric, on the side whose light is asked for; `shading`: the normal that the light falls on. They may differ by
 // what the gradient of rotation can bridge; beyond that nothing is served. `asks` false: an empty answer, without work.
-Cached cache_lookup(vec3 x, vec3 n, vec3 shading, bool asks) {
+// `medium`: that the point lies in, as PathState has it; records of others have other light.
+Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
   Cached found;
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
   found.weight = 0.0;
@@ -86,6 +89,9 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, bool asks) {
       place = octree_copy(i);
       vec3 off_centre = x - place.xyz;
       within = dot(off_centre, off_centre) < square(place.w);
+#if LUCERNA_VOLUMES
+      within = within && record_medium(octree_sphere(i)) == medium;
+#endif
     }
     uint record = octree_sphere(at);
     vec4 facing = texelFetch(record_texels, int(record * k_record_texels + 1u));

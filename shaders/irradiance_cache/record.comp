@@ -33,10 +33,10 @@ void main() {
   PathState p;
   p.throughput = vec3(above ? 1.0 : 0.0);
   p.pdf = 0.0;
-  p.pixel = 0x80000000u | record;  // sequences apart from the pixels'
+  p.pixel = (push.pilot != 0u ? 0xc0000000u : 0x80000000u) | record;  // sequences apart from the pixels', and from each other
   p.sample_index = push.rays_before + cell;
   p.bits = push.state | k_path_sky_only | 1u << 8;
-  p.medium = 0u;
+  p.medium = floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 5u)).x);
   p.travelled = 0.0;
   p.eta_scale = 1.0;
   p.pad0 = 0.0;

@@ -20,7 +20,7 @@ LUCERNA_CONST uint k_part_count = 4u;
 // by part in lookup.glsl, and changing it spoils no record (solvers/irradiance_cache/changes.h).
 
 /// Files keep the texels below as they are: another number for another meaning of them.
-LUCERNA_CONST uint k_record_layout = 2u;
+LUCERNA_CONST uint k_record_layout = 3u;
 // record_texels: k_record_texels a record.
 //   0: position xyz [m], moved off its surface by the error bound; radius of validity, the greater of an
 //   ellipse [m], 0: none yet
@@ -28,10 +28,13 @@ LUCERNA_CONST uint k_record_layout = 2u;
 //   2: bits rays so far, least distance [m], standard error of the luminance of all parts' sum (irradiance),
 //   bits k_record_*
 //   3: the ellipse of validity: the direction of its greater axis, as long as the root of 1/r^2 - 1/R^2 (0 of
-//   a circle); its lesser radius r [m]. Of metric `hessian`, between a record's first level and its
-//   radius: the Hessian of its luminance in tangent and bitangent, xx, xy, yy [1/m^2], and the greatest r at
-//   which such an ellipse holds nothing that a ray met [m]
-LUCERNA_CONST uint k_record_texels = 4u;
+//   a circle); its lesser radius r [m]
+//   4: of metric `hessian`: what the pilot rays of this record and of those around it say of the light here,
+//   by which its ellipse is made: the Hessian of the irradiance's luminance in tangent and bitangent, xx, xy,
+//   yy [1/m^2], and that luminance
+//   5: bits of the medium in which the record lies, as PathState has it; of metric `hessian` the greatest r at
+//   which such an ellipse holds nothing that a ray met [m], 0: not known yet; 0; 0
+LUCERNA_CONST uint k_record_texels = 6u;
 /// Most of the greater radius over the lesser.
 LUCERNA_CONST float k_record_ratio = 2.0f;
 LUCERNA_CONST uint k_record_pass = 0xffu;       ///< mask: the pass that placed it, from 0
@@ -56,8 +59,9 @@ LUCERNA_CONST uint k_part_texels = 4u;
 LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + 2u * k_part_count * k_part_texels + 1u);
 
 // candidate_texels: 2 a path slot, all 0 where there is none:
-//   0: position, off its surface; 1 + k_origin_* where there is one    1: smooth normal on the side that
-//   asks, bits facet
+//   0: position, off its surface; where there is one 1 + k_origin_* + k_candidate_medium times the medium
+//   1: smooth normal on the side that asks, bits facet
+LUCERNA_CONST uint k_candidate_medium = 4u;
 LUCERNA_CONST uint k_candidate_texels = 2u;
 
 LUCERNA_CONST uint k_no_routes = 0x4444u;  ///< k_component_count for every part
@@ -104,6 +108,7 @@ struct RecordPush {
   uint parts;        ///< bit p: part p is wanted
   uint state;        ///< of the automaton after ED
   uint seed;
+  uint pilot;        ///< not 0: rays that decide how far a record serves and bring it no light
 };
 
 struct RadiusPush {
@@ -134,6 +139,12 @@ struct EllipsePush {
   float most;         ///< [m]
   float dark;         ///< irradiance, luminance: records that have less are held against it
   float near;         ///< lesser radius over the greatest that holds nothing that a ray met, at most
+  float near_tried;   ///< the same where only the distance of the nearest thing is known
+};
+
+/// Pools what pilot rays have told.
+struct PoolPush {
+  uint first, count;  ///< records
 };
 
 // What the overlay colours records by.
@@ -153,6 +164,6 @@ struct OverlayPush {
 
 LUCERNA_SHARED_END
 #ifdef __cplusplus
-static_assert(lucerna::shared::k_record_bytes == 592 && sizeof(lucerna::shared::RecordPush) == 32);
+static_assert(lucerna::shared::k_record_bytes == 624 && sizeof(lucerna::shared::RecordPush) == 36);
 #endif
 #endif

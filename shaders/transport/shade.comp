@@ -88,8 +88,13 @@ void main() {
         for (int facing = 0; facing < k_cache_sides; ++facing) {
           vec3 albedo = path.throughput * (facing == 0 ? bsdf.diffuse_albedo : bsdf.transmitted_albedo) * k_inv_pi;
           bool asks = looks && max3(albedo) > 0.0;
+          // What lies on that side of the surface.
+          uint medium = 0u;
+#if LUCERNA_VOLUMES
+          medium = facing == 0 || !surface.parameters.solid ? path.medium : surface.front ? surface.material + 1u : 0u;
+#endif
           float sign = facing == 0 ? 1.0 : -1.0;
-          Cached found = cache_lookup(surface.position, sign * smooth_side, sign * to_world[2], asks);
+          Cached found = cache_lookup(surface.position, sign * smooth_side, sign * to_world[2], medium, asks);
           bool missing = asks && found.weight <= 0.0;
           // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
           bool notes = (missing || (asks && notes_all)) && cache.probing != k_probe_none &&
@@ -97,7 +102,7 @@ void main() {
           bool servable = cache_can_serve(sign * smooth_side, sign * to_world[2]);
           if (notes && (servable || screen)) {
             uint origin = beyond ? k_origin_recursive : depth == 0u ? k_origin_screen : k_origin_world;
-            candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), servable ? 1.0 + float(origin) : -1.0 - float(origin));
+            candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), (servable ? 1.0 : -1.0) * float(1u + origin + k_candidate_medium * medium));
             candidates[slot * k_candidate_texels + 1u] = vec4(sign * smooth_side, uintBitsToFloat(facet_pack(sign * side)));
           }
           alone = alone || missing;

@@ -100,6 +100,44 @@ TEST_CASE("light does not leak through walls, around their ends, or far from the
   }
 }
 
+TEST_CASE("records in a medium see through it, and serve nobody outside") {
+  // An absorbing block of glass that refracts nothing, half in the floor's way: inside it a corner of two
+  // walls and a panel that shines.
+  Room room;
+  scene::Material glass;
+  glass.metallic = 0, glass.roughness = 0, glass.transmission = 1, glass.ior = 1, glass.thickness = 1;
+  glass.attenuation_color = vec3(0.2f, 0.6f, 0.9f), glass.attenuation_distance = 0.4f;
+  room.s.materials.push_back(glass);
+  const vec3 lo = room.at + vec3(-0.7f, 0.1f, -0.6f), x(1.2f, 0, 0), y(0, 0.7f, 0), z(0, 0, 1.2f);
+  for (const auto& [a, u, v] : {std::array{lo, x, z}, std::array{lo + y, z, x}, std::array{lo, y, x},
+                                std::array{lo + z, x, y}, std::array{lo, z, y}, std::array{lo + x, y, z}})
+    test::add_quad(room.s, a, u, v, 2);
+  test::add_quad(room.s, lo + vec3(0.1f, 0.05f, 0.1f), {0, 0, 1}, {1, 0, 0});
+  test::add_quad(room.s, lo + vec3(0.1f, 0.05f, 0.1f), {0, 0.3f, 0}, {0, 0, 1});
+  room.s.materials[0].double_sided = true;
+  test::add_quad(room.s, lo + vec3(0.9f, 0.4f, 0.4f), {0.1f, 0, 0}, {0, 0, 0.1f}, 1);
+  Settings settings = k_both;
+  settings["cache.error"] = "0.15", settings["cache.noise"] = "0.02";
+  const Result path = render(room.s, {}, 512), cached = render(room.s, settings, 64);
+  for (const int c : {1, 2})
+    for (int channel = 0; channel < 3; ++channel) {
+      double truth = 0, value = 0, squares = 0;
+      for (size_t i = 0; i < path.image.samples.size(); ++i) {
+        const double t = double(path.image.components[c][i][channel]),
+                     v = double(cached.image.components[c][i][channel]);
+        truth += t, value += v;
+        squares += std::pow(t - double(path.image.odd_half[c][i][channel]), 2) +
+                   std::pow(v - double(cached.image.odd_half[c][i][channel]), 2);
+      }
+      INFO("component " << c << ", channel " << channel << ": " << value / truth << ", noise "
+                        << std::sqrt(squares) / truth);
+      CHECK(std::abs(value - truth) <= 0.02 * truth + 4 * std::sqrt(squares));
+      UNSCOPED_INFO("component " << c << ", channel " << channel << ": " << value / truth << ", noise "
+                                 << std::sqrt(squares) / truth);
+    }
+  CHECK(rays_a_path(cached) < 0.8 * rays_a_path(path));
+}
+
 TEST_CASE("normal maps tilt what records bring as far as they can, and beyond that light is path traced") {
   double rays[3];
   int i = 0;

@@ -19,10 +19,10 @@ struct View {
   uint32_t width, height;
   bool parallel = false;
   std::vector<vec4> surfaces;
-  std::vector<vec2> lit;
+  std::vector<vec3> lit;
 
   View(uint32_t w, uint32_t h, bool p = false)
-      : width(w), height(h), parallel(p), surfaces(2 * w * h, vec4(0)), lit(w * h, vec2(-1, INFINITY)) {
+      : width(w), height(h), parallel(p), surfaces(2 * w * h, vec4(0)), lit(w * h, vec3(-1, INFINITY, 0)) {
     for (uint32_t i = 0; i < w * h; ++i) surfaces[2 * i].w = -1;
   }
   shared::Frame frame() const {
@@ -138,7 +138,7 @@ View scramble(uint32_t width, uint32_t height, bool parallel = false) {
   v.each([&](uint32_t x, uint32_t y) {
     const vec4& p = planes[(x / 5 * 3 + y / 4 * 7) % planes.size()];
     if (unit() < 0.9f) v.plane(x, y, vec3(p), p.w);
-    v.lit[y * width + x] = vec2(unit() < 0.8f ? 0.02f + unit() : -1.0f, unit());
+    v.lit[y * width + x] = vec3(unit() < 0.8f ? 0.02f + unit() : -1.0f, unit(), 0);
   });
   return v;
 }
@@ -218,7 +218,7 @@ TEST_CASE("irradiance counts where it differs on one surface, and only there") {
   View v(16, 16);
   v.each([&](uint32_t x, uint32_t y) {
     v.plane(x, y, y < 8 ? vec3(0, 0, 1) : normalize(vec3(0, 1, 1)), -3);
-    v.lit[y * 16 + x] = vec2(x < 4 ? -1.0f : x < 10 ? 2.0f : 3.0f, 0.5f);
+    v.lit[y * 16 + x] = vec3(x < 4 ? -1.0f : x < 10 ? 2.0f : 3.0f, 0.5f, 0);
   });
   // Another light below the edge is another surface's.
   for (uint32_t i = 8 * 16; i < 16 * 16; ++i) v.lit[i].x = v.lit[i].x > 0 ? 0.05f : -1.0f;
@@ -262,7 +262,7 @@ TEST_CASE("points are drawn as often as their probabilities say") {
   const DiscontinuityOptions o{
       .density = 0.3f, .falloff = 0.4f, .depth_weight = 0.05f, .normal_weight = 0.2f};
   View v = scramble(37, 23);
-  for (vec2& l : v.lit) l = vec2(-1, INFINITY);  // nothing is served
+  for (vec3& l : v.lit) l = vec3(-1, INFINITY, 0);  // nothing is served
   bench.measure(v, Of::geometry, o);
   const uint32_t levels = bench.screen.levels();
   std::vector<std::vector<float>> probability(levels, std::vector<float>(37 * 23, 0));
@@ -335,7 +335,7 @@ TEST_CASE("thresholds are spread over blocks, follow the seed, and leave alone w
   CHECK(std::count(wide.begin(), wide.end(), bench.screen.levels()) == 0);
 
   // Served: geometry asks no more, irradiance where the nearest record is farther than half a cell.
-  for (uint32_t i = 0; i < 64 * 64; ++i) v.lit[i] = vec2(i % 3 ? 1 : -1, i % 2 ? 1e-6f : 1e6f);
+  for (uint32_t i = 0; i < 64 * 64; ++i) v.lit[i] = vec3(i % 3 ? 1 : -1, i % 2 ? 1e-6f : 1e6f, 0);
   bench.measure(v, Of::geometry, o);
   const std::vector<uint32_t> geometry = bench.dither(Of::geometry, o, 3),
                               irradiance = bench.dither(Of::irradiance, o, 3);

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <random>
 
 #include "support/cache.h"
@@ -67,22 +68,30 @@ double half_hidden_irradiance(double x, double y) {
 /// Of the disk's light, over its red.
 constexpr double k_luminance = 0.2126 + 0.5 * 0.7152 + 0.25 * 0.0722;
 
-/// What hessian.comp leaves of a place that faces up, in world axes x and z.
+/// What hessian.comp leaves of a place that faces up, in world axes x and z, and near.comp after it.
 struct Bent {
   double xx, xz, zz;
   float bound;
 };
+/// All records' pilots.
+void pilot(test::CacheBed& bed, Records& records, const irradiance_cache::EvaluateOptions& options) {
+  std::vector<uint32_t> all(records.size());
+  std::iota(all.begin(), all.end(), 0u);
+  REQUIRE(bed.evaluator.pilot(bed.wavefront, bed.automaton, records, all, options) == all.size());
+}
 std::vector<Bent> hessians(test::CacheBed& bed, const std::vector<Place>& places, uint32_t elevations) {
   Records records(bed.device, static_cast<uint32_t>(places.size()));
   records.append(test::CacheBed::on_facets(places));
-  bed.evaluate(records,
-               {.elevations = elevations, .azimuths = 4 * elevations, .parts = k_direct, .hessian = true});
+  const irradiance_cache::EvaluateOptions how{
+      .elevations = elevations, .azimuths = 4 * elevations, .parts = k_direct, .near = true};
+  pilot(bed, records, how);
+  bed.evaluate(records, how);
   const RawRecords raw = records.raw(records.size());
   std::vector<Bent> all;
   for (size_t i = 0; i < places.size(); ++i) {
-    const vec4& h = raw.places[i * shared::k_record_texels + 3];
+    const vec4& h = raw.places[i * shared::k_record_texels + 4];
     // make_basis() of (0, 1, 0): tangent x, bitangent (0, 0, -1).
-    all.push_back({double(h.x), -double(h.y), double(h.z), h.w});
+    all.push_back({double(h.x), -double(h.y), double(h.z), raw.places[i * shared::k_record_texels + 5].y});
   }
   return all;
 }
@@ -108,7 +117,7 @@ struct Shape {
   float lesser, greater;
   vec3 along;
 };
-/// ellipse.comp on records that have these Hessians, bounds and irradiances (green).
+/// ellipse.comp on records that have these Hessians, bounds and irradiances (luminance).
 struct Bending {
   vec3 hessian;
   float bound, irradiance;
@@ -120,8 +129,8 @@ std::vector<Shape> ellipses(test::CacheBed& bed, const std::vector<Bending>& ben
   records.append(std::vector<Place>(count, Place{vec3(0, 0, 5), vec3(0, 1, 0)}));
   RawRecords raw = records.raw(count);
   for (size_t i = 0; i < count; ++i) {
-    raw.places[i * shared::k_record_texels + 3] = vec4(bending[i].hessian, bending[i].bound);
-    raw.lights[(i * shared::k_part_count + 2) * shared::k_part_texels].y = bending[i].irradiance / 0.7152f;
+    raw.places[i * shared::k_record_texels + 4] = vec4(bending[i].hessian, bending[i].irradiance);
+    raw.places[i * shared::k_record_texels + 5].y = bending[i].bound;
   }
   records.restore(raw);
   const gpu::Kernel kernel(bed.device, bed.compiler, "irradiance_cache/ellipse.comp");
@@ -142,7 +151,7 @@ std::vector<Shape> ellipses(test::CacheBed& bed, const std::vector<Bending>& ben
   for (size_t i = 0; i < count; ++i) CHECK(radii[i] == shapes[i].greater);
   return shapes;
 }
-constexpr shared::EllipsePush k_free{0, 0, 0.3f, 100, 0, 1};
+constexpr shared::EllipsePush k_free{0, 0, 0.3f, 100, 0, 1, 1};
 
 }  // namespace
 
@@ -270,24 +279,35 @@ TEST_CASE("a record's Hessian depends on nothing but the record, and what it saw
   for (int i = 0; i < 40; ++i)
     places.push_back(
         {vec3(-0.4f + 0.02f * float(i), 1e-4f, 0.3f), vec3(0, 1, 0), shared::facet_pack(vec3(0, 1, 0))});
-  const irradiance_cache::EvaluateOptions how{.parts = 0b1110, .hessian = true};
+  const irradiance_cache::EvaluateOptions how{.parts = 0b1110, .near = true};
   Records together(bed.device, 40), apart(bed.device, 40);
   together.append(places), apart.append(places);
+  pilot(bed, together, how);
   bed.evaluate(together, how);
-  for (uint32_t i = 40; i-- > 0;)
+  for (uint32_t i = 40; i-- > 0;) {
     CHECK(bed.evaluator.evaluate(bed.wavefront, bed.automaton, apart, std::span(&i, 1), how) == 1);
+    const RawRecords before = apart.raw(40);
+    CHECK(bed.evaluator.pilot(bed.wavefront, bed.automaton, apart, std::span(&i, 1), how) == 1);
+    // A pilot brings no light.
+    CHECK(std::memcmp(before.lights.data(), apart.raw(40).lights.data(),
+                      before.lights.size() * sizeof(vec4)) == 0);
+  }
   const RawRecords a = together.raw(40), b = apart.raw(40);
-  CHECK(std::memcmp(a.places.data(), b.places.data(), a.places.size() * sizeof(vec4)) == 0);
-  size_t bent = 0;
-  for (size_t i = 0; i < 40; ++i) bent += a.places[i * shared::k_record_texels + 3].x != 0;
+  constexpr size_t k_pilot = 4;
+  size_t bent = 0, other_rays = 0;
+  for (size_t i = 0; i < 40; ++i) {
+    const size_t at = i * shared::k_record_texels + k_pilot;
+    CHECK(a.places[at] == b.places[at]);
+    bent += a.places[at].x != 0;
+    // Nor is what it saw of the rays that bring it.
+    float light = 0;
+    for (size_t p = 0; p < shared::k_part_count; ++p)
+      light += luminance(vec3(a.lights[(i * shared::k_part_count + p) * shared::k_part_texels]));
+    other_rays += std::abs(light - a.places[at].w) > 1e-4f * light;
+  }
   CHECK(bent == 40);
-  // A level without it leaves it, and is no other for it.
-  Records plain(bed.device, 40);
-  plain.append(places);
-  bed.evaluate(plain, {.parts = 0b1110});
-  const RawRecords c = plain.raw(40);
-  CHECK(std::memcmp(a.lights.data(), c.lights.data(), a.lights.size() * sizeof(vec4)) == 0);
-  for (size_t i = 0; i < 40; ++i) CHECK(c.places[i * shared::k_record_texels + 3] == vec4(0));
+  CHECK(other_rays >= 39);
+  CHECK(std::memcmp(a.lights.data(), b.lights.data(), a.lights.size() * sizeof(vec4)) == 0);
 }
 
 TEST_CASE("ellipses have the same error whatever the Hessian, and turn with it") {
@@ -328,7 +348,7 @@ TEST_CASE("ellipses are bounded: in length, in width, by what is near, in the da
   test::CacheBed bed(test::CacheBed::load("furnace-disk"), 1024);
   bed.set_frame(k_direct);
   const float none = std::numeric_limits<float>::infinity();
-  const shared::EllipsePush how{0, 0, 0.3f, 2, 0.1f, 1};
+  const shared::EllipsePush how{0, 0, 0.3f, 2, 0.1f, 1, 1};
   const auto one = [&](const Bending& b, const shared::EllipsePush& push, float least = 0) {
     return ellipses(bed, {b}, push, least)[0];
   };

@@ -141,10 +141,10 @@ TEST_CASE("a file with one byte changed is refused, wherever it is and however")
   other[8] = 1;
   CHECK(refusal(other) == "a.cache: an irradiance cache in version 1 of its format; expected version 2");
   other = bytes, other[12] = 9;
-  CHECK_THAT(refusal(other), Contains("its records are laid out otherwise: layout 9 of 336 bytes each, "
-                                      "expected layout 2 of 336"));
+  CHECK_THAT(refusal(other), Contains("its records are laid out otherwise: layout 9 of 368 bytes each, "
+                                      "expected layout 3 of 368"));
   other = bytes, other[17] = 2;
-  CHECK_THAT(refusal(other), Contains("layout 2 of 592 bytes each, expected layout 2 of 336"));
+  CHECK_THAT(refusal(other), Contains("layout 3 of 624 bytes each, expected layout 3 of 368"));
   CHECK_THAT(refusal("glTF and so on"), Contains("not an irradiance cache"));
 }
 

@@ -181,26 +181,44 @@ bool Cache::Impl::choose(const Work& w) {
   return true;
 }
 
-/// How far things are around what is tried says how wide its records will be, and so which are needed.
+/// How far things are around what is tried, and how light bends there, says how wide its records will be, and
+/// so which are needed.
 bool Cache::Impl::measure(const Work& w) {
   const size_t batch =
       std::min<size_t>(list.size() - at, std::max(1u, w.wavefront.slots() / Evaluator::k_distance_rays));
+  const std::span<const uint32_t> some = std::span(list).subspan(at, batch);
   w.wavefront.set_frame(w.view.records_frame, w.view.records_enabled);
+  tell(k_probe_none, own_routes);
   StageTimer timer(w.wavefront);
   const size_t done =
-      evaluator.measure(w.wavefront, records, std::span(list).subspan(at, batch), options.seed, w.cancel);
+      by_light() ? evaluator.pilot(w.wavefront, w.automaton, records, some,
+                                   {.elevations = Evaluator::k_distance_elevations,
+                                    .azimuths = Evaluator::k_distance_rays / Evaluator::k_distance_elevations,
+                                    .parts = parts,
+                                    .seed = options.seed},
+                                   w.cancel)
+                 : evaluator.measure(w.wavefront, records, some, options.seed, w.cancel);
   w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
+  tell();
   at += done;
   took(BuildStep::measure, timer.milliseconds());
   spent(done, Evaluator::k_distance_rays);
   if (done < batch) return false;
-  if (at == list.size()) {
-    set_radii(w, false);
-    clamp_radii(w, until, false);
+  if (at < list.size()) return true;
+  set_radii(w, By::distance);
+  if (by_light()) {
+    pool(w);
+    set_radii(w, By::light);
+  }
+  if (status.relighting > 0) {
+    list_until(until);
+    stage = Stage::evaluate;
+  } else {
+    clamp_radii(w, until, tried_near());
     tried_radii = records.radii(evaluated);
     stage = Stage::thin;
-    ended(BuildStage::measure);
   }
+  ended(BuildStage::measure);
   return true;
 }
 
@@ -210,10 +228,13 @@ bool Cache::Impl::thin() {
   for (size_t i = 0; i < tried.size(); ++i) off_planes.push_back(off_plane(tried[i], tried_radii[i]));
   kept = thin_out(tried, tried_radii, off_planes,
                   {.share = options.thinning, .normal_tolerance = k_normal_tolerance});
+  const std::vector<vec4> pilots = records.pilots(evaluated);
   std::vector<Place> needed;
-  for (const uint32_t i : kept) needed.push_back(tried[i]);
+  std::vector<vec4> needed_pilots;
+  for (const uint32_t i : kept) needed.push_back(tried[i]), needed_pilots.push_back(pilots[i]);
   records.truncate(evaluated);
   pass().records = records.append(needed, status.pass);
+  records.set_pilots(evaluated, std::span(needed_pilots).first(pass().records));
   list_until(records.size());
   took(BuildStep::choose, host.milliseconds());
   level = level_done = rays_before = 0;
@@ -253,7 +274,7 @@ bool Cache::Impl::evaluate(const Work& w) {
                             .rays_before = rays_before,
                             .parts = parts,
                             .seed = options.seed,
-                            .hessian = options.metric == Metric::hessian && level == 0 && level_done == 0},
+                            .near = by_light() && level == 0 && level_done == 0},
                            w.cancel);
     w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
     tell();
@@ -323,9 +344,9 @@ void Cache::Impl::publish_level(const Work& w) {
   ++status.published;
   if (evaluated == until) return;
   // Ellipses are by the light; circles stand.
-  const bool anew = until > standing || options.metric == Metric::hessian;
+  const bool anew = until > standing || by_light();
   if (anew) {
-    set_radii(w, true);
+    set_radii(w, by_light() ? By::light : By::distance);
     hold();
   }
   evaluated = status.records = until;
@@ -337,7 +358,7 @@ void Cache::Impl::publish_level(const Work& w) {
     build_octree(w.wavefront);
   }
   took(BuildStep::octree, timer.milliseconds());
-  if (anew) clamp_radii(w, evaluated, true);
+  if (anew) clamp_radii(w, evaluated, options.nearest);
   tell();
 }
 
@@ -350,7 +371,7 @@ void Cache::Impl::bound_radii(const Work& w) {
 void Cache::Impl::end_pass(const Work& w) {
   // The levels' rays have met more than the first's. Records that are relit stay as they are: nobody would
   // fill gaps.
-  if (level > 0 && status.relighting == 0) clamp_radii(w, evaluated, true);
+  if (level > 0 && status.relighting == 0) clamp_radii(w, evaluated, options.nearest);
   set_scales();
   pass().complete = true;
   if (status.relighting > 0) return relight_pass();
@@ -397,33 +418,51 @@ float Cache::Impl::dark(std::span<const float> light, uint32_t count) const {
   return lit.empty() ? 1.0f : 0.1f * float(std::accumulate(lit.begin(), lit.end(), 0.0) / double(count));
 }
 
-float Cache::Impl::nearest_share(bool lit) const {
-  return options.nearest * (options.metric == Metric::hessian && !lit ? k_tried_near : 1);
+float Cache::Impl::tried_near() const { return options.nearest * (by_light() ? k_tried_near : 1); }
+
+void Cache::Impl::pool(const Work& w) {
+  const uint32_t count = until - evaluated;
+  if (count == 0) return;
+  StageTimer timer(w.wavefront);
+  build_octree(w.wavefront, until);
+  bind(resources);
+  resources.set("Pooled", pooled);
+  resources.set("pooled_texels", pooled);
+  const PoolPush push{evaluated, count};
+  const uint32_t groups = gpu::groups_for(count, 64);
+  w.wavefront.stream().dispatch(pooling, resources, push, groups, "records");
+  w.wavefront.stream().dispatch(pool_keep, resources, push, groups, "records");
+  w.wavefront.stream().run();
+  build_octree(w.wavefront);
+  took(BuildStep::radius, timer.milliseconds());
 }
 
-void Cache::Impl::set_radii(const Work& w, bool lit) {
+void Cache::Impl::set_radii(const Work& w, By by) {
   const uint32_t count = until - evaluated;
   if (count == 0) return;
   StageTimer timer(w.wavefront);
   bind(resources);
   const uint32_t groups = gpu::groups_for(count, 64);
-  if (lit && options.metric == Metric::hessian) {
+  if (by == By::light) {
+    std::vector<float> light;
+    for (const vec4& pilot : records.pilots(0)) light.push_back(pilot.w);
     const EllipsePush push{evaluated,
                            count,
                            k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
                            least.most,
-                           dark(records.luminances(), until),
-                           nearest_share(lit)};
+                           dark(light, until),
+                           options.nearest,
+                           tried_near()};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
   } else {
-    const RadiusPush push{evaluated, count, options.error, least.most, nearest_share(lit)};
+    const RadiusPush push{evaluated, count, options.error, least.most, tried_near()};
     w.wavefront.stream().dispatch(radius, resources, push, groups, "records");
   }
   w.wavefront.stream().run();
   took(BuildStep::radius, timer.milliseconds());
 }
 
-void Cache::Impl::clamp_radii(const Work& w, uint32_t count, bool lit) {
+void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near) {
   const auto index_first = [&](uint32_t n) {
     StageTimer timer(w.wavefront);
     build_octree(w.wavefront, n);
@@ -432,7 +471,7 @@ void Cache::Impl::clamp_radii(const Work& w, uint32_t count, bool lit) {
   if (count > evaluated) index_first(count);
   StageTimer timer(w.wavefront);
   clamping.clamp(
-      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, count, nearest_share(lit));
+      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, count, near);
   took(BuildStep::radius, timer.milliseconds());
   index_first(evaluated);
 }

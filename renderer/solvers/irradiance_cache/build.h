@@ -53,7 +53,8 @@ struct Cache::Impl {
   Records records;
   lookup::Octree octree;
   gpu::Buffer frame, candidates;
-  gpu::Kernel radius, ellipse, overlay;
+  gpu::Buffer pooled;  // only where radii are by the light
+  gpu::Kernel radius, ellipse, pooling, pool_keep, overlay;
   gpu::Resources resources;
   Evaluator evaluator;
   std::array<uint32_t, 16> routes{}, own_routes{};  // of the picture's paths, of the records'
@@ -125,8 +126,10 @@ struct Cache::Impl {
   void relight_pass();
   void forget_placement();
 
-  /// Irradiance, luminance: what records of less are held against, because what they miss is seen less. Of the
-  /// first `count`, which have light; `light`: Records::luminances().
+  /// Whether radii are by the light, of which pilot rays tell.
+  bool by_light() const { return options.metric == Metric::hessian; }
+  /// Irradiance, luminance: what records of less are held against, because what they miss is seen less. Of
+  /// the first `count`, which have light; `light`: Records::luminances().
   float dark(std::span<const float> light, uint32_t count) const;
   /// Records of complete passes.
   uint32_t complete() const { return ends.empty() ? 0 : ends.back(); }
@@ -176,16 +179,18 @@ struct Cache::Impl {
   bool next_level();
   /// Lights and radii of this level, for those who look up.
   void publish_level(const Work& work);
-  /// Radii of the records that are added in this pass, by what is known of them: `lit` after their first
-  /// level.
-  void set_radii(const Work& work, bool lit);
+  /// What pilots of the records of this pass tell is pooled with what those around them do.
+  void pool(const Work& work);
+  /// Radii of the records of this pass, by how far things are, or by the light too.
+  enum class By { distance, light };
+  void set_radii(const Work& work, By by);
   /// ... of all, also of earlier passes, by the records around, that they be no wider than they need be.
   void bound_radii(const Work& work);
   /// ... of the first `count`, those that are evaluated at least, by what is nearest to any of them; the
   /// octree is built anew.
-  void clamp_radii(const Work& work, uint32_t count, bool lit);
-  /// Greatest radius, of ellipses the lesser, over the distance of the nearest thing.
-  float nearest_share(bool lit) const;
+  void clamp_radii(const Work& work, uint32_t count, float near);
+  /// Greatest radius, of ellipses the lesser, over the distance of the nearest thing: of what is only tried.
+  float tried_near() const;
   /// The records of this pass, which end there, for the next piece of work on them.
   void list_until(uint32_t end);
   CachePass& pass() { return status.passes.back(); }

@@ -138,8 +138,16 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
       std::any_of(c.own_routes.begin(), c.own_routes.end(), [](uint32_t r) { return r != k_no_routes; });
   c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
   c.overlay = gpu::Kernel(device, compiler, "irradiance_cache/overlay.comp", defines(own, options.metric));
-  if (options.metric == Metric::hessian)
+  if (c.by_light()) {
     c.ellipse = gpu::Kernel(device, compiler, "irradiance_cache/ellipse.comp");
+    c.pooling = gpu::Kernel(device, compiler, "irradiance_cache/pool.comp", defines(own, options.metric));
+    c.pool_keep = gpu::Kernel(device, compiler, "irradiance_cache/pool_keep.comp");
+    c.pooled = gpu::Buffer(
+        device,
+        {.name = "pooled pilots", .bytes = uint64_t{options.most_records} * sizeof(vec4), .texel = true});
+    c.own_bytes += c.pooled.bytes();
+    c.count_bytes();
+  }
   clear();
 }
 

@@ -67,7 +67,7 @@ void Discontinuity::begin(const Frame& frame) {
   }
   gpu::make_texel_room(d.device, d.surfaces, "surfaces of the picture",
                        uint64_t{d.points()} * k_surface_texels * sizeof(vec4));
-  gpu::make_texel_room(d.device, d.lit, "irradiance of the picture", uint64_t{d.points()} * sizeof(vec2));
+  gpu::make_texel_room(d.device, d.lit, "irradiance of the picture", uint64_t{d.points()} * sizeof(vec3));
   gpu::make_texel_room(d.device, d.details, "discontinuity", uint64_t{d.first.back()} * sizeof(float));
   gpu::make_texel_room(d.device, d.taken, "points taken", uint64_t{d.points()} * sizeof(uint32_t));
   gpu::make_texel_room(d.device, d.taken_levels, "levels of points", uint64_t{d.points()} * sizeof(uint32_t));
@@ -199,9 +199,9 @@ std::vector<uint32_t> Discontinuity::taken() const {
   return levels_of;
 }
 
-void Discontinuity::set(const std::vector<vec4>& surfaces, const std::vector<vec2>& lit) {
+void Discontinuity::set(const std::vector<vec4>& surfaces, const std::vector<vec3>& lit) {
   impl_->surfaces.write(std::span<const vec4>(surfaces));
-  impl_->lit.write(std::span<const vec2>(lit));
+  impl_->lit.write(std::span<const vec3>(lit));
   impl_->done = points();
 }
 

@@ -90,7 +90,7 @@ class Discontinuity {
   /// For tests: the level of each point that was taken, levels() where none was; and surfaces
   /// (shared::k_surface_texels a point) and irradiance as if they had been seen and looked up.
   std::vector<uint32_t> taken() const;
-  void set(const std::vector<vec4>& surfaces, const std::vector<vec2>& lit);
+  void set(const std::vector<vec4>& surfaces, const std::vector<vec3>& lit);
 
  private:
   struct Impl;

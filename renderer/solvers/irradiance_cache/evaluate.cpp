@@ -9,23 +9,34 @@ namespace lucerna::irradiance_cache {
 
 using namespace shared;
 
+namespace {
+
+RecordPush push_of(const paths::Automaton& automaton, const EvaluateOptions& o) {
+  return {.elevations = o.elevations,
+          .azimuths = o.azimuths,
+          .rays_before = o.rays_before,
+          .parts = o.parts,
+          .state = automaton.after(0, paths::Event::diffuse),
+          .seed = o.seed};
+}
+
+}  // namespace
+
 struct Evaluator::Impl {
   gpu::Device& device;
   gpu::ShaderCompiler& compiler;
-  gpu::Kernel record, gather, distances, hessian;
+  gpu::Kernel record, gather, distances, hessian, near;
   gpu::Buffer first_hits, list;
   gpu::Resources resources;
 
   /// Rays of the listed records by `push` (whose range is filled in), a batch of the wavefront's slots at a
-  /// time, summed by `kernel`: `gather`, of what they bring, or `distances`, of their first hits alone.
-  /// `then` comes after it, where it is.
-  size_t gather_by(const gpu::Kernel& kernel, const gpu::Kernel* then, transport::Wavefront& wavefront,
-                   Records& records, std::span<const uint32_t> all, RecordPush push,
-                   const std::function<bool()>& cancel) {
+  /// time, summed by `kernels`, in turn. `hits_only`: these read nothing but the first hits.
+  size_t gather_by(std::initializer_list<const gpu::Kernel*> kernels, bool hits_only,
+                   transport::Wavefront& wavefront, Records& records, std::span<const uint32_t> all,
+                   RecordPush push, const std::function<bool()>& cancel) {
     wavefront.bind_paths(resources);
     records.bind(resources, Records::Use::gather);
     resources.set("RecordList", list);
-    const bool hits_only = &kernel == &distances;
     resources.set("first_hit_texels", hits_only ? wavefront.hits() : first_hits);
     const uint32_t cells = push.elevations * push.azimuths;
     gpu::Stream& stream = wavefront.stream();
@@ -40,8 +51,8 @@ struct Evaluator::Impl {
           .end =
               [&] {
                 const uint32_t groups = gpu::groups_for(push.records, 64);
-                stream.dispatch(kernel, resources, push, groups, "records");
-                if (then) stream.dispatch(*then, resources, push, groups, "records");
+                for (const gpu::Kernel* kernel : kernels)
+                  if (kernel) stream.dispatch(*kernel, resources, push, groups, "records");
               },
           .hits_only = hits_only};
       if (!hits_only)
@@ -54,7 +65,7 @@ struct Evaluator::Impl {
 };
 
 Evaluator::Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots)
-    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}}) {
+    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}, {}}) {
   impl_->record = gpu::Kernel(device, compiler, "irradiance_cache/record.comp");
   impl_->gather = gpu::Kernel(device, compiler, "irradiance_cache/gather.comp");
   impl_->distances = gpu::Kernel(device, compiler, "irradiance_cache/distances.comp");
@@ -74,23 +85,29 @@ size_t Evaluator::evaluate(transport::Wavefront& wavefront, const paths::Automat
   if (cells == 0 || cells > most)
     throw_error("irradiance cache", "{} x {} rays a record; there is room for 1 to {} paths", o.elevations,
                 o.azimuths, most);
-  if (o.hessian && !e.hessian) e.hessian = gpu::Kernel(e.device, e.compiler, "irradiance_cache/hessian.comp");
-  return e.gather_by(e.gather, o.hessian ? &e.hessian : nullptr, wavefront, records, list,
-                     {.elevations = o.elevations,
-                      .azimuths = o.azimuths,
-                      .rays_before = o.rays_before,
-                      .parts = o.parts,
-                      .state = automaton.after(0, paths::Event::diffuse),
-                      .seed = o.seed},
-                     cancel);
+  if (o.near && !e.near) e.near = gpu::Kernel(e.device, e.compiler, "irradiance_cache/near.comp");
+  return e.gather_by({&e.gather, o.near ? &e.near : nullptr}, false, wavefront, records, list,
+                     push_of(automaton, o), cancel);
 }
 
 size_t Evaluator::measure(transport::Wavefront& wavefront, Records& records, std::span<const uint32_t> list,
                           uint32_t seed, const std::function<bool()>& cancel) {
   Impl& e = *impl_;
-  constexpr uint32_t k_elevations = 4, k_azimuths = k_distance_rays / k_elevations;
-  return e.gather_by(e.distances, nullptr, wavefront, records, list,
-                     {.elevations = k_elevations, .azimuths = k_azimuths, .seed = seed}, cancel);
+  return e.gather_by({&e.distances}, true, wavefront, records, list,
+                     {.elevations = k_distance_elevations,
+                      .azimuths = k_distance_rays / k_distance_elevations,
+                      .seed = seed},
+                     cancel);
+}
+
+size_t Evaluator::pilot(transport::Wavefront& wavefront, const paths::Automaton& automaton, Records& records,
+                        std::span<const uint32_t> list, const EvaluateOptions& o,
+                        const std::function<bool()>& cancel) {
+  Impl& e = *impl_;
+  if (!e.hessian) e.hessian = gpu::Kernel(e.device, e.compiler, "irradiance_cache/hessian.comp");
+  RecordPush push = push_of(automaton, o);
+  push.pilot = 1;
+  return e.gather_by({&e.distances, &e.hessian}, false, wavefront, records, list, push, cancel);
 }
 
 }  // namespace lucerna::irradiance_cache

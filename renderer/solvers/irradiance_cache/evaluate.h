@@ -21,8 +21,9 @@ struct EvaluateOptions {
   uint32_t parts =
       0b1110;  ///< bit p: shared::k_part_* p is gathered; they must be enabled in the wavefront's frame
   uint32_t seed = 1;
-  /// Leaves the Hessian of these rays alone, too, where the ellipse of validity will be: of a first level.
-  bool hessian = false;
+  /// Says, too, how wide ellipses by the records' pilots may be for what these rays have met: of a first
+  /// level.
+  bool near = false;
 };
 
 class Evaluator {
@@ -45,7 +46,12 @@ class Evaluator {
   /// k_distance_rays rays each. Otherwise as evaluate().
   size_t measure(transport::Wavefront& wavefront, Records& records, std::span<const uint32_t> list,
                  uint32_t seed, const std::function<bool()>& cancel = {});
-  static constexpr uint32_t k_distance_rays = 64;
+  static constexpr uint32_t k_distance_rays = 64, k_distance_elevations = 4;
+  /// The same, and how the irradiance bends there (k_record_texels, texel 4): from rays that evaluate() never
+  /// uses, so that what is decided by them does not depend on the light that it brings.
+  size_t pilot(transport::Wavefront& wavefront, const paths::Automaton& automaton, Records& records,
+               std::span<const uint32_t> list, const EvaluateOptions& options,
+               const std::function<bool()>& cancel = {});
 
  private:
   struct Impl;

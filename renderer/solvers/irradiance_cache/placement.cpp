@@ -28,10 +28,14 @@ uint64_t mix(uint64_t x) {  // splitmix64's finalizer
   return x ^ x >> 31;
 }
 
-Place place_of(const vec4& place, const vec4& facing) {
+Place place_of(const vec4& place, const vec4& facing, uint32_t medium) {
   const auto bits = std::bit_cast<uint32_t>(facing.w);
-  return {vec3(place), vec3(facing), bits & ((1u << k_place_origin_shift) - 1), bits >> k_place_origin_shift,
-          place.w};
+  return {.position = vec3(place),
+          .normal = vec3(facing),
+          .facet = bits & ((1u << k_place_origin_shift) - 1),
+          .origin = bits >> k_place_origin_shift,
+          .medium = medium,
+          .reach = place.w};
 }
 
 /// When there are more than `most`: whole ranks (the first of every cluster, the second, ...) while they fit,
@@ -57,8 +61,8 @@ struct Placement::Impl {
   sort::PrefixSum prefix_sum;
   sort::RadixSort sorter;
   gpu::Kernel asks, collect_paths, collect_screen, bounds, grid, keys, heads, starts, choose, chosen, keep;
-  gpu::Buffer places, facings;       // of the candidates
-  gpu::Buffer asked, taken, before;  // while they are collected
+  gpu::Buffer places, facings, media;  // of the candidates
+  gpu::Buffer asked, taken, before;    // while they are collected
   gpu::Buffer entries[3], head_flags, head_sums, cluster_starts, ranks;
   gpu::Buffer grid_buffer, run_bounds, total, count;
   gpu::Resources resources;
@@ -89,14 +93,16 @@ struct Placement::Impl {
 
   /// Room for that many candidates; what there is stays.
   void reserve(gpu::Stream& stream, uint32_t candidates) {
-    const uint64_t bytes = uint64_t{candidates} * sizeof(vec4);
-    for (auto [buffer, name] : {std::pair{&places, "candidates"}, {&facings, "candidates' normals"}}) {
+    for (auto [buffer, name, each] : {std::tuple{&places, "candidates", sizeof(vec4)},
+                                      {&facings, "candidates' normals", sizeof(vec4)},
+                                      {&media, "candidates' media", sizeof(uint32_t)}}) {
+      const uint64_t bytes = (uint64_t{candidates} * each + 15) / 16 * 16;
       if (*buffer && buffer->bytes() >= bytes) continue;
       const uint64_t limit = device.info().limits.max_storage_buffer / 16 * 16;
       gpu::Buffer larger(device,
                          {.name = name, .bytes = std::max(bytes, std::min(2 * bytes, limit)), .texel = true});
       if (size > 0) {
-        stream.copy(*buffer, larger, size * sizeof(vec4));
+        stream.copy(*buffer, larger, size * each);
         stream.run();
       }
       *buffer = std::move(larger);
@@ -106,10 +112,12 @@ struct Placement::Impl {
   /// All candidates, in the order in which they were collected.
   std::vector<Place> read() const {
     std::vector<vec4> where(size), facing(size);
+    std::vector<uint32_t> medium(size);
     places.read(where.data(), size * sizeof(vec4));
     facings.read(facing.data(), size * sizeof(vec4));
+    media.read(medium.data(), size * sizeof(uint32_t));
     std::vector<Place> all;
-    for (uint32_t i = 0; i < size; ++i) all.push_back(place_of(where[i], facing[i]));
+    for (uint32_t i = 0; i < size; ++i) all.push_back(place_of(where[i], facing[i], medium[i]));
     return all;
   }
 
@@ -129,6 +137,7 @@ struct Placement::Impl {
     resources.set("TakenBefore", before);
     resources.set("Places", places);
     resources.set("Facings", facings);
+    resources.set("Media", media);
     stream.dispatch(kernel, resources, push, gpu::groups_for(push.count, 64), k_stage);
     stream.run();
     size += added;
@@ -161,8 +170,9 @@ uint32_t Placement::size() const { return impl_->size; }
 uint64_t Placement::bytes() const {
   const Impl& p = *impl_;
   uint64_t sum = 0;
-  for (const gpu::Buffer* b : {&p.places, &p.facings, &p.taken, &p.before, &p.entries[0], &p.entries[1],
-                               &p.entries[2], &p.head_flags, &p.head_sums, &p.cluster_starts, &p.ranks})
+  for (const gpu::Buffer* b :
+       {&p.places, &p.facings, &p.media, &p.taken, &p.before, &p.entries[0], &p.entries[1], &p.entries[2],
+        &p.head_flags, &p.head_sums, &p.cluster_starts, &p.ranks})
     sum += *b ? b->bytes() : 0;
   return sum;
 }
@@ -199,12 +209,15 @@ void Placement::add(gpu::Stream& stream, std::span<const Place> list) {
   Impl& p = *impl_;
   p.reserve(stream, p.size + uint32_t(list.size()));
   std::vector<vec4> places, facings;
+  std::vector<uint32_t> media;
   for (const Place& c : list) {
     places.emplace_back(c.position, c.reach);
     facings.emplace_back(c.normal, std::bit_cast<float>(c.facet | c.origin << k_place_origin_shift));
+    media.push_back(c.medium);
   }
   p.places.write(std::span<const vec4>(places), p.size);
   p.facings.write(std::span<const vec4>(facings), p.size);
+  p.media.write(std::span<const uint32_t>(media), p.size);
   p.size += uint32_t(list.size());
 }
 
@@ -342,7 +355,8 @@ std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const fl
     const vec3 away = p.position - places[k].position;
     const float covered = o.share * radii[k];
     const float turned = std::max(0.0f, 1 - dot(p.normal, places[k].normal));
-    return dot(away, away) <= covered * covered && turned <= o.share * o.share * o.normal_tolerance &&
+    return p.medium == places[k].medium && dot(away, away) <= covered * covered &&
+           turned <= o.share * o.share * o.normal_tolerance &&
            std::abs(dot(away, p.normal + places[k].normal)) <= 2 * off_planes[k];
   };
   for (const uint32_t i : order) {

@@ -13,6 +13,8 @@ using namespace shared;
 
 namespace {
 
+constexpr size_t k_pilot_texel = 4;
+
 constexpr uint64_t k_place_bytes = 16 * k_record_texels, k_light_bytes = 16 * k_part_count * k_part_texels;
 
 /// make_basis() of shaders/lib/math.glsl.
@@ -23,7 +25,8 @@ std::array<vec3, 2> basis(const vec3& n) {
 
 Record unpack(const vec4* place, const vec4* light) {
   Record r;
-  r.place = {vec3(place[0]), vec3(place[1])};
+  r.place = {.position = vec3(place[0]), .normal = vec3(place[1])};
+  r.place.medium = std::bit_cast<uint32_t>(place[5].x);
   r.radius = place[0].w;
   r.mean_distance = place[1].w;
   r.rays = std::bit_cast<uint32_t>(place[2].x);
@@ -79,6 +82,8 @@ uint32_t Records::append(std::span<const Place> places, uint32_t pass) {
         std::min(pass, k_record_pass) | p.origin << k_record_origin_shift | p.facet << k_record_facet_shift;
     texels.emplace_back(0.0f, 0.0f, 0.0f, std::bit_cast<float>(flags));
     texels.emplace_back(0.0f);
+    texels.emplace_back(0.0f);
+    texels.emplace_back(std::bit_cast<float>(p.medium), 0.0f, 0.0f, 0.0f);
   }
   records_.write(texels.data(), texels.size() * sizeof(vec4), size_ * k_place_bytes);
   const std::vector<vec4> dark(size_t{fitting} * k_part_count * k_part_texels, vec4(0));
@@ -155,6 +160,22 @@ std::vector<float> Records::luminances() const {
     for (uint32_t p = 0; p < k_part_count; ++p)
       all[i] += luminance(vec3(lights[(i * k_part_count + p) * k_part_texels]));
   return all;
+}
+
+std::vector<vec4> Records::pilots(uint32_t first) const {
+  std::vector<vec4> places(size_t{size_ - first} * k_record_texels);
+  records_.read(places.data(), places.size() * sizeof(vec4), first * k_place_bytes);
+  std::vector<vec4> all;
+  for (size_t at = k_pilot_texel; at < places.size(); at += k_record_texels) all.push_back(places[at]);
+  return all;
+}
+
+void Records::set_pilots(uint32_t first, std::span<const vec4> pilots) {
+  assert(first + pilots.size() <= size_);
+  std::vector<vec4> places(pilots.size() * k_record_texels);
+  records_.read(places.data(), places.size() * sizeof(vec4), first * k_place_bytes);
+  for (size_t i = 0; i < pilots.size(); ++i) places[i * k_record_texels + k_pilot_texel] = pilots[i];
+  records_.write(places.data(), places.size() * sizeof(vec4), first * k_place_bytes);
 }
 
 void Records::publish(gpu::Stream& stream) const {

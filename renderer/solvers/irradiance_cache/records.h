@@ -19,6 +19,7 @@ struct Place {
   vec3 position{0}, normal{0, 1, 0};
   uint32_t facet = 0;                         ///< geometric normal, shared::facet_pack()
   uint32_t origin = shared::k_origin_screen;  ///< shared::k_origin_*: what asked for it
+  uint32_t medium = 0;                        ///< that it lies in, as shared::PathState::medium
   float reach = 0;  ///< of a candidate: within that distance it stands for others [m]; records have none
 };
 
@@ -88,6 +89,9 @@ class Records {
   std::vector<float> radii(uint32_t first) const;
   /// Luminance of the irradiance, all parts together, of every record.
   std::vector<float> luminances() const;
+  /// What pilot rays have told of the records from `first` on (k_record_texels, texel 4); and back.
+  std::vector<vec4> pilots(uint32_t first) const;
+  void set_pilots(uint32_t first, std::span<const vec4> pilots);
   /// Under the names of shaders/irradiance_cache: for kernels that gather, or for those that look up. These
   /// read the light that publish() last left, so that what records gather from each other does not depend on
   /// which of them are done.

@@ -50,12 +50,13 @@ void Cache::Impl::relight_pass() {
     list_until(end);
     ms_before = 0, rays_at_end = 0;
     level = level_done = rays_before = 0;
-    stage = Stage::evaluate;
+    // Ellipses are by the light, which is another.
+    stage = by_light() ? Stage::measure : Stage::evaluate;
     return;
   }
   status.relighting = 0;
   if (stopped == StopReason::building) return next_pass();
-  if (options.metric != Metric::hessian) return finish(stopped);
+  if (!by_light()) return finish(stopped);
   // Ellipses are by the light: where they no longer reach is asked for as if it had come into view.
   count_anew();
   next_pass();
