@@ -1,14 +1,13 @@
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "app/interrupt.h"
 #include "app/verbs.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -26,9 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-std::atomic<bool> interrupted{false};
-void on_interrupt(int) { interrupted = true; }
 
 /// One line that is written over on a terminal; elsewhere a line a render.
 class ProgressLine {
@@ -107,13 +103,9 @@ int run(const BenchArguments& a) {
   const bench::Folder folder(path, matrix, identity);
   const Json before = earlier_report(path);
 
-  struct sigaction action {
-  }, previous{};
-  action.sa_handler = on_interrupt;
-  action.sa_flags = int(SA_RESETHAND);  // a second one ends the program at once
-  sigaction(SIGINT, &action, &previous);
+  const Interrupt interrupt;
   ProgressLine line(a.quiet);
-  const bench::Hooks hooks{.interrupted = [] { return interrupted.load(); },
+  const bench::Hooks hooks{.interrupted = [&] { return interrupt.signal() != 0; },
                            .progress = [&](const bench::Status& s) { line.show(s); },
                            .message = [&](const std::string& text) { line.message(text); }};
   // A scene is loaded for every render; what it warns of comes once.
@@ -123,9 +115,10 @@ int run(const BenchArguments& a) {
     if (level == log::Level::warning && warned.insert(text).second) line.message(text);
   });
   const bench::RunOptions options{
-      .device = a.device, .references = a.references.empty() ? path / "references" : fs::path(a.references)};
+      .device = a.device,
+      .references = a.references.empty() ? path / "references" : fs::path(a.references),
+      .scenes = a.scenes};
   const bench::RunSummary summary = bench::run_matrix(matrix, folder, options, hooks);
-  sigaction(SIGINT, &previous, nullptr);
   line.clear();
 
   Json about{{"version", LUCERNA_VERSION},
@@ -149,7 +142,7 @@ int run(const BenchArguments& a) {
     line.message(
         fmt::format("interrupted; {} of {} renders are kept in {}: the same command goes on with them",
                     summary.results.size(), total, path.string()));
-    return 130;
+    return interrupt.signal() ? interrupt.status() : 1;
   }
   if (summary.measured == 0)
     line.message(

@@ -53,8 +53,8 @@ Json figures(const Candidate& c, const Timing& t) {
 int bench_interpolation(const BenchInterpolationArguments& a) {
   std::vector<Candidate> candidates;
   for (const Way& way : k_ways) {
-    auto r = std::make_unique<session::Renderer>(
-        session::RendererOptions{.device = a.device, .validation = false, .shaders = {}, .defines = {}});
+    auto r = std::make_unique<session::Renderer>(session::RendererOptions{
+        .device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
     r->set_size(a.width, a.height);
     r->load(a.scene);
     std::vector<std::string> settings{"components.secondary=cache", "components.tertiary=cache",

@@ -13,7 +13,7 @@
 namespace lucerna::app {
 
 int bench_rays(const BenchRaysArguments& a) {
-  const scene::Scene scene = scene::load(a.scene);
+  const scene::Scene scene = scene::load(a.scene, a.scenes);
   raybench::FlatFile flat{.name = scene.name, .scene = upload::flatten(scene), .tree = {}, .camera = {}};
   if (flat.scene.triangles.empty()) throw Error(a.scene, "there are no triangles to trace");
   flat.camera = scene::starting_camera(scene, a.camera);

@@ -1,5 +1,6 @@
 // What a person starts: the viewer, or a batch verb.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -14,6 +15,8 @@
 
 namespace lucerna::app {
 namespace {
+
+constexpr double k_gib = 1024.0 * 1024 * 1024;
 
 std::string settings_help() {
   std::string text = "\nSettings for --set KEY=VALUE (and settings.json beside a scene):\n";
@@ -36,8 +39,32 @@ int main_checked(int argc, char** argv) {
   std::vector<std::string> set;
   app.add_option("--set", set, "viewer: KEY=VALUE; see below")->allow_extra_args(false);
   app.add_option("--script", script,
-                 "viewer: file with commands, one a line; 'help' under the log lists them");
+                 "viewer: file with commands, one a line; 'help' under the log lists them. Its end ends the "
+                 "program, with 1 after an error");
   app.add_flag("-v,--verbose", verbose, "say more on standard error");
+  bool stay = false;
+  // CLI11's ranges let a NaN through.
+  const CLI::Validator finite(
+      [](std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && std::isfinite(value)
+                   ? std::string()
+                   : fmt::format("'{}': expected a finite number", text);
+      },
+      "");
+  app.add_flag("--stay", stay, "viewer: the window stays when the script has ended");
+  scene::LoadOptions scenes;
+  double scene_memory = double(scene::k_scene_bytes) / k_gib;
+  const auto add_scene_options = [&](CLI::App* verb) {
+    verb->add_flag("--allow-outside", scenes.outside,
+                   "let scenes name files outside their folder (\"..\", absolute paths, symbolic links)");
+    verb->add_option("--scene-memory", scene_memory,
+                     "GiB that a scene's files, images and geometry may take, every instance counted; a "
+                     "scene that asks for more is refused")
+        ->check(finite & CLI::Range(0.001, 1e6))
+        ->capture_default_str();
+  };
+  add_scene_options(&app);
 
   RenderArguments r;
   CLI::App* render_verb = app.add_subcommand("render", "render a scene to files, without a window");
@@ -68,6 +95,7 @@ int main_checked(int argc, char** argv) {
                           "write the records of the irradiance cache, once they are complete");
   render_verb->add_option("--stats", r.stats, "write figures of the run as JSON");
   render_verb->add_flag("--quiet", r.quiet, "no progress line");
+  add_scene_options(render_verb);
   render_verb->footer(settings_help());
 
   std::string info_scene;
@@ -75,6 +103,7 @@ int main_checked(int argc, char** argv) {
   CLI::App* info_verb = app.add_subcommand("info", "say what is in a scene");
   info_verb->add_option("SCENE", info_scene, "glTF scene")->required();
   info_verb->add_flag("--json", info_json, "as JSON");
+  add_scene_options(info_verb);
   CLI::App* devices_verb = app.add_subcommand("devices", "list the Vulkan devices");
   devices_verb->add_flag("--json", devices_json, "as JSON");
 
@@ -84,7 +113,8 @@ int main_checked(int argc, char** argv) {
   compare_verb->add_option("B", c.b, "reference")->required();
   compare_verb->add_option("--layer", c.layer, "layer instead of R, G, B: primary, secondary, ...");
   compare_verb->add_flag("--json", c.json, "as JSON");
-  compare_verb->add_option("--max-relmse", c.max_relmse, "exit with 1 when the relative MSE is above this");
+  compare_verb->add_option("--max-relmse", c.max_relmse, "exit with 1 when the relative MSE is above this")
+      ->check(finite);
 
   BenchRaysArguments b;
   BenchArguments bm;
@@ -115,6 +145,7 @@ int main_checked(int argc, char** argv) {
   bench_verb->add_option("--compare", bm.compare, "OLD NEW: ratios of two reports (folders or report.json)")
       ->expected(2);
   bench_verb->add_option("--page", bm.page, "make report.html of a report folder again, measuring nothing");
+  add_scene_options(bench_verb);
   bench_verb->footer(bench::k_matrix_help);
   CLI::App* rays_verb =
       bench_verb->add_subcommand("rays", "rays a second of every tracer, and of Embree as it comes");
@@ -139,6 +170,7 @@ int main_checked(int argc, char** argv) {
   rays_verb->add_option("--flat", b.flat, "write the flattened scene for lucerna-raybench");
   rays_verb->add_option("--device", b.device, "as above");
   rays_verb->add_flag("--json", b.json, "as JSON");
+  add_scene_options(rays_verb);
   // What the small benches share.
   const auto measured = [](CLI::App* verb, auto& a, int least_repeats, const char* seed_of) {
     verb->add_option("--repeats", a.repeats, "measurements of each figure")
@@ -183,6 +215,7 @@ int main_checked(int argc, char** argv) {
       ->capture_default_str();
   interpolation_verb->add_option("--json", bi.json, "file to write the figures to");
   interpolation_verb->add_option("--device", bi.device, "as above");
+  add_scene_options(interpolation_verb);
   app.require_subcommand(0, 1);
 
   try {
@@ -191,9 +224,11 @@ int main_checked(int argc, char** argv) {
     return app.exit(e) == 0 ? 0 : 1;
   }
   if (verbose) log::set_console_level(log::Level::info);
+  scenes.most_bytes = uint64_t(scene_memory * k_gib);
+  r.scenes = b.scenes = bi.scenes = bm.scenes = scenes;
   if (r.device.empty()) r.device = device;
   if (*render_verb) return render(r);
-  if (*info_verb) return info(info_scene, info_json);
+  if (*info_verb) return info(info_scene, info_json, scenes);
   if (*devices_verb) return devices(devices_json);
   if (*compare_verb) return compare(c);
   if (b.device.empty()) b.device = device;
@@ -209,14 +244,16 @@ int main_checked(int argc, char** argv) {
     for (int i = 0; i < argc; ++i) bm.command += std::string(i ? " " : "") + (i ? argv[i] : "lucerna");
     return bench_matrix(bm);
   }
-  session::Session session({.device = device, .validation = false, .shaders = {}});
+  session::Session session({.device = device, .validation = false, .shaders = {}, .scenes = scenes});
   ui::ViewerOptions options;
   options.scene = scene;
   options.set = set;
+  options.stay = stay;
   if (!script.empty()) {
     std::ifstream in(script);
     if (!in) throw Error(script, "cannot be read");
     for (std::string line; std::getline(in, line);) options.script.push_back(line);
+    if (options.script.empty()) options.script.emplace_back();  // an empty script ends, too
     options.script_name = script;
   }
   return ui::run_viewer(session, options);

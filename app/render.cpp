@@ -1,11 +1,11 @@
-#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/interrupt.h"
 #include "app/verbs.h"
 #include "base/file.h"
 #include "base/log.h"
@@ -16,15 +16,13 @@
 namespace lucerna::app {
 namespace {
 
-std::atomic<bool> interrupted{false};
-void on_interrupt(int) { interrupted = true; }
-
 std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
   unsigned long w = 0, h = 0;
   char rest = 0;
   if (text.find('-') != std::string::npos || std::sscanf(text.c_str(), "%lux%lu%c", &w, &h, &rest) != 2 ||
-      !w || !h || w > 65536 || h > 65536)
-    throw_error("--size", "'{}': expected WIDTHxHEIGHT, each from 1 to 65536, such as 1280x720", text);
+      !w || !h || w > film::k_max_side || h > film::k_max_side)
+    throw_error("--size", "'{}': expected WIDTHxHEIGHT, each from 1 to {}, such as 1280x720", text,
+                film::k_max_side);
   return {uint32_t(w), uint32_t(h)};
 }
 
@@ -242,7 +240,11 @@ int render(const RenderArguments& a) {
   if (!a.stats.empty()) check_writable(a.stats);
   if (!a.ledger.empty()) check_writable(a.ledger);
   if (!a.cache_save.empty()) check_writable(a.cache_save);
-  session::Renderer r({.device = a.device, .validation = false, .shaders = {}, .defines = {}});
+  if (a.seconds && !(std::isfinite(*a.seconds) && *a.seconds > 0))
+    throw_error("--time", "'{}': expected a positive number of seconds", *a.seconds);
+  const double limit = a.seconds.value_or(0);  // 0: none
+  session::Renderer r(
+      {.device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
   r.set_size(width, height);
   // What the command line says stands above the scene's own settings; checked before the scene is loaded.
   std::vector<std::pair<std::string, std::string>> changes;
@@ -263,27 +265,23 @@ int render(const RenderArguments& a) {
     probe.set(key, value, key == "samples" && a.samples != -1 ? "--samples" : "--set");
   for (const auto& [key, value] : changes)
     if (key == "tracer" || key == "path.batch") r.settings().set(key, value);
-  if (a.seconds < 0) throw Error("--time", "expected a positive number of seconds");
 
-  struct sigaction action {
-  }, before{};
-  action.sa_handler = on_interrupt;
-  sigaction(SIGINT, &action, &before);
+  const Interrupt interrupt;
   const bool terminal = !a.quiet && isatty(2);
   try {
     r.load(a.scene, [&](float fraction, const std::string& what) {
       if (terminal) std::fprintf(stderr, "\rloading %3.0f %%  %-40.40s", 100 * fraction, what.c_str());
-      return !interrupted;
+      return !interrupt.signal();
     });
   } catch (const Error&) {
-    if (!interrupted) throw;
+    if (!interrupt.signal()) throw;
     std::fprintf(stderr, "%slucerna: interrupted while loading; there is nothing to write\n",
                  terminal ? "\n" : "");
-    return 130;
+    return interrupt.status();
   }
   if (terminal) std::fprintf(stderr, "\r%-60s\r", "");
   for (const auto& [key, value] : changes) r.settings().set(key, value, "--set");
-  if (a.seconds > 0 && a.samples == -1) r.settings().set("samples", "1048576");
+  if (a.seconds && a.samples == -1) r.settings().set("samples", "1048576");
   r.apply_settings();
   if (!a.camera.empty()) r.choose_camera(a.camera);
   if (!a.reference.empty()) r.set_reference(a.reference);
@@ -298,17 +296,20 @@ int render(const RenderArguments& a) {
     if (cache_wanted && r.cache()->ready()) r.save_cache(a.cache_save), cache_wanted = false;
   };
   save_cache();
-  while ((picture || cache_wanted) && !r.done() && !interrupted &&
-         (a.seconds <= 0 || timer.seconds() < a.seconds)) {
+  bool covered = false;  // every pixel has a sample
+  while ((picture || cache_wanted) && !r.done() && !interrupt.signal() &&
+         (!a.seconds || timer.seconds() < limit)) {
     if (!r.step()) break;
     save_cache();
+    if (!covered && r.samples() > 0) log::info("a sample of every pixel after {:.2f} s", timer.seconds());
+    covered = r.samples() > 0;
     if (terminal && since_line.seconds() > 0.2)
-      print_progress(r, timer.seconds(), a.seconds, false), since_line.restart();
+      print_progress(r, timer.seconds(), limit, false), since_line.restart();
   }
   const double wall = timer.seconds();
   r.finish_ledger();
-  if (terminal) print_progress(r, wall, a.seconds, true);
-  sigaction(SIGINT, &before, nullptr);
+  if (terminal) print_progress(r, wall, limit, true);
+  const bool interrupted = interrupt.signal() != 0;
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
   if (picture && r.adaptive() && !interrupted) report_unreached(*r.adaptive());
@@ -320,7 +321,7 @@ int render(const RenderArguments& a) {
   if (cache_wanted)
     std::fprintf(stderr, "lucerna: %s: not written; it was still being built\n", a.cache_save.c_str());
   if (r.stats().dropped) log::warning("{} contributions were not finite and were dropped", r.stats().dropped);
-  return interrupted ? 130 : 0;
+  return interrupted ? interrupt.status() : 0;
 }
 
 }  // namespace lucerna::app

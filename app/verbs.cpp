@@ -9,8 +9,8 @@
 
 namespace lucerna::app {
 
-int info(const std::string& file, bool json) {
-  const scene::Scene scene = scene::load(file);
+int info(const std::string& file, bool json, const scene::LoadOptions& scenes) {
+  const scene::Scene scene = scene::load(file, scenes);
   if (json)
     std::printf("%s\n", scene::describe(scene).dump(2).c_str());
   else

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/io/load.h"
+
 namespace lucerna::app {
 
 struct RenderArguments {
@@ -14,14 +16,15 @@ struct RenderArguments {
   std::string cache_load, cache_save;  ///< files of irradiance caches
   int64_t samples = -1;                ///< -1: the settings'; with `error`, the most that a pixel may get
   std::optional<double> error;         ///< relative error for every tile: adaptive sampling
-  double seconds = 0;                  ///< 0: no time limit
+  std::optional<double> seconds;       ///< time limit
   int64_t seed = -1;
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;
+  scene::LoadOptions scenes;  ///< what scenes may read and take; likewise below
 };
 int render(const RenderArguments& arguments);
 
-int info(const std::string& scene, bool json);
+int info(const std::string& scene, bool json, const scene::LoadOptions& scenes);
 int devices(bool json);
 
 struct BenchRaysArguments {
@@ -31,6 +34,7 @@ struct BenchRaysArguments {
   int repeats = 5;
   uint32_t width = 480, height = 270, samples = 16;  ///< of the path-traced frame; no samples: no frame
   bool json = false;
+  scene::LoadOptions scenes;
 };
 int bench_rays(const BenchRaysArguments& arguments);
 
@@ -59,6 +63,7 @@ struct BenchInterpolationArguments {
   std::vector<std::string> set;
   int repeats = 7;
   std::string json;  ///< file to write the figures to; empty: none
+  scene::LoadOptions scenes;
 };
 int bench_interpolation(const BenchInterpolationArguments& arguments);
 
@@ -71,6 +76,7 @@ struct BenchArguments {
   std::string command;               ///< as typed, for the report
   std::vector<std::string> compare;  ///< two reports: nothing is measured
   std::string page;                  ///< a report folder whose page is to be made again
+  scene::LoadOptions scenes;
 };
 int bench_matrix(const BenchArguments& arguments);
 

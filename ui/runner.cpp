@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <utility>
 
 #include "base/error.h"
+#include "film/io/image_file.h"
 
 namespace lucerna::ui {
 namespace {
@@ -19,16 +21,54 @@ constexpr double k_longest_wait = 300;   // seconds
 constexpr double k_between_moves = 1.5;  // seconds
 const std::vector<std::string> k_buttons{"left", "right", "middle"};
 
+/// That the picture of a window may be written there. Throws Error where something else is.
+std::string checked_target(const std::string& file) {
+  if (std::error_code error; std::filesystem::exists(file, error)) {
+    bool ours = false;
+    try {
+      ours = film::read_metadata(file).count(k_window_mark) > 0;
+    } catch (const Error&) {
+    }
+    if (!ours) throw Error(file, "is there already and no picture of the window: another name is needed");
+  }
+  return file;
+}
+
+/// A name of the working folder that no file has.
+std::string free_name() {
+  const std::string name = fmt::format("lucerna-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
+  std::string file = name + ".png";
+  std::error_code error;
+  for (int n = 2; std::filesystem::exists(file, error); ++n) file = fmt::format("{}-{}.png", name, n);
+  return file;
+}
+
 int button_of(const commands::Arguments& a) {
   const std::string name = a.has("button") ? a.text("button") : "left";
   return static_cast<int>(std::find(k_buttons.begin(), k_buttons.end(), name) - k_buttons.begin());
 }
 
+/// The first script in the row of calls.
+const Call& root(const Call& call) {
+  const Call* at = &call;
+  while (at->by) at = at->by.get();
+  return *at;
+}
+
+std::string one_form(const std::string& file) {
+  std::error_code error;
+  return std::filesystem::weakly_canonical(file, error).string();
+}
+
 }  // namespace
 
-Runner::Runner(Ui& ui, const std::vector<std::string>& lines, const std::string& name) : ui_(ui) {
+Runner::Runner(Ui& ui, const std::vector<std::string>& lines, const std::string& name, bool stay) : ui_(ui) {
   add_commands();
+  if (lines.empty()) return;
+  const auto call = std::make_shared<const Call>(Call{.file = one_form(name), .by = {}, .own = true});
   for (Step& step : parse_script(ui_.registry, lines, name)) steps_.push_back(std::move(step));
+  if (!stay) steps_.push_back({"quit", name + ": end"});
+  for (Step& step : steps_) step.call = call;
 }
 
 void Runner::add_commands() {
@@ -38,27 +78,44 @@ void Runner::add_commands() {
   auto& registry = ui_.registry;
   registry.add(
       {.name = "quit",
-       .help = "Ends the program.",
+       .help = "Ends the program. In a script: once all that was commanded is done; without a status with 1 "
+               "after an error, else with 0.",
        .parameters = {{.name = "status", .type = Type::integer, .lo = 0, .hi = 255, .optional = true}},
        .run =
            [this](const Arguments& a) {
-             ui_.status = a.has("status") ? static_cast<int>(a.integer("status")) : 0;
+             settled_ = 0;
+             if (!in_script_) ui_.status = a.has("status") ? static_cast<int>(a.integer("status")) : 0;
+           },
+       .done =
+           [this](const Arguments& a) {
+             ui_.wake();
+             // Errors of what was done last are read a frame later than that it was done.
+             const bool settled = ui_.snapshot ? ui_.up_to_date() : ui_.session.commands() == 0;
+             settled_ = settled ? settled_ + 1 : 0;
+             if (settled_ < 2) return false;
+             const bool complains = ui_.error_count > root(*steps_.front().call).errors;
+             ui_.status = a.has("status") ? static_cast<int>(a.integer("status")) : complains ? 1 : 0;
+             return true;
            },
        .recorded = false});
-  registry.add({.name = "screenshot",
-                .help = "Writes the window, panels and all, as PNG; without a name in the working folder.",
-                .parameters = {{.name = "file", .type = Type::file, .choices = {".png"}, .optional = true}},
-                .run =
-                    [this](const Arguments& a) {
-                      const std::string file = a.has("file")
-                                                   ? a.text("file")
-                                                   : fmt::format("lucerna-{:%Y%m%d-%H%M%S}.png",
-                                                                 fmt::localtime(std::time(nullptr)));
-                      ui_.shot = {file, 3};
-                      ui_.wake(4);
-                    },
-                .done = [this](const Arguments&) { return ui_.shot.file.empty(); },
-                .recorded = false});
+  registry.add(
+      {.name = "screenshot",
+       .help = "Writes the window, panels and all, as PNG; without a name in the working folder, under "
+               "one that no file has. A file that is there already is replaced only if it is such a "
+               "picture.",
+       .parameters =
+           {{.name = "file", .type = Type::file, .choices = {".png"}, .optional = true, .writes = true}},
+       .run =
+           [this](const Arguments& a) {
+             ui_.shot = {a.has("file") ? checked_target(a.text("file")) : free_name(), 3};
+             ui_.wake(4);
+           },
+       .done =
+           [this](const Arguments&) {
+             if (ui_.shot.failed) throw Error("", "nothing was written");
+             return ui_.shot.file.empty();
+           },
+       .recorded = false});
   registry.add(
       {.name = "measure",
        .help = "In a script: measures frame times and answers to camera moves; prints one JSON line.",
@@ -69,12 +126,7 @@ void Runner::add_commands() {
   registry.add({.name = "script.run",
                 .help = "Carries out the commands of a file.",
                 .parameters = {{.name = "file", .type = Type::file, .choices = {".lucerna"}}},
-                .run =
-                    [this](const Arguments& a) {
-                      auto steps = parse_script(ui_.registry, read_script(a.text("file")), a.text("file"));
-                      // After the step that is being carried out, which stands in front.
-                      steps_.insert(steps_.begin() + (steps_.empty() ? 0 : 1), steps.begin(), steps.end());
-                    },
+                .run = [this](const Arguments& a) { run_script(a.text("file")); },
                 .recorded = false});
   registry.add({.name = "drop",
                 .help = "Does what dropping the file on the window does.",
@@ -131,7 +183,7 @@ void Runner::advance() {
         return false;
       } catch (const Error& error) {
         log::error("{}", error.what());
-        ui_.status = 1;
+        give_up(step);
         return true;
       }
     }();
@@ -144,7 +196,14 @@ void Runner::advance() {
 bool Runner::carry_out(const Step& step) {
   if (!current_.command) {
     began_ = ui_.now, frames_ = 0;
-    current_ = ui_.run(step.line, 0, step.where);
+    in_script_ = true;
+    try {
+      current_ = ui_.run(step.line, 0, step.where);
+    } catch (...) {
+      in_script_ = false;
+      throw;
+    }
+    in_script_ = false;
     ui_.wake();
     if (current_.command->done) return false;
   } else {
@@ -156,6 +215,27 @@ bool Runner::carry_out(const Step& step) {
   }
   current_ = {};
   return true;
+}
+
+void Runner::give_up(const Step& step) {
+  const Call& script = root(*step.call);
+  if (script.own) ui_.status = 1;
+  current_ = {};
+  measure_.reset();
+  std::erase_if(steps_, [&, script = &script](const Step& s) { return &root(*s.call) == script; });
+}
+
+void Runner::run_script(const std::string& file) {
+  const std::shared_ptr<const Call> by = in_script_ ? steps_.front().call : nullptr;
+  const std::string form = one_form(file);
+  for (const Call* call = by.get(); call; call = call->by.get())
+    if (call->file == form) throw Error(file, "is being carried out already: a script cannot run itself");
+  const auto call =
+      std::make_shared<const Call>(Call{.file = form, .by = by, .own = false, .errors = ui_.error_count});
+  auto steps = parse_script(ui_.registry, read_script(file), file);
+  for (Step& step : steps) step.call = call;
+  // After the step that is being carried out, which stands in front.
+  steps_.insert(steps_.begin() + (steps_.empty() ? 0 : 1), steps.begin(), steps.end());
 }
 
 /// A line at the console acts at once; its failures are for the one who typed it, not for the strip.

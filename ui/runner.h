@@ -8,11 +8,14 @@
 
 namespace lucerna::ui {
 
+/// Metadata that tells a picture of the window from other files.
+inline constexpr const char* k_window_mark = "window";
+
 class Runner {
  public:
-  /// Registers the commands of script.h at the workspace and reads a script (see parse_script). The
-  /// workspace's commands refer to this object from now on.
-  Runner(Ui& ui, const std::vector<std::string>& lines, const std::string& name);
+  /// Registers the commands of script.h at the workspace and reads a script (see parse_script); `stay`: its
+  /// end does not end the program. The workspace's commands refer to this object from now on.
+  Runner(Ui& ui, const std::vector<std::string>& lines, const std::string& name, bool stay = false);
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
@@ -37,6 +40,9 @@ class Runner {
 
   /// True when the step is done; false: to be asked again.
   bool carry_out(const Step& step);
+  /// Ends the script that the step belongs to, and the program if it is its own.
+  void give_up(const Step& step);
+  void run_script(const std::string& file);
   void measure(double seconds);
   bool measured();
   void console(const std::string& line);
@@ -47,7 +53,9 @@ class Runner {
   commands::Line current_;  ///< begun and not done
   double began_ = 0;        ///< when
   std::optional<Measure> measure_;
-  int frames_ = 0;  ///< drawn since the step began
+  int frames_ = 0;          ///< drawn since the step began
+  bool in_script_ = false;  ///< a command is run for a step, not for a person
+  int settled_ = 0;         ///< times in a row that nothing was left to do
 };
 
 }  // namespace lucerna::ui

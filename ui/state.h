@@ -139,8 +139,9 @@ struct Ui : commands::Workspace {
   bool moving = false;               ///< something on screen moves by itself
   std::optional<int> status;         ///< the program's, when it is to end with one
   struct Shot {
-    std::string file;  ///< "" for none
-    int settle = 0;    ///< frames to draw before it is taken
+    std::string file;     ///< "" for none
+    int settle = 0;       ///< frames to draw before it is taken
+    bool failed = false;  ///< the last one could not be written
   } shot;
   std::optional<std::pair<int, int>> size;  ///< window size wanted
   std::optional<float> scale;               ///< of text and controls wanted

@@ -25,7 +25,7 @@ class Viewer {
   Viewer(session::Session& session, const ViewerOptions& options)
       : options_(options),
         ui_(session),
-        runner_(ui_, options.script, options.script_name),  // before a window is opened
+        runner_(ui_, options.script, options.script_name, options.stay),  // before a window is opened
         settings_(checked(ui_.registry, options.set)),
         window_(options.width, options.height, options.hidden, options.scale) {
     if (remembers()) recall(ui_);
@@ -202,11 +202,11 @@ class Viewer {
     uint32_t width = 0, height = 0;
     const std::vector<uint8_t> rgba = window_.read(width, height);
     try {
-      film::write_png(file, width, height, rgba, {});
+      film::write_png(file, width, height, rgba, {{k_window_mark, LUCERNA_VERSION}});
       log::info("window saved as {}", std::filesystem::absolute(file).string());
     } catch (const Error& error) {
       log::error("{}", error.what());
-      if (runner_.running()) ui_.status = 1;
+      ui_.shot.failed = true;
     }
   }
 

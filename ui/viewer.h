@@ -18,10 +18,12 @@ struct ViewerOptions {
   std::vector<std::string> set;        ///< settings, KEY=VALUE each, above those of the scene
   std::vector<std::string> script;     ///< steps carried out in order, one command a line; see script.h
   std::string script_name = "script";  ///< for messages: "NAME: line 3: ..."
+  bool stay = false;                   ///< the window stays open when the script has ended
 };
 
-/// Opens the window and runs until it is closed or the script quits. Returns the exit status: 0, the value
-/// given to the script's `quit`, or 1 when a scripted step failed (its message is logged). Throws Error when
+/// Opens the window and runs until it is closed or the script quits or ends. Returns the exit status: 0, the
+/// value given to the script's `quit`, or 1 when a scripted step failed or, where `quit` was given none, when
+/// there was an error (messages are logged). Throws Error when
 /// no display or no OpenGL 3.3 can be had, or when the script does not parse.
 int run_viewer(session::Session& session, const ViewerOptions& options);
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -15,13 +16,22 @@ namespace lucerna {
 namespace fs = std::filesystem;
 
 void write_file(const fs::path& file, const std::string& bytes) {
-  const fs::path temporary = file.parent_path() / fmt::format(".{}.{}", file.filename().string(), getpid());
-  const auto fail = [&](int code) {
-    unlink(temporary.c_str());
+  const auto refuse = [&](int code) {
     throw_error(file.string(), "cannot be written: {}", std::strerror(code));
   };
-  const int handle = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (handle < 0) fail(errno);
+  // A name that no file has, nor a link.
+  static std::atomic<uint32_t> counter = 0;
+  fs::path temporary;
+  int handle = -1;
+  do {
+    temporary = file.parent_path() / fmt::format(".{}.{}-{}", file.filename().string(), getpid(), counter++);
+    handle = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (handle < 0 && errno == EEXIST);
+  if (handle < 0) refuse(errno);
+  const auto fail = [&](int code) {
+    unlink(temporary.c_str());
+    refuse(code);
+  };
   for (size_t done = 0; done < bytes.size();) {
     const ssize_t n = ::write(handle, bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;

@@ -27,9 +27,9 @@ SettingValues merged(const Matrix& matrix, const SceneEntry& scene, const Settin
 
 /// A renderer of its own with the scene loaded and the settings applied. A scene warns once in a bench.
 std::unique_ptr<Renderer> make_renderer(const SceneEntry& scene, const SettingValues& values,
-                                        const std::string& device) {
-  auto r = std::make_unique<Renderer>(
-      session::RendererOptions{.device = device, .validation = false, .shaders = {}, .defines = {}});
+                                        const RunOptions& options) {
+  auto r = std::make_unique<Renderer>(session::RendererOptions{
+      .device = options.device, .validation = false, .shaders = {}, .defines = {}, .scenes = options.scenes});
   r->set_size(scene.width, scene.height);
   for (const char* key : {"tracer", "path.batch"})
     if (const auto at = values.find(key); at != values.end()) r->settings().set(key, at->second);
@@ -165,7 +165,7 @@ ReferenceInfo Run::make_reference(const SceneEntry& scene, const std::string& ke
   values["sampling.mode"] = "uniform";
   values["seed"] = std::to_string(matrix_.reference_seed);
   values["samples"] = std::to_string(scene.reference_samples);
-  const auto r = make_renderer(scene, values, options_.device);
+  const auto r = make_renderer(scene, values, options_);
   while (!r->done() && step(*r)) tell(fraction_done(*r, {}, 0));
   ReferenceInfo info{.file = reference_file(options_.references, scene),
                      .key = key,
@@ -196,7 +196,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   const Timer setup;
   const film::FilmImage truth = film::read_exr(reference.file);
   const film::ReferencePair halves = read_halves(truth, reference.file.string());
-  const auto r = make_renderer(scene, values, options_.device);
+  const auto r = make_renderer(scene, values, options_);
   r->set_reference(reference.file);
   // The device compiles its kernels when they first run, and the machine's clocks and caches warm up.
   while (!warm(*r, setup.seconds()) && !r->done() && step(*r)) tell(0);

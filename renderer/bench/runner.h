@@ -8,6 +8,7 @@
 #include "bench/folder.h"
 #include "bench/matrix.h"
 #include "bench/reference.h"
+#include "scene/io/load.h"
 
 namespace lucerna::bench {
 
@@ -27,6 +28,7 @@ struct Hooks {
 struct RunOptions {
   std::string device;  ///< as gpu::DeviceOptions
   std::filesystem::path references;
+  scene::LoadOptions scenes = {};  ///< what scenes may read and take
 };
 
 struct RunSummary {

@@ -14,14 +14,14 @@ void Workspace::add_cache_commands() {
   const Parameter limit = time_limit();
   registry.add({.name = "cache.save",
                 .help = "Writes the records of the irradiance cache for cache.load, as soon as they are "
-                        "complete; a script waits for that.",
-                .parameters = {file_named({".cache"}), limit},
+                        "complete; a script waits for that, and fails when it cannot be.",
+                .parameters = {file_to_write({".cache"}), limit},
                 .run =
                     [this](const Arguments& a) {
                       needs_scene();
-                      session.save_cache(a.text("file"));
+                      saved_ = session.save_cache(a.text("file"));
                     },
-                .done = [this](const Arguments&) { return !session.saving_cache(); }});
+                .done = [this](const Arguments&) { return saved(); }});
   registry.add({.name = "cache.load",
                 .help = "Takes the records of the irradiance cache from a file of the same scene, lit alike, "
                         "and adds what this view is missing.",
@@ -53,8 +53,7 @@ void Workspace::add_cache_commands() {
                     "is complete.",
                 .parameters = {limit},
                 .run = [this](const Arguments&) { needs_cache(); },
-                .done = stands,
-                .recorded = false});
+                .done = stands});
 }
 
 }  // namespace lucerna::commands

@@ -1,5 +1,6 @@
 // Commands on the scene's file, on rendering and on scripts themselves.
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -22,6 +23,7 @@ std::string settings_manual() {
 }  // namespace
 
 void Workspace::add_other_commands() {
+  const Parameter limit = time_limit();
   const auto act = [this](const char* name, const char* help, std::function<void()> run) {
     registry.add(
         {.name = name, .help = help, .parameters = {}, .run = [run = std::move(run)](const Arguments&) {
@@ -34,24 +36,38 @@ void Workspace::add_other_commands() {
                 .parameters = {file_named({".gltf", ".glb"})},
                 .run = [this](const Arguments& a) {
                   opening_ = true, open_failed_ = false;
-                  errors_at_open_ = error_count;
                   scene_at_open_ = snapshot ? snapshot->scene_id : 0;
                   session.load(a.text("file"));
+                  opened_by_ = session.commands();
                 }});
-  act("scene.cancel", "Gives up the load in progress; the scene shown stays.", [this] {
-    session.cancel();
-    opening_ = false;
+  registry.add({.name = "scene.cancel",
+                .help = "Gives up the load in progress; the scene shown stays.",
+                .parameters = {},
+                .run =
+                    [this](const Arguments&) {
+                      session.cancel();
+                      if (std::exchange(opening_, false)) forget_open();
+                    },
+                .recorded = false});
+  act("render.pause", "Stops taking samples.", [this] {
+    record_wait();
+    session.set_paused(true);
   });
-  act("render.pause", "Stops taking samples.", [this] { session.set_paused(true); });
   act("render.resume", "Goes on taking samples.", [this] { session.set_paused(false); });
   act("render.restart", "Throws the samples away and starts the picture anew.",
       [this] { session.restart(); });
   act("shaders.reload", "Compiles the shaders again; when that fails the old ones stay.",
       [this] { session.reload_shaders(); });
   registry.add({.name = "image.save",
-                .help = "Writes the picture as it is: all layers as EXR, or what is shown as PNG.",
-                .parameters = {file_named({".exr", ".png"})},
-                .run = [this](const Arguments& a) { session.save(a.text("file")); }});
+                .help = "Writes the picture as it is, once every pixel has a sample: all layers as EXR, or "
+                        "what is shown as PNG. A script waits for that, and fails when it cannot be.",
+                .parameters = {file_to_write({".exr", ".png"}), limit},
+                .run =
+                    [this](const Arguments& a) {
+                      record_wait();
+                      saved_ = session.save(a.text("file"));
+                    },
+                .done = [this](const Arguments&) { return saved(); }});
 
   registry.add({.name = "reference.load",
                 .help = "Takes a picture for the truth, to hold this one against: an EXR with all layers, of "
@@ -63,10 +79,12 @@ void Workspace::add_other_commands() {
                 }});
   act("reference.clear", "Forgets the picture taken for the truth.", [this] { session.clear_reference(); });
 
-  const Parameter limit = time_limit();
   registry.add({.name = "script.save",
-                .help = "Writes what was done in this session, as a script that does it again.",
-                .parameters = {file_named({".lucerna"})},
+                .help =
+                    "Writes what was done in this session, as a script that does it again: where a picture "
+                    "was saved or rendering paused it waits for as many samples as there were. A file that "
+                    "is there already is replaced only if it is a saved session.",
+                .parameters = {file_to_write({".lucerna"})},
                 .run =
                     [this](const Arguments& a) {
                       save_script(a.text("file"));
@@ -90,7 +108,7 @@ void Workspace::add_other_commands() {
        .recorded = false});
 
   registry.add({.name = "wait",
-                .help = "In a script: lets the window run.",
+                .help = "In a script: lets the window run. Saved sessions leave it out.",
                 .parameters = {{.name = "time", .type = Type::real, .lo = 0, .hi = 86400, .unit = "seconds"}},
                 .run = [this](const Arguments&) { waited_since_ = now; },
                 .done = [this](const Arguments& a) { return now - waited_since_ >= a.real("time"); },
@@ -110,8 +128,7 @@ void Workspace::add_other_commands() {
                 .help = "In a script: waits until no scene is being loaded, whether one could be or not.",
                 .parameters = {limit},
                 .run = [](const Arguments&) {},
-                .done = [this](const Arguments&) { return !loading(); },
-                .recorded = false});
+                .done = [this](const Arguments&) { return !loading(); }});
   registry.add(
       {.name = "wait_samples",
        .help = "In a script: waits until the picture holds that many samples a pixel, or is finished.",
@@ -131,8 +148,7 @@ void Workspace::add_other_commands() {
              // A picture of an earlier camera does not count.
              if (view && !same_view(snapshot->camera, view->camera)) return false;
              return snapshot->finished || (!snapshot->coarse && snapshot->samples >= a.integer("samples"));
-           },
-       .recorded = false});
+           }});
 }
 
 std::string Workspace::manual(const std::string& topic) const {

@@ -34,7 +34,9 @@ std::string kind_text(const Parameter& p) {
     case Type::text:
       return "a text on one line";
     case Type::file:
-      return p.choices.empty() ? "a file" : fmt::format("a file ({})", fmt::join(p.choices, ", "));
+      return p.choices.empty() ? "a file"
+             : p.writes        ? fmt::format("a file name that ends in {}", fmt::join(p.choices, " or "))
+                               : fmt::format("a file ({})", fmt::join(p.choices, ", "));
   }
   return "";
 }
@@ -78,7 +80,11 @@ std::string canonical(const Command& c, const Parameter& p, const std::string& t
         refuse(suggestion(text, p.choices));
       return text;
     case Type::file:
-      if (text.empty()) refuse();
+      if (text.empty() ||
+          (p.writes && std::none_of(p.choices.begin(), p.choices.end(), [&](const std::string& ending) {
+             return text.ends_with(ending) && text.size() > ending.size();
+           })))
+        refuse();
       [[fallthrough]];
     case Type::text:
       if (text.find_first_of("\r\n") != std::string::npos) refuse();
@@ -117,6 +123,10 @@ Parameter time_limit() {
 
 Parameter file_named(std::vector<std::string> endings) {
   return {.name = "file", .type = Type::file, .choices = std::move(endings)};
+}
+
+Parameter file_to_write(std::vector<std::string> endings) {
+  return {.name = "file", .type = Type::file, .choices = std::move(endings), .writes = true};
 }
 
 double Arguments::real(const std::string& name) const {

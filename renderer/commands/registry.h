@@ -39,6 +39,7 @@ struct Parameter {
   std::string unit;                  ///< "m", "EV", "degrees"; "" for none
   std::vector<std::string> choices;  ///< of a choice; of a file: its endings (".png")
   bool optional = false;             ///< may be left out
+  bool writes = false;               ///< a file that is written: its name must have one of its endings
   /// Says what is acted upon, not how: two commands that differ elsewhere are steps of one drag.
   bool which = false;
   /// Words to offer for a text; given the values of the parameters before it.
@@ -47,8 +48,10 @@ struct Parameter {
 
 /// How long a script waits for a command to be done: "limit", which may be left out.
 Parameter time_limit();
-/// A "file" whose name has one of these endings.
+/// A "file" to read, whose name most likely has one of these endings.
 Parameter file_named(std::vector<std::string> endings);
+/// A "file" to write, whose name must have one of these endings.
+Parameter file_to_write(std::vector<std::string> endings);
 
 /// The values of one command, checked. Asking for a parameter that was not given is a logic error (throws
 /// std::out_of_range); has() says.

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdio>
+#include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <tuple>
 
 #include "base/error.h"
+#include "base/file.h"
 
 namespace lucerna::commands {
 namespace {
@@ -15,6 +15,19 @@ namespace {
 /// How long an edit is shown although the session says otherwise; then the session was right (it refused it).
 constexpr double k_patience = 2.0;
 constexpr size_t k_steps = 500;  // that can be undone
+const std::string k_script_head =
+    "# What was done in a session of Lucerna; lucerna --script FILE does it again.\n";
+
+/// Whether a file that was to be written will never be.
+bool failed(const session::Saved& saved) {
+  if (!saved.valid() || saved.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  try {
+    saved.get();
+    return false;
+  } catch (const std::exception&) {
+    return true;
+  }
+}
 
 Document::Material editable(const scene::Material& m) {
   return {vec3(m.base_color), m.roughness, m.metallic, m.emission};
@@ -43,7 +56,10 @@ void Workspace::refresh(double time) {
   known_ = session.settings();
   drop_taken();
   follow_scene();
-  if (opening_ && error_count > errors_at_open_) opening_ = false, open_failed_ = true;
+  if (opening_ && snapshot && snapshot->commands >= opened_by_ && snapshot->scene_id == scene_at_open_) {
+    opening_ = false, open_failed_ = true;
+    forget_open();
+  }
 }
 
 void Workspace::drop_taken() {
@@ -87,7 +103,7 @@ void Workspace::follow_scene() {
   camera_moved = false;
   if (opening_ && snapshot->scene_id != scene_at_open_) {
     opening_ = false;
-    recorded_.push_back({"wait_scene", "wait_scene", 0});
+    recorded_.push_back({"wait_scene", "wait_scene"});
   }
   scene_changed();
 }
@@ -242,6 +258,9 @@ void Workspace::redo() {
 void Workspace::record(const Line& line, uint64_t gesture) {
   if (!line.command->recorded) return;
   Recorded entry{line.command->name, registry.target(line), gesture};
+  const bool writes = std::any_of(line.command->parameters.begin(), line.command->parameters.end(),
+                                  [](const Parameter& p) { return p.writes; });
+  if (writes) entry.saved = saved_;
   // Files are named so that the script works from any folder.
   for (const Parameter& p : line.command->parameters) {
     if (!line.arguments.has(p.name)) continue;
@@ -258,20 +277,36 @@ void Workspace::record(const Line& line, uint64_t gesture) {
 
 std::vector<std::string> Workspace::script() const {
   std::vector<std::string> lines;
-  for (const Recorded& entry : recorded_) lines.push_back(entry.line);
+  for (const Recorded& entry : recorded_)
+    if (!failed(entry.saved)) lines.push_back(entry.line);
   return lines;
 }
 
 void Workspace::save_script(const std::string& file) const {
-  const std::string temporary = file + ".tmp";
-  std::ofstream out(temporary);
-  out << "# What was done in a session of Lucerna; lucerna --script FILE does it again.\n";
-  for (const Recorded& entry : recorded_) out << entry.line << '\n';
-  out.close();
-  if (!out || std::rename(temporary.c_str(), file.c_str()) != 0) {
-    std::remove(temporary.c_str());
-    throw Error(file, "cannot write here; check that the folder exists and may be written");
-  }
+  if (std::error_code error;
+      std::filesystem::exists(file, error) && !read_file(file).starts_with(k_script_head))
+    throw Error(file, "is there already and no saved session: another name is needed");
+  std::string text = k_script_head;
+  for (const std::string& line : script()) text += line + '\n';
+  write_file(file, text);
+}
+
+void Workspace::record_wait() {
+  if (!up_to_date() || snapshot->samples == 0) return;
+  if (!recorded_.empty() && recorded_.back().line.starts_with("wait_samples ")) recorded_.pop_back();
+  recorded_.push_back({line("wait_samples", snapshot->samples, named("limit", 86400)), "wait_samples"});
+}
+
+void Workspace::forget_open() {
+  const auto last = std::find_if(recorded_.rbegin(), recorded_.rend(),
+                                 [](const Recorded& entry) { return entry.line.starts_with("scene.open "); });
+  if (last != recorded_.rend()) recorded_.erase(std::next(last).base());
+}
+
+bool Workspace::saved() const {
+  if (saved_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  if (failed(saved_)) throw Error("", "nothing was written");
+  return true;
 }
 
 void Workspace::send_camera() {

@@ -62,10 +62,12 @@ class Workspace {
   /// Takes in what the session has published since. Call before looking and before running commands.
   void refresh(double time);
   std::shared_ptr<const session::Snapshot> snapshot;
+  /// Whether the newest picture knows what all commands so far have brought.
+  bool up_to_date() const { return snapshot && snapshot->commands >= session.commands(); }
   std::shared_ptr<const scene::Scene> scene;  ///< with the edits that the session has taken
-  /// A scene is being loaded. After a failure the session's last word may still be how far it had come.
+  /// A scene is being loaded.
   bool loading() const { return opening_ || (!open_failed_ && snapshot && snapshot->progress >= 0); }
-  /// Errors seen so far, counted by whoever listens to the log: an error after scene.open is a failed load.
+  /// Errors seen so far, counted by whoever listens to the log.
   uint64_t error_count = 0;
 
   /// Carries out a line. Lines of one `gesture` (not 0) on the same target are one step to undo and one line
@@ -95,9 +97,10 @@ class Workspace {
   /// What 'help TOPIC' says; "" for the list of commands. Throws Error when there is no such topic.
   std::string manual(const std::string& topic) const;
 
-  /// What was done, one line each, so that a script of them does it again.
+  /// What was done, one line each, so that a script of them does it again. What failed is left out.
   std::vector<std::string> script() const;
-  /// Writes it (to a temporary name, then renamed). Throws Error: cannot be written.
+  /// Writes it, whole or not at all. Throws Error: cannot be written, or something else than a saved session
+  /// is there.
   void save_script(const std::string& file) const;
 
   // The camera.
@@ -131,7 +134,8 @@ class Workspace {
   };
   struct Recorded {
     std::string line, target;
-    uint64_t gesture;
+    uint64_t gesture = 0;
+    session::Saved saved = {};  ///< that it was to write a file, and how that has ended
   };
   struct Pending {
     std::string value;
@@ -158,14 +162,18 @@ class Workspace {
   Document& edit();  ///< the document that the running command may change
   void send(const Document& before, const Document& after);
   void record(const Line& line, uint64_t gesture);
+  /// Has the script wait for as many samples as the picture has now.
+  void record_wait();
+  /// Takes the last scene.open out of the script: it did nothing.
+  void forget_open();
+  /// Whether the file of the last command that writes one is there. Throws Error when it will not be.
+  bool saved() const;
   void follow_scene();
   void drop_taken();
   std::pair<float, float> environment_() const;
   void needs_view() const;
   void needs_scene() const;
   void needs_cache() const;
-  /// Whether the newest picture knows what all commands so far have brought.
-  bool up_to_date() const { return snapshot && snapshot->commands >= session.commands(); }
   bool cache_waits() const { return snapshot && snapshot->cache && snapshot->cache->status.waits; }
   uint32_t light_index(const std::string& which) const;
   uint32_t material_index(const std::string& which) const;
@@ -184,9 +192,11 @@ class Workspace {
   std::vector<std::string> touched_;  ///< settings that the running command set, changed or not
   std::vector<Step> undo_, redo_;
   std::vector<Recorded> recorded_;
-  bool opening_ = false;      ///< scene.open was run and has not ended
-  bool open_failed_ = false;  ///< the last one has failed
-  uint64_t errors_at_open_ = 0, scene_at_open_ = 0;
+  session::Saved saved_;                        ///< of the last command that writes a file
+  bool opening_ = false;                        ///< scene.open was run and has not ended
+  bool open_failed_ = false;                    ///< the last one has failed
+  uint64_t opened_by_ = 0;                      ///< its number among the session's commands
+  uint64_t scene_at_open_ = 0;                  ///< shown when it was run
   double waited_since_ = -1;                    ///< when the running wait began, or saw a new picture
   uint64_t waited_errors_ = 0, waited_id_ = 0;  ///< errors when it began; picture seen last
 };

@@ -5,16 +5,35 @@
 
 namespace lucerna::film {
 
-Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width), height_(height) {
-  const gpu::Limits& limits = device.info().limits;
+namespace {
+
+// Of a pixel: the sums of the components, albedo and normal, counts, vertices and the picture.
+constexpr uint64_t k_pixel_bytes = k_components * 48 + 2 * 16 + 3 * 4;
+// Beside the film: the coarse picture, and paths in flight at their fewest.
+constexpr uint64_t k_coarse_pixels = shared::k_coarse_step * shared::k_coarse_step, k_paths_bytes = 48 << 20;
+
+}  // namespace
+
+void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height) {
+  const gpu::Limits& limits = device.limits;
   const uint64_t pixels = uint64_t(width) * height;
-  // Three texels a pixel and component; four bytes a pixel in the storage buffers.
-  const uint64_t largest = std::min(limits.max_texel_elements / 3, limits.max_storage_buffer / 4);
   if (pixels == 0) throw Error("size", "a picture needs at least one pixel");
+  if (width > k_max_side || height > k_max_side)
+    throw_error("size", "{}x{}: no side may be longer than {} pixels", width, height, k_max_side);
+  // Three texels a pixel and component; four bytes a pixel in the storage buffers.
+  const uint64_t memory = device.memory_bytes - std::min(device.memory_bytes, k_paths_bytes);
+  const uint64_t largest = std::min({limits.max_texel_elements / 3, limits.max_storage_buffer / 4,
+                                     memory / (k_pixel_bytes + k_pixel_bytes / k_coarse_pixels)});
   if (pixels > largest)
     throw_error("size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{})", width,
                 height, pixels, largest, uint32_t(std::sqrt(largest * 16.0 / 9)),
                 uint32_t(std::sqrt(largest * 9.0 / 16)));
+}
+
+Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width), height_(height) {
+  const gpu::Limits& limits = device.info().limits;
+  const uint64_t pixels = uint64_t(width) * height;
+  check_size(device.info(), width, height);
   fits_storage_buffers_ = pixels * 48 <= limits.max_storage_buffer;
   const char* names[k_components] = {"film primary", "film secondary", "film tertiary", "film caustic"};
   for (int c = 0; c < k_components; ++c)

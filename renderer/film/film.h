@@ -44,10 +44,17 @@ struct View {
   uint32_t tiles = 0;
 };
 
+/// The largest width or height of a picture.
+inline constexpr uint32_t k_max_side = 32768;
+
+/// Throws Error, naming the largest size that fits, unless a picture of that size can be held: no side beyond
+/// k_max_side, no plane beyond what one binding of the device sees, and all of it in the device's memory, as
+/// far as that is free of other things.
+void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height);
+
 class Film {
  public:
-  /// Throws Error when a plane exceeds what one binding may hold (naming the largest size that fits), or
-  /// memory.
+  /// Throws Error as check_size, or when memory is short.
   Film(gpu::Device& device, uint32_t width, uint32_t height);
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }

@@ -131,11 +131,12 @@ VkDescriptorSet Stream::Impl::allocate_set(VkDescriptorSetLayout layout) {
   if (index >= set_pools.size()) {
     const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, k_sets_a_pool * 16},
                                           {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, k_sets_a_pool * 8},
+                                          {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, k_sets_a_pool * 8},
                                           {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, k_sets_a_pool * 8}};
     VkDescriptorPoolCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
     create.maxSets = k_sets_a_pool;
-    create.poolSizeCount = 3;
+    create.poolSizeCount = static_cast<uint32_t>(std::size(sizes));
     create.pPoolSizes = sizes;
     VkDescriptorPool made = VK_NULL_HANDLE;
     check(h.vk.vkCreateDescriptorPool(h.device, &create, nullptr, &made), "creating a descriptor pool");

@@ -28,6 +28,7 @@ irradiance_cache::Making Renderer::cache_making() const {
         o.key == "path.max_depth" || o.key == "path.roulette_depth")
       making.settings[o.key] = settings_.text(o.key);
   making.parts = cache_->parts();
+  making.recursive = cache_->recursive();
   making.seed = settings_.text("seed");
   return making;
 }

@@ -38,10 +38,9 @@ Renderer::~Renderer() = default;
 
 void Renderer::load(const std::filesystem::path& file, const Progress& progress) {
   const Timer timer;
-  auto scene =
-      std::make_shared<scene::Scene>(scene::load(file, {}, [&](float fraction, const std::string& what) {
-        return !progress || progress(0.6f * fraction, what);
-      }));
+  auto scene = std::make_shared<scene::Scene>(scene::load(
+      file, options_.scenes,
+      [&](float fraction, const std::string& what) { return !progress || progress(0.6f * fraction, what); }));
   scene::add_default_light(*scene);
   for (std::string& line : plan::unreachable_light(plan::make_plan(settings_), *scene))
     scene->warnings.push_back(std::move(line));
@@ -376,6 +375,7 @@ void Renderer::apply_settings() {
 
 void Renderer::set_size(uint32_t width, uint32_t height) {
   if (width == width_ && height == height_ && film_) return;
+  film::check_size(device_->info(), width, height);
   const uint32_t old_width = width_, old_height = height_;
   width_ = width;
   height_ = height;

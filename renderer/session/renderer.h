@@ -17,6 +17,7 @@
 #include "gpu/kernel.h"
 #include "paths/automaton.h"
 #include "plan/settings.h"
+#include "scene/io/load.h"
 #include "scene/scene.h"
 #include "schedule/adaptive.h"
 #include "schedule/uniform.h"
@@ -36,8 +37,9 @@ struct RendererOptions {
   std::string device;
   bool validation = false;
   std::filesystem::path shaders;
-  gpu::Defines defines;  ///< further #defines for the transport's kernels (tests)
-  bool pauses = false;   ///< the setting cache.pause is heeded: step() may wait for step_cache()
+  gpu::Defines defines;            ///< further #defines for the transport's kernels (tests)
+  bool pauses = false;             ///< the setting cache.pause is heeded: step() may wait for step_cache()
+  scene::LoadOptions scenes = {};  ///< what scenes may read and take
 };
 
 /// fraction 0..1 and what is going on; returning false cancels (an Error "cancelled" is thrown).
@@ -61,6 +63,7 @@ class Renderer {
   /// Settings changed by hand: applies what differs, restarts if the image depends on it. A target error and
   /// caps on samples let the image go on.
   void apply_settings();
+  /// Throws Error as film::check_size; the size before stays.
   void set_size(uint32_t width, uint32_t height);
   void set_camera(const scene::Camera& camera);
   const scene::Camera& camera() const { return camera_; }

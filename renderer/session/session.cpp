@@ -28,11 +28,15 @@ struct Session::Impl {
   std::thread thread;
   mutable std::mutex mutex;
   std::condition_variable wake;
-  std::deque<std::function<void(Renderer&)>> queue;
-  bool quit = false;
+  struct Command {
+    std::function<void(Renderer&)> run;
+    bool saves;  // carried out before the end, too
+  };
+  std::deque<Command> queue;
+  std::atomic<bool> quit{false}, pending{false};
   uint64_t posted = 0;
-  std::atomic<bool> cancel_load{false}, pending{false};
-  std::atomic<uint32_t> caches_asked{0};  // for, and not saved yet
+  // Loads are numbered as they are asked for; those up to a number are given up.
+  std::atomic<uint64_t> loads{0}, given_up{0};
   std::shared_ptr<const Snapshot> snapshot;
   std::shared_ptr<const scene::Scene> scene;
   plan::Settings settings;
@@ -45,35 +49,75 @@ struct Session::Impl {
   double seconds = 0;
   bool paused = false, dirty = true, coarse_wanted = false, size_known = false;
   bool filled = false;
-  uint64_t levels_shown = 0;                  // of the cache, by the coarse picture
-  std::vector<std::filesystem::path> caches;  // to be saved when complete
+  uint64_t levels_shown = 0;  // of the cache, by the coarse picture
+  struct Save {
+    std::filesystem::path file;
+    bool cache;
+    std::shared_ptr<std::promise<void>> promise;
+  };
+  std::vector<Save> saves;  // that wait for what they are to write
 
-  /// Saves what was asked for if it is complete, or cannot be.
-  void save_caches(Renderer& r) {
-    if (caches.empty() || (r.cache() && !r.cache()->ready())) return;
-    for (const std::filesystem::path& file : caches) {
-      try {
-        r.save_cache(file);
-        log::info("saved {}: {} records", file.string(), r.cache()->status().records);
-      } catch (const std::exception& e) {
-        log::error("{}", e.what());
+  bool works(Renderer& r) const { return r.ready() && !paused && !r.done() && !r.cache_waits(); }
+
+  /// Whether it is to be written now, or cannot be, which writing will tell.
+  bool due(Renderer& r, const Save& save) const {
+    if (save.cache) return !r.cache() || r.cache()->ready();
+    return r.samples() > 0 || !works(r);
+  }
+
+  static void write(Renderer& r, const Save& save) {
+    try {
+      if (save.cache) {
+        r.save_cache(save.file);
+        log::info("saved {}: {} records", save.file.string(), r.cache()->status().records);
+      } else {
+        r.save(save.file);
+        log::info("saved {}", save.file.string());
       }
+      save.promise->set_value();
+    } catch (const std::exception& e) {
+      log::error("{}", e.what());
+      save.promise->set_exception(std::current_exception());
     }
-    caches_asked -= uint32_t(caches.size());
-    caches.clear();
   }
 
-  void give_up_caches(const char* why) {
-    for (const auto& file : caches)
-      log::error("{}: not written: {} before the cache was complete", file.string(), why);
-    caches_asked -= uint32_t(caches.size());
-    caches.clear();
+  void write_due(Renderer& r) {
+    std::erase_if(saves, [&](const Save& save) {
+      const bool now = due(r, save);
+      if (now) write(r, save);
+      return now;
+    });
   }
 
-  void post(std::function<void(Renderer&)> command) {
+  void give_up_saves(const char* why) {
+    for (const Save& save : saves) {
+      const Error error(save.file.string(),
+                        fmt::format("not written: {} before {}", why,
+                                    save.cache ? "the cache was complete" : "the picture had a sample"));
+      log::error("{}", error.what());
+      save.promise->set_exception(std::make_exception_ptr(error));
+    }
+    saves.clear();
+  }
+
+  Saved post_save(const std::filesystem::path& file, bool cache) {
+    // A promise that is dropped, for want of a device, is a failure to the one who waits.
+    auto promise = std::make_shared<std::promise<void>>();
+    Saved saved = promise->get_future().share();
+    post(
+        [this, file, cache, promise](Renderer& r) {
+          saves.push_back({file, cache, promise});
+          if (cache && !due(r, saves.back()))
+            log::info("{}: will be written when the cache is complete", file.string());
+        },
+        true);
+    return saved;
+  }
+
+  void post(std::function<void(Renderer&)> command, bool saves = false) {
     {
       std::lock_guard lock(mutex);
-      queue.push_back(std::move(command));
+      queue.push_back({std::move(command), saves});
       ++posted;
       pending = true;
     }
@@ -168,7 +212,7 @@ void Session::Impl::run() {
   std::unique_ptr<Renderer> renderer;
   try {
     renderer = std::make_unique<Renderer>(
-        RendererOptions{options.device, options.validation, options.shaders, {}, true});
+        RendererOptions{options.device, options.validation, options.shaders, {}, true, options.scenes});
     next.device = renderer->device().info().name;
     publish();
   } catch (const std::exception& e) {
@@ -178,15 +222,17 @@ void Session::Impl::run() {
   std::unique_lock lock(mutex);
   while (!quit) {
     while (!queue.empty() && !quit) {
-      auto command = std::move(queue.front());
+      Command command = std::move(queue.front());
       queue.pop_front();
       lock.unlock();
       try {
         if (!renderer) throw Error("device", "there is none to render with");
-        command(*renderer);
+        command.run(*renderer);
+        write_due(*renderer);
       } catch (const std::exception& e) {
         log::error("{}", e.what());
       }
+      command = {};
       if (renderer) {
         lock.lock();
         settings = renderer->settings();
@@ -201,8 +247,7 @@ void Session::Impl::run() {
       lock.lock();
     }
     pending = false;
-    const bool work =
-        renderer && renderer->ready() && !paused && !renderer->done() && !renderer->cache_waits();
+    const bool work = renderer && works(*renderer);
     if (!work && !dirty) {
       wake.wait(lock, [&] { return quit || !queue.empty(); });
       continue;
@@ -226,7 +271,6 @@ void Session::Impl::run() {
             coarse_wanted = true;
           }
           accuracy.follow(*renderer, next.scene_id);
-          save_caches(*renderer);
         }
         // The last line of the ledger is that of the finished image.
         if (renderer->done() && !renderer->ledger().entries().empty() &&
@@ -254,10 +298,18 @@ void Session::Impl::run() {
       publish();
       dirty = false;
     }
+    if (renderer) write_due(*renderer);
     lock.lock();
   }
+  for (Command& command : queue)
+    if (command.saves && renderer) command.run(*renderer);
+  queue.clear();
   lock.unlock();
-  give_up_caches("the program ended");
+  std::erase_if(saves, [&](const Save& save) {
+    if (!save.cache) write(*renderer, save);
+    return !save.cache;
+  });
+  give_up_saves("the program ended");
 }
 
 Session::Session(const Options& options) : impl_(std::make_unique<Impl>()) {
@@ -269,7 +321,7 @@ Session::~Session() {
   {
     std::lock_guard lock(impl_->mutex);
     impl_->quit = true;
-    impl_->cancel_load = true;
+    impl_->given_up = impl_->loads.load();
     impl_->pending = true;
   }
   impl_->wake.notify_one();
@@ -277,19 +329,26 @@ Session::~Session() {
 }
 
 void Session::load(const std::filesystem::path& file) {
-  impl_->cancel_load = false;
-  impl_->post([s = impl_.get(), file](Renderer& r) {
+  const uint64_t number = ++impl_->loads;
+  impl_->post([s = impl_.get(), file, number](Renderer& r) {
     Timer since;
-    r.load(file, [&](float fraction, const std::string& what) {
-      if (since.seconds() > 0.05 || fraction == 0) {
-        s->publish_activity(fmt::format("loading {}: {}", file.filename().string(), what), fraction);
-        since.restart();
-      }
-      return !s->cancel_load.load();
-    });
+    const auto goes_on = [&] { return number > s->given_up; };
+    try {
+      r.load(file, [&](float fraction, const std::string& what) {
+        if (since.seconds() > 0.05 || fraction == 0) {
+          s->publish_activity(fmt::format("loading {}: {}", file.filename().string(), what), fraction);
+          since.restart();
+        }
+        return goes_on();
+      });
+    } catch (const Error&) {
+      if (goes_on()) throw;
+      log::info("{}: loading was given up", file.string());
+      return;
+    }
     ++s->next.scene_id;
     s->restarted();
-    s->give_up_caches("another scene was loaded");
+    s->give_up_saves("another scene was loaded");
     const auto count = [](uint64_t n, const char* what) {
       return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
     };
@@ -378,23 +437,9 @@ void Session::inspect(std::optional<vec2> at) {
   impl_->post([at](Renderer& r) { r.inspect(at); });
 }
 
-void Session::save(const std::filesystem::path& file) {
-  impl_->post([file](Renderer& r) {
-    r.save(file);
-    log::info("saved {}", file.string());
-  });
-}
+Saved Session::save(const std::filesystem::path& file) { return impl_->post_save(file, false); }
 
-void Session::save_cache(const std::filesystem::path& file) {
-  ++impl_->caches_asked;
-  impl_->post([s = impl_.get(), file](Renderer& r) {
-    s->caches.push_back(file);
-    s->save_caches(r);
-    if (!s->caches.empty()) log::info("{}: will be written when the cache is complete", file.string());
-  });
-}
-
-bool Session::saving_cache() const { return impl_->caches_asked > 0; }
+Saved Session::save_cache(const std::filesystem::path& file) { return impl_->post_save(file, true); }
 
 void Session::load_cache(const std::filesystem::path& file) {
   impl_->post([s = impl_.get(), file](Renderer& r) {
@@ -422,7 +467,7 @@ uint64_t Session::commands() const {
   return impl_->posted;
 }
 
-void Session::cancel() { impl_->cancel_load = true; }
+void Session::cancel() { impl_->given_up = impl_->loads.load(); }
 
 std::shared_ptr<const Snapshot> Session::snapshot() const {
   std::lock_guard lock(impl_->mutex);

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "gpu/device.h"
 #include "plan/settings.h"
+#include "scene/io/load.h"
 #include "scene/scene.h"
 #include "session/accuracy.h"
 #include "session/cache_report.h"
@@ -76,13 +78,19 @@ struct Snapshot {
 struct Options {
   std::string device;  ///< gpu::DeviceOptions::selector
   bool validation = false;
-  std::filesystem::path shaders;  ///< empty: ShaderCompiler::default_root()
+  std::filesystem::path shaders;   ///< empty: ShaderCompiler::default_root()
+  scene::LoadOptions scenes = {};  ///< what scenes may read and take
 };
+
+/// Of a file that is to be written: ready when it is, or will never be; get() then throws what kept it from
+/// being (which has been logged as well).
+using Saved = std::shared_future<void>;
 
 class Session {
  public:
   explicit Session(const Options& options);
-  ~Session();  ///< stops the work in progress and joins
+  /// Stops the work in progress and joins. Pictures that were to be saved are written first, as they are.
+  ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -104,19 +112,19 @@ class Session {
   /// Which records of the irradiance cache serve that point of the picture (0..1 to the right and down): told
   /// by Snapshot::cache and drawn over the picture from now on; nothing: no longer.
   void inspect(std::optional<vec2> at);
-  void save(const std::filesystem::path& file);  ///< EXR or PNG of what there is
+  /// EXR or PNG of what there is, as soon as every pixel has a sample; where rendering rests without, at
+  /// once.
+  Saved save(const std::filesystem::path& file);
   /// Writes the records that paths look up (Renderer::save_cache) as soon as they are complete; given up when
   /// another scene is loaded.
-  void save_cache(const std::filesystem::path& file);
-  /// Whether one that was asked for is neither written nor given up.
-  bool saving_cache() const;
+  Saved save_cache(const std::filesystem::path& file);
   void load_cache(const std::filesystem::path& file);  ///< Renderer::load_cache
   /// While building of the irradiance cache waits, or before: goes on to the end of its next stage and waits
   /// there, or goes on until it is complete, whatever the setting cache.pause says. Rendering that was paused
   /// goes on too.
   void step_cache();
   void run_cache();
-  void cancel();  ///< gives up a load in progress
+  void cancel();  ///< gives up all loads that were asked for so far and are not done
 
   /// Commands given so far: a snapshot of as many knows what they have brought.
   uint64_t commands() const;

@@ -4,6 +4,7 @@
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/asking.glsl"
 #include "shaders/shared/cache_inspect.h"
+#include "lib/wide_sum.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlapPush push; };
 layout(scalar) buffer Overlap { OverlapCounts counts; };
@@ -22,7 +23,7 @@ void main() {
   }
   if (!a.asks) return;
   atomicAdd(counts.pixels[min(overlap, k_overlap_bins - 1u)], 1u);
-  atomicAdd(counts.records, overlap);
-  atomicAdd(counts.listed, range.last - range.first);
+  ADD_TO_WIDE_SUM(counts.records, overlap);
+  ADD_TO_WIDE_SUM(counts.listed, range.last - range.first);
   atomicMax(counts.most, overlap);
 }

@@ -5,6 +5,7 @@
 #define LUCERNA_SHARED_CACHE_INSPECT_H
 #include "shaders/shared/compat.h"
 #include "shaders/shared/discontinuity.h"
+#include "shaders/shared/wide_sum.h"
 LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_inspect_most = 256u;      ///< records listed at most
@@ -44,12 +45,12 @@ struct OverlapPush {
   uint width, height;
   SightGrid grid;
 };
-/// Counts over the picture's pixels that show something diffuse.
+/// Counts over the picture's pixels that show something diffuse; the sums of large pictures need the width.
 struct OverlapCounts {
   uint pixels[k_overlap_bins];
-  uint most;     ///< records that serve one pixel
-  uint records;  ///< sum over the pixels
-  uint listed;   ///< likewise, of those that the octree lists there
+  uint most;        ///< records that serve one pixel
+  WideSum records;  ///< over the pixels
+  WideSum listed;   ///< likewise, of those that the octree lists there
 };
 
 /// A line over the picture; where a surface hides it it is faint.

@@ -3,6 +3,7 @@
 // line and status 1.
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -89,7 +90,13 @@ TEST_CASE("wrong arguments are refused with their place") {
   refused(good + "--set sampling.mode=magic", "uniform, adaptive");
   refused(good + "--size 0x10", "--size");
   refused(good + "--size 10", "--size");
-  refused(good + "--size 60000x60000 --samples 1", "can hold at most");
+  // Before anything is loaded.
+  const std::string nowhere = "render no/such.gltf --quiet -o /tmp/lucerna-never.exr --samples 1 ";
+  refused(nowhere + "--size 30000x30000", "can hold at most");
+  refused(nowhere + "--size 65536x1", "--size: '65536x1': expected WIDTHxHEIGHT, each from 1 to 32768");
+  for (const char* seconds : {"0", "-0", "-1", "nan", "-nan", "inf", "x"})
+    refused(nowhere + "--time " + seconds, "--time");
+  refused("compare a.exr b.exr --max-relmse nan", "--max-relmse");
   refused(good + "--camera nowhere --samples 1", "no camera 'nowhere'");
   refused(good + "--device nothing", "nothing");
   refused("render " + scene("cornell") + " -o /no/such/folder/a.exr", "/no/such/folder");
@@ -183,21 +190,53 @@ TEST_CASE("--reference: the ledger tells the true error, and it is the estimated
   fs::remove_all(f);
 }
 
-TEST_CASE("Ctrl-C writes what there is and says so") {
+TEST_CASE("Ctrl-C, SIGTERM and SIGHUP write what there is and say so") {
   const fs::path f = folder();
   const std::string file = (f / "interrupted.exr").string();
-  // The signal must come while it renders, however slow the machine is: one that comes while it still loads
-  // ends the program without a word, and the next try waits longer.
-  Run r{};
-  for (int seconds = 1; seconds <= 64 && r.out.find("interrupted") == std::string::npos; seconds *= 2)
-    r = run("render " + scene("cornell") + " --samples 1000000 --size 64x64 -o " + file,
-            "timeout --preserve-status -s INT " + std::to_string(seconds));
-  INFO(r.out);
-  CHECK(r.out.find("interrupted after") != std::string::npos);
-  CHECK(r.out.find("writing what there is") != std::string::npos);
-  CHECK(r.status == 130);
-  const film::FilmImage image = film::read_exr(file);
-  CHECK(image.width == 64);
+  const std::string endless = "-v render " + scene("cornell") + " --samples 1000000 --size 64x64 -o " + file;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    INFO(signal);
+    fs::remove(file);
+    test::Running running(endless);
+    // The signal comes while it renders, however slow the machine is.
+    REQUIRE(running.says("a sample of every pixel"));
+    running.send(signal);
+    const Run r = running.finish();
+    INFO(r.out);
+    CHECK(r.out.find("interrupted after") != std::string::npos);
+    CHECK(r.out.find("writing what there is") != std::string::npos);
+    CHECK(r.status == 128 + signal);
+    const film::FilmImage image = film::read_exr(file);
+    CHECK(image.width == 64);
+    const std::vector<float>& samples = *image.find("samples");
+    CHECK(*std::min_element(samples.begin(), samples.end()) >= 1);
+  }
+  // Where the one who read its words has gone too, as in a pipe on the same terminal.
+  fs::remove(file);
+  test::Running running(endless);
+  REQUIRE(running.says("a sample of every pixel"));
+  running.stop_reading();
+  running.send(SIGINT);
+  CHECK(running.finish().status == 130);
+  CHECK(film::read_exr(file).width == 64);
+  fs::remove_all(f);
+}
+
+TEST_CASE("a scene's files outside its folder, and its memory, are allowed by name") {
+  const fs::path f = folder();
+  fs::create_directories(f / "scene");
+  fs::copy_file(scene("cornell"), f / "scene" / "a.gltf");
+  const fs::path data = fs::path(scene("cornell")).parent_path() / "cornell.bin";
+  fs::create_symlink(data, f / "scene" / "cornell.bin");
+  const std::string file = (f / "scene" / "a.gltf").string(),
+                    small = " --size 8x8 --samples 1 --quiet -o " + (f / "a.exr").string();
+  refused("info " + file, "buffers[0].uri: '");
+  refused("render " + file + small, "--allow-outside reads what scenes name elsewhere");
+  CHECK(run("info --allow-outside " + file).status == 0);
+  CHECK(run("render --allow-outside " + file + small).status == 0);
+  CHECK(run("--allow-outside render " + file + small).status == 0);
+  refused("info " + scene("hall") + " --scene-memory 0.001", "--scene-memory GIB allows more");
+  refused("info " + scene("cornell") + " --scene-memory nan", "--scene-memory");
   fs::remove_all(f);
 }
 

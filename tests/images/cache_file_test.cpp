@@ -185,6 +185,22 @@ TEST_CASE("what does not fit is refused, and neither picture nor records are los
   // Neither is the file there when a new one cannot be written.
   CHECK_THROWS_WITH(bed.r.save_cache(folder.path / "no" / "a.cache"), Contains("cannot be written"));
 
+  // Tertiary light that was gathered otherwise: its records were read in the place of paths, or the reverse.
+  Bed paths(Settings{{"components.secondary", "cache"}});
+  CHECK(paths.refusal(file) ==
+        file.string() +
+            ": the tertiary light of its records was gathered by 'cache', here it is by 'path'; set "
+            "components.tertiary cache");
+  paths.finish();
+  const fs::path other = folder.path / "paths.cache";
+  paths.r.save_cache(other);
+  CHECK(paths.refusal(other).empty());
+  CHECK_THAT(bed.refusal(other), Contains("was made with") || Contains("were made with"));
+  CHECK_THAT(first.refusal(other), Contains("gathered by 'path', here it is by 'cache'"));
+  // Where nothing reads it there is no difference.
+  paths.set({{"components.tertiary", "off"}});
+  CHECK(paths.refusal(file).empty());
+
   // Parts that it does not hold.
   Bed caustic(Settings{{"components.tertiary", "cache"}});
   CHECK_THAT(caustic.refusal(file), Contains("its records hold secondary, tertiary light; the components "

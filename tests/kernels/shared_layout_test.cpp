@@ -22,6 +22,7 @@
 #include "shaders/shared/sort.h"
 #include "shaders/shared/trace.h"
 #include "shaders/shared/transport.h"
+#include "shaders/shared/wide_sum.h"
 
 using namespace lucerna;
 using namespace lucerna::gpu;
@@ -57,6 +58,7 @@ std::vector<SharedStruct> structs() {
       SHARED("cache_inspect.h", InspectServing, record, weight, at, depth),
       SHARED("cache_inspect.h", OverlapPush, width, height, grid),
       SHARED("cache_inspect.h", OverlapCounts, pixels, most, records, listed),
+      SHARED("wide_sum.h", WideSum, low, high),
       SHARED("cache_inspect.h", CacheLine, from, to, from_depth, to_depth, half_width, alpha, color),
       SHARED("cache_inspect.h", CacheLinesPush, width, height, left, top, across, down, lines, ring),
       SHARED("cache_inspect.h", CacheTicksPush, width, height, records, color, lo, hi),

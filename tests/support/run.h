@@ -1,6 +1,8 @@
 #pragma once
 // Runs a program as a person would, for tests of the command line.
+#include <signal.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <cstdio>
@@ -27,5 +29,60 @@ inline Run run_command(const std::string& command) {
 inline Run run(const std::string& arguments, const std::string& wrapper = "") {
   return run_command(wrapper + " " + LUCERNA_BINARY + " " + arguments);
 }
+
+/// The program while it runs; when this goes, it is killed unless it has ended.
+class Running {
+ public:
+  explicit Running(const std::string& arguments) {
+    int ends[2];
+    REQUIRE(pipe(ends) == 0);
+    pid_ = fork();
+    REQUIRE(pid_ >= 0);
+    if (pid_ == 0) {
+      dup2(ends[1], 1), dup2(ends[1], 2);
+      close(ends[0]), close(ends[1]);
+      execl("/bin/sh", "sh", "-c", (std::string("exec ") + LUCERNA_BINARY + " " + arguments).c_str(),
+            nullptr);
+      _exit(127);
+    }
+    close(ends[1]);
+    from_ = ends[0];
+  }
+  ~Running() {
+    if (pid_ > 0) kill(pid_, SIGKILL), waitpid(pid_, nullptr, 0);
+    close(from_);
+  }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  /// Waits, however long, until it has written this; false: it has ended without.
+  bool says(const std::string& text) {
+    while (out_.find(text) == std::string::npos)
+      if (!read_some()) return false;
+    return true;
+  }
+  void send(int signal) const { kill(pid_, signal); }
+  /// Nobody reads what it writes from now on.
+  void stop_reading() { close(from_), from_ = -1; }
+  Run finish() {
+    while (read_some()) {
+    }
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    pid_ = -1;
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out_};
+  }
+
+ private:
+  bool read_some() {
+    char buffer[512];
+    const ssize_t n = from_ < 0 ? 0 : read(from_, buffer, sizeof buffer);
+    if (n > 0) out_.append(buffer, size_t(n));
+    return n > 0;
+  }
+  pid_t pid_ = -1;
+  int from_ = -1;
+  std::string out_;
+};
 
 }  // namespace lucerna::test

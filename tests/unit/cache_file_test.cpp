@@ -33,6 +33,7 @@ CacheFile some_cache(uint32_t records) {
   c.making.hashes = {{"geometry", 1}, {"lights", 0xfedcba9876543210ull}};
   c.making.settings = {{"cache.error", "0.3"}, {"path.max_depth", "64"}};
   c.making.parts = 0b0110;
+  c.making.recursive = records % 2 == 0;
   c.making.seed = "7";
   c.view = "perspective 0.8 at 1 2 3";
   c.status.pass = 3, c.status.asked = 5, c.status.paths = 1ull << 40, c.status.rays = 123456789012ull;
@@ -80,6 +81,7 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
     CHECK(d.making.hashes == c.making.hashes);
     CHECK(d.making.settings == c.making.settings);
     CHECK(d.making.parts == c.making.parts);
+    CHECK(d.making.recursive == c.making.recursive);
     CHECK(d.making.seed == c.making.seed);
     CHECK(d.view == c.view);
     CHECK(d.status.pass == c.status.pass);
@@ -97,7 +99,7 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
 
 TEST_CASE("the format is what its header says, byte for byte") {
   const std::string bytes = encode(some_cache(2));
-  const std::string head("LUCCACHE\1\0\0\0\3\0\0\0", 16);
+  const std::string head("LUCCACHE\2\0\0\0\3\0\0\0", 16);
   CHECK(bytes.substr(0, 16) == head);
   const auto number = [&](size_t at, int size) {
     uint64_t value = 0;
@@ -136,8 +138,8 @@ TEST_CASE("a file with one byte changed is refused, wherever it is and however")
       if (n >= 28) REQUIRE_THAT(told, Contains("damaged: its checksum is"));
     }
   std::string other = bytes;
-  other[8] = 2;
-  CHECK(refusal(other) == "a.cache: an irradiance cache in version 2 of its format; expected version 1");
+  other[8] = 1;
+  CHECK(refusal(other) == "a.cache: an irradiance cache in version 1 of its format; expected version 2");
   other = bytes, other[12] = 9;
   CHECK_THAT(refusal(other), Contains("its records are laid out otherwise: layout 9 of 368 bytes each, "
                                       "expected layout 3 of 368"));
@@ -208,6 +210,12 @@ TEST_CASE("a cache serves what it was made of, and says what differs") {
   CHECK(fits([](Making& m) { m.parts = 0b1111; }) ==
         "a.cache: its records hold secondary, tertiary light; the components that are looked up need "
         "environment, caustic light too");
+  // Who gathered tertiary light matters where that is read, and there alone.
+  CHECK(c.making.recursive);
+  CHECK(fits([](Making& m) { m.recursive = false; }) ==
+        "a.cache: the tertiary light of its records was gathered by 'cache', here it is by 'path'; set "
+        "components.tertiary cache");
+  CHECK(fits([](Making& m) { m.recursive = false, m.parts = 0b0010; }).empty());
   CHECK(fits([](Making&) {}, 19) ==
         "a.cache: holds 20 records and there is room for 19; set cache.max_records to 20 or more");
 }

@@ -214,7 +214,7 @@ TEST_CASE("what cannot be done says why and changes nothing") {
   CHECK_THAT(b.failure("camera.place 0,0,0 0,1,0 0,1,0"), Contains("up must not point"));
   CHECK_THAT(b.failure("camera.height 2"), Contains("the camera is not orthographic"));
   CHECK_THAT(b.failure("select material 99"), Contains("there is no material 99"));
-  CHECK_THAT(b.failure("script.save /no/such/folder/x.lucerna"), Contains("cannot write here"));
+  CHECK_THAT(b.failure("script.save /no/such/folder/x.lucerna"), Contains("cannot be written: No such file"));
   CHECK(b.work.document() == before);
   CHECK_FALSE(b.work.can_undo());
   CHECK(b.work.script().size() == 2);  // the scene alone
@@ -232,11 +232,36 @@ TEST_CASE("a failed load is noticed, and the scene before stays") {
   CHECK_THROWS_WITH(wait->done({}), "no scene was loaded");
   CHECK(b.work.scene->name == "hall");
   CHECK(b.work.selection == Selection{Kind::light, 1});
-  CHECK(b.work.script().back() == "scene.open " + std::filesystem::absolute("missing.gltf").string());
+  CHECK(b.work.script().back() == "select light 2");  // a load that failed is not done again
   b.open("other.gltf");
   CHECK(b.work.scene->name == "other");
   CHECK(b.work.selection == Selection{});
   CHECK_FALSE(b.work.can_undo());  // steps of the scene before mean nothing here
+}
+
+TEST_CASE("a session's script waits for the picture that was saved, and leaves out what failed") {
+  Bench b;
+  b.open();
+  b.run("set samples 12");
+  b.run("wait_samples 12");
+  b.run("image.save /tmp/never.exr");  // written by nobody here
+  const auto finished = b.work.script();
+  CHECK(finished[finished.size() - 2] == "wait_samples 12 limit=86400");
+  CHECK(finished.back() == "image.save /tmp/never.exr");
+  CHECK(std::count_if(finished.begin(), finished.end(),
+                      [](const std::string& line) { return line.starts_with("wait_samples"); }) == 1);
+  // A person's: no wait was said, and rendering was paused.
+  Bench p;
+  p.open();
+  REQUIRE(p.until([&] { return p.work.up_to_date() && p.work.snapshot->samples >= 5; }));
+  p.run("render.pause");
+  REQUIRE(p.until([&] { return p.work.up_to_date() && p.work.snapshot->paused; }));
+  p.run("image.save /tmp/never.png");
+  const auto lines = p.work.script();
+  REQUIRE(lines.size() == 6);
+  CHECK_THAT(lines[2], Catch::StartsWith("wait_samples "));
+  CHECK(lines[3] == "render.pause");
+  CHECK_THAT(lines[4], Catch::StartsWith("wait_samples "));
 }
 
 TEST_CASE("a setting made while a scene is being loaded is not lost") {

@@ -51,7 +51,7 @@ TEST_CASE("keys and commands lead from stage to stage, and the panel says where 
   CHECK(test::near_colour(plain, 280, 560, 600, 680, chosen) == 0);
   const std::string script = read_file(file("session.lucerna"));
   CHECK_THAT(script, Catch::Contains("set cache.pause stage"));
-  CHECK_THAT(script, Catch::Contains("cache.step\ncache.step\ncache.step limit=20\n"));
+  CHECK_THAT(script, Catch::Contains("cache.step\nwait_cache\ncache.step\ncache.step limit=20\n"));
   CHECK_THAT(script, Catch::Contains("set overlay.placement off\ncache.run"));
 }
 

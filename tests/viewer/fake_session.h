@@ -1,8 +1,8 @@
 #pragma once
 // A session without a renderer: the same class, defined here with a moving gradient for a picture, so that
 // the window can be run and tested on its own. Included by one test file, which then does not take the real
-// one from its library. Names with "missing" fail to load; names with "slow" load for three seconds; the name
-// "empty" makes a scene without cameras and lights.
+// one from its library. Names with "missing" fail to load and to be saved; names with "slow" load for three
+// seconds and are saved after half a one; the name "empty" makes a scene without cameras and lights.
 #include <atomic>
 #include <cmath>
 #include <condition_variable>
@@ -328,9 +328,9 @@ struct Session::Impl {
         if (!commands.empty()) command = std::move(commands.front()), commands.pop_front();
       }
       if (command) {
-        ++done;
         command();
-        if (snapshot && snapshot->commands < done) publish();
+        ++done;
+        publish();
         continue;
       }
       if (!scene || paused || waits() || width == 0 ||
@@ -423,13 +423,23 @@ void Session::clear_reference() {
 void Session::inspect(std::optional<vec2> at) {
   impl_->post([this, at] { impl_->looked_at = at, impl_->publish(); });
 }
-void Session::save(const std::filesystem::path& file) {
-  impl_->post([file] { log::info("picture saved as {}", file.string()); });
+Saved Session::save(const std::filesystem::path& file) {
+  auto promise = std::make_shared<std::promise<void>>();
+  impl_->post([file, promise] {
+    const std::string name = file.filename().string();
+    if (name.find("slow") != std::string::npos) std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    if (file.string().find("missing") != std::string::npos) {
+      const Error error(file.string(), "the folder does not exist");
+      log::error("{}", error.what());
+      promise->set_exception(std::make_exception_ptr(error));
+    } else {
+      log::info("saved {}", file.string());
+      promise->set_value();
+    }
+  });
+  return promise->get_future().share();
 }
-void Session::save_cache(const std::filesystem::path& file) {
-  impl_->post([file] { log::info("cache saved as {}", file.string()); });
-}
-bool Session::saving_cache() const { return false; }
+Saved Session::save_cache(const std::filesystem::path& file) { return save(file); }
 void Session::load_cache(const std::filesystem::path& file) {
   impl_->post([this, file] {
     if (file.string().find("missing") != std::string::npos)

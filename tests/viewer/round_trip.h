@@ -28,6 +28,11 @@ inline std::vector<std::string> samples(const commands::Parameter& p) {
     case Type::choice:
       return p.choices;
     case Type::file:
+      if (p.writes) {
+        std::vector<std::string> names;
+        for (const std::string& ending : p.choices) names.push_back("/tmp/a \"b\" #c" + ending);
+        return names;
+      }
       return {"/tmp/a b.png", "scene.gltf", "name=with #signs \"and\" \\.exr"};
     case Type::text:
       return {"lamp", "a \"lamp\" = \\ # 2", "12"};

@@ -43,7 +43,7 @@ TEST_CASE("a scene that is not there is an error in the window, and the script's
   if (test::no_program()) return;
   const test::Folder folder;
   const auto png = folder.path / "window.png";
-  const auto shown = viewer("no/such/scene.gltf", "wait 2\nscreenshot " + png.string() + "\nquit\n");
+  const auto shown = viewer("no/such/scene.gltf", "wait_load\nscreenshot " + png.string() + "\nquit 0\n");
   INFO(shown.output);
   REQUIRE(shown.status == 0);
   CHECK_THAT(shown.output, Catch::Contains("no/such/scene.gltf"));
@@ -69,7 +69,7 @@ TEST_CASE("a broken file that is dropped leaves the scene, and a click selects w
   const auto outcome = viewer("scenes/cornell/cornell.gltf",
                               "window.size 1100 700\nwait_scene\nwait_samples 1\ndrop " + broken.string() +
                                   "\nwait_load\nwait_samples 1\npick 0.5 0.145\nscreenshot " + png.string() +
-                                  "\nscript.save " + session.string() + "\nquit\n");
+                                  "\nscript.save " + session.string() + "\nquit 0\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   CHECK_THAT(outcome.output, Catch::Contains("broken.glb"));
@@ -84,13 +84,13 @@ TEST_CASE("a reference is loaded for a picture of its size, and refused with bot
   if (test::no_program()) return;
   const test::Folder folder;
   const std::string exr = (folder.path / "ref.exr").string(), png = (folder.path / "window.png").string();
-  const auto outcome = viewer(
-      "scenes/cornell/cornell.gltf",
-      "window.size 1100 700\nwait_scene\nreference.load " + exr +
-          "\nwait 0.5\nview.size 96 64\nwait 0.5\nsamples 8\nwait_samples 8\nimage.save " + exr +
-          "\nwait 0.5\nsamples 64\nreference.load " + exr + "\nwait_samples 64\nwait 0.7\nscreenshot " + png +
-          "\nview.size 80 64\nwait 0.5\nwait_samples 2\nreference.load " + exr +
-          "\nwait 0.5\nreference.clear\nwait 0.2\nquit\n");
+  const auto outcome =
+      viewer("scenes/cornell/cornell.gltf",
+             "window.size 1100 700\nwait_scene\nreference.load " + exr +
+                 "\nwait 0.5\nview.size 96 64\nwait 0.5\nsamples 8\nwait_samples 8\nimage.save " + exr +
+                 "\nsamples 64\nreference.load " + exr + "\nwait_samples 64\nwait 0.7\nscreenshot " + png +
+                 "\nview.size 80 64\nwait 0.5\nwait_samples 2\nreference.load " + exr +
+                 "\nwait 0.5\nreference.clear\nwait 0.2\nquit 0\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   CHECK_THAT(outcome.output, Catch::Contains("rendered with seed 0 like this picture"));

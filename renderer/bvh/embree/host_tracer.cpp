@@ -13,6 +13,14 @@
 #include "bvh/embree/packed_triangles.h"
 #include "bvh/embree/workers.h"
 
+// A second version for processors that have AVX2, chosen when the program starts: before the thread sanitizer
+// can have its calls in the function that chooses.
+#if defined(__SANITIZE_THREAD__)
+#define LUCERNA_AVX2_TOO
+#else
+#define LUCERNA_AVX2_TOO [[gnu::target_clones("avx2", "default")]]
+#endif
+
 namespace lucerna::bvh {
 
 using shared::Hit;
@@ -58,7 +66,7 @@ LUCERNA_LANES_INLINE int choose(const PackedTriangles& leaf, const ShearedRay& r
 
 // Compiled twice, the better one chosen when the program starts. Neither may contract products and sums into
 // one rounding (AVX2 without FMA): the device does not.
-[[gnu::target_clones("avx2", "default")]] void closest_leaf(const RTCIntersectFunctionNArguments* a) {
+LUCERNA_AVX2_TOO void closest_leaf(const RTCIntersectFunctionNArguments* a) {
   const PackedTriangles& leaf = static_cast<const Leaves*>(a->geometryUserPtr)->triangles[a->primID];
   auto& context = *reinterpret_cast<Context*>(a->context);
   RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
@@ -78,7 +86,7 @@ LUCERNA_LANES_INLINE int choose(const PackedTriangles& leaf, const ShearedRay& r
   }
 }
 
-[[gnu::target_clones("avx2", "default")]] void any_leaf(const RTCOccludedFunctionNArguments* a) {
+LUCERNA_AVX2_TOO void any_leaf(const RTCOccludedFunctionNArguments* a) {
   const PackedTriangles& leaf = static_cast<const Leaves*>(a->geometryUserPtr)->triangles[a->primID];
   auto& context = *reinterpret_cast<Context*>(a->context);
   for (unsigned i = 0; i < a->N; ++i) {

@@ -229,13 +229,38 @@ void write_exr(const fs::path& file, const FilmImage& image) {
   write_with_oiio(file, "openexr", spec, OIIO::TypeDesc::FLOAT, interleaved.data());
 }
 
-FilmImage read_exr(const fs::path& file) {
+namespace {
+
+std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
   const std::string where = file.string();
   std::error_code code;
   if (!fs::exists(file, code)) throw_error(where.empty() ? "image" : where, "there is no such file");
   if (fs::is_directory(file, code)) throw_error(where, "is a folder, expected an image");
   auto input = OIIO::ImageInput::open(where);
   if (!input) throw_error(where, "cannot read this image: {}", one_line(OIIO::geterror()));
+  return input;
+}
+
+std::map<std::string, std::string> metadata_of(const OIIO::ImageSpec& spec) {
+  std::map<std::string, std::string> metadata;
+  const std::string prefix = "lucerna:";
+  for (const auto& attribute : spec.extra_attribs) {
+    if (attribute.type() != OIIO::TypeDesc::STRING) continue;
+    const std::string name = attribute.name().string();
+    metadata[name.starts_with(prefix) ? name.substr(prefix.size()) : name] = attribute.get_string();
+  }
+  return metadata;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> read_metadata(const fs::path& file) {
+  return metadata_of(open_image(file)->spec());
+}
+
+FilmImage read_exr(const fs::path& file) {
+  const std::string where = file.string();
+  const auto input = open_image(file);
   const OIIO::ImageSpec& spec = input->spec();
   check_size(where, spec.width, spec.height);
   if (spec.depth > 1 || spec.deep)
@@ -253,12 +278,7 @@ FilmImage read_exr(const fs::path& file) {
     for (size_t p = 0; p < pixels; ++p) values[p] = interleaved[p * count + c];
     image.channels.emplace_back(spec.channel_name(static_cast<int>(c)), std::move(values));
   }
-  const std::string prefix = "lucerna:";
-  for (const auto& attribute : spec.extra_attribs) {
-    if (attribute.type() != OIIO::TypeDesc::STRING) continue;
-    const std::string name = attribute.name().string();
-    image.metadata[name.starts_with(prefix) ? name.substr(prefix.size()) : name] = attribute.get_string();
-  }
+  image.metadata = metadata_of(spec);
   return image;
 }
 

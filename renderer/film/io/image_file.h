@@ -54,6 +54,10 @@ void write_exr(const std::filesystem::path& file, const FilmImage& image);
 /// missing, truncated, empty or larger than k_max_image_size.
 FilmImage read_exr(const std::filesystem::path& file);
 
+/// The metadata of an image file, as FilmImage has them, without its pixels. Throws Error located at `file`
+/// when it is no image that can be read.
+std::map<std::string, std::string> read_metadata(const std::filesystem::path& file);
+
 /// Writes 8-bit RGBA, sRGB-encoded, not premultiplied, top row first; `rgba` holds width * height * 4 bytes.
 /// `metadata` becomes text chunks. Errors as write_exr.
 void write_png(const std::filesystem::path& file, uint32_t width, uint32_t height,

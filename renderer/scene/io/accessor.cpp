@@ -6,6 +6,9 @@
 namespace lucerna::scene {
 namespace {
 
+// An element of zeros, as large as one can be.
+const uint8_t k_zero[16 * sizeof(float)] = {};
+
 template <class T>
 T load(const uint8_t* at) {
   T value;
@@ -59,7 +62,7 @@ int components_of_type(const std::string& type) {
   return 0;
 }
 
-AccessorReader::AccessorReader(const Document& document, uint32_t index) {
+AccessorReader::AccessorReader(Document& document, uint32_t index) {
   const tinygltf::Model& model = document.model;
   const tinygltf::Accessor& accessor = model.accessors[index];
   count_ = accessor.count;
@@ -73,19 +76,30 @@ AccessorReader::AccessorReader(const Document& document, uint32_t index) {
     const tinygltf::BufferView& v = model.bufferViews[static_cast<size_t>(view)];
     return model.buffers[static_cast<size_t>(v.buffer)].data.data() + v.byteOffset + offset;
   };
-  if (accessor.bufferView >= 0) {
+  backed_ = accessor.bufferView >= 0;
+  if (backed_) {
     base_ = bytes(accessor.bufferView, accessor.byteOffset);
     const size_t stride = model.bufferViews[static_cast<size_t>(accessor.bufferView)].byteStride;
     if (stride != 0) stride_ = stride;
   }
-  if (base_ && !accessor.sparse.isSparse) return;
-
-  own_.assign(count_ * element, 0);
-  if (base_)
-    for (size_t i = 0; i < count_; ++i) std::memcpy(own_.data() + i * element, base_ + i * stride_, element);
-  stride_ = element;
-  base_ = own_.data();
+  if (!base_) base_ = k_zero, stride_ = 0;
   if (!accessor.sparse.isSparse) return;
+
+  // Made once, however many primitives share it.
+  const auto [place, fresh] = document.sparse.try_emplace(index);
+  std::vector<uint8_t>& own = place->second;
+  const uint8_t* const from = base_;
+  const size_t step = stride_;
+  const auto use_own = [&] { base_ = own.data(), stride_ = element; };
+  if (!fresh) {
+    use_own();
+    return;
+  }
+  document.budget.take(count_ * element, fmt::format("{}: accessors[{}]", document.file, index),
+                       "{} elements of a sparse accessor", count_);
+  own.resize(count_ * element);
+  for (size_t i = 0; i < count_; ++i) std::memcpy(own.data() + i * element, from + i * step, element);
+  use_own();
   const auto& sparse = accessor.sparse;
   const uint8_t* indices = bytes(sparse.indices.bufferView, static_cast<size_t>(sparse.indices.byteOffset));
   const uint8_t* values = bytes(sparse.values.bufferView, static_cast<size_t>(sparse.values.byteOffset));
@@ -95,7 +109,7 @@ AccessorReader::AccessorReader(const Document& document, uint32_t index) {
     if (target >= count_)
       throw_error(fmt::format("{}: accessors[{}].sparse.indices", document.file, index),
                   "entry {} is {}, but the accessor has {} elements", i, target, count_);
-    std::memcpy(own_.data() + target * element, values + i * element, element);
+    std::memcpy(own.data() + target * element, values + i * element, element);
   }
 }
 

@@ -14,15 +14,17 @@ int bytes_of_component(int component_type);
 /// components have padded columns and are never read here.
 int components_of_type(const std::string& type);
 
-/// Reads one accessor of a checked document. Refers to the document's buffers; owns its data if it is sparse.
+/// Reads one accessor of a checked document, and refers to its data.
 class AccessorReader {
  public:
-  AccessorReader(const Document& document, uint32_t accessor);
+  AccessorReader(Document& document, uint32_t accessor);
 
   size_t count() const { return count_; }
   int components() const { return components_; }
   int component_type() const { return component_type_; }
   bool normalized() const { return normalized_; }
+  /// Whether every element has bytes of its own in a buffer; otherwise all are 0 but for sparse ones.
+  bool backed() const { return backed_; }
   /// Treats integers as normalized whatever the accessor says (colours, which glTF always normalizes).
   void force_normalized() { normalized_ = true; }
 
@@ -36,8 +38,7 @@ class AccessorReader {
   const uint8_t* base_ = nullptr;
   size_t stride_ = 0, count_ = 0;
   int components_ = 0, component_type_ = 0;
-  bool normalized_ = false;
-  std::vector<uint8_t> own_;
+  bool normalized_ = false, backed_ = false;
 };
 
 }  // namespace lucerna::scene

@@ -23,9 +23,10 @@ struct Container {
   bool has_bin = false;
 };
 
-Container read_container(const std::filesystem::path& path, const std::string& file) {
+Container read_container(const Document& document, const std::filesystem::path& path) {
+  const std::string& file = document.file;
   Container c;
-  c.bytes = read_file(path, file);
+  c.bytes = read_file(document, path, file);
   const size_t size = c.bytes.size();
   c.json_end = size;
   if (size == 0) throw_error(file, "the file is empty");
@@ -78,7 +79,7 @@ void read_buffers(Document& document, const Container& container) {
     std::vector<uint8_t>& data = document.model.buffers[i].data;
     if (const auto uri = buffer.find("uri")) {
       data = is_data_uri(uri->text()) ? decode_data_uri(*uri)
-                                      : read_file(resolve_uri(document, uri->text()), uri->where());
+                                      : read_file(document, resolve_uri(document, *uri), uri->where());
     } else {
       if (!container.binary || i != 0) buffer.fail("'uri' is missing");
       if (!container.has_bin) buffer.fail("the .glb has no binary chunk");
@@ -180,7 +181,8 @@ std::vector<std::string> Warnings::lines() const {
   return result;
 }
 
-std::vector<uint8_t> read_file(const std::filesystem::path& path, const std::string& where) {
+std::vector<uint8_t> read_file(const Document& document, const std::filesystem::path& path,
+                               const std::string& where) {
   const std::string name = where == path.string() ? "" : fmt::format(" '{}'", path.string());
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -190,6 +192,7 @@ std::vector<uint8_t> read_file(const std::filesystem::path& path, const std::str
   const uintmax_t size = std::filesystem::file_size(path, error);
   std::ifstream stream(path, std::ios::binary);
   if (error || !stream) throw_error(where, "the file cannot be opened{}", name);
+  document.budget.take(size, where, "a file of {} bytes", size);
   std::vector<uint8_t> bytes(size);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   if (static_cast<uintmax_t>(stream.gcount()) != size) throw_error(where, "the file cannot be read{}", name);
@@ -241,7 +244,33 @@ std::string percent_decode(const std::string& uri) {
   return result;
 }
 
-std::filesystem::path resolve_uri(const Document& document, const std::string& uri) {
+void Budget::refuse(uint64_t bytes, uint64_t before, const std::string& where,
+                    const std::string& what) const {
+  constexpr double k_gib = 1024.0 * 1024 * 1024;
+  throw OverBudget(where,
+                   fmt::format("{} would take {:.2f} GiB more, beyond the {:.2f} GiB that a scene may "
+                               "have ({:.2f} GiB are taken); --scene-memory GIB allows more",
+                               what, static_cast<double>(bytes) / k_gib, static_cast<double>(most_) / k_gib,
+                               static_cast<double>(std::min(before, most_)) / k_gib));
+}
+
+void require_inside(const Document& document, const std::filesystem::path& file, const std::string& where) {
+  if (document.outside) return;
+  std::error_code error;
+  const auto real = [&](const std::filesystem::path& path) {
+    return std::filesystem::weakly_canonical(path.empty() ? "." : path, error);
+  };
+  const std::filesystem::path folder = real(document.folder);
+  const std::filesystem::path target = error ? folder : real(file);
+  const auto parted = std::mismatch(folder.begin(), folder.end(), target.begin(), target.end());
+  if (!error && parted.first == folder.end() && parted.second != target.end()) return;
+  throw OutsideFolder(where, fmt::format("'{}' is not in the scene's folder and is not read; --allow-outside "
+                                         "reads what scenes name elsewhere",
+                                         file.string()));
+}
+
+std::filesystem::path resolve_uri(const Document& document, const Item& item) {
+  const std::string& uri = item.text();
   // Texts with a zero byte would be cut short by the system and name another file.
   std::string decoded = percent_decode(uri);
   decoded.erase(std::find(decoded.begin(), decoded.end(), '\0'), decoded.end());
@@ -250,13 +279,14 @@ std::filesystem::path resolve_uri(const Document& document, const std::string& u
   if (decoded != uri && uri.find('\0') == std::string::npos && !std::filesystem::exists(path, error) &&
       std::filesystem::exists(document.folder / uri, error))
     path = document.folder / uri;
+  require_inside(document, path, item.where());
   return path;
 }
 
 void open_document(Document& document, const std::filesystem::path& path) {
   document.file = path.string();
   document.folder = path.parent_path();
-  const Container container = read_container(path, document.file);
+  const Container container = read_container(document, path);
   const char* text = reinterpret_cast<const char*>(container.bytes.data());
   const char *begin = text + container.json_begin, *end = text + container.json_end;
   // A .glb pads its JSON with spaces; zeros are a common mistake.

@@ -28,8 +28,8 @@ void read_environment(Document& document, Scene& scene, const Item& item, bool s
   if (file) {
     environment.file = file->text();
     document.progress(0.95f, "environment");
-    Image image = decode_image(read_file(resolve_uri(document, environment.file), file->where()),
-                               environment.file, file->where(), Precision::linear_floats);
+    Image image = decode_image(read_file(document, resolve_uri(document, *file), file->where()),
+                               environment.file, file->where(), Precision::linear_floats, document.budget);
     image.name = environment.file;
     if (const size_t mended = mend_texels(image))
       document.warnings.add("{} texel values of the environment that are negative or not finite: replaced",
@@ -69,7 +69,8 @@ bool load_settings(Document& document, Scene& scene) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return false;
   const std::string file = path.string();
-  const std::vector<uint8_t> bytes = read_file(path, file);
+  require_inside(document, path, file);
+  const std::vector<uint8_t> bytes = read_file(document, path, file);
   const char* text = reinterpret_cast<const char*>(bytes.data());
   const nlohmann::json json = parse_json(file, text, text + bytes.size());
   const Item root(file, json);

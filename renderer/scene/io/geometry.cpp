@@ -25,6 +25,10 @@ class PrimitiveLoader {
   std::string located(const std::string& member) const {
     return fmt::format("{}: {}.{}", document_.file, where_, member);
   }
+  template <class... Args>
+  void budget(uint64_t bytes, const char* member, fmt::format_string<Args...> format, Args&&... args) {
+    document_.budget.take(bytes, located(member), format, std::forward<Args>(args)...);
+  }
   void warn(const char* kind, uint64_t count = 1) { document_.warnings.add(kind, where_, count); }
   int attribute(const char* name) const {
     const auto found = source_.attributes.find(name);
@@ -72,6 +76,7 @@ bool PrimitiveLoader::read_triangles(size_t vertices) {
         (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
          type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
       throw Error(located("indices"), "expected scalars of an unsigned integer type");
+    budget(reader.count() * sizeof(uint32_t), "indices", "{} indices", reader.count());
     list.resize(reader.count());
     for (size_t i = 0; i < list.size(); ++i) {
       list[i] = reader.read_index(i);
@@ -79,12 +84,15 @@ bool PrimitiveLoader::read_triangles(size_t vertices) {
         throw_error(located("indices"), "index {} is {}, but there are {} vertices", i, list[i], vertices);
     }
   } else {
+    budget(vertices * sizeof(uint32_t), "attributes.POSITION", "{} vertices", vertices);
     list.resize(vertices);
     for (size_t i = 0; i < vertices; ++i) list[i] = static_cast<uint32_t>(i);
   }
   const size_t n = list.size();
   if (n / 3 > k_max_triangles || (source_.mode != 4 && n > k_max_triangles))
     throw_error(located("indices"), "more than {} triangles", k_max_triangles);
+  const size_t triangles = source_.mode == TINYGLTF_MODE_TRIANGLES ? n / 3 : n - std::min<size_t>(n, 2);
+  budget(triangles * sizeof(uvec3), "indices", "{} triangles", triangles);
   if (source_.mode == TINYGLTF_MODE_TRIANGLES) {
     triangles_.reserve(n / 3);
     for (size_t i = 0; i + 2 < n; i += 3) triangles_.emplace_back(list[i], list[i + 1], list[i + 2]);
@@ -100,11 +108,21 @@ bool PrimitiveLoader::read_triangles(size_t vertices) {
 }
 
 // Primitives often share one large vertex buffer; each keeps only what its triangles use, in the buffer's
-// order.
+// order, and takes no longer for it than its triangles are many.
 void PrimitiveLoader::keep_used_vertices() {
+  used_.clear();
+  if (vertices_ / 16 > triangles_.size()) {
+    for (const uvec3& t : triangles_) used_.insert(used_.end(), {t.x, t.y, t.z});
+    std::sort(used_.begin(), used_.end());
+    used_.erase(std::unique(used_.begin(), used_.end()), used_.end());
+    const auto place = [&](uint32_t vertex) {
+      return static_cast<uint32_t>(std::lower_bound(used_.begin(), used_.end(), vertex) - used_.begin());
+    };
+    for (uvec3& t : triangles_) t = uvec3(place(t.x), place(t.y), place(t.z));
+    return;
+  }
   std::vector<uint32_t> place(vertices_, k_none);
   for (const uvec3& t : triangles_) place[t.x] = place[t.y] = place[t.z] = 0;
-  used_.clear();
   for (size_t i = 0; i < vertices_; ++i) {
     if (place[i] == k_none) continue;
     place[i] = static_cast<uint32_t>(used_.size());
@@ -258,6 +276,9 @@ bool PrimitiveLoader::load(MaterialLoader& materials, Primitive& primitive) {
   if (!read_triangles(vertices_)) return false;
 
   keep_used_vertices();
+  // Positions, normals, two texture coordinates, colours and tangents, whichever there are.
+  budget(used_.size() * (2 * sizeof(vec3) + 2 * sizeof(vec2) + 2 * sizeof(vec4)), "attributes", "{} vertices",
+         used_.size());
   read_positions(primitive);
   if (const size_t dropped = drop_degenerate(primitive.positions)) {
     warn("{} degenerate triangles removed", dropped);

@@ -19,17 +19,20 @@ bool begins(const std::vector<uint8_t>& bytes, std::initializer_list<int> magic)
          std::equal(magic.begin(), magic.end(), bytes.begin(), [](int a, uint8_t b) { return a == b; });
 }
 
-// A name by which OpenImageIO finds the reader.
-std::string reader_name(const std::vector<uint8_t>& bytes, const std::string& hint) {
-  if (begins(bytes, {0x89, 'P', 'N', 'G'})) return "image.png";
-  if (begins(bytes, {0xff, 0xd8, 0xff})) return "image.jpg";
-  if (begins(bytes, {0x76, 0x2f, 0x31, 0x01})) return "image.exr";
-  if (begins(bytes, {'#', '?'})) return "image.hdr";
+// By what OpenImageIO knows the format: its name or an ending.
+std::string format_name(const std::vector<uint8_t>& bytes, const std::string& hint) {
+  if (begins(bytes, {0x89, 'P', 'N', 'G'})) return "png";
+  if (begins(bytes, {0xff, 0xd8, 0xff})) return "jpg";
+  if (begins(bytes, {0x76, 0x2f, 0x31, 0x01})) return "exr";
+  if (begins(bytes, {'#', '?'})) return "hdr";
   if (bytes.size() > 12 && std::memcmp(bytes.data(), "RIFF", 4) == 0 &&
       std::memcmp(bytes.data() + 8, "WEBP", 4) == 0)
-    return "image.webp";
+    return "webp";
   const size_t dot = hint.find_last_of("./");
-  return "image." + (dot == std::string::npos ? std::string("png") : hint.substr(dot + 1));
+  std::string name = dot == std::string::npos ? "png" : hint.substr(dot + 1);
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name;
 }
 
 // OpenImageIO keeps its messages per thread until they are fetched.
@@ -62,7 +65,7 @@ std::vector<T> to_rgba(const std::vector<T>& from, size_t texels, size_t channel
 }  // namespace
 
 Image decode_image(const std::vector<uint8_t>& bytes, const std::string& hint, const std::string& where,
-                   Precision precision) {
+                   Precision precision, Budget& budget) {
   if (bytes.empty()) throw Error(where, "the image has no bytes");
   OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
   OIIO::ImageSpec config;
@@ -73,9 +76,24 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& hint, c
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   std::unique_ptr<OIIO::ImageInput> input;
   try {
-    input = OIIO::ImageInput::open(reader_name(bytes, hint), &config, &memory);
-    if (!input) throw Error(where, "the image cannot be decoded: " + reader_error({}));
-    const OIIO::ImageSpec& spec = input->spec();
+    // Of one format alone: to open by a name is to have every reader try the file of that name. Some open
+    // one even when they are given memory; the formats of those are refused, and the name is one that no file
+    // can have. The reader of nothing makes images from names.
+    const std::string format = format_name(bytes, hint);
+    const bool plain =
+        std::all_of(format.begin(), format.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
+    if (plain) input = OIIO::ImageInput::create(format);
+    if (!input) throw_error(where, "'{}' is no image format that is known: {}", format, reader_error({}));
+    const std::string known = input->format_name();
+    if (!input->supports("ioproxy") || known == "null")
+      throw_error(where,
+                  "images in the format '{}' cannot be read here; save it as PNG, JPEG, EXR or HDR instead",
+                  known);
+    OIIO::ImageSpec spec;
+    if (!input->open("/dev/null/image", spec, config)) {
+      const std::string message = input->geterror();
+      throw Error(where, "the image cannot be decoded: " + reader_error(message));
+    }
     if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0)
       throw_error(where, "the image has no texels ({} x {})", spec.width, spec.height);
     const uint64_t texels = static_cast<uint64_t>(spec.width) * static_cast<uint64_t>(spec.height);
@@ -94,6 +112,8 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& hint, c
     Image image;
     image.width = static_cast<uint32_t>(spec.width);
     image.height = static_cast<uint32_t>(spec.height);
+    budget.take(texels * 4 * (floats ? sizeof(float) : 1), where, "an image of {} x {}", spec.width,
+                spec.height);
     const auto read = [&](auto& buffer, OIIO::TypeDesc type) {
       buffer.resize(texels * static_cast<uint64_t>(channels));
       if (input->read_image(0, 0, 0, channels, type, buffer.data())) return;

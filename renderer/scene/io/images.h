@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/io/document.h"
 #include "scene/scene.h"
 
 namespace lucerna::scene {
@@ -13,12 +14,13 @@ namespace lucerna::scene {
 /// `linear_floats`: everything becomes floats, and 8- and 16-bit files are taken for sRGB and linearized.
 enum class Precision { keep, eight_bit, linear_floats };
 
-/// Decodes the first image of a file held in memory. The format is told by its first bytes, else by `hint` (a
-/// file name or a MIME type). Grey and grey with alpha are spread to RGBA, missing alpha is 1, alpha stays
-/// unassociated in files that store it so. Throws an Error at `where` if it cannot be decoded, has no texels,
-/// or has more than 2^28.
+/// Decodes the first image of a file held in memory, and opens no file. The format is told by its first
+/// bytes, else by `hint` (a file name or a MIME type). Grey and grey with alpha are spread to RGBA, missing
+/// alpha is 1, alpha stays unassociated in files that store it so. Throws an Error at `where` if its format
+/// is not known or cannot be read from memory, if it cannot be decoded, has no texels, or has more than 2^28;
+/// OverBudget as Budget::take.
 Image decode_image(const std::vector<uint8_t>& bytes, const std::string& hint, const std::string& where,
-                   Precision precision);
+                   Precision precision, Budget& budget);
 
 /// Makes float texels finite and not negative: NaN and negative values become 0, +infinity 65504 (the largest
 /// half float). Gives back how many values were changed. Does nothing to byte texels.

@@ -67,6 +67,22 @@ void load_meshes(Document& document, Scene& scene, MaterialLoader& materials) {
   std::erase_if(scene.instances, [](const Instance& instance) { return instance.mesh == k_none; });
 }
 
+// About what a triangle and a vertex take in the world, with the tree over them and the device's copy.
+constexpr uint64_t k_triangle_bytes = 256, k_vertex_bytes = 128;
+
+// Geometry is in memory once for every instance that shows it.
+void check_instances(const Document& document, const Scene& scene) {
+  for (const Instance& instance : scene.instances) {
+    uint64_t triangles = 0, vertices = 0;
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    for (const Primitive& p : mesh.primitives)
+      triangles += p.triangles.size(), vertices += p.positions.size();
+    document.budget.take(triangles * k_triangle_bytes + vertices * k_vertex_bytes, document.file,
+                         "node '{}', another instance of mesh '{}' with {} triangles,", instance.name,
+                         mesh.name, triangles);
+  }
+}
+
 // The renderer works in world space, so what a matrix makes of the coordinates must be in range too.
 void check_world(const Document& document, const Scene& scene) {
   std::vector<Box> boxes(scene.meshes.size());
@@ -89,7 +105,7 @@ void check_world(const Document& document, const Scene& scene) {
 }  // namespace
 
 Scene load(const std::filesystem::path& path, const LoadOptions& options, const LoadProgress& progress) {
-  Document document;
+  Document document(options);
   document.progress = [&progress](float fraction, const char* what) {
     if (progress && !progress(fraction, what)) throw Cancelled();
   };
@@ -104,6 +120,7 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, const 
     load_nodes(document, scene);
     MaterialLoader materials(document, scene);
     load_meshes(document, scene, materials);
+    check_instances(document, scene);
     check_world(document, scene);
     document.progress(0.5f, "textures");
     materials.load_images(options.images);

@@ -6,11 +6,12 @@
 //   that are not finite, a cyclic node graph or a node with two parents, a singular matrix above a mesh,
 //   camera or light, a required extension that is not known, an environment that cannot be read, a
 //   settings.json that is not as described below.
+//   A buffer or an environment outside the scene's folder (below), and more memory than LoadOptions allows.
 // - One line in Scene::warnings, with a count: degenerate triangles (removed), points and lines (left out),
 // textures
-//   that are missing, cannot be decoded or have no texels (white instead; flat for normal maps), values
-//   outside their range (clamped), extensions that are not known, skins, morph targets and animations (rest
-//   pose is shown).
+//   that are missing, outside the scene's folder, cannot be decoded or have no texels (white instead; flat
+//   for normal maps), values outside their range (clamped), extensions that are not known, skins, morph
+//   targets and animations (rest pose is shown).
 // Honoured extensions: KHR_materials_emissive_strength, _ior, _specular, _transmission, _volume,
 // _diffuse_transmission, _unlit, KHR_lights_punctual (range ignored), KHR_texture_transform,
 // KHR_mesh_quantization, EXT_mesh_gpu_instancing.
@@ -21,10 +22,15 @@
 // from a file settings.json beside the scene (there an unknown key of "environment" is an Error). Its other
 // values go to Scene::settings, nested objects as dotted keys: {"film": {"ev": 1}} is "film.ev" = "1".
 //
-// Images: PNG, JPEG, EXR, HDR and what else OpenImageIO reads, as files, data URIs or buffer views; grey,
-// grey with alpha and RGB become RGBA, alpha stays unassociated. 8-bit texels stay bytes. 16-bit ones become
-// floats where every use is data (normal maps, roughness ...) and 8 bits where one use is colour; float
-// formats stay floats.
+// Images: PNG, JPEG, EXR, HDR and what else OpenImageIO decodes from memory (TIFF, TGA, BMP, WebP, PNM, DDS,
+// PSD ...; not SGI, ICO, RLA, FITS and others that it opens by name alone), as files, data URIs or buffer
+// views; grey, grey with alpha and RGB become RGBA, alpha stays unassociated. 8-bit texels stay bytes. 16-bit
+// ones become floats where every use is data (normal maps, roughness ...) and 8 bits where one use is colour;
+// float formats stay floats.
+//
+// A scene may name files of its own folder and of those below it, whatever its URIs say: what lies elsewhere,
+// by "..", an absolute path or a symbolic link, is not read unless LoadOptions::outside.
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -35,9 +41,17 @@
 
 namespace lucerna::scene {
 
+/// What a scene may take in memory unless LoadOptions says otherwise.
+inline constexpr uint64_t k_scene_bytes = uint64_t{8} << 30;
+
 struct LoadOptions {
   bool images = true;    ///< false: textures are neutral single texels (for tools that look at geometry only)
   bool settings = true;  ///< false: settings.json beside the scene is not looked at
+  /// Files that the scene names are read wherever they are.
+  bool outside = false;
+  /// Bytes that files, images, geometry and its instances in the world may take together, as estimated from
+  /// their numbers; a scene that asks for more is refused, with the element that went beyond.
+  uint64_t most_bytes = k_scene_bytes;
 };
 
 /// Called from time to time with the fraction done (0..1) and what is being done ("textures"); false cancels.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <exception>
 #include <mutex>
 #include <thread>
 
@@ -41,6 +42,8 @@ struct Decoded {
   bool only_data = true;  // no use of it is colour
   Image image;
   std::string failure;
+  bool outside = false;               // it is a file that may not be read
+  std::exception_ptr over = nullptr;  // the scene may not take so much memory
   Id id = k_none;
 };
 
@@ -63,12 +66,16 @@ void decode(const Document& document, uint32_t index, Decoded& result) {
     } else if (uri) {
       name = percent_decode(uri->text());
       hint = name;
-      bytes = read_file(resolve_uri(document, uri->text()), uri->where());
+      bytes = read_file(document, resolve_uri(document, *uri), uri->where());
     } else {
       item.fail("neither 'uri' nor 'bufferView' is given");
     }
-    result.image =
-        decode_image(bytes, hint, item.where(), result.only_data ? Precision::keep : Precision::eight_bit);
+    result.image = decode_image(bytes, hint, item.where(),
+                                result.only_data ? Precision::keep : Precision::eight_bit, document.budget);
+  } catch (const OverBudget&) {
+    result.over = std::current_exception();
+  } catch (const OutsideFolder& error) {
+    result.failure = error.what(), result.outside = true;
   } catch (const std::exception& error) {
     result.failure = error.what();
   }
@@ -255,9 +262,14 @@ void MaterialLoader::load_images(bool decode_them) {
   helpers.clear();
 
   for (auto& [index, decoded] : images) {
+    if (decoded.over) std::rethrow_exception(decoded.over);
     if (!decoded.failure.empty()) {
       document_.warnings.add(
-          "{} images cannot be used; neutral ones (white, flat for normal maps) replace them",
+          decoded.outside
+              ? "{} images lie outside the scene's folder; neutral ones (white, flat for normal maps) "
+                "replace "
+                "them"
+              : "{} images cannot be used; neutral ones (white, flat for normal maps) replace them",
           decoded.failure);
       continue;
     }

@@ -158,6 +158,13 @@ class Walker {
         found->fail("{} elements, but another attribute has {}", readers[k]->count(), count);
       count = readers[k]->count();
     }
+    if (count > 0 && std::none_of(std::begin(readers), std::end(readers),
+                                  [](const auto& reader) { return reader && reader->backed(); }))
+      attributes.fail("{} instances, of which no attribute has a buffer view", count);
+    const size_t text = name.size() + 1 + std::to_string(count).size();
+    document_.budget.take(count * (sizeof(Instance) + (text > 15 ? text + 17 : 0)), extension.where(),
+                          "{} instances", count);
+    scene_.instances.reserve(scene_.instances.size() + count);
     for (size_t i = 0; i < count; ++i) {
       vec3 t(0), s(1);
       vec4 q(0, 0, 0, 1);

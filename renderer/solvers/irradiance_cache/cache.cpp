@@ -263,6 +263,7 @@ const CacheStatus& Cache::status() const { return impl_->status; }
 const Records& Cache::records() const { return impl_->records; }
 const std::vector<float>& Cache::worth() const { return impl_->worth; }
 uint32_t Cache::parts() const { return impl_->parts; }
+bool Cache::recursive() const { return impl_->recursive; }
 
 bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
                  const std::function<bool()>& cancel) {

@@ -155,6 +155,7 @@ class Cache {
   /// Of the records, when the last pass had its first level: how much of the picture reads them (worth.h).
   const std::vector<float>& worth() const;
   uint32_t parts() const;  ///< that its records hold (bits); the others are 0
+  bool recursive() const;  ///< their tertiary light is looked up in other records, not path traced
   /// Looks through the centre of every pixel, for bind_sight(), unless that has been done: while the cache is
   /// being built its own passes do. The wavefront's frame is the view's.
   void look_at_picture(transport::Wavefront& wavefront, const CacheView& view);

@@ -106,6 +106,10 @@ class Reader {
   const std::string& where_;
 };
 
+// Of a file that is written nothing changes.
+void assign(bool& value, uint8_t read) { value = read != 0; }
+void assign(const bool&, uint8_t) {}
+
 template <class Archive, class File>
 void fields(Archive& a, File& f) {
   a.text(f.program);
@@ -113,6 +117,9 @@ void fields(Archive& a, File& f) {
   a.map(f.making.hashes, [&](auto& value) { a.plain(value); });
   a.map(f.making.settings, [&](auto& value) { a.text(value); });
   a.plain(f.making.parts);
+  uint8_t recursive = f.making.recursive;
+  a.plain(recursive);
+  assign(f.making.recursive, recursive);
   a.text(f.making.seed);
   a.text(f.view);
   a.plain(f.status.pass), a.plain(f.status.asked), a.plain(f.status.paths), a.plain(f.status.rays);
@@ -230,6 +237,12 @@ void check_fits(const CacheFile& cache, const Making& wanted, uint32_t room, con
   if (const uint32_t missing = wanted.parts & ~made.parts)
     throw_error(where, "its records hold {} light; the components that are looked up need {} light too",
                 part_names(made.parts), part_names(missing));
+  const auto gathered = [](bool recursive) { return recursive ? "cache" : "path"; };
+  if ((wanted.parts & 1u << k_part_tertiary) != 0 && made.recursive != wanted.recursive)
+    throw_error(where,
+                "the tertiary light of its records was gathered by '{}', here it is by '{}'; set "
+                "components.tertiary {}",
+                gathered(made.recursive), gathered(wanted.recursive), gathered(made.recursive));
   if (cache.records.size() > room)
     throw_error(where, "holds {} records and there is room for {}; set cache.max_records to {} or more",
                 cache.records.size(), room, cache.records.size());

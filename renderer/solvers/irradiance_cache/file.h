@@ -18,7 +18,7 @@
 
 namespace lucerna::irradiance_cache {
 
-inline constexpr uint32_t k_cache_file_version = 1;
+inline constexpr uint32_t k_cache_file_version = 2;
 
 /// What records are made of.
 struct Making {
@@ -26,6 +26,8 @@ struct Making {
   std::map<std::string, uint64_t> hashes;       ///< of the scene: "geometry", "lights", ...
   std::map<std::string, std::string> settings;  ///< those that decide what a record holds, by key
   uint32_t parts = 0;                           ///< bit p: the records hold part p
+  /// Their tertiary light was looked up in other records, not path traced.
+  bool recursive = false;
   /// Decides which of the equally good caches it is: kept, not compared.
   std::string seed;
 };
@@ -49,7 +51,8 @@ void write_cache(const std::filesystem::path& file, const CacheFile& cache);
 CacheFile read_cache(const std::filesystem::path& file);
 
 /// Throws Error at `where` unless these records can serve what is made like `wanted` with room for `room`
-/// records: naming what of the scene, which settings or which parts differ, or the setting that would fit.
+/// records: naming what of the scene, which settings, which parts or what gathered tertiary light (where that
+/// is wanted) differ, or the setting that would fit.
 void check_fits(const CacheFile& cache, const Making& wanted, uint32_t room, const std::string& where);
 
 }  // namespace lucerna::irradiance_cache

@@ -111,8 +111,8 @@ Overlap Inspector::overlap(const Shown& shown, const Cache& cache) {
   o.histogram.assign(std::begin(c->pixels), std::end(c->pixels));
   for (const uint32_t n : o.histogram) o.pixels += n;
   o.served = o.pixels - o.histogram[0];
-  o.mean = o.served > 0 ? double(c->records) / double(o.served) : 0;
-  o.listed = o.pixels > 0 ? double(c->listed) / double(o.pixels) : 0;
+  o.mean = o.served > 0 ? double(value(c->records)) / double(o.served) : 0;
+  o.listed = o.pixels > 0 ? double(value(c->listed)) / double(o.pixels) : 0;
   o.most = c->most;
   return o;
 }

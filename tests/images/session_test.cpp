@@ -1,0 +1,155 @@
+// links: session
+// The real session, driven from another thread as a window drives it: loads that are given up, edits in any
+// moment, files that are asked for, and an end at any time. Clean under the thread sanitizer (preset tsan).
+#include "session/session.h"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <random>
+#include <thread>
+
+#include "base/log.h"
+#include "film/io/image_file.h"
+#include "support/folder.h"
+
+using namespace lucerna;
+using session::Session;
+using session::Snapshot;
+
+namespace {
+
+std::string gltf(const std::string& name) {
+  return std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf";
+}
+
+/// Counts what is logged while it lives.
+struct Heard {
+  std::atomic<int> errors{0}, given_up{0}, loaded{0};
+  int token = log::add_listener([this](log::Level level, const std::string& text) {
+    errors += level == log::Level::error;
+    given_up += text.find("loading was given up") != std::string::npos;
+    loaded += text.find(" loaded: ") != std::string::npos;
+  });
+  ~Heard() { log::remove_listener(token); }
+};
+
+/// Until a snapshot is so, however long.
+template <class Condition>
+std::shared_ptr<const Snapshot> until(const Session& session, const Condition& holds) {
+  for (;; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
+    if (const auto snapshot = session.snapshot(); snapshot && holds(*snapshot)) return snapshot;
+}
+void settle(const Session& session) {
+  const uint64_t commands = session.commands();
+  until(session, [&](const Snapshot& s) { return s.commands >= commands; });
+}
+
+}  // namespace
+
+TEST_CASE("a load that was given up stays so, whatever is loaded after it") {
+  Heard heard;
+  Session session({.device = "cpu"});
+  session.set_size(32, 24);
+  // The first is under way or still to begin; the second takes nothing back of that it was given up.
+  for (int round = 0; round < 3; ++round) {
+    session.load(gltf("hall"));
+    if (round == 1) until(session, [](const Snapshot& s) { return s.progress >= 0; });
+    session.cancel();
+    session.load(gltf("cornell"));
+    settle(session);
+  }
+  CHECK(heard.given_up == 3);
+  CHECK(heard.loaded == 3);
+  CHECK(heard.errors == 0);
+  CHECK(session.scene()->name == "cornell");
+  CHECK(session.snapshot()->scene_id == 3);
+}
+
+TEST_CASE("files that are asked for are written, also when the session ends at once") {
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return folder.path / name; };
+  session::Saved picture, last, nowhere, cache;
+  {
+    Session session({.device = "cpu"});
+    session.set_size(32, 24);
+    session.load(gltf("cornell"));
+    picture = session.save(file("a.exr"));
+    picture.get();
+    const film::FilmImage image = film::read_exr(file("a.exr"));
+    const std::vector<float>& samples = *image.find("samples");
+    CHECK(*std::min_element(samples.begin(), samples.end()) >= 1);
+    nowhere = session.save(file("no") / "such" / "a.exr");
+    CHECK_THROWS_WITH(nowhere.get(), Catch::Contains("the folder '"));
+    cache = session.save_cache(file("a.cache"));
+    CHECK_THROWS_WITH(cache.get(), Catch::Contains("no component is computed by 'cache'"));
+    last = session.save(file("b.png"));
+  }
+  CHECK_NOTHROW(last.get());
+  CHECK(std::filesystem::exists(file("b.png")));
+}
+
+TEST_CASE("a session without a device tells those who wait for files") {
+  Session session({.device = "no such device"});
+  CHECK_THROWS(session.save("/tmp/lucerna-never.exr").get());
+}
+
+TEST_CASE("edits from another thread at any moment, pictures looked at meanwhile, and an end in mid-work") {
+  Heard heard;
+  std::mt19937 random(5);
+  const auto below = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
+  std::atomic<uint64_t> published{0}, seen{0};
+  for (int round = 0; round < 2; ++round) {
+    Session session({.device = "cpu"});
+    session.on_publish([&] { ++published; });
+    session.set_size(32, 24);
+    session.load(gltf("cornell"));
+    settle(session);
+    std::atomic<bool> stop{false};
+    std::thread watcher([&] {
+      while (!stop)
+        if (const auto s = session.snapshot())
+          seen += s->rgba.size() + s->samples + session.settings().all().size();
+    });
+    for (int edit = 0; edit < 40; ++edit) {
+      switch (below(9)) {
+        case 0:
+          session.set("components.secondary", below(2) ? "cache" : "path");
+          break;
+        case 1:
+          session.set_environment(0.5f + 0.1f * float(below(5)), 0);
+          break;
+        case 2:
+          session.set_size(24 + 8 * uint32_t(below(3)), 24);
+          break;
+        case 3:
+          session.set("film.ev", std::to_string(below(3)));
+          break;
+        case 4:
+          session.set_paused(below(2));
+          break;
+        case 5:
+          session.inspect(vec2(0.5f, 0.1f * float(below(9))));
+          break;
+        case 6:
+          session.set("sampling.mode", below(2) ? "adaptive" : "uniform");
+          break;
+        case 7: {
+          const auto scene = session.scene();
+          scene::Material m = scene->materials[0];
+          m.base_color.x = 0.1f * float(below(9));
+          session.set_material(0, m);
+          break;
+        }
+        default:
+          session.restart();
+      }
+      if (below(3) == 0) settle(session);
+    }
+    stop = true;
+    watcher.join();
+  }
+  CHECK(published > 10);
+  CHECK(seen > 0);
+  CHECK(heard.errors == 0);
+}

@@ -1,0 +1,156 @@
+// links: ui film_io
+// What scripts promise: they end, they wait for what they save, they tell failure by their exit status, and
+// they replace no file that is not theirs. Over a session without a renderer, and in the program itself.
+#include "inside.h"
+#include "ui/runner.h"
+
+using namespace lucerna;
+
+namespace {
+
+std::string bytes(const std::string& file) { return read_file(file); }
+
+}  // namespace
+
+TEST_CASE("a script ends the program, with 1 after an error unless it says otherwise") {
+  if (test::no_display()) return;
+  // Its end is a quit.
+  CHECK(test::window("wait_scene\n").status == 0);
+  CHECK(test::window("wait_scene\nquit\n").status == 0);
+  // An error that no step waited for, told after the last step.
+  const std::string broken = "wait_scene\nreference.load missing.exr\n";
+  CHECK(test::window(broken).status != 0);
+  CHECK(test::window(broken + "quit\n").status != 0);
+  CHECK(test::window(broken + "quit 0\n").status == 0);
+  CHECK(test::window("wait_scene\nscene.open missing.gltf\nwait_load\nquit\n").status != 0);
+  // A load that is given up is no error.
+  const auto given_up = test::window("wait_scene\nscene.open slow.gltf\nscene.cancel\nquit\n");
+  INFO(given_up.output);
+  CHECK(given_up.status == 0);
+}
+
+TEST_CASE("a script waits for what it saves, and fails when that fails") {
+  if (test::no_display()) return;
+  const auto saved = test::window("wait_scene\nimage.save slow.exr\ncache.save slow.cache\n");
+  INFO(saved.output);
+  CHECK(saved.status == 0);
+  CHECK_THAT(saved.output, Catch::Contains("saved slow.exr") && Catch::Contains("saved slow.cache"));
+  for (const char* save : {"image.save missing/a.exr", "cache.save missing/a.cache"}) {
+    const auto failed = test::window("wait_scene\n" + std::string(save) + "\nlog.clear\nquit 0\n");
+    INFO(failed.output);
+    CHECK(failed.status != 0);
+    CHECK_THAT(failed.output, Catch::Contains("script: line 2: ") && Catch::Contains("nothing was written"));
+  }
+}
+
+TEST_CASE("names of other formats are refused before anything is done") {
+  session::Session session({});
+  ui::Ui window(session);
+  ui::Runner runner(window, {}, "");
+  for (const char* line : {"image.save a.jpg", "image.save .exr", "image.save a", "screenshot a.exr",
+                           "script.save a.txt", "cache.save a.exr"})
+    CHECK_THROWS_WITH(
+        ui::parse_script(window.registry, {line}, "s"),
+        Catch::StartsWith("s: line 1: ") && Catch::Contains("expected a file name that ends in ."));
+}
+
+TEST_CASE("a script that calls itself is told so") {
+  if (test::no_display()) return;
+  const test::Folder folder;
+  const std::string a = (folder.path / "a.lucerna").string(), b = (folder.path / "b.lucerna").string();
+  std::ofstream(a) << "wait_scene\nscript.run " << b << "\n";
+  std::ofstream(b) << "script.run " << (folder.path / "." / "a.lucerna").string() << "\n";
+  const auto outcome = test::window("script.run " + a + "\nquit 0\n");
+  INFO(outcome.output);
+  CHECK(outcome.status != 0);
+  CHECK_THAT(outcome.output, Catch::Contains("b.lucerna: line 1: script.run: ") &&
+                                 Catch::Contains("a script cannot run itself"));
+  // Twice one after the other is no circle.
+  std::ofstream(b) << "wait_scene\n";
+  CHECK(test::window("script.run " + a + "\nscript.run " + a + "\n").status == 0);
+}
+
+TEST_CASE("at the console a script that fails stops, and the window stays") {
+  if (test::no_display()) return;
+  const test::Folder folder;
+  const std::string a = (folder.path / "a.lucerna").string(), end = (folder.path / "end.png").string();
+  std::ofstream(a) << "select light 99\nfilm.ev 3\n";
+  const auto outcome = test::window("wait_scene\nkey ctrl+l\nwait 0.3\ntype \"script.run " + a +
+                                    "\"\nkey enter\nwait 0.5\nscreenshot " + end + "\nquit 0\n");
+  INFO(outcome.output);
+  CHECK(outcome.status == 0);
+  CHECK_THAT(outcome.output, Catch::Contains("there is no light 99"));
+  CHECK(std::filesystem::exists(end));
+}
+
+TEST_CASE("screenshots and saved sessions replace their like alone") {
+  if (test::no_display()) return;
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  std::ofstream(file("letter.png")) << "dear";
+  film::write_png(file("holiday.png"), 1, 1, std::vector<uint8_t>(4, 255));
+  std::ofstream(file("letter.lucerna")) << "dear";
+  const std::string holiday = bytes(file("holiday.png"));
+  for (const char* name : {"letter.png", "holiday.png", "letter.lucerna"}) {
+    const bool script = std::string(name).ends_with(".lucerna");
+    const auto refused = test::window((script ? "script.save " : "screenshot ") + file(name) + "\nquit 0\n");
+    INFO(refused.output);
+    CHECK(refused.status != 0);
+    CHECK_THAT(refused.output, Catch::Contains("is there already and no "));
+  }
+  CHECK(bytes(file("letter.png")) == "dear");
+  CHECK(bytes(file("holiday.png")) == holiday);
+  CHECK(bytes(file("letter.lucerna")) == "dear");
+  std::ofstream(file("theirs.tmp")) << "dear";
+  const std::string both = "screenshot " + file("a.png") + "\nscript.save " + file("theirs") + ".lucerna\n";
+  const auto twice = test::window("wait_scene\n" + both + "select light 2\n" + both);
+  INFO(twice.output);
+  CHECK(twice.status == 0);
+  CHECK_THAT(bytes(file("theirs.lucerna")), Catch::EndsWith("select light 2\n"));
+  CHECK(bytes(file("theirs.tmp")) == "dear");
+}
+
+TEST_CASE("in the program the picture that a script saves is there, whole, however soon the script ends") {
+  if (test::no_program()) return;
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  const std::string start = "view.size 64 48\nwait_scene\n";
+  for (const char* end : {"", "quit\n"}) {
+    std::filesystem::remove(file("a.exr"));
+    const auto outcome =
+        test::program("scenes/cornell/cornell.gltf",
+                      start + "image.save " + file("a.exr") + "\nimage.save " + file("a.png") + "\n" + end);
+    INFO(outcome.output);
+    CHECK(outcome.status == 0);
+    REQUIRE(std::filesystem::exists(file("a.exr")));
+    CHECK(std::filesystem::exists(file("a.png")));
+    const film::FilmImage image = film::read_exr(file("a.exr"));
+    const std::vector<float>& samples = *image.find("samples");
+    CHECK(*std::min_element(samples.begin(), samples.end()) >= 1);
+  }
+  const auto failed = test::program("scenes/cornell/cornell.gltf",
+                                    start + "image.save " + file("no") + "/such/a.exr\nquit 0\n");
+  INFO(failed.output);
+  CHECK(failed.status == 1);
+  CHECK_THAT(failed.output, Catch::Contains("the folder '") && Catch::Contains("nothing was written"));
+
+  // A session that saved its picture saves the same again: it waits for as many samples.
+  const std::string session = file("session.lucerna"), again = file("again.lucerna");
+  const auto first = test::program("scenes/cornell/cornell.gltf",
+                                   start + "samples 40\nwait_samples 40\nimage.save " + file("b.exr") +
+                                       "\nimage.save " + file("no.exr") + "\nscript.save " + session + "\n");
+  INFO(first.output);
+  REQUIRE(first.status == 0);
+  const film::FilmImage before = film::read_exr(file("b.exr"));
+  std::filesystem::remove(file("b.exr"));
+  const auto second = test::program("", "script.run " + session + "\nscript.save " + again + "\n");
+  INFO(second.output);
+  REQUIRE(second.status == 0);
+  const film::FilmImage after = film::read_exr(file("b.exr"));
+  CHECK(after.metadata.at("settings") == before.metadata.at("settings"));
+  for (size_t i = 0; i < before.channels.size(); ++i) {
+    INFO(before.channels[i].first);
+    CHECK((after.channels[i].second == before.channels[i].second));
+  }
+  CHECK(bytes(again) == bytes(session));
+}
