@@ -91,7 +91,6 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_VOLUMES", e.volumes);
   set("LUCERNA_UNLIT", e.unlit);
   set("LUCERNA_ALPHA", e.alpha);
-  set("LUCERNA_TRANSPARENT", e.transparent());
   set("LUCERNA_NORMAL_MAPS", e.normal_maps);
   set("LUCERNA_VERTEX_EXTRA", e.vertex_extra);
   set("LUCERNA_TEX_BASE", e.tex_base);

@@ -15,14 +15,9 @@
 // LUCERNA_DIFFUSE_TRANSMISSION.
 #ifndef LUCERNA_LIB_BSDF
 #define LUCERNA_LIB_BSDF
+#include "lib/variants.glsl"
 #include "shaders/shared/bsdf_table.h"
 #include "lib/microfacet.glsl"
-
-#if LUCERNA_SOLID_GLASS || LUCERNA_THIN_GLASS
-#define LUCERNA_GLASS 1
-#else
-#define LUCERNA_GLASS 0
-#endif
 
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
 uniform samplerBuffer bsdf_table;

@@ -2,6 +2,7 @@
 // Densities are per solid angle at the shaded point, selection included.
 #ifndef LUCERNA_LIB_LIGHTS
 #define LUCERNA_LIB_LIGHTS
+#include "lib/variants.glsl"
 #include "lib/frame.glsl"
 
 #if LUCERNA_LIGHTS

@@ -4,6 +4,7 @@
 // sequences: the two halves from which the error is estimated.
 #ifndef LUCERNA_LIB_SAMPLER
 #define LUCERNA_LIB_SAMPLER
+#include "lib/variants.glsl"
 
 // Pads: 0 pixel, 1 lens, then k_pads_per_vertex for every scattering event.
 const uint k_pad_pixel = 0u;

@@ -2,6 +2,7 @@
 // the sun. For lib/lights.glsl.
 #ifndef LUCERNA_LIB_SKY
 #define LUCERNA_LIB_SKY
+#include "lib/variants.glsl"
 
 #if LUCERNA_SUN
 uniform samplerBuffer sun_cells;

@@ -6,6 +6,7 @@
 // either). Within one dispatch a slot is touched by one invocation, which reads it before it writes it.
 #ifndef LUCERNA_LIB_WAVEFRONT
 #define LUCERNA_LIB_WAVEFRONT
+#include "lib/variants.glsl"
 #include "lib/frame.glsl"
 #include "lib/invocation.glsl"
 

@@ -1,5 +1,6 @@
 // One vertex of every live path: emission with its MIS weight, direct light by next-event estimation, scattering, roulette.
 // What can arrive later (the light sample) is queued as a shadow ray; the path goes on in the next queue.
+#include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
 #include "lib/surface.glsl"
