@@ -48,6 +48,13 @@ Layer partly(double coverage, Layer l) {
 }
 /// Black.
 Layer leaf(double coverage) { return partly(coverage, {test::diffuse(vec3(0)), {Share{}}}); }
+/// Black by a mask: there or not.
+Layer mask(float alpha, float cutoff) {
+  Layer l = partly(alpha < cutoff ? 0 : 1, {test::diffuse(vec3(0)), {Share{}}});
+  l.material.alpha_mode = scene::AlphaMode::mask, l.material.base_color.w = alpha;
+  l.material.alpha_cutoff = cutoff;
+  return l;
+}
 /// A smooth coat of ior 1.5 over green, whose colour is not looked at.
 Layer coat() {
   Layer l{test::diffuse({0, 0.8f, 0}), {{dvec2(0), dvec2(0.04)}}};
@@ -166,8 +173,9 @@ TEST_CASE("panes, leaves, coats and glass behind each other pass and reflect wha
               gilt = {pane({0.9f, 0.7f, 0.5f}, 1.8f, 0.3f)};
   const Stack third = {leaf(0.3)}, half = {leaf(0.5)}, half_pane = {partly(0.5, pane())};
   check_stacks(
-      {1 * clear, 2 * clear, 3 * clear, 20 * clear, third + clear + third, 2 * (clear + half),
-       20 * Stack{leaf(0.1)}, 5 * (clear + blue + Stack{leaf(0.05)} + half_pane), clear + Stack{coat()},
+      {clear + Stack{mask(0.6f, 0.5f)} + clear, 2 * clear, 3 * clear, 20 * clear,
+       third + clear + Stack{mask(0.4f, 0.5f)} + third, 2 * (clear + half), 20 * Stack{leaf(0.1)},
+       5 * (clear + blue + Stack{leaf(0.05)} + half_pane), clear + Stack{coat()},
        2 * clear + third + Stack{coat()}, clear + Stack{plate()}, third + clear + Stack{plate()} + clear,
        Stack{plate()} + clear + Stack{coat()}, 3 * gilt, 600 * Stack{leaf(0.005)},
        5 * (clear + Stack{leaf(0.1)}) + half_pane + Stack{plate(), coat()}},
