@@ -2,9 +2,7 @@
 //
 // Defines: LUCERNA_QUERY = 0 closest, 1 any_opaque, 2 closest_non_opaque (see lucerna::bvh::Query);
 // LUCERNA_NON_OPAQUE where the scene has non-opaque triangles; those of lib/bvh.glsl.
-#ifndef LUCERNA_QUERY
-#define LUCERNA_QUERY 0
-#endif
+#include "lib/variants.glsl"
 #include "lib/invocation.glsl"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/trace.h"

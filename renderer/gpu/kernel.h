@@ -27,7 +27,9 @@ struct SpecConstant {
 /// `layout(scalar)` as the default of buffers and push constants, so that structs lie as in C++; and the
 /// extensions for includes, control-flow hints, 8- and 16-bit storage, 64-bit integers and their atomics,
 /// float atomics, basic subgroup operations and debugPrintfEXT (none of which costs anything unless used). A
-/// #version of its own is ignored. Errors read "shaders/lib/bsdf.glsl:123: 'foo' : undeclared identifier".
+/// #version of its own is ignored. Errors read "shaders/lib/bsdf.glsl:123: 'foo' : undeclared identifier". A
+/// macro that an #if tests before it is defined is an error too (where its value matters), not 0: what the
+/// host may leave out is given its 0 in shaders/lib/variants.glsl.
 /// Disk cache: $XDG_CACHE_HOME/lucerna/spirv (or ~/.cache), keyed by the text of all files that the kernel
 /// may include + defines + compiler version; safe against concurrent processes and damaged files.
 /// Thread-safe.
@@ -42,6 +44,9 @@ class ShaderCompiler {
   /// Throws Error located at file and line. Resources that the kernel declares but never reaches are removed,
   /// and bindings are numbered anew.
   std::vector<uint32_t> compile(const std::string& file, const Defines& defines = {});
+  /// Throws what compile() would of macros that are tested before they are defined, in a small part of its
+  /// time.
+  void check_macros(const std::string& file, const Defines& defines = {}) const;
   /// Files that the last compile() of this file and defines looked at, whether it succeeded or not (for hot
   /// reload): the kernel and everything named by #include lines, those in inactive branches too.
   std::vector<std::filesystem::path> dependencies(const std::string& file, const Defines& defines = {});

@@ -46,7 +46,7 @@ void DeviceScene::update_lights(gpu::Device& device, const FlatScene& flat) {
   environment_texels_ = upload(device, "environment", flat.environment_texels);
   environment_alias_ = upload(device, "environment table", flat.environment_alias);
   sun_cells_ = upload(device, "sun table", flat.sun_cells);
-  sun_pmf_ = upload(device, "sun probabilities", flat.sun_pmf);
+  sun_density_ = upload(device, "sun densities", flat.sun_density);
   effects_ = flat.effects;
 }
 
@@ -68,7 +68,7 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("environment_texels", environment_texels_);
   r.set("environment_alias", environment_alias_);
   r.set("sun_cells", sun_cells_);
-  r.set("sun_pmf", sun_pmf_);
+  r.set("sun_density", sun_density_);
   r.set("bsdf_table", tables_);
   r.set("bvh_nodes", nodes_);
   r.set("bvh_triangles", bvh_triangles_);
@@ -91,7 +91,6 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_VOLUMES", e.volumes);
   set("LUCERNA_UNLIT", e.unlit);
   set("LUCERNA_ALPHA", e.alpha);
-  set("LUCERNA_TRANSPARENT", e.transparent());
   set("LUCERNA_NORMAL_MAPS", e.normal_maps);
   set("LUCERNA_VERTEX_EXTRA", e.vertex_extra);
   set("LUCERNA_TEX_BASE", e.tex_base);

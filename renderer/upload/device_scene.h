@@ -24,7 +24,7 @@ class DeviceScene {
 
  private:
   gpu::Buffer triangles_, vertices_, tangents_, extra_, materials_, lights_, light_alias_, light_pmf_,
-      environment_texels_, environment_alias_, sun_cells_, sun_pmf_, tables_, nodes_, bvh_triangles_;
+      environment_texels_, environment_alias_, sun_cells_, sun_density_, tables_, nodes_, bvh_triangles_;
   std::vector<gpu::TextureArray> buckets_;
   Effects effects_;
 };

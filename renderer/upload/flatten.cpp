@@ -110,11 +110,13 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     out[k_material_base] = m.base_color;
     out[k_material_emission] = vec4(m.unlit ? vec3(0) : m.emission, as_float(flags));
     out[k_material_surface] = vec4(m.metallic, m.roughness, m.ior, m.specular);
-    out[k_material_specular] = vec4(m.specular_color, m.transmission);
+    // Unlit surfaces show their colour and are black otherwise: what is behind them is hidden.
+    out[k_material_specular] = vec4(m.specular_color, m.unlit ? 0 : m.transmission);
     out[k_material_volume] = vec4(absorption, row);
     out[k_material_diffuse_t] = vec4(m.diffuse_transmission_color, m.diffuse_transmission);
     out[k_material_detail] = vec4(m.normal_scale, m.alpha_cutoff, 0, 0);
-    e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && m.transmission < 1));
+    const bool lets_all_through = m.transmission >= 1 && !m.transmission_texture;
+    e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && !lets_all_through));
     e.solid_glass |= solid;
     e.thin_glass |= thin;
     e.diffuse_transmission |= m.diffuse_transmission > 0;

@@ -48,7 +48,7 @@ struct FlatScene {
   /// Above 0: the environment is two emitters (shared/scene.h), its sun the texels of more than so many times
   /// its mean luminance.
   float sun_threshold = 0;
-  std::vector<vec4> sun_cells, sun_pmf;
+  std::vector<vec4> sun_cells, sun_density;
   uint32_t environment_width = 0, environment_height = 0;
   vec3 environment_radiance{0};
   float environment_rotation = 0, environment_light_pmf = 0;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "upload/alias_table.h"
 #include "upload/flatten.h"
@@ -13,9 +14,14 @@ namespace {
 using namespace shared;
 float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
 
-/// Solid angle over 2 pi / width.
+/// Solid angle of a texel, times width / 2 pi: the difference of two cosines as a product, of which nothing
+/// cancels beside the poles.
 double row_band(uint32_t row, uint32_t h) {
-  return std::cos(k_pi * row / h) - std::cos(k_pi * (row + 1.0) / h);
+  return 2 * std::sin(std::numbers::pi * (row + 0.5) / h) * std::sin(0.5 * std::numbers::pi / h);
+}
+/// Density of a texel's directions, per solid angle.
+double texel_density(double pmf, size_t texel, uint32_t w, uint32_t h) {
+  return pmf * w / (2 * std::numbers::pi * row_band(uint32_t(texel / w), h));
 }
 
 /// Weights of texels: luminance under the bilinear filter's support (a 3x3 tent), times the solid angle of
@@ -70,15 +76,16 @@ double sum_of(const std::vector<double>& values) {
   return sum;
 }
 
-/// The sun's table and pmf, the latter without the sun's own; returns the number of its cells.
+/// The sun's table and densities, the latter without the sun's own pmf; returns the number of its cells.
 uint32_t flatten_sun(const std::vector<double>& weights, FlatScene& flat) {
   std::vector<double> cells;
   std::vector<vec4> texels;
   const double total = sum_of(weights);
-  flat.sun_pmf.assign((weights.size() + 3) / 4, vec4(0));
+  flat.sun_density.assign((weights.size() + 3) / 4, vec4(0));
   for (size_t i = 0; i < weights.size(); ++i) {
     if (weights[i] <= 0) continue;
-    flat.sun_pmf[i / 4][int(i % 4)] = float(weights[i] / total);
+    flat.sun_density[i / 4][int(i % 4)] =
+        float(texel_density(weights[i] / total, i, flat.environment_width, flat.environment_height));
     cells.push_back(weights[i]);
     texels.emplace_back(as_float(uint32_t(i)), 0, 0, 0);
   }
@@ -113,7 +120,7 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
   flat.environment_texels.clear();
   flat.environment_alias.clear();
   flat.sun_cells.clear();
-  flat.sun_pmf.clear();
+  flat.sun_density.clear();
   flat.environment_width = flat.environment_height = 0;
   std::vector<double> weights;
   const auto add = [&](uint32_t kind, vec3 a, vec4 b, vec4 c, vec4 d, double power) {
@@ -183,8 +190,8 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
     const double total = sum_of(texels);
     environment_weight = power(total);
     for (size_t i = 0; i < texels.size(); ++i) {
-      const float pmf = total > 0 ? float(texels[i] / total) : 0;
-      flat.environment_texels[i].w = sun[i] ? -pmf : pmf;
+      const float density = total > 0 ? float(texel_density(texels[i] / total, i, w, h)) : 0;
+      flat.environment_texels[i].w = sun[i] ? -density : density;
     }
   }
   flat.effects.sun = sun_weight > 0;
@@ -221,7 +228,7 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
   flat.light_alias = build_alias_table(weights);
   if (flat.light_alias.empty()) flat.lights.clear();
   if (flat.effects.sun)
-    for (vec4& four : flat.sun_pmf) four *= flat.light_alias.back().z;
+    for (vec4& four : flat.sun_density) four *= flat.light_alias.back().z;
   flat.primitive_light_pmf.assign(emissive.empty() ? 0 : flat.triangles.size(), 0.f);
   for (size_t k = 0; k < emissive.size() && !flat.light_alias.empty(); ++k)
     flat.primitive_light_pmf[emissive[k].first] = flat.light_alias[k].z / emissive[k].second;

@@ -2,6 +2,7 @@
 // LUCERNA_NEIGHBOURS 0: the octree's one list. 27 or 8: a grid that lists a sphere in the cell of its centre alone; 27 cells
 // around that of the point (cells no smaller than the largest radius), or the 8 nearest (no smaller than the largest
 // diameter).
+#include "lib/variants.glsl"
 #include "lib/octree.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
@@ -9,10 +10,6 @@ layout(push_constant, scalar) uniform Push { uint count; };
 uniform samplerBuffer points;
 uniform samplerBuffer spheres;
 layout(scalar) writeonly buffer Found { uvec4 found[]; };
-
-#ifndef LUCERNA_NEIGHBOURS
-#define LUCERNA_NEIGHBOURS 0
-#endif
 
 void take(uint sphere, inout uint n, inout uint sum) {
   n++;

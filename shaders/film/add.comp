@@ -1,5 +1,6 @@
 // Adds a batch's finished paths to the film: one invocation a pixel, samples in their order, so that the sums do not depend
 // on how samples were cut into batches.
+#include "lib/variants.glsl"
 #include "lib/frame.glsl"
 #include "lib/film.glsl"
 #include "lib/blocks.glsl"

@@ -1,6 +1,7 @@
 // What the two halves of the film say of the noise in the blocks of a work item: one invocation a row of a block, eight
 // blocks a workgroup. All sums are taken in a fixed order. With LUCERNA_STOPPING_ONLY just what decides whether a tile goes
 // on, `relative` and `quadrant_pixels`: nobody asks for the rest after every pass.
+#include "lib/variants.glsl"
 #include "lib/film.glsl"
 #include "lib/blocks.glsl"
 #include "lib/invocation.glsl"

@@ -27,8 +27,8 @@ void main() {
   p.medium = 0u;
   p.travelled = 0.0;
   p.eta_scale = 1.0;
+  p.nulls = 0u;
   p.pad0 = 0.0;
-  p.pad1 = 0.0;
   paths[slot] = p;
   for (uint c = 0u; c < k_component_count; ++c) radiance[slot * k_component_count + c].rgb = vec3(0.0);
 }

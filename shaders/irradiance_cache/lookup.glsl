@@ -4,6 +4,7 @@
 // 1 where records may be ellipses.
 #ifndef LUCERNA_IRRADIANCE_CACHE_LOOKUP
 #define LUCERNA_IRRADIANCE_CACHE_LOOKUP
+#include "lib/variants.glsl"
 #include "shaders/shared/irradiance_cache.h"
 #include "lib/math.glsl"
 #include "lib/octree.glsl"

@@ -1,5 +1,6 @@
 // Which records would serve at another's place, and how far from their centres: one invocation for each record,
 // at whose place the octree knows whoever may. LUCERNA_WRITE: 0 counts them, 1 writes them where the sum of the counts says.
+#include "lib/variants.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "lib/invocation.glsl"
 #include "shaders/shared/neighbours.h"

@@ -15,14 +15,9 @@
 // LUCERNA_DIFFUSE_TRANSMISSION.
 #ifndef LUCERNA_LIB_BSDF
 #define LUCERNA_LIB_BSDF
+#include "lib/variants.glsl"
 #include "shaders/shared/bsdf_table.h"
 #include "lib/microfacet.glsl"
-
-#if LUCERNA_SOLID_GLASS || LUCERNA_THIN_GLASS
-#define LUCERNA_GLASS 1
-#else
-#define LUCERNA_GLASS 0
-#endif
 
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
 uniform samplerBuffer bsdf_table;
@@ -348,8 +343,24 @@ bool bsdf_glossy(Bsdf b) {
 #endif
 }
 
-// Draws a direction from the mixture of all lobes, then the label. u: direction; lobe: which lobe, which label.
-// Returns event k_event_null or weight 0 (absorbed) too.
+// Straight transmission past shadow rays: of a smooth thin wall; 0 for everything else.
+vec3 bsdf_straight(Bsdf b, float mu) {
+#if LUCERNA_THIN_GLASS
+  if (b.delta && !b.solid) return b.glass * b.tint * (1.0 - fresnel_slab(mu, b.eta));
+#endif
+  return vec3(0.0);
+}
+// Probability of that null event among a path's ways. Whether it happens is decided by a number of its own (null_sampler),
+// before bsdf_sample, which draws from the others alone.
+float bsdf_straight_probability(Bsdf b, float mu) {
+#if LUCERNA_THIN_GLASS
+  if (b.delta && !b.solid) return b.p_glass * (1.0 - fresnel_slab(mu, b.eta));
+#endif
+  return 0.0;
+}
+
+// Draws a direction from the mixture of all lobes but straight transmission, then the label. u: direction; lobe: which
+// lobe, which label. Weight and density are those of the whole mixture. May return weight 0 (absorbed).
 BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
   BsdfSample s;
   s.event = k_event_diffuse;
@@ -359,6 +370,9 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
   s.pdf = 0.0;
   vec3 cosine = sample_cosine(u);
   float at = lobe.x;
+#if LUCERNA_THIN_GLASS
+  at *= 1.0 - bsdf_straight_probability(b, wo.z);  // the last share of the lobes
+#endif
   s.wi = cosine;
   bool through = at >= b.p_diffuse && at < b.p_diffuse + b.p_transmitted;
   if (through) s.wi = vec3(cosine.xy, -cosine.z);
@@ -391,7 +405,7 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
     vec3 off = 2.0 * cos_facet * facet - wo;
     float f = glass_fresnel(b, cos_facet);
     float pick = at / b.p_glass;
-    bool reflect_it = pick < f;
+    bool reflect_it = pick < f || (b.glass_delta && !b.solid);
     vec3 passed = vec3(off.xy, -off.z);
     float scale = 1.0;
 #if LUCERNA_SOLID_GLASS
@@ -408,9 +422,7 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
     lost = reflect_it != (s.wi.z > 0.0);
     if (b.glass_delta) {
       delta = true;
-      bool straight = !reflect_it && !b.solid;
-      s.event = straight ? k_event_null : k_event_specular;
-      if (straight) s.wi = -wo;
+      s.event = k_event_specular;
       s.weight = b.glass / b.p_glass * (reflect_it ? vec3(1.0) : b.tint * scale);
     }
   }
@@ -444,14 +456,6 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
   if (b.solid && s.transmitted && s.event != k_event_diffuse) s.eta2 = 1.0 / (b.eta * b.eta);
 #endif
   return s;
-}
-
-// Straight transmission past shadow rays: of a smooth thin wall; 0 for everything else.
-vec3 bsdf_straight(Bsdf b, float mu) {
-#if LUCERNA_THIN_GLASS
-  if (b.delta && !b.solid) return b.glass * b.tint * (1.0 - fresnel_slab(mu, b.eta));
-#endif
-  return vec3(0.0);
 }
 
 #endif

@@ -10,11 +10,12 @@
 // lower primitive id wins.
 #ifndef LUCERNA_LIB_BVH
 #define LUCERNA_LIB_BVH
+#include "lib/variants.glsl"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/trace.h"
 
 // ---- fetch ----
-#ifdef LUCERNA_FETCH_STORAGE
+#if LUCERNA_FETCH_STORAGE
 layout(scalar) readonly buffer bvh_nodes { uvec4 bvh_node_texels[]; };
 layout(scalar) readonly buffer bvh_triangles { vec4 bvh_triangle_texels[]; };
 uvec4 bvh_node_texel(uint i) { return bvh_node_texels[i]; }
@@ -29,7 +30,7 @@ vec4 bvh_triangle_texel(uint i) { return texelFetch(bvh_triangles, int(i)); }
 // ---- stack ----
 // lucerna::bvh::k_stack: the layout sees to it that no traversal holds more.
 const uint k_bvh_stack = 48u;
-#ifdef LUCERNA_STACK_LOCAL
+#if LUCERNA_STACK_LOCAL
 uint bvh_stack[k_bvh_stack];
 #define bvh_stack_at(i) bvh_stack[i]
 #else
@@ -88,7 +89,7 @@ float bvh_difference(float a, float b, float c, float d) {
   precise float p = a * b;
   precise float q = c * d;
   precise float r = p - q;
-#ifndef LUCERNA_ROUNDED_EDGES
+#if !LUCERNA_ROUNDED_EDGES
   precise float e = bvh_product_error(a, b, p) - bvh_product_error(c, d, q);
   r = r == 0.0 ? e : r;
 #endif
@@ -229,7 +230,7 @@ Hit bvh_trace(Ray ray, const uint query) {
       uint word = floatBitsToUint(p0.w);
       uint prim = word & k_bvh_prim;
       accept = accept && t > 0.0 && (t < hit.t || (t == hit.t && prim < hit.prim));
-#ifdef LUCERNA_NON_OPAQUE
+#if LUCERNA_NON_OPAQUE
       if (query == k_query_any_opaque) accept = accept && word < k_bvh_flag;
 #endif
       if (query == k_query_closest_non_opaque) accept = accept && word >= k_bvh_flag;

@@ -6,6 +6,7 @@
 // buffer where it fits into one, which is several times as fast on lavapipe, else through images (LUCERNA_FILM_IMAGES).
 #ifndef LUCERNA_LIB_FILM
 #define LUCERNA_LIB_FILM
+#include "lib/variants.glsl"
 #include "shaders/shared/film.h"
 #include "lib/math.glsl"
 

@@ -1,6 +1,7 @@
 // The frame's constants, the automaton, and the path state buffers.
 #ifndef LUCERNA_LIB_FRAME
 #define LUCERNA_LIB_FRAME
+#include "lib/variants.glsl"
 #include "shaders/shared/scene.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/transport.h"
@@ -26,7 +27,7 @@ bool automaton_no_diffuse(uint state) { return (frame.automaton[state] & (1u << 
 // Whether there is anything behind a further event that the scene's surfaces can bring about.
 bool automaton_goes_on(uint state) {
   bool on = automaton_live(automaton_after(state, 0u));
-#if LUCERNA_SPECULAR || LUCERNA_SOLID_GLASS || LUCERNA_THIN_GLASS
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
   on = on || automaton_live(automaton_after(state, 1u)) || automaton_live(automaton_after(state, 2u));
 #endif
   return on;
@@ -35,7 +36,6 @@ uint automaton_account(uint state) { return (frame.automaton[state] >> 29) & 3u;
 #endif
 
 uint path_automaton(PathState p) { return p.bits & k_path_state_mask; }
-uint path_depth(PathState p) { return (p.bits >> 8) & 0xffffu; }
-uint path_nulls(PathState p) { return p.bits >> 24; }
+uint path_depth(PathState p) { return p.bits >> 8; }
 
 #endif

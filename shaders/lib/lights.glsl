@@ -2,7 +2,9 @@
 // Densities are per solid angle at the shaded point, selection included.
 #ifndef LUCERNA_LIB_LIGHTS
 #define LUCERNA_LIB_LIGHTS
+#include "lib/variants.glsl"
 #include "lib/frame.glsl"
+#include "lib/sampler.glsl"
 
 #if LUCERNA_LIGHTS
 uniform samplerBuffer scene_lights;
@@ -30,10 +32,14 @@ struct LightSample {
   bool sky;          // of the sky, where that is apart
 };
 
-// `bits`: 32 uniform random bits; what is left of them within the entry flips its coin (exact to count / 2^32).
-uint alias_choose(samplerBuffer table, uint count, uint bits, out float pmf) {
-  uint i, fraction;
-  umulExtended(bits, count, i, fraction);
+// `bits`: 64 uniform random bits, the higher ones first. They choose the entry, and what is left of them within it flips its
+// coin: 32 bits would leave a table of 10^7 entries 8 of them, and what many coins round away is a sun's.
+uint alias_choose(samplerBuffer table, uint count, uvec2 bits, out float pmf) {
+  uint i, fraction, more, lost, carry;
+  umulExtended(bits.x, count, i, fraction);
+  umulExtended(bits.y, count, more, lost);
+  fraction = uaddCarry(fraction, more, carry);
+  i += carry;
   vec4 e = texelFetch(table, int(i));
   bool first = float(fraction >> 8) * (1.0 / 16777216.0) < e.x;
   pmf = first ? e.z : e.w;
@@ -59,8 +65,7 @@ struct EnvironmentTexels {
   vec4 a, b, c, d;  // upper left and right, lower left and right
   vec2 f;           // from a to d
   int texel;
-  float pmf;        // of that texel
-  float band;       // its row's solid angle over 2pi
+  float density;    // with which its directions are chosen, per solid angle
 };
 EnvironmentTexels environment_texels_at(vec3 direction) {
   EnvironmentTexels t;
@@ -75,21 +80,27 @@ EnvironmentTexels environment_texels_at(vec3 direction) {
   t.c = texelFetch(environment_texels, y1 * size.x + x0), t.d = texelFetch(environment_texels, y1 * size.x + x1);
   ivec2 cell = clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1);
   t.texel = cell.y * size.x + cell.x;
-  t.pmf = texelFetch(environment_texels, t.texel).w;
-  // Uniform in solid angle within a texel's row band: area = 2pi/w * (cos top - cos bottom).
-  t.band = cos(k_pi * float(cell.y) / float(size.y)) - cos(k_pi * float(cell.y + 1) / float(size.y));
+  t.density = texelFetch(environment_texels, t.texel).w;
   return t;
 }
 vec3 environment_mix(vec3 a, vec3 b, vec3 c, vec3 d, vec2 f) {
   return frame.environment_radiance * mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
 }
-// A direction through a cell of the map, evenly by solid angle.
+// Sine of 0..pi/2 by its series: the device's own may be wrong by as much as a small angle.
+float sine(float x) {
+  float q = x * x;
+  return x * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0 * (1.0 - q / 110.0)))));
+}
+// A direction through a cell of the map, evenly by solid angle: by sin^2 of half the angle to the nearer pole, because
+// beside a pole all cosines round to 1.
 vec3 environment_in_cell(uint cell, vec2 u) {
   uint column = cell % frame.environment_width, row = cell / frame.environment_width;
-  float c0 = cos(k_pi * float(row) / float(frame.environment_height));
-  float c1 = cos(k_pi * float(row + 1u) / float(frame.environment_height));
-  float y = mix(c0, c1, u.y);
-  float sin_theta = sqrt(max(0.0, 1.0 - y * y));
+  bool lower = 2u * row >= frame.environment_height;
+  uint from_pole = lower ? frame.environment_height - 1u - row : row;
+  float half_row = 0.5 * k_pi / float(frame.environment_height);
+  float s = mix(square(sine(half_row * float(from_pole))), square(sine(half_row * float(from_pole + 1u))), lower ? 1.0 - u.y : u.y);
+  float y = lower ? 2.0 * s - 1.0 : 1.0 - 2.0 * s;
+  float sin_theta = 2.0 * sqrt(max(0.0, s * (1.0 - s)));
   float phi = ((float(column) + u.x) / float(frame.environment_width) - 0.5) * 2.0 * k_pi - frame.environment_rotation;
   return vec3(sin_theta * cos(phi), y, sin_theta * sin(phi));
 }
@@ -103,7 +114,7 @@ vec3 environment_radiance(vec3 d, out float pdf) {
   pdf = 0.0;
 #if LUCERNA_ENVIRONMENT_MAP
   EnvironmentTexels t = environment_texels_at(d);
-  pdf = frame.environment_light_pmf * t.pmf * float(frame.environment_width) / (2.0 * k_pi * t.band);
+  pdf = frame.environment_light_pmf * t.density;
   return environment_mix(t.a.rgb, t.b.rgb, t.c.rgb, t.d.rgb, t.f);
 #else
   return frame.environment_radiance;
@@ -131,9 +142,13 @@ LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail, float
   s.delta = true;
   s.sky = false;
   float pmf;
-  uint light = alias_choose(light_alias, frame.light_count, choice, pmf);
+  uint light = alias_choose(light_alias, frame.light_count, uvec2(choice, hash_mix(choice)), pmf);
 #if LUCERNA_SKY_APART
-  s.sky = float(detail.y >> 8) * (1.0 / 16777216.0) < sky_share;
+  uint sky_end = uint(sky_share * 4294967040.0);
+  s.sky = detail.y < sky_end || sky_share >= 1.0;
+  // What is left of the number is even again.
+  float rest = s.sky ? float(detail.y) / float(sky_end) : float(detail.y - sky_end) / float(0xffffffffu - sky_end);
+  detail.y = uint(min(rest, 1.0) * 4294967040.0);
   pmf *= 1.0 - sky_share;
 #endif
   int at = int(light * k_light_texels);
@@ -188,14 +203,14 @@ LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail, float
     s.distance = k_infinity;
     s.delta = false;
 #if LUCERNA_SKY_APART
-    s.direction = environment_in_cell(sky_or_sun_cell(s.sky, floatBitsToUint(b.x), detail.x), u);
+    s.direction = environment_in_cell(sky_or_sun_cell(s.sky, floatBitsToUint(b.x), detail), u);
     Environment e = environment_radiance(s.direction);
     s.radiance = s.sky ? e.sky : e.sun;
     s.pdf = s.sky ? e.pdf_sky * sky_share : e.pdf_sun * (1.0 - sky_share);
 #else
     uint cells = frame.environment_width * frame.environment_height;
     float texel_pmf;
-    s.direction = environment_in_cell(alias_choose(environment_alias, cells, detail.x, texel_pmf), u);
+    s.direction = environment_in_cell(alias_choose(environment_alias, cells, detail, texel_pmf), u);
     s.radiance = environment_radiance(s.direction, s.pdf);
 #endif
   }

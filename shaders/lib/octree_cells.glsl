@@ -11,6 +11,7 @@
 // their radius on either side: only the cells are visited that this slab passes through, some of each row.
 #ifndef LUCERNA_LIB_OCTREE_CELLS
 #define LUCERNA_LIB_OCTREE_CELLS
+#include "lib/variants.glsl"
 #include "lib/octree_build.glsl"
 #include "lib/octree.glsl"
 

@@ -4,6 +4,7 @@
 // sequences: the two halves from which the error is estimated.
 #ifndef LUCERNA_LIB_SAMPLER
 #define LUCERNA_LIB_SAMPLER
+#include "lib/variants.glsl"
 
 // Pads: 0 pixel, 1 lens, then k_pads_per_vertex for every scattering event.
 const uint k_pad_pixel = 0u;
@@ -11,10 +12,10 @@ const uint k_pad_first_vertex = 2u;
 const uint k_pads_per_vertex = 5u;
 const uint k_pad_light_choice = 0u;  // x: which light, y: roulette
 const uint k_pad_light_uv = 1u;
-const uint k_pad_lobe = 2u;          // x: lobe, y: label
+const uint k_pad_lobe = 2u;          // x: lobe, y: label; of a null event's stream: x by alpha, y through a pane
 const uint k_pad_direction = 3u;
 const uint k_pad_light_detail = 4u;  // which texel of the environment
-// Null events draw from a stream of their own, so that they do not shift the dimensions of the vertices.
+// From here on no pads: the streams of null events.
 const uint k_pad_null = 0x10000u;
 
 //
@@ -93,6 +94,17 @@ uvec2 sample_2d_bits(Sampler s, uint pad) {
 // 24 bits keep the value strictly below 1.
 vec2 to_unit(uvec2 bits) { return vec2(bits >> 8) * (1.0 / 16777216.0); }
 vec2 sample_2d(Sampler s, uint pad) { return to_unit(sample_2d_bits(s, pad)); }
+
+// The stream of the next null event (alpha, straight through a pane) after `nulls` of them since the last scattering event:
+// what is decided there shares no number with another null event nor with the vertex that ends the row, whose dimensions
+// are the same whatever was passed before.
+Sampler null_sampler(Sampler s, uint nulls) {
+  s.key = hash_combine(s.key, k_pad_null + nulls);
+#if LUCERNA_COHERENT
+  s.pixel_key = hash_combine(s.pixel_key, k_pad_null + nulls);
+#endif
+  return s;
+}
 
 uvec2 sample_vertex_bits(Sampler s, uint depth, uint what) {
   return sample_2d_bits(s, k_pad_first_vertex + depth * k_pads_per_vertex + what);

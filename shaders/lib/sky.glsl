@@ -2,10 +2,11 @@
 // the sun. For lib/lights.glsl.
 #ifndef LUCERNA_LIB_SKY
 #define LUCERNA_LIB_SKY
+#include "lib/variants.glsl"
 
 #if LUCERNA_SUN
 uniform samplerBuffer sun_cells;
-uniform samplerBuffer sun_pmf;
+uniform samplerBuffer sun_density;
 #endif
 
 // Radiance that arrives from a direction. Densities per solid angle: of the sky's samples, without the sky's probability
@@ -16,15 +17,14 @@ struct Environment {
 };
 Environment environment_radiance(vec3 d) {
   EnvironmentTexels t = environment_texels_at(d);
-  float per_angle = float(frame.environment_width) / (2.0 * k_pi * t.band);
   Environment e;
-  e.pdf_sky = abs(t.pmf) * per_angle;
+  e.pdf_sky = abs(t.density);
 #if LUCERNA_SUN
   bvec4 sun = lessThan(floatBitsToInt(vec4(t.a.w, t.b.w, t.c.w, t.d.w)), ivec4(0));
   vec3 none = vec3(0.0);
   e.sky = environment_mix(sun.x ? none : t.a.rgb, sun.y ? none : t.b.rgb, sun.z ? none : t.c.rgb, sun.w ? none : t.d.rgb, t.f);
   e.sun = environment_mix(sun.x ? t.a.rgb : none, sun.y ? t.b.rgb : none, sun.z ? t.c.rgb : none, sun.w ? t.d.rgb : none, t.f);
-  e.pdf_sun = texelFetch(sun_pmf, t.texel >> 2)[t.texel & 3] * per_angle;
+  e.pdf_sun = texelFetch(sun_density, t.texel >> 2)[t.texel & 3];
 #else
   e.sky = environment_mix(t.a.rgb, t.b.rgb, t.c.rgb, t.d.rgb, t.f);
   e.sun = vec3(0.0);
@@ -34,7 +34,7 @@ Environment environment_radiance(vec3 d) {
 }
 
 // A cell of the sky, or one of the sun's `count`.
-uint sky_or_sun_cell(bool sky, uint count, uint bits) {
+uint sky_or_sun_cell(bool sky, uint count, uvec2 bits) {
   float pmf;
   uint cell = alias_choose(environment_alias, frame.environment_width * frame.environment_height, bits, pmf);
 #if LUCERNA_SUN

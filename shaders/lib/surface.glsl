@@ -4,6 +4,7 @@
 // does not depend on which tracer found the primitive.
 #ifndef LUCERNA_LIB_SURFACE
 #define LUCERNA_LIB_SURFACE
+#include "lib/variants.glsl"
 #include "lib/frame.glsl"
 #include "lib/bsdf.glsl"
 

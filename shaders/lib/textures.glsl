@@ -4,6 +4,7 @@
 // a loop whose lanes are all done is skipped and an `if` is not.
 #ifndef LUCERNA_LIB_TEXTURES
 #define LUCERNA_LIB_TEXTURES
+#include "lib/variants.glsl"
 #include "shaders/shared/scene.h"
 
 #if LUCERNA_BUCKETS > 0

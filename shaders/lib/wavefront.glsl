@@ -6,6 +6,7 @@
 // either). Within one dispatch a slot is touched by one invocation, which reads it before it writes it.
 #ifndef LUCERNA_LIB_WAVEFRONT
 #define LUCERNA_LIB_WAVEFRONT
+#include "lib/variants.glsl"
 #include "lib/frame.glsl"
 #include "lib/invocation.glsl"
 
@@ -46,7 +47,7 @@ Hit load_hit(uint slot) {
 PathState load_path(uint slot) {
   vec4 a = texelFetch(path_texels, int(3u * slot)), c = texelFetch(path_texels, int(3u * slot + 2u));
   uvec4 b = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 1u)));
-  return PathState(a.xyz, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w);
+  return PathState(a.xyz, a.w, b.x, b.y, b.z, b.w, c.x, c.y, floatBitsToUint(c.z), c.w);
 }
 ShadowState load_shadow_state(uint slot) {
   vec4 a = texelFetch(shadow_state_texels, int(2u * slot)), b = texelFetch(shadow_state_texels, int(2u * slot + 1u));
@@ -65,6 +66,7 @@ void store_path(uint slot, PathState p) {
 #endif
 #if LUCERNA_TRANSPARENT
   paths[slot].travelled = p.travelled;
+  paths[slot].nulls = p.nulls;
 #endif
 #if LUCERNA_SOLID_GLASS
   paths[slot].eta_scale = p.eta_scale;

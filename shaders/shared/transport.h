@@ -21,11 +21,12 @@ struct PathState {
   float pdf;           ///< of the last scattered direction, mixture of all lobes, per solid angle; 0: delta or camera
   uint pixel;          ///< index into the film (y * width + x)
   uint sample_index;   ///< of the pixel
-  uint bits;           ///< 0-4 automaton state, 5-7 k_path_*, 8-23 scattering events so far, 24-31 null events since the last
+  uint bits;           ///< 0-4 automaton state, 5-7 k_path_*, 8-31 scattering events so far
   uint medium;         ///< material whose volume the ray is in, plus 1; 0: none
   float travelled;     ///< metres since the last scattering event, over null events
   float eta_scale;     ///< product of (eta_i/eta_t)^2 that refraction has put into the throughput
-  float pad0, pad1;
+  uint nulls;          ///< null events since the last scattering event
+  float pad0;
 };
 
 /// What a shadow ray brings if it arrives: the diffuse and the glossy lobe's shares go to components of their own.

@@ -1,5 +1,6 @@
 // Radix sort, first step of a pass: how often each digit occurs in every run. The table lies digit by digit, so that its
 // prefix sum is where each run's entries of a digit belong.
+#include "lib/variants.glsl"
 #include "lib/sort.glsl"
 layout(scalar) writeonly buffer SortTable { uint sort_table[]; };
 layout(scalar) writeonly buffer SortTableCount { uint sort_table_count; };

@@ -1,4 +1,5 @@
 // Radix sort, last step of a pass: every run's entries go, in their order, to where their digit belongs.
+#include "lib/variants.glsl"
 #include "lib/sort.glsl"
 uniform usamplerBuffer sort_places;   // the prefix sum of the table
 #if LUCERNA_SORT_WIDE

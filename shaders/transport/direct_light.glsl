@@ -5,6 +5,7 @@
 // left out. The sun and all other lights are sampled as ever.
 #ifndef LUCERNA_TRANSPORT_DIRECT_LIGHT
 #define LUCERNA_TRANSPORT_DIRECT_LIGHT
+#include "lib/variants.glsl"
 
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
 
@@ -58,8 +59,7 @@ float emissive_weight(PathState path, float pdf) {
 #endif
 }
 
-#if LUCERNA_EMISSIVE && (LUCERNA_TEX_EMISSION || LUCERNA_ALPHA || LUCERNA_VERTEX_EXTRA)
-#define LUCERNA_LIGHT_SURFACE 1
+#if LUCERNA_LIGHT_SURFACE
 // Radiance that a sampled emissive triangle sends along -direction; textures and coverage by alpha included.
 vec3 light_radiance(LightSample l) {
   Ray towards;

@@ -1,5 +1,6 @@
 // One vertex of every live path: emission with its MIS weight, direct light by next-event estimation, scattering, roulette.
 // What can arrive later (the light sample) is queued as a shadow ray; the path goes on in the next queue.
+#include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
 #include "lib/surface.glsl"
@@ -18,7 +19,7 @@ void main() {
   Hit hit = load_hit(slot);
   PathState path = load_path(slot);
   if (path.pixel == 0xffffffffu) return;
-  uint state = path_automaton(path), depth = path_depth(path), nulls = path_nulls(path);
+  uint state = path_automaton(path), depth = path_depth(path);
   Sampler random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
 
   vec3 gain = vec3(0.0);  // what the path meets here, all of one component
@@ -39,11 +40,12 @@ void main() {
     bool passed = false;  // ... straight on, without an event
     vec3 direction = ray.direction;
 
+#if LUCERNA_TRANSPARENT
+    Sampler random_null = null_sampler(random, path.nulls);
+    vec2 u_null = sample_vertex(random_null, depth, k_pad_lobe);
+#endif
 #if LUCERNA_ALPHA
-    float coverage = surface_coverage(surface);
-    // A stream of their own keeps the null events from shifting the dimensions of what follows.
-    float u_null = sample_2d(random, k_pad_null + depth * 256u + nulls).x;
-    passed = u_null >= coverage;
+    passed = u_null.x >= surface_coverage(surface);
 #endif
 
     if (!passed) {
@@ -58,8 +60,18 @@ void main() {
                emissive_weight(path, emissive_pdf(hit.prim, travelled * travelled, abs(dot(surface.normal_g, ray.direction))));
       }
 #endif
+      vec3 wo_world = -ray.direction;
+      mat3 to_world = shading_frame(surface, wo_world);
+      vec3 wo = wo_world * to_world;   // transposed
+      Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
+#if LUCERNA_THIN_GLASS
+      float p_straight = bsdf_straight_probability(bsdf, wo.z);
+      passed = u_null.y < p_straight;
+      if (passed) random = random_null;  // the vertex behind has the numbers of this depth
+#endif
+      // What passes is no event and not counted; the surface's other lobes are lit all the same.
       bool ends = depth >= frame.max_depth;
-      if (ends) atomicAdd(counters[k_counter_depth], 1u);
+      if (ends && !passed) atomicAdd(counters[k_counter_depth], 1u);
 #if LUCERNA_UNLIT
       if ((surface.flags & k_flag_unlit) != 0u) {
         if (automaton_no_diffuse(state)) gain = path.throughput * surface.base.rgb;
@@ -67,10 +79,6 @@ void main() {
       }
 #endif
       if (!ends) {
-        vec3 wo_world = -ray.direction;
-        mat3 to_world = shading_frame(surface, wo_world);
-        vec3 wo = wo_world * to_world;   // transposed
-        Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
         vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
 
         bool sky_known = false;  // what the sky sends to the diffuse lobe has been looked up
@@ -121,11 +129,8 @@ void main() {
         sample_direct_light(slot, path, surface, bsdf, wo, to_world, random, sky_known);
 #endif
 
-        BsdfSample b = bsdf_sample(bsdf, wo, sample_vertex(random, depth, k_pad_direction), sample_vertex(random, depth, k_pad_lobe));
-        if (b.event == k_event_null) {
-          passed = true;
-          path.throughput *= b.weight;
-        } else {
+        if (!passed) {
+          BsdfSample b = bsdf_sample(bsdf, wo, sample_vertex(random, depth, k_pad_direction), sample_vertex(random, depth, k_pad_lobe));
           direction = normalize(to_world * b.wi);
           bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
 #if LUCERNA_CACHE
@@ -163,16 +168,20 @@ void main() {
           path.pdf = b.pdf;
           path.bits = next | sky | (depth + 1u) << 8;
           path.travelled = 0.0;
+          path.nulls = 0u;
 #if LUCERNA_VOLUMES
           if (b.transmitted && surface.parameters.solid) path.medium = surface.front ? surface.material + 1u : 0u;
 #endif
         }
       }
+#if LUCERNA_THIN_GLASS
+      if (passed) path.throughput *= bsdf_straight(bsdf, wo.z) / p_straight;
+#endif
     }
     if (passed) {
       go_on = max3(path.throughput) > 0.0;
       path.travelled = travelled;
-      path.bits = (path.bits & 0x00ffffffu) | min(nulls + 1u, 255u) << 24;
+      ++path.nulls;
     }
     if (go_on) {
       Ray next_ray;

@@ -1,5 +1,6 @@
 // Shadow rays that met no opaque surface deliver their light. In scenes with transparent surfaces the light first passes
 // them one by one (LUCERNA_TRANSPARENT): the queue of those still on their way is traced again.
+#include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #if LUCERNA_TRANSPARENT
 #include "lib/surface.glsl"

@@ -47,6 +47,19 @@ scene::Scene metal_room() {
   return s;
 }
 
+/// ... with a block of rough glass between floor and ceiling, through which much is lit and seen.
+scene::Scene glass_room() {
+  test::PanelRoom room(vec3(0), true, 0.001f);
+  scene::Material glass;
+  glass.metallic = 0, glass.roughness = 0.3f, glass.transmission = 1, glass.thickness = 1;
+  room.s.materials.push_back(glass);
+  const vec3 lo(-0.6f, 0.2f, -0.5f), x(0.9f, 0, 0), y(0, 0.3f, 0), z(0, 0, 1);
+  room.quad(lo, x, z, 2), room.quad(lo + y, z, x, 2);
+  room.quad(lo, y, x, 2), room.quad(lo + z, x, y, 2);
+  room.quad(lo, z, y, 2), room.quad(lo + x, y, z, 2);
+  return room.s;
+}
+
 }  // namespace
 
 TEST_CASE("the cache brings the light of its components, and no other changes") {
@@ -71,30 +84,18 @@ TEST_CASE("the cache brings the light of its components, and no other changes") 
 
 TEST_CASE(
     "tertiary light alone is looked up at the second diffuse vertex, behind path-traced secondary light") {
-  const scene::Scene room = metal_room();
-  const film::Image path = test::render(room, {}, 256, 32).image,
-                    cached = test::render(room, {{"components.tertiary", "cache"}}, 256, 32).image;
-  for (const int c : {0, 1, 3}) {
-    INFO("component " << c);
-    CHECK(identical(path.components[c], cached.components[c]));
-  }
   // Noise of either is less than 0.5 % of the mean; without what comes over the metal it would be 11 % less.
-  INFO(mean(cached.components[2]) << " of " << mean(path.components[2]));
-  CHECK(mean(cached.components[2]) == Approx(mean(path.components[2])).epsilon(0.03));
-
-  // Behind glass, where few rays find the light that is focused: by one level of 1024 rays the mean spreads
-  // by 10 %; 2.5 standard deviations for this seed.
-  test::Render r{.scene = "glass", .width = 32, .height = 32, .samples = 64, .settings = {}};
-  const test::Result plain = test::render(r);
-  r.settings = {{"components.tertiary", "cache"}, {"cache.rays", "1024"}, {"cache.max_rays", "1024"}};
-  const test::Result looked_up = test::render(r);
-  for (const int c : {0, 1, 3}) {
-    INFO("component " << c);
-    CHECK(identical(plain.image.components[c], looked_up.image.components[c]));
+  for (const bool glass : {false, true}) {
+    const scene::Scene room = glass ? glass_room() : metal_room();
+    const film::Image path = test::render(room, {}, 256, 32).image,
+                      cached = test::render(room, {{"components.tertiary", "cache"}}, 256, 32).image;
+    for (const int c : {0, 1, 3}) {
+      INFO((glass ? "glass" : "metal") << ", component " << c);
+      CHECK(identical(path.components[c], cached.components[c]));
+    }
+    INFO((glass ? "glass: " : "metal: ") << mean(cached.components[2]) << " of " << mean(path.components[2]));
+    CHECK(mean(cached.components[2]) == Approx(mean(path.components[2])).epsilon(0.03));
   }
-  const double truth = mean(plain.image.components[2]), value = mean(looked_up.image.components[2]);
-  INFO(value << " of " << truth);
-  CHECK(value == Approx(truth).epsilon(0.25));
 }
 
 TEST_CASE("what is seen in mirrors is looked up too, whatever else is off") {
@@ -204,25 +205,33 @@ TEST_CASE("light does not leak through a wall of a millimetre") {
   // Columns of the picture by their distance from the wall, which stands in its middle: floors left (dark)
   // and right.
   const auto column_mean = [](const film::Image& image, int component, uint32_t from, uint32_t to) {
-    double sum = 0;
+    test::Mean mean;
     for (uint32_t y = 16; y < 48; ++y)
-      for (uint32_t x = from; x < to; ++x) sum += luminance(image.components[component][size_t{y} * 64 + x]);
-    return sum / (32.0 * (to - from));
+      for (uint32_t x = from; x < to; ++x) {
+        const size_t at = size_t{y} * 64 + x;
+        const double all = luminance(image.components[component][at]),
+                     odd = luminance(image.odd_half[component][at]);
+        mean.value += all, mean.noise += (all - odd) * (all - odd);
+      }
+    const double pixels = 32.0 * (to - from);
+    return test::Mean{mean.value / pixels, std::sqrt(mean.noise) / pixels};
   };
   for (const char* metric : {"split-sphere", "hessian"}) {
     wide["cache.metric"] = metric;
     const film::Image cached = test::render(divided_room(), wide, 16, 64).image;
     for (const int c : {1, 2})
       for (const auto& [from, to] : {std::pair{8u, 20u}, {20u, 26u}, {26u, 30u}, {34u, 38u}, {38u, 44u}}) {
-        const double truth = column_mean(path, c, from, to), value = column_mean(cached, c, from, to);
+        const test::Mean truth = column_mean(path, c, from, to);
+        const double value = column_mean(cached, c, from, to).value;
         INFO(metric << ", component " << c << ", columns " << from << " to " << to << ": " << value << " of "
-                    << truth);
-        CHECK(truth > 0);
-        // Few records and wide ones: their noise, and behind the wall the path tracer's. What leaked would be
-        // a multiple.
-        CHECK(value == Approx(truth).epsilon(0.3));
+                    << truth.value << " +- " << truth.noise);
+        CHECK(truth.value > 0);
+        // The path tracer's noise, what few and wide records miss, and a leak: of the light on the other
+        // side.
+        const double leak = 0.0015 * column_mean(path, c, 38, 44).value;
+        CHECK(std::abs(value - truth.value) < 4 * truth.noise + 0.03 * truth.value + leak);
       }
   }
   // The dark half is dark: what leaked would show.
-  CHECK(column_mean(path, 1, 20, 26) < 0.3 * column_mean(path, 1, 38, 44));
+  CHECK(column_mean(path, 1, 20, 26).value < 0.02 * column_mean(path, 1, 38, 44).value);
 }

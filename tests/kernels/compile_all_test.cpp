@@ -1,66 +1,129 @@
-// links: gpu
-// Every kernel compiles, in the leanest and in the fullest variant that a scene can call for.
+// links: gpu upload
+// Every kernel compiles, in the leanest and in the fullest variant that the host can ask for; and no variant
+// tests a macro before it is defined.
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
+#include <random>
+#include <regex>
+#include <set>
+#include <sstream>
 
 #include "gpu/kernel.h"
+#include "upload/device_scene.h"
 
 using namespace lucerna;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path& root() {
+  static const fs::path path = fs::path(LUCERNA_SOURCE_DIR) / "shaders";
+  return path;
+}
+std::string text_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+std::vector<fs::path> files(std::initializer_list<const char*> extensions) {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::recursive_directory_iterator(root()))
+    for (const char* extension : extensions)
+      if (entry.path().extension() == extension) found.push_back(entry.path());
+  return found;
+}
+std::vector<std::string> kernels() {
+  std::vector<std::string> names;
+  for (const fs::path& file : files({".comp"})) names.push_back(fs::relative(file, root()).string());
+  return names;
+}
+
+/// Those that lib/variants.glsl gives a 0 where the host leaves them out.
+std::vector<std::string> variants() {
+  static const std::regex line("#ifndef (LUCERNA_\\w+)\n#define \\1 0\n#endif\n");
+  const std::string text = text_of(root() / "lib/variants.glsl");
+  std::vector<std::string> names;
+  for (std::sregex_iterator m(text.begin(), text.end(), line), end; m != end; ++m)
+    names.push_back((*m)[1].str());
+  return names;
+}
+
+/// What the host says with them, whatever the variant: it is read where a variant needs it.
+gpu::Defines values() {
+  gpu::Defines defines{{"LUCERNA_CACHE_PARTS", "15u"}};
+  for (const char* use : {"BASE", "METALLIC_ROUGHNESS", "NORMAL", "EMISSION", "SPECULAR", "SPECULAR_COLOR",
+                          "TRANSMISSION", "DIFFUSE_T", "DIFFUSE_T_COLOR"})
+    defines[std::string("LUCERNA_") + use + "_BUCKETS"] = "63u";
+  return defines;
+}
+std::string full(const std::string& variant) {
+  if (variant == "LUCERNA_BUCKETS") return "6";
+  if (variant == "LUCERNA_COHERENT") return "4";
+  if (variant == "LUCERNA_NEIGHBOURS") return "27";
+  return "1";
+}
+
+}  // namespace
 
 TEST_CASE("every kernel compiles with nothing and with everything in the scene") {
-  gpu::ShaderCompiler compiler(std::filesystem::path(LUCERNA_SOURCE_DIR) / "shaders");
+  gpu::ShaderCompiler compiler(root());
   compiler.set_cache(false);
-  const char* effects[] = {"LUCERNA_LIGHTS",
-                           "LUCERNA_EMISSIVE",
-                           "LUCERNA_ENVIRONMENT_MAP",
-                           "LUCERNA_SKY_APART",
-                           "LUCERNA_SUN",
-                           "LUCERNA_SPECULAR",
-                           "LUCERNA_SOLID_GLASS",
-                           "LUCERNA_THIN_GLASS",
-                           "LUCERNA_DIFFUSE_TRANSMISSION",
-                           "LUCERNA_VOLUMES",
-                           "LUCERNA_UNLIT",
-                           "LUCERNA_ALPHA",
-                           "LUCERNA_TRANSPARENT",
-                           "LUCERNA_NORMAL_MAPS",
-                           "LUCERNA_VERTEX_EXTRA",
-                           "LUCERNA_FILM_IMAGES",
-                           "LUCERNA_VERTEX_COUNT",
-                           "LUCERNA_STOPPING_ONLY",
-                           "LUCERNA_SORT_WIDE",
-                           "LUCERNA_OCTREE_SINGLE",
-                           "LUCERNA_COPIES",
-                           "LUCERNA_FROM_SCREEN",
-                           "LUCERNA_UV_TRANSFORMS",
-                           "LUCERNA_TEX_NEAREST",
-                           "LUCERNA_TEX_WRAPS",
-                           "LUCERNA_TEX_BASE",
-                           "LUCERNA_TEX_METALLIC_ROUGHNESS",
-                           "LUCERNA_TEX_EMISSION",
-                           "LUCERNA_TEX_SPECULAR",
-                           "LUCERNA_TEX_TRANSMISSION",
-                           "LUCERNA_TEX_DIFFUSE_TRANSMISSION"};
-  const char* uses[] = {"BASE",           "METALLIC_ROUGHNESS", "NORMAL",    "EMISSION",       "SPECULAR",
-                        "SPECULAR_COLOR", "TRANSMISSION",       "DIFFUSE_T", "DIFFUSE_T_COLOR"};
-  size_t kernels = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(compiler.root())) {
-    if (entry.path().extension() != ".comp") continue;
-    const std::string file = std::filesystem::relative(entry.path(), compiler.root()).string();
-    ++kernels;
-    for (const char* on : {"0", "1"}) {
-      gpu::Defines defines{{"LUCERNA_BUCKETS", on[0] == '1' ? "6" : "0"},
-                           {"LUCERNA_QUERY", on},
-                           {"LUCERNA_COHERENT", on[0] == '1' ? "4" : "0"},
-                           {"LUCERNA_CACHE", on},
-                           {"LUCERNA_CACHE_PARTS", "15u"},
-                           {"LUCERNA_CACHE_ELLIPSES", on},
-                           {"LUCERNA_NEIGHBOURS", on[0] == '1' ? "27" : "0"}};
-      for (const char* use : uses) defines["LUCERNA_" + std::string(use) + "_BUCKETS"] = "63u";
-      for (const char* effect : effects) defines[effect] = on;
-      INFO(file << " with everything " << on);
+  CHECK(kernels().size() > 50);
+  for (const std::string& file : kernels())
+    for (const bool on : {false, true}) {
+      gpu::Defines defines = values();
+      if (on)
+        for (const std::string& name : variants())
+          if (name != "LUCERNA_NO_AUTOMATON") defines[name] = full(name);
+      INFO(file << (on ? " with everything" : " with nothing"));
       CHECK_NOTHROW(compiler.compile(file, defines));
     }
+}
+
+TEST_CASE("no kernel tests a macro before it is defined, whatever it is asked for") {
+  const gpu::ShaderCompiler compiler(root());
+  const std::vector<std::string> names = variants();
+  REQUIRE(names.size() > 40);
+  // Of operands that && and || pass over nothing is known: at random all are looked at, each of two with
+  // every value of the other.
+  std::mt19937 random(1);
+  for (const std::string& file : kernels())
+    for (int round = 0; round < 16; ++round) {
+      gpu::Defines defines = values();
+      for (const std::string& name : names)
+        if (random() & 1u) defines[name] = full(name);
+      INFO(file);
+      CHECK_NOTHROW(compiler.check_macros(file, defines));
+    }
+}
+
+TEST_CASE("macros are tested by #if, and so seen by that check") {
+  // #ifdef, #ifndef and defined() ask whether, not when. An #ifndef may begin a file or give a value that is
+  // missing.
+  const std::regex asks("^\\s*#\\s*(ifdef|ifndef)\\s+(\\w+).*$|\\bdefined\\b");
+  for (const fs::path& file : files({".comp", ".glsl", ".h"})) {
+    std::istringstream text(text_of(file));
+    std::string line, next;
+    for (int number = 1; std::getline(text, line); ++number) {
+      std::smatch m;
+      if (line[0] != '#' || !std::regex_search(line, m, asks) || m[2] == "__cplusplus") continue;
+      INFO(file.string() << ":" << number << ": " << line);
+      REQUIRE(m[1] == "ifndef");
+      std::getline(text, next), ++number;
+      CHECK(next.rfind("#define " + m[2].str(), 0) == 0);
+    }
   }
-  CHECK(kernels >= 6);
+}
+
+TEST_CASE("what the host says of a scene is something that kernels listen to") {
+  gpu::Device device({"", true});
+  const std::vector<std::string> list = variants();
+  std::set<std::string> known(list.begin(), list.end());
+  for (const auto& [name, value] : values()) known.insert(name);
+  const upload::DeviceScene scene(device, {}, {});
+  for (const auto& [name, value] : scene.defines()) {
+    INFO(name);
+    CHECK(known.contains(name));
+  }
 }

@@ -88,6 +88,31 @@ TEST_CASE("files below the root are called shaders/...; includes are found from 
              Contains("shaders/lost.comp:3: ") && Contains("nowhere.glsl"));
 }
 
+TEST_CASE("a macro that is tested before it is defined is an error, not 0") {
+  const test::OwnCache cache;
+  const test::Folder root;
+  write_text(root.path / "late.comp",
+             "#include \"first.glsl\"\n#include \"second.glsl\"\n"
+             "buffer T { float t[]; };\nvoid main() { t[0] = first() + second(); }\n");
+  // As a library file that reads what another, included later, defines.
+  write_text(root.path / "first.glsl",
+             "float first() {\n#if ASKED || DERIVED\n  return 1.0;\n#else\n  return 2.0;\n#endif\n}\n");
+  write_text(root.path / "second.glsl",
+             "#define DERIVED 1\nfloat second() {\n#if DERIVED\n  return 1.0;\n#endif\n}\n");
+  ShaderCompiler compiler(root.path);
+  CHECK(error_of([&] {
+          compiler.compile("late.comp", {{"ASKED", "0"}});
+        }) == "shaders/first.glsl:2: 'DERIVED' : tested by an #if before it is defined");
+  CHECK(error_of([&] {
+          compiler.check_macros("late.comp", {{"ASKED", "0"}});
+        }) == "shaders/first.glsl:2: 'DERIVED' : tested by an #if before it is defined");
+  CHECK_THAT(error_of([&] { compiler.compile("late.comp"); }),
+             Contains("shaders/first.glsl:2: 'ASKED' : tested"));
+  // What is passed over decides nothing.
+  CHECK_NOTHROW(compiler.compile("late.comp", {{"ASKED", "1"}}));
+  CHECK_NOTHROW(compiler.compile("late.comp", {{"ASKED", "0"}, {"DERIVED", "1"}}));
+}
+
 TEST_CASE("dependencies are the files to watch") {
   const test::OwnCache cache;
   ShaderCompiler compiler;

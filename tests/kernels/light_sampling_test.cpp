@@ -204,6 +204,79 @@ TEST_CASE("alias tables: every entry with its probability, never one of weight 0
   CHECK(jury.verdict() == "");
 }
 
+TEST_CASE("alias tables of millions of entries: the one that nearly all have for alias gets its share") {
+  // As a sun in a large map: every other entry's coin gives it a 2 % share.
+  constexpr size_t k_entries = 1 << 22, k_sun = 1234567;
+  constexpr uint32_t k_draws = 1 << 22;
+  constexpr double k_share = 0.02;
+  std::vector<double> weights(k_entries, (1 - k_share) / (k_entries - 1));
+  weights[k_sun] = k_share;
+  Lights lights(triangles());
+  double drawn = 0;
+  for (const Answer& a : lights.choose(upload::build_alias_table(weights), k_draws, 9))
+    drawn += static_cast<size_t>(a.value.x) == k_sun;
+  const double error = std::sqrt(k_share * (1 - k_share) / k_draws);
+  INFO("share " << drawn / k_draws << " of " << k_share << " +- " << error);
+  CHECK(std::abs(drawn / k_draws - k_share) < 4 * error);
+}
+
+TEST_CASE("beside the poles of a high map directions have the density that is told of them") {
+  // Rows of 1/8192 of a half circle, of equal power in the eight at either pole, dark between.
+  constexpr uint32_t k_width = 4, k_height = 8192, k_rows = 8;
+  scene::Scene scene;
+  scene::Image image;
+  image.width = k_width, image.height = k_height;
+  const auto pole_row = [&](uint32_t row) { return std::min(row, k_height - 1 - row); };
+  for (uint32_t row = 0; row < k_height; ++row)
+    for (uint32_t x = 0; x < k_width; ++x) {
+      const float value = pole_row(row) < k_rows ? 1 / float(pole_row(row) + 0.5f) : 0;
+      image.floats.insert(image.floats.end(), {value, value, value, 1});
+    }
+  scene.images.push_back(image);
+  scene.environment.image = 0;
+  Lights lights(scene);
+  const double row_angle = 0.5 * k_tau / k_height;
+  // By the nearer pole's row, and by sin^2 of half the angle to it within the row.
+  constexpr int k_grid = 8;
+  std::vector<double> within(k_rows * k_grid, 0.0), rows(k_rows, 0.0);
+  size_t wrong = 0, count = 0;
+  const auto band = [&](uint32_t from_pole) {
+    return 2 * std::sin(row_angle * (from_pole + 0.5)) * std::sin(0.5 * row_angle);
+  };
+  double all = 0;
+  for (uint32_t row = 0; row < k_height; ++row) {
+    double power = 0;
+    for (uint32_t x = 0; x < k_width; ++x)
+      for (int d = -1; d <= 1; ++d)
+        power += image.floats[4 * (size_t(std::clamp(int(row) + d, 0, int(k_height) - 1)) * k_width + x)] *
+                 (d ? 0.25 : 0.5) * band(pole_row(row));
+    all += power;
+    if (pole_row(row) < k_rows) rows[pole_row(row)] += power;
+  }
+  constexpr uint32_t k_draws = 1 << 19;
+  for (const Draw& d : lights.draw(vec3(0), k_draws, 3)) {
+    const double across = std::hypot(double(d.direction.x), double(d.direction.z));
+    const double theta = std::atan2(across, std::abs(double(d.direction.y)));
+    const auto row = uint32_t(theta / row_angle);
+    if (row >= k_rows) continue;
+    const auto half_sine = [](double angle) { return std::pow(std::sin(0.5 * angle), 2); };
+    const double from = half_sine(row * row_angle), to = half_sine((row + 1) * row_angle);
+    within[row * k_grid + std::clamp(int((half_sine(theta) - from) / (to - from) * k_grid), 0, k_grid - 1)] +=
+        1;
+    const double exact = rows[row] / all / (2 * k_tau * band(row));
+    wrong += !(std::abs(d.pdf / exact - 1) < 1e-3), ++count;
+  }
+  std::vector<double> expected;
+  for (const double power : rows) expected.insert(expected.end(), k_grid, power / all * k_draws / k_grid);
+  // Rounding may put a direction into the next row, or its part of a row.
+  INFO(wrong << " of " << count << " densities are off");
+  CHECK(double(count) > 0.9 * k_draws);
+  CHECK(double(wrong) < 2e-3 * double(count));
+  const double p = chi_square(within, expected).p;
+  INFO("p " << p);
+  CHECK(p > 1e-4);
+}
+
 TEST_CASE("points on emissive triangles: uniform in area, each triangle by its power, density as it says") {
   Lights lights(triangles());
   constexpr uint32_t k_draws = 1 << 18;
@@ -350,8 +423,8 @@ TEST_CASE("directions of the environment map: by its density, which integrates t
       const double fx = x - column, fy = (double(d.direction.y) - top) / (low - top);
       within[std::clamp(int(fy * k_grid), 0, k_grid - 1) * k_grid +
              std::clamp(int(fx * k_grid), 0, k_grid - 1)] += 1;
-      const double exact = lights.flat.environment_texels[size_t(row) * width + column].w / (top - low) *
-                           width / k_tau * lights.frame.environment_light_pmf;
+      const double exact =
+          lights.flat.environment_texels[size_t(row) * width + column].w * lights.frame.environment_light_pmf;
       elsewhere += std::abs(d.pdf / exact - 1) > 1e-3;
       again.push_back(d.direction), pdfs.push_back(d.pdf);
     }

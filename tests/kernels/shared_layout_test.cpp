@@ -114,7 +114,7 @@ std::vector<SharedStruct> structs() {
              crowd, scale, normal_stride, normal_at, thickness),
       SHARED("trace.h", TracePush, count, use_queue),
       SHARED("transport.h", PathState, throughput, pdf, pixel, sample_index, bits, medium, travelled,
-             eta_scale, pad0, pad1),
+             eta_scale, nulls, pad0),
       SHARED("transport.h", ShadowState, diffuse, components, glossy, medium),
       SHARED("transport.h", TransportPush, count, use_queue, pixel_count, round),
   };

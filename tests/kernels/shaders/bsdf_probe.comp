@@ -60,17 +60,16 @@ SurfaceParameters parameters(Material m) {
   return s;
 }
 
-// Four independent uniform numbers an invocation, of a family of their own: rounds of xorshift-multiply over a counter.
+// Five independent uniform numbers an invocation, of a family of their own: rounds of xorshift-multiply over a counter.
 uint scramble(uint x) {
   x = (x ^ (x >> 17)) * 0xed5ad4bbu;
   x = (x ^ (x >> 11)) * 0xac4c1b51u;
   x = (x ^ (x >> 15)) * 0x31848babu;
   return x ^ (x >> 14);
 }
-vec4 uniform_numbers(uint i) {
-  uvec4 x;
-  for (uint k = 0u; k < 4u; ++k) x[k] = scramble(scramble(scramble(4u * i + k) + push.seed) + 0x9e3779b9u * (k + 1u));
-  return vec4(x >> 8) * (1.0 / 16777216.0);
+float uniform_number(uint i, uint k) {
+  uint x = scramble(scramble(scramble(4u * i + k % 4u) + push.seed) + 0x9e3779b9u * (k + 1u));
+  return float(x >> 8) * (1.0 / 16777216.0);
 }
 
 void main() {
@@ -78,13 +77,17 @@ void main() {
   if (i >= push.count) return;
 #if TEST_DRAW
   Material m = materials[push.material];
-  vec4 u = uniform_numbers(i);
+  vec4 u = vec4(uniform_number(i, 0u), uniform_number(i, 1u), uniform_number(i, 2u), uniform_number(i, 3u));
   Draw d;
   d.weight = vec3(1.0);
   d.eta2 = 1.0;
   d.event = k_event_diffuse;
 #if TEST_SUBJECT == 0
-  BsdfSample s = bsdf_sample(make_bsdf(parameters(m), push.wo.z), push.wo, u.xy, u.zw);
+  Bsdf bsdf = make_bsdf(parameters(m), push.wo.z);
+  BsdfSample s = bsdf_sample(bsdf, push.wo, u.xy, u.zw);
+  float p_straight = bsdf_straight_probability(bsdf, push.wo.z);
+  if (uniform_number(i, 4u) < p_straight)
+    s = BsdfSample(-push.wo, bsdf_straight(bsdf, push.wo.z) / p_straight, 0.0, k_event_null, 1.0, true);
   d.wi = s.wi;
   d.pdf = s.pdf;
   d.weight = s.weight;

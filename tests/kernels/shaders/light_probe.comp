@@ -74,7 +74,7 @@ void main() {
 #elif TEST_ASK == 2
   a.pdf = emissive_pdf(floatBitsToUint(q.x), q.y, q.z);
 #else
-  a.value.x = float(alias_choose(light_alias, frame.light_count, bits(i, 0u), a.pdf));
+  a.value.x = float(alias_choose(light_alias, frame.light_count, uvec2(bits(i, 0u), bits(i, 1u)), a.pdf));
 #endif
   answers[i] = a;
 #endif

@@ -1,12 +1,16 @@
 // What the octree says of every point: spheres that contain it, a checksum of their indices, the length of its list, and
 // whether the list is in order.
 #include "shaders/lib/invocation.glsl"
+#include "shaders/lib/variants.glsl"
 #include "shaders/lib/octree.glsl"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { uint count; };
 uniform samplerBuffer points;
 uniform samplerBuffer spheres;
+#ifndef LUCERNA_DISCS
+#define LUCERNA_DISCS 0
+#endif
 #if LUCERNA_DISCS
 uniform samplerBuffer normals;
 #endif

@@ -1,5 +1,11 @@
 // One point of shaders/lib/sampler.glsl an invocation, by pad or by vertex and purpose.
 #include "shaders/lib/invocation.glsl"
+#ifndef TEST_VERTEX
+#define TEST_VERTEX 0
+#endif
+#ifndef TEST_UNIT
+#define TEST_UNIT 0
+#endif
 #include "shaders/lib/sampler.glsl"
 
 layout(local_size_x = 64) in;

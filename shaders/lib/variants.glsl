@@ -1,0 +1,153 @@
+// The macros by which the host asks for a variant of a kernel, in one place, 0 where it asks for nothing. To be included
+// before the first #if that tests one of them: a macro tested before it is defined is an error (renderer/gpu/kernel.h).
+#ifndef LUCERNA_LIB_VARIANTS
+#define LUCERNA_LIB_VARIANTS
+
+// What the scene needs (renderer/upload/device_scene.cpp).
+#ifndef LUCERNA_LIGHTS
+#define LUCERNA_LIGHTS 0
+#endif
+#ifndef LUCERNA_EMISSIVE
+#define LUCERNA_EMISSIVE 0
+#endif
+#ifndef LUCERNA_ENVIRONMENT_MAP
+#define LUCERNA_ENVIRONMENT_MAP 0
+#endif
+#ifndef LUCERNA_SKY_APART
+#define LUCERNA_SKY_APART 0
+#endif
+#ifndef LUCERNA_SUN
+#define LUCERNA_SUN 0
+#endif
+#ifndef LUCERNA_SPECULAR
+#define LUCERNA_SPECULAR 0
+#endif
+#ifndef LUCERNA_SOLID_GLASS
+#define LUCERNA_SOLID_GLASS 0
+#endif
+#ifndef LUCERNA_THIN_GLASS
+#define LUCERNA_THIN_GLASS 0
+#endif
+#ifndef LUCERNA_DIFFUSE_TRANSMISSION
+#define LUCERNA_DIFFUSE_TRANSMISSION 0
+#endif
+#ifndef LUCERNA_VOLUMES
+#define LUCERNA_VOLUMES 0
+#endif
+#ifndef LUCERNA_UNLIT
+#define LUCERNA_UNLIT 0
+#endif
+#ifndef LUCERNA_ALPHA
+#define LUCERNA_ALPHA 0
+#endif
+#ifndef LUCERNA_NORMAL_MAPS
+#define LUCERNA_NORMAL_MAPS 0
+#endif
+#ifndef LUCERNA_VERTEX_EXTRA
+#define LUCERNA_VERTEX_EXTRA 0
+#endif
+#ifndef LUCERNA_TEX_BASE
+#define LUCERNA_TEX_BASE 0
+#endif
+#ifndef LUCERNA_TEX_METALLIC_ROUGHNESS
+#define LUCERNA_TEX_METALLIC_ROUGHNESS 0
+#endif
+#ifndef LUCERNA_TEX_EMISSION
+#define LUCERNA_TEX_EMISSION 0
+#endif
+#ifndef LUCERNA_TEX_SPECULAR
+#define LUCERNA_TEX_SPECULAR 0
+#endif
+#ifndef LUCERNA_TEX_TRANSMISSION
+#define LUCERNA_TEX_TRANSMISSION 0
+#endif
+#ifndef LUCERNA_TEX_DIFFUSE_TRANSMISSION
+#define LUCERNA_TEX_DIFFUSE_TRANSMISSION 0
+#endif
+#ifndef LUCERNA_UV_TRANSFORMS
+#define LUCERNA_UV_TRANSFORMS 0
+#endif
+#ifndef LUCERNA_TEX_NEAREST
+#define LUCERNA_TEX_NEAREST 0
+#endif
+#ifndef LUCERNA_TEX_WRAPS
+#define LUCERNA_TEX_WRAPS 0
+#endif
+#ifndef LUCERNA_BUCKETS
+#define LUCERNA_BUCKETS 0
+#endif
+
+// What the settings ask for, and what tests do.
+#ifndef LUCERNA_CACHE
+#define LUCERNA_CACHE 0
+#endif
+#ifndef LUCERNA_CACHE_ELLIPSES
+#define LUCERNA_CACHE_ELLIPSES 0
+#endif
+#ifndef LUCERNA_COHERENT
+#define LUCERNA_COHERENT 0
+#endif
+#ifndef LUCERNA_NO_AUTOMATON
+#define LUCERNA_NO_AUTOMATON 0
+#endif
+
+// The film's kernels.
+#ifndef LUCERNA_FILM_IMAGES
+#define LUCERNA_FILM_IMAGES 0
+#endif
+#ifndef LUCERNA_VERTEX_COUNT
+#define LUCERNA_VERTEX_COUNT 0
+#endif
+#ifndef LUCERNA_STOPPING_ONLY
+#define LUCERNA_STOPPING_ONLY 0
+#endif
+
+// The tracer (lib/bvh.glsl).
+#ifndef LUCERNA_QUERY
+#define LUCERNA_QUERY 0
+#endif
+#ifndef LUCERNA_NON_OPAQUE
+#define LUCERNA_NON_OPAQUE 0
+#endif
+#ifndef LUCERNA_FETCH_STORAGE
+#define LUCERNA_FETCH_STORAGE 0
+#endif
+#ifndef LUCERNA_STACK_LOCAL
+#define LUCERNA_STACK_LOCAL 0
+#endif
+#ifndef LUCERNA_ROUNDED_EDGES
+#define LUCERNA_ROUNDED_EDGES 0
+#endif
+
+// Sort, octree and cache.
+#ifndef LUCERNA_SORT_WIDE
+#define LUCERNA_SORT_WIDE 0
+#endif
+#ifndef LUCERNA_OCTREE_SINGLE
+#define LUCERNA_OCTREE_SINGLE 0
+#endif
+#ifndef LUCERNA_OCTREE_DISCS
+#define LUCERNA_OCTREE_DISCS 0
+#endif
+#ifndef LUCERNA_WRITE
+#define LUCERNA_WRITE 0
+#endif
+#ifndef LUCERNA_FROM_SCREEN
+#define LUCERNA_FROM_SCREEN 0
+#endif
+
+// Benches.
+#ifndef LUCERNA_NEIGHBOURS
+#define LUCERNA_NEIGHBOURS 0
+#endif
+#ifndef LUCERNA_COPIES
+#define LUCERNA_COPIES 0
+#endif
+
+// What follows from these.
+#define LUCERNA_GLASS (LUCERNA_SOLID_GLASS || LUCERNA_THIN_GLASS)
+#define LUCERNA_TRANSPARENT (LUCERNA_ALPHA || LUCERNA_THIN_GLASS)
+// Light samples of emissive triangles look at their surface.
+#define LUCERNA_LIGHT_SURFACE (LUCERNA_EMISSIVE && (LUCERNA_TEX_EMISSION || LUCERNA_ALPHA || LUCERNA_VERTEX_EXTRA))
+
+#endif
