@@ -68,7 +68,7 @@ std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
       flags || !r.adaptive() ? r.tile_errors() : std::vector<film::TileError>();
   std::vector<TileStatus> tiles(r.adaptive() ? r.adaptive()->tiles().size() : errors.size());
   const double target = r.settings().real("sampling.target_error");
-  const auto side = static_cast<uint32_t>(std::stoul(r.settings().text("sampling.tile")));
+  const auto side = r.tile_side();
   const size_t across = (r.film().width() + side - 1) / side;
   for (size_t i = 0; i < tiles.size(); ++i) {
     TileStatus& t = tiles[i];
@@ -129,6 +129,8 @@ void AccuracyKeeper::note_pass(const Renderer& r) {
   passes_ = r.passes();
   const transport::TransportStats& stats = r.stats();
   PassStatus pass;
+  if (pass_ms_.empty())
+    for (const transport::StageSum& s : r.prepared().stages) pass_ms_.push_back(s.ms);
   now_.stages.clear();
   for (size_t i = 0; i < stats.stages.size(); ++i) {
     now_.stages.push_back(stats.stages[i].name);
@@ -155,7 +157,7 @@ std::shared_ptr<const Accuracy> AccuracyKeeper::publish(const Renderer& r, bool 
     now_.target = r.settings().real("sampling.target_error");
     now_.min_samples = r.adaptive() ? r.adaptive()->options().min_samples : 0;
     now_.max_samples = r.max_samples();
-    now_.tile = static_cast<uint32_t>(std::stoul(r.settings().text("sampling.tile")));
+    now_.tile = r.tile_side();
     now_.across = (r.film().width() + now_.tile - 1) / now_.tile;
     now_.pixels = double(r.film().width()) * r.film().height();
     now_.reference = r.reference() ? r.reference()->file.filename().string() : "";

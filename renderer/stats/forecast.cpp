@@ -13,7 +13,7 @@ Law fit(const Ledger& ledger, int layer) {
   const auto& entries = ledger.entries();
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
   for (const Entry& e : entries) {
-    if (e.samples < 8 || e.paths < entries.back().paths / 16 || !(e.error[layer] > 0)) continue;
+    if (!e.told || e.samples < 8 || e.paths < entries.back().paths / 16 || !(e.error[layer] > 0)) continue;
     const double x = std::log(double(e.paths)), y = std::log(e.error[layer]);
     n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y, syy += y * y;
   }
@@ -27,10 +27,10 @@ Law fit(const Ledger& ledger, int layer) {
 
 std::optional<Band> seconds_to(const Ledger& ledger, double target, int layer) {
   const auto& entries = ledger.entries();
-  if (entries.empty() || !(target > 0)) return std::nullopt;
+  if (entries.empty() || !entries.back().told || !(target > 0)) return std::nullopt;
   // Reached for good: the first line after the last one that is over the target.
   size_t reached = entries.size();
-  while (reached > 0 && entries[reached - 1].error[layer] <= target) --reached;
+  while (reached > 0 && entries[reached - 1].told && entries[reached - 1].error[layer] <= target) --reached;
   if (reached < entries.size()) {
     const double s = entries[reached].wall_s;
     return Band{s, s, s};

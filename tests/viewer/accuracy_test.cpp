@@ -25,7 +25,7 @@ session::Accuracy uniform(int samples, double first_error = 0.8) {
   a.run = 1, a.scene_id = 1, a.max_samples = 256, a.pixels = 1000;
   for (double n = 1; n <= samples; n *= 1.25) {
     stats::Entry e;
-    e.wall_s = e.device_s = 0.5 * n;
+    e.told = true, e.wall_s = e.render_s = e.device_s = 0.5 * n;
     e.samples = n, e.paths = static_cast<uint64_t>(1000 * n), e.rays = 5 * e.paths;
     e.error = {first_error / std::sqrt(n), 0.5 * first_error / std::sqrt(n),
                0.01 * first_error / std::sqrt(n), 0, 0};
