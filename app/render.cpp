@@ -146,13 +146,14 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
   return list;
 }
 
-/// Seconds that smaller errors take or took, as [low, middle, high]; in uniform sampling.
+/// Seconds that smaller errors take or took, as [low, middle, high]; in uniform sampling. Empty before there
+/// is enough to tell by.
 nlohmann::ordered_json make_forecast(const stats::Ledger& ledger) {
-  nlohmann::ordered_json j;
+  auto j = nlohmann::ordered_json::object();
   for (const double target : {0.05, 0.02, 0.01, 0.005})
     if (const auto band = stats::seconds_to(ledger, target))
       j["seconds_to"][fmt::format("{}", target)] = {band->low, band->middle, band->high};
-  j["exponent"] = stats::fit(ledger).exponent;
+  if (const stats::Outlook outlook(ledger); outlook.known()) j["exponent"] = outlook.exponent();
   return j;
 }
 

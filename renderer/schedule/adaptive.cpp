@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace lucerna::schedule {
 
 namespace {
-constexpr uint32_t k_few = 8;  // samples a pixel when all of the device's path state is in use
+constexpr uint32_t k_first_mark = 4;  // samples a pixel from which an error says how it goes on
+constexpr uint32_t k_few = 8;         // samples a pixel when all of the device's path state is in use
 /// A tile stays while a neighbour is over this many times the target.
 constexpr float k_neighbours = 2;
 }  // namespace
@@ -102,6 +104,8 @@ void AdaptiveSchedule::report(const std::vector<float>& errors) {
     tile.samples += item_samples_;
     ++tile.passes;
     tile.error = errors[i];
+    if (tile.samples >= k_first_mark && tile.samples >= 2 * tile.last.samples)
+      tile.earlier = std::exchange(tile.last, {tile.error, tile.samples});
   }
   item_tiles_.clear();
   if (at_ < round_.size()) return;

@@ -21,11 +21,18 @@ enum class TileState : uint8_t {
   capped  ///< over it, with as many samples as it may have
 };
 
+/// A tile's error as it was once.
+struct TileMark {
+  float error = 0;
+  uint32_t samples = 0;  ///< a pixel; 0: not known
+};
+
 struct Tile {
   float error = 0;       ///< as last reported; decides nothing while waiting
   uint32_t samples = 0;  ///< a pixel
   uint32_t passes = 0;
   TileState state = TileState::waiting;
+  TileMark last, earlier;  ///< the newest after which samples have doubled, and the one before
 };
 
 struct AdaptiveOptions {

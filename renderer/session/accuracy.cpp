@@ -44,23 +44,25 @@ std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
   tiles.reserve(a.tiles.size());
   double paths = 0;
   for (const TileStatus& t : a.tiles) {
-    if (t.samples < 2) return std::nullopt;
     // A tile that is done under one target may be open under another.
     const bool open = t.samples < a.max_samples && (t.samples < a.min_samples || t.error > target ||
                                                     (target >= a.target && t.state <= shared::k_tile_active));
     tiles.push_back({.error = std::max(0.0, double{t.error}),
                      .samples = double(t.samples),
                      .pixels = double(t.pixels),
-                     .open = open});
+                     .open = open,
+                     .earlier_error = double(t.earlier_error),
+                     .earlier_samples = double(t.earlier_samples)});
     paths += double(t.samples) * t.pixels;
   }
-  const stats::Band total = stats::total_paths(tiles, a.across, target, a.min_samples, a.max_samples);
+  const auto total = stats::total_paths(tiles, a.across, target, a.min_samples, a.max_samples);
+  if (!total) return std::nullopt;
   const double rays_a_path =
       static_cast<double>(last.rays - last.prepared_rays) / static_cast<double>(last.paths);
   const auto seconds = [&](double all) {
     return last.wall_s + std::max(0.0, all - static_cast<double>(last.paths)) * rays_a_path * each;
   };
-  return stats::Band{seconds(total.low), seconds(total.middle), seconds(total.high)};
+  return stats::Band{seconds(total->low), seconds(total->middle), seconds(total->high)};
 }
 
 std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
@@ -81,6 +83,7 @@ std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
       t.samples = known.samples;
       if (known.samples >= 2) t.error = known.error;
       t.state = static_cast<uint32_t>(known.state);
+      t.earlier_error = known.earlier.error, t.earlier_samples = known.earlier.samples;
     } else {
       t.samples = r.samples();
       if (errors[i].pixels > 0) {

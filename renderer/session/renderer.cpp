@@ -463,14 +463,17 @@ void Renderer::note_progress(bool at_once) {
           {.error = tile.error,
            .samples = double(tile.samples),
            .pixels = 64.0 * double(adaptive_->blocks_of(t).size()),
-           .open = tile.state == schedule::TileState::waiting || tile.state == schedule::TileState::active});
+           .open = tile.state == schedule::TileState::waiting || tile.state == schedule::TileState::active,
+           .earlier_error = tile.earlier.error,
+           .earlier_samples = double(tile.earlier.samples)});
     }
     const schedule::AdaptiveOptions& o = adaptive_->options();
-    const stats::Band paths =
+    const std::optional<stats::Band> paths =
         stats::total_paths(tiles, adaptive_->tiles_across(), o.target_error, o.min_samples, o.max_samples);
     const double before = double(prepared_.rays), each = (double(s.rays) - before) / double(s.paths);
-    entry.total_rays =
-        stats::Band{before + each * paths.low, before + each * paths.middle, before + each * paths.high};
+    if (paths)
+      entry.total_rays =
+          stats::Band{before + each * paths->low, before + each * paths->middle, before + each * paths->high};
   }
   ledger_.add(entry);
 }
