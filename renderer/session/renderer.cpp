@@ -262,6 +262,20 @@ void Renderer::start_schedule() {
   adaptive_.emplace(film_->blocks_across(), film_->blocks_down(), adaptive_options());
 }
 
+void Renderer::change_schedule() {
+  const std::vector<uint32_t> have = adaptive_ ? adaptive_->counts() : schedule_.counts();
+  if (settings_.text("sampling.mode") == "adaptive") {
+    std::vector<float> errors;
+    image_error();
+    for (const film::TileError& t : film::tile_errors(*film_, tile_side()))
+      errors.push_back(float(t.relative));
+    adaptive_.emplace(film_->blocks_across(), film_->blocks_down(), adaptive_options(), have, errors);
+  } else {
+    schedule_ = {have, uint32_t(settings_.integer("samples")), wavefront_->slots()};
+    adaptive_.reset();
+  }
+}
+
 schedule::AdaptiveOptions Renderer::adaptive_options() const {
   return {
       .tile = tile_side(),
@@ -342,7 +356,8 @@ void Renderer::apply_settings() {
   for (const std::string& key : changed) {
     // What these say, the schedule in progress can take up.
     const bool goal = key == "sampling.target_error" || key == "sampling.min_samples" ||
-                      key == "sampling.max_samples" || (key == "sampling.tile" && !adaptive_);
+                      key == "sampling.max_samples" ||
+                      (key == "sampling.tile" && (!adaptive_ || changed.contains("sampling.mode")));
     if (goal)
       retarget = true;
     else if (key != "samples")
@@ -374,7 +389,10 @@ void Renderer::apply_settings() {
   if (kernels) spoilt |= build_wavefront(*device_scene_, !spoilt.places);
   again |= kernels;
   if (changed.contains("samples") && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
-  if (retarget && !again && adaptive_) adaptive_->retarget(adaptive_options());
+  if (changed.contains("sampling.mode") && !again)
+    change_schedule();
+  else if (retarget && !again && adaptive_)
+    adaptive_->retarget(adaptive_options());
   if (again) restart(spoilt);
   applied_ = settings_.all();
 }
@@ -489,7 +507,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     const std::vector<uint32_t>& tiles = adaptive_->to_report();
     std::vector<float> errors(tiles.size(), 0.0f);
     // One sample a pixel tells nothing of the error, and decides nothing.
-    if (adaptive_->tiles()[tiles[0]].samples + item.sample_count > 1) {
+    if (!tiles.empty() && adaptive_->tiles()[tiles[0]].samples + item.sample_count > 1) {
       wavefront_->estimate_stopping(item.blocks, *film_, luminance_floor());
       for (size_t i = 0; i < tiles.size(); ++i)
         errors[i] = float(film::relative_error(*film_, adaptive_->blocks_of(tiles[i])));

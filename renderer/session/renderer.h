@@ -59,8 +59,8 @@ class Renderer {
 
   plan::Settings& settings() { return settings_; }
   const plan::Settings& settings() const { return settings_; }
-  /// Settings changed by hand: applies what differs, restarts if the image depends on it. A target error and
-  /// caps on samples let the image go on.
+  /// Settings changed by hand: applies what differs, restarts if the image depends on it. A target error,
+  /// caps on samples and the mode of sampling let the image go on.
   void apply_settings();
   void set_size(uint32_t width, uint32_t height);
   void set_camera(const scene::Camera& camera);
@@ -187,6 +187,8 @@ class Renderer {
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
   void start_schedule();
+  /// Another way of sampling goes on with the samples there are.
+  void change_schedule();
   schedule::AdaptiveOptions adaptive_options() const;
   irradiance_cache::Making cache_making() const;
   void warn_of_full_cache();
