@@ -165,6 +165,28 @@ TEST_CASE("uniform sampling: what a smaller error will cost, in words") {
   CHECK(target_texts(early, 0.01, {}, 6).at(0) == "1 %: too early to tell");
 }
 
+TEST_CASE("noise has three names: of the mean, of the median tile, of the worst tenth of the tiles") {
+  stats::Entry line;
+  line.told = true, line.error = {0.01, 0.01, 0, 0, 0}, line.tile_median = 0.04, line.tile_worst_tenth = 0.2;
+  const auto figures = noise_figures(line);
+  CHECK(figures[0].name == "of the mean");
+  CHECK(figures[1].name == "of the median tile");
+  CHECK(figures[2].name == "of the worst tenth of the tiles");
+  CHECK(figures[0].value == 0.01);
+  CHECK(figures[1].value == 0.04);
+  CHECK(figures[2].value == 0.2);
+  for (const NoiseFigure& f : figures) {
+    CHECK_FALSE(f.short_name.empty());
+    CHECK_FALSE(f.help.empty());
+  }
+  // The plot has room for them.
+  session::Accuracy a = uniform(100);
+  a.ledger.clear();
+  line.wall_s = 1, line.paths = 100;
+  a.ledger.add(line);
+  CHECK(plot_range(a, {}, 0.01, {}, 1).e_hi >= 0.2);
+}
+
 TEST_CASE("adaptive sampling: the forecast is of the rays that the tiles still need") {
   const session::Accuracy a = adaptive(0.05);
   const auto band = session::seconds_to(a, 0.05);
