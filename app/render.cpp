@@ -50,15 +50,11 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   j["rms"] = error.rms[0];
   j["relative"] = error.relative(0);
   // Of the tiles, what adaptive sampling goes by.
-  const std::vector<film::TileError> tiles = r.tile_errors();
-  std::vector<double> sorted;
-  size_t heavy = 0;
-  for (const film::TileError& t : tiles) sorted.push_back(t.relative), heavy += t.heavy_tailed;
-  std::sort(sorted.begin(), sorted.end());
-  j["tile_median"] = sorted[sorted.size() / 2];
-  j["tile_worst_decile"] = sorted[sorted.size() * 9 / 10];
-  j["tile_worst"] = sorted.back();
-  j["heavy_tailed_tiles"] = heavy;
+  const film::TileSpread tiles = film::tile_spread(r.tile_errors());
+  j["tile_median"] = tiles.median;
+  j["tile_worst_decile"] = tiles.worst_tenth;
+  j["tile_worst"] = tiles.worst;
+  j["heavy_tailed_tiles"] = tiles.heavy_tailed;
   for (int c = 0; c < paths::k_component_count; ++c) {
     auto& component = j["components"][paths::k_component_names[c]];
     component = {{"rms", error.rms[c + 1]}, {"relative", error.relative(c + 1)}, {"bias", nullptr}};
@@ -130,12 +126,16 @@ void report_unreached(const schedule::AdaptiveSchedule& s) {
 nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
   auto list = nlohmann::ordered_json::array();
   for (const stats::Entry& e : ledger.entries()) {
-    nlohmann::ordered_json j{{"wall_s", e.wall_s}, {"device_s", e.device_s}, {"prepared_s", e.prepared_s},
-                             {"paths", e.paths},   {"rays", e.rays},         {"samples", e.samples}};
+    nlohmann::ordered_json j{{"wall_s", e.wall_s},         {"render_s", e.render_s}, {"device_s", e.device_s},
+                             {"prepared_s", e.prepared_s}, {"paths", e.paths},       {"rays", e.rays},
+                             {"samples", e.samples}};
     for (int k = 0; k < stats::k_layers; ++k) {
-      j["error"][stats::k_layer_names[k]] = e.error[k];
+      if (e.told) j["error"][stats::k_layer_names[k]] = e.error[k];
       j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
     }
+    if (e.told)
+      j["tile_median"] = e.tile_median, j["tile_worst_decile"] = e.tile_worst_tenth,
+      j["error_degrees"] = e.degrees;
     if (e.truth)
       for (int k = 0; k < stats::k_layers; ++k) j["truth"][stats::k_layer_names[k]] = (*e.truth)[k];
     if (e.total_rays) j["forecast_rays"] = {e.total_rays->low, e.total_rays->middle, e.total_rays->high};
@@ -144,13 +144,14 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
   return list;
 }
 
-/// Seconds that smaller errors take or took, as [low, middle, high]; in uniform sampling.
+/// Seconds that smaller errors take or took, as [low, middle, high]; in uniform sampling. Empty before there
+/// is enough to tell by.
 nlohmann::ordered_json make_forecast(const stats::Ledger& ledger) {
-  nlohmann::ordered_json j;
+  auto j = nlohmann::ordered_json::object();
   for (const double target : {0.05, 0.02, 0.01, 0.005})
     if (const auto band = stats::seconds_to(ledger, target))
       j["seconds_to"][fmt::format("{}", target)] = {band->low, band->middle, band->high};
-  j["exponent"] = stats::fit(ledger).exponent;
+  if (const stats::Outlook outlook(ledger); outlook.known()) j["exponent"] = outlook.exponent();
   return j;
 }
 

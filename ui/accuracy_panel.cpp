@@ -17,6 +17,8 @@ namespace {
 using session::Accuracy;
 
 constexpr ImU32 k_sum = colour::text;
+/// Of the mean, of the median tile, of the worst tenth of the tiles.
+constexpr std::array<ImU32, 3> k_noise_ink = {k_sum, colour::grey(132), colour::grey(164)};
 
 ImU32 layer_ink(size_t layer) { return layer == 0 ? k_sum : colour::component[layer - 1]; }
 
@@ -39,6 +41,11 @@ std::vector<ImVec2> line_points(const Plot& plot, const Accuracy& a, const Value
 
 std::vector<ImVec2> error_points(const Plot& plot, const Accuracy& a, size_t layer) {
   return line_points(plot, a, [&](size_t i) { return a.ledger.entries()[i].error[layer]; });
+}
+
+/// Of the median tile, of the worst tenth of them.
+std::vector<ImVec2> tile_points(const Plot& plot, const Accuracy& a, double stats::Entry::*noise) {
+  return line_points(plot, a, [&](size_t i) { return a.ledger.entries()[i].*noise; });
 }
 
 void stroke(ImDrawList* list, const std::vector<ImVec2>& points, ImU32 ink, float width) {
@@ -180,8 +187,14 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   };
   const auto& lines = a.ledger.entries();
   for (size_t k = 0; k < stats::k_layers; ++k)
-    look(error_points(plot, a, k), fmt::format("{}, noise (estimated)", stats::k_layer_names[k]),
+    look(error_points(plot, a, k),
+         k == 0 ? std::string("noise of the mean (estimated)")
+                : fmt::format("{}, noise over the picture's mean (estimated)", stats::k_layer_names[k]),
          layer_ink(k), nullptr, k);
+  look(tile_points(plot, a, &stats::Entry::tile_median), "noise of the median tile (estimated)",
+       k_noise_ink[1]);
+  look(tile_points(plot, a, &stats::Entry::tile_worst_tenth),
+       "noise of the worst tenth of the tiles (estimated)", k_noise_ink[2]);
   look(line_points(plot, a, [&](size_t i) { return lines[i].truth ? (*lines[i].truth)[0] : 0.0; }),
        "sum, true error against " + a.reference, k_sum);
   if (a.adaptive) look(line_points(plot, a, [&](size_t i) { return a.hardest[i]; }), "hardest tile", k_sum);
@@ -217,6 +230,42 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   card(rows);
 }
 
+/// The noise in figures, each in its line's colour; a tooltip says what it is of.
+void noise_row(const Accuracy& a, const ImVec2& lo, float right) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  ImFont* font = theme().fonts.small;
+  const auto figures = noise_figures(a.ledger.entries().back());
+  const auto texts = [&](bool whole) {
+    std::array<std::string, 3> all;
+    for (size_t i = 0; i < all.size(); ++i)
+      all[i] = fmt::format("{} {}", whole ? figures[i].name : figures[i].short_name,
+                           padded(figures[i].value > 0 ? percent_text(figures[i].value) : "\xE2\x80\x93", 6));
+    return all;
+  };
+  const std::string head = "Noise";
+  const float head_width = text_width(head, font) + px(6), space = px(10);
+  const auto width = [&](const std::array<std::string, 3>& all) {
+    float sum = head_width - space;
+    for (const std::string& text : all) sum += text_width(text, font) + space;
+    return sum;
+  };
+  const bool whole = lo.x + width(texts(true)) <= right;
+  const std::array<std::string, 3> shown = texts(whole);
+  draw_text(list, lo, {lo.x + head_width, lo.y + px(16)}, head, colour::text_dim, Align::left, font);
+  float x = lo.x + head_width;
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const float w = text_width(shown[i], font);
+    if (x + w > right) return;
+    draw_text(list, {x, lo.y}, {x + w + 1, lo.y + px(16)}, shown[i], k_noise_ink[i], Align::left, font);
+    ImGui::SetCursorScreenPos({x, lo.y});
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::InvisibleButton("##noise", {w, px(16)});
+    ImGui::PopID();
+    tooltip(fmt::format("Noise {}, estimated. {}", figures[i].name, figures[i].help));
+    x += w + space;
+  }
+}
+
 /// Names of the lines in their colours.
 void line_names(const Ui& ui, const Accuracy& a, const ImVec2& lo, float right) {
   ImDrawList* list = ImGui::GetWindowDrawList();
@@ -228,8 +277,10 @@ void line_names(const Ui& ui, const Accuracy& a, const ImVec2& lo, float right) 
     draw_text(list, {x, lo.y}, {x + w + 1, lo.y + px(16)}, text, ink, Align::left, font);
     x += w + px(after);
   };
-  put("Noise (estimated):", colour::text_dim, 6);
-  put("sum", k_sum, 8);
+  put("Lines:", colour::text_dim, 6);
+  put("mean", k_noise_ink[0], 8);
+  put("median tile", k_noise_ink[1], 8);
+  put("worst tenth", k_noise_ink[2], 8);
   if (a.adaptive) put("- - hardest tile", colour::text_dim, 8);
   if (!a.reference.empty())
     put(a.reference_applies ? "\xC2\xB7 \xC2\xB7 \xC2\xB7 true error" : "reference of another view",
@@ -249,13 +300,14 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
   const PlotRange range =
       ui.held_range ? *ui.held_range : plot_range(a, ui.runs.earlier(), target, band, seconds);
   Plot plot;
-  plot.area = {{area.lo.x + px(56), area.lo.y + px(24)}, {area.hi.x - px(16), area.hi.y - px(18)}};
+  plot.area = {{area.lo.x + px(56), area.lo.y + px(40)}, {area.hi.x - px(16), area.hi.y - px(18)}};
   if (plot.area.width() < px(60) || plot.area.height() < px(30)) return;
   plot.x = {range.t_lo, range.t_hi, plot.area.lo.x, plot.area.hi.x};
   plot.y = {range.e_lo, range.e_hi, plot.area.hi.y, plot.area.lo.y};
   ImDrawList* list = ImGui::GetWindowDrawList();
   draw_axes(list, plot);
-  line_names(ui, a, {area.lo.x + px(12), area.lo.y}, area.hi.x - px(12));
+  noise_row(a, {area.lo.x + px(12), area.lo.y}, area.hi.x - px(12));
+  line_names(ui, a, {area.lo.x + px(12), area.lo.y + px(16)}, area.hi.x - px(12));
 
   list->PushClipRect(plot.area.lo, plot.area.hi, true);
   for (const Run& run : ui.runs.earlier())
@@ -263,6 +315,8 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
   draw_forecast(list, plot, a, target, band);
   for (size_t k = stats::k_layers; k-- > 1;) stroke(list, error_points(plot, a, k), layer_ink(k), px(1.25f));
   const auto& lines = a.ledger.entries();
+  stroke(list, tile_points(plot, a, &stats::Entry::tile_median), k_noise_ink[1], px(1));
+  stroke(list, tile_points(plot, a, &stats::Entry::tile_worst_tenth), k_noise_ink[2], px(1));
   stroke(list, error_points(plot, a, 0), k_sum, px(2));
   if (a.adaptive)
     dashed_line(list, line_points(plot, a, [&](size_t i) { return a.hardest[i]; }),

@@ -25,6 +25,18 @@ std::optional<Present> present(const Accuracy& a) {
   return Present{last.wall_s, error};
 }
 
+std::array<NoiseFigure, 3> noise_figures(const stats::Entry& line) {
+  return {
+      {{"of the mean", "mean", line.error[0],
+        "The pixels' standard errors (rms) over the picture's mean luminance. What is bright rules it: "
+        "behind a calm window walls may still be grainy."},
+       {"of the median tile", "median tile", line.tile_median,
+        "Half of the tiles are noisier, each held against its own pixels' brightness."},
+       {"of the worst tenth of the tiles", "worst tenth", line.tile_worst_tenth,
+        "A tenth of the tiles have at least this noise, each held against its own pixels' brightness: the "
+        "dark and difficult parts of the picture."}}};
+}
+
 PlotRange plot_range(const Accuracy& a, const std::deque<Run>& earlier, double target,
                      const std::optional<stats::Band>& forecast, double seconds) {
   double t_lo = 1e9, t_hi = std::max(seconds, 1e-3), e_lo = 0.5 * target, e_hi = 2 * target;
@@ -33,7 +45,7 @@ PlotRange plot_range(const Accuracy& a, const std::deque<Run>& earlier, double t
     for (const stats::Entry& e : run.ledger.entries()) {
       if (!(e.error[0] > 0) || !(e.wall_s > 0)) continue;
       t_lo = std::min(t_lo, e.wall_s), t_hi = std::max(t_hi, e.wall_s);
-      e_hi = std::max(e_hi, e.error[0]);
+      e_hi = std::max({e_hi, e.error[0], e.tile_worst_tenth});
       last = e.error[0];
     }
     if (last > 0) e_lo = std::min(e_lo, 0.5 * last);

@@ -294,6 +294,12 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     draw_text(list, {right - std::max(wide, text_width(state)), area.lo.y}, {right, area.hi.y}, state,
               colour::text, Align::right);
     state_left = right - std::max(wide, text_width(state));
+    ImGui::SetCursorScreenPos({state_left, area.lo.y});
+    ImGui::InvisibleButton("##state", {right - state_left, area.hi.y - area.lo.y - px(2)});
+    tooltip(
+        "Samples a pixel, noise of the mean (estimated; the panel Accuracy tells that of the tiles beside "
+        "it), "
+        "and the time that has gone by since this picture was begun, pauses left out.");
     right = state_left - px(24);
   }
   if (s && !s->device.empty()) {

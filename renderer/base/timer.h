@@ -15,4 +15,21 @@ class Timer {
   Clock::time_point start_ = Clock::now();
 };
 
+/// Adds up the wall time in which it goes; begins at 0 and stopped.
+class Stopwatch {
+ public:
+  void go() {
+    if (!going_) since_.restart();
+    going_ = true;
+  }
+  void stop() { before_ = seconds(), going_ = false; }
+  void reset() { before_ = 0, going_ = false; }
+  double seconds() const { return before_ + (going_ ? since_.seconds() : 0); }
+
+ private:
+  double before_ = 0;
+  bool going_ = false;
+  Timer since_;
+};
+
 }  // namespace lucerna

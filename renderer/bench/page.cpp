@@ -278,8 +278,8 @@ std::string cells_table(const Json& report, const Json& scene) {
   std::string html =
       "<div class=\"wrap\"><table><tr><th class=\"l\">setting</th><th "
       "class=\"l\">budget</th><th>seconds</th><th>samples<br/>a pixel</th><th>rays</th><th>rays a "
-      "second</th><th>error<br/>estimated</th><th>error<br/>true</th><th>nine tiles<br/>in ten "
-      "under</th><th>not<br/>reached</th>";
+      "second</th><th>noise of<br/>the mean</th><th>of the<br/>median tile</th><th>of the worst<br/>tenth of "
+      "the tiles</th><th>true error<br/>of the mean</th><th>not<br/>reached</th>";
   const bool cached = has_records(scene);
   html += cached ? "<th>records</th><th>their rays</th></tr>\n" : "</tr>\n";
   for (const Json& s : scene.at("settings")) {
@@ -288,14 +288,15 @@ std::string cells_table(const Json& report, const Json& scene) {
       html += fmt::format(
           "<tr><td class=\"l\">{}{}</td><td "
           "class=\"l\">{}</td><td>{}</td><td>{:.4g}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</"
-          "td><td>{}</td>",
+          "td><td>{}</td><td>{}</td>",
           key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")),
           escape(text_of(c, "budget")), with_range(c.at("wall_s"), seconds_text), median_of(c.at("samples")),
           count_text(median_of(c.at("rays"))), count_text(median_of(c.at("rays")) / seconds),
           percent_text(median_of(c.at("estimated"))),
+          c.contains("tiles_median") ? percent_text(median_of(c.at("tiles_median"))) : "–",
+          percent_text(median_of(c.at("tiles_decile"))),
           c.value("in_reference_noise", false) ? "in the reference’s noise"
                                                : with_range(c.at("true"), percent_text),
-          percent_text(median_of(c.at("tiles_decile"))),
           median_of(c.at("tiles_over")) > 0 ? fmt::format("{:.0f} tile{}", median_of(c.at("tiles_over")),
                                                           median_of(c.at("tiles_over")) == 1 ? "" : "s")
                                             : "–");

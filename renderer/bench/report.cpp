@@ -207,6 +207,7 @@ Json cells_json(const Matrix& m, size_t scene, size_t setting, const Group& grou
     add("true", [](const Result& r) { return r.truth[0]; });
     add("relmse", [](const Result& r) { return r.relmse; });
     add("relmse_all", [](const Result& r) { return r.relmse_all; });
+    add("tiles_median", [](const Result& r) { return r.tiles_median; });
     add("tiles_decile", [](const Result& r) { return r.tiles_decile; });
     add("heavy_tiles", [](const Result& r) { return r.heavy_tiles; });
     add("tiles_over", [](const Result& r) { return r.tiles_over; });

@@ -50,13 +50,6 @@ double fraction_done(const Renderer& r, const Budget& budget, double seconds) {
   return std::min(1.0, double(r.stats().paths) / pixels / r.max_samples());
 }
 
-double decile(std::vector<film::TileError> tiles, double share) {
-  std::vector<double> sorted;
-  for (const film::TileError& t : tiles) sorted.push_back(t.relative);
-  std::sort(sorted.begin(), sorted.end());
-  return sorted[std::min(sorted.size() - 1, size_t(double(sorted.size()) * share))];
-}
-
 film::RelativeMse relative_mse(const Renderer& r, const film::ReferencePair& halves) {
   const film::Image image = r.image();
   std::vector<vec3> sum(image.samples.size(), vec3(0));
@@ -65,14 +58,14 @@ film::RelativeMse relative_mse(const Renderer& r, const film::ReferencePair& hal
   return film::relative_mse(sum, halves);
 }
 
-CurvePoint make_point(const Renderer& r, const stats::Entry& e, const film::RelativeMse& relative) {
-  return {.wall_s = e.wall_s,
+CurvePoint make_point(const stats::Entry& e, const film::RelativeMse& relative) {
+  return {.wall_s = e.render_s,
           .device_s = e.device_s,
           .rays = e.rays,
           .samples = e.samples,
           .estimated = e.error,
           .truth = e.truth.value_or(Layers{}),
-          .tiles = decile(r.tile_errors(), 0.9),
+          .tiles = e.tile_worst_tenth,
           .relmse = std::max(0.0, relative.trimmed)};
 }
 
@@ -80,8 +73,11 @@ CurvePoint make_point(const Renderer& r, const stats::Entry& e, const film::Rela
 std::optional<ForecastResult> make_forecast(const stats::Ledger& ledger, bool adaptive) {
   const auto& entries = ledger.entries();
   stats::Ledger early;
-  for (const stats::Entry& e : entries)
-    if (e.wall_s <= 0.1 * entries.back().wall_s) early.add(e);
+  for (stats::Entry e : entries) {
+    // The bench's clock is that of tracing alone: it holds the picture against a reference in between.
+    e.wall_s = e.render_s, e.prepared_s = std::min(e.prepared_s, e.render_s);
+    if (e.render_s <= 0.1 * entries.back().render_s) early.add(e);
+  }
   if (early.entries().empty()) return std::nullopt;
   const stats::Entry& at = early.entries().back();
   const double rays_per_s = double(at.rays) / at.wall_s;
@@ -212,27 +208,25 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
                 .setup_s = setup.seconds()};
   r->restart();
 
-  double seconds = 0;
-  const auto out_of_time = [&] { return budget.kind == BudgetKind::seconds && seconds >= budget.value; };
+  const auto out_of_time = [&] {
+    return budget.kind == BudgetKind::seconds && r->render_seconds() >= budget.value;
+  };
   const auto& entries = r->ledger().entries();
   while (!r->done() && !out_of_time()) {
-    const Timer timer;
     const size_t lines = entries.size();
     if (!step(*r)) break;
-    // A step that wrote into the ledger also held the picture against the reference; that is not rendering.
-    seconds = entries.size() > lines ? entries.back().wall_s : seconds + timer.seconds();
     // Before every pixel has a sample it is not the same picture.
-    if (entries.size() > lines && r->samples() > 0)
-      result.curve.push_back(make_point(*r, entries.back(), relative_mse(*r, halves)));
-    tell(fraction_done(*r, budget, seconds));
+    if (entries.size() > lines && entries.back().told)
+      result.curve.push_back(make_point(entries.back(), relative_mse(*r, halves)));
+    tell(fraction_done(*r, budget, r->render_seconds()));
   }
   r->finish_ledger();
   const stats::Entry& last = entries.back();
-  if (!result.curve.empty() && result.curve.back().wall_s >= last.wall_s) result.curve.pop_back();
+  if (!result.curve.empty() && result.curve.back().wall_s >= last.render_s) result.curve.pop_back();
   const film::RelativeMse relative = relative_mse(*r, halves);
-  result.curve.push_back(make_point(*r, last, relative));
+  result.curve.push_back(make_point(last, relative));
 
-  result.wall_s = last.wall_s, result.device_s = last.device_s;
+  result.wall_s = last.render_s, result.device_s = last.device_s;
   result.rays = last.rays, result.paths = last.paths, result.samples = last.samples;
   result.estimated = last.error, result.truth = last.truth.value_or(Layers{});
   result.component_s = last.component_s;
@@ -241,10 +235,9 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   // The reference's noise is itself known to a tenth or two; what is left of less than that is nothing.
   result.in_reference_noise = result.truth[0] < 0.7 * reference.noise[0];
   result.relmse = std::max(0.0, relative.trimmed), result.relmse_all = std::max(0.0, relative.all);
-  const std::vector<film::TileError> tiles = r->tile_errors();
-  result.tiles_median = decile(tiles, 0.5), result.tiles_decile = decile(tiles, 0.9);
-  result.tiles_worst = decile(tiles, 1);
-  for (const film::TileError& t : tiles) result.heavy_tiles += t.heavy_tailed;
+  const film::TileSpread tiles = film::tile_spread(r->tile_errors());
+  result.tiles_median = tiles.median, result.tiles_decile = tiles.worst_tenth;
+  result.tiles_worst = tiles.worst, result.heavy_tiles = tiles.heavy_tailed;
   if (r->adaptive()) result.tiles_over = r->adaptive()->count(schedule::TileState::capped);
   result.dropped = r->stats().dropped;
   if (const auto* cache = r->cache())

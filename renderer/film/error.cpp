@@ -98,11 +98,25 @@ void mark_heavy_tails(std::span<TileError> tiles, uint32_t across, double lumina
     }
 }
 
+TileSpread tile_spread(std::span<const TileError> tiles) {
+  TileSpread spread;
+  if (tiles.empty()) return spread;
+  std::vector<double> sorted;
+  sorted.reserve(tiles.size());
+  for (const TileError& t : tiles) sorted.push_back(t.relative), spread.heavy_tailed += t.heavy_tailed;
+  std::sort(sorted.begin(), sorted.end());
+  spread.median = sorted[sorted.size() / 2];
+  spread.worst_tenth = sorted[sorted.size() * 9 / 10];
+  spread.worst = sorted.back();
+  return spread;
+}
+
 ImageError image_error(std::span<const shared::BlockError> blocks) {
   ImageError image;
   std::array<double, 5> variance{};
+  double fourth = 0;
   for (const shared::BlockError& b : blocks) {
-    image.pixels += b.pixels;
+    image.pixels += b.pixels, fourth += b.fourth;
     for (int k = 0; k < 5; ++k) image.luminance[k] += b.luminance[k], variance[k] += b.variance[k];
   }
   if (image.pixels == 0) return image;
@@ -110,6 +124,7 @@ ImageError image_error(std::span<const shared::BlockError> blocks) {
     image.luminance[k] /= image.pixels;
     image.rms[k] = std::sqrt(variance[k] / image.pixels);
   }
+  image.degrees = fourth > 0 ? 3 * variance[0] * variance[0] / fourth : image.pixels;
   return image;
 }
 

@@ -52,11 +52,25 @@ std::vector<TileError> tile_errors(const Film& film, uint32_t side);
 /// calm tiles hold the truth in one case of five.
 void mark_heavy_tails(std::span<TileError> tiles, uint32_t across, double luminance_floor);
 
+/// How the relative errors of a picture's tiles spread. The noise of the mean (ImageError::relative) is ruled
+/// by the brightest pixels: behind a window that is calm, walls may still be grainy, and these tell.
+struct TileSpread {
+  double median = 0;       ///< of the median tile
+  double worst_tenth = 0;  ///< what a tenth of the tiles are over
+  double worst = 0;
+  size_t heavy_tailed = 0;  ///< tiles that are marked so
+};
+/// Of TileError::relative; all 0 where there are no tiles.
+TileSpread tile_spread(std::span<const TileError> tiles);
+
 /// Of a whole picture; [0] the sum of the components, [1..4] they.
 struct ImageError {
   double pixels = 0;
   std::array<double, 5> luminance{};  ///< mean
   std::array<double, 5> rms{};        ///< of the pixels' standard errors, in luminance
+  /// Degrees of freedom of rms[0]^2, as TileError::degrees: its own relative standard error is
+  /// sqrt(2 / degrees), as far as its noise has been met.
+  double degrees = 0;
   /// rms over the sum's mean luminance: one scale for all, so that components can be compared.
   double relative(int layer) const { return luminance[0] > 0 ? rms[layer] / luminance[0] : 0; }
 };

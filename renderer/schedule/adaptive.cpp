@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace lucerna::schedule {
 
 namespace {
-constexpr uint32_t k_few = 8;  // samples a pixel when all of the device's path state is in use
+constexpr uint32_t k_first_mark = 4;  // samples a pixel from which an error says how it goes on
+constexpr uint32_t k_few = 8;         // samples a pixel when all of the device's path state is in use
 /// A tile stays while a neighbour is over this many times the target.
 constexpr float k_neighbours = 2;
+/// What a tile's error is taken for where there is none; no error is more (film::TileError).
+constexpr float k_unknown_error = 1.26f;
 }  // namespace
 
 AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
@@ -21,6 +25,28 @@ AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
   down_ = (blocks_down + side - 1) / side;
   tiles_.resize(size_t{across_} * down_);
   open_ = static_cast<uint32_t>(tiles_.size());
+  start_round();
+}
+
+AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
+                                   const AdaptiveOptions& options, std::span<const uint32_t> have,
+                                   std::span<const float> errors)
+    : AdaptiveSchedule(blocks_across, blocks_down, options) {
+  assert(have.size() == size_t{blocks_across} * blocks_down && errors.size() == tiles_.size());
+  for (uint32_t t = 0; t < tiles_.size(); ++t) {
+    Tile& tile = tiles_[t];
+    uint32_t least = ~0u, most = 0;
+    for (const uint32_t b : blocks_of(t)) least = std::min(least, have[b]), most = std::max(most, have[b]);
+    tile.samples = (most + 1) / 2 * 2;  // both halves of the film agree
+    for (const uint32_t b : blocks_of(t))
+      if (have[b] < tile.samples) behind_.push_back({b, have[b], tile.samples - have[b]});
+    // One sample tells nothing of the error.
+    tile.error = least >= 2 ? errors[t] : k_unknown_error;
+    tile.state = tile.samples < options_.min_samples ? TileState::waiting : TileState::active;
+  }
+  std::stable_sort(behind_.begin(), behind_.end(),
+                   [](const Behind& a, const Behind& b) { return a.lacks < b.lacks; });
+  update_states();
   start_round();
 }
 
@@ -72,7 +98,19 @@ void AdaptiveSchedule::start_round() {
 
 WorkItem AdaptiveSchedule::next() {
   item_tiles_.clear();
+  item_behind_ = 0;
   if (done()) return {};
+  if (!behind_.empty()) {
+    // Those that lack as many as the last, as far as there is room.
+    WorkItem item{{}, std::min(behind_.back().lacks, std::max(1u, options_.slots / 64))};
+    const size_t most = std::max(1u, options_.slots / (64 * item.sample_count));
+    for (auto b = behind_.rbegin();
+         b != behind_.rend() && b->lacks == behind_.back().lacks && item.blocks.size() < most; ++b)
+      item.blocks.push_back({b->block, b->have});
+    item_behind_ = item.blocks.size();
+    item_samples_ = item.sample_count;
+    return item;
+  }
   item_first_ = at_;
   const uint32_t pixels = options_.tile * options_.tile;
   const uint32_t at_once = std::max(1u, options_.slots / (pixels * pass_));
@@ -91,17 +129,30 @@ WorkItem AdaptiveSchedule::next() {
 }
 
 void AdaptiveSchedule::give_back() {
+  if (item_behind_ > 0) {
+    item_behind_ = 0;
+    return;
+  }
   at_ = item_first_;
   item_tiles_.clear();
 }
 
 void AdaptiveSchedule::report(const std::vector<float>& errors) {
   assert(errors.size() == item_tiles_.size());
+  if (item_behind_ > 0) {
+    for (auto b = behind_.end() - static_cast<std::ptrdiff_t>(item_behind_); b != behind_.end(); ++b)
+      b->have += item_samples_, b->lacks -= item_samples_;
+    while (!behind_.empty() && behind_.back().lacks == 0) behind_.pop_back();
+    item_behind_ = 0;
+    return;
+  }
   for (size_t i = 0; i < item_tiles_.size(); ++i) {
     Tile& tile = tiles_[item_tiles_[i]];
     tile.samples += item_samples_;
     ++tile.passes;
     tile.error = errors[i];
+    if (tile.samples >= k_first_mark && tile.samples >= 2 * tile.last.samples)
+      tile.earlier = std::exchange(tile.last, {tile.error, tile.samples});
   }
   item_tiles_.clear();
   if (at_ < round_.size()) return;
@@ -136,8 +187,17 @@ void AdaptiveSchedule::update_states() {
   for (uint32_t t = 0; t < tiles_.size(); ++t) tiles_[t].state = states[t];
 }
 
+std::vector<uint32_t> AdaptiveSchedule::counts() const {
+  std::vector<uint32_t> counts(size_t{blocks_across_} * blocks_down_, 0);
+  for (uint32_t t = 0; t < tiles_.size(); ++t)
+    for (const uint32_t b : blocks_of(t)) counts[b] = tiles_[t].samples;
+  for (const Behind& b : behind_) counts[b.block] = b.have;
+  return counts;
+}
+
 uint32_t AdaptiveSchedule::least_samples() const {
   uint32_t least = tiles_.empty() ? 0 : ~0u;
+  for (const Behind& b : behind_) least = std::min(least, b.have);
   for (const Tile& tile : tiles_) least = std::min(least, tile.samples);
   return least;
 }

@@ -8,6 +8,7 @@
 // then looked for where something next to it is still noisy. Pure functions of counts and errors: the same
 // errors give the same schedule, whatever the machine's speed.
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "schedule/work.h"
@@ -21,11 +22,18 @@ enum class TileState : uint8_t {
   capped  ///< over it, with as many samples as it may have
 };
 
+/// A tile's error as it was once.
+struct TileMark {
+  float error = 0;
+  uint32_t samples = 0;  ///< a pixel; 0: not known
+};
+
 struct Tile {
   float error = 0;       ///< as last reported; decides nothing while waiting
   uint32_t samples = 0;  ///< a pixel
   uint32_t passes = 0;
   TileState state = TileState::waiting;
+  TileMark last, earlier;  ///< the newest after which samples have doubled, and the one before
 };
 
 struct AdaptiveOptions {
@@ -40,11 +48,16 @@ class AdaptiveSchedule {
  public:
   AdaptiveSchedule() = default;
   AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down, const AdaptiveOptions& options);
+  /// Goes on with a picture whose blocks, in raster order, have `have` samples a pixel and whose tiles have
+  /// `errors`: blocks that are behind others of their tile are given what they lack first, and no sample is
+  /// thrown away.
+  AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down, const AdaptiveOptions& options,
+                   std::span<const uint32_t> have, std::span<const float> errors);
 
-  bool done() const { return open_ == 0; }
+  bool done() const { return open_ == 0 && behind_.empty(); }
   /// The next work; empty when done. The item's tiles are those that report() then wants to hear of.
   WorkItem next();
-  /// Tiles of the item that next() gave last, in order.
+  /// Tiles of the item that next() gave last, in order; none while blocks are behind.
   const std::vector<uint32_t>& to_report() const { return item_tiles_; }
   /// The item has been carried out; `errors`, one for each of to_report().
   void report(const std::vector<float>& errors);
@@ -60,6 +73,8 @@ class AdaptiveSchedule {
   uint32_t tiles_down() const { return down_; }
   /// The blocks of a tile, in Morton order.
   std::vector<uint32_t> blocks_of(uint32_t tile) const;
+  /// Samples a pixel of every block, in raster order.
+  std::vector<uint32_t> counts() const;
   /// Samples that every pixel has, that some pixel has.
   uint32_t least_samples() const;
   uint32_t most_samples() const;
@@ -84,6 +99,11 @@ class AdaptiveSchedule {
   uint32_t rounds_ = 0;
   uint32_t item_samples_ = 0;  // of the last item
   size_t item_first_ = 0;
+  struct Behind {
+    uint32_t block, have, lacks;
+  };
+  std::vector<Behind> behind_;  // blocks with fewer samples than their tile; served from the end
+  size_t item_behind_ = 0;      // of them in the last item
 };
 
 }  // namespace lucerna::schedule

@@ -2,6 +2,8 @@
 // Uniform sampling: the same number of samples for every pixel, cut into work items. Pure functions of
 // counts.
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "schedule/work.h"
 
@@ -16,6 +18,15 @@ class UniformSchedule {
       : blocks_(blocks), samples_(samples), slots_(slots_at_once) {
     start_pass();
   }
+  /// Goes on with a picture whose blocks have these samples a pixel, in raster order: those that have fewest
+  /// are given theirs first, until all have as many. No sample is given twice, none is left out.
+  UniformSchedule(std::vector<uint32_t> have, uint32_t samples, uint32_t slots_at_once)
+      : blocks_(static_cast<uint32_t>(have.size())),
+        samples_(samples),
+        slots_(slots_at_once),
+        have_(std::move(have)) {
+    start_pass();
+  }
   bool done() const { return sample_ >= samples_ || blocks_ == 0; }
   /// Samples that every pixel has.
   uint32_t complete() const { return std::min(sample_, samples_); }
@@ -25,11 +36,23 @@ class UniformSchedule {
   /// Passes that are complete.
   uint32_t passes() const { return passes_; }
 
+  /// Samples a pixel of every block, in raster order.
+  std::vector<uint32_t> counts() const {
+    if (!have_.empty()) return have_;
+    std::vector<uint32_t> counts(blocks_, complete());
+    for (uint32_t b = 0; b < block_; ++b) counts[b] += pass_;
+    return counts;
+  }
+
   WorkItem next() {
     const uint32_t blocks_at_once = std::max(1u, slots_ / (64 * pass_));
     WorkItem item{{}, pass_};
-    for (uint32_t end = std::min(blocks_, block_ + blocks_at_once); block_ < end; ++block_)
+    const auto ahead = [&] { return !have_.empty() && have_[block_] != sample_; };
+    for (; block_ < blocks_ && (item.blocks.size() < blocks_at_once || ahead()); ++block_) {
+      if (ahead()) continue;
       item.blocks.push_back({block_, sample_});
+      if (!have_.empty()) have_[block_] += pass_;
+    }
     if (block_ == blocks_) {
       block_ = 0;
       sample_ += pass_;
@@ -42,14 +65,24 @@ class UniformSchedule {
  private:
   static constexpr uint32_t k_least_pass = 16;
   void start_pass() {
+    uint32_t level = samples_;  // that the pass must not go beyond
+    uint32_t behind = blocks_;
+    if (!have_.empty()) {
+      sample_ = *std::min_element(have_.begin(), have_.end());
+      behind = static_cast<uint32_t>(std::count(have_.begin(), have_.end(), sample_));
+      for (const uint32_t n : have_)
+        if (n > sample_) level = std::min(level, n);
+      if (behind == blocks_) have_.clear();
+    }
     if (done()) return;
     // The first passes are single, so that something is seen at once; then as many samples as fill the
     // device, or twice as many as before: adding to the film costs the same for one sample as for several.
-    const uint32_t fitting = std::max(k_least_pass, slots_ / std::max(1u, 64 * blocks_));
-    pass_ = std::min({fitting, std::max(1u, sample_), samples_ - sample_});
+    const uint32_t fitting = std::max(k_least_pass, slots_ / std::max(1u, 64 * behind));
+    pass_ = std::min({fitting, std::max(1u, sample_), level - sample_});
   }
   uint32_t blocks_ = 0, samples_ = 0, slots_ = 64;
   uint32_t block_ = 0, sample_ = 0, pass_ = 1, passes_ = 0;
+  std::vector<uint32_t> have_;  // samples of every block, while they differ; sample_ the least of them
 };
 
 }  // namespace lucerna::schedule

@@ -44,23 +44,25 @@ std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
   tiles.reserve(a.tiles.size());
   double paths = 0;
   for (const TileStatus& t : a.tiles) {
-    if (t.samples < 2) return std::nullopt;
     // A tile that is done under one target may be open under another.
     const bool open = t.samples < a.max_samples && (t.samples < a.min_samples || t.error > target ||
                                                     (target >= a.target && t.state <= shared::k_tile_active));
     tiles.push_back({.error = std::max(0.0, double{t.error}),
                      .samples = double(t.samples),
                      .pixels = double(t.pixels),
-                     .open = open});
+                     .open = open,
+                     .earlier_error = double(t.earlier_error),
+                     .earlier_samples = double(t.earlier_samples)});
     paths += double(t.samples) * t.pixels;
   }
-  const stats::Band total = stats::total_paths(tiles, a.across, target, a.min_samples, a.max_samples);
+  const auto total = stats::total_paths(tiles, a.across, target, a.min_samples, a.max_samples);
+  if (!total) return std::nullopt;
   const double rays_a_path =
       static_cast<double>(last.rays - last.prepared_rays) / static_cast<double>(last.paths);
   const auto seconds = [&](double all) {
     return last.wall_s + std::max(0.0, all - static_cast<double>(last.paths)) * rays_a_path * each;
   };
-  return stats::Band{seconds(total.low), seconds(total.middle), seconds(total.high)};
+  return stats::Band{seconds(total->low), seconds(total->middle), seconds(total->high)};
 }
 
 std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
@@ -68,7 +70,7 @@ std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
       flags || !r.adaptive() ? r.tile_errors() : std::vector<film::TileError>();
   std::vector<TileStatus> tiles(r.adaptive() ? r.adaptive()->tiles().size() : errors.size());
   const double target = r.settings().real("sampling.target_error");
-  const auto side = static_cast<uint32_t>(std::stoul(r.settings().text("sampling.tile")));
+  const auto side = r.tile_side();
   const size_t across = (r.film().width() + side - 1) / side;
   for (size_t i = 0; i < tiles.size(); ++i) {
     TileStatus& t = tiles[i];
@@ -81,6 +83,7 @@ std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
       t.samples = known.samples;
       if (known.samples >= 2) t.error = known.error;
       t.state = static_cast<uint32_t>(known.state);
+      t.earlier_error = known.earlier.error, t.earlier_samples = known.earlier.samples;
     } else {
       t.samples = r.samples();
       if (errors[i].pixels > 0) {
@@ -129,6 +132,8 @@ void AccuracyKeeper::note_pass(const Renderer& r) {
   passes_ = r.passes();
   const transport::TransportStats& stats = r.stats();
   PassStatus pass;
+  if (pass_ms_.empty())
+    for (const transport::StageSum& s : r.prepared().stages) pass_ms_.push_back(s.ms);
   now_.stages.clear();
   for (size_t i = 0; i < stats.stages.size(); ++i) {
     now_.stages.push_back(stats.stages[i].name);
@@ -155,7 +160,7 @@ std::shared_ptr<const Accuracy> AccuracyKeeper::publish(const Renderer& r, bool 
     now_.target = r.settings().real("sampling.target_error");
     now_.min_samples = r.adaptive() ? r.adaptive()->options().min_samples : 0;
     now_.max_samples = r.max_samples();
-    now_.tile = static_cast<uint32_t>(std::stoul(r.settings().text("sampling.tile")));
+    now_.tile = r.tile_side();
     now_.across = (r.film().width() + now_.tile - 1) / now_.tile;
     now_.pixels = double(r.film().width()) * r.film().height();
     now_.reference = r.reference() ? r.reference()->file.filename().string() : "";

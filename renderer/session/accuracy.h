@@ -23,6 +23,9 @@ struct TileStatus {
   float error = -1;  ///< relative; negative: not known
   uint32_t samples = 0;
   uint32_t pixels = 0;
+  /// The same with a half to a quarter of the samples, in adaptive sampling; 0: not known.
+  float earlier_error = 0;
+  uint32_t earlier_samples = 0;
   uint32_t state = shared::k_tile_waiting;  ///< shared::k_tile_*
   bool heavy_tailed = false;
 };

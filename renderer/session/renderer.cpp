@@ -37,6 +37,7 @@ Renderer::Renderer(const RendererOptions& options)
 Renderer::~Renderer() = default;
 
 void Renderer::load(const std::filesystem::path& file, const Progress& progress) {
+  rest();
   const Timer timer;
   auto scene = std::make_shared<scene::Scene>(scene::load(
       file, options_.scenes,
@@ -63,6 +64,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
 
 void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings,
                        scene::Camera camera, const Progress& progress, irradiance_cache::Spoilt spoilt) {
+  rest();
   const auto report = [&](float fraction, const char* what) {
     require(!progress || progress(fraction, what));
   };
@@ -245,8 +247,9 @@ void Renderer::restart(irradiance_cache::Spoilt spoilt) {
   start_schedule();
   ++restarts_;
   ledger_.clear();
-  seconds_ = prepared_s_ = 0;
-  prepared_rays_ = 0;
+  clock_.reset();
+  render_s_ = prepared_s_ = 0;
+  prepared_ = {};
   wavefront_->set_frame(make_frame(width_, height_), enabled_components());
   applied_ = settings_.all();
 }
@@ -258,9 +261,23 @@ void Renderer::start_schedule() {
   adaptive_.emplace(film_->blocks_across(), film_->blocks_down(), adaptive_options());
 }
 
+void Renderer::change_schedule() {
+  const std::vector<uint32_t> have = adaptive_ ? adaptive_->counts() : schedule_.counts();
+  if (settings_.text("sampling.mode") == "adaptive") {
+    std::vector<float> errors;
+    image_error();
+    for (const film::TileError& t : film::tile_errors(*film_, tile_side()))
+      errors.push_back(float(t.relative));
+    adaptive_.emplace(film_->blocks_across(), film_->blocks_down(), adaptive_options(), have, errors);
+  } else {
+    schedule_ = {have, uint32_t(settings_.integer("samples")), wavefront_->slots()};
+    adaptive_.reset();
+  }
+}
+
 schedule::AdaptiveOptions Renderer::adaptive_options() const {
   return {
-      .tile = uint32_t(std::stoul(settings_.text("sampling.tile"))),
+      .tile = tile_side(),
       .target_error = float(settings_.real("sampling.target_error")),
       .min_samples = uint32_t(settings_.integer("sampling.min_samples")),
       .max_samples = uint32_t(settings_.integer("sampling.max_samples")),
@@ -272,6 +289,8 @@ schedule::AdaptiveOptions Renderer::adaptive_options() const {
 float Renderer::luminance_floor() const {
   return film::k_luminance_floor * float(std::exp2(-settings_.real("film.ev")));
 }
+
+uint32_t Renderer::tile_side() const { return uint32_t(std::stoul(settings_.text("sampling.tile"))); }
 
 film::ImageError Renderer::image_error() {
   wavefront_->estimate(*film_, luminance_floor());
@@ -286,7 +305,7 @@ std::optional<double> Renderer::bias(size_t component) const {
 }
 
 std::vector<film::TileError> Renderer::tile_errors() const {
-  const auto side = uint32_t(std::stoul(settings_.text("sampling.tile")));
+  const uint32_t side = tile_side();
   std::vector<film::TileError> tiles = film::tile_errors(*film_, side);
   film::mark_heavy_tails(tiles, (film_->width() + side - 1) / side, luminance_floor());
   return tiles;
@@ -336,7 +355,8 @@ void Renderer::apply_settings() {
   for (const std::string& key : changed) {
     // What these say, the schedule in progress can take up.
     const bool goal = key == "sampling.target_error" || key == "sampling.min_samples" ||
-                      key == "sampling.max_samples" || (key == "sampling.tile" && !adaptive_);
+                      key == "sampling.max_samples" ||
+                      (key == "sampling.tile" && (!adaptive_ || changed.contains("sampling.mode")));
     if (goal)
       retarget = true;
     else if (key != "samples")
@@ -368,7 +388,10 @@ void Renderer::apply_settings() {
   if (kernels) spoilt |= build_wavefront(*device_scene_, !spoilt.places);
   again |= kernels;
   if (changed.contains("samples") && !again) schedule_.set_samples(uint32_t(settings_.integer("samples")));
-  if (retarget && !again && adaptive_) adaptive_->retarget(adaptive_options());
+  if (changed.contains("sampling.mode") && !again)
+    change_schedule();
+  else if (retarget && !again && adaptive_)
+    adaptive_->retarget(adaptive_options());
   if (again) restart(spoilt);
   applied_ = settings_.all();
 }
@@ -401,33 +424,51 @@ void Renderer::choose_camera(const std::string& name) {
 }
 
 bool Renderer::step(const std::function<bool()>& cancel) {
+  if (!wavefront_ || done()) return false;
+  clock_.go();
   const Timer timer;
   const bool prepares = cache_ && !cache_->ready();
   const bool progress = render_item(cancel);
-  seconds_ += timer.seconds();
+  render_s_ += timer.seconds();
   if (prepares && cache_->ready()) warn_of_full_cache();
   if (prepares)
-    prepared_s_ = seconds_, prepared_rays_ = stats().rays;
+    prepared_s_ = clock_.seconds(), prepared_ = stats();
   else if (progress)
     note_progress(false);
+  if (done()) rest();
   return progress;
+}
+
+std::array<double, shared::k_component_count> Renderer::component_ms_a_sample() const {
+  std::array<double, shared::k_component_count> each{};
+  const double samples = double(stats().paths) / (double(film_->width()) * film_->height());
+  for (size_t c = 0; samples > 0 && c < each.size(); ++c)
+    each[c] = (stats().component_ms[c] - prepared_.component_ms[c]) / samples;
+  return each;
 }
 
 void Renderer::note_progress(bool at_once) {
   const transport::TransportStats& s = wavefront_->stats();
   if (s.paths == 0 || !(at_once || ledger_.due(s.paths, uint64_t{width_} * height_))) return;
   stats::Entry entry;
-  entry.wall_s = seconds_;
+  entry.wall_s = clock_.seconds();
+  entry.render_s = render_s_;
   entry.prepared_s = prepared_s_;
-  entry.prepared_rays = prepared_rays_;
+  entry.prepared_rays = prepared_.rays;
   for (const auto& stage : s.stages) entry.device_s += 1e-3 * stage.ms;
   entry.paths = s.paths;
   entry.rays = s.rays;
   entry.samples = double(s.paths) / (double(film_->width()) * film_->height());
   entry.component_s[0] = entry.device_s;
   for (int c = 0; c < paths::k_component_count; ++c) entry.component_s[c + 1] = 1e-3 * s.component_ms[c];
-  const film::ImageError error = image_error();
-  for (int k = 0; k < stats::k_layers; ++k) entry.error[k] = error.relative(k);
+  entry.told = samples() >= 2;
+  if (entry.told) {
+    const film::ImageError error = image_error();
+    for (int k = 0; k < stats::k_layers; ++k) entry.error[k] = error.relative(k);
+    entry.degrees = error.degrees;
+    const film::TileSpread tiles = film::tile_spread(film::tile_errors(*film_, tile_side()));
+    entry.tile_median = tiles.median, entry.tile_worst_tenth = tiles.worst_tenth;
+  }
   if (reference_applies()) {
     const film::Image image = film_->read();
     entry.truth = film::true_errors(*reference_, image.components, image.samples);
@@ -440,20 +481,22 @@ void Renderer::note_progress(bool at_once) {
           {.error = tile.error,
            .samples = double(tile.samples),
            .pixels = 64.0 * double(adaptive_->blocks_of(t).size()),
-           .open = tile.state == schedule::TileState::waiting || tile.state == schedule::TileState::active});
+           .open = tile.state == schedule::TileState::waiting || tile.state == schedule::TileState::active,
+           .earlier_error = tile.earlier.error,
+           .earlier_samples = double(tile.earlier.samples)});
     }
     const schedule::AdaptiveOptions& o = adaptive_->options();
-    const stats::Band paths =
+    const std::optional<stats::Band> paths =
         stats::total_paths(tiles, adaptive_->tiles_across(), o.target_error, o.min_samples, o.max_samples);
-    const double before = double(prepared_rays_), each = (double(s.rays) - before) / double(s.paths);
-    entry.total_rays =
-        stats::Band{before + each * paths.low, before + each * paths.middle, before + each * paths.high};
+    const double before = double(prepared_.rays), each = (double(s.rays) - before) / double(s.paths);
+    if (paths)
+      entry.total_rays =
+          stats::Band{before + each * paths->low, before + each * paths->middle, before + each * paths->high};
   }
   ledger_.add(entry);
 }
 
 bool Renderer::render_item(const std::function<bool()>& cancel) {
-  if (!wavefront_ || done()) return false;
   if (cache_ && !cache_->ready()) return cache_->step(*wavefront_, automaton_, cache_view(), cancel);
   if (adaptive_) {
     const schedule::WorkItem item = adaptive_->next();
@@ -464,7 +507,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     const std::vector<uint32_t>& tiles = adaptive_->to_report();
     std::vector<float> errors(tiles.size(), 0.0f);
     // One sample a pixel tells nothing of the error, and decides nothing.
-    if (adaptive_->tiles()[tiles[0]].samples + item.sample_count > 1) {
+    if (!tiles.empty() && adaptive_->tiles()[tiles[0]].samples + item.sample_count > 1) {
       wavefront_->estimate_stopping(item.blocks, *film_, luminance_floor());
       for (size_t i = 0; i < tiles.size(); ++i)
         errors[i] = float(film::relative_error(*film_, adaptive_->blocks_of(tiles[i])));
@@ -481,11 +524,14 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
 
 void Renderer::render_coarse(const std::function<bool()>& cancel) {
   if (!wavefront_) return;
+  clock_.go();
   wavefront_->clear(*coarse_);
   wavefront_->set_frame(make_frame(coarse_->width(), coarse_->height()), enabled_components());
   schedule::UniformSchedule schedule(coarse_->blocks(), 1, wavefront_->slots());
-  while (!schedule.done() && wavefront_->run(schedule.next(), *coarse_, cancel)) {
-  }
+  wavefront_->uncounted([&] {
+    while (!schedule.done() && wavefront_->run(schedule.next(), *coarse_, cancel)) {
+    }
+  });
   wavefront_->set_frame(make_frame(width_, height_), enabled_components());
 }
 
@@ -499,7 +545,7 @@ film::View Renderer::view() const {
   v.exposure = float(std::exp2(settings_.real("film.ev")));
   v.scale = 2 * flat_.scene_radius;
   v.heat = heat_scale(v.layer);
-  if (settings_.boolean("overlay.tiles")) v.tiles = uint32_t(std::stoul(settings_.text("sampling.tile")));
+  if (settings_.boolean("overlay.tiles")) v.tiles = tile_side();
   return v;
 }
 
@@ -509,8 +555,10 @@ film::HeatScale Renderer::heat_scale(uint32_t layer) const {
   if (layer == shared::k_layer_error) return film::error_scale(settings_.real("sampling.target_error"));
   double ms = 0;
   for (const auto& stage : stats().stages) ms += stage.ms;
-  return film::cost_scale(ms, double(stats().rays - stats().shadow_rays),
-                          double(film_->width()) * film_->height(), adaptive_.has_value());
+  for (const auto& stage : prepared_.stages) ms -= stage.ms;
+  const auto seen = [](const transport::TransportStats& s) { return double(s.rays - s.shadow_rays); };
+  return film::cost_scale(ms, seen(stats()) - seen(prepared_), double(film_->width()) * film_->height(),
+                          adaptive_.has_value());
 }
 
 std::vector<uint8_t> Renderer::picture(bool with_coarse) {

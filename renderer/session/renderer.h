@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "base/timer.h"
 #include "bvh/embree/host_tracer.h"
 #include "film/error.h"
 #include "film/film.h"
@@ -60,8 +61,8 @@ class Renderer {
 
   plan::Settings& settings() { return settings_; }
   const plan::Settings& settings() const { return settings_; }
-  /// Settings changed by hand: applies what differs, restarts if the image depends on it. A target error and
-  /// caps on samples let the image go on.
+  /// Settings changed by hand: applies what differs, restarts if the image depends on it. A target error,
+  /// caps on samples and the mode of sampling let the image go on.
   void apply_settings();
   /// Throws Error as film::check_size; the size before stays.
   void set_size(uint32_t width, uint32_t height);
@@ -95,13 +96,27 @@ class Renderer {
   /// The same for every tile of sampling.tile, in raster order, heavy tails marked: as the last image_error()
   /// found it.
   std::vector<film::TileError> tile_errors() const;
+  uint32_t tile_side() const;  ///< sampling.tile: pixels
   /// What these errors, which are of the noise, do not tell: plan::Plan::bias of the settings in force.
   std::optional<double> bias(size_t component) const;
   /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled, or
   /// while building of the cache waits.
   bool step(const std::function<bool()>& cancel = {});
   /// A quick image of a quarter of the resolution, for display until the film is filled.
+  /// Its paths, rays and time are not in stats().
   void render_coarse(const std::function<bool()>& cancel = {});
+
+  /// The person's clock: seconds since this image's first step() or render_coarse(), whatever else was done
+  /// meanwhile; not between rest() and the next of these, nor after the last.
+  double seconds() const { return clock_.seconds(); }
+  /// The clock stands still from now on: rendering waits, for a person or for a scene.
+  void rest() { clock_.stop(); }
+  /// Of seconds(), those that step() has spent tracing this image (stats::Entry::render_s).
+  double render_seconds() const { return render_s_; }
+  /// Of stats(), what was prepared before the first sample: the records that paths look up.
+  const transport::TransportStats& prepared() const { return prepared_; }
+  /// Device time of a sample a pixel, by component, without what was prepared before; 0 before the first.
+  std::array<double, shared::k_component_count> component_ms_a_sample() const;
 
   /// Tone-mapped picture with the settings' view, or a heat map on view().heat's scale; tiles over it where
   /// overlay.tiles is on.
@@ -175,6 +190,8 @@ class Renderer {
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
   void start_schedule();
+  /// Another way of sampling goes on with the samples there are.
+  void change_schedule();
   schedule::AdaptiveOptions adaptive_options() const;
   irradiance_cache::Making cache_making() const;
   void warn_of_full_cache();
@@ -222,9 +239,10 @@ class Renderer {
   stats::Ledger ledger_;
   std::optional<film::Reference> reference_;
   uint64_t restarts_ = 0;
-  double seconds_ = 0;     ///< rendering time of this image
-  double prepared_s_ = 0;  ///< of that, before its first sample
-  uint64_t prepared_rays_ = 0;
+  Stopwatch clock_;        ///< of the person who waits for this image
+  double render_s_ = 0;    ///< of that, in step()
+  double prepared_s_ = 0;  ///< of the clock, before the image's first sample
+  transport::TransportStats prepared_;
   std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< instead of schedule_
   uint32_t width_ = 1280, height_ = 720;
   std::map<std::string, std::string> applied_;  ///< settings that the film was made with

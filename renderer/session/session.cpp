@@ -46,7 +46,6 @@ struct Session::Impl {
   Snapshot next;
   AccuracyKeeper accuracy;
   Timer since_publish, since_numbers;
-  double seconds = 0;
   bool paused = false, dirty = true, coarse_wanted = false, size_known = false;
   bool filled = false;
   uint64_t levels_shown = 0;  // of the cache, by the coarse picture
@@ -143,7 +142,6 @@ struct Session::Impl {
   }
 
   void restarted() {
-    seconds = 0;
     coarse_wanted = dirty = true;
     filled = false;
   }
@@ -172,24 +170,25 @@ struct Session::Impl {
               : fmt::format("cache, pass {}: {} records", c.pass + 1, cache->records().size());
     }
     next.cache = r.cache_report();
-    next.seconds = seconds;
+    next.seconds = r.seconds();
     next.camera = r.camera();
     next.tracer = r.tracer_name();
     next.device = r.device().info().name;
     next.device_mb = double(r.device().allocated_bytes()) / (1 << 20);
     const transport::TransportStats& stats = r.stats();
     next.rays = stats.rays;
-    next.mrays_per_second = seconds > 0 ? 1e-6 * double(stats.rays) / seconds : 0;
+    const double tracing = r.render_seconds();
+    next.mrays_per_second = tracing > 0 ? 1e-6 * double(stats.rays) / tracing : 0;
     next.dropped = stats.dropped;
     next.stages.clear();
     for (const auto& s : stats.stages) next.stages.push_back({s.name, s.ms, s.host});
     next.mean_samples = double(stats.paths) / (double(next.width) * next.height);
-    const double pixel_samples = std::max(1.0, next.mean_samples);
     accuracy.follow(r, next.scene_id);
     next.accuracy = accuracy.publish(r, numbers || dirty);
+    const auto ms = r.component_ms_a_sample();
     for (int c = 0; c < k_components; ++c) {
       next.components[c].solver = r.settings().text(std::string("components.") + k_component_names[c]);
-      next.components[c].ms_per_sample = stats.component_ms[c] / pixel_samples;
+      next.components[c].ms_per_sample = ms[size_t(c)];
     }
     if (numbers) {
       next.host_mb = peak_host_mb();
@@ -248,6 +247,7 @@ void Session::Impl::run() {
     }
     pending = false;
     const bool work = renderer && works(*renderer);
+    if (renderer && !work) renderer->rest();
     if (!work && !dirty) {
       wake.wait(lock, [&] { return quit || !queue.empty(); });
       continue;
@@ -256,14 +256,12 @@ void Session::Impl::run() {
     const auto cancelled = [&] { return pending.load() || quit; };
     try {
       if (renderer && renderer->ready()) {
-        const Timer timer;
         bool changed = dirty;
         if (coarse_wanted && !paused) {
           renderer->render_coarse(cancelled);
           coarse_wanted = false;
           changed = true;
         } else if (work && renderer->step(cancelled)) {
-          seconds += timer.seconds();
           // While the cache is built or relit the coarse picture shows what has come of it.
           if (const irradiance_cache::Cache* cache = renderer->cache();
               cache && !cache->ready() && cache->status().published != levels_shown) {

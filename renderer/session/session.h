@@ -27,7 +27,7 @@ struct ComponentStatus {
   std::string solver = "path";  ///< "path" or "off"
   double mean_luminance = 0;    ///< of its layer
   double share = 0;             ///< of the sum's mean luminance, 0..1
-  double ms_per_sample = 0;     ///< device time its rays cost, per sample a pixel
+  double ms_per_sample = 0;  ///< device time its rays cost, per sample a pixel; without the cache's building
 };
 
 struct StageStatus {
@@ -60,8 +60,10 @@ struct Snapshot {
   bool paused = false, finished = false;
   /// "" or what is made before the first sample: "cache, pass 3: 2810 records".
   std::string preparing;
-  double seconds = 0;  ///< rendering time of this image
-  double mrays_per_second = 0;
+  /// Wall time since this image was begun, pauses left out: the clock of the ledger's wall_s and of
+  /// forecasts.
+  double seconds = 0;
+  double mrays_per_second = 0;  ///< while rays are traced
   uint64_t rays = 0;
   std::array<ComponentStatus, k_components> components;
   std::vector<StageStatus> stages;

@@ -1,87 +1,236 @@
 #include "stats/forecast.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lucerna::stats {
 
 namespace {
-double hold(double exponent) { return std::clamp(exponent, 0.3, 1.2); }
+
+constexpr double k_window = 16;     // factor of work that a law is told from
+constexpr double k_first_line = 4;  // samples a pixel: of fewer the sequence is not yet well spread
+constexpr uint32_t k_shares = 20;   // places at which f is looked at
+constexpr double k_exponents[] = {0.25, 0.5, 0.75, 1};  // q
+/// Over 2 / degrees: the relative variance of a sum of squares, for tails heavier than have been met.
+constexpr double k_tails = 1.5;
+/// Standard deviations of log(N error^2) that the family of laws itself is off by: everywhere, and for each
+/// factor e of work that it is carried on.
+constexpr double k_misfit = 0.03, k_drift = 0.03;
+constexpr double k_few_degrees = 100;  // where they are not known
+constexpr double k_rate_spread = 0.05;
+constexpr double k_band = 0.05;  // probability on either side
+
+double square(double x) { return x * x; }
+
+/// log(1 + rho N^-q) for the law with that share of 1 / N at `now`.
+double bend(double q, double share, double now, double n) {
+  return std::log1p((1 - share) / share * std::pow(now / n, q));
+}
+
+double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
+
 }  // namespace
 
-Law fit(const Ledger& ledger, int layer) {
+Outlook::Outlook(const Ledger& ledger) {
   const auto& entries = ledger.entries();
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
-  for (const Entry& e : entries) {
-    if (e.samples < 8 || e.paths < entries.back().paths / 16 || !(e.error[layer] > 0)) continue;
-    const double x = std::log(double(e.paths)), y = std::log(e.error[layer]);
-    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y, syy += y * y;
-  }
-  const double spread = n > 0 ? sxx - sx * sx / n : 0;
-  if (n < 3 || spread <= 0) return {};
-  const double slope = (sxy - sx * sy / n) / spread;
-  const double residual = std::max(0.0, (syy - sy * sy / n) - slope * (sxy - sx * sy / n));
-  // The lines share their samples, so that the residual alone is too kind.
-  return {hold(-slope), std::max(0.05, 2 * std::sqrt(residual / (n - 2) / spread))};
+  if (entries.empty() || entries.back().samples < k_least_samples) return;
+  const double now = entries.back().samples;
+  std::vector<const Entry*> lines;
+  for (const Entry& e : entries)
+    if (e.told && e.error[0] > 0 && e.samples >= std::max(k_first_line, now / k_window) &&
+        (lines.empty() || e.samples > lines.back()->samples))
+      lines.push_back(&e);
+  if (lines.size() < 3 || lines.back() != &entries.back()) return;
+  samples_ = now;
+  double degrees = 0;
+  const size_t recent = std::min<size_t>(lines.size(), 4);
+  for (size_t i = lines.size() - recent; i < lines.size(); ++i)
+    degrees += (lines[i]->degrees > 0 ? lines[i]->degrees : k_few_degrees) / double(recent);
+  line_variance_ = k_tails * 2 / degrees + square(k_misfit);
+
+  std::vector<double> likelihoods;
+  for (const double q : k_exponents)
+    for (uint32_t k = 0; k < k_shares; ++k) {
+      const double share = (k + 0.5) / k_shares;
+      // Least squares of a constant, log(a), through the chain: what each line adds to what the one before
+      // has made likely is independent.
+      double precision = 0, sum = 0, squares = 0, samples = 0, level = 0;  // the last two: of the line before
+      for (const Entry* e : lines) {
+        const double here = std::log(square(e->error[0]) * e->samples) - bend(q, share, now, e->samples);
+        const double shared = samples / e->samples, rest = here - shared * level;
+        const double weight = 1 / (line_variance_ * (1 - square(shared)));
+        precision += weight * square(1 - shared);
+        sum += weight * (1 - shared) * rest;
+        squares += weight * square(rest);
+        samples = e->samples, level = here;
+      }
+      laws_.push_back({.q = q,
+                       .share = share,
+                       .level = sum / precision,
+                       .variance = 1 / precision,
+                       .last = level,
+                       .weight = 0});
+      likelihoods.push_back(-0.5 * (squares - square(sum) / precision));
+    }
+  const double most = *std::max_element(likelihoods.begin(), likelihoods.end());
+  double total = 0;
+  for (size_t i = 0; i < laws_.size(); ++i) total += laws_[i].weight = std::exp(likelihoods[i] - most);
+  for (Law& law : laws_) law.weight /= total;
 }
 
-std::optional<Band> seconds_to(const Ledger& ledger, double target, int layer) {
+double Outlook::probability(double target, double growth) const {
+  const double shared = 1 / growth;
+  double p = 0;
+  for (const Law& law : laws_) {
+    // The last line's own luck wears off as samples are added.
+    const double level = law.level + shared * (law.last - law.level);
+    const double expected =
+        level + bend(law.q, law.share, samples_, growth * samples_) - std::log(growth * samples_);
+    const double variance = square(1 - shared) * law.variance + line_variance_ * (1 - square(shared)) +
+                            square(k_drift * std::log(growth)) + 1e-12;
+    p += law.weight * normal_cdf((2 * std::log(target) - expected) / std::sqrt(variance));
+  }
+  return p;
+}
+
+double Outlook::growth(double target, double wanted) const {
+  double low = 0, high = 60;  // logarithms
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (probability(target, std::exp(middle)) < wanted ? low : high) = middle;
+  }
+  return std::exp(high);
+}
+
+double Outlook::exponent() const {
+  double sum = 0;
+  for (const Law& law : laws_) sum += law.weight * 0.5 * (1 + (1 - law.share) * law.q);
+  return sum;
+}
+
+double seconds_a_path(const Ledger& ledger) {
+  const auto& lines = ledger.entries();
+  if (lines.empty() || lines.back().paths == 0) return 0;
+  const Entry& last = lines.back();
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line)
+    if (2 * line->paths <= last.paths)
+      return (last.wall_s - line->wall_s) / static_cast<double>(last.paths - line->paths);
+  return (last.wall_s - last.prepared_s) / static_cast<double>(last.paths);
+}
+
+std::optional<Band> seconds_to(const Ledger& ledger, double target) {
   const auto& entries = ledger.entries();
-  if (entries.empty() || !(target > 0)) return std::nullopt;
-  // Reached for good: the first line after the last one that is over the target.
+  if (entries.empty() || !entries.back().told || !(target > 0)) return std::nullopt;
+  // Reached for good: after the last line that is over the target.
   size_t reached = entries.size();
-  while (reached > 0 && entries[reached - 1].error[layer] <= target) --reached;
+  while (reached > 0 && entries[reached - 1].told && entries[reached - 1].error[0] <= target) --reached;
   if (reached < entries.size()) {
-    const double s = entries[reached].wall_s;
+    const Entry& under = entries[reached];
+    double s = under.wall_s;
+    if (reached > 0 && entries[reached - 1].told && under.error[0] > 0) {
+      const Entry& over = entries[reached - 1];
+      const double part = std::log(over.error[0] / target) / std::log(over.error[0] / under.error[0]);
+      s = over.wall_s + part * (under.wall_s - over.wall_s);
+    }
     return Band{s, s, s};
   }
+  const Outlook outlook(ledger);
+  if (!outlook.known()) return std::nullopt;
   const Entry& last = entries.back();
-  const Law law = fit(ledger, layer);
-  const auto seconds = [&](double exponent, double error) {
-    return last.prepared_s +
-           (last.wall_s - last.prepared_s) * std::pow(std::max(1.0, error / target), 1 / hold(exponent));
+  const double each = seconds_a_path(ledger) * static_cast<double>(last.paths);
+  const auto seconds = [&](double probability, double rate) {
+    return last.wall_s + rate * each * (outlook.growth(target, probability) - 1);
   };
-  const double error = last.error[layer];
-  return Band{seconds(law.exponent + law.deviation, 0.95 * error), seconds(law.exponent, error),
-              seconds(law.exponent - law.deviation, 1.05 * error)};
+  return Band{seconds(k_band, 1 - k_rate_spread), seconds(0.5, 1), seconds(1 - k_band, 1 + k_rate_spread)};
 }
 
-double samples_to(const TileProgress& tile, double target, double exponent) {
-  // Beyond saturation a measured error tells little; at least a quarter of what it says without.
-  const auto quality = [](double error) {
-    const double q = 1 / (error * error);
-    return std::max(q - 1 / (k_saturated_error * k_saturated_error), 0.25 * q);
-  };
+namespace {
+
+constexpr double k_usual_k = 1.2, k_spread_of_k = 0.5;  // of log k
+constexpr double k_least_k = 0.5, k_most_k = 2.5;
+constexpr int k_laws = 12;
+constexpr double k_history_spread = 0.07;                      // of the mean of log(error / expected)
+constexpr double k_law_spread = 0.05, k_growth_spread = 0.15;  // of log(paths)
+
+/// 1/error^k over saturation. Beyond it a measured error tells little; at least a quarter of what it says
+/// without.
+double quality(double error, double k) {
+  const double q = std::pow(error, -k);
+  return std::max(q - std::pow(k_saturated_error, -k), 0.25 * q);
+}
+
+/// What the law makes of the tile's earlier error, now.
+double expected_error(const TileProgress& t, double k) {
+  const double q = quality(t.earlier_error, k) * std::pow(t.samples / t.earlier_samples, 0.5 * k);
+  return std::pow(q + std::pow(k_saturated_error, -k), -1 / k);
+}
+
+}  // namespace
+
+double samples_to(const TileProgress& tile, double target, double k) {
   if (!(tile.error > 0)) return tile.samples;
-  return tile.samples * std::pow(quality(target) / quality(tile.error), 0.5 / exponent);
+  return tile.samples * std::pow(quality(target, k) / quality(tile.error, k), 2 / k);
 }
 
-Band total_paths(std::span<const TileProgress> tiles, uint32_t across, double target, double min_samples,
-                 double max_samples) {
+std::optional<Band> total_paths(std::span<const TileProgress> tiles, uint32_t across, double target,
+                                double min_samples, double max_samples) {
   const int width = static_cast<int>(across), height = across ? static_cast<int>(tiles.size() / across) : 0;
-  const auto total = [&](double exponent, double noise) {
-    const auto needed = [&](const TileProgress& t, double error) {
-      return samples_to(t, error / noise, exponent);
-    };
+  double closed = 0, now = 0;  // paths of the tiles that are done, and so far of those that are not
+  for (const TileProgress& t : tiles) {
+    if (t.open && t.samples < Outlook::k_least_samples) return std::nullopt;
+    (t.open ? now : closed) += t.samples * t.pixels;
+  }
+  if (now <= 0) return Band{closed, closed, closed};
+  std::vector<double> beside(tiles.size());  // samples that bring each under twice the target
+  const auto open_paths = [&](double k) {
+    for (size_t t = 0; t < tiles.size(); ++t) beside[t] = samples_to(tiles[t], 2 * target, k);
     double paths = 0;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         const TileProgress& tile = tiles[static_cast<size_t>(y) * across + static_cast<size_t>(x)];
-        double samples = tile.samples;
-        if (tile.open) {
-          samples = std::max({samples, min_samples, needed(tile, target)});
-          for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
-            for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u)
-              samples = std::max(
-                  samples,
-                  needed(tiles[static_cast<size_t>(v) * across + static_cast<size_t>(u)], 2 * target));
-          samples = std::min(samples, std::max(max_samples, tile.samples));
-        }
-        paths += samples * tile.pixels;
+        if (!tile.open) continue;
+        double samples = std::max({tile.samples, min_samples, samples_to(tile, target, k)});
+        for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
+          for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u)
+            samples = std::max(samples, beside[static_cast<size_t>(v) * across + static_cast<size_t>(u)]);
+        paths += std::min(samples, std::max(max_samples, tile.samples)) * tile.pixels;
       }
     return paths;
   };
-  return {total(0.6, 0.95), total(0.5, 1), total(0.44, 1.05)};
+  struct Law {
+    double weight, paths, spread;  // logarithm of the paths and its deviation
+  };
+  std::array<Law, k_laws> laws;
+  for (int i = 0; i < k_laws; ++i) {
+    const double k = k_least_k * std::pow(k_most_k / k_least_k, i / (k_laws - 1.0));
+    double sum = 0, count = 0;
+    for (const TileProgress& t : tiles)
+      if (t.open && t.error > 0 && t.earlier_error > 0 && t.earlier_samples > 0)
+        sum += std::log(t.error / expected_error(t, k)), ++count;
+    const double off = count > 0 ? sum / count / k_history_spread : 0;
+    const double prior = std::log(k / k_usual_k) / k_spread_of_k;
+    const double paths = std::log(open_paths(k));
+    laws[static_cast<size_t>(i)] = {std::exp(-0.5 * (square(off) + square(prior))), paths,
+                                    k_law_spread + k_growth_spread * (paths - std::log(now))};
+  }
+  double weights = 0;
+  for (const Law& law : laws) weights += law.weight;
+  // No fewer than there are, no more than the cap allows.
+  double most = 0;
+  for (const TileProgress& t : tiles)
+    if (t.open) most += std::max({max_samples, t.samples, min_samples}) * t.pixels;
+  const auto total = [&](double wanted) {
+    double low = std::log(now), high = std::max(low, std::log(most));
+    for (int i = 0; i < 50; ++i) {
+      const double middle = 0.5 * (low + high);
+      double p = 0;
+      for (const Law& law : laws) p += law.weight / weights * normal_cdf((middle - law.paths) / law.spread);
+      (p < wanted ? low : high) = middle;
+    }
+    return closed + std::exp(high);
+  };
+  return Band{total(k_band), total(0.5), total(1 - k_band)};
 }
 
 }  // namespace lucerna::stats

@@ -18,14 +18,24 @@ struct Band {
 };
 
 struct Entry {
-  double wall_s = 0;  ///< of rendering alone, since the image was started
-  /// Of these, seconds and rays that went into what paths look up, before the first sample.
+  /// The person's clock: wall time from the image's first work on, pauses left out. Showing pictures,
+  /// estimating errors and holding the picture against a reference are in it. Forecasts are in this time.
+  double wall_s = 0;
+  double render_s = 0;  ///< of that, spent tracing: what the same picture takes when nobody looks
+  /// Of wall_s and of the rays, what went into what paths look up, before the first sample.
   double prepared_s = 0;
   uint64_t prepared_rays = 0;
   double device_s = 0;  ///< sum of the stages, on the device and on the host
   uint64_t paths = 0, rays = 0;
-  double samples = 0;                          ///< a pixel, on average
-  std::array<double, k_layers> error{};        ///< estimated: rms over the sum's mean luminance
+  double samples = 0;  ///< a pixel, on average
+  /// Whether every pixel has samples in both halves of the film; otherwise errors are not known, and 0.
+  bool told = false;
+  /// Noise of the mean, estimated: rms of the pixels' standard errors over the sum's mean luminance.
+  std::array<double, k_layers> error{};
+  double degrees = 0;  ///< of freedom of error[0]^2 (film::ImageError)
+  /// Noise of the tiles, of the sum, each over its own pixels' luminance (film::TileError::relative): of the
+  /// median tile, and what a tenth of the tiles are over.
+  double tile_median = 0, tile_worst_tenth = 0;
   std::array<double, k_layers> component_s{};  ///< device time by component; [0] all
   std::optional<std::array<double, k_layers>>
       truth;                       ///< the same against a reference, its own noise taken off

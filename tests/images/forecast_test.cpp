@@ -1,9 +1,10 @@
 // links: session
-// After a tenth of an adaptive render, the forecast of its total rays is right within 25 %.
+// What is foretold of renders, against what they come to.
 #include <catch2/catch.hpp>
 #include <cstdio>
 
 #include "session/renderer.h"
+#include "stats/forecast.h"
 
 using namespace lucerna;
 
@@ -15,7 +16,8 @@ struct Case {
   const char* target;
 };
 
-/// Forecast over truth at the first line of the ledger after a tenth of the rays: low, middle, high.
+/// Forecast over truth at the first line of the ledger after a tenth of the rays that tells one: low, middle,
+/// high.
 stats::Band forecast(const Case& c, const char* seed) {
   session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
   r.set_size(c.width, c.height);
@@ -31,7 +33,7 @@ stats::Band forecast(const Case& c, const char* seed) {
   const double total = double(entries.back().rays);
   CHECK(entries.back().total_rays->middle == Approx(total).epsilon(1e-9));  // what is done needs no forecast
   for (const stats::Entry& e : entries) {
-    if (double(e.rays) < 0.1 * total) continue;
+    if (double(e.rays) < 0.1 * total || !e.total_rays) continue;
     const stats::Band& b = *e.total_rays;
     std::printf(
         "%-8s %ux%u to %s, seed %s: %.2f M rays in all; after %.0f %% (%.0f samples a pixel) the forecast "
@@ -45,15 +47,54 @@ stats::Band forecast(const Case& c, const char* seed) {
 
 }  // namespace
 
-TEST_CASE("a tenth of a render foretells the whole within 25 %") {
+TEST_CASE("a tenth of an adaptive render foretells the whole") {
   // At the default minimum and maximum of samples; the targets ask for two to ten times the minimum.
-  for (const Case& c : {Case{"cornell", 96, 96, "0.08"}, Case{"cornell", 64, 64, "0.05"},
-                        Case{"studio", 160, 90, "0.03"}, Case{"atrium", 96, 54, "0.15"}}) {
+  for (const Case& c :
+       {Case{"cornell", 64, 64, "0.07"}, Case{"studio", 96, 54, "0.03"}, Case{"atrium", 64, 36, "0.15"}}) {
     CAPTURE(c.scene, c.target);
     const stats::Band ratio = forecast(c, "3");
-    CHECK(ratio.middle > 0.75);
-    CHECK(ratio.middle < 1.25);
-    CHECK(ratio.low < ratio.middle);
-    CHECK(ratio.high > ratio.middle);
+    CHECK(ratio.middle > 0.6);
+    CHECK(ratio.middle < 1.6);
+    CHECK(ratio.low < 1);
+    CHECK(ratio.high > 1);
+    CHECK(ratio.high < 8 * ratio.low);
   }
+}
+
+TEST_CASE("in uniform sampling the band told at every line holds the truth in eight cases of ten") {
+  // Rooms, metal, a studio's sky: the error falls by another law in each. A ledger's line is told by those
+  // before it, in samples, which is time on a machine that has nothing else to do.
+  size_t told = 0, held = 0;
+  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  r.set_size(48, 32);
+  for (const char* scene : {"cornell", "studio", "hall", "atrium"}) {
+    r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + scene + "/" + scene + ".gltf");
+    r.settings().set("samples", "256");
+    r.settings().set("seed", "5");
+    r.apply_settings();
+    while (r.step()) {
+    }
+    r.finish_ledger();
+    stats::Ledger whole, so_far;
+    for (stats::Entry e : r.ledger().entries()) e.wall_s = e.samples, e.prepared_s = 0, whole.add(e);
+    const double target = whole.entries().back().error[0] * 1.02;
+    const auto truth = stats::seconds_to(whole, target);
+    REQUIRE(truth);
+    size_t of_scene = 0, within = 0;
+    for (const stats::Entry& e : whole.entries()) {
+      so_far.add(e);
+      if (e.error[0] <= target) break;
+      const auto band = stats::seconds_to(so_far, target);
+      CHECK(band.has_value() == (e.samples >= stats::Outlook::k_least_samples));
+      if (!band) continue;
+      ++of_scene, within += band->low <= truth->middle && truth->middle <= band->high;
+      if (e.samples < 20 || (e.samples > 60 && e.samples < 75))
+        std::printf("%-8s with %.0f samples a pixel: %.2f of the truth, %.2f to %.2f\n", scene, e.samples,
+                    band->middle / truth->middle, band->low / truth->middle, band->high / truth->middle);
+    }
+    std::printf("%-8s %zu of %zu held the truth\n", scene, within, of_scene);
+    CHECK(of_scene >= 5);
+    told += of_scene, held += within;
+  }
+  CHECK(10 * held >= 8 * told);
 }

@@ -62,8 +62,10 @@ TEST_CASE("a new target lets an adaptive image go on; in uniform sampling it onl
   set("sampling.target_error", "0.2");
   set("sampling.tile", "8");
   CHECK(r.restarts() == begun);
+  const uint64_t uniform_paths = r.stats().paths;
   set("sampling.mode", "adaptive");
-  CHECK(r.restarts() == begun + 1);
+  CHECK(r.restarts() == begun);
+  CHECK(r.stats().paths == uniform_paths);
   set("sampling.min_samples", "16");
   while (r.step()) {
   }
@@ -81,6 +83,61 @@ TEST_CASE("a new target lets an adaptive image go on; in uniform sampling it onl
     CHECK((tile.error <= 0.1f || tile.samples == 1024));
   set("sampling.tile", "16");  // other tiles are another image
   CHECK(r.restarts() == begun + 1);
+  CHECK(r.device().validation_messages() == 0);
+}
+
+TEST_CASE("another mode of sampling keeps the samples there are, and each is the one that it always was") {
+  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  r.settings().set("path.batch", "1024");
+  r.set_size(40, 24);
+  r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
+  const auto set = [&](const char* key, const char* value) {
+    r.settings().set(key, value);
+    r.apply_settings();
+  };
+  set("samples", "32");
+  while (r.step()) {
+  }
+  const film::Image straight = r.image();
+  r.restart();
+  // In the middle of a pass: some blocks have more samples than others.
+  set("sampling.min_samples", "16");
+  set("sampling.max_samples", "32");
+  set("sampling.target_error", "0.0001");
+  const uint64_t begun = r.restarts();
+  while (r.samples() < 4) REQUIRE(r.step());
+  REQUIRE(r.step());
+  for (const char* mode : {"adaptive", "uniform", "adaptive"}) {
+    const uint64_t paths = r.stats().paths;
+    const uint32_t samples = r.samples();
+    set("sampling.mode", mode);
+    CHECK(r.restarts() == begun);
+    CHECK(r.stats().paths == paths);
+    CHECK(r.samples() == samples);
+    for (int i = 0; i < 3; ++i) REQUIRE(r.step());
+  }
+  while (r.step()) {
+  }
+  CHECK(r.samples() == 32);
+  const film::Image switched = r.image();
+  CHECK(switched.samples == straight.samples);
+  // The same samples, added in other portions: equal but for rounding.
+  double most = 0, light = 0;
+  for (int c = 0; c < film::k_components; ++c)
+    for (size_t i = 0; i < straight.samples.size(); ++i) {
+      const vec3 d = switched.components[c][i] - straight.components[c][i];
+      most = std::max({most, std::abs(double(d.x)), std::abs(double(d.y)), std::abs(double(d.z))});
+      light = std::max(light, double(straight.components[c][i].y));
+    }
+  CHECK(most < 1e-4 * light);
+  // Back to uniform sampling with more: all pixels come to as many.
+  set("samples", "40");
+  set("sampling.mode", "uniform");
+  while (r.step()) {
+  }
+  const film::Image more = r.image();
+  for (const uint32_t n : more.samples) CHECK(n == 40);
+  CHECK(r.restarts() == begun);
   CHECK(r.device().validation_messages() == 0);
 }
 

@@ -207,3 +207,30 @@ TEST_CASE("heavy tails: a firefly marks its tile and its calm neighbours, a lamp
   CHECK(marks(tiles) == "......###..###..###......");
   film::mark_heavy_tails({}, 0, 0.02);
 }
+
+TEST_CASE("the spread of the tiles: a bright window does not hide grainy walls") {
+  CHECK(film::tile_spread({}).worst == 0);
+  std::vector<film::TileError> tiles(20);
+  for (size_t i = 0; i < tiles.size(); ++i) tiles[(i * 7) % 20].relative = 0.01 * double(i + 1);
+  tiles[3].heavy_tailed = true;
+  const film::TileSpread spread = film::tile_spread(tiles);
+  CHECK(spread.median == Approx(0.11));
+  CHECK(spread.worst_tenth == Approx(0.19));
+  CHECK(spread.worst == Approx(0.2));
+  CHECK(spread.heavy_tailed == 1);
+  // A window of 100 that is calm beside walls of 1 with a noise of 30 %.
+  const auto block = [](float luminance, float v, float relative) {
+    BlockError b{};
+    b.pixels = 64, b.luminance[0] = 64 * luminance, b.variance[0] = 64 * v, b.fourth = 64 * v * v;
+    for (int q = 0; q < 4; ++q) b.relative[q] = 16 * relative, b.quadrant_pixels[q] = 16;
+    return b;
+  };
+  std::vector<BlockError> blocks(10, block(1, 0.09f, 0.3f));
+  blocks.resize(20, block(100, 0, 0));
+  const film::ImageError image = film::image_error(blocks);
+  CHECK(image.relative(0) < 0.005);
+  CHECK(image.degrees == Approx(3 * 640));
+  std::vector<film::TileError> walls;
+  for (const BlockError& b : blocks) walls.push_back(film::tile_error({&b, 1}));
+  CHECK(film::tile_spread(walls).worst_tenth == Approx(0.3));
+}

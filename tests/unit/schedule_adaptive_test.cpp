@@ -226,3 +226,73 @@ TEST_CASE("another target in the middle of a round") {
     }
   }
 }
+
+TEST_CASE("uniform and adaptive take over from one another, at any time: no sample is lost or given twice") {
+  constexpr uint32_t k_across = 9, k_down = 7, k_slots = 64 * 5;
+  const auto sigma = [](uint32_t t) { return 0.3 + 0.05 * t; };
+  const auto uniform = [&](UniformSchedule& u, std::map<uint32_t, uint32_t>& samples, int items) {
+    while (!u.done() && items-- > 0) {
+      const WorkItem item = u.next();
+      REQUIRE_FALSE(item.blocks.empty());
+      CHECK(item.slots() <= std::max(k_slots, 64 * item.sample_count));
+      for (const WorkBlock& b : item.blocks) {
+        CHECK(b.first_sample == samples[b.index]);
+        samples[b.index] += item.sample_count;
+      }
+    }
+  };
+  const auto counts_agree = [](const std::vector<uint32_t>& counts,
+                               const std::map<uint32_t, uint32_t>& samples) {
+    for (uint32_t b = 0; b < counts.size(); ++b)
+      if (counts[b] != (samples.contains(b) ? samples.at(b) : 0)) return false;
+    return true;
+  };
+  const AdaptiveOptions options{
+      .tile = 16, .target_error = 0.05f, .min_samples = 16, .max_samples = 200, .slots = k_slots};
+  // After any number of items, be it none, in the middle of a pass, or all.
+  for (const int items : {0, 1, 5, 13, 14, 40, 47, 1000}) {
+    CAPTURE(items);
+    std::map<uint32_t, uint32_t> samples;
+    UniformSchedule first(k_across * k_down, 64, k_slots);
+    uniform(first, samples, items);
+    CHECK(counts_agree(first.counts(), samples));
+    std::vector<float> errors;
+    for (uint32_t t = 0; t < 5 * 4; ++t)
+      errors.push_back(float(sigma(t) / std::sqrt(std::max(1u, first.complete()))));
+    Player p{AdaptiveSchedule(k_across, k_down, options, first.counts(), errors), samples, {}};
+    CHECK(p.schedule.least_samples() == first.complete());
+    // An item that is not carried out is given again.
+    const WorkItem item = p.schedule.next();
+    p.schedule.give_back();
+    const WorkItem again = p.schedule.next();
+    p.schedule.give_back();
+    REQUIRE(item.blocks.size() == again.blocks.size());
+    for (size_t i = 0; i < item.blocks.size(); ++i) CHECK(item.blocks[i].index == again.blocks[i].index);
+    p.play(sigma, k_slots);
+    CHECK(counts_agree(p.schedule.counts(), p.samples));
+    CHECK(p.schedule.least_samples() >= 16);
+    for (uint32_t t = 0; t < p.schedule.tiles().size(); ++t) {
+      const Tile& tile = p.schedule.tiles()[t];
+      CHECK((tile.error <= 0.05f || tile.samples >= 200));
+      for (const uint32_t b : p.schedule.blocks_of(t)) CHECK(p.samples.at(b) == tile.samples);
+      // None is given without need.
+      if (items == 1000 && sigma(t) / 8 < 0.025) CHECK(tile.samples == 64);
+    }
+    // ... and back: the rest catches up.
+    UniformSchedule last(p.schedule.counts(), 150, k_slots);
+    CHECK(last.complete() == p.schedule.least_samples());
+    const std::map<uint32_t, uint32_t> before = p.samples;
+    uniform(last, p.samples, 100000);
+    CHECK(last.done());
+    for (const auto& [block, n] : p.samples) CHECK(n == std::max(150u, before.at(block)));
+  }
+  // Blocks that all have as many go on as if nothing had been.
+  UniformSchedule plain(12, 40, k_slots), resumed(std::vector<uint32_t>(12, 8), 40, k_slots);
+  while (plain.complete() < 8) plain.next();
+  while (!plain.done()) {
+    const WorkItem a = plain.next(), b = resumed.next();
+    CHECK(a.sample_count == b.sample_count);
+    REQUIRE(a.blocks.size() == b.blocks.size());
+  }
+  CHECK(resumed.done());
+}

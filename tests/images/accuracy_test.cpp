@@ -1,0 +1,157 @@
+// links: session
+// What a render tells of itself: whose time it counts, that nothing is said before there are samples, and
+// what a sample takes.
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <thread>
+
+#include "images/cache_support.h"
+#include "session/accuracy.h"
+#include "session/session.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+using test::Settings;
+
+namespace {
+
+void sleep_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
+
+double total_ms(const transport::TransportStats& stats) {
+  double ms = 0;
+  for (const transport::StageSum& s : stats.stages) ms += s.ms;
+  return ms;
+}
+
+struct Bed : test::CacheRenderer {
+  Bed() : CacheRenderer(test::block_room(true), 24) {
+    set({{"components.secondary", "cache"},
+         {"components.tertiary", "cache"},
+         {"cache.rays", "64"},
+         {"cache.max_rays", "256"},
+         {"cache.error", "0.6"},
+         {"samples", "16"},
+         {"path.batch", "8192"}});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("while a cache is built nothing is told of accuracy, however often its progress is shown") {
+  Bed bed;
+  session::AccuracyKeeper keeper;
+  const double pixels = 24 * 24;
+  int shown = 0;
+  while (!bed.r.cache()->ready()) {
+    REQUIRE(bed.r.step());
+    // The coarse picture, as a person sees it while records are made: each is a sixteenth of a sample.
+    for (int i = 0; i < 8; ++i, ++shown) bed.r.render_coarse();
+    keeper.follow(bed.r, 1);
+    const auto told = keeper.publish(bed.r, true);
+    CHECK(told->ledger.entries().empty());
+    REQUIRE(told->paths == 0);
+    CHECK_FALSE(session::seconds_to(*told, 10).has_value());
+  }
+  REQUIRE(shown > 64);
+  CHECK(bed.r.stats().paths == 0);
+  // In the middle of the first pass over the picture there is no error either, and no crossing.
+  bed.set({{"path.batch", "1024"}});
+  while (bed.r.step()) {
+    keeper.follow(bed.r, 1);
+    const auto told = keeper.publish(bed.r, true);
+    if (bed.r.samples() < 2) {
+      CHECK(told->ledger.entries().empty());
+      bed.r.finish_ledger();
+      CHECK_FALSE(bed.r.ledger().entries().back().told);
+      CHECK_FALSE(stats::seconds_to(bed.r.ledger(), 10).has_value());
+    }
+  }
+  bed.r.finish_ledger();
+  for (const stats::Entry& e : bed.r.ledger().entries()) {
+    if (!e.told) continue;
+    CHECK(e.samples >= 2);
+    CHECK(e.error[0] > 0);
+  }
+  CHECK(bed.r.ledger().entries().back().samples == 16);
+  CHECK(double(bed.r.stats().paths) == 16 * pixels);
+}
+
+TEST_CASE("a sample's time leaves out what was prepared before the first") {
+  Bed bed;
+  while (!bed.r.cache()->ready()) bed.r.step();
+  const double building = total_ms(bed.r.stats());
+  REQUIRE(building > 0);
+  CHECK(bed.r.component_ms_a_sample() == std::array<double, shared::k_component_count>{});
+  session::AccuracyKeeper keeper;
+  keeper.follow(bed.r, 1);
+  while (bed.r.step()) keeper.follow(bed.r, 1);
+  double each = 0, passes = 0;
+  for (const double ms : bed.r.component_ms_a_sample()) each += ms;
+  CHECK(16 * each == Approx(total_ms(bed.r.stats()) - building).epsilon(1e-6));
+  // So do the passes that are drawn.
+  for (const session::PassStatus& pass : keeper.publish(bed.r, true)->passes)
+    for (const float ms : pass.stage_ms) passes += double{ms};
+  CHECK(passes == Approx(16 * each).epsilon(1e-4));
+}
+
+TEST_CASE("the clock is the person's: what happens between steps counts, waiting does not") {
+  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  r.set_size(16, 16);
+  r.set_scene(std::make_shared<scene::Scene>(test::block_room(true)));
+  test::set(r, {{"samples", "8"}});
+  sleep_ms(20);
+  CHECK(r.seconds() == 0);  // nobody has asked for a picture yet
+  int steps = 0;
+  while (r.samples() < 4) {
+    REQUIRE(r.step());
+    sleep_ms(20);  // somebody looks
+    ++steps;
+  }
+  const double looked = 0.02 * steps;
+  CHECK(r.seconds() >= r.render_seconds() + looked);
+  // The ledger's line was written before the last look.
+  const stats::Entry& line = r.ledger().entries().back();
+  CHECK(line.wall_s >= line.render_s + looked - 0.02);
+  CHECK(line.wall_s <= r.seconds());
+  r.rest();
+  const double paused = r.seconds();
+  sleep_ms(20);
+  CHECK(r.seconds() == paused);
+  while (r.step()) {
+  }
+  r.finish_ledger();
+  // Finished, it stands still.
+  const double all = r.seconds();
+  CHECK(all > paused);
+  sleep_ms(20);
+  CHECK(r.seconds() == all);
+  CHECK(r.ledger().entries().back().wall_s == all);
+  CHECK(r.ledger().entries().back().render_s == r.render_seconds());
+  r.restart();
+  CHECK(r.seconds() == 0);
+  CHECK(r.device().validation_messages() == 0);
+}
+
+TEST_CASE("a session tells one clock everywhere, and it stands still while rendering is paused") {
+  session::Session s({.device = "cpu", .validation = false, .shaders = {}});
+  const auto wait = [&](const auto& until) {
+    for (int i = 0; i < 6000; ++i, sleep_ms(5))
+      if (const auto at = s.snapshot(); at && until(*at)) return at;
+    FAIL("the session does not come to it");
+    return s.snapshot();
+  };
+  s.set_size(16, 16);
+  s.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
+  s.set("samples", "1048576");
+  wait([](const session::Snapshot& at) { return at.samples >= 8; });
+  s.set_paused(true);
+  const auto before = wait([&](const session::Snapshot& at) { return at.paused && at.commands >= 4; });
+  sleep_ms(50);
+  s.set("overlay.tiles", "true");  // it is shown anew
+  const auto after = wait([&](const session::Snapshot& at) { return at.commands >= 5; });
+  CHECK(after->seconds == before->seconds);
+  CHECK(after->seconds > 0);
+  CHECK(after->accuracy->ledger.entries().back().wall_s <= after->seconds);
+  s.set_paused(false);
+  wait([&](const session::Snapshot& at) { return !at.paused && at.seconds > after->seconds; });
+}
