@@ -99,7 +99,7 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
 
 TEST_CASE("the format is what its header says, byte for byte") {
   const std::string bytes = encode(some_cache(2));
-  const std::string head("LUCCACHE\2\0\0\0\2\0\0\0", 16);
+  const std::string head("LUCCACHE\2\0\0\0\3\0\0\0", 16);
   CHECK(bytes.substr(0, 16) == head);
   const auto number = [&](size_t at, int size) {
     uint64_t value = 0;
