@@ -145,7 +145,10 @@ void file_dialog(Ui& ui) {
     label(asked.title, colour::text, theme().fonts.strong);
     std::error_code ignored;
     if (!asked.reads && fs::is_regular_file(expanded(dialog.path), ignored))
-      label("A file of that name exists and will be replaced.", colour::warning, theme().fonts.small);
+      label(dialog.purpose == Dialog::Purpose::script
+                ? "A file of that name exists; it is replaced if it is a saved session."
+                : "A file of that name exists and will be replaced.",
+            colour::warning, theme().fonts.small);
     else
       label(asked.note, colour::text_dim, theme().fonts.small);
     ImGui::SetNextItemWidth(-1);
