@@ -275,11 +275,11 @@ TEST_CASE("a surface looks the same whatever other kinds of surface there are") 
       ever.insert(needs.back().begin(), needs.back().end());
     }
     const film::Image whole =
-        picture(shafts(all, std::vector<bool>(all.size(), true), lamps), 16, k_across * k_pixels);
+        picture(shafts(all, std::vector<bool>(all.size(), true), lamps), 4, k_across * k_pixels);
     const auto chosen = selections(needs);
     INFO(chosen.size() << " scenes");
     for (const std::vector<bool>& shown : chosen) {
-      const film::Image some = picture(shafts(all, shown, lamps), 16, k_across * k_pixels);
+      const film::Image some = picture(shafts(all, shown, lamps), 4, k_across * k_pixels);
       for (size_t i = 0; i < all.size(); ++i) {
         if (!shown[i]) continue;
         double sum = 0, difference = 0, squares = 0;
@@ -297,4 +297,56 @@ TEST_CASE("a surface looks the same whatever other kinds of surface there are") 
       }
     }
   }
+}
+
+TEST_CASE("lights in a closed room light it the same whatever lights there are outside") {
+  const auto room = [](bool point, int outside) {
+    scene::Scene s = test::PanelRoom(vec3(0), !point, 0.1f).s;
+    add_pictures(s);
+    if (point) s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {-0.5f, 0.7f, 0.2f}});
+    if (outside == 1) {
+      s.materials.push_back(test::diffuse(vec3(0.5f), vec3(3)));
+      s.materials.back().emission_texture.texture = k_colors;
+      test::add_quad(s, {-1, 3, -1}, {2, 0, 0}, {0, 0, 2}, 2);
+    }
+    if (outside == 2)
+      s.lights.push_back({.name = "spot",
+                          .kind = scene::LightKind::spot,
+                          .intensity = vec3(5),
+                          .position = {0, 3, 0},
+                          .direction = {0, -1, 0}});
+    if (outside == 3)
+      s.lights.push_back({.name = "sun",
+                          .kind = scene::LightKind::directional,
+                          .intensity = vec3(3),
+                          .direction = {0, -1, 0}});
+    if (outside >= 4) s.environment.radiance = vec3(1);
+    if (outside == 5) {
+      s.environment.image = scene::Id(s.images.size());
+      s.images.push_back(s.images[3]);
+    }
+    return s;
+  };
+  constexpr uint32_t k_size = 24;
+  for (const bool point : {false, true}) {
+    const film::Image alone = picture(room(point, 0), 64, k_size);
+    for (int outside = 1; outside <= 5; ++outside) {
+      const film::Image both = picture(room(point, outside), 64, k_size);
+      // Nine blocks, ten pairs, two components: a false alarm in a thousand.
+      for (const int c : {0, 1})
+        for (uint32_t b = 0; b < 9; ++b) {
+          const test::Mean x = test::block_mean(alone, c, b % 3, b / 3),
+                           y = test::block_mean(both, c, b % 3, b / 3);
+          INFO((point ? "lamp" : "panel")
+               << " inside, light " << outside << " outside, component " << c << ", block " << b << ": "
+               << y.value << " +- " << y.noise << " of " << x.value << " +- " << x.noise);
+          CHECK(x.value > 0);
+          CHECK(std::abs(x.value - y.value) < 5 * std::hypot(x.noise, y.noise) + 1e-4 * x.value);
+        }
+    }
+  }
+}
+
+TEST_CASE("the validation layers had nothing to say") {
+  CHECK(renderer().device().validation_messages() == 0);
 }
