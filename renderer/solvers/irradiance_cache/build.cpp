@@ -63,7 +63,7 @@ bool Cache::Impl::probe(const Work& w) {
   schedule::WorkItem item = picture.next();
   // Each pass looks along paths of its own.
   for (WorkBlock& b : item.blocks) b.first_sample += looked_along;
-  tell(recursive && status.pass < k_deep_passes ? k_probe_beyond : k_probe_lookups);
+  tell(recursive && asks_beyond && status.pass < k_deep_passes ? k_probe_beyond : k_probe_lookups);
   StageTimer timer(w.wavefront);
   w.wavefront.stream().fill(candidates, 0);
   const bool complete = w.wavefront.probe(item, w.cancel);

@@ -73,6 +73,7 @@ struct Cache::Impl {
   Worth reads;
   std::vector<float> worth;              // of the records that are evaluated, by it
   std::optional<Neighbours> neighbours;  // only where radii are bounded
+  bool asks_beyond = true;               // the first passes, where the cache reads itself
   bool looked = false;                   // at the picture, in this pass: the screen-space stage is done
   uint64_t own_bytes = 0;                // of device memory, without what count_bytes() adds
   // Kept for who watches until the next pass begins:
@@ -113,8 +114,9 @@ struct Cache::Impl {
   void count_bytes();
   void look_from(const CacheView& view);
   /// Building goes on; passes are counted, and the picture looked along, from the beginning.
-  void count_anew() {
+  void count_anew(bool beyond) {
     status.pass = looked_along = 0;
+    asks_beyond = beyond;
     status.stop = stopped = StopReason::building;
   }
   /// The picture is another: what has been seen of it is forgotten.

@@ -177,6 +177,7 @@ void Cache::clear() {
   c.status = {.bytes = c.status.bytes, .published = c.status.published};
   c.stage = Stage::probe;
   c.probing = false;
+  c.asks_beyond = true;
   c.looked_along = 0;
   c.evaluated = c.standing = c.until = 0;
   c.ends.clear();
@@ -195,7 +196,7 @@ void Cache::Impl::drop_pass() {
 
 void Cache::extend() {
   Impl& c = *impl_;
-  c.count_anew();
+  c.count_anew(true);
   c.look_elsewhere();
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped, unless
   // somebody is looking at it, maybe from all sides.

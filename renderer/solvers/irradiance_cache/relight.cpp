@@ -57,8 +57,10 @@ void Cache::Impl::relight_pass() {
   status.relighting = 0;
   if (stopped == StopReason::building) return next_pass();
   if (!by_light()) return finish(stopped);
-  // Ellipses are by the light: where they no longer reach is asked for as if it had come into view.
-  count_anew();
+  // Ellipses are by the light: where they no longer reach is asked for as if it had come into view. Not
+  // beyond the picture's lookups: the gaps that building has left there cost time, not accuracy, and would be
+  // filled a little more with every change of the light.
+  count_anew(false);
   next_pass();
 }
 
