@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -72,9 +73,12 @@ TEST_CASE("how much of the picture reads a record: the square of its share, summ
   const test::PanelRoom room;
   constexpr uint32_t k_size = 64;
   test::CacheRenderer shown(room.s, k_size);
-  shown.set(test::k_cached);
-  // One level, so that radii stay as they were when it was measured; circles, as below.
-  shown.set({{"cache.max_rays", "256"}, {"cache.metric", "split-sphere"}, {"samples", "1"}});
+  // Records do not read each other. One level, so that radii stay as they were when it was measured; circles,
+  // as below.
+  shown.set({{"components.secondary", "cache"},
+             {"cache.max_rays", "256"},
+             {"cache.metric", "split-sphere"},
+             {"samples", "1"}});
   shown.finish();
   const std::vector<irradiance_cache::Record> records = shown.r.cache()->records().read();
   const std::vector<float>& worth = shown.r.cache()->worth();
@@ -115,4 +119,80 @@ TEST_CASE("how much of the picture reads a record: the square of its share, summ
   CHECK(all > 0.05);
   CHECK(measured == Approx(all).epsilon(0.03));
   CHECK(off < 0.15 * all);
+}
+
+TEST_CASE("what the picture reads through another record counts by what it brings there") {
+  const test::PanelRoom room;
+  constexpr uint32_t k_size = 64;
+  test::CacheRenderer shown(room.s, k_size);
+  shown.set(test::k_cached);
+  shown.set({{"cache.max_rays", "256"}, {"cache.metric", "split-sphere"}, {"samples", "1"}});
+  shown.finish();
+  const std::vector<irradiance_cache::Record> records = shown.r.cache()->records().read();
+  const std::vector<float>& worth = shown.r.cache()->worth();
+  REQUIRE(worth.size() == records.size());
+
+  // Paths as the camera's: to the floor, then by a cosine's chance to a wall or the ceiling of a room of
+  // 2 x 1 x 2 m; what meets the black panel brings nothing.
+  std::mt19937 random(5);
+  const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
+  struct Served {
+    std::vector<std::pair<size_t, float>> by;  // shares
+    float light = 0;
+  };
+  const auto serve = [&](const vec3& x, const vec3& n) {
+    Served s;
+    float all = 0;
+    for (size_t i = 0; i < records.size(); ++i) {
+      const irradiance_cache::Place& p = records[i].place;
+      if (dot(p.normal, n) < 0.9f || std::abs(dot(p.position - x, n)) > 0.005f) continue;
+      const float weight = 1 - distance(p.position, x) / records[i].radius;
+      if (weight <= 0) continue;
+      float light = 0;
+      for (const irradiance_cache::Irradiance& part : records[i].parts) light += luminance(part.value);
+      s.by.push_back({i, weight}), s.light += weight * light, all += weight;
+    }
+    for (auto& [i, share] : s.by) share /= all;
+    s.light /= std::max(all, 1e-30f);
+    return s;
+  };
+  const float half = 0.98f * std::tan(0.7f);
+  constexpr int k_paths = 8;  // a pixel and half
+  std::vector<double> expected(records.size());
+  for (uint32_t y = 0; y < k_size; ++y)
+    for (uint32_t x = 0; x < k_size; ++x) {
+      // The square of a mean, of two that are independent.
+      std::map<size_t, std::array<double, 2>> share;
+      for (int k = 0; k < 2 * k_paths; ++k) {
+        const vec3 from(half * (2 * (float(x) + unit()) / k_size - 1), 0,
+                        half * (2 * (float(y) + unit()) / k_size - 1));
+        const float r = std::sqrt(unit()), phi = 2 * k_pi * unit();
+        const vec3 d(r * std::cos(phi), std::sqrt(std::max(1e-9f, 1 - r * r)), r * std::sin(phi));
+        const float up = 1 / d.y, along = (std::copysign(1.0f, d.x) - from.x) / d.x,
+                    across = (std::copysign(1.0f, d.z) - from.z) / d.z;
+        const float t = std::min({up, along, across});
+        const vec3 panel = from + 0.99f * up * d;
+        if (panel.x > 0.3f && panel.x < 0.9f && std::abs(panel.z) < 0.5f && 0.99f * up < t) continue;
+        const vec3 n = t == up      ? vec3(0, -1, 0)
+                       : t == along ? vec3(-std::copysign(1.0f, d.x), 0, 0)
+                                    : vec3(0, 0, -std::copysign(1.0f, d.z));
+        const Served first = serve(from, {0, 1, 0}), next = serve(from + t * d, n);
+        if (first.light <= 0) continue;
+        const double brings = 0.5 * double(next.light / first.light) / k_paths;
+        for (const auto& [i, part] : next.by) share[i][size_t(k % 2)] += double(part) * brings;
+      }
+      for (const auto& [i, s] : share) expected[i] += s[0] * s[1] / (k_size * k_size);
+    }
+  // On the floor records are read by the picture itself, too.
+  double all = 0, measured = 0;
+  size_t beyond = 0;
+  for (size_t i = 0; i < records.size(); ++i) {
+    if (records[i].place.normal.y > 0.9f) continue;
+    all += expected[i], measured += double(worth[i]), ++beyond;
+  }
+  INFO(beyond << " records, " << measured << " where " << all << " is expected");
+  CHECK(beyond > 100);
+  CHECK(all > 0.001);
+  // A pair of paths a pixel: of each, some pairs alone meet one record.
+  CHECK(measured == Approx(all).epsilon(0.15));
 }
