@@ -438,4 +438,16 @@ LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recu
   return own;
 }
 
+LookupRoutes gather_routes(const Automaton& automaton, uint32_t enabled, const LookupRoutes& own,
+                           bool direct) {
+  constexpr uint32_t k_tertiary = 1u << 2;
+  if (own.component.empty()) return {};
+  LookupRoutes routes = lookup_routes(automaton, enabled, k_tertiary, direct);
+  // Parts that records do not gather there are not there.
+  for (auto& component : routes.component)
+    for (uint32_t p = 0; p < k_part_count; ++p)
+      if ((own.parts >> p & 1u) == 0) component[p] = k_no_component;
+  return routes;
+}
+
 }  // namespace lucerna::paths

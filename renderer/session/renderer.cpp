@@ -122,8 +122,10 @@ irradiance_cache::Spoilt Renderer::build_wavefront(const upload::DeviceScene& de
   if (routes.parts != 0) {
     slots = std::max(slots, irradiance_cache::Cache::k_least_slots);
     record_routes = wanted_record_routes(device_scene.effects());
-    cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, record_routes,
-                                                      cache_options());
+    const paths::LookupRoutes gather = paths::gather_routes(automaton_, enabled_components(), record_routes,
+                                                            device_scene.effects().sky_apart);
+    cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, gather,
+                                                      record_routes, cache_options());
     for (const auto& [name, value] : irradiance_cache::Cache::defines(record_routes, cache_options().metric))
       defines[name] = value;
     bind = [c = cache.get()](gpu::Resources& r) { c->bind(r); };
@@ -152,7 +154,7 @@ void Renderer::reload_shaders() {
 uint32_t Renderer::enabled_components() const { return plan::make_plan(settings_).enabled(); }
 
 shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
-                                   uint32_t fallback) const {
+                                   uint32_t fallback, const paths::LookupRoutes& gather) const {
   return transport::make_frame(flat_, camera_, automaton_,
                                {.width = width,
                                 .height = height,
@@ -161,11 +163,12 @@ shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, const paths:
                                 .roulette_depth = uint32_t(settings_.integer("path.roulette_depth")),
                                 .enabled = routes.traced,
                                 .routes = routes,
-                                .fallback = fallback});
+                                .fallback = fallback,
+                                .gather = gather});
 }
 
 shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
-  return make_frame(width, height, routes_, cache_ ? enabled_components() : 0);
+  return make_frame(width, height, routes_, cache_ ? enabled_components() : 0, gather_routes());
 }
 
 irradiance_cache::CacheOptions Renderer::cache_options() const {
@@ -196,12 +199,16 @@ irradiance_cache::CacheView Renderer::cache_view() const {
   view.paths_frame = make_frame(width_, height_);
   view.paths_enabled = enabled_components();
   // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
-  view.records_frame = make_frame(width_, height_, record_routes_, record_routes_.parts);
+  view.records_frame = make_frame(width_, height_, record_routes_, record_routes_.parts, record_routes_);
   view.records_enabled = record_routes_.parts;
   view.width = width_, view.height = height_;
   view.scene_radius = flat_.scene_radius;
   view.dark = !flat_.effects.lights;
   return view;
+}
+
+paths::LookupRoutes Renderer::gather_routes() const {
+  return paths::gather_routes(automaton_, enabled_components(), record_routes_, flat_.effects.sky_apart);
 }
 
 paths::LookupRoutes Renderer::wanted_routes(const upload::Effects& effects) const {

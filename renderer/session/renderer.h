@@ -185,8 +185,9 @@ class Renderer {
   /// `spoilt`: of the records that paths look up.
   void restart(irradiance_cache::Spoilt spoilt);
   shared::Frame make_frame(uint32_t width, uint32_t height) const;  ///< of the picture's paths
+  paths::LookupRoutes gather_routes() const;  ///< of the picture's paths that gather where records crowd
   shared::Frame make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
-                           uint32_t fallback) const;
+                           uint32_t fallback, const paths::LookupRoutes& gather) const;
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
   void start_schedule();

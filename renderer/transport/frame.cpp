@@ -34,15 +34,17 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.scene_radius = flat.scene_radius;
   const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);
   const std::vector<uint32_t> table = paths::pack(automaton, options.enabled, options.routes, met);
-  assert(table.size() <= shared::k_fallback_state);
+  assert(table.size() <= shared::k_gather_state);
   f.automaton_states = uint32_t(table.size());
   std::copy(table.begin(), table.end(), f.automaton);
   if (options.fallback != 0) {
-    const std::vector<uint32_t> all = paths::pack(automaton, options.fallback, {}, met);
-    for (size_t i = 0; i < all.size(); ++i)
-      f.automaton[shared::k_fallback_state + i] =
-          all[i] +
-          (shared::k_fallback_state | shared::k_fallback_state << 8 | shared::k_fallback_state << 16);
+    const auto put = [&](uint32_t at, uint32_t enabled, const paths::LookupRoutes& routes) {
+      const std::vector<uint32_t> all = paths::pack(automaton, enabled, routes, met);
+      for (size_t i = 0; i < all.size(); ++i) f.automaton[at + i] = all[i] + (at | at << 8 | at << 16);
+    };
+    const bool looks = !options.gather.component.empty();
+    put(shared::k_gather_state, looks ? options.gather.traced : options.fallback, options.gather);
+    put(shared::k_fallback_state, options.fallback, {});
   }
   return f;
 }

@@ -16,6 +16,9 @@ struct FrameOptions {
   paths::LookupRoutes routes;   ///< what is looked up, beside those
   /// Components of paths that a lookup has left alone (shared::k_fallback_state); 0: there are no such paths.
   uint32_t fallback = 0;
+  /// What of these is looked up later, by paths that have passed a lookup on purpose
+  /// (shared::k_gather_state).
+  paths::LookupRoutes gather;
 };
 
 shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& camera,

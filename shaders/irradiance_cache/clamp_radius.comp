@@ -13,5 +13,8 @@ void main() {
   bounds[index] = k_no_bound;
   int at = int(index * k_record_texels);
   vec4 place = texelFetch(record_texels, at), shape = texelFetch(record_texels, at + 3);
-  if (bound < shape.w) shrink_record(index, place, shape, bound / shape.w);
+  if (bound >= shape.w) return;
+  shrink_record(index, place, shape, bound / shape.w);
+  float told = texelFetch(record_texels, at + 2).w;
+  records[at + 2].w = record_flags(told, bound < least_radius(place.xyz) || (floatBitsToUint(told) & k_record_crowded) != 0u);
 }

@@ -25,13 +25,15 @@ void main() {
   int at = int(record * k_record_texels);
   vec4 place = texelFetch(record_texels, at), bends = texelFetch(record_texels, at + 4);
   vec3 normal = texelFetch(record_texels, at + 1).xyz;
-  float nearest = texelFetch(record_texels, at + 2).y, holds_nothing = texelFetch(record_texels, at + 5).y;
+  vec4 told = texelFetch(record_texels, at + 2);
+  float holds_nothing = texelFetch(record_texels, at + 5).y;
   Principal p = principal_curvatures(bends.xyz);
 
   float least = least_radius(place.xyz);
   float bends_by = p.strongest / max(max(bends.w, push.dark), 1e-30);
   float minor = bends_by > 0.0 ? push.reach * inversesqrt(sqrt(bends_by * p.ratio)) : push.most;
-  minor = min(minor, holds_nothing > 0.0 ? push.near * holds_nothing : push.near_tried * nearest);
+  minor = min(minor, holds_nothing > 0.0 ? push.near * holds_nothing : push.near_tried * told.y);
+  bool crowds = minor < least;
   float major = clamp(p.ratio * minor, least, push.most);
   minor = clamp(minor, least, push.most);
   vec3 tangent, bitangent;
@@ -40,4 +42,5 @@ void main() {
   records[at].w = major;
   records[at + 3] = vec4(along * sqrt(max(0.0, 1.0 / square(minor) - 1.0 / square(major))), minor);
   spheres[record] = vec4(place.xyz, major);
+  records[at + 2].w = record_flags(told.w, crowds);
 }

@@ -6,6 +6,12 @@
 
 layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
 
+// A record's flags (k_record_*) as they lie in its texel 2.
+float record_flags(float before, bool crowds) {
+  uint flags = floatBitsToUint(before) & ~k_record_crowded;
+  return uintBitsToFloat(flags | (crowds ? k_record_crowded : 0u));
+}
+
 float least_radius(vec3 position) {
   return min(cache.least_of_distance * (cache.parallel != 0u ? 1.0 : distance(position, cache.eye)), cache.least_most);
 }

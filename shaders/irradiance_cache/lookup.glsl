@@ -25,6 +25,7 @@ const int k_cache_sides = 1;
 struct Cached {
   vec3 part[k_part_count];
   float weight;  // 0: no record serves here
+  bool crowded;  // those that are here say that paths gather themselves
 };
 
 // A record's texel 3. Compiled in where records may be ellipses alone: of spheres `place` tells all.
@@ -37,6 +38,10 @@ vec4 record_shape(uint record, vec4 place) {
 }
 
 uint record_medium(uint record) { return floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 5u)).x); }
+
+bool record_crowded(uint record) {
+  return (floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 2u)).w) & k_record_crowded) != 0u;
+}
 
 // How far off the plane between its own and a record's tangent plane a point may lie and be served [m]. `radius`: the lesser.
 float record_off_plane(vec3 position, float radius) {
@@ -79,6 +84,7 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
   Cached found;
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
   found.weight = 0.0;
+  found.crowded = false;
   OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
     // On to the next sphere that holds the point: ten are listed for each, and lanes wait for the longest list.
@@ -97,6 +103,9 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
     uint record = octree_sphere(at);
     vec4 facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
     float weight = within ? record_weight(x, n, place, facing, record_shape(record, place)) : 0.0;
+    bool crowded = weight > 0.0 && record_crowded(record);
+    found.crowded = found.crowded || crowded;
+    weight = crowded ? 0.0 : weight;
     vec3 tangent, bitangent;
     make_basis(facing.xyz, tangent, bitangent);
     vec3 turn = cross(facing.xyz, shading), away = x - place.xyz;

@@ -15,10 +15,11 @@ void main() {
   if (index >= push.count) return;
   int at = int((push.first + index) * k_record_texels);
   vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
-  float nearest = texelFetch(record_texels, at + 2).y;
+  vec4 told = texelFetch(record_texels, at + 2);
   float least = least_radius(place.xyz);
-  float radius = max(min(push.error * facing.w, min(push.most, push.near * nearest)), least);
+  float wanted = min(push.error * facing.w, min(push.most, push.near * told.y)), radius = max(wanted, least);
   records[at].w = radius;
   records[at + 3] = vec4(0.0, 0.0, 0.0, radius);
   spheres[push.first + index] = vec4(place.xyz, radius);
+  records[at + 2].w = record_flags(told.w, wanted < least);
 }

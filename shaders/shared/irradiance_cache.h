@@ -37,7 +37,10 @@ LUCERNA_CONST uint k_record_layout = 3u;
 LUCERNA_CONST uint k_record_texels = 6u;
 /// Most of the greater radius over the lesser.
 LUCERNA_CONST float k_record_ratio = 2.0f;
-LUCERNA_CONST uint k_record_pass = 0xffu;       ///< mask: the pass that placed it, from 0
+LUCERNA_CONST uint k_record_pass = 0x7fu;       ///< mask: the pass that placed it, from 0
+/// It would have to reach less far than the least radius: it holds no light, and says of its disc that paths gather there
+/// themselves, because what is there is too fine to be interpolated.
+LUCERNA_CONST uint k_record_crowded = 0x80u;
 LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: what asked for it, k_origin_*
 LUCERNA_CONST uint k_record_facet_shift =
     10u;  ///< 11 + 11 bits: the geometric normal, octahedral (Cigolle et al. 2014)
@@ -85,7 +88,7 @@ LUCERNA_CONST uint k_probe_next = 5u;
 struct CacheFrame {
   /// By state of the automaton, for the diffuse lobe of a vertex met in it: bits 4 p on: the component to
   /// which part p goes; k_component_count: none. k_no_routes: no lookup there.
-  uint routes[16];
+  uint routes[24];
   uint record_count;
   /// Most that the normals of a point and of a record may differ, as 1 - cos.
   float normal_tolerance;

@@ -90,7 +90,8 @@ void main() {
         bool screen = cache.probing == k_probe_screen && depth == 0u;
         bool next_read = cache.probing == k_probe_next && state >= k_fallback_state;
         bool looks = (routes != k_no_routes || beyond || next_read || screen) && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
-        bool alone = false;  // a side asks and finds nothing
+        // A side asks and finds nothing; all that do so are to gather.
+        bool alone = false, gathers = true;
         bool notes_all = cache.probing == k_probe_screen || cache.probing == k_probe_reads || next_read;
         // Records stand on the smooth surface, not on its facets nor its normal map.
         vec3 smooth_side = dot(surface.normal_v, side) < 0.0 ? -surface.normal_v : surface.normal_v;
@@ -106,7 +107,7 @@ void main() {
           Cached found = cache_lookup(surface.position, sign * smooth_side, sign * to_world[2], medium, asks);
           bool missing = asks && found.weight <= 0.0;
           // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
-          bool notes = (missing || (asks && notes_all)) && cache.probing != k_probe_none &&
+          bool notes = ((missing && !found.crowded) || (asks && notes_all)) && cache.probing != k_probe_none &&
                        (cache.probing != k_probe_next || next_read) &&
                        !(beyond && (sample_vertex_bits(random, depth, k_pad_light_choice).x & 1u) != 0u);
           bool servable = cache_can_serve(sign * smooth_side, sign * to_world[2]);
@@ -116,6 +117,7 @@ void main() {
             candidates[slot * k_candidate_texels + 1u] = vec4(sign * smooth_side, uintBitsToFloat(facet_pack(sign * side)));
           }
           alone = alone || missing;
+          gathers = gathers && (!missing || found.crowded);
           for (uint p = 0u; p < k_part_count; ++p)
             for (uint c = 0u; c < k_component_count; ++c)
               if (found.weight > 0.0 && ((routes >> (4u * p)) & 15u) == c) cached[c] += albedo * found.part[p];
@@ -134,8 +136,11 @@ void main() {
           direction = normalize(to_world * b.wi);
           bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
 #if LUCERNA_CACHE
-          bool falls_back = (alone || cache.probing == k_probe_beyond || cache.probing == k_probe_next) && looks && state < k_fallback_state;
-          uint next = automaton_after(state + (falls_back && b.event == k_event_diffuse ? k_fallback_state : 0u), b.event);
+          // In states that pass this lookup over, or all.
+          bool passes_all = (alone && !gathers) || cache.probing == k_probe_beyond || cache.probing == k_probe_next;
+          uint from = state % k_gather_state + (passes_all ? k_fallback_state : k_gather_state);
+          bool falls_back = (alone || passes_all) && looks && state < k_fallback_state && b.event == k_event_diffuse;
+          uint next = automaton_after(falls_back ? from : state, b.event);
 #else
           uint next = automaton_after(state, b.event);
 #endif
@@ -151,7 +156,7 @@ void main() {
 #endif
 #if LUCERNA_CACHE
           bool ends_here = cache.probing == k_probe_lookups || cache.probing == k_probe_reads || next_read;
-          go_on = go_on && cache.probing != k_probe_screen && !(ends_here && looks && b.event == k_event_diffuse);
+          go_on = go_on && cache.probing != k_probe_screen && !(ends_here && looks && b.event == k_event_diffuse && !(alone && gathers && cache.probing == k_probe_lookups));
 #endif
           path.eta_scale *= b.eta2;
           // Roulette on what the path carries without the radiance scale of refraction.

@@ -212,6 +212,7 @@ bool Cache::Impl::measure(const Work& w) {
   }
   if (status.relighting > 0) {
     list_until(until);
+    leave_crowded();
     stage = Stage::evaluate;
   } else {
     clamp_radii(w, until, tried_near());
@@ -228,14 +229,10 @@ bool Cache::Impl::thin() {
   for (size_t i = 0; i < tried.size(); ++i) off_planes.push_back(off_plane(tried[i], tried_radii[i]));
   kept = thin_out(tried, tried_radii, off_planes,
                   {.share = options.thinning, .normal_tolerance = k_normal_tolerance});
-  const std::vector<vec4> pilots = records.pilots(evaluated);
-  std::vector<Place> needed;
-  std::vector<vec4> needed_pilots;
-  for (const uint32_t i : kept) needed.push_back(tried[i]), needed_pilots.push_back(pilots[i]);
-  records.truncate(evaluated);
-  pass().records = records.append(needed, status.pass);
-  records.set_pilots(evaluated, std::span(needed_pilots).first(pass().records));
+  records.keep(evaluated, kept);
+  pass().records = uint32_t(kept.size());
   list_until(records.size());
+  leave_crowded();
   took(BuildStep::choose, host.milliseconds());
   level = level_done = rays_before = 0;
   stage = Stage::evaluate;
@@ -398,6 +395,7 @@ float Cache::Impl::share_of_noise(uint32_t record) const {
 
 bool Cache::Impl::next_level() {
   const uint32_t rays = options.rays << 2 * level;
+  leave_crowded();  // the rays so far may have met what is near
   if (list.empty() || uint64_t{4} * rays > options.most_rays) return false;
   const std::vector<Records::Figures> figures = records.figures();
   const std::vector<float> light = records.luminances();
@@ -413,8 +411,11 @@ bool Cache::Impl::next_level() {
 }
 
 float Cache::Impl::dark(std::span<const float> light, uint32_t count) const {
-  const std::span<const float> lit = light.first(count);
-  return lit.empty() ? 1.0f : 0.1f * float(std::accumulate(lit.begin(), lit.end(), 0.0) / double(count));
+  // Where records crowd they have none.
+  double sum = 0;
+  uint32_t lit = 0;
+  for (const float l : light.first(count)) sum += double(l), lit += l > 0;
+  return lit > 0 ? 0.1f * float(sum / lit) : 1.0f;
 }
 
 float Cache::Impl::tried_near() const { return options.nearest * (by_light() ? k_tried_near : 1); }
@@ -443,13 +444,11 @@ void Cache::Impl::set_radii(const Work& w, By by) {
   bind(resources);
   const uint32_t groups = gpu::groups_for(count, 64);
   if (by == By::light) {
-    std::vector<float> light;
-    for (const vec4& pilot : records.pilots(0)) light.push_back(pilot.w);
     const EllipsePush push{evaluated,
                            count,
                            k_hessian_reach * options.error * std::sqrt(w.view.scene_radius),
                            least.most,
-                           dark(light, until),
+                           dark(records.pilot_luminances(), until),
                            options.nearest,
                            tried_near()};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
@@ -473,6 +472,11 @@ void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near) {
       w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, count, near);
   took(BuildStep::radius, timer.milliseconds());
   index_first(evaluated);
+}
+
+void Cache::Impl::leave_crowded() {
+  const std::vector<bool> crowded = records.crowded();
+  std::erase_if(list, [&](uint32_t record) { return crowded[record]; });
 }
 
 void Cache::Impl::list_until(uint32_t end) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "schedule/uniform.h"
+#include "shaders/shared/transport.h"
 #include "solvers/irradiance_cache/cache.h"
 #include "solvers/irradiance_cache/clamping.h"
 #include "solvers/irradiance_cache/neighbours.h"
@@ -40,6 +41,9 @@ struct LeastRadius {
 /// Elevations of a level of that many rays; there are four times as many azimuths.
 uint32_t elevations_for(uint32_t rays);
 
+/// CacheFrame::routes.
+using RouteTable = std::array<uint32_t, shared::k_automaton_states>;
+
 struct Cache::Impl {
   /// What a piece of work is done with.
   struct Work {
@@ -57,7 +61,7 @@ struct Cache::Impl {
   gpu::Kernel radius, ellipse, pooling, pool_keep, overlay;
   gpu::Resources resources;
   Evaluator evaluator;
-  std::array<uint32_t, 16> routes{}, own_routes{};  // of the picture's paths, of the records'
+  RouteTable routes{}, own_routes{};  // of the picture's paths, of the records'
   bool recursive = false;
   uint32_t parts = 0;
   LeastRadius least;
@@ -155,7 +159,7 @@ struct Cache::Impl {
   /// What all but a few records lie between.
   void set_scales();
   /// What paths know of the cache from here on.
-  void tell(uint32_t probing, const std::array<uint32_t, 16>& table);
+  void tell(uint32_t probing, const RouteTable& table);
   void tell(uint32_t probing = shared::k_probe_none) { tell(probing, routes); }
 
  private:
@@ -195,6 +199,8 @@ struct Cache::Impl {
   float tried_near() const;
   /// The records of this pass, which end there, for the next piece of work on them.
   void list_until(uint32_t end);
+  /// ... without those that bring no light because paths gather there.
+  void leave_crowded();
   CachePass& pass() { return status.passes.back(); }
   void took(BuildStep step, double ms) { pass().ms[size_t(step)] += ms; }
   void spent(size_t done, uint32_t rays);

@@ -27,14 +27,15 @@ float slab_thickness(float off_plane, float normal_tolerance) {
 }
 
 /// As CacheFrame::routes.
-std::array<uint32_t, 16> packed(const paths::LookupRoutes& routes) {
-  std::array<uint32_t, 16> table;
+RouteTable packed(const paths::LookupRoutes& routes, const paths::LookupRoutes& gather) {
+  RouteTable table;
   table.fill(k_no_routes);
-  for (size_t s = 0; s < routes.component.size(); ++s) {
-    table[s] = 0;
-    for (uint32_t p = 0; p < k_part_count; ++p)
-      table[s] |= std::min<uint32_t>(routes.component[s][p], k_component_count) << (4 * p);
-  }
+  for (const auto& [from, of] : {std::pair{0u, &routes}, std::pair{k_gather_state, &gather}})
+    for (size_t s = 0; s < of->component.size(); ++s) {
+      table[from + s] = 0;
+      for (uint32_t p = 0; p < k_part_count; ++p)
+        table[from + s] |= std::min<uint32_t>(of->component[s][p], k_component_count) << (4 * p);
+    }
   return table;
 }
 
@@ -111,7 +112,7 @@ void Cache::Impl::set_scales() {
   }
 }
 
-void Cache::Impl::tell(uint32_t probing, const std::array<uint32_t, 16>& table) {
+void Cache::Impl::tell(uint32_t probing, const RouteTable& table) {
   CacheFrame f{};
   std::copy(table.begin(), table.end(), f.routes);
   f.record_count = evaluated;
@@ -124,7 +125,8 @@ void Cache::Impl::tell(uint32_t probing, const std::array<uint32_t, 16>& table) 
 }
 
 Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
-             const paths::LookupRoutes& routes, const paths::LookupRoutes& own, const CacheOptions& options)
+             const paths::LookupRoutes& routes, const paths::LookupRoutes& gather,
+             const paths::LookupRoutes& own, const CacheOptions& options)
     : impl_(std::make_unique<Impl>(device, compiler, slots, own, options)) {
   Impl& c = *impl_;
   if (slots < k_least_slots)
@@ -133,7 +135,7 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
   if (options.rays == 0 || elevations * elevations * 4 != options.rays)
     throw_error("cache.rays", "'{}': expected four times a square, such as 256 or 1024", options.rays);
   c.parts = own.parts;
-  c.routes = packed(routes), c.own_routes = packed(own);
+  c.routes = packed(routes, gather), c.own_routes = packed(own, own);
   c.recursive =
       std::any_of(c.own_routes.begin(), c.own_routes.end(), [](uint32_t r) { return r != k_no_routes; });
   c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");

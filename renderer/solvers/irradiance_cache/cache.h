@@ -103,11 +103,12 @@ class Cache {
   static constexpr uint32_t k_least_slots = Evaluator::k_most_rays;
 
   /// `slots`: of the wavefronts that it will be used with, k_least_slots or more.
-  /// `routes`: where the picture's paths look up; `own`: where the rays of records do, and the parts that
+  /// `routes`: where the picture's paths look up; `gather`: where those do that gather because records crowd
+  /// (paths::gather_routes); `own`: where the rays of records do, and the parts that
   /// they gather (paths::record_routes; without any lookup they are path traced). Throws Error as Records, or
   /// when an option is out of its range.
   Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const paths::LookupRoutes& routes,
-        const paths::LookupRoutes& own, const CacheOptions& options);
+        const paths::LookupRoutes& gather, const paths::LookupRoutes& own, const CacheOptions& options);
   ~Cache();
 
   /// For the kernels of a wavefront that reads a cache with these routes of its own and this metric.

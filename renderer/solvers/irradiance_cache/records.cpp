@@ -13,8 +13,6 @@ using namespace shared;
 
 namespace {
 
-constexpr size_t k_pilot_texel = 4;
-
 constexpr uint64_t k_place_bytes = 16 * k_record_texels, k_light_bytes = 16 * k_part_count * k_part_texels;
 
 /// make_basis() of shaders/lib/math.glsl.
@@ -162,20 +160,37 @@ std::vector<float> Records::luminances() const {
   return all;
 }
 
-std::vector<vec4> Records::pilots(uint32_t first) const {
-  std::vector<vec4> places(size_t{size_ - first} * k_record_texels);
-  records_.read(places.data(), places.size() * sizeof(vec4), first * k_place_bytes);
-  std::vector<vec4> all;
-  for (size_t at = k_pilot_texel; at < places.size(); at += k_record_texels) all.push_back(places[at]);
+std::vector<vec4> Records::texels(uint32_t which) const {
+  std::vector<vec4> places(size_t{size_} * k_record_texels), all;
+  records_.read(places.data(), places.size() * sizeof(vec4));
+  for (size_t at = which; at < places.size(); at += k_record_texels) all.push_back(places[at]);
   return all;
 }
 
-void Records::set_pilots(uint32_t first, std::span<const vec4> pilots) {
-  assert(first + pilots.size() <= size_);
-  std::vector<vec4> places(pilots.size() * k_record_texels);
+std::vector<float> Records::pilot_luminances() const {
+  std::vector<float> all;
+  for (const vec4& pilot : texels(4)) all.push_back(pilot.w);
+  return all;
+}
+
+std::vector<bool> Records::crowded() const {
+  std::vector<bool> all;
+  for (const vec4& told : texels(2)) all.push_back((std::bit_cast<uint32_t>(told.w) & k_record_crowded) != 0);
+  return all;
+}
+
+void Records::keep(uint32_t first, std::span<const uint32_t> kept) {
+  if (first == size_) return;
+  std::vector<vec4> places(size_t{size_ - first} * k_record_texels), spheres(size_ - first);
   records_.read(places.data(), places.size() * sizeof(vec4), first * k_place_bytes);
-  for (size_t i = 0; i < pilots.size(); ++i) places[i * k_record_texels + k_pilot_texel] = pilots[i];
-  records_.write(places.data(), places.size() * sizeof(vec4), first * k_place_bytes);
+  spheres_.read(spheres.data(), spheres.size() * sizeof(vec4), first * sizeof(vec4));
+  for (size_t to = 0; to < kept.size(); ++to) {
+    std::copy_n(&places[size_t{kept[to]} * k_record_texels], k_record_texels, &places[to * k_record_texels]);
+    spheres[to] = spheres[kept[to]];
+  }
+  records_.write(places.data(), kept.size() * k_place_bytes, first * k_place_bytes);
+  spheres_.write(spheres.data(), kept.size() * sizeof(vec4), first * sizeof(vec4));
+  size_ = first + uint32_t(kept.size());
 }
 
 void Records::publish(gpu::Stream& stream) const {

@@ -89,9 +89,13 @@ class Records {
   std::vector<float> radii(uint32_t first) const;
   /// Luminance of the irradiance, all parts together, of every record.
   std::vector<float> luminances() const;
-  /// What pilot rays have told of the records from `first` on (k_record_texels, texel 4); and back.
-  std::vector<vec4> pilots(uint32_t first) const;
-  void set_pilots(uint32_t first, std::span<const vec4> pilots);
+  /// Luminance of the irradiance as pilot rays have told of it, of every record.
+  std::vector<float> pilot_luminances() const;
+  /// Whether records bring no light because paths gather there (shared::k_record_crowded), of every record.
+  std::vector<bool> crowded() const;
+  /// Of the records from `first` on, which have no light yet, keeps those (indices from there, rising), with
+  /// what is known of them.
+  void keep(uint32_t first, std::span<const uint32_t> kept);
   /// Under the names of shaders/irradiance_cache: for kernels that gather, or for those that look up. These
   /// read the light that publish() last left, so that what records gather from each other does not depend on
   /// which of them are done.
@@ -100,6 +104,7 @@ class Records {
   void publish(gpu::Stream& stream) const;
 
  private:
+  std::vector<vec4> texels(uint32_t which) const;  ///< one of k_record_texels, of every record
   uint32_t capacity_ = 0, size_ = 0;
   gpu::Buffer records_, irradiance_, read_, spheres_;
 };
