@@ -118,6 +118,10 @@ std::vector<OptionInfo> make_options() {
            "Irradiance cache: least radius of a record, as the camera sees it."),
       real("cache.max_radius", "0.1", 0.001, 1, "of the scene's radius",
            "Irradiance cache: greatest radius of a record."),
+      boolean("cache.gather",
+              "Irradiance cache: where records would have to be narrower than the least radius, along edges, "
+              "paths gather light themselves and end in records one vertex later: grain that more samples "
+              "take away, instead of specks that stay."),
       boolean("cache.neighbours",
               "Irradiance cache: records reach no farther than the nearest others in different directions: "
               "fewer serve a point, which is faster and closer to the light there."),

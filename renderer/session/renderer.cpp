@@ -181,6 +181,7 @@ irradiance_cache::CacheOptions Renderer::cache_options() const {
           .most_rays = uint32_t(std::stoul(settings_.text("cache.max_rays"))),
           .noise = float(settings_.real("cache.noise")),
           .thinning = float(settings_.real("cache.thinning")),
+          .gather = settings_.boolean("cache.gather"),
           .neighbours = settings_.boolean("cache.neighbours"),
           .most_records = uint32_t(settings_.integer("cache.max_records")),
           .most_passes = uint32_t(settings_.integer("cache.passes")),

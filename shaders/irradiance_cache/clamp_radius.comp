@@ -16,5 +16,5 @@ void main() {
   if (bound >= shape.w) return;
   shrink_record(index, place, shape, bound / shape.w);
   float told = texelFetch(record_texels, at + 2).w;
-  records[at + 2].w = record_flags(told, bound < least_radius(place.xyz) || (floatBitsToUint(told) & k_record_crowded) != 0u);
+  records[at + 2].w = record_flags(told, bound < push.crowd * least_radius(place.xyz), true);
 }

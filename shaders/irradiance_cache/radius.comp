@@ -21,5 +21,5 @@ void main() {
   records[at].w = radius;
   records[at + 3] = vec4(0.0, 0.0, 0.0, radius);
   spheres[push.first + index] = vec4(place.xyz, radius);
-  records[at + 2].w = record_flags(told.w, wanted < least);
+  records[at + 2].w = record_flags(told.w, wanted < push.crowd * least, push.settled != 0u);
 }

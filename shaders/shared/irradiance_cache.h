@@ -122,11 +122,14 @@ struct RadiusPush {
   float error;        ///< radius over harmonic mean distance
   float most;         ///< [m]
   float near;         ///< ... and over the distance of the nearest thing
+  uint settled;       ///< as EllipsePush has it
+  float crowd;
 };
 
 struct ClampPush {
   uint count;  ///< records
   float near;  ///< lesser radius over the distance of the nearest thing, at most
+  float crowd; ///< as EllipsePush has it
 };
 /// Of a record that none clamps: the bits of infinity.
 LUCERNA_CONST uint k_no_bound = 0x7f800000u;
@@ -150,6 +153,8 @@ struct EllipsePush {
   float dark;         ///< irradiance, luminance: records that have less are held against it
   float near;         ///< lesser radius over the greatest that holds nothing that a ray met, at most
   float near_tried;   ///< the same where only the distance of the nearest thing is known
+  uint settled;       ///< not 0: those that crowd have no light, so that they do so still
+  float crowd;        ///< of the least radius: records that are to be narrower crowd; 0: none do
 };
 
 /// Pools what pilot rays have told.

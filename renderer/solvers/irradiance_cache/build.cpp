@@ -205,10 +205,10 @@ bool Cache::Impl::measure(const Work& w) {
   spent(done, Evaluator::k_distance_rays);
   if (done < batch) return false;
   if (at < list.size()) return true;
-  set_radii(w, By::distance);
+  set_radii(w, By::distance, false);
   if (by_light()) {
     pool(w);
-    set_radii(w, By::light);
+    set_radii(w, By::light, false);
   }
   if (status.relighting > 0) {
     list_until(until);
@@ -342,7 +342,7 @@ void Cache::Impl::publish_level(const Work& w) {
   // Ellipses are by the light; circles stand.
   const bool anew = until > standing || by_light();
   if (anew) {
-    set_radii(w, by_light() ? By::light : By::distance);
+    set_radii(w, by_light() ? By::light : By::distance, true);
     hold();
   }
   evaluated = status.records = until;
@@ -437,7 +437,7 @@ void Cache::Impl::pool(const Work& w) {
   took(BuildStep::radius, timer.milliseconds());
 }
 
-void Cache::Impl::set_radii(const Work& w, By by) {
+void Cache::Impl::set_radii(const Work& w, By by, bool settled) {
   const uint32_t count = until - evaluated;
   if (count == 0) return;
   StageTimer timer(w.wavefront);
@@ -450,10 +450,12 @@ void Cache::Impl::set_radii(const Work& w, By by) {
                            least.most,
                            dark(records.pilot_luminances(), until),
                            options.nearest,
-                           tried_near()};
+                           tried_near(),
+                           settled,
+                           crowd()};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
   } else {
-    const RadiusPush push{evaluated, count, options.error, least.most, tried_near()};
+    const RadiusPush push{evaluated, count, options.error, least.most, tried_near(), settled, crowd()};
     w.wavefront.stream().dispatch(radius, resources, push, groups, "records");
   }
   w.wavefront.stream().run();
@@ -469,7 +471,7 @@ void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near) {
   if (count > evaluated) index_first(count);
   StageTimer timer(w.wavefront);
   clamping.clamp(
-      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, count, near);
+      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, count, near, crowd());
   took(BuildStep::radius, timer.milliseconds());
   index_first(evaluated);
 }

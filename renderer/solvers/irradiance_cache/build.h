@@ -132,6 +132,8 @@ struct Cache::Impl {
   void relight_pass();
   void forget_placement();
 
+  /// As EllipsePush::crowd.
+  float crowd() const { return options.gather ? 1.0f : 0.0f; }
   /// Whether radii are by the light, of which pilot rays tell.
   bool by_light() const { return options.metric == Metric::hessian; }
   /// Irradiance, luminance: what records of less are held against, because what they miss is seen less. Of
@@ -189,7 +191,8 @@ struct Cache::Impl {
   void pool(const Work& work);
   /// Radii of the records of this pass, by how far things are, or by the light too.
   enum class By { distance, light };
-  void set_radii(const Work& work, By by);
+  /// `settled`: those that crowd have been left without light.
+  void set_radii(const Work& work, By by, bool settled);
   /// ... of all, also of earlier passes, by the records around, that they be no wider than they need be.
   void bound_radii(const Work& work);
   /// ... of the first `count`, those that are evaluated at least, by what is nearest to any of them; the
