@@ -135,7 +135,9 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
   if (options.rays == 0 || elevations * elevations * 4 != options.rays)
     throw_error("cache.rays", "'{}': expected four times a square, such as 256 or 1024", options.rays);
   c.parts = own.parts;
-  c.routes = packed(routes, gather), c.own_routes = packed(own, own);
+  const paths::LookupRoutes none;
+  c.routes = packed(routes, options.gather ? gather : none);
+  c.own_routes = packed(own, options.gather ? own : none);
   c.recursive =
       std::any_of(c.own_routes.begin(), c.own_routes.end(), [](uint32_t r) { return r != k_no_routes; });
   c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
