@@ -477,6 +477,7 @@ void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near) {
 }
 
 void Cache::Impl::leave_crowded() {
+  if (!options.gather) return;
   const std::vector<bool> crowded = records.crowded();
   std::erase_if(list, [&](uint32_t record) { return crowded[record]; });
 }
