@@ -3,10 +3,11 @@
 // In whole steps, so that no order matters.
 #include "irradiance_cache/lookup.glsl"
 #include "lib/invocation.glsl"
+#include "lib/wide_sum.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { WorthPush push; };
 uniform samplerBuffer place_texels, next_place_texels;  // position; bits: normal, k_worth_there
-layout(scalar) buffer Sums { uint sums[]; };  // 2 a record: of 64 bits, the lower ones first
+layout(scalar) buffer Sums { WideSum sums[]; };  // of each record
 
 // Of the light that falls on what a record's ray meets, how much comes back: a wall's albedo.
 const float k_returned = 0.5;
@@ -50,8 +51,7 @@ void add(Reader one, Read all_one, OctreeRange range, Reader other, Read all_oth
     float product = weight_at(one, i) * weight_at(other, i);
     if (product <= 0.0) continue;
     uint steps = uint(scale * product / (all_one.weights * all_other.weights) * float(k_worth_steps) + 0.5);
-    uint to = 2u * octree_sphere(i), before = atomicAdd(sums[to], steps);
-    if (before + steps < before) atomicAdd(sums[to + 1u], 1u);
+    ADD_TO_WIDE_SUM(sums[octree_sphere(i)], steps);
   }
 }
 

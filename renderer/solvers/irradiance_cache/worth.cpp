@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/wide_sum.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -20,8 +21,9 @@ Worth::Worth(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t capaci
     : device_(device),
       keeping_(device, compiler, "irradiance_cache/worth_keep.comp", defines),
       adding_(device, compiler, "irradiance_cache/worth_add.comp", defines),
-      sums_(device,
-            {.name = "worth of records", .bytes = uint64_t{capacity} * 8, .memory = gpu::Memory::host}) {}
+      sums_(device, {.name = "worth of records",
+                     .bytes = uint64_t{capacity} * sizeof(WideSum),
+                     .memory = gpu::Memory::host}) {}
 
 uint32_t Worth::blocks() const {
   return (frame_.width + k_block - 1) / k_block * ((frame_.height + k_block - 1) / k_block);
@@ -72,10 +74,11 @@ std::vector<float> Worth::measure(gpu::Stream& stream, const std::function<void(
   stream.fill(sums_, 0);
   stream.dispatch(adding_, resources_, WorthPush{pixels(), 0, next_}, gpu::groups_for(pixels(), 64), k_stage);
   stream.run();
-  const uint64_t* const sums = static_cast<const uint64_t*>(sums_.mapped());
+  const WideSum* const sums = static_cast<const WideSum*>(sums_.mapped());
   const float pixel = 1.0f / (float(k_worth_steps) * float(frame_.height) * float(frame_.height));
   std::vector<float> worth(count);
-  std::transform(sums, sums + count, worth.begin(), [&](uint64_t sum) { return pixel * float(sum); });
+  std::transform(sums, sums + count, worth.begin(),
+                 [&](const WideSum& sum) { return pixel * float(value(sum)); });
   return worth;
 }
 
