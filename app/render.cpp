@@ -46,15 +46,29 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
 nlohmann::ordered_json make_error(session::Renderer& r) {
   const film::ImageError error = r.image_error();
   nlohmann::ordered_json j;
-  j["of"] = "noise";
-  j["rms"] = error.rms[0];
-  j["relative"] = error.relative(0);
-  // Of the tiles, what adaptive sampling goes by.
-  const film::TileSpread tiles = film::tile_spread(r.tile_errors());
-  j["tile_median"] = tiles.median;
-  j["tile_worst_decile"] = tiles.worst_tenth;
-  j["tile_worst"] = tiles.worst;
-  j["heavy_tailed_tiles"] = tiles.heavy_tailed;
+  j["of"] = "sum";
+  j["rms"] = film::error_sum(error.rms[0], error.records_rms, error.interpolation_rms);
+  j["relative"] = error.relative_sum();
+  const std::vector<film::TileError> tiles = r.tile_errors();
+  const auto tell_tiles = [](nlohmann::ordered_json& to, const film::TileSpread& spread) {
+    to["tile_median"] = spread.median;
+    to["tile_worst_decile"] = spread.worst_tenth;
+    to["tile_worst"] = spread.worst;
+  };
+  tell_tiles(j, film::tile_spread(tiles));
+  j["heavy_tailed_tiles"] = film::tile_spread(tiles).heavy_tailed;
+  // The parts of that sum, by where they come from.
+  const auto part = [&](const char* name, double rms, double relative, double film::TileError::*of) {
+    j[name] = {{"rms", rms}, {"relative", relative}};
+    tell_tiles(j[name], film::tile_spread(tiles, of));
+  };
+  part("paths", error.rms[0], error.relative(0), &film::TileError::relative);
+  if (r.cache() && !r.film().records_told()) j["records"] = j["interpolation"] = nullptr;
+  if (r.film().records_told()) {
+    part("records", error.records_rms, error.relative_records(), &film::TileError::relative_records);
+    part("interpolation", error.interpolation_rms, error.relative_interpolation(),
+         &film::TileError::relative_interpolation);
+  }
   for (int c = 0; c < paths::k_component_count; ++c) {
     auto& component = j["components"][paths::k_component_names[c]];
     component = {{"rms", error.rms[c + 1]}, {"relative", error.relative(c + 1)}, {"bias", nullptr}};
@@ -82,10 +96,16 @@ std::vector<uint32_t> unreached(const schedule::AdaptiveSchedule& s) {
   for (uint32_t t = 0; t < s.tiles().size(); ++t)
     if (s.tiles()[t].state != schedule::TileState::done) list.push_back(t);
   std::sort(list.begin(), list.end(), [&](uint32_t a, uint32_t b) {
-    const float ea = s.tiles()[a].error, eb = s.tiles()[b].error;
+    const float ea = s.tiles()[a].sum(), eb = s.tiles()[b].sum();
     return ea != eb ? ea > eb : a < b;
   });
   return list;
+}
+
+/// Of these, those that records keep over it: more samples would not help.
+size_t limited(const schedule::AdaptiveSchedule& s) {
+  return size_t(std::count_if(s.tiles().begin(), s.tiles().end(),
+                              [&](const schedule::Tile& t) { return t.limited(s.options().target_error); }));
 }
 
 nlohmann::ordered_json make_tiles(const schedule::AdaptiveSchedule& s) {
@@ -96,6 +116,7 @@ nlohmann::ordered_json make_tiles(const schedule::AdaptiveSchedule& s) {
   j["count"] = s.tiles().size();
   j["done"] = s.count(TileState::done);
   j["capped"] = s.count(TileState::capped);
+  j["limited_by_records"] = limited(s);
   j["unfinished"] = s.count(TileState::active) + s.count(TileState::waiting);
   j["least_samples"] = s.least_samples();
   j["most_samples"] = s.most_samples();
@@ -104,7 +125,10 @@ nlohmann::ordered_json make_tiles(const schedule::AdaptiveSchedule& s) {
     const schedule::Tile& tile = s.tiles()[t];
     j["unreached"].push_back({{"x", t % s.tiles_across() * s.options().tile},
                               {"y", t / s.tiles_across() * s.options().tile},
-                              {"error", tile.error},
+                              {"error", tile.sum()},
+                              {"paths", tile.error},
+                              {"records", tile.records},
+                              {"interpolation", tile.interpolation},
                               {"samples", tile.samples}});
   }
   return j;
@@ -114,12 +138,23 @@ void report_unreached(const schedule::AdaptiveSchedule& s) {
   const std::vector<uint32_t> list = unreached(s);
   if (list.empty()) return;
   const schedule::Tile& worst = s.tiles()[list.front()];
+  const size_t by_records = limited(s);
+  if (by_records > 0)
+    log::warning(
+        "{} of {} tiles stay over the error of {} because of the records that they read; the worst is off by "
+        "{:.3f}, the paths by {:.3f} of that, at x {} y {}. More samples do not help; more rays a record do "
+        "(--set cache.noise=LESS) or more records (--set cache.error=LESS)",
+        by_records, s.tiles().size(), s.options().target_error, worst.sum(), worst.error,
+        list.front() % s.tiles_across() * s.options().tile,
+        list.front() / s.tiles_across() * s.options().tile);
+  if (by_records == list.size()) return;
   log::warning(
       "{} of {} tiles are over the error of {}: {} with all of {} samples, {} not finished; the worst, "
       "{:.3f}, "
       "at x {} y {}. More samples: --set sampling.max_samples=N",
-      list.size(), s.tiles().size(), s.options().target_error, s.count(schedule::TileState::capped),
-      s.options().max_samples, list.size() - s.count(schedule::TileState::capped), worst.error,
+      list.size() - by_records, s.tiles().size(), s.options().target_error,
+      s.count(schedule::TileState::capped) - by_records, s.options().max_samples,
+      list.size() - s.count(schedule::TileState::capped), worst.sum(),
       list.front() % s.tiles_across() * s.options().tile, list.front() / s.tiles_across() * s.options().tile);
 }
 
@@ -134,6 +169,7 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
       j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
     }
     if (e.told)
+      j["error_records"] = e.records, j["error_interpolation"] = e.interpolation, j["error_told"] = e.sum(),
       j["tile_median"] = e.tile_median, j["tile_worst_decile"] = e.tile_worst_tenth,
       j["error_degrees"] = e.degrees;
     if (e.truth)
@@ -145,12 +181,14 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
 }
 
 /// Seconds that smaller errors take or took, as [low, middle, high]; in uniform sampling. Empty before there
-/// is enough to tell by.
+/// is enough to tell by. Errors that records keep the picture over, whatever the samples, are listed.
 nlohmann::ordered_json make_forecast(const stats::Ledger& ledger) {
   auto j = nlohmann::ordered_json::object();
-  for (const double target : {0.05, 0.02, 0.01, 0.005})
+  for (const double target : {0.05, 0.02, 0.01, 0.005}) {
     if (const auto band = stats::seconds_to(ledger, target))
       j["seconds_to"][fmt::format("{}", target)] = {band->low, band->middle, band->high};
+    if (stats::paths_target(ledger, target) <= 0) j["limited_by_records"].push_back(target);
+  }
   if (const stats::Outlook outlook(ledger); outlook.known()) j["exponent"] = outlook.exponent();
   return j;
 }
@@ -194,7 +232,11 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
                   {"bytes", s.bytes},
                   {"stopped_by", k_reasons[size_t(s.stop)]}};
     if (const auto overlap = r.cache_report()->overlap)
-      j["cache"]["overlap"] = {{"mean", overlap->mean}, {"most", overlap->most}, {"listed", overlap->listed}};
+      j["cache"]["overlap"] = {
+          {"mean", overlap->mean},
+          {"most", overlap->most},
+          {"listed", overlap->listed},
+          {"gathered_share", double(overlap->gathered) / double(std::max<uint64_t>(1, overlap->pixels))}};
     for (const irradiance_cache::CachePass& p : s.passes) {
       nlohmann::ordered_json steps;
       for (size_t k = 0; k < p.ms.size(); ++k) steps[irradiance_cache::k_build_steps[k]] = p.ms[k];

@@ -17,8 +17,9 @@ namespace {
 using session::Accuracy;
 
 constexpr ImU32 k_sum = colour::text;
-/// Of the mean, of the median tile, of the worst tenth of the tiles.
-constexpr std::array<ImU32, 3> k_noise_ink = {k_sum, colour::grey(132), colour::grey(164)};
+/// Of the mean, of the median tile, of the worst tenth of the tiles; of the parts of the mean's.
+constexpr std::array<ImU32, 6> k_noise_ink = {
+    k_sum, colour::grey(132), colour::grey(164), colour::text_dim, colour::text_dim, colour::text_dim};
 
 ImU32 layer_ink(size_t layer) { return layer == 0 ? k_sum : colour::component[layer - 1]; }
 
@@ -40,7 +41,15 @@ std::vector<ImVec2> line_points(const Plot& plot, const Accuracy& a, const Value
 }
 
 std::vector<ImVec2> error_points(const Plot& plot, const Accuracy& a, size_t layer) {
-  return line_points(plot, a, [&](size_t i) { return a.ledger.entries()[i].error[layer]; });
+  return line_points(plot, a, [&](size_t i) {
+    const stats::Entry& e = a.ledger.entries()[i];
+    return layer == 0 && e.error[0] > 0 ? e.sum() : e.error[layer];
+  });
+}
+
+/// What of the sum's is not the paths', and stays.
+std::vector<ImVec2> floor_points(const Plot& plot, const Accuracy& a) {
+  return line_points(plot, a, [&](size_t i) { return a.ledger.entries()[i].floor(); });
 }
 
 /// Of the median tile, of the worst tenth of them.
@@ -188,16 +197,20 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   const auto& lines = a.ledger.entries();
   for (size_t k = 0; k < stats::k_layers; ++k)
     look(error_points(plot, a, k),
-         k == 0 ? std::string("noise of the mean (estimated)")
+         k == 0 ? std::string(reads_records(lines.back()) ? "error of the mean (estimated)"
+                                                          : "noise of the mean (estimated)")
                 : fmt::format("{}, noise over the picture's mean (estimated)", stats::k_layer_names[k]),
          layer_ink(k), nullptr, k);
-  look(tile_points(plot, a, &stats::Entry::tile_median), "noise of the median tile (estimated)",
-       k_noise_ink[1]);
+  const char* const what = reads_records(lines.back()) ? "error" : "noise";
+  look(tile_points(plot, a, &stats::Entry::tile_median),
+       fmt::format("{} of the median tile (estimated)", what), k_noise_ink[1]);
   look(tile_points(plot, a, &stats::Entry::tile_worst_tenth),
-       "noise of the worst tenth of the tiles (estimated)", k_noise_ink[2]);
+       fmt::format("{} of the worst tenth of the tiles (estimated)", what), k_noise_ink[2]);
   look(line_points(plot, a, [&](size_t i) { return lines[i].truth ? (*lines[i].truth)[0] : 0.0; }),
        "sum, true error against " + a.reference, k_sum);
   if (a.adaptive) look(line_points(plot, a, [&](size_t i) { return a.hardest[i]; }), "hardest tile", k_sum);
+  look(floor_points(plot, a), "records and interpolation, of the mean: what no samples go below",
+       colour::text_dim);
   for (const Run& run : ui.runs.earlier())
     look(error_points(plot, *run.accuracy, 0), "earlier render, noise (estimated)", colour::text_dim, &run);
   if (best.points.empty()) return;
@@ -221,7 +234,14 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   std::vector<std::pair<std::string, ImU32>> rows{
       {fmt::format("{}: {}", name, percent_text(plot.y.value(near->y))), colour::text},
       {run_figures(told, line), colour::text_dim}};
-  if (best.layer) rows.emplace_back(bias_text(a, *best.layer), colour::text_dim);
+  const stats::Entry& then = told.ledger.entries()[line];
+  if (best.layer == size_t{0} && reads_records(then))
+    rows.emplace_back(fmt::format("Paths {}, records {} (in quadrature), interpolation {} (added)",
+                                  percent_text(then.error[0]), percent_text(then.records),
+                                  percent_text(then.interpolation)),
+                      colour::text_dim);
+  else if (best.layer)
+    rows.emplace_back(bias_text(a, *best.layer), colour::text_dim);
   if (best.run) {
     const std::vector<std::string> other = differences(*best.run, ui.runs.current());
     if (other.empty()) rows.emplace_back("Made with the same settings", colour::text_dim);
@@ -230,27 +250,29 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   card(rows);
 }
 
-/// The noise in figures, each in its line's colour; a tooltip says what it is of.
+/// The error in figures, each in its line's colour; a tooltip says what it is of.
 void noise_row(const Accuracy& a, const ImVec2& lo, float right) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   ImFont* font = theme().fonts.small;
-  const auto figures = noise_figures(a.ledger.entries().back());
+  const stats::Entry& line = a.ledger.entries().back();
+  const std::vector<ErrorFigure> figures = error_figures(line);
   const auto texts = [&](bool whole) {
-    std::array<std::string, 3> all;
-    for (size_t i = 0; i < all.size(); ++i)
-      all[i] = fmt::format("{} {}", whole ? figures[i].name : figures[i].short_name,
-                           padded(figures[i].value > 0 ? percent_text(figures[i].value) : "\xE2\x80\x93", 6));
+    std::vector<std::string> all;
+    for (const ErrorFigure& f : figures)
+      all.push_back(fmt::format("{} {}", whole ? f.name : f.short_name,
+                                padded(f.value > 0 ? percent_text(f.value) : "\xE2\x80\x93", 6)));
     return all;
   };
-  const std::string head = "Noise";
+  // Noise of the samples is all there is, or a part.
+  const std::string head = reads_records(line) ? "Error" : "Noise";
   const float head_width = text_width(head, font) + px(6), space = px(10);
-  const auto width = [&](const std::array<std::string, 3>& all) {
+  const auto width = [&](const std::vector<std::string>& all) {
     float sum = head_width - space;
     for (const std::string& text : all) sum += text_width(text, font) + space;
     return sum;
   };
   const bool whole = lo.x + width(texts(true)) <= right;
-  const std::array<std::string, 3> shown = texts(whole);
+  const std::vector<std::string> shown = texts(whole);
   draw_text(list, lo, {lo.x + head_width, lo.y + px(16)}, head, colour::text_dim, Align::left, font);
   float x = lo.x + head_width;
   for (size_t i = 0; i < shown.size(); ++i) {
@@ -261,7 +283,7 @@ void noise_row(const Accuracy& a, const ImVec2& lo, float right) {
     ImGui::PushID(static_cast<int>(i));
     ImGui::InvisibleButton("##noise", {w, px(16)});
     ImGui::PopID();
-    tooltip(fmt::format("Noise {}, estimated. {}", figures[i].name, figures[i].help));
+    tooltip(fmt::format("{} {}, estimated. {}", head, figures[i].name, figures[i].help));
     x += w + space;
   }
 }
@@ -281,6 +303,7 @@ void line_names(const Ui& ui, const Accuracy& a, const ImVec2& lo, float right) 
   put("mean", k_noise_ink[0], 8);
   put("median tile", k_noise_ink[1], 8);
   put("worst tenth", k_noise_ink[2], 8);
+  if (reads_records(a.ledger.entries().back())) put("- - records", colour::text_dim, 8);
   if (a.adaptive) put("- - hardest tile", colour::text_dim, 8);
   if (!a.reference.empty())
     put(a.reference_applies ? "\xC2\xB7 \xC2\xB7 \xC2\xB7 true error" : "reference of another view",
@@ -317,6 +340,7 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
   const auto& lines = a.ledger.entries();
   stroke(list, tile_points(plot, a, &stats::Entry::tile_median), k_noise_ink[1], px(1));
   stroke(list, tile_points(plot, a, &stats::Entry::tile_worst_tenth), k_noise_ink[2], px(1));
+  dashed_line(list, floor_points(plot, a), colour::text_dim, px(2), px(4), px(1.25f));
   stroke(list, error_points(plot, a, 0), k_sum, px(2));
   if (a.adaptive)
     dashed_line(list, line_points(plot, a, [&](size_t i) { return a.hardest[i]; }),

@@ -13,6 +13,15 @@ using session::Accuracy;
 
 namespace {
 
+/// Tiles that are given up because of what samples read of records, not for want of samples.
+uint32_t limited_tiles(const Accuracy& a) {
+  return static_cast<uint32_t>(
+      std::count_if(a.tiles.begin(), a.tiles.end(), [&](const session::TileStatus& t) {
+        return t.state == shared::k_tile_capped && (t.records > 0 || t.interpolation > 0) &&
+               t.samples < a.max_samples;
+      }));
+}
+
 std::string short_percent(double fraction) { return fmt::format("{:.3g} %", 100 * fraction); }
 
 }  // namespace
@@ -20,22 +29,36 @@ std::string short_percent(double fraction) { return fmt::format("{:.3g} %", 100 
 std::optional<Present> present(const Accuracy& a) {
   if (a.ledger.entries().empty()) return std::nullopt;
   const stats::Entry& last = a.ledger.entries().back();
-  const double error = !a.adaptive ? last.error[0] : a.hardest.empty() ? 0 : a.hardest.back();
+  const double error = !a.adaptive ? last.sum() : a.hardest.empty() ? 0 : a.hardest.back();
   if (!(error > 0) || !(last.wall_s > 0)) return std::nullopt;
   return Present{last.wall_s, error};
 }
 
-std::array<NoiseFigure, 3> noise_figures(const stats::Entry& line) {
-  return {
-      {{"of the mean", "mean", line.error[0],
-        "The pixels' standard errors (rms) over the picture's mean luminance. What is bright rules it: "
-        "behind a calm window walls may still be grainy."},
-       {"of the median tile", "median tile", line.tile_median,
-        "Half of the tiles are noisier, each held against its own pixels' brightness."},
-       {"of the worst tenth of the tiles", "worst tenth", line.tile_worst_tenth,
-        "A tenth of the tiles have at least this noise, each held against its own pixels' brightness: the "
-        "dark and difficult parts of the picture."}}};
+std::vector<ErrorFigure> error_figures(const stats::Entry& line) {
+  std::vector<ErrorFigure> figures{
+      {"of the mean", "mean", line.sum(),
+       "The pixels' standard errors (rms) over the picture's mean luminance. What is bright rules it: "
+       "behind a calm window walls may still be grainy."},
+      {"of the median tile", "median tile", line.tile_median,
+       "Half of the tiles are farther off, each held against its own pixels' brightness."},
+      {"of the worst tenth of the tiles", "worst tenth", line.tile_worst_tenth,
+       "A tenth of the tiles are at least this far off, each held against its own pixels' brightness: the "
+       "dark and difficult parts of the picture."}};
+  if (!reads_records(line)) return figures;
+  figures.push_back({"of the mean by the paths", "paths", line.error[0],
+                     "Noise of the samples, a part of what the mean is off by. More samples take it away."});
+  figures.push_back(
+      {"of the mean by the records", "records", line.records,
+       "Noise of the records that the samples read, a part of what the mean is off by. More samples "
+       "do not take it away; more rays a record do (cache.rays, cache.noise)."});
+  figures.push_back(
+      {"of the mean by interpolation", "interpolation", line.interpolation,
+       "By how much light that is interpolated between records is off, a part of what the mean is "
+       "off by. More samples do not take it away; more records do (cache.error)."});
+  return figures;
 }
+
+bool reads_records(const stats::Entry& line) { return line.records > 0 || line.interpolation > 0; }
 
 PlotRange plot_range(const Accuracy& a, const std::deque<Run>& earlier, double target,
                      const std::optional<stats::Band>& forecast, double seconds) {
@@ -45,7 +68,7 @@ PlotRange plot_range(const Accuracy& a, const std::deque<Run>& earlier, double t
     for (const stats::Entry& e : run.ledger.entries()) {
       if (!(e.error[0] > 0) || !(e.wall_s > 0)) continue;
       t_lo = std::min(t_lo, e.wall_s), t_hi = std::max(t_hi, e.wall_s);
-      e_hi = std::max({e_hi, e.error[0], e.tile_worst_tenth});
+      e_hi = std::max({e_hi, e.sum(), e.tile_worst_tenth});
       last = e.error[0];
     }
     if (last > 0) e_lo = std::min(e_lo, 0.5 * last);
@@ -75,10 +98,19 @@ std::vector<std::string> target_texts(const Accuracy& a, double target,
   if (a.adaptive && a.finished && target == a.target) {
     const uint32_t over = a.count(shared::k_tile_capped);
     if (over == 0) return {fmt::format("{} after {}", all, about_text(seconds)), all};
+    if (limited_tiles(a) > over / 2)
+      return {fmt::format("{} of {} tiles stay over {}: the records are the limit, more samples do not help",
+                          over, a.tiles.size(), goal),
+              fmt::format("{} tiles stay over {}: the records are the limit", over, goal),
+              fmt::format("{} tiles stay over {}", over, goal), goal};
     return {fmt::format("{} of {} tiles stay over {}, with all of {:.0f} samples", over, a.tiles.size(), goal,
                         a.max_samples),
             fmt::format("{} tiles stay over {}", over, goal), goal};
   }
+  if (!a.adaptive && stats::paths_target(a.ledger, target) <= 0)
+    return {fmt::format("{} will not be reached: the records are the limit ({}), more samples do not help",
+                        goal, short_percent(a.ledger.entries().back().floor())),
+            fmt::format("{}: the records are the limit", goal), goal};
   if (!forecast) return {all + ": too early to tell", all};
   if (forecast->high <= seconds * (1 + 1e-9))
     return {fmt::format("{} was reached after {}", all, about_text(forecast->middle)), all};

@@ -14,15 +14,18 @@ struct PlotRange {
   double t_lo = 0.1, t_hi = 100, e_lo = 0.001, e_hi = 1;
 };
 
-/// One way to sum the picture's estimated noise up, by its name.
-struct NoiseFigure {
-  std::string name;  ///< goes on after "Noise": "of the median tile"
+/// One way to sum the picture's estimated error up, by its name.
+struct ErrorFigure {
+  std::string name;  ///< goes on after "Error": "of the median tile"
   std::string short_name;
   double value = 0;  ///< relative
   std::string help;
 };
-/// Of the ledger's line: of the mean, of the median tile, of the worst tenth of the tiles.
-std::array<NoiseFigure, 3> noise_figures(const stats::Entry& line);
+/// Of the ledger's line: of the mean, of the median tile, of the worst tenth of the tiles; and where samples
+/// read records, what of the mean's comes from the paths, the records and interpolation.
+std::vector<ErrorFigure> error_figures(const stats::Entry& line);
+/// Whether that is so: else the error is the paths' noise.
+bool reads_records(const stats::Entry& line);
 
 /// A range that holds the run's lines, its earlier ones, the target with room below it, and the forecast as
 /// far as it does not squeeze what is known into a corner (300 times the time so far).

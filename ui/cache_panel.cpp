@@ -97,10 +97,16 @@ void numbers(const Ui& ui, const CacheReport& r) {
     value_row(
         "Overlap", fmt::format("{:.1f} on average, {} at most", o.mean, o.most),
         "Records that serve a point, over the pixels that one serves at least, as the camera sees them.");
-    value_row("Not served", share(double(o.pixels - o.served), double(o.pixels)),
+    value_row(
+        "Gathered by paths", share(double(o.gathered), double(o.pixels)),
+        "Pixels so near to something else that light is not interpolated there: paths gather it, and end "
+        "in records one vertex later (cache.gather).");
+    value_row("Not served", share(double(o.pixels - o.served - o.gathered), double(o.pixels)),
               "Pixels showing something diffuse that no record serves: it is path traced there.");
   } else {
     value_row("Overlap", "\xE2\x80\x93", "Known when the picture has its first samples.", colour::text_faint);
+    value_row("Gathered by paths", "\xE2\x80\x93", "Known when the picture has its first samples.",
+              colour::text_faint);
     value_row("Not served", "\xE2\x80\x93", "Known when the picture has its first samples.",
               colour::text_faint);
   }
@@ -143,6 +149,11 @@ void overlap_bars(const CacheReport& r) {
     const vec3 c = i == 0 ? shared::k_unserved_ink
                           : shared::ramp_color(shared::k_ramp_viridis, float(i) / shared::k_overlap_scale);
     list->AddRectFilled({x, top}, {std::floor(x + pitch) - 1, hi.y}, ink(c));
+    if (i == 0 && bins[0] > 0) {
+      const float gathered = (hi.y - top) * float(r.overlap->gathered) / float(bins[0]);
+      list->AddRectFilled({x, hi.y - gathered}, {std::floor(x + pitch) - 1, hi.y},
+                          ink(shared::k_gathered_ink));
+    }
     const std::string n = i + 1 == bins.size() ? fmt::format("\xE2\x89\xA5{}", i) : fmt::format("{}", i);
     if (i % 4 == 0)
       draw_text(list, {x - pitch, hi.y + px(1)}, {x + 2 * pitch, hi.y + px(15)}, n, colour::text_faint,
@@ -150,8 +161,12 @@ void overlap_bars(const CacheReport& r) {
     ImGui::SetCursorScreenPos({x, lo.y});
     ImGui::PushID(static_cast<int>(i));
     ImGui::InvisibleButton("##bin", {std::max(1.0f, pitch), height});
-    tooltip(fmt::format("{} of the pixels: served by {} record{}.", share(bins[i], double(r.overlap->pixels)),
-                        i == 0 ? "no" : n, i == 1 ? "" : "s"));
+    const double pixels = double(r.overlap->pixels);
+    std::string told = fmt::format("{} of the pixels: served by {} record{}.", share(bins[i], pixels),
+                                   i == 0 ? "no" : n, i == 1 ? "" : "s");
+    if (i == 0)
+      told += fmt::format(" In {} paths gather the light.", share(double(r.overlap->gathered), pixels));
+    tooltip(told);
     ImGui::PopID();
   }
   ImGui::SetCursorScreenPos({lo.x, hi.y + px(18)});

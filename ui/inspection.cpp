@@ -162,7 +162,7 @@ void fields(Card& card, uint32_t index, const Record& r) {
     any = true;
     card.light(p, r.parts[p]);
   }
-  if (!any) card.note("no light", colour::text_faint);
+  if (!any) card.note(r.crowded ? "none: paths gather it here" : "no light", colour::text_faint);
 }
 
 void weights(Card& card, const Inspection& found, bool building) {
@@ -173,6 +173,11 @@ void weights(Card& card, const Inspection& found, bool building) {
   if (found.asks == shared::k_asks_in_vain) {
     card.note("The normal map is too steep for records.", colour::warning);
     card.note("It is path traced here.", colour::warning);
+    return;
+  }
+  if (found.gathers) {
+    card.note("Too near to something else to interpolate.", colour::text_dim);
+    card.note("Paths gather the light here.", colour::text_dim);
     return;
   }
   if (found.count == 0) {

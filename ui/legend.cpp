@@ -164,7 +164,8 @@ void overlap_inks(ImDrawList* list, const ImVec2& at) {
         static_cast<float>(n) / shared::k_overlap_scale,
         (n == static_cast<int>(shared::k_overlap_scale) ? "\xE2\x89\xA5 " : "") + fmt::format("{}", n));
   ramp_bar(list, at, shared::k_ramp_viridis, labels);
-  swatch(list, {at.x, at.y + px(28)}, ink_of(shared::k_unserved_ink), "none: path traced");
+  swatch(list, {at.x, at.y + px(28)}, ink_of(shared::k_gathered_ink), "none: paths gather there");
+  swatch(list, {at.x, at.y + px(46)}, ink_of(shared::k_unserved_ink), "none: path traced");
 }
 
 /// What has become of places; returns the title, draws below it when there is a list.
@@ -255,7 +256,7 @@ void draw_legend(Ui& ui, const Area& area) {
   const float heat_height = heat ? px(48) : 0;
   const float tiles_height = tiles ? px(50) + line * static_cast<float>(rows.size() + (heavy > 0)) : 0;
   const bool numbered = records && cache->color <= shared::k_record_by_origin;
-  const float records_height = records ? px(numbered ? 40 : 48) : 0, overlap_height = overlap ? px(64) : 0,
+  const float records_height = records ? px(numbered ? 40 : 48) : 0, overlap_height = overlap ? px(82) : 0,
               placement_height = placement ? px(40) : 0, detail_height = detailed ? px(48) : 0;
   const float between =
       px(6) * static_cast<float>(heat + tiles + records + overlap + placement + detailed - 1);

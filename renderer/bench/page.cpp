@@ -270,18 +270,24 @@ bool has_records(const Json& scene) {
 }
 
 std::string records_cells(const Json& cell) {
-  return fmt::format("<td>{:.0f}</td><td>{}</td>", records_of(cell),
-                     count_text(median_of(cell.at("cache_rays"))));
+  std::string html = fmt::format("<td>{:.0f}</td><td>{}</td>", records_of(cell),
+                                 count_text(median_of(cell.at("cache_rays"))));
+  for (const char* part : {"paths_error", "records_error", "interpolation_error"})
+    html += fmt::format("<td>{}</td>", cell.contains(part) ? percent_text(median_of(cell.at(part))) : "–");
+  return html;
 }
 
 std::string cells_table(const Json& report, const Json& scene) {
   std::string html =
       "<div class=\"wrap\"><table><tr><th class=\"l\">setting</th><th "
       "class=\"l\">budget</th><th>seconds</th><th>samples<br/>a pixel</th><th>rays</th><th>rays a "
-      "second</th><th>noise of<br/>the mean</th><th>of the<br/>median tile</th><th>of the worst<br/>tenth of "
+      "second</th><th>error told of<br/>the mean</th><th>of the<br/>median tile</th><th>of the "
+      "worst<br/>tenth of "
       "the tiles</th><th>true error<br/>of the mean</th><th>not<br/>reached</th>";
   const bool cached = has_records(scene);
-  html += cached ? "<th>records</th><th>their rays</th></tr>\n" : "</tr>\n";
+  html += cached ? "<th>records</th><th>their rays</th><th>told of the mean:<br/>paths</th><th>records</th>"
+                   "<th>inter-<br/>polation</th></tr>\n"
+                 : "</tr>\n";
   for (const Json& s : scene.at("settings")) {
     for (const Json& c : s.at("cells")) {
       const double seconds = median_of(c.at("wall_s"));
@@ -300,7 +306,8 @@ std::string cells_table(const Json& report, const Json& scene) {
           median_of(c.at("tiles_over")) > 0 ? fmt::format("{:.0f} tile{}", median_of(c.at("tiles_over")),
                                                           median_of(c.at("tiles_over")) == 1 ? "" : "s")
                                             : "–");
-      if (cached) html += records_of(c) > 0 ? records_cells(c) : "<td>–</td><td>–</td>";
+      if (cached)
+        html += records_of(c) > 0 ? records_cells(c) : "<td>–</td><td>–</td><td>–</td><td>–</td><td>–</td>";
       html += "</tr>\n";
     }
   }

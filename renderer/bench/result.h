@@ -19,10 +19,12 @@ struct CurvePoint {
   double wall_s = 0, device_s = 0;
   uint64_t rays = 0;
   double samples = 0;  ///< a pixel, on average
-  Layers estimated{};  ///< rms error over mean luminance, by the render itself
-  Layers truth{};      ///< the same against the reference, its noise taken off; 0: lost in that noise
-  double tiles = 0;    ///< estimated relative error that nine tiles in ten are under
-  double relmse = 0;   ///< as Result::relmse
+  /// Rms error over mean luminance, by the render itself: of the sum what is told (stats::Entry::sum), of the
+  /// components the paths' noise.
+  Layers estimated{};
+  Layers truth{};     ///< the same against the reference, its noise taken off; 0: lost in that noise
+  double tiles = 0;   ///< estimated relative error that nine tiles in ten are under
+  double relmse = 0;  ///< as Result::relmse
 };
 
 /// What was foretold when a tenth of the render's time was over, against what it came to.
@@ -44,6 +46,9 @@ struct Result {
   uint64_t rays = 0, paths = 0;
   double samples = 0;
   Layers estimated{}, truth{}, component_s{};
+  /// Of estimated[0] by where it comes from: hypot(paths, records) + interpolation; 0 in files from before
+  /// they were told apart.
+  double paths_error = 0, records_error = 0, interpolation_error = 0;
   double mse = 0;  ///< squared true rms error in luminance, the reference's noise taken off
   /// Relative mean squared error of R, G, B against the reference's halves, without the worst pixels
   /// (film/io/relative_mse.h), and with them; 0: less than nothing, lost in their noise.

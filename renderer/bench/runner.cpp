@@ -58,12 +58,19 @@ film::RelativeMse relative_mse(const Renderer& r, const film::ReferencePair& hal
   return film::relative_mse(sum, halves);
 }
 
+/// What is told of the sum; of the components, the paths' noise.
+Layers told(const stats::Entry& e) {
+  Layers all = e.error;
+  all[0] = e.sum();
+  return all;
+}
+
 CurvePoint make_point(const stats::Entry& e, const film::RelativeMse& relative) {
   return {.wall_s = e.render_s,
           .device_s = e.device_s,
           .rays = e.rays,
           .samples = e.samples,
-          .estimated = e.error,
+          .estimated = told(e),
           .truth = e.truth.value_or(Layers{}),
           .tiles = e.tile_worst_tenth,
           .relmse = std::max(0.0, relative.trimmed)};
@@ -90,7 +97,8 @@ std::optional<ForecastResult> make_forecast(const stats::Ledger& ledger, bool ad
     f.rays = *at.total_rays;
     f.seconds = scaled(f.rays, 1 / rays_per_s);
   } else {
-    const auto seconds = stats::seconds_to(early, entries.back().error[0]);
+    // Its own records' part, as it will be told in the end: the paths' is what is foretold.
+    const auto seconds = stats::seconds_to(early, entries.back().sum());
     if (!seconds) return std::nullopt;
     f.seconds = *seconds;
     f.rays = scaled(f.seconds, rays_per_s);
@@ -228,7 +236,9 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
 
   result.wall_s = last.render_s, result.device_s = last.device_s;
   result.rays = last.rays, result.paths = last.paths, result.samples = last.samples;
-  result.estimated = last.error, result.truth = last.truth.value_or(Layers{});
+  result.paths_error = last.error[0];
+  result.records_error = last.records, result.interpolation_error = last.interpolation;
+  result.estimated = told(last), result.truth = last.truth.value_or(Layers{});
   result.component_s = last.component_s;
   const double rms = result.truth[0] * r->reference()->mean_luminance;
   result.mse = rms * rms;

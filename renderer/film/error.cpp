@@ -20,7 +20,40 @@ double student_90(double degrees) {
   return z + (g1 + (g2 + g3 / n) / n) / n;
 }
 
-double TileError::half_width_90() const { return student_90(degrees) * standard_error; }
+double error_sum(double paths, double records, double interpolation) {
+  return std::hypot(paths, records) + interpolation;
+}
+
+RecordsError records_error(std::span<const shared::BlockRecords> blocks) {
+  using shared::k_record_lanes;
+  double pixels = 0;
+  std::array<double, 2> interpolation{};
+  std::array<double, 2 * k_record_lanes> noise{}, left{};
+  for (const shared::BlockRecords& b : blocks) {
+    pixels += b.pixels;
+    for (size_t k = 0; k < 2; ++k) interpolation[k] += b.interpolation[k];
+    for (size_t k = 0; k < noise.size(); ++k) noise[k] += b.noise[k], left[k] += b.interpolation_noise[k];
+  }
+  if (pixels == 0) return {};
+  // Products of the two paths' sums: in the mean squares of what they are about, without the paths' noise.
+  double variance = 0, square = interpolation[0] * interpolation[1];
+  for (size_t k = 0; k < k_record_lanes; ++k) {
+    variance += noise[k] * noise[k_record_lanes + k] / k_record_lanes;
+    square -= left[k] * left[k_record_lanes + k] / k_record_lanes;
+  }
+  return {std::sqrt(std::max(variance, 0.0)) / pixels, std::sqrt(std::max(square, 0.0)) / pixels,
+          k_record_lanes};
+}
+
+double TileError::half_width_90() const {
+  if (!(records.noise > 0)) return student_90(degrees) * standard_error + records.interpolation;
+  const double by_paths = standard_error * standard_error, by_records = records.noise * records.noise;
+  const double both = by_paths + by_records;
+  const double free =
+      both * both /
+      ((by_paths > 0 ? by_paths * by_paths / degrees : 0) + by_records * by_records / records.degrees);
+  return student_90(free) * std::sqrt(both) + records.interpolation;
+}
 
 namespace {
 struct Quadrants {
@@ -37,13 +70,27 @@ struct Quadrants {
 };
 }  // namespace
 
-double relative_error(const Film& film, std::span<const uint32_t> blocks) {
+namespace {
+/// The quadratic mean over the pixels of a sum of squares, which may be below 0 by chance.
+double quadratic_mean(double squares, double pixels) {
+  return pixels > 0 ? std::sqrt(std::max(squares, 0.0) / pixels) : 0;
+}
+}  // namespace
+
+RelativeError relative_error(const Film& film, std::span<const uint32_t> blocks) {
   Quadrants quadrants;
-  for (const uint32_t b : blocks) quadrants.add(film.errors()[b]);
-  return quadrants.relative();
+  double pixels = 0, records = 0, interpolation = 0;
+  for (const uint32_t b : blocks) {
+    const shared::BlockError& e = film.errors()[b];
+    quadrants.add(e);
+    for (const float n : e.quadrant_pixels) pixels += n;
+    records += e.records_relative, interpolation += e.interpolation_relative;
+  }
+  return {quadrants.relative(), quadratic_mean(records, pixels), quadratic_mean(interpolation, pixels)};
 }
 
-TileError tile_error(std::span<const shared::BlockError> blocks) {
+TileError tile_error(std::span<const shared::BlockError> blocks,
+                     std::span<const shared::BlockRecords> records) {
   TileError tile;
   double &variance = tile.variance, &fourth = tile.fourth;
   for (const shared::BlockError& b : blocks) {
@@ -57,8 +104,15 @@ TileError tile_error(std::span<const shared::BlockError> blocks) {
   tile.standard_error = std::sqrt(variance) / tile.pixels;
   tile.degrees = fourth > 0 ? 3 * variance * variance / fourth : tile.pixels;
   Quadrants quadrants;
-  for (const shared::BlockError& b : blocks) quadrants.add(b);
+  double by_records = 0, by_interpolation = 0;
+  for (const shared::BlockError& b : blocks) {
+    quadrants.add(b);
+    by_records += b.records_relative, by_interpolation += b.interpolation_relative;
+  }
   tile.relative = quadrants.relative();
+  tile.records = records_error(records);
+  tile.relative_records = quadratic_mean(by_records, tile.pixels);
+  tile.relative_interpolation = quadratic_mean(by_interpolation, tile.pixels);
   return tile;
 }
 
@@ -68,16 +122,19 @@ std::vector<TileError> tile_errors(const Film& film, uint32_t side) {
   for (uint32_t y = 0; y < film.blocks_down(); y += step)
     for (uint32_t x = 0; x < film.blocks_across(); x += step) {
       std::vector<shared::BlockError> blocks;
+      std::vector<shared::BlockRecords> records;
       for (uint32_t v = y; v < std::min(y + step, film.blocks_down()); ++v)
-        for (uint32_t u = x; u < std::min(x + step, film.blocks_across()); ++u)
+        for (uint32_t u = x; u < std::min(x + step, film.blocks_across()); ++u) {
           blocks.push_back(film.errors()[v * film.blocks_across() + u]);
-      tiles.push_back(tile_error(blocks));
+          if (film.records_told()) records.push_back(film.records()[v * film.blocks_across() + u]);
+        }
+      tiles.push_back(tile_error(blocks, records));
     }
   return tiles;
 }
 
 void mark_heavy_tails(std::span<TileError> tiles, uint32_t across, double luminance_floor) {
-  constexpr double k_share = 1.0 / 8;
+  constexpr double k_share = 1.0 / 8, k_small = 1.0 / 3;
   const auto few = [](double variance, double fourth, double pixels) {
     return fourth > 0 && 3 * variance * variance < k_share * pixels * fourth;
   };
@@ -94,29 +151,47 @@ void mark_heavy_tails(std::span<TileError> tiles, uint32_t across, double lumina
           pixels += n.pixels;
         }
       TileError& tile = tiles[static_cast<size_t>(y) * across + static_cast<size_t>(x)];
-      tile.heavy_tailed = few(variance, fourth, pixels) || few(tile.variance, tile.fourth, tile.pixels);
+      const double around =
+          pixels > 0 ? std::sqrt(variance * tile.pixels / pixels) / std::max(tile.pixels, 1.0) : 0;
+      const double by_paths =
+          std::max(tile.standard_error, around * std::max(tile.luminance, luminance_floor));
+      const bool matters = by_paths >= k_small * (tile.records.noise + tile.records.interpolation);
+      tile.heavy_tailed =
+          matters && (few(variance, fourth, pixels) || few(tile.variance, tile.fourth, tile.pixels));
     }
 }
 
-TileSpread tile_spread(std::span<const TileError> tiles) {
+namespace {
+template <class Of>
+TileSpread spread_of(std::span<const TileError> tiles, const Of& of) {
   TileSpread spread;
   if (tiles.empty()) return spread;
   std::vector<double> sorted;
   sorted.reserve(tiles.size());
-  for (const TileError& t : tiles) sorted.push_back(t.relative), spread.heavy_tailed += t.heavy_tailed;
+  for (const TileError& t : tiles) sorted.push_back(of(t)), spread.heavy_tailed += t.heavy_tailed;
   std::sort(sorted.begin(), sorted.end());
   spread.median = sorted[sorted.size() / 2];
   spread.worst_tenth = sorted[sorted.size() * 9 / 10];
   spread.worst = sorted.back();
   return spread;
 }
+}  // namespace
+
+TileSpread tile_spread(std::span<const TileError> tiles) {
+  return spread_of(tiles, [](const TileError& t) { return t.relative_sum(); });
+}
+
+TileSpread tile_spread(std::span<const TileError> tiles, double TileError::*part) {
+  return spread_of(tiles, [part](const TileError& t) { return t.*part; });
+}
 
 ImageError image_error(std::span<const shared::BlockError> blocks) {
   ImageError image;
   std::array<double, 5> variance{};
-  double fourth = 0;
+  double fourth = 0, records = 0, interpolation = 0;
   for (const shared::BlockError& b : blocks) {
     image.pixels += b.pixels, fourth += b.fourth;
+    records += b.records, interpolation += b.interpolation;
     for (int k = 0; k < 5; ++k) image.luminance[k] += b.luminance[k], variance[k] += b.variance[k];
   }
   if (image.pixels == 0) return image;
@@ -124,6 +199,8 @@ ImageError image_error(std::span<const shared::BlockError> blocks) {
     image.luminance[k] /= image.pixels;
     image.rms[k] = std::sqrt(variance[k] / image.pixels);
   }
+  image.records_rms = quadratic_mean(records, image.pixels);
+  image.interpolation_rms = quadratic_mean(interpolation, image.pixels);
   image.degrees = fourth > 0 ? 3 * variance[0] * variance[0] / fourth : image.pixels;
   return image;
 }

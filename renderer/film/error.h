@@ -1,9 +1,15 @@
 #pragma once
-// The noise in a picture, from the two independently scrambled halves of its film: of tiles, and of the
-// whole.
+// The error of a picture, of its tiles and of the whole, by where it comes from:
+// - paths: the noise of the samples, from the two independently scrambled halves of the film. More samples
+// take
+//   it away.
+// - records: the noise of what the samples read of records, which all of them have in common.
+// - interpolation: what reading between records is off by, for ever; as an absolute value.
+// The last two are known where somebody has told the film of them (Film::records_told()), and 0 where nothing
+// is read. The noises are independent of each other, so that their variances add up; interpolation's part has
+// a sign that nobody knows, and is added to what they come to: sum = hypot(paths, records) + interpolation.
 //
-// Everything here is about the noise of estimators whose mean is right. What a biased solver gets wrong for
-// ever is not in it.
+// What else a biased solver gets wrong for ever is not in it.
 #include <array>
 #include <span>
 #include <vector>
@@ -16,11 +22,21 @@ namespace lucerna::film {
 /// 5 % of it is about one step of an 8-bit sRGB picture, so that black corners do not eat the render.
 inline constexpr float k_luminance_floor = 0.02f;
 
+/// hypot(paths, records) + interpolation.
+double error_sum(double paths, double records, double interpolation);
+
+/// What records make of a mean over some blocks, in luminance; degrees: of freedom of noise^2.
+struct RecordsError {
+  double noise = 0, interpolation = 0, degrees = 0;
+};
+RecordsError records_error(std::span<const shared::BlockRecords> blocks);
+
 /// Of a tile: some blocks that lie together.
 struct TileError {
-  double pixels = 0;          ///< with samples in both halves
-  double luminance = 0;       ///< mean
-  double standard_error = 0;  ///< of that mean; pixels are independent, so their variances add up
+  double pixels = 0;     ///< with samples in both halves
+  double luminance = 0;  ///< mean
+  double standard_error =
+      0;  ///< of that mean by the paths; pixels are independent, so their variances add up
   /// Degrees of freedom of standard_error^2 by Satterthwaite: (sum v)^2 / (sum v^2 / 3), for v has one degree
   /// of freedom and so E[v^2] = 3 sigma^4. All pixels alike: their number; one that dwarfs the rest: 3.
   double degrees = 0;
@@ -31,16 +47,27 @@ struct TileError {
   /// so that it can be trusted from one pass to the next.
   double relative = 0;
   double variance = 0, fourth = 0;  ///< sums of v and v^2, from which the two above come
+  RecordsError records;             ///< of the mean: pixels that read the same records err together
+  /// Quadratic means over the pixels of what records make of each, against what `relative` is held against.
+  double relative_records = 0, relative_interpolation = 0;
+  /// Of the three relative ones: what is told of the tile.
+  double relative_sum() const { return error_sum(relative, relative_records, relative_interpolation); }
   /// Set by mark_heavy_tails(): the noise is not of a kind that the interval below can speak for.
   bool heavy_tailed = false;
 
-  /// Half width of the interval around `luminance` that holds the truth with probability 0.9, by Student's t.
+  /// Half width of the interval around `luminance` that holds the truth with probability 0.9: of both noises
+  /// by Student's t, with their degrees of freedom by Satterthwaite, and interpolation's part.
   double half_width_90() const;
 };
-TileError tile_error(std::span<const shared::BlockError> blocks);
+/// `records`: of the same blocks, or none.
+TileError tile_error(std::span<const shared::BlockError> blocks,
+                     std::span<const shared::BlockRecords> records = {});
 
-/// TileError::relative alone, of these blocks of film.errors().
-double relative_error(const Film& film, std::span<const uint32_t> blocks);
+/// TileError::relative, relative_records and relative_interpolation alone, of these blocks of film.errors().
+struct RelativeError {
+  double paths = 0, records = 0, interpolation = 0;
+};
+RelativeError relative_error(const Film& film, std::span<const uint32_t> blocks);
 
 /// The tiles of a film, `side` pixels (8 or 16) along each side, in raster order, from film.errors().
 std::vector<TileError> tile_errors(const Film& film, uint32_t side);
@@ -60,8 +87,9 @@ struct TileSpread {
   double worst = 0;
   size_t heavy_tailed = 0;  ///< tiles that are marked so
 };
-/// Of TileError::relative; all 0 where there are no tiles.
+/// Of TileError::relative_sum(), or of one of its parts; all 0 where there are no tiles.
 TileSpread tile_spread(std::span<const TileError> tiles);
+TileSpread tile_spread(std::span<const TileError> tiles, double TileError::*part);
 
 /// Of a whole picture; [0] the sum of the components, [1..4] they.
 struct ImageError {
@@ -71,8 +99,14 @@ struct ImageError {
   /// Degrees of freedom of rms[0]^2, as TileError::degrees: its own relative standard error is
   /// sqrt(2 / degrees), as far as its noise has been met.
   double degrees = 0;
+  /// Of the sum: the same of what records make of each pixel.
+  double records_rms = 0, interpolation_rms = 0;
   /// rms over the sum's mean luminance: one scale for all, so that components can be compared.
   double relative(int layer) const { return luminance[0] > 0 ? rms[layer] / luminance[0] : 0; }
+  double relative_records() const { return luminance[0] > 0 ? records_rms / luminance[0] : 0; }
+  double relative_interpolation() const { return luminance[0] > 0 ? interpolation_rms / luminance[0] : 0; }
+  /// Of the three: what is told of the picture.
+  double relative_sum() const { return error_sum(relative(0), relative_records(), relative_interpolation()); }
 };
 ImageError image_error(std::span<const shared::BlockError> blocks);
 

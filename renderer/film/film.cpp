@@ -30,7 +30,8 @@ void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height) 
                 uint32_t(std::sqrt(largest * 9.0 / 16)));
 }
 
-Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width), height_(height) {
+Film::Film(gpu::Device& device, uint32_t width, uint32_t height)
+    : width_(width), height_(height), device_(device) {
   const gpu::Limits& limits = device.info().limits;
   const uint64_t pixels = uint64_t(width) * height;
   check_size(device.info(), width, height);
@@ -49,6 +50,22 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height) : width_(width)
   tile_marks_ = gpu::Buffer(
       device,
       {.name = "tile marks", .bytes = blocks() * sizeof(shared::TileMark), .memory = gpu::Memory::host});
+  records_ = gpu::Buffer(device, {.name = "no records", .bytes = 0});
+  block_records_ = gpu::Buffer(device, {.name = "no records", .bytes = 0});
+}
+
+void Film::make_room_for_records() {
+  gpu::make_room(device_, records_,
+                 {.name = "records' errors", .bytes = uint64_t{width_} * height_ * sizeof(vec2)});
+  gpu::make_room(device_, block_records_,
+                 {.name = "records' errors of blocks",
+                  .bytes = blocks() * sizeof(shared::BlockRecords),
+                  .memory = gpu::Memory::host});
+}
+
+std::span<const shared::BlockRecords> Film::records() const {
+  if (!records_told_) return {};
+  return {static_cast<const shared::BlockRecords*>(block_records_.mapped()), blocks()};
 }
 
 std::span<const shared::BlockError> Film::errors() const {
@@ -63,6 +80,7 @@ void Film::clear(gpu::Stream& stream) {
   stream.fill(vertices_, 0);
   stream.fill(errors_, 0);
   stream.run();
+  records_told_ = false;
 }
 
 void Film::bind(gpu::Resources& r) const {
@@ -83,6 +101,8 @@ void Film::bind(gpu::Resources& r) const {
   r.set("Picture", picture_);
   r.set("TileMarks", tile_marks_);
   r.set("BlockErrors", errors_);
+  r.set("FilmRecords", records_);
+  r.set("BlockRecordSums", block_records_);
 }
 
 void Film::bind_coarse(gpu::Resources& r) const {

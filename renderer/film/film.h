@@ -71,6 +71,14 @@ class Film {
   void bind_coarse(gpu::Resources& resources) const;
   /// One for each block, in raster order, as the last estimates left them (all 0 where there was none).
   std::span<const shared::BlockError> errors() const;
+  /// What the pixels read of records may be wrong by (BlockRecords, one a block in raster order), for kernels
+  /// to write, as FilmRecords and BlockRecordSums; and that they have written all of it. Until then, and
+  /// after a clear(), nothing is known.
+  void make_room_for_records();
+  void tell_records() { records_told_ = true; }
+  bool records_told() const { return records_told_; }
+  /// Empty while nothing is known.
+  std::span<const shared::BlockRecords> records() const;
   Image read() const;
   /// Mean radiance of each component over the picture's sampled pixels.
   static std::array<vec3, k_components> means(const Image& image);
@@ -84,6 +92,9 @@ class Film {
   bool fits_storage_buffers_ = true;
   std::array<gpu::Buffer, k_components> sums_;
   gpu::Buffer albedo_, normal_, count_, vertices_, picture_, errors_, tile_marks_;
+  gpu::Device& device_;
+  gpu::Buffer records_, block_records_;  // small where there are none
+  bool records_told_ = false;
 };
 
 }  // namespace lucerna::film

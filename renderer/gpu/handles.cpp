@@ -4,6 +4,7 @@ namespace lucerna::gpu {
 
 Handles::~Handles() {
   if (!device) return;
+  pipelines.clear();
   if (staging_) vk.vkDestroyBuffer(device, staging_, nullptr);
   if (allocator) allocator->free(staging_memory_, false);
   if (now_fence_) vk.vkDestroyFence(device, now_fence_, nullptr);

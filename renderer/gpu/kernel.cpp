@@ -1,5 +1,6 @@
 #include "gpu/kernel.h"
 
+#include "base/hash.h"
 #include "gpu/spirv.h"
 #include "gpu/vulkan.h"
 
@@ -44,6 +45,67 @@ Kernel::Impl::Kind slot_kind(const std::string& file, const spirv::Resource& res
   }
 }
 
+void make_layouts(const Handles& h, const Kernel::Impl& kernel, const std::vector<spirv::Resource>& resources,
+                  Pipeline& out) {
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (size_t i = 0; i < resources.size(); ++i) {
+    VkDescriptorSetLayoutBinding binding{};
+    binding.binding = resources[i].binding;
+    binding.descriptorType = descriptor_type(kernel.slots[i].kind);
+    binding.descriptorCount = 1;
+    binding.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
+    bindings.push_back(binding);
+  }
+  VkDescriptorSetLayoutCreateInfo set{};
+  set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  set.bindingCount = static_cast<uint32_t>(bindings.size());
+  set.pBindings = bindings.data();
+  check(h.vk.vkCreateDescriptorSetLayout(h.device, &set, nullptr, &out.set_layout), "creating a kernel");
+  const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, (kernel.push_bytes + 3) / 4 * 4};
+  VkPipelineLayoutCreateInfo layout{};
+  layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  layout.setLayoutCount = 1;
+  layout.pSetLayouts = &out.set_layout;
+  layout.pushConstantRangeCount = kernel.push_bytes ? 1 : 0;
+  layout.pPushConstantRanges = &push;
+  check(h.vk.vkCreatePipelineLayout(h.device, &layout, nullptr, &out.layout), "creating a kernel");
+}
+
+/// Depends on `words` and `constants` alone: slots and push constants are what the words declare.
+std::shared_ptr<const Pipeline> make_pipeline(const Handles& h, const Kernel::Impl& kernel,
+                                              const std::vector<uint32_t>& words,
+                                              const std::vector<spirv::Resource>& resources,
+                                              const std::vector<SpecConstant>& constants) {
+  auto made = std::make_shared<Pipeline>(h);
+  make_layouts(h, kernel, resources, *made);
+  VkShaderModuleCreateInfo code{};
+  code.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  code.codeSize = words.size() * sizeof(uint32_t);
+  code.pCode = words.data();
+  VkShaderModule shader = VK_NULL_HANDLE;
+  check(h.vk.vkCreateShaderModule(h.device, &code, nullptr, &shader), "creating a kernel");
+  std::vector<VkSpecializationMapEntry> entries;
+  for (size_t i = 0; i < constants.size(); ++i)
+    entries.push_back({constants[i].id,
+                       static_cast<uint32_t>(i * sizeof(SpecConstant) + offsetof(SpecConstant, value)),
+                       sizeof(uint32_t)});
+  const VkSpecializationInfo special{static_cast<uint32_t>(entries.size()), entries.data(),
+                                     constants.size() * sizeof(SpecConstant), constants.data()};
+  VkComputePipelineCreateInfo pipeline{};
+  pipeline.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  pipeline.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  pipeline.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  pipeline.stage.module = shader;
+  pipeline.stage.pName = "main";
+  pipeline.stage.pSpecializationInfo = constants.empty() ? nullptr : &special;
+  pipeline.layout = made->layout;
+  const VkResult result =
+      h.vk.vkCreateComputePipelines(h.device, VK_NULL_HANDLE, 1, &pipeline, nullptr, &made->pipeline);
+  h.vk.vkDestroyShaderModule(h.device, shader, nullptr);
+  check(result, ("building the kernel " + kernel.file).c_str());
+  return made;
+}
+
 }  // namespace
 
 void Resources::set(const std::string& name, const Buffer& buffer) { entries_[name] = &buffer, ++version_; }
@@ -56,13 +118,6 @@ void Resources::remove(const std::string& name) { version_ += entries_.erase(nam
 const Resources::Entry* Resources::find(const std::string& name) const {
   const auto found = entries_.find(name);
   return found == entries_.end() ? nullptr : &found->second;
-}
-
-Kernel::Impl::~Impl() {
-  const auto& vk = handles->vk;
-  if (pipeline) vk.vkDestroyPipeline(handles->device, pipeline, nullptr);
-  if (layout) vk.vkDestroyPipelineLayout(handles->device, layout, nullptr);
-  if (set_layout) vk.vkDestroyDescriptorSetLayout(handles->device, set_layout, nullptr);
 }
 
 Kernel::Kernel() = default;
@@ -89,55 +144,12 @@ Kernel::Kernel(Device& device, ShaderCompiler& compiler, const std::string& file
     throw_error(file, "its push constants are {} bytes; {} takes {}", impl->push_bytes, h.info.name,
                 h.max_push_constants);
 
-  std::vector<VkDescriptorSetLayoutBinding> bindings;
-  for (const spirv::Resource& resource : module.resources) {
+  for (const spirv::Resource& resource : module.resources)
     impl->slots.push_back({resource.name, slot_kind(file, resource)});
-    VkDescriptorSetLayoutBinding binding{};
-    binding.binding = resource.binding;
-    binding.descriptorType = descriptor_type(impl->slots.back().kind);
-    binding.descriptorCount = 1;
-    binding.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-    bindings.push_back(binding);
-  }
-  VkDescriptorSetLayoutCreateInfo set{};
-  set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  set.bindingCount = static_cast<uint32_t>(bindings.size());
-  set.pBindings = bindings.data();
-  check(h.vk.vkCreateDescriptorSetLayout(h.device, &set, nullptr, &impl->set_layout), "creating a kernel");
-  const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, (impl->push_bytes + 3) / 4 * 4};
-  VkPipelineLayoutCreateInfo layout{};
-  layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  layout.setLayoutCount = 1;
-  layout.pSetLayouts = &impl->set_layout;
-  layout.pushConstantRangeCount = impl->push_bytes ? 1 : 0;
-  layout.pPushConstantRanges = &push;
-  check(h.vk.vkCreatePipelineLayout(h.device, &layout, nullptr, &impl->layout), "creating a kernel");
-
-  VkShaderModuleCreateInfo code{};
-  code.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  code.codeSize = words.size() * sizeof(uint32_t);
-  code.pCode = words.data();
-  VkShaderModule shader = VK_NULL_HANDLE;
-  check(h.vk.vkCreateShaderModule(h.device, &code, nullptr, &shader), "creating a kernel");
-  std::vector<VkSpecializationMapEntry> entries;
-  for (size_t i = 0; i < constants.size(); ++i)
-    entries.push_back({constants[i].id,
-                       static_cast<uint32_t>(i * sizeof(SpecConstant) + offsetof(SpecConstant, value)),
-                       sizeof(uint32_t)});
-  const VkSpecializationInfo special{static_cast<uint32_t>(entries.size()), entries.data(),
-                                     constants.size() * sizeof(SpecConstant), constants.data()};
-  VkComputePipelineCreateInfo pipeline{};
-  pipeline.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-  pipeline.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-  pipeline.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-  pipeline.stage.module = shader;
-  pipeline.stage.pName = "main";
-  pipeline.stage.pSpecializationInfo = constants.empty() ? nullptr : &special;
-  pipeline.layout = impl->layout;
-  const VkResult result =
-      h.vk.vkCreateComputePipelines(h.device, VK_NULL_HANDLE, 1, &pipeline, nullptr, &impl->pipeline);
-  h.vk.vkDestroyShaderModule(h.device, shader, nullptr);
-  check(result, ("building the kernel " + file).c_str());
+  Hash key;
+  key.add_values(words), key.add_values(constants);
+  impl->pipeline = h.pipelines.find_or_make(
+      key.hex(), [&] { return make_pipeline(h, *impl, words, module.resources, constants); });
   impl_ = std::move(impl);
 }
 

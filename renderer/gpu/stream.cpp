@@ -158,7 +158,7 @@ VkDescriptorSet Stream::Impl::set_for(const Kernel::Impl& kernel, const Resource
   }
   if (const auto found = sets.find(key); found != sets.end()) return found->second;
 
-  const VkDescriptorSet set = allocate_set(kernel.set_layout);
+  const VkDescriptorSet set = allocate_set(kernel.pipeline->set_layout);
   std::vector<VkWriteDescriptorSet> writes(kernel.slots.size());
   std::vector<VkDescriptorBufferInfo> buffers(kernel.slots.size());
   std::vector<VkDescriptorImageInfo> images(kernel.slots.size());
@@ -213,10 +213,11 @@ void Stream::Impl::bind(const Kernel& kernel, const Resources& resources, const 
   begin();
   const VkDescriptorSet set = set_for(k, resources);
   full_barrier(h, commands);
-  h.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, k.pipeline);
-  h.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, k.layout, 0, 1, &set, 0, nullptr);
+  h.vk.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, k.pipeline->pipeline);
+  h.vk.vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, k.pipeline->layout, 0, 1, &set, 0,
+                               nullptr);
   if (push_bytes)
-    h.vk.vkCmdPushConstants(commands, k.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+    h.vk.vkCmdPushConstants(commands, k.pipeline->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                             static_cast<uint32_t>(push_bytes), push);
 }
 

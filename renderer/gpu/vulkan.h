@@ -13,6 +13,7 @@
 #include "gpu/device.h"
 #include "gpu/kernel.h"
 #include "gpu/memory.h"
+#include "gpu/pipeline.h"
 #include "gpu/resources.h"
 
 namespace lucerna::gpu {
@@ -80,6 +81,7 @@ struct Handles {
   std::mutex queue_mutex;              ///< around submits
   VkSampler sampler = VK_NULL_HANDLE;  ///< bilinear, repeat, one mip level
   std::unique_ptr<Allocator> allocator;
+  Pipelines pipelines;
 
   /// Submits `commands` and waits for its fence.
   void submit_and_wait(VkCommandBuffer commands, VkFence fence);
@@ -139,10 +141,7 @@ struct Kernel::Impl {
   uint32_t workgroup[3] = {1, 1, 1};
   uint32_t push_bytes = 0;
   std::vector<Slot> slots;  ///< by binding number
-  VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
-  VkPipelineLayout layout = VK_NULL_HANDLE;
-  VkPipeline pipeline = VK_NULL_HANDLE;
-  ~Impl();
+  std::shared_ptr<const Pipeline> pipeline;
 };
 
 }  // namespace lucerna::gpu

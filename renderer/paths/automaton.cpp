@@ -387,7 +387,11 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const L
   return packed;
 }
 
-LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached, bool direct) {
+namespace {
+
+/// lookup_routes(); `onward`: also behind lookups, for paths that have passed one.
+LookupRoutes routes_of(const Automaton& automaton, uint32_t enabled, uint32_t cached, bool direct,
+                       bool onward) {
   constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2;
   cached &= enabled;
   // Words of the secondary component go on into those of the tertiary one, and nothing traces behind a
@@ -418,12 +422,18 @@ LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_
     if (direct && looks && within(brings[0], enabled))
       routes.component[state][0] = brings[0], routes.parts |= 1u;
     for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
-      if (e == Event::diffuse && looks) continue;
+      if (e == Event::diffuse && looks && !onward) continue;
       const uint8_t next = automaton.after(state, e);
       if (seen.insert(next).second) open.insert(next);
     }
   }
   return routes;
+}
+
+}  // namespace
+
+LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached, bool direct) {
+  return routes_of(automaton, enabled, cached, direct, false);
 }
 
 LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recursive, bool caustics) {
@@ -438,11 +448,10 @@ LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recu
   return own;
 }
 
-LookupRoutes gather_routes(const Automaton& automaton, uint32_t enabled, const LookupRoutes& own,
-                           bool direct) {
+LookupRoutes gather_routes(const Automaton& automaton, uint32_t enabled, const LookupRoutes& own) {
   constexpr uint32_t k_tertiary = 1u << 2;
   if (own.component.empty()) return {};
-  LookupRoutes routes = lookup_routes(automaton, enabled, k_tertiary, direct);
+  LookupRoutes routes = routes_of(automaton, enabled, k_tertiary, (own.parts & 1u) != 0, true);
   // Parts that records do not gather there are not there.
   for (auto& component : routes.component)
     for (uint32_t p = 0; p < k_part_count; ++p)

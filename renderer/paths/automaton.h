@@ -91,9 +91,9 @@ LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_
 /// make some).
 LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recursive, bool caustics);
 
-/// For paths of the picture that have passed a lookup on purpose: tertiary light is looked up at the next
-/// diffuse vertex where records look it up too (`own`: their routes); else nothing is.
-LookupRoutes gather_routes(const Automaton& automaton, uint32_t enabled, const LookupRoutes& own,
-                           bool direct);
+/// For paths that have passed lookups on purpose, of the picture, or of records with `enabled` their parts:
+/// tertiary light is looked up at every further diffuse vertex, the first that is not passed too, where
+/// records look it up (`own`: their routes); else nothing is.
+LookupRoutes gather_routes(const Automaton& automaton, uint32_t enabled, const LookupRoutes& own);
 
 }  // namespace lucerna::paths

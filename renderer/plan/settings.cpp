@@ -50,8 +50,8 @@ OptionInfo real(const char* key, const char* fallback, double lo, double hi, con
           .help = help};
 }
 
-OptionInfo boolean(const char* key, const char* help) {
-  return {.key = key, .type = OptionType::boolean, .fallback = "false", .choices = {}, .help = help};
+OptionInfo boolean(const char* key, const char* help, const char* fallback = "false") {
+  return {.key = key, .type = OptionType::boolean, .fallback = fallback, .choices = {}, .help = help};
 }
 
 /// A change lets the image go on.
@@ -119,9 +119,10 @@ std::vector<OptionInfo> make_options() {
       real("cache.max_radius", "0.1", 0.001, 1, "of the scene's radius",
            "Irradiance cache: greatest radius of a record."),
       boolean("cache.gather",
-              "Irradiance cache: where records would have to be narrower than the least radius, along edges, "
-              "paths gather light themselves and end in records one vertex later: grain that more samples "
-              "take away, instead of specks that stay."),
+              "Irradiance cache: where something is nearer than the least radius, along edges, records only "
+              "tell where light comes from. Paths gather it from there and end in records one vertex later: "
+              "grain that more samples take away, instead of specks that stay.",
+              "true"),
       boolean("cache.neighbours",
               "Irradiance cache: records reach no farther than the nearest others in different directions: "
               "fewer serve a point, which is faster and closer to the light there."),

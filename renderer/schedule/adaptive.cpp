@@ -13,7 +13,16 @@ constexpr uint32_t k_few = 8;         // samples a pixel when all of the device'
 constexpr float k_neighbours = 2;
 /// What a tile's error is taken for where there is none; no error is more (film::TileError).
 constexpr float k_unknown_error = 1.26f;
+/// Of what samples do not take away: paths' errors under that are not worth the samples.
+constexpr float k_small_share = 1.0f / 3;
 }  // namespace
+
+float paths_goal(float target, float records, float interpolation) {
+  if (records <= 0 && interpolation <= 0) return target;
+  const float rest = target - interpolation;
+  const float reach = rest > records ? std::sqrt(rest * rest - records * records) : 0;
+  return std::max(reach, k_small_share * (records + interpolation));
+}
 
 AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
                                    const AdaptiveOptions& options)
@@ -30,7 +39,7 @@ AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
 
 AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
                                    const AdaptiveOptions& options, std::span<const uint32_t> have,
-                                   std::span<const float> errors)
+                                   std::span<const TileErrors> errors)
     : AdaptiveSchedule(blocks_across, blocks_down, options) {
   assert(have.size() == size_t{blocks_across} * blocks_down && errors.size() == tiles_.size());
   for (uint32_t t = 0; t < tiles_.size(); ++t) {
@@ -41,7 +50,8 @@ AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
     for (const uint32_t b : blocks_of(t))
       if (have[b] < tile.samples) behind_.push_back({b, have[b], tile.samples - have[b]});
     // One sample tells nothing of the error.
-    tile.error = least >= 2 ? errors[t] : k_unknown_error;
+    tile.error = least >= 2 ? errors[t].paths : k_unknown_error;
+    tile.records = errors[t].records, tile.interpolation = errors[t].interpolation;
     tile.state = tile.samples < options_.min_samples ? TileState::waiting : TileState::active;
   }
   std::stable_sort(behind_.begin(), behind_.end(),
@@ -137,7 +147,7 @@ void AdaptiveSchedule::give_back() {
   item_tiles_.clear();
 }
 
-void AdaptiveSchedule::report(const std::vector<float>& errors) {
+void AdaptiveSchedule::report(const std::vector<TileErrors>& errors) {
   assert(errors.size() == item_tiles_.size());
   if (item_behind_ > 0) {
     for (auto b = behind_.end() - static_cast<std::ptrdiff_t>(item_behind_); b != behind_.end(); ++b)
@@ -150,7 +160,8 @@ void AdaptiveSchedule::report(const std::vector<float>& errors) {
     Tile& tile = tiles_[item_tiles_[i]];
     tile.samples += item_samples_;
     ++tile.passes;
-    tile.error = errors[i];
+    tile.error = errors[i].paths;
+    tile.records = errors[i].records, tile.interpolation = errors[i].interpolation;
     if (tile.samples >= k_first_mark && tile.samples >= 2 * tile.last.samples)
       tile.earlier = std::exchange(tile.last, {tile.error, tile.samples});
   }
@@ -170,16 +181,15 @@ void AdaptiveSchedule::update_states() {
     TileState state = tile.state;
     if (state == TileState::waiting && tile.samples >= options_.min_samples) state = TileState::active;
     if (state == TileState::active) {
-      float around = 0;
+      bool calm = true;  // its neighbours, but for those that are given up
       const int x = static_cast<int>(t % across_), y = static_cast<int>(t / across_);
       for (int v = std::max(0, y - 1); v <= std::min(static_cast<int>(down_) - 1, y + 1); ++v)
         for (int u = std::max(0, x - 1); u <= std::min(static_cast<int>(across_) - 1, x + 1); ++u)
           if (const Tile& n = tiles_[static_cast<size_t>(v) * across_ + u]; n.state != TileState::capped)
-            around = std::max(around, n.error);
-      if (tile.error <= options_.target_error && around <= k_neighbours * options_.target_error)
-        state = TileState::done;
-      else if (tile.samples >= options_.max_samples)
-        state = tile.error <= options_.target_error ? TileState::done : TileState::capped;
+            calm = calm && n.error <= k_neighbours * n.goal(options_.target_error);
+      const float goal = tile.goal(options_.target_error);
+      if ((tile.error <= goal && calm) || tile.samples >= options_.max_samples)
+        state = tile.reached(options_.target_error) ? TileState::done : TileState::capped;
     }
     states[t] = state;
     open_ += state == TileState::waiting || state == TileState::active;

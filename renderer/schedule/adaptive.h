@@ -5,8 +5,11 @@
 // state holds at a few samples a pixel each; when fewer are left, the samples a pixel double, so that the
 // device stays full and ends up on the hardest tiles. A tile leaves the list when its error and, more
 // loosely, those of its neighbours are under the target: light that few samples have met (a caustic's rim) is
-// then looked for where something next to it is still noisy. Pure functions of counts and errors: the same
-// errors give the same schedule, whatever the machine's speed.
+// then looked for where something next to it is still noisy. Where samples read records, a part of the error
+// is not theirs and does not fall: sampling then goes on until the sum is under the target, and where records
+// alone keep it over, until samples add little to that. Pure functions of counts and errors: the same errors
+// give the same schedule, whatever the machine's speed.
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,7 +22,7 @@ enum class TileState : uint8_t {
   waiting,  ///< for the minimum of samples
   active,
   done,   ///< under the target
-  capped  ///< over it, with as many samples as it may have
+  capped  ///< over it, with as many samples as it may have, or as help (Tile::limited)
 };
 
 /// A tile's error as it was once.
@@ -28,12 +31,33 @@ struct TileMark {
   uint32_t samples = 0;  ///< a pixel; 0: not known
 };
 
+/// A tile's relative error by where it comes from, as film::RelativeError; the sum is hypot(paths, records) +
+/// interpolation.
+struct TileErrors {
+  float paths = 0, records = 0, interpolation = 0;
+};
+
+/// The paths' error at which a tile stops: where the sum comes to `target`, or, where that would take them
+/// under a third of what records and interpolation come to, at that third: the sum is then within a twentieth
+/// of what no samples take away, or a third where all of that is interpolation's.
+float paths_goal(float target, float records, float interpolation);
+
 struct Tile {
-  float error = 0;       ///< as last reported; decides nothing while waiting
+  float error = 0;  ///< the paths', as last reported; decides nothing while waiting
+  /// ... and what samples do not take away.
+  float records = 0, interpolation = 0;
   uint32_t samples = 0;  ///< a pixel
   uint32_t passes = 0;
   TileState state = TileState::waiting;
   TileMark last, earlier;  ///< the newest after which samples have doubled, and the one before
+  float goal(float target) const { return paths_goal(target, records, interpolation); }
+  float sum() const { return std::hypot(error, records) + interpolation; }
+  /// Whether the sum is under the target, but for rounding where goal() comes of it.
+  bool reached(float target) const {
+    return sum() <= (records > 0 || interpolation > 0 ? 1.0001f * target : target);
+  }
+  /// Capped because of its records: the paths' error is at its goal.
+  bool limited(float target) const { return state == TileState::capped && error <= goal(target); }
 };
 
 struct AdaptiveOptions {
@@ -52,7 +76,7 @@ class AdaptiveSchedule {
   /// `errors`: blocks that are behind others of their tile are given what they lack first, and no sample is
   /// thrown away.
   AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down, const AdaptiveOptions& options,
-                   std::span<const uint32_t> have, std::span<const float> errors);
+                   std::span<const uint32_t> have, std::span<const TileErrors> errors);
 
   bool done() const { return open_ == 0 && behind_.empty(); }
   /// The next work; empty when done. The item's tiles are those that report() then wants to hear of.
@@ -60,7 +84,7 @@ class AdaptiveSchedule {
   /// Tiles of the item that next() gave last, in order; none while blocks are behind.
   const std::vector<uint32_t>& to_report() const { return item_tiles_; }
   /// The item has been carried out; `errors`, one for each of to_report().
-  void report(const std::vector<float>& errors);
+  void report(const std::vector<TileErrors>& errors);
   /// Goes on with another target, minimum or maximum (tile and slots stay as they are): tiles that are then
   /// over the target get samples again, those under it none, and no sample is thrown away. Between report()
   /// or give_back() and next().

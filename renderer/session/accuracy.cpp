@@ -45,9 +45,11 @@ std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
   double paths = 0;
   for (const TileStatus& t : a.tiles) {
     // A tile that is done under one target may be open under another.
-    const bool open = t.samples < a.max_samples && (t.samples < a.min_samples || t.error > target ||
+    const double goal = schedule::paths_goal(float(target), t.records, t.interpolation);
+    const bool open = t.samples < a.max_samples && (t.samples < a.min_samples || t.error > goal ||
                                                     (target >= a.target && t.state <= shared::k_tile_active));
     tiles.push_back({.error = std::max(0.0, double{t.error}),
+                     .goal = goal,
                      .samples = double(t.samples),
                      .pixels = double(t.pixels),
                      .open = open,
@@ -82,13 +84,16 @@ std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
       const schedule::Tile& known = adaptive->tiles()[i];
       t.samples = known.samples;
       if (known.samples >= 2) t.error = known.error;
+      t.records = known.records, t.interpolation = known.interpolation;
       t.state = static_cast<uint32_t>(known.state);
       t.earlier_error = known.earlier.error, t.earlier_samples = known.earlier.samples;
     } else {
       t.samples = r.samples();
       if (errors[i].pixels > 0) {
         t.error = static_cast<float>(errors[i].relative);
-        t.state = t.error <= target ? shared::k_tile_done
+        t.records = static_cast<float>(errors[i].relative_records);
+        t.interpolation = static_cast<float>(errors[i].relative_interpolation);
+        t.state = t.sum() <= target ? shared::k_tile_done
                   : r.done()        ? shared::k_tile_capped
                                     : shared::k_tile_active;
       }
@@ -122,7 +127,7 @@ void AccuracyKeeper::follow(const Renderer& r, uint64_t scene_id) {
   if (r.adaptive())
     for (const schedule::Tile& t : r.adaptive()->tiles())
       if (t.state != schedule::TileState::capped && t.samples >= 2)
-        hardest = std::max(hardest, double{t.error});
+        hardest = std::max(hardest, double{t.sum()});
   now_.hardest.resize(lines.size(), hardest);
   if (!lines.empty()) now_.hardest.back() = hardest;
   changed_ = true;

@@ -2,6 +2,7 @@
 // What the window shows of accuracy: the ledger of the image in progress, its tiles, its passes. Kept on the
 // session's thread, published as a whole.
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -20,7 +21,9 @@ namespace lucerna::session {
 class Renderer;
 
 struct TileStatus {
-  float error = -1;  ///< relative; negative: not known
+  float error = -1;                      ///< relative, of the paths; negative: not known
+  float records = 0, interpolation = 0;  ///< ... and of what they read of records
+  float sum() const { return error < 0 ? error : std::hypot(error, records) + interpolation; }
   uint32_t samples = 0;
   uint32_t pixels = 0;
   /// The same with a half to a quarter of the samples, in adaptive sampling; 0: not known.

@@ -122,10 +122,14 @@ irradiance_cache::Spoilt Renderer::build_wavefront(const upload::DeviceScene& de
   if (routes.parts != 0) {
     slots = std::max(slots, irradiance_cache::Cache::k_least_slots);
     record_routes = wanted_record_routes(device_scene.effects());
-    const paths::LookupRoutes gather = paths::gather_routes(automaton_, enabled_components(), record_routes,
-                                                            device_scene.effects().sky_apart);
-    cache = std::make_unique<irradiance_cache::Cache>(*device_, *compiler_, slots, routes, gather,
-                                                      record_routes, cache_options());
+    cache = std::make_unique<irradiance_cache::Cache>(
+        *device_, *compiler_, slots,
+        irradiance_cache::CacheRoutes{
+            .picture = routes,
+            .picture_gather = paths::gather_routes(automaton_, enabled_components(), record_routes),
+            .records = record_routes,
+            .records_gather = paths::gather_routes(automaton_, record_routes.parts, record_routes)},
+        cache_options());
     for (const auto& [name, value] : irradiance_cache::Cache::defines(record_routes, cache_options().metric))
       defines[name] = value;
     bind = [c = cache.get()](gpu::Resources& r) { c->bind(r); };
@@ -168,7 +172,8 @@ shared::Frame Renderer::make_frame(uint32_t width, uint32_t height, const paths:
 }
 
 shared::Frame Renderer::make_frame(uint32_t width, uint32_t height) const {
-  return make_frame(width, height, routes_, cache_ ? enabled_components() : 0, gather_routes());
+  return make_frame(width, height, routes_, cache_ ? enabled_components() : 0,
+                    paths::gather_routes(automaton_, enabled_components(), record_routes_));
 }
 
 irradiance_cache::CacheOptions Renderer::cache_options() const {
@@ -200,16 +205,13 @@ irradiance_cache::CacheView Renderer::cache_view() const {
   view.paths_frame = make_frame(width_, height_);
   view.paths_enabled = enabled_components();
   // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
-  view.records_frame = make_frame(width_, height_, record_routes_, record_routes_.parts, record_routes_);
+  view.records_frame = make_frame(width_, height_, record_routes_, record_routes_.parts,
+                                  paths::gather_routes(automaton_, record_routes_.parts, record_routes_));
   view.records_enabled = record_routes_.parts;
   view.width = width_, view.height = height_;
   view.scene_radius = flat_.scene_radius;
   view.dark = !flat_.effects.lights;
   return view;
-}
-
-paths::LookupRoutes Renderer::gather_routes() const {
-  return paths::gather_routes(automaton_, enabled_components(), record_routes_, flat_.effects.sky_apart);
 }
 
 paths::LookupRoutes Renderer::wanted_routes(const upload::Effects& effects) const {
@@ -272,10 +274,10 @@ void Renderer::start_schedule() {
 void Renderer::change_schedule() {
   const std::vector<uint32_t> have = adaptive_ ? adaptive_->counts() : schedule_.counts();
   if (settings_.text("sampling.mode") == "adaptive") {
-    std::vector<float> errors;
+    std::vector<schedule::TileErrors> errors;
     image_error();
     for (const film::TileError& t : film::tile_errors(*film_, tile_side()))
-      errors.push_back(float(t.relative));
+      errors.push_back({float(t.relative), float(t.relative_records), float(t.relative_interpolation)});
     adaptive_.emplace(film_->blocks_across(), film_->blocks_down(), adaptive_options(), have, errors);
   } else {
     schedule_ = {have, uint32_t(settings_.integer("samples")), wavefront_->slots()};
@@ -473,6 +475,7 @@ void Renderer::note_progress(bool at_once) {
   if (entry.told) {
     const film::ImageError error = image_error();
     for (int k = 0; k < stats::k_layers; ++k) entry.error[k] = error.relative(k);
+    entry.records = error.relative_records(), entry.interpolation = error.relative_interpolation();
     entry.degrees = error.degrees;
     const film::TileSpread tiles = film::tile_spread(film::tile_errors(*film_, tile_side()));
     entry.tile_median = tiles.median, entry.tile_worst_tenth = tiles.worst_tenth;
@@ -487,6 +490,7 @@ void Renderer::note_progress(bool at_once) {
       const schedule::Tile& tile = adaptive_->tiles()[t];
       tiles.push_back(
           {.error = tile.error,
+           .goal = tile.goal(adaptive_->options().target_error),
            .samples = double(tile.samples),
            .pixels = 64.0 * double(adaptive_->blocks_of(t).size()),
            .open = tile.state == schedule::TileState::waiting || tile.state == schedule::TileState::active,
@@ -506,6 +510,11 @@ void Renderer::note_progress(bool at_once) {
 
 bool Renderer::render_item(const std::function<bool()>& cancel) {
   if (cache_ && !cache_->ready()) return cache_->step(*wavefront_, automaton_, cache_view(), cancel);
+  // As soon as every pixel has a sample, so that the picture does not wait, and before errors are told.
+  if (cache_ && samples() > 0 && !film_->records_told()) {
+    const bool anew = std::exchange(told_restart_, restarts_) != restarts_;
+    return cache_->tell_picture(*wavefront_, *film_, cache_view(), anew, cancel);
+  }
   if (adaptive_) {
     const schedule::WorkItem item = adaptive_->next();
     if (!wavefront_->run(item, *film_, cancel)) {
@@ -513,12 +522,14 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
       return false;
     }
     const std::vector<uint32_t>& tiles = adaptive_->to_report();
-    std::vector<float> errors(tiles.size(), 0.0f);
+    std::vector<schedule::TileErrors> errors(tiles.size());
     // One sample a pixel tells nothing of the error, and decides nothing.
     if (!tiles.empty() && adaptive_->tiles()[tiles[0]].samples + item.sample_count > 1) {
       wavefront_->estimate_stopping(item.blocks, *film_, luminance_floor());
-      for (size_t i = 0; i < tiles.size(); ++i)
-        errors[i] = float(film::relative_error(*film_, adaptive_->blocks_of(tiles[i])));
+      for (size_t i = 0; i < tiles.size(); ++i) {
+        const film::RelativeError e = film::relative_error(*film_, adaptive_->blocks_of(tiles[i]));
+        errors[i] = {float(e.paths), float(e.records), float(e.interpolation)};
+      }
     }
     adaptive_->report(errors);
     return true;
@@ -574,7 +585,7 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
   if (v.tiles > 0) {
     std::vector<shared::TileMark> marks;
     for (const TileStatus& t : tile_status(*this, true))
-      marks.push_back({film::tile_position(double{t.error}, settings_.real("sampling.target_error")),
+      marks.push_back({film::tile_position(double{t.sum()}, settings_.real("sampling.target_error")),
                        t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
     film_->mark_tiles(marks);
   }

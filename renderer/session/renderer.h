@@ -185,7 +185,6 @@ class Renderer {
   /// `spoilt`: of the records that paths look up.
   void restart(irradiance_cache::Spoilt spoilt);
   shared::Frame make_frame(uint32_t width, uint32_t height) const;  ///< of the picture's paths
-  paths::LookupRoutes gather_routes() const;  ///< of the picture's paths that gather where records crowd
   shared::Frame make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
                            uint32_t fallback, const paths::LookupRoutes& gather) const;
   film::HeatScale heat_scale(uint32_t layer) const;
@@ -240,9 +239,10 @@ class Renderer {
   stats::Ledger ledger_;
   std::optional<film::Reference> reference_;
   uint64_t restarts_ = 0;
-  Stopwatch clock_;        ///< of the person who waits for this image
-  double render_s_ = 0;    ///< of that, in step()
-  double prepared_s_ = 0;  ///< of the clock, before the image's first sample
+  uint64_t told_restart_ = ~0ull;  ///< the image of which the records' errors are being told
+  Stopwatch clock_;                ///< of the person who waits for this image
+  double render_s_ = 0;            ///< of that, in step()
+  double prepared_s_ = 0;          ///< of the clock, before the image's first sample
   transport::TransportStats prepared_;
   std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< instead of schedule_
   uint32_t width_ = 1280, height_ = 720;

@@ -119,9 +119,19 @@ double seconds_a_path(const Ledger& ledger) {
   return (last.wall_s - last.prepared_s) / static_cast<double>(last.paths);
 }
 
+double paths_target(const Ledger& ledger, double target) {
+  if (ledger.entries().empty()) return target;
+  const Entry& last = ledger.entries().back();
+  if (last.records <= 0 && last.interpolation <= 0) return target;
+  const double rest = target - last.interpolation;
+  return rest > last.records ? std::sqrt(square(rest) - square(last.records)) : 0;
+}
+
 std::optional<Band> seconds_to(const Ledger& ledger, double target) {
   const auto& entries = ledger.entries();
   if (entries.empty() || !entries.back().told || !(target > 0)) return std::nullopt;
+  target = paths_target(ledger, target);
+  if (!(target > 0)) return std::nullopt;
   // Reached for good: after the last line that is over the target.
   size_t reached = entries.size();
   while (reached > 0 && entries[reached - 1].told && entries[reached - 1].error[0] <= target) --reached;
@@ -184,13 +194,14 @@ std::optional<Band> total_paths(std::span<const TileProgress> tiles, uint32_t ac
   if (now <= 0) return Band{closed, closed, closed};
   std::vector<double> beside(tiles.size());  // samples that bring each under twice the target
   const auto open_paths = [&](double k) {
-    for (size_t t = 0; t < tiles.size(); ++t) beside[t] = samples_to(tiles[t], 2 * target, k);
+    const auto goal = [&](const TileProgress& t) { return t.goal > 0 ? t.goal : target; };
+    for (size_t t = 0; t < tiles.size(); ++t) beside[t] = samples_to(tiles[t], 2 * goal(tiles[t]), k);
     double paths = 0;
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         const TileProgress& tile = tiles[static_cast<size_t>(y) * across + static_cast<size_t>(x)];
         if (!tile.open) continue;
-        double samples = std::max({tile.samples, min_samples, samples_to(tile, target, k)});
+        double samples = std::max({tile.samples, min_samples, samples_to(tile, goal(tile), k)});
         for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
           for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u)
             samples = std::max(samples, beside[static_cast<size_t>(v) * across + static_cast<size_t>(u)]);

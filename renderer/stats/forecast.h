@@ -53,9 +53,14 @@ class Outlook {
   double line_variance_ = 0;  ///< of the logarithm of a line's error^2
 };
 
+/// The paths' error with which the sum's is `target` (Entry::sum), by the records of the last line; 0: what
+/// records and interpolation come to is over it, and no samples will reach it.
+double paths_target(const Ledger& ledger, double target);
+
 /// Wall seconds (Entry::wall_s) from the image's start until the sum's error is `target` in uniform sampling:
 /// the band holds the truth in 90 of 100 cases, as Outlook says; each further sample takes what those of the
-/// last half of the work have taken, give or take a twentieth. Nothing before Outlook is known(). What is
+/// last half of the work have taken, give or take a twentieth. Nothing before Outlook is known(), nor where
+/// paths_target() is 0. What is
 /// reached already is told as the second in which it was, between two lines.
 std::optional<Band> seconds_to(const Ledger& ledger, double target);
 
@@ -65,7 +70,8 @@ double seconds_a_path(const Ledger& ledger);
 
 /// A tile as the forecast sees it.
 struct TileProgress {
-  double error = 0;    ///< as the scheduler has it (film::TileError::relative)
+  double error = 0;    ///< of the paths, as the scheduler has it (film::TileError::relative)
+  double goal = 0;     ///< that it is to come to, where that is not the target; 0: it is
   double samples = 0;  ///< a pixel
   double pixels = 0;
   bool open = true;  ///< still given samples

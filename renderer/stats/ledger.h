@@ -2,6 +2,7 @@
 // What a render has cost so far and how good it is: one line each time the work has grown by a quarter or
 // half, so that the whole story of a long render is a few dozen lines, evenly spaced in log time.
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -30,11 +31,18 @@ struct Entry {
   double samples = 0;  ///< a pixel, on average
   /// Whether every pixel has samples in both halves of the film; otherwise errors are not known, and 0.
   bool told = false;
-  /// Noise of the mean, estimated: rms of the pixels' standard errors over the sum's mean luminance.
+  /// Noise of the paths, estimated: rms of the pixels' standard errors over the sum's mean luminance.
   std::array<double, k_layers> error{};
   double degrees = 0;  ///< of freedom of error[0]^2 (film::ImageError)
-  /// Noise of the tiles, of the sum, each over its own pixels' luminance (film::TileError::relative): of the
-  /// median tile, and what a tenth of the tiles are over.
+  /// What of the sum's error is not the paths', as `error`: the noise of records that they read, and what
+  /// interpolation between these is off by (film/error.h). Samples do not take it away.
+  double records = 0, interpolation = 0;
+  /// Error of the sum by all three: what is told of the picture.
+  double sum() const { return std::hypot(error[0], records) + interpolation; }
+  /// What no samples go below.
+  double floor() const { return records + interpolation; }
+  /// Error of the tiles, of the sum, each over its own pixels' luminance (film::TileError::relative_sum): of
+  /// the median tile, and what a tenth of the tiles are over.
   double tile_median = 0, tile_worst_tenth = 0;
   std::array<double, k_layers> component_s{};  ///< device time by component; [0] all
   std::optional<std::array<double, k_layers>>

@@ -45,6 +45,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
     const bool looks = !options.gather.component.empty();
     put(shared::k_gather_state, looks ? options.gather.traced : options.fallback, options.gather);
     put(shared::k_fallback_state, options.fallback, {});
+    put(shared::k_known_state, looks ? options.gather.traced : options.fallback, {});
   }
   return f;
 }

@@ -168,8 +168,11 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   w.tonemap = gpu::Kernel(device, compiler, "film/tonemap.comp");
   w.heat = gpu::Kernel(device, compiler, "film/heat.comp");
   w.tiles = gpu::Kernel(device, compiler, "film/tiles.comp");
-  w.error = gpu::Kernel(device, compiler, "film/error.comp");
-  w.stopping = gpu::Kernel(device, compiler, "film/error.comp", {{"LUCERNA_STOPPING_ONLY", "1"}});
+  gpu::Defines told;
+  if (bind_lookup) told["LUCERNA_CACHE"] = "1";
+  w.error = gpu::Kernel(device, compiler, "film/error.comp", told);
+  told["LUCERNA_STOPPING_ONLY"] = "1";
+  w.stopping = gpu::Kernel(device, compiler, "film/error.comp", told);
   w.bind_lookup = std::move(bind_lookup);
   w.bind(scene);
   if (!w.host_trace) {
@@ -329,7 +332,7 @@ void Wavefront::Impl::estimate(const gpu::Kernel& kernel, std::span<const WorkBl
   while (!list.empty()) {
     const size_t count = std::min<size_t>(list.size(), slots / 64);
     blocks.write(list.first(count));
-    const ErrorPush push{film.width(), film.height(), uint32_t(count), luminance_floor};
+    const ErrorPush push{film.width(), film.height(), uint32_t(count), luminance_floor, film.records_told()};
     stream.dispatch(kernel, film_resources, push, uint32_t(count + 7) / 8, stage);
     run_and_account(nullptr, nullptr);
     list = list.subspan(count);

@@ -94,18 +94,7 @@ def woodwork(s):
     """Cornice, wainscot, skirting, and the door in its frame."""
     w, d, t = WIDTH / 2, DEPTH / 2, WALL
     x0, x1, top = DOOR
-    s.mesh("cornice", [(rooms.cornice(WIDTH, DEPTH, HEIGHT), "ceiling")])
-    s.place("cornice")
-    left, right = x0 - 0.088 + w, w - x1 - 0.088
-    s.mesh("wainscot left", [(rooms.wainscot(left, 3, DADO), "woodwork")])
-    s.mesh("wainscot right", [(rooms.wainscot(right, 3, DADO), "woodwork")])
-    s.mesh("wainscot side", [(rooms.wainscot(DEPTH - 0.10, 8, DADO), "woodwork")])
-    s.mesh("wainscot near", [(rooms.wainscot(WIDTH, 6, DADO), "woodwork")])
-    s.place("wainscot left", (-w + left / 2, 0, -d))
-    s.place("wainscot right", (w - right / 2, 0, -d))
-    s.place("wainscot side", (-w, 0, 0), 90)
-    s.place("wainscot side", (w, 0, 0), -90)
-    s.place("wainscot near", (0, 0, d), 180)
+    rooms.line_walls(s, WIDTH, DEPTH, HEIGHT, (x0, x1), DADO, 0.088, (3, 3, 8, 6))
     a, b, far, _ = LOBBY
     middle = (a + b) / 2
     s.mesh("lobby skirting", [(rooms.skirting(b - a, -d - t - far, 0.14, 0.018,

@@ -100,6 +100,23 @@ def wainscot(length, panels, height):
     return join(parts)
 
 
+def line_walls(s, width, depth, height, door, dado, trim, panels):
+    """Cornice and wainscots of a room whose only door is in the far wall, placed in the scene `s`, "ceiling" and "woodwork".
+    door: x from, to; trim: what its mouldings take on either side; panels: left and right of it, on a side, on the near
+    wall."""
+    w, d = width / 2, depth / 2
+    left, right = door[0] - trim + w, w - door[1] - trim
+    s.mesh("cornice", [(cornice(width, depth, height), "ceiling")])
+    s.place("cornice")
+    for name, length, count in zip(("left", "right", "side", "near"), (left, right, depth - 0.10, width), panels):
+        s.mesh(f"wainscot {name}", [(wainscot(length, count, dado), "woodwork")])
+    s.place("wainscot left", (-w + left / 2, 0, -d))
+    s.place("wainscot right", (w - right / 2, 0, -d))
+    s.place("wainscot side", (-w, 0, 0), 90)
+    s.place("wainscot side", (w, 0, 0), -90)
+    s.place("wainscot near", (0, 0, d), 180)
+
+
 def window(width, height, across=2, up=2, frame=0.06, bar=0.028, deep=0.06):
     """A casement in the x-y plane, its opening's lower left corner at the origin, `deep` about z = 0; no panes."""
     h = deep / 2

@@ -58,18 +58,7 @@ def architecture(s):
     s.place("boards", (0, -0.02, 0))
     # cornice, wainscot, door
     w, d = WIDTH / 2, DEPTH / 2
-    s.mesh("cornice", [(rooms.cornice(WIDTH, DEPTH, HEIGHT), "ceiling")])
-    s.place("cornice")
-    left, right = x0 - 0.088 + w, w - x1 - 0.088
-    s.mesh("wainscot left", [(rooms.wainscot(left, 4, DADO), "woodwork")])
-    s.mesh("wainscot right", [(rooms.wainscot(right, 1, DADO), "woodwork")])
-    s.mesh("wainscot side", [(rooms.wainscot(DEPTH - 0.10, 7, DADO), "woodwork")])
-    s.mesh("wainscot near", [(rooms.wainscot(WIDTH, 6, DADO), "woodwork")])
-    s.place("wainscot left", (-w + left / 2, 0, -d))
-    s.place("wainscot right", (w - right / 2, 0, -d))
-    s.place("wainscot side", (-w, 0, 0), 90)
-    s.place("wainscot side", (w, 0, 0), -90)
-    s.place("wainscot near", (0, 0, d), 180)
+    rooms.line_walls(s, WIDTH, DEPTH, HEIGHT, (x0, x1), DADO, 0.088, (4, 1, 7, 6))
     leaf, knobs = rooms.door(x1 - x0 - 0.036, top - 0.022)
     jamb = [chamfer((x - 0.018 * (x == x1) - 0.002 * (x == x0), -0.001, -0.16),
                     (x + 0.018 * (x == x0) + 0.002 * (x == x1), top + 0.002, 0.003), 0.002) for x in (x0, x1)]

@@ -8,6 +8,9 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { ErrorPush push; };
 layout(scalar) writeonly buffer BlockErrors { BlockError block_errors[]; };
+#if LUCERNA_CACHE
+layout(scalar) readonly buffer FilmRecords { vec2 film_records[]; };  // squares: noise of records, of interpolation
+#endif
 
 #if LUCERNA_STOPPING_ONLY
 const uint k_sums = 4u;
@@ -33,6 +36,10 @@ void main() {
   uint across = (push.width + k_block - 1u) / k_block;
   uvec2 first = k_block * uvec2(block.index % across, block.index / across) + uvec2(0u, row);
   float y0[k_block], v0[k_block];
+#if LUCERNA_CACHE
+  vec2 r0[k_block];
+  vec2 records = vec2(0.0), records_relative = vec2(0.0);
+#endif
   float half_y[2], half_n[2];
   half_y[0] = half_y[1] = half_n[0] = half_n[1] = 0.0;
   float ys[5], vs[5], fourth = 0.0;
@@ -61,6 +68,10 @@ void main() {
     float difference = 0.5 * (a[0] - b[0]);
     y0[x] = there ? 0.5 * (a[0] + b[0]) : 0.0;
     v0[x] = there ? difference * difference : 0.0;
+#if LUCERNA_CACHE
+    r0[x] = there && push.records != 0u ? film_records[pixel] : vec2(0.0);
+    records += r0[x];
+#endif
     half_y[x / 4u] += y0[x];
     half_n[x / 4u] += there ? 1.0 : 0.0;
 #if !LUCERNA_STOPPING_ONLY
@@ -108,10 +119,28 @@ void main() {
   for (uint x = 0u; x < k_block; ++x) {
     float scale = max(max(y0[x], mean[x / 4u]), push.luminance_floor);
     relative[x / 4u] += 1.2533141 * sqrt(v0[x]) / scale;  // sqrt(pi/2)
+#if LUCERNA_CACHE
+    records_relative += r0[x] / (scale * scale);
+#endif
   }
   barrier();
   for (uint h = 0u; h < 2u; ++h) values[h * 64u + lane] = relative[h];
   barrier();
+#if LUCERNA_CACHE
+  values[2u * 64u + lane] = records_relative.x;
+  values[3u * 64u + lane] = records_relative.y;
+  barrier();
+  if (working && row == 2u) block_errors[block.index].records_relative = sum_of_rows(2u, lane - row, k_block);
+  if (working && row == 3u) block_errors[block.index].interpolation_relative = sum_of_rows(3u, lane - row, k_block);
+#if !LUCERNA_STOPPING_ONLY
+  barrier();
+  values[2u * 64u + lane] = records.x;
+  values[3u * 64u + lane] = records.y;
+  barrier();
+  if (working && row == 6u) block_errors[block.index].records = sum_of_rows(2u, lane - row, k_block);
+  if (working && row == 7u) block_errors[block.index].interpolation = sum_of_rows(3u, lane - row, k_block);
+#endif
+#endif
   // Rows 0 and 1 write the upper two quadrants, 4 and 5 the lower.
   uint side = row % 4u;
   if (working && side < 2u) {

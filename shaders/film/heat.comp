@@ -9,18 +9,22 @@ layout(scalar) writeonly buffer Picture { uint picture[]; };
 layout(scalar) readonly buffer FilmVertices { uint film_vertices[]; };
 layout(scalar) readonly buffer BlockErrors { BlockError block_errors[]; };
 
-// The quadratic mean of its quadrants' relative errors, as film/error.h defines a tile's; negative: not known.
+// The quadratic mean of its quadrants' relative errors, and what records make of it, as film/error.h defines a tile's;
+// negative: not known.
 float block_relative(uint block) {
-  float squares = 0.0, quadrants = 0.0;
+  float squares = 0.0, quadrants = 0.0, all = 0.0;
   for (uint q = 0u; q < 4u; ++q) {
     float pixels = block_errors[block].quadrant_pixels[q];
     if (pixels > 0.0) {
       float mean = block_errors[block].relative[q] / pixels;
       squares += mean * mean;
       quadrants += 1.0;
+      all += pixels;
     }
   }
-  return quadrants > 0.0 ? sqrt(squares / quadrants) : -1.0;
+  if (quadrants <= 0.0) return -1.0;
+  float records = max(block_errors[block].records_relative, 0.0) / all;
+  return sqrt(squares / quadrants + records) + sqrt(max(block_errors[block].interpolation_relative, 0.0) / all);
 }
 
 void main() {

@@ -16,5 +16,6 @@ void main() {
   if (bound >= shape.w) return;
   shrink_record(index, place, shape, bound / shape.w);
   float told = texelFetch(record_texels, at + 2).w;
-  records[at + 2].w = record_flags(told, bound < push.crowd * least_radius(place.xyz), true);
+  bool crowds = index >= push.undecided && bound < push.crowd * least_radius(place.xyz);
+  records[at + 2].w = record_flags(told, crowds);
 }

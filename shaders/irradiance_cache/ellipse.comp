@@ -33,7 +33,8 @@ void main() {
   float bends_by = p.strongest / max(max(bends.w, push.dark), 1e-30);
   float minor = bends_by > 0.0 ? push.reach * inversesqrt(sqrt(bends_by * p.ratio)) : push.most;
   minor = min(minor, holds_nothing > 0.0 ? push.near * holds_nothing : push.near_tried * told.y);
-  bool crowds = minor < push.crowd * least;
+  // By what is near alone, so that it does not hang on the light.
+  bool crowds = push.near * told.y < push.crowd * least;
   float major = clamp(p.ratio * minor, least, push.most);
   minor = clamp(minor, least, push.most);
   vec3 tangent, bitangent;
@@ -42,5 +43,5 @@ void main() {
   records[at].w = major;
   records[at + 3] = vec4(along * sqrt(max(0.0, 1.0 / square(minor) - 1.0 / square(major))), minor);
   spheres[record] = vec4(place.xyz, major);
-  records[at + 2].w = record_flags(told.w, crowds, push.settled != 0u);
+  records[at + 2].w = record_flags(told.w, crowds);
 }

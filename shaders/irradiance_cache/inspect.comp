@@ -17,6 +17,7 @@ void main() {
   Asking a = asking_at(push.pixel, push.width, push.grid, seen);
   if (a.asks) seen.position = a.position, seen.normal = a.normal;
   uint count = 0u, under = k_no_record;
+  bool crowded = false;
   float nearest = k_infinity;
   vec3 under_at = vec3(0.0);
   OctreeRange range = cache_range(seen.position, seen.solid);
@@ -27,7 +28,9 @@ void main() {
     vec4 shape = record_shape(record, place);
     float weight = a.answerable ? record_weight(seen.position, seen.normal, place, facing, shape) : 0.0;
     vec3 centre = to_picture(place.xyz, push.width, push.height);
-    if (weight > 0.0) {
+    bool crowds = weight > 0.0 && record_crowded(record);
+    crowded = crowded || crowds;
+    if (weight > 0.0 && !crowds) {
       if (count < k_inspect_most) serving[count] = InspectServing(record, weight, centre.xy, centre.z);
       ++count;
     }
@@ -39,5 +42,5 @@ void main() {
     }
   }
   uint asks = a.answerable ? k_asks : a.asks ? k_asks_in_vain : k_asks_nothing;
-  header = InspectHeader(seen.solid ? 1u : 0u, asks, count, under, seen.size, seen.depth, seen.position, seen.normal, under_at);
+  header = InspectHeader(seen.solid ? 1u : 0u, asks, count, count == 0u && crowded ? 1u : 0u, under, seen.size, seen.depth, seen.position, seen.normal, under_at);
 }

@@ -6,10 +6,9 @@
 
 layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
 
-// A record's flags (k_record_*) as they lie in its texel 2. `settled`: what crowded before does so still.
-float record_flags(float before, bool crowds, bool settled) {
-  uint flags = floatBitsToUint(before) & (settled ? ~0u : ~k_record_crowded);
-  return uintBitsToFloat(flags | (crowds ? k_record_crowded : 0u));
+// A record's flags (k_record_*) as they lie in its texel 2, and whether it crowds.
+float record_flags(float before, bool crowds) {
+  return uintBitsToFloat(floatBitsToUint(before) | (crowds ? k_record_crowded : 0u));
 }
 
 float least_radius(vec3 position) {

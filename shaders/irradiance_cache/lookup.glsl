@@ -25,7 +25,7 @@ const int k_cache_sides = 1;
 struct Cached {
   vec3 part[k_part_count];
   float weight;  // 0: no record serves here
-  bool crowded;  // those that are here say that paths gather themselves
+  uint guide;    // that says that paths gather themselves here; k_no_guide: none does
 };
 
 // A record's texel 3. Compiled in where records may be ellipses alone: of spheres `place` tells all.
@@ -84,7 +84,8 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
   Cached found;
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
   found.weight = 0.0;
-  found.crowded = false;
+  found.guide = k_no_guide;
+  float guides = 0.0;
   OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
     // On to the next sphere that holds the point: ten are listed for each, and lanes wait for the longest list.
@@ -104,7 +105,8 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
     vec4 facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
     float weight = within ? record_weight(x, n, place, facing, record_shape(record, place)) : 0.0;
     bool crowded = weight > 0.0 && record_crowded(record);
-    found.crowded = found.crowded || crowded;
+    found.guide = crowded && weight > guides ? record : found.guide;
+    guides = crowded ? max(guides, weight) : guides;
     weight = crowded ? 0.0 : weight;
     vec3 tangent, bitangent;
     make_basis(facing.xyz, tangent, bitangent);

@@ -17,9 +17,10 @@ void main() {
   vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
   vec4 told = texelFetch(record_texels, at + 2);
   float least = least_radius(place.xyz);
-  float wanted = min(push.error * facing.w, min(push.most, push.near * told.y)), radius = max(wanted, least);
+  float holds_nothing = push.near * told.y;
+  float radius = max(min(push.error * facing.w, min(push.most, holds_nothing)), least);
   records[at].w = radius;
   records[at + 3] = vec4(0.0, 0.0, 0.0, radius);
   spheres[push.first + index] = vec4(place.xyz, radius);
-  records[at + 2].w = record_flags(told.w, wanted < push.crowd * least, push.settled != 0u);
+  records[at + 2].w = record_flags(told.w, holds_nothing < push.crowd * least);
 }

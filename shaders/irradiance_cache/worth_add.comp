@@ -26,7 +26,8 @@ float weight_at(Reader r, uint i) {
   uint record = octree_sphere(i);
   vec4 place = octree_copy(i), facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
   vec3 away = r.x - place.xyz;
-  return dot(away, away) < square(place.w) ? record_weight(r.x, r.n, place, facing, record_shape(record, place)) : 0.0;
+  bool within = dot(away, away) < square(place.w) && !record_crowded(record);
+  return within ? record_weight(r.x, r.n, place, facing, record_shape(record, place)) : 0.0;
 }
 struct Read {
   float weights;  // of all that serve there; 0: none does

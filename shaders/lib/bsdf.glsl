@@ -359,16 +359,16 @@ float bsdf_straight_probability(Bsdf b, float mu) {
   return 0.0;
 }
 
-// Draws a direction from the mixture of all lobes but straight transmission, then the label. u: direction; lobe: which
-// lobe, which label. Weight and density are those of the whole mixture. May return weight 0 (absorbed).
-BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
+// Draws a direction from the mixture of all lobes but straight transmission, then the label. u: direction; cosine: that of
+// diffuse reflection, and mirrored of transmission; lobe: which lobe, which label. Weight and density are those of the whole
+// mixture, of which the cosine's distribution is one. May return weight 0 (absorbed).
+BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec3 cosine, vec2 lobe) {
   BsdfSample s;
   s.event = k_event_diffuse;
   s.eta2 = 1.0;
   s.transmitted = false;
   s.weight = vec3(0.0);
   s.pdf = 0.0;
-  vec3 cosine = sample_cosine(u);
   float at = lobe.x;
 #if LUCERNA_THIN_GLASS
   at *= 1.0 - bsdf_straight_probability(b, wo.z);  // the last share of the lobes
@@ -457,5 +457,6 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) {
 #endif
   return s;
 }
+BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec2 lobe) { return bsdf_sample(b, wo, u, sample_cosine(u), lobe); }
 
 #endif

@@ -25,6 +25,7 @@ struct InspectHeader {
   uint solid;  ///< 0: nothing, and then nothing else here holds
   uint asks;   ///< k_asks_*
   uint count;  ///< records that serve there; the first k_inspect_most of them are listed
+  uint gathers;  ///< not 0: none does, and those that are there say that paths gather (k_record_crowded)
   uint under;  ///< of the records whose discs are drawn there the one whose centre is nearest; k_no_record:
                ///< none
   float size;   ///< of a pixel there [m]
@@ -48,6 +49,7 @@ struct OverlapPush {
 /// Counts over the picture's pixels that show something diffuse; the sums of large pictures need the width.
 struct OverlapCounts {
   uint pixels[k_overlap_bins];
+  uint gathered;  ///< of those that none serves: where records say that paths gather (k_record_crowded)
   uint most;        ///< records that serve one pixel
   WideSum records;  ///< over the pixels
   WideSum listed;   ///< likewise, of those that the octree lists there

@@ -40,12 +40,30 @@ struct BlockError {
   // 1.26 (|A - B| / 2 is at most the pixel's own Y), so that no firefly can outweigh its neighbours.
   float relative[4];      ///< sum of r
   float quadrant_pixels[4];
+  // Of what the pixels read of records, where that is known, else 0 (BlockRecords; FilmRecords): sums of the squares of
+  // their noise and of what interpolation is off by, which may be below 0 by chance; and of these over the square of what
+  // r is held against.
+  float records, interpolation;
+  float records_relative, interpolation_relative;
+};
+
+/// What records of light that all samples read may be wrong by, in luminance, summed over pixels of a block: not the
+/// samples' noise, and no sample takes it away. Pixels that read one record err together, so that sums over larger regions
+/// are sums of these, taken before they are squared. Every record's error is drawn anew in each of k_record_lanes lanes;
+/// two independent paths a pixel, [0] and [1], carry it there, so that the mean product of their lanes is the square.
+LUCERNA_CONST uint k_record_lanes = 16u;
+struct BlockRecords {
+  float pixels;                            ///< that are summed, of any size
+  float interpolation[2];                  ///< by how much interpolation is told to be off
+  float noise[2 * k_record_lanes];         ///< by path, by lane
+  float interpolation_noise[2 * k_record_lanes];  ///< of `interpolation`, by noise of the records
 };
 
 struct ErrorPush {
   uint width, height;
   uint block_count;
   float luminance_floor;  ///< noise in pixels darker than this is held against this
+  uint records;           ///< not 0: FilmRecords is known
 };
 
 LUCERNA_CONST uint k_layer_beauty = 0u;   ///< sum of the shown components

@@ -38,8 +38,9 @@ LUCERNA_CONST uint k_record_texels = 6u;
 /// Most of the greater radius over the lesser.
 LUCERNA_CONST float k_record_ratio = 2.0f;
 LUCERNA_CONST uint k_record_pass = 0x7fu;       ///< mask: the pass that placed it, from 0
-/// It would have to reach less far than the least radius: it holds no light, and says of its disc that paths gather there
-/// themselves, because what is there is too fine to be interpolated.
+/// Something is nearer to it than the least radius, so that what light there is there is too fine to be
+/// interpolated. It holds none, and says of its disc that paths gather there themselves. In the place of its
+/// irradiance it tells them where light comes from (k_guide_*).
 LUCERNA_CONST uint k_record_crowded = 0x80u;
 LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: what asked for it, k_origin_*
 LUCERNA_CONST uint k_record_facet_shift =
@@ -56,6 +57,14 @@ LUCERNA_CONST uint k_origin_recursive =
 // Tangent and bitangent are make_basis() of the normal. Rotational gradient: change of the irradiance as the
 // normal n_i turns to n, by the components of n_i x n.
 LUCERNA_CONST uint k_part_texels = 4u;
+
+// Of a record that crowds the same texels hold one byte for each cell of its hemisphere, elevations of one
+// azimuth in turn: the luminance that its rays brought from there, over the greatest of them. Cells are even
+// in azimuth from the tangent on, and in sin^2 of the angle from the normal.
+LUCERNA_CONST uint k_guide_azimuths = 32u, k_guide_elevations = 8u;
+LUCERNA_CONST uint k_guide_texels = 16u;
+LUCERNA_CONST uint k_guide_most = 126u;  ///< of a byte: read as floats they are never infinite, nor no numbers
+LUCERNA_CONST uint k_no_guide = 0xffffffffu;
 
 /// Bytes that a record takes with its sphere and its light as lookups read it; the octree's references come
 /// to that.
@@ -84,11 +93,36 @@ LUCERNA_CONST uint k_probe_reads = 4u;
 /// is noted, where they end.
 LUCERNA_CONST uint k_probe_next = 5u;
 
+/// Of the vertices that read records and from which the path goes on by a diffuse event, where it ends, is noted with what
+/// it carries there: CarriedNote, in place of a candidate. The mean of what is noted, times what records there hold, is what
+/// pictures read of them.
+LUCERNA_CONST uint k_probe_carry = 6u;
+/// The same of what the records themselves have read: paths pass their first lookup over and note one of those beyond.
+LUCERNA_CONST uint k_probe_carry_on = 7u;
+
+// Noted by these, in candidate_texels:
+//   0: position; bits 1 + state of the automaton + k_carried_medium times the medium, 0: nothing is noted
+//   1: smooth normal on the side that is lit, bits carried_pack() of the throughput behind the diffuse lobe, over pi
+LUCERNA_CONST uint k_carried_medium = 32u;
+
+/// Signs by which every record's error is carried into the picture (picture_error.h); a multiple of 4, at most 32.
+LUCERNA_CONST uint k_carry_lanes = 16u;
+/// carry_leave.comp leaves for every record, over the luminance of its irradiance: what it is off by where it
+/// ends, by what the others around say of it beyond what it says itself; 0, 0, 0; the same of their errors in every lane.
+LUCERNA_CONST uint k_left_texels = 1u + k_carry_lanes / 4u;
+
+struct CarryPush {
+  uint width, height;    ///< of the picture, in pixels of the film
+  uint step;             ///< of which so many along each side have one of this kernel's pixels: a power of 2, at most 8
+  uint pixels;           ///< of these in the item, two paths each
+  uint beyond;           ///< not 0: what records have read counts too
+};
+
 /// What paths are told of the cache.
 struct CacheFrame {
   /// By state of the automaton, for the diffuse lobe of a vertex met in it: bits 4 p on: the component to
   /// which part p goes; k_component_count: none. k_no_routes: no lookup there.
-  uint routes[24];
+  uint routes[32];
   uint record_count;
   /// Most that the normals of a point and of a record may differ, as 1 - cos.
   float normal_tolerance;
@@ -122,14 +156,14 @@ struct RadiusPush {
   float error;        ///< radius over harmonic mean distance
   float most;         ///< [m]
   float near;         ///< ... and over the distance of the nearest thing
-  uint settled;       ///< as EllipsePush has it
-  float crowd;
+  float crowd;        ///< as EllipsePush has it
 };
 
 struct ClampPush {
   uint count;  ///< records
   float near;  ///< lesser radius over the distance of the nearest thing, at most
-  float crowd; ///< as EllipsePush has it
+  float crowd;     ///< as EllipsePush has it ...
+  uint undecided;  ///< ... for records from this one on
 };
 /// Of a record that none clamps: the bits of infinity.
 LUCERNA_CONST uint k_no_bound = 0x7f800000u;
@@ -153,8 +187,8 @@ struct EllipsePush {
   float dark;         ///< irradiance, luminance: records that have less are held against it
   float near;         ///< lesser radius over the greatest that holds nothing that a ray met, at most
   float near_tried;   ///< the same where only the distance of the nearest thing is known
-  uint settled;       ///< not 0: those that crowd have no light, so that they do so still
-  float crowd;        ///< of the least radius: records that are to be narrower crowd; 0: none do
+  /// Of the least radius: where something is nearer than that records crowd; 0: it has been decided which do.
+  float crowd;
 };
 
 /// Pools what pilot rays have told.

@@ -103,7 +103,7 @@ struct Frame {
   uint roulette_depth;
   uint automaton_states;
   float scene_radius;
-  uint automaton[24];         ///< paths::pack; k_automaton_states
+  uint automaton[32];         ///< paths::pack; k_automaton_states
 };
 
 LUCERNA_SHARED_END

@@ -6,11 +6,13 @@ LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_component_count = 4u;
 /// States of the automaton from here on are those of paths that have passed a lookup on purpose, where what is looked up
-/// is too fine to be interpolated: they look up tertiary light at the next diffuse vertex, if that is looked up at all.
+/// is too fine to be interpolated: they look up tertiary light at the next diffuse vertex, if that is looked up at all ...
 LUCERNA_CONST uint k_gather_state = 8u;
 /// ... and from here on of paths that a lookup left alone: nothing is cut off for them.
 LUCERNA_CONST uint k_fallback_state = 16u;
-LUCERNA_CONST uint k_automaton_states = 24u;
+/// ... and from here on of those that have then looked up: the same, and nothing is looked up any more.
+LUCERNA_CONST uint k_known_state = 24u;
+LUCERNA_CONST uint k_automaton_states = 32u;
 
 // Of a path since its last scattering event, where records hold the sky's light (LUCERNA_SKY_APART):
 LUCERNA_CONST uint k_path_sky_only = 1u << 5;     ///< a record's first ray: of all lights it sees the sky alone

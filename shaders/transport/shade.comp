@@ -7,6 +7,8 @@
 #include "lib/lights.glsl"
 #if LUCERNA_CACHE
 #include "irradiance_cache/lookup.glsl"
+#include "irradiance_cache/guide.glsl"
+#include "irradiance_cache/carried.glsl"
 #endif
 
 #include "transport/direct_light.glsl"
@@ -89,9 +91,14 @@ void main() {
         bool beyond = cache.probing == k_probe_beyond && state >= k_fallback_state;
         bool screen = cache.probing == k_probe_screen && depth == 0u;
         bool next_read = cache.probing == k_probe_next && state >= k_fallback_state;
+        bool carries = cache.probing == k_probe_carry || cache.probing == k_probe_carry_on;
         bool looks = (routes != k_no_routes || beyond || next_read || screen) && bsdf.p_diffuse + bsdf.p_transmitted > 0.0;
+        // What is noted here, k_candidate_texels of it.
+        bool noted = false;
+        vec4 note = vec4(0.0), note_facing = vec4(0.0);
         // A side asks and finds nothing; all that do so are to gather.
         bool alone = false, gathers = true;
+        uint guiding = k_no_guide;
         bool notes_all = cache.probing == k_probe_screen || cache.probing == k_probe_reads || next_read;
         // Records stand on the smooth surface, not on its facets nor its normal map.
         vec3 smooth_side = dot(surface.normal_v, side) < 0.0 ? -surface.normal_v : surface.normal_v;
@@ -107,17 +114,19 @@ void main() {
           Cached found = cache_lookup(surface.position, sign * smooth_side, sign * to_world[2], medium, asks);
           bool missing = asks && found.weight <= 0.0;
           // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
-          bool notes = ((missing && !found.crowded) || (asks && notes_all)) && cache.probing != k_probe_none &&
+          bool notes = ((missing && found.guide == k_no_guide) || (asks && notes_all)) && cache.probing != k_probe_none && !carries &&
                        (cache.probing != k_probe_next || next_read) &&
                        !(beyond && (sample_vertex_bits(random, depth, k_pad_light_choice).x & 1u) != 0u);
           bool servable = cache_can_serve(sign * smooth_side, sign * to_world[2]);
           if (notes && (servable || screen)) {
             uint origin = beyond ? k_origin_recursive : depth == 0u ? k_origin_screen : k_origin_world;
-            candidates[slot * k_candidate_texels] = vec4(offset_origin(surface, sign * side), (servable ? 1.0 : -1.0) * float(1u + origin + k_candidate_medium * medium));
-            candidates[slot * k_candidate_texels + 1u] = vec4(sign * smooth_side, uintBitsToFloat(facet_pack(sign * side)));
+            noted = true;
+            note = vec4(offset_origin(surface, sign * side), (servable ? 1.0 : -1.0) * float(1u + origin + k_candidate_medium * medium));
+            note_facing = vec4(sign * smooth_side, uintBitsToFloat(facet_pack(sign * side)));
           }
           alone = alone || missing;
-          gathers = gathers && (!missing || found.crowded);
+          gathers = gathers && (!missing || found.guide != k_no_guide);
+          if (facing == 0) guiding = missing ? found.guide : k_no_guide;
           for (uint p = 0u; p < k_part_count; ++p)
             for (uint c = 0u; c < k_component_count; ++c)
               if (found.weight > 0.0 && ((routes >> (4u * p)) & 15u) == c) cached[c] += albedo * found.part[p];
@@ -132,15 +141,28 @@ void main() {
 #endif
 
         if (!passed) {
-          BsdfSample b = bsdf_sample(bsdf, wo, sample_vertex(random, depth, k_pad_direction), sample_vertex(random, depth, k_pad_lobe));
+          vec2 u = sample_vertex(random, depth, k_pad_direction);
+          vec3 cosine = sample_cosine(u);
+#if LUCERNA_CACHE
+          Guide guide = make_guide(alone && gathers ? guiding : k_no_guide, to_world[2]);
+          if (guide.total > 0.0) cosine = guide_sample(guide, u) * to_world;
+#endif
+          BsdfSample b = bsdf_sample(bsdf, wo, u, cosine, sample_vertex(random, depth, k_pad_lobe));
           direction = normalize(to_world * b.wi);
+#if LUCERNA_CACHE
+          // What is met is weighed against light samples by the density without the guide: these weights need but add up to 1.
+          if (guide.total > 0.0 && !b.transmitted && b.pdf > 0.0)
+            b.weight *= b.pdf / (b.pdf + bsdf.p_diffuse * k_inv_pi * b.wi.z * (guide_density(guide, direction) - 1.0));
+#endif
           bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
 #if LUCERNA_CACHE
-          // In states that pass this lookup over, or all.
-          bool passes_all = (alone && !gathers) || cache.probing == k_probe_beyond || cache.probing == k_probe_next;
-          uint from = state % k_gather_state + (passes_all ? k_fallback_state : k_gather_state);
-          bool falls_back = (alone || passes_all) && looks && state < k_fallback_state && b.event == k_event_diffuse;
-          uint next = automaton_after(falls_back ? from : state, b.event);
+          // In states that pass this lookup over, or all, or that have done with them.
+          bool passes_all = (alone && !gathers) || cache.probing == k_probe_beyond || cache.probing == k_probe_next ||
+                            (cache.probing == k_probe_carry_on && !alone);
+          uint from = passes_all ? k_fallback_state : alone ? k_gather_state : k_known_state;
+          bool another = looks && b.event == k_event_diffuse && state < k_fallback_state &&
+                         (alone || passes_all || state >= k_gather_state);
+          uint next = automaton_after(another ? state % k_gather_state + from : state, b.event);
 #else
           uint next = automaton_after(state, b.event);
 #endif
@@ -156,7 +178,23 @@ void main() {
 #endif
 #if LUCERNA_CACHE
           bool ends_here = cache.probing == k_probe_lookups || cache.probing == k_probe_reads || next_read;
-          go_on = go_on && cache.probing != k_probe_screen && !(ends_here && looks && b.event == k_event_diffuse && !(alone && gathers && cache.probing == k_probe_lookups));
+          go_on = go_on && cache.probing != k_probe_screen && !(ends_here && looks && b.event == k_event_diffuse);
+          // Of the lookups beyond the first a coin chooses one, and what it brings counts for those it passes over.
+          bool reads = carries && looks && !alone && b.event == k_event_diffuse, later = reads && state >= k_fallback_state;
+          bool coin = (sample_vertex_bits(random, depth, k_pad_light_choice).x & 1u) != 0u;
+          if (later) throughput *= 2.0;
+          if (reads && finite && (later ? coin : cache.probing == k_probe_carry)) {
+            uint medium = 0u;
+#if LUCERNA_VOLUMES
+            medium = !b.transmitted || !surface.parameters.solid ? path.medium : surface.front ? surface.material + 1u : 0u;
+#endif
+            noted = true;
+            note = vec4(surface.position, uintBitsToFloat(1u + state + k_carried_medium * medium));
+            note_facing = vec4(b.transmitted ? -smooth_side : smooth_side, uintBitsToFloat(carried_pack(throughput * k_inv_pi)));
+            go_on = false;
+          }
+          // What no record serves is path traced: nothing of it is read.
+          go_on = go_on && !(carries && looks && b.event == k_event_diffuse && alone && !gathers);
 #endif
           path.eta_scale *= b.eta2;
           // Roulette on what the path carries without the radiance scale of refraction.
@@ -178,6 +216,12 @@ void main() {
           if (b.transmitted && surface.parameters.solid) path.medium = surface.front ? surface.material + 1u : 0u;
 #endif
         }
+#if LUCERNA_CACHE
+        if (noted) {
+          candidates[slot * k_candidate_texels] = note;
+          candidates[slot * k_candidate_texels + 1u] = note_facing;
+        }
+#endif
       }
 #if LUCERNA_THIN_GLASS
       if (passed) path.throughput *= bsdf_straight(bsdf, wo.z) / p_straight;

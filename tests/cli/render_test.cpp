@@ -124,7 +124,7 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   CHECK(j["error"]["tile_worst"] <= 0.0801);
   CHECK(j["tiles"]["most_samples"] > j["tiles"]["least_samples"]);
   CHECK(j["error"]["components"].size() == 4);
-  CHECK(j["error"]["of"] == "noise");
+  CHECK(j["error"]["of"] == "sum");
   CHECK(j["error"]["components"]["tertiary"]["bias"] == 0);
   const auto [capped, warning] = stats("--error 0.01 --samples 32 --set sampling.min_samples=16");
   CHECK(capped["tiles"]["most_samples"] == 32);

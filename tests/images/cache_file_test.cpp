@@ -89,8 +89,8 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
   CHECK_FALSE(second.r.cache()->ready());
   // The same as if the camera had been moved where it was made.
   CHECK(identical(moved, second.finish()));
-  CHECK(test::keeps_places(second.records(), saved));
-  CHECK(begins_with(second.records().lights, saved.lights));
+  CHECK(test::keeps_places(test::lit(second.records()), test::lit(saved)));
+  CHECK(begins_with(test::lit(second.records()).lights, test::lit(saved).lights));
   CHECK(second.records().size() > saved.size());
   CHECK(second.status().loaded == saved.size());
   CHECK(second.status().rays > rays);

@@ -151,7 +151,7 @@ std::vector<Shape> ellipses(test::CacheBed& bed, const std::vector<Bending>& ben
   for (size_t i = 0; i < count; ++i) CHECK(radii[i] == shapes[i].greater);
   return shapes;
 }
-constexpr shared::EllipsePush k_free{0, 0, 0.3f, 100, 0, 1, 1, 0, 0};
+constexpr shared::EllipsePush k_free{0, 0, 0.3f, 100, 0, 1, 1, 0};
 
 }  // namespace
 
@@ -348,7 +348,7 @@ TEST_CASE("ellipses are bounded: in length, in width, by what is near, in the da
   test::CacheBed bed(test::CacheBed::load("furnace-disk"), 1024);
   bed.set_frame(k_direct);
   const float none = std::numeric_limits<float>::infinity();
-  const shared::EllipsePush how{0, 0, 0.3f, 2, 0.1f, 1, 1, 0, 0};
+  const shared::EllipsePush how{0, 0, 0.3f, 2, 0.1f, 1, 1, 0};
   const auto one = [&](const Bending& b, const shared::EllipsePush& push, float least = 0) {
     return ellipses(bed, {b}, push, least)[0];
   };

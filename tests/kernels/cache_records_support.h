@@ -16,6 +16,8 @@ struct RecordDisc {
   float radius;       ///< of an ellipse the lesser [m]
   float nearest = 0;  ///< of what its rays met [m]
   float stretch = 1;  ///< greater radius over the lesser
+  vec3 light{0};      ///< irradiance of the secondary part, without slopes
+  float error = 0;    ///< standard error of its luminance
 };
 
 struct RecordBed {
@@ -40,6 +42,10 @@ struct RecordBed {
       vec4* const texels = &raw.places[i * shared::k_record_texels];
       texels[0].w = major;
       texels[2].y = discs[i].nearest;
+      texels[2].z = discs[i].error;
+      vec4* const light =
+          &raw.lights[(i * shared::k_part_count + shared::k_part_secondary) * shared::k_part_texels];
+      light[0] = vec4(discs[i].light, 0);
       texels[3] = vec4(std::sqrt(std::max(0.0f, 1 / (minor * minor) - 1 / (major * major))), 0, 0, minor);
       raw.spheres[i] = vec4(discs[i].place.position, major);
     }

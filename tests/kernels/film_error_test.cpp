@@ -129,7 +129,8 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
     }
     CHECK(film.errors()[b].pixels == 0);
     CHECK(film.errors()[b].variance[0] == 0);
-    CHECK(film::relative_error(film, std::span(&b, 1)) == film::tile_error(std::span(&full[b], 1)).relative);
+    CHECK(film::relative_error(film, std::span(&b, 1)).paths ==
+          film::tile_error(std::span(&full[b], 1)).relative);
   }
   CHECK(device.validation_messages() == 0);
 }
@@ -233,4 +234,117 @@ TEST_CASE("the spread of the tiles: a bright window does not hide grainy walls")
   std::vector<film::TileError> walls;
   for (const BlockError& b : blocks) walls.push_back(film::tile_error({&b, 1}));
   CHECK(film::tile_spread(walls).worst_tenth == Approx(0.3));
+}
+
+TEST_CASE(
+    "the error kernel: what pixels read of records, summed beside their noise, which it leaves as it is") {
+  gpu::Device device({"cpu", true});
+  gpu::ShaderCompiler compiler;
+  gpu::Stream stream(device);
+  constexpr uint32_t k_width = 12, k_height = 8;
+  constexpr float k_floor = 0.05f;
+  film::Film film(device, k_width, k_height);
+  film.clear(stream);
+  const gpu::Kernel add(device, compiler, "film/add.comp"), plain(device, compiler, "film/error.comp"),
+      error(device, compiler, "film/error.comp", {{"LUCERNA_CACHE", "1"}}),
+      stopping(device, compiler, "film/error.comp", {{"LUCERNA_CACHE", "1"}, {"LUCERNA_STOPPING_ONLY", "1"}});
+  constexpr uint32_t k_blocks = 2, k_samples = 2;
+  std::mt19937 random(3);
+  std::vector<vec4> values(size_t{k_blocks} * 64 * k_samples * 4);
+  for (vec4& v : values) v = vec4(0.05f + 0.1f * sample_value(random, 0));
+  gpu::Buffer radiance(device, {.name = "radiance", .bytes = values.size() * sizeof(vec4), .texel = true});
+  gpu::Buffer features(device, {.name = "features", .bytes = values.size() * 8, .texel = true});
+  const std::vector<shared::WorkBlock> list{{0, 0}, {1, 0}};
+  gpu::Buffer work(device, {.name = "work blocks", .bytes = list.size() * sizeof(shared::WorkBlock)});
+  radiance.write(std::span<const vec4>(values));
+  work.write(std::span<const shared::WorkBlock>(list));
+  stream.fill(features, 0);
+  film.make_room_for_records();
+  gpu::Resources resources;
+  film.bind(resources);
+  resources.set("WorkBlocks", work);
+  resources.set("radiance_texels", radiance);
+  resources.set("feature_texels", features);
+  std::vector<vec2> records(size_t{k_width} * k_height);
+  for (size_t i = 0; i < records.size(); ++i)
+    records[i] = vec2(1e-4f * float(i), 2e-4f * float(i % 7) - 3e-4f);
+  gpu::Buffer told(device, {.name = "told", .bytes = records.size() * sizeof(vec2)});
+  told.write(std::span<const vec2>(records));
+  resources.set("FilmRecords", told);
+  const auto run = [&](const gpu::Kernel& kernel, uint32_t known) {
+    stream.dispatch(kernel, resources, shared::ErrorPush{k_width, k_height, k_blocks, k_floor, known}, 1);
+    stream.run();
+    return std::vector<BlockError>(film.errors().begin(), film.errors().end());
+  };
+  stream.dispatch(add, resources, shared::FilmPush{k_width, k_height, 64 * k_blocks, k_samples}, k_blocks);
+  const std::vector<BlockError> without = run(plain, 0), unknown = run(error, 0), full = run(error, 1);
+  CHECK(std::memcmp(without.data(), unknown.data(), without.size() * sizeof(BlockError)) == 0);
+  const film::Image image = film.read();
+  for (uint32_t b = 0; b < k_blocks; ++b) {
+    double sums[4] = {};
+    for (uint32_t q = 0; q < 4; ++q) {
+      CHECK(full[b].relative[q] == without[b].relative[q]);
+      double mean = 0, pixels = 0;
+      for (const bool second : {false, true})
+        for (uint32_t k = 0; k < 16; ++k) {
+          const uint32_t x = b * 8 + q % 2 * 4 + k % 4, y = q / 2 * 4 + k / 4;
+          if (x >= k_width) continue;
+          double here = 0;
+          for (const auto& c : image.components) here += luminance(c[y * k_width + x]);
+          if (!second) {
+            mean += here, ++pixels;
+            continue;
+          }
+          const double scale = std::max({here, mean / pixels, double{k_floor}});
+          const vec2 r = records[y * k_width + x];
+          sums[0] += r.x, sums[1] += r.y, sums[2] += r.x / (scale * scale), sums[3] += r.y / (scale * scale);
+        }
+    }
+    CHECK(full[b].records == Approx(sums[0]).epsilon(1e-5));
+    CHECK(full[b].interpolation == Approx(sums[1]).epsilon(1e-4).margin(1e-7));
+    CHECK(full[b].records_relative == Approx(sums[2]).epsilon(1e-4));
+    CHECK(full[b].interpolation_relative == Approx(sums[3]).epsilon(1e-3).margin(1e-5));
+  }
+  // What stops a tile says the same of the records.
+  film.clear(stream);
+  stream.dispatch(add, resources, shared::FilmPush{k_width, k_height, 64 * k_blocks, k_samples}, k_blocks);
+  const std::vector<BlockError> alone = run(stopping, 1);
+  for (uint32_t b = 0; b < k_blocks; ++b) {
+    CHECK(alone[b].records_relative == full[b].records_relative);
+    CHECK(alone[b].interpolation_relative == full[b].interpolation_relative);
+    CHECK(alone[b].records == 0);
+  }
+}
+
+TEST_CASE("a tile's error is its paths' and its records' in quadrature, and interpolation's on top") {
+  BlockError e{};
+  e.pixels = 64, e.luminance[0] = 32, e.variance[0] = 64 * 0.04f, e.fourth = 64 * 3 * 0.0016f;
+  for (int q = 0; q < 4; ++q) e.relative[q] = 16 * 0.4f, e.quadrant_pixels[q] = 16;
+  const film::TileError plain = film::tile_error({&e, 1});
+  CHECK(plain.relative_sum() == plain.relative);
+  CHECK(plain.half_width_90() == film::student_90(plain.degrees) * plain.standard_error);
+  e.records = 64 * 0.09f, e.interpolation = 64 * 0.01f;
+  e.records_relative = 64 * 0.09f, e.interpolation_relative = 64 * 0.01f;
+  shared::BlockRecords r{};
+  r.pixels = 64;
+  for (uint32_t k = 0; k < 2 * shared::k_record_lanes; ++k) r.noise[k] = 64 * (k % 3 ? 0.3f : -0.3f);
+  // The signs of a lane agree between the paths where their sums are of the same records.
+  for (uint32_t k = 0; k < shared::k_record_lanes; ++k) r.noise[shared::k_record_lanes + k] = r.noise[k];
+  r.interpolation[0] = r.interpolation[1] = 64 * -0.2f;
+  const film::TileError tile = film::tile_error({&e, 1}, {&r, 1});
+  CHECK(tile.standard_error == plain.standard_error);
+  CHECK(tile.records.noise == Approx(0.3));
+  CHECK(tile.records.interpolation == Approx(0.2));
+  CHECK(tile.relative_sum() == Approx(std::hypot(plain.relative, 0.3) + 0.1));
+  // The records rule the noise: their degrees of freedom are the sum's, a little more for the paths'.
+  const double noise = std::hypot(plain.standard_error, 0.3);
+  CHECK(tile.half_width_90() < film::student_90(shared::k_record_lanes) * noise + 0.2);
+  CHECK(tile.half_width_90() > 1.6448 * noise + 0.2);
+  const film::ImageError image = film::image_error({&e, 1});
+  CHECK(image.records_rms == Approx(0.3));
+  CHECK(image.interpolation_rms == Approx(0.1));
+  CHECK(image.relative_sum() == Approx((std::hypot(image.rms[0], 0.3) + 0.1) / 0.5));
+  // Errors that are told to be below nothing by chance are nothing.
+  e.records = e.records_relative = -1e-3f;
+  CHECK(film::tile_error({&e, 1}).relative_records == 0);
 }

@@ -1,5 +1,7 @@
 // links: gpu
+#include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <thread>
 
 #include "gpu/spirv.h"
@@ -15,12 +17,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// A disk cache with nothing in it.
+struct OwnCache {
+  OwnCache() { set(folder.path.c_str()); }
+  ~OwnCache() { set(before ? before->c_str() : nullptr); }
+  static void set(const char* value) {
+    value ? setenv("XDG_CACHE_HOME", value, 1) : unsetenv("XDG_CACHE_HOME");
+  }
+  static std::optional<std::string> get() {
+    const char* value = std::getenv("XDG_CACHE_HOME");
+    return value ? std::optional<std::string>(value) : std::nullopt;
+  }
+  const std::optional<std::string> before = get();
+  test::Folder folder;
+};
+
 void write_text(const fs::path& path, const std::string& text) {
   fs::create_directories(path.parent_path());
   std::ofstream(path) << text;
 }
 
-std::vector<fs::path> cached_files(const test::OwnCache& cache) {
+std::vector<fs::path> cached_files(const OwnCache& cache) {
   std::vector<fs::path> found;
   for (const auto& entry : fs::recursive_directory_iterator(cache.folder.path))
     if (entry.is_regular_file()) found.push_back(entry.path());
@@ -37,7 +54,7 @@ std::vector<std::string> names(const std::vector<uint32_t>& words) {
 }  // namespace
 
 TEST_CASE("a kernel declares only what it uses, whatever its includes declare") {
-  const test::OwnCache cache;
+  const OwnCache cache;
   ShaderCompiler compiler;
   const auto words = compiler.compile(shader("gpu_scale.comp"), {{"OFFSET", "1.5"}});
   CHECK(names(words) == std::vector<std::string>{"Source", "Target"});
@@ -49,7 +66,7 @@ TEST_CASE("a kernel declares only what it uses, whatever its includes declare") 
 }
 
 TEST_CASE("an error names the file and the line") {
-  const test::OwnCache cache;
+  const OwnCache cache;
   ShaderCompiler compiler;
   CHECK_THAT(error_of([&] {
                compiler.compile(shader("gpu_version.comp"), {{"SPOIL", ""}});
@@ -64,7 +81,7 @@ TEST_CASE("an error names the file and the line") {
 }
 
 TEST_CASE("files below the root are called shaders/...; includes are found from the root and from the file") {
-  const test::OwnCache cache;
+  const OwnCache cache;
   const test::Folder root;
   write_text(root.path / "a/kernel.comp",
              "#include \"b/common.glsl\"\n#include \"beside.glsl\"\n#include \"shaders/b/common.glsl\"\n"
@@ -89,7 +106,7 @@ TEST_CASE("files below the root are called shaders/...; includes are found from 
 }
 
 TEST_CASE("a macro that is tested before it is defined is an error, not 0") {
-  const test::OwnCache cache;
+  const OwnCache cache;
   const test::Folder root;
   write_text(root.path / "late.comp",
              "#include \"first.glsl\"\n#include \"second.glsl\"\n"
@@ -114,7 +131,7 @@ TEST_CASE("a macro that is tested before it is defined is an error, not 0") {
 }
 
 TEST_CASE("dependencies are the files to watch") {
-  const test::OwnCache cache;
+  const OwnCache cache;
   ShaderCompiler compiler;
   const Defines defines{{"OFFSET", "1"}};
   compiler.compile(shader("gpu_scale.comp"), defines);
@@ -129,7 +146,7 @@ TEST_CASE("dependencies are the files to watch") {
 }
 
 TEST_CASE("a changed include is seen; a file that does not compile is still watched") {
-  const test::OwnCache cache;
+  const OwnCache cache;
   const test::Folder root;
   const std::string body =
       "#include \"value.glsl\"\nbuffer T { float t[]; };\nvoid main() { t[0] = VALUE; }\n";
@@ -148,7 +165,7 @@ TEST_CASE("a changed include is seen; a file that does not compile is still watc
 }
 
 TEST_CASE("the disk cache saves the work, tells defines apart and recovers from damage") {
-  const test::OwnCache cache;
+  const OwnCache cache;
   const std::string file = shader("gpu_scale.comp");
   ShaderCompiler first;
   const auto words = first.compile(file, {{"OFFSET", "1"}});
@@ -192,14 +209,14 @@ TEST_CASE("the disk cache saves the work, tells defines apart and recovers from 
 }
 
 TEST_CASE("a cache folder that cannot be written is no reason to fail") {
-  setenv("XDG_CACHE_HOME", "/dev/null/nowhere", 1);
+  const OwnCache cache;
+  OwnCache::set("/dev/null/nowhere");
   ShaderCompiler compiler;
   CHECK_NOTHROW(compiler.compile(shader("gpu_scale.comp"), {{"OFFSET", "1"}}));
-  unsetenv("XDG_CACHE_HOME");
 }
 
 TEST_CASE("several threads compile at once") {
-  const test::OwnCache cache;
+  const OwnCache cache;
   ShaderCompiler compiler;
   std::vector<std::thread> threads;
   std::vector<std::vector<uint32_t>> results(6);

@@ -22,14 +22,6 @@ inline std::string shader(const std::string& file) {
   return std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/" + file;
 }
 
-/// Keeps a test's shaders out of the user's disk cache, and old SPIR-V out of the test.
-struct OwnCache {
-  OwnCache() { setenv("XDG_CACHE_HOME", folder.path.c_str(), 1); }
-  ~OwnCache() { unsetenv("XDG_CACHE_HOME"); }
-  Folder folder;
-};
-inline const OwnCache own_cache;
-
 /// The message of the Error that `call` throws, or "no error".
 template <class Call>
 std::string error_of(Call&& call) {

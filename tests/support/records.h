@@ -52,6 +52,14 @@ inline bool begins_with(const irradiance_cache::RawRecords& all, const irradianc
 inline bool identical(const irradiance_cache::RawRecords& a, const irradiance_cache::RawRecords& b) {
   return begins_with(a, b) && begins_with(b, a);
 }
+/// Those of `all` that hold light: where the camera comes nearer others may go.
+inline irradiance_cache::RawRecords lit(irradiance_cache::RawRecords all) {
+  std::vector<uint32_t> kept;
+  for (uint32_t r = 0; r < all.size(); ++r)
+    if (!all.crowded(r)) kept.push_back(r);
+  all.keep(kept);
+  return all;
+}
 /// Whether the first of `all` are those of `some`, light aside: places, normals, origins, facets and passes,
 /// to the bit. They may serve less far.
 inline bool keeps_places(const irradiance_cache::RawRecords& all, const irradiance_cache::RawRecords& some) {

@@ -167,6 +167,28 @@ TEST_CASE(
   CHECK(paths::record_routes(a, 0b0010, true, true).component.empty());
 }
 
+TEST_CASE("paths that pass lookups on purpose look tertiary light up at every vertex behind") {
+  const paths::Automaton a = paths::compile_components();
+  const uint8_t none = paths::k_no_component, d = a.after(0, paths::Event::diffuse),
+                dd = a.after(d, paths::Event::diffuse);
+  const std::array<uint8_t, 4> nothing{none, none, none, none};
+  const auto own = paths::record_routes(a, 0b0111, true, true);
+  // The picture's: secondary light is left to the path, and light that its next vertex has straight from the
+  // sky is of it.
+  const auto picture = paths::gather_routes(a, 15, own);
+  CHECK(picture.traced == 0b1011);
+  CHECK(picture.component[0] == nothing);
+  CHECK(picture.component[d] == std::array<uint8_t, 4>{1, 2, 2, 2});
+  CHECK(picture.component[dd] == std::array<uint8_t, 4>{2, 2, 2, 2});
+  // Those of records look up at the first vertex that they meet, and may pass that as well.
+  const auto records = paths::gather_routes(a, own.parts, own);
+  CHECK(records.component[d] == own.component[d]);
+  CHECK(records.component[dd] == std::array<uint8_t, 4>{2, 2, 2, 2});
+  CHECK(records.traced == own.traced);
+  // Where records are path traced, nothing is looked up.
+  CHECK(paths::gather_routes(a, 15, paths::record_routes(a, 0b0110, false, true)).component.empty());
+}
+
 TEST_CASE("a path lives as long as a light or a lookup can bring it something") {
   const paths::Automaton a = paths::compile_components();
   const uint8_t d = a.after(0, paths::Event::diffuse), dd = a.after(d, paths::Event::diffuse);

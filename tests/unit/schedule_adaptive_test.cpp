@@ -31,9 +31,10 @@ struct Player {
         CHECK(b.first_sample == samples[b.index]);  // no sample twice, none left out
         samples[b.index] += item.sample_count;
       }
-      std::vector<float> errors;
+      std::vector<TileErrors> errors;
       for (const uint32_t t : schedule.to_report())
-        errors.push_back(float(sigma(t) / std::sqrt(schedule.tiles()[t].samples + item.sample_count)));
+        errors.push_back(
+            {.paths = float(sigma(t) / std::sqrt(schedule.tiles()[t].samples + item.sample_count))});
       schedule.report(errors);
       items.push_back(item);
       REQUIRE(items.size() < 100000);
@@ -108,8 +109,8 @@ TEST_CASE("work that is given back is given again; the same errors give the same
     const WorkItem other = b.next();
     REQUIRE(other.sample_count == item.sample_count);
     REQUIRE(other.blocks.front().index == item.blocks.front().index);
-    std::vector<float> errors;
-    for (const uint32_t t : a.to_report()) errors.push_back(0.02f * float(1 + t % 5));
+    std::vector<TileErrors> errors;
+    for (const uint32_t t : a.to_report()) errors.push_back({.paths = 0.02f * float(1 + t % 5)});
     a.report(errors), b.report(errors);
   }
   CHECK(b.done());
@@ -211,9 +212,10 @@ TEST_CASE("another target in the middle of a round") {
     for (uint32_t i = 0; i < items; ++i) {
       const WorkItem item = p.schedule.next();
       for (const WorkBlock& b : item.blocks) p.samples[b.index] += item.sample_count;
-      std::vector<float> errors;
+      std::vector<TileErrors> errors;
       for (const uint32_t t : p.schedule.to_report())
-        errors.push_back(float(sigma(t) / std::sqrt(p.schedule.tiles()[t].samples + item.sample_count)));
+        errors.push_back(
+            {.paths = float(sigma(t) / std::sqrt(p.schedule.tiles()[t].samples + item.sample_count))});
       p.schedule.report(errors);
     }
     AdaptiveOptions other = options;
@@ -225,6 +227,52 @@ TEST_CASE("another target in the middle of a round") {
       CHECK(tile.samples >= 16);
     }
   }
+}
+
+TEST_CASE(
+    "what samples do not take away: a tile is done when its sum is under the target, or given up as "
+    "limited") {
+  constexpr uint32_t k_slots = 64 * 64;
+  const AdaptiveOptions options{
+      .tile = 8, .target_error = 0.05f, .min_samples = 16, .max_samples = 4096, .slots = k_slots};
+  // Of tiles apart from each other, what records and interpolation come to: nothing, half of the target,
+  // nearly all of it, more than it.
+  struct Floor {
+    float records, interpolation;
+    bool reached;
+  };
+  const std::map<uint32_t, Floor> floors{
+      {0, {0, 0, true}}, {4, {0.025f, 0.01f, true}}, {8, {0.045f, 0, true}}, {44, {0.08f, 0.02f, false}}};
+  AdaptiveSchedule s(9, 9, options);
+  while (!s.done()) {
+    const WorkItem item = s.next();
+    std::vector<TileErrors> errors;
+    for (const uint32_t t : s.to_report()) {
+      const Floor f = floors.contains(t) ? floors.at(t) : Floor{};
+      errors.push_back(
+          {0.4f / std::sqrt(float(s.tiles()[t].samples + item.sample_count)), f.records, f.interpolation});
+    }
+    s.report(errors);
+  }
+  for (const auto& [t, f] : floors) {
+    INFO("tile " << t);
+    const Tile& tile = s.tiles()[t];
+    CHECK(tile.state == (f.reached ? TileState::done : TileState::capped));
+    CHECK(tile.limited(0.05f) == !f.reached);
+    CHECK(tile.samples < 4096);
+    // Under the target, and not long since; or as far as samples help.
+    if (f.reached) CHECK(tile.sum() <= 0.0501f);
+    if (!f.reached) CHECK(tile.error <= (f.records + f.interpolation) / 3);
+    if (!f.reached) CHECK(tile.sum() > 0.05f);
+  }
+  CHECK(s.tiles()[0].samples < s.tiles()[4].samples);
+  CHECK(s.tiles()[4].samples < s.tiles()[8].samples);
+  // What is limited goes as far as samples help, and no further.
+  CHECK(s.tiles()[44].samples < s.tiles()[8].samples);
+  CHECK(paths_goal(0.05f, 0, 0) == 0.05f);
+  CHECK(std::hypot(paths_goal(0.05f, 0.03f, 0), 0.03f) == Approx(0.05f));
+  CHECK(std::hypot(paths_goal(0.05f, 0.02f, 0.01f), 0.02f) + 0.01f == Approx(0.05f));
+  CHECK(paths_goal(0.05f, 0.09f, 0.03f) == Approx(0.04f));
 }
 
 TEST_CASE("uniform and adaptive take over from one another, at any time: no sample is lost or given twice") {
@@ -256,9 +304,9 @@ TEST_CASE("uniform and adaptive take over from one another, at any time: no samp
     UniformSchedule first(k_across * k_down, 64, k_slots);
     uniform(first, samples, items);
     CHECK(counts_agree(first.counts(), samples));
-    std::vector<float> errors;
+    std::vector<TileErrors> errors;
     for (uint32_t t = 0; t < 5 * 4; ++t)
-      errors.push_back(float(sigma(t) / std::sqrt(std::max(1u, first.complete()))));
+      errors.push_back({.paths = float(sigma(t) / std::sqrt(std::max(1u, first.complete())))});
     Player p{AdaptiveSchedule(k_across, k_down, options, first.counts(), errors), samples, {}};
     CHECK(p.schedule.least_samples() == first.complete());
     // An item that is not carried out is given again.

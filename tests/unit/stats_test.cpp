@@ -128,6 +128,30 @@ TEST_CASE("time to a smaller error: the law is found, the truth lies within the 
   CHECK_FALSE(seconds_to(render(0.5, 1000), 0));
 }
 
+TEST_CASE(
+    "what records and interpolation come to is never foretold to be gone under, nor said to be reached") {
+  Ledger plain = render(0.5, 3000000), ledger;
+  for (Entry e : plain.entries()) {
+    e.records = 0.03, e.interpolation = 0.02;
+    ledger.add(e);
+  }
+  CHECK(ledger.entries().back().sum() > 0.05);
+  CHECK(ledger.entries().back().floor() == Approx(0.05));
+  // By the paths alone both have been reached.
+  REQUIRE(plain.entries().back().error[0] < 0.04);
+  REQUIRE(seconds_to(plain, 0.04));
+  CHECK(paths_target(plain, 0.04) == 0.04);
+  CHECK(paths_target(ledger, 0.04) == 0);
+  CHECK_FALSE(seconds_to(ledger, 0.04));
+  CHECK_FALSE(seconds_to(ledger, 0.0499));
+  // What can be reached is, when paths and records together are there: later than by the paths alone.
+  CHECK(paths_target(ledger, 0.06) == Approx(std::sqrt(0.04 * 0.04 - 0.03 * 0.03)));
+  const auto sum = seconds_to(ledger, 0.06), paths = seconds_to(plain, 0.06);
+  REQUIRE(sum);
+  REQUIRE(paths);
+  CHECK(sum->middle > 2 * paths->middle);
+}
+
 TEST_CASE("nothing is foretold before there is enough to tell by, and less is told of few pixels") {
   CHECK_FALSE(Outlook(Ledger()).known());
   for (const uint64_t samples : {2, 4, 8, 12}) CHECK_FALSE(seconds_to(render(0.5, 100 * samples), 0.01));

@@ -168,14 +168,15 @@ TEST_CASE("uniform sampling: what a smaller error will cost, in words") {
 TEST_CASE("noise has three names: of the mean, of the median tile, of the worst tenth of the tiles") {
   stats::Entry line;
   line.told = true, line.error = {0.01, 0.01, 0, 0, 0}, line.tile_median = 0.04, line.tile_worst_tenth = 0.2;
-  const auto figures = noise_figures(line);
+  const auto figures = error_figures(line);
   CHECK(figures[0].name == "of the mean");
   CHECK(figures[1].name == "of the median tile");
   CHECK(figures[2].name == "of the worst tenth of the tiles");
   CHECK(figures[0].value == 0.01);
   CHECK(figures[1].value == 0.04);
   CHECK(figures[2].value == 0.2);
-  for (const NoiseFigure& f : figures) {
+  CHECK(figures.size() == 3);
+  for (const ErrorFigure& f : figures) {
     CHECK_FALSE(f.short_name.empty());
     CHECK_FALSE(f.help.empty());
   }
@@ -185,6 +186,36 @@ TEST_CASE("noise has three names: of the mean, of the median tile, of the worst 
   line.wall_s = 1, line.paths = 100;
   a.ledger.add(line);
   CHECK(plot_range(a, {}, 0.01, {}, 1).e_hi >= 0.2);
+}
+
+TEST_CASE(
+    "where samples read records the error has three more names, and what they keep from is not promised") {
+  session::Accuracy a = uniform(100);
+  stats::Ledger ledger;
+  for (stats::Entry e : a.ledger.entries()) {
+    e.records = 0.02, e.interpolation = 0.01;
+    ledger.add(e);
+  }
+  a.ledger = ledger;
+  const stats::Entry& last = a.ledger.entries().back();
+  const auto figures = error_figures(last);
+  REQUIRE(figures.size() == 6);
+  CHECK(figures[0].value == Approx(std::hypot(last.error[0], 0.02) + 0.01));
+  CHECK(figures[3].short_name == "paths");
+  CHECK(figures[3].value == last.error[0]);
+  CHECK(figures[4].short_name == "records");
+  CHECK(figures[4].value == 0.02);
+  CHECK(figures[5].short_name == "interpolation");
+  CHECK(figures[5].value == 0.01);
+  CHECK(present(a)->error == figures[0].value);
+  CHECK_FALSE(session::seconds_to(a, 0.02));
+  CHECK(target_texts(a, 0.02, {}, last.wall_s).at(0) ==
+        "2 % will not be reached: the records are the limit (3 %), more samples do not help");
+  session::Accuracy tiles = adaptive(0.05);
+  tiles.finished = true;
+  tiles.tiles[3].state = shared::k_tile_capped, tiles.tiles[3].records = 0.1f;
+  CHECK(target_texts(tiles, 0.05, {}, 10).at(0) ==
+        "1 of 4 tiles stay over 5 %: the records are the limit, more samples do not help");
 }
 
 TEST_CASE("adaptive sampling: the forecast is of the rays that the tiles still need") {

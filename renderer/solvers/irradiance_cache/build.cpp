@@ -55,7 +55,7 @@ uint32_t elevations_for(uint32_t rays) { return static_cast<uint32_t>(std::lroun
 bool Cache::Impl::probe(const Work& w) {
   if (!probing) {
     picture = {((w.view.width + 7) / 8) * ((w.view.height + 7) / 8), 1, w.wavefront.slots()};
-    begin_pass();
+    begin_pass(w);
   }
   bool cancelled = false;
   if (!look(w, cancelled)) return !cancelled;
@@ -93,7 +93,9 @@ bool Cache::Impl::probe(const Work& w) {
   return true;
 }
 
-void Cache::Impl::begin_pass() {
+void Cache::Impl::begin_pass(const Work& w) {
+  if (moved) drop_roomy(w);
+  moved = false;
   if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
   status.passes.push_back({.number = status.pass});
   status.asked = status.paths = 0;
@@ -205,14 +207,13 @@ bool Cache::Impl::measure(const Work& w) {
   spent(done, Evaluator::k_distance_rays);
   if (done < batch) return false;
   if (at < list.size()) return true;
-  set_radii(w, By::distance, false);
+  set_radii(w, By::distance);
   if (by_light()) {
     pool(w);
-    set_radii(w, By::light, false);
+    set_radii(w, By::light);
   }
   if (status.relighting > 0) {
     list_until(until);
-    leave_crowded();
     stage = Stage::evaluate;
   } else {
     clamp_radii(w, until, tried_near());
@@ -232,7 +233,6 @@ bool Cache::Impl::thin() {
   records.keep(evaluated, kept);
   pass().records = uint32_t(kept.size());
   list_until(records.size());
-  leave_crowded();
   took(BuildStep::choose, host.milliseconds());
   level = level_done = rays_before = 0;
   stage = Stage::evaluate;
@@ -270,7 +270,8 @@ bool Cache::Impl::evaluate(const Work& w) {
                             .rays_before = rays_before,
                             .parts = parts,
                             .seed = options.seed,
-                            .near = by_light() && level == 0 && level_done == 0},
+                            .near = by_light() && level == 0 && level_done == 0,
+                            .guides = options.gather && level == 0},
                            w.cancel);
     w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
     tell();
@@ -342,7 +343,7 @@ void Cache::Impl::publish_level(const Work& w) {
   // Ellipses are by the light; circles stand.
   const bool anew = until > standing || by_light();
   if (anew) {
-    set_radii(w, by_light() ? By::light : By::distance, true);
+    set_radii(w, by_light() ? By::light : By::distance);
     hold();
   }
   evaluated = status.records = until;
@@ -437,7 +438,7 @@ void Cache::Impl::pool(const Work& w) {
   took(BuildStep::radius, timer.milliseconds());
 }
 
-void Cache::Impl::set_radii(const Work& w, By by, bool settled) {
+void Cache::Impl::set_radii(const Work& w, By by) {
   const uint32_t count = until - evaluated;
   if (count == 0) return;
   StageTimer timer(w.wavefront);
@@ -451,11 +452,10 @@ void Cache::Impl::set_radii(const Work& w, By by, bool settled) {
                            dark(records.pilot_luminances(), until),
                            options.nearest,
                            tried_near(),
-                           settled,
                            crowd()};
     w.wavefront.stream().dispatch(ellipse, resources, push, groups, "records");
   } else {
-    const RadiusPush push{evaluated, count, options.error, least.most, tried_near(), settled, crowd()};
+    const RadiusPush push{evaluated, count, options.error, least.most, tried_near(), crowd()};
     w.wavefront.stream().dispatch(radius, resources, push, groups, "records");
   }
   w.wavefront.stream().run();
@@ -471,7 +471,7 @@ void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near) {
   if (count > evaluated) index_first(count);
   StageTimer timer(w.wavefront);
   clamping.clamp(
-      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, count, near, crowd());
+      w.wavefront.stream(), [&](gpu::Resources& to) { bind(to); }, count, near, crowd(), evaluated);
   took(BuildStep::radius, timer.milliseconds());
   index_first(evaluated);
 }
@@ -480,6 +480,27 @@ void Cache::Impl::leave_crowded() {
   if (!options.gather) return;
   const std::vector<bool> crowded = records.crowded();
   std::erase_if(list, [&](uint32_t record) { return crowded[record]; });
+}
+
+void Cache::Impl::drop_roomy(const Work& w) {
+  // Twice as wide as the least radius is now, so that they are not tried again with every move of the camera.
+  constexpr float k_roomy = 2;
+  if (!options.gather || complete() == 0) return;
+  RawRecords raw = records.raw(complete());
+  std::vector<uint32_t> kept;
+  for (uint32_t r = 0; r < raw.size(); ++r) {
+    const vec4* const texels = &raw.places[size_t{r} * k_record_texels];
+    const float least_now = least.at(vec3(texels[0])), lesser_radius = texels[3].w, nearest = texels[2].y;
+    if (!raw.crowded(r) || lesser_radius < k_roomy * least_now || options.nearest * nearest < least_now)
+      kept.push_back(r);
+  }
+  if (kept.size() == raw.size()) return;
+  raw.keep(kept);
+  const uint64_t published = status.published;
+  take(raw);
+  status.published = published + 1;
+  build_octree(w.wavefront);
+  tell();
 }
 
 void Cache::Impl::list_until(uint32_t end) {

@@ -13,6 +13,7 @@
 #include "solvers/irradiance_cache/cache.h"
 #include "solvers/irradiance_cache/clamping.h"
 #include "solvers/irradiance_cache/neighbours.h"
+#include "solvers/irradiance_cache/picture_error.h"
 #include "solvers/irradiance_cache/worth.h"
 
 namespace lucerna::irradiance_cache {
@@ -75,9 +76,11 @@ struct Cache::Impl {
   Placement placement;
   Clamping clamping;
   Worth reads;
+  PictureError picture_error;
   std::vector<float> worth;              // of the records that are evaluated, by it
   std::optional<Neighbours> neighbours;  // only where radii are bounded
   bool asks_beyond = true;               // the first passes, where the cache reads itself
+  bool moved = false;                    // the camera has, since the last pass began
   bool looked = false;                   // at the picture, in this pass: the screen-space stage is done
   uint64_t own_bytes = 0;                // of device memory, without what count_bytes() adds
   // Kept for who watches until the next pass begins:
@@ -132,8 +135,10 @@ struct Cache::Impl {
   void relight_pass();
   void forget_placement();
 
-  /// As EllipsePush::crowd.
-  float crowd() const { return options.gather ? 1.0f : 0.0f; }
+  /// As EllipsePush::crowd: decided once for each record, before it is evaluated.
+  float crowd() const {
+    return options.gather && stage == Stage::measure && status.relighting == 0 ? 1.0f : 0.0f;
+  }
   /// Whether radii are by the light, of which pilot rays tell.
   bool by_light() const { return options.metric == Metric::hessian; }
   /// Irradiance, luminance: what records of less are held against, because what they miss is seen less. Of
@@ -165,7 +170,7 @@ struct Cache::Impl {
   void tell(uint32_t probing = shared::k_probe_none) { tell(probing, routes); }
 
  private:
-  void begin_pass();
+  void begin_pass(const Work& work);
   /// The screen-space stage; true when there is nothing left of it to do. `cancelled` is set when it was.
   bool look(const Work& work, bool& cancelled);
   bool looks_first() const;  ///< what the camera sees straight asks by dithering alone in this pass
@@ -191,8 +196,7 @@ struct Cache::Impl {
   void pool(const Work& work);
   /// Radii of the records of this pass, by how far things are, or by the light too.
   enum class By { distance, light };
-  /// `settled`: those that crowd have been left without light.
-  void set_radii(const Work& work, By by, bool settled);
+  void set_radii(const Work& work, By by);
   /// ... of all, also of earlier passes, by the records around, that they be no wider than they need be.
   void bound_radii(const Work& work);
   /// ... of the first `count`, those that are evaluated at least, by what is nearest to any of them; the
@@ -204,6 +208,8 @@ struct Cache::Impl {
   void list_until(uint32_t end);
   /// ... without those that bring no light because paths gather there.
   void leave_crowded();
+  /// Those that crowded as the camera saw them, and no longer do, are dropped, and asked for anew.
+  void drop_roomy(const Work& work);
   CachePass& pass() { return status.passes.back(); }
   void took(BuildStep step, double ms) { pass().ms[size_t(step)] += ms; }
   void spent(size_t done, uint32_t rays);

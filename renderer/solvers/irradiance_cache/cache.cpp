@@ -39,6 +39,13 @@ RouteTable packed(const paths::LookupRoutes& routes, const paths::LookupRoutes& 
   return table;
 }
 
+void drop_crowded(RawRecords& raw) {
+  std::vector<uint32_t> kept;
+  for (uint32_t r = 0; r < raw.size(); ++r)
+    if (!raw.crowded(r)) kept.push_back(r);
+  raw.keep(kept);
+}
+
 }  // namespace
 
 const char* words(StopReason reason) {
@@ -71,7 +78,8 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
       screen(device, compiler, defines(own, o.metric)),
       placement(device, compiler),
       clamping(device, compiler, o.most_records, defines(own, o.metric)),
-      reads(device, compiler, o.most_records, defines(own, o.metric)) {
+      reads(device, compiler, o.most_records, defines(own, o.metric)),
+      picture_error(device, compiler, defines(own, o.metric)) {
   if (o.neighbours) neighbours.emplace(device, compiler, defines(own, o.metric));
   frame = gpu::Buffer(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)});
   candidates = gpu::Buffer(device, {.name = "cache candidates",
@@ -124,20 +132,20 @@ void Cache::Impl::tell(uint32_t probing, const RouteTable& table) {
   frame.write(&f, sizeof f);
 }
 
-Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
-             const paths::LookupRoutes& routes, const paths::LookupRoutes& gather,
-             const paths::LookupRoutes& own, const CacheOptions& options)
-    : impl_(std::make_unique<Impl>(device, compiler, slots, own, options)) {
+Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheRoutes& routes,
+             const CacheOptions& options)
+    : impl_(std::make_unique<Impl>(device, compiler, slots, routes.records, options)) {
   Impl& c = *impl_;
   if (slots < k_least_slots)
     throw_error("irradiance cache", "room for {} paths in flight; {} are needed", slots, k_least_slots);
   const uint32_t elevations = elevations_for(options.rays);
   if (options.rays == 0 || elevations * elevations * 4 != options.rays)
     throw_error("cache.rays", "'{}': expected four times a square, such as 256 or 1024", options.rays);
+  const paths::LookupRoutes& own = routes.records;
   c.parts = own.parts;
   const paths::LookupRoutes none;
-  c.routes = packed(routes, options.gather ? gather : none);
-  c.own_routes = packed(own, options.gather ? own : none);
+  c.routes = packed(routes.picture, options.gather ? routes.picture_gather : none);
+  c.own_routes = packed(own, options.gather ? routes.records_gather : none);
   c.recursive =
       std::any_of(c.own_routes.begin(), c.own_routes.end(), [](uint32_t r) { return r != k_no_routes; });
   c.radius = gpu::Kernel(device, compiler, "irradiance_cache/radius.comp");
@@ -187,6 +195,7 @@ void Cache::clear() {
   c.ends.clear();
   c.hold();
   c.stopped = StopReason::building;
+  c.moved = false;
   c.tell();
 }
 
@@ -200,6 +209,7 @@ void Cache::Impl::drop_pass() {
 
 void Cache::extend() {
   Impl& c = *impl_;
+  c.moved = true;
   c.count_anew(true);
   c.look_elsewhere();
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped, unless
@@ -214,10 +224,14 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
                     bool complete) {
   Impl& c = *impl_;
   clear();
+  if (!c.options.gather) drop_crowded(raw);
   for (size_t i = 0; i < raw.lights.size(); ++i)
-    if (!(c.parts >> i / k_part_texels % k_part_count & 1)) raw.lights[i] = vec4(0);
+    if (!raw.crowded(uint32_t(i / (k_part_texels * k_part_count))) &&
+        !(c.parts >> i / k_part_texels % k_part_count & 1))
+      raw.lights[i] = vec4(0);
   c.take(raw);
   c.status.loaded = raw.size();
+  c.moved = true;  // for all that is known
   c.status.rays = status.rays;
   if (raw.size() > 0) c.build_octree(wavefront);
   c.set_scales();
@@ -298,6 +312,20 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
 void Cache::look_at_picture(transport::Wavefront& wavefront, const CacheView& view) {
   Impl& c = *impl_;
   if (ready()) c.see_all(wavefront, view);
+}
+
+bool Cache::tell_picture(transport::Wavefront& wavefront, film::Film& film, const CacheView& view, bool anew,
+                         const std::function<bool()>& cancel) {
+  Impl& c = *impl_;
+  // Beyond the picture's lookups paths read where the rays of records do.
+  RouteTable table = c.routes;
+  std::copy_n(c.own_routes.begin(), k_gather_state, table.begin() + k_fallback_state);
+  if (anew) c.picture_error.begin();
+  const bool complete = c.picture_error.step(
+      {wavefront, film, view.paths_frame, view.paths_enabled, c.evaluated, c.recursive, c.candidates,
+       [&](gpu::Resources& r) { bind(r); }, [&](uint32_t probing) { c.tell(probing, table); }, cancel});
+  c.tell();
+  return complete;
 }
 
 SightGrid Cache::bind_sight(gpu::Resources& to) const {

@@ -98,6 +98,14 @@ struct CacheView {
   bool dark = false;  ///< the scene has no light: nothing is placed, and what there is waits to be relit
 };
 
+/// Where paths look up.
+struct CacheRoutes {
+  paths::LookupRoutes picture, picture_gather;  ///< the picture's; those that gather because records crowd
+  /// The rays of records, and the parts that they gather (paths::record_routes; without any lookup they are
+  /// path traced); those that gather (paths::gather_routes).
+  paths::LookupRoutes records, records_gather;
+};
+
 class Cache {
  public:
   /// Rays of a record that are gathered at once, at most: no fewer whatever slots there are, because records
@@ -105,12 +113,9 @@ class Cache {
   static constexpr uint32_t k_least_slots = Evaluator::k_most_rays;
 
   /// `slots`: of the wavefronts that it will be used with, k_least_slots or more.
-  /// `routes`: where the picture's paths look up; `gather`: where those do that gather because records crowd
-  /// (paths::gather_routes); `own`: where the rays of records do, and the parts that
-  /// they gather (paths::record_routes; without any lookup they are path traced). Throws Error as Records, or
-  /// when an option is out of its range.
-  Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const paths::LookupRoutes& routes,
-        const paths::LookupRoutes& gather, const paths::LookupRoutes& own, const CacheOptions& options);
+  /// Throws Error as Records, or when an option is out of its range.
+  Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheRoutes& routes,
+        const CacheOptions& options);
   ~Cache();
 
   /// For the kernels of a wavefront that reads a cache with these routes of its own and this metric.
@@ -162,6 +167,11 @@ class Cache {
   /// Looks through the centre of every pixel, for bind_sight(), unless that has been done: while the cache is
   /// being built its own passes do. The wavefront's frame is the view's.
   void look_at_picture(transport::Wavefront& wavefront, const CacheView& view);
+  /// Goes on telling the film what the picture's records may be wrong by (picture_error.h), a piece at a
+  /// time, until Film::records_told(). Only when ready(); the wavefront's frame is the view's. `anew`: the
+  /// picture is begun. False when it was cancelled: it will be done again.
+  bool tell_picture(transport::Wavefront& wavefront, film::Film& film, const CacheView& view, bool anew,
+                    const std::function<bool()>& cancel = {});
   /// For shaders/irradiance_cache/asking.glsl: where pixels ask for records; k_no_sight before that is known.
   shared::SightGrid bind_sight(gpu::Resources& resources) const;
   /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many

@@ -25,7 +25,7 @@ RecordPush push_of(const paths::Automaton& automaton, const EvaluateOptions& o) 
 struct Evaluator::Impl {
   gpu::Device& device;
   gpu::ShaderCompiler& compiler;
-  gpu::Kernel record, gather, distances, hessian, near;
+  gpu::Kernel record, gather, distances, hessian, near, guide;
   gpu::Buffer first_hits, list;
   gpu::Resources resources;
 
@@ -65,7 +65,7 @@ struct Evaluator::Impl {
 };
 
 Evaluator::Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots)
-    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}, {}}) {
+    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {
   impl_->record = gpu::Kernel(device, compiler, "irradiance_cache/record.comp");
   impl_->gather = gpu::Kernel(device, compiler, "irradiance_cache/gather.comp");
   impl_->distances = gpu::Kernel(device, compiler, "irradiance_cache/distances.comp");
@@ -86,8 +86,9 @@ size_t Evaluator::evaluate(transport::Wavefront& wavefront, const paths::Automat
     throw_error("irradiance cache", "{} x {} rays a record; there is room for 1 to {} paths", o.elevations,
                 o.azimuths, most);
   if (o.near && !e.near) e.near = gpu::Kernel(e.device, e.compiler, "irradiance_cache/near.comp");
-  return e.gather_by({&e.gather, o.near ? &e.near : nullptr}, false, wavefront, records, list,
-                     push_of(automaton, o), cancel);
+  if (o.guides && !e.guide) e.guide = gpu::Kernel(e.device, e.compiler, "irradiance_cache/guide.comp");
+  return e.gather_by({&e.gather, o.near ? &e.near : nullptr, o.guides ? &e.guide : nullptr}, false, wavefront,
+                     records, list, push_of(automaton, o), cancel);
 }
 
 size_t Evaluator::measure(transport::Wavefront& wavefront, Records& records, std::span<const uint32_t> list,

@@ -24,6 +24,9 @@ struct EvaluateOptions {
   /// Says, too, how wide ellipses by the records' pilots may be for what these rays have met: of a first
   /// level.
   bool near = false;
+  /// Of records that crowd: where light comes from takes the place of irradiance
+  /// (irradiance_cache/guide.comp).
+  bool guides = false;
 };
 
 class Evaluator {

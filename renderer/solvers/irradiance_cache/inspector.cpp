@@ -75,7 +75,7 @@ Inspection Inspector::ask(const Shown& shown, const Cache& cache, uint32_t x, ui
   found.asks = header->asks;
   found.position = header->position, found.normal = header->normal;
   found.size = header->size, found.depth = header->depth;
-  found.count = header->count;
+  found.count = header->count, found.gathers = header->gathers != 0;
   const uint32_t listed = std::min(found.count, k_inspect_most);
   double sum = 0;
   for (uint32_t k = 0; k < listed; ++k) {
@@ -110,7 +110,7 @@ Overlap Inspector::overlap(const Shown& shown, const Cache& cache) {
   Overlap o;
   o.histogram.assign(std::begin(c->pixels), std::end(c->pixels));
   for (const uint32_t n : o.histogram) o.pixels += n;
-  o.served = o.pixels - o.histogram[0];
+  o.served = o.pixels - o.histogram[0], o.gathered = c->gathered;
   o.mean = o.served > 0 ? double(value(c->records)) / double(o.served) : 0;
   o.listed = o.pixels > 0 ? double(value(c->listed)) / double(o.pixels) : 0;
   o.most = c->most;

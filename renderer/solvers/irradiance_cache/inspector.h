@@ -40,6 +40,7 @@ struct Inspection {
   float size = 0;                 ///< of the pixel there [m]
   float depth = 0;                ///< along the view axis [m]
   uint32_t count = 0;             ///< records that serve
+  bool gathers = false;           ///< none does: paths gather there themselves, as Record::crowded
   std::vector<Serving> serving;   ///< heaviest first; no more than shared::k_inspect_most
   std::optional<uint32_t> under;  ///< the record in whose disc the pixel lies; of several the one whose
                                   ///< centre is nearest
@@ -50,6 +51,7 @@ struct Inspection {
 /// How many records serve the pixels that show a diffuse surface, and so ask for them.
 struct Overlap {
   uint64_t pixels = 0, served = 0;  ///< that ask; of these with a record at least
+  uint64_t gathered = 0;            ///< ... and those with none where paths gather, as Record::crowded
   double mean = 0;                  ///< records, over the pixels that are served
   double listed = 0;                ///< records that a lookup goes through, over the pixels that ask
   uint32_t most = 0;

@@ -38,7 +38,8 @@ Record unpack(const vec4* place, const vec4* light) {
   r.lesser_radius = place[3].w;
   r.along = length(stretch) > 0 ? normalize(stretch) : vec3(0);
   const auto [t, b] = basis(r.place.normal);
-  for (uint32_t p = 0; p < k_part_count; ++p) {
+  r.crowded = (flags & k_record_crowded) != 0;
+  for (uint32_t p = 0; p < k_part_count && !r.crowded; ++p) {
     const float* f = &light[p * k_part_texels].x;
     Irradiance& e = r.parts[p];
     e.value = vec3(f[0], f[1], f[2]);
@@ -51,6 +52,23 @@ Record unpack(const vec4* place, const vec4* light) {
 }
 
 }  // namespace
+
+bool RawRecords::crowded(uint32_t record) const {
+  return (std::bit_cast<uint32_t>(places[size_t{record} * k_record_texels + 2].w) & k_record_crowded) != 0;
+}
+
+void RawRecords::keep(std::span<const uint32_t> kept) {
+  constexpr size_t k_lights = size_t{k_part_count} * k_part_texels;
+  for (size_t to = 0; to < kept.size(); ++to) {
+    const size_t from = kept[to];
+    assert(from >= to);
+    std::copy_n(&places[from * k_record_texels], k_record_texels, &places[to * k_record_texels]);
+    std::copy_n(&lights[from * k_lights], k_lights, &lights[to * k_lights]);
+    spheres[to] = spheres[from];
+  }
+  places.resize(kept.size() * k_record_texels), lights.resize(kept.size() * k_lights);
+  spheres.resize(kept.size());
+}
 
 uint32_t Records::most_records(const gpu::Device& device) {
   return static_cast<uint32_t>(
@@ -154,8 +172,9 @@ std::vector<float> Records::luminances() const {
   std::vector<vec4> lights(size_t{size_} * k_part_count * k_part_texels);
   irradiance_.read(lights.data(), lights.size() * sizeof(vec4));
   std::vector<float> all(size_, 0.0f);
+  const std::vector<bool> crowd = crowded();
   for (size_t i = 0; i < size_; ++i)
-    for (uint32_t p = 0; p < k_part_count; ++p)
+    for (uint32_t p = 0; p < k_part_count && !crowd[i]; ++p)
       all[i] += luminance(vec3(lights[(i * k_part_count + p) * k_part_texels]));
   return all;
 }

@@ -41,7 +41,8 @@ struct Record {
   float least_distance = 0;  ///< [m]
   float error = 0;           ///< standard error of the luminance of value, all evaluated parts together
   uint32_t rays = 0;
-  uint32_t pass = 0;  ///< that placed it
+  uint32_t pass = 0;     ///< that placed it
+  bool crowded = false;  ///< it holds no irradiance: paths gather there themselves (shared::k_record_crowded)
   std::array<Irradiance, shared::k_part_count> parts;
 };
 
@@ -51,6 +52,9 @@ struct RawRecords {
   std::vector<vec4> lights;   ///< irradiance_texels
   std::vector<vec4> spheres;  ///< (position, radius)
   uint32_t size() const { return static_cast<uint32_t>(spheres.size()); }
+  bool crowded(uint32_t record) const;  ///< as Record::crowded
+  /// Drops the others; indices in rising order.
+  void keep(std::span<const uint32_t> kept);
 };
 
 class Records {

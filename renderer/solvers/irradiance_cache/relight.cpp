@@ -90,7 +90,8 @@ Spoilt Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {
   const uint32_t tertiary = 1u << k_part_tertiary;
   lacks.light =
       relit || (c.parts & ~c.held) != 0 || (c.recursive != c.held_recursive && (c.parts & tertiary) != 0);
-  for (size_t s = 0; s < c.routes.size(); ++s)
+  // Paths that gather ask for no records.
+  for (size_t s = 0; s < k_gather_state; ++s)
     lacks.coverage |= c.routes[s] != k_no_routes && o.routes[s] == k_no_routes;
   return lacks;
 }

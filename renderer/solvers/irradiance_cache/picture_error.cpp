@@ -1,0 +1,104 @@
+#include "solvers/irradiance_cache/picture_error.h"
+
+#include <algorithm>
+
+#include "shaders/shared/irradiance_cache.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+static_assert(k_carry_lanes == k_record_lanes);
+
+namespace {
+
+constexpr const char* k_stage = "records' error";
+constexpr uint32_t k_paths = 2;  ///< a pixel
+
+/// The frame of a picture whose pixels are `side` of the film's along each side, and may stick out over its
+/// right and lower border.
+Frame coarser(Frame f, uint32_t side) {
+  const uint32_t across = (f.width + side - 1) / side, down = (f.height + side - 1) / side;
+  const float x = float(across * side) / float(f.width), y = float(down * side) / float(f.height);
+  const vec3 shift = (x - 1) * f.camera_right - (y - 1) * f.camera_up;
+  if (f.orthographic != 0)
+    f.camera_origin += shift;
+  else
+    f.camera_forward += shift;
+  f.camera_right *= x, f.camera_up *= y;
+  f.width = across, f.height = down;
+  return f;
+}
+
+uint32_t side_for(const Frame& f) {
+  uint32_t side = 1;
+  while (side < k_block && uint64_t{f.width} * f.height > uint64_t{PictureError::k_most_pixels} * side * side)
+    side *= 2;
+  return side;
+}
+
+}  // namespace
+
+PictureError::PictureError(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& defines)
+    : device_(device),
+      leaving_(device, compiler, "irradiance_cache/carry_leave.comp", defines),
+      carrying_(device, compiler, "irradiance_cache/carry.comp", defines) {}
+
+void PictureError::leave_out(const Work& w) {
+  if (left_for_ == w.records) return;
+  gpu::make_texel_room(device_, left_, "records left out",
+                       uint64_t{std::max(w.records, 1u)} * k_left_texels * sizeof(vec4));
+  w.bind(resources_);
+  resources_.set("Left", left_);
+  w.wavefront.stream().dispatch(leaving_, resources_, PoolPush{0, w.records}, gpu::groups_for(w.records, 64),
+                                k_stage);
+  left_for_ = w.records;
+}
+
+bool PictureError::step(const Work& w) {
+  w.film.make_room_for_records();
+  leave_out(w);
+  const uint32_t side = side_for(w.frame);
+  const Frame frame = coarser(w.frame, side);
+  const uint32_t blocks = (frame.width + k_block - 1) / k_block * ((frame.height + k_block - 1) / k_block);
+  const uint32_t end = std::min(blocks, done_ + std::max(1u, w.wavefront.slots() / (64 * k_paths)));
+  w.wavefront.set_frame(frame, w.enabled);
+  const bool complete = carry(w, side, end);
+  w.tell(k_probe_none);
+  w.wavefront.set_frame(w.frame, w.enabled);
+  if (!complete) return false;
+  done_ = end;
+  if (done_ == blocks) w.film.tell_records();
+  return true;
+}
+
+bool PictureError::carry(const Work& w, uint32_t side, uint32_t end) {
+  schedule::WorkItem item{{}, k_paths};
+  for (uint32_t b = done_; b < end; ++b) item.blocks.push_back({b, 0});
+  gpu::Stream& stream = w.wavefront.stream();
+  gpu::make_texel_room(device_, first_, "first lookups", w.candidates.bytes());
+  for (const uint32_t probing : {k_probe_carry, k_probe_carry_on}) {
+    if (probing == k_probe_carry_on && !w.recursive) continue;
+    stream.fill(w.candidates, 0);
+    w.tell(probing);
+    if (!w.wavefront.probe(item, w.cancel)) return false;
+    if (probing == k_probe_carry && w.recursive) stream.copy(w.candidates, first_, w.candidates.bytes());
+  }
+  gpu::make_room(
+      device_, blocks_,
+      {.name = "blocks", .bytes = item.blocks.size() * sizeof(WorkBlock), .memory = gpu::Memory::host});
+  blocks_.write(std::span<const WorkBlock>(item.blocks));
+  w.bind(resources_);
+  w.film.bind(resources_);
+  resources_.set("WorkBlocks", blocks_);
+  resources_.set("candidate_texels", w.recursive ? first_ : w.candidates);
+  resources_.set("beyond_texels", w.candidates);
+  resources_.set("left_texels", left_);
+  const uint32_t pixels = 64 * uint32_t(item.blocks.size());
+  const CarryPush push{w.film.width(), w.film.height(), side, pixels, w.recursive};
+  stream.dispatch(carrying_, resources_, push, gpu::groups_for(pixels, 64), k_stage);
+  stream.run();
+  return true;
+}
+
+}  // namespace lucerna::irradiance_cache

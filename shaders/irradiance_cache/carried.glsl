@@ -1,0 +1,28 @@
+// How records' errors are carried into the picture: what paths note where they read records (k_probe_carry), and the signs
+// by which every record errs.
+#ifndef LUCERNA_IRRADIANCE_CACHE_CARRIED
+#define LUCERNA_IRRADIANCE_CACHE_CARRIED
+#include "shaders/shared/irradiance_cache.h"
+#include "lib/math.glsl"
+
+// A colour, of any size, in eight bits a channel of its greatest and eight for that one's power of 2.
+uint carried_pack(vec3 color) {
+  float most = max3(color);
+  float power = clamp(ceil(log2(max(most, 1e-30))), -127.0, 127.0);
+  return most > 0.0 ? packUnorm4x8(vec4(color * exp2(-power), (power + 127.0) / 255.0)) : 0u;
+}
+vec3 carried_unpack(uint bits) {
+  vec4 c = unpackUnorm4x8(bits);
+  return bits == 0u ? vec3(0.0) : c.rgb * exp2(round(c.a * 255.0) - 127.0);
+}
+
+// +1 or -1 for each of four lanes, 4 group on, as likely and independent of those of other records and lanes: bits of the
+// record's number, mixed (C. Wellons, "Prospecting for hash functions", 2018: lowbias32).
+vec4 record_signs(uint record, uint group) {
+  uint x = record + 0x9e3779b9u;
+  x = (x ^ x >> 16) * 0x7feb352du;
+  x = (x ^ x >> 15) * 0x846ca68bu;
+  x = (x ^ x >> 16) >> (4u * group);
+  return 1.0 - 2.0 * vec4(uvec4(x, x >> 1, x >> 2, x >> 3) & 1u);
+}
+#endif

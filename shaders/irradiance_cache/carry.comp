@@ -1,0 +1,133 @@
+// Carries the records' errors along the paths of a batch of pixels, two independent ones each: what is noted of a path
+// (k_probe_carry) says how much it reads there, lookup.glsl which records that is. One invocation a pixel, a block of 8x8 a
+// workgroup; sums in a fixed order.
+#include "irradiance_cache/reading.glsl"
+#include "shaders/shared/transport.h"
+#include "lib/blocks.glsl"
+#include "lib/invocation.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { CarryPush push; };
+uniform samplerBuffer candidate_texels;  // of the paths' first lookups: k_probe_carry
+uniform samplerBuffer beyond_texels;     // ... and of those beyond: k_probe_carry_on
+uniform samplerBuffer left_texels;       // carry_leave.comp
+layout(scalar) writeonly buffer FilmRecords { vec2 film_records[]; };
+layout(scalar) writeonly buffer BlockRecordSums { BlockRecords block_records[]; };
+
+const uint k_groups = k_carry_lanes / 4u;
+const uint k_values = 2u * k_carry_lanes + 1u;  // of a path: noise, noise of interpolation, interpolation
+shared float sums[k_values * 64u];
+
+struct Carried {
+  vec4 noise[k_groups], interpolation_noise[k_groups];
+  float interpolation;
+};
+
+// Adds what a path reads where that was noted, `share` of it.
+void carry(inout Carried sum, vec4 note, vec4 facing, float share) {
+  uint bits = floatBitsToUint(note.w), state = (bits - 1u) % k_carried_medium, medium = (bits - 1u) / k_carried_medium;
+  bool there = bits != 0u && share > 0.0;
+  vec3 brings = carried_unpack(floatBitsToUint(facing.w));
+  uint routes = cache.routes[there ? state : 0u];
+  Carried here;
+  for (uint g = 0u; g < k_groups; ++g) here.noise[g] = here.interpolation_noise[g] = vec4(0.0);
+  here.interpolation = 0.0;
+  float weights = 0.0;
+  OctreeRange range = cache_range(note.xyz, there);
+  for (uint i = range.first; i < range.last; ++i) {
+    float weight = read_weight(note.xyz, facing.xyz, medium, i);
+    if (weight <= 0.0) continue;
+    uint record = octree_sphere(i);
+    float light = 0.0;
+    for (uint p = 0u; p < k_part_count; ++p)
+      light += (routes >> (4u * p) & 15u) < k_component_count ? luminance(brings * record_light(record, p)) : 0.0;
+    weights += weight;
+    light *= weight;
+    float error = light * record_error(record) / max(record_luminance(record), 1e-30);
+    int left = int(record * k_left_texels);
+    float bent = light * square(1.0 - weight);  // by the square of the distance, as carry_leave.comp has it
+    here.interpolation += bent * texelFetch(left_texels, left).x;
+    for (uint g = 0u; g < k_groups; ++g) {
+      here.noise[g] += error * record_signs(record, g);
+      here.interpolation_noise[g] += bent * texelFetch(left_texels, left + 1 + int(g));
+    }
+  }
+  float scale = weights > 0.0 ? share / weights : 0.0;
+  sum.interpolation += scale * here.interpolation;
+  for (uint g = 0u; g < k_groups; ++g) {
+    sum.noise[g] += scale * here.noise[g];
+    sum.interpolation_noise[g] += scale * here.interpolation_noise[g];
+  }
+}
+
+Carried carried(uint slot, bool inside) {
+  Carried sum;
+  for (uint g = 0u; g < k_groups; ++g) sum.noise[g] = sum.interpolation_noise[g] = vec4(0.0);
+  sum.interpolation = 0.0;
+  int at = int(slot * k_candidate_texels);
+  carry(sum, texelFetch(candidate_texels, at), texelFetch(candidate_texels, at + 1), inside ? 1.0 : 0.0);
+  if (push.beyond != 0u)
+    carry(sum, texelFetch(beyond_texels, at), texelFetch(beyond_texels, at + 1), inside ? 1.0 : 0.0);
+  return sum;
+}
+
+// What lies within the picture of this kernel's pixel is given its squares.
+void keep_pixel(uvec2 xy, vec2 squares) {
+  for (uint y = xy.y * push.step; y < min((xy.y + 1u) * push.step, push.height); ++y)
+    for (uint x = xy.x * push.step; x < min((xy.x + 1u) * push.step, push.width); ++x)
+      film_records[y * push.width + x] = squares;
+}
+
+// Sums over the pixels of each block of the film that lies in this workgroup's.
+void keep_sums(uint block, uint path, uint width) {
+  uint side = k_block / push.step, film_across = (push.width + k_block - 1u) / k_block, lane = gl_LocalInvocationIndex;
+  uvec2 size = uvec2(width, (push.height + push.step - 1u) / push.step);
+  for (uint entry = lane; entry < push.step * push.step * k_values; entry += 64u) {
+    uint which = entry / k_values, value = entry % k_values;
+    uvec2 within = uvec2(which % push.step, which / push.step);
+    uvec2 to = block_pixel(block, 0u, width) * push.step / k_block + within;
+    if (any(greaterThanEqual(to * k_block, uvec2(push.width, push.height)))) continue;
+    float sum = 0.0, pixels = 0.0;
+    for (uint code = 0u; code < 64u; ++code) {
+      uvec2 xy = block_pixel(block, code, width);
+      bool counts = xy / side == to && all(lessThan(xy, size));
+      sum += counts ? sums[value * 64u + code] : 0.0;
+      pixels += counts ? 1.0 : 0.0;
+    }
+    uint film_block = to.y * film_across + to.x;
+    if (value < k_carry_lanes) block_records[film_block].noise[path * k_carry_lanes + value] = sum;
+    else if (value < 2u * k_carry_lanes)
+      block_records[film_block].interpolation_noise[path * k_carry_lanes + value - k_carry_lanes] = sum;
+    else block_records[film_block].interpolation[path] = sum;
+    if (value == 0u) block_records[film_block].pixels = pixels;
+  }
+}
+
+void keep(Carried c, uint block, uint path, uint width) {
+  uint lane = gl_LocalInvocationIndex;
+  barrier();
+  for (uint g = 0u; g < k_groups; ++g)
+    for (uint k = 0u; k < 4u; ++k) {
+      sums[(4u * g + k) * 64u + lane] = c.noise[g][k];
+      sums[(k_carry_lanes + 4u * g + k) * 64u + lane] = c.interpolation_noise[g][k];
+    }
+  sums[2u * k_carry_lanes * 64u + lane] = c.interpolation;
+  barrier();
+  keep_sums(block, path, width);
+}
+
+void main() {
+  uint index = global_index();
+  bool working = index < push.pixels;
+  uint block = blocks[min(index, push.pixels - 1u) / 64u].index;
+  uvec2 size = (uvec2(push.width, push.height) + push.step - 1u) / push.step, xy = block_pixel(block, index % 64u, size.x);
+  bool inside = working && all(lessThan(xy, size));
+  Carried one = carried(min(index, push.pixels - 1u), inside), other = carried(push.pixels + min(index, push.pixels - 1u), inside);
+  vec2 squares = vec2(0.0, one.interpolation * other.interpolation);
+  for (uint g = 0u; g < k_groups; ++g) {
+    squares.x += dot(one.noise[g], other.noise[g]) / float(k_carry_lanes);
+    squares.y -= dot(one.interpolation_noise[g], other.interpolation_noise[g]) / float(k_carry_lanes);
+  }
+  if (inside) keep_pixel(xy, squares);
+  keep(one, block, 0u, size.x);
+  keep(other, block, 1u, size.x);
+}

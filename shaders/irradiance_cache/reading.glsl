@@ -1,0 +1,30 @@
+// Reads records one by one, each with the weight that it has in an interpolation.
+#ifndef LUCERNA_IRRADIANCE_CACHE_READING
+#define LUCERNA_IRRADIANCE_CACHE_READING
+#include "irradiance_cache/lookup.glsl"
+#include "irradiance_cache/carried.glsl"
+
+// The weight that cache_lookup() gives the record in place `at` of the octree's lists, 0: none.
+float read_weight(vec3 x, vec3 n, uint medium, uint at) {
+  uint record = octree_sphere(at);
+  vec4 place = octree_copy(at), facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
+  vec3 away = x - place.xyz;
+  bool within = dot(away, away) < square(place.w) && !record_crowded(record);
+#if LUCERNA_VOLUMES
+  within = within && record_medium(record) == medium;
+#endif
+  return within ? record_weight(x, n, place, facing, record_shape(record, place)) : 0.0;
+}
+
+vec3 record_light(uint record, uint part) {
+  return texelFetch(irradiance_texels, int((record * k_part_count + part) * k_part_texels)).rgb;
+}
+// Luminance of all parts.
+float record_luminance(uint record) {
+  float light = 0.0;
+  for (uint p = 0u; p < k_part_count; ++p) light += luminance(record_light(record, p));
+  return light;
+}
+// Standard error of that.
+float record_error(uint record) { return texelFetch(record_texels, int(record * k_record_texels + 2u)).z; }
+#endif

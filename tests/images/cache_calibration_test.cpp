@@ -1,0 +1,199 @@
+// links: session
+// Is what is told of a cached picture's error its true error? Pictures of many seeds, each with records of
+// its own, are held against a path-traced one: a tile's interval of 90 %, of the paths' noise, the records'
+// and interpolation's part together, must hold the truth in 85 to 95 of 100 tiles.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "film/error.h"
+#include "support/render.h"
+
+using namespace lucerna;
+
+namespace {
+
+struct Shot {
+  film::ImageError error;
+  std::vector<film::TileError> tiles;
+  std::vector<float> luminance;
+};
+
+Shot shot_of(session::Renderer& renderer) {
+  test::finish(renderer);
+  Shot shot{renderer.image_error(), renderer.tile_errors(), {}};
+  const film::Image image = renderer.image();
+  for (size_t i = 0; i < image.samples.size(); ++i)
+    shot.luminance.push_back(luminance(test::sum_at(image, i)));
+  return shot;
+}
+
+struct Case {
+  const char* scene;
+  uint32_t width, height, samples, shots, reference;
+  test::Settings settings;
+};
+
+struct Figures {
+  size_t asked = 0, by_paths = 0, by_noise = 0, by_sum = 0;
+  double told_paths = 0, told_records = 0, told_interpolation = 0, told = 0, truth = 0;
+};
+
+Figures measure(const Case& c) {
+  session::Renderer renderer({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  renderer.set_size(c.width, c.height);
+  renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + c.scene + "/" + c.scene + ".gltf");
+  test::Settings settings = c.settings;
+  settings["sampling.tile"] = "8";
+  settings["components.secondary"] = settings["components.tertiary"] = "path";
+  // What is not cached would hide the records' part under its noise, which has a calibration of its own.
+  settings["components.primary"] = settings["components.caustic"] = "off";
+  settings["seed"] = "4096";
+  settings["samples"] = std::to_string(c.reference);
+  settings["sampling.mode"] = "uniform";
+  test::set(renderer, settings);
+  const Shot reference = shot_of(renderer);
+  const double own = reference.error.rms[0] * reference.error.rms[0];
+  Figures f;
+  settings["components.secondary"] = settings["components.tertiary"] = "cache";
+  settings["cache.gather"] = "true";
+  settings["samples"] = std::to_string(c.samples);
+  for (uint32_t s = 0; s < c.shots; ++s) {
+    settings["seed"] = std::to_string(s + 1);
+    test::set(renderer, settings);
+    const Shot shot = shot_of(renderer);
+    const double mean = reference.error.luminance[0];
+    double squares = 0;
+    for (size_t i = 0; i < shot.luminance.size(); ++i)
+      squares += std::pow(double{shot.luminance[i]} - reference.luminance[i], 2);
+    f.truth += std::sqrt(squares / double(shot.luminance.size()) - own) / mean;
+    f.told += shot.error.relative_sum();
+    f.told_paths += shot.error.relative(0), f.told_records += shot.error.relative_records();
+    f.told_interpolation += shot.error.relative_interpolation();
+    for (size_t t = 0; t < shot.tiles.size(); ++t) {
+      film::TileError a = shot.tiles[t];
+      const film::TileError& r = reference.tiles[t];
+      if (a.heavy_tailed) continue;
+      // The reference is noisy too.
+      const double vr = r.standard_error * r.standard_error, va = a.standard_error * a.standard_error;
+      a.degrees = (va + vr) * (va + vr) / (va * va / a.degrees + vr * vr / r.degrees);
+      a.standard_error = std::sqrt(va + vr);
+      const double off = std::abs(a.luminance - r.luminance);
+      ++f.asked;
+      f.by_paths += off <= film::student_90(a.degrees) * a.standard_error;
+      f.by_sum += off <= a.half_width_90();
+      a.records.interpolation = 0;
+      f.by_noise += off <= a.half_width_90();
+    }
+  }
+  return f;
+}
+
+}  // namespace
+
+TEST_CASE("the error told of a cached picture is the true one") {
+  // All scenes, or one by its name: minutes. Without, the one that is soonest done.
+  const char* const wanted = std::getenv("LUCERNA_CALIBRATION");
+  const std::string only = wanted ? wanted : "cornell";
+  for (const Case& c : {Case{"cornell", 48, 48, 32, 6, 4096, {}}, Case{"teapot", 48, 40, 32, 6, 4096, {}},
+                        Case{"studio", 64, 32, 32, 6, 4096, {}}, Case{"sun-patch", 48, 40, 32, 6, 8192, {}},
+                        Case{"hall", 48, 32, 32, 6, 4096, {}}, Case{"ajar", 48, 32, 32, 6, 16384, {}}}) {
+    if (only != "all" && only != c.scene) continue;
+    const Figures f = measure(c);
+    std::printf(
+        "%-9s covered: paths %.1f %%, with records %.1f %%, sum %.1f %% of %zu tiles; rms told %.4f (paths "
+        "%.4f, records %.4f, interpolation %.4f), true %.4f\n",
+        c.scene, 100. * f.by_paths / f.asked, 100. * f.by_noise / f.asked, 100. * f.by_sum / f.asked, f.asked,
+        f.told / c.shots, f.told_paths / c.shots, f.told_records / c.shots, f.told_interpolation / c.shots,
+        f.truth / c.shots);
+    INFO(c.scene);
+    CHECK(double(f.by_sum) > 0.85 * double(f.asked));
+    CHECK(double(f.by_sum) < 0.95 * double(f.asked));
+  }
+}
+
+namespace {
+
+/// A small cached picture, without what is not cached.
+void make_small(session::Renderer& renderer, const test::Settings& more) {
+  renderer.settings().set("path.batch", more.contains("path.batch") ? more.at("path.batch") : "131072");
+  renderer.set_size(40, 32);
+  renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
+  test::Settings settings{{"samples", "4"},
+                          {"components.primary", "off"},
+                          {"components.caustic", "off"},
+                          {"components.secondary", "cache"},
+                          {"components.tertiary", "cache"}};
+  for (const auto& [key, value] : more) settings[key] = value;
+  test::set(renderer, settings);
+}
+
+const session::RendererOptions k_options{.device = "cpu", .validation = true, .shaders = {}, .defines = {}};
+
+}  // namespace
+
+TEST_CASE(
+    "what is told of records is the same however the work is cut or interrupted, and leaves the picture "
+    "alone") {
+  session::Renderer one(k_options), other(k_options);
+  make_small(one, {});
+  make_small(other, {{"path.batch", "4096"}});
+  const film::Image image = test::finish(one);
+  int asked = 0, refused = 0;
+  while (!other.done())
+    if (!other.step([&] { return ++asked % 5 == 0; })) REQUIRE(++refused < 10000);
+  CHECK(refused > 0);
+  CHECK(test::identical(image, other.image()));
+  REQUIRE(one.film().records_told());
+  REQUIRE(other.film().records_told());
+  const auto a = one.film().records(), b = other.film().records();
+  REQUIRE(a.size() == b.size());
+  CHECK(std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+  const film::ImageError ea = one.image_error(), eb = other.image_error();
+  CHECK(ea.records_rms > 0);
+  CHECK(ea.interpolation_rms > 0);
+  CHECK(ea.relative_sum() == eb.relative_sum());
+  CHECK(ea.relative_sum() > ea.relative(0));
+  CHECK(one.device().validation_messages() == 0);
+  CHECK(other.device().validation_messages() == 0);
+  // Another view is told of anew.
+  other.set_size(32, 32);
+  CHECK_FALSE(other.film().records_told());
+  test::finish(other);
+  CHECK(other.film().records_told());
+  // Where nothing is read nothing is told.
+  test::set(one, {{"components.secondary", "path"}, {"components.tertiary", "path"}});
+  test::finish(one);
+  const film::ImageError plain = one.image_error();
+  CHECK_FALSE(one.film().records_told());
+  CHECK(plain.relative_sum() == plain.relative(0));
+}
+
+TEST_CASE("a target that records keep tiles over is not said to be reached, and costs no further samples") {
+  session::Renderer r(k_options);
+  constexpr double k_target = 0.01;
+  make_small(r, {{"sampling.mode", "adaptive"},
+                 {"sampling.target_error", "0.01"},
+                 {"sampling.min_samples", "16"},
+                 {"sampling.max_samples", "65536"},
+                 {"sampling.tile", "8"}});
+  test::finish(r);
+  r.finish_ledger();
+  size_t limited = 0;
+  const std::vector<film::TileError> told = r.tile_errors();
+  for (size_t t = 0; t < told.size(); ++t) {
+    const schedule::Tile& tile = r.adaptive()->tiles()[t];
+    limited += tile.limited(k_target);
+    CHECK(tile.samples < 65536);
+    if (tile.state == schedule::TileState::done) CHECK(told[t].relative_sum() < 1.01 * k_target);
+    if (tile.limited(k_target)) CHECK(told[t].relative_sum() > k_target);
+  }
+  CHECK(limited > 0);
+  CHECK(r.ledger().entries().back().floor() > 0);
+  // The records' part falls with their noise, as more rays take it away.
+  const double before = r.image_error().records_rms;
+  test::set(r, {{"cache.rays", "1024"}, {"cache.noise", "0.01"}});
+  test::finish(r);
+  CHECK(r.image_error().records_rms < 0.8 * before);
+}
