@@ -29,7 +29,9 @@ void require(bool go_on) {
 
 Renderer::Renderer(const RendererOptions& options)
     : options_(options),
-      device_(std::make_unique<gpu::Device>(gpu::DeviceOptions{options.device, options.validation})),
+      device_(options.on
+                  ? options.on
+                  : std::make_shared<gpu::Device>(gpu::DeviceOptions{options.device, options.validation})),
       compiler_(std::make_unique<gpu::ShaderCompiler>(
           options.shaders.empty() ? gpu::ShaderCompiler::default_root() : options.shaders)),
       automaton_(paths::compile_components()) {}

@@ -41,6 +41,9 @@ struct RendererOptions {
   gpu::Defines defines;            ///< further #defines for the transport's kernels (tests)
   bool pauses = false;             ///< the setting cache.pause is heeded: step() may wait for step_cache()
   scene::LoadOptions scenes = {};  ///< what scenes may read and take
+  /// Given: this device, instead of one of its own by `device` and `validation`; its pipelines are kept from
+  /// renderer to renderer. Not to be used from two threads at once.
+  std::shared_ptr<gpu::Device> on = {};
 };
 
 /// fraction 0..1 and what is going on; returning false cancels (an Error "cancelled" is thrown).
@@ -215,7 +218,7 @@ class Renderer {
   void note_progress(bool at_once);
 
   RendererOptions options_;
-  std::unique_ptr<gpu::Device> device_;
+  std::shared_ptr<gpu::Device> device_;
   std::unique_ptr<gpu::ShaderCompiler> compiler_;
   paths::Automaton automaton_;
   plan::Settings settings_;

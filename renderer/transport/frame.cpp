@@ -34,7 +34,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.scene_radius = flat.scene_radius;
   const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);
   const std::vector<uint32_t> table = paths::pack(automaton, options.enabled, options.routes, met);
-  assert(table.size() <= shared::k_gather_state);
+  assert(table.size() < shared::k_gather_state);
   f.automaton_states = uint32_t(table.size());
   std::copy(table.begin(), table.end(), f.automaton);
   if (options.fallback != 0) {
@@ -42,10 +42,20 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
       const std::vector<uint32_t> all = paths::pack(automaton, enabled, routes, met);
       for (size_t i = 0; i < all.size(); ++i) f.automaton[at + i] = all[i] + (at | at << 8 | at << 16);
     };
-    const bool looks = !options.gather.component.empty();
-    put(shared::k_gather_state, looks ? options.gather.traced : options.fallback, options.gather);
+    // Whoever passes a lookup has to bring the light of the next vertex himself, of whatever component.
+    put(shared::k_gather_state, options.fallback, options.gather);
     put(shared::k_fallback_state, options.fallback, {});
-    put(shared::k_known_state, looks ? options.gather.traced : options.fallback, {});
+    put(shared::k_known_state, options.fallback, {});
+    // What has been looked up behind ED is all that comes after: what is left is to meet the light that was
+    // sampled.
+    constexpr uint32_t k_next = 0xffffff, k_live = 1u << 27, k_none = paths::k_component_count << 24;
+    constexpr uint32_t k_dead = shared::k_dead_state | shared::k_dead_state << 8 | shared::k_dead_state << 16;
+    for (size_t i = 0; i < table.size(); ++i) {
+      uint32_t& known = f.automaton[shared::k_known_state + i];
+      const bool meets = met && (known >> 24 & 7u) < paths::k_component_count;
+      known = (known & ~(k_next | k_live)) | k_dead | (meets ? k_live : 0);
+    }
+    f.automaton[shared::k_dead_state] = k_dead | k_none;
   }
   return f;
 }

@@ -55,7 +55,7 @@ void main() {
   bool flat_draws = push.flat_side > 0.0 && drawn == push.levels && threshold < sum + push.density * side * side;
   drawn = flat_draws ? min(flat_level, push.levels - 1u) : drawn;
   float least = push.spacing * width * float(1u << min(drawn, 31u));
-  bool wanted = push.spacing > 0.0 ? light.x >= 0.0 && light.y > least : light.x < 0.0;
+  bool wanted = push.spacing > 0.0 ? light.x >= 0.0 && light.y > least : light.x == -1.0;
   bool takes = depth >= 0.0 && drawn < push.levels && wanted;
   taken[point] = takes ? 1u : 0u;
   taken_levels[point] = drawn;

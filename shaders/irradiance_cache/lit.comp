@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { LitPush push; };
 uniform samplerBuffer surface_texels;
-layout(scalar) writeonly buffer Lit { vec3 lit[]; };  // luminance, -1 where none serves; distance of the nearest [m]; standard error
+layout(scalar) writeonly buffer Lit { vec3 lit[]; };  // luminance, -1 where none serves, -2 where paths gather; distance of the nearest [m]; standard error
 
 void main() {
   uint point = global_index();
@@ -24,8 +24,9 @@ void main() {
     vec4 centre = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
     float weight = record_weight(place.xyz, normal, centre, facing, record_shape(record, centre));
     if (weight > 0.0) nearest = min(nearest, distance(place.xyz, centre.xyz));
+    if (record_crowded(record)) continue;
     weights += weight;
     variance += square(weight * texelFetch(record_texels, at + 2).z);
   }
-  lit[point] = vec3(found.weight > 0.0 ? light : -1.0, nearest, weights > 0.0 ? sqrt(variance) / weights : 0.0);
+  lit[point] = vec3(found.weight > 0.0 ? light : found.guide != k_no_guide ? -2.0 : -1.0, nearest, weights > 0.0 ? sqrt(variance) / weights : 0.0);
 }

@@ -6,12 +6,15 @@ LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_component_count = 4u;
 /// States of the automaton from here on are those of paths that have passed a lookup on purpose, where what is looked up
-/// is too fine to be interpolated: they look up tertiary light at the next diffuse vertex, if that is looked up at all ...
+/// is too fine to be interpolated: they look up tertiary light at the next diffuse vertex that is not passed too, if it is
+/// looked up at all ...
 LUCERNA_CONST uint k_gather_state = 8u;
 /// ... and from here on of paths that a lookup left alone: nothing is cut off for them.
 LUCERNA_CONST uint k_fallback_state = 16u;
-/// ... and from here on of those that have then looked up: the same, and nothing is looked up any more.
+/// ... and from here on of those that have then looked up: they may still meet the light that the vertex behind them has
+/// sampled, and all that comes after has been looked up.
 LUCERNA_CONST uint k_known_state = 24u;
+LUCERNA_CONST uint k_dead_state = 31u;  ///< in which nothing can be brought any more
 LUCERNA_CONST uint k_automaton_states = 32u;
 
 // Of a path since its last scattering event, where records hold the sky's light (LUCERNA_SKY_APART):

@@ -144,7 +144,9 @@ void main() {
           vec2 u = sample_vertex(random, depth, k_pad_direction);
           vec3 cosine = sample_cosine(u);
 #if LUCERNA_CACHE
-          Guide guide = make_guide(alone && gathers ? guiding : k_no_guide, to_world[2]);
+          // Not while places are looked for: these are not to hang on the light.
+          bool guided = alone && gathers && (cache.probing == k_probe_none || carries);
+          Guide guide = make_guide(guided ? guiding : k_no_guide, to_world[2]);
           if (guide.total > 0.0) cosine = guide_sample(guide, u) * to_world;
 #endif
           BsdfSample b = bsdf_sample(bsdf, wo, u, cosine, sample_vertex(random, depth, k_pad_lobe));

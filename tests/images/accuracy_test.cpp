@@ -95,7 +95,7 @@ TEST_CASE("a sample's time leaves out what was prepared before the first") {
 }
 
 TEST_CASE("the clock is the person's: what happens between steps counts, waiting does not") {
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(true));
   r.set_size(16, 16);
   r.set_scene(std::make_shared<scene::Scene>(test::block_room(true)));
   test::set(r, {{"samples", "8"}});

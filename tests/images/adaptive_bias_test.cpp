@@ -20,7 +20,7 @@ struct Bias {
 };
 
 Bias measure(const std::string& scene, uint32_t width, uint32_t height, double target, uint32_t seeds) {
-  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(false));
   r.set_size(width, height);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + scene + "/" + scene + ".gltf");
   const plan::Settings defaults;

@@ -41,7 +41,7 @@ struct Figures {
 };
 
 Figures measure(const Case& c) {
-  session::Renderer renderer({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  session::Renderer renderer(test::renderer_options(false));
   renderer.set_size(c.width, c.height);
   renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + c.scene + "/" + c.scene + ".gltf");
   test::Settings settings = c.settings;
@@ -129,14 +129,12 @@ void make_small(session::Renderer& renderer, const test::Settings& more) {
   test::set(renderer, settings);
 }
 
-const session::RendererOptions k_options{.device = "cpu", .validation = true, .shaders = {}, .defines = {}};
-
 }  // namespace
 
 TEST_CASE(
     "what is told of records is the same however the work is cut or interrupted, and leaves the picture "
     "alone") {
-  session::Renderer one(k_options), other(k_options);
+  session::Renderer one(test::renderer_options()), other(test::renderer_options());
   make_small(one, {});
   make_small(other, {{"path.batch", "4096"}});
   const film::Image image = test::finish(one);
@@ -171,7 +169,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a target that records keep tiles over is not said to be reached, and costs no further samples") {
-  session::Renderer r(k_options);
+  session::Renderer r(test::renderer_options());
   constexpr double k_target = 0.01;
   make_small(r, {{"sampling.mode", "adaptive"},
                  {"sampling.target_error", "0.01"},

@@ -203,7 +203,7 @@ TEST_CASE("without a sky, or without a cache, cache.environment changes nothing"
 }
 
 TEST_CASE("the option can be switched while a scene is shown") {
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(true));
   r.set_size(16, 16);
   r.set_scene(std::make_shared<scene::Scene>(make_room({.sun = true})));
   const auto finish = [&] {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "cache_support.h"
 #include "support/rooms.h"
@@ -90,21 +91,24 @@ TEST_CASE("where all of a picture is gathered by paths it is path tracing's, wit
 }
 
 TEST_CASE("paths that gather find light that comes from little of the hemisphere") {
-  // A lamp three centimetres above the floor: what the ceiling has of the floor comes from a spot in it.
+  // A lamp twelve centimetres above the floor: what the ceiling has of the floor comes mostly from a spot in
+  // it.
   scene::Scene s;
   s.name = s.file = "spot";
   s.materials = {test::diffuse(vec3(0.6f))};
   s.environment.given = true;
   test::add_box(s, {-1, 0, -1}, {1, 1, 1});
-  s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {0.4f, 0.03f, 0.4f}});
+  s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {0.4f, 0.12f, 0.4f}});
+  // All that is seen is near the edge of ceiling and wall.
   scene::Camera up;
-  up.yfov = 1.2f;
-  up.to_world = mat4(vec4(1, 0, 0, 0), vec4(0, 0, 1, 0), vec4(0, -1, 0, 0), vec4(0, 0.02f, 0, 1));
+  up.yfov = 0.2f;
+  up.to_world = glm::inverse(glm::lookAt(vec3(0, 0.5f, 0), vec3(0, 1, -1), vec3(0, 1, 0)));
   s.cameras = {up};
   const auto noise = [&](const char* gather) {
     test::CacheRenderer shown(s, k_size);
     shown.set(test::k_cached);
     shown.set(all_gathered("true"));
+    shown.set({{"cache.max_radius", "0.1"}});
     std::vector<film::Image> seeds;
     for (int seed = 1; seed <= 8; ++seed) {
       shown.set({{"seed", std::to_string(seed)}, {"samples", "16"}, {"components.secondary", gather}});
@@ -116,7 +120,7 @@ TEST_CASE("paths that gather find light that comes from little of the hemisphere
   INFO("guided " << guided.mean << ", noise " << guided.noise << "; path traced " << traced.mean << ", noise "
                  << traced.noise);
   CHECK(std::abs(guided.mean - traced.mean) < 4 * std::hypot(guided.error, traced.error));
-  CHECK(guided.noise < 0.4 * traced.noise);
+  CHECK(guided.noise < 0.6 * traced.noise);
 }
 
 TEST_CASE("records hold light where the camera has come near enough") {

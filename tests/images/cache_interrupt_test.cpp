@@ -29,7 +29,7 @@ const Settings k_shown{{"components.secondary", "cache"},
                        {"overlay.discontinuity", "irradiance"}};
 
 struct Bed {
-  session::Renderer r{{.device = "cpu", .validation = true, .shaders = {}, .defines = {}, .pauses = true}};
+  session::Renderer r{test::renderer_options(true, {}, true)};
   const scene::Scene before = room();
 
   /// There is a second lamp, something that shines and something that glosses, whatever is edited: so edits

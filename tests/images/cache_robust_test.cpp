@@ -219,7 +219,7 @@ TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing a
     for (const vec3& v : component) REQUIRE(v == vec3(0));
 
   // A lamp that goes off leaves records to be relit when it is back, wherever the camera has gone.
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(true));
   r.set_size(24, 24);
   Room room(vec3(0), false);
   room.s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {0.5f, 0.8f, 0.5f}});

@@ -11,8 +11,7 @@ inline const Settings k_cached{{"components.secondary", "cache"}, {"components.t
 /// Shows a scene of the test's; when it goes the device must have had nothing to say.
 struct CacheRenderer {
   session::Renderer r;
-  CacheRenderer(const scene::Scene& scene, uint32_t size)
-      : r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}}) {
+  CacheRenderer(const scene::Scene& scene, uint32_t size) : r(test::renderer_options(true)) {
     r.set_size(size, size);
     r.settings().set("path.batch", "8192");
     r.set_scene(std::make_shared<scene::Scene>(scene));

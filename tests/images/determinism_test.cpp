@@ -69,7 +69,7 @@ TEST_CASE("bit-identical over what memory held before") {
 }
 
 TEST_CASE("bit-identical over time slices: work that is cancelled between bounces is done again") {
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(true));
   r.settings().set("path.batch", "1024");
   r.set_size(40, 36);
   r.load(scene_file("glass"));
@@ -99,7 +99,7 @@ TEST_CASE("bit-identical over time slices: work that is cancelled between bounce
 
 TEST_CASE("memory of the paths in flight does not grow with the picture") {
   const auto peak = [](uint32_t side) {
-    session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+    session::Renderer r(test::renderer_options(false));
     r.settings().set("path.batch", "65536");
     r.set_size(side, side);
     r.load(scene_file("cornell"));

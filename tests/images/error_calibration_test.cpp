@@ -20,7 +20,7 @@ struct Shot {
 class Bench {
  public:
   Bench(const std::string& scene, uint32_t width, uint32_t height)
-      : renderer_({.device = "cpu", .validation = false, .shaders = {}, .defines = {}}) {
+      : renderer_(test::renderer_options(false)) {
     renderer_.set_size(width, height);
     renderer_.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + scene + "/" + scene + ".gltf");
   }

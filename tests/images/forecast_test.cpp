@@ -5,6 +5,7 @@
 
 #include "session/renderer.h"
 #include "stats/forecast.h"
+#include "support/device.h"
 
 using namespace lucerna;
 
@@ -19,7 +20,7 @@ struct Case {
 /// Forecast over truth at the first line of the ledger after a tenth of the rays that tells one: low, middle,
 /// high.
 stats::Band forecast(const Case& c, const char* seed) {
-  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(false));
   r.set_size(c.width, c.height);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + c.scene + "/" + c.scene + ".gltf");
   r.settings().set("sampling.mode", "adaptive");
@@ -65,7 +66,7 @@ TEST_CASE("in uniform sampling the band told at every line holds the truth in ei
   // Rooms, metal, a studio's sky: the error falls by another law in each. A ledger's line is told by those
   // before it, in samples, which is time on a machine that has nothing else to do.
   size_t told = 0, held = 0;
-  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(false));
   r.set_size(48, 32);
   for (const char* scene : {"cornell", "studio", "hall", "atrium"}) {
     r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + scene + "/" + scene + ".gltf");

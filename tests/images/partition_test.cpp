@@ -128,7 +128,7 @@ TEST_CASE("coherent sampling changes the noise, not the mean") {
   // Student's t with 46 degrees of freedom, two-sided at 1e-3 for each of five layers, is 3.5.
   constexpr int k_seeds = 24;
   double mean[2][5] = {}, squares[2][5] = {};
-  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(false));
   r.set_size(32, 32);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   r.settings().set("samples", "8");

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "session/renderer.h"
+#include "support/device.h"
 
 using namespace lucerna;
 
@@ -12,7 +13,7 @@ TEST_CASE("another tracer keeps edits and camera; another scene starts with its 
   const auto file = [](const std::string& name) {
     return std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf";
   };
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(true));
   r.settings().set("path.batch", "1024");
   r.set_size(16, 16);
   r.load(file("glass"));
@@ -50,7 +51,7 @@ TEST_CASE("another tracer keeps edits and camera; another scene starts with its 
 }
 
 TEST_CASE("a new target lets an adaptive image go on; in uniform sampling it only asks") {
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(true));
   r.set_size(64, 48);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   const auto set = [&](const char* key, const char* value) {
@@ -87,7 +88,7 @@ TEST_CASE("a new target lets an adaptive image go on; in uniform sampling it onl
 }
 
 TEST_CASE("another mode of sampling keeps the samples there are, and each is the one that it always was") {
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(true));
   r.settings().set("path.batch", "1024");
   r.set_size(40, 24);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
@@ -142,7 +143,7 @@ TEST_CASE("another mode of sampling keeps the samples there are, and each is the
 }
 
 TEST_CASE("the heat map of cost shares the whole device time out") {
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(true));
   r.set_size(96, 64);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   r.settings().set("samples", "16");

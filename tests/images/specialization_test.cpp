@@ -204,7 +204,7 @@ scene::Scene shafts(const std::vector<Kind>& kinds, const std::vector<bool>& sho
 }
 
 session::Renderer& renderer() {
-  static session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  static session::Renderer r(test::renderer_options(true));
   return r;
 }
 

@@ -74,7 +74,7 @@ struct Outcome {
 };
 
 Outcome render(const scene::Scene& s, const test::Settings& settings = {}) {
-  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(false));
   r.settings().set("path.batch", "16384");
   r.set_size(32, 32);
   r.set_scene(std::make_shared<scene::Scene>(s));

@@ -30,7 +30,7 @@ float weight(const Record& record, const vec3& x, const vec3& n, const session::
   const float least = k_least_pixels * 2 * std::tan(0.5f * r.camera().yfov) / float(r.film().height()) *
                       distance(record.place.position, eye);
   const float off_plane = record.lesser_radius <= 1.001f * least ? k_off_plane_least : k_off_plane;
-  if (record.radius <= 0 ||
+  if (record.radius <= 0 || record.crowded ||
       std::abs(dot(away, n + record.place.normal)) > 2 * off_plane * record.lesser_radius)
     return 0;
   const float far = test::far_of(record, x);
@@ -41,8 +41,7 @@ float weight(const Record& record, const vec3& x, const vec3& n, const session::
 /// One renderer for all cases: a Cornell box with secondary and tertiary light cached, finished.
 session::Renderer& bed() {
   static const std::unique_ptr<session::Renderer> renderer = [] {
-    auto r = std::make_unique<session::Renderer>(
-        session::RendererOptions{.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+    auto r = std::make_unique<session::Renderer>(test::renderer_options(true));
     r->set_size(k_size, k_size);
     r->load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
     for (const auto& [key, value] : {std::pair{"components.secondary", "cache"},
@@ -83,7 +82,7 @@ vec2 place_of(uint32_t pixel) { return {float(pixel % k_size) + 0.5f, float(pixe
 }  // namespace
 
 TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen before the first sample") {
-  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(false));
   CHECK(r.cache_report() == nullptr);
   r.set_size(32, 32);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
@@ -231,7 +230,7 @@ TEST_CASE("the overlap told of the picture is that of its pixels, counted by han
 TEST_CASE("on a normal map what is told is what paths are answered: on the smooth surface, or in vain") {
   for (const float degrees : {12.0f, 45.0f}) {
     INFO(degrees << " degrees");
-    session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+    session::Renderer r(test::renderer_options(true));
     r.set_size(64, 64);
     scene::Scene room = test::mapped_room(degrees);
     r.set_scene(std::make_shared<scene::Scene>(room));
@@ -278,7 +277,7 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
 }
 
 TEST_CASE("it is told who serves what the camera sees where only later vertices ask, and of a loaded cache") {
-  session::Renderer r({.device = "cpu", .validation = true, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(true));
   r.set_size(48, 48);
   r.set_scene(std::make_shared<scene::Scene>(test::PanelRoom().s));
   test::set(r, {{"components.tertiary", "cache"}, {"samples", "2"}});

@@ -10,6 +10,7 @@
 #include "session/renderer.h"
 #include "session/session.h"
 #include "shaders/shared/cache_placement.h"
+#include "support/device.h"
 #include "support/records.h"
 
 using namespace lucerna;
@@ -218,7 +219,7 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
 }
 
 TEST_CASE("who renders without a person waits for none") {
-  session::Renderer r({.device = "cpu", .validation = false, .shaders = {}, .defines = {}});
+  session::Renderer r(test::renderer_options(false));
   r.set_size(32, 32);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   for (const auto& [key, value] : {std::pair{"components.secondary", "cache"},

@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-#include "session/renderer.h"
+#include "support/device.h"
 
 namespace lucerna::test {
 
@@ -46,7 +46,7 @@ inline film::Image finish(session::Renderer& renderer) {
 
 /// `made`: the scene, instead of the one that is named.
 inline Result render(const Render& r, const scene::Scene* made = nullptr) {
-  session::Renderer renderer({.device = "cpu", .validation = true, .shaders = {}, .defines = r.defines});
+  session::Renderer renderer(test::renderer_options(true, r.defines));
   for (const char* key : {"tracer", "path.batch"})
     if (const auto at = r.settings.find(key); at != r.settings.end())
       renderer.settings().set(key, at->second);

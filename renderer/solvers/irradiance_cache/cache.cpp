@@ -317,9 +317,12 @@ void Cache::look_at_picture(transport::Wavefront& wavefront, const CacheView& vi
 bool Cache::tell_picture(transport::Wavefront& wavefront, film::Film& film, const CacheView& view, bool anew,
                          const std::function<bool()>& cancel) {
   Impl& c = *impl_;
-  // Beyond the picture's lookups paths read where the rays of records do.
+  // Beyond the picture's lookups paths read where the rays of records do; and what those have read has read
+  // what its own rays met, however many diffuse events further on.
   RouteTable table = c.routes;
-  std::copy_n(c.own_routes.begin(), k_gather_state, table.begin() + k_fallback_state);
+  const auto own_end = c.own_routes.begin() + k_gather_state;
+  const auto own = std::find_if(c.own_routes.begin(), own_end, [](uint32_t r) { return r != k_no_routes; });
+  if (own != own_end) std::fill_n(table.begin() + k_fallback_state + 1, k_gather_state - 1, *own);
   if (anew) c.picture_error.begin();
   const bool complete = c.picture_error.step(
       {wavefront, film, view.paths_frame, view.paths_enabled, c.evaluated, c.recursive, c.candidates,

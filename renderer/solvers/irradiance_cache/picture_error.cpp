@@ -45,7 +45,7 @@ PictureError::PictureError(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       carrying_(device, compiler, "irradiance_cache/carry.comp", defines) {}
 
 void PictureError::leave_out(const Work& w) {
-  if (left_for_ == w.records) return;
+  if (left_.bytes() > 0 && left_for_ == w.records) return;
   gpu::make_texel_room(device_, left_, "records left out",
                        uint64_t{std::max(w.records, 1u)} * k_left_texels * sizeof(vec4));
   w.bind(resources_);
