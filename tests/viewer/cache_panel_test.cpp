@@ -39,8 +39,8 @@ TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, 
   }
   // Numbers, bars of the overlap, inks of the passes; none of them in the empty panel.
   const vec3 unserved(191, 31, 41), first_pass(255, 154, 99);
-  CHECK(test::near_colour(cache, 1150, 240, 1436, 320, unserved) > 20);
-  CHECK(test::near_colour(empty, 1150, 240, 1436, 320, unserved) == 0);
+  CHECK(test::near_colour(cache, 1150, 260, 1436, 350, unserved) > 20);
+  CHECK(test::near_colour(empty, 1150, 260, 1436, 350, unserved) == 0);
   CHECK(test::near_colour(cache, 1150, 440, 1436, 672, first_pass, 0.15f) > 20);
   CHECK(cache.contrast(1150, 90, 1430, 240) > 0.05);
 }
