@@ -29,7 +29,7 @@ const Settings k_shown{{"components.secondary", "cache"},
                        {"overlay.discontinuity", "irradiance"}};
 
 struct Bed {
-  session::Renderer r{test::renderer_options(true, {}, true)};
+  session::Renderer r;
   const scene::Scene before = room();
 
   /// There is a second lamp, something that shines and something that glosses, whatever is edited: so edits
@@ -44,7 +44,8 @@ struct Bed {
     return s;
   }
 
-  Bed() {
+  /// `validation`: takes twice as long.
+  explicit Bed(bool validation = false) : r(test::renderer_options(validation, {}, true)) {
     r.set_size(16, 16);
     r.settings().set("path.batch", "4096");
     r.set_scene(std::make_shared<scene::Scene>(before));
@@ -126,6 +127,19 @@ std::string where(const session::Renderer& r) {
   return s.last ? irradiance_cache::stage_words(*s.last) : "the beginning";
 }
 
+void edit_at_random(Bed& bed, int edits, uint32_t seed) {
+  session::Renderer& r = bed.r;
+  std::mt19937 random(seed);
+  const auto below = [&](uint32_t n) { return uint32_t(random() % n); };
+  for (int i = 0; i < edits; ++i) {
+    const int kind = i % 25 == 24 ? 9 : int(below(9));
+    INFO("edit " << i << ", " << Bed::name(kind) << ", after " << where(r));
+    bed.edit(kind, float(below(4)));
+    for (uint32_t piece = below(6); piece > 0; --piece) r.step();
+    if (below(6) == 0) bed.watch();
+  }
+}
+
 }  // namespace
 
 TEST_CASE("whatever is changed at whatever stage of the building, it goes on from there") {
@@ -159,18 +173,16 @@ TEST_CASE("whatever is changed at whatever stage of the building, it goes on fro
   CHECK(interrupted > 9 * Bed::k_kinds);
 }
 
+TEST_CASE("while a cache is built and edited the validation layers have nothing to say") {
+  Bed bed(true);
+  edit_at_random(bed, 40, 8);
+  bed.finish();
+}
+
 TEST_CASE("three hundred edits while a cache is built end in the picture of the scene as it is then") {
   Bed bed;
   session::Renderer& r = bed.r;
-  std::mt19937 random(7);
-  const auto below = [&](uint32_t n) { return uint32_t(random() % n); };
-  for (int i = 0; i < 300; ++i) {
-    const int kind = i % 25 == 24 ? 9 : int(below(9));
-    INFO("edit " << i << ", " << Bed::name(kind) << ", after " << where(r));
-    bed.edit(kind, float(below(4)));
-    for (uint32_t piece = below(6); piece > 0; --piece) r.step();
-    if (below(6) == 0) bed.watch();
-  }
+  edit_at_random(bed, 300, 7);
   bed.undo();
   // The same scene with a cache that has lived through nothing: secondary and tertiary light are its, but for
   // where records happen to lie.

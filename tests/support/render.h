@@ -14,6 +14,9 @@ namespace lucerna::test {
 
 using Settings = std::map<std::string, std::string>;
 
+/// Pictures of more samples do the same things more often, and the validation layers take half of the time.
+inline constexpr uint32_t k_validated_samples = 16;
+
 struct Render {
   std::string scene;  ///< "cornell": scenes/cornell/cornell.gltf
   uint32_t width = 64, height = 64, samples = 16;
@@ -46,7 +49,7 @@ inline film::Image finish(session::Renderer& renderer) {
 
 /// `made`: the scene, instead of the one that is named.
 inline Result render(const Render& r, const scene::Scene* made = nullptr) {
-  session::Renderer renderer(test::renderer_options(true, r.defines));
+  session::Renderer renderer(test::renderer_options(r.samples <= k_validated_samples, r.defines));
   for (const char* key : {"tracer", "path.batch"})
     if (const auto at = r.settings.find(key); at != r.settings.end())
       renderer.settings().set(key, at->second);
@@ -72,7 +75,8 @@ inline Result render(const Render& r, const scene::Scene* made = nullptr) {
   return result;
 }
 
-/// A scene made by the test, in a square picture; nothing is dropped, and the device has nothing to say.
+/// A scene made by the test, in a square picture; nothing is dropped, and the device has nothing to say (of
+/// up to k_validated_samples).
 inline Result render(const scene::Scene& scene, const Settings& settings, uint32_t samples, uint32_t size) {
   const Result r =
       render({.scene = {}, .width = size, .height = size, .samples = samples, .settings = settings}, &scene);
