@@ -49,7 +49,7 @@ ErrorAfter error_after(std::span<const Point> curve, double seconds);
 /// nor for a curve that begins later than that.
 std::optional<double> power_of_time(std::span<const Point> curve);
 
-/// METHODS 7: 1 / (mean squared error * seconds), which for plain Monte Carlo does not depend on the time.
+/// Efficiency: 1 / (mean squared error * seconds), which for plain Monte Carlo does not depend on the time.
 /// Nothing when either is not above 0.
 std::optional<double> performance_index(double mean_squared_error, double seconds);
 

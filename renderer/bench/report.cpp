@@ -259,7 +259,7 @@ double round_down(double t) {
   return power;
 }
 
-/// Short times that all settings have seen on this scene: what METHODS 7 asks second.
+/// Short times that all settings have seen on this scene.
 std::vector<double> fixed_times(const std::vector<std::vector<Curve>>& settings) {
   double from = 0, to = 0;
   for (const auto& curves : settings)

@@ -5,7 +5,7 @@
 // A word begins at the eye and holds one letter an event, the sampled lobe's: D diffuse, G glossy, S specular
 // (delta), and L where it meets light. An expression is a regular expression over E D G S L: letters,
 // [classes], . (any of D G S),
-// * + ? | and parentheses. The four component expressions (METHODS: the partition) are compiled into one
+// * + ? | and parentheses. The four component expressions (the partition) are compiled into one
 // deterministic automaton whose table is uploaded; no shader knows a component by a rule of its own.
 #include <array>
 #include <cstdint>

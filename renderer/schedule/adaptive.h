@@ -1,5 +1,5 @@
 #pragma once
-// Adaptive tiles (METHODS 2): samples go to the tiles whose error is not yet under the target.
+// Adaptive tiles: samples go to the tiles whose error is not yet under the target.
 //
 // All pixels first get the minimum. Then the active tiles take turns, as many at once as the device's path
 // state holds at a few samples a pixel each; when fewer are left, the samples a pixel double, so that the

@@ -1,4 +1,4 @@
-// Bounds the radius of a record by its neighbours in different directions (METHODS 3.3): of those that it would serve, the
+// Bounds the radius of a record by its neighbours in different directions: of those that it would serve, the
 // nearest first, each counts whose direction is far enough from those of all before, until they stand all around. Beyond the
 // last of them others are nearer on every side. A record at an open border, where nobody stands on one side, is left as it
 // is: there it may be alone.

@@ -17,8 +17,8 @@ void main() {
   Asking a = asking_at(push.pixel, push.width, push.grid, seen);
   if (a.asks) seen.position = a.position, seen.normal = a.normal;
   uint count = 0u, under = k_no_record;
-  bool crowded = false;
-  float nearest = k_infinity;
+  Nearest nearest = nothing_near();
+  float nearest_disc = k_infinity;
   vec3 under_at = vec3(0.0);
   OctreeRange range = cache_range(seen.position, seen.solid);
   for (uint i = range.first; i < range.last; ++i) {
@@ -29,18 +29,20 @@ void main() {
     float weight = a.answerable ? record_weight(seen.position, seen.normal, place, facing, shape) : 0.0;
     vec3 centre = to_picture(place.xyz, push.width, push.height);
     bool crowds = weight > 0.0 && record_crowded(record);
-    crowded = crowded || crowds;
+    nearest = nearer(nearest, weight, seen.position - place.xyz, crowds);
     if (weight > 0.0 && !crowds) {
       if (count < k_inspect_most) serving[count] = InspectServing(record, weight, centre.xy, centre.z);
       ++count;
     }
     float from = distance(seen.position, place.xyz);
-    if (from < nearest && seen_on_disc(seen, place, facing, shape)) {
-      nearest = from;
+    if (from < nearest_disc && seen_on_disc(seen, place, facing, shape)) {
+      nearest_disc = from;
       under = record;
       under_at = centre;
     }
   }
+  bool gathers = paths_gather(nearest);
+  if (gathers) count = 0u;
   uint asks = a.answerable ? k_asks : a.asks ? k_asks_in_vain : k_asks_nothing;
-  header = InspectHeader(seen.solid ? 1u : 0u, asks, count, count == 0u && crowded ? 1u : 0u, under, seen.size, seen.depth, seen.position, seen.normal, under_at);
+  header = InspectHeader(seen.solid ? 1u : 0u, asks, count, gathers ? 1u : 0u, under, seen.size, seen.depth, seen.position, seen.normal, under_at);
 }

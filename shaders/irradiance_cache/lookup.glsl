@@ -1,4 +1,4 @@
-// Irradiance at a point from the records around it (METHODS 3.1): the mean of what each extrapolates by its gradients,
+// Irradiance at a point from the records around it: the mean of what each extrapolates by its gradients,
 // with a weight that falls to 0 at the border of its validity (E. Tabellion and A. Lamorlette, 2004), so that no seam
 // shows. LUCERNA_CACHE_PARTS: bit p: part p is read. LUCERNA_CACHE_ELLIPSES:
 // 1 where records may be ellipses.
@@ -25,8 +25,20 @@ const int k_cache_sides = 1;
 struct Cached {
   vec3 part[k_part_count];
   float weight;  // 0: no record serves here
-  uint guide;    // that says that paths gather themselves here; k_no_guide: none does
+  uint guide;    // the nearest that says that paths gather themselves here; k_no_guide: none does
 };
+
+// How near the nearest records are in whose discs a point lies: of those that hold light, of those that crowd. Where one that
+// crowds is nearer paths gather: wider records that reach there know nothing of what it is near to.
+struct Nearest {
+  float lit, crowded;  // [m], k_infinity: none
+};
+Nearest nothing_near() { return Nearest(k_infinity, k_infinity); }
+Nearest nearer(Nearest so_far, float weight, vec3 away, bool crowded) {
+  float from = weight > 0.0 ? length(away) : k_infinity;
+  return Nearest(min(so_far.lit, crowded ? k_infinity : from), min(so_far.crowded, crowded ? from : k_infinity));
+}
+bool paths_gather(Nearest n) { return n.crowded < n.lit; }
 
 // A record's texel 3. Compiled in where records may be ellipses alone: of spheres `place` tells all.
 vec4 record_shape(uint record, vec4 place) {
@@ -85,7 +97,7 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
   found.weight = 0.0;
   found.guide = k_no_guide;
-  float guides = 0.0;
+  Nearest nearest = nothing_near();
   OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
     // On to the next sphere that holds the point: ten are listed for each, and lanes wait for the longest list.
@@ -105,8 +117,9 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
     vec4 facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
     float weight = within ? record_weight(x, n, place, facing, record_shape(record, place)) : 0.0;
     bool crowded = weight > 0.0 && record_crowded(record);
-    found.guide = crowded && weight > guides ? record : found.guide;
-    guides = crowded ? max(guides, weight) : guides;
+    Nearest before = nearest;
+    nearest = nearer(nearest, weight, x - place.xyz, crowded);
+    found.guide = nearest.crowded < before.crowded ? record : found.guide;
     weight = crowded ? 0.0 : weight;
     vec3 tangent, bitangent;
     make_basis(facing.xyz, tangent, bitangent);
@@ -123,8 +136,8 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
     }
     found.weight += weight;
   }
-  if (found.weight > 0.0)
-    for (uint p = 0u; p < k_part_count; ++p) found.part[p] /= found.weight;
+  found.weight = paths_gather(nearest) ? 0.0 : found.weight;
+  for (uint p = 0u; p < k_part_count; ++p) found.part[p] = found.weight > 0.0 ? found.part[p] / found.weight : vec3(0.0);
   return found;
 }
 #endif

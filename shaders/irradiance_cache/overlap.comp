@@ -14,20 +14,22 @@ void main() {
   if (pixel >= push.width * push.height) return;
   Asking a = asking_at(pixel, push.width, push.grid, seen_at(pixel, push.width, push.height));
   uint overlap = 0u;
-  bool crowded = false;
+  Nearest nearest = nothing_near();
   OctreeRange range = cache_range(a.position, a.answerable);
   for (uint i = range.first; i < range.last; ++i) {
     uint record = octree_sphere(i);
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
-    bool within = record_weight(a.position, a.normal, place, facing, record_shape(record, place)) > 0.0;
-    bool crowds = within && record_crowded(record);
-    crowded = crowded || crowds;
-    overlap += within && !crowds ? 1u : 0u;
+    float weight = record_weight(a.position, a.normal, place, facing, record_shape(record, place));
+    bool crowds = record_crowded(record);
+    nearest = nearer(nearest, weight, a.position - place.xyz, crowds);
+    overlap += weight > 0.0 && !crowds ? 1u : 0u;
   }
+  bool gathers = paths_gather(nearest);
+  if (gathers) overlap = 0u;
   if (!a.asks) return;
   atomicAdd(counts.pixels[min(overlap, k_overlap_bins - 1u)], 1u);
-  if (overlap == 0u && crowded) atomicAdd(counts.gathered, 1u);
+  if (gathers) atomicAdd(counts.gathered, 1u);
   ADD_TO_WIDE_SUM(counts.records, overlap);
   ADD_TO_WIDE_SUM(counts.listed, range.last - range.first);
   atomicMax(counts.most, overlap);

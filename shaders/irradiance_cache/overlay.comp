@@ -16,7 +16,7 @@ void main() {
 
   Asking a = asking_at(pixel, push.width, push.grid, seen);
   uint overlap = 0u;
-  bool crowded = false;
+  Nearest nearest = nothing_near();
   vec4 over = vec4(0.0);  // premultiplied
   OctreeRange range = cache_range(a.asks ? a.position : seen.position, a.asks || seen.solid);
   for (uint i = range.first; i < range.last; ++i) {
@@ -24,10 +24,10 @@ void main() {
     int at = int(record * k_record_texels);
     vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
     vec4 shape = record_shape(record, place);
-    bool within = a.answerable && record_weight(a.position, a.normal, place, facing, shape) > 0.0;
+    float weight = a.answerable ? record_weight(a.position, a.normal, place, facing, shape) : 0.0;
     bool crowds = record_crowded(record);
-    crowded = crowded || (within && crowds);
-    overlap += within && !crowds ? 1u : 0u;
+    nearest = nearer(nearest, weight, a.position - place.xyz, crowds);
+    overlap += weight > 0.0 && !crowds ? 1u : 0u;
     float from = distance(seen.position, place.xyz), reach = seen_reach(seen, place, shape);
     vec3 ink = crowds ? k_gathered_ink : record_ink(record, push.color, push.lo, push.hi);
     // Discs of a few pixels fade, so that many of them far away do not become fog.
@@ -42,7 +42,7 @@ void main() {
   vec3 color = vec3(packed & 0xffu, packed >> 8 & 0xffu, packed >> 16 & 0xffu) / 255.0;
   if (push.overlap != 0u && a.asks) {
     // One colour a count up to the scale's end, none served in red, none needed because paths gather in grey.
-    vec3 ink = overlap == 0u ? crowded ? k_gathered_ink : k_unserved_ink : ramp_color(k_ramp_viridis, float(overlap) / push.overlap_most);
+    vec3 ink = paths_gather(nearest) ? k_gathered_ink : overlap == 0u ? k_unserved_ink : ramp_color(k_ramp_viridis, float(overlap) / push.overlap_most);
     color = mix(color, ink, 0.8);
   }
   color = color * (1.0 - over.a) + over.rgb;

@@ -19,7 +19,7 @@ const uint k_pad_light_detail = 4u;  // which texel of the environment
 const uint k_pad_null = 0x10000u;
 
 //
-// Coherent sampling (LUCERNA_COHERENT: log2 of the side of a tile in pixels; METHODS 2): all pixels of a tile share the
+// Coherent sampling (LUCERNA_COHERENT: log2 of the side of a tile in pixels): all pixels of a tile share the
 // sequences, so that neighbouring paths go nearly the same way; each has a digital shift of its own below the first
 // k_shared_bits binary digits, so that they do not repeat each other. A pixel's points are still uniform and its halves
 // independent; the pixels of a tile are not, so that the noise of a tile's mean is not what theirs adds up to.

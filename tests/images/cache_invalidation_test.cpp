@@ -268,7 +268,8 @@ TEST_CASE("a material that shines, mirrors, or is diffuse again brings its light
 
 TEST_CASE("another colour brings the light of a cache built with it") {
   // Which paths go on depends on what they carry, so that a few records are placed elsewhere.
-  Bed relit, fresh;
+  const Settings interpolated{{"cache.gather", "false"}};
+  Bed relit(interpolated), fresh(interpolated);
   relit.finish();
   const RawRecords before = relit.records();
   relit.paint(1, {0.9f, 0.1f, 0.1f});
@@ -280,7 +281,7 @@ TEST_CASE("another colour brings the light of a cache built with it") {
 }
 
 TEST_CASE("ellipses that other light makes smaller leave no gaps") {
-  const Settings ellipses{{"cache.metric", "hessian"}, {"cache.min_radius", "1"}};
+  const Settings ellipses{{"cache.metric", "hessian"}, {"cache.min_radius", "1"}, {"cache.gather", "false"}};
   Bed relit(ellipses), fresh(ellipses);
   relit.finish();
   uint32_t records = relit.records().size();

@@ -118,6 +118,7 @@ TEST_CASE("records in a medium see through it, and serve nobody outside") {
   test::add_quad(room.s, lo + vec3(0.9f, 0.4f, 0.4f), {0.1f, 0, 0}, {0, 0, 0.1f}, 1);
   Settings settings = k_both;
   settings["cache.error"] = "0.15", settings["cache.noise"] = "0.02";
+  settings["cache.min_radius"] = "1";  // else all of so small a picture is edges
   const Result path = render(room.s, {}, 512), cached = render(room.s, settings, 64);
   for (const int c : {1, 2})
     for (int channel = 0; channel < 3; ++channel) {
@@ -175,6 +176,7 @@ TEST_CASE("the smaller the error bound, the nearer the picture comes to the path
     settings["cache.error"] = error, settings["cache.min_radius"] = least;
     settings["cache.max_radius"] = most;
     settings["cache.noise"] = "0.02", settings["cache.max_rays"] = "1024";
+    settings["cache.gather"] = "false";  // what is interpolated is meant
     const Result cached = render(room.s, settings, 16);
     const double off = compare(path, cached, block);
     UNSCOPED_INFO("error bound " << error << ": " << cached.cache.records << " records, off by " << off);
@@ -226,6 +228,7 @@ TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing a
   r.set_scene(std::make_shared<scene::Scene>(room.s));
   r.settings().set("samples", "2");
   test::set(r, k_wide);
+  test::set(r, {{"cache.gather", "false"}});  // two samples are compared pixel by pixel
   const film::Image lit = test::finish(r);
   const uint32_t records = r.cache()->status().records;
   REQUIRE(records > 20);

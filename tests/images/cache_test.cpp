@@ -127,7 +127,10 @@ TEST_CASE("records that read records bring the light of those that trace their p
                  .width = 64,
                  .height = 64,
                  .samples = 16,
-                 .settings = {{"seed", "5"}, {"components.secondary", "cache"}, {"cache.noise", "0.03"}}};
+                 .settings = {{"seed", "5"},
+                              {"components.secondary", "cache"},
+                              {"cache.noise", "0.03"},
+                              {"cache.min_radius", "1"}}};
   const test::Result traced = test::render(r);
   r.settings["components.tertiary"] = "cache";
   const test::Result recursive = test::render(r);

@@ -1,5 +1,5 @@
 #pragma once
-// How far a record needs to reach for the records around it (METHODS 3.3), plainly on the host.
+// How far a record needs to reach for the records around it, plainly on the host.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -8,7 +8,7 @@ using namespace lucerna::paths;
 
 namespace {
 
-/// The partition as METHODS words it, by counting letters: no expression, no automaton.
+/// The partition in words, by counting letters: no expression, no automaton.
 int classify_by_counting(const std::string& word) {
   const std::string middle = word.substr(1, word.size() - 2);
   const auto diffuse = std::count(middle.begin(), middle.end(), 'D');

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/timer.h"
 #include "gpu/stream.h"
@@ -85,10 +86,17 @@ bool Cache::Impl::probe(const Work& w) {
   looked_along += picture.complete();
   probing = false;
   if (covered && (status.pass >= k_refining_passes ||
-                  double(pass().screen) <= double(options.stop_share) * double(screen.points())))
-    finish(StopReason::covered);
-  else
-    stage = Stage::choose;
+                  double(pass().screen) <= double(options.stop_share) * double(screen.points()))) {
+    // Few ask, and may stand side by side: a hole in a wall is seen however small its share of the picture
+    // is. Not when light has changed: then there would be a little more with every change.
+    filling = asks_beyond && status.asked > 0;
+    if (!filling) {
+      finish(StopReason::covered);
+      ended(BuildStage::probe);
+      return true;
+    }
+  }
+  stage = Stage::choose;
   ended(BuildStage::probe);
   return true;
 }
@@ -381,6 +389,8 @@ void Cache::Impl::next_pass() {
   stage = Stage::probe;
   if (records.size() == records.capacity())
     finish(StopReason::records);
+  else if (std::exchange(filling, false))
+    finish(StopReason::covered);
   else if (status.pass >= options.most_passes)
     finish(StopReason::passes);
 }
@@ -483,15 +493,16 @@ void Cache::Impl::leave_crowded() {
 }
 
 void Cache::Impl::drop_roomy(const Work& w) {
-  // Twice as wide as the least radius is now, so that they are not tried again with every move of the camera.
+  // Twice as much room as they need, so that they are not tried again with every move of the camera.
   constexpr float k_roomy = 2;
   if (!options.gather || complete() == 0) return;
   RawRecords raw = records.raw(complete());
   std::vector<uint32_t> kept;
   for (uint32_t r = 0; r < raw.size(); ++r) {
     const vec4* const texels = &raw.places[size_t{r} * k_record_texels];
-    const float least_now = least.at(vec3(texels[0])), lesser_radius = texels[3].w, nearest = texels[2].y;
-    if (!raw.crowded(r) || lesser_radius < k_roomy * least_now || options.nearest * nearest < least_now)
+    const float needed = k_roomy * least.at(vec3(texels[0])), lesser_radius = texels[3].w,
+                nearest = texels[2].y;
+    if (!raw.crowded(r) || lesser_radius < needed || options.nearest * nearest < k_crowds * needed)
       kept.push_back(r);
   }
   if (kept.size() == raw.size()) return;

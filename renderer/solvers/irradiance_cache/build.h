@@ -70,6 +70,7 @@ struct Cache::Impl {
   Stage stage = Stage::probe;
   schedule::UniformSchedule picture;
   bool probing = false;       // the schedule of this pass has begun
+  bool filling = false;       // the last pass: few ask, but these may stand side by side
   uint32_t looked_along = 0;  // paths a pixel of the passes before
   std::array<std::pair<float, float>, 3> scales{{{1, 2}, {1, 2}, {1, 2}}};  // rays, distance, error
   Discontinuity screen;
@@ -124,6 +125,7 @@ struct Cache::Impl {
   void count_anew(bool beyond) {
     status.pass = looked_along = 0;
     asks_beyond = beyond;
+    filling = false;
     status.stop = stopped = StopReason::building;
   }
   /// The picture is another: what has been seen of it is forgotten.
@@ -137,8 +139,11 @@ struct Cache::Impl {
 
   /// As EllipsePush::crowd: decided once for each record, before it is evaluated.
   float crowd() const {
-    return options.gather && stage == Stage::measure && status.relighting == 0 ? 1.0f : 0.0f;
+    return options.gather && stage == Stage::measure && status.relighting == 0 ? k_crowds : 0.0f;
   }
+  /// Of the least radius: where something is nearer, records crowd. They would be read by few pixels, each
+  /// with a noise of its own.
+  static constexpr float k_crowds = 2;
   /// Whether radii are by the light, of which pilot rays tell.
   bool by_light() const { return options.metric == Metric::hessian; }
   /// Irradiance, luminance: what records of less are held against, because what they miss is seen less. Of

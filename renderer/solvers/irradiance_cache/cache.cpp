@@ -190,6 +190,7 @@ void Cache::clear() {
   c.stage = Stage::probe;
   c.probing = false;
   c.asks_beyond = true;
+  c.filling = false;
   c.looked_along = 0;
   c.evaluated = c.standing = c.until = 0;
   c.ends.clear();

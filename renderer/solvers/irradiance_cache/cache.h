@@ -1,6 +1,6 @@
 #pragma once
 // The irradiance cache as a solver: built in passes before the picture is begun, then only read, so that the
-// picture does not depend on the order in which records came (METHODS 3.2).
+// picture does not depend on the order in which records came (README.md has method and sources).
 //
 // A pass sends paths from the camera through the scene (one a pixel, and more while few of them ask); where a
 // diffuse vertex finds no record it asks for one. Of the places asked for some are chosen (placement.h),
@@ -56,7 +56,8 @@ struct CacheOptions {
   /// Of its radius: where a record makes others superfluous that are not yet evaluated, 0..1. The less, the
   /// more records; 0: none goes.
   float thinning = 0;
-  /// Where radii are to be less than the least, paths gather themselves and end in records one vertex later.
+  /// Where something is nearer than the least radius paths gather themselves and end in records one vertex
+  /// later.
   bool gather = false;
   bool neighbours = false;  ///< radii are bounded by the records around
   uint32_t most_records = 0, most_passes = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// The screen-space stage of placement (METHODS 3.2): where in the picture geometry changes, or the irradiance
+// The screen-space stage of placement: where in the picture geometry changes, or the irradiance
 // that the present records give; a pyramid of it, so that detail counts at every scale; and which points of
 // the picture, by dithering it, become candidates. All on the device. What exactly is measured and drawn
 // stands in shaders/irradiance_cache/detail.comp and dither.comp.

@@ -1,6 +1,6 @@
 #pragma once
 // Evaluates records: rays over their hemispheres through the wavefront, summed to irradiance, gradients and
-// distances (METHODS 3.1, 3.4).
+// distances.
 #include <functional>
 #include <memory>
 #include <span>

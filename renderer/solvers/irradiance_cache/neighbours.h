@@ -1,7 +1,7 @@
 #pragma once
 // Records of one batch do not know each other when they are placed, and reach too far: into what others know
 // better, and listed wherever nobody needs them. Here each radius is bounded by the nearest records in
-// different directions (METHODS 3.3).
+// different directions.
 #include <functional>
 #include <memory>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which of the places that ask for a record get one (METHODS 3.2): candidates are gathered on the device, put
+// Which of the places that ask for a record get one: candidates are gathered on the device, put
 // in Morton order, cut into clusters, and of each cluster some are drawn until each candidate is covered.
 // What is chosen, some thousand places, comes to the host.
 #include <cstdint>

@@ -29,6 +29,7 @@ void Cache::Impl::relight() {
   }
   standing = complete();
   drop_pass();
+  filling = false;
   pauses.dropped();
   status.waits = false;
   evaluated = 0;
