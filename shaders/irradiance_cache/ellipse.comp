@@ -34,9 +34,9 @@ void main() {
   float minor = bends_by > 0.0 ? push.reach * inversesqrt(sqrt(bends_by * p.ratio)) : push.most;
   minor = min(minor, holds_nothing > 0.0 ? push.near * holds_nothing : push.near_tried * told.y);
   // By what is near alone, so that it does not hang on the light.
-  bool crowds = push.near * told.y < push.crowd * least;
-  float major = clamp(p.ratio * minor, least, push.most);
-  minor = clamp(minor, least, push.most);
+  bool crowds = record_flagged_crowded(told.w) || push.near * told.y < push.crowd * least;
+  float major = crowds ? least : clamp(p.ratio * minor, least, push.most);
+  minor = crowds ? least : clamp(minor, least, push.most);
   vec3 tangent, bitangent;
   make_basis(normal, tangent, bitangent);
   vec3 along = p.along.x * tangent + p.along.y * bitangent;

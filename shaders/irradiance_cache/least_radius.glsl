@@ -6,7 +6,8 @@
 
 layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
 
-// A record's flags (k_record_*) as they lie in its texel 2, and whether it crowds.
+// A record's flags (k_record_*) as they lie in its texel 2. One that crowds reaches no further than it must.
+bool record_flagged_crowded(float flags) { return (floatBitsToUint(flags) & k_record_crowded) != 0u; }
 float record_flags(float before, bool crowds) {
   return uintBitsToFloat(floatBitsToUint(before) | (crowds ? k_record_crowded : 0u));
 }

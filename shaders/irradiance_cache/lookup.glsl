@@ -52,7 +52,7 @@ vec4 record_shape(uint record, vec4 place) {
 uint record_medium(uint record) { return floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 5u)).x); }
 
 bool record_crowded(uint record) {
-  return (floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 2u)).w) & k_record_crowded) != 0u;
+  return record_flagged_crowded(texelFetch(record_texels, int(record * k_record_texels + 2u)).w);
 }
 
 // How far off the plane between its own and a record's tangent plane a point may lie and be served [m]. `radius`: the lesser.

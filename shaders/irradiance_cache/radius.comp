@@ -18,9 +18,10 @@ void main() {
   vec4 told = texelFetch(record_texels, at + 2);
   float least = least_radius(place.xyz);
   float holds_nothing = push.near * told.y;
-  float radius = max(min(push.error * facing.w, min(push.most, holds_nothing)), least);
+  bool crowds = record_flagged_crowded(told.w) || holds_nothing < push.crowd * least;
+  float radius = crowds ? least : max(min(push.error * facing.w, min(push.most, holds_nothing)), least);
   records[at].w = radius;
   records[at + 3] = vec4(0.0, 0.0, 0.0, radius);
   spheres[push.first + index] = vec4(place.xyz, radius);
-  records[at + 2].w = record_flags(told.w, holds_nothing < push.crowd * least);
+  records[at + 2].w = record_flags(told.w, crowds);
 }

@@ -106,7 +106,7 @@ TEST_CASE("in the program lines lead from a point to the records that serve it")
   const auto outcome = test::program(
       "scenes/cornell/cornell.gltf",
       "window.size 1100 700\nwait_scene\nview.divisor 4\nwindow.side cache\n"
-      "inspect.none\ncache.rays 64\ncache.max_rays 64\ncomponents.secondary cache\n"
+      "inspect.none\ncache.rays 64\ncache.min_radius 1\ncache.max_rays 64\ncomponents.secondary cache\n"
       "components.tertiary cache\nsamples 2\nwait_samples 2\nwait 0.5\nscreenshot " +
           file("plain.png") + "\ninspect.records 0.5 0.85\nscreenshot " + file("lines.png") +
           "\ninspect.none\noverlay.normals true\nwait 0.5\nscreenshot " + file("normals.png") + "\nquit\n");
