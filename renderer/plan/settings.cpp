@@ -119,7 +119,8 @@ std::vector<OptionInfo> make_options() {
       real("cache.max_radius", "0.1", 0.001, 1, "of the scene's radius",
            "Irradiance cache: greatest radius of a record."),
       boolean("cache.gather",
-              "Irradiance cache: where something is nearer than the least radius, along edges, records only "
+              "Irradiance cache: where something is nearer than twice the least radius, along edges, records "
+              "only "
               "tell where light comes from. Paths gather it from there and end in records one vertex later: "
               "grain that more samples take away, instead of specks that stay.",
               "true"),

@@ -38,9 +38,9 @@ LUCERNA_CONST uint k_record_texels = 6u;
 /// Most of the greater radius over the lesser.
 LUCERNA_CONST float k_record_ratio = 2.0f;
 LUCERNA_CONST uint k_record_pass = 0x7fu;       ///< mask: the pass that placed it, from 0
-/// Something is nearer to it than the least radius, so that what light there is there is too fine to be
-/// interpolated. It holds none, and says of its disc that paths gather there themselves. In the place of its
-/// irradiance it tells them where light comes from (k_guide_*).
+/// Something is nearer to it than a few of the least radii, so that what light there is there is too fine to
+/// be interpolated. It holds none, and says of its disc that paths gather there themselves. In the place of
+/// its irradiance it tells them where light comes from (k_guide_*).
 LUCERNA_CONST uint k_record_crowded = 0x80u;
 LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: what asked for it, k_origin_*
 LUCERNA_CONST uint k_record_facet_shift =
@@ -187,7 +187,7 @@ struct EllipsePush {
   float dark;         ///< irradiance, luminance: records that have less are held against it
   float near;         ///< lesser radius over the greatest that holds nothing that a ray met, at most
   float near_tried;   ///< the same where only the distance of the nearest thing is known
-  /// Of the least radius: where something is nearer than that records crowd; 0: it has been decided which do.
+  /// Over the least radius: where something is nearer than that records crowd; 0: it has been decided which do.
   float crowd;
 };
 

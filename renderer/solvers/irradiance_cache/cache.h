@@ -56,8 +56,8 @@ struct CacheOptions {
   /// Of its radius: where a record makes others superfluous that are not yet evaluated, 0..1. The less, the
   /// more records; 0: none goes.
   float thinning = 0;
-  /// Where something is nearer than the least radius paths gather themselves and end in records one vertex
-  /// later.
+  /// Where something is nearer than twice the least radius paths gather themselves and end in records one
+  /// vertex later.
   bool gather = false;
   bool neighbours = false;  ///< radii are bounded by the records around
   uint32_t most_records = 0, most_passes = 0;
