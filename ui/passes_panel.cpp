@@ -95,7 +95,7 @@ void stage_rows(const std::vector<StageStatus>& stages, const ImVec2& at, float 
   ImDrawList* list = ImGui::GetWindowDrawList();
   ImFont* font = theme().fonts.small;
   const float row =
-      std::clamp(std::floor(height / static_cast<float>(std::max<size_t>(1, stages.size()))), px(14), px(19));
+      std::clamp(std::floor(height / static_cast<float>(std::max<size_t>(1, stages.size()))), px(12), px(19));
   const float share = width > px(170) ? px(46) : 0, time = px(54);
   for (size_t i = 0; i < stages.size(); ++i) {
     const auto& stage = stages[i];
