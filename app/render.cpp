@@ -55,8 +55,9 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
     to["tile_worst_decile"] = spread.worst_tenth;
     to["tile_worst"] = spread.worst;
   };
-  tell_tiles(j, film::tile_spread(tiles));
-  j["heavy_tailed_tiles"] = film::tile_spread(tiles).heavy_tailed;
+  const film::TileSpread sum = film::tile_spread(tiles);
+  tell_tiles(j, sum);
+  j["heavy_tailed_tiles"] = sum.heavy_tailed;
   // The parts of that sum, by where they come from.
   const auto part = [&](const char* name, double rms, double relative, double film::TileError::*of) {
     j[name] = {{"rms", rms}, {"relative", relative}};

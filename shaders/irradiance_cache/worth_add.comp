@@ -1,7 +1,7 @@
 // The shares that every record has in the two lookups of a pixel, multiplied, and added up over the pixels; and the shares in
 // the lookups that the paths go on to, by how much of the irradiance at the first they are to bring. One invocation a pixel.
 // In whole steps, so that no order matters.
-#include "irradiance_cache/lookup.glsl"
+#include "irradiance_cache/reading.glsl"
 #include "lib/invocation.glsl"
 #include "lib/wide_sum.glsl"
 layout(local_size_x = 64) in;
@@ -36,11 +36,9 @@ struct Read {
 Read read_at(Reader r, OctreeRange range) {
   Read all = Read(0.0, 0.0);
   for (uint i = range.first; i < range.last; ++i) {
-    float weight = weight_at(r, i), light = 0.0;
-    for (uint p = 0u; p < k_part_count; ++p)
-      light += luminance(texelFetch(irradiance_texels, int((octree_sphere(i) * k_part_count + p) * k_part_texels)).rgb);
+    float weight = weight_at(r, i);
     all.weights += weight;
-    all.light += weight > 0.0 ? weight * light : 0.0;
+    all.light += weight > 0.0 ? weight * record_luminance(octree_sphere(i)) : 0.0;
   }
   all.light /= max(all.weights, 1e-30);
   return all;

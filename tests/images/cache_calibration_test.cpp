@@ -22,7 +22,7 @@ struct Shot {
 
 Shot shot_of(session::Renderer& renderer) {
   test::finish(renderer);
-  Shot shot{renderer.image_error(), renderer.tile_errors(), {}};
+  Shot shot{renderer.image_error(), renderer.tile_errors()};
   const film::Image image = renderer.image();
   for (size_t i = 0; i < image.samples.size(); ++i)
     shot.luminance.push_back(luminance(test::sum_at(image, i)));
@@ -32,7 +32,6 @@ Shot shot_of(session::Renderer& renderer) {
 struct Case {
   const char* scene;
   uint32_t width, height, samples, shots, reference;
-  test::Settings settings;
 };
 
 struct Figures {
@@ -44,7 +43,7 @@ Figures measure(const Case& c) {
   session::Renderer renderer(test::renderer_options(false));
   renderer.set_size(c.width, c.height);
   renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + c.scene + "/" + c.scene + ".gltf");
-  test::Settings settings = c.settings;
+  test::Settings settings;
   settings["sampling.tile"] = "8";
   settings["components.secondary"] = settings["components.tertiary"] = "path";
   // What is not cached would hide the records' part under its noise, which has a calibration of its own.
@@ -57,7 +56,6 @@ Figures measure(const Case& c) {
   const double own = reference.error.rms[0] * reference.error.rms[0];
   Figures f;
   settings["components.secondary"] = settings["components.tertiary"] = "cache";
-  settings["cache.gather"] = "true";
   settings["samples"] = std::to_string(c.samples);
   for (uint32_t s = 0; s < c.shots; ++s) {
     settings["seed"] = std::to_string(s + 1);
@@ -96,9 +94,9 @@ TEST_CASE("the error told of a cached picture is the true one") {
   // All scenes, or one by its name: minutes. Without, the one that is soonest done.
   const char* const wanted = std::getenv("LUCERNA_CALIBRATION");
   const std::string only = wanted ? wanted : "cornell";
-  for (const Case& c : {Case{"cornell", 48, 48, 32, 6, 4096, {}}, Case{"teapot", 48, 40, 32, 6, 4096, {}},
-                        Case{"studio", 64, 32, 32, 6, 4096, {}}, Case{"sun-patch", 48, 40, 32, 6, 8192, {}},
-                        Case{"hall", 48, 32, 32, 6, 4096, {}}, Case{"ajar", 48, 32, 32, 6, 16384, {}}}) {
+  for (const Case& c : {Case{"cornell", 48, 48, 32, 6, 4096}, Case{"teapot", 48, 40, 32, 6, 4096},
+                        Case{"studio", 64, 32, 32, 6, 4096}, Case{"sun-patch", 48, 40, 32, 6, 8192},
+                        Case{"hall", 48, 32, 32, 6, 4096}, Case{"ajar", 48, 32, 32, 6, 16384}}) {
     if (only != "all" && only != c.scene) continue;
     const Figures f = measure(c);
     std::printf(

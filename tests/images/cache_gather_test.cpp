@@ -18,12 +18,7 @@ namespace {
 constexpr uint32_t k_size = 32;
 
 /// So wide a least radius that all of a small picture lies along edges.
-Settings all_gathered(const char* gather) {
-  return {{"cache.gather", gather},
-          {"cache.min_radius", "100"},
-          {"cache.max_radius", "1"},
-          {"cache.rays", "256"}};
-}
+const Settings k_all_gathered{{"cache.min_radius", "100"}, {"cache.max_radius", "1"}, {"cache.rays", "256"}};
 
 uint32_t crowded(const irradiance_cache::RawRecords& all) {
   uint32_t count = 0;
@@ -69,7 +64,7 @@ TEST_CASE("where all of a picture is gathered by paths it is path tracing's, wit
     std::vector<film::Image> cached, traced;
     test::CacheRenderer by_cache(room, k_size), by_paths(room, k_size);
     by_cache.set(test::k_cached);
-    by_cache.set(all_gathered("true"));
+    by_cache.set(k_all_gathered);
     for (int seed = 1; seed <= 8; ++seed) {
       by_cache.set({{"seed", std::to_string(seed)}, {"samples", "16"}});
       by_paths.set({{"seed", std::to_string(100 + seed)}, {"samples", "64"}});
@@ -107,7 +102,7 @@ TEST_CASE("paths that gather find light that comes from little of the hemisphere
   const auto noise = [&](const char* gather) {
     test::CacheRenderer shown(s, k_size);
     shown.set(test::k_cached);
-    shown.set(all_gathered("true"));
+    shown.set(k_all_gathered);
     shown.set({{"cache.max_radius", "0.05"}});
     std::vector<film::Image> seeds;
     for (int seed = 1; seed <= 8; ++seed) {

@@ -85,18 +85,16 @@ bool Cache::Impl::probe(const Work& w) {
   }
   looked_along += picture.complete();
   probing = false;
-  if (covered && (status.pass >= k_refining_passes ||
-                  double(pass().screen) <= double(options.stop_share) * double(screen.points()))) {
-    // Few ask, and may stand side by side: a hole in a wall is seen however small its share of the picture
-    // is. Not when light has changed: then there would be a little more with every change.
-    filling = asks_beyond && status.asked > 0;
-    if (!filling) {
-      finish(StopReason::covered);
-      ended(BuildStage::probe);
-      return true;
-    }
-  }
-  stage = Stage::choose;
+  const bool last =
+      covered && (status.pass >= k_refining_passes ||
+                  double(pass().screen) <= double(options.stop_share) * double(screen.points()));
+  // Few ask, and may stand side by side: a hole in a wall is seen however small its share of the picture is.
+  // Not when light has changed: then there would be a little more with every change.
+  filling = last && asks_beyond && status.asked > 0;
+  if (last && !filling)
+    finish(StopReason::covered);
+  else
+    stage = Stage::choose;
   ended(BuildStage::probe);
   return true;
 }
