@@ -67,10 +67,11 @@ class Listening {
 };
 
 bench::Matrix choose_matrix(const BenchArguments& a) {
-  if (a.built_in.size() + size_t(!a.matrix.empty()) != 1)
-    throw Error("bench",
-                "name one matrix: a MATRIX.json, --quick, --full, --cache or --indirect "
-                "(see lucerna bench --help)");
+  if (a.built_in.size() + size_t(!a.matrix.empty()) != 1) {
+    std::string names;
+    for (const bench::BuiltinInfo& info : bench::builtin_matrices()) names += " or --" + info.name;
+    throw_error("bench", "name one matrix: a MATRIX.json{} (see lucerna bench --help)", names);
+  }
   bench::Matrix m = a.matrix.empty()
                         ? bench::builtin_matrix(a.built_in[0], fs::path(LUCERNA_SOURCE_DIR) / "scenes")
                         : bench::read_matrix(a.matrix);

@@ -63,7 +63,7 @@ int bench_interpolation(const BenchInterpolationArguments& a) {
     settings.push_back(std::string("cache.neighbours=") + (way.neighbours ? "true" : "false"));
     if (!way.thinned) settings.push_back("cache.thinning=0");
     for (const std::string& setting : settings) {
-      const auto [key, value] = plan::split_change(setting, "--set");
+      const auto [key, value] = split_change(setting, "--set");
       r->settings().set(key, value, "--set");
     }
     r->apply_settings();

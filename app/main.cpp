@@ -20,8 +20,8 @@ constexpr double k_gib = 1024.0 * 1024 * 1024;
 
 std::string settings_help() {
   std::string text = "\nSettings for --set KEY=VALUE (and settings.json beside a scene):\n";
-  for (const plan::OptionInfo& o : plan::options()) {
-    const std::string range = plan::describe_values(o);
+  for (const OptionInfo& o : plan::options()) {
+    const std::string range = describe_values(o);
     text +=
         fmt::format("  {:<24}{} [{}] {}\n", o.key, o.help, o.fallback.empty() ? "none" : o.fallback, range);
   }
@@ -122,18 +122,9 @@ int main_checked(int argc, char** argv) {
       "bench", "measure what accuracy costs in time: scenes x settings x budgets, with a page to read");
   bench_verb->require_subcommand(0, 1);
   bench_verb->add_option("MATRIX", bm.matrix, "matrix file (JSON), see below");
-  const auto built_in = [&](const char* name, const char* what) {
+  for (const bench::BuiltinInfo& info : bench::builtin_matrices())
     bench_verb->add_flag_callback(
-        std::string("--") + name, [&bm, name] { bm.built_in.push_back(name); }, what);
-  };
-  built_in("quick", "three scenes in small pictures, under ten minutes on two cores");
-  built_in("full", "larger pictures, the atrium too, more budgets; hours");
-  built_in("cache",
-           "error of cached light against the records of the irradiance cache, by either metric; an hour "
-           "and a quarter, with --repeats 1 over half of one");
-  built_in("indirect",
-           "how much sooner than path tracing cached light is right to 2 % in five interiors; two and a "
-           "half hours, with --repeats 1 one");
+        "--" + info.name, [&bm, name = info.name] { bm.built_in.push_back(name); }, info.help);
   bench_verb->add_option("--report", bm.report, "folder to write to and to go on in; new, empty or a bench's")
       ->capture_default_str();
   bench_verb->add_option("--references", bm.references,

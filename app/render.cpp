@@ -292,7 +292,7 @@ int render(const RenderArguments& a) {
   r.set_size(width, height);
   // What the command line says stands above the scene's own settings; checked before the scene is loaded.
   std::vector<std::pair<std::string, std::string>> changes;
-  for (const std::string& change : a.set) changes.push_back(plan::split_change(change, "--set"));
+  for (const std::string& change : a.set) changes.push_back(split_change(change, "--set"));
   if (a.samples != -1) {
     changes.emplace_back("samples", std::to_string(a.samples));
     if (a.error) changes.emplace_back("sampling.max_samples", std::to_string(a.samples));

@@ -309,7 +309,7 @@ void stage_strip(const CacheReport& r) {
 void steps(Ui& ui, const CacheReport& r) {
   const CacheStatus& s = r.status;
   const float width = ImGui::CalcItemWidth();
-  const plan::OptionInfo& pause = *plan::find_option("cache.pause");
+  const OptionInfo& pause = *plan::find_option("cache.pause");
   static constexpr const char* names[2][3] = {{"No pause", "Each pass", "Each stage"},
                                               {"Off", "Pass", "Stage"}};
   const bool narrow = width < px(236);
@@ -406,9 +406,8 @@ std::string option_name(const std::string& key) {
 }
 
 void options(Ui& ui) {
-  for (const plan::OptionInfo& option : plan::options())
-    if (option.key.rfind("cache.", 0) == 0 && option.key != "cache.pause" &&
-        option.type != plan::OptionType::text)
+  for (const OptionInfo& option : plan::options())
+    if (option.key.rfind("cache.", 0) == 0 && option.key != "cache.pause" && option.type != OptionType::text)
       option_control(ui, option.key, option_name(option.key));
 }
 

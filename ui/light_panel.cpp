@@ -54,7 +54,7 @@ void component_row(Ui& ui, int c, float width) {
   // Second line: solver, share, device time.
   const float line = at.y + px(26);
   ImGui::SetCursorScreenPos({at.x + px(18), line});
-  const plan::OptionInfo* option = plan::find_option(key);
+  const OptionInfo* option = plan::find_option(key);
   float solver_width = px(76);
   if (option) {
     for (const std::string& solver : option->choices)
@@ -140,32 +140,32 @@ std::string option_title(const std::string& key) {
 }
 
 /// As many as its default is written with, and two at least.
-int decimals_of(const plan::OptionInfo& option) {
+int decimals_of(const OptionInfo& option) {
   const size_t point = option.fallback.find('.');
   return point == std::string::npos ? 2 : std::max(2, int(option.fallback.size() - point) - 1);
 }
 
 /// Whether an option has a place of its own elsewhere in the window (or none: texts that belong to the
 /// scene).
-bool placed_elsewhere(const plan::OptionInfo& option) {
+bool placed_elsewhere(const OptionInfo& option) {
   for (const char* head : {"components.", "show.", "film.", "overlay.", "cache."})
     if (option.key.rfind(head, 0) == 0) return true;
-  return option.type == plan::OptionType::text;
+  return option.type == OptionType::text;
 }
 
 }  // namespace
 
 void option_control(Ui& ui, const std::string& key, const std::string& name) {
-  const plan::OptionInfo* option = plan::find_option(key);
+  const OptionInfo* option = plan::find_option(key);
   if (!option) return;
   ImGui::PushID(key.c_str());
   std::string help = option->help;
-  if (option->type == plan::OptionType::integer || option->type == plan::OptionType::real)
+  if (option->type == OptionType::integer || option->type == OptionType::real)
     help += fmt::format(" From {:.12g} to {:.12g}{}{}.", option->lo, option->hi,
                         option->unit.empty() ? "" : " ", option->unit);
   if (option->restarts) help += " A change starts the picture again.";
   switch (option->type) {
-    case plan::OptionType::choice: {
+    case OptionType::choice: {
       int chosen =
           static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.setting(key)) -
                            option->choices.begin());
@@ -173,12 +173,12 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
         ui.act("set", key, option->choices[static_cast<size_t>(chosen)]);
       break;
     }
-    case plan::OptionType::boolean:
+    case OptionType::boolean:
       if (button("##boolean", name, ui.setting_on(key), ImGui::CalcItemWidth())) ui.toggle(key);
       break;
-    case plan::OptionType::integer:
-    case plan::OptionType::real: {
-      const bool whole = option->type == plan::OptionType::integer;
+    case OptionType::integer:
+    case OptionType::real: {
+      const bool whole = option->type == OptionType::integer;
       auto value = static_cast<float>(ui.setting_real(key));
       Slider how{.lo = static_cast<float>(option->lo),
                  .hi = static_cast<float>(option->hi),
@@ -198,7 +198,7 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
         help = option->help + " Double-click to type; drag up to 65535. A change starts the picture again.";
       break;
     }
-    case plan::OptionType::text:
+    case OptionType::text:
       break;
   }
   tooltip(help);
@@ -224,7 +224,7 @@ void draw_light_panel(Ui& ui, const Area& area) {
   }
   if (panel_section(ui, "Render", true)) {
     begin_padded();
-    for (const plan::OptionInfo& option : plan::options())
+    for (const OptionInfo& option : plan::options())
       if (!placed_elsewhere(option)) option_control(ui, option.key, option_title(option.key));
     gap(4);
     const float width = ImGui::CalcItemWidth(), half = std::floor(0.5f * (width - px(8)));

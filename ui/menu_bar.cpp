@@ -165,16 +165,16 @@ void view_menu(Ui& ui) {
   overlay("Cache records", "C", "overlay.records", ui.cached());
   overlay("Cache overlap", "V", "overlay.overlap", ui.cached());
   overlay("Cache normals", "N", "overlay.normals", ui.cached());
-  if (const plan::OptionInfo* placement = plan::find_option("overlay.placement"); entry(
+  if (const OptionInfo* placement = plan::find_option("overlay.placement"); entry(
           "Cache placement", "P", placement->help.c_str(), ui.setting(placement->key) != "off", ui.cached()))
     ui.act("set", placement->key, ui.setting(placement->key) == "off" ? "stage" : "off");
   if (ui.cached() && (ui.setting_on("overlay.records") || ui.setting_on("overlay.normals"))) {
-    const plan::OptionInfo* by = plan::find_option("overlay.records_by");
+    const OptionInfo* by = plan::find_option("overlay.records_by");
     for (const std::string& choice : by->choices)
       if (entry(("   by " + choice).c_str(), nullptr, by->help.c_str(), ui.setting(by->key) == choice))
         ui.act("set", by->key, choice);
   }
-  const plan::OptionInfo* detail = plan::find_option("overlay.discontinuity");
+  const OptionInfo* detail = plan::find_option("overlay.discontinuity");
   for (const std::string& of : {std::string("geometry"), std::string("irradiance")}) {
     const bool on = ui.setting(detail->key) == of;
     if (entry(("Cache detail of " + of).c_str(), of == "geometry" ? "G" : nullptr, detail->help.c_str(), on,

@@ -58,7 +58,7 @@ class Viewer {
                                           const std::vector<std::string>& changes) {
     std::vector<std::string> lines;
     for (const std::string& change : changes) {
-      const auto [key, value] = plan::split_change(change, "--set");
+      const auto [key, value] = split_change(change, "--set");
       lines.push_back(commands::line("set", key, value));
       registry.parse(lines.back(), "--set");
     }

@@ -38,7 +38,7 @@ std::string layer_help(const std::string& layer) {
 
 /// Layers as buttons; what does not fit goes into a list.
 void layer_buttons(Ui& ui, float room) {
-  const plan::OptionInfo* option = plan::find_option("film.layer");
+  const OptionInfo* option = plan::find_option("film.layer");
   if (!option) return;
   const std::vector<std::string>& layers = option->choices;
   const std::string& current = ui.setting("film.layer");
@@ -346,7 +346,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
   const float pad = px(8), y = area.lo.y + px(6);
   const float tone_width = px(88), ev_width = px(92), tiles_width = px(46);
   float right = area.hi.x - pad;
-  const plan::OptionInfo* tone = plan::find_option("film.tone_curve");
+  const OptionInfo* tone = plan::find_option("film.tone_curve");
   if (tone) {
     right -= tone_width;
     ImGui::SetCursorScreenPos({right, y});
@@ -360,7 +360,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
     tooltip(tone->help);
     right -= px(4);
   }
-  if (const plan::OptionInfo* ev = plan::find_option("film.ev")) {
+  if (const OptionInfo* ev = plan::find_option("film.ev")) {
     right -= ev_width;
     ImGui::SetCursorScreenPos({right, y});
     auto value = static_cast<float>(ui.setting_real("film.ev"));

@@ -32,8 +32,8 @@ using SettingValues = std::map<std::string, std::string>;
 struct Setting {
   std::string name, about;
   SettingValues set;
-  /// "" or the curve that it is a point of: settings of one curve differ in how many records the irradiance
-  /// cache comes to, and the report joins them by a line, error against records.
+  /// "" or the curve that it is a point of: settings of one curve differ in how many records a solver comes
+  /// to, and the report joins them by a line, error against records.
   std::string curve;
   BudgetKind budget = BudgetKind::samples;
 };
@@ -85,10 +85,14 @@ Matrix parse_matrix(const std::string& text, const std::string& where, const std
 /// The same from a file, whose folder scene files are relative to.
 Matrix read_matrix(const std::filesystem::path& file);
 
-/// "quick": three scenes in small pictures, within ten minutes on two cores. "full": larger, with the atrium
-/// and more budgets; an hour and more. "cache": cached light alone, its error against the cache's records by
-/// either metric. "indirect": the same light of five interiors, in larger pictures and to a relative mean
-/// squared error of 0.0004, against path tracing. Scenes are taken from `scenes`.
+struct BuiltinInfo {
+  std::string name, help;
+  std::string matrix;  ///< JSON
+};
+/// "quick": three scenes in small pictures, within ten minutes on two cores. "full": larger, with the atrium,
+/// more budgets and the settings that solvers want to be measured with. Then those that solvers bring.
+std::vector<BuiltinInfo> builtin_matrices();
+/// One of them, with scenes taken from `scenes`. Throws Error when there is none of that name.
 Matrix builtin_matrix(const std::string& name, const std::filesystem::path& scenes);
 
 /// The matrix with every default written out; parse_matrix() reads it back to the same.

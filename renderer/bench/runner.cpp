@@ -163,7 +163,7 @@ ReferenceInfo Run::make_reference(const SceneEntry& scene, const std::string& ke
   const Timer timer;
   SettingValues values = merged(matrix_, scene, {});
   // Plain path tracing, whatever the scene's own settings say; a component that is off stays off.
-  for (const plan::OptionInfo& option : plan::options())
+  for (const OptionInfo& option : plan::options())
     if (option.key.starts_with("components.") && !values.contains(option.key))
       values[option.key] = option.fallback;
   values["sampling.mode"] = "uniform";

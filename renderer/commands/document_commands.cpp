@@ -10,20 +10,20 @@ namespace {
 
 std::vector<std::string> setting_keys() {
   std::vector<std::string> keys;
-  for (const plan::OptionInfo& option : plan::options()) keys.push_back(option.key);
+  for (const OptionInfo& option : plan::options()) keys.push_back(option.key);
   return keys;
 }
 
 std::vector<std::string> setting_values(const std::vector<std::string>& before) {
-  const plan::OptionInfo* option = before.empty() ? nullptr : plan::find_option(before[0]);
+  const OptionInfo* option = before.empty() ? nullptr : plan::find_option(before[0]);
   if (!option) return {};
-  if (option->type == plan::OptionType::boolean) return {"true", "false"};
-  if (option->type == plan::OptionType::choice) return option->choices;
+  if (option->type == OptionType::boolean) return {"true", "false"};
+  if (option->type == OptionType::choice) return option->choices;
   return {option->fallback};
 }
 
-const plan::OptionInfo& known_option(const std::string& key) {
-  if (const plan::OptionInfo* option = plan::find_option(key)) return *option;
+const OptionInfo& known_option(const std::string& key) {
+  if (const OptionInfo* option = plan::find_option(key)) return *option;
   throw Error("", fmt::format("there is no setting '{}'{}", key, suggestion(key, setting_keys())));
 }
 
@@ -111,7 +111,7 @@ void Workspace::add_document_commands() {
                       touched_.push_back(key);
                     },
                 .undoable = true});
-  for (const plan::OptionInfo& option : plan::options())
+  for (const OptionInfo& option : plan::options())
     registry.add_prefix(option.key, "set " + quote(option.key));
 
   registry.add(

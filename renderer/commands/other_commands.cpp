@@ -13,8 +13,8 @@ constexpr double k_standstill = 10;  // seconds without a new picture
 
 std::string settings_manual() {
   std::string text = "Settings, for 'set KEY VALUE':";
-  for (const plan::OptionInfo& o : plan::options()) {
-    const std::string range = plan::describe_values(o);
+  for (const OptionInfo& o : plan::options()) {
+    const std::string range = describe_values(o);
     text += fmt::format("\n  {} {}: {}", o.key, range, o.help);
   }
   return text;
@@ -154,7 +154,7 @@ void Workspace::add_other_commands() {
 std::string Workspace::manual(const std::string& topic) const {
   if (topic == "settings") return settings_manual();
   if (const Command* command = registry.find(topic)) return registry.manual(*command);
-  if (const plan::OptionInfo* option = plan::find_option(topic))
+  if (const OptionInfo* option = plan::find_option(topic))
     return fmt::format("set {} VALUE\n  {}", topic, option->help);
   std::vector<std::string> names;
   std::string list = "Commands; 'help COMMAND' explains one, 'help settings' lists the settings:";

@@ -17,7 +17,7 @@ uint32_t Plan::looked_up() const {
 }
 
 std::optional<double> Plan::bias(size_t component) const {
-  const SolverInfo* info = solver[component];
+  const solvers::SolverInfo* info = solver[component];
   return info && info->unbiased ? std::optional(0.0) : std::nullopt;
 }
 
@@ -25,8 +25,7 @@ Plan make_plan(const Settings& settings) {
   Plan plan;
   for (int c = 0; c < paths::k_component_count; ++c) {
     const std::string& name = settings.text(std::string("components.") + paths::k_component_names[c]);
-    for (const SolverInfo& info : solvers())
-      if (info.name == name) plan.solver[c] = &info;
+    plan.solver[size_t(c)] = solvers::find(name);
   }
   return plan;
 }

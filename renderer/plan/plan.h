@@ -6,14 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "paths/automaton.h"
 #include "plan/settings.h"
-#include "plan/solvers.h"
 #include "scene/scene.h"
+#include "solvers/registry.h"
 
 namespace lucerna::plan {
 
 struct Plan {
-  std::array<const SolverInfo*, paths::k_component_count> solver{};  ///< null: off
+  std::array<const solvers::SolverInfo*, paths::k_component_count> solver{};  ///< null: off
   /// Components that are computed (bit i).
   uint32_t enabled() const;
   /// Components that are looked up (bit i).

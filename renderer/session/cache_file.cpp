@@ -23,7 +23,7 @@ irradiance_cache::Making Renderer::cache_making() const {
                    {"materials", hash.materials},
                    {"lights", hash.lights},
                    {"environment", hash.environment}};
-  for (const plan::OptionInfo& o : plan::options())
+  for (const OptionInfo& o : plan::options())
     if ((o.key.starts_with("cache.") && o.restarts && !k_amounts.contains(o.key)) ||
         o.key == "path.max_depth" || o.key == "path.roulette_depth")
       making.settings[o.key] = settings_.text(o.key);
@@ -74,7 +74,7 @@ void Renderer::load_cache(const std::filesystem::path& file) {
   const bool complete = saved.view == cache_view_text() && (!full || saved.records.size() == room);
   const uint32_t count = saved.records.size();
   cache_->restore(*wavefront_, std::move(saved.records), saved.status, complete);
-  restart(irradiance_cache::k_spoils_nothing);
+  restart(solvers::k_spoils_nothing);
   log::info("{}: {} records{}{}", file.string(), count,
             complete ? ", complete for this view" : "; what this view is missing is added",
             saved.making.seed == settings_.text("seed") ? "" : " (made with seed " + saved.making.seed + ")");

@@ -65,7 +65,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
 }
 
 void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings,
-                       scene::Camera camera, const Progress& progress, irradiance_cache::Spoilt spoilt) {
+                       scene::Camera camera, const Progress& progress, solvers::Spoils spoilt) {
   rest();
   const auto report = [&](float fraction, const char* what) {
     require(!progress || progress(fraction, what));
@@ -105,7 +105,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   make_film(spoilt);
 }
 
-irradiance_cache::Spoilt Renderer::build_wavefront(const upload::DeviceScene& device_scene, bool keep) {
+solvers::Spoils Renderer::build_wavefront(const upload::DeviceScene& device_scene, bool keep) {
   const Timer timer;
   transport::HostTrace trace;
   if (host_) {
@@ -138,7 +138,7 @@ irradiance_cache::Spoilt Renderer::build_wavefront(const upload::DeviceScene& de
   }
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
                                                       std::move(trace), defines, bind);
-  irradiance_cache::Spoilt spoilt = irradiance_cache::k_spoils_all;
+  solvers::Spoils spoilt = solvers::k_spoils_all;
   if (keep && cache && cache_) spoilt = cache->adopt(*wavefront_, *cache_);
   cache_ = std::move(cache);
   inspector_.reset();
@@ -154,7 +154,7 @@ irradiance_cache::Spoilt Renderer::build_wavefront(const upload::DeviceScene& de
 void Renderer::reload_shaders() {
   if (!device_scene_) return;
   build_wavefront(*device_scene_, false);
-  restart(irradiance_cache::spoilt_by_edit("shaders"));
+  restart(spoiled(scene::Change::shaders));
 }
 
 uint32_t Renderer::enabled_components() const { return plan::make_plan(settings_).enabled(); }
@@ -235,14 +235,14 @@ paths::LookupRoutes Renderer::wanted_record_routes(const upload::Effects& effect
                               effects.specular || effects.solid_glass || effects.thin_glass);
 }
 
-void Renderer::make_film(irradiance_cache::Spoilt spoilt) {
+void Renderer::make_film(solvers::Spoils spoilt) {
   film_ = std::make_unique<film::Film>(*device_, width_, height_);
   coarse_ = std::make_unique<film::Film>(*device_, std::max(1u, width_ / shared::k_coarse_step),
                                          std::max(1u, height_ / shared::k_coarse_step));
   restart(spoilt);
 }
 
-void Renderer::restart(irradiance_cache::Spoilt spoilt) {
+void Renderer::restart(solvers::Spoils spoilt) {
   if (!wavefront_ || !film_) return;
   if (cache_) cache_->look_from(cache_view());
   if (cache_ && spoilt.places) {
@@ -376,10 +376,10 @@ void Renderer::apply_settings() {
   }
   const bool rebuild = changed.contains("tracer") || changed.contains("path.batch");
   bool cache_changed = false;
-  irradiance_cache::Spoilt spoilt;
+  solvers::Spoils spoilt;
   for (const std::string& key : changed) {
     cache_changed |= cache_ && key.starts_with("cache.") && plan::find_option(key)->restarts;
-    spoilt |= irradiance_cache::spoilt_by_setting(key);
+    spoilt |= solvers::spoiled_by_setting(irradiance_cache::info(), key);
   }
   heed_pauses();
   if (changed.contains("camera")) choose_camera(settings_.text("camera"));
@@ -415,7 +415,7 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
   width_ = width;
   height_ = height;
   if (!wavefront_) return;
-  const irradiance_cache::Spoilt spoilt = irradiance_cache::spoilt_by_edit("size");
+  const solvers::Spoils spoilt = spoiled(scene::Change::size);
   try {
     make_film(spoilt);
   } catch (...) {
@@ -427,12 +427,12 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
 
 void Renderer::set_camera(const scene::Camera& camera) {
   camera_ = camera;
-  restart(irradiance_cache::spoilt_by_edit("camera"));
+  restart(spoiled(scene::Change::camera));
 }
 
 void Renderer::choose_camera(const std::string& name) {
   camera_ = scene::find_camera(*scene_, name);
-  restart(irradiance_cache::spoilt_by_edit("camera"));
+  restart(spoiled(scene::Change::camera));
 }
 
 bool Renderer::step(const std::function<bool()>& cancel) {

@@ -25,6 +25,8 @@
 #include "session/cache_report.h"
 #include "solvers/irradiance_cache/cache.h"
 #include "solvers/irradiance_cache/file.h"
+#include "solvers/irradiance_cache/info.h"
+#include "solvers/registry.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
 
@@ -45,6 +47,11 @@ struct RendererOptions {
   /// renderer to renderer. Not to be used from two threads at once.
   std::shared_ptr<gpu::Device> on = {};
 };
+
+/// Of the irradiance cache.
+inline solvers::Spoils spoiled(scene::Change edit) {
+  return solvers::spoiled_by(irradiance_cache::info(), edit);
+}
 
 /// fraction 0..1 and what is going on; returning false cancels (an Error "cancelled" is thrown).
 using Progress = std::function<bool(float, const std::string&)>;
@@ -80,7 +87,7 @@ class Renderer {
   void set_material(uint32_t index, const scene::Material& material);
   void reload_shaders();
   /// Begins the image anew, and what it looks up.
-  void restart() { restart(irradiance_cache::spoilt_by_edit("restart")); }
+  void restart() { restart(spoiled(scene::Change::restart)); }
   /// Images begun so far.
   uint64_t restarts() const { return restarts_; }
   /// Passes over the picture, or over the tiles at work, that are complete.
@@ -177,16 +184,15 @@ class Renderer {
  private:
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
   void install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings, scene::Camera camera,
-               const Progress& progress,
-               irradiance_cache::Spoilt spoilt = irradiance_cache::spoilt_by_edit("scene"));
+               const Progress& progress, solvers::Spoils spoilt = spoiled(scene::Change::shape));
   /// `keep`: of the same scene, so that records serve on. Returns what of them does not.
-  irradiance_cache::Spoilt build_wavefront(const upload::DeviceScene& device_scene, bool keep);
+  solvers::Spoils build_wavefront(const upload::DeviceScene& device_scene, bool keep);
   /// The scene with other lights or another environment: uploads these anew. Kernels are made for what it
   /// calls for now.
-  void relight(std::shared_ptr<const scene::Scene> edited, irradiance_cache::Spoilt spoilt);
-  void make_film(irradiance_cache::Spoilt spoilt);
+  void relight(std::shared_ptr<const scene::Scene> edited, solvers::Spoils spoilt);
+  void make_film(solvers::Spoils spoilt);
   /// `spoilt`: of the records that paths look up.
-  void restart(irradiance_cache::Spoilt spoilt);
+  void restart(solvers::Spoils spoilt);
   shared::Frame make_frame(uint32_t width, uint32_t height) const;  ///< of the picture's paths
   shared::Frame make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
                            uint32_t fallback, const paths::LookupRoutes& gather) const;

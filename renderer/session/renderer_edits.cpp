@@ -10,7 +10,7 @@ void Renderer::set_light(uint32_t index, const scene::Light& light) {
   if (!scene_ || index >= scene_->lights.size()) throw_error("light", "there is no light {}", index);
   auto edited = std::make_shared<scene::Scene>(*scene_);
   edited->lights[index] = light;
-  relight(edited, irradiance_cache::spoilt_by_edit("lamp"));
+  relight(edited, spoiled(scene::Change::lamp));
 }
 
 void Renderer::set_environment(float scale, float rotation_degrees) {
@@ -18,7 +18,7 @@ void Renderer::set_environment(float scale, float rotation_degrees) {
   auto edited = std::make_shared<scene::Scene>(*scene_);
   edited->environment.scale = scale;
   edited->environment.rotation = rotation_degrees;
-  relight(edited, irradiance_cache::spoilt_by_edit("environment"));
+  relight(edited, spoiled(scene::Change::environment));
 }
 
 void Renderer::set_material(uint32_t index, const scene::Material& material) {
@@ -51,10 +51,10 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
                       before.unlit == material.unlit &&
                       before.diffuse_transmission == material.diffuse_transmission &&
                       before.transmission == material.transmission;
-  relight(edited, irradiance_cache::spoilt_by_edit(colour ? "colour" : "material"));
+  relight(edited, spoiled(colour ? scene::Change::colour : scene::Change::material));
 }
 
-void Renderer::relight(std::shared_ptr<const scene::Scene> edited, irradiance_cache::Spoilt spoilt) {
+void Renderer::relight(std::shared_ptr<const scene::Scene> edited, solvers::Spoils spoilt) {
   scene_ = std::move(edited);
   upload::flatten_lights(*scene_, flat_);
   device_scene_->update_lights(*device_, flat_);

@@ -17,7 +17,7 @@ LUCERNA_CONST uint k_part_caustic = 3u;    ///< [SG]+L
 LUCERNA_CONST uint k_part_count = 4u;
 // A light group would be further parts: the automaton's accepting states split by the group of the light that
 // is met, as they are by component, k_part_count of them for each group. A group's strength is then a factor
-// by part in lookup.glsl, and changing it spoils no record (solvers/irradiance_cache/changes.h).
+// by part in lookup.glsl, and changing it spoils no record (solvers/irradiance_cache/info.cpp).
 
 /// Files keep the texels below as they are: another number for another meaning of them.
 LUCERNA_CONST uint k_record_layout = 3u;
@@ -32,12 +32,12 @@ LUCERNA_CONST uint k_record_layout = 3u;
 //   4: of metric `hessian`: what the pilot rays of this record and of those around it say of the light here,
 //   by which its ellipse is made: the Hessian of the irradiance's luminance in tangent and bitangent, xx, xy,
 //   yy [1/m^2], and that luminance
-//   5: bits of the medium in which the record lies, as PathState has it; of metric `hessian` the greatest r at
-//   which such an ellipse holds nothing that a ray met [m], 0: not known yet; 0; 0
+//   5: bits of the medium in which the record lies, as PathState has it; of metric `hessian` the greatest r
+//   at which such an ellipse holds nothing that a ray met [m], 0: not known yet; 0; 0
 LUCERNA_CONST uint k_record_texels = 6u;
 /// Most of the greater radius over the lesser.
 LUCERNA_CONST float k_record_ratio = 2.0f;
-LUCERNA_CONST uint k_record_pass = 0x7fu;       ///< mask: the pass that placed it, from 0
+LUCERNA_CONST uint k_record_pass = 0x7fu;  ///< mask: the pass that placed it, from 0
 /// Something is nearer to it than a few of the least radii, so that what light there is there is too fine to
 /// be interpolated. It holds none, and says of its disc that paths gather there themselves. In the place of
 /// its irradiance it tells them where light comes from (k_guide_*).
@@ -63,7 +63,8 @@ LUCERNA_CONST uint k_part_texels = 4u;
 // in azimuth from the tangent on, and in sin^2 of the angle from the normal.
 LUCERNA_CONST uint k_guide_azimuths = 32u, k_guide_elevations = 8u;
 LUCERNA_CONST uint k_guide_texels = 16u;
-LUCERNA_CONST uint k_guide_most = 126u;  ///< of a byte: read as floats they are never infinite, nor no numbers
+LUCERNA_CONST uint k_guide_most =
+    126u;  ///< of a byte: read as floats they are never infinite, nor no numbers
 LUCERNA_CONST uint k_no_guide = 0xffffffffu;
 
 /// Bytes that a record takes with its sphere and its light as lookups read it; the octree's references come
@@ -93,29 +94,33 @@ LUCERNA_CONST uint k_probe_reads = 4u;
 /// is noted, where they end.
 LUCERNA_CONST uint k_probe_next = 5u;
 
-/// Of the vertices that read records and from which the path goes on by a diffuse event, where it ends, is noted with what
-/// it carries there: CarriedNote, in place of a candidate. The mean of what is noted, times what records there hold, is what
-/// pictures read of them.
+/// Of the vertices that read records and from which the path goes on by a diffuse event, where it ends, is
+/// noted with what it carries there: CarriedNote, in place of a candidate. The mean of what is noted, times
+/// what records there hold, is what pictures read of them.
 LUCERNA_CONST uint k_probe_carry = 6u;
-/// The same of what the records themselves have read: paths pass their first lookup over and note one of those beyond.
+/// The same of what the records themselves have read: paths pass their first lookup over and note one of
+/// those beyond.
 LUCERNA_CONST uint k_probe_carry_on = 7u;
 
 // Noted by these, in candidate_texels:
 //   0: position; bits 1 + state of the automaton + k_carried_medium times the medium, 0: nothing is noted
-//   1: smooth normal on the side that is lit, bits carried_pack() of the throughput behind the diffuse lobe, over pi
+//   1: smooth normal on the side that is lit, bits carried_pack() of the throughput behind the diffuse lobe,
+//   over pi
 LUCERNA_CONST uint k_carried_medium = 32u;
 
-/// Signs by which every record's error is carried into the picture (picture_error.h); a multiple of 4, at most 32.
+/// Signs by which every record's error is carried into the picture (picture_error.h); a multiple of 4, at
+/// most 32.
 LUCERNA_CONST uint k_carry_lanes = 16u;
 /// carry_leave.comp leaves for every record, over the luminance of its irradiance: what it is off by where it
-/// ends, by what the others around say of it beyond what it says itself; 0, 0, 0; the same of their errors in every lane.
+/// ends, by what the others around say of it beyond what it says itself; 0, 0, 0; the same of their errors in
+/// every lane.
 LUCERNA_CONST uint k_left_texels = 1u + k_carry_lanes / 4u;
 
 struct CarryPush {
-  uint width, height;    ///< of the picture, in pixels of the film
-  uint step;             ///< of which so many along each side have one of this kernel's pixels: a power of 2, at most 8
-  uint pixels;           ///< of these in the item, two paths each
-  uint beyond;           ///< not 0: what records have read counts too
+  uint width, height;  ///< of the picture, in pixels of the film
+  uint step;  ///< of which so many along each side have one of this kernel's pixels: a power of 2, at most 8
+  uint pixels;  ///< of these in the item, two paths each
+  uint beyond;  ///< not 0: what records have read counts too
 };
 
 /// What paths are told of the cache.
@@ -148,7 +153,7 @@ struct RecordPush {
   uint parts;        ///< bit p: part p is wanted
   uint state;        ///< of the automaton after ED
   uint seed;
-  uint pilot;        ///< not 0: rays that decide how far a record serves and bring it no light
+  uint pilot;  ///< not 0: rays that decide how far a record serves and bring it no light
 };
 
 struct RadiusPush {
@@ -160,8 +165,8 @@ struct RadiusPush {
 };
 
 struct ClampPush {
-  uint count;  ///< records
-  float near;  ///< lesser radius over the distance of the nearest thing, at most
+  uint count;      ///< records
+  float near;      ///< lesser radius over the distance of the nearest thing, at most
   float crowd;     ///< as EllipsePush has it ...
   uint undecided;  ///< ... for records from this one on
 };
@@ -174,7 +179,7 @@ struct WorthPush {
   uint first;  ///< pixels before these
   uint next;   ///< not 0: there are next places too
 };
-LUCERNA_CONST uint k_worth_steps = 256u;         ///< that a pixel of which a record has all is
+LUCERNA_CONST uint k_worth_steps = 256u;  ///< that a pixel of which a record has all is
 /// Most that a record is to bring through another one, over the irradiance of that: its square in steps is
 /// less than 2^32.
 LUCERNA_CONST float k_worth_most = 2048.0f;
@@ -187,7 +192,8 @@ struct EllipsePush {
   float dark;         ///< irradiance, luminance: records that have less are held against it
   float near;         ///< lesser radius over the greatest that holds nothing that a ray met, at most
   float near_tried;   ///< the same where only the distance of the nearest thing is known
-  /// Over the least radius: where something is nearer than that records crowd; 0: it has been decided which do.
+  /// Over the least radius: where something is nearer than that records crowd; 0: it has been decided which
+  /// do.
   float crowd;
 };
 

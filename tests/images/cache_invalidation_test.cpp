@@ -1,17 +1,19 @@
 // links: session
-// What a change leaves of an irradiance cache: every row of irradiance_cache::changes(), and that a cache
+// What a change leaves of an irradiance cache: every row of its table, and that a cache
 // which is relit where it stands is the one that would have been built in that light.
 #include <catch2/catch.hpp>
 #include <set>
 
 #include "images/cache_support.h"
+#include "solvers/irradiance_cache/info.h"
+#include "solvers/registry.h"
 #include "support/folder.h"
 #include "support/rooms.h"
 
 using namespace lucerna;
 using irradiance_cache::RawRecords;
-using irradiance_cache::Spoilt;
 using irradiance_cache::StopReason;
+using scene::Change;
 using test::begins_with, test::identical, test::Settings;
 
 namespace {
@@ -70,32 +72,32 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
   REQUIRE(bed.status().stop == StopReason::covered);
 
   // A change of each kind; for settings, values that differ from k_base and the defaults.
-  const std::map<std::string_view, std::function<void()>> edits{
-      {"camera", [&] { bed.r.choose_camera("above"); }},
-      {"size", [&] { bed.r.set_size(40, 24); }},
-      {"lamp",
+  const std::map<Change, std::function<void()>> edits{
+      {Change::camera, [&] { bed.r.choose_camera("above"); }},
+      {Change::size, [&] { bed.r.set_size(40, 24); }},
+      {Change::lamp,
        [&] {
          bed.set_lamp({9, 2, 1});
        }},
-      {"environment", [&] { bed.r.set_environment(2, 90); }},
-      {"colour",
+      {Change::environment, [&] { bed.r.set_environment(2, 90); }},
+      {Change::colour,
        [&] {
          bed.paint(1, {0.9f, 0.1f, 0.1f});
        }},
-      {"material",
+      {Change::material,
        [&] {
          bed.paint(1, {0.9f, 0.9f, 0.9f}, 1);
        }},
-      {"shaders", [&] { bed.r.reload_shaders(); }},
-      {"restart", [&] { bed.r.restart(); }},
+      {Change::shaders, [&] { bed.r.reload_shaders(); }},
+      {Change::restart, [&] { bed.r.restart(); }},
   };
-  const std::map<std::string_view, std::function<void()>> undo{
-      {"camera", [&] { bed.r.choose_camera("front"); }},
-      {"size", [&] { bed.r.set_size(24, 24); }},
-      {"lamp", [&] { bed.set_lamp(vec3(5)); }},
-      {"environment", [&] { bed.r.set_environment(1, 0); }},
-      {"colour", [&] { bed.r.set_material(1, room().materials[1]); }},
-      {"material", [&] { bed.r.set_material(1, room().materials[1]); }},
+  const std::map<Change, std::function<void()>> undo{
+      {Change::camera, [&] { bed.r.choose_camera("front"); }},
+      {Change::size, [&] { bed.r.set_size(24, 24); }},
+      {Change::lamp, [&] { bed.set_lamp(vec3(5)); }},
+      {Change::environment, [&] { bed.r.set_environment(1, 0); }},
+      {Change::colour, [&] { bed.r.set_material(1, room().materials[1]); }},
+      {Change::material, [&] { bed.r.set_material(1, room().materials[1]); }},
   };
   const std::map<std::string_view, Settings> settings{
       {"components.", {{"components.primary", "off"}}},
@@ -121,31 +123,33 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
       {"cache.pause", {{"cache.pause", "stage"}}},
       {"cache.", {{"cache.error", "0.4"}}},
   };
-  for (const irradiance_cache::Change& row : irradiance_cache::changes()) {
-    INFO("row '" << row.what << "'" << (row.setting ? ", a setting" : ""));
-    if (row.what == "scene") continue;  // see below
+  for (const solvers::ChangeRow& row : irradiance_cache::info().changes) {
+    const auto* edit = std::get_if<Change>(&row.what);
+    const auto* head = std::get_if<std::string_view>(&row.what);
+    INFO((edit ? "edit " + std::to_string(int(*edit)) : "setting " + std::string(*head)) << ": " << row.why);
+    if (edit && *edit == Change::shape) continue;  // see below
     bed.r.load_cache(file);
     REQUIRE(bed.r.cache()->ready());
     REQUIRE(begins_with(bed.records(), base));
 
     const auto take_back = [&] {
-      if (!row.setting) return undo.contains(row.what) ? undo.at(row.what)() : void();
+      if (edit) return undo.contains(*edit) ? undo.at(*edit)() : void();
       Settings before;
-      for (const auto& [key, value] : settings.at(row.what))
+      for (const auto& [key, value] : settings.at(*head))
         before[key] = k_base.contains(key) ? k_base.at(key)
                       : key == "camera"    ? "front"
                                            : plan::find_option(key)->fallback;
       bed.set(before);
     };
-    if (row.setting) {
-      REQUIRE(settings.contains(row.what));
-      bed.set(settings.at(row.what));
+    if (head) {
+      REQUIRE(settings.contains(*head));
+      bed.set(settings.at(*head));
     } else {
-      REQUIRE(edits.contains(row.what));
-      edits.at(row.what)();
+      REQUIRE(edits.contains(*edit));
+      edits.at (*edit)();
     }
-    const Spoilt& s = row.spoils;
-    CHECK(bed.r.cache()->ready() == (s == irradiance_cache::k_spoils_nothing));
+    const solvers::Spoils& s = row.spoils;
+    CHECK(bed.r.cache()->ready() == !s.any());
     if (s.places) {
       CHECK(bed.r.cache()->records().size() == 0);
       CHECK(bed.status().rays == 0);
@@ -174,25 +178,41 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
   CHECK(bed.r.cache()->records().size() == 0);
 }
 
-TEST_CASE("every setting has a row, and those of the cache that are not named spoil all") {
-  std::set<std::string_view> named;
-  for (const irradiance_cache::Change& row : irradiance_cache::changes()) {
-    CHECK(named.insert(row.what).second == (row.what != "camera" || !row.setting));
+TEST_CASE("every edit and every setting has a row, and those of the cache that are not named spoil all") {
+  using namespace solvers;
+  const SolverInfo& cache = irradiance_cache::info();
+  std::set<std::variant<Change, std::string_view>> named;
+  for (const ChangeRow& row : cache.changes) {
+    CHECK(named.insert(row.what).second);
     CHECK_FALSE(row.why.empty());
     // Places without light or coverage make no sense.
-    if (row.spoils.places) CHECK(row.spoils == irradiance_cache::k_spoils_all);
+    if (row.spoils.places) CHECK(row.spoils == k_spoils_all);
   }
-  for (const plan::OptionInfo& o : plan::options()) {
+  for (const Change edit : scene::k_all_changes) CHECK(named.contains(edit));
+  for (const OptionInfo& o : plan::options()) {
     bool found = false;
-    for (const irradiance_cache::Change& row : irradiance_cache::changes())
-      found |= row.setting && o.key.starts_with(row.what);
+    for (const ChangeRow& row : cache.changes)
+      if (const auto* head = std::get_if<std::string_view>(&row.what)) found |= o.key.starts_with(*head);
     INFO(o.key);
-    CHECK(found);
+    const SolverInfo* owner = owner_of(o.key);
+    CHECK(found == (!owner || owner == &cache));
     // What does not begin the picture anew cannot spoil records.
-    if (!o.restarts) CHECK(irradiance_cache::spoilt_by_setting(o.key) == irradiance_cache::k_spoils_nothing);
+    if (!o.restarts) CHECK_FALSE(spoiled_by_setting(cache, o.key).any());
   }
-  CHECK(irradiance_cache::spoilt_by_setting("cache.of_tomorrow") == irradiance_cache::k_spoils_all);
-  CHECK(irradiance_cache::spoilt_by_setting("unheard.of") == irradiance_cache::k_spoils_all);
+  CHECK(spoiled_by_setting(cache, "cache.of_tomorrow") == k_spoils_all);
+  CHECK(spoiled_by_setting(cache, "unheard.of") == k_spoils_all);
+}
+
+TEST_CASE("a setting of one solver spoils nothing of another's work") {
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    for (const solvers::SolverInfo* other : solvers::registered())
+      for (const OptionInfo& o : other->options) {
+        INFO(solver->name << ", " << o.key);
+        if (other == solver)
+          CHECK(solvers::owner_of(o.key) == solver);
+        else
+          CHECK_FALSE(solvers::spoiled_by_setting(*solver, o.key).any());
+      }
 }
 
 TEST_CASE("a cache that is relit is the one that would have been built in that light, to the bit") {

@@ -36,7 +36,7 @@ TEST_CASE("every component has one solver of the registry, or none") {
   // What is off has no bias of its own to tell; a solver that cannot tell says so too.
   CHECK(p.bias(0) == 0.0);
   CHECK_FALSE(p.bias(1).has_value());
-  plan::SolverInfo reuses{"reuses", "", {true, true, true, true}, false, true};
+  solvers::SolverInfo reuses{.name = "reuses", .serves = {true, true, true, true}, .looked_up = true};
   plan::Plan biased;
   biased.solver[2] = &reuses;
   CHECK_FALSE(biased.bias(2).has_value());
@@ -45,7 +45,7 @@ TEST_CASE("every component has one solver of the registry, or none") {
     const auto* option = plan::find_option(std::string("components.") + paths::k_component_names[c]);
     REQUIRE(option != nullptr);
     size_t served = 0;
-    for (const plan::SolverInfo& info : plan::solvers()) served += info.serves[c];
+    for (const solvers::SolverInfo* info : solvers::registered()) served += info->serves[c];
     CHECK(option->choices.size() == served + 1);
     CHECK(option->choices.back() == "off");
   }

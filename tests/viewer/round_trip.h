@@ -68,10 +68,10 @@ inline size_t round_trip(const commands::Registry& registry) {
         check(line);
       }
   }
-  for (const plan::OptionInfo& option : plan::options()) {
+  for (const OptionInfo& option : plan::options()) {
     std::vector<std::string> values{option.fallback};
-    if (option.type == plan::OptionType::choice) values = option.choices;
-    if (option.type == plan::OptionType::text) values = {"two words", "", "\"quoted\""};
+    if (option.type == OptionType::choice) values = option.choices;
+    if (option.type == OptionType::text) values = {"two words", "", "\"quoted\""};
     for (const std::string& value : values) {
       check(commands::line("set", option.key, value));
       check(commands::line(option.key, value));

@@ -17,8 +17,8 @@
 #include <string>
 
 #include "paths/automaton.h"
+#include "solvers/info.h"
 #include "solvers/irradiance_cache/build_log.h"
-#include "solvers/irradiance_cache/changes.h"
 #include "solvers/irradiance_cache/discontinuity.h"
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/records.h"
@@ -140,7 +140,7 @@ class Cache {
   /// In place of its own, the records of another cache of the same scene, made for other lookups, options or
   /// kernels: as far as passes are complete. Returns what of them does not serve here, for the caller to see
   /// to: coverage, light, or places, where there is no room for them; then this is as after clear().
-  Spoilt adopt(transport::Wavefront& wavefront, const Cache& other);
+  solvers::Spoils adopt(transport::Wavefront& wavefront, const Cache& other);
   /// Building is to wait after every stage or pass from now on: step() then does nothing until go_on(). What
   /// is built is the same, bit for bit. Off in the beginning.
   void pause(PauseAfter after);

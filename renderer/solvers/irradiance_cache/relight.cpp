@@ -67,12 +67,12 @@ void Cache::Impl::relight_pass() {
 
 void Cache::relight() { impl_->relight(); }
 
-Spoilt Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {
+solvers::Spoils Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {
   Impl& c = *impl_;
   const Impl& o = *other.impl_;
   clear();
   const uint32_t count = o.complete();
-  if (count > c.records.capacity()) return k_spoils_all;
+  if (count > c.records.capacity()) return solvers::k_spoils_all;
   c.take(o.records.raw(count));
   c.ends = o.ends;
   c.held = o.held, c.held_recursive = o.held_recursive;
@@ -87,7 +87,7 @@ Spoilt Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {
   const bool relit = o.status.relighting > 0;  // and some are not yet
   const StopReason stop = relit ? o.stopped : o.status.stop;
   if (stop != StopReason::building) c.finish(stop);
-  Spoilt lacks;
+  solvers::Spoils lacks;
   const uint32_t tertiary = 1u << k_part_tertiary;
   lacks.light =
       relit || (c.parts & ~c.held) != 0 || (c.recursive != c.held_recursive && (c.parts & tertiary) != 0);

@@ -1,0 +1,41 @@
+#pragma once
+// What an edit changes, in the scene's words. Who keeps something that was computed from a scene decides by
+// these, and by the keys of changed settings, what of it still holds (solvers/info.h).
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace lucerna::scene {
+
+enum class Change : uint32_t {
+  camera,       ///< place, direction or kind of the camera
+  size,         ///< width or height of the picture
+  lamp,         ///< a punctual light's strength, colour, place, cone, or whether it is on
+  environment,  ///< the environment's strength or rotation
+  colour,       ///< diffuse colour, roughness or emission of a surface that was diffuse and is so still
+  material,     ///< any other factor of a material: what was a mirror may be diffuse now
+  shape,        ///< geometry, textures, what rays pass: another scene
+  shaders,      ///< the kernels
+  restart,      ///< nothing: a person asks to begin anew
+};
+inline constexpr Change k_all_changes[] = {Change::camera,      Change::size,    Change::lamp,
+                                           Change::environment, Change::colour,  Change::material,
+                                           Change::shape,       Change::shaders, Change::restart};
+
+/// Several at once.
+struct Changes {
+  std::set<Change> edits;
+  std::set<std::string> settings;  ///< keys of the settings that have another value
+
+  Changes() = default;
+  Changes(Change edit) : edits{edit} {}  // NOLINT: one edit is a set of edits
+  bool empty() const { return edits.empty() && settings.empty(); }
+  Changes& operator|=(const Changes& other) {
+    edits.insert(other.edits.begin(), other.edits.end());
+    settings.insert(other.settings.begin(), other.settings.end());
+    return *this;
+  }
+};
+
+}  // namespace lucerna::scene

@@ -1,0 +1,21 @@
+#include "solvers/info.h"
+
+namespace lucerna::solvers {
+
+Spoils spoiled_by(const SolverInfo& solver, scene::Change edit) {
+  for (const ChangeRow& row : solver.changes)
+    if (const auto* what = std::get_if<scene::Change>(&row.what); what && *what == edit) return row.spoils;
+  return k_spoils_all;
+}
+
+Spoils spoiled_by(const SolverInfo& solver, std::string_view key) {
+  const ChangeRow* best = nullptr;
+  size_t length = 0;
+  for (const ChangeRow& row : solver.changes)
+    if (const auto* head = std::get_if<std::string_view>(&row.what);
+        head && key.starts_with(*head) && (!best || head->size() > length))
+      best = &row, length = head->size();
+  return best ? best->spoils : k_spoils_all;
+}
+
+}  // namespace lucerna::solvers

@@ -1,0 +1,106 @@
+#pragma once
+// What a way of computing light says of itself: plain tables, without a device, from which settings, help,
+// the window, scripts and the renderer take all that they know of it.
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/options.h"
+#include "scene/change.h"
+
+namespace lucerna::solvers {
+
+inline constexpr int k_components = 4;  ///< primary, secondary, tertiary, caustic
+
+/// What a change spoils of a solver's work; each without the ones before it.
+struct Spoils {
+  bool coverage = false;  ///< what there is holds, but something may be missing: more is added
+  bool light = false;     ///< places hold, and their light is computed anew
+  bool places = false;    ///< all is made anew
+  Spoils& operator|=(const Spoils& o) {
+    coverage |= o.coverage, light |= o.light, places |= o.places;
+    return *this;
+  }
+  bool operator==(const Spoils&) const = default;
+  bool any() const { return coverage || light || places; }
+};
+inline constexpr Spoils k_spoils_nothing{};
+inline constexpr Spoils k_spoils_coverage{.coverage = true};
+inline constexpr Spoils k_spoils_light{.light = true};
+inline constexpr Spoils k_spoils_light_and_coverage{.coverage = true, .light = true};
+inline constexpr Spoils k_spoils_all{.coverage = true, .light = true, .places = true};
+
+/// One row of a solver's table of changes.
+struct ChangeRow {
+  /// An edit, or the settings whose keys begin with this ("cache.rays", "film."); of several rows the longest
+  /// counts.
+  std::variant<scene::Change, std::string_view> what;
+  Spoils spoils;
+  std::string_view why;
+};
+
+/// Something that can be drawn over the picture: a setting that turns it on, with a place in the window.
+struct ViewInfo {
+  std::string option;  ///< a boolean, or a choice whose first value is "off"
+  std::string label;   ///< in panel and menu: "Records"
+  char shortcut = 0;   ///< key in the window, 'A' to 'Z'; 0: none
+  /// Of a choice: the values that the key goes through, in a ring; none: all of them.
+  std::vector<std::string> ring;
+  bool asks_pointer = false;  ///< while it is on, a pointer at rest in the picture asks what lies there
+};
+
+/// Something that a person can tell the solver to do: the command SOLVER.NAME.
+struct CommandInfo {
+  std::string name;   ///< "step"
+  std::string label;  ///< in panel and menu: "Next stage"
+  std::string help;   ///< one sentence
+  char shortcut = 0;
+  /// A script goes on when preparation waits or is complete, with all in force that was commanded.
+  bool until_still = false;
+};
+
+/// Files that keep its work: the commands SOLVER.save and SOLVER.load.
+struct FileInfo {
+  std::string extension;  ///< ".cache"
+  std::string content;    ///< for messages: "the records of the irradiance cache"
+};
+
+/// A matrix for `lucerna bench --NAME` (bench/matrix.h).
+struct BenchInfo {
+  std::string name, help;
+  std::string matrix;  ///< JSON
+};
+
+struct SolverInfo {
+  std::string name;   ///< as in settings: components.secondary = NAME; its options begin with it
+  std::string label;  ///< of its panel: "Cache"
+  std::string title;  ///< in sentences: "the irradiance cache"
+  std::string help;   ///< one sentence
+  std::array<bool, k_components> serves{};  ///< components that it can compute
+  /// Whether its mean is the true image at every number of samples: then noise is all its error.
+  bool unbiased = false;
+  /// Whether its light is looked up at a diffuse vertex (paths::lookup_routes), not traced on from there.
+  bool looked_up = false;
+  std::vector<OptionInfo> options{};
+  std::vector<ChangeRow> changes{};
+  std::vector<ViewInfo> views{};
+  std::vector<CommandInfo> commands{};
+  std::optional<FileInfo> file{};
+  std::vector<BenchInfo> benches{};
+  /// Settings (JSON objects as in a matrix) that `lucerna bench --full` measures besides its own.
+  std::vector<std::string> bench_settings{};
+
+  bool has_panel() const { return !options.empty() || !views.empty() || !commands.empty(); }
+};
+
+/// By the solver's own rows: of an edit, k_spoils_all where there is no row.
+Spoils spoiled_by(const SolverInfo& solver, scene::Change edit);
+/// Of a setting that is the solver's own or nobody's: k_spoils_all where no row fits. Settings of another
+/// solver spoil nothing; the registry knows whose they are (registry.h).
+Spoils spoiled_by(const SolverInfo& solver, std::string_view key);
+
+}  // namespace lucerna::solvers

@@ -1,0 +1,114 @@
+#include "solvers/irradiance_cache/options.h"
+
+namespace lucerna::irradiance_cache {
+namespace {
+
+/// Cached light alone is held against the reference, of records so little noisy that it is the interpolation
+/// that errs. Nothing but the metric decides their radii: in a small picture the bounds that they have
+/// otherwise leave most records one size, whatever the metric says.
+const char* const k_cache = R"({
+  "name": "cache",
+  "repeats": 3,
+  "warmup": 1,
+  "reference": {"samples": 16384},
+  "set": {"components.primary": "off", "components.caustic": "off", "cache.noise": 0.03,
+          "cache.max_rays": 16384, "cache.min_radius": 0, "cache.max_radius": 1, "cache.neighbours": false},
+  "budgets": {"samples": [256]},
+  "scenes": [
+    {"file": "cornell/cornell.gltf", "size": "128x128"},
+    {"file": "teapot/teapot.gltf", "size": "128x128"},
+    {"file": "hall/hall.gltf", "size": "160x90"}
+  ],
+  "settings": [
+    {"name": "plain", "about": "path tracing, no cache"},
+    {"name": "split-60", "about": "cache, records reach as far as things are away", "curve": "split sphere",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
+             "cache.error": 0.6}},
+    {"name": "split-40", "about": "cache, records reach as far as things are away", "curve": "split sphere",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
+             "cache.error": 0.4}},
+    {"name": "split-30", "about": "cache, records reach as far as things are away", "curve": "split sphere",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
+             "cache.error": 0.3}},
+    {"name": "split-20", "about": "cache, records reach as far as things are away", "curve": "split sphere",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
+             "cache.error": 0.2}},
+    {"name": "split-15", "about": "cache, records reach as far as things are away", "curve": "split sphere",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
+             "cache.error": 0.15}},
+    {"name": "hessian-60", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
+             "cache.error": 0.6}},
+    {"name": "hessian-40", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
+             "cache.error": 0.4}},
+    {"name": "hessian-30", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
+             "cache.error": 0.3}},
+    {"name": "hessian-20", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
+             "cache.error": 0.2}},
+    {"name": "hessian-15", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
+             "cache.error": 0.15}}
+  ]
+})";
+
+/// Cached light alone, to an error that is hard to see: each scene with what leads there, found by trying,
+/// with the metric that it was tried with.
+const char* const k_indirect = R"({
+  "name": "indirect",
+  "repeats": 3,
+  "warmup": 1,
+  "reference": {"samples": 512},
+  "set": {"components.primary": "off", "components.caustic": "off", "cache.metric": "split-sphere"},
+  "budgets": {"seconds": [60]},
+  "scenes": [
+    {"file": "teapot/teapot.gltf", "size": "512x512", "budgets": {"samples": [16], "seconds": [40]},
+     "set": {"cache.noise": 0.2}},
+    {"file": "hall/hall.gltf", "size": "512x512", "budgets": {"samples": [256], "seconds": [60]},
+     "set": {"cache.noise": 0.008, "cache.max_rays": 65536, "cache.error": 0.15, "cache.min_radius": 1,
+             "cache.max_records": 300000, "cache.stop": 0.0003}},
+    {"file": "sun-patch/sun-patch.gltf", "size": "512x512", "budgets": {"samples": [256], "seconds": [60]},
+     "set": {"cache.noise": 0.01, "cache.max_rays": 65536, "cache.error": 0.2, "cache.min_radius": 1,
+             "cache.max_records": 300000, "cache.stop": 0.0005}},
+    {"file": "atrium/atrium.gltf", "size": "512x512", "budgets": {"samples": [1152], "seconds": [60]},
+     "set": {"cache.noise": 0.0025, "cache.max_rays": 65536, "cache.error": 0.17, "cache.min_radius": 1.5,
+             "cache.max_records": 400000, "cache.passes": 11}},
+    {"file": "classroom/classroom.gltf", "size": "512x512", "budgets": {"samples": [192], "seconds": [60]},
+     "set": {"cache.noise": 0.0025, "cache.max_rays": 65536, "cache.error": 0.13, "cache.nearest": 0.6,
+             "cache.min_radius": 0.8, "cache.max_records": 400000, "cache.stop": 0.0005, "cache.passes": 18}}
+  ],
+  "settings": [
+    {"name": "plain", "about": "path tracing", "budget": "seconds"},
+    {"name": "cache", "about": "secondary and tertiary light from an irradiance cache, built anew",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache"}}
+  ]
+})";
+
+}  // namespace
+
+std::vector<solvers::BenchInfo> bench_rows() {
+  return {{"cache",
+           "error of cached light against the records of the irradiance cache, by either metric; an hour and "
+           "a quarter",
+           k_cache},
+          {"indirect",
+           "how much sooner than path tracing cached light is right to 2 % in five interiors; two and a half "
+           "hours",
+           k_indirect}};
+}
+
+std::vector<std::string> bench_settings() {
+  return {
+      R"({"name": "cache", "about": "as plain, secondary and tertiary light from an irradiance cache",
+          "set": {"components.secondary": "cache", "components.tertiary": "cache"}})",
+      R"({"name": "cache-split", "about": "as cache, records reach as far as things are away",
+          "set": {"components.secondary": "cache", "components.tertiary": "cache",
+                  "cache.metric": "split-sphere"}})",
+      R"({"name": "cache-sky", "about": "as cache, the sky's light on diffuse surfaces too",
+          "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.environment": true}})",
+  };
+}
+
+}  // namespace lucerna::irradiance_cache

@@ -1,0 +1,88 @@
+#include "solvers/irradiance_cache/info.h"
+
+#include "solvers/irradiance_cache/options.h"
+
+namespace lucerna::irradiance_cache {
+namespace {
+
+using scene::Change;
+using namespace solvers;
+
+/// What each change spoils. Lights and materials move no surface: whatever rays measured of the scene's shape
+/// stays true. `components.*` spoil nothing here: what records lack of what is then looked up is known only
+/// when the cache is made for it (Cache::adopt). The test goes through all rows.
+std::vector<ChangeRow> change_rows() {
+  return {
+      {Change::camera, k_spoils_coverage, "records lie on surfaces, whoever looks"},
+      {Change::size, k_spoils_coverage, "more pixels ask at more places"},
+      {Change::lamp, k_spoils_light, "other light on the same surfaces"},
+      {Change::environment, k_spoils_light, "other light on the same surfaces"},
+      {Change::colour, k_spoils_light, "of a material, or its emission: other light on the same surfaces"},
+      {Change::material, k_spoils_light_and_coverage, "what was a mirror may be diffuse now, and asks"},
+      {Change::shape, k_spoils_all, "other surfaces"},
+      {Change::shaders, k_spoils_all, "whatever they compute"},
+      {Change::restart, k_spoils_all, "asked for: all anew"},
+      {"components.", k_spoils_nothing, "as far as records hold what is then looked up"},
+      {"samples", k_spoils_nothing, "of the picture alone"},
+      {"sampling.", k_spoils_nothing, "of the picture alone"},
+      {"film.", k_spoils_nothing, "how it is shown"},
+      {"show.", k_spoils_nothing, "how it is shown"},
+      {"overlay.", k_spoils_nothing, "how it is shown"},
+      {"about", k_spoils_nothing, "words"},
+      {"camera", k_spoils_coverage, "records lie on surfaces, whoever looks"},
+      {"tracer", k_spoils_nothing, "all tracers find the same surfaces"},
+      {"path.batch", k_spoils_nothing, "how work is cut"},
+      {"path.roulette_depth", k_spoils_light, "the rays' noise"},
+      {"path.max_depth", k_spoils_light_and_coverage, "how far rays go, and from where lookups are made"},
+      {"seed", k_spoils_all, "another cache, as good as this one"},
+      {"cache.rays", k_spoils_light, "first level of the rays"},
+      {"cache.max_rays", k_spoils_light, "last level of the rays"},
+      {"cache.noise", k_spoils_light, "who gets further levels"},
+      {"cache.environment", k_spoils_light, "what of the sky records hold; its threshold too"},
+      {"cache.passes", k_spoils_coverage, "when building ends"},
+      {"cache.stop", k_spoils_coverage, "when building ends"},
+      {"cache.max_records", k_spoils_coverage, "room; all, where there are more records than that"},
+      {"cache.pause", k_spoils_nothing, "where building waits to be looked at"},
+      {"cache.", k_spoils_all, "where records lie and how far they serve: radii, metric, placement"},
+  };
+}
+
+}  // namespace
+
+const solvers::SolverInfo& info() {
+  static const SolverInfo all{
+      .name = "cache",
+      .label = "Cache",
+      .title = "the irradiance cache",
+      .help =
+          "Irradiance cache: light is gathered at few points and interpolated between them; smooth and "
+          "quick on large surfaces, with an error that more samples do not take away.",
+      .serves = {false, true, true, false},
+      .looked_up = true,
+      .options = option_rows(),
+      .changes = change_rows(),
+      .views =
+          {{.option = "overlay.records", .label = "Records", .shortcut = 'C', .asks_pointer = true},
+           {.option = "overlay.overlap", .label = "Overlap", .shortcut = 'V', .asks_pointer = true},
+           {.option = "overlay.normals", .label = "Normals", .shortcut = 'N', .asks_pointer = true},
+           {.option = "overlay.placement", .label = "Placement", .shortcut = 'P', .ring = {"off", "stage"}},
+           {.option = "overlay.discontinuity", .label = "Detail", .shortcut = 'G'}},
+      .commands = {{.name = "step",
+                    .label = "Next stage",
+                    .help =
+                        "Goes on building the irradiance cache to the end of the next stage and waits there "
+                        "(see cache.pause); a script goes on when it waits, or is complete.",
+                    .shortcut = 'X',
+                    .until_still = true},
+                   {.name = "run",
+                    .label = "Go on",
+                    .help = "Goes on building the irradiance cache without a pause until it is complete.",
+                    .shortcut = 'J'}},
+      .file = FileInfo{.extension = ".cache", .content = "the records of the irradiance cache"},
+      .benches = bench_rows(),
+      .bench_settings = bench_settings(),
+  };
+  return all;
+}
+
+}  // namespace lucerna::irradiance_cache
