@@ -15,33 +15,23 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Who keeps records from serving the same points twice.
-struct Way {
-  const char* name;
-  bool neighbours, thinned;
-};
-constexpr Way k_ways[] = {{"as they were placed", false, false},
-                          {"bounded by neighbours", true, false},
-                          {"thinned", false, true},
-                          {"thinned and bounded", true, true}};
-
 struct Candidate {
-  const Way& way;
+  const solvers::SolverInfo& solver;
+  const solvers::LookupWay& way;
   std::unique_ptr<session::Renderer> renderer;
   Timed timed;
 };
 
 Json figures(const Candidate& c, const Timing& t) {
   session::Renderer& r = *c.renderer;
-  const auto report = r.cache_report();
-  const irradiance_cache::Overlap& o = *report->overlap;
+  const Json statistics = r.solver_statistics().at(c.solver.name), &overlap = statistics.at("overlap");
   Json j{{"way", c.way.name},
-         {"records", report->status.records},
-         {"rays", report->status.rays},
-         {"served_by_mean", o.mean},
-         {"served_by_most", o.most},
-         {"listed", o.listed},
-         {"lookups_per_s", double(o.pixels) / t.median},
+         {"records", statistics.at("records")},
+         {"rays", statistics.at("rays")},
+         {"served_by_mean", overlap.at("mean")},
+         {"served_by_most", overlap.at("most")},
+         {"listed", overlap.at("listed")},
+         {"lookups_per_s", overlap.at("pixels").get<double>() / t.median},
          {"lookups_s", {{"median", t.median}, {"low", t.low}, {"high", t.high}}}};
   if (!r.ledger().entries().empty() && r.ledger().entries().back().truth)
     j["relative_error"] = (*r.ledger().entries().back().truth)[0];
@@ -52,27 +42,25 @@ Json figures(const Candidate& c, const Timing& t) {
 
 int bench_interpolation(const BenchInterpolationArguments& a) {
   std::vector<Candidate> candidates;
-  for (const Way& way : k_ways) {
-    auto r = std::make_unique<session::Renderer>(session::RendererOptions{
-        .device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
-    r->set_size(a.width, a.height);
-    r->load(a.scene);
-    std::vector<std::string> settings{"components.secondary=cache", "components.tertiary=cache",
-                                      "samples=" + std::to_string(a.samples)};
-    settings.insert(settings.end(), a.set.begin(), a.set.end());
-    settings.push_back(std::string("cache.neighbours=") + (way.neighbours ? "true" : "false"));
-    if (!way.thinned) settings.push_back("cache.thinning=0");
-    for (const std::string& setting : settings) {
-      const auto [key, value] = split_change(setting, "--set");
-      r->settings().set(key, value, "--set");
-    }
-    r->apply_settings();
-    if (!a.reference.empty()) r->set_reference(a.reference);
-    while (!r->done() && r->step()) {
-    }
-    session::Renderer* const renderer = r.get();
-    candidates.push_back({way, std::move(r), {{}, [renderer] { renderer->look_up_picture(); }}});
+  std::vector<session::SettingChange> own{{"samples", std::to_string(a.samples), "--samples"}};
+  for (const std::string& text : a.set) {
+    const auto [key, value] = split_change(text, "--set");
+    own.push_back({key, value, "--set"});
   }
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    for (const solvers::LookupWay& way : solver->lookup_ways) {
+      auto r = std::make_unique<session::Renderer>(session::RendererOptions{
+          .device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
+      r->set_size(a.width, a.height);
+      std::vector<session::SettingChange> changes = own;
+      for (const auto& [key, value] : way.set) changes.push_back({key, value, way.name});
+      r->load(a.scene, {}, changes);
+      if (!a.reference.empty()) r->set_reference(a.reference);
+      while (!r->done() && r->step()) {
+      }
+      session::Renderer* const renderer = r.get();
+      candidates.push_back({*solver, way, std::move(r), {{}, [renderer] { renderer->look_up_picture(); }}});
+    }
   std::vector<Timed> timed;
   for (const Candidate& c : candidates) timed.push_back(c.timed);
   const std::vector<Timing> times = take_turns(timed, a.repeats);

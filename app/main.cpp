@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "bench/matrix.h"
 #include "plan/settings.h"
+#include "solvers/registry.h"
 #include "ui/viewer.h"
 
 namespace lucerna::app {
@@ -89,10 +90,14 @@ int main_checked(int argc, char** argv) {
   render_verb->add_option("--ledger", r.ledger, "time, rays and error as they went on, as CSV");
   render_verb->add_option("--reference", r.reference,
                           "EXR of the same picture, converged: ledger and figures then tell the true error");
-  render_verb->add_option("--cache-load", r.cache_load,
-                          "begin with the records of this file, of the same scene and settings");
-  render_verb->add_option("--cache-save", r.cache_save,
-                          "write the records of the irradiance cache, once they are complete");
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    if (!solver->file) continue;
+    render_verb->add_option(
+        "--" + solver->name + "-load", r.solver_load[solver->name],
+        "begin with " + solver->file->content + " in this file, of the same scene and settings");
+    render_verb->add_option("--" + solver->name + "-save", r.solver_save[solver->name],
+                            "write " + solver->file->content + ", once they are complete");
+  }
   render_verb->add_option("--stats", r.stats, "write figures of the run as JSON");
   render_verb->add_flag("--quiet", r.quiet, "no progress line");
   add_scene_options(render_verb);
@@ -185,9 +190,10 @@ int main_checked(int argc, char** argv) {
       ->capture_default_str();
   measured(lookup_verb, bl, 1, "seed of spheres and points");
   BenchInterpolationArguments bi;
-  CLI::App* interpolation_verb = bench_verb->add_subcommand(
-      "interpolation",
-      "lookups a second in the irradiance cache of a scene, by how its records' overlap is held down");
+  CLI::App* interpolation_verb =
+      bench_verb->add_subcommand("interpolation",
+                                 "lookups a second in what solvers have prepared for a scene, by the ways of "
+                                 "looking up that they offer");
   interpolation_verb->add_option("SCENE", bi.scene, "glTF scene")->required();
   interpolation_verb->add_option("--width", bi.width, "of the picture")
       ->check(CLI::Range(16u, 4096u))

@@ -64,7 +64,7 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
     tell_tiles(j[name], film::tile_spread(tiles, of));
   };
   part("paths", error.rms[0], error.relative(0), &film::TileError::relative);
-  if (r.cache() && !r.film().records_told()) j["records"] = j["interpolation"] = nullptr;
+  if (r.looks_up() && !r.film().records_told()) j["records"] = j["interpolation"] = nullptr;
   if (r.film().records_told()) {
     part("records", error.records_rms, error.relative_records(), &film::TileError::relative_records);
     part("interpolation", error.interpolation_rms, error.relative_interpolation(),
@@ -135,7 +135,7 @@ nlohmann::ordered_json make_tiles(const schedule::AdaptiveSchedule& s) {
   return j;
 }
 
-void report_unreached(const schedule::AdaptiveSchedule& s) {
+void report_unreached(const schedule::AdaptiveSchedule& s, const std::string& advice) {
   const std::vector<uint32_t> list = unreached(s);
   if (list.empty()) return;
   const schedule::Tile& worst = s.tiles()[list.front()];
@@ -143,11 +143,10 @@ void report_unreached(const schedule::AdaptiveSchedule& s) {
   if (by_records > 0)
     log::warning(
         "{} of {} tiles stay over the error of {} because of the records that they read; the worst is off by "
-        "{:.3f}, the paths by {:.3f} of that, at x {} y {}. More samples do not help; more rays a record do "
-        "(--set cache.noise=LESS) or more records (--set cache.error=LESS)",
+        "{:.3f}, the paths by {:.3f} of that, at x {} y {}. More samples do not help; {}",
         by_records, s.tiles().size(), s.options().target_error, worst.sum(), worst.error,
         list.front() % s.tiles_across() * s.options().tile,
-        list.front() / s.tiles_across() * s.options().tile);
+        list.front() / s.tiles_across() * s.options().tile, advice);
   if (by_records == list.size()) return;
   log::warning(
       "{} of {} tiles are over the error of {}: {} with all of {} samples, {} not finished; the worst, "
@@ -222,37 +221,7 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
   j["ledger"] = make_ledger(r.ledger());
   if (!r.adaptive()) j["forecast"] = make_forecast(r.ledger());
-  if (const irradiance_cache::Cache* cache = r.cache()) {
-    const irradiance_cache::CacheStatus& s = cache->status();
-    constexpr const char* k_reasons[] = {"building", "covered", "passes", "records", "dark"};
-    j["cache"] = {{"passes", s.pass},
-                  {"records", s.records},
-                  {"loaded", s.loaded},
-                  {"rays", s.rays},
-                  {"uncovered_share", double(s.asked) / double(std::max<uint64_t>(1, s.paths))},
-                  {"bytes", s.bytes},
-                  {"stopped_by", k_reasons[size_t(s.stop)]}};
-    if (const auto overlap = r.cache_report()->overlap)
-      j["cache"]["overlap"] = {
-          {"mean", overlap->mean},
-          {"most", overlap->most},
-          {"listed", overlap->listed},
-          {"gathered_share", double(overlap->gathered) / double(std::max<uint64_t>(1, overlap->pixels))}};
-    for (const irradiance_cache::CachePass& p : s.passes) {
-      nlohmann::ordered_json steps;
-      for (size_t k = 0; k < p.ms.size(); ++k) steps[irradiance_cache::k_build_steps[k]] = p.ms[k];
-      j["cache"]["building"].push_back({{"paths", p.paths},
-                                        {"asked", p.asked},
-                                        {"asked_world", p.asked_world},
-                                        {"screen", p.screen},
-                                        {"candidates", p.candidates},
-                                        {"tried", p.tried},
-                                        {"records", p.records},
-                                        {"rays", p.rays},
-                                        {"ms", p.total_ms()},
-                                        {"ms_of", steps}});
-    }
-  }
+  for (const auto& [name, figures] : r.solver_statistics().items()) j[name] = figures;
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
   for (int c = 0; c < paths::k_component_count; ++c) {
@@ -269,7 +238,10 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
 int render(const RenderArguments& a) {
   const auto [width, height] = parse_size(a.size);
   const bool picture = !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty();
-  if (!picture && a.cache_save.empty())
+  std::map<std::string, std::string> to_save;  // solvers' work that is not yet written
+  for (const auto& [name, file] : a.solver_save)
+    if (!file.empty()) to_save[name] = file;
+  if (!picture && to_save.empty())
     throw Error(
         "-o",
         "name at least one output: OUT.exr or OUT.png, or figures alone: --stats OUT.json, or records "
@@ -283,7 +255,7 @@ int render(const RenderArguments& a) {
   }
   if (!a.stats.empty()) check_writable(a.stats);
   if (!a.ledger.empty()) check_writable(a.ledger);
-  if (!a.cache_save.empty()) check_writable(a.cache_save);
+  for (const auto& [name, file] : to_save) check_writable(file);
   if (a.seconds && !(std::isfinite(*a.seconds) && *a.seconds > 0))
     throw_error("--time", "'{}': expected a positive number of seconds", *a.seconds);
   const double limit = a.seconds.value_or(0);  // 0: none
@@ -291,32 +263,39 @@ int render(const RenderArguments& a) {
       {.device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
   r.set_size(width, height);
   // What the command line says stands above the scene's own settings; checked before the scene is loaded.
-  std::vector<std::pair<std::string, std::string>> changes;
-  for (const std::string& change : a.set) changes.push_back(split_change(change, "--set"));
+  std::vector<session::SettingChange> changes;
+  const auto change = [&](std::string key, std::string value, const char* where = "--set") {
+    changes.push_back({std::move(key), std::move(value), where});
+  };
+  for (const std::string& text : a.set) {
+    const auto [key, value] = split_change(text, "--set");
+    change(key, value);
+  }
   if (a.samples != -1) {
-    changes.emplace_back("samples", std::to_string(a.samples));
-    if (a.error) changes.emplace_back("sampling.max_samples", std::to_string(a.samples));
+    change("samples", std::to_string(a.samples), "--samples");
+    if (a.error) change("sampling.max_samples", std::to_string(a.samples));
   }
   if (a.error) {
     if (!(*a.error > 0))
       throw_error("--error", "'{}': expected a positive relative error, such as 0.02", *a.error);
-    changes.emplace_back("sampling.mode", "adaptive");
-    changes.emplace_back("sampling.target_error", fmt::format("{}", *a.error));
+    change("sampling.mode", "adaptive");
+    change("sampling.target_error", fmt::format("{}", *a.error));
   }
-  if (a.seed != -1) changes.emplace_back("seed", std::to_string(a.seed));
+  if (a.seed != -1) change("seed", std::to_string(a.seed));
+  if (a.seconds && a.samples == -1) change("samples", "1048576");
   plan::Settings probe;
-  for (const auto& [key, value] : changes)
-    probe.set(key, value, key == "samples" && a.samples != -1 ? "--samples" : "--set");
-  for (const auto& [key, value] : changes)
-    if (key == "tracer" || key == "path.batch") r.settings().set(key, value);
+  for (const session::SettingChange& c : changes) probe.set(c.key, c.value, c.where);
 
   const Interrupt interrupt;
   const bool terminal = !a.quiet && isatty(2);
   try {
-    r.load(a.scene, [&](float fraction, const std::string& what) {
-      if (terminal) std::fprintf(stderr, "\rloading %3.0f %%  %-40.40s", 100 * fraction, what.c_str());
-      return !interrupt.signal();
-    });
+    r.load(
+        a.scene,
+        [&](float fraction, const std::string& what) {
+          if (terminal) std::fprintf(stderr, "\rloading %3.0f %%  %-40.40s", 100 * fraction, what.c_str());
+          return !interrupt.signal();
+        },
+        changes);
   } catch (const Error&) {
     if (!interrupt.signal()) throw;
     std::fprintf(stderr, "%slucerna: interrupted while loading; there is nothing to write\n",
@@ -324,27 +303,31 @@ int render(const RenderArguments& a) {
     return interrupt.status();
   }
   if (terminal) std::fprintf(stderr, "\r%-60s\r", "");
-  for (const auto& [key, value] : changes) r.settings().set(key, value, "--set");
-  if (a.seconds && a.samples == -1) r.settings().set("samples", "1048576");
-  r.apply_settings();
   if (!a.camera.empty()) r.choose_camera(a.camera);
   if (!a.reference.empty()) r.set_reference(a.reference);
-  if (!a.cache_load.empty()) r.load_cache(a.cache_load);
-  if (!a.cache_save.empty() && !r.cache())
-    throw Error("--cache-save", "no component is computed by 'cache'; add --set components.secondary=cache");
+  for (const auto& [name, file] : a.solver_load)
+    if (!file.empty()) r.solver_load(name, file);
+  for (const auto& [name, file] : to_save)
+    if (!r.solver(name))
+      throw_error(fmt::format("--{}-save", name),
+                  "no component is computed by '{}'; add --set components.secondary={}", name, name);
 
   const Timer timer;
   Timer since_line;
-  bool cache_wanted = !a.cache_save.empty();
-  const auto save_cache = [&] {
-    if (cache_wanted && r.cache()->ready()) r.save_cache(a.cache_save), cache_wanted = false;
+  const auto save_ready = [&] {
+    std::erase_if(to_save, [&](const auto& entry) {
+      const auto& [name, file] = entry;
+      const bool ready = r.solver(name)->ready();
+      if (ready) r.solver_save(name, file);
+      return ready;
+    });
   };
-  save_cache();
+  save_ready();
   bool covered = false;  // every pixel has a sample
-  while ((picture || cache_wanted) && !r.done() && !interrupt.signal() &&
+  while ((picture || !to_save.empty()) && !r.done() && !interrupt.signal() &&
          (!a.seconds || timer.seconds() < limit)) {
     if (!r.step()) break;
-    save_cache();
+    save_ready();
     if (!covered && r.samples() > 0) log::info("a sample of every pixel after {:.2f} s", timer.seconds());
     covered = r.samples() > 0;
     if (terminal && since_line.seconds() > 0.2)
@@ -356,14 +339,24 @@ int render(const RenderArguments& a) {
   const bool interrupted = interrupt.signal() != 0;
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
-  if (picture && r.adaptive() && !interrupted) report_unreached(*r.adaptive());
+  if (picture && r.adaptive() && !interrupted) {
+    std::string advice;
+    for (const solvers::SolverInfo* solver : solvers::registered())
+      if (r.solver(solver->name))
+        advice += fmt::format("{}other settings of {} do: {} against its noise, {} against its bias",
+                              advice.empty() ? "" : "; ", solver->title, fmt::join(solver->against_noise, ", "),
+                              fmt::join(solver->against_bias, ", "));
+    report_unreached(*r.adaptive(), advice);
+  }
   for (const std::string& file : a.outputs) r.save(file);
   if (!a.ledger.empty()) write_file(a.ledger, r.ledger().csv());
   if (!a.stats.empty()) write_file(a.stats, make_stats(r, wall).dump(2) + "\n");
-  if (cache_wanted && !interrupted)
-    throw_error(a.cache_save, "not written: the cache was still being built when rendering ended");
-  if (cache_wanted)
-    std::fprintf(stderr, "lucerna: %s: not written; it was still being built\n", a.cache_save.c_str());
+  for (const auto& [name, file] : to_save) {
+    if (!interrupted)
+      throw_error(file, "not written: {} was still being built when rendering ended",
+                  solvers::find(name)->title);
+    std::fprintf(stderr, "lucerna: %s: not written; it was still being built\n", file.c_str());
+  }
   if (r.stats().dropped) log::warning("{} contributions were not finite and were dropped", r.stats().dropped);
   return interrupted ? interrupt.status() : 0;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The batch verbs of the command line. Each returns the process's exit status; errors are thrown.
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,10 +14,11 @@ struct RenderArguments {
   std::string scene;
   std::vector<std::string> outputs;
   std::string size = "1280x720", camera, device, stats, ledger, reference;
-  std::string cache_load, cache_save;  ///< files of irradiance caches
-  int64_t samples = -1;                ///< -1: the settings'; with `error`, the most that a pixel may get
-  std::optional<double> error;         ///< relative error for every tile: adaptive sampling
-  std::optional<double> seconds;       ///< time limit
+  std::map<std::string, std::string> solver_load,
+      solver_save;                ///< files that keep solvers' work, by their names
+  int64_t samples = -1;           ///< -1: the settings'; with `error`, the most that a pixel may get
+  std::optional<double> error;    ///< relative error for every tile: adaptive sampling
+  std::optional<double> seconds;  ///< time limit
   int64_t seed = -1;
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;

@@ -119,11 +119,9 @@ class Run {
   ReferenceInfo make_reference(const SceneEntry& scene, const std::string& key);
   Result render(const Cell& cell, const ReferenceInfo& reference, const std::string& scene_hash);
   void save_pictures(Renderer& r, const Cell& cell, const film::FilmImage& reference);
-  /// A cache that is long in building has run all its kernels after two passes: it is built for the clock.
+  /// What is long in preparing, and has run all its kernels, is prepared for the clock.
   bool warm(const Renderer& r, double seconds) const {
-    const auto* cache = r.cache();
-    const bool long_building = cache && !cache->ready() && cache->status().pass >= 2 && seconds > 20;
-    return long_building || r.samples() >= matrix_.warmup;
+    return (r.preparing() && r.prepares_warm() && seconds > 20) || r.samples() >= matrix_.warmup;
   }
   /// Steps on; throws Interrupted when the person wants to stop.
   bool step(Renderer& r) {
@@ -250,8 +248,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   result.tiles_worst = tiles.worst, result.heavy_tiles = tiles.heavy_tailed;
   if (r->adaptive()) result.tiles_over = r->adaptive()->count(schedule::TileState::capped);
   result.dropped = r->stats().dropped;
-  if (const auto* cache = r->cache())
-    result.records = cache->status().records, result.cache_rays = cache->status().rays;
+  result.records = uint32_t(r->figure("records")), result.cache_rays = uint64_t(r->figure("rays"));
   result.forecast = make_forecast(r->ledger(), r->adaptive() != nullptr);
   if (cell.repeat == 0 && cell.budget + 1 == matrix_.budgets(cell.scene, cell.setting).size())
     save_pictures(*r, cell, truth);

@@ -14,7 +14,10 @@
 
 namespace lucerna::gpu {
 
-using Defines = std::map<std::string, std::string>;  ///< #define NAME VALUE, in front of the source
+/// #define NAME VALUE, in front of the source; a name that begins with k_include_define is none: its value is
+/// the text that #include of what follows is to find, in place of a file.
+using Defines = std::map<std::string, std::string>;
+inline constexpr const char* k_include_define = "include:";
 struct SpecConstant {
   uint32_t id;
   uint32_t value;

@@ -96,8 +96,17 @@ std::string without_version(std::string text) {
 
 std::string define_lines(const Defines& defines) {
   std::string lines;
-  for (const auto& [name, value] : defines) lines += fmt::format("#define {} {}\n", name, value);
+  for (const auto& [name, value] : defines)
+    if (!name.starts_with(k_include_define)) lines += fmt::format("#define {} {}\n", name, value);
   return lines;
+}
+
+/// The files with the texts among the defines in place of some.
+ShaderSource source_for(const ShaderSource& source, const Defines& defines) {
+  std::map<std::string, std::string> texts;
+  for (const auto& [name, value] : defines)
+    if (name.starts_with(k_include_define)) texts[name.substr(std::string(k_include_define).size())] = value;
+  return source.with(std::move(texts));
 }
 
 /// Desktop GLSL takes a macro that is not defined for 0, and what hangs on it is left out in silence. GLSL ES
@@ -196,9 +205,10 @@ const fs::path& ShaderCompiler::root() const { return impl_->source.root(); }
 void ShaderCompiler::set_cache(bool enabled) { impl_->use_cache = enabled; }
 
 std::vector<uint32_t> ShaderCompiler::compile(const std::string& file, const Defines& defines) {
-  const auto main = impl_->source.open(file);
-  if (!main) throw_error(file, "there is no such shader in {}", impl_->source.root().string());
-  const auto files = impl_->source.closure(*main);
+  const ShaderSource source = source_for(impl_->source, defines);
+  const auto main = source.open(file);
+  if (!main) throw_error(file, "there is no such shader in {}", source.root().string());
+  const auto files = source.closure(*main);
   Hash hash;
   hash.add(fmt::format("glslang {}.{}.{} {}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR,
                        GLSLANG_VERSION_PATCH, glslang::GetSpirvGeneratorVersion()));
@@ -209,7 +219,7 @@ std::vector<uint32_t> ShaderCompiler::compile(const std::string& file, const Def
   std::vector<fs::path> paths;
   for (const ShaderFile& f : files) {
     hash.add(f.display), hash.add(f.text);
-    paths.push_back(f.path);
+    if (!f.path.empty()) paths.push_back(f.path);
   }
   {
     std::lock_guard lock(impl_->mutex);
@@ -224,7 +234,7 @@ std::vector<uint32_t> ShaderCompiler::compile(const std::string& file, const Def
     }
   }
   const Timer timer;
-  std::vector<uint32_t> words = compile_glsl(impl_->source, *main, defines);
+  std::vector<uint32_t> words = compile_glsl(source, *main, defines);
   {
     std::lock_guard lock(impl_->mutex);
     impl_->seconds += timer.seconds();
@@ -237,7 +247,7 @@ void ShaderCompiler::check_macros(const std::string& file, const Defines& define
   const auto main = impl_->source.open(file);
   if (!main) throw_error(file, "there is no such shader in {}", impl_->source.root().string());
   start_glslang();
-  gpu::check_macros(impl_->source, *main, defines);
+  gpu::check_macros(source_for(impl_->source, defines), *main, defines);
 }
 
 std::vector<fs::path> ShaderCompiler::dependencies(const std::string& file, const Defines& defines) {

@@ -59,6 +59,8 @@ std::optional<ShaderFile> ShaderSource::open(const std::string& file) const {
 }
 
 std::optional<ShaderFile> ShaderSource::include(const std::string& name, const std::string& includer) const {
+  if (const auto made = texts_.find(name); made != texts_.end())
+    return ShaderFile{.path = {}, .display = k_prefix + name, .text = made->second};
   if (name.rfind(k_prefix, 0) == 0) return read(path_of(name));
   if (auto found = read(path_of(includer).parent_path() / name)) return found;
   return read(root_ / name);

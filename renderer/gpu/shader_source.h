@@ -1,6 +1,7 @@
 #pragma once
 // Finding a shader's files (internal to gpu/).
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,12 @@ struct ShaderFile {
 class ShaderSource {
  public:
   explicit ShaderSource(std::filesystem::path root) : root_(std::move(root)) {}
+  /// The same with these texts in place of what #include of these names would find; they have no path.
+  ShaderSource with(std::map<std::string, std::string> texts) const {
+    ShaderSource other(root_);
+    other.texts_ = std::move(texts);
+    return other;
+  }
   const std::filesystem::path& root() const { return root_; }
   /// A kernel's file: relative to the root ("shaders/x" is x), or absolute.
   std::optional<ShaderFile> open(const std::string& file) const;
@@ -31,6 +38,7 @@ class ShaderSource {
   std::optional<ShaderFile> read(const std::filesystem::path& path) const;
   std::filesystem::path path_of(const std::string& display) const;
   std::filesystem::path root_;
+  std::map<std::string, std::string> texts_;  ///< by the name in #include
 };
 
 }  // namespace lucerna::gpu

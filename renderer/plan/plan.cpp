@@ -9,11 +9,18 @@ uint32_t Plan::enabled() const {
   return bits;
 }
 
-uint32_t Plan::looked_up() const {
+uint32_t Plan::components_of(const solvers::SolverInfo& info) const {
   uint32_t bits = 0;
   for (size_t c = 0; c < solver.size(); ++c)
-    if (solver[c] && solver[c]->looked_up) bits |= 1u << c;
+    if (solver[c] == &info) bits |= 1u << c;
   return bits;
+}
+
+std::vector<const solvers::SolverInfo*> Plan::at_work() const {
+  std::vector<const solvers::SolverInfo*> all;
+  for (const solvers::SolverInfo* info : solvers::registered())
+    if (components_of(*info) != 0) all.push_back(info);
+  return all;
 }
 
 std::optional<double> Plan::bias(size_t component) const {

@@ -1,6 +1,5 @@
 #pragma once
-// Settings and scene -> what is to be done: which solver computes which component, and what cannot be
-// reached.
+// Settings and scene -> what is to be done: which solver computes which component, and what cannot be reached.
 #include <array>
 #include <optional>
 #include <string>
@@ -17,8 +16,10 @@ struct Plan {
   std::array<const solvers::SolverInfo*, paths::k_component_count> solver{};  ///< null: off
   /// Components that are computed (bit i).
   uint32_t enabled() const;
-  /// Components that are looked up (bit i).
-  uint32_t looked_up() const;
+  /// Components that this one computes (bits).
+  uint32_t components_of(const solvers::SolverInfo& info) const;
+  /// Those that compute something, in the registry's order.
+  std::vector<const solvers::SolverInfo*> at_work() const;
   /// What a component's mean is off by, relative to its luminance: the part of the error that the two halves
   /// of the film cannot see. 0 where the solver is unbiased; nothing where it cannot tell, or where the
   /// component is off.

@@ -10,29 +10,21 @@
 #include <string>
 
 #include "base/timer.h"
-#include "bvh/embree/host_tracer.h"
 #include "film/error.h"
 #include "film/film.h"
 #include "film/io/image_file.h"
 #include "film/io/reference.h"
 #include "gpu/kernel.h"
 #include "paths/automaton.h"
+#include "plan/plan.h"
 #include "plan/settings.h"
 #include "scene/io/load.h"
 #include "scene/scene.h"
-#include "schedule/adaptive.h"
-#include "schedule/uniform.h"
-#include "session/cache_report.h"
-#include "solvers/irradiance_cache/cache.h"
-#include "solvers/irradiance_cache/file.h"
-#include "solvers/irradiance_cache/info.h"
-#include "solvers/registry.h"
+#include "session/engine.h"
+#include "session/sampling.h"
+#include "session/world.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
-
-namespace lucerna::irradiance_cache {
-class PlacementView;
-}
 
 namespace lucerna::session {
 
@@ -40,21 +32,18 @@ struct RendererOptions {
   std::string device;
   bool validation = false;
   std::filesystem::path shaders;
-  gpu::Defines defines;            ///< further #defines for the transport's kernels (tests)
-  bool pauses = false;             ///< the setting cache.pause is heeded: step() may wait for step_cache()
+  gpu::Defines defines;      ///< further #defines for the transport's kernels (tests)
+  bool interactive = false;  ///< somebody leads preparation from step to step: step() may wait for a command
   scene::LoadOptions scenes = {};  ///< what scenes may read and take
   /// Given: this device, instead of one of its own by `device` and `validation`; its pipelines are kept from
   /// renderer to renderer. Not to be used from two threads at once.
   std::shared_ptr<gpu::Device> on = {};
 };
 
-/// Of the irradiance cache.
-inline solvers::Spoils spoiled(scene::Change edit) {
-  return solvers::spoiled_by(irradiance_cache::info(), edit);
-}
-
-/// fraction 0..1 and what is going on; returning false cancels (an Error "cancelled" is thrown).
-using Progress = std::function<bool(float, const std::string&)>;
+/// A value for a setting, and where it comes from, for messages.
+struct SettingChange {
+  std::string key, value, where;
+};
 
 class Renderer {
  public:
@@ -63,16 +52,21 @@ class Renderer {
 
   gpu::Device& device() { return *device_; }
   /// Loads a file and makes it ready to render. On failure throws Error and the scene before stays.
-  void load(const std::filesystem::path& file, const Progress& progress = {});
+  /// `changes`: of settings, above the scene's own.
+  void load(const std::filesystem::path& file, const Progress& progress = {},
+            const std::vector<SettingChange>& changes = {});
   /// The same for a scene made in memory. Settings start afresh (but for tracer and path.batch), then the
-  /// scene's own.
-  void set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress = {});
-  std::shared_ptr<const scene::Scene> scene() const { return scene_; }
+  /// scene's own, then `changes`.
+  void set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress = {},
+                 const std::vector<SettingChange>& changes = {});
+  /// Null before the first.
+  std::shared_ptr<const scene::Scene> scene() const { return world_.scene; }
 
   plan::Settings& settings() { return settings_; }
   const plan::Settings& settings() const { return settings_; }
   /// Settings changed by hand: applies what differs, restarts if the image depends on it. A target error,
-  /// caps on samples and the mode of sampling let the image go on.
+  /// caps on samples and the mode of sampling let the image go on. Throws Error when what they need cannot be
+  /// made (kernels, memory): the picture before goes on.
   void apply_settings();
   /// Throws Error as film::check_size; the size before stays.
   void set_size(uint32_t width, uint32_t height);
@@ -87,20 +81,20 @@ class Renderer {
   void set_material(uint32_t index, const scene::Material& material);
   void reload_shaders();
   /// Begins the image anew, and what it looks up.
-  void restart() { restart(spoiled(scene::Change::restart)); }
+  void restart() { restart(scene::Change::restart); }
   /// Images begun so far.
   uint64_t restarts() const { return restarts_; }
   /// Passes over the picture, or over the tiles at work, that are complete.
-  uint32_t passes() const { return adaptive_ ? adaptive_->rounds() : schedule_.passes(); }
+  uint32_t passes() const { return sampling_.passes(); }
 
-  bool ready() const { return wavefront_ != nullptr; }
-  bool done() const { return adaptive_ ? adaptive_->done() : schedule_.done(); }
+  bool ready() const { return engine_ != nullptr; }
+  bool done() const { return sampling_.done(); }
   /// Samples that every pixel has.
-  uint32_t samples() const { return adaptive_ ? adaptive_->least_samples() : schedule_.complete(); }
+  uint32_t samples() const { return sampling_.samples(); }
   /// Samples a pixel at which the image is finished; adaptive: that no pixel goes beyond.
-  uint32_t max_samples() const { return adaptive_ ? adaptive_->options().max_samples : schedule_.samples(); }
+  uint32_t max_samples() const { return sampling_.max_samples(); }
   /// The state of every tile; null in uniform sampling.
-  const schedule::AdaptiveSchedule* adaptive() const { return adaptive_ ? &*adaptive_ : nullptr; }
+  const schedule::AdaptiveSchedule* adaptive() const { return sampling_.adaptive(); }
   /// Noise of the picture as it is, from all its pixels. Takes a pass over the film.
   film::ImageError image_error();
   /// The same for every tile of sampling.tile, in raster order, heavy tails marked: as the last image_error()
@@ -110,7 +104,7 @@ class Renderer {
   /// What these errors, which are of the noise, do not tell: plan::Plan::bias of the settings in force.
   std::optional<double> bias(size_t component) const;
   /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled, or
-  /// while building of the cache waits.
+  /// while preparation waits.
   bool step(const std::function<bool()>& cancel = {});
   /// A quick image of a quarter of the resolution, for display until the film is filled.
   /// Its paths, rays and time are not in stats().
@@ -123,7 +117,7 @@ class Renderer {
   void rest() { clock_.stop(); }
   /// Of seconds(), those that step() has spent tracing this image (stats::Entry::render_s).
   double render_seconds() const { return render_s_; }
-  /// Of stats(), what was prepared before the first sample: the records that paths look up.
+  /// Of stats(), what was prepared before the first sample.
   const transport::TransportStats& prepared() const { return prepared_; }
   /// Device time of a sample a pixel, by component, without what was prepared before; 0 before the first.
   std::array<double, shared::k_component_count> component_ms_a_sample() const;
@@ -136,13 +130,45 @@ class Renderer {
   /// The image with its layers and metadata (its own noise among them), as EXR files hold it.
   film::FilmImage film_image();
   void save(const std::filesystem::path& file);
-  /// Writes the records that paths look up, once they are complete. Throws Error located at `file`: there are
-  /// none, they are still being built, the file cannot be written (then what was there stays).
-  void save_cache(const std::filesystem::path& file);
-  /// Takes the records of a file in place of those there are, and begins the image anew: what this view is
-  /// missing is added first; the view that they were complete for is missing nothing. Throws Error as
-  /// irradiance_cache::read_cache and check_fits; then everything stays as it was.
-  void load_cache(const std::filesystem::path& file);
+
+  // Solvers at work, by name (solvers/registry.h). Path tracing is none: the wavefront is it.
+
+  /// Null where that one computes nothing.
+  const solvers::Solver* solver(std::string_view name) const {
+    return engine_ ? engine_->find(name) : nullptr;
+  }
+  solvers::Solver* solver(std::string_view name) { return engine_ ? engine_->find(name) : nullptr; }
+  /// Calls f with each, the picture that it can draw over, and the picture as it is told of it.
+  using Visit = std::function<void(solvers::Solver&, const solvers::Canvas&, const solvers::Picture&)>;
+  void visit_solvers(const Visit& f);
+  /// Some light is looked up.
+  bool looks_up() const { return engine_ && !engine_->solvers().empty(); }
+  /// Something is to be prepared before the next sample.
+  bool preparing() const { return engine_ && engine_->unready(); }
+  /// ... and waits for a command.
+  bool waits() const { return engine_ && engine_->waits(); }
+  /// Grows whenever what lookups read while it is being prepared has become better.
+  uint64_t published() const { return engine_ ? engine_->published() : 0; }
+  /// One of SolverInfo::commands; nothing where the solver is not at work.
+  void solver_command(const std::string& name, const std::string& command);
+  /// Writes the work of a solver (SolverInfo::file), once it is ready. Throws Error located at `file`: the
+  /// solver is not at work, not ready, or the file cannot be written (then what was there stays).
+  void solver_save(const std::string& name, const std::filesystem::path& file);
+  /// Takes the work of a file in place of what there is, and begins the image anew: what this view is missing
+  /// is added first. Throws Error as Solver::load; then everything stays as it was.
+  void solver_load(const std::string& name, const std::filesystem::path& file);
+  /// What the solvers tell a person, of the picture as the last picture() has shown it.
+  std::vector<std::shared_ptr<const solvers::Report>> reports();
+  /// A figure of the solvers (Solver::figures), added up; 0 where none has it.
+  double figure(const std::string& name) const;
+  /// What is being prepared has run all its kernels.
+  bool prepares_warm() const { return preparing() && engine_->unready()->warm(); }
+  /// Figures of the solvers by name, for --stats.
+  nlohmann::ordered_json solver_statistics();
+  /// Looks up the solvers' light at every pixel that has samples, and forgets it: to be timed.
+  void look_up_picture();
+  /// Session::inspect; pictures from now on show it.
+  void inspect(std::optional<vec2> at);
 
   /// What this image has cost and how good it was, from its start on; the last line is the present only after
   /// finish_ledger().
@@ -161,65 +187,46 @@ class Renderer {
   bool reference_applies() const;
 
   const film::Film& film() const { return *film_; }
-  const transport::TransportStats& stats() const { return wavefront_->stats(); }
-  std::string tracer_name() const { return host_ ? "host" : "compute-bvh"; }
+  const transport::TransportStats& stats() const { return engine_->wavefront().stats(); }
+  std::string tracer_name() const { return world_.host ? "host" : "compute-bvh"; }
   double load_seconds() const { return load_seconds_; }
-  double compile_seconds() const { return compile_seconds_; }
+  double compile_seconds() const { return engine_ ? engine_->compile_seconds() : 0; }
   uint32_t enabled_components() const;
-  /// Null where nothing is looked up.
-  const irradiance_cache::Cache* cache() const { return cache_.get(); }
-  /// Looks up the cache's light at every pixel that has samples, and forgets it: to be timed.
-  void look_up_picture();
-  /// Session::inspect; pictures from now on show it.
-  void inspect(std::optional<vec2> at) { looked_at_ = at; }
-  /// Whether building of the cache waits for one of these (Session::step_cache), and these; nothing where
-  /// nothing is looked up.
-  bool cache_waits() const { return cache_ && cache_->status().waits; }
-  void step_cache();
-  void run_cache();
-  /// Of the cache as the last picture() has shown it; null where there is none. How many records serve each
-  /// pixel is looked at once, when there are samples: a pass over the film.
-  std::shared_ptr<const CacheReport> cache_report();
 
  private:
+  struct Films {
+    std::unique_ptr<film::Film> picture, coarse;
+  };
+  Films make_films(uint32_t width, uint32_t height) const;
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
   void install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings, scene::Camera camera,
-               const Progress& progress, solvers::Spoils spoilt = spoiled(scene::Change::shape));
-  /// `keep`: of the same scene, so that records serve on. Returns what of them does not.
-  solvers::Spoils build_wavefront(const upload::DeviceScene& device_scene, bool keep);
-  /// The scene with other lights or another environment: uploads these anew. Kernels are made for what it
-  /// calls for now.
-  void relight(std::shared_ptr<const scene::Scene> edited, solvers::Spoils spoilt);
-  void make_film(solvers::Spoils spoilt);
-  /// `spoilt`: of the records that paths look up.
-  void restart(solvers::Spoils spoilt);
-  shared::Frame make_frame(uint32_t width, uint32_t height) const;  ///< of the picture's paths
-  shared::Frame make_frame(uint32_t width, uint32_t height, const paths::LookupRoutes& routes,
-                           uint32_t fallback, const paths::LookupRoutes& gather) const;
+               const Progress& progress, const scene::Changes& changes);
+  std::unique_ptr<Engine> make_engine(const World& world, const plan::Plan& plan,
+                                      const plan::Settings& settings);
+  /// Takes an engine into use that serves `plan`, or makes one; `changes` say what its solvers may take over.
+  /// On failure throws Error and everything stays.
+  std::unique_ptr<Engine> engine_for(const plan::Plan& plan, const scene::Changes& changes);
+  /// The scene with other lights, environment or factors of materials. Kernels are made for what it calls for
+  /// now. On failure throws Error and everything stays as it was.
+  void edit(std::shared_ptr<const scene::Scene> edited, scene::Change change, bool factors);
+  void restart(const scene::Changes& changes);
+  PictureView picture_view() const { return {automaton_, settings_, world_, camera_, width_, height_}; }
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
   void start_schedule();
   /// Another way of sampling goes on with the samples there are.
   void change_schedule();
   schedule::AdaptiveOptions adaptive_options() const;
-  irradiance_cache::Making cache_making() const;
-  void warn_of_full_cache();
-  /// All that decides which records this picture asks for, as text.
-  std::string cache_view_text() const;
   /// Where the camera is and how it sees, as text: pictures of one scene that agree in it show the same.
   std::string view_text() const;
-  void heed_pauses();  ///< tells the cache of the settings'
-  void draw_cache();   ///< over the film's picture, as the settings say
-  irradiance_cache::Shown shown();
-  irradiance_cache::Inspector& inspector();
+  solvers::Provenance provenance() const;
+  solvers::Solver& solver_for_file(const std::string& name, const std::filesystem::path& file,
+                                   const char* nothing, const char* no_scene);
+  /// Takes up the plan that the settings make, with new kernels and solvers where it takes any: then true. On
+  /// failure throws Error and everything stays.
+  bool apply_plan(const scene::Changes& changes);
+  void heed_settings();  ///< tells the solvers
   bool render_item(const std::function<bool()>& cancel);
-  irradiance_cache::CacheOptions cache_options() const;
-  irradiance_cache::CacheView cache_view() const;
-  paths::LookupRoutes wanted_routes(const upload::Effects& effects) const;  ///< by the settings
-  paths::LookupRoutes wanted_record_routes(
-      const upload::Effects& effects) const;  ///< ... of the rays of records
-  /// upload::FlatScene::sun_threshold that they ask for.
-  float wanted_sun_threshold(const plan::Settings& settings) const;
   /// Adds a line to the ledger when one is due, or at once.
   void note_progress(bool at_once);
 
@@ -228,35 +235,25 @@ class Renderer {
   std::unique_ptr<gpu::ShaderCompiler> compiler_;
   paths::Automaton automaton_;
   plan::Settings settings_;
-  std::shared_ptr<const scene::Scene> scene_;
-  upload::FlatScene flat_;
-  std::unique_ptr<upload::DeviceScene> device_scene_;
-  std::unique_ptr<bvh::HostTracer> host_;
-  gpu::Defines compiled_;                                            ///< of the scene, in the kernels in use
-  paths::LookupRoutes routes_, record_routes_;                       ///< of the kernels in use
-  std::unique_ptr<irradiance_cache::Cache> cache_;                   ///< null: nothing is looked up
-  std::unique_ptr<irradiance_cache::Inspector> inspector_;           ///< made when it is called for
-  std::unique_ptr<irradiance_cache::PlacementView> placement_view_;  ///< the same
-  uint32_t full_at_ = 0;  ///< records at which a person was last told that there is no room for more
-  std::optional<vec2> looked_at_;
-  irradiance_cache::Inspection inspection_;
-  std::pair<uint64_t, irradiance_cache::Overlap> overlap_{~0ull, {}};  ///< and the restart that it is of
-  std::unique_ptr<transport::Wavefront> wavefront_;
+  std::map<std::string, std::string> applied_;  ///< settings that the picture is made with
+  World world_;
+  std::unique_ptr<Engine> engine_;  ///< null before the first scene; goes before the world
   std::unique_ptr<film::Film> film_, coarse_;
   scene::Camera camera_;
-  schedule::UniformSchedule schedule_;
+  uint32_t width_ = 1280, height_ = 720;
+  Sampling sampling_;
+  uint64_t restarts_ = 0;
+  uint64_t errors_restart_ = ~0ull;  ///< the image of which lookups' errors are being estimated
+  std::optional<vec2> looked_at_;
+
+  // What is told of it.
   stats::Ledger ledger_;
   std::optional<film::Reference> reference_;
-  uint64_t restarts_ = 0;
-  uint64_t told_restart_ = ~0ull;  ///< the image of which the records' errors are being told
-  Stopwatch clock_;                ///< of the person who waits for this image
-  double render_s_ = 0;            ///< of that, in step()
-  double prepared_s_ = 0;          ///< of the clock, before the image's first sample
+  Stopwatch clock_;        ///< of the person who waits for this image
+  double render_s_ = 0;    ///< of that, in step()
+  double prepared_s_ = 0;  ///< of the clock, before the image's first sample
   transport::TransportStats prepared_;
-  std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< instead of schedule_
-  uint32_t width_ = 1280, height_ = 720;
-  std::map<std::string, std::string> applied_;  ///< settings that the film was made with
-  double load_seconds_ = 0, compile_seconds_ = 0;
+  double load_seconds_ = 0;
 };
 
 /// Resident memory of this process at its highest, MiB.

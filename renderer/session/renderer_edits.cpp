@@ -1,5 +1,4 @@
-// Edits of a renderer's scene: lights, environment, materials. What they spoil of the irradiance cache is
-// said by irradiance_cache::changes().
+// Edits of a renderer's scene: lights, environment, materials.
 #include <utility>
 
 #include "session/renderer.h"
@@ -7,23 +6,25 @@
 namespace lucerna::session {
 
 void Renderer::set_light(uint32_t index, const scene::Light& light) {
-  if (!scene_ || index >= scene_->lights.size()) throw_error("light", "there is no light {}", index);
-  auto edited = std::make_shared<scene::Scene>(*scene_);
+  if (!world_.scene || index >= world_.scene->lights.size())
+    throw_error("light", "there is no light {}", index);
+  auto edited = std::make_shared<scene::Scene>(*world_.scene);
   edited->lights[index] = light;
-  relight(edited, spoiled(scene::Change::lamp));
+  edit(edited, scene::Change::lamp, false);
 }
 
 void Renderer::set_environment(float scale, float rotation_degrees) {
-  if (!scene_) return;
-  auto edited = std::make_shared<scene::Scene>(*scene_);
+  if (!world_.scene) return;
+  auto edited = std::make_shared<scene::Scene>(*world_.scene);
   edited->environment.scale = scale;
   edited->environment.rotation = rotation_degrees;
-  relight(edited, spoiled(scene::Change::environment));
+  edit(edited, scene::Change::environment, false);
 }
 
 void Renderer::set_material(uint32_t index, const scene::Material& material) {
-  if (!scene_ || index >= scene_->materials.size()) throw_error("material", "there is no material {}", index);
-  auto edited = std::make_shared<scene::Scene>(*scene_);
+  if (!world_.scene || index >= world_.scene->materials.size())
+    throw_error("material", "there is no material {}", index);
+  auto edited = std::make_shared<scene::Scene>(*world_.scene);
   scene::Material& m = edited->materials[index];
   const scene::Material before = std::exchange(m, material);
   const auto same_use = [](const scene::TextureUse& a, const scene::TextureUse& b) {
@@ -41,8 +42,6 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
   if (!same)
     throw_error("material", "'{}': its textures, alpha mode, transmission and thickness cannot be changed",
                 before.name);
-  upload::flatten_factors(*edited, flat_);
-  device_scene_->update_materials(*device_, flat_);
   // Where there was a diffuse colour there is one still, and no other lobe: the same places ask.
   const auto diffuse = [](const scene::Material& x) {
     return luminance(vec3(x.base_color)) > 0 && x.metallic < 1;
@@ -51,18 +50,19 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
                       before.unlit == material.unlit &&
                       before.diffuse_transmission == material.diffuse_transmission &&
                       before.transmission == material.transmission;
-  relight(edited, spoiled(colour ? scene::Change::colour : scene::Change::material));
+  edit(edited, colour ? scene::Change::colour : scene::Change::material, true);
 }
 
-void Renderer::relight(std::shared_ptr<const scene::Scene> edited, solvers::Spoils spoilt) {
-  scene_ = std::move(edited);
-  upload::flatten_lights(*scene_, flat_);
-  device_scene_->update_lights(*device_, flat_);
-  if (device_scene_->defines() != compiled_)
-    spoilt |= build_wavefront(*device_scene_, true);
+void Renderer::edit(std::shared_ptr<const scene::Scene> edited, scene::Change change, bool factors) {
+  WorldEdit trial(*device_, world_, std::move(edited), factors);
+  const bool anew = !engine_->serves(engine_->plan(), settings_, world_);
+  if (anew) engine_ = engine_for(engine_->plan(), change);
+  trial.keep();
+  if (anew)
+    heed_settings();
   else
-    wavefront_->rebind(*device_scene_);
-  restart(spoilt);
+    engine_->wavefront().rebind(*world_.device);
+  restart(change);
 }
 
 }  // namespace lucerna::session

@@ -48,7 +48,7 @@ struct Session::Impl {
   Timer since_publish, since_numbers;
   bool paused = false, dirty = true, coarse_wanted = false, size_known = false;
   bool filled = false;
-  uint64_t levels_shown = 0;  // of the cache, by the coarse picture
+  uint64_t published_shown = 0;  // Renderer::published, by the coarse picture
   struct Save {
     std::filesystem::path file;
     bool cache;
@@ -56,19 +56,19 @@ struct Session::Impl {
   };
   std::vector<Save> saves;  // that wait for what they are to write
 
-  bool works(Renderer& r) const { return r.ready() && !paused && !r.done() && !r.cache_waits(); }
+  bool works(Renderer& r) const { return r.ready() && !paused && !r.done() && !r.waits(); }
 
   /// Whether it is to be written now, or cannot be, which writing will tell.
   bool due(Renderer& r, const Save& save) const {
-    if (save.cache) return !r.cache() || r.cache()->ready();
+    if (save.cache) return !r.solver("cache") || r.solver("cache")->ready();
     return r.samples() > 0 || !works(r);
   }
 
   static void write(Renderer& r, const Save& save) {
     try {
       if (save.cache) {
-        r.save_cache(save.file);
-        log::info("saved {}: {} records", save.file.string(), r.cache()->status().records);
+        r.solver_save("cache", save.file);
+        log::info("saved {}", save.file.string());
       } else {
         r.save(save.file);
         log::info("saved {}", save.file.string());
@@ -161,15 +161,9 @@ struct Session::Impl {
     next.paused = paused;
     next.finished = r.done();
     next.preparing.clear();
-    if (const irradiance_cache::Cache* cache = r.cache(); cache && !cache->ready()) {
-      const irradiance_cache::CacheStatus& c = cache->status();
-      next.preparing =
-          c.waits ? fmt::format("cache waits: {}", stage_words(*c.last))
-          : c.relighting > 0
-              ? fmt::format("cache: relighting {} records, {:.0f} %", c.relighting, 100 * c.relit)
-              : fmt::format("cache, pass {}: {} records", c.pass + 1, cache->records().size());
-    }
-    next.cache = r.cache_report();
+    next.reports = r.reports();
+    for (const auto& report : next.reports)
+      if (next.preparing.empty()) next.preparing = report->preparing;
     next.seconds = r.seconds();
     next.camera = r.camera();
     next.tracer = r.tracer_name();
@@ -263,9 +257,8 @@ void Session::Impl::run() {
           changed = true;
         } else if (work && renderer->step(cancelled)) {
           // While the cache is built or relit the coarse picture shows what has come of it.
-          if (const irradiance_cache::Cache* cache = renderer->cache();
-              cache && !cache->ready() && cache->status().published != levels_shown) {
-            levels_shown = cache->status().published;
+          if (renderer->preparing() && renderer->published() != published_shown) {
+            published_shown = renderer->published();
             coarse_wanted = true;
           }
           accuracy.follow(*renderer, next.scene_id);
@@ -275,8 +268,7 @@ void Session::Impl::run() {
             renderer->ledger().entries().back().paths != renderer->stats().paths)
           renderer->finish_ledger();
         if (!filled && renderer->samples() > 0) filled = changed = true;
-        if (changed || since_publish.seconds() > k_publish_seconds || renderer->done() ||
-            renderer->cache_waits()) {
+        if (changed || since_publish.seconds() > k_publish_seconds || renderer->done() || renderer->waits()) {
           const bool numbers = since_numbers.seconds() > k_numbers_seconds || renderer->done();
           if (numbers) since_numbers.restart();
           fill_snapshot(*renderer, numbers);
@@ -441,21 +433,21 @@ Saved Session::save_cache(const std::filesystem::path& file) { return impl_->pos
 
 void Session::load_cache(const std::filesystem::path& file) {
   impl_->post([s = impl_.get(), file](Renderer& r) {
-    r.load_cache(file);
+    r.solver_load("cache", file);
     s->restarted();
   });
 }
 
 void Session::step_cache() {
   impl_->post([s = impl_.get()](Renderer& r) {
-    r.step_cache();
+    r.solver_command("cache", "step");
     s->paused = false;
   });
 }
 
 void Session::run_cache() {
   impl_->post([s = impl_.get()](Renderer& r) {
-    r.run_cache();
+    r.solver_command("cache", "run");
     s->paused = false;
   });
 }

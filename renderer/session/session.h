@@ -16,7 +16,7 @@
 #include "scene/io/load.h"
 #include "scene/scene.h"
 #include "session/accuracy.h"
-#include "session/cache_report.h"
+#include "solvers/report.h"
 
 namespace lucerna::session {
 
@@ -67,8 +67,8 @@ struct Snapshot {
   uint64_t rays = 0;
   std::array<ComponentStatus, k_components> components;
   std::vector<StageStatus> stages;
-  std::shared_ptr<const Accuracy> accuracy;  ///< null before the first picture
-  std::shared_ptr<const CacheReport> cache;  ///< null where nothing is looked up in one
+  std::shared_ptr<const Accuracy> accuracy;                     ///< null before the first picture
+  std::vector<std::shared_ptr<const solvers::Report>> reports;  ///< one a solver that is looked up
   double device_mb = 0, host_mb = 0;
   std::string device, tracer;
   std::string activity;  ///< "" or what is going on: "loading kitchen.gltf: textures 40 %"

@@ -2,15 +2,17 @@
 
 #include <stdexcept>
 
-#include "solvers/irradiance_cache/info.h"
+#include "solvers/irradiance_cache/solver.h"
 #include "solvers/path_tracing/info.h"
 
 namespace lucerna::solvers {
 namespace {
 
+const SolverType k_path_tracing{.info = path_tracing::info()};
+
 struct Registry {
-  std::vector<const SolverInfo*> list{&path_tracing::info(), &irradiance_cache::info()};
-  bool read = false;
+  std::vector<const SolverType*> types{&k_path_tracing, &irradiance_cache::type()};
+  std::vector<const SolverInfo*> infos;  ///< empty until somebody has asked for them
 };
 
 Registry& registry() {
@@ -21,13 +23,22 @@ Registry& registry() {
 }  // namespace
 
 const std::vector<const SolverInfo*>& registered() {
-  registry().read = true;
-  return registry().list;
+  Registry& r = registry();
+  if (r.infos.empty())
+    for (const SolverType* type : r.types) r.infos.push_back(&type->info);
+  return r.infos;
 }
 
-void add(const SolverInfo& solver) {
-  if (registry().read) throw std::logic_error("solvers::add: the list of solvers is in use already");
-  registry().list.push_back(&solver);
+void add(const SolverType& solver) {
+  if (!registry().infos.empty())
+    throw std::logic_error("solvers::add: the list of solvers is in use already");
+  registry().types.push_back(&solver);
+}
+
+const SolverType& type_of(const SolverInfo& solver) {
+  for (const SolverType* type : registry().types)
+    if (&type->info == &solver) return *type;
+  throw std::logic_error("solvers::type_of: '" + solver.name + "' is not registered");
 }
 
 const SolverInfo* find(std::string_view name) {

@@ -8,11 +8,15 @@
 
 namespace lucerna::solvers {
 
+struct SolverType;  // solver.h
+
 /// The default of every component first.
 const std::vector<const SolverInfo*>& registered();
 /// One more, which must live as long as the program. Only before anything has asked for the list (throws
 /// std::logic_error): programs that bring solvers of their own call it first.
-void add(const SolverInfo& solver);
+void add(const SolverType& solver);
+/// How one is made that is registered.
+const SolverType& type_of(const SolverInfo& solver);
 /// Null when there is none of that name.
 const SolverInfo* find(std::string_view name);
 /// Whose option that is; null: nobody's alone.

@@ -63,7 +63,7 @@ class Wavefront {
 
   /// The frame's constants; `enabled`: components on (bit i).
   void set_frame(const shared::Frame& frame, uint32_t enabled);
-  /// After DeviceScene::update_lights.
+  /// After DeviceScene::exchange.
   void rebind(const upload::DeviceScene& scene);
   /// Calls `bind_lookup` again: after its buffers have changed.
   void rebind_lookup();

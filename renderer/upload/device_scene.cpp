@@ -1,5 +1,7 @@
 #include "upload/device_scene.h"
 
+#include <utility>
+
 namespace lucerna::upload {
 namespace {
 
@@ -13,15 +15,29 @@ gpu::Buffer upload(gpu::Device& device, const char* name, const std::vector<T>& 
 
 }  // namespace
 
+LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat)
+    : lights(upload(device, "lights", flat.lights)),
+      alias(upload(device, "light table", flat.light_alias)),
+      pmf(upload(device, "light probabilities", flat.primitive_light_pmf, false)),
+      environment_texels(upload(device, "environment", flat.environment_texels)),
+      environment_alias(upload(device, "environment table", flat.environment_alias)),
+      sun_cells(upload(device, "sun table", flat.sun_cells)),
+      sun_density(upload(device, "sun densities", flat.sun_density)) {}
+
+MaterialBuffers::MaterialBuffers(gpu::Device& device, const FlatMaterials& flat)
+    : materials(upload(device, "scene materials", flat.materials)),
+      tables(upload(device, "albedo tables", flat.bsdf_tables)) {}
+
 DeviceScene::DeviceScene(gpu::Device& device, const FlatScene& flat, const bvh::BvhData& tree)
     : triangles_(upload(device, "scene triangles", flat.triangles)),
       vertices_(upload(device, "scene vertices", flat.vertices)),
       tangents_(upload(device, "scene tangents", flat.tangents)),
       extra_(upload(device, "scene vertex colours", flat.extra)),
-      materials_(upload(device, "scene materials", flat.materials)),
-      tables_(upload(device, "albedo tables", flat.bsdf_tables)),
       nodes_(upload(device, "BVH nodes", tree.nodes)),
-      bvh_triangles_(upload(device, "BVH triangles", tree.triangles)) {
+      bvh_triangles_(upload(device, "BVH triangles", tree.triangles)),
+      materials_(device, flat),
+      lights_(device, flat),
+      effects_(flat.effects) {
   for (size_t b = 0; b < flat.buckets.size(); ++b) {
     const Bucket& bucket = flat.buckets[b];
     gpu::TextureArray array(device,
@@ -36,24 +52,16 @@ DeviceScene::DeviceScene(gpu::Device& device, const FlatScene& flat, const bvh::
       array.write_layer(uint32_t(layer), bucket.layers[layer].data());
     buckets_.push_back(std::move(array));
   }
-  update_lights(device, flat);
 }
 
-void DeviceScene::update_lights(gpu::Device& device, const FlatScene& flat) {
-  lights_ = upload(device, "lights", flat.lights);
-  light_alias_ = upload(device, "light table", flat.light_alias);
-  light_pmf_ = upload(device, "light probabilities", flat.primitive_light_pmf, false);
-  environment_texels_ = upload(device, "environment", flat.environment_texels);
-  environment_alias_ = upload(device, "environment table", flat.environment_alias);
-  sun_cells_ = upload(device, "sun table", flat.sun_cells);
-  sun_density_ = upload(device, "sun densities", flat.sun_density);
-  effects_ = flat.effects;
+LightBuffers DeviceScene::exchange(LightBuffers lights, const Effects& effects) noexcept {
+  effects_ = effects;
+  return std::exchange(lights_, std::move(lights));
 }
 
-void DeviceScene::update_materials(gpu::Device& device, const FlatScene& flat) {
-  materials_ = upload(device, "scene materials", flat.materials);
-  tables_ = upload(device, "albedo tables", flat.bsdf_tables);
-  effects_ = flat.effects;
+MaterialBuffers DeviceScene::exchange(MaterialBuffers materials, const Effects& effects) noexcept {
+  effects_ = effects;
+  return std::exchange(materials_, std::move(materials));
 }
 
 void DeviceScene::bind(gpu::Resources& r) const {
@@ -61,15 +69,15 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("scene_vertices", vertices_);
   r.set("scene_tangents", tangents_);
   r.set("scene_extra", extra_);
-  r.set("scene_materials", materials_);
-  r.set("scene_lights", lights_);
-  r.set("light_alias", light_alias_);
-  r.set("PrimitiveLightPmf", light_pmf_);
-  r.set("environment_texels", environment_texels_);
-  r.set("environment_alias", environment_alias_);
-  r.set("sun_cells", sun_cells_);
-  r.set("sun_density", sun_density_);
-  r.set("bsdf_table", tables_);
+  r.set("scene_materials", materials_.materials);
+  r.set("scene_lights", lights_.lights);
+  r.set("light_alias", lights_.alias);
+  r.set("PrimitiveLightPmf", lights_.pmf);
+  r.set("environment_texels", lights_.environment_texels);
+  r.set("environment_alias", lights_.environment_alias);
+  r.set("sun_cells", lights_.sun_cells);
+  r.set("sun_density", lights_.sun_density);
+  r.set("bsdf_table", materials_.tables);
   r.set("bvh_nodes", nodes_);
   r.set("bvh_triangles", bvh_triangles_);
   for (size_t b = 0; b < buckets_.size(); ++b) r.set(fmt::format("texture_bucket_{}", b), buckets_[b]);

@@ -8,13 +8,29 @@
 
 namespace lucerna::upload {
 
+/// Lights and environment on the device.
+struct LightBuffers {
+  LightBuffers() = default;
+  LightBuffers(gpu::Device& device, const FlatLights& flat);
+  explicit operator bool() const { return bool(lights); }
+  gpu::Buffer lights, alias, pmf, environment_texels, environment_alias, sun_cells, sun_density;
+};
+
+/// Materials on the device, with the albedo tables of their glasses.
+struct MaterialBuffers {
+  MaterialBuffers() = default;
+  MaterialBuffers(gpu::Device& device, const FlatMaterials& flat);
+  explicit operator bool() const { return bool(materials); }
+  gpu::Buffer materials, tables;
+};
+
 class DeviceScene {
  public:
   DeviceScene(gpu::Device& device, const FlatScene& flat, const bvh::BvhData& tree);
-  /// Uploads lights and environment again (sizes may differ). Binds anew: call bind() afterwards.
-  void update_lights(gpu::Device& device, const FlatScene& flat);
-  /// Uploads materials again, as update_lights().
-  void update_materials(gpu::Device& device, const FlatScene& flat);
+  /// Takes others (sizes may differ) in place of those it has, which it returns. What was bound before is
+  /// stale: call bind() afterwards.
+  LightBuffers exchange(LightBuffers lights, const Effects& effects) noexcept;
+  MaterialBuffers exchange(MaterialBuffers materials, const Effects& effects) noexcept;
   /// Names: scene_*, texture_bucket_N, light_alias, PrimitiveLightPmf, environment_*, sun_*, bsdf_table,
   /// bvh_nodes, bvh_triangles.
   void bind(gpu::Resources& resources) const;
@@ -23,8 +39,9 @@ class DeviceScene {
   const Effects& effects() const { return effects_; }
 
  private:
-  gpu::Buffer triangles_, vertices_, tangents_, extra_, materials_, lights_, light_alias_, light_pmf_,
-      environment_texels_, environment_alias_, sun_cells_, sun_density_, tables_, nodes_, bvh_triangles_;
+  gpu::Buffer triangles_, vertices_, tangents_, extra_, nodes_, bvh_triangles_;
+  MaterialBuffers materials_;
+  LightBuffers lights_;
   std::vector<gpu::TextureArray> buckets_;
   Effects effects_;
 };

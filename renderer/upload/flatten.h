@@ -31,27 +31,34 @@ struct Bucket {
   std::vector<std::vector<uint8_t>> layers;  ///< rgba8, or rgba32f bytes
 };
 
-struct FlatScene {
+/// What flatten_lights() makes.
+struct FlatLights {
+  std::vector<vec4> lights, light_alias;
+  std::vector<float> primitive_light_pmf;  ///< pmf / area
+  std::vector<vec4> environment_texels, environment_alias;
+  std::vector<vec4> sun_cells, sun_density;
+  uint32_t environment_width = 0, environment_height = 0;
+  vec3 environment_radiance{0};
+  float environment_rotation = 0, environment_light_pmf = 0;
+};
+
+/// What flatten_factors() makes, with the uses of textures.
+struct FlatMaterials {
+  std::vector<vec4> materials;
+  std::vector<vec4> bsdf_tables;
+  std::vector<float> glass_iors;  ///< that they are for
+};
+
+struct FlatScene : FlatLights, FlatMaterials {
   // Geometry (one entry a primitive, world space).
   std::vector<vec3> positions;  ///< 3 a primitive; input of the BVH
   std::vector<uint8_t> non_opaque;
   std::vector<uvec4> triangles;  ///< scene_triangles
   std::vector<vec4> vertices, tangents, extra;
-  std::vector<vec4> materials;
   std::vector<Bucket> buckets;
-  // Lights.
-  std::vector<vec4> lights, light_alias;
-  std::vector<float> primitive_light_pmf;  ///< pmf / area
-  std::vector<vec4> environment_texels, environment_alias;
-  std::vector<vec4> bsdf_tables;
-  std::vector<float> glass_iors;  ///< that they are for
   /// Above 0: the environment is two emitters (shared/scene.h), its sun the texels of more than so many times
   /// its mean luminance.
   float sun_threshold = 0;
-  std::vector<vec4> sun_cells, sun_density;
-  uint32_t environment_width = 0, environment_height = 0;
-  vec3 environment_radiance{0};
-  float environment_rotation = 0, environment_light_pmf = 0;
   float scene_radius = 1;
   Effects effects;
 };

@@ -79,8 +79,8 @@ vec3 light_radiance(LightSample l) {
 #endif
 
 #if LUCERNA_LIGHTS
-// One light sample for all lobes, queued as a shadow ray.
-void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, vec3 wo, mat3 to_world, Sampler random, bool sky_known) {
+// One light sample for all lobes, queued as a shadow ray if it is wanted.
+void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, vec3 wo, mat3 to_world, Sampler random, bool sky_known, bool wanted) {
   uint state = path_automaton(path), depth = path_depth(path);
   uint component_d = automaton_component(automaton_after(state, k_event_diffuse));
   uint component_g = automaton_component(automaton_after(state, k_event_glossy));
@@ -114,10 +114,7 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   if (l.sky && sky_known) shadow.diffuse = vec3(0.0);
 #endif
   bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
-#if LUCERNA_CACHE
-  if (cache.probing != k_probe_none) sides_agree = false;
-#endif
-  bool worth = sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
+  bool worth = wanted && sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
   if (worth && !finite) atomicAdd(counters[k_counter_dropped], 1u);
   if (worth && finite) {
     Ray shadow_ray;

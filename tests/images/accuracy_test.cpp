@@ -42,7 +42,7 @@ TEST_CASE("while a cache is built nothing is told of accuracy, however often its
   session::AccuracyKeeper keeper;
   const double pixels = 24 * 24;
   int shown = 0;
-  while (!bed.r.cache()->ready()) {
+  while (!test::cache(bed.r)->ready()) {
     REQUIRE(bed.r.step());
     // The coarse picture, as a person sees it while records are made: each is a sixteenth of a sample.
     for (int i = 0; i < 8; ++i, ++shown) bed.r.render_coarse();
@@ -78,7 +78,7 @@ TEST_CASE("while a cache is built nothing is told of accuracy, however often its
 
 TEST_CASE("a sample's time leaves out what was prepared before the first") {
   Bed bed;
-  while (!bed.r.cache()->ready()) bed.r.step();
+  while (!test::cache(bed.r)->ready()) bed.r.step();
   const double building = total_ms(bed.r.stats());
   REQUIRE(building > 0);
   CHECK(bed.r.component_ms_a_sample() == std::array<double, shared::k_component_count>{});

@@ -48,7 +48,7 @@ TEST_CASE("records reach no farther than a share of what is nearest to them or t
                {"cache.passes", "2"},
                {"samples", "1"}});
     shown.finish();
-    return shown.r.cache()->records().read();
+    return test::cache(shown.r)->records().read();
   };
   for (const char* metric : {"split-sphere", "hessian"}) {
     size_t count = 0;
@@ -89,7 +89,7 @@ TEST_CASE("with cache.neighbours no record reaches beyond those all around it, o
                {"cache.passes", "4"},
                {"samples", "1"}});
     shown.finish();
-    const std::vector<irradiance_cache::Record> all = shown.r.cache()->records().read();
+    const std::vector<irradiance_cache::Record> all = test::cache(shown.r)->records().read();
     const auto& passes = shown.status().passes;
     REQUIRE(passes.size() == 4);
     const size_t of_first = passes[0].records;

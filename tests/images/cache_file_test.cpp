@@ -25,7 +25,7 @@ struct Bed : test::CacheRenderer {
   }
   std::string refusal(const fs::path& file) {
     try {
-      r.load_cache(file);
+      r.solver_load("cache", file);
     } catch (const Error& e) {
       CHECK(e.where() == file.string());
       return e.what();
@@ -41,15 +41,15 @@ TEST_CASE("a loaded cache shows the picture of the one that was saved, to the bi
   const fs::path file = folder.path / "a.cache", again = folder.path / "b.cache";
   Bed first;
   const film::Image picture = first.finish();
-  first.r.save_cache(file);
+  first.r.solver_save("cache", file);
   const irradiance_cache::RawRecords saved = first.records();
   const irradiance_cache::CacheStatus status = first.status();
   REQUIRE(saved.size() > 100);
   CHECK(status.loaded == 0);
 
   Bed second;
-  second.r.load_cache(file);
-  CHECK(second.r.cache()->ready());
+  second.r.solver_load("cache", file);
+  CHECK(test::cache(second.r)->ready());
   const film::Image shown = second.finish();
   CHECK(identical(picture, shown));
   CHECK(begins_with(second.records(), saved));
@@ -59,16 +59,16 @@ TEST_CASE("a loaded cache shows the picture of the one that was saved, to the bi
   CHECK(second.status().stop == status.stop);
   CHECK(second.r.ledger().entries().back().prepared_rays == 0);
   // Saved again it is the same file.
-  second.r.save_cache(again);
+  second.r.solver_save("cache", again);
   CHECK(read_file(again) == read_file(file));
 
   // Over another cache, in the middle of its building: as if that had not been.
   second.set({{"seed", "5"}});
   second.r.step();
-  CHECK_FALSE(second.r.cache()->ready());
+  CHECK_FALSE(test::cache(second.r)->ready());
   second.set({{"seed", "0"}});
   second.r.step();
-  second.r.load_cache(file);
+  second.r.solver_load("cache", file);
   CHECK(identical(picture, second.finish()));
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
   const fs::path file = folder.path / "a.cache";
   Bed first;
   first.finish();
-  first.r.save_cache(file);
+  first.r.solver_save("cache", file);
   const irradiance_cache::RawRecords saved = first.records();
   const uint64_t rays = first.status().rays;
   first.r.choose_camera("above");
@@ -85,8 +85,8 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
 
   Bed second;
   second.r.choose_camera("above");
-  second.r.load_cache(file);
-  CHECK_FALSE(second.r.cache()->ready());
+  second.r.solver_load("cache", file);
+  CHECK_FALSE(test::cache(second.r)->ready());
   // The same as if the camera had been moved where it was made.
   CHECK(identical(moved, second.finish()));
   CHECK(test::keeps_places(test::lit(second.records()), test::lit(saved)));
@@ -101,17 +101,17 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
   for (const Settings& change : {Settings{{"cache.stop", "0"}}, Settings{{"seed", "3"}}}) {
     INFO(change.begin()->first);
     third.set(change);
-    third.r.load_cache(file);
-    CHECK_FALSE(third.r.cache()->ready());
+    third.r.solver_load("cache", file);
+    CHECK_FALSE(test::cache(third.r)->ready());
     third.finish();
     CHECK(begins_with(third.records(), saved));
   }
   // Parts that nothing looks up are left behind.
   third.set({{"components.tertiary", "off"}});
-  third.r.load_cache(file);
-  CHECK_FALSE(third.r.cache()->ready());
+  third.r.solver_load("cache", file);
+  CHECK_FALSE(test::cache(third.r)->ready());
   bool secondary = true, tertiary = false;
-  for (const auto& record : third.r.cache()->records().read()) {
+  for (const auto& record : test::cache(third.r)->records().read()) {
     secondary &= record.crowded || record.parts[shared::k_part_secondary].value != vec3(0);
     tertiary |= record.parts[shared::k_part_tertiary].value != vec3(0);
   }
@@ -123,27 +123,27 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
   // Having looked at the view that it was made for, it has found (nearly) nothing.
   Bed looked;
   looked.set({{"cache.stop", "0.0021"}});
-  looked.r.load_cache(file);
-  CHECK_FALSE(looked.r.cache()->ready());
+  looked.r.solver_load("cache", file);
+  CHECK_FALSE(test::cache(looked.r)->ready());
   looked.finish();
   CHECK(looked.records().size() <= saved.size() + saved.size() / 33);
   // How it is sampled has not changed.
   Bed fourth;
   fourth.set({{"sampling.mode", "adaptive"}, {"samples", "9"}, {"film.ev", "2"}});
-  fourth.r.load_cache(file);
-  CHECK(fourth.r.cache()->ready());
+  fourth.r.solver_load("cache", file);
+  CHECK(test::cache(fourth.r)->ready());
 
   // One that ended for want of room goes on where there is more.
   Bed narrow;
   narrow.set({{"cache.max_records", "100"}});
   narrow.finish();
-  narrow.r.save_cache(file);
+  narrow.r.solver_save("cache", file);
   REQUIRE(narrow.status().stop == irradiance_cache::StopReason::records);
-  narrow.r.load_cache(file);
-  CHECK(narrow.r.cache()->ready());
+  narrow.r.solver_load("cache", file);
+  CHECK(test::cache(narrow.r)->ready());
   Bed wide;
-  wide.r.load_cache(file);
-  CHECK_FALSE(wide.r.cache()->ready());
+  wide.r.solver_load("cache", file);
+  CHECK_FALSE(test::cache(wide.r)->ready());
   wide.finish();
   CHECK(wide.records().size() > 100);
 }
@@ -153,7 +153,7 @@ TEST_CASE("what does not fit is refused, and neither picture nor records are los
   const fs::path file = folder.path / "a.cache", broken = folder.path / "broken.cache";
   Bed first;
   first.finish();
-  first.r.save_cache(file);
+  first.r.solver_save("cache", file);
   const std::string bytes = read_file(file);
 
   Bed bed;
@@ -174,7 +174,7 @@ TEST_CASE("what does not fit is refused, and neither picture nor records are los
   CHECK_THAT(bed.refusal(broken), Contains("damaged: its checksum is"));
   CHECK(bed.r.restarts() == restarts);
   CHECK(bed.r.done());
-  CHECK(bed.r.cache()->ready());
+  CHECK(test::cache(bed.r)->ready());
   CHECK(identical(picture, bed.r.image()));
   CHECK(begins_with(bed.records(), mine));
   CHECK(bed.records().size() == mine.size());
@@ -183,7 +183,8 @@ TEST_CASE("what does not fit is refused, and neither picture nor records are los
   CHECK(identical(picture, bed.finish()));
 
   // Neither is the file there when a new one cannot be written.
-  CHECK_THROWS_WITH(bed.r.save_cache(folder.path / "no" / "a.cache"), Contains("cannot be written"));
+  CHECK_THROWS_WITH(bed.r.solver_save("cache", folder.path / "no" / "a.cache"),
+                    Contains("cannot be written"));
 
   // Tertiary light that was gathered otherwise: its records were read in the place of paths, or the reverse.
   Bed paths(Settings{{"components.secondary", "cache"}});
@@ -193,7 +194,7 @@ TEST_CASE("what does not fit is refused, and neither picture nor records are los
             "components.tertiary cache");
   paths.finish();
   const fs::path other = folder.path / "paths.cache";
-  paths.r.save_cache(other);
+  paths.r.solver_save("cache", other);
   CHECK(paths.refusal(other).empty());
   CHECK_THAT(bed.refusal(other), Contains("was made with") || Contains("were made with"));
   CHECK_THAT(first.refusal(other), Contains("gathered by 'path', here it is by 'cache'"));
@@ -220,14 +221,15 @@ TEST_CASE("a cache is of its scene as it is lit; without one, or before it is bu
   const test::Folder folder;
   const fs::path file = folder.path / "a.cache";
   session::Renderer empty(test::renderer_options(false));
-  CHECK_THROWS_WITH(empty.save_cache(file), Contains("load a scene first"));
-  CHECK_THROWS_WITH(empty.load_cache(file), Contains("load the scene first"));
+  CHECK_THROWS_WITH(empty.solver_save("cache", file), Contains("load a scene first"));
+  CHECK_THROWS_WITH(empty.solver_load("cache", file), Contains("load the scene first"));
 
   Bed bed;
-  CHECK_THROWS_WITH(bed.r.save_cache(file), Contains("still being built (pass 1, 0 records so far)"));
+  CHECK_THROWS_WITH(bed.r.solver_save("cache", file),
+                    Contains("still being built (pass 1, 0 records so far)"));
   CHECK_FALSE(fs::exists(file));
   bed.finish();
-  bed.r.save_cache(file);
+  bed.r.solver_save("cache", file);
   CHECK(bed.refusal(file).empty());
 
   // Edits of the light, and taking them back.
@@ -241,7 +243,7 @@ TEST_CASE("a cache is of its scene as it is lit; without one, or before it is bu
   bed.r.set_environment(1, 0);
   bed.r.set_light(0, before);
   CHECK(bed.refusal(file).empty());
-  CHECK(bed.r.cache()->ready());
+  CHECK(test::cache(bed.r)->ready());
 
   scene::Scene other = test::block_room();
   other.name = "attic";
@@ -254,7 +256,7 @@ TEST_CASE("a cache is of its scene as it is lit; without one, or before it is bu
 
   Bed plain(Settings{});
   CHECK_THAT(plain.refusal(file), Contains("no component is computed by 'cache'"));
-  CHECK_THROWS_WITH(plain.r.save_cache(file), Contains("no component is computed by 'cache'"));
+  CHECK_THROWS_WITH(plain.r.solver_save("cache", file), Contains("no component is computed by 'cache'"));
 }
 
 TEST_CASE("the cache of a scene without diffuse surfaces is saved and loaded like any other") {
@@ -264,10 +266,10 @@ TEST_CASE("the cache of a scene without diffuse surfaces is saved and loaded lik
   mirrors.materials[0].metallic = 1, mirrors.materials[0].roughness = 0.1f;
   Bed first(k_cached, mirrors);
   const film::Image picture = first.finish();
-  REQUIRE(first.r.cache()->records().size() == 0);
-  first.r.save_cache(file);
+  REQUIRE(test::cache(first.r)->records().size() == 0);
+  first.r.solver_save("cache", file);
   Bed second(k_cached, mirrors);
-  second.r.load_cache(file);
-  CHECK(second.r.cache()->ready());
+  second.r.solver_load("cache", file);
+  CHECK(test::cache(second.r)->ready());
   CHECK(identical(picture, second.finish()));
 }

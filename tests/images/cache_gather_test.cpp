@@ -134,7 +134,7 @@ TEST_CASE("records hold light where the camera has come near enough") {
   // Those with light stay as they were.
   CHECK(test::keeps_places(test::lit(now), test::lit(far)));
   // Where something is no nearer than the radii are now, nothing crowds that did.
-  const irradiance_cache::Cache& cache = *shown.r.cache();
+  const irradiance_cache::Cache& cache = *test::cache(shown.r);
   int roomy = 0, of_before = 0;
   for (const irradiance_cache::Record& r : cache.records().read()) {
     if (!r.crowded) continue;

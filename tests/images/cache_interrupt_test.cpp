@@ -103,11 +103,11 @@ struct Bed {
   /// Whoever watches sees a picture and is told of records that are there.
   void watch() {
     REQUIRE(r.picture(false).size() == size_t{4} * r.film().width() * r.film().height());
-    const auto report = r.cache_report();
+    const auto report = test::cache_report(r);
     REQUIRE(report);
     const irradiance_cache::CacheStatus& s = report->status;
-    CHECK(s.records <= r.cache()->records().size());
-    for (const irradiance_cache::Record& record : r.cache()->records().read())
+    CHECK(s.records <= test::cache(r)->records().size());
+    for (const irradiance_cache::Record& record : test::cache(r)->records().read())
       REQUIRE(std::isfinite(record.radius));
   }
 
@@ -115,7 +115,7 @@ struct Bed {
   void finish() {
     test::set(r, {{"cache.pause", "off"}});
     const film::Image image = test::finish(r);
-    REQUIRE(r.cache()->ready());
+    REQUIRE(test::cache(r)->ready());
     for (const auto& component : image.components)
       for (const vec3& v : component) REQUIRE((v.x >= 0 && v.x < 1e4f && v.y >= 0 && v.z >= 0));
   }
@@ -123,7 +123,7 @@ struct Bed {
 
 /// Where building is, so that a failure says where it was interrupted.
 std::string where(const session::Renderer& r) {
-  const irradiance_cache::CacheStatus& s = r.cache()->status();
+  const irradiance_cache::CacheStatus& s = test::cache(r)->status();
   return s.last ? irradiance_cache::stage_words(*s.last) : "the beginning";
 }
 
@@ -152,16 +152,16 @@ TEST_CASE("whatever is changed at whatever stage of the building, it goes on fro
       bed.undo();
       test::set(r, {{"cache.pause", "stage"}, {"cache.noise", "0.03"}});
       r.restart();
-      for (int stage = 0; stage < stages && !r.cache()->ready(); ++stage) {
+      for (int stage = 0; stage < stages && !test::cache(r)->ready(); ++stage) {
         while (r.step()) {
         }
-        if (stage + 1 < stages) r.step_cache();
+        if (stage + 1 < stages) r.solver_command("cache", "step");
       }
       INFO("a change of " << Bed::name(kind) << " after " << where(r));
-      const bool complete = r.cache()->ready();
+      const bool complete = test::cache(r)->ready();
       bed.edit(kind, 5);
       bed.watch();
-      r.step_cache();
+      r.solver_command("cache", "step");
       for (int piece = 0; piece < 3; ++piece) r.step();
       ++interrupted;
       if (complete) break;

@@ -65,7 +65,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
   const auto file = folder.path / "base.cache";
   Bed bed;
   bed.finish();
-  bed.r.save_cache(file);
+  bed.r.solver_save("cache", file);
   const RawRecords base = bed.records();
   const uint64_t base_rays = bed.status().rays;
   REQUIRE(base.size() > 100);
@@ -128,8 +128,8 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
     const auto* head = std::get_if<std::string_view>(&row.what);
     INFO((edit ? "edit " + std::to_string(int(*edit)) : "setting " + std::string(*head)) << ": " << row.why);
     if (edit && *edit == Change::shape) continue;  // see below
-    bed.r.load_cache(file);
-    REQUIRE(bed.r.cache()->ready());
+    bed.r.solver_load("cache", file);
+    REQUIRE(test::cache(bed.r)->ready());
     REQUIRE(begins_with(bed.records(), base));
 
     const auto take_back = [&] {
@@ -149,9 +149,9 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
       edits.at (*edit)();
     }
     const solvers::Spoils& s = row.spoils;
-    CHECK(bed.r.cache()->ready() == !s.any());
+    CHECK(test::cache(bed.r)->ready() == !s.any());
     if (s.places) {
-      CHECK(bed.r.cache()->records().size() == 0);
+      CHECK(test::cache(bed.r)->records().size() == 0);
       CHECK(bed.status().rays == 0);
       take_back();
       continue;
@@ -159,7 +159,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
     CHECK(bed.status().relighting == (s.light ? base.size() : 0));
     CHECK(bed.status().records == (s.light ? 0 : base.size()));
     bed.finish();
-    CHECK(bed.r.cache()->ready());
+    CHECK(test::cache(bed.r)->ready());
     const RawRecords now = bed.records();
     INFO(now.size() << " records of " << base.size() << ", rays " << bed.status().rays << " of "
                     << base_rays);
@@ -175,7 +175,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
   // Another scene, be it the same again.
   bed.r.set_scene(std::make_shared<scene::Scene>(room()));
   bed.set(k_base);
-  CHECK(bed.r.cache()->records().size() == 0);
+  CHECK(test::cache(bed.r)->records().size() == 0);
 }
 
 TEST_CASE("every edit and every setting has a row, and those of the cache that are not named spoil all") {
@@ -222,7 +222,7 @@ TEST_CASE("a cache that is relit is the one that would have been built in that l
   const auto compare = [&](const char* what, const std::function<void(Bed&)>& change) {
     INFO(what);
     change(relit);
-    REQUIRE_FALSE(relit.r.cache()->ready());
+    REQUIRE_FALSE(test::cache(relit.r)->ready());
     const film::Image picture = relit.finish();
     Bed fresh;
     change(fresh);
@@ -265,7 +265,7 @@ TEST_CASE("a material that shines, mirrors, or is diffuse again brings its light
   CHECK(same_places(bed.records(), base));
   // The block's light is in the records of the walls.
   double red = 0, green = 0;
-  for (const auto& r : bed.r.cache()->records().read())
+  for (const auto& r : test::cache(bed.r)->records().read())
     red += double(r.parts[1].value.x), green += double(r.parts[1].value.y);
   CHECK(red > 2 * green);
   // Begun as a mirror, it has no records until it is painted.
@@ -282,7 +282,7 @@ TEST_CASE("a material that shines, mirrors, or is diffuse again brings its light
   glass.name = "block", glass.transmission = 1;
   CHECK_THROWS_WITH(second.r.set_material(1, glass), Catch::Contains("cannot be changed"));
   CHECK_THROWS_WITH(second.r.set_material(7, glass), Catch::Contains("there is no material 7"));
-  CHECK(second.r.cache()->ready());
+  CHECK(test::cache(second.r)->ready());
   CHECK(second.r.scene()->materials[1].transmission == 0);
 }
 
@@ -377,7 +377,7 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
   uint64_t published = bed.status().published;
   uint32_t records = 0, levels = 0;
   float share = 0;
-  for (int i = 0; !bed.r.cache()->ready(); ++i) {
+  for (int i = 0; !test::cache(bed.r)->ready(); ++i) {
     cancelled += !bed.r.step([&] { return i % 2 == 1; });
     CHECK(bed.status().published >= published);
     levels += bed.status().published > published;
@@ -411,12 +411,12 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
 
   // In the middle of building: what has been placed stays, the rest is built in the new light.
   Bed building;
-  while (building.r.cache()->records().size() == 0 || building.status().records < 20) building.r.step();
+  while (test::cache(building.r)->records().size() == 0 || building.status().records < 20) building.r.step();
   building.set_lamp({9, 2, 1});
-  CHECK_FALSE(building.r.cache()->ready());
+  CHECK_FALSE(test::cache(building.r)->ready());
   building.finish();
   CHECK(building.status().stop == StopReason::covered);
-  for (const auto& record : building.r.cache()->records().read()) {
+  for (const auto& record : test::cache(building.r)->records().read()) {
     CHECK(record.rays >= 64);
     CHECK(record.radius > 0);
   }
@@ -436,14 +436,14 @@ TEST_CASE("components that are switched off leave records whole, and find them w
                               {{"components.primary", "off"}, {"components.caustic", "off"}}}) {
     INFO(off.begin()->first);
     bed.set(off);
-    CHECK(bed.r.cache()->ready());
+    CHECK(test::cache(bed.r)->ready());
     bed.finish();
     CHECK(begins_with(bed.records(), base));
     bed.set({{"components.primary", "path"},
              {"components.caustic", "path"},
              {"components.secondary", "cache"},
              {"components.tertiary", "cache"}});
-    CHECK(bed.r.cache()->ready());
+    CHECK(test::cache(bed.r)->ready());
     CHECK(identical(both, bed.finish()));
     CHECK(bed.status().rays == rays);
   }
@@ -464,5 +464,5 @@ TEST_CASE("components that are switched off leave records whole, and find them w
   CHECK(same_places(bed.records(), base));
   // Fewer than there are: there is no room to keep them.
   bed.set({{"cache.max_records", std::to_string(base.size() - 1)}});
-  CHECK(bed.r.cache()->records().size() == 0);
+  CHECK(test::cache(bed.r)->records().size() == 0);
 }

@@ -26,8 +26,8 @@ TEST_CASE("the more of the picture reads a record, the less noise it has when it
              {"samples", "1"}});
   shown.finish();
   REQUIRE(shown.status().stop == irradiance_cache::StopReason::passes);
-  const std::vector<irradiance_cache::Record> records = shown.r.cache()->records().read();
-  const std::vector<float>& worth = shown.r.cache()->worth();
+  const std::vector<irradiance_cache::Record> records = test::cache(shown.r)->records().read();
+  const std::vector<float>& worth = test::cache(shown.r)->worth();
   REQUIRE(worth.size() == records.size());
 
   const auto light = [](const irradiance_cache::Record& r) {
@@ -81,8 +81,8 @@ TEST_CASE("how much of the picture reads a record: the square of its share, summ
              {"cache.metric", "split-sphere"},
              {"samples", "1"}});
   shown.finish();
-  const std::vector<irradiance_cache::Record> records = shown.r.cache()->records().read();
-  const std::vector<float>& worth = shown.r.cache()->worth();
+  const std::vector<irradiance_cache::Record> records = test::cache(shown.r)->records().read();
+  const std::vector<float>& worth = test::cache(shown.r)->worth();
   REQUIRE(worth.size() == records.size());
 
   // The camera sees the floor alone: a record's weight there falls from its centre to its border.
@@ -132,8 +132,8 @@ TEST_CASE("what the picture reads through another record counts by what it bring
              {"cache.metric", "split-sphere"},
              {"samples", "1"}});
   shown.finish();
-  const std::vector<irradiance_cache::Record> records = shown.r.cache()->records().read();
-  const std::vector<float>& worth = shown.r.cache()->worth();
+  const std::vector<irradiance_cache::Record> records = test::cache(shown.r)->records().read();
+  const std::vector<float>& worth = test::cache(shown.r)->worth();
   REQUIRE(worth.size() == records.size());
 
   // Paths as the camera's: to the floor, then by a cosine's chance to a wall or the ceiling of a room of

@@ -230,16 +230,16 @@ TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing a
   test::set(r, k_wide);
   test::set(r, {{"cache.gather", "false"}});  // two samples are compared pixel by pixel
   const film::Image lit = test::finish(r);
-  const uint32_t records = r.cache()->status().records;
+  const uint32_t records = test::cache(r)->status().records;
   REQUIRE(records > 20);
   scene::Light lamp = room.s.lights[0];
   lamp.enabled = false;
   r.set_light(0, lamp);
   for (int move = 0; move < 2; ++move) {
     const film::Image off = test::finish(r);
-    CHECK(r.cache()->ready());
-    CHECK(r.cache()->status().rays == 0);
-    CHECK(r.cache()->status().passes.size() <= 1);
+    CHECK(test::cache(r)->ready());
+    CHECK(test::cache(r)->status().rays == 0);
+    CHECK(test::cache(r)->status().passes.size() <= 1);
     for (const auto& component : off.components)
       for (const vec3& v : component) REQUIRE(v == vec3(0));
     r.set_camera(room.s.cameras[0]);
@@ -247,7 +247,7 @@ TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing a
   test::finish(r);
   lamp.enabled = true;
   r.set_light(0, lamp);
-  CHECK(r.cache()->status().relighting == records);
+  CHECK(test::cache(r)->status().relighting == records);
   const film::Image again = test::finish(r);
   for (size_t c = 0; c < 4; ++c)
     for (size_t i = 0; i < lit.samples.size(); ++i)

@@ -19,9 +19,9 @@ struct CacheRenderer {
   ~CacheRenderer() { CHECK(r.device().validation_messages() == 0); }
   void set(const Settings& settings) { test::set(r, settings); }
   film::Image finish() { return test::finish(r); }
-  const irradiance_cache::CacheStatus& status() const { return r.cache()->status(); }
+  const irradiance_cache::CacheStatus& status() const { return test::cache(r)->status(); }
   irradiance_cache::RawRecords records() const {
-    return r.cache()->records().raw(r.cache()->records().size());
+    return test::cache(r)->records().raw(test::cache(r)->records().size());
   }
 };
 

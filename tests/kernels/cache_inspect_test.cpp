@@ -81,7 +81,7 @@ session::Renderer& bed() {
 Inspection ask(session::Renderer& r, uint32_t x, uint32_t y) {
   r.inspect(vec2((float(x) + 0.5f) / k_size, (float(y) + 0.5f) / k_size));
   r.picture(false);
-  return r.cache_report()->inspection;
+  return test::cache_report(r)->inspection;
 }
 
 /// Changed pixels of a picture, in raster order.
@@ -98,17 +98,17 @@ vec2 place_of(uint32_t pixel) { return {float(pixel % k_size) + 0.5f, float(pixe
 
 TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen before the first sample") {
   session::Renderer r(test::renderer_options(false));
-  CHECK(r.cache_report() == nullptr);
+  CHECK(test::cache_report(r) == nullptr);
   r.set_size(32, 32);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   r.inspect(vec2(0.5f, 0.5f));
   r.picture(false);
-  CHECK(r.cache_report() == nullptr);
+  CHECK(test::cache_report(r) == nullptr);
   r.settings().set("components.tertiary", "cache");
   r.settings().set("overlay.normals", "true");
   r.apply_settings();
   r.picture(false);
-  const auto report = r.cache_report();
+  const auto report = test::cache_report(r);
   REQUIRE(report);
   CHECK(report->looked_at == vec2(0.5f, 0.5f));
   CHECK_FALSE(report->inspection.solid);
@@ -117,31 +117,31 @@ TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen befo
 
   // While it is being built the coarse film shows where surfaces are.
   r.render_coarse();
-  while (r.cache()->status().records == 0) REQUIRE(r.step());
-  REQUIRE_FALSE(r.cache()->ready());
+  while (test::cache(r)->status().records == 0) REQUIRE(r.step());
+  REQUIRE_FALSE(test::cache(r)->ready());
   REQUIRE(r.samples() == 0);
   size_t served = 0;
-  const std::vector<Record> all = r.cache()->records().read();
+  const std::vector<Record> all = test::cache(r)->records().read();
   for (const float down : {0.1f, 0.2f, 0.3f, 0.45f, 0.6f, 0.7f, 0.8f, 0.9f})
     for (const float right : {0.1f, 0.2f, 0.4f, 0.5f, 0.6f, 0.8f, 0.9f}) {
       r.inspect(vec2(right, down));
       r.picture(true);
-      const Inspection found = r.cache_report()->inspection;
+      const Inspection found = test::cache_report(r)->inspection;
       if (!found.solid) continue;
       uint32_t expected = 0;
-      const std::vector<Record> placed(all.begin(), all.begin() + r.cache()->status().records);
+      const std::vector<Record> placed(all.begin(), all.begin() + test::cache(r)->status().records);
       for (const float w : weights(placed, found.position, found.normal, r)) expected += w > 0;
       CHECK(found.count == expected);
       served += found.count > 0;
     }
   CHECK(served > 4);
-  CHECK_FALSE(r.cache_report()->overlap.has_value());
+  CHECK_FALSE(test::cache_report(r)->overlap.has_value());
 }
 
 TEST_CASE(
     "the records that serve a pixel are those that all records weighed by hand say, with their weights") {
   session::Renderer& r = bed();
-  const std::vector<Record> all = r.cache()->records().read();
+  const std::vector<Record> all = test::cache(r)->records().read();
   REQUIRE(all.size() > 100);
   const scene::Camera camera = r.camera();
   size_t solid = 0, listed = 0, unders = 0;
@@ -210,10 +210,10 @@ TEST_CASE(
 TEST_CASE("the overlap told of the picture is that of its pixels, counted by hand") {
   session::Renderer& r = bed();
   r.picture(false);
-  const auto report = r.cache_report();
+  const auto report = test::cache_report(r);
   REQUIRE(report->overlap);
   const irradiance_cache::Overlap& told = *report->overlap;
-  const std::vector<Record> all = r.cache()->records().read();
+  const std::vector<Record> all = test::cache(r)->records().read();
   const film::Image image = r.image();
   uint64_t pixels = 0, served = 0, sum = 0;
   uint32_t most = 0;
@@ -250,7 +250,7 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
     r.set_scene(std::make_shared<scene::Scene>(room));
     test::set(r, {{"components.secondary", "cache"}, {"components.tertiary", "cache"}, {"samples", "2"}});
     test::finish(r);
-    const irradiance_cache::Overlap told = *r.cache_report()->overlap;
+    const irradiance_cache::Overlap told = *test::cache_report(r)->overlap;
     CHECK(told.pixels == 64 * 64);
     // Three quarters of the texels are tilted; 45 degrees are more than records can bridge, 12 are not.
     const double unserved = double(told.histogram[0] - told.gathered) / double(told.pixels);
@@ -264,7 +264,7 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
       for (const float y : {0.11f, 0.27f, 0.4f, 0.63f, 0.77f, 0.92f}) {
         r.inspect(vec2(x, y));
         r.picture(false);
-        const Inspection found = r.cache_report()->inspection;
+        const Inspection found = test::cache_report(r)->inspection;
         REQUIRE(found.solid);
         CHECK(found.asks != shared::k_asks_nothing);
         CHECK(found.normal == vec3(0, 0, 1));
@@ -283,9 +283,9 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
     test::finish(r);
     r.inspect(vec2(0.5f, 0.5f));
     r.picture(false);
-    CHECK(r.cache_report()->inspection.asks == shared::k_asks_nothing);
-    CHECK(r.cache_report()->inspection.count == 0);
-    CHECK(r.cache_report()->overlap->pixels == 0);
+    CHECK(test::cache_report(r)->inspection.asks == shared::k_asks_nothing);
+    CHECK(test::cache_report(r)->inspection.count == 0);
+    CHECK(test::cache_report(r)->overlap->pixels == 0);
     CHECK(r.device().validation_messages() == 0);
   }
 }
@@ -296,19 +296,19 @@ TEST_CASE("it is told who serves what the camera sees where only later vertices 
   r.set_scene(std::make_shared<scene::Scene>(test::PanelRoom().s));
   test::set(r, {{"components.tertiary", "cache"}, {"samples", "2"}});
   test::finish(r);
-  const irradiance_cache::Overlap told = *r.cache_report()->overlap;
+  const irradiance_cache::Overlap told = *test::cache_report(r)->overlap;
   CHECK(told.pixels == 48 * 48);
   CHECK(told.served > told.pixels / 2);
   // Without a pass of building it looks at the picture because it is asked.
   const auto file = std::filesystem::temp_directory_path() / fmt::format("lucerna-told-{}.cache", getpid());
-  r.save_cache(file);
+  r.solver_save("cache", file);
   r.restart();
-  r.load_cache(file);
+  r.solver_load("cache", file);
   std::filesystem::remove(file);
   test::finish(r);
-  REQUIRE(r.cache()->status().loaded > 0);
+  REQUIRE(test::cache(r)->status().loaded > 0);
   const uint64_t rays = r.stats().rays;
-  CHECK(r.cache_report()->overlap->histogram == told.histogram);
+  CHECK(test::cache_report(r)->overlap->histogram == told.histogram);
   CHECK(r.stats().rays == rays);
 }
 
@@ -375,7 +375,7 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
   }
   r.inspect({});
   CHECK(r.picture(false) == plain);
-  CHECK_FALSE(r.cache_report()->looked_at.has_value());
+  CHECK_FALSE(test::cache_report(r)->looked_at.has_value());
 }
 
 TEST_CASE("normals are short lines at the centres of records that are seen") {
@@ -392,7 +392,7 @@ TEST_CASE("normals are short lines at the centres of records that are seen") {
   r.apply_settings();
   const std::vector<uint8_t> ticked = r.picture(false);
   CHECK(r.picture(false) == ticked);
-  CHECK(r.cache()->ready());
+  CHECK(test::cache(r)->ready());
   const std::vector<uint32_t> list = changed(plain, ticked);
   CHECK(list.size() > 100);
   // Centres of records that nothing hides, and where their normals point to.
@@ -406,7 +406,7 @@ TEST_CASE("normals are short lines at the centres of records that are seen") {
   // From foot to tip; beyond the picture's border nobody knows whether they are hidden.
   std::vector<std::pair<vec2, vec2>> seen, beyond;
   std::vector<vec2> hidden;  // feet
-  for (const Record& record : r.cache()->records().read()) {
+  for (const Record& record : test::cache(r)->records().read()) {
     const vec3 foot = project(record.place.position);
     if (foot.z <= 0) continue;
     const std::pair line(vec2(foot),
@@ -453,7 +453,7 @@ TEST_CASE("the log of building adds up to what the cache holds") {
   r.restart();
   while (r.step()) {
   }
-  const auto report = r.cache_report();
+  const auto report = test::cache_report(r);
   const irradiance_cache::CacheStatus& s = report->status;
   REQUIRE(s.passes.size() > 1);
   uint64_t records = 0, rays = 0;
@@ -467,9 +467,9 @@ TEST_CASE("the log of building adds up to what the cache holds") {
     for (size_t k = 0; k < ms.size(); ++k) ms[k] += p.ms[k];
   }
   CHECK(records == s.records);
-  CHECK(records == r.cache()->records().size());
+  CHECK(records == test::cache(r)->records().size());
   CHECK(rays == s.rays);
-  CHECK(report->room == r.cache()->records().capacity());
+  CHECK(report->room == test::cache(r)->records().capacity());
   for (size_t k = 0; k < ms.size(); ++k) {
     INFO(irradiance_cache::k_build_steps[k]);
     CHECK(ms[k] > 0);
@@ -490,11 +490,11 @@ TEST_CASE("the log of building adds up to what the cache holds") {
   r.set_camera(moved);
   while (r.step()) {
   }
-  CHECK(r.cache()->status().passes.size() > before);
-  CHECK(r.cache()->status().passes[before].number == 0);
+  CHECK(test::cache(r)->status().passes.size() > before);
+  CHECK(test::cache(r)->status().passes[before].number == 0);
   r.set_camera(kept);
   r.restart();
-  CHECK(r.cache()->status().passes.empty());
+  CHECK(test::cache(r)->status().passes.empty());
 }
 
 TEST_CASE("detail of the geometry is dark on walls and bright at edges, and wider at coarser levels") {
@@ -527,9 +527,9 @@ TEST_CASE("detail of the geometry is dark on walls and bright at edges, and wide
 TEST_CASE("what is chosen of a pass's candidates can be read until the next pass") {
   session::Renderer& r = bed();
   r.restart();
-  while (r.cache()->placement().tried.empty()) REQUIRE(r.step());
-  const irradiance_cache::PlacementShown all = r.cache()->placement();
-  const irradiance_cache::CachePass& pass = r.cache()->status().passes.back();
+  while (test::cache(r)->placement().tried.empty()) REQUIRE(r.step());
+  const irradiance_cache::PlacementShown all = test::cache(r)->placement();
+  const irradiance_cache::CachePass& pass = test::cache(r)->status().passes.back();
   CHECK(all.candidates.size() == pass.candidates);
   CHECK(all.cluster.size() == pass.candidates);
   CHECK(all.tried.size() == pass.tried);

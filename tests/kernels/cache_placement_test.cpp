@@ -12,6 +12,7 @@
 #include "shaders/shared/cache_placement.h"
 #include "support/device.h"
 #include "support/records.h"
+#include "support/solver.h"
 
 using namespace lucerna;
 using irradiance_cache::BuildStage;
@@ -25,7 +26,7 @@ constexpr uint32_t k_size = 128;
 session::Renderer& bed() {
   static const std::unique_ptr<session::Renderer> renderer = [] {
     auto r = std::make_unique<session::Renderer>(session::RendererOptions{
-        .device = "cpu", .validation = true, .shaders = {}, .defines = {}, .pauses = true});
+        .device = "cpu", .validation = true, .shaders = {}, .defines = {}, .interactive = true});
     r->set_size(k_size, k_size);
     r->load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
     for (const auto& [key, value] : {std::pair{"components.secondary", "cache"},
@@ -53,7 +54,7 @@ int work(session::Renderer& r) {
   return pieces;
 }
 
-const irradiance_cache::CacheStatus& status(session::Renderer& r) { return r.cache()->status(); }
+const irradiance_cache::CacheStatus& status(session::Renderer& r) { return test::cache(r)->status(); }
 
 /// Builds anew, with a pause after every stage, up to a stage.
 void build_to(session::Renderer& r, BuildStage stage) {
@@ -61,8 +62,8 @@ void build_to(session::Renderer& r, BuildStage stage) {
   r.restart();
   r.render_coarse();
   for (work(r); !status(r).last || status(r).last->stage != stage; work(r)) {
-    REQUIRE(r.cache_waits());
-    r.step_cache();
+    REQUIRE(r.waits());
+    r.solver_command("cache", "step");
   }
 }
 
@@ -127,10 +128,10 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   set(r, "cache.pause", "off");
   r.restart();
   work(r);
-  REQUIRE(r.cache()->ready());
+  REQUIRE(test::cache(r)->ready());
   REQUIRE(r.done());
-  const auto count = r.cache()->records().size();
-  const irradiance_cache::RawRecords all = r.cache()->records().raw(count);
+  const auto count = test::cache(r)->records().size();
+  const irradiance_cache::RawRecords all = test::cache(r)->records().raw(count);
   const std::vector<uint8_t> picture = r.picture(false);
   REQUIRE(count > 100);
 
@@ -139,12 +140,12 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   r.restart();
   CHECK_FALSE(status(r).last.has_value());
   std::vector<std::pair<BuildStage, uint32_t>> stages;  // and passes
-  while (work(r), r.cache_waits()) {
+  while (work(r), r.waits()) {
     CHECK(work(r) == 0);
     CHECK(r.samples() == 0);
     const auto& last = *status(r).last;
     stages.emplace_back(last.stage, last.pass);
-    const irradiance_cache::PlacementShown p = r.cache()->placement();
+    const irradiance_cache::PlacementShown p = test::cache(r)->placement();
     const irradiance_cache::CachePass& pass = status(r).passes.back();
     INFO(stage_words(last));
     CHECK(p.candidates.size() == pass.candidates);
@@ -156,9 +157,9 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
     if (last.stage == BuildStage::measure) CHECK(last.rays == 64 * pass.tried);
     if (last.stage == BuildStage::evaluate) CHECK(last.rays > 0);
     CHECK(last.ms >= 0);
-    r.step_cache();
+    r.solver_command("cache", "step");
   }
-  REQUIRE(r.cache()->ready());
+  REQUIRE(test::cache(r)->ready());
   // Every stage of both passes in its order, evaluation once more for each level; the last end of all is no
   // pause, for then the cache is complete.
   REQUIRE(stages.size() >= 11);
@@ -183,39 +184,39 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
     }
   }
   CHECK(r.done());
-  REQUIRE(r.cache()->records().size() == count);
-  CHECK(test::identical(r.cache()->records().raw(count), all));
+  REQUIRE(test::cache(r)->records().size() == count);
+  CHECK(test::identical(test::cache(r)->records().raw(count), all));
   CHECK(r.picture(false) == picture);
 
   // After a pass alone; then on to the end.
   set(r, "cache.pause", "pass");
   r.restart();
   work(r);
-  REQUIRE(r.cache_waits());
+  REQUIRE(r.waits());
   CHECK(status(r).pass == 1);
-  CHECK(r.cache()->placement().kept.size() == status(r).passes[0].records);
-  r.run_cache();
+  CHECK(test::cache(r)->placement().kept.size() == status(r).passes[0].records);
+  r.solver_command("cache", "run");
   work(r);
   CHECK(r.done());
-  CHECK(test::identical(r.cache()->records().raw(count), all));
+  CHECK(test::identical(test::cache(r)->records().raw(count), all));
 
   // A step where nothing is set; and the setting ends a pause.
   set(r, "cache.pause", "off");
-  r.step_cache();  // complete: nothing to wait for
+  r.solver_command("cache", "step");  // complete: nothing to wait for
   r.restart();
-  r.step_cache();
+  r.solver_command("cache", "step");
   work(r);
-  REQUIRE(r.cache_waits());
+  REQUIRE(r.waits());
   CHECK(status(r).last->stage == BuildStage::probe);
   set(r, "overlay.placement", "stage");  // what is shown does not matter
-  CHECK(r.cache_waits());
+  CHECK(r.waits());
   set(r, "overlay.placement", "off");
   set(r, "cache.pause", "stage");
-  CHECK(r.cache_waits());
+  CHECK(r.waits());
   set(r, "cache.pause", "off");
-  CHECK_FALSE(r.cache_waits());
+  CHECK_FALSE(r.waits());
   work(r);
-  CHECK(test::identical(r.cache()->records().raw(count), all));
+  CHECK(test::identical(test::cache(r)->records().raw(count), all));
 }
 
 TEST_CASE("who renders without a person waits for none") {
@@ -238,15 +239,15 @@ TEST_CASE("candidates are drawn where they are, those that the camera sees") {
   build_to(r, BuildStage::probe);
   set(r, "overlay.placement", "off");
   const std::vector<uint8_t> plain = r.picture(true);
-  CHECK(r.cache_report()->placement == PlacementShow::off);
+  CHECK(test::cache_report(r)->placement == PlacementShow::off);
   set(r, "overlay.placement", "stage");
   const std::vector<uint8_t> drawn = r.picture(true);
   CHECK(r.picture(true) == drawn);
-  CHECK(r.cache_report()->placement == PlacementShow::candidates);
-  REQUIRE(r.cache_waits());
+  CHECK(test::cache_report(r)->placement == PlacementShow::candidates);
+  REQUIRE(r.waits());
   const std::vector<bool> list = coloured(drawn);
   size_t seen = 0, unmarked = 0;
-  for (const irradiance_cache::Place& p : r.cache()->placement().candidates) {
+  for (const irradiance_cache::Place& p : test::cache(r)->placement().candidates) {
     const vec3 at = project(r, p.position);
     if (!inside(at) || room(r, at) < -1) continue;
     ++seen, unmarked += !near(list, at, 1);
@@ -269,18 +270,18 @@ TEST_CASE("while building waits what one looks at stays, also seen from elsewher
   };
   const auto before = ink();
   CHECK(before > 200);
-  const size_t kept = r.cache()->placement().kept.size();
+  const size_t kept = test::cache(r)->placement().kept.size();
   const scene::Camera camera = r.camera();
   scene::Camera moved = camera;
   moved.to_world[3] += vec4(-2, 1.2f, 0, 0);
   r.set_camera(moved);
   r.render_coarse();
-  CHECK(r.cache_waits());
+  CHECK(r.waits());
   CHECK(r.step() == false);
-  CHECK(r.cache()->placement().kept.size() == kept);
+  CHECK(test::cache(r)->placement().kept.size() == kept);
   CHECK(ink() > before / 4);
   // Going on finishes that pass, and adds what is missing from here.
-  r.run_cache();
+  r.solver_command("cache", "run");
   work(r);
   CHECK(r.done());
   CHECK(status(r).passes.size() > 1);
@@ -303,10 +304,10 @@ TEST_CASE("what is chosen is drawn with its radius, and hidden by what is in fro
   const std::vector<uint8_t> plain = r.picture(false);
   set(r, "overlay.placement", "stage");
   const std::vector<uint8_t> drawn = r.picture(false);
-  CHECK(r.cache_report()->placement == PlacementShow::chosen);
+  CHECK(test::cache_report(r)->placement == PlacementShow::chosen);
   const std::vector<bool> list = marked(plain, drawn);
 
-  const irradiance_cache::PlacementShown p = r.cache()->placement();
+  const irradiance_cache::PlacementShown p = test::cache(r)->placement();
   REQUIRE(p.kept.size() > 50);
   std::vector<vec3> shown, hidden, edges;  // ... and what may be either
   for (const irradiance_cache::Place& place : p.tried) {

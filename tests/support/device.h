@@ -20,7 +20,7 @@ inline session::RendererOptions renderer_options(bool validation = true, const g
           .validation = validation,
           .shaders = {},
           .defines = defines,
-          .pauses = pauses,
+          .interactive = pauses,
           .on = shared_device(validation)};
 }
 

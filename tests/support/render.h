@@ -9,6 +9,7 @@
 #include <string>
 
 #include "support/device.h"
+#include "support/solver.h"
 
 namespace lucerna::test {
 
@@ -70,7 +71,7 @@ inline Result render(const Render& r, const scene::Scene* made = nullptr) {
   result.prepared_rays = renderer.ledger().entries().back().prepared_rays;
   result.validation_messages = renderer.device().validation_messages();
   result.tracer = renderer.tracer_name();
-  if (renderer.cache()) result.cache = renderer.cache()->status();
+  if (test::cache(renderer)) result.cache = test::cache(renderer)->status();
   for (size_t c = 0; c < 4; ++c) result.bias_known[c] = renderer.bias(c).has_value();
   return result;
 }

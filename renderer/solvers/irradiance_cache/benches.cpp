@@ -111,4 +111,18 @@ std::vector<std::string> bench_settings() {
   };
 }
 
+/// By who keeps records from serving the same points twice.
+std::vector<solvers::LookupWay> lookup_ways() {
+  const auto way = [](const char* name, const char* neighbours, bool thinned) {
+    solvers::LookupWay w{name,
+                         {{"components.secondary", "cache"},
+                          {"components.tertiary", "cache"},
+                          {"cache.neighbours", neighbours}}};
+    if (!thinned) w.set["cache.thinning"] = "0";
+    return w;
+  };
+  return {way("as they were placed", "false", false), way("bounded by neighbours", "true", false),
+          way("thinned", "false", true), way("thinned and bounded", "true", true)};
+}
+
 }  // namespace lucerna::irradiance_cache

@@ -1,0 +1,85 @@
+#pragma once
+// The wavefront's kernels with the solvers of a plan, made for one world.
+#include <memory>
+#include <vector>
+
+#include "plan/plan.h"
+#include "session/world.h"
+#include "solvers/solver.h"
+
+namespace lucerna::session {
+
+/// A picture of a world, to be handed to solvers; everything that it names must outlive it.
+struct PictureView {
+  const paths::Automaton& automaton;
+  const plan::Settings& settings;
+  const World& world;
+  const scene::Camera& camera;
+  uint32_t width = 0, height = 0;
+};
+
+class Engine {
+ public:
+  /// Throws Error: kernels that do not compile (located), no memory.
+  Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
+         const World& world, const plan::Plan& plan, const plan::Settings& settings, gpu::Defines defines);
+
+  /// Whether kernels and solvers do for another plan and these settings of the same world.
+  bool serves(const plan::Plan& plan, const plan::Settings& settings, const World& world) const;
+  /// For another plan that it serves.
+  void set_plan(const plan::Plan& plan) { plan_ = plan; }
+  const plan::Plan& plan() const { return plan_; }
+  /// Takes over what the solvers of another engine have, where `changes` do not spoil all of it.
+  void adopt(const Engine& before, const scene::Changes& changes);
+  /// The picture begins anew: sets the wavefront's frame, and tells the solvers.
+  void begin(const PictureView& picture, const scene::Changes& changes);
+
+  transport::Wavefront& wavefront() { return *wavefront_; }
+  const transport::Wavefront& wavefront() const { return *wavefront_; }
+  const std::vector<std::unique_ptr<solvers::Solver>>& solvers() const { return solvers_; }
+  /// Null: that one is not at work.
+  solvers::Solver* find(std::string_view name) const;
+  /// The first that is not ready; null: all are.
+  solvers::Solver* unready() const;
+  bool waits() const;
+  uint64_t published() const;
+
+  /// Frame of the picture's paths, in a size of its own.
+  shared::Frame frame(const PictureView& picture, uint32_t width, uint32_t height) const;
+  /// Calls f(solver, picture) with the solver's own task.
+  template <class F>
+  decltype(auto) with(solvers::Solver& solver, const PictureView& view, F&& f) const {
+    const solvers::Task task = task_of(solver.info(), view.settings, view.world.flat.effects);
+    return f(solvers::Picture{.task = task,
+                              .flat = view.world.flat,
+                              .camera = view.camera,
+                              .width = view.width,
+                              .height = view.height,
+                              .frame = frame(view, view.width, view.height)});
+  }
+  /// Whether a component's light is looked up besides its solver's own.
+  bool looked_up_besides(size_t component) const;
+  double compile_seconds() const { return compile_seconds_; }
+
+ private:
+  solvers::Task task_of(const solvers::SolverInfo& solver, const plan::Settings& settings,
+                        const upload::Effects& effects) const;
+  solvers::Task task_of(const plan::Plan& plan, const solvers::SolverInfo& solver,
+                        const plan::Settings& settings, const upload::Effects& effects) const;
+  /// Of all solvers together, for the present plan.
+  solvers::Routing routing(const plan::Settings& settings, const upload::Effects& effects) const;
+
+  const paths::Automaton& automaton_;
+  plan::Plan plan_;
+  gpu::Defines scene_defines_;  ///< that the kernels were made with
+  std::vector<std::unique_ptr<solvers::Solver>> solvers_;
+  std::unique_ptr<transport::Wavefront> wavefront_;
+  solvers::Routing routing_;  ///< of the picture begun last
+  double compile_seconds_ = 0;
+};
+
+/// upload::FlatScene::sun_threshold that the plan's solvers ask for.
+float wanted_sun_threshold(const paths::Automaton& automaton, const plan::Plan& plan,
+                           const plan::Settings& settings);
+
+}  // namespace lucerna::session

@@ -1,0 +1,112 @@
+// The picture as it is shown and written.
+#include <cmath>
+#include <fstream>
+#include <utility>
+
+#include "film/overlay.h"
+#include "session/accuracy.h"
+#include "session/renderer.h"
+#include "shaders/shared/film.h"
+
+namespace lucerna::session {
+
+film::View Renderer::view() const {
+  film::View v;
+  v.layer = uint32_t(settings_.choice("film.layer"));
+  v.show = 0;
+  for (int c = 0; c < paths::k_component_count; ++c)
+    if (settings_.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
+  v.curve = uint32_t(settings_.choice("film.tone_curve"));
+  v.exposure = float(std::exp2(settings_.real("film.ev")));
+  v.scale = 2 * world_.flat.scene_radius;
+  v.heat = heat_scale(v.layer);
+  if (settings_.boolean("overlay.tiles")) v.tiles = tile_side();
+  return v;
+}
+
+film::HeatScale Renderer::heat_scale(uint32_t layer) const {
+  if (layer == shared::k_layer_samples)
+    return film::sample_scale(adaptive() ? adaptive()->options().min_samples : 0, max_samples());
+  if (layer == shared::k_layer_error) return film::error_scale(settings_.real("sampling.target_error"));
+  double ms = 0;
+  for (const auto& stage : stats().stages) ms += stage.ms;
+  for (const auto& stage : prepared_.stages) ms -= stage.ms;
+  const auto seen = [](const transport::TransportStats& s) { return double(s.rays - s.shadow_rays); };
+  return film::cost_scale(ms, seen(stats()) - seen(prepared_), double(film_->width()) * film_->height(),
+                          adaptive() != nullptr);
+}
+
+std::vector<uint8_t> Renderer::picture(bool with_coarse) {
+  const film::View v = view();
+  if (v.tiles > 0) {
+    std::vector<shared::TileMark> marks;
+    for (const TileStatus& t : tile_status(*this, true))
+      marks.push_back({film::tile_position(double{t.sum()}, settings_.real("sampling.target_error")),
+                       t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
+    film_->mark_tiles(marks);
+  }
+  engine_->wavefront().tone_map(*film_, v, with_coarse ? coarse_.get() : nullptr);
+  visit_solvers([](solvers::Solver& solver, const solvers::Canvas& canvas, const solvers::Picture& picture) {
+    solver.draw(canvas, picture);
+  });
+  return film_->read_picture();
+}
+
+film::FilmImage Renderer::film_image() {
+  const film::Image image = film_->read();
+  film::FilmImage out;
+  out.width = image.width;
+  out.height = image.height;
+  const size_t n = image.samples.size();
+  const auto add = [&](const std::string& prefix, const char* names, const std::vector<vec3>& plane) {
+    for (int k = 0; k < 3; ++k) {
+      std::vector<float> channel(n);
+      for (size_t i = 0; i < n; ++i) channel[i] = plane[i][k];
+      out.channels.emplace_back(prefix + names[k], std::move(channel));
+    }
+  };
+  std::vector<vec3> sum(n, vec3(0));
+  for (const auto& component : image.components)
+    for (size_t i = 0; i < n; ++i) sum[i] += component[i];
+  add("", "RGB", sum);
+  for (int c = 0; c < film::k_components; ++c)
+    add(std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
+  add("albedo.", "RGB", image.albedo);
+  add("N.", "XYZ", image.normal);
+  out.channels.emplace_back("Z", image.depth);
+  out.channels.emplace_back("samples", std::vector<float>(image.samples.begin(), image.samples.end()));
+  out.metadata["version"] = LUCERNA_VERSION;
+  out.metadata["settings"] = settings_.changed_json();
+  out.metadata["seed"] = settings_.text("seed");
+  out.metadata["device"] = device_->info().name;
+  out.metadata["tracer"] = tracer_name();
+  out.metadata["scene"] = world_.scene->name;
+  out.metadata["view"] = view_text();
+  out.metadata["noise"] = film::noise_text(image_error().rms);
+  return out;
+}
+
+void Renderer::save(const std::filesystem::path& file) {
+  if (!engine_) throw Error(file.string(), "nothing to save yet; load a scene first");
+  const std::string extension = file.extension().string();
+  if (extension == ".exr")
+    film::write_exr(file, film_image());
+  else if (extension == ".png") {
+    // Where somebody looks is no part of what is kept.
+    const std::optional<vec2> at = looked_at_;
+    inspect(std::nullopt);
+    const std::vector<uint8_t> shown = picture(false);
+    inspect(at);
+    film::write_png(file, film_->width(), film_->height(), shown);
+  } else
+    throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);
+}
+
+double peak_host_mb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("VmHWM:", 0) == 0) return std::stod(line.substr(6)) / 1024;
+  return 0;
+}
+
+}  // namespace lucerna::session

@@ -1,0 +1,96 @@
+// The renderer's solvers, by name: commands, files, what they tell.
+#include "base/log.h"
+#include "scene/hash.h"
+#include "session/renderer.h"
+
+namespace lucerna::session {
+
+void Renderer::visit_solvers(const Visit& f) {
+  if (!engine_ || !film_) return;
+  const solvers::Canvas canvas{engine_->wavefront(), *film_, *coarse_};
+  const PictureView view = picture_view();
+  for (const auto& solver : engine_->solvers())
+    engine_->with(*solver, view, [&](const solvers::Picture& picture) { f(*solver, canvas, picture); });
+}
+
+void Renderer::solver_command(const std::string& name, const std::string& command) {
+  if (solvers::Solver* found = solver(name)) found->command(command);
+}
+
+void Renderer::inspect(std::optional<vec2> at) {
+  looked_at_ = at;
+  if (!engine_) return;
+  for (const auto& solver : engine_->solvers()) solver->look_at(at);
+}
+
+std::vector<std::shared_ptr<const solvers::Report>> Renderer::reports() {
+  std::vector<std::shared_ptr<const solvers::Report>> all;
+  visit_solvers([&](solvers::Solver& solver, const solvers::Canvas& canvas, const solvers::Picture& picture) {
+    all.push_back(solver.report(canvas, picture, samples() > 0));
+  });
+  return all;
+}
+
+double Renderer::figure(const std::string& name) const {
+  double sum = 0;
+  if (engine_)
+    for (const auto& solver : engine_->solvers())
+      for (const auto& [key, value] : solver->figures()) sum += key == name ? value : 0;
+  return sum;
+}
+
+nlohmann::ordered_json Renderer::solver_statistics() {
+  nlohmann::ordered_json all;
+  visit_solvers([&](solvers::Solver& solver, const solvers::Canvas& canvas, const solvers::Picture& picture) {
+    if (nlohmann::ordered_json own = solver.statistics(canvas, picture); !own.is_null())
+      all[solver.info().name] = std::move(own);
+  });
+  return all;
+}
+
+void Renderer::look_up_picture() {
+  visit_solvers([](solvers::Solver& solver, const solvers::Canvas& canvas, const solvers::Picture& picture) {
+    solver.look_up_picture(canvas, picture);
+  });
+}
+
+solvers::Provenance Renderer::provenance() const {
+  const scene::LightHash hash = scene::light_hash(*world_.scene);
+  return {.scene = world_.scene->name,
+          .hashes = {{"geometry", hash.geometry},
+                     {"materials", hash.materials},
+                     {"lights", hash.lights},
+                     {"environment", hash.environment}},
+          .view = fmt::format("{} {}x{}", view_text(), width_, height_)};
+}
+
+solvers::Solver& Renderer::solver_for_file(const std::string& name, const std::filesystem::path& file,
+                                           const char* nothing, const char* no_scene) {
+  if (!engine_) throw Error(file.string(), no_scene);
+  if (solvers::Solver* found = solver(name)) return *found;
+  std::string components;
+  if (const solvers::SolverInfo* info = solvers::find(name))
+    for (size_t c = 0; c < info->serves.size(); ++c)
+      if (info->serves[c])
+        components +=
+            fmt::format("{}components.{}", components.empty() ? "" : ", ", paths::k_component_names[c]);
+  throw_error(file.string(), "{}: no component is computed by '{}' ({})", nothing, name, components);
+}
+
+void Renderer::solver_save(const std::string& name, const std::filesystem::path& file) {
+  const solvers::Solver& found = solver_for_file(name, file, "there is nothing to save",
+                                                 "there is nothing to save yet; load a scene first");
+  engine_->with(const_cast<solvers::Solver&>(found), picture_view(),
+                [&](const solvers::Picture& picture) { found.save(file.string(), picture, provenance()); });
+}
+
+void Renderer::solver_load(const std::string& name, const std::filesystem::path& file) {
+  solvers::Solver& found = solver_for_file(name, file, "nothing would look it up",
+                                           "this file is of a scene; load the scene first");
+  engine_->with(found, picture_view(), [&](const solvers::Picture& picture) {
+    found.load(file.string(), engine_->wavefront(), picture, provenance());
+  });
+  restart(scene::Changes{});
+}
+
+}  // namespace lucerna::session

@@ -1,0 +1,35 @@
+#pragma once
+// Which pixels get samples next: uniform or adaptive, behind one face.
+#include <optional>
+#include <vector>
+
+#include "schedule/adaptive.h"
+#include "schedule/uniform.h"
+
+namespace lucerna::session {
+
+class Sampling {
+ public:
+  void start(schedule::UniformSchedule schedule) { uniform_ = std::move(schedule), adaptive_.reset(); }
+  void start(schedule::AdaptiveSchedule schedule) { adaptive_.emplace(std::move(schedule)); }
+  /// The state of every tile; null in uniform sampling.
+  const schedule::AdaptiveSchedule* adaptive() const { return adaptive_ ? &*adaptive_ : nullptr; }
+  schedule::AdaptiveSchedule* adaptive() { return adaptive_ ? &*adaptive_ : nullptr; }
+  schedule::UniformSchedule& uniform() { return uniform_; }
+
+  bool done() const { return adaptive_ ? adaptive_->done() : uniform_.done(); }
+  /// Samples that every pixel has.
+  uint32_t samples() const { return adaptive_ ? adaptive_->least_samples() : uniform_.complete(); }
+  /// Samples a pixel at which the image is finished; adaptive: that no pixel goes beyond.
+  uint32_t max_samples() const { return adaptive_ ? adaptive_->options().max_samples : uniform_.samples(); }
+  /// Passes over the picture, or over the tiles at work, that are complete.
+  uint32_t passes() const { return adaptive_ ? adaptive_->rounds() : uniform_.passes(); }
+  /// Samples of every block, in raster order.
+  std::vector<uint32_t> counts() const { return adaptive_ ? adaptive_->counts() : uniform_.counts(); }
+
+ private:
+  schedule::UniformSchedule uniform_;
+  std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< in place of that
+};
+
+}  // namespace lucerna::session

@@ -1,0 +1,61 @@
+#pragma once
+// A scene made ready to be traced: flattened, with its tree, in device memory.
+#include <functional>
+#include <memory>
+
+#include "bvh/embree/host_tracer.h"
+#include "scene/scene.h"
+#include "transport/wavefront.h"
+#include "upload/device_scene.h"
+#include "upload/flatten.h"
+
+namespace lucerna::session {
+
+/// fraction 0..1 and what is going on; returning false cancels (an Error "cancelled" is thrown).
+using Progress = std::function<bool(float, const std::string&)>;
+
+struct World {
+  std::shared_ptr<const scene::Scene> scene;
+  upload::FlatScene flat;
+  std::unique_ptr<upload::DeviceScene> device;
+  std::unique_ptr<bvh::HostTracer> host;  ///< null: kernels trace
+
+  transport::HostTrace trace() const;  ///< by the host; empty where kernels trace
+};
+
+/// `tracer`: the setting. Throws Error: too large, no memory, cancelled.
+World make_world(gpu::Device& device, std::shared_ptr<const scene::Scene> scene, const std::string& tracer,
+                 float sun_threshold, const Progress& progress);
+
+/// Tells how far it is; throws Error "cancelled" when that is the answer.
+void report_progress(const Progress& progress, float fraction, const std::string& what);
+
+/// The scene of a world with other lights, environment or factors of materials, for as long as it is being
+/// tried: unless keep() is called the world is put back as it was.
+class WorldEdit {
+ public:
+  /// Throws Error: no memory; the world is then as before.
+  WorldEdit(gpu::Device& device, World& world, std::shared_ptr<const scene::Scene> edited, bool factors);
+  /// The same for another threshold of the sun (upload::FlatScene::sun_threshold).
+  WorldEdit(gpu::Device& device, World& world, float sun_threshold);
+  ~WorldEdit();
+  WorldEdit(const WorldEdit&) = delete;
+  WorldEdit& operator=(const WorldEdit&) = delete;
+  void keep() { kept_ = true; }
+
+ private:
+  void try_out(gpu::Device& device, bool factors);
+  void put_back() noexcept;
+
+  World& world_;
+  std::shared_ptr<const scene::Scene> scene_;
+  upload::FlatLights lights_;
+  upload::FlatMaterials materials_;
+  upload::Effects effects_;
+  float sun_threshold_;
+  upload::LightBuffers light_buffers_;
+  upload::MaterialBuffers material_buffers_;
+  bool lights_out_ = false, materials_out_ = false, kept_ = false;
+};
+
+}  // namespace lucerna::session

@@ -1,0 +1,162 @@
+#include "solvers/irradiance_cache/solver.h"
+
+#include <utility>
+
+#include "base/log.h"
+#include "solvers/irradiance_cache/info.h"
+
+namespace lucerna::irradiance_cache {
+namespace {
+
+using solvers::Picture, solvers::Task, solvers::Canvas, solvers::Cancel;
+
+CacheOptions read_options(const OptionValues& s) {
+  return {.metric = Metric(s.choice("cache.metric")),
+          .error = float(s.real("cache.error")),
+          .nearest = float(s.real("cache.nearest")),
+          .least_pixels = float(s.real("cache.min_radius")),
+          .most_radius = float(s.real("cache.max_radius")),
+          .rays = uint32_t(std::stoul(s.text("cache.rays"))),
+          .most_rays = uint32_t(std::stoul(s.text("cache.max_rays"))),
+          .noise = float(s.real("cache.noise")),
+          .thinning = float(s.real("cache.thinning")),
+          .gather = s.boolean("cache.gather"),
+          .neighbours = s.boolean("cache.neighbours"),
+          .most_records = uint32_t(s.integer("cache.max_records")),
+          .most_passes = uint32_t(s.integer("cache.passes")),
+          .stop_share = float(s.real("cache.stop")),
+          .seed = uint32_t(s.integer("seed")),
+          .screen = {.density = float(s.real("cache.candidates")),
+                     .falloff = float(s.real("cache.candidates_falloff")),
+                     .depth_weight = float(s.real("cache.depth_weight")),
+                     .normal_weight = float(s.real("cache.normal_weight")),
+                     .irradiance_weight = float(s.real("cache.irradiance_weight")),
+                     .irradiance_noise = 2 * float(s.real("cache.noise"))}};
+}
+
+paths::LookupRoutes picture_routes(const Task& task) {
+  return paths::lookup_routes(task.automaton, task.enabled, task.own, task.effects.sky_apart);
+}
+
+paths::LookupRoutes routes_of_records(const Task& task) {
+  constexpr uint32_t k_tertiary = 1u << 2;
+  return paths::record_routes(task.automaton, picture_routes(task).parts, (task.own & k_tertiary) != 0,
+                              task.effects.specular || task.effects.solid_glass || task.effects.thin_glass);
+}
+
+CacheRoutes all_routes(const Task& task) {
+  const paths::LookupRoutes records = routes_of_records(task);
+  return {.picture = picture_routes(task),
+          .picture_gather = paths::gather_routes(task.automaton, task.enabled, records),
+          .records = records,
+          .records_gather = paths::gather_routes(task.automaton, records.parts, records)};
+}
+
+/// Texels brighter than this times the sky's mean are a sun, where records hold the sky's light.
+float sun_threshold(const Task& task) {
+  if (!task.settings.boolean("cache.environment")) return 0;
+  const uint32_t parts = paths::lookup_routes(task.automaton, task.enabled, task.own, true).parts;
+  return (parts >> shared::k_part_direct & 1u) != 0 ? float(task.settings.real("cache.environment_threshold"))
+                                                    : 0;
+}
+
+std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
+                                      const Task& task) {
+  return std::make_unique<CacheSolver>(device, compiler, slots, task);
+}
+
+}  // namespace
+
+const solvers::SolverType& type() {
+  static const solvers::SolverType all{.info = irradiance_cache::info(),
+                                       .make = make,
+                                       .least_slots = Cache::k_least_slots,
+                                       .sun_threshold = sun_threshold};
+  return all;
+}
+
+CacheSolver::CacheSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const Task& task)
+    : device_(device),
+      compiler_(compiler),
+      picture_routes_(picture_routes(task)),
+      record_routes_(routes_of_records(task)),
+      metric_(Metric(task.settings.choice("cache.metric"))),
+      cache_(device, compiler, slots, all_routes(task), read_options(task.settings)) {}
+
+const solvers::SolverInfo& CacheSolver::info() const { return irradiance_cache::info(); }
+
+gpu::Defines CacheSolver::defines() const { return Cache::defines(record_routes_, metric_); }
+
+solvers::Routing CacheSolver::routing(const Task& task) const {
+  return {.lookups = picture_routes(task),
+          .fallback = task.enabled,
+          .gather = paths::gather_routes(task.automaton, task.enabled, record_routes_)};
+}
+
+bool CacheSolver::serves(const Task& task) const {
+  return picture_routes(task).component == picture_routes_.component &&
+         routes_of_records(task).component == record_routes_.component;
+}
+
+CacheView CacheSolver::view(const Picture& picture) const {
+  CacheView view;
+  view.paths_frame = picture.frame;
+  view.paths_enabled = picture.task.enabled;
+  // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
+  view.records_frame = picture.frame_for(
+      {.lookups = record_routes_,
+       .fallback = record_routes_.parts,
+       .gather = paths::gather_routes(picture.task.automaton, record_routes_.parts, record_routes_)},
+      record_routes_.traced);
+  view.records_enabled = record_routes_.parts;
+  view.width = picture.width, view.height = picture.height;
+  view.scene_radius = picture.flat.scene_radius;
+  view.dark = !picture.flat.effects.lights;
+  return view;
+}
+
+void CacheSolver::adopt(transport::Wavefront& wavefront, const solvers::Solver& before) {
+  lacks_ = cache_.adopt(wavefront, dynamic_cast<const CacheSolver&>(before).cache_);
+}
+
+void CacheSolver::begin(const Picture& picture, solvers::Spoils spoils) {
+  spoils |= std::exchange(lacks_, solvers::k_spoils_nothing);
+  overlap_.reset();
+  cache_.look_from(view(picture));
+  if (spoils.places) {
+    cache_.clear();
+    return;
+  }
+  if (spoils.light) cache_.relight();
+  if (spoils.coverage) cache_.extend();
+}
+
+void CacheSolver::heed(const OptionValues& settings, bool interactive) {
+  if (interactive) cache_.pause(PauseAfter(settings.choice("cache.pause")));
+}
+
+bool CacheSolver::prepare(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
+  const bool progress = cache_.step(wavefront, picture.task.automaton, view(picture), cancel);
+  if (cache_.ready()) warn_of_full_cache();
+  return progress;
+}
+
+bool CacheSolver::estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,
+                                  bool anew, const Cancel& cancel) {
+  return cache_.tell_picture(wavefront, film, view(picture), anew, cancel);
+}
+
+void CacheSolver::warn_of_full_cache() {
+  const bool full = cache_.status().stop == StopReason::records;
+  const uint32_t at = full ? cache_.status().records : 0;
+  if (full && at != full_at_)
+    log::warning(
+        "the irradiance cache is full with {} records: where none serves, light is path traced, which is as "
+        "right and slower; cache.max_records gives it more room",
+        at);
+  full_at_ = at;
+}
+
+void CacheSolver::command(const std::string& name) { cache_.go_on(name == "step"); }
+
+}  // namespace lucerna::irradiance_cache

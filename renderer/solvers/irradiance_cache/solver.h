@@ -1,0 +1,80 @@
+#pragma once
+// The irradiance cache as the renderer sees it: cache.h with its options read from the settings, its views
+// and its report.
+#include <memory>
+
+#include "solvers/irradiance_cache/cache.h"
+#include "solvers/irradiance_cache/inspector.h"
+#include "solvers/irradiance_cache/placement_view.h"
+#include "solvers/irradiance_cache/report.h"
+#include "solvers/solver.h"
+
+namespace lucerna::irradiance_cache {
+
+const solvers::SolverType& type();
+
+class CacheSolver final : public solvers::Solver {
+ public:
+  /// Throws Error as Cache.
+  CacheSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const solvers::Task& task);
+
+  const solvers::SolverInfo& info() const override;
+  gpu::Defines defines() const override;
+  std::string hook() const override { return "irradiance_cache/vertex_hook.glsl"; }
+  void bind(gpu::Resources& resources) const override { cache_.bind(resources); }
+  solvers::Routing routing(const solvers::Task& task) const override;
+  bool serves(const solvers::Task& task) const override;
+
+  void adopt(transport::Wavefront& wavefront, const solvers::Solver& before) override;
+  void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
+  void heed(const OptionValues& settings, bool interactive) override;
+  bool ready() const override { return cache_.ready(); }
+  bool waits() const override { return cache_.status().waits; }
+  uint64_t published() const override { return cache_.status().published; }
+  bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
+               const solvers::Cancel& cancel) override;
+  bool warm() const override { return ready() || cache_.status().pass >= 2; }
+  bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const solvers::Picture& picture,
+                       bool anew, const solvers::Cancel& cancel) override;
+
+  void look_at(std::optional<vec2> place) override { looked_at_ = place; }
+  void draw(const solvers::Canvas& canvas, const solvers::Picture& picture) override;
+  std::shared_ptr<const solvers::Report> report(const solvers::Canvas& canvas,
+                                                const solvers::Picture& picture, bool sampled) override;
+  /// What report() is made of.
+  CacheReport state(const solvers::Canvas& canvas, const solvers::Picture& picture, bool sampled);
+  nlohmann::ordered_json statistics(const solvers::Canvas& canvas, const solvers::Picture& picture) override;
+  std::map<std::string, double> figures() const override;
+  void look_up_picture(const solvers::Canvas& canvas, const solvers::Picture& picture) override;
+  void command(const std::string& name) override;
+  void save(const std::string& file, const solvers::Picture& picture,
+            const solvers::Provenance& provenance) const override;
+  void load(const std::string& file, transport::Wavefront& wavefront, const solvers::Picture& picture,
+            const solvers::Provenance& provenance) override;
+
+  Cache& cache() { return cache_; }
+  const Cache& cache() const { return cache_; }
+
+ private:
+  CacheView view(const solvers::Picture& picture) const;
+  Inspector& inspector();
+  /// How many records serve the picture's pixels; looked at once a picture.
+  const Overlap& overlap(const solvers::Canvas& canvas, const solvers::Picture& picture);
+  void warn_of_full_cache();
+
+  gpu::Device& device_;
+  gpu::ShaderCompiler& compiler_;
+  paths::LookupRoutes picture_routes_, record_routes_;  ///< of the picture's paths, of the rays of records
+  Metric metric_;
+  Cache cache_;
+  /// What of an adopted cache does not serve here; of a new one all.
+  solvers::Spoils lacks_ = solvers::k_spoils_all;
+  std::unique_ptr<Inspector> inspector_;           ///< made when it is called for
+  std::unique_ptr<PlacementView> placement_view_;  ///< the same
+  std::optional<vec2> looked_at_;
+  Inspection inspection_;
+  std::optional<Overlap> overlap_;  ///< of the picture begun last
+  uint32_t full_at_ = 0;  ///< records at which a person was last told that there is no room for more
+};
+
+}  // namespace lucerna::irradiance_cache

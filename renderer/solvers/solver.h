@@ -1,0 +1,168 @@
+#pragma once
+// A way of computing light, at work. Path tracing alone needs none of this: the wavefront brings its light.
+// Others prepare something first (records, photons), which the wavefront's kernels then read at the vertices
+// of paths, and show it to a person.
+//
+// What calls these: session/renderer.h, in this order. A solver is made for a task with its kernels' needs
+// known; adopt() may hand it what the one before it had; begin() starts a picture, and says what of the
+// present work has been spoiled; prepare() is called until ready(); then paths are traced, and
+// estimate_errors() says what they read may be wrong by. Everything runs on one thread.
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "film/film.h"
+#include "paths/automaton.h"
+#include "scene/scene.h"
+#include "solvers/info.h"
+#include "solvers/report.h"
+#include "transport/frame.h"
+#include "transport/wavefront.h"
+#include "upload/flatten.h"
+
+namespace lucerna::solvers {
+
+/// What a solver is to do, and by which settings. Components in bits.
+struct Task {
+  const paths::Automaton& automaton;
+  const OptionValues& settings;
+  uint32_t enabled = 0;     ///< components that anybody computes
+  uint32_t own = 0;         ///< of these, this solver
+  upload::Effects effects;  ///< what the scene calls for
+};
+
+/// What of the paths is looked up: the tables of the automaton that paths carry (transport/frame.h).
+struct Routing {
+  paths::LookupRoutes lookups;
+  /// Components of paths that a lookup has left alone; 0: there are no such paths.
+  uint32_t fallback = 0;
+  /// What is looked up later, by paths that have passed a lookup on purpose.
+  paths::LookupRoutes gather;
+};
+
+/// The picture that is being made. Valid during a call.
+struct Picture {
+  const Task& task;
+  const upload::FlatScene& flat;
+  const scene::Camera& camera;
+  uint32_t width = 0, height = 0;
+  shared::Frame frame;  ///< of its paths
+  /// A frame for paths of the solver's own, from the same camera: with these routes and `enabled` components.
+  shared::Frame frame_for(const Routing& routing, uint32_t enabled) const;
+};
+
+/// The picture as it can be drawn over: its wavefront, whose frame is the picture's and whose stream is run,
+/// its film, and the coarse film that stands for pixels without samples.
+struct Canvas {
+  transport::Wavefront& wavefront;
+  const film::Film& film;
+  const film::Film& coarse;
+};
+
+/// What decides whether kept work fits a picture (Solver::save, load).
+struct Provenance {
+  std::string scene;                       ///< its name, for messages
+  std::map<std::string, uint64_t> hashes;  ///< of the scene: "geometry", "lights", ...
+  std::string view;                        ///< camera and size, as a text that only that view gives
+};
+
+using Cancel = std::function<bool()>;
+
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual const SolverInfo& info() const = 0;
+
+  // What kernels need that read it.
+
+  /// #defines for the wavefront's kernels.
+  virtual gpu::Defines defines() const { return {}; }
+  /// GLSL file that is called at every vertex (shaders/transport/vertex_hook.glsl), "" for none: relative to
+  /// shaders/, or absolute.
+  virtual std::string hook() const { return ""; }
+  /// Sets what the hook reads; called again after Wavefront::rebind_lookup().
+  virtual void bind(gpu::Resources& resources) const { (void)resources; }
+  virtual Routing routing(const Task& task) const;
+  /// Whether kernels and solver, made for another task, do for this one: else both are made anew.
+  virtual bool serves(const Task& task) const = 0;
+
+  // Its work.
+
+  /// Takes what another one of its kind had, made for another task or other kernels of the same scene, as far
+  /// as it serves here; what does not is spoiled by the next begin(). That one stays as it is. Without this
+  /// call all is.
+  virtual void adopt(transport::Wavefront& wavefront, const Solver& before) { (void)wavefront, (void)before; }
+  /// The picture begins anew. `spoils`: what changes since the last one leave of this solver's work.
+  virtual void begin(const Picture& picture, Spoils spoils) = 0;
+  /// After any setting has changed, whether or not the picture begins anew. `interactive`: somebody is there
+  /// to lead preparation from step to step, so that it may wait.
+  virtual void heed(const OptionValues& settings, bool interactive) { (void)settings, (void)interactive; }
+  virtual bool ready() const { return true; }
+  /// Preparation waits for a command.
+  virtual bool waits() const { return false; }
+  /// Grows whenever what lookups read while it is being prepared has become better.
+  virtual uint64_t published() const { return 0; }
+  /// One bounded piece of preparation, cancellable between bounces; on return the wavefront's frame is the
+  /// picture's. False when it was cancelled (it will be done again), or while it waits.
+  virtual bool prepare(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
+    (void)wavefront, (void)picture, (void)cancel;
+    return true;
+  }
+  /// Preparation is long, and all kernels that it needs have run.
+  virtual bool warm() const { return ready(); }
+  /// Goes on telling the film what the picture's lookups may be wrong by, a piece at a time, until
+  /// Film::records_told(). Only when ready(). `anew`: the picture has begun. False when it was cancelled.
+  virtual bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,
+                               bool anew, const Cancel& cancel) {
+    (void)wavefront, (void)picture, (void)anew, (void)cancel;
+    film.tell_records();
+    return true;
+  }
+
+  // What a person sees and says.
+
+  /// Where somebody looks in the picture, 0..1 to the right and down; nothing: nowhere.
+  virtual void look_at(std::optional<vec2> place) { (void)place; }
+  /// Draws over the film's picture what the settings of its views ask for. The stream is run.
+  virtual void draw(const Canvas& canvas, const Picture& picture) { (void)canvas, (void)picture; }
+  /// Of what draw() has shown last. `sampled`: every pixel has a sample.
+  virtual std::shared_ptr<const Report> report(const Canvas& canvas, const Picture& picture,
+                                               bool sampled) = 0;
+  /// Figures for --stats: any JSON.
+  virtual nlohmann::ordered_json statistics(const Canvas& canvas, const Picture& picture) {
+    (void)canvas, (void)picture;
+    return nullptr;
+  }
+  /// The same by name and without a look at the picture, for benches.
+  virtual std::map<std::string, double> figures() const { return {}; }
+  /// Looks its light up at every pixel that has samples, and forgets it: to be timed.
+  virtual void look_up_picture(const Canvas& canvas, const Picture& picture) { (void)canvas, (void)picture; }
+  /// One of SolverInfo::commands.
+  virtual void command(const std::string& name) { (void)name; }
+  /// Where SolverInfo::file: writes the work, when ready; takes it from a file in place of what there is,
+  /// then the picture is to begin anew with nothing spoiled. Throw Error located at `file`: it is not ready,
+  /// cannot be written, is no such file, or does not fit; then everything stays as it was.
+  virtual void save(const std::string& file, const Picture& picture, const Provenance& provenance) const {
+    (void)file, (void)picture, (void)provenance;
+  }
+  virtual void load(const std::string& file, transport::Wavefront& wavefront, const Picture& picture,
+                    const Provenance& provenance) {
+    (void)file, (void)wavefront, (void)picture, (void)provenance;
+  }
+};
+
+/// A way of computing light: what it says of itself, and how one is made.
+struct SolverType {
+  const SolverInfo& info;
+  /// Null: nothing but the wavefront is needed. Throws Error: memory, kernels.
+  std::unique_ptr<Solver> (*make)(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
+                                  const Task& task) = nullptr;
+  /// Paths in flight that it needs at least.
+  uint32_t least_slots = 0;
+  /// upload::FlatScene::sun_threshold that it asks for; 0 or null: none. Task::effects are not known yet.
+  float (*sun_threshold)(const Task& task) = nullptr;
+};
+
+}  // namespace lucerna::solvers

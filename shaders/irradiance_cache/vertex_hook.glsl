@@ -1,0 +1,128 @@
+// The irradiance cache at the vertices of paths: what they read of records, the states in which they go on where they have
+// read or found none, and what they note for its building (k_probe_*).
+#ifndef LUCERNA_IRRADIANCE_CACHE_VERTEX_HOOK
+#define LUCERNA_IRRADIANCE_CACHE_VERTEX_HOOK
+#include "transport/vertex_hook.glsl"
+#include "irradiance_cache/lookup.glsl"
+#include "irradiance_cache/guide.glsl"
+#include "irradiance_cache/carried.glsl"
+
+struct cache_Vertex {
+  bool looks;             // records are asked for
+  bool alone;             // ... and a side finds none
+  bool gathers;           // all sides that find none are to gather
+  uint guiding;           // record that says where light comes from, k_no_guide: none
+  Guide guide;
+  vec3 smooth_side;
+  bool noted;             // what is noted here, k_candidate_texels of it
+  vec4 note, note_facing;
+};
+
+bool cache_carries() { return cache.probing == k_probe_carry || cache.probing == k_probe_carry_on; }
+// Beyond the lookup, where what records' rays read is noted.
+bool cache_next_read(uint state) { return cache.probing == k_probe_next && state >= k_fallback_state; }
+bool cache_coin(VertexIn v) { return (sample_vertex_bits(v.random, v.depth, k_pad_light_choice).x & 1u) != 0u; }
+
+// What lies behind this vertex's diffuse lobe: from the records, or where there are none by going on in the states that leave
+// nothing out.
+cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
+  cache_Vertex x;
+  uint routes = cache.routes[v.state];
+  bool beyond = cache.probing == k_probe_beyond && v.state >= k_fallback_state;
+  bool screen = cache.probing == k_probe_screen && v.depth == 0u;
+  bool next_read = cache_next_read(v.state);
+  x.looks = (routes != k_no_routes || beyond || next_read || screen) && v.bsdf.p_diffuse + v.bsdf.p_transmitted > 0.0;
+  x.noted = false;
+  x.note = vec4(0.0);
+  x.note_facing = vec4(0.0);
+  x.alone = false;
+  x.gathers = true;
+  x.guiding = k_no_guide;
+  bool notes_all = cache.probing == k_probe_screen || cache.probing == k_probe_reads || next_read;
+  // Records stand on the smooth surface, not on its facets nor its normal map.
+  x.smooth_side = dot(v.surface.normal_v, v.side) < 0.0 ? -v.surface.normal_v : v.surface.normal_v;
+  vec3 cached[k_component_count];
+  for (uint c = 0u; c < k_component_count; ++c) cached[c] = vec3(0.0);
+  for (int facing = 0; facing < k_cache_sides; ++facing) {
+    vec3 albedo = v.path.throughput * (facing == 0 ? v.bsdf.diffuse_albedo : v.bsdf.transmitted_albedo) * k_inv_pi;
+    bool asks = x.looks && max3(albedo) > 0.0;
+    // What lies on that side of the surface.
+    uint medium = 0u;
+#if LUCERNA_VOLUMES
+    medium = facing == 0 || !v.surface.parameters.solid ? v.path.medium : v.surface.front ? v.surface.material + 1u : 0u;
+#endif
+    float sign = facing == 0 ? 1.0 : -1.0;
+    Cached found = cache_lookup(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], medium, asks);
+    bool missing = asks && found.weight <= 0.0;
+    // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
+    bool notes = ((missing && found.guide == k_no_guide) || (asks && notes_all)) && cache.probing != k_probe_none && !cache_carries() &&
+                 (cache.probing != k_probe_next || next_read) && !(beyond && cache_coin(v));
+    bool servable = cache_can_serve(sign * x.smooth_side, sign * v.to_world[2]);
+    if (notes && (servable || screen)) {
+      uint origin = beyond ? k_origin_recursive : v.depth == 0u ? k_origin_screen : k_origin_world;
+      x.noted = true;
+      x.note = vec4(offset_origin(v.surface, sign * v.side), (servable ? 1.0 : -1.0) * float(1u + origin + k_candidate_medium * medium));
+      x.note_facing = vec4(sign * x.smooth_side, uintBitsToFloat(facet_pack(sign * v.side)));
+    }
+    x.alone = x.alone || missing;
+    x.gathers = x.gathers && (!missing || found.guide != k_no_guide);
+    if (facing == 0) x.guiding = missing ? found.guide : k_no_guide;
+    for (uint p = 0u; p < k_part_count; ++p)
+      for (uint c = 0u; c < k_component_count; ++c)
+        if (found.weight > 0.0 && ((routes >> (4u * p)) & 15u) == c) cached[c] += albedo * found.part[p];
+  }
+  for (uint c = 0u; c < k_component_count; ++c) o.radiance[c] += x.alone ? vec3(0.0) : cached[c];
+  o.sky_known = o.sky_known || (x.looks && !x.alone && (routes & 15u) < k_component_count);  // part 0: k_part_direct
+  o.samples_lights = o.samples_lights && cache.probing == k_probe_none;
+  return x;
+}
+
+vec3 cache_cosine(VertexIn v, inout cache_Vertex x, vec2 u, vec3 cosine) {
+  // Not while places are looked for: these are not to hang on the light.
+  bool guided = x.alone && x.gathers && (cache.probing == k_probe_none || cache_carries());
+  x.guide = make_guide(guided ? x.guiding : k_no_guide, v.to_world[2]);
+  return x.guide.total > 0.0 ? guide_sample(x.guide, u) * v.to_world : cosine;
+}
+
+// What is met is weighed against light samples by the density without the guide: these weights need but add up to 1.
+void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b) {
+  if (x.guide.total > 0.0 && !b.transmitted && b.pdf > 0.0)
+    b.weight *= b.pdf / (b.pdf + v.bsdf.p_diffuse * k_inv_pi * b.wi.z * (guide_density(x.guide, direction) - 1.0));
+}
+
+// In states that pass this lookup over, or all, or that have done with them.
+uint cache_state(VertexIn v, cache_Vertex x, BsdfSample b, uint state) {
+  bool passes_all = (x.alone && !x.gathers) || cache.probing == k_probe_beyond || cache.probing == k_probe_next ||
+                    (cache.probing == k_probe_carry_on && !x.alone);
+  uint from = passes_all ? k_fallback_state : x.alone ? k_gather_state : k_known_state;
+  bool another = x.looks && b.event == k_event_diffuse && state < k_fallback_state && (x.alone || passes_all || state >= k_gather_state);
+  return another ? state % k_gather_state + from : state;
+}
+
+void cache_leave(VertexIn v, inout cache_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on) {
+  bool diffuse = l.b.event == k_event_diffuse, carries = cache_carries();
+  bool ends_here = cache.probing == k_probe_lookups || cache.probing == k_probe_reads || cache_next_read(v.state);
+  go_on = go_on && cache.probing != k_probe_screen && !(ends_here && x.looks && diffuse);
+  // Of the lookups beyond the first a coin chooses one, and what it brings counts for those it passes over.
+  bool reads = carries && x.looks && !x.alone && diffuse, later = reads && v.state >= k_fallback_state;
+  if (later) throughput *= 2.0;
+  if (reads && l.finite && (later ? cache_coin(v) : cache.probing == k_probe_carry)) {
+    uint medium = 0u;
+#if LUCERNA_VOLUMES
+    medium = !l.b.transmitted || !v.surface.parameters.solid ? v.path.medium : v.surface.front ? v.surface.material + 1u : 0u;
+#endif
+    x.noted = true;
+    x.note = vec4(v.surface.position, uintBitsToFloat(1u + v.state + k_carried_medium * medium));
+    x.note_facing = vec4(l.b.transmitted ? -x.smooth_side : x.smooth_side, uintBitsToFloat(carried_pack(throughput * k_inv_pi)));
+    go_on = false;
+  }
+  // What no record serves is path traced: nothing of it is read.
+  go_on = go_on && !(carries && x.looks && diffuse && x.alone && !x.gathers);
+}
+
+void cache_end(VertexIn v, cache_Vertex x) {
+  if (!x.noted) return;
+  candidates[v.slot * k_candidate_texels] = x.note;
+  candidates[v.slot * k_candidate_texels + 1u] = x.note_facing;
+}
+#endif
