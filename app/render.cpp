@@ -344,8 +344,8 @@ int render(const RenderArguments& a) {
     for (const solvers::SolverInfo* solver : solvers::registered())
       if (r.solver(solver->name))
         advice += fmt::format("{}other settings of {} do: {} against its noise, {} against its bias",
-                              advice.empty() ? "" : "; ", solver->title, fmt::join(solver->against_noise, ", "),
-                              fmt::join(solver->against_bias, ", "));
+                              advice.empty() ? "" : "; ", solver->title,
+                              fmt::join(solver->against_noise, ", "), fmt::join(solver->against_bias, ", "));
     report_unreached(*r.adaptive(), advice);
   }
   for (const std::string& file : a.outputs) r.save(file);

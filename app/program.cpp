@@ -1,0 +1,312 @@
+// What may stand on the command line, and what is done with it.
+#include "app/program.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include "app/verbs.h"
+#include "base/error.h"
+#include "base/huge_pages.h"
+#include "base/log.h"
+#include "bench/matrix.h"
+#include "plan/settings.h"
+#include "solvers/registry.h"
+#include "ui/viewer.h"
+
+namespace lucerna::app {
+namespace {
+
+constexpr double k_gib = 1024.0 * 1024 * 1024;
+
+std::string settings_help() {
+  std::string text = "\nSettings for --set KEY=VALUE (and settings.json beside a scene):\n";
+  for (const OptionInfo& o : plan::options()) {
+    const std::string range = describe_values(o);
+    text +=
+        fmt::format("  {:<24}{} [{}] {}\n", o.key, o.help, o.fallback.empty() ? "none" : o.fallback, range);
+  }
+  return text;
+}
+
+/// CLI11's ranges let a NaN through.
+CLI::Validator finite() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && std::isfinite(value)
+                   ? std::string()
+                   : fmt::format("'{}': expected a finite number", text);
+      },
+      "");
+}
+
+/// The command line: what each verb takes, added verb by verb, and which of them is meant.
+class Program {
+ public:
+  Program();
+  int run(int argc, char** argv);
+
+ private:
+  void add_viewer();
+  void add_render();
+  void add_small_verbs();
+  void add_bench();
+  void add_bench_rays();
+  void add_small_benches();
+  void add_scene_options(CLI::App* verb);
+  int view();
+
+  CLI::App app_{"Lucerna: watch global illumination being computed, component by component"};
+  std::string scene_, device_, script_;
+  std::vector<std::string> set_;
+  bool verbose_ = false, stay_ = false;
+  scene::LoadOptions scenes_;
+  double scene_memory_ = double(scene::k_scene_bytes) / k_gib;
+
+  CLI::App *render_ = nullptr, *info_ = nullptr, *devices_ = nullptr, *compare_ = nullptr, *bench_ = nullptr,
+           *rays_ = nullptr, *sort_ = nullptr, *lookup_ = nullptr, *interpolation_ = nullptr;
+  RenderArguments r;
+  std::string info_scene_;
+  bool info_json_ = false, devices_json_ = false;
+  CompareArguments c;
+  BenchArguments bm;
+  BenchRaysArguments b;
+  BenchSortArguments bs;
+  BenchLookupArguments bl;
+  BenchInterpolationArguments bi;
+};
+
+Program::Program() {
+  app_.set_version_flag("--version", LUCERNA_VERSION);
+  app_.footer(settings_help());
+  add_viewer();
+  add_render();
+  add_small_verbs();
+  add_bench();
+  add_bench_rays();
+  add_small_benches();
+  app_.require_subcommand(0, 1);
+}
+
+void Program::add_viewer() {
+  app_.add_option("SCENE", scene_, "glTF scene (.gltf or .glb) to open in the viewer");
+  app_.add_option("--device", device_, "device: index, part of a name, cpu or gpu (also LUCERNA_DEVICE)");
+  app_.add_option("--set", set_, "viewer: KEY=VALUE; see below")->allow_extra_args(false);
+  app_.add_option("--script", script_,
+                  "viewer: file with commands, one a line; 'help' under the log lists them. Its end ends the "
+                  "program, with 1 after an error");
+  app_.add_flag("-v,--verbose", verbose_, "say more on standard error");
+  app_.add_flag("--stay", stay_, "viewer: the window stays when the script has ended");
+  add_scene_options(&app_);
+}
+
+void Program::add_scene_options(CLI::App* verb) {
+  verb->add_flag("--allow-outside", scenes_.outside,
+                 "let scenes name files outside their folder (\"..\", absolute paths, symbolic links)");
+  verb->add_option("--scene-memory", scene_memory_,
+                   "GiB that a scene's files, images and geometry may take, every instance counted; a "
+                   "scene that asks for more is refused")
+      ->check(finite() & CLI::Range(0.001, 1e6))
+      ->capture_default_str();
+}
+
+void Program::add_render() {
+  render_ = app_.add_subcommand("render", "render a scene to files, without a window");
+  render_->add_option("SCENE", r.scene, "glTF scene")->required();
+  render_
+      ->add_option(
+          "-o,--output", r.outputs,
+          "OUT.exr or OUT.png; may be given several times, or not at all where --stats or --ledger is")
+      ->allow_extra_args(false);
+  render_->add_option("--size", r.size, "picture, WIDTHxHEIGHT")->capture_default_str();
+  render_->add_option("--camera", r.camera, "name of a scene camera");
+  render_->add_option(
+      "--error", r.error,
+      "relative error that every tile is to reach, such as 0.02: samples go where it is not reached yet");
+  render_->add_option("--samples", r.samples, "samples a pixel; with --error, the most that one may get")
+      ->check(CLI::Range(int64_t(1), int64_t(1) << 20));
+  render_->add_option("--time", r.seconds, "stop after this many seconds");
+  render_->add_option("--seed", r.seed, "seed of all random decisions")
+      ->check(CLI::Range(int64_t(0), int64_t(4294967295)));
+  render_->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
+  render_->add_option("--device", r.device, "as above");
+  render_->add_option("--ledger", r.ledger, "time, rays and error as they went on, as CSV");
+  render_->add_option("--reference", r.reference,
+                      "EXR of the same picture, converged: ledger and figures then tell the true error");
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    if (!solver->file) continue;
+    render_->add_option(
+        "--" + solver->name + "-load", r.solver_load[solver->name],
+        "begin with " + solver->file->content + " in this file, of the same scene and settings");
+    render_->add_option("--" + solver->name + "-save", r.solver_save[solver->name],
+                        "write " + solver->file->content + ", once they are complete");
+  }
+  render_->add_option("--stats", r.stats, "write figures of the run as JSON");
+  render_->add_flag("--quiet", r.quiet, "no progress line");
+  add_scene_options(render_);
+  render_->footer(settings_help());
+}
+
+void Program::add_small_verbs() {
+  info_ = app_.add_subcommand("info", "say what is in a scene");
+  info_->add_option("SCENE", info_scene_, "glTF scene")->required();
+  info_->add_flag("--json", info_json_, "as JSON");
+  add_scene_options(info_);
+  devices_ = app_.add_subcommand("devices", "list the Vulkan devices");
+  devices_->add_flag("--json", devices_json_, "as JSON");
+  compare_ = app_.add_subcommand("compare", "compare two images");
+  compare_->add_option("A", c.a, "image")->required();
+  compare_->add_option("B", c.b, "reference")->required();
+  compare_->add_option("--layer", c.layer, "layer instead of R, G, B: primary, secondary, ...");
+  compare_->add_flag("--json", c.json, "as JSON");
+  compare_->add_option("--max-relmse", c.max_relmse, "exit with 1 when the relative MSE is above this")
+      ->check(finite());
+}
+
+void Program::add_bench() {
+  bench_ = app_.add_subcommand(
+      "bench", "measure what accuracy costs in time: scenes x settings x budgets, with a page to read");
+  bench_->require_subcommand(0, 1);
+  bench_->add_option("MATRIX", bm.matrix, "matrix file (JSON), see below");
+  for (const bench::BuiltinInfo& info : bench::builtin_matrices())
+    bench_->add_flag_callback(
+        "--" + info.name, [this, name = info.name] { bm.built_in.push_back(name); }, info.help);
+  bench_->add_option("--report", bm.report, "folder to write to and to go on in; new, empty or a bench's")
+      ->capture_default_str();
+  bench_->add_option("--references", bm.references,
+                     "folder of the reference pictures [references in the report folder]");
+  bench_->add_option("--repeats", bm.repeats, "renders of each cell, instead of the matrix's")
+      ->check(CLI::Range(1, 100));
+  bench_->add_option("--device", bm.device, "as above");
+  bench_->add_flag("--quiet", bm.quiet, "no progress");
+  bench_->add_option("--compare", bm.compare, "OLD NEW: ratios of two reports (folders or report.json)")
+      ->expected(2);
+  bench_->add_option("--page", bm.page, "make report.html of a report folder again, measuring nothing");
+  add_scene_options(bench_);
+  bench_->footer(bench::k_matrix_help);
+}
+
+void Program::add_bench_rays() {
+  rays_ = bench_->add_subcommand("rays", "rays a second of every tracer, and of Embree as it comes");
+  rays_->add_option("SCENE", b.scene, "glTF scene")->required();
+  rays_->add_option("--camera", b.camera, "name of a scene camera");
+  rays_->add_option("--rays", b.rays, "primary rays")
+      ->check(CLI::Range(64u, 1u << 22))
+      ->capture_default_str();
+  rays_->add_option("--repeats", b.repeats, "measurements of each figure")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  rays_->add_option("--width", b.width, "width of the path-traced frame")
+      ->check(CLI::Range(1u, 16384u))
+      ->capture_default_str();
+  rays_->add_option("--height", b.height, "its height")->check(CLI::Range(1u, 16384u))->capture_default_str();
+  rays_->add_option("--samples", b.samples, "its samples a pixel; 0: no frame")
+      ->check(CLI::Range(0u, 1u << 20))
+      ->capture_default_str();
+  rays_->add_option("--seed", b.seed, "seed of the rays")->capture_default_str();
+  rays_->add_option("--flat", b.flat, "write the flattened scene for lucerna-raybench");
+  rays_->add_option("--device", b.device, "as above");
+  rays_->add_flag("--json", b.json, "as JSON");
+  add_scene_options(rays_);
+}
+
+void Program::add_small_benches() {
+  const auto measured = [](CLI::App* verb, auto& a, int least_repeats) {
+    verb->add_option("--repeats", a.repeats, "measurements of each figure")
+        ->check(CLI::Range(least_repeats, 1000))
+        ->capture_default_str();
+    verb->add_option("--json", a.json, "file to write the figures to");
+    verb->add_option("--device", a.device, "as above");
+  };
+  sort_ = bench_->add_subcommand(
+      "sort", "elements a second of prefix sum and radix sort on the device, and of the C++ library's");
+  sort_->add_option("--sizes", bs.sizes, "elements to sort")->check(CLI::Range(1u, 1u << 22));
+  sort_->add_option("--seed", bs.seed, "seed of the keys")->capture_default_str();
+  measured(sort_, bs, 5);
+  lookup_ =
+      bench_->add_subcommand("lookup", "building the octree of spheres and asking it, against a plain grid");
+  lookup_->add_option("--sizes", bl.sizes, "spheres")->check(CLI::Range(1u, 1u << 22));
+  lookup_->add_option("--queries", bl.queries, "points to look up")
+      ->check(CLI::Range(1u, 1u << 22))
+      ->capture_default_str();
+  lookup_->add_option("--seed", bl.seed, "seed of spheres and points")->capture_default_str();
+  measured(lookup_, bl, 1);
+  interpolation_ =
+      bench_->add_subcommand("interpolation",
+                             "lookups a second in what solvers have prepared for a scene, by the ways of "
+                             "looking up that they offer");
+  interpolation_->add_option("SCENE", bi.scene, "glTF scene")->required();
+  interpolation_->add_option("--width", bi.width, "of the picture")
+      ->check(CLI::Range(16u, 4096u))
+      ->capture_default_str();
+  interpolation_->add_option("--height", bi.height, "its height")
+      ->check(CLI::Range(16u, 4096u))
+      ->capture_default_str();
+  interpolation_->add_option("--samples", bi.samples, "samples a pixel")
+      ->check(CLI::Range(1u, 1u << 20))
+      ->capture_default_str();
+  interpolation_->add_option("--set", bi.set, "KEY=VALUE, as of render")->allow_extra_args(false);
+  interpolation_->add_option("--reference", bi.reference,
+                             "EXR of the same picture, converged: tells errors too");
+  measured(interpolation_, bi, 1);
+  add_scene_options(interpolation_);
+}
+
+int Program::run(int argc, char** argv) {
+  try {
+    app_.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app_.exit(e) == 0 ? 0 : 1;
+  }
+  if (verbose_) log::set_console_level(log::Level::info);
+  scenes_.most_bytes = uint64_t(scene_memory_ * k_gib);
+  r.scenes = b.scenes = bi.scenes = bm.scenes = scenes_;
+  for (std::string* device : {&r.device, &b.device, &bs.device, &bl.device, &bi.device, &bm.device})
+    if (device->empty()) *device = device_;
+  if (*render_) return render(r);
+  if (*info_) return info(info_scene_, info_json_, scenes_);
+  if (*devices_) return devices(devices_json_);
+  if (*compare_) return compare(c);
+  if (*rays_) return bench_rays(b);
+  if (*sort_) return bench_sort(bs);
+  if (*lookup_) return bench_lookup(bl);
+  if (*interpolation_) return bench_interpolation(bi);
+  if (*bench_) {
+    for (int i = 0; i < argc; ++i) bm.command += std::string(i ? " " : "") + (i ? argv[i] : "lucerna");
+    return bench_matrix(bm);
+  }
+  return view();
+}
+
+int Program::view() {
+  session::Session session({.device = device_, .validation = false, .shaders = {}, .scenes = scenes_});
+  ui::ViewerOptions options;
+  options.scene = scene_;
+  options.set = set_;
+  options.stay = stay_;
+  if (!script_.empty()) {
+    std::ifstream in(script_);
+    if (!in) throw Error(script_, "cannot be read");
+    for (std::string line; std::getline(in, line);) options.script.push_back(line);
+    if (options.script.empty()) options.script.emplace_back();  // an empty script ends, too
+    options.script_name = script_;
+  }
+  return ui::run_viewer(session, options);
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  separate_large_allocations();
+  try {
+    return Program().run(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "lucerna: %s\n", e.what());
+    return 1;
+  }
+}
+
+}  // namespace lucerna::app
