@@ -22,10 +22,10 @@
 #include "scene/scene.h"
 #include "schedule/adaptive.h"
 #include "schedule/uniform.h"
-#include "session/cache_report.h"
 #include "solvers/irradiance_cache/cache.h"
 #include "solvers/irradiance_cache/file.h"
 #include "solvers/irradiance_cache/info.h"
+#include "solvers/irradiance_cache/report.h"
 #include "solvers/registry.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
@@ -172,14 +172,14 @@ class Renderer {
   void look_up_picture();
   /// Session::inspect; pictures from now on show it.
   void inspect(std::optional<vec2> at) { looked_at_ = at; }
-  /// Whether building of the cache waits for one of these (Session::step_cache), and these; nothing where
+  /// Whether building of the cache waits for one of these (Session::solver_command), and these; nothing where
   /// nothing is looked up.
   bool cache_waits() const { return cache_ && cache_->status().waits; }
   void step_cache();
   void run_cache();
   /// Of the cache as the last picture() has shown it; null where there is none. How many records serve each
   /// pixel is looked at once, when there are samples: a pass over the film.
-  std::shared_ptr<const CacheReport> cache_report();
+  std::shared_ptr<const irradiance_cache::CacheReport> cache_report();
 
  private:
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.

@@ -72,13 +72,14 @@ void Renderer::look_up_picture() {
                       irradiance_cache::Cache::defines(record_routes_, cache_options().metric));
 }
 
-std::shared_ptr<const CacheReport> Renderer::cache_report() {
+std::shared_ptr<const irradiance_cache::CacheReport> Renderer::cache_report() {
   if (!cache_ || !wavefront_) return nullptr;
-  auto report = std::make_shared<CacheReport>();
+  auto report = std::make_shared<irradiance_cache::CacheReport>();
   report->status = cache_->status();
   const auto placement = irradiance_cache::PlacementShow(settings_.choice("overlay.placement"));
   if (placement != irradiance_cache::PlacementShow::off)
     report->placement = irradiance_cache::placement_drawn(placement, cache_->placement());
+  report->placed = cache_->records().size();
   report->room = cache_->records().capacity();
   report->color = uint32_t(settings_.choice("overlay.records_by"));
   report->scale = cache_->scale(report->color);

@@ -12,6 +12,8 @@
 #include "base/log.h"
 #include "base/timer.h"
 #include "session/renderer.h"
+#include "solvers/irradiance_cache/info.h"
+#include "solvers/irradiance_cache/report.h"
 
 namespace lucerna::session {
 
@@ -161,15 +163,12 @@ struct Session::Impl {
     next.paused = paused;
     next.finished = r.done();
     next.preparing.clear();
-    if (const irradiance_cache::Cache* cache = r.cache(); cache && !cache->ready()) {
-      const irradiance_cache::CacheStatus& c = cache->status();
-      next.preparing =
-          c.waits ? fmt::format("cache waits: {}", stage_words(*c.last))
-          : c.relighting > 0
-              ? fmt::format("cache: relighting {} records, {:.0f} %", c.relighting, 100 * c.relit)
-              : fmt::format("cache, pass {}: {} records", c.pass + 1, cache->records().size());
-    }
-    next.cache = r.cache_report();
+    next.reports.clear();
+    if (const auto told = r.cache_report())
+      next.reports.push_back(
+          std::make_shared<solvers::Report>(irradiance_cache::make_report(*told, r.settings())));
+    for (const auto& report : next.reports)
+      if (next.preparing.empty()) next.preparing = report->preparing;
     next.seconds = r.seconds();
     next.camera = r.camera();
     next.tracer = r.tracer_name();
@@ -437,25 +436,22 @@ void Session::inspect(std::optional<vec2> at) {
 
 Saved Session::save(const std::filesystem::path& file) { return impl_->post_save(file, false); }
 
-Saved Session::save_cache(const std::filesystem::path& file) { return impl_->post_save(file, true); }
+Saved Session::solver_save(const std::string&, const std::filesystem::path& file) {
+  return impl_->post_save(file, true);
+}
 
-void Session::load_cache(const std::filesystem::path& file) {
+void Session::solver_load(const std::string&, const std::filesystem::path& file) {
   impl_->post([s = impl_.get(), file](Renderer& r) {
     r.load_cache(file);
     s->restarted();
   });
 }
 
-void Session::step_cache() {
-  impl_->post([s = impl_.get()](Renderer& r) {
-    r.step_cache();
-    s->paused = false;
-  });
-}
-
-void Session::run_cache() {
-  impl_->post([s = impl_.get()](Renderer& r) {
-    r.run_cache();
+void Session::solver_command(const std::string& solver, const std::string& command) {
+  impl_->post([s = impl_.get(), solver, command](Renderer& r) {
+    if (solver != irradiance_cache::info().name || (command != "step" && command != "run"))
+      throw Error(solver, fmt::format("there is no command '{}'", command));
+    command == "step" ? r.step_cache() : r.run_cache();
     s->paused = false;
   });
 }

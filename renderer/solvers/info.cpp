@@ -2,6 +2,12 @@
 
 namespace lucerna::solvers {
 
+const CommandInfo* find_command(const SolverInfo& solver, std::string_view name) {
+  for (const CommandInfo& command : solver.commands)
+    if (command.name == name) return &command;
+  return nullptr;
+}
+
 Spoils spoiled_by(const SolverInfo& solver, scene::Change edit) {
   for (const ChangeRow& row : solver.changes)
     if (const auto* what = std::get_if<scene::Change>(&row.what); what && *what == edit) return row.spoils;

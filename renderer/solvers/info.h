@@ -51,6 +51,7 @@ struct ViewInfo {
   /// Of a choice: the values that the key goes through, in a ring; none: all of them.
   std::vector<std::string> ring;
   bool asks_pointer = false;  ///< while it is on, a pointer at rest in the picture asks what lies there
+  std::vector<std::string> refined_by{};  ///< choices that the menu offers while it is on
 };
 
 /// Something that a person can tell the solver to do: the command SOLVER.NAME.
@@ -67,6 +68,7 @@ struct CommandInfo {
 struct FileInfo {
   std::string extension;  ///< ".cache"
   std::string content;    ///< for messages: "the records of the irradiance cache"
+  std::string fits;       ///< behind "a file": "of the same scene; what this view is missing is added"
 };
 
 /// A matrix for `lucerna bench --NAME` (bench/matrix.h).
@@ -91,12 +93,16 @@ struct SolverInfo {
   std::vector<CommandInfo> commands{};
   std::optional<FileInfo> file{};
   std::vector<BenchInfo> benches{};
+  /// Settings by which its work gets less noise, and less bias, that samples do not take away: for advice.
+  std::vector<std::string> against_noise{}, against_bias{};
   /// Settings (JSON objects as in a matrix) that `lucerna bench --full` measures besides its own.
   std::vector<std::string> bench_settings{};
 
   bool has_panel() const { return !options.empty() || !views.empty() || !commands.empty(); }
 };
 
+/// Null when there is no such command.
+const CommandInfo* find_command(const SolverInfo& solver, std::string_view name);
 /// By the solver's own rows: of an edit, k_spoils_all where there is no row.
 Spoils spoiled_by(const SolverInfo& solver, scene::Change edit);
 /// Of a setting that is the solver's own or nobody's: k_spoils_all where no row fits. Settings of another

@@ -2,8 +2,11 @@
 // What a solver tells a person, as plain data: its state, its panel, the legends of what it has drawn over
 // the picture, a card on what lies under the pointer. The window draws all of it without knowing whose it is.
 // Made on the session's thread, published as a whole.
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -38,8 +41,8 @@ struct ChoiceButtons {
 /// Buttons for commands of the solver, side by side.
 struct CommandButtons {
   struct Button {
-    std::string command;  ///< whole: "cache.step"
-    std::string label, help;
+    std::string command;  ///< CommandInfo::name
+    std::string help;     ///< as things stand; its key is added while it is enabled
     bool enabled = true;
   };
   std::vector<Button> buttons;
@@ -59,7 +62,8 @@ struct Histogram {
   };
   std::vector<Column> columns;
 };
-/// A table: a row a thing. The first column is narrow; where there is little room `droppable` is left out.
+/// A table: a row a thing. The first column is narrow and without a heading; where there is little room
+/// `droppable` is left out.
 struct Table {
   struct Row {
     std::vector<std::string> cells;
@@ -89,7 +93,10 @@ struct StepStrip {
   std::vector<Step> steps;
   int last = -1;  ///< -1: none yet
 };
-struct Gap {};
+/// In design pixels.
+struct Gap {
+  float size = 4;
+};
 
 using PanelItem = std::variant<ValueRow, Paragraph, OptionRow, ChoiceButtons, CommandButtons, ViewButtons,
                                Histogram, Table, Parts, StepStrip, Gap>;
@@ -103,8 +110,8 @@ struct PanelSection {
 /// The legend of something drawn over the picture.
 struct Legend {
   struct Mark {
-    vec3 ink{0};  ///< sRGB, 0..1
-    std::string text;
+    vec3 ink{0};       ///< sRGB, 0..1
+    std::string text;  ///< "": the next mark stands close by, and its text is for both
   };
   struct Tick {
     float at = 0;  ///< 0..1 along the ramp
@@ -120,10 +127,10 @@ struct Legend {
   std::vector<Tick> ticks;
   std::optional<Range> range;  ///< in place of `ticks`
   std::vector<Mark> marks;
-  bool marks_in_line = true;  ///< side by side, else one below the other
+  bool marks_in_line = true;  ///< side by side, as many as there is room for; else one below the other
 };
 
-/// What lies under the pointer. Lines marked `detail` are left out where the card has no room.
+/// What lies under the pointer, from the top down.
 struct Card {
   struct Title {
     std::string left, right;
@@ -150,30 +157,39 @@ struct Card {
     vec3 light{0};  ///< linear; its hue is shown
     std::vector<std::string> figures;
   };
-  /// A bar as long as `part` is of `of`.
+  /// A share, 0..1, with a bar as long as it is of `of`, the greatest.
   struct Weight {
     std::string name;
     float part = 0, of = 1;
   };
+  enum class Room { any, much, little };
   struct Line {
     std::variant<Title, Row, Note, Rule, FigureHeads, Figures, Weight> what;
-    bool detail = false;
+    Room room = Room::any;  ///< where it is shown: in a large picture, in a small one
   };
   std::vector<Line> lines;
 };
 
 struct Report {
-  std::string solver;     ///< SolverInfo::name
-  bool ready = true;      ///< what paths read of it is complete
-  bool waits = false;     ///< preparation waits for a command
-  std::string preparing;  ///< what is being made, "" when ready: "pass 3: 2810 records"
-  std::string state;      ///< one word for the panel's head: "building"
+  std::string solver;    ///< SolverInfo::name
+  bool ready = true;     ///< what paths read of it is complete
+  bool waits = false;    ///< preparation waits for a command
+  std::string to_go_on;  ///< where it waits: what it waits for, and which command goes on
+  /// What is being made, "" when ready: "cache, pass 3: 2810 records". For the window's bar.
+  std::string preparing;
+  std::string state;  ///< one word for the panel's head: "building"
   std::vector<PanelSection> sections;
   std::vector<Legend> legends;
   std::optional<vec2> looked_at;  ///< where somebody looks, 0..1 to the right and down
   std::optional<Card> card;       ///< what is there
-  /// Figures by name, for benches: "records", "rays".
+  /// Figures by name, for benches and tests: "records", "rays".
   std::vector<std::pair<std::string, double>> figures;
+  /// 0 where there is none of that name.
+  double figure(std::string_view name) const {
+    for (const auto& [known, value] : figures)
+      if (known == name) return value;
+    return 0;
+  }
 };
 
 }  // namespace lucerna::solvers

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "solvers/irradiance_cache/stages.h"
 #include "transport/wavefront.h"
 
 namespace lucerna::irradiance_cache {
@@ -16,8 +17,18 @@ enum class BuildStep {
   radius,    ///< how far each of them serves
   octree     ///< how they are found
 };
-inline constexpr std::array<const char*, 7> k_build_steps{"probe",    "screen", "choose", "measure",
-                                                          "evaluate", "radius", "octree"};
+inline constexpr StepText k_step_texts[] = {
+    {"probe", "Paths from the camera, to find where records are missing."},
+    {"screen", "Where geometry or irradiance changes in the picture: there more places ask for records."},
+    {"choose", "Which of the places asked for get a record. On the host."},
+    {"measure",
+     "A few rays from each of these, to see how wide its record would be and whether it is needed."},
+    {"evaluate", "Rays over the records' hemispheres, and their sums."},
+    {"radius", "How far each new record serves."},
+    {"octree", "The octree by which records are found."},
+};
+static_assert(std::size(k_step_texts) == size_t(BuildStep::octree) + 1);
+inline constexpr auto k_build_steps = names_of(k_step_texts);
 
 struct CachePass {
   uint32_t number = 0;  ///< since the building was begun or extended; that of its records

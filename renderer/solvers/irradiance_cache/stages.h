@@ -1,7 +1,9 @@
 #pragma once
 // The stages that building goes through, and where it waits for somebody who watches. No device: pure state.
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,8 +21,28 @@ enum class BuildStage {
   evaluate,  ///< a level of their rays is gathered
   octree     ///< they have radii, and are found
 };
-inline constexpr std::array<const char*, 6> k_build_stages{"probe", "choose",   "measure",
-                                                           "thin",  "evaluate", "octree"};
+/// What a step is called, and what it does.
+struct StepText {
+  const char *name, *help;
+};
+template <size_t N>
+constexpr std::array<const char*, N> names_of(const StepText (&texts)[N]) {
+  std::array<const char*, N> names{};
+  for (size_t i = 0; i < N; ++i) names[i] = texts[i].name;
+  return names;
+}
+
+inline constexpr StepText k_stage_texts[] = {
+    {"probe", "Paths from the camera ask where they find no record: candidates."},
+    {"choose",
+     "Candidates in Morton order are cut into clusters; of each, points are tried until all are covered."},
+    {"measure", "A few rays from what is tried: how wide would its records be?"},
+    {"thin", "What a wider one makes superfluous is rejected, the rest chosen."},
+    {"evaluate", "Rays over the hemispheres of the records, a level of four times as many after the other."},
+    {"octree", "Records have got their radii, and an octree in which they are found."},
+};
+static_assert(std::size(k_stage_texts) == size_t(BuildStage::octree) + 1);
+inline constexpr auto k_build_stages = names_of(k_stage_texts);
 
 /// A stage that has ended.
 struct StageDone {

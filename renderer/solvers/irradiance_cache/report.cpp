@@ -1,0 +1,477 @@
+#include "solvers/irradiance_cache/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/figures.h"
+#include "shaders/shared/cache_placement.h"
+#include "shaders/shared/ramp.h"
+#include "solvers/irradiance_cache/info.h"
+
+namespace lucerna::irradiance_cache {
+namespace {
+
+using namespace solvers;
+using Items = std::vector<PanelItem>;
+
+constexpr size_t k_passes_shown = 16;   // a camera that moves much adds many
+constexpr size_t k_weights_shown = 6;   // on the card
+constexpr size_t k_least_columns = 13;  // of the histogram
+
+/// Key of a command, as a person presses it.
+char key_of(const char* command) { return find_command(info(), command)->shortcut; }
+
+const CachePass* last_pass(const CacheStatus& s) { return s.passes.empty() ? nullptr : &s.passes.back(); }
+
+std::string preparing(const CacheReport& r) {
+  const CacheStatus& s = r.status;
+  if (s.stop != StopReason::building) return "";
+  if (s.waits && s.last) return fmt::format("cache waits: {}", stage_words(*s.last));
+  if (s.relighting > 0)
+    return fmt::format("cache: relighting {} records, {:.0f} %", s.relighting, 100 * s.relit);
+  return fmt::format("cache, pass {}: {} records", s.pass + 1, r.placed);
+}
+
+// The panel.
+
+void add_overlap_rows(Items& items, const std::optional<Overlap>& overlap) {
+  if (!overlap || overlap->pixels == 0) {
+    for (const char* name : {"Overlap", "Gathered by paths", "Not served"})
+      items.push_back(ValueRow{name, k_dash, "Known when the picture has its first samples.", Tone::faint});
+    return;
+  }
+  const Overlap& o = *overlap;
+  items.push_back(ValueRow{
+      "Overlap", fmt::format("{:.1f} on average, {} at most", o.mean, o.most),
+      "Records that serve a point, over the pixels that one serves at least, as the camera sees them."});
+  items.push_back(ValueRow{
+      "Gathered by paths", share_text(double(o.gathered), double(o.pixels)),
+      "Pixels so near to something else that light is not interpolated there: paths gather it, and end "
+      "in records one vertex later (cache.gather)."});
+  items.push_back(
+      ValueRow{"Not served", share_text(double(o.pixels - o.served - o.gathered), double(o.pixels)),
+               "Pixels showing something diffuse that no record serves: it is path traced there."});
+}
+
+/// How many pixels 0, 1, 2 ... records serve, in the colours of the overlay.
+Histogram overlap_columns(const Overlap& o) {
+  const std::vector<uint32_t>& bins = o.histogram;
+  size_t used = 1;
+  for (size_t i = 0; i < bins.size(); ++i)
+    if (bins[i] > 0) used = std::max(used, i + 1);
+  const uint32_t most = std::max(1u, *std::max_element(bins.begin(), bins.end()));
+  Histogram histogram;
+  for (size_t i = 0; i < std::min(std::max(used, k_least_columns), bins.size()); ++i) {
+    const std::string n = i + 1 == bins.size() ? fmt::format("\xE2\x89\xA5{}", i) : fmt::format("{}", i);
+    Histogram::Column column{
+        .height = float(bins[i]) / float(most),
+        .ink = shared::ramp_color(shared::k_ramp_viridis, float(i) / shared::k_overlap_scale),
+        .label = n,
+        .help = fmt::format("{} of the pixels: served by {} record{}.", share_text(bins[i], double(o.pixels)),
+                            i == 0 ? "no" : n, i == 1 ? "" : "s")};
+    if (i == 0) {
+      column.ink = shared::k_unserved_ink;
+      column.lower = bins[0] > 0 ? float(o.gathered) / float(bins[0]) : 0;
+      column.lower_ink = shared::k_gathered_ink;
+      column.help +=
+          fmt::format(" In {} paths gather the light.", share_text(double(o.gathered), double(o.pixels)));
+    }
+    histogram.columns.push_back(std::move(column));
+  }
+  return histogram;
+}
+
+PanelSection numbers(const CacheReport& r, const OptionValues& settings, const std::string& state) {
+  const CacheStatus& s = r.status;
+  PanelSection section{.title = info().label, .note = state, .items = {}};
+  Items& items = section.items;
+  items.push_back(ValueRow{"Records", fmt::format("{} of {}", count_text(s.records), count_text(r.room)),
+                           "Complete records, and how many there is room for (cache.max_records)."});
+  items.push_back(
+      ValueRow{"Passes", fmt::format("{} of {}", s.pass, settings.text("cache.passes")),
+               "Passes that have placed records, since the building began or the camera has moved, and how "
+               "many there may be."});
+  uint64_t rays = 0;  // of the records that are complete
+  for (const CachePass& p : s.passes) rays += p.complete ? p.rays : 0;
+  items.push_back(ValueRow{
+      "Rays of records",
+      s.records > 0 ? fmt::format("{}, {} each", amount_text(double(s.rays)),
+                                  count_text(std::round(double(rays) / s.records)))
+                    : amount_text(double(s.rays)),
+      "Rays over the records' hemispheres, without those of the paths that they begin; on average."});
+  items.push_back(ValueRow{
+      "Memory", megabytes_text(double(s.bytes) / (1 << 20)),
+      fmt::format("Device memory, taken for as many records as there is room for: {} bytes each with its "
+                  "sphere, and the octree, in whose leaves a record is listed {:.1f} times on average.",
+                  shared::k_record_bytes, s.references)});
+  add_overlap_rows(items, r.overlap);
+  if (const CachePass* last = last_pass(s))
+    items.push_back(
+        ValueRow{"Asked in the last pass", share_text(double(last->asked), double(last->paths)),
+                 fmt::format("{} of {} paths found no record and asked for one, {} of them behind the first "
+                             "surface. Building stops when no more ask than {:.2f} %.",
+                             count_text(double(last->asked)), count_text(double(last->paths)),
+                             count_text(double(last->asked_world)), 100 * settings.real("cache.stop"))});
+  items.push_back(Gap{4});
+  if (s.waits)
+    items.push_back(Paragraph{fmt::format("Building waits: {} goes on to the next stage, {} to the end.",
+                                          key_of("step"), key_of("run")),
+                              Tone::accent});
+  else if (s.stop == StopReason::building)
+    items.push_back(Paragraph{"Still building\xE2\x80\xA6", Tone::accent});
+  else
+    items.push_back(Paragraph{fmt::format("Building has stopped: {}.", words(s.stop)),
+                              s.stop == StopReason::covered ? Tone::dim : Tone::warning});
+  if (r.overlap && r.overlap->pixels > 0) items.push_back(overlap_columns(*r.overlap));
+  return section;
+}
+
+/// Leads building from stage to stage.
+PanelSection steps(const CacheReport& r) {
+  const CacheStatus& s = r.status;
+  PanelSection section{.title = "Steps of building", .note = "", .items = {}};
+  Items& items = section.items;
+  items.push_back(ChoiceButtons{.key = "cache.pause",
+                                .labels = {"No pause", "Each pass", "Each stage"},
+                                .short_labels = {"Off", "Pass", "Stage"},
+                                .help = "R builds anew."});
+  items.push_back(Gap{4});
+  const bool building = s.stop == StopReason::building;
+  items.push_back(CommandButtons{
+      {{.command = "step",
+        .help = building
+                    ? "Goes on to the end of the next stage and waits there."
+                    : "The cache is complete. R builds it anew, a turn of the camera adds what is missing.",
+        .enabled = building},
+       {.command = "run",
+        .help = building ? "Goes on without a pause until the cache is complete." : "The cache is complete.",
+        .enabled = building}}});
+  items.push_back(Gap{8});
+  StepStrip strip{.steps = {}, .last = s.last ? int(s.last->stage) : -1};
+  for (const StepText& text : k_stage_texts) strip.steps.push_back({text.name, text.help});
+  items.push_back(std::move(strip));
+  if (s.last) {
+    const StageDone& last = *s.last;
+    items.push_back(ValueRow{s.waits ? "Waits after" : "Ended last", stage_words(last),
+                             "The stage of building that has ended last.",
+                             s.waits ? Tone::accent : Tone::normal});
+    items.push_back(
+        ValueRow{"It took",
+                 last.rays > 0 ? fmt::format("{}, {} rays", ms_text(last.ms), amount_text(double(last.rays)))
+                               : ms_text(last.ms),
+                 "Device time, and wall time of what the host did; rays from records."});
+  } else {
+    items.push_back(ValueRow{"Ended last", k_dash, "No stage of building has ended yet.", Tone::faint});
+    items.push_back(ValueRow{"It took", k_dash, "", Tone::faint});
+  }
+  const CachePass* pass = last_pass(s);
+  const auto count = [&](const char* name, double n, bool known, const char* help) {
+    items.push_back(ValueRow{name, known ? count_text(n) : k_dash, help, known ? Tone::normal : Tone::faint});
+  };
+  const bool chosen = pass && pass->clusters > 0;
+  count("Candidates", pass ? double(pass->asked) : 0, pass != nullptr,
+        "Places where paths of this pass found no record.");
+  count("Clusters", pass ? pass->clusters : 0, chosen, "That they were cut into.");
+  count("Tried", pass ? pass->tried : 0, chosen, "Of the candidates.");
+  count("Chosen", pass ? pass->records : 0, pass && pass->records > 0, "Of what was tried: new records.");
+  return section;
+}
+
+PanelSection overlays(const OptionValues& settings) {
+  PanelSection section{.title = "Overlays",
+                       .note = "",
+                       .items = {ViewButtons{{"overlay.records", "overlay.overlap", "overlay.normals"}},
+                                 Gap{4}, OptionRow{"overlay.records_by"}, OptionRow{"overlay.placement"},
+                                 OptionRow{"overlay.discontinuity"}}};
+  if (settings.text("overlay.discontinuity") != "off")
+    section.items.push_back(OptionRow{"overlay.discontinuity_level"});
+  for (const char* view : {"overlay.records", "overlay.overlap", "overlay.normals"}) {
+    if (!settings.boolean(view)) continue;
+    section.items.push_back(Gap{4});
+    section.items.push_back(
+        Paragraph{"Rest the pointer in the picture to see which records serve there.", Tone::faint});
+    break;
+  }
+  return section;
+}
+
+/// A row a pass: what it placed and what that took.
+Table passes(const CacheStatus& s) {
+  Table table{.columns = {"", "records", "asked", "rays", "time"}, .droppable = 3, .rows = {}};
+  uint32_t most = 1;
+  for (const CachePass& p : s.passes) most = std::max(most, p.records);
+  const size_t from = s.passes.size() > k_passes_shown ? s.passes.size() - k_passes_shown : 0;
+  for (size_t i = from; i < s.passes.size(); ++i) {
+    const CachePass& p = s.passes[i];
+    std::string help = fmt::format(
+        "Pass {}: {} of {} paths asked for a record, {} of them behind the first surface; {} were placed, "
+        "with {} rays.",
+        i + 1, count_text(double(p.asked)), count_text(double(p.paths)), count_text(double(p.asked_world)),
+        count_text(p.records), count_text(double(p.rays)));
+    for (size_t k = 0; k < p.ms.size(); ++k)
+      help += fmt::format("\n{}: {}", k_step_texts[k].name, ms_text(p.ms[k]));
+    table.rows.push_back({.cells = {fmt::format("{}", i + 1), p.records > 0 ? count_text(p.records) : k_dash,
+                                    share_text(double(p.asked), double(p.paths)),
+                                    p.rays > 0 ? amount_text(double(p.rays)) : k_dash, ms_text(p.total_ms())},
+                          .bar = float(p.records) / float(most),
+                          .ink = p.records > 0 ? std::optional(shared::ramp_hue(p.number)) : std::nullopt,
+                          .tone = p.complete ? Tone::normal : Tone::accent,
+                          .help = std::move(help)});
+  }
+  return table;
+}
+
+/// What each step of building took.
+void add_times(Items& items, const CacheStatus& s) {
+  std::array<double, k_build_steps.size()> ms{};
+  double total = 0;
+  for (const CachePass& p : s.passes) {
+    for (size_t i = 0; i < ms.size(); ++i) ms[i] += p.ms[i];
+    total += p.total_ms();
+  }
+  items.push_back(
+      ValueRow{"Building took", ms_text(total),
+               "Device time of all passes, and wall time of what the host did (its tracer too)."});
+  Parts parts;
+  for (size_t i = 0; i < ms.size(); ++i)
+    parts.parts.push_back({.name = k_step_texts[i].name,
+                           .value = ms_text(ms[i]),
+                           .help = k_step_texts[i].help,
+                           .share = total > 0 ? float(ms[i] / total) : 0,
+                           .host = i == size_t(BuildStep::choose)});
+  items.push_back(std::move(parts));
+}
+
+// Legends.
+
+void add_origins(Legend& legend) {
+  for (uint32_t i = 0; i < k_origins.size(); ++i) legend.marks.push_back({shared::ramp_hue(i), k_origins[i]});
+}
+
+/// What records are coloured by.
+Legend record_legend(const CacheReport& r) {
+  Legend legend;
+  switch (r.color) {
+    case shared::k_record_by_pass: {
+      legend.title = "Records, by the pass that placed them";
+      uint32_t most = 0;
+      for (const CachePass& p : r.status.passes)
+        if (p.records > 0) most = std::max(most, p.number);
+      for (uint32_t i = 0; i <= most; ++i)
+        legend.marks.push_back({shared::ramp_hue(i), fmt::format("{}", i + 1)});
+      return legend;
+    }
+    case shared::k_record_by_origin:
+      legend.title = "Records, by what asked for them";
+      add_origins(legend);
+      return legend;
+    case shared::k_record_by_rays:
+      legend.title = "Records, by their rays";
+      break;
+    case shared::k_record_by_distance:
+      legend.title = "Records, by the mean distance they see";
+      break;
+    default:
+      legend.title = "Records, by their error (irradiance)";
+  }
+  legend.ramp = shared::k_ramp_viridis;
+  legend.range =
+      Legend::Range{.lo = r.scale.first,
+                    .hi = r.scale.second,
+                    .unit = r.color == shared::k_record_by_rays       ? Legend::Range::Unit::count
+                            : r.color == shared::k_record_by_distance ? Legend::Range::Unit::metres
+                                                                      : Legend::Range::Unit::plain};
+  return legend;
+}
+
+/// What has become of places.
+Legend placement_legend(const CacheReport& r) {
+  Legend legend;
+  const CachePass* pass = last_pass(r.status);
+  const auto counted = [&](const char* name, uint32_t n) {
+    return pass ? fmt::format("{} {}", count_text(n), name) : std::string(name);
+  };
+  if (r.placement == PlacementShow::candidates) {
+    legend.title = "Candidates, by what asks for a record";
+    add_origins(legend);
+  } else if (r.placement == PlacementShow::clusters) {
+    legend.title = "Candidates, by their cluster";
+    constexpr uint32_t k_inks = 5;
+    for (uint32_t i = 0; i < k_inks; ++i)
+      legend.marks.push_back({shared::placed_cluster_ink(i),
+                              i + 1 < k_inks ? "" : counted("clusters", pass ? pass->clusters : 0)});
+    legend.marks.push_back({shared::k_tried_ink, counted("tried", pass ? pass->tried : 0)});
+  } else {
+    legend.title = "Places that were tried, with their radii";
+    if (pass && pass->records > 0) {
+      legend.marks.push_back({shared::k_chosen_ink, counted("chosen", pass->records)});
+      legend.marks.push_back({shared::k_rejected_ink, counted("rejected", pass->tried - pass->records)});
+    } else {
+      legend.marks.push_back({shared::k_tried_ink, counted("tried", pass ? pass->tried : 0)});
+    }
+  }
+  return legend;
+}
+
+/// How many records serve a pixel.
+Legend overlap_legend() {
+  Legend legend{.title = "Records that serve a pixel", .ramp = shared::k_ramp_viridis};
+  constexpr auto most = static_cast<int>(shared::k_overlap_scale);
+  for (const int n : {1, 4, 8, most})
+    legend.ticks.push_back({static_cast<float>(n) / shared::k_overlap_scale,
+                            (n == most ? "\xE2\x89\xA5 " : "") + fmt::format("{}", n)});
+  legend.marks = {{shared::k_gathered_ink, "none: paths gather there"},
+                  {shared::k_unserved_ink, "none: path traced"}};
+  legend.marks_in_line = false;
+  return legend;
+}
+
+/// How much geometry or irradiance changes in a cell.
+Legend detail_legend(const std::string& of, int64_t level) {
+  return {.title = fmt::format("Detail of {}, cells of {} pixel{}", of, 1u << level, level == 0 ? "" : "s"),
+          .ramp = shared::k_ramp_magma,
+          .ticks = {{0.0f, "0 flat"}, {0.25f, "0.25"}, {0.5f, "0.5"}, {0.75f, "0.75"}, {1.0f, "1 full"}}};
+}
+
+std::vector<Legend> legends(const CacheReport& r, const OptionValues& settings) {
+  std::vector<Legend> list;
+  if (settings.boolean("overlay.records") || settings.boolean("overlay.normals"))
+    list.push_back(record_legend(r));
+  if (r.placement != PlacementShow::off) list.push_back(placement_legend(r));
+  if (settings.boolean("overlay.overlap")) list.push_back(overlap_legend());
+  if (const std::string& of = settings.text("overlay.discontinuity"); of != "off")
+    list.push_back(detail_legend(of, settings.integer("overlay.discontinuity_level")));
+  return list;
+}
+
+// The card.
+
+std::string vector_text(const vec3& v, int decimals) {
+  return fmt::format("{}  {}  {}", real_text(double{v.x}, decimals), real_text(double{v.y}, decimals),
+                     real_text(double{v.z}, decimals));
+}
+
+/// In five characters, whatever the size.
+std::string figure_text(float v) {
+  const float a = std::abs(v);
+  if (v == 0 || (a >= 100 && a < 1e5f)) return fmt::format("{:.0f}", v);
+  if (a >= 0.0095f && a < 100) return fmt::format("{:.{}f}", v, a >= 10 ? 1 : a >= 1 ? 2 : 3);
+  const int power = static_cast<int>(std::floor(std::log10(a)));
+  return fmt::format("{:.0f}e{}", double{v} / std::pow(10.0, power), power);
+}
+
+/// A gradient by channel, as the length of its luminance's.
+float gradient_length(const std::array<vec3, 3>& by_channel) {
+  return glm::length(0.2126f * by_channel[0] + 0.7152f * by_channel[1] + 0.0722f * by_channel[2]);
+}
+
+/// The fields of the record in whose disc the pixel lies.
+void add_fields(Card& card, uint32_t index, const Record& r) {
+  using Room = Card::Room;
+  const auto add = [&](auto line) { card.lines.push_back({std::move(line), Room::much}); };
+  const auto row = [&](const char* name, std::string value) { add(Card::Row{name, std::move(value)}); };
+  const std::string name = fmt::format("Record {}", count_text(index));
+  card.lines.push_back({Card::Title{name, metres_text(r.radius)}, Room::little});
+  add(Card::Title{name, fmt::format("pass {} \xC2\xB7 {}", r.pass + 1,
+                                    k_origins[std::min<size_t>(r.place.origin, k_origins.size() - 1)])});
+  row("Position", vector_text(r.place.position, 3) + " m");
+  row("Normal", vector_text(r.place.normal, 3));
+  row("Radius", r.lesser_radius < r.radius
+                    ? fmt::format("{} x {}", metres_text(r.lesser_radius), metres_text(r.radius))
+                    : metres_text(r.radius));
+  row("Mean distance (harmonic)", metres_text(r.mean_distance));
+  row("Least distance", metres_text(r.least_distance));
+  row("Rays", count_text(r.rays));
+  vec3 sum(0);
+  for (const Irradiance& e : r.parts) sum += e.value;
+  const float bright = luminance(sum);
+  row("Standard error",
+      bright > 0 ? fmt::format("{} ({:.1f} %)", figure_text(r.error), 100 * double{r.error / bright})
+                 : figure_text(r.error));
+  add(Card::Rule{.line = false});
+  add(Card::FigureHeads{"Irradiance", {"R", "G", "B", "/rad", "/m"}});
+  // Parts are numbered as components, but for the first: the sky's light, which is primary.
+  static constexpr std::array<const char*, shared::k_part_count> k_parts{"environm.", "secondary", "tertiary",
+                                                                         "caustic"};
+  bool any = false;
+  for (uint32_t p = 0; p < shared::k_part_count; ++p) {
+    const Irradiance& e = r.parts[p];
+    if (e.value == vec3(0)) continue;
+    any = true;
+    add(Card::Figures{
+        int(p),
+        k_parts[p],
+        e.value,
+        {figure_text(e.value.x), figure_text(e.value.y), figure_text(e.value.z),
+         figure_text(gradient_length(e.rotation)), figure_text(gradient_length(e.translation))}});
+  }
+  if (!any) add(Card::Note{r.crowded ? "none: paths gather it here" : "no light", Tone::faint});
+  add(Card::Rule{.line = true});
+}
+
+/// Which records serve there, with which weights.
+void add_weights(Card& card, const Inspection& found, bool building) {
+  const auto note = [&](std::string text, Tone tone = Tone::dim) {
+    card.lines.push_back({Card::Note{std::move(text), tone}});
+  };
+  if (found.asks == shared::k_asks_nothing) return note("Nothing diffuse: no record is asked for.");
+  if (found.asks == shared::k_asks_in_vain) {
+    note("The normal map is too steep for records.", Tone::warning);
+    return note("It is path traced here.", Tone::warning);
+  }
+  if (found.gathers) {
+    note("Too near to something else to interpolate.");
+    return note("Paths gather the light here.");
+  }
+  if (found.count == 0)
+    return note(building ? "No record serves here yet." : "No record serves here: it is path traced.",
+                building ? Tone::dim : Tone::warning);
+  note(fmt::format("Served by {} record{}", found.count, found.count == 1 ? "" : "s"));
+  // Where but one would be left over it is shown, too.
+  const size_t shown = found.serving.size() <= k_weights_shown + 1 ? found.serving.size() : k_weights_shown;
+  for (size_t i = 0; i < shown; ++i)
+    card.lines.push_back({Card::Weight{count_text(found.serving[i].record), found.serving[i].weight,
+                                       found.serving[0].weight}});
+  if (shown >= found.count) return;
+  float rest = 0;
+  for (size_t i = shown; i < found.serving.size(); ++i) rest += found.serving[i].weight;
+  card.lines.push_back({Card::Row{fmt::format("and {} more", found.count - shown),
+                                  fmt::format("{:.1f} %", 100 * double{rest})}});
+}
+
+}  // namespace
+
+solvers::Report make_report(const CacheReport& told, const OptionValues& settings) {
+  const CacheStatus& s = told.status;
+  const bool building = s.stop == StopReason::building;
+  Report report{.solver = info().name, .ready = !building, .waits = s.waits};
+  if (s.waits) report.to_go_on = "building of the cache waits (cache.pause); cache.run goes on";
+  report.preparing = preparing(told);
+  report.state = s.waits ? "waits" : building ? "building" : "complete";
+  report.sections = {numbers(told, settings, report.state), steps(told), overlays(settings)};
+  if (!s.passes.empty()) {
+    PanelSection section{.title = "Passes of building", .note = "", .items = {passes(s), Gap{8}}};
+    add_times(section.items, s);
+    report.sections.push_back(std::move(section));
+  }
+  report.legends = legends(told, settings);
+  report.looked_at = told.looked_at;
+  if (const Inspection& found = told.inspection; told.looked_at && found.solid) {
+    report.card.emplace();
+    if (found.record && found.under) add_fields(*report.card, *found.under, *found.record);
+    add_weights(*report.card, found, building);
+  }
+  report.figures = {{"records", s.records},     {"room", told.room},
+                    {"rays", double(s.rays)},   {"pass", s.pass},
+                    {"bytes", double(s.bytes)}, {"stage", s.last ? double(s.last->stage) : -1},
+                    {"asked", double(s.asked)}, {"paths", double(s.paths)}};
+  if (told.overlap) {
+    report.figures.emplace_back("overlap", told.overlap->mean);
+    report.figures.emplace_back("overlap_most", told.overlap->most);
+  }
+  return report;
+}
+
+}  // namespace lucerna::irradiance_cache
