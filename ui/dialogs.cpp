@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "solvers/registry.h"
 #include "state.h"
@@ -223,6 +224,8 @@ void file_dialog(Ui& ui) {
   ImGui::PopStyleVar(4);
 }
 
+constexpr float k_key_names = 220, k_key_text = 400;  // widths of the page's columns
+
 /// Keys and what they do; rows without keys are gaps.
 std::vector<std::pair<std::string, std::string>> key_rows() {
   std::vector<std::pair<std::string, std::string>> rows = {
@@ -235,26 +238,30 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
       {"L", "mark the lamps, to click on them"},
       {"T", "show the tiles at work"},
       {"1 \xE2\x80\x93 9", "scene cameras"}};
-  const auto add = [](std::string& list, const std::string& word) {
-    list += (list.empty() ? "" : ", ") + word;
-  };
   bool panels = false, asks = false;
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     panels = panels || solver->has_panel();
-    const std::string name = uncapitalised(solver->label);
+    // All of a kind in one row, or in as many as they take.
     std::string keys, what;
+    const auto end_row = [&] {
+      if (!keys.empty()) rows.emplace_back(std::exchange(keys, {}), std::exchange(what, {}));
+    };
+    const auto add = [&](char shortcut, const std::string& label) {
+      if (!shortcut) return;
+      const std::string more = ", " + uncapitalised(label);
+      if (!what.empty() && text_width(what + more) > px(k_key_text)) end_row();
+      keys += keys.empty() ? std::string{shortcut} : std::string(", ") + shortcut;
+      what += what.empty() ? fmt::format("the {}: {}", uncapitalised(solver->label), more.substr(2)) : more;
+    };
     for (const solvers::ViewInfo& view : solver->views) {
-      if (!view.shortcut) continue;
-      add(keys, {view.shortcut}), add(what, uncapitalised(view.label));
+      add(view.shortcut, view.label);
       asks = asks || view.asks_pointer;
     }
-    if (!keys.empty()) rows.emplace_back(keys, fmt::format("show the {}'s {}", name, what));
-    keys.clear(), what.clear();
-    for (const solvers::CommandInfo& command : solver->commands)
-      if (command.shortcut) add(keys, {command.shortcut}), add(what, uncapitalised(command.label));
-    if (!keys.empty()) rows.emplace_back(keys, fmt::format("the {}: {}", name, what));
+    end_row();
+    for (const solvers::CommandInfo& command : solver->commands) add(command.shortcut, command.label);
+    end_row();
   }
-  if (asks) rows.emplace_back("Pointer at rest", "while such views are shown: what lies there");
+  if (asks) rows.emplace_back("Pointer at rest", "while these views are shown: what lies there");
   if (panels) rows.emplace_back("K", "the panels of solvers in use, the scene's");
   for (const auto& row : std::initializer_list<std::pair<const char*, const char*>>{
            {"", ""},
@@ -293,10 +300,11 @@ void key_page(Ui& ui) {
         continue;
       }
       const ImVec2 at = ImGui::GetCursorScreenPos();
-      ImGui::Dummy({px(620), px(20)});
-      draw_text(ImGui::GetWindowDrawList(), at, {at.x + px(212), at.y + px(20)}, keys, colour::text);
-      draw_text(ImGui::GetWindowDrawList(), {at.x + px(220), at.y}, {at.x + px(620), at.y + px(20)}, what,
-                colour::text_dim);
+      ImGui::Dummy({px(k_key_names + k_key_text), px(20)});
+      draw_text(ImGui::GetWindowDrawList(), at, {at.x + px(k_key_names - 8), at.y + px(20)}, keys,
+                colour::text);
+      draw_text(ImGui::GetWindowDrawList(), {at.x + px(k_key_names), at.y},
+                {at.x + px(k_key_names + k_key_text), at.y + px(20)}, what, colour::text_dim);
     }
     ImGui::PopItemWidth();
     ImGui::EndPopup();

@@ -55,8 +55,7 @@ solvers::Report told(const plan::Settings& settings, std::optional<vec2> looked_
     r.card.emplace();
     r.card->lines = {{solvers::Card::Title{"A slide", "12"}},
                      {solvers::Card::Weight{"glass", 0.8f, 0.8f}},
-                     {solvers::Card::Weight{"film", 0.2f, 0.8f}},
-                     {solvers::Card::Weight{"dust", 0.5f, 1}}};
+                     {solvers::Card::Weight{"film", 0.2f, 0.8f}}};
   }
   return r;
 }
