@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "chart.h"
+#include "solvers/registry.h"
 
 namespace lucerna::ui {
 
@@ -23,6 +24,14 @@ uint32_t limited_tiles(const Accuracy& a) {
 }
 
 std::string short_percent(double fraction) { return fmt::format("{:.3g} %", 100 * fraction); }
+
+/// " (a.rays, a.noise)": settings of the solvers that have an effect on what samples leave.
+std::string advice(std::vector<std::string> solvers::SolverInfo::*settings) {
+  std::string keys;
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    for (const std::string& key : solver->*settings) keys += (keys.empty() ? " (" : ", ") + key;
+  return keys.empty() ? keys : keys + ")";
+}
 
 }  // namespace
 
@@ -50,11 +59,13 @@ std::vector<ErrorFigure> error_figures(const stats::Entry& line) {
   figures.push_back(
       {"of the mean by the records", "records", line.records,
        "Noise of the records that the samples read, a part of what the mean is off by. More samples "
-       "do not take it away; more rays a record do (cache.rays, cache.noise)."});
+       "do not take it away; more rays a record do" +
+           advice(&solvers::SolverInfo::against_noise) + "."});
   figures.push_back(
       {"of the mean by interpolation", "interpolation", line.interpolation,
        "By how much light that is interpolated between records is off, a part of what the mean is "
-       "off by. More samples do not take it away; more records do (cache.error)."});
+       "off by. More samples do not take it away; more records do" +
+           advice(&solvers::SolverInfo::against_bias) + "."});
   return figures;
 }
 

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
+#include <set>
+#include <utility>
 
+#include "solvers/registry.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -24,64 +26,64 @@ struct Completion {
 
 /// What a dialog asks for, by its purpose.
 struct Question {
-  const char *title, *note;
-  const char *command, *answer;  ///< that is run with the file; the button's word for it
+  std::string title, note;
+  std::string command, answer;  ///< that is run with the file; the button's word for it
   std::vector<std::string> endings;
-  bool reads;  ///< the file is there already
+  bool reads = false;  ///< the file is there already
 };
 
-const Question& question(Dialog::Purpose purpose) {
+Question question(const Dialog& dialog) {
   using Purpose = Dialog::Purpose;
-  static const std::map<Purpose, Question> k_questions{
-      {Purpose::open,
-       {"Open a scene",
-        "A .gltf or .glb file. Tab completes; arrows choose.",
-        "scene.open",
-        "Open",
-        {".gltf", ".glb"},
-        true}},
-      {Purpose::save,
-       {"Save the picture",
-        ".exr holds all layers as floats; .png what is shown, through exposure and tone curve.",
-        "image.save",
-        "Save",
-        {".exr", ".png"},
-        false}},
-      {Purpose::script,
-       {"Save the session as a script",
-        "What was done, one command a line; lucerna --script FILE does it again.",
-        "script.save",
-        "Save",
-        {".lucerna"},
-        false}},
-      {Purpose::reference,
-       {"Load a reference",
-        "An .exr of this view and size, rendered long and with another seed.",
-        "reference.load",
-        "Load",
-        {".exr"},
-        true}},
-      {Purpose::cache_load,
-       {"Load a cache",
-        "Records of this scene, lit alike. What this view is missing is added.",
-        "cache.load",
-        "Load",
-        {".cache"},
-        true}},
-      {Purpose::cache_save,
-       {"Save the cache",
-        "The records of the irradiance cache, for this scene as it is lit now.",
-        "cache.save",
-        "Save",
-        {".cache"},
-        false}}};
-  return k_questions.at(purpose);
+  switch (dialog.purpose) {
+    case Purpose::none:
+      break;
+    case Purpose::open:
+      return {.title = "Open a scene",
+              .note = "A .gltf or .glb file. Tab completes; arrows choose.",
+              .command = "scene.open",
+              .answer = "Open",
+              .endings = {".gltf", ".glb"},
+              .reads = true};
+    case Purpose::save:
+      return {.title = "Save the picture",
+              .note = ".exr holds all layers as floats; .png what is shown, through exposure and tone curve.",
+              .command = "image.save",
+              .answer = "Save",
+              .endings = {".exr", ".png"}};
+    case Purpose::script:
+      return {.title = "Save the session as a script",
+              .note = "What was done, one command a line; lucerna --script FILE does it again.",
+              .command = "script.save",
+              .answer = "Save",
+              .endings = {".lucerna"}};
+    case Purpose::reference:
+      return {.title = "Load a reference",
+              .note = "An .exr of this view and size, rendered long and with another seed.",
+              .command = "reference.load",
+              .answer = "Load",
+              .endings = {".exr"},
+              .reads = true};
+    case Purpose::solver_load:
+      return {.title = "Load a " + uncapitalised(dialog.solver->label),
+              .note = fmt::format("A {} {}.", dialog.solver->file->extension, dialog.solver->file->fits),
+              .command = dialog.solver->name + ".load",
+              .answer = "Load",
+              .endings = {dialog.solver->file->extension},
+              .reads = true};
+    case Purpose::solver_save:
+      return {.title = "Save the " + uncapitalised(dialog.solver->label),
+              .note = capitalised(dialog.solver->file->content) + ", for this scene as it is lit now.",
+              .command = dialog.solver->name + ".save",
+              .answer = "Save",
+              .endings = {dialog.solver->file->extension}};
+  }
+  return {};
 }
 
 /// Files of a kind and folders that begin with what is typed.
-std::vector<Completion> completions(const std::string& typed, Dialog::Purpose purpose) {
+std::vector<Completion> completions(const std::string& typed, const Dialog& dialog) {
   std::vector<Completion> list;
-  for (const std::string& path : commands::paths_starting(typed, question(purpose).endings)) {
+  for (const std::string& path : commands::paths_starting(typed, question(dialog).endings)) {
     const bool folder = path.back() == '/';
     const size_t slash = path.rfind('/', path.size() - 2);
     list.push_back({path, slash == std::string::npos ? path : path.substr(slash + 1), folder});
@@ -105,7 +107,7 @@ bool is_folder(const std::string& path) {
 int complete_field(ImGuiInputTextCallbackData* data) {
   auto& dialog = *static_cast<Dialog*>(data->UserData);
   if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) dialog.marked = -1;
-  const auto list = completions(expanded(data->Buf), dialog.purpose);
+  const auto list = completions(expanded(data->Buf), dialog);
   if (list.empty()) return 0;
   const int last = static_cast<int>(list.size()) - 1;
   if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory)
@@ -127,9 +129,9 @@ int complete_field(ImGuiInputTextCallbackData* data) {
 void file_dialog(Ui& ui) {
   Dialog& dialog = ui.dialog;
   if (dialog.purpose == Dialog::Purpose::none) return;
-  const Question& asked = question(dialog.purpose);
+  const Question asked = question(dialog);
   // Each has a field of its own, so that none begins with what was typed into another.
-  const std::string title = std::string("##") + asked.command;
+  const std::string title = "##" + asked.command;
   if (dialog.fresh) ImGui::OpenPopup(title.c_str()), dialog.fresh = false, dialog.focus = true;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   const float width = std::min(px(560), window.x - px(48));
@@ -154,7 +156,7 @@ void file_dialog(Ui& ui) {
     ImGui::SetNextItemWidth(-1);
     if (dialog.focus) ImGui::SetKeyboardFocusHere(), dialog.to_end = true;
     dialog.focus = false;
-    const std::vector<Completion> list = completions(expanded(dialog.path), dialog.purpose);
+    const std::vector<Completion> list = completions(expanded(dialog.path), dialog);
     const bool entered =
         ImGui::InputText("##path", &dialog.path,
                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
@@ -222,6 +224,63 @@ void file_dialog(Ui& ui) {
   ImGui::PopStyleVar(4);
 }
 
+constexpr float k_key_names = 220, k_key_text = 400;  // widths of the page's columns
+
+/// Keys and what they do; rows without keys are gaps.
+std::vector<std::pair<std::string, std::string>> key_rows() {
+  std::vector<std::pair<std::string, std::string>> rows = {
+      {"Left drag", "orbit"},
+      {"Middle drag, Shift + left drag", "pan"},
+      {"Wheel, right drag", "come closer, go away"},
+      {"W A S D, Q E", "fly; down and up; drag to look about, wheel for speed"},
+      {"Click", "select the object, its material with a second click"},
+      {"F", "frame the selection, or the scene"},
+      {"L", "mark the lamps, to click on them"},
+      {"T", "show the tiles at work"},
+      {"1 \xE2\x80\x93 9", "scene cameras"}};
+  bool panels = false, asks = false;
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    panels = panels || solver->has_panel();
+    // All of a kind in one row, or in as many as they take.
+    std::string keys, what;
+    const auto end_row = [&] {
+      if (!keys.empty()) rows.emplace_back(std::exchange(keys, {}), std::exchange(what, {}));
+    };
+    const auto add = [&](char shortcut, const std::string& label) {
+      if (!shortcut) return;
+      const std::string more = ", " + uncapitalised(label);
+      if (!what.empty() && text_width(what + more) > px(k_key_text)) end_row();
+      keys += keys.empty() ? std::string{shortcut} : std::string(", ") + shortcut;
+      what += what.empty() ? fmt::format("the {}: {}", uncapitalised(solver->label), more.substr(2)) : more;
+    };
+    for (const solvers::ViewInfo& view : solver->views) {
+      add(view.shortcut, view.label);
+      asks = asks || view.asks_pointer;
+    }
+    end_row();
+    for (const solvers::CommandInfo& command : solver->commands) add(command.shortcut, command.label);
+    end_row();
+  }
+  if (asks) rows.emplace_back("Pointer at rest", "while these views are shown: what lies there");
+  if (panels) rows.emplace_back("K", "the panels of solvers in use, the scene's");
+  for (const auto& row : std::initializer_list<std::pair<const char*, const char*>>{
+           {"", ""},
+           {"Space", "pause, resume"},
+           {"R", "start the picture again"},
+           {"Tab", "panels"},
+           {"F5", "reload shaders"},
+           {"F12", "screenshot of the window"},
+           {"Ctrl + O, Ctrl + S", "open, save"},
+           {"Ctrl + L", "type a command"},
+           {"Ctrl + Z, Ctrl + Shift + Z", "undo, redo"},
+           {"Esc", "take away a message or the selection, give up a load"},
+           {"", ""},
+           {"Double-click a number", "type it"},
+           {"Shift, Ctrl while dragging", "ten times finer, coarser"}})
+    rows.emplace_back(row.first, row.second);
+  return rows;
+}
+
 void key_page(Ui& ui) {
   static bool open = false;
   if (ui.help && !open) ImGui::OpenPopup("##keys");
@@ -231,48 +290,21 @@ void key_page(Ui& ui) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
   open = ImGui::BeginPopup("##keys", ImGuiWindowFlags_NoMove);
   if (open) {
-    static constexpr std::pair<const char*, const char*> rows[] = {
-        {"Left drag", "orbit"},
-        {"Middle drag, Shift + left drag", "pan"},
-        {"Wheel, right drag", "come closer, go away"},
-        {"W A S D, Q E", "fly; down and up; drag to look about, wheel for speed"},
-        {"Click", "select the object, its material with a second click"},
-        {"F", "frame the selection, or the scene"},
-        {"L", "mark the lamps, to click on them"},
-        {"T", "show the tiles at work"},
-        {"C, V, N", "show the cache's records, their overlap, their normals"},
-        {"G", "show detail of geometry, of irradiance, neither (the cache places by it)"},
-        {"Pointer at rest", "while they are shown: which records serve there"},
-        {"P", "show how the places of the cache's records are chosen"},
-        {"X, J", "building the cache: on to the next stage, to the end"},
-        {"K", "the cache's panel, the scene's"},
-        {"1 \xE2\x80\x93 9", "scene cameras"},
-        {"", ""},
-        {"Space", "pause, resume"},
-        {"R", "start the picture again"},
-        {"Tab", "panels"},
-        {"F5", "reload shaders"},
-        {"F12", "screenshot of the window"},
-        {"Ctrl + O, Ctrl + S", "open, save"},
-        {"Ctrl + L", "type a command"},
-        {"Ctrl + Z, Ctrl + Shift + Z", "undo, redo"},
-        {"Esc", "take away a message or the selection, give up a load"},
-        {"", ""},
-        {"Double-click a number", "type it"},
-        {"Shift, Ctrl while dragging", "ten times finer, coarser"}};
+    const std::vector<std::pair<std::string, std::string>> rows = key_rows();
     label("Keys and mouse", colour::text, theme().fonts.strong);
     gap(6);
     ImGui::PushItemWidth(px(520));
     for (const auto& [keys, what] : rows) {
-      if (!*keys) {
+      if (keys.empty()) {
         gap(8);
         continue;
       }
       const ImVec2 at = ImGui::GetCursorScreenPos();
-      ImGui::Dummy({px(620), px(20)});
-      draw_text(ImGui::GetWindowDrawList(), at, {at.x + px(212), at.y + px(20)}, keys, colour::text);
-      draw_text(ImGui::GetWindowDrawList(), {at.x + px(220), at.y}, {at.x + px(620), at.y + px(20)}, what,
-                colour::text_dim);
+      ImGui::Dummy({px(k_key_names + k_key_text), px(20)});
+      draw_text(ImGui::GetWindowDrawList(), at, {at.x + px(k_key_names - 8), at.y + px(20)}, keys,
+                colour::text);
+      draw_text(ImGui::GetWindowDrawList(), {at.x + px(k_key_names), at.y},
+                {at.x + px(k_key_names + k_key_text), at.y + px(20)}, what, colour::text_dim);
     }
     ImGui::PopItemWidth();
     ImGui::EndPopup();
@@ -310,21 +342,22 @@ bool panel_section(Ui& ui, const char* title, bool fallback, const std::string& 
   return open;
 }
 
-void Ui::start_dialog(Dialog::Purpose purpose) {
+void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver) {
   dialog = {};
   dialog.purpose = purpose;
+  dialog.solver = solver;
   dialog.fresh = true;
   std::error_code error;
   if (purpose == Dialog::Purpose::open) {
     const fs::path here =
         scene && !scene->file.empty() ? fs::path(scene->file).parent_path() : fs::path("scenes");
     if (fs::is_directory(here, error)) dialog.path = (here / "").string();
-  } else if (purpose == Dialog::Purpose::reference || purpose == Dialog::Purpose::cache_load) {
+  } else if (purpose == Dialog::Purpose::reference || purpose == Dialog::Purpose::solver_load) {
     dialog.path = fs::current_path(error).string() + "/";
   } else if (purpose == Dialog::Purpose::script) {
     dialog.path = (scene ? scene->name : "session") + ".lucerna";
   } else if (scene) {
-    dialog.path = scene->name + question(purpose).endings[0];
+    dialog.path = scene->name + question(dialog).endings[0];
   }
   wake(4);
 }
@@ -339,6 +372,28 @@ bool Ui::pressed(int key, int mods) const {
   return std::any_of(keys.begin(), keys.end(),
                      [&](const auto& k) { return k.first == key && (k.second & heeded) == mods; });
 }
+
+namespace {
+
+/// Views and commands of the solvers in use. Where two have the same key it is that of the one whose panel is
+/// shown, or else of the first.
+void solver_keys(Ui& ui) {
+  std::vector<const solvers::SolverInfo*> used;
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    if (ui.uses(*solver)) used.insert(ui.side == solver->name ? used.begin() : used.end(), solver);
+  std::set<char> taken;
+  const auto pressed = [&](char shortcut) {  // letters are GLFW's names of their keys
+    return shortcut && ui.pressed(shortcut) && taken.insert(shortcut).second;
+  };
+  for (const solvers::SolverInfo* solver : used) {
+    for (const solvers::ViewInfo& view : solver->views)
+      if (pressed(view.shortcut)) ui.turn_view(view);
+    for (const solvers::CommandInfo& command : solver->commands)
+      if (pressed(command.shortcut)) ui.act(solver->name + "." + command.name);
+  }
+}
+
+}  // namespace
 
 void handle_keys(Ui& ui) {
   const bool popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
@@ -371,22 +426,8 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_R)) ui.act("render.restart");
   if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
   if (ui.pressed(GLFW_KEY_T)) ui.toggle("overlay.tiles");
-  if (ui.cached() && ui.pressed(GLFW_KEY_C)) ui.toggle("overlay.records");
-  if (ui.cached() && ui.pressed(GLFW_KEY_V)) ui.toggle("overlay.overlap");
-  if (ui.cached() && ui.pressed(GLFW_KEY_N)) ui.toggle("overlay.normals");
-  if (ui.cached() && ui.pressed(GLFW_KEY_P))
-    ui.act("set", "overlay.placement", ui.setting("overlay.placement") == "off" ? "stage" : "off");
-  if (ui.cached() && ui.pressed(GLFW_KEY_X)) ui.act("cache.step");
-  if (ui.cached() && ui.pressed(GLFW_KEY_J)) ui.act("cache.run");
-  if (ui.cached() && ui.pressed(GLFW_KEY_G)) {
-    const std::string of = ui.setting("overlay.discontinuity");
-    ui.act("set", "overlay.discontinuity",
-           of == "off"        ? "geometry"
-           : of == "geometry" ? "irradiance"
-                              : "off");
-  }
-  if (ui.pressed(GLFW_KEY_K))
-    ui.act("window.side", ui.cache_panel && ui.layout.right_open ? "scene" : "cache");
+  solver_keys(ui);
+  if (ui.pressed(GLFW_KEY_K)) ui.act("window.side", ui.next_side());
   if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.snapshot->paused ? "render.resume" : "render.pause");
   for (int n = 0; n < 9; ++n)
     if (ui.pressed(GLFW_KEY_1 + n) && ui.scene && n < static_cast<int>(ui.scene->cameras.size()) && ui.view)

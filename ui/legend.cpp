@@ -1,12 +1,13 @@
-// The legend of what lies over the picture, at its lower left: the ramp of a heat map, the states of tiles.
+// The legend of what lies over the picture, at its lower left: the ramp of a heat map, what solvers have
+// drawn (solvers::Legend), the states of tiles.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "chart.h"
-#include "film/overlay.h"
-#include "shaders/shared/cache_placement.h"
+#include "film/tile_scale.h"
+#include "shaders/shared/ramp.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -15,11 +16,7 @@ namespace {
 
 constexpr float k_ramp_width = 248, k_ramp_height = 8;
 
-ImU32 ramp_ink(uint32_t ramp, float t) {
-  const vec3 c = shared::ramp_color(ramp, t);
-  return IM_COL32(static_cast<int>(255 * c.x + 0.5f), static_cast<int>(255 * c.y + 0.5f),
-                  static_cast<int>(255 * c.z + 0.5f), 255);
-}
+ImU32 ramp_ink(uint32_t ramp, float t) { return ink(shared::ramp_color(ramp, t)); }
 
 /// The ramp from left to right, with labels under the given places (0..1).
 void ramp_bar(ImDrawList* list, const ImVec2& at, uint32_t ramp,
@@ -96,41 +93,26 @@ void tile_sample(ImDrawList* list, const ImVec2& lo, uint32_t state) {
   }
 }
 
-ImU32 ink_of(const vec3& encoded) {
-  return IM_COL32(static_cast<int>(255 * encoded.x + 0.5f), static_cast<int>(255 * encoded.y + 0.5f),
-                  static_cast<int>(255 * encoded.z + 0.5f), 255);
-}
-
 /// A square of a colour and what it stands for; returns the x behind it.
-float swatch(ImDrawList* list, const ImVec2& at, ImU32 ink, const std::string& name) {
+float swatch(ImDrawList* list, const ImVec2& at, ImU32 colour, const std::string& name) {
   ImFont* font = theme().fonts.small;
-  list->AddRectFilled({at.x, at.y + px(3)}, {at.x + px(10), at.y + px(13)}, ink, px(2));
+  list->AddRectFilled({at.x, at.y + px(3)}, {at.x + px(10), at.y + px(13)}, colour, px(2));
+  if (name.empty()) return at.x + px(12);
   const float end = at.x + px(14) + text_width(name, font);
   draw_text(list, {at.x + px(14), at.y}, {end + px(2), at.y + px(16)}, name, colour::text, Align::left, font);
   return end + px(10);
 }
 
-/// What records are coloured by; `at` is below the title.
-void record_inks(ImDrawList* list, const ImVec2& at, const session::CacheReport& r) {
-  float x = at.x;
-  if (r.color == shared::k_record_by_pass) {
-    uint32_t most = 0;
-    for (const auto& p : r.status.passes)
-      if (p.records > 0) most = std::max(most, p.number);
-    for (uint32_t i = 0; i <= most && x < at.x + px(k_ramp_width - 24); ++i)
-      x = swatch(list, {x, at.y}, ink_of(shared::ramp_hue(i)), fmt::format("{}", i + 1));
-    return;
-  }
-  if (r.color == shared::k_record_by_origin) {
-    for (uint32_t i = 0; i < std::size(irradiance_cache::k_origins); ++i)
-      x = swatch(list, {x, at.y}, ink_of(shared::ramp_hue(i)), irradiance_cache::k_origins[i]);
-    return;
-  }
+/// Labels of a solver's ramp; where it has none, of its range.
+std::vector<std::pair<float, std::string>> ramp_labels(const solvers::Legend& legend) {
+  using Scale = solvers::Legend::Range::Unit;
   std::vector<std::pair<float, std::string>> labels;
-  const auto [lo, hi] = r.scale;
-  const auto text = [&](double value) {
-    if (r.color == shared::k_record_by_rays) return tick_text(value, Unit::count);
-    return fmt::format("{:.3g}{}", value, r.color == shared::k_record_by_distance ? " m" : "");
+  for (const solvers::Legend::Tick& tick : legend.ticks) labels.emplace_back(tick.at, tick.text);
+  if (!legend.range) return labels;
+  const auto [lo, hi, scale] = *legend.range;
+  const auto text = [scale = scale](double value) {
+    if (scale == Scale::count) return tick_text(value, Unit::count);
+    return fmt::format("{:.3g}{}", value, scale == Scale::metres ? " m" : "");
   };
   for (const Tick& tick : ticks(LogAxis{double{lo}, double{hi}, 0, px(k_ramp_width)}, Unit::count, px(40)))
     labels.emplace_back(shared::ramp_position(static_cast<float>(tick.value), lo, hi, 1u),
@@ -138,102 +120,48 @@ void record_inks(ImDrawList* list, const ImVec2& at, const session::CacheReport&
   // A scale too short for a round number shows its ends.
   if (std::none_of(labels.begin(), labels.end(), [](const auto& l) { return !l.second.empty(); }))
     labels = {{0.0f, text(double{lo})}, {1.0f, text(double{hi})}};
-  ramp_bar(list, at, shared::k_ramp_viridis, labels);
+  return labels;
 }
 
-const char* record_title(uint32_t color) {
-  switch (color) {
-    case shared::k_record_by_pass:
-      return "Records, by the pass that placed them";
-    case shared::k_record_by_origin:
-      return "Records, by what asked for them";
-    case shared::k_record_by_rays:
-      return "Records, by their rays";
-    case shared::k_record_by_distance:
-      return "Records, by the mean distance they see";
-    default:
-      return "Records, by their error (irradiance)";
+constexpr float k_title = 20, k_ramp = 28, k_mark = 18;  // heights
+
+/// With its title, without what parts it from the next.
+float height_of(const solvers::Legend& legend) {
+  float h = px(k_title);
+  if (legend.ramp) h += px(k_ramp);
+  if (!legend.marks.empty())
+    h += legend.marks_in_line ? px(20) : px(k_mark * static_cast<float>(legend.marks.size()) - 2);
+  return h;
+}
+
+/// Below its title, at `at`.
+void draw_below_title(ImDrawList* list, ImVec2 at, const solvers::Legend& legend) {
+  if (legend.ramp) {
+    ramp_bar(list, at, *legend.ramp, ramp_labels(legend));
+    at.y += px(k_ramp);
   }
-}
-
-/// How many records serve a pixel.
-void overlap_inks(ImDrawList* list, const ImVec2& at) {
-  std::vector<std::pair<float, std::string>> labels;
-  for (const int n : {1, 4, 8, static_cast<int>(shared::k_overlap_scale)})
-    labels.emplace_back(
-        static_cast<float>(n) / shared::k_overlap_scale,
-        (n == static_cast<int>(shared::k_overlap_scale) ? "\xE2\x89\xA5 " : "") + fmt::format("{}", n));
-  ramp_bar(list, at, shared::k_ramp_viridis, labels);
-  swatch(list, {at.x, at.y + px(28)}, ink_of(shared::k_gathered_ink), "none: paths gather there");
-  swatch(list, {at.x, at.y + px(46)}, ink_of(shared::k_unserved_ink), "none: path traced");
-}
-
-/// What has become of places; returns the title, draws below it when there is a list.
-const char* placement_title(irradiance_cache::PlacementShow drawn) {
-  switch (drawn) {
-    case irradiance_cache::PlacementShow::candidates:
-      return "Candidates, by what asks for a record";
-    case irradiance_cache::PlacementShow::clusters:
-      return "Candidates, by their cluster";
-    default:
-      return "Places that were tried, with their radii";
-  }
-}
-
-void placement_inks(ImDrawList* list, const ImVec2& at, const session::CacheReport& r) {
   float x = at.x;
-  const irradiance_cache::CachePass* pass = r.status.passes.empty() ? nullptr : &r.status.passes.back();
-  if (r.placement == irradiance_cache::PlacementShow::candidates) {
-    for (uint32_t i = 0; i < std::size(irradiance_cache::k_origins); ++i)
-      x = swatch(list, {x, at.y}, ink_of(shared::ramp_hue(i)), irradiance_cache::k_origins[i]);
-    return;
+  for (const solvers::Legend::Mark& mark : legend.marks) {
+    if (legend.marks_in_line && x >= at.x + px(k_ramp_width - 24)) break;
+    const float end = swatch(list, {x, at.y}, ink(mark.ink), mark.text);
+    if (legend.marks_in_line)
+      x = end;
+    else
+      at.y += px(k_mark);
   }
-  const auto counted = [&](const char* name, uint32_t n) {
-    return pass ? fmt::format("{} {}", count_text(n), name) : std::string(name);
-  };
-  if (r.placement == irradiance_cache::PlacementShow::clusters) {
-    for (uint32_t i = 0; i < 5; ++i) {
-      list->AddRectFilled({x, at.y + px(3)}, {x + px(10), at.y + px(13)},
-                          ink_of(shared::placed_cluster_ink(i)), px(2));
-      x += px(12);
-    }
-    const std::string text = counted("clusters", pass ? pass->clusters : 0);
-    draw_text(list, {x + px(2), at.y}, {x + px(120), at.y + px(16)}, text, colour::text, Align::left,
-              theme().fonts.small);
-    x += px(14) + text_width(text, theme().fonts.small);
-    swatch(list, {x, at.y}, ink_of(shared::k_tried_ink), counted("tried", pass ? pass->tried : 0));
-    return;
-  }
-  const bool thinned = pass && pass->records > 0;
-  if (thinned) x = swatch(list, {x, at.y}, ink_of(shared::k_chosen_ink), counted("chosen", pass->records));
-  swatch(
-      list, {x, at.y}, ink_of(thinned ? shared::k_rejected_ink : shared::k_tried_ink),
-      thinned ? counted("rejected", pass->tried - pass->records) : counted("tried", pass ? pass->tried : 0));
-}
-
-/// How much geometry or irradiance changes in a cell.
-void discontinuity_inks(ImDrawList* list, const ImVec2& at) {
-  ramp_bar(list, at, shared::k_ramp_magma,
-           {{0.0f, "0 flat"}, {0.25f, "0.25"}, {0.5f, "0.5"}, {0.75f, "0.75"}, {1.0f, "1 full"}});
-}
-
-std::string discontinuity_title(const std::string& of, uint32_t level) {
-  return fmt::format("Detail of {}, cells of {} pixel{}", of, 1u << level, level == 0 ? "" : "s");
 }
 
 }  // namespace
 
 void draw_legend(Ui& ui, const Area& area) {
   const session::Snapshot* s = ui.snapshot.get();
-  if (!s || !s->activity.empty() || (s->coarse && !s->cache)) return;
+  if (!s || !s->activity.empty()) return;
+  // The coarse first image has neither samples to be counted nor tiles; solvers draw over it too.
   const bool heat = !s->coarse && s->legend.layer != 0, tiles = !s->coarse && s->tiles && s->accuracy;
-  const session::CacheReport* cache = s->cache.get();
-  const bool records = cache && (ui.setting_on("overlay.records") || ui.setting_on("overlay.normals"));
-  const bool overlap = cache && ui.setting_on("overlay.overlap");
-  const bool placement = cache && cache->placement != irradiance_cache::PlacementShow::off;
-  const std::string detail = cache ? ui.setting("overlay.discontinuity") : "off";
-  const bool detailed = detail != "off";
-  if (!heat && !tiles && !records && !overlap && !placement && !detailed) return;
+  std::vector<const solvers::Legend*> legends;
+  for (const auto& report : s->reports)
+    for (const solvers::Legend& legend : report->legends) legends.push_back(&legend);
+  if (!heat && !tiles && legends.empty()) return;
   struct Row {
     uint32_t state;
     std::string name, count;
@@ -255,14 +183,10 @@ void draw_legend(Ui& ui, const Area& area) {
   const float line = px(18), pad = px(12);
   const float heat_height = heat ? px(48) : 0;
   const float tiles_height = tiles ? px(50) + line * static_cast<float>(rows.size() + (heavy > 0)) : 0;
-  const bool numbered = records && cache->color <= shared::k_record_by_origin;
-  const float records_height = records ? px(numbered ? 40 : 48) : 0, overlap_height = overlap ? px(82) : 0,
-              placement_height = placement ? px(40) : 0, detail_height = detailed ? px(48) : 0;
-  const float between =
-      px(6) * static_cast<float>(heat + tiles + records + overlap + placement + detailed - 1);
-  const float w = px(k_ramp_width) + 2 * pad, h = heat_height + tiles_height + records_height +
-                                                  overlap_height + placement_height + detail_height + pad +
-                                                  between;
+  float solver_height = 0;
+  for (const solvers::Legend* legend : legends) solver_height += height_of(*legend);
+  const float between = px(6) * static_cast<float>(size_t{heat} + size_t{tiles} + legends.size() - 1);
+  const float w = px(k_ramp_width) + 2 * pad, h = heat_height + tiles_height + solver_height + pad + between;
   if (h > area.height() - px(24) || w > area.width() - px(24)) return;
   const ImVec2 lo(area.lo.x + px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
   ImDrawList* list = ImGui::GetWindowDrawList();
@@ -279,25 +203,10 @@ void draw_legend(Ui& ui, const Area& area) {
     ramp_bar(list, {lo.x + pad, y}, s->legend.ramp, heat_labels(s->legend));
     y += heat_height - px(20) + px(6);
   }
-  if (records) {
-    title(record_title(cache->color));
-    record_inks(list, {lo.x + pad, y}, *cache);
-    y += records_height - px(20) + px(6);
-  }
-  if (placement) {
-    title(placement_title(cache->placement));
-    placement_inks(list, {lo.x + pad, y}, *cache);
-    y += placement_height - px(20) + px(6);
-  }
-  if (overlap) {
-    title("Records that serve a pixel");
-    overlap_inks(list, {lo.x + pad, y});
-    y += overlap_height - px(20) + px(6);
-  }
-  if (detailed) {
-    title(discontinuity_title(detail, static_cast<uint32_t>(ui.setting_real("overlay.discontinuity_level"))));
-    discontinuity_inks(list, {lo.x + pad, y});
-    y += detail_height - px(20) + px(6);
+  for (const solvers::Legend* legend : legends) {
+    title(legend->title);
+    draw_below_title(list, {lo.x + pad, y}, *legend);
+    y += height_of(*legend) - px(k_title) + px(6);
   }
   if (!tiles) return;
   const session::Accuracy& a = *s->accuracy;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "chart.h"
+#include "solvers/registry.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -148,9 +149,9 @@ int decimals_of(const OptionInfo& option) {
 /// Whether an option has a place of its own elsewhere in the window (or none: texts that belong to the
 /// scene).
 bool placed_elsewhere(const OptionInfo& option) {
-  for (const char* head : {"components.", "show.", "film.", "overlay.", "cache."})
+  for (const char* head : {"components.", "show.", "film.", "overlay."})
     if (option.key.rfind(head, 0) == 0) return true;
-  return option.type == OptionType::text;
+  return option.type == OptionType::text || solvers::owner_of(option.key);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "chart.h"
+#include "solvers/registry.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -52,6 +53,41 @@ void end_menu() {
   ImGui::PopStyleVar();
 }
 
+/// A key as a menu tells it; valid until the next call.
+const char* key_name(char shortcut) {
+  static char name[2];
+  name[0] = shortcut, name[1] = 0;
+  return shortcut ? name : nullptr;
+}
+
+/// Loads and saves the work of the solvers that keep theirs as files.
+void solver_files(Ui& ui) {
+  const bool picture = ui.has_picture();
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    if (!solver->file) continue;
+    const bool used = ui.uses(*solver) && picture;
+    const solvers::Report* report = ui.report(*solver);
+    const bool complete = used && report && report->ready;
+    const std::string unused = fmt::format("No component is computed by {}.", solver->name);
+    const std::string name = uncapitalised(solver->label);
+    if (entry(("Load " + name + "\xE2\x80\xA6").c_str(), nullptr,
+              used
+                  ? fmt::format("Takes {} from a file {}.", solver->file->content, solver->file->fits).c_str()
+                  : unused.c_str(),
+              false, used))
+      ui.act("dialog." + solver->name + "_load");
+    if (entry(("Save " + name + "\xE2\x80\xA6").c_str(), nullptr,
+              complete ? fmt::format("Writes {}, so that this scene need not gather them again.",
+                                     solver->file->content)
+                             .c_str()
+              : used ? fmt::format("{} is not complete yet.", capitalised(solver->title)).c_str()
+                     : unused.c_str(),
+              false, complete))
+      ui.act("dialog." + solver->name + "_save");
+    divide();
+  }
+}
+
 void file_menu(Ui& ui) {
   if (!begin_menu("File")) return;
   if (entry("Open\xE2\x80\xA6", "Ctrl+O",
@@ -86,23 +122,7 @@ void file_menu(Ui& ui) {
             reference))
     ui.act("reference.clear");
   divide();
-  const bool cached = ui.cached() && picture;
-  const char* const uncached = "No component is computed by cache.";
-  if (entry("Load cache\xE2\x80\xA6", nullptr,
-            cached
-                ? "Takes the irradiance cache's records from a file of this scene, lit alike, and adds what "
-                  "this view is missing."
-                : uncached,
-            false, cached))
-    ui.act("dialog.cache_load");
-  const bool complete = cached && ui.snapshot->preparing.empty();
-  if (entry("Save cache\xE2\x80\xA6", nullptr,
-            complete ? "Writes the irradiance cache's records, so that this scene need not gather them again."
-            : cached ? "The cache is still being built."
-                     : uncached,
-            false, complete))
-    ui.act("dialog.cache_save");
-  divide();
+  solver_files(ui);
   if (entry("Save session as script\xE2\x80\xA6", nullptr,
             "Writes what was done in this session as commands, one a line; lucerna --script does it again."))
     ui.act("dialog.script");
@@ -128,6 +148,44 @@ void edit_menu(Ui& ui) {
   end_menu();
 }
 
+/// What can be drawn over the picture of a solver's work.
+void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
+  const bool used = ui.uses(solver);
+  for (size_t i = 0; i < solver.views.size(); ++i) {
+    const solvers::ViewInfo& view = solver.views[i];
+    const OptionInfo* option = plan::find_option(view.option);
+    const std::string name = solver.label + " " + uncapitalised(view.label);
+    if (option->type == OptionType::choice && view.ring.empty()) {
+      // An entry a value; the key goes through them, from the first.
+      for (size_t k = 1; k < option->choices.size(); ++k) {
+        const std::string& value = option->choices[k];
+        const bool on = ui.setting(option->key) == value;
+        if (entry(fmt::format("{}: {}", name, value).c_str(), k == 1 ? key_name(view.shortcut) : nullptr,
+                  option->help.c_str(), on, used))
+          ui.act("set", option->key, on ? option->choices.front() : value);
+      }
+    } else if (entry(name.c_str(), key_name(view.shortcut), option->help.c_str(), ui.view_on(view), used)) {
+      ui.turn_view(view);
+    }
+    for (const std::string& key : view.refined_by) {
+      // Behind the last of the views that it refines, where any of them is on.
+      bool on = false, last = true;
+      for (size_t k = 0; k < solver.views.size(); ++k) {
+        const std::vector<std::string>& keys = solver.views[k].refined_by;
+        if (std::find(keys.begin(), keys.end(), key) == keys.end()) continue;
+        on = on || ui.view_on(solver.views[k]);
+        last = last && k <= i;
+      }
+      const OptionInfo* by = plan::find_option(key);
+      if (!used || !on || !last || !by) continue;
+      for (const std::string& choice : by->choices)
+        if (entry(fmt::format("   {} {}", uncapitalised(option_label(*by)), choice).c_str(), nullptr,
+                  by->help.c_str(), ui.setting(key) == choice))
+          ui.act("set", key, choice);
+    }
+  }
+}
+
 void view_menu(Ui& ui) {
   if (!begin_menu("View")) return;
   if (entry("Panels", "Tab", "Shows or hides all panels.", ui.layout.panels))
@@ -135,16 +193,21 @@ void view_menu(Ui& ui) {
   if (entry("Light", nullptr, "Components and options.", ui.layout.left_open))
     ui.act("window.fold", "left", ui.layout.left_open);
   // What the right panel shows; that which it shows already is folded away.
-  const auto side = [&](const char* name, const char* key, const char* help, bool cache) {
-    const bool on = ui.layout.right_open && ui.cache_panel == cache;
-    if (!entry(name, key, help, on)) return;
+  const auto side = [&](const std::string& name, const char* key, const std::string& help,
+                        const std::string& what) {
+    const bool on = ui.layout.right_open && ui.side == what;
+    if (!entry(name.c_str(), key, help.c_str(), on)) return;
     if (on)
       ui.act("window.fold", "right", true);
     else
-      ui.act("window.side", cache ? "cache" : "scene");
+      ui.act("window.side", what);
   };
-  side("Scene", nullptr, "Cameras, lights, environment, materials.", false);
-  side("Cache", "K", "The irradiance cache: its building, its records, its options.", true);
+  side("Scene", nullptr, "Cameras, lights, environment, materials.", k_scene_side);
+  const std::string next = ui.next_side();
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    if (solver->has_panel())
+      side(solver->label, next == solver->name || ui.side == solver->name ? "K" : nullptr,
+           panel_help(*solver), solver->name);
   if (entry("Accuracy, passes and log", nullptr, "The strip at the bottom.", ui.layout.bottom_open))
     ui.act("window.fold", "bottom", ui.layout.bottom_open);
   divide();
@@ -157,30 +220,10 @@ void view_menu(Ui& ui) {
   if (entry("Lamps", "L", "Marks the lamps in the picture; a click on a mark selects the lamp.",
             ui.light_marks))
     ui.act("view.lamps", !ui.light_marks);
-  const auto overlay = [&](const char* name, const char* key, const std::string& option, bool enabled) {
-    if (entry(name, key, plan::find_option(option)->help.c_str(), ui.setting_on(option), enabled))
-      ui.toggle(option);
-  };
-  overlay("Tiles", "T", "overlay.tiles", true);
-  overlay("Cache records", "C", "overlay.records", ui.cached());
-  overlay("Cache overlap", "V", "overlay.overlap", ui.cached());
-  overlay("Cache normals", "N", "overlay.normals", ui.cached());
-  if (const OptionInfo* placement = plan::find_option("overlay.placement"); entry(
-          "Cache placement", "P", placement->help.c_str(), ui.setting(placement->key) != "off", ui.cached()))
-    ui.act("set", placement->key, ui.setting(placement->key) == "off" ? "stage" : "off");
-  if (ui.cached() && (ui.setting_on("overlay.records") || ui.setting_on("overlay.normals"))) {
-    const OptionInfo* by = plan::find_option("overlay.records_by");
-    for (const std::string& choice : by->choices)
-      if (entry(("   by " + choice).c_str(), nullptr, by->help.c_str(), ui.setting(by->key) == choice))
-        ui.act("set", by->key, choice);
-  }
-  const OptionInfo* detail = plan::find_option("overlay.discontinuity");
-  for (const std::string& of : {std::string("geometry"), std::string("irradiance")}) {
-    const bool on = ui.setting(detail->key) == of;
-    if (entry(("Cache detail of " + of).c_str(), of == "geometry" ? "G" : nullptr, detail->help.c_str(), on,
-              ui.cached()))
-      ui.act("set", detail->key, on ? "off" : of);
-  }
+  if (const OptionInfo* tiles = plan::find_option("overlay.tiles");
+      entry("Tiles", "T", tiles->help.c_str(), ui.setting_on(tiles->key)))
+    ui.toggle(tiles->key);
+  for (const solvers::SolverInfo* solver : solvers::registered()) solver_views(ui, *solver);
   if (entry("Forget earlier renders", nullptr,
             "Takes the lines of earlier renders out of the plot of accuracy.", false,
             !ui.runs.earlier().empty()))
@@ -203,14 +246,11 @@ void render_menu(Ui& ui) {
   if (entry("Start again", "R", "Throws the samples away and starts the picture anew.", false,
             ui.snapshot != nullptr))
     ui.act("render.restart");
-  if (entry("Next stage of the cache", "X",
-            "Goes on building the irradiance cache to the end of the next stage and waits there.", false,
-            ui.cached()))
-    ui.act("cache.step");
-  if (entry("Go on with the cache", "J",
-            "Goes on building the irradiance cache without a pause until it is complete.", false,
-            ui.cached()))
-    ui.act("cache.run");
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    for (const solvers::CommandInfo& command : solver->commands)
+      if (entry(fmt::format("{}: {}", solver->label, uncapitalised(command.label)).c_str(),
+                key_name(command.shortcut), command.help.c_str(), false, ui.uses(*solver)))
+        ui.act(solver->name + "." + command.name);
   if (entry("Reload shaders", "F5", "Compiles the shaders again; when that fails the old ones stay."))
     ui.act("shaders.reload");
   divide();

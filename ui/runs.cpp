@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands/camera_control.h"
+#include "solvers/registry.h"
 
 namespace lucerna::ui {
 namespace {
@@ -17,9 +18,10 @@ bool worth_keeping(const Run& run) {
 
 /// Settings that change what is shown, not what is computed.
 bool only_shown(const std::string& key) {
-  for (const char* head : {"film.", "show.", "overlay.", "camera", "about", "cache.pause"})
+  for (const char* head : {"film.", "show.", "overlay.", "camera", "about"})
     if (key.starts_with(head)) return true;
-  return false;
+  const OptionInfo* option = plan::find_option(key);
+  return option && !option->restarts && solvers::owner_of(key);
 }
 
 bool same_lights(const scene::Scene& a, const scene::Scene& b) {

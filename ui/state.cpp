@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/timer.h"
+#include "solvers/registry.h"
 
 namespace lucerna::ui {
 namespace {
@@ -65,6 +66,56 @@ void Ui::scene_changed() {
   std::erase(recent, scene->file);
   recent.insert(recent.begin(), scene->file);
   if (recent.size() > 8) recent.resize(8);
+}
+
+std::string Ui::next_side() const {
+  std::vector<std::string> sides;
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    if (solver->has_panel() && uses(*solver)) sides.push_back(solver->name);
+  // Where none is in use a panel says how to use it.
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    if (solver->has_panel() && sides.empty()) sides.push_back(solver->name);
+  if (sides.empty()) return k_scene_side;
+  if (side == k_scene_side) return sides.front();
+  if (!layout.right_open) return side;
+  const auto at = std::find(sides.begin(), sides.end(), side);
+  return at == sides.end() || at + 1 == sides.end() ? k_scene_side : *(at + 1);
+}
+
+bool Ui::view_on(const solvers::ViewInfo& view) const {
+  const std::string& value = setting(view.option);
+  return value != "false" && value != "off";
+}
+
+void Ui::turn_view(const solvers::ViewInfo& view) {
+  const OptionInfo* option = plan::find_option(view.option);
+  if (!option) return;
+  if (option->type != OptionType::choice) return toggle(view.option);
+  const std::vector<std::string>& ring = view.ring.empty() ? option->choices : view.ring;
+  // A value beside the ring is one more that is on: off comes next.
+  const auto at = std::find(ring.begin(), ring.end(), setting(view.option));
+  act("set", view.option, at == ring.end() || at + 1 == ring.end() ? ring.front() : *(at + 1));
+}
+
+bool Ui::asks_pointer() const {
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    for (const solvers::ViewInfo& view : solver->views)
+      if (view.asks_pointer && view_on(view) && uses(*solver)) return true;
+  return false;
+}
+
+std::string panel_help(const solvers::SolverInfo& solver) {
+  return capitalised(solver.title) + ": its work, what it shows of it over the picture, its options.";
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+std::string uncapitalised(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 void Ui::drop(const std::string& file) {

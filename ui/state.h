@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "commands/workspace.h"
 #include "layout.h"
+#include "solvers/info.h"
 
 namespace lucerna::ui {
 
@@ -18,6 +19,9 @@ using commands::Kind;
 using commands::named;
 using commands::Selection;
 using commands::Viewpoint;
+
+/// The right panel's name for the scene, beside the names of solvers.
+inline constexpr const char* k_scene_side = "scene";
 
 struct LogLine {
   log::Level level;
@@ -41,7 +45,9 @@ class LogInbox {
 };
 
 struct Dialog {
-  enum class Purpose { none, open, save, script, reference, cache_load, cache_save } purpose = Purpose::none;
+  enum class Purpose { none, open, save, script, reference, solver_load, solver_save };
+  Purpose purpose = Purpose::none;
+  const solvers::SolverInfo* solver = nullptr;  ///< whose work is loaded or saved
   std::string path;
   bool fresh = false;   ///< to be opened in the next frame
   bool focus = false;   ///< its field takes the keyboard in the next frame
@@ -73,10 +79,6 @@ struct Ui : commands::Workspace {
   void act_line(const std::string& line);
   /// Turns a boolean setting over.
   void toggle(const std::string& key) { act("set", key, setting_on(key) ? "false" : "true"); }
-  /// Whether the settings have some light come from the irradiance cache.
-  bool cached() const {
-    return setting("components.secondary") == "cache" || setting("components.tertiary") == "cache";
-  }
   uint64_t gesture = 0;  ///< of the control that is held now; 0: none
   /// Finds out which control is held; call once a frame.
   void follow_gesture();
@@ -111,14 +113,16 @@ struct Ui : commands::Workspace {
   Area picture;              ///< where the picture may be
   bool picture_hovered = false;
 
-  // The irradiance cache.
-  bool cache_panel = false;  ///< the right panel shows the cache, not the scene
-  /// Whether something of the cache lies over the picture; then the pointer asks what is under it.
-  bool shows_cache() const {
-    return cached() &&
-           (setting_on("overlay.records") || setting_on("overlay.overlap") || setting_on("overlay.normals"));
-  }
-  /// Where the pointer has asked last, as inspect.records takes it.
+  // Solvers.
+  std::string side = k_scene_side;  ///< what the right panel shows: the scene, or the solver of that name
+  /// What the key K shows next: the panels of solvers that are in use, then the scene again.
+  std::string next_side() const;
+  bool view_on(const solvers::ViewInfo& view) const;
+  /// On or off; of a choice the next of its ring.
+  void turn_view(const solvers::ViewInfo& view);
+  /// Whether a view lies over the picture of which the pointer asks what is under it.
+  bool asks_pointer() const;
+  /// Where the pointer has asked last, as inspect.at takes it.
   std::optional<vec2> asked;
 
   // Accuracy.
@@ -159,7 +163,7 @@ struct Ui : commands::Workspace {
 
   /// A file was dropped on the window.
   void drop(const std::string& file);
-  void start_dialog(Dialog::Purpose purpose);
+  void start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver = nullptr);
   void fail(const std::string& message);                  ///< to the strip
   void print(log::Level level, const std::string& text);  ///< to the log panel alone
   bool has_picture() const { return snapshot && !snapshot->rgba.empty(); }
@@ -185,7 +189,7 @@ void draw_light_panel(Ui& ui, const Area& area);
 /// The titles of what the right panel may show; returns what is left of its area below them.
 Area draw_side_tabs(Ui& ui, const Area& area);
 void draw_scene_panel(Ui& ui, const Area& area);
-void draw_cache_panel(Ui& ui, const Area& area);
+void draw_solver_panel(Ui& ui, const solvers::SolverInfo& solver, const Area& area);
 void draw_toolbar(Ui& ui, const Area& area);
 void draw_picture(Ui& ui, const Area& area);
 void draw_accuracy(Ui& ui, const Area& area);
@@ -193,7 +197,7 @@ void draw_passes(Ui& ui, const Area& area);
 void draw_log(Ui& ui, const Area& area);
 /// Over the picture's lower left; part of draw_picture.
 void draw_legend(Ui& ui, const Area& area);
-/// What inspect.records has found, in a card over the picture; part of draw_picture.
+/// What inspect.at has found, in a card over the picture; part of draw_picture.
 void draw_inspection(Ui& ui, const Area& area);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
@@ -210,6 +214,11 @@ void begin_panel(const char* name, const Area& area, ImU32 background, bool scro
 float panel_heading(const char* title, const Area& area);
 /// A section of a panel, whose fold is a command; `fallback`: whether it is open before anybody has said so.
 bool panel_section(Ui& ui, const char* title, bool fallback, const std::string& note = "");
+/// What the panel of a solver holds, in a sentence.
+std::string panel_help(const solvers::SolverInfo& solver);
+/// Its first letter as a capital, or as a small one.
+std::string capitalised(std::string text);
+std::string uncapitalised(std::string text);
 /// A control for an option of the settings table, by its type; the tooltip is its help.
 void option_control(Ui& ui, const std::string& key, const std::string& name);
 

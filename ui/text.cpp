@@ -1,7 +1,4 @@
-// Text: measuring, eliding, and numbers as text.
-#include <fmt/format.h>
-#include <cmath>
-
+// Text: its inks, measuring, eliding, padding.
 #include "widgets.h"
 
 namespace lucerna::ui {
@@ -19,6 +16,27 @@ size_t code_points(const std::string& text) {
 }
 
 }  // namespace
+
+ImU32 ink(const vec3& encoded) {
+  return IM_COL32(static_cast<int>(255 * encoded.x + 0.5f), static_cast<int>(255 * encoded.y + 0.5f),
+                  static_cast<int>(255 * encoded.z + 0.5f), 255);
+}
+
+ImU32 tone_ink(solvers::Tone tone) {
+  switch (tone) {
+    case solvers::Tone::normal:
+      return colour::text;
+    case solvers::Tone::dim:
+      return colour::text_dim;
+    case solvers::Tone::faint:
+      return colour::text_faint;
+    case solvers::Tone::accent:
+      return colour::accent;
+    case solvers::Tone::warning:
+      return colour::warning;
+  }
+  return colour::text;
+}
 
 float text_width(const std::string& text, ImFont* font) {
   if (!font) font = theme().fonts.regular;
@@ -53,41 +71,6 @@ std::string padded(const std::string& text, size_t width) {
   std::string result;
   for (size_t n = code_points(text); n < width; ++n) result += k_figure_space;
   return result + text;
-}
-
-std::string real_text(double value, int decimals) {
-  const std::string text = fmt::format("{:.{}f}", value, decimals);
-  if (text[0] != '-') return text;
-  // Minus nothing is nothing.
-  const bool zero = text.find_first_of("123456789") == std::string::npos;
-  return (zero ? "" : "\xE2\x88\x92") + text.substr(1);
-}
-
-std::string count_text(double n) {
-  std::string digits = fmt::format("{:.0f}", n), result;
-  for (size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0 && digits[i - 1] != '-')
-      result += "\xE2\x80\x88";  // punctuation space
-    result += digits[i];
-  }
-  return result;
-}
-
-std::string ms_text(double ms) {
-  if (ms < 99.95) return fmt::format("{:.1f} ms", ms);
-  if (ms < 9999.5) return fmt::format("{:.0f} ms", ms);
-  return fmt::format("{:.1f} s", ms / 1000);
-}
-
-std::string seconds_text(double s) {
-  if (s < 99.95) return fmt::format("{:.1f} s", s);
-  const auto whole = static_cast<int64_t>(std::llround(s));
-  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
-  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
-}
-
-std::string megabytes_text(double mb) {
-  return mb < 999.5 ? fmt::format("{:.0f} MB", mb) : fmt::format("{:.2f} GB", mb / 1024);
 }
 
 }  // namespace lucerna::ui

@@ -11,6 +11,7 @@
 #include "film/io/image_file.h"
 #include "recall.h"
 #include "runner.h"
+#include "solvers/registry.h"
 #include "widgets.h"
 #include "window.h"
 
@@ -157,7 +158,10 @@ class Viewer {
       draw_light_panel(ui_, areas.left);
       draw_toolbar(ui_, areas.toolbar);
       const Area side = draw_side_tabs(ui_, areas.right);
-      ui_.cache_panel ? draw_cache_panel(ui_, side) : draw_scene_panel(ui_, side);
+      if (const solvers::SolverInfo* solver = solvers::find(ui_.side))
+        draw_solver_panel(ui_, *solver, side);
+      else
+        draw_scene_panel(ui_, side);
       draw_accuracy(ui_, areas.accuracy);
       draw_passes(ui_, areas.passes);
       draw_log(ui_, areas.log);

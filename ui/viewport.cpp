@@ -232,8 +232,8 @@ void click(Ui& ui, const Area& shown) {
 
 constexpr double k_rest = 0.15;  // seconds
 
-/// While something of the cache lies over the picture, a pointer at rest asks what is under it. At rest,
-/// because every question interrupts the work on the picture.
+/// While a view of a solver that can be asked lies over the picture, a pointer at rest asks what is under it.
+/// At rest, because every question interrupts the work on the picture.
 void ask(Ui& ui, const Area& shown, bool active) {
   static ImVec2 last;
   static double since = 0;
@@ -243,10 +243,10 @@ void ask(Ui& ui, const Area& shown, bool active) {
                    (at.y - shown.lo.y) / std::max(1.0f, shown.height()));
   const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
   const bool still = !(active && dragging()) && !ui.flight.moving();
-  if (ui.shows_cache() && ui.picture_hovered && inside && still) {
+  if (ui.asks_pointer() && ui.picture_hovered && inside && still) {
     if (active || ui.asked == place || ui.now - since < k_rest) return;
     ui.asked = place;
-    ui.act("inspect.records", place.x, place.y);
+    ui.act("inspect.at", place.x, place.y);
   } else if (ui.asked) {
     ui.asked.reset();
     ui.act("inspect.none");

@@ -4,11 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "base/figures.h"
+#include "base/math.h"
+#include "solvers/report.h"
 #include "theme.h"
 
 namespace lucerna::ui {
 
 enum class Align { left, centre, right };
+
+ImU32 ink(const vec3& encoded);      ///< sRGB, 0..1
+ImU32 tone_ink(solvers::Tone tone);  ///< of text
 
 /// Text in a font and colour; elided with an ellipsis at `max_width` window pixels (0: not).
 void label(const std::string& text, ImU32 colour = colour::text, ImFont* font = nullptr, float max_width = 0);
@@ -78,12 +84,6 @@ bool folded_strip(const char* title, const ImVec2& lo, const ImVec2& hi, bool op
 bool splitter(const char* id, const ImVec2& lo, const ImVec2& hi, bool along_x, float direction,
               float& value);
 
-// Numbers as text, of constant width within a unit.
-std::string real_text(double value, int decimals);  ///< with a true minus sign
-std::string count_text(double n);                   ///< 1 234 567 with thin grouping
-std::string ms_text(double ms);                     ///< "12.3 ms", "1.24 s"
-std::string seconds_text(double s);                 ///< "4.2 s", "2 min 05 s", "1 h 02 min"
-std::string megabytes_text(double mb);              ///< "312 MB", "1.42 GB"
 /// Pads with figure spaces on the left to `width` digits, so that a changing number keeps its place.
 std::string padded(const std::string& text, size_t width);
 

@@ -4,12 +4,35 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "solvers/registry.h"
 #include "state.h"
 
 namespace lucerna::ui {
 namespace {
 
 const std::vector<std::string> k_levels{"debug", "info", "warning", "error"};
+
+/// What the right panel can show.
+std::vector<std::string> sides() {
+  std::vector<std::string> names{k_scene_side};
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    if (solver->has_panel()) names.push_back(solver->name);
+  return names;
+}
+
+std::vector<std::string> section_names(const Ui& ui) {
+  std::vector<std::string> names{"Light",       "Render",    "Camera",  "Lights",
+                                 "Environment", "Materials", "Objects", "Options"};
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    if (solver->has_panel()) add(solver->label);
+  if (ui.snapshot)
+    for (const auto& report : ui.snapshot->reports)
+      for (const solvers::PanelSection& section : report->sections) add(section.title);
+  return names;
+}
 
 float& size_of(Layout& layout, const std::string& panel) {
   return panel == "left" ? layout.left : panel == "right" ? layout.right : layout.bottom;
@@ -75,8 +98,8 @@ void add_window_commands(Ui& ui) {
   add("window.fold", "Folds a panel, or unfolds it.", {panel, {.name = "folded", .type = Type::boolean}},
       [&ui](const Arguments& a) { open_of(ui.layout, a.text("panel")) = !a.boolean("folded"); });
   add("window.side", "Says what the panel on the right shows, and unfolds it.",
-      {{.name = "what", .type = Type::choice, .choices = {"scene", "cache"}}}, [&ui](const Arguments& a) {
-        ui.cache_panel = a.text("what") == "cache";
+      {{.name = "what", .type = Type::choice, .choices = sides()}}, [&ui](const Arguments& a) {
+        ui.side = a.text("what");
         ui.layout.right_open = true;
       });
   add("window.split", "Sets the width of a side panel, or the height of the strip at the bottom.",
@@ -98,21 +121,7 @@ void add_window_commands(Ui& ui) {
   add("window.section", "Opens or closes a section of a panel.",
       {{.name = "section",
         .which = true,
-        .names =
-            [](const std::vector<std::string>&) {
-              return std::vector<std::string>{"Light",
-                                              "Render",
-                                              "Camera",
-                                              "Lights",
-                                              "Environment",
-                                              "Materials",
-                                              "Objects",
-                                              "Cache",
-                                              "Overlays",
-                                              "Passes of building",
-                                              "Steps of building",
-                                              "Options"};
-            }},
+        .names = [&ui](const std::vector<std::string>&) { return section_names(ui); }},
        {.name = "open", .type = Type::boolean}},
       [&ui](const Arguments& a) { ui.sections[a.text("section")] = a.boolean("open"); });
   add("window.size", "Resizes the window.",
@@ -154,12 +163,15 @@ void add_window_commands(Ui& ui) {
   add(
       "dialog.reference", "Asks for a picture to hold this one against.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);
-  add(
-      "dialog.cache_load", "Asks for records of the irradiance cache to load.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::cache_load); }, false);
-  add(
-      "dialog.cache_save", "Asks where to save the records of the irradiance cache.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::cache_save); }, false);
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    if (!solver->file) continue;
+    add(
+        "dialog." + solver->name + "_load", fmt::format("Asks for {} to load.", solver->file->content), {},
+        [&ui, solver](const Arguments&) { ui.start_dialog(Dialog::Purpose::solver_load, solver); }, false);
+    add(
+        "dialog." + solver->name + "_save", fmt::format("Asks where to save {}.", solver->file->content), {},
+        [&ui, solver](const Arguments&) { ui.start_dialog(Dialog::Purpose::solver_save, solver); }, false);
+  }
   add(
       "dialog.script", "Asks where to save the session as a script.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::script); }, false);

@@ -143,8 +143,8 @@ void Workspace::add_other_commands() {
              if (error_count > waited_errors_ && now - waited_since_ > k_standstill)
                throw Error("", "the picture stands still after an error");
              if (!snapshot || camera_moved || resizing) return false;
-             if (cache_waits() && up_to_date())
-               throw Error("", "building of the cache waits (cache.pause); cache.run goes on");
+             if (const solvers::Report* told = waiting(); told && up_to_date())
+               throw Error("", told->to_go_on);
              // A picture of an earlier camera does not count.
              if (view && !same_view(snapshot->camera, view->camera)) return false;
              return snapshot->finished || (!snapshot->coarse && snapshot->samples >= a.integer("samples"));

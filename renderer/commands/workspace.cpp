@@ -45,7 +45,7 @@ Workspace::Workspace(session::Session& s) : session(s) {
   add_camera_commands();
   add_other_commands();
   add_inspect_commands();
-  add_cache_commands();
+  add_solver_commands();
 }
 
 void Workspace::refresh(double time) {

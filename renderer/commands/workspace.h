@@ -12,6 +12,7 @@
 #include "commands/camera_control.h"
 #include "commands/registry.h"
 #include "session/session.h"
+#include "solvers/info.h"
 
 namespace lucerna::commands {
 
@@ -82,6 +83,12 @@ class Workspace {
   bool setting_on(const std::string& key) const { return setting(key) == "true"; }
   scene::Light light(uint32_t index) const;
   scene::Material material(uint32_t index) const;
+  /// Whether the settings have some component computed by that solver.
+  bool uses(const solvers::SolverInfo& solver) const;
+  /// What it told with the newest picture; null where it is not looked up.
+  const solvers::Report* report(const solvers::SolverInfo& solver) const;
+  /// That of a solver whose preparation waits for a command, or null.
+  const solvers::Report* waiting() const;
   float environment_scale() const { return environment_().first; }
   float environment_rotation() const { return environment_().second; }
   int solo() const { return solo_; }
@@ -158,7 +165,9 @@ class Workspace {
   void add_camera_commands();
   void add_other_commands();
   void add_inspect_commands();
-  void add_cache_commands();
+  void add_solver_commands();
+  void add_file_commands(const solvers::SolverInfo& solver);
+  void add_leading_commands(const solvers::SolverInfo& solver);
   Document& edit();  ///< the document that the running command may change
   void send(const Document& before, const Document& after);
   void record(const Line& line, uint64_t gesture);
@@ -173,8 +182,9 @@ class Workspace {
   std::pair<float, float> environment_() const;
   void needs_view() const;
   void needs_scene() const;
-  void needs_cache() const;
-  bool cache_waits() const { return snapshot && snapshot->cache && snapshot->cache->status.waits; }
+  /// Throws Error unless some component is computed by it; or by one whose light is looked up.
+  void needs_solver(const solvers::SolverInfo& solver) const;
+  void needs_lookup() const;
   uint32_t light_index(const std::string& which) const;
   uint32_t material_index(const std::string& which) const;
   int camera_index(const std::string& which) const;

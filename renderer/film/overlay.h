@@ -2,16 +2,9 @@
 // What the heat maps and the overlay of tiles show: the scales that picture and legend share
 // (shaders/shared/ramp.h holds the colours).
 #include "film/film.h"
+#include "film/tile_scale.h"
 
 namespace lucerna::film {
-
-/// From this many times the target on, a tile is as far from it as the ramp can tell.
-inline constexpr float k_tiles_far = 8;
-
-/// Where a tile of that error lies on the ramp of tiles: 0 far from the target .. 1 at it or below, even in
-/// the error's logarithm. -1 for errors that are not known (negative or NaN) and targets that are not
-/// positive.
-float tile_position(double error, double target);
 
 /// Samples a pixel, from `least` to `most`: in factors where they differ by more than one, else from 0.
 HeatScale sample_scale(uint32_t least, uint32_t most);

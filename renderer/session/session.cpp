@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/timer.h"
 #include "session/renderer.h"
+#include "solvers/registry.h"
 
 namespace lucerna::session {
 
@@ -51,7 +52,7 @@ struct Session::Impl {
   uint64_t published_shown = 0;  // Renderer::published, by the coarse picture
   struct Save {
     std::filesystem::path file;
-    bool cache;
+    std::string solver;  // whose work it keeps; "": the picture
     std::shared_ptr<std::promise<void>> promise;
   };
   std::vector<Save> saves;  // that wait for what they are to write
@@ -60,19 +61,20 @@ struct Session::Impl {
 
   /// Whether it is to be written now, or cannot be, which writing will tell.
   bool due(Renderer& r, const Save& save) const {
-    if (save.cache) return !r.solver("cache") || r.solver("cache")->ready();
+    if (!save.solver.empty()) {
+      const solvers::Solver* solver = r.solver(save.solver);
+      return !solver || solver->ready();
+    }
     return r.samples() > 0 || !works(r);
   }
 
   static void write(Renderer& r, const Save& save) {
     try {
-      if (save.cache) {
-        r.solver_save("cache", save.file);
-        log::info("saved {}", save.file.string());
-      } else {
+      if (save.solver.empty())
         r.save(save.file);
-        log::info("saved {}", save.file.string());
-      }
+      else
+        r.solver_save(save.solver, save.file);
+      log::info("saved {}", save.file.string());
       save.promise->set_value();
     } catch (const std::exception& e) {
       log::error("{}", e.what());
@@ -90,24 +92,24 @@ struct Session::Impl {
 
   void give_up_saves(const char* why) {
     for (const Save& save : saves) {
-      const Error error(save.file.string(),
-                        fmt::format("not written: {} before {}", why,
-                                    save.cache ? "the cache was complete" : "the picture had a sample"));
+      const std::string before = save.solver.empty() ? std::string("the picture had a sample")
+                                                     : solvers::find(save.solver)->title + " was complete";
+      const Error error(save.file.string(), fmt::format("not written: {} before {}", why, before));
       log::error("{}", error.what());
       save.promise->set_exception(std::make_exception_ptr(error));
     }
     saves.clear();
   }
 
-  Saved post_save(const std::filesystem::path& file, bool cache) {
+  Saved post_save(const std::filesystem::path& file, const std::string& solver) {
     // A promise that is dropped, for want of a device, is a failure to the one who waits.
     auto promise = std::make_shared<std::promise<void>>();
     Saved saved = promise->get_future().share();
     post(
-        [this, file, cache, promise](Renderer& r) {
-          saves.push_back({file, cache, promise});
-          if (cache && !due(r, saves.back()))
-            log::info("{}: will be written when the cache is complete", file.string());
+        [this, file, solver, promise](Renderer& r) {
+          saves.push_back({file, solver, promise});
+          if (!solver.empty() && !due(r, saves.back()))
+            log::info("{}: will be written when {} is complete", file.string(), solvers::find(solver)->title);
         },
         true);
     return saved;
@@ -256,7 +258,7 @@ void Session::Impl::run() {
           coarse_wanted = false;
           changed = true;
         } else if (work && renderer->step(cancelled)) {
-          // While the cache is built or relit the coarse picture shows what has come of it.
+          // While something is prepared the coarse picture shows what has come of it.
           if (renderer->preparing() && renderer->published() != published_shown) {
             published_shown = renderer->published();
             coarse_wanted = true;
@@ -296,8 +298,8 @@ void Session::Impl::run() {
   queue.clear();
   lock.unlock();
   std::erase_if(saves, [&](const Save& save) {
-    if (!save.cache) write(*renderer, save);
-    return !save.cache;
+    if (save.solver.empty()) write(*renderer, save);
+    return save.solver.empty();
   });
   give_up_saves("the program ended");
 }
@@ -427,27 +429,25 @@ void Session::inspect(std::optional<vec2> at) {
   impl_->post([at](Renderer& r) { r.inspect(at); });
 }
 
-Saved Session::save(const std::filesystem::path& file) { return impl_->post_save(file, false); }
+Saved Session::save(const std::filesystem::path& file) { return impl_->post_save(file, ""); }
 
-Saved Session::save_cache(const std::filesystem::path& file) { return impl_->post_save(file, true); }
+Saved Session::solver_save(const std::string& solver, const std::filesystem::path& file) {
+  return impl_->post_save(file, solver);
+}
 
-void Session::load_cache(const std::filesystem::path& file) {
-  impl_->post([s = impl_.get(), file](Renderer& r) {
-    r.solver_load("cache", file);
+void Session::solver_load(const std::string& solver, const std::filesystem::path& file) {
+  impl_->post([s = impl_.get(), solver, file](Renderer& r) {
+    r.solver_load(solver, file);
     s->restarted();
   });
 }
 
-void Session::step_cache() {
-  impl_->post([s = impl_.get()](Renderer& r) {
-    r.solver_command("cache", "step");
-    s->paused = false;
-  });
-}
-
-void Session::run_cache() {
-  impl_->post([s = impl_.get()](Renderer& r) {
-    r.solver_command("cache", "run");
+void Session::solver_command(const std::string& solver, const std::string& command) {
+  impl_->post([s = impl_.get(), solver, command](Renderer& r) {
+    const solvers::SolverInfo* info = solvers::find(solver);
+    if (!info || !solvers::find_command(*info, command))
+      throw Error(solver, fmt::format("there is no command '{}'", command));
+    r.solver_command(solver, command);
     s->paused = false;
   });
 }

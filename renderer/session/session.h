@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "gpu/device.h"
 #include "plan/settings.h"
 #include "scene/io/load.h"
 #include "scene/scene.h"
@@ -58,7 +57,7 @@ struct Snapshot {
   uint32_t max_samples = 0;        ///< where it stops
   bool coarse = false;             ///< some of the picture still is the coarse first image
   bool paused = false, finished = false;
-  /// "" or what is made before the first sample: "cache, pass 3: 2810 records".
+  /// "" or what is made before the first sample (solvers::Report::preparing).
   std::string preparing;
   /// Wall time since this image was begun, pauses left out: the clock of the ledger's wall_s and of
   /// forecasts.
@@ -67,8 +66,9 @@ struct Snapshot {
   uint64_t rays = 0;
   std::array<ComponentStatus, k_components> components;
   std::vector<StageStatus> stages;
-  std::shared_ptr<const Accuracy> accuracy;                     ///< null before the first picture
-  std::vector<std::shared_ptr<const solvers::Report>> reports;  ///< one a solver that is looked up
+  std::shared_ptr<const Accuracy> accuracy;  ///< null before the first picture
+  /// One of each solver whose light is looked up; none before the first picture.
+  std::vector<std::shared_ptr<const solvers::Report>> reports;
   double device_mb = 0, host_mb = 0;
   std::string device, tracer;
   std::string activity;  ///< "" or what is going on: "loading kitchen.gltf: textures 40 %"
@@ -111,21 +111,18 @@ class Session {
   /// Holds the picture against this one from now on (Renderer::set_reference).
   void set_reference(const std::filesystem::path& file);
   void clear_reference();
-  /// Which records of the irradiance cache serve that point of the picture (0..1 to the right and down): told
-  /// by Snapshot::cache and drawn over the picture from now on; nothing: no longer.
+  /// What solvers hold at that point of the picture (0..1 to the right and down): told by Snapshot::reports
+  /// and drawn over the picture from now on; nothing: no longer.
   void inspect(std::optional<vec2> at);
   /// EXR or PNG of what there is, as soon as every pixel has a sample; where rendering rests without, at
   /// once.
   Saved save(const std::filesystem::path& file);
-  /// Writes the records that paths look up (Renderer::save_cache) as soon as they are complete; given up when
-  /// another scene is loaded.
-  Saved save_cache(const std::filesystem::path& file);
-  void load_cache(const std::filesystem::path& file);  ///< Renderer::load_cache
-  /// While building of the irradiance cache waits, or before: goes on to the end of its next stage and waits
-  /// there, or goes on until it is complete, whatever the setting cache.pause says. Rendering that was paused
-  /// goes on too.
-  void step_cache();
-  void run_cache();
+  /// Keeps a solver's work (SolverInfo::file) as soon as it is complete; given up when another scene is
+  /// loaded.
+  Saved solver_save(const std::string& solver, const std::filesystem::path& file);
+  void solver_load(const std::string& solver, const std::filesystem::path& file);
+  /// One of SolverInfo::commands. Rendering that was paused goes on, too.
+  void solver_command(const std::string& solver, const std::string& command);
   void cancel();  ///< gives up all loads that were asked for so far and are not done
 
   /// Commands given so far: a snapshot of as many knows what they have brought.

@@ -81,7 +81,7 @@ TEST_CASE("files that are asked for are written, also when the session ends at o
     CHECK(*std::min_element(samples.begin(), samples.end()) >= 1);
     nowhere = session.save(file("no") / "such" / "a.exr");
     CHECK_THROWS_WITH(nowhere.get(), Catch::Contains("the folder '"));
-    cache = session.save_cache(file("a.cache"));
+    cache = session.solver_save("cache", file("a.cache"));
     CHECK_THROWS_WITH(cache.get(), Catch::Contains("no component is computed by 'cache'"));
     last = session.save(file("b.png"));
   }

@@ -402,9 +402,9 @@ TEST_CASE("a session whose cache waits is at rest, answers, and goes on when it 
     FAIL("waited for too long");
     return Snapshot();
   };
-  const auto waits = [](const session::Snapshot& s) { return s.cache && s.cache->status.waits; };
+  const auto waits = [](const session::Snapshot& s) { return !s.reports.empty() && s.reports[0]->waits; };
   const Snapshot before = wait(waits);
-  CHECK(before->cache->status.pass == 1);
+  CHECK(before->reports[0]->figure("pass") == 1);
   CHECK(before->preparing.find("cache waits") == 0);
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   const std::clock_t cpu = std::clock();
@@ -420,8 +420,8 @@ TEST_CASE("a session whose cache waits is at rest, answers, and goes on when it 
   const Snapshot moved = wait(waits);
   CHECK(moved->camera.to_world == camera.to_world);
   CHECK(moved->samples == 0);
-  session.step_cache();
-  CHECK(wait(waits)->cache->status.last->stage == BuildStage::probe);
-  session.run_cache();
+  session.solver_command("cache", "step");
+  CHECK(wait(waits)->reports[0]->figure("stage") == double(BuildStage::probe));
+  session.solver_command("cache", "run");
   wait([](const session::Snapshot& s) { return s.finished; });
 }

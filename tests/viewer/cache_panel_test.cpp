@@ -60,11 +60,10 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
       // Where the card would be in the way it makes room; away from the picture it goes.
       "\nmouse.move 1000 120\nwait 0.7\nscreenshot " + file("aside.png") +
       "\nmouse.move 640 800\nwait 0.5\nscreenshot " + file("gone.png") +
-      "\ninspect.records 0.25 0.75\nscreenshot " + file("asked.png") +
+      "\ninspect.at 0.25 0.75\nscreenshot " + file("asked.png") +
       // Where nothing asks for records, or in vain, it says so in place of weights.
-      "\ninspect.records 0.02 0.5\nscreenshot " + file("mirror.png") +
-      "\ninspect.records 0.98 0.5\nscreenshot " + file("steep.png") + "\ninspect.none\nscript.save " +
-      file("session.lucerna") + "\nquit\n");
+      "\ninspect.at 0.02 0.5\nscreenshot " + file("mirror.png") + "\ninspect.at 0.98 0.5\nscreenshot " +
+      file("steep.png") + "\ninspect.none\nscript.save " + file("session.lucerna") + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const auto bars = [&](const char* name, bool right) {  // of the weights, in the card
@@ -108,7 +107,7 @@ TEST_CASE("in the program lines lead from a point to the records that serve it")
       "window.size 1100 700\nwait_scene\nview.divisor 4\nwindow.side cache\n"
       "inspect.none\ncache.rays 64\ncache.min_radius 1\ncache.max_rays 64\ncomponents.secondary cache\n"
       "components.tertiary cache\nsamples 2\nwait_samples 2\nwait 0.5\nscreenshot " +
-          file("plain.png") + "\ninspect.records 0.5 0.85\nscreenshot " + file("lines.png") +
+          file("plain.png") + "\ninspect.at 0.5 0.85\nscreenshot " + file("lines.png") +
           "\ninspect.none\noverlay.normals true\nwait 0.5\nscreenshot " + file("normals.png") + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
@@ -131,9 +130,9 @@ TEST_CASE("in the program lines lead from a point to the records that serve it")
 
 TEST_CASE("asking a cache that nobody uses is a mistake that says what to do") {
   if (test::no_display()) return;
-  const auto outcome = test::window("wait_scene\ninspect.records 0.5 0.5\nquit\n");
+  const auto outcome = test::window("wait_scene\ninspect.at 0.5 0.5\nquit\n");
   INFO(outcome.output);
   CHECK(outcome.status != 0);
-  CHECK_THAT(outcome.output, Catch::Contains("line 2: inspect.records: no component takes its light from the "
+  CHECK_THAT(outcome.output, Catch::Contains("line 2: inspect.at: no component takes its light from the "
                                              "cache; set components.secondary cache"));
 }

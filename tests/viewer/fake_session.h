@@ -7,6 +7,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <mutex>
 #include <thread>
@@ -14,12 +15,16 @@
 #include "base/log.h"
 #include "base/timer.h"
 #include "session/session.h"
+#include "solvers/irradiance_cache/report.h"
 
 namespace lucerna::session {
 
 const std::array<const char*, k_components> k_component_names{"primary", "secondary", "tertiary", "caustic"};
 
 namespace fake {
+
+/// What one more solver tells, of a test that brings one; it is given the settings and where somebody looks.
+inline std::function<std::optional<solvers::Report>(const plan::Settings&, std::optional<vec2>)> more;
 
 inline scene::Scene make_scene(const std::filesystem::path& file) {
   scene::Scene scene;
@@ -154,9 +159,12 @@ struct Session::Impl {
         s->legend = {shared::k_layer_error, shared::k_ramp_magma, true, 0.005f, 0.5f};
       s->tiles = settings.boolean("overlay.tiles");
     }
-    if (scene && width > 0 &&
-        (settings.text("components.secondary") == "cache" || settings.text("components.tertiary") == "cache"))
-      s->cache = cache();
+    if (scene && width > 0 && cached())
+      s->reports.push_back(
+          std::make_shared<solvers::Report>(irradiance_cache::make_report(cache(), settings)));
+    if (scene && width > 0 && fake::more)
+      if (const auto told = fake::more(settings, looked_at))
+        s->reports.push_back(std::make_shared<solvers::Report>(*told));
     s->mrays_per_second = 3.42, s->rays = 1234567ull * samples;
     s->device_mb = 212, s->host_mb = 1480;
     const double shares[] = {0.618, 0.241, 0.126, 0.015}, ms[] = {412, 380, 1210, 96};
@@ -228,10 +236,10 @@ struct Session::Impl {
   }
 
   /// A cache of four passes; a record in the middle of the picture is looked at where somebody looks.
-  std::shared_ptr<const CacheReport> cache() const {
-    auto c = std::make_shared<CacheReport>();
-    irradiance_cache::CacheStatus& status = c->status;
-    c->room = 100000;
+  irradiance_cache::CacheReport cache() const {
+    irradiance_cache::CacheReport c;
+    irradiance_cache::CacheStatus& status = c.status;
+    c.room = 100000;
     status.pass = 4, status.bytes = 100u << 20, status.references = 7.3;
     for (uint32_t i = 0; i < 5; ++i) {
       irradiance_cache::CachePass p;
@@ -242,7 +250,7 @@ struct Session::Impl {
       status.records += p.records, status.rays += p.rays, status.asked = p.asked, status.paths = p.paths;
     }
     status.stop = irradiance_cache::StopReason::covered;
-    c->placement = irradiance_cache::PlacementShow(settings.choice("overlay.placement"));
+    c.placement = irradiance_cache::PlacementShow(settings.choice("overlay.placement"));
     status.last =
         irradiance_cache::StageDone{.stage = irradiance_cache::BuildStage::probe, .pass = 4, .ms = 210};
     if (waits()) {
@@ -253,22 +261,22 @@ struct Session::Impl {
       pass.clusters = stages > 0 ? 412 : 0, pass.tried = stages > 0 ? 5210 : 0;
       pass.records = stages > 2 ? pass.records : 0;
       status.last = {.stage = irradiance_cache::BuildStage(stages), .level = 1, .ms = 12.5, .rays = 1000};
-      if (c->placement != irradiance_cache::PlacementShow::off)
-        c->placement = stages == 0   ? irradiance_cache::PlacementShow::candidates
-                       : stages == 1 ? irradiance_cache::PlacementShow::clusters
-                                     : irradiance_cache::PlacementShow::chosen;
+      if (c.placement != irradiance_cache::PlacementShow::off)
+        c.placement = stages == 0   ? irradiance_cache::PlacementShow::candidates
+                      : stages == 1 ? irradiance_cache::PlacementShow::clusters
+                                    : irradiance_cache::PlacementShow::chosen;
     }
-    c->color = uint32_t(settings.choice("overlay.records_by"));
-    c->scale = {0.02f, 4};
+    c.color = uint32_t(settings.choice("overlay.records_by"));
+    c.scale = {0.02f, 4};
     if (samples > 0) {
       irradiance_cache::Overlap o;
       o.pixels = 500000, o.served = 480000, o.mean = 4.2, o.most = 17;
       for (uint32_t i = 0; i < 33; ++i) o.histogram.push_back(i > 17 ? 0 : i == 0 ? 20000 : 90000 / i);
-      c->overlap = o;
+      c.overlap = o;
     }
-    c->looked_at = looked_at;
+    c.looked_at = looked_at;
     if (!looked_at) return c;
-    irradiance_cache::Inspection& found = c->inspection;
+    irradiance_cache::Inspection& found = c.inspection;
     found.x = uint32_t(looked_at->x * float(width)), found.y = uint32_t(looked_at->y * float(height));
     found.solid = true, found.asks = shared::k_asks, found.position = {1, 0, 2}, found.normal = {0, 1, 0},
     found.size = 0.003f;
@@ -439,8 +447,8 @@ Saved Session::save(const std::filesystem::path& file) {
   });
   return promise->get_future().share();
 }
-Saved Session::save_cache(const std::filesystem::path& file) { return save(file); }
-void Session::load_cache(const std::filesystem::path& file) {
+Saved Session::solver_save(const std::string&, const std::filesystem::path& file) { return save(file); }
+void Session::solver_load(const std::string&, const std::filesystem::path& file) {
   impl_->post([this, file] {
     if (file.string().find("missing") != std::string::npos)
       log::error("{}: cannot be read", file.string());
@@ -448,11 +456,13 @@ void Session::load_cache(const std::filesystem::path& file) {
       impl_->restart(), impl_->publish();
   });
 }
-void Session::step_cache() {
-  impl_->post([this] { ++impl_->stages, impl_->paused = false; });
-}
-void Session::run_cache() {
-  impl_->post([this] { impl_->cache_runs = true, impl_->paused = false; });
+void Session::solver_command(const std::string& solver, const std::string& command) {
+  impl_->post([this, solver, command] {
+    if (solver != "cache") log::info("{} is told to {}", solver, command);
+    if (solver + "." + command == "cache.step") ++impl_->stages;
+    if (solver + "." + command == "cache.run") impl_->cache_runs = true;
+    impl_->paused = false;
+  });
 }
 uint64_t Session::commands() const {
   std::lock_guard lock(impl_->mutex);

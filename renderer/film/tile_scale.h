@@ -1,0 +1,14 @@
+#pragma once
+// The scale of the tiles' overlay, which picture and legend share (shaders/shared/ramp.h holds the colours).
+
+namespace lucerna::film {
+
+/// From this many times the target on, a tile is as far from it as the ramp can tell.
+inline constexpr float k_tiles_far = 8;
+
+/// Where a tile of that error lies on the ramp of tiles: 0 far from the target .. 1 at it or below, even in
+/// the error's logarithm. -1 for errors that are not known (negative or NaN) and targets that are not
+/// positive.
+float tile_position(double error, double target);
+
+}  // namespace lucerna::film

@@ -1,0 +1,69 @@
+// links: plan
+// What the solvers say of themselves agrees with itself and with the settings: from these tables panels,
+// keys, menus, commands and files are made.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "plan/settings.h"
+#include "solvers/registry.h"
+
+using namespace lucerna;
+
+TEST_CASE("views, commands and files of every solver are such as the window and scripts can use") {
+  const std::string windows = "ADEFKLQRSTW";  // keys that the window has for itself
+  std::set<std::string> names, extensions;
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    INFO(solver->name);
+    CHECK(names.insert(solver->name).second);
+    CHECK_FALSE((solver->label.empty() || solver->title.empty() || solver->help.empty()));
+    CHECK(std::find(solver->serves.begin(), solver->serves.end(), true) != solver->serves.end());
+    std::set<char> keys;
+    const auto check_key = [&](char key) {
+      if (!key) return;
+      INFO(key);
+      CHECK((key >= 'A' && key <= 'Z'));
+      CHECK(windows.find(key) == std::string::npos);
+      CHECK(keys.insert(key).second);
+    };
+    const auto own = [&](const std::string& key) -> const OptionInfo* {
+      INFO(key);
+      CHECK(solvers::owner_of(key) == solver);
+      CHECK(plan::find_option(key) != nullptr);
+      return plan::find_option(key);
+    };
+    for (const solvers::ViewInfo& view : solver->views) {
+      INFO(view.option);
+      check_key(view.shortcut);
+      CHECK_FALSE(view.label.empty());
+      const OptionInfo* option = own(view.option);
+      REQUIRE(option);
+      CHECK_FALSE(option->restarts);
+      if (option->type == OptionType::choice)
+        CHECK(option->choices[0] == "off");
+      else
+        CHECK((option->type == OptionType::boolean && view.ring.empty()));
+      for (const std::string& value : view.ring)
+        CHECK(std::find(option->choices.begin(), option->choices.end(), value) != option->choices.end());
+      for (const std::string& key : view.refined_by) {
+        const OptionInfo* by = own(key);
+        CHECK((by && by->type == OptionType::choice));
+      }
+    }
+    std::set<std::string> commands{"save", "load"};
+    for (const solvers::CommandInfo& command : solver->commands) {
+      check_key(command.shortcut);
+      CHECK(commands.insert(command.name).second);
+      CHECK(solvers::find_command(*solver, command.name) == &command);
+      CHECK_FALSE((command.label.empty() || command.help.empty()));
+    }
+    CHECK(solvers::find_command(*solver, "no such command") == nullptr);
+    if (solver->file) {
+      CHECK(solver->file->extension.starts_with("."));
+      CHECK(extensions.insert(solver->file->extension).second);
+      CHECK_FALSE((solver->file->content.empty() || solver->file->fits.empty()));
+    }
+    for (const auto* list : {&solver->against_noise, &solver->against_bias})
+      for (const std::string& key : *list) own(key);
+  }
+}
