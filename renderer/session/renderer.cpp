@@ -136,8 +136,11 @@ solvers::Spoils Renderer::build_wavefront(const upload::DeviceScene& device_scen
       defines[name] = value;
     bind = [c = cache.get()](gpu::Resources& r) { c->bind(r); };
   }
+  auto developer = std::make_unique<film::Developer>(*device_, *compiler_);
+  auto estimator = std::make_unique<film::ErrorEstimator>(*device_, *compiler_, cache != nullptr);
   wavefront_ = std::make_unique<transport::Wavefront>(*device_, *compiler_, device_scene, slots,
                                                       std::move(trace), defines, bind);
+  developer_ = std::move(developer), estimator_ = std::move(estimator);
   solvers::Spoils spoilt = solvers::k_spoils_all;
   if (keep && cache && cache_) spoilt = cache->adopt(*wavefront_, *cache_);
   cache_ = std::move(cache);
@@ -253,8 +256,8 @@ void Renderer::restart(solvers::Spoils spoilt) {
   }
   // What is switched off changes without new kernels.
   routes_.traced = wanted_routes(flat_.effects).traced;
-  wavefront_->clear(*film_);
-  wavefront_->clear(*coarse_);
+  film_->clear(wavefront_->stream());
+  coarse_->clear(wavefront_->stream());
   wavefront_->reset_stats();
   start_schedule();
   ++restarts_;
@@ -305,7 +308,8 @@ float Renderer::luminance_floor() const {
 uint32_t Renderer::tile_side() const { return uint32_t(std::stoul(settings_.text("sampling.tile"))); }
 
 film::ImageError Renderer::image_error() {
-  wavefront_->estimate(*film_, luminance_floor());
+  estimator_->estimate(wavefront_->stream(), *film_, luminance_floor());
+  wavefront_->account_stages();
   return film::image_error(film_->errors());
 }
 
@@ -527,7 +531,8 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     std::vector<schedule::TileErrors> errors(tiles.size());
     // One sample a pixel tells nothing of the error, and decides nothing.
     if (!tiles.empty() && adaptive_->tiles()[tiles[0]].samples + item.sample_count > 1) {
-      wavefront_->estimate_stopping(item.blocks, *film_, luminance_floor());
+      estimator_->estimate_stopping(wavefront_->stream(), item.blocks, *film_, luminance_floor());
+      wavefront_->account_stages();
       for (size_t i = 0; i < tiles.size(); ++i) {
         const film::RelativeError e = film::relative_error(*film_, adaptive_->blocks_of(tiles[i]));
         errors[i] = {float(e.paths), float(e.records), float(e.interpolation)};
@@ -546,7 +551,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
 void Renderer::render_coarse(const std::function<bool()>& cancel) {
   if (!wavefront_) return;
   clock_.go();
-  wavefront_->clear(*coarse_);
+  coarse_->clear(wavefront_->stream());
   wavefront_->set_frame(make_frame(coarse_->width(), coarse_->height()), enabled_components());
   schedule::UniformSchedule schedule(coarse_->blocks(), 1, wavefront_->slots());
   wavefront_->uncounted([&] {
@@ -591,7 +596,7 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
                        t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
     film_->mark_tiles(marks);
   }
-  wavefront_->tone_map(*film_, v, with_coarse ? coarse_.get() : nullptr);
+  developer_->tone_map(wavefront_->stream(), *film_, v, with_coarse ? coarse_.get() : nullptr);
   if (cache_) draw_cache();
   return film_->read_picture();
 }

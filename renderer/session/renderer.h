@@ -11,7 +11,9 @@
 
 #include "base/timer.h"
 #include "bvh/embree/host_tracer.h"
+#include "film/developer.h"
 #include "film/error.h"
+#include "film/estimator.h"
 #include "film/film.h"
 #include "film/io/image_file.h"
 #include "film/io/reference.h"
@@ -242,6 +244,8 @@ class Renderer {
   irradiance_cache::Inspection inspection_;
   std::pair<uint64_t, irradiance_cache::Overlap> overlap_{~0ull, {}};  ///< and the restart that it is of
   std::unique_ptr<transport::Wavefront> wavefront_;
+  std::unique_ptr<film::Developer> developer_;
+  std::unique_ptr<film::ErrorEstimator> estimator_;
   std::unique_ptr<film::Film> film_, coarse_;
   scene::Camera camera_;
   schedule::UniformSchedule schedule_;
