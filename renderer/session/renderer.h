@@ -212,7 +212,7 @@ class Renderer {
   std::string view_text() const;
   void heed_pauses();  ///< tells the cache of the settings'
   void draw_cache();   ///< over the film's picture, as the settings say
-  irradiance_cache::Shown shown();
+  overlay::Canvas canvas();
   irradiance_cache::Inspector& inspector();
   bool render_item(const std::function<bool()>& cancel);
   irradiance_cache::CacheOptions cache_options() const;

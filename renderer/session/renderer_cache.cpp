@@ -30,7 +30,7 @@ void Renderer::run_cache() {
   if (cache_) cache_->go_on(false);
 }
 
-irradiance_cache::Shown Renderer::shown() { return {*wavefront_, *film_, *coarse_}; }
+overlay::Canvas Renderer::canvas() { return {*wavefront_, *film_, *coarse_}; }
 
 irradiance_cache::Inspector& Renderer::inspector() {
   if (!inspector_) inspector_ = std::make_unique<irradiance_cache::Inspector>(*device_, *compiler_);
@@ -46,29 +46,28 @@ void Renderer::draw_cache() {
     if (!placement_view_)
       placement_view_ = std::make_unique<irradiance_cache::PlacementView>(*device_, *compiler_);
     // Below the others, for it dims the picture.
-    placement_view_->draw(shown(), *cache_, placement);
+    placement_view_->draw(canvas(), *cache_, placement);
   }
   const auto color = uint32_t(settings_.choice("overlay.records_by"));
   const bool overlap = settings_.boolean("overlay.overlap");
   if (overlap || looked_at_) cache_->look_at_picture(*wavefront_, cache_view());
-  cache_->draw(*wavefront_, *film_, *coarse_,
-               {.discs = settings_.boolean("overlay.records"), .overlap = overlap, .color = color});
+  cache_->draw(canvas(), {.discs = settings_.boolean("overlay.records"), .overlap = overlap, .color = color});
   inspection_ = {};
   const bool normals = settings_.boolean("overlay.normals");
-  if (normals) inspector().draw_normals(shown(), *cache_, color);
+  if (normals) inspector().draw_normals(canvas(), *cache_, color);
   if (!looked_at_) return;
   const auto pixel = [](float place, uint32_t pixels) {
     return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
   };
-  inspection_ = inspector().ask(shown(), *cache_, pixel(looked_at_->x, film_->width()),
+  inspection_ = inspector().ask(canvas(), *cache_, pixel(looked_at_->x, film_->width()),
                                 pixel(looked_at_->y, film_->height()));
-  inspector().draw_lines(shown(), *cache_, inspection_);
+  inspector().draw_lines(canvas(), *cache_, inspection_);
 }
 
 void Renderer::look_up_picture() {
   if (!cache_ || !wavefront_) return;
   cache_->look_at_picture(*wavefront_, cache_view());
-  inspector().look_up(shown(), *cache_,
+  inspector().look_up(canvas(), *cache_,
                       irradiance_cache::Cache::defines(record_routes_, cache_options().metric));
 }
 
@@ -87,7 +86,7 @@ std::shared_ptr<const CacheReport> Renderer::cache_report() {
   if (cache_->ready() && samples() > 0) {
     if (overlap_.first != restarts_) {
       cache_->look_at_picture(*wavefront_, cache_view());
-      overlap_ = {restarts_, inspector().overlap(shown(), *cache_)};
+      overlap_ = {restarts_, inspector().overlap(canvas(), *cache_)};
     }
     report->overlap = overlap_.second;
   }

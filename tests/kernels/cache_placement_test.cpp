@@ -96,7 +96,7 @@ std::vector<bool> coloured(const std::vector<uint8_t>& drawn) {
   return list;
 }
 
-/// Pixels where a mark lies: all others are the plain picture dimmed, as placement_draw.comp does.
+/// Pixels where a mark lies: all others are the plain picture dimmed, as overlay/lay.comp does.
 std::vector<bool> marked(const std::vector<uint8_t>& plain, const std::vector<uint8_t>& drawn) {
   std::vector<bool> list(size_t{k_size} * k_size);
   for (size_t p = 0; p < list.size(); ++p) {

@@ -15,6 +15,7 @@
 #include "shaders/shared/irradiance_cache.h"
 #include "shaders/shared/neighbours.h"
 #include "shaders/shared/octree.h"
+#include "shaders/shared/overlay.h"
 #include "shaders/shared/placement.h"
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
@@ -59,11 +60,10 @@ std::vector<SharedStruct> structs() {
       SHARED("cache_inspect.h", OverlapPush, width, height, grid),
       SHARED("cache_inspect.h", OverlapCounts, pixels, gathered, most, records, listed),
       SHARED("wide_sum.h", WideSum, low, high),
-      SHARED("cache_inspect.h", CacheLine, from, to, from_depth, to_depth, half_width, alpha, color),
       SHARED("cache_inspect.h", CacheLinesPush, width, height, left, top, across, down, lines, ring),
-      SHARED("cache_inspect.h", CacheTicksPush, width, height, records, color, lo, hi),
+      SHARED("cache_inspect.h", CacheNormalsPush, width, height, records, color, lo, hi),
       SHARED("cache_placement.h", PlacedPoint, position, bits, normal, radius),
-      SHARED("cache_placement.h", PlacementPush, width, height, count, segments, dot, tried_dot, by_cluster),
+      SHARED("cache_placement.h", PlacementPush, count, rings, dot, tried_dot, by_cluster),
       SHARED("discontinuity.h", SightGrid, across, stride),
       SHARED("discontinuity.h", SeePush, first, count, across, down, stride),
       SHARED("discontinuity.h", LitPush, count),
@@ -94,6 +94,14 @@ std::vector<SharedStruct> structs() {
       SHARED("irradiance_cache.h", OverlayPush, width, height, discs, overlap, color, lo, hi, overlap_most,
              grid),
       SHARED("neighbours.h", NeighbourPush, count, pairs, apart, gap),
+      SHARED("overlay.h", OverlayPoint, position, half_width, color, alpha, edge_width, rank),
+      SHARED("overlay.h", OverlaySegment, from, to, half_width, edge_width, color, alpha, strength, slack,
+             rank),
+      SHARED("overlay.h", OverlayDisc, position, radius, normal, half_width, color, alpha, edge_width,
+             strength, rank),
+      SHARED("overlay.h", OverlayMarkPush, width, height, count, first, pieces),
+      SHARED("overlay.h", OverlayLayPush, width, height, dimmed, edge_alpha),
+      SHARED("overlay.h", OverlayLine, from, to, from_depth, to_depth, half_width, alpha, color),
       SHARED("placement.h", CollectPush, count, samples, to, screen_too, parallel, spacing, spacing_beyond,
              spacing_of_distance, cell, pixel, eye),
       SHARED("placement.h", PlacementGrid, origin, scale, exponent),
@@ -158,15 +166,17 @@ TEST_CASE("shared structs are laid out alike in C++ and GLSL") {
 TEST_CASE("every struct in shaders/shared is in the list above") {
   std::set<std::string> listed;
   for (const SharedStruct& s : structs()) listed.insert(s.header + " " + s.name);
-  for (const auto& entry : std::filesystem::directory_iterator(folder())) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder())) {
+    if (!entry.is_regular_file()) continue;
+    const std::string header = std::filesystem::relative(entry.path(), folder()).generic_string();
     std::ifstream file(entry.path());
     const std::string keyword = "struct ";
     for (std::string line; std::getline(file, line);) {
       if (line.rfind(keyword, 0) != 0) continue;
       const size_t end = line.find_first_of(" {;", keyword.size());
       const std::string name = line.substr(keyword.size(), end - keyword.size());
-      INFO("add SHARED(\"" << entry.path().filename().string() << "\", " << name << ", ...) to structs()");
-      CHECK(listed.count(entry.path().filename().string() + " " + name) == 1);
+      INFO("add SHARED(\"" << header << "\", " << name << ", ...) to structs()");
+      CHECK(listed.count(header + " " + name) == 1);
     }
   }
 }

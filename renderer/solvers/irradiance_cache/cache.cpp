@@ -358,24 +358,19 @@ std::pair<float, float> Cache::scale(uint32_t color) const {
   return color < k_record_by_rays ? std::pair(1.0f, 2.0f) : impl_->scales[color - k_record_by_rays];
 }
 
-void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
-                 const Overlay& overlay) {
+void Cache::draw(const overlay::Canvas& canvas, const Overlay& overlay) {
   Impl& c = *impl_;
   if (!overlay.discs && !overlay.overlap) return;
-  wavefront.bind_paths(c.resources);
+  canvas.bind(c.resources);
   bind(c.resources);
-  film.bind(c.resources);
-  coarse.bind_coarse(c.resources);
   const auto [lo, hi] = scale(overlay.color);
   const SightGrid sight = bind_sight(c.resources);
-  const OverlayPush push{film.width(), film.height(), overlay.discs, overlay.overlap, overlay.color, lo, hi,
-                         k_overlap_scale,
+  const OverlayPush push{canvas.width(), canvas.height(), overlay.discs, overlay.overlap, overlay.color, lo,
+                         hi, k_overlap_scale,
                          // Discs are drawn where the film's surfaces are.
                          overlay.overlap ? sight : k_no_sight};
-  wavefront.stream().dispatch(c.overlay, c.resources, push,
-                              gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
-  wavefront.stream().run();
-  wavefront.stream().take_times();
+  canvas.stream().dispatch(c.overlay, c.resources, push, gpu::groups_for(canvas.pixels(), 64));
+  canvas.finish();
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -16,6 +16,7 @@
 #include <optional>
 #include <string>
 
+#include "overlay/canvas.h"
 #include "paths/automaton.h"
 #include "solvers/info.h"
 #include "solvers/irradiance_cache/build_log.h"
@@ -186,8 +187,7 @@ class Cache {
   /// Ends of the logarithmic scale of a value that records are coloured by, from nearly all records; of rays,
   /// distance and error only. 0 < first < second.
   std::pair<float, float> scale(uint32_t color) const;
-  void draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
-            const Overlay& overlay);
+  void draw(const overlay::Canvas& canvas, const Overlay& overlay);
   /// Lays over the film's picture what of it the screen-space stage sees: the discontinuity of the geometry,
   /// or of the irradiance that the present records give, at a level of its pyramid. The wavefront's frame is
   /// the view's. The stream is run.
