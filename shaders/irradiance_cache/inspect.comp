@@ -2,7 +2,8 @@
 // the very functions that lookups use, so that the answer is theirs.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/asking.glsl"
+#include "irradiance_cache/seen.glsl"
+#include "overlay/asking.glsl"
 #include "shaders/shared/cache_inspect.h"
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push { InspectPush push; };

@@ -2,7 +2,7 @@
 // order.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/asking.glsl"
+#include "overlay/asking.glsl"
 #include "shaders/shared/cache_inspect.h"
 #include "lib/wide_sum.glsl"
 layout(local_size_x = 64) in;

@@ -4,7 +4,8 @@
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/asking.glsl"
+#include "irradiance_cache/seen.glsl"
+#include "overlay/asking.glsl"
 #include "irradiance_cache/ink.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlayPush push; };

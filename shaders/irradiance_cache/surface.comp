@@ -1,5 +1,5 @@
-// Keeps what the rays of centre.comp have met.
-#include "shaders/shared/discontinuity.h"
+// Keeps what the rays of overlay/centre.comp have met, as the kernels have noted it (k_probe_screen).
+#include "shaders/shared/sight.h"
 #include "shaders/shared/irradiance_cache.h"
 #include "lib/frame.glsl"
 #include "lib/invocation.glsl"

@@ -20,6 +20,7 @@
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
+#include "shaders/shared/sight.h"
 #include "shaders/shared/sort.h"
 #include "shaders/shared/trace.h"
 #include "shaders/shared/transport.h"
@@ -64,8 +65,8 @@ std::vector<SharedStruct> structs() {
       SHARED("cache_inspect.h", CacheNormalsPush, width, height, records, color, lo, hi),
       SHARED("cache_placement.h", PlacedPoint, position, bits, normal, radius),
       SHARED("cache_placement.h", PlacementPush, count, rings, dot, tried_dot, by_cluster),
-      SHARED("discontinuity.h", SightGrid, across, stride),
-      SHARED("discontinuity.h", SeePush, first, count, across, down, stride),
+      SHARED("sight.h", SightGrid, across, stride),
+      SHARED("sight.h", SeePush, first, count, across, down, stride),
       SHARED("discontinuity.h", LitPush, count),
       SHARED("discontinuity.h", DetailPush, across, down, level, first, finer, pixel, parallel, depth_weight,
              normal_weight, irradiance_weight, irradiance_noise, least),

@@ -334,9 +334,9 @@ bool Cache::tell_picture(transport::Wavefront& wavefront, film::Film& film, cons
 
 SightGrid Cache::bind_sight(gpu::Resources& to) const {
   const Impl& c = *impl_;
-  const SightGrid grid = c.screen.grid();
+  const SightGrid grid = c.screen.sight().grid();
   // Kernels name it whether they read it or not.
-  to.set("surface_texels", grid.across > 0 ? c.screen.surfaces() : c.candidates);
+  to.set("surface_texels", grid.across > 0 ? c.screen.sight().surfaces() : c.candidates);
   return grid;
 }
 
@@ -368,7 +368,7 @@ void Cache::draw(const overlay::Canvas& canvas, const Overlay& overlay) {
   const OverlayPush push{canvas.width(), canvas.height(), overlay.discs, overlay.overlap, overlay.color, lo,
                          hi, k_overlap_scale,
                          // Discs are drawn where the film's surfaces are.
-                         overlay.overlap ? sight : k_no_sight};
+                         overlay.overlap ? sight : overlay::k_no_sight};
   canvas.stream().dispatch(c.overlay, c.resources, push, gpu::groups_for(canvas.pixels(), 64));
   canvas.finish();
 }

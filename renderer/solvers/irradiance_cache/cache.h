@@ -174,7 +174,8 @@ class Cache {
   /// picture is begun. False when it was cancelled: it will be done again.
   bool tell_picture(transport::Wavefront& wavefront, film::Film& film, const CacheView& view, bool anew,
                     const std::function<bool()>& cancel = {});
-  /// For shaders/irradiance_cache/asking.glsl: where pixels ask for records; k_no_sight before that is known.
+  /// For shaders/overlay/asking.glsl: where pixels ask for records; overlay::k_no_sight before that is
+  /// known.
   shared::SightGrid bind_sight(gpu::Resources& resources) const;
   /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many
   /// serve each pixel. Needs the film's depth, and where it has no samples that of the coarse film of the
