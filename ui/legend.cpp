@@ -6,7 +6,7 @@
 
 #include "chart.h"
 #include "film/overlay.h"
-#include "shaders/shared/cache_placement.h"
+#include "shaders/shared/irradiance_cache/placement_view.h"
 #include "state.h"
 #include "widgets.h"
 

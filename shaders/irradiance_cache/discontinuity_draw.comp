@@ -2,7 +2,7 @@
 // or whose normal map is too steep for records, is dimmed.
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
-#include "shaders/shared/discontinuity.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "shaders/shared/ramp.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { DiscontinuityDrawPush push; };

@@ -4,8 +4,8 @@
 #include "lib/picture.glsl"
 #include "irradiance_cache/seen.glsl"
 #include "overlay/lines.glsl"
-#include "shaders/shared/cache_inspect.h"
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/inspect.h"
+#include "shaders/shared/irradiance_cache/records.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { CacheLinesPush push; };
 uniform samplerBuffer record_texels;

@@ -2,7 +2,7 @@
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "overlay/asking.glsl"
-#include "shaders/shared/cache_inspect.h"
+#include "shaders/shared/irradiance_cache/inspect.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlapPush push; };
 layout(scalar) writeonly buffer LookedUp { float looked_up[]; };

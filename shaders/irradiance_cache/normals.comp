@@ -1,7 +1,7 @@
 // Records' normals as short lines from their centres, to be drawn over the picture: one invocation a record.
 #include "lib/invocation.glsl"
 #include "overlay/seen.glsl"
-#include "shaders/shared/cache_inspect.h"
+#include "shaders/shared/irradiance_cache/inspect.h"
 #include "shaders/shared/overlay.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { CacheNormalsPush push; };

@@ -1,7 +1,7 @@
 // Places of records while they are being chosen, to be drawn over the picture: a dot each, and a ring in its plane as wide
 // as its record would be. One invocation a place.
 #include "lib/invocation.glsl"
-#include "shaders/shared/cache_placement.h"
+#include "shaders/shared/irradiance_cache/placement_view.h"
 #include "shaders/shared/overlay.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PlacementPush push; };

@@ -9,7 +9,7 @@
 #include "session/pick.h"
 #include "session/renderer.h"
 #include "session/session.h"
-#include "shaders/shared/cache_placement.h"
+#include "shaders/shared/irradiance_cache/placement_view.h"
 #include "support/device.h"
 #include "support/records.h"
 

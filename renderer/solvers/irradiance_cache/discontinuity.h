@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "overlay/sight.h"
-#include "shaders/shared/discontinuity.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "solvers/irradiance_cache/placement.h"
 #include "transport/wavefront.h"
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "overlay/canvas.h"
-#include "shaders/shared/cache_inspect.h"
+#include "shaders/shared/irradiance_cache/inspect.h"
 #include "solvers/irradiance_cache/cache.h"
 
 namespace lucerna::irradiance_cache {

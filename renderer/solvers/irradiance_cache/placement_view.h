@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "shaders/shared/cache_placement.h"
+#include "shaders/shared/irradiance_cache/placement_view.h"
 #include "solvers/irradiance_cache/inspector.h"
 #include "solvers/irradiance_cache/stages.h"
 

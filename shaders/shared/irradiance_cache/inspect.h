@@ -1,10 +1,10 @@
 // What a person asks of an irradiance cache at a pixel of the picture, and what is drawn to answer. Read by
 // C++ and GLSL. Places in the picture are in pixels from its upper left corner; depths are along the view
 // axis [m].
-#ifndef LUCERNA_SHARED_CACHE_INSPECT_H
-#define LUCERNA_SHARED_CACHE_INSPECT_H
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_INSPECT_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_INSPECT_H
 #include "shaders/shared/compat.h"
-#include "shaders/shared/discontinuity.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "shaders/shared/wide_sum.h"
 LUCERNA_SHARED_BEGIN
 

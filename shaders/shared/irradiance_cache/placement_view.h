@@ -1,7 +1,7 @@
 // How the places of an irradiance cache's records are drawn while they are being chosen. Read by C++ and
 // GLSL.
-#ifndef LUCERNA_SHARED_CACHE_PLACEMENT_H
-#define LUCERNA_SHARED_CACHE_PLACEMENT_H
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_PLACEMENT_VIEW_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_PLACEMENT_VIEW_H
 #include "shaders/shared/ramp.h"
 LUCERNA_SHARED_BEGIN
 

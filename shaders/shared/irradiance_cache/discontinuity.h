@@ -3,8 +3,8 @@
 //
 // It looks at a grid of points over the picture, as a rule one a pixel (shaders/shared/sight.h). Level k of a pyramid over the grid
 // has cells of 2^k x 2^k points; those at the right and lower borders hold what is left.
-#ifndef LUCERNA_SHARED_DISCONTINUITY_H
-#define LUCERNA_SHARED_DISCONTINUITY_H
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_DISCONTINUITY_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_DISCONTINUITY_H
 #include "shaders/shared/sight.h"
 LUCERNA_SHARED_BEGIN
 
