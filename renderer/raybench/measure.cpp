@@ -129,7 +129,7 @@ PathTracedFrame::~PathTracedFrame() = default;
 
 FrameTime PathTracedFrame::run() {
   Impl& f = *impl_;
-  f.wavefront.clear(f.film);
+  f.film.clear(f.wavefront.stream());
   f.wavefront.reset_stats();
   schedule::UniformSchedule schedule(f.film.blocks(), f.options.samples, f.wavefront.slots());
   const Timer timer;

@@ -25,7 +25,10 @@ void merge(paths::LookupRoutes& into, const paths::LookupRoutes& more) {
 Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
                const World& world, const plan::Plan& plan, const plan::Settings& settings,
                gpu::Defines defines)
-    : automaton_(automaton), plan_(plan), scene_defines_(world.device->defines()) {
+    : automaton_(automaton),
+      plan_(plan),
+      scene_defines_(world.device->defines()),
+      developer_(device, compiler) {
   const Timer timer;
   auto slots = uint32_t(settings.integer("path.batch")) / 64 * 64;
   if (settings.boolean("sampling.coherent"))
@@ -51,6 +54,7 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
     };
   wavefront_ = std::make_unique<transport::Wavefront>(device, compiler, *world.device, slots, world.trace(),
                                                       defines, bind);
+  estimator_.emplace(device, compiler, !solvers_.empty());
   routing_ = routing(settings, effects);
   compile_seconds_ = timer.seconds();
 }

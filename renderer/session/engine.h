@@ -1,8 +1,11 @@
 #pragma once
 // The wavefront's kernels with the solvers of a plan, made for one world.
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "film/developer.h"
+#include "film/estimator.h"
 #include "plan/plan.h"
 #include "session/world.h"
 #include "solvers/solver.h"
@@ -34,6 +37,8 @@ class Engine {
   /// The picture begins anew: sets the wavefront's frame, and tells the solvers.
   void begin(const PictureView& picture, const scene::Changes& changes);
 
+  film::Developer& developer() { return developer_; }
+  film::ErrorEstimator& estimator() { return *estimator_; }
   transport::Wavefront& wavefront() { return *wavefront_; }
   const transport::Wavefront& wavefront() const { return *wavefront_; }
   const std::vector<std::unique_ptr<solvers::Solver>>& solvers() const { return solvers_; }
@@ -74,6 +79,8 @@ class Engine {
   gpu::Defines scene_defines_;  ///< that the kernels were made with
   std::vector<std::unique_ptr<solvers::Solver>> solvers_;
   std::unique_ptr<transport::Wavefront> wavefront_;
+  film::Developer developer_;
+  std::optional<film::ErrorEstimator> estimator_;
   solvers::Routing routing_;  ///< of the picture begun last
   double compile_seconds_ = 0;
 };

@@ -106,8 +106,8 @@ void Renderer::restart(const scene::Changes& changes) {
   if (!engine_ || !film_) return;
   engine_->begin(picture_view(), changes);
   transport::Wavefront& wavefront = engine_->wavefront();
-  wavefront.clear(*film_);
-  wavefront.clear(*coarse_);
+  film_->clear(wavefront.stream());
+  coarse_->clear(wavefront.stream());
   wavefront.reset_stats();
   start_schedule();
   ++restarts_;
@@ -160,7 +160,9 @@ float Renderer::luminance_floor() const {
 uint32_t Renderer::tile_side() const { return uint32_t(std::stoul(settings_.text("sampling.tile"))); }
 
 film::ImageError Renderer::image_error() {
-  engine_->wavefront().estimate(*film_, luminance_floor());
+  transport::Wavefront& wavefront = engine_->wavefront();
+  engine_->estimator().estimate(wavefront.stream(), *film_, luminance_floor());
+  wavefront.account_stages();
   return film::image_error(film_->errors());
 }
 
@@ -303,7 +305,8 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     std::vector<schedule::TileErrors> errors(tiles.size());
     // One sample a pixel tells nothing of the error, and decides nothing.
     if (!tiles.empty() && adaptive->tiles()[tiles[0]].samples + item.sample_count > 1) {
-      wavefront.estimate_stopping(item.blocks, *film_, luminance_floor());
+      engine_->estimator().estimate_stopping(wavefront.stream(), item.blocks, *film_, luminance_floor());
+      wavefront.account_stages();
       for (size_t i = 0; i < tiles.size(); ++i) {
         const film::RelativeError e = film::relative_error(*film_, adaptive->blocks_of(tiles[i]));
         errors[i] = {float(e.paths), float(e.records), float(e.interpolation)};
@@ -324,7 +327,7 @@ void Renderer::render_coarse(const std::function<bool()>& cancel) {
   clock_.go();
   const PictureView view = picture_view();
   transport::Wavefront& wavefront = engine_->wavefront();
-  wavefront.clear(*coarse_);
+  coarse_->clear(wavefront.stream());
   wavefront.set_frame(engine_->frame(view, coarse_->width(), coarse_->height()), engine_->plan().enabled());
   schedule::UniformSchedule schedule(coarse_->blocks(), 1, wavefront.slots());
   wavefront.uncounted([&] {

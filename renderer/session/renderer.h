@@ -11,6 +11,7 @@
 
 #include "base/timer.h"
 #include "film/error.h"
+#include "film/estimator.h"
 #include "film/film.h"
 #include "film/io/image_file.h"
 #include "film/io/reference.h"
@@ -139,7 +140,7 @@ class Renderer {
   }
   solvers::Solver* solver(std::string_view name) { return engine_ ? engine_->find(name) : nullptr; }
   /// Calls f with each, the picture that it can draw over, and the picture as it is told of it.
-  using Visit = std::function<void(solvers::Solver&, const solvers::Canvas&, const solvers::Picture&)>;
+  using Visit = std::function<void(solvers::Solver&, const overlay::Canvas&, const solvers::Picture&)>;
   void visit_solvers(const Visit& f);
   /// Some light is looked up.
   bool looks_up() const { return engine_ && !engine_->solvers().empty(); }

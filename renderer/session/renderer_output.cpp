@@ -3,7 +3,7 @@
 #include <fstream>
 #include <utility>
 
-#include "film/overlay.h"
+#include "film/tile_scale.h"
 #include "session/accuracy.h"
 #include "session/renderer.h"
 #include "shaders/shared/film.h"
@@ -45,7 +45,8 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
                        t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
     film_->mark_tiles(marks);
   }
-  engine_->wavefront().tone_map(*film_, v, with_coarse ? coarse_.get() : nullptr);
+  engine_->developer().tone_map(engine_->wavefront().stream(), *film_, v,
+                                with_coarse ? coarse_.get() : nullptr);
   visit_solvers([](solvers::Solver& solver, const solvers::Canvas& canvas, const solvers::Picture& picture) {
     solver.draw(canvas, picture);
   });

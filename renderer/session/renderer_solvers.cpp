@@ -7,7 +7,7 @@ namespace lucerna::session {
 
 void Renderer::visit_solvers(const Visit& f) {
   if (!engine_ || !film_) return;
-  const solvers::Canvas canvas{engine_->wavefront(), *film_, *coarse_};
+  const overlay::Canvas canvas{engine_->wavefront(), *film_, *coarse_};
   const PictureView view = picture_view();
   for (const auto& solver : engine_->solvers())
     engine_->with(*solver, view, [&](const solvers::Picture& picture) { f(*solver, canvas, picture); });
@@ -25,7 +25,7 @@ void Renderer::inspect(std::optional<vec2> at) {
 
 std::vector<std::shared_ptr<const solvers::Report>> Renderer::reports() {
   std::vector<std::shared_ptr<const solvers::Report>> all;
-  visit_solvers([&](solvers::Solver& solver, const solvers::Canvas& canvas, const solvers::Picture& picture) {
+  visit_solvers([&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
     all.push_back(solver.report(canvas, picture, samples() > 0));
   });
   return all;
@@ -41,7 +41,7 @@ double Renderer::figure(const std::string& name) const {
 
 nlohmann::ordered_json Renderer::solver_statistics() {
   nlohmann::ordered_json all;
-  visit_solvers([&](solvers::Solver& solver, const solvers::Canvas& canvas, const solvers::Picture& picture) {
+  visit_solvers([&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
     if (nlohmann::ordered_json own = solver.statistics(canvas, picture); !own.is_null())
       all[solver.info().name] = std::move(own);
   });
@@ -49,7 +49,7 @@ nlohmann::ordered_json Renderer::solver_statistics() {
 }
 
 void Renderer::look_up_picture() {
-  visit_solvers([](solvers::Solver& solver, const solvers::Canvas& canvas, const solvers::Picture& picture) {
+  visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
     solver.look_up_picture(canvas, picture);
   });
 }

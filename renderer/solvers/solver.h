@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "film/film.h"
+#include "overlay/canvas.h"
 #include "paths/automaton.h"
 #include "scene/scene.h"
 #include "solvers/info.h"
@@ -51,14 +51,6 @@ struct Picture {
   shared::Frame frame;  ///< of its paths
   /// A frame for paths of the solver's own, from the same camera: with these routes and `enabled` components.
   shared::Frame frame_for(const Routing& routing, uint32_t enabled) const;
-};
-
-/// The picture as it can be drawn over: its wavefront, whose frame is the picture's and whose stream is run,
-/// its film, and the coarse film that stands for pixels without samples.
-struct Canvas {
-  transport::Wavefront& wavefront;
-  const film::Film& film;
-  const film::Film& coarse;
 };
 
 /// What decides whether kept work fits a picture (Solver::save, load).
@@ -126,19 +118,21 @@ class Solver {
   /// Where somebody looks in the picture, 0..1 to the right and down; nothing: nowhere.
   virtual void look_at(std::optional<vec2> place) { (void)place; }
   /// Draws over the film's picture what the settings of its views ask for. The stream is run.
-  virtual void draw(const Canvas& canvas, const Picture& picture) { (void)canvas, (void)picture; }
+  virtual void draw(const overlay::Canvas& canvas, const Picture& picture) { (void)canvas, (void)picture; }
   /// Of what draw() has shown last. `sampled`: every pixel has a sample.
-  virtual std::shared_ptr<const Report> report(const Canvas& canvas, const Picture& picture,
+  virtual std::shared_ptr<const Report> report(const overlay::Canvas& canvas, const Picture& picture,
                                                bool sampled) = 0;
   /// Figures for --stats: any JSON.
-  virtual nlohmann::ordered_json statistics(const Canvas& canvas, const Picture& picture) {
+  virtual nlohmann::ordered_json statistics(const overlay::Canvas& canvas, const Picture& picture) {
     (void)canvas, (void)picture;
     return nullptr;
   }
   /// The same by name and without a look at the picture, for benches.
   virtual std::map<std::string, double> figures() const { return {}; }
   /// Looks its light up at every pixel that has samples, and forgets it: to be timed.
-  virtual void look_up_picture(const Canvas& canvas, const Picture& picture) { (void)canvas, (void)picture; }
+  virtual void look_up_picture(const overlay::Canvas& canvas, const Picture& picture) {
+    (void)canvas, (void)picture;
+  }
   /// One of SolverInfo::commands.
   virtual void command(const std::string& name) { (void)name; }
   /// Where SolverInfo::file: writes the work, when ready; takes it from a file in place of what there is,

@@ -18,10 +18,9 @@ struct Wavefront::Impl {
   double compile_seconds = 0;
 
   gpu::Buffer frame, blocks, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states,
-      counters, no_coarse;
+      counters;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
-  gpu::Kernel camera, shade, shadow, film_add, film_add_images, error, stopping, tonemap, heat, tiles,
-      trace_closest, trace_any, trace_non_opaque;
+  gpu::Kernel camera, shade, shadow, film_add, film_add_images, trace_closest, trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
   std::function<void(gpu::Resources&)> bind_lookup;
@@ -47,7 +46,6 @@ struct Wavefront::Impl {
     shadow_hits = texels("shadow hits", uint64_t(n) * sizeof(Hit), queue_memory);
     shadow_states = texels("shadow states", uint64_t(n) * sizeof(ShadowState), gpu::Memory::device);
     counters = make("counters", 4 * k_counter_slots, gpu::Memory::host);
-    no_coarse = make("no coarse picture", 16, gpu::Memory::host);
     for (auto& q : queues) q = make("queue", uint64_t(n) * 4, queue_memory);
     for (auto& q : shadow_queues) q = make("shadow queue", uint64_t(n) * 4, queue_memory);
   }
@@ -93,13 +91,10 @@ struct Wavefront::Impl {
     }
     rebind_lookup();
     film_resources = main[0];
-    film_resources.set("Coarse", no_coarse);
   }
 
   /// From `begin` until no path is alive. False when cancelled.
   bool trace_paths(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel);
-  void estimate(const gpu::Kernel& kernel, std::span<const WorkBlock> list, film::Film& film,
-                float luminance_floor, const char* stage);
 
   StageSum& stage(const std::string& name, bool host) {
     for (StageSum& s : stats.stages)
@@ -165,14 +160,6 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   gpu::Defines images = adding;
   images["LUCERNA_FILM_IMAGES"] = "1";
   w.film_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
-  w.tonemap = gpu::Kernel(device, compiler, "film/tonemap.comp");
-  w.heat = gpu::Kernel(device, compiler, "film/heat.comp");
-  w.tiles = gpu::Kernel(device, compiler, "film/tiles.comp");
-  gpu::Defines told;
-  if (bind_lookup) told["LUCERNA_CACHE"] = "1";
-  w.error = gpu::Kernel(device, compiler, "film/error.comp", told);
-  told["LUCERNA_STOPPING_ONLY"] = "1";
-  w.stopping = gpu::Kernel(device, compiler, "film/error.comp", told);
   w.bind_lookup = std::move(bind_lookup);
   w.bind(scene);
   if (!w.host_trace) {
@@ -326,74 +313,11 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
   return true;
 }
 
-void Wavefront::Impl::estimate(const gpu::Kernel& kernel, std::span<const WorkBlock> list, film::Film& film,
-                               float luminance_floor, const char* stage) {
-  film.bind(film_resources);
-  while (!list.empty()) {
-    const size_t count = std::min<size_t>(list.size(), slots / 64);
-    blocks.write(list.first(count));
-    const ErrorPush push{film.width(), film.height(), uint32_t(count), luminance_floor, film.records_told()};
-    stream.dispatch(kernel, film_resources, push, uint32_t(count + 7) / 8, stage);
-    run_and_account(nullptr, nullptr);
-    list = list.subspan(count);
-  }
-}
-
-void Wavefront::estimate(film::Film& film, float luminance_floor) {
-  std::vector<WorkBlock> all;
-  for (uint32_t b = 0; b < film.blocks(); ++b) all.push_back({b, 0});
-  impl_->estimate(impl_->error, all, film, luminance_floor, "ledger");
-}
-
-void Wavefront::estimate_stopping(const std::vector<WorkBlock>& blocks, film::Film& film,
-                                  float luminance_floor) {
-  impl_->estimate(impl_->stopping, blocks, film, luminance_floor, "stopping");
-}
-
 void Wavefront::bind_paths(gpu::Resources& resources) const { resources = impl_->main[0]; }
 const gpu::Buffer& Wavefront::hits() const { return impl_->hits; }
 gpu::Stream& Wavefront::stream() { return impl_->stream; }
 
 void Wavefront::account_stages() { impl_->run_and_account(nullptr, nullptr); }
-
-void Wavefront::clear(film::Film& film) { film.clear(impl_->stream); }
-
-void Wavefront::tone_map(film::Film& film, const film::View& view, film::Film* coarse) {
-  Impl& w = *impl_;
-  const auto record = [&](film::Film& f, film::Film* fill) {
-    f.bind(w.film_resources);
-    if (view.layer >= k_layer_samples) {
-      const film::HeatScale& h = view.heat;
-      const HeatPush push{f.width(), f.height(), view.layer, h.ramp, h.logarithmic, h.lo, h.hi, h.unit};
-      w.stream.dispatch(w.heat, w.film_resources, push, Impl::groups(f.width() * f.height()));
-      return;
-    }
-    if (fill)
-      w.film_resources.set("Coarse", fill->picture());
-    else
-      w.film_resources.set("Coarse", w.no_coarse);
-    const TonePush push{f.width(),
-                        f.height(),
-                        view.layer,
-                        view.show,
-                        view.curve,
-                        view.exposure,
-                        view.scale,
-                        fill ? fill->width() : 0,
-                        fill ? fill->height() : 0,
-                        0};
-    w.stream.dispatch(w.tonemap, w.film_resources, push, Impl::groups(f.width() * f.height()));
-  };
-  if (coarse) record(*coarse, nullptr);
-  record(film, coarse);
-  if (view.tiles > 0) {
-    const TilesPush push{film.width(), film.height(), view.tiles,
-                         (film.width() + view.tiles - 1) / view.tiles, 1};
-    w.stream.dispatch(w.tiles, w.film_resources, push, Impl::groups(film.width() * film.height()));
-  }
-  w.stream.run();
-  w.stream.take_times();
-}
 
 const TransportStats& Wavefront::stats() const { return impl_->stats; }
 void Wavefront::reset_stats() { impl_->stats = {}; }

@@ -84,16 +84,6 @@ class Wavefront {
   void account_stages();
   /// shared::Hit a slot, of the rays traced last.
   const gpu::Buffer& hits() const;
-  /// What the film's halves say of the noise in all its blocks, into film.errors(). Pixels darker than
-  /// `luminance_floor` are held against that.
-  void estimate(film::Film& film, float luminance_floor);
-  /// Of these blocks alone, and only what film::relative_error() reads; the rest of film.errors() stays.
-  void estimate_stopping(const std::vector<schedule::WorkBlock>& blocks, film::Film& film,
-                         float luminance_floor);
-  /// Film -> its picture (8-bit sRGB). `coarse` fills pixels without samples, if given (it is tone-mapped
-  /// first).
-  void tone_map(film::Film& film, const film::View& view, film::Film* coarse = nullptr);
-  void clear(film::Film& film);
 
   const TransportStats& stats() const;
   void reset_stats();

@@ -8,7 +8,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { ErrorPush push; };
 layout(scalar) writeonly buffer BlockErrors { BlockError block_errors[]; };
-#if LUCERNA_CACHE
+#if LUCERNA_LOOKUP_ERRORS
 layout(scalar) readonly buffer FilmRecords { vec2 film_records[]; };  // squares: noise of records, of interpolation
 #endif
 
@@ -36,7 +36,7 @@ void main() {
   uint across = (push.width + k_block - 1u) / k_block;
   uvec2 first = k_block * uvec2(block.index % across, block.index / across) + uvec2(0u, row);
   float y0[k_block], v0[k_block];
-#if LUCERNA_CACHE
+#if LUCERNA_LOOKUP_ERRORS
   vec2 r0[k_block];
   vec2 records = vec2(0.0), records_relative = vec2(0.0);
 #endif
@@ -68,7 +68,7 @@ void main() {
     float difference = 0.5 * (a[0] - b[0]);
     y0[x] = there ? 0.5 * (a[0] + b[0]) : 0.0;
     v0[x] = there ? difference * difference : 0.0;
-#if LUCERNA_CACHE
+#if LUCERNA_LOOKUP_ERRORS
     r0[x] = there && push.records != 0u ? film_records[pixel] : vec2(0.0);
     records += r0[x];
 #endif
@@ -119,14 +119,14 @@ void main() {
   for (uint x = 0u; x < k_block; ++x) {
     float scale = max(max(y0[x], mean[x / 4u]), push.luminance_floor);
     relative[x / 4u] += 1.2533141 * sqrt(v0[x]) / scale;  // sqrt(pi/2)
-#if LUCERNA_CACHE
+#if LUCERNA_LOOKUP_ERRORS
     records_relative += r0[x] / (scale * scale);
 #endif
   }
   barrier();
   for (uint h = 0u; h < 2u; ++h) values[h * 64u + lane] = relative[h];
   barrier();
-#if LUCERNA_CACHE
+#if LUCERNA_LOOKUP_ERRORS
   values[2u * 64u + lane] = records_relative.x;
   values[3u * 64u + lane] = records_relative.y;
   barrier();

@@ -2,6 +2,7 @@
 // known are dark grey.
 #include "lib/film.glsl"
 #include "lib/invocation.glsl"
+#include "lib/picture.glsl"
 #include "shaders/shared/ramp.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { HeatPush push; };
@@ -37,6 +38,5 @@ void main() {
   if (push.layer == k_layer_error)
     value = block_relative(xy.y / k_block * ((push.width + k_block - 1u) / k_block) + xy.x / k_block);
   vec3 color = value < 0.0 ? vec3(0.13) : ramp_color(push.ramp, ramp_position(value, push.lo, push.hi, push.logarithmic));
-  uvec3 bytes = uvec3(clamp(color, vec3(0.0), vec3(1.0)) * 255.0 + 0.5);
-  picture[pixel] = bytes.x | bytes.y << 8 | bytes.z << 16 | 0xff000000u;
+  picture[pixel] = picture_packed(color);
 }

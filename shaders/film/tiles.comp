@@ -1,6 +1,7 @@
 // Draws the state of the tiles over the picture: those at work outlined and tinted by how far their error is from the
 // target, done ones dimmed, those given up hatched, heavy-tailed ones with a marked corner.
 #include "lib/invocation.glsl"
+#include "lib/picture.glsl"
 #include "shaders/shared/ramp.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TilesPush push; };
@@ -16,8 +17,7 @@ void main() {
   uint tile = at.y * push.across + at.x;
   TileMark mark = marks[tile];
   uint state = mark.bits & k_tile_state;
-  uint packed = picture[pixel];
-  vec3 color = vec3(packed & 0xffu, packed >> 8 & 0xffu, packed >> 16 & 0xffu) / 255.0;
+  vec3 color = picture_color(picture[pixel]);
   // The last column and row of tiles may be cut off by the picture's edge.
   uvec2 from = xy - at * push.side, last = min((at + 1u) * push.side, uvec2(push.width, push.height)) - 1u, to = last - xy;
   bool known = mark.position >= 0.0;
@@ -40,6 +40,5 @@ void main() {
     uint reach = push.side * 4u / 16u + push.line, diagonal = to.x + from.y;
     if (diagonal <= reach) color = diagonal == reach ? vec3(0.05) : vec3(at_work(mark.bits) ? 0.93 : 0.5);
   }
-  uvec3 bytes = uvec3(clamp(color, vec3(0.0), vec3(1.0)) * 255.0 + 0.5);
-  picture[pixel] = bytes.x | bytes.y << 8 | bytes.z << 16 | 0xff000000u;
+  picture[pixel] = picture_packed(color);
 }

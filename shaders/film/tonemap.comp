@@ -2,6 +2,7 @@
 // film, which the host has tone-mapped into `Coarse` first.
 #include "lib/film.glsl"
 #include "lib/invocation.glsl"
+#include "lib/picture.glsl"
 #include "shaders/shared/tone.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TonePush push; };
@@ -35,8 +36,7 @@ void main() {
   } else {
     srgb = tone_map(color * push.exposure, push.curve);
   }
-  uvec3 bytes = uvec3(clamp(srgb, vec3(0.0), vec3(1.0)) * 255.0 + 0.5);
-  uint packed = bytes.x | bytes.y << 8 | bytes.z << 16 | 0xff000000u;
+  uint packed = picture_packed(srgb);
   if (count == 0u && push.coarse_width > 0u) {
     uvec2 xy = uvec2(pixel % push.width, pixel / push.width);
     uvec2 at = min(xy * uvec2(push.coarse_width, push.coarse_height) / uvec2(push.width, push.height), uvec2(push.coarse_width, push.coarse_height) - 1u);

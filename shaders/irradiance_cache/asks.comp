@@ -1,6 +1,6 @@
 // Which path slots hold a candidate that is to be collected, in the order of collecting, and how many ask by origin.
-#include "shaders/shared/placement.h"
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/placement.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "irradiance_cache/collect.glsl"
 uniform samplerBuffer candidate_texels;
 layout(scalar) writeonly buffer Taken { uint taken[]; };

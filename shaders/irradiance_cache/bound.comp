@@ -2,8 +2,8 @@
 // nearest first, each counts whose direction is far enough from those of all before, until they stand all around. Beyond the
 // last of them others are nearer on every side. A record at an open border, where nobody stands on one side, is left as it
 // is: there it may be alone.
-#include "shaders/shared/irradiance_cache.h"
-#include "shaders/shared/neighbours.h"
+#include "shaders/shared/irradiance_cache/records.h"
+#include "shaders/shared/irradiance_cache/neighbours.h"
 #include "lib/invocation.glsl"
 #include "lib/math.glsl"
 #include "irradiance_cache/shrink.glsl"

@@ -2,7 +2,7 @@
 // by which every record errs.
 #ifndef LUCERNA_IRRADIANCE_CACHE_CARRIED
 #define LUCERNA_IRRADIANCE_CACHE_CARRIED
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/math.glsl"
 
 // A colour, of any size, in eight bits a channel of its greatest and eight for that one's power of 2.

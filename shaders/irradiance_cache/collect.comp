@@ -1,9 +1,9 @@
 // Appends candidates to those there are, in the order of slot_of() or, with LUCERNA_FROM_SCREEN, of the points of the
 // screen-space stage.
 #include "lib/variants.glsl"
-#include "shaders/shared/placement.h"
-#include "shaders/shared/irradiance_cache.h"
-#include "shaders/shared/discontinuity.h"
+#include "shaders/shared/irradiance_cache/placement.h"
+#include "shaders/shared/irradiance_cache/records.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "irradiance_cache/collect.glsl"
 uniform samplerBuffer candidate_texels;
 uniform samplerBuffer surface_texels;

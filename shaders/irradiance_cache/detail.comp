@@ -9,7 +9,7 @@
 // difference beyond the noise, between points of one surface that records serve.
 #include "lib/invocation.glsl"
 #include "lib/math.glsl"
-#include "shaders/shared/discontinuity.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { DetailPush push; };
 uniform samplerBuffer surface_texels;

@@ -1,7 +1,8 @@
 // Lays a level of the pyramid of detail over the picture where candidates may be drawn; the rest, which is not diffuse
 // or whose normal map is too steep for records, is dimmed.
 #include "lib/invocation.glsl"
-#include "shaders/shared/discontinuity.h"
+#include "lib/picture.glsl"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "shaders/shared/ramp.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { DiscontinuityDrawPush push; };
@@ -17,9 +18,7 @@ void main() {
   uint cells = (push.across + (1u << push.level) - 1u) >> push.level;
   uvec2 cell = xy >> push.level;
   float detail = details[push.first + cell.y * cells + cell.x];
-  uint packed = picture[pixel];
-  vec3 color = vec3(packed & 0xffu, packed >> 8 & 0xffu, packed >> 16 & 0xffu) / 255.0;
+  vec3 color = picture_color(picture[pixel]);
   color = asks ? mix(color, ramp_color(k_ramp_magma, detail), 0.88) : 0.25 * color;
-  uvec3 bytes = uvec3(clamp(color, vec3(0.0), vec3(1.0)) * 255.0 + 0.5);
-  picture[pixel] = bytes.x | bytes.y << 8 | bytes.z << 16 | 0xff000000u;
+  picture[pixel] = picture_packed(color);
 }

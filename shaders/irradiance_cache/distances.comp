@@ -1,6 +1,6 @@
 // Harmonic mean and least distance of what the rays of a batch of records met; one invocation a record.
 #define LUCERNA_PUSH RecordPush
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"
 #include "irradiance_cache/hemisphere.glsl"
 

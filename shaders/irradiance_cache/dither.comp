@@ -12,7 +12,7 @@
 #include "lib/invocation.glsl"
 #include "lib/math.glsl"
 #include "lib/sampler.glsl"
-#include "shaders/shared/discontinuity.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { DitherPush push; };
 uniform samplerBuffer surface_texels;

@@ -8,7 +8,7 @@
 //
 // (Schwarzhaupt et al. 2012; the same error for every record is what costs the fewest records). Bounded as radius.comp has
 // it. What is darker than `dark` is held against that: it may miss as much as would be seen elsewhere.
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/invocation.glsl"
 #include "irradiance_cache/ellipse.glsl"
 #include "irradiance_cache/least_radius.glsl"

@@ -2,7 +2,7 @@
 // axes are equal.
 #ifndef LUCERNA_IRRADIANCE_CACHE_ELLIPSE
 #define LUCERNA_IRRADIANCE_CACHE_ELLIPSE
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/math.glsl"
 
 // Of a Hessian in the tangent plane (xx, xy, yy), with eigenvalues |l1| >= |l2|.

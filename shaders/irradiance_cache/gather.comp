@@ -11,7 +11,7 @@
 // cell of the tangent (grad_r) and of cot theta sin theta (grad_t) are exact where the papers take the value at the
 // sample, which grows without bound at the horizon and at the pole.
 #define LUCERNA_PUSH RecordPush
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"
 #include "irradiance_cache/hemisphere.glsl"
 

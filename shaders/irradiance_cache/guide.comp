@@ -2,7 +2,7 @@
 // them in, in place of the irradiance that they do not hold. A little of each cell's light is given to those around it,
 // because what one ray meets, one beside it may. One invocation a record.
 #define LUCERNA_PUSH RecordPush
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"
 #include "irradiance_cache/hemisphere.glsl"
 

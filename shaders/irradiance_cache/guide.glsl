@@ -8,7 +8,7 @@
 // All densities here are over the cosine's, which is 1: cells have equal shares of it.
 #ifndef LUCERNA_IRRADIANCE_CACHE_GUIDE
 #define LUCERNA_IRRADIANCE_CACHE_GUIDE
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/math.glsl"
 
 const float k_guided_share = 0.5;  // of directions

@@ -3,7 +3,7 @@
 // K. Bouatouch, "Radiance Caching for Efficient Global Illumination Computation", 2005.
 #ifndef LUCERNA_IRRADIANCE_CACHE_HEMISPHERE
 #define LUCERNA_IRRADIANCE_CACHE_HEMISPHERE
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/math.glsl"
 #include "lib/sampler.glsl"
 

@@ -10,7 +10,7 @@
 //
 // Leaves the Hessian of the luminance of all parts together, and that luminance: see k_record_texels, texel 4.
 #define LUCERNA_PUSH RecordPush
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"
 #include "irradiance_cache/hemisphere.glsl"
 #include "irradiance_cache/form_factor.glsl"

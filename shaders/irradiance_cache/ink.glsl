@@ -2,7 +2,7 @@
 #ifndef LUCERNA_IRRADIANCE_CACHE_INK
 #define LUCERNA_IRRADIANCE_CACHE_INK
 #include "shaders/shared/ramp.h"
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 
 // `by`: k_record_by_*; `lo`, `hi`: ends of the value's scale (OverlayPush). Encoded, 0..1. Uses record_texels.
 vec3 record_ink(uint record, uint by, float lo, float hi) {

@@ -2,8 +2,9 @@
 // the very functions that lookups use, so that the answer is theirs.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/asking.glsl"
-#include "shaders/shared/cache_inspect.h"
+#include "irradiance_cache/seen.glsl"
+#include "overlay/asking.glsl"
+#include "shaders/shared/irradiance_cache/inspect.h"
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push { InspectPush push; };
 layout(scalar) buffer Inspection {

@@ -2,7 +2,7 @@
 // more than the greatest.
 #ifndef LUCERNA_IRRADIANCE_CACHE_LEAST_RADIUS
 #define LUCERNA_IRRADIANCE_CACHE_LEAST_RADIUS
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 
 layout(scalar) readonly buffer CacheBlock { CacheFrame cache; };
 

@@ -2,7 +2,7 @@
 // nearest of those that serve is. The camera is in no medium.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "shaders/shared/discontinuity.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { LitPush push; };
 uniform samplerBuffer surface_texels;

@@ -5,7 +5,7 @@
 #ifndef LUCERNA_IRRADIANCE_CACHE_LOOKUP
 #define LUCERNA_IRRADIANCE_CACHE_LOOKUP
 #include "lib/variants.glsl"
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/math.glsl"
 #include "lib/octree.glsl"
 #include "irradiance_cache/ellipse.glsl"

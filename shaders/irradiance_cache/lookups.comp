@@ -1,8 +1,8 @@
 // What a lookup costs: one at every surface that the camera sees, as paths make them. Only to be timed.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/asking.glsl"
-#include "shaders/shared/cache_inspect.h"
+#include "overlay/asking.glsl"
+#include "shaders/shared/irradiance_cache/inspect.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlapPush push; };
 layout(scalar) writeonly buffer LookedUp { float looked_up[]; };

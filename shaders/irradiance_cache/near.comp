@@ -1,7 +1,7 @@
 // How wide the ellipse of a record may be so that nothing that its rays met lies within it, and nothing stands between the
 // record and a point that it serves. One invocation a record.
 #define LUCERNA_PUSH RecordPush
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"
 #include "irradiance_cache/hemisphere.glsl"
 #include "irradiance_cache/ellipse.glsl"

@@ -2,8 +2,8 @@
 // order.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/asking.glsl"
-#include "shaders/shared/cache_inspect.h"
+#include "overlay/asking.glsl"
+#include "shaders/shared/irradiance_cache/inspect.h"
 #include "lib/wide_sum.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlapPush push; };

@@ -2,8 +2,10 @@
 // a mark at its centre, and how many serve a pixel as a heat map. Where discs are drawn the place on the surface comes from the
 // film's depth, so that what is hidden stays hidden.
 #include "lib/invocation.glsl"
+#include "lib/picture.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/asking.glsl"
+#include "irradiance_cache/seen.glsl"
+#include "overlay/asking.glsl"
 #include "irradiance_cache/ink.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlayPush push; };
@@ -38,14 +40,12 @@ void main() {
     float alpha = push.discs != 0u && seen.solid && seen_on_plane(seen, place, facing, shape) ? max(max(rim, dot_), inside) : 0.0;
     over += (1.0 - over.a) * vec4(ink * alpha, alpha);
   }
-  uint packed = picture[pixel];
-  vec3 color = vec3(packed & 0xffu, packed >> 8 & 0xffu, packed >> 16 & 0xffu) / 255.0;
+  vec3 color = picture_color(picture[pixel]);
   if (push.overlap != 0u && a.asks) {
     // One colour a count up to the scale's end, none served in red, none needed because paths gather in grey.
     vec3 ink = paths_gather(nearest) ? k_gathered_ink : overlap == 0u ? k_unserved_ink : ramp_color(k_ramp_viridis, float(overlap) / push.overlap_most);
     color = mix(color, ink, 0.8);
   }
   color = color * (1.0 - over.a) + over.rgb;
-  uvec3 bytes = uvec3(clamp(color, vec3(0.0), vec3(1.0)) * 255.0 + 0.5);
-  picture[pixel] = bytes.x | bytes.y << 8 | bytes.z << 16 | 0xff000000u;
+  picture[pixel] = picture_packed(color);
 }

@@ -3,7 +3,7 @@
 #include "lib/variants.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "lib/invocation.glsl"
-#include "shaders/shared/neighbours.h"
+#include "shaders/shared/irradiance_cache/neighbours.h"
 #include "shaders/shared/sort.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { NeighbourPush push; };

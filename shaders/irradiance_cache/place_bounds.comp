@@ -1,5 +1,5 @@
 // Boxes around runs of candidates.
-#include "lib/placement.glsl"
+#include "irradiance_cache/placement.glsl"
 layout(scalar) writeonly buffer RunBounds { vec4 run_bounds[]; };
 
 void main() {

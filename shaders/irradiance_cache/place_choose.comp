@@ -1,6 +1,6 @@
 // Of a cluster's candidates some, one by one in an order drawn for the seed, each dropping those that it stands for, until
 // none is left. One invocation a cluster.
-#include "lib/placement.glsl"
+#include "irradiance_cache/placement.glsl"
 #include "lib/sampler.glsl"
 layout(scalar) readonly buffer Starts { uint starts[]; };
 layout(scalar) writeonly buffer Ranks { uint ranks[]; };  // by sorted candidate: 0 or its place in the order, from 1

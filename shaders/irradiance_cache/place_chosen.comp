@@ -1,5 +1,5 @@
 // Which sorted candidates are chosen.
-#include "lib/placement.glsl"
+#include "irradiance_cache/placement.glsl"
 layout(scalar) readonly buffer Ranks { uint ranks[]; };
 layout(scalar) writeonly buffer Heads { uint heads[]; };
 

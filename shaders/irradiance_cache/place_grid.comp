@@ -1,6 +1,6 @@
 // The cells that candidates are sorted into: powers of two wide, so that scaling by them is exact and the same on every
 // device. One invocation.
-#include "lib/placement.glsl"
+#include "irradiance_cache/placement.glsl"
 uniform samplerBuffer run_bound_texels;
 
 void main() {

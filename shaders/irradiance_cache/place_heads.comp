@@ -1,6 +1,6 @@
 // Where clusters begin among the sorted candidates: where two neighbours are not in one cell about four times as wide as the
 // lesser reach, and where a cluster would hold too many.
-#include "lib/placement.glsl"
+#include "irradiance_cache/placement.glsl"
 layout(scalar) writeonly buffer Heads { uint heads[]; };
 
 // Bits of the code within a cell of a candidate's cluster.

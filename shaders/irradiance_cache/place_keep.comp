@@ -1,5 +1,5 @@
 // The chosen candidates' entries, in their order.
-#include "lib/placement.glsl"
+#include "irradiance_cache/placement.glsl"
 layout(scalar) readonly buffer Heads { uint heads[]; };
 layout(scalar) readonly buffer HeadsBefore { uint heads_before[]; };
 layout(scalar) writeonly buffer Kept { SortEntry64 kept[]; };

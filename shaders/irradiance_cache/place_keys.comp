@@ -1,5 +1,5 @@
 // The Morton code of every candidate's cell.
-#include "lib/placement.glsl"
+#include "irradiance_cache/placement.glsl"
 layout(scalar) writeonly buffer Entries { SortEntry64 entries[]; };
 
 // Two zero bits after each of 10 or 11.

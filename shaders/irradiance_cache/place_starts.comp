@@ -1,5 +1,5 @@
 // The first candidate of every cluster, from the prefix sum of the heads.
-#include "lib/placement.glsl"
+#include "irradiance_cache/placement.glsl"
 layout(scalar) readonly buffer Heads { uint heads[]; };
 layout(scalar) readonly buffer HeadsBefore { uint heads_before[]; };
 layout(scalar) writeonly buffer Starts { uint starts[]; };

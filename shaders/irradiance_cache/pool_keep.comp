@@ -1,5 +1,5 @@
 // What pool.comp has found takes the place of what the records' own pilot rays told.
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PoolPush push; };

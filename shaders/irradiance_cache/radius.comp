@@ -1,7 +1,7 @@
 // The radius within which a record serves: error bound times the harmonic mean of what its rays met (Ward 1988), at
 // least some pixels wide as the camera sees it, and no wider than the nearest thing that a ray met, so that nothing stands
 // between a record and a point that it serves.
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/invocation.glsl"
 #include "irradiance_cache/least_radius.glsl"
 layout(local_size_x = 64) in;

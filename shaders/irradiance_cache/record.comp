@@ -3,7 +3,7 @@
 // weight 1/pdf the sum's pi/(MN) stands for: throughput 1. What the first ray meets gets the full weight (pdf 0), because
 // no light sample competes with it here.
 #define LUCERNA_PUSH RecordPush
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
 #include "irradiance_cache/hemisphere.glsl"

@@ -1,6 +1,6 @@
-// Keeps what the rays of centre.comp have met.
-#include "shaders/shared/discontinuity.h"
-#include "shaders/shared/irradiance_cache.h"
+// Keeps what the rays of overlay/centre.comp have met, as the kernels have noted it (k_probe_screen).
+#include "shaders/shared/sight.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "lib/frame.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;

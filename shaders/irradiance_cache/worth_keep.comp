@@ -1,5 +1,5 @@
 // Keeps where paths look up (k_probe_reads): the two of a pixel side by side, in the order of the blocks.
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "shaders/shared/facet.h"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;

@@ -78,9 +78,6 @@
 #endif
 
 // What the settings ask for, and what tests do.
-#ifndef LUCERNA_CACHE
-#define LUCERNA_CACHE 0
-#endif
 #ifndef LUCERNA_CACHE_ELLIPSES
 #define LUCERNA_CACHE_ELLIPSES 0
 #endif
@@ -97,6 +94,9 @@
 #endif
 #ifndef LUCERNA_VERTEX_COUNT
 #define LUCERNA_VERTEX_COUNT 0
+#endif
+#ifndef LUCERNA_LOOKUP_ERRORS
+#define LUCERNA_LOOKUP_ERRORS 0
 #endif
 #ifndef LUCERNA_STOPPING_ONLY
 #define LUCERNA_STOPPING_ONLY 0

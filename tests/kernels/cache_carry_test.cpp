@@ -51,9 +51,9 @@ Carried carry(test::RecordBed& bed, const std::vector<test::RecordDisc>& discs,
   constexpr uint32_t k_width = 16, k_height = 8;
   const uint32_t blocks = 2 / step / step + (step == 2), pixels = 64 * blocks;
   gpu::Kernel leave(bed.device, bed.compiler, "irradiance_cache/carry_leave.comp",
-                    {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", "14"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
+                    {{"LUCERNA_CACHE_PARTS", "14"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
   gpu::Kernel carry(bed.device, bed.compiler, "irradiance_cache/carry.comp",
-                    {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", "14"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
+                    {{"LUCERNA_CACHE_PARTS", "14"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
   const auto texels = [&](const std::array<std::vector<Note>, 2>& of) {
     std::vector<vec4> all(size_t{2} * pixels * shared::k_candidate_texels, vec4(0));
     for (size_t path = 0; path < 2; ++path)

@@ -111,7 +111,7 @@ struct Bench {
   test::SilentDevice silent;
   gpu::ShaderCompiler compiler;
   gpu::Stream stream{silent.device};
-  Discontinuity screen{silent.device, compiler, {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", "14u"}}};
+  Discontinuity screen{silent.device, compiler, {{"LUCERNA_CACHE_PARTS", "14u"}}};
 
   void measure(const View& v, Of of, const DiscontinuityOptions& o = {}, float least = 0.1f) {
     screen.begin(v.frame());

@@ -10,7 +10,7 @@
 #include "base/math.h"
 #include "kernels/gpu_support.h"
 #include "kernels/statistics_support.h"
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 
 using namespace lucerna;
 using namespace lucerna::shared;

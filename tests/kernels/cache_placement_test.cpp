@@ -9,7 +9,7 @@
 #include "session/pick.h"
 #include "session/renderer.h"
 #include "session/session.h"
-#include "shaders/shared/cache_placement.h"
+#include "shaders/shared/irradiance_cache/placement_view.h"
 #include "support/device.h"
 #include "support/records.h"
 #include "support/solver.h"
@@ -97,7 +97,7 @@ std::vector<bool> coloured(const std::vector<uint8_t>& drawn) {
   return list;
 }
 
-/// Pixels where a mark lies: all others are the plain picture dimmed, as placement_draw.comp does.
+/// Pixels where a mark lies: all others are the plain picture dimmed, as overlay/lay.comp does.
 std::vector<bool> marked(const std::vector<uint8_t>& plain, const std::vector<uint8_t>& drawn) {
   std::vector<bool> list(size_t{k_size} * k_size);
   for (size_t p = 0; p < list.size(); ++p) {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "film/error.h"
+#include "film/estimator.h"
 
 using namespace lucerna;
 using shared::BlockError;
@@ -132,6 +133,29 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
     CHECK(film::relative_error(film, std::span(&b, 1)).paths ==
           film::tile_error(std::span(&full[b], 1)).relative);
   }
+  // The renderer's own way to both: the same, and the stages have their names.
+  film::ErrorEstimator estimator(device, compiler, false);
+  for (const bool all : {true, false}) {
+    film.clear(stream);
+    stream.dispatch(add, resources, added, blocks);
+    stream.run();
+    stream.take_times();
+    if (all)
+      estimator.estimate(stream, film, k_floor);
+    else
+      estimator.estimate_stopping(stream, std::span(list).first(blocks - 1), film, k_floor);
+    stream.run();
+    const std::vector<gpu::StageTime> times = stream.take_times();
+    REQUIRE(times.size() == 1);
+    CHECK(times[0].stage == (all ? "ledger" : "stopping"));
+    for (uint32_t b = 0; b < blocks; ++b) {
+      const BlockError& got = film.errors()[b];
+      const bool last = b == list.back().index;
+      CHECK((got.pixels > 0) == all);
+      if (all && !last) CHECK(std::memcmp(&got, &full[b], sizeof got) == 0);
+      if (!all) CHECK(std::equal(std::begin(got.relative), std::end(got.relative), full[b].relative));
+    }
+  }
   CHECK(device.validation_messages() == 0);
 }
 
@@ -246,8 +270,9 @@ TEST_CASE(
   film::Film film(device, k_width, k_height);
   film.clear(stream);
   const gpu::Kernel add(device, compiler, "film/add.comp"), plain(device, compiler, "film/error.comp"),
-      error(device, compiler, "film/error.comp", {{"LUCERNA_CACHE", "1"}}),
-      stopping(device, compiler, "film/error.comp", {{"LUCERNA_CACHE", "1"}, {"LUCERNA_STOPPING_ONLY", "1"}});
+      error(device, compiler, "film/error.comp", {{"LUCERNA_LOOKUP_ERRORS", "1"}}),
+      stopping(device, compiler, "film/error.comp",
+               {{"LUCERNA_LOOKUP_ERRORS", "1"}, {"LUCERNA_STOPPING_ONLY", "1"}});
   constexpr uint32_t k_blocks = 2, k_samples = 2;
   std::mt19937 random(3);
   std::vector<vec4> values(size_t{k_blocks} * 64 * k_samples * 4);

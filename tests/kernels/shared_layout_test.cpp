@@ -8,17 +8,19 @@
 
 #include "gpu/spirv.h"
 #include "kernels/gpu_support.h"
-#include "shaders/shared/cache_inspect.h"
-#include "shaders/shared/cache_placement.h"
-#include "shaders/shared/discontinuity.h"
 #include "shaders/shared/film.h"
-#include "shaders/shared/irradiance_cache.h"
-#include "shaders/shared/neighbours.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
+#include "shaders/shared/irradiance_cache/inspect.h"
+#include "shaders/shared/irradiance_cache/neighbours.h"
+#include "shaders/shared/irradiance_cache/placement.h"
+#include "shaders/shared/irradiance_cache/placement_view.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "shaders/shared/octree.h"
-#include "shaders/shared/placement.h"
+#include "shaders/shared/overlay.h"
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
+#include "shaders/shared/sight.h"
 #include "shaders/shared/sort.h"
 #include "shaders/shared/trace.h"
 #include "shaders/shared/transport.h"
@@ -52,26 +54,27 @@ struct SharedStruct {
 
 std::vector<SharedStruct> structs() {
   return {
-      SHARED("cache_inspect.h", InspectPush, width, height, pixel, grid),
-      SHARED("cache_inspect.h", InspectHeader, solid, asks, count, gathers, under, size, depth, position,
-             normal, under_at),
-      SHARED("cache_inspect.h", InspectServing, record, weight, at, depth),
-      SHARED("cache_inspect.h", OverlapPush, width, height, grid),
-      SHARED("cache_inspect.h", OverlapCounts, pixels, gathered, most, records, listed),
+      SHARED("irradiance_cache/inspect.h", InspectPush, width, height, pixel, grid),
+      SHARED("irradiance_cache/inspect.h", InspectHeader, solid, asks, count, gathers, under, size, depth,
+             position, normal, under_at),
+      SHARED("irradiance_cache/inspect.h", InspectServing, record, weight, at, depth),
+      SHARED("irradiance_cache/inspect.h", OverlapPush, width, height, grid),
+      SHARED("irradiance_cache/inspect.h", OverlapCounts, pixels, gathered, most, records, listed),
       SHARED("wide_sum.h", WideSum, low, high),
-      SHARED("cache_inspect.h", CacheLine, from, to, from_depth, to_depth, half_width, alpha, color),
-      SHARED("cache_inspect.h", CacheLinesPush, width, height, left, top, across, down, lines, ring),
-      SHARED("cache_inspect.h", CacheTicksPush, width, height, records, color, lo, hi),
-      SHARED("cache_placement.h", PlacedPoint, position, bits, normal, radius),
-      SHARED("cache_placement.h", PlacementPush, width, height, count, segments, dot, tried_dot, by_cluster),
-      SHARED("discontinuity.h", SightGrid, across, stride),
-      SHARED("discontinuity.h", SeePush, first, count, across, down, stride),
-      SHARED("discontinuity.h", LitPush, count),
-      SHARED("discontinuity.h", DetailPush, across, down, level, first, finer, pixel, parallel, depth_weight,
-             normal_weight, irradiance_weight, irradiance_noise, least),
-      SHARED("discontinuity.h", DitherPush, across, down, levels, first_level, density, falloff, pixel,
-             parallel, finest, flat_side, spacing, key),
-      SHARED("discontinuity.h", DiscontinuityDrawPush, width, height, across, down, stride, level, first),
+      SHARED("irradiance_cache/inspect.h", CacheLinesPush, width, height, left, top, across, down, lines,
+             ring),
+      SHARED("irradiance_cache/inspect.h", CacheNormalsPush, width, height, records, color, lo, hi),
+      SHARED("irradiance_cache/placement_view.h", PlacedPoint, position, bits, normal, radius),
+      SHARED("irradiance_cache/placement_view.h", PlacementPush, count, rings, dot, tried_dot, by_cluster),
+      SHARED("sight.h", SightGrid, across, stride),
+      SHARED("sight.h", SeePush, first, count, across, down, stride),
+      SHARED("irradiance_cache/discontinuity.h", LitPush, count),
+      SHARED("irradiance_cache/discontinuity.h", DetailPush, across, down, level, first, finer, pixel,
+             parallel, depth_weight, normal_weight, irradiance_weight, irradiance_noise, least),
+      SHARED("irradiance_cache/discontinuity.h", DitherPush, across, down, levels, first_level, density,
+             falloff, pixel, parallel, finest, flat_side, spacing, key),
+      SHARED("irradiance_cache/discontinuity.h", DiscontinuityDrawPush, width, height, across, down, stride,
+             level, first),
       SHARED("film.h", FilmHalf, sum, compensation),
       SHARED("film.h", WorkBlock, index, first_sample),
       SHARED("film.h", BlockError, pixels, luminance, variance, fourth, relative, quadrant_pixels, records,
@@ -81,23 +84,32 @@ std::vector<SharedStruct> structs() {
       SHARED("film.h", FilmPush, width, height, pixel_count, sample_count),
       SHARED("film.h", TonePush, width, height, layer, show, curve, exposure, scale, coarse_width,
              coarse_height, use_coarse_film),
-      SHARED("irradiance_cache.h", CacheFrame, routes, record_count, normal_tolerance, off_plane, probing,
-             off_plane_least, least_of_distance, least_most, parallel, eye),
-      SHARED("irradiance_cache.h", RecordPush, first, records, elevations, azimuths, rays_before, parts,
-             state, seed, pilot),
-      SHARED("irradiance_cache.h", RadiusPush, first, count, error, most, near, crowd),
-      SHARED("irradiance_cache.h", ClampPush, count, near, crowd, undecided),
-      SHARED("irradiance_cache.h", WorthPush, pixels, first, next),
-      SHARED("irradiance_cache.h", CarryPush, width, height, step, pixels, beyond),
-      SHARED("irradiance_cache.h", EllipsePush, first, count, reach, most, dark, near, near_tried, crowd),
-      SHARED("irradiance_cache.h", PoolPush, first, count),
-      SHARED("irradiance_cache.h", OverlayPush, width, height, discs, overlap, color, lo, hi, overlap_most,
-             grid),
-      SHARED("neighbours.h", NeighbourPush, count, pairs, apart, gap),
-      SHARED("placement.h", CollectPush, count, samples, to, screen_too, parallel, spacing, spacing_beyond,
-             spacing_of_distance, cell, pixel, eye),
-      SHARED("placement.h", PlacementGrid, origin, scale, exponent),
-      SHARED("placement.h", ChoosePush, count, seed, normal_tolerance),
+      SHARED("irradiance_cache/records.h", CacheFrame, routes, record_count, normal_tolerance, off_plane,
+             probing, off_plane_least, least_of_distance, least_most, parallel, eye),
+      SHARED("irradiance_cache/records.h", RecordPush, first, records, elevations, azimuths, rays_before,
+             parts, state, seed, pilot),
+      SHARED("irradiance_cache/records.h", RadiusPush, first, count, error, most, near, crowd),
+      SHARED("irradiance_cache/records.h", ClampPush, count, near, crowd, undecided),
+      SHARED("irradiance_cache/records.h", WorthPush, pixels, first, next),
+      SHARED("irradiance_cache/records.h", CarryPush, width, height, step, pixels, beyond),
+      SHARED("irradiance_cache/records.h", EllipsePush, first, count, reach, most, dark, near, near_tried,
+             crowd),
+      SHARED("irradiance_cache/records.h", PoolPush, first, count),
+      SHARED("irradiance_cache/records.h", OverlayPush, width, height, discs, overlap, color, lo, hi,
+             overlap_most, grid),
+      SHARED("irradiance_cache/neighbours.h", NeighbourPush, count, pairs, apart, gap),
+      SHARED("overlay.h", OverlayPoint, position, half_width, color, alpha, edge_width, rank),
+      SHARED("overlay.h", OverlaySegment, from, to, half_width, edge_width, color, alpha, strength, slack,
+             rank),
+      SHARED("overlay.h", OverlayDisc, position, radius, normal, half_width, color, alpha, edge_width,
+             strength, rank),
+      SHARED("overlay.h", OverlayMarkPush, width, height, count, first, pieces),
+      SHARED("overlay.h", OverlayLayPush, width, height, dimmed, edge_alpha),
+      SHARED("overlay.h", OverlayLine, from, to, from_depth, to_depth, half_width, alpha, color),
+      SHARED("irradiance_cache/placement.h", CollectPush, count, samples, to, screen_too, parallel, spacing,
+             spacing_beyond, spacing_of_distance, cell, pixel, eye),
+      SHARED("irradiance_cache/placement.h", PlacementGrid, origin, scale, exponent),
+      SHARED("irradiance_cache/placement.h", ChoosePush, count, seed, normal_tolerance),
       SHARED("ray.h", Ray, origin, tmax, direction, slot),
       SHARED("ray.h", Hit, t, prim, u, v),
       SHARED("scene.h", Frame, camera_origin, width, camera_right, height, camera_up, orthographic,
@@ -158,15 +170,17 @@ TEST_CASE("shared structs are laid out alike in C++ and GLSL") {
 TEST_CASE("every struct in shaders/shared is in the list above") {
   std::set<std::string> listed;
   for (const SharedStruct& s : structs()) listed.insert(s.header + " " + s.name);
-  for (const auto& entry : std::filesystem::directory_iterator(folder())) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder())) {
+    if (!entry.is_regular_file()) continue;
+    const std::string header = std::filesystem::relative(entry.path(), folder()).generic_string();
     std::ifstream file(entry.path());
     const std::string keyword = "struct ";
     for (std::string line; std::getline(file, line);) {
       if (line.rfind(keyword, 0) != 0) continue;
       const size_t end = line.find_first_of(" {;", keyword.size());
       const std::string name = line.substr(keyword.size(), end - keyword.size());
-      INFO("add SHARED(\"" << entry.path().filename().string() << "\", " << name << ", ...) to structs()");
-      CHECK(listed.count(entry.path().filename().string() + " " + name) == 1);
+      INFO("add SHARED(\"" << header << "\", " << name << ", ...) to structs()");
+      CHECK(listed.count(header + " " + name) == 1);
     }
   }
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/math.h"
-#include "shaders/shared/neighbours.h"
+#include "shaders/shared/irradiance_cache/neighbours.h"
 
 namespace lucerna::test {
 

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "shaders/shared/cache_placement.h"
+#include "shaders/shared/irradiance_cache/placement_view.h"
 #include "solvers/irradiance_cache/placement.h"
 #include "solvers/irradiance_cache/placement_view.h"
 

@@ -179,7 +179,9 @@ Lines check_layers(const Modules& modules) {
       {"paths", {"gpu", "scene"}},
       {"schedule", {"gpu", "scene", "film", "transport"}},
       {"solver_info", {"gpu", "transport"}},
+      {"film", {"scene", "upload", "paths", "transport"}},
       {"transport", {"plan", "solvers", "session"}},
+      {"overlay", {"solver_info", "lookup", "irradiance_cache", "solvers"}},
       {"solvers", {"plan", "session", "commands", "scene_io", "film_io", "bvh_embree"}},
       {"film_io", {"gpu", "scene"}},
       {"raybench", {"film_io", "scene_io", "ui"}},
@@ -277,8 +279,8 @@ TEST_CASE("The layers keep apart what must not meet") {
   const Lines layers = check_layers(modules);
   INFO(joined(layers));
   CHECK(layers.empty());
-  for (const char* name :
-       {"scene", "gpu", "paths", "schedule", "solver_info", "transport", "solvers", "film_io"}) {
+  for (const char* name : {"scene", "gpu", "paths", "schedule", "film", "solver_info", "transport", "overlay",
+                           "solvers", "film_io"}) {
     INFO(name);
     CHECK(modules.contains(name));  // a renamed module would silently lose its rule
   }

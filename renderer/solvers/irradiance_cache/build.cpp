@@ -87,7 +87,7 @@ bool Cache::Impl::probe(const Work& w) {
   probing = false;
   const bool last =
       covered && (status.pass >= k_refining_passes ||
-                  double(pass().screen) <= double(options.stop_share) * double(screen.points()));
+                  double(pass().screen) <= double(options.stop_share) * double(screen.sight().points()));
   // Few ask, and may stand side by side: a hole in a wall is seen however small its share of the picture is.
   // Not when light has changed: then there would be a little more with every change.
   filling = last && asks_beyond && status.asked > 0;

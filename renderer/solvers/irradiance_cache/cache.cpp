@@ -166,8 +166,7 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
 Cache::~Cache() = default;
 
 gpu::Defines Cache::defines(const paths::LookupRoutes& own, Metric metric) {
-  return {{"LUCERNA_CACHE", "1"},
-          {"LUCERNA_CACHE_PARTS", std::to_string(own.parts)},
+  return {{"LUCERNA_CACHE_PARTS", std::to_string(own.parts)},
           {"LUCERNA_CACHE_ELLIPSES", metric == Metric::hessian ? "1" : "0"}};
 }
 
@@ -334,9 +333,9 @@ bool Cache::tell_picture(transport::Wavefront& wavefront, film::Film& film, cons
 
 SightGrid Cache::bind_sight(gpu::Resources& to) const {
   const Impl& c = *impl_;
-  const SightGrid grid = c.screen.grid();
+  const SightGrid grid = c.screen.sight().grid();
   // Kernels name it whether they read it or not.
-  to.set("surface_texels", grid.across > 0 ? c.screen.surfaces() : c.candidates);
+  to.set("surface_texels", grid.across > 0 ? c.screen.sight().surfaces() : c.candidates);
   return grid;
 }
 
@@ -358,24 +357,19 @@ std::pair<float, float> Cache::scale(uint32_t color) const {
   return color < k_record_by_rays ? std::pair(1.0f, 2.0f) : impl_->scales[color - k_record_by_rays];
 }
 
-void Cache::draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
-                 const Overlay& overlay) {
+void Cache::draw(const overlay::Canvas& canvas, const Overlay& overlay) {
   Impl& c = *impl_;
   if (!overlay.discs && !overlay.overlap) return;
-  wavefront.bind_paths(c.resources);
+  canvas.bind(c.resources);
   bind(c.resources);
-  film.bind(c.resources);
-  coarse.bind_coarse(c.resources);
   const auto [lo, hi] = scale(overlay.color);
   const SightGrid sight = bind_sight(c.resources);
-  const OverlayPush push{film.width(), film.height(), overlay.discs, overlay.overlap, overlay.color, lo, hi,
-                         k_overlap_scale,
+  const OverlayPush push{canvas.width(), canvas.height(), overlay.discs, overlay.overlap, overlay.color, lo,
+                         hi, k_overlap_scale,
                          // Discs are drawn where the film's surfaces are.
-                         overlay.overlap ? sight : k_no_sight};
-  wavefront.stream().dispatch(c.overlay, c.resources, push,
-                              gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
-  wavefront.stream().run();
-  wavefront.stream().take_times();
+                         overlay.overlap ? sight : overlay::k_no_sight};
+  canvas.stream().dispatch(c.overlay, c.resources, push, gpu::groups_for(canvas.pixels(), 64));
+  canvas.finish();
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -16,6 +16,7 @@
 #include <optional>
 #include <string>
 
+#include "overlay/canvas.h"
 #include "paths/automaton.h"
 #include "solvers/info.h"
 #include "solvers/irradiance_cache/build_log.h"
@@ -173,7 +174,8 @@ class Cache {
   /// picture is begun. False when it was cancelled: it will be done again.
   bool tell_picture(transport::Wavefront& wavefront, film::Film& film, const CacheView& view, bool anew,
                     const std::function<bool()>& cancel = {});
-  /// For shaders/irradiance_cache/asking.glsl: where pixels ask for records; k_no_sight before that is known.
+  /// For shaders/overlay/asking.glsl: where pixels ask for records; overlay::k_no_sight before that is
+  /// known.
   shared::SightGrid bind_sight(gpu::Resources& resources) const;
   /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many
   /// serve each pixel. Needs the film's depth, and where it has no samples that of the coarse film of the
@@ -186,8 +188,7 @@ class Cache {
   /// Ends of the logarithmic scale of a value that records are coloured by, from nearly all records; of rays,
   /// distance and error only. 0 < first < second.
   std::pair<float, float> scale(uint32_t color) const;
-  void draw(transport::Wavefront& wavefront, const film::Film& film, const film::Film& coarse,
-            const Overlay& overlay);
+  void draw(const overlay::Canvas& canvas, const Overlay& overlay);
   /// Lays over the film's picture what of it the screen-space stage sees: the discontinuity of the geometry,
   /// or of the irradiance that the present records give, at a level of its pyramid. The wavefront's frame is
   /// the view's. The stream is run.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 
 namespace lucerna::irradiance_cache {
 

@@ -4,13 +4,13 @@
 // the picture, by dithering it, become candidates. All on the device. What exactly is measured and drawn
 // stands in shaders/irradiance_cache/detail.comp and dither.comp.
 //
-// It looks at one point a pixel, through the pixel's centre, or at every second, third ... pixel both ways
-// where the picture has more than k_most_points.
+// It looks at the points of overlay/sight.h.
 #include <array>
 #include <functional>
 #include <vector>
 
-#include "shaders/shared/discontinuity.h"
+#include "overlay/sight.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "solvers/irradiance_cache/placement.h"
 #include "transport/wavefront.h"
 
@@ -32,13 +32,9 @@ struct DiscontinuityOptions {
   bool operator==(const DiscontinuityOptions&) const = default;
 };
 
-/// Nobody has looked.
-inline constexpr shared::SightGrid k_no_sight{0, 1};
-
 class Discontinuity {
  public:
   enum class Of { geometry, irradiance };
-  static constexpr uint32_t k_most_points = 1u << 22;
 
   /// `defines`: Cache::defines. Kernels are compiled when the stage is first called for.
   Discontinuity(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& defines);
@@ -57,10 +53,8 @@ class Discontinuity {
   /// have been told k_probe_screen, and note what they meet in `candidates`. False when it was cancelled.
   bool see(transport::Wavefront& wavefront, const gpu::Buffer& candidates,
            const std::function<bool()>& cancel = {});
-  /// What has been seen of the points (k_surface_texels each), and how they lie over the picture;
-  /// k_no_sight, and no buffer to be read, before all are seen.
-  shared::SightGrid grid() const;
-  const gpu::Buffer& surfaces() const;
+  /// What has been seen of the points.
+  const overlay::Sight& sight() const;
   /// What the records give at the points; `bind` as Cache::bind.
   void look_up(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind);
   /// The pyramid. Irradiance darker than `least` is held against that (luminance, above 0).
@@ -82,7 +76,6 @@ class Discontinuity {
   /// (k_ramp_magma, 0 to 1); levels beyond the last count as that. The stream is not run.
   void draw(gpu::Stream& stream, const gpu::Buffer& picture, uint32_t level);
 
-  uint32_t across() const, down() const, points() const;
   uint32_t levels() const;  ///< of which the last has one cell
   uint64_t bytes() const;
   /// Cells of a level in raster order; of each 0..1.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gpu/stream.h"
+#include "overlay/painter.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -20,16 +21,18 @@ constexpr float k_least_weight = 0.004f;  // of lines; a thinner one would not b
 struct Inspector::Impl {
   gpu::Device& device;
   gpu::ShaderCompiler& compiler;
-  gpu::Kernel inspect, overlap, lookups, lines, ticks, ticks_draw;
-  gpu::Buffer answer, counts, looked_up, line_list, marks;
+  gpu::Kernel inspect, overlap, lookups, lines, normals;
+  gpu::Buffer answer, counts, looked_up, line_list, segments;
+  overlay::Painter painter;
   gpu::Resources resources;
+
+  Impl(gpu::Device& d, gpu::ShaderCompiler& c) : device(d), compiler(c), painter(d, c) {}
 
   const gpu::Kernel& ready(gpu::Kernel& kernel, const char* file) {
     // What a lookup reads of a record is not called here: no part of it is compiled in.
     if (!kernel)
-      kernel = gpu::Kernel(
-          device, compiler, file,
-          {{"LUCERNA_CACHE", "1"}, {"LUCERNA_CACHE_PARTS", "0u"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
+      kernel = gpu::Kernel(device, compiler, file,
+                           {{"LUCERNA_CACHE_PARTS", "0u"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
     return kernel;
   }
 
@@ -38,33 +41,25 @@ struct Inspector::Impl {
     return buffer;
   }
 
-  SightGrid bind(const Shown& shown, const Cache& cache) {
-    shown.wavefront.bind_paths(resources);
+  SightGrid bind(const overlay::Canvas& canvas, const Cache& cache) {
+    canvas.bind(resources);
     cache.bind(resources);
-    shown.film.bind(resources);
-    shown.coarse.bind_coarse(resources);
     return cache.bind_sight(resources);
-  }
-
-  /// What is drawn and asked is no part of the picture's cost.
-  static void finish(gpu::Stream& stream) {
-    stream.run();
-    stream.take_times();
   }
 };
 
 Inspector::Inspector(gpu::Device& device, gpu::ShaderCompiler& compiler)
-    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {}
+    : impl_(new Impl(device, compiler)) {}
 Inspector::~Inspector() = default;
 
-Inspection Inspector::ask(const Shown& shown, const Cache& cache, uint32_t x, uint32_t y) {
+Inspection Inspector::ask(const overlay::Canvas& canvas, const Cache& cache, uint32_t x, uint32_t y) {
   Impl& i = *impl_;
-  const film::Film& film = shown.film;
+  const film::Film& film = canvas.film;
   const gpu::Kernel& kernel = i.ready(i.inspect, "irradiance_cache/inspect.comp");
-  const InspectPush push{film.width(), film.height(), y * film.width() + x, i.bind(shown, cache)};
+  const InspectPush push{film.width(), film.height(), y * film.width() + x, i.bind(canvas, cache)};
   i.resources.set("Inspection", i.ready(i.answer, "cache inspection", k_inspection_bytes, gpu::Memory::host));
-  shown.wavefront.stream().dispatch(kernel, i.resources, push, 1);
-  Impl::finish(shown.wavefront.stream());
+  canvas.stream().dispatch(kernel, i.resources, push, 1);
+  canvas.finish();
 
   const auto* header = static_cast<const InspectHeader*>(i.answer.mapped());
   const auto* served = reinterpret_cast<const InspectServing*>(header + 1);
@@ -94,17 +89,17 @@ Inspection Inspector::ask(const Shown& shown, const Cache& cache, uint32_t x, ui
   return found;
 }
 
-Overlap Inspector::overlap(const Shown& shown, const Cache& cache) {
+Overlap Inspector::overlap(const overlay::Canvas& canvas, const Cache& cache) {
   Impl& i = *impl_;
-  const film::Film& film = shown.film;
+  const film::Film& film = canvas.film;
   const gpu::Kernel& kernel = i.ready(i.overlap, "irradiance_cache/overlap.comp");
-  const OverlapPush push{film.width(), film.height(), i.bind(shown, cache)};
+  const OverlapPush push{film.width(), film.height(), i.bind(canvas, cache)};
   const gpu::Buffer& counts = i.ready(i.counts, "cache overlap", sizeof(OverlapCounts), gpu::Memory::host);
   i.resources.set("Overlap", counts);
-  shown.wavefront.stream().fill(counts, 0);
-  shown.wavefront.stream().dispatch(kernel, i.resources, push,
-                                    gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
-  Impl::finish(shown.wavefront.stream());
+  canvas.stream().fill(counts, 0);
+  canvas.stream().dispatch(kernel, i.resources, push,
+                           gpu::groups_for(uint64_t{film.width()} * film.height(), 64));
+  canvas.finish();
 
   const auto* c = static_cast<const OverlapCounts*>(counts.mapped());
   Overlap o;
@@ -117,22 +112,22 @@ Overlap Inspector::overlap(const Shown& shown, const Cache& cache) {
   return o;
 }
 
-void Inspector::look_up(const Shown& shown, const Cache& cache, const gpu::Defines& defines) {
+void Inspector::look_up(const overlay::Canvas& canvas, const Cache& cache, const gpu::Defines& defines) {
   Impl& i = *impl_;
-  const film::Film& film = shown.film;
+  const film::Film& film = canvas.film;
   const uint64_t pixels = uint64_t{film.width()} * film.height();
   if (!i.lookups) i.lookups = gpu::Kernel(i.device, i.compiler, "irradiance_cache/lookups.comp", defines);
-  const OverlapPush push{film.width(), film.height(), i.bind(shown, cache)};
+  const OverlapPush push{film.width(), film.height(), i.bind(canvas, cache)};
   i.resources.set("LookedUp",
                   i.ready(i.looked_up, "cache lookups", pixels * sizeof(float), gpu::Memory::device));
-  shown.wavefront.stream().dispatch(i.lookups, i.resources, push, gpu::groups_for(pixels, 64));
-  Impl::finish(shown.wavefront.stream());
+  canvas.stream().dispatch(i.lookups, i.resources, push, gpu::groups_for(pixels, 64));
+  canvas.finish();
 }
 
-void Inspector::draw_lines(const Shown& shown, const Cache& cache, const Inspection& found) {
+void Inspector::draw_lines(const overlay::Canvas& canvas, const Cache& cache, const Inspection& found) {
   if (!found.solid) return;
   Impl& i = *impl_;
-  const film::Film& film = shown.film;
+  const film::Film& film = canvas.film;
   const float width = float(film.width()), height = float(film.height());
   const vec2 here(float(found.x) + 0.5f, float(found.y) + 0.5f);
   vec2 lo = here - 4.0f, hi = here + 4.0f;
@@ -141,7 +136,7 @@ void Inspector::draw_lines(const Shown& shown, const Cache& cache, const Inspect
     const vec2 inside = glm::clamp(p, vec2(-1e4f), vec2(1e5f));
     lo = glm::min(lo, inside - reach), hi = glm::max(hi, inside + reach);
   };
-  std::vector<CacheLine> list;
+  std::vector<OverlayLine> list;
   for (auto s = found.serving.rbegin(); s != found.serving.rend(); ++s) {  // the heaviest on top
     if (s->weight < k_least_weight || s->depth <= 0) continue;
     const float strength = std::sqrt(s->weight / found.serving.front().weight);
@@ -159,37 +154,33 @@ void Inspector::draw_lines(const Shown& shown, const Cache& cache, const Inspect
   const vec2 size = last - first;
   if (size.x < 1 || size.y < 1) return;
   const gpu::Kernel& kernel = i.ready(i.lines, "irradiance_cache/lines.comp");
-  i.bind(shown, cache);
+  i.bind(canvas, cache);
   gpu::Buffer& lines =
-      i.ready(i.line_list, "cache lines", (2 * k_inspect_most + 1) * sizeof(CacheLine), gpu::Memory::host);
-  lines.write(list.data(), list.size() * sizeof(CacheLine));
-  i.resources.set("Lines", lines);
+      i.ready(i.line_list, "cache lines", (2 * k_inspect_most + 1) * sizeof(OverlayLine), gpu::Memory::host);
+  lines.write(list.data(), list.size() * sizeof(OverlayLine));
+  i.resources.set("OverlayLines", lines);
   const CacheLinesPush push{
       film.width(),     film.height(),    uint32_t(first.x),     uint32_t(first.y),
       uint32_t(size.x), uint32_t(size.y), uint32_t(list.size()), found.under.value_or(k_no_record)};
-  shown.wavefront.stream().dispatch(kernel, i.resources, push,
-                                    gpu::groups_for(uint64_t(size.x) * uint64_t(size.y), 64));
-  Impl::finish(shown.wavefront.stream());
+  canvas.stream().dispatch(kernel, i.resources, push,
+                           gpu::groups_for(uint64_t(size.x) * uint64_t(size.y), 64));
+  canvas.finish();
 }
 
-void Inspector::draw_normals(const Shown& shown, const Cache& cache, uint32_t color) {
+void Inspector::draw_normals(const overlay::Canvas& canvas, const Cache& cache, uint32_t color) {
   // Of records that are complete alone: the others have no radius yet.
   const uint32_t records = cache.status().records;
   if (records == 0) return;
   Impl& i = *impl_;
-  const film::Film& film = shown.film;
-  const gpu::Kernel& ticks = i.ready(i.ticks, "irradiance_cache/ticks.comp");
-  const gpu::Kernel& draw = i.ready(i.ticks_draw, "irradiance_cache/ticks_draw.comp");
-  i.bind(shown, cache);
-  const uint64_t pixels = uint64_t{film.width()} * film.height();
-  i.resources.set("Ticks", i.ready(i.marks, "cache ticks", 4 * pixels, gpu::Memory::device));
+  const gpu::Kernel& kernel = i.ready(i.normals, "irradiance_cache/normals.comp");
+  i.bind(canvas, cache);
+  i.resources.set("OverlaySegments", i.ready(i.segments, "cache normals", records * sizeof(OverlaySegment),
+                                             gpu::Memory::device));
   const auto [lo, hi] = cache.scale(color);
-  const CacheTicksPush push{film.width(), film.height(), records, color, lo, hi};
-  gpu::Stream& stream = shown.wavefront.stream();
-  stream.fill(i.marks, 0);
-  stream.dispatch(ticks, i.resources, push, gpu::groups_for(records, 64));
-  stream.dispatch(draw, i.resources, push, gpu::groups_for(pixels, 64));
-  Impl::finish(stream);
+  const CacheNormalsPush push{canvas.width(), canvas.height(), records, color, lo, hi};
+  canvas.stream().dispatch(kernel, i.resources, push, gpu::groups_for(records, 64));
+  i.painter.draw(canvas, {.points = {}, .segments = {&i.segments, records}, .discs = {}},
+                 {.edge_alpha = 0.4f});
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -14,8 +14,8 @@
 #include <optional>
 #include <vector>
 
-#include "film/film.h"
-#include "shaders/shared/cache_inspect.h"
+#include "overlay/canvas.h"
+#include "shaders/shared/irradiance_cache/inspect.h"
 #include "solvers/irradiance_cache/cache.h"
 
 namespace lucerna::irradiance_cache {
@@ -59,14 +59,6 @@ struct Overlap {
   std::vector<uint32_t> histogram;
 };
 
-/// The picture: its wavefront, whose frame must be the picture's and whose stream is run, and its film. Where
-/// that has no samples the coarse film tells what is seen (shared::k_coarse_step).
-struct Shown {
-  transport::Wavefront& wavefront;
-  const film::Film& film;
-  const film::Film& coarse;
-};
-
 class Inspector {
  public:
   /// Both must outlive it.
@@ -74,19 +66,19 @@ class Inspector {
   ~Inspector();
 
   /// `x`, `y` are inside the picture. Throws Error when a kernel does not compile; so do the others.
-  Inspection ask(const Shown& shown, const Cache& cache, uint32_t x, uint32_t y);
+  Inspection ask(const overlay::Canvas& canvas, const Cache& cache, uint32_t x, uint32_t y);
   /// Over the film's pixels.
-  Overlap overlap(const Shown& shown, const Cache& cache);
+  Overlap overlap(const overlay::Canvas& canvas, const Cache& cache);
   /// A lookup at every pixel of the film that asks, of which nothing is kept: to be timed.
   /// `defines`: Cache::defines(); those of the first call count.
-  void look_up(const Shown& shown, const Cache& cache, const gpu::Defines& defines);
+  void look_up(const overlay::Canvas& canvas, const Cache& cache, const gpu::Defines& defines);
 
   /// Draws over the film's picture, from the pixel to each record that serves it, a line as wide and opaque
   /// as its weight says, and the border of the record in whose disc the pixel lies.
-  void draw_lines(const Shown& shown, const Cache& cache, const Inspection& inspection);
+  void draw_lines(const overlay::Canvas& canvas, const Cache& cache, const Inspection& inspection);
   /// Draws the records' normals over the film's picture, as short lines from their centres, coloured by one
   /// of shared::k_record_by_*.
-  void draw_normals(const Shown& shown, const Cache& cache, uint32_t color);
+  void draw_normals(const overlay::Canvas& canvas, const Cache& cache, uint32_t color);
 
  private:
   struct Impl;

@@ -3,7 +3,7 @@
 #include <bit>
 
 #include "gpu/kernel.h"
-#include "shaders/shared/neighbours.h"
+#include "shaders/shared/irradiance_cache/neighbours.h"
 #include "sort/prefix_sum.h"
 #include "sort/radix_sort.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gpu/stream.h"
-#include "shaders/shared/placement.h"
+#include "shaders/shared/irradiance_cache/placement.h"
 #include "solvers/irradiance_cache/records.h"
 
 namespace lucerna::irradiance_cache {

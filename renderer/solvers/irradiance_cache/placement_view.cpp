@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gpu/stream.h"
+#include "overlay/painter.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -13,7 +14,7 @@ namespace {
 
 /// Points drawn at most: of a picture's pixels, all of which may ask in the first pass, one in some.
 constexpr size_t k_most_points = 1u << 20;
-static_assert(k_most_points <= k_mark_point);
+static_assert(2 * k_most_points <= k_most_strokes);
 /// Dots of candidates, in pixels: as wide as the room between them allows.
 constexpr float k_least_dot = 0.6f, k_most_dot = 1.5f, k_dot_of_room = 0.25f;
 /// ... and of what is chosen.
@@ -58,65 +59,54 @@ std::vector<PlacedPoint> placement_points(PlacementShow drawn, const PlacementSh
 struct PlacementView::Impl {
   gpu::Device& device;
   gpu::ShaderCompiler& compiler;
-  gpu::Kernel mark, lay;
-  gpu::Buffer points, marks;
+  gpu::Kernel kernel;
+  gpu::Buffer places, points, discs;
   gpu::Resources resources;
-  uint64_t version = 0;  // of what is in `points`, and how it was to be shown
+  overlay::Painter painter;
+  uint64_t version = 0;  // of what is in `places`, and how it was to be shown
   PlacementShow drawn = PlacementShow::off;
   uint32_t count = 0, rings = 0;
+
+  Impl(gpu::Device& d, gpu::ShaderCompiler& c) : device(d), compiler(c), painter(d, c) {}
+
+  void room_for(gpu::Buffer& buffer, const char* name, uint64_t bytes, gpu::Memory memory) {
+    gpu::make_room(device, buffer, {.name = name, .bytes = bytes + bytes / 4, .memory = memory});
+  }
 };
 
 PlacementView::PlacementView(gpu::Device& device, gpu::ShaderCompiler& compiler)
-    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}}) {}
+    : impl_(new Impl(device, compiler)) {}
 PlacementView::~PlacementView() = default;
 
-void PlacementView::draw(const Shown& shown, const Cache& cache, PlacementShow show) {
+void PlacementView::draw(const overlay::Canvas& canvas, const Cache& cache, PlacementShow show) {
   Impl& i = *impl_;
   const PlacementShown placement = cache.placement();
   const PlacementShow drawn = placement_drawn(show, placement);
   if (drawn == PlacementShow::off) return;
-  const film::Film& film = shown.film;
-  const uint64_t pixels = uint64_t{film.width()} * film.height();
-  if (!i.mark) {
-    i.mark = gpu::Kernel(i.device, i.compiler, "irradiance_cache/placement.comp");
-    i.lay = gpu::Kernel(i.device, i.compiler, "irradiance_cache/placement_draw.comp");
-  }
+  if (!i.kernel) i.kernel = gpu::Kernel(i.device, i.compiler, "irradiance_cache/places.comp");
   if (i.version != placement.version || i.drawn != drawn) {
-    const std::vector<PlacedPoint> points = placement_points(drawn, placement, k_most_points, i.rings);
-    const uint64_t bytes = points.size() * sizeof(PlacedPoint);
-    gpu::make_room(i.device, i.points,
-                   {.name = "cache placement", .bytes = bytes + bytes / 4, .memory = gpu::Memory::host});
-    i.points.write(points.data(), bytes);
-    i.count = uint32_t(points.size());
+    const std::vector<PlacedPoint> places = placement_points(drawn, placement, k_most_points, i.rings);
+    i.count = uint32_t(places.size());
+    i.room_for(i.places, "cache placement", places.size() * sizeof(PlacedPoint), gpu::Memory::host);
+    i.places.write(std::span<const PlacedPoint>(places));
     i.version = placement.version, i.drawn = drawn;
+    i.room_for(i.points, "cache placement dots", i.count * sizeof(OverlayPoint), gpu::Memory::device);
+    i.room_for(i.discs, "cache placement rings", i.rings * sizeof(OverlayDisc), gpu::Memory::device);
   }
-  gpu::make_room(i.device, i.marks, {.name = "cache placement marks", .bytes = 4 * pixels});
-  shown.wavefront.bind_paths(i.resources);
-  film.bind(i.resources);
-  shown.coarse.bind_coarse(i.resources);
-  i.resources.set("Places", i.points);
-  i.resources.set("Marks", i.marks);
+  i.resources.set("Places", i.places);
+  i.resources.set("OverlayPoints", i.points);
+  i.resources.set("OverlayDiscs", i.discs);
   const auto room = [&](size_t points) {
-    return std::sqrt(float(pixels) / float(std::max<size_t>(1, points)));
+    return std::sqrt(float(canvas.pixels()) / float(std::max<size_t>(1, points)));
   };
-  PlacementPush push{film.width(),
-                     film.height(),
-                     i.count,
-                     0,
-                     std::clamp(k_dot_of_room * room(placement.candidates.size()), k_least_dot, k_most_dot),
-                     std::clamp(k_tried_of_room * room(placement.tried.size()), k_least_tried, k_most_tried),
-                     drawn == PlacementShow::clusters};
-  gpu::Stream& stream = shown.wavefront.stream();
-  stream.fill(i.marks, 0);
-  stream.dispatch(i.mark, i.resources, push, gpu::groups_for(i.count, 64));
-  if (i.rings > 0) {
-    push.count = i.rings, push.segments = k_ring_segments;
-    stream.dispatch(i.mark, i.resources, push, gpu::groups_for(uint64_t{i.rings} * k_ring_segments, 64));
-  }
-  stream.dispatch(i.lay, i.resources, push, gpu::groups_for(pixels, 64));
-  // What is drawn is no part of the picture's cost.
-  stream.run();
-  stream.take_times();
+  const PlacementPush push{
+      i.count, i.rings,
+      std::clamp(k_dot_of_room * room(placement.candidates.size()), k_least_dot, k_most_dot),
+      std::clamp(k_tried_of_room * room(placement.tried.size()), k_least_tried, k_most_tried),
+      drawn == PlacementShow::clusters};
+  canvas.stream().dispatch(i.kernel, i.resources, push, gpu::groups_for(i.count, 64));
+  i.painter.draw(canvas, {.points = {&i.points, i.count}, .segments = {}, .discs = {&i.discs, i.rings}},
+                 {.dimmed = true});
 }
 
 }  // namespace lucerna::irradiance_cache

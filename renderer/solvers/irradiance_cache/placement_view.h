@@ -1,11 +1,11 @@
 #pragma once
 // Draws how the places of records are chosen over the picture: what has been asked for, how that was cut into
-// clusters, what of it is tried and what becomes a record. By kernels that read the film's depth as the other
-// overlays do (inspector.h), so that what is hidden stays hidden.
+// clusters, what of it is tried and what becomes a record. What is hidden stays hidden
+// (overlay/painter.h).
 #include <memory>
 #include <string>
 
-#include "shaders/shared/cache_placement.h"
+#include "shaders/shared/irradiance_cache/placement_view.h"
 #include "solvers/irradiance_cache/inspector.h"
 #include "solvers/irradiance_cache/stages.h"
 
@@ -23,7 +23,7 @@ class PlacementView {
   ~PlacementView();
   /// Over the film's picture, which is dimmed where there is anything to draw; the stream is run. Throws
   /// Error when a kernel does not compile.
-  void draw(const Shown& shown, const Cache& cache, PlacementShow show);
+  void draw(const overlay::Canvas& canvas, const Cache& cache, PlacementShow show);
 
  private:
   struct Impl;

@@ -1,5 +1,5 @@
 #pragma once
-// The records of an irradiance cache, in device memory. Layout: shaders/shared/irradiance_cache.h.
+// The records of an irradiance cache, in device memory. Layout: shaders/shared/irradiance_cache/records.h.
 #include <algorithm>
 #include <array>
 #include <span>
@@ -8,7 +8,7 @@
 #include "base/math.h"
 #include "gpu/kernel.h"
 #include "gpu/stream.h"
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "solvers/lookup/octree.h"
 
 namespace lucerna::irradiance_cache {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/figures.h"
-#include "shaders/shared/cache_placement.h"
+#include "shaders/shared/irradiance_cache/placement_view.h"
 #include "shaders/shared/ramp.h"
 #include "solvers/irradiance_cache/info.h"
 

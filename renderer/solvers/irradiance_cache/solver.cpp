@@ -8,7 +8,7 @@
 namespace lucerna::irradiance_cache {
 namespace {
 
-using solvers::Picture, solvers::Task, solvers::Canvas, solvers::Cancel;
+using solvers::Picture, solvers::Task, solvers::Cancel;
 
 CacheOptions read_options(const OptionValues& s) {
   return {.metric = Metric(s.choice("cache.metric")),

@@ -38,14 +38,14 @@ class CacheSolver final : public solvers::Solver {
                        bool anew, const solvers::Cancel& cancel) override;
 
   void look_at(std::optional<vec2> place) override { looked_at_ = place; }
-  void draw(const solvers::Canvas& canvas, const solvers::Picture& picture) override;
-  std::shared_ptr<const solvers::Report> report(const solvers::Canvas& canvas,
+  void draw(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
+  std::shared_ptr<const solvers::Report> report(const overlay::Canvas& canvas,
                                                 const solvers::Picture& picture, bool sampled) override;
   /// What report() is made of.
-  CacheReport state(const solvers::Canvas& canvas, const solvers::Picture& picture, bool sampled);
-  nlohmann::ordered_json statistics(const solvers::Canvas& canvas, const solvers::Picture& picture) override;
+  CacheReport state(const overlay::Canvas& canvas, const solvers::Picture& picture, bool sampled);
+  nlohmann::ordered_json statistics(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
   std::map<std::string, double> figures() const override;
-  void look_up_picture(const solvers::Canvas& canvas, const solvers::Picture& picture) override;
+  void look_up_picture(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
   void command(const std::string& name) override;
   void save(const std::string& file, const solvers::Picture& picture,
             const solvers::Provenance& provenance) const override;
@@ -59,7 +59,7 @@ class CacheSolver final : public solvers::Solver {
   CacheView view(const solvers::Picture& picture) const;
   Inspector& inspector();
   /// How many records serve the picture's pixels; looked at once a picture.
-  const Overlap& overlap(const solvers::Canvas& canvas, const solvers::Picture& picture);
+  const Overlap& overlap(const overlay::Canvas& canvas, const solvers::Picture& picture);
   void warn_of_full_cache();
 
   gpu::Device& device_;

@@ -6,11 +6,9 @@
 
 namespace lucerna::irradiance_cache {
 
-using solvers::Picture, solvers::Canvas;
+using overlay::Canvas, solvers::Picture;
 
 namespace {
-
-Shown shown(const Canvas& canvas) { return {canvas.wavefront, canvas.film, canvas.coarse}; }
 
 uint32_t pixel_at(float place, uint32_t pixels) {
   return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
@@ -33,25 +31,24 @@ void CacheSolver::draw(const Canvas& canvas, const Picture& picture) {
   if (placement != PlacementShow::off) {
     if (!placement_view_) placement_view_ = std::make_unique<PlacementView>(device_, compiler_);
     // Below the others, for it dims the picture.
-    placement_view_->draw(shown(canvas), cache_, placement);
+    placement_view_->draw(canvas, cache_, placement);
   }
   const auto color = uint32_t(settings.choice("overlay.records_by"));
   const bool overlap = settings.boolean("overlay.overlap");
   if (overlap || looked_at_) cache_.look_at_picture(canvas.wavefront, seen);
-  cache_.draw(canvas.wavefront, canvas.film, canvas.coarse,
-              {.discs = settings.boolean("overlay.records"), .overlap = overlap, .color = color});
+  cache_.draw(canvas, {.discs = settings.boolean("overlay.records"), .overlap = overlap, .color = color});
   inspection_ = {};
-  if (settings.boolean("overlay.normals")) inspector().draw_normals(shown(canvas), cache_, color);
+  if (settings.boolean("overlay.normals")) inspector().draw_normals(canvas, cache_, color);
   if (!looked_at_) return;
-  inspection_ = inspector().ask(shown(canvas), cache_, pixel_at(looked_at_->x, canvas.film.width()),
+  inspection_ = inspector().ask(canvas, cache_, pixel_at(looked_at_->x, canvas.film.width()),
                                 pixel_at(looked_at_->y, canvas.film.height()));
-  inspector().draw_lines(shown(canvas), cache_, inspection_);
+  inspector().draw_lines(canvas, cache_, inspection_);
 }
 
 const Overlap& CacheSolver::overlap(const Canvas& canvas, const Picture& picture) {
   if (!overlap_) {
     cache_.look_at_picture(canvas.wavefront, view(picture));
-    overlap_ = inspector().overlap(shown(canvas), cache_);
+    overlap_ = inspector().overlap(canvas, cache_);
   }
   return *overlap_;
 }
@@ -120,7 +117,7 @@ std::map<std::string, double> CacheSolver::figures() const {
 
 void CacheSolver::look_up_picture(const Canvas& canvas, const Picture& picture) {
   cache_.look_at_picture(canvas.wavefront, view(picture));
-  inspector().look_up(shown(canvas), cache_, defines());
+  inspector().look_up(canvas, cache_, defines());
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shaders/shared/irradiance_cache.h"
+#include "shaders/shared/irradiance_cache/records.h"
 #include "shaders/shared/wide_sum.h"
 
 namespace lucerna::irradiance_cache {

@@ -1,6 +1,6 @@
 // Records that know each other: what the kernels are told that bound radii by the records around. Read by C++ and GLSL.
-#ifndef LUCERNA_SHARED_NEIGHBOURS_H
-#define LUCERNA_SHARED_NEIGHBOURS_H
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_NEIGHBOURS_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_NEIGHBOURS_H
 #include "shaders/shared/compat.h"
 LUCERNA_SHARED_BEGIN
 

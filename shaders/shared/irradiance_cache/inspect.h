@@ -1,10 +1,10 @@
 // What a person asks of an irradiance cache at a pixel of the picture, and what is drawn to answer. Read by
 // C++ and GLSL. Places in the picture are in pixels from its upper left corner; depths are along the view
 // axis [m].
-#ifndef LUCERNA_SHARED_CACHE_INSPECT_H
-#define LUCERNA_SHARED_CACHE_INSPECT_H
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_INSPECT_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_INSPECT_H
 #include "shaders/shared/compat.h"
-#include "shaders/shared/discontinuity.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "shaders/shared/wide_sum.h"
 LUCERNA_SHARED_BEGIN
 
@@ -55,14 +55,6 @@ struct OverlapCounts {
   WideSum listed;   ///< likewise, of those that the octree lists there
 };
 
-/// A line over the picture; where a surface hides it it is faint.
-struct CacheLine {
-  vec2 from, to;
-  float from_depth, to_depth;
-  float half_width;  ///< pixels
-  float alpha;
-  vec3 color;  ///< encoded, 0..1
-};
 /// Lines, and the disc of one record, over a rectangle of the picture.
 struct CacheLinesPush {
   uint width, height;
@@ -72,18 +64,12 @@ struct CacheLinesPush {
 };
 
 /// Normals of records as short lines from their centres.
-struct CacheTicksPush {
+struct CacheNormalsPush {
   uint width, height;
   uint records;
   uint color;    ///< k_record_by_*
   float lo, hi;  ///< as OverlayPush
 };
-// A mark is what a tick leaves at a pixel: bit 31: the tick itself (else its dark edge), bits 24-30 how much
-// of the pixel it covers, below them the complement of the record's index, so that the greatest mark is what
-// is to be seen, in any order.
-LUCERNA_CONST uint k_tick_core = 0x80000000u;
-LUCERNA_CONST uint k_tick_cover_shift = 24u;
-LUCERNA_CONST uint k_tick_record = 0xffffffu;
 
 LUCERNA_SHARED_END
 #endif

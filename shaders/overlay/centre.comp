@@ -1,7 +1,6 @@
-// Source of the screen-space stage: a ray through the centre of every pixel, or of every point of its grid. The path ends
-// where it meets something diffuse, which is noted (k_probe_screen), or is turned aside.
+// Source of paths that look at the picture: a ray through the centre of every pixel, or of every point of a grid.
 #define LUCERNA_PUSH SeePush
-#include "shaders/shared/discontinuity.h"
+#include "shaders/shared/sight.h"
 #include "lib/wavefront.glsl"
 
 void main() {

@@ -1,7 +1,7 @@
 // What the kernels share that choose among candidates.
-#ifndef LUCERNA_LIB_PLACEMENT
-#define LUCERNA_LIB_PLACEMENT
-#include "shaders/shared/placement.h"
+#ifndef LUCERNA_IRRADIANCE_CACHE_PLACEMENT
+#define LUCERNA_IRRADIANCE_CACHE_PLACEMENT
+#include "shaders/shared/irradiance_cache/placement.h"
 #include "shaders/shared/sort.h"
 #include "lib/invocation.glsl"
 

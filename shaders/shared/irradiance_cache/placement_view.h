@@ -1,7 +1,7 @@
 // How the places of an irradiance cache's records are drawn while they are being chosen. Read by C++ and
 // GLSL.
-#ifndef LUCERNA_SHARED_CACHE_PLACEMENT_H
-#define LUCERNA_SHARED_CACHE_PLACEMENT_H
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_PLACEMENT_VIEW_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_PLACEMENT_VIEW_H
 #include "shaders/shared/ramp.h"
 LUCERNA_SHARED_BEGIN
 
@@ -22,31 +22,14 @@ struct PlacedPoint {
   float radius;  ///< [m]; 0: no ring
 };
 
-/// The dots of all points, or with `segments` the rings of the first `count`.
+/// A dot for each of `count` places, and for the first `rings` of them a ring.
 struct PlacementPush {
-  uint width, height;
   uint count;
-  uint segments;    ///< of a ring; 0: dots
+  uint rings;
   float dot;        ///< radius of a candidate's dot [pixels]
   float tried_dot;  ///< ... of a chosen place's; others that were tried are smaller
   uint by_cluster;  ///< not 0: candidates are coloured by their clusters, else by what asked for them
 };
-
-// A mark is what a point leaves at a pixel: bits 29-31 a rank, bits 22-28 how much of the pixel it covers,
-// below them the complement of the point's index, so that the greatest mark is what is to be seen, in any
-// order.
-LUCERNA_CONST uint k_mark_rank_shift = 29u;
-LUCERNA_CONST uint k_mark_cover_shift = 22u;
-LUCERNA_CONST uint k_mark_point = 0x3fffffu;  ///< also the most points there may be
-LUCERNA_CONST uint k_rank_candidate = 1u;
-LUCERNA_CONST uint k_rank_edge = 2u;        ///< dark, around what is tried
-LUCERNA_CONST uint k_rank_faint_ring = 3u;  ///< of what is only tried
-LUCERNA_CONST uint k_rank_rejected = 4u;
-LUCERNA_CONST uint k_rank_ring = 5u;
-LUCERNA_CONST uint k_rank_tried = 6u;
-LUCERNA_CONST uint k_rank_chosen = 7u;
-
-LUCERNA_CONST uint k_ring_segments = 32u;
 
 /// Inks of what is tried, encoded 0..1; the legend has them too. Chosen: the accent of records that light.
 LUCERNA_CONST vec3 k_tried_ink = vec3(1.0f, 1.0f, 1.0f);

@@ -4,10 +4,10 @@
 // is read. The parts carry the numbers of the components that a path beginning with ED would bring them to:
 // light that comes from the hemisphere straight, over one diffuse event, over more, or over mirrors and glass
 // alone.
-#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_H
-#define LUCERNA_SHARED_IRRADIANCE_CACHE_H
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
 #include "shaders/shared/compat.h"
-#include "shaders/shared/discontinuity.h"
+#include "shaders/shared/irradiance_cache/discontinuity.h"
 LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_part_direct = 0u;     ///< L: in a cache, the sky's alone (E_env; lib/sky.glsl)

@@ -1,33 +1,12 @@
 // The screen-space stage of an irradiance cache's placement: where in the picture geometry or irradiance
 // changes, on every scale. Read by C++ and GLSL.
 //
-// It looks at a grid of points over the picture, as a rule one a pixel. Level k of a pyramid over the grid
+// It looks at a grid of points over the picture, as a rule one a pixel (shaders/shared/sight.h). Level k of a pyramid over the grid
 // has cells of 2^k x 2^k points; those at the right and lower borders hold what is left.
-#ifndef LUCERNA_SHARED_DISCONTINUITY_H
-#define LUCERNA_SHARED_DISCONTINUITY_H
-#include "shaders/shared/compat.h"
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_DISCONTINUITY_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_DISCONTINUITY_H
+#include "shaders/shared/sight.h"
 LUCERNA_SHARED_BEGIN
-
-// surface_texels: 2 a point, in raster order:
-//   0: position, off its surface [m]; depth along the view axis [m], or k_surface_none, k_surface_bent
-//   1: smooth normal on the side that is seen; bits facet
-LUCERNA_CONST uint k_surface_texels = 2u;
-LUCERNA_CONST float k_surface_none = -1.0f;  ///< nothing diffuse is seen
-/// What is seen is diffuse, but its normal map leads too far off for records to serve it.
-LUCERNA_CONST float k_surface_bent = -2.0f;
-
-/// How the points lie over the picture, for those who ask what a pixel shows.
-struct SightGrid {
-  uint across;  ///< points a row; 0: nobody has looked yet
-  uint stride;  ///< pixels from one to the next
-};
-
-/// Rays through points `first` to `first + count` of the grid, one a path slot.
-struct SeePush {
-  uint first, count;
-  uint across, down;  ///< points of the grid
-  uint stride;        ///< pixels from one to the next
-};
 
 /// What lookups find at all points of the grid.
 struct LitPush {

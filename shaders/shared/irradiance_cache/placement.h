@@ -1,7 +1,7 @@
 // Candidates: places that ask for a record of an irradiance cache, and how some of them are chosen. Read by
 // C++ and GLSL.
-#ifndef LUCERNA_SHARED_PLACEMENT_H
-#define LUCERNA_SHARED_PLACEMENT_H
+#ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_PLACEMENT_H
+#define LUCERNA_SHARED_IRRADIANCE_CACHE_PLACEMENT_H
 #include "shaders/shared/compat.h"
 LUCERNA_SHARED_BEGIN
 

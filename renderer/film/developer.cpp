@@ -1,0 +1,51 @@
+#include "film/developer.h"
+
+namespace lucerna::film {
+
+using namespace shared;
+
+namespace {
+uint32_t groups(const Film& film) { return gpu::groups_for(uint64_t{film.width()} * film.height(), 64); }
+}  // namespace
+
+Developer::Developer(gpu::Device& device, gpu::ShaderCompiler& compiler)
+    : tonemap_(device, compiler, "film/tonemap.comp"),
+      heat_(device, compiler, "film/heat.comp"),
+      tiles_(device, compiler, "film/tiles.comp"),
+      no_coarse_(device, {.name = "no coarse picture", .bytes = 16, .memory = gpu::Memory::host}) {}
+
+void Developer::develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {
+  film.bind(resources_);
+  if (view.layer >= k_layer_samples) {
+    const HeatScale& h = view.heat;
+    const HeatPush push{film.width(), film.height(), view.layer, h.ramp, h.logarithmic, h.lo, h.hi, h.unit};
+    stream.dispatch(heat_, resources_, push, groups(film));
+    return;
+  }
+  resources_.set("Coarse", coarse ? coarse->picture() : no_coarse_);
+  const TonePush push{film.width(),
+                      film.height(),
+                      view.layer,
+                      view.show,
+                      view.curve,
+                      view.exposure,
+                      view.scale,
+                      coarse ? coarse->width() : 0,
+                      coarse ? coarse->height() : 0,
+                      0};
+  stream.dispatch(tonemap_, resources_, push, groups(film));
+}
+
+void Developer::tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {
+  if (coarse) develop(stream, *coarse, view, nullptr);
+  develop(stream, film, view, coarse);
+  if (view.tiles > 0) {
+    const TilesPush push{film.width(), film.height(), view.tiles,
+                         (film.width() + view.tiles - 1) / view.tiles, 1};
+    stream.dispatch(tiles_, resources_, push, groups(film));
+  }
+  stream.run();
+  stream.take_times();
+}
+
+}  // namespace lucerna::film

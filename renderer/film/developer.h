@@ -1,0 +1,25 @@
+#pragma once
+// Develops a film: its picture of 8-bit sRGB, tone-mapped or as a heat map, with the state of the tiles over
+// it.
+#include "film/film.h"
+
+namespace lucerna::film {
+
+class Developer {
+ public:
+  /// Compiles its kernels; throws Error, located.
+  Developer(gpu::Device& device, gpu::ShaderCompiler& compiler);
+
+  /// Film -> its picture. `coarse` fills pixels without samples, if given (it is tone-mapped first). Runs the
+  /// stream; what it takes is nobody's stage.
+  void tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse = nullptr);
+
+ private:
+  void develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse);
+
+  gpu::Kernel tonemap_, heat_, tiles_;
+  gpu::Buffer no_coarse_;
+  gpu::Resources resources_;
+};
+
+}  // namespace lucerna::film

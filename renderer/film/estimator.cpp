@@ -1,0 +1,47 @@
+#include "film/estimator.h"
+
+namespace lucerna::film {
+
+using namespace shared;
+
+namespace {
+
+gpu::Defines defines(bool lookup_errors, bool stopping_only) {
+  gpu::Defines defines;
+  if (lookup_errors) defines["LUCERNA_LOOKUP_ERRORS"] = "1";
+  if (stopping_only) defines["LUCERNA_STOPPING_ONLY"] = "1";
+  return defines;
+}
+
+}  // namespace
+
+ErrorEstimator::ErrorEstimator(gpu::Device& device, gpu::ShaderCompiler& compiler, bool lookup_errors)
+    : device_(device),
+      error_(device, compiler, "film/error.comp", defines(lookup_errors, false)),
+      stopping_(device, compiler, "film/error.comp", defines(lookup_errors, true)) {}
+
+void ErrorEstimator::record(gpu::Stream& stream, const gpu::Kernel& kernel, std::span<const WorkBlock> blocks,
+                            const Film& film, float luminance_floor, const char* stage) {
+  if (blocks.empty()) return;
+  gpu::make_room(device_, blocks_,
+                 {.name = "estimated blocks", .bytes = blocks.size_bytes(), .memory = gpu::Memory::host});
+  blocks_.write(blocks);
+  film.bind(resources_);
+  resources_.set("WorkBlocks", blocks_);
+  const auto count = static_cast<uint32_t>(blocks.size());
+  const ErrorPush push{film.width(), film.height(), count, luminance_floor, film.records_told()};
+  stream.dispatch(kernel, resources_, push, gpu::groups_for(count, 8), stage);
+}
+
+void ErrorEstimator::estimate(gpu::Stream& stream, const Film& film, float luminance_floor) {
+  std::vector<WorkBlock> all;
+  for (uint32_t b = 0; b < film.blocks(); ++b) all.push_back({b, 0});
+  record(stream, error_, all, film, luminance_floor, "ledger");
+}
+
+void ErrorEstimator::estimate_stopping(gpu::Stream& stream, std::span<const WorkBlock> blocks,
+                                       const Film& film, float luminance_floor) {
+  record(stream, stopping_, blocks, film, luminance_floor, "stopping");
+}
+
+}  // namespace lucerna::film

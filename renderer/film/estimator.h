@@ -1,0 +1,31 @@
+#pragma once
+// What the halves of a film say of the noise in its blocks (shaders/film/error.comp), into film.errors().
+#include "film/film.h"
+
+namespace lucerna::film {
+
+/// Records on streams of others and leaves it to them to run these, and to account for the stages "ledger"
+/// and "stopping": once before it is called again.
+class ErrorEstimator {
+ public:
+  /// `lookup_errors`: light may be looked up, so that pixels may know what that is wrong by
+  /// (Film::tell_records). Compiles its kernels; throws Error, located.
+  ErrorEstimator(gpu::Device& device, gpu::ShaderCompiler& compiler, bool lookup_errors);
+
+  /// Of all blocks. Pixels darker than `luminance_floor` are held against that.
+  void estimate(gpu::Stream& stream, const Film& film, float luminance_floor);
+  /// Of these blocks alone, and only what relative_error() reads; the rest of film.errors() stays.
+  void estimate_stopping(gpu::Stream& stream, std::span<const shared::WorkBlock> blocks, const Film& film,
+                         float luminance_floor);
+
+ private:
+  void record(gpu::Stream& stream, const gpu::Kernel& kernel, std::span<const shared::WorkBlock> blocks,
+              const Film& film, float luminance_floor, const char* stage);
+
+  gpu::Device& device_;
+  gpu::Kernel error_, stopping_;
+  gpu::Buffer blocks_;
+  gpu::Resources resources_;
+};
+
+}  // namespace lucerna::film

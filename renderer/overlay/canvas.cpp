@@ -1,0 +1,16 @@
+#include "overlay/canvas.h"
+
+namespace lucerna::overlay {
+
+void Canvas::bind(gpu::Resources& resources) const {
+  wavefront.bind_paths(resources);
+  film.bind(resources);
+  coarse.bind_coarse(resources);
+}
+
+void Canvas::finish() const {
+  stream().run();
+  stream().take_times();
+}
+
+}  // namespace lucerna::overlay

@@ -1,0 +1,73 @@
+// Strokes leave marks at the pixels that they go over; lay.comp lays these over the picture (shaders/shared/overlay.h).
+// Whoever includes this says in shows() what hides a stroke.
+#ifndef LUCERNA_OVERLAY_MARK
+#define LUCERNA_OVERLAY_MARK
+#include "lib/invocation.glsl"
+#include "overlay/seen.glsl"
+#include "shaders/shared/overlay.h"
+
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { OverlayMarkPush push; };
+layout(scalar) buffer OverlayMarks { uint marks[]; };
+layout(scalar) writeonly buffer OverlayInks { vec4 inks[]; };  // of all strokes: color, alpha
+
+struct Stroke {
+  float half_width, edge_width, strength;
+  uint rank, number;
+};
+
+// Whether what lies at a share t of the way, and at that depth, is seen where a pixel shows that surface.
+bool shows(Seen seen, float t, float depth);
+
+const float k_most_away = 1e7;  // pixels; beyond there is no drawing, and no number either
+
+void draw_mark(uint pixel, uint rank, float cover, uint number) {
+  uint share = uint(clamp(cover, 0.0, 1.0) * 127.0 + 0.5);
+  if (share > 0u) atomicMax(marks[pixel], rank << k_mark_rank_shift | share << k_mark_cover_shift | (k_mark_number - number));
+}
+
+// From a to b in the picture, as to_picture() has them. Goes along the longer of the two axes, over the few pixels that are
+// near the line on the other, so that a long line costs no more than its length. The share of one invocation of `pieces`.
+void draw_stroke(vec3 a, vec3 b, Stroke s, uint piece, uint pieces) {
+  bool there = a.z > 0.0 && b.z > 0.0 && s.strength > 0.0 && all(lessThan(abs(vec4(a.xy, b.xy)), vec4(k_most_away)));
+  if (!there) return;
+  vec2 along = b.xy - a.xy;
+  bool upright = abs(along.y) > abs(along.x);
+  vec2 from = upright ? a.yx : a.xy, to = upright ? b.yx : b.xy;
+  ivec2 room = upright ? ivec2(push.height, push.width) : ivec2(push.width, push.height);
+  float slope = from.x != to.x ? (to.y - from.y) / (to.x - from.x) : 0.0;
+  float reach = s.half_width + s.edge_width + 1.0;
+  int beside = int(ceil(reach * sqrt(1.0 + slope * slope))), across = 2 * beside + 1;
+  float lo = min(from.x, to.x), hi = max(from.x, to.x);
+  int first = int(floor(max(lo - reach, 0.0))), last = int(floor(min(hi + reach, float(room.x - 1))));
+  int each = (max(last - first + 1, 0) + int(pieces) - 1) / int(pieces);
+  first += int(piece) * each;
+  int cells = max(min(each, last - first + 1), 0) * across;
+  for (int i = 0; i < cells; ++i) {
+    int x = first + i / across;
+    int y = int(floor(from.y + slope * (clamp(float(x) + 0.5, lo, hi) - from.x))) - beside + i % across;
+    if (y < 0 || y >= room.y) continue;
+    uvec2 xy = uvec2(upright ? ivec2(y, x) : ivec2(x, y));
+    vec2 here = vec2(xy) + 0.5;
+    float t = clamp(dot(here - a.xy, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
+    float away = distance(here, a.xy + t * along);
+    float core = clamp(s.half_width + 0.5 - away, 0.0, 1.0);
+    float edge = clamp(s.half_width + s.edge_width + 0.5 - away, 0.0, 1.0);
+    if (edge <= 0.0) continue;
+    uint pixel = xy.y * push.width + xy.x;
+    if (!shows(seen_at(pixel, push.width, push.height), t, depth_between(a.z, b.z, t))) continue;
+    // A stroke wins over all edges, and of its equals over those that cover less.
+    bool drawn = core > 0.2 || s.edge_width == 0.0;
+    draw_mark(pixel, drawn ? s.rank : k_rank_edge, s.strength * (drawn ? core : edge), s.number);
+  }
+}
+
+// Behind the surface that a pixel shows, by its depth and by more than `slack`.
+bool behind(Seen seen, float depth, float slack) { return seen.solid && depth > 1.005 * seen.depth + slack; }
+
+// The same of what may lie on a surface: depth alone would hide what lies on one that is seen at a grazing angle, where it
+// changes much within a pixel, so that it must lie below the surface's plane, too, by `below`.
+bool buried(Seen seen, float depth, float slack, float below) {
+  return behind(seen, depth, slack) && below > 1.2 * seen.size;
+}
+#endif

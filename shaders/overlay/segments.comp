@@ -1,0 +1,24 @@
+// Marks the pixels of segments: some invocations a segment, each a part of its length.
+#include "overlay/mark.glsl"
+layout(scalar) readonly buffer OverlaySegments { OverlaySegment segments[]; };
+
+const float k_near = 1e-3;  // of the depth of the farther end: what is nearer to the eye is cut off
+
+float slack;
+
+bool shows(Seen seen, float t, float depth) { return !behind(seen, depth, slack); }
+
+void main() {
+  uint index = global_index() / push.pieces, piece = global_index() % push.pieces;
+  if (index >= push.count) return;
+  OverlaySegment s = segments[index];
+  uint number = push.first + index;
+  if (piece == 0u) inks[number] = vec4(s.color, s.alpha);
+  slack = s.slack;
+  float from = dot(s.from - frame.camera_origin, frame.camera_forward);
+  float to = dot(s.to - frame.camera_origin, frame.camera_forward), near = k_near * max(from, to);
+  vec3 a = from < near ? mix(s.from, s.to, (near - from) / (to - from)) : s.from;
+  vec3 b = to < near ? mix(s.to, s.from, (near - to) / (from - to)) : s.to;
+  draw_stroke(to_picture(a, push.width, push.height), to_picture(b, push.width, push.height),
+              Stroke(s.half_width, s.edge_width, s.strength, s.rank, number), piece, push.pieces);
+}

@@ -1,0 +1,29 @@
+// What the picture's pixels show: the surfaces that rays through their centres meet. Read by C++ and GLSL.
+#ifndef LUCERNA_SHARED_SIGHT_H
+#define LUCERNA_SHARED_SIGHT_H
+#include "shaders/shared/compat.h"
+LUCERNA_SHARED_BEGIN
+
+// surface_texels: 2 a point, in raster order:
+//   0: position, off its surface [m]; depth along the view axis [m], or k_surface_none, k_surface_bent
+//   1: smooth normal on the side that is seen; bits facet
+LUCERNA_CONST uint k_surface_texels = 2u;
+LUCERNA_CONST float k_surface_none = -1.0f;  ///< nothing diffuse is seen
+/// What is seen is diffuse, but its normal map leads too far off for what is stored to serve it.
+LUCERNA_CONST float k_surface_bent = -2.0f;
+
+/// How the points lie over the picture, for those who ask what a pixel shows.
+struct SightGrid {
+  uint across;  ///< points a row; 0: nobody has looked yet
+  uint stride;  ///< pixels from one to the next
+};
+
+/// Rays through points `first` to `first + count` of the grid, one a path slot.
+struct SeePush {
+  uint first, count;
+  uint across, down;  ///< points of the grid
+  uint stride;        ///< pixels from one to the next
+};
+
+LUCERNA_SHARED_END
+#endif
