@@ -65,7 +65,7 @@ Question question(const Dialog& dialog) {
               .reads = true};
     case Purpose::solver_load:
       return {.title = "Load a " + uncapitalised(dialog.solver->label),
-              .note = fmt::format("A {} {}.", dialog.solver->file->extension, dialog.solver->file->fits),
+              .note = fmt::format("A {} file {}.", dialog.solver->file->extension, dialog.solver->file->fits),
               .command = dialog.solver->name + ".load",
               .answer = "Load",
               .endings = {dialog.solver->file->extension},

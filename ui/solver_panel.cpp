@@ -223,17 +223,25 @@ void Items::operator()(const solvers::Table& table) {
 void Items::operator()(const solvers::StepStrip& strip) {
   const int n = static_cast<int>(strip.steps.size());
   const float width = ImGui::CalcItemWidth(), height = px(20);
-  // What the names leave over is shared out.
+  // What the names leave over is shared out. Where there is no room for all, only the one that matters is
+  // named and has its width, and the others share the rest.
   ImFont* font = theme().fonts.small;
-  float left = width - px(2) * static_cast<float>(n - 1);
+  const float gaps = px(2) * static_cast<float>(n - 1);
+  float left = width - gaps;
   for (const solvers::StepStrip::Step& step : strip.steps) left -= text_width(step.name, font);
+  const float named = strip.last >= 0 && strip.last < n
+                          ? text_width(strip.steps[static_cast<size_t>(strip.last)].name, font) + px(8)
+                          : 0;
   const ImVec2 lo = ImGui::GetCursorScreenPos();
   float x = lo.x;
   ImDrawList* list = ImGui::GetWindowDrawList();
   ImGui::PushID("strip");
   for (int i = 0; i < n; ++i) {
     const solvers::StepStrip::Step& step = strip.steps[static_cast<size_t>(i)];
-    const float end = x + text_width(step.name, font) + left / static_cast<float>(n);
+    const bool now = i == strip.last, over = i < strip.last;
+    const float end = x + (left >= 0 ? text_width(step.name, font) + left / static_cast<float>(n)
+                           : now     ? named
+                                     : (width - gaps - named) / static_cast<float>(n - (named > 0)));
     const ImVec2 a(std::floor(x), lo.y), b(std::floor(end), lo.y + height);
     x = end + px(2);
     ImGui::SetCursorScreenPos(a);
@@ -241,10 +249,8 @@ void Items::operator()(const solvers::StepStrip& strip) {
     ImGui::InvisibleButton("##step", {std::max(1.0f, b.x - a.x), height});
     tooltip(step.help);
     ImGui::PopID();
-    const bool now = i == strip.last, over = i < strip.last;
     list->AddRectFilled(a, b, now ? colour::accent_dim : over ? colour::fill : colour::field, px(2));
     if (now) list->AddRectFilled({a.x, b.y - px(2)}, b, colour::accent, px(1));
-    // Where there is no room for all, only the one that matters is named.
     if (left < 0 && !now) continue;
     draw_text(list, a, b, step.name,
               now    ? colour::text
