@@ -221,7 +221,7 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
   j["ledger"] = make_ledger(r.ledger());
   if (!r.adaptive()) j["forecast"] = make_forecast(r.ledger());
-  for (const auto& [name, figures] : r.solver_statistics().items()) j[name] = figures;
+  j.update(r.solver_statistics());
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
   for (int c = 0; c < paths::k_component_count; ++c) {

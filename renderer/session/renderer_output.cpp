@@ -3,6 +3,7 @@
 #include <fstream>
 #include <utility>
 
+#include "film/overlay.h"
 #include "film/tile_scale.h"
 #include "session/accuracy.h"
 #include "session/renderer.h"
@@ -47,7 +48,7 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
   }
   engine_->developer().tone_map(engine_->wavefront().stream(), *film_, v,
                                 with_coarse ? coarse_.get() : nullptr);
-  visit_solvers([](solvers::Solver& solver, const solvers::Canvas& canvas, const solvers::Picture& picture) {
+  visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
     solver.draw(canvas, picture);
   });
   return film_->read_picture();

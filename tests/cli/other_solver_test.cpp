@@ -1,0 +1,32 @@
+// links: base
+// The program with a solver of the tests' own (programs/ambient_main.cpp): the command line knows it.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "support/folder.h"
+#include "support/run.h"
+
+using namespace lucerna;
+
+TEST_CASE("a registered solver stands in --help, computes its component and is in the figures") {
+  const test::Folder folder;
+  const std::string program = std::string(LUCERNA_BINARY) + "-ambient";
+  const auto help = test::run_command(program + " render --help");
+  CHECK(help.status == 0);
+  CHECK_THAT(help.out, Catch::Contains("ambient.radiance") && Catch::Contains("path|cache|ambient|off"));
+  const std::string stats = (folder.path / "stats.json").string();
+  const auto rendered =
+      test::run_command(program +
+                        " render " LUCERNA_SOURCE_DIR
+                        "/scenes/furnace-closed/furnace-closed.gltf --size 16x16 --samples 2 "
+                        "--set components.tertiary=ambient --set ambient.radiance=2 --stats " +
+                        stats);
+  INFO(rendered.out);
+  REQUIRE(rendered.status == 0);
+  const auto json = nlohmann::json::parse(read_file(stats));
+  CHECK(json.at("components").at("tertiary").at("solver") == "ambient");
+  CHECK(json.at("ambient").at("radiance") == 2.0);
+  // The program itself knows nothing of it.
+  CHECK(test::run("render x.gltf --set components.tertiary=ambient -o x.png").status != 0);
+}

@@ -1,0 +1,9 @@
+// The program with one more solver, which its own files do not know (support/ambient/ambient.h).
+#include "app/program.h"
+#include "solvers/registry.h"
+#include "support/ambient/ambient.h"
+
+int main(int argc, char** argv) {
+  lucerna::solvers::add(lucerna::test::ambient_type());
+  return lucerna::app::run(argc, argv);
+}

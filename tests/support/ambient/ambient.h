@@ -1,0 +1,112 @@
+#pragma once
+// A solver that the program does not know, for tests of how solvers are made part of it: tertiary light is
+// the same from everywhere, radiance `ambient.radiance`. It has an option, a view, a report, a hook and
+// figures, and no file of the program was touched for it.
+#include <algorithm>
+#include <array>
+
+#include "overlay/painter.h"
+#include "shaders/shared/ramp.h"
+#include "solvers/solver.h"
+
+namespace lucerna::test {
+
+inline const solvers::SolverInfo& ambient_info() {
+  using namespace solvers;
+  static const SolverInfo info{
+      .name = "ambient",
+      .label = "Ambient",
+      .title = "the ambient light",
+      .help = "Ambient light: tertiary light is the same everywhere.",
+      .serves = {false, false, true, false},
+      .looked_up = true,
+      .options = {real_option("ambient.radiance", "0.5", 0, 1000, "W/(m2 sr)",
+                              "Ambient light: its radiance, from every direction.", "Radiance"),
+                  without_restart(boolean_option("overlay.ambient", "false",
+                                                 "Shows a point in the middle of the picture."))},
+      .changes = {{scene::Change::camera, k_spoils_nothing, "it is the same everywhere"},
+                  {"film.", k_spoils_nothing, "how it is shown"}},
+      .views = {{.option = "overlay.ambient", .label = "Middle"}},
+  };
+  return info;
+}
+
+inline constexpr vec3 k_ambient_ink{1, 0.25f, 0.8f};
+
+class AmbientSolver final : public solvers::Solver {
+ public:
+  AmbientSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const solvers::Task& task)
+      : painter_(device, compiler),
+        routes_(routing(task).lookups),
+        radiance_(float(task.settings.real("ambient.radiance"))) {
+    struct {
+      std::array<uint32_t, shared::k_automaton_states> component;
+      float radiance;
+    } block;
+    block.component.fill(shared::k_component_count);
+    for (size_t s = 0; s < routes_.component.size(); ++s)
+      block.component[s] = std::min<uint32_t>(routes_.component[s][2], shared::k_component_count);
+    block.radiance = radiance_;
+    block_ = gpu::Buffer(device, {.name = "ambient light", .bytes = sizeof block});
+    block_.write(&block, sizeof block);
+  }
+
+  const solvers::SolverInfo& info() const override { return ambient_info(); }
+  std::string hook() const override {
+    return std::string(LUCERNA_SOURCE_DIR) + "/tests/support/ambient/vertex_hook.glsl";
+  }
+  void bind(gpu::Resources& resources) const override { resources.set("AmbientBlock", block_); }
+  solvers::Routing routing(const solvers::Task& task) const override {
+    return {
+        .lookups = paths::lookup_routes(task.automaton, task.enabled, task.own), .fallback = 0, .gather = {}};
+  }
+  bool serves(const solvers::Task& task) const override {
+    return routing(task).lookups.component == routes_.component;
+  }
+  void begin(const solvers::Picture&, solvers::Spoils spoils) override { begun_ += spoils.any(); }
+  void draw(const overlay::Canvas& canvas, const solvers::Picture& picture) override {
+    if (!picture.task.settings.boolean("overlay.ambient")) return;
+    const vec3 middle = picture.camera.to_world * vec4(0, 0, -0.01f, 1);
+    const shared::OverlayPoint point{.position = middle,
+                                     .half_width = 4,
+                                     .color = k_ambient_ink,
+                                     .alpha = 1,
+                                     .edge_width = 0,
+                                     .rank = shared::k_rank_most};
+    painter_.draw(canvas, {&point, 1}, {}, {});
+  }
+  std::shared_ptr<const solvers::Report> report(const overlay::Canvas&, const solvers::Picture&,
+                                                bool) override {
+    auto report = std::make_shared<solvers::Report>();
+    report->solver = info().name;
+    report->state = "constant";
+    report->sections.push_back(
+        {.title = "Ambient light",
+         .note = "",
+         .items = {solvers::ValueRow{"Radiance", fmt::format("{:g}", radiance_), "From every direction."}}});
+    return report;
+  }
+  nlohmann::ordered_json statistics(const overlay::Canvas&, const solvers::Picture&) override {
+    return {{"radiance", radiance_}, {"begun", begun_}};
+  }
+  std::map<std::string, double> figures() const override { return {{"begun", double(begun_)}}; }
+
+ private:
+  overlay::Painter painter_;
+  paths::LookupRoutes routes_;
+  float radiance_;
+  gpu::Buffer block_;
+  uint32_t begun_ = 0;  ///< pictures that have spoiled its work
+};
+
+inline const solvers::SolverType& ambient_type() {
+  static const solvers::SolverType type{
+      .info = ambient_info(),
+      .make = [](gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
+                 const solvers::Task& task) -> std::unique_ptr<solvers::Solver> {
+        return std::make_unique<AmbientSolver>(device, compiler, task);
+      }};
+  return type;
+}
+
+}  // namespace lucerna::test
