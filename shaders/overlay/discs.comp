@@ -13,6 +13,8 @@ bool shows(Seen seen, float t, float depth) {
   return on && !buried(seen, depth, 2.0 * size, below);
 }
 
+vec2 stroke_at(vec2 a, vec2 b, float t) { return a + t * (b - a); }
+
 void main() {
   uint index = global_index() / push.pieces, piece = global_index() % push.pieces;
   if (index >= push.count) return;

@@ -1,5 +1,5 @@
 // Strokes leave marks at the pixels that they go over; lay.comp lays these over the picture (shaders/shared/overlay.h).
-// Whoever includes this says in shows() what hides a stroke.
+// Whoever includes this says in shows() what hides a stroke, and in stroke_at() where a share of it lies.
 #ifndef LUCERNA_OVERLAY_MARK
 #define LUCERNA_OVERLAY_MARK
 #include "lib/invocation.glsl"
@@ -18,6 +18,8 @@ struct Stroke {
 
 // Whether what lies at a share t of the way, and at that depth, is seen where a pixel shows that surface.
 bool shows(Seen seen, float t, float depth);
+// In the picture, between its ends.
+vec2 stroke_at(vec2 a, vec2 b, float t);
 
 const float k_most_away = 1e7;  // pixels; beyond there is no drawing, and no number either
 
@@ -50,7 +52,7 @@ void draw_stroke(vec3 a, vec3 b, Stroke s, uint piece, uint pieces) {
     uvec2 xy = uvec2(upright ? ivec2(y, x) : ivec2(x, y));
     vec2 here = vec2(xy) + 0.5;
     float t = clamp(dot(here - a.xy, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
-    float away = distance(here, a.xy + t * along);
+    float away = distance(here, stroke_at(a.xy, b.xy, t));
     float core = clamp(s.half_width + 0.5 - away, 0.0, 1.0);
     float edge = clamp(s.half_width + s.edge_width + 0.5 - away, 0.0, 1.0);
     if (edge <= 0.0) continue;

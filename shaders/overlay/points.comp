@@ -9,6 +9,8 @@ bool shows(Seen seen, float t, float depth) {
   return !buried(seen, depth, 2.0 * size, dot(seen.position - place, seen.normal));
 }
 
+vec2 stroke_at(vec2 a, vec2 b, float t) { return a; }
+
 void main() {
   uint index = global_index();
   if (index >= push.count) return;

@@ -8,6 +8,8 @@ float slack;
 
 bool shows(Seen seen, float t, float depth) { return !behind(seen, depth, slack); }
 
+vec2 stroke_at(vec2 a, vec2 b, float t) { return mix(a, b, t); }
+
 void main() {
   uint index = global_index() / push.pieces, piece = global_index() % push.pieces;
   if (index >= push.count) return;
