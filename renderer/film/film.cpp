@@ -7,8 +7,10 @@ namespace lucerna::film {
 
 namespace {
 
+// Of a pixel and component: two halves for every light group.
+constexpr uint64_t k_sum_bytes = shared::k_group_count * 2 * sizeof(shared::FilmHalf);
 // Of a pixel: the sums of the components, albedo and normal, counts, vertices and the picture.
-constexpr uint64_t k_pixel_bytes = k_components * 48 + 2 * 16 + 3 * 4;
+constexpr uint64_t k_pixel_bytes = k_components * k_sum_bytes + 2 * 16 + 3 * 4;
 // Beside the film: the coarse picture, and paths in flight at their fewest.
 constexpr uint64_t k_coarse_pixels = shared::k_coarse_step * shared::k_coarse_step, k_paths_bytes = 48 << 20;
 
@@ -20,10 +22,11 @@ void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height) 
   if (pixels == 0) throw Error("size", "a picture needs at least one pixel");
   if (width > k_max_side || height > k_max_side)
     throw_error("size", "{}x{}: no side may be longer than {} pixels", width, height, k_max_side);
-  // Three texels a pixel and component; four bytes a pixel in the storage buffers.
+  // Texels of a pixel and component; four bytes a pixel in the storage buffers.
   const uint64_t memory = device.memory_bytes - std::min(device.memory_bytes, k_paths_bytes);
-  const uint64_t largest = std::min({limits.max_texel_elements / 3, limits.max_storage_buffer / 4,
-                                     memory / (k_pixel_bytes + k_pixel_bytes / k_coarse_pixels)});
+  const uint64_t largest =
+      std::min({limits.max_texel_elements / (k_sum_bytes / 16), limits.max_storage_buffer / 4,
+                memory / (k_pixel_bytes + k_pixel_bytes / k_coarse_pixels)});
   if (pixels > largest)
     throw_error("size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{})", width,
                 height, pixels, largest, uint32_t(std::sqrt(largest * 16.0 / 9)),
@@ -35,10 +38,10 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height)
   const gpu::Limits& limits = device.info().limits;
   const uint64_t pixels = uint64_t(width) * height;
   check_size(device.info(), width, height);
-  fits_storage_buffers_ = pixels * 48 <= limits.max_storage_buffer;
+  fits_storage_buffers_ = pixels * k_sum_bytes <= limits.max_storage_buffer;
   const char* names[k_components] = {"film primary", "film secondary", "film tertiary", "film caustic"};
   for (int c = 0; c < k_components; ++c)
-    sums_[c] = gpu::Buffer(device, {.name = names[c], .bytes = pixels * 48, .texel = true});
+    sums_[c] = gpu::Buffer(device, {.name = names[c], .bytes = pixels * k_sum_bytes, .texel = true});
   albedo_ = gpu::Buffer(device, {.name = "film albedo", .bytes = pixels * 16, .texel = true});
   normal_ = gpu::Buffer(device, {.name = "film normals", .bytes = pixels * 16, .texel = true});
   count_ = gpu::Buffer(device, {.name = "film counts", .bytes = pixels * 4});
@@ -120,14 +123,17 @@ Image Film::read() const {
   const size_t n = size_t(width_) * height_;
   image.samples.resize(n);
   count_.read(image.samples.data(), n * 4);
-  std::vector<shared::FilmHalf> halves(2 * n);
+  std::vector<shared::FilmHalf> halves(2 * n * shared::k_group_count);
   for (int c = 0; c < k_components; ++c) {
     sums_[c].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
     image.components[c].resize(n);
     image.odd_half[c].resize(n);
     for (size_t i = 0; i < n; ++i) {
       const auto total = [&](size_t k) {
-        return glm::dvec3(halves[k].sum) + glm::dvec3(halves[k].compensation);
+        glm::dvec3 sum(0);
+        for (; k < halves.size(); k += 2 * n)  // group by group
+          sum += glm::dvec3(halves[k].sum) + glm::dvec3(halves[k].compensation);
+        return sum;
       };
       const double samples = std::max(1u, image.samples[i]), odd = std::max(1u, image.samples[i] / 2);
       image.components[c][i] = vec3((total(2 * i) + total(2 * i + 1)) / samples);

@@ -8,6 +8,7 @@
 #include "base/math.h"
 #include "gpu/stream.h"
 #include "shaders/shared/film.h"
+#include "shaders/shared/lanes.h"
 #include "shaders/shared/ramp.h"
 
 namespace lucerna::film {

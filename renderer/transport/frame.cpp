@@ -35,7 +35,6 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);
   const std::vector<uint32_t> table = paths::pack(automaton, options.enabled, options.routes, met);
   assert(table.size() < shared::k_gather_state);
-  f.automaton_states = uint32_t(table.size());
   std::copy(table.begin(), table.end(), f.automaton);
   if (options.fallback != 0) {
     const auto put = [&](uint32_t at, uint32_t enabled, const paths::LookupRoutes& routes) {

@@ -40,7 +40,7 @@ struct Wavefront::Impl {
     rays = texels("rays", uint64_t(n) * sizeof(Ray), queue_memory);
     hits = texels("hits", uint64_t(n) * sizeof(Hit), queue_memory);
     paths = texels("path states", uint64_t(n) * sizeof(PathState), gpu::Memory::device);
-    radiance = texels("path radiance", uint64_t(n) * 16 * k_component_count, gpu::Memory::device);
+    radiance = texels("path radiance", uint64_t(n) * 16 * k_lane_count, gpu::Memory::device);
     features = texels("path features", uint64_t(n) * 32, gpu::Memory::device);
     shadow_rays = texels("shadow rays", uint64_t(n) * sizeof(Ray), queue_memory);
     shadow_hits = texels("shadow hits", uint64_t(n) * sizeof(Hit), queue_memory);

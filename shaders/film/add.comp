@@ -31,20 +31,23 @@ void main() {
   uvec2 xy = block_pixel(block.index, index % 64u, push.width);
   if (xy.x >= push.width || xy.y >= push.height) return;
   uint pixel = xy.y * push.width + xy.x;
-  FilmPixel p = film_load(0u, pixel), s = film_load(1u, pixel), t = film_load(2u, pixel), c = film_load(3u, pixel);
+  uint pixels = push.width * push.height;
+  FilmPixel sums[k_lane_count];
+  for (uint lane = 0u; lane < k_lane_count; ++lane) sums[lane] = film_load(lane, pixel, pixels);
   vec4 albedo = texelFetch(film_albedo, int(pixel)), normal = texelFetch(film_normal, int(pixel));
 #if LUCERNA_VERTEX_COUNT
   uint vertices = 0u;
 #endif
   for (uint i = 0u; i < push.sample_count; ++i) {
     uint slot = index + i * push.pixel_count;
-    int first = int(slot * k_component_count);
-    vec3 rp = texelFetch(radiance_texels, first).rgb, rs = texelFetch(radiance_texels, first + 1).rgb;
-    vec3 rt = texelFetch(radiance_texels, first + 2).rgb, rc = texelFetch(radiance_texels, first + 3).rgb;
-    if (((block.first_sample + i) & 1u) == 0u) {
-      add(p.even, rp); add(s.even, rs); add(t.even, rt); add(c.even, rc);
-    } else {
-      add(p.odd, rp); add(s.odd, rs); add(t.odd, rt); add(c.odd, rc);
+    bool even = ((block.first_sample + i) & 1u) == 0u;
+    for (uint lane = 0u; lane < k_lane_count; ++lane) {
+      vec3 brought = texelFetch(radiance_texels, int(radiance_texel(slot, lane))).rgb;
+      if (even) {
+        add(sums[lane].even, brought);
+      } else {
+        add(sums[lane].odd, brought);
+      }
     }
     albedo += texelFetch(feature_texels, int(2u * slot));
     normal += texelFetch(feature_texels, int(2u * slot + 1u));
@@ -54,10 +57,13 @@ void main() {
     vertices += 1u + (bits >> 8 & 0xffffu) + (bits >> 24);
 #endif
   }
-  LUCERNA_FILM_STORE(film_primary_out, pixel, p)
-  LUCERNA_FILM_STORE(film_secondary_out, pixel, s)
-  LUCERNA_FILM_STORE(film_tertiary_out, pixel, t)
-  LUCERNA_FILM_STORE(film_caustic_out, pixel, c)
+  for (uint group = 0u; group < k_group_count; ++group) {
+    uint first = lane_of(group, 0u), place = film_place(first, pixel, pixels);
+    LUCERNA_FILM_STORE(film_primary_out, place, sums[first])
+    LUCERNA_FILM_STORE(film_secondary_out, place, sums[first + 1u])
+    LUCERNA_FILM_STORE(film_tertiary_out, place, sums[first + 2u])
+    LUCERNA_FILM_STORE(film_caustic_out, place, sums[first + 3u])
+  }
   LUCERNA_FILM_WRITE(film_albedo_out, int(pixel), albedo);
   LUCERNA_FILM_WRITE(film_normal_out, int(pixel), normal);
   film_count[pixel] += push.sample_count;

@@ -51,18 +51,14 @@ void main() {
     bool there = count >= 2u;
     float even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
     float a[5], b[5];
-    FilmPixel p = LUCERNA_FILM_LOAD(film_primary, pixel);
-    a[1] = half_luminance(p.even, even);
-    b[1] = half_luminance(p.odd, odd);
-    p = LUCERNA_FILM_LOAD(film_secondary, pixel);
-    a[2] = half_luminance(p.even, even);
-    b[2] = half_luminance(p.odd, odd);
-    p = LUCERNA_FILM_LOAD(film_tertiary, pixel);
-    a[3] = half_luminance(p.even, even);
-    b[3] = half_luminance(p.odd, odd);
-    p = LUCERNA_FILM_LOAD(film_caustic, pixel);
-    a[4] = half_luminance(p.even, even);
-    b[4] = half_luminance(p.odd, odd);
+    for (uint c = 0u; c < k_component_count; ++c) {
+      a[1u + c] = b[1u + c] = 0.0;
+      for (uint group = 0u; group < k_group_count; ++group) {
+        FilmPixel p = film_load(lane_of(group, c), pixel, push.width * push.height);
+        a[1u + c] += half_luminance(p.even, even);
+        b[1u + c] += half_luminance(p.odd, odd);
+      }
+    }
     a[0] = a[1] + a[2] + a[3] + a[4];
     b[0] = b[1] + b[2] + b[3] + b[4];
     float difference = 0.5 * (a[0] - b[0]);

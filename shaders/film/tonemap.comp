@@ -10,8 +10,12 @@ layout(scalar) buffer Picture { uint picture[]; };
 layout(scalar) readonly buffer Coarse { uint coarse[]; };
 
 vec3 component_mean(uint c, uint pixel, float n) {
-  FilmPixel p = film_load(c, pixel);
-  return ((p.even.sum + p.odd.sum) + (p.even.compensation + p.odd.compensation)) / n;
+  vec3 sum = vec3(0.0);
+  for (uint group = 0u; group < k_group_count; ++group) {
+    FilmPixel p = film_load(lane_of(group, c), pixel, push.width * push.height);
+    sum += (p.even.sum + p.odd.sum) + (p.even.compensation + p.odd.compensation);
+  }
+  return sum / n;
 }
 
 void main() {
@@ -20,7 +24,7 @@ void main() {
   uint count = film_count[pixel];
   float n = float(max(count, 1u));
   vec3 color = vec3(0.0);
-  for (uint c = 0u; c < 4u; ++c) {
+  for (uint c = 0u; c < k_component_count; ++c) {
     bool shown = push.layer == k_layer_beauty ? (push.show >> c & 1u) != 0u : push.layer == k_layer_primary + c;
     if (shown) color += component_mean(c, pixel, n);
   }

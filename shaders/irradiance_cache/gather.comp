@@ -21,7 +21,7 @@ layout(scalar) writeonly buffer Records { vec4 records[]; };
 layout(scalar) writeonly buffer Irradiance { vec4 irradiance[]; };
 
 float inverse_distance(uint slot) { return inverse_distance(texelFetch(first_hit_texels, int(slot))); }
-vec3 cell_radiance(uint slot, uint part) { return texelFetch(radiance_texels, int(slot * k_component_count + part)).rgb; }
+vec3 cell_radiance(uint slot, uint part) { return texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(0u, part)))).rgb; }
 float border_sine(uint j) { return sqrt(float(j) / float(push.elevations)); }
 // Integral of tan(theta) d(sin^2 theta) up to border j.
 float tangent_integral(uint j) {

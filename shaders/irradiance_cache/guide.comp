@@ -11,7 +11,7 @@ layout(scalar) writeonly buffer Irradiance { vec4 irradiance[]; };
 float ray_luminance(uint slot) {
   float sum = 0.0;
   for (uint p = 0u; p < k_part_count; ++p)
-    if ((push.parts >> p & 1u) != 0u) sum += luminance(texelFetch(radiance_texels, int(slot * k_component_count + p)).rgb);
+    if ((push.parts >> p & 1u) != 0u) sum += luminance(texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(0u, p)))).rgb);
   return sum;
 }
 

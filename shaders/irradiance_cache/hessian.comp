@@ -25,7 +25,7 @@ struct Vertex {
 };
 
 float part_luminance(uint slot, uint part) {
-  return (push.parts >> part & 1u) != 0u ? luminance(texelFetch(radiance_texels, int(slot * k_component_count + part)).rgb)
+  return (push.parts >> part & 1u) != 0u ? luminance(texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(0u, part)))).rgb)
                                          : 0.0;
 }
 // Loops are counted (Evaluator::k_most_rays): none here.

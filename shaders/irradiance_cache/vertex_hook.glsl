@@ -71,7 +71,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
       for (uint c = 0u; c < k_component_count; ++c)
         if (found.weight > 0.0 && ((routes >> (4u * p)) & 15u) == c) cached[c] += albedo * found.part[p];
   }
-  for (uint c = 0u; c < k_component_count; ++c) o.radiance[c] += x.alone ? vec3(0.0) : cached[c];
+  for (uint c = 0u; c < k_component_count; ++c) o.radiance[lane_of(0u, c)] += x.alone ? vec3(0.0) : cached[c];
   o.sky_known = o.sky_known || (x.looks && !x.alone && (routes & 15u) < k_component_count);  // part 0: k_part_direct
   o.samples_lights = o.samples_lights && cache.probing == k_probe_none;
   return x;

@@ -8,6 +8,7 @@
 #define LUCERNA_LIB_FILM
 #include "lib/variants.glsl"
 #include "shaders/shared/film.h"
+#include "shaders/shared/lanes.h"
 #include "lib/math.glsl"
 
 uniform samplerBuffer film_primary, film_secondary, film_tertiary, film_caustic;
@@ -43,10 +44,13 @@ FilmPixel film_pixel(vec4 a, vec4 b, vec4 c) {
   LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)) + 1, vec4((value).even.compensation.yz, (value).odd.sum.xy));  \
   LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)) + 2, vec4((value).odd.sum.z, (value).odd.compensation));
 
-FilmPixel film_load(uint component, uint pixel) {
-  if (component == 0u) return LUCERNA_FILM_LOAD(film_primary, pixel);
-  if (component == 1u) return LUCERNA_FILM_LOAD(film_secondary, pixel);
-  if (component == 2u) return LUCERNA_FILM_LOAD(film_tertiary, pixel);
-  return LUCERNA_FILM_LOAD(film_caustic, pixel);
+// A lane's sums at a pixel: in the buffer of its component, group by group.
+uint film_place(uint lane, uint pixel, uint pixels) { return lane / k_component_count * pixels + pixel; }
+FilmPixel film_load(uint lane, uint pixel, uint pixels) {
+  uint component = lane % k_component_count, place = film_place(lane, pixel, pixels);
+  if (component == 0u) return LUCERNA_FILM_LOAD(film_primary, place);
+  if (component == 1u) return LUCERNA_FILM_LOAD(film_secondary, place);
+  if (component == 2u) return LUCERNA_FILM_LOAD(film_tertiary, place);
+  return LUCERNA_FILM_LOAD(film_caustic, place);
 }
 #endif

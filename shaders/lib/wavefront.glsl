@@ -24,7 +24,7 @@ layout(scalar) buffer Counters { uint counters[]; };
 uniform samplerBuffer ray_texels;           // Rays, 2 texels a slot
 uniform samplerBuffer hit_texels;           // Hits, 1
 uniform samplerBuffer path_texels;          // Paths, 3
-uniform samplerBuffer radiance_texels;      // Radiance, k_component_count (rgb)
+uniform samplerBuffer radiance_texels;      // Radiance, k_lane_count (rgb)
 uniform samplerBuffer shadow_ray_texels;    // ShadowRays, 2
 uniform samplerBuffer shadow_state_texels;  // ShadowStates, 2
 layout(scalar) writeonly buffer Rays { Ray rays[]; };
@@ -73,11 +73,11 @@ void store_path(uint slot, PathState p) {
 #endif
 }
 
-// At most once a component, slot and dispatch (see above). What is not finite is refused and counted.
-void add_radiance(uint slot, uint component, vec3 value) {
-  bool wanted = component < k_component_count, finite = is_finite(value);
+// At most once a lane, slot and dispatch (see above). What is not finite is refused and counted.
+void add_radiance(uint slot, uint lane, vec3 value) {
+  bool wanted = lane < k_lane_count, finite = is_finite(value);
   if (wanted && finite && any(notEqual(value, vec3(0.0)))) {
-    int at = int(slot * k_component_count + component);
+    int at = int(radiance_texel(slot, lane));
     radiance[at].rgb = texelFetch(radiance_texels, at).rgb + value;
   }
   if (wanted && !finite) atomicAdd(counters[k_counter_dropped], 1u);

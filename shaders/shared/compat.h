@@ -7,9 +7,11 @@
 #define LUCERNA_SHARED_END }
 typedef uint32_t uint;
 #define LUCERNA_CONST inline constexpr
+#define LUCERNA_INLINE inline
 #else
 #define LUCERNA_SHARED_BEGIN
 #define LUCERNA_SHARED_END
 #define LUCERNA_CONST const
+#define LUCERNA_INLINE
 #endif
 #endif

@@ -101,7 +101,6 @@ struct Frame {
   float environment_light_pmf;///< probability that the light sampler chooses the environment, or the sky (0: not sampled)
   uint max_depth;
   uint roulette_depth;
-  uint automaton_states;
   float scene_radius;
   uint automaton[32];         ///< paths::pack; k_automaton_states
 };

@@ -1,10 +1,9 @@
 // State of the paths in flight, and what the wavefront's kernels are told. Read by C++ and GLSL.
 #ifndef LUCERNA_SHARED_TRANSPORT_H
 #define LUCERNA_SHARED_TRANSPORT_H
-#include "shaders/shared/compat.h"
+#include "shaders/shared/lanes.h"
 LUCERNA_SHARED_BEGIN
 
-LUCERNA_CONST uint k_component_count = 4u;
 /// States of the automaton from here on are those of paths that have passed a lookup on purpose, where what is looked up
 /// is too fine to be interpolated: they look up tertiary light at the next diffuse vertex that is not passed too, if it is
 /// looked up at all ...
@@ -23,7 +22,6 @@ LUCERNA_CONST uint k_path_sky_unasked = 1u << 6;  ///< light samples at the last
 LUCERNA_CONST uint k_path_sky_known = 1u << 7;    ///< what the ray would bring of the sky has been looked up
 LUCERNA_CONST uint k_path_state_mask = 0x1fu;
 
-/// Bytes a path in flight takes on the device (ray, hit, shadow ray, state, queues): see PathBuffers.
 /// One path: `throughput` already divided by all probabilities.
 struct PathState {
   vec3 throughput;
@@ -38,12 +36,12 @@ struct PathState {
   float pad0;
 };
 
-/// What a shadow ray brings if it arrives: the diffuse and the glossy lobe's shares go to components of their own.
+/// What a shadow ray brings if it arrives: the diffuse and the glossy lobe's shares go to lanes of their own.
 struct ShadowState {
   vec3 diffuse;
-  uint components;     ///< 0-7 component of the diffuse share, 8-15 of the glossy one
+  uint lanes;          ///< 0-7 lane of the diffuse share, 8-15 of the glossy one
   vec3 glossy;
-  uint medium;
+  uint pad0;
 };
 
 // Counters, uint each.

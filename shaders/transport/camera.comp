@@ -34,7 +34,7 @@ void main() {
   p.nulls = 0u;
   p.pad0 = 0.0;
   paths[slot] = p;
-  for (uint c = 0u; c < k_component_count; ++c) radiance[slot * k_component_count + c].rgb = vec3(0.0);
+  for (uint lane = 0u; lane < k_lane_count; ++lane) radiance[radiance_texel(slot, lane)].rgb = vec3(0.0);
   features[2u * slot] = vec4(0.0);
   features[2u * slot + 1u] = vec4(0.0);
 }

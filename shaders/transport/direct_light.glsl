@@ -108,8 +108,8 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   ShadowState shadow;
   shadow.diffuse = component_d < k_component_count ? arrives * f.diffuse : vec3(0.0);
   shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
-  shadow.components = component_d | component_g << 8;
-  shadow.medium = 0u;
+  shadow.lanes = lane_of(0u, component_d) | lane_of(0u, component_g) << 8;
+  shadow.pad0 = 0u;
 #if LUCERNA_SKY_APART
   if (l.sky && sky_known) shadow.diffuse = vec3(0.0);
 #endif
@@ -135,7 +135,7 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
     shadow_rays[slot].tmax = shadow_ray.tmax;
     shadow_rays[slot].direction = shadow_ray.direction;
     shadow_states[slot].diffuse = shadow.diffuse;
-    shadow_states[slot].components = shadow.components;
+    shadow_states[slot].lanes = shadow.lanes;
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
     shadow_states[slot].glossy = shadow.glossy;
 #endif

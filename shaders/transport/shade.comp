@@ -89,9 +89,9 @@ void main() {
   uint state = path_automaton(path), depth = path_depth(path);
   Sampler random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
 
-  vec3 gain = vec3(0.0);  // what the path meets here, all of one component
+  vec3 gain = vec3(0.0);  // what the path meets here, all of one lane
   VertexOut found;
-  for (uint c = 0u; c < k_component_count; ++c) found.radiance[c] = vec3(0.0);
+  for (uint lane = 0u; lane < k_lane_count; ++lane) found.radiance[lane] = vec3(0.0);
   found.sky_known = false;
   found.samples_lights = true;
   if (hit.prim == k_no_hit) {
@@ -157,10 +157,11 @@ void main() {
     }
     if (go_on) continue_path(slot, path, offset_origin(surface, direction), direction);
   }
+  uint met = lane_of(0u, automaton_component(state));
 #if LUCERNA_VERTEX_HOOKS
-  for (uint c = 0u; c < k_component_count; ++c)
-    add_radiance(slot, c, found.radiance[c] + (automaton_component(state) == c ? gain : vec3(0.0)));
+  for (uint lane = 0u; lane < k_lane_count; ++lane)
+    add_radiance(slot, lane, found.radiance[lane] + (met == lane ? gain : vec3(0.0)));
 #else
-  add_radiance(slot, automaton_component(state), gain);
+  add_radiance(slot, met, gain);
 #endif
 }

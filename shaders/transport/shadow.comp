@@ -53,9 +53,9 @@ void main() {
   blocked = false;
 #endif
   if (!blocked) {
-    uint diffuse = s.components & 0xffu, glossy = (s.components >> 8) & 0xffu;
+    uint diffuse = s.lanes & 0xffu, glossy = (s.lanes >> 8) & 0xffu;
     bool same = diffuse == glossy;
     add_radiance(slot, diffuse, s.diffuse + (same ? s.glossy : vec3(0.0)));
-    add_radiance(slot, same ? k_component_count : glossy, s.glossy);
+    add_radiance(slot, same ? k_lane_count : glossy, s.glossy);
   }
 }

@@ -31,7 +31,7 @@ struct VertexIn {
 };
 
 struct VertexOut {
-  vec3 radiance[k_component_count];  // what is brought here, times the path's throughput, by component
+  vec3 radiance[k_lane_count];  // what is brought here, times the path's throughput, by lane
   bool sky_known;   // in it is what the sky sends straight to the diffuse lobe
   bool samples_lights;
 };

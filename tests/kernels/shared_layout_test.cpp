@@ -114,7 +114,7 @@ std::vector<SharedStruct> structs() {
       SHARED("ray.h", Hit, t, prim, u, v),
       SHARED("scene.h", Frame, camera_origin, width, camera_right, height, camera_up, orthographic,
              camera_forward, seed, environment_radiance, light_count, environment_width, environment_height,
-             environment_rotation, environment_light_pmf, max_depth, roulette_depth, automaton_states,
+             environment_rotation, environment_light_pmf, max_depth, roulette_depth,
              scene_radius, automaton),
       SHARED("ramp.h", TileMark, position, bits),
       SHARED("ramp.h", TilesPush, width, height, side, across, line),
@@ -131,7 +131,7 @@ std::vector<SharedStruct> structs() {
       SHARED("trace.h", TracePush, count, use_queue),
       SHARED("transport.h", PathState, throughput, pdf, pixel, sample_index, bits, medium, travelled,
              eta_scale, nulls, pad0),
-      SHARED("transport.h", ShadowState, diffuse, components, glossy, medium),
+      SHARED("transport.h", ShadowState, diffuse, lanes, glossy, pad0),
       SHARED("transport.h", TransportPush, count, use_queue, pixel_count, round),
   };
 }

@@ -13,7 +13,7 @@ struct ambient_Vertex { uint component; };
 ambient_Vertex ambient_read(VertexIn v, inout VertexOut o) {
   ambient_Vertex x = ambient_Vertex(ambient_light.component[v.state]);
   if (x.component < k_component_count)
-    o.radiance[x.component] += v.path.throughput * (v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) * ambient_light.radiance;
+    o.radiance[lane_of(0u, x.component)] += v.path.throughput * (v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) * ambient_light.radiance;
   return x;
 }
 vec3 ambient_cosine(VertexIn v, inout ambient_Vertex x, vec2 u, vec3 cosine) { return cosine; }
