@@ -68,14 +68,21 @@ uint32_t Workspace::material_index(const std::string& which) const {
 }
 
 void Workspace::add_document_commands() {
-  const auto light_names = [this](const std::vector<std::string>&) {
-    std::vector<std::string> names;
-    if (scene)
-      for (const scene::Light& light : scene->lights)
-        if (!light.name.empty()) names.push_back(light.name);
-    return names;
-  };
+  add_setting_commands();
+  add_light_commands();
+  add_material_commands();
+  add_shown_commands();
+  registry.add({.name = "undo",
+                .help = "Takes back the last change of a setting, a light, the environment or what is shown.",
+                .parameters = {},
+                .run = [this](const Arguments&) { undo(); }});
+  registry.add({.name = "redo",
+                .help = "Does again what was undone last.",
+                .parameters = {},
+                .run = [this](const Arguments&) { redo(); }});
+}
 
+void Workspace::add_setting_commands() {
   registry.add(
       {.name = "set",
        .help = "Changes a setting; 'help settings' lists them. A line KEY VALUE or KEY=VALUE does the same.",
@@ -113,6 +120,16 @@ void Workspace::add_document_commands() {
                 .undoable = true});
   for (const OptionInfo& option : plan::options())
     registry.add_prefix(option.key, "set " + quote(option.key));
+}
+
+void Workspace::add_light_commands() {
+  const auto light_names = [this](const std::vector<std::string>&) {
+    std::vector<std::string> names;
+    if (scene)
+      for (const scene::Light& light : scene->lights)
+        if (!light.name.empty()) names.push_back(light.name);
+    return names;
+  };
 
   registry.add(
       {.name = "light.set",
@@ -150,6 +167,31 @@ void Workspace::add_document_commands() {
            },
        .undoable = true});
 
+  registry.add({.name = "environment.set",
+                .help = "Changes the light from infinitely far. What is not given stays as it is.",
+                .parameters = {{.name = "scale",
+                                .type = Type::real,
+                                .help = "multiplies its radiance",
+                                .lo = 0,
+                                .hi = 1e6,
+                                .optional = true},
+                               {.name = "rotation",
+                                .type = Type::real,
+                                .help = "counter-clockwise seen from above",
+                                .lo = -360,
+                                .hi = 360,
+                                .unit = "degrees",
+                                .optional = true}},
+                .run =
+                    [this](const Arguments& a) {
+                      needs_scene();
+                      if (a.has("scale")) edit().environment_scale = a.number("scale");
+                      if (a.has("rotation")) edit().environment_rotation = a.number("rotation");
+                    },
+                .undoable = true});
+}
+
+void Workspace::add_material_commands() {
   const auto material_names = [this](const std::vector<std::string>&) {
     std::vector<std::string> names;
     if (scene)
@@ -189,30 +231,9 @@ void Workspace::add_document_commands() {
              if (a.has("emission")) m.emission = a.vector("emission");
            },
        .undoable = true});
+}
 
-  registry.add({.name = "environment.set",
-                .help = "Changes the light from infinitely far. What is not given stays as it is.",
-                .parameters = {{.name = "scale",
-                                .type = Type::real,
-                                .help = "multiplies its radiance",
-                                .lo = 0,
-                                .hi = 1e6,
-                                .optional = true},
-                               {.name = "rotation",
-                                .type = Type::real,
-                                .help = "counter-clockwise seen from above",
-                                .lo = -360,
-                                .hi = 360,
-                                .unit = "degrees",
-                                .optional = true}},
-                .run =
-                    [this](const Arguments& a) {
-                      needs_scene();
-                      if (a.has("scale")) edit().environment_scale = a.number("scale");
-                      if (a.has("rotation")) edit().environment_rotation = a.number("rotation");
-                    },
-                .undoable = true});
-
+void Workspace::add_shown_commands() {
   std::vector<std::string> components(session::k_component_names.begin(), session::k_component_names.end());
   const auto show_key = [](size_t c) { return std::string("show.") + session::k_component_names[c]; };
   registry.add(
@@ -249,15 +270,6 @@ void Workspace::add_document_commands() {
                       if (chosen >= 0) d.settings["film.layer"] = "beauty";
                     },
                 .undoable = true});
-
-  registry.add({.name = "undo",
-                .help = "Takes back the last change of a setting, a light, the environment or what is shown.",
-                .parameters = {},
-                .run = [this](const Arguments&) { undo(); }});
-  registry.add({.name = "redo",
-                .help = "Does again what was undone last.",
-                .parameters = {},
-                .run = [this](const Arguments&) { redo(); }});
 }
 
 }  // namespace lucerna::commands

@@ -162,6 +162,10 @@ class Workspace {
   };
 
   void add_document_commands();
+  void add_setting_commands();
+  void add_light_commands();
+  void add_material_commands();
+  void add_shown_commands();
   void add_camera_commands();
   void add_other_commands();
   void add_inspect_commands();

@@ -291,6 +291,7 @@ Device::~Device() {
 }
 
 const DeviceInfo& Device::info() const { return handles_->info; }
+void Device::limit_allocations(std::optional<uint64_t> count) { handles_->allocator->limit(count); }
 uint64_t Device::allocated_bytes() const { return handles_->allocator->allocated_bytes(); }
 uint64_t Device::peak_bytes() const { return handles_->allocator->peak_bytes(); }
 uint64_t Device::validation_messages() const { return handles_->instance.messages(); }

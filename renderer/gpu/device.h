@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,9 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const;
+  /// For tests of what happens when memory runs out: so many more allocations succeed; nothing: as many as
+  /// there is memory for.
+  void limit_allocations(std::optional<uint64_t> count);
   uint64_t allocated_bytes() const;      ///< of buffers and images, now
   uint64_t peak_bytes() const;           ///< ... at most so far
   uint64_t validation_messages() const;  ///< warnings and errors since creation

@@ -160,7 +160,9 @@ Allocation Allocator::allocate(const VkMemoryRequirements& needs, Memory kind, b
   const bool map = !image && maps(type, kind);
   Allocation out;
   VkResult result = VK_SUCCESS;
-  if (!image && needs.size < k_small_bytes) {
+  if (left_ && *left_ == 0)
+    result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  else if (!image && needs.size < k_small_bytes) {
     if (!from_blocks(needs, type, map, out)) result = from_new_block(needs, type, map, out);
   } else {
     result = allocate_memory(needs.size, type, map, out.memory, out.mapped);
@@ -177,6 +179,7 @@ Allocation Allocator::allocate(const VkMemoryRequirements& needs, Memory kind, b
                 "samples in flight",
                 name, format_bytes(wanted), format_bytes(allocated_));
   }
+  if (left_) --*left_;
   if (counted) {
     allocated_ += out.bytes;
     peak_ = std::max(peak_, allocated_);
@@ -216,6 +219,11 @@ void Allocator::free(Allocation& allocation, bool counted) {
     }
   }
   allocation = {};
+}
+
+void Allocator::limit(std::optional<uint64_t> count) {
+  std::lock_guard lock(mutex_);
+  left_ = count;
 }
 
 uint64_t Allocator::allocated_bytes() const {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,7 @@ class Allocator {
   Allocation allocate(const VkMemoryRequirements& needs, Memory kind, bool image, const std::string& name,
                       uint64_t wanted, bool counted = true);
   void free(Allocation& allocation, bool counted = true);
+  void limit(std::optional<uint64_t> count);  ///< Device::limit_allocations
   uint64_t allocated_bytes() const;
   uint64_t peak_bytes() const;
 
@@ -64,6 +66,7 @@ class Allocator {
   std::vector<std::unique_ptr<Block>> blocks_;
   std::vector<VkDeviceSize> heap_used_;
   uint64_t allocated_ = 0, peak_ = 0;
+  std::optional<uint64_t> left_;  ///< allocations that may still be made
 };
 
 /// "99 MiB", "1.5 GiB", "640 bytes".

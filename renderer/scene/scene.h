@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "base/shared_vector.h"
 
 namespace lucerna::scene {
 
@@ -142,11 +143,12 @@ struct Environment {
 struct Scene {
   std::string name;  ///< the file's stem
   std::string file;
-  std::vector<Image> images;
-  std::vector<Texture> textures;
+  // Copies of a scene share these: who edits a lamp copies lamps.
+  SharedVector<Image> images;
+  SharedVector<Texture> textures;
+  SharedVector<Mesh> meshes;
+  SharedVector<Instance> instances;
   std::vector<Material> materials;
-  std::vector<Mesh> meshes;
-  std::vector<Instance> instances;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
   Environment environment;

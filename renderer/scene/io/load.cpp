@@ -64,7 +64,7 @@ void load_meshes(Document& document, Scene& scene, MaterialLoader& materials) {
     scene.meshes.push_back(std::move(mesh));
   }
   for (Instance& instance : scene.instances) instance.mesh = ids[instance.mesh];
-  std::erase_if(scene.instances, [](const Instance& instance) { return instance.mesh == k_none; });
+  scene.instances.erase_if([](const Instance& instance) { return instance.mesh == k_none; });
 }
 
 // About what a triangle and a vertex take in the world, with the tree over them and the device's copy.

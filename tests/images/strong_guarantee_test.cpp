@@ -1,0 +1,186 @@
+// links: session
+// Whatever fails while a scene, settings, lights, a size or shaders are being taken into use – no memory at
+// any point, a shader that does not compile – leaves scene, settings, picture and records as they were, and
+// the picture goes on to what it would have been.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "base/file.h"
+#include "images/cache_support.h"
+#include "support/folder.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+using test::Settings;
+
+namespace {
+
+const Settings k_base{{"components.secondary", "cache"},
+                      {"components.tertiary", "cache"},
+                      {"cache.rays", "64"},
+                      {"cache.max_rays", "64"},
+                      {"cache.error", "0.6"},
+                      {"cache.max_records", "1000"},
+                      {"cache.passes", "1"},
+                      {"samples", "4"},
+                      {"path.batch", "4096"}};
+
+struct Bed {
+  test::CacheRenderer shown{test::block_room(true), 16};
+  Bed() {
+    shown.set(k_base);
+    // In the middle of a picture, with records.
+    while (shown.r.samples() < 2) REQUIRE(shown.r.step());
+  }
+};
+
+struct Action {
+  const char* name;
+  std::function<void(session::Renderer&)> run;
+};
+
+scene::Scene other_room() {
+  scene::Scene s = test::block_room(true);
+  s.name = "other";
+  s.materials[0].emission = vec3(1);
+  return s;
+}
+
+const std::vector<Action>& actions() {
+  static const std::vector<Action> all{
+      {"another scene",
+       [](session::Renderer& r) { r.set_scene(std::make_shared<scene::Scene>(other_room())); }},
+      {"a lamp switched off, so that kernels are made for no lamps",
+       [](session::Renderer& r) {
+         scene::Light lamp = r.scene()->lights[0];
+         lamp.enabled = false;
+         r.set_light(0, lamp);
+       }},
+      {"a material that glosses, which needs other kernels",
+       [](session::Renderer& r) {
+         scene::Material m = r.scene()->materials[0];
+         m.metallic = 1, m.roughness = 0.3f, m.emission = vec3(0.1f);
+         r.set_material(0, m);
+       }},
+      {"the environment", [](session::Renderer& r) { r.set_environment(3, 10); }},
+      {"tertiary light path traced",
+       [](session::Renderer& r) {
+         test::set(r, {{"components.tertiary", "path"}});
+       }},
+      {"another tracer",
+       [](session::Renderer& r) {
+         test::set(r, {{"tracer", "compute-bvh"}});
+       }},
+      {"the sky held by records",
+       [](session::Renderer& r) {
+         test::set(r, {{"cache.environment", "true"}});
+       }},
+      {"another size", [](session::Renderer& r) { r.set_size(40, 24); }},
+      {"the shaders again", [](session::Renderer& r) { r.reload_shaders(); }},
+  };
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("where memory runs out at any point everything stays as it was") {
+  Bed undisturbed;
+  const film::Image wanted = undisturbed.shown.finish();
+  const uint32_t records = undisturbed.shown.status().records;
+  REQUIRE(records > 20);
+  for (const Action& action : actions()) {
+    INFO(action.name);
+    Bed bed;
+    session::Renderer& r = bed.shown.r;
+    const auto scene = r.scene();
+    const auto settings = r.settings().all();
+    const uint64_t restarts = r.restarts();
+    bool failed = true;
+    size_t failures = 0;
+    // Ever later points, until it comes through.
+    for (uint64_t allowed = 0; failed && allowed < 4000; allowed += 1 + allowed / 6) {
+      INFO("after " << allowed << " allocations");
+      r.device().limit_allocations(allowed);
+      try {
+        action.run(r);
+        failed = false;
+      } catch (const Error& e) {
+        ++failures;
+        CHECK_THAT(e.what(), Catch::Contains("out of device memory"));
+      }
+      r.device().limit_allocations(std::nullopt);
+      if (!failed) break;
+      CHECK(r.scene() == scene);
+      CHECK(r.settings().all() == settings);
+      CHECK(r.restarts() == restarts);
+      CHECK(r.samples() >= 2);
+      REQUIRE(test::cache(r));
+      CHECK(test::cache(r)->ready());
+      CHECK(bed.shown.status().records == records);
+      // A look at it does not hurt either.
+      CHECK(r.picture(false).size() == 16 * 16 * 4);
+    }
+    CHECK_FALSE(failed);
+    CHECK(failures > 0);
+  }
+}
+
+TEST_CASE("after a failure the picture goes on, bit for bit") {
+  Bed undisturbed;
+  const film::Image wanted = undisturbed.shown.finish();
+  for (const uint64_t allowed : {0, 1, 3, 6}) {
+    Bed bed;
+    session::Renderer& r = bed.shown.r;
+    for (const Action& action : actions()) {
+      INFO(action.name << ", after " << allowed << " allocations");
+      r.device().limit_allocations(allowed);
+      bool failed = false;
+      try {
+        action.run(r);
+      } catch (const Error&) {
+        failed = true;
+      }
+      r.device().limit_allocations(std::nullopt);
+      REQUIRE(failed);
+    }
+    CHECK(test::identical(bed.shown.finish(), wanted));
+  }
+}
+
+TEST_CASE("shaders that do not compile leave the kernels in use") {
+  const test::Folder folder;
+  const std::filesystem::path shaders = folder.path / "shaders";
+  std::filesystem::copy(std::string(LUCERNA_SOURCE_DIR) + "/shaders", shaders,
+                        std::filesystem::copy_options::recursive);
+  const auto render = [&](const char* broken) {
+    session::RendererOptions options = test::renderer_options();
+    options.shaders = shaders;
+    session::Renderer r(options);
+    r.set_size(16, 16);
+    r.set_scene(std::make_shared<scene::Scene>(test::block_room(true)));
+    test::set(r, k_base);
+    while (r.samples() < 2) REQUIRE(r.step());
+    if (broken) {
+      const std::filesystem::path file = shaders / broken;
+      const std::string text = read_file(file);
+      std::ofstream(file) << text << "\nvoid broken() { nonsense; }\n";
+      const auto scene = r.scene();
+      CHECK_THROWS_WITH(r.reload_shaders(), Catch::Contains("nonsense"));
+      // Edits that need new kernels are refused too, and change nothing.
+      scene::Material m = scene->materials[0];
+      m.metallic = 1, m.roughness = 0.3f, m.emission = vec3(0.1f);
+      CHECK_THROWS_WITH(r.set_material(0, m), Catch::Contains("nonsense"));
+      CHECK(r.scene() == scene);
+      CHECK_THROWS(test::set(r, {{"cache.metric", "split-sphere"}}));
+      CHECK(r.settings().text("cache.metric") == "hessian");
+      std::ofstream(file) << text;
+    }
+    return test::finish(r);
+  };
+  const film::Image wanted = render(nullptr);
+  for (const char* broken : {"transport/shade.comp", "irradiance_cache/radius.comp", "film/tonemap.comp"}) {
+    INFO(broken);
+    CHECK(test::identical(render(broken), wanted));
+  }
+}
