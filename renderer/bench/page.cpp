@@ -259,7 +259,7 @@ std::string pictures(const Json& scene, const fs::path& folder) {
       html, magma_gradient(), percent_text(scale));
 }
 
-/// Of the irradiance cache; 0 without one, and in reports from before they were counted.
+/// That light was looked up in; 0 without any, and in reports from before they were counted.
 double records_of(const Json& cell) { return cell.contains("records") ? median_of(cell.at("records")) : 0; }
 
 bool has_records(const Json& scene) {

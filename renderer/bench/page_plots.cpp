@@ -123,7 +123,7 @@ std::string plots(const Json& report, const Json& scene) {
   html += figure(make_plot(record_curves(report, scene), k_marks,
                            name + ": true error of the whole picture against records",
                            "true error, whole picture", Across::records),
-                 "True error of the whole picture against the records that the irradiance cache came to. "
+                 "True error of the whole picture against the records that light was looked up in. "
                  "Circles are settings, the band is the range of their errors over the repeats: of two "
                  "curves, the lower one makes more of its records.");
   return html + "</div>\n";

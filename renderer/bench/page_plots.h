@@ -24,7 +24,7 @@ std::vector<PlotLine> record_curves(const nlohmann::ordered_json& report,
                                     const nlohmann::ordered_json& scene);
 
 /// The scene's plots: true error and that of nine tiles in ten against seconds, and true error against the
-/// irradiance cache's records where a curve has two settings or more with records.
+/// records that light is looked up in where a curve has two settings or more with records.
 std::string plots(const nlohmann::ordered_json& report, const nlohmann::ordered_json& scene);
 
 }  // namespace lucerna::bench

@@ -1,5 +1,5 @@
 #pragma once
-// Error against time or against the irradiance cache's records on log axes, as inline SVG.
+// Error against time or against the number of records that light is looked up in, on log axes, as inline SVG.
 #include <string>
 #include <vector>
 

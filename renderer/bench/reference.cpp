@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "film/io/image_file.h"
+#include "solvers/registry.h"
 
 namespace lucerna::bench {
 namespace {
@@ -105,7 +106,7 @@ std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const s
   SettingValues values = scene.set;
   values.insert(matrix.set.begin(), matrix.set.end());  // the scene's stand
   for (const auto& [key, value] : values)
-    if (!key.starts_with("cache.")) j["set"][key] = value;
+    if (!solvers::owner_of(key)) j["set"][key] = value;
   Pieces hash;
   hash.add(j.dump());
   return hash.text();

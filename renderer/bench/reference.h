@@ -19,8 +19,8 @@ namespace lucerna::bench {
 std::string scene_hash(const std::filesystem::path& file);
 
 /// What a reference of that scene must have been made of to serve: scene, settings, size, camera, seed and
-/// program version, as a hash. Not the number of samples: more are always welcome; nor what says how an
-/// irradiance cache is built (cache.*), for references have none.
+/// program version, as a hash. Not the number of samples: more are always welcome; nor
+/// options of solvers, for references are path traced.
 std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const std::string& scene_hash);
 
 /// "cornell-128x128.exr".

@@ -58,7 +58,7 @@ struct Result {
   uint64_t heavy_tiles = 0;                                    ///< whose light comes in rare large amounts
   uint64_t tiles_over = 0;  ///< adaptive: over the target with all the samples they may have
   uint64_t dropped = 0;     ///< contributions that were not finite
-  /// Of the irradiance cache in the end, and the rays of their hemispheres; 0 without a cache, and in files
+  /// Records that light was looked up in, in the end, and their rays; 0 without any, and in files
   /// from before they were counted.
   uint64_t records = 0, cache_rays = 0;
   std::optional<ForecastResult> forecast;

@@ -68,7 +68,7 @@ struct CommandInfo {
 /// Files that keep its work: the commands SOLVER.save and SOLVER.load.
 struct FileInfo {
   std::string extension;  ///< ".cache"
-  std::string content;    ///< for messages: "the records of the irradiance cache"
+  std::string content;    ///< for messages: "the photons of the map"
   std::string fits;       ///< behind "a file": "of the same scene; what this view is missing is added"
 };
 
@@ -87,7 +87,7 @@ struct LookupWay {
 struct SolverInfo {
   std::string name;   ///< as in settings: components.secondary = NAME; its options begin with it
   std::string label;  ///< of its panel: "Cache"
-  std::string title;  ///< in sentences: "the irradiance cache"
+  std::string title;  ///< in sentences: "the photon map"
   std::string help;   ///< one sentence
   std::array<bool, k_components> serves{};  ///< components that it can compute
   /// Whether its mean is the true image at every number of samples: then noise is all its error.

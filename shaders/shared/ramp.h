@@ -77,7 +77,7 @@ LUCERNA_TONE_FUNCTION vec3 ramp_hue(uint index) {
   return sqrt(clamp(linear, vec3(0.0f), vec3(1.0f)));
 }
 
-// How many records of an irradiance cache serve a pixel: viridis up to this many, none in an ink of its own.
+// How many records serve a pixel: viridis up to this many, none in an ink of its own.
 LUCERNA_CONST float k_overlap_scale = 12.0f;
 LUCERNA_CONST vec3 k_unserved_ink = vec3(0.75f, 0.12f, 0.16f);
 LUCERNA_CONST vec3 k_gathered_ink = vec3(0.45f, 0.47f, 0.52f);  ///< none serves: paths gather there

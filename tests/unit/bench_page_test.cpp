@@ -239,7 +239,7 @@ std::vector<std::string> record_plots(const std::string& html) {
   std::vector<std::string> found;
   for (size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1)) {
     const std::string svg = html.substr(at, html.find("</svg>", at) - at);
-    if (svg.find(">records of the irradiance cache<") != std::string::npos) found.push_back(svg);
+    if (svg.find(">records that light is looked up in<") != std::string::npos) found.push_back(svg);
   }
   return found;
 }
