@@ -16,12 +16,11 @@ TEST_CASE("a registered solver stands in --help, computes its component and is i
   CHECK(help.status == 0);
   CHECK_THAT(help.out, Catch::Contains("ambient.radiance") && Catch::Contains("path|cache|ambient|off"));
   const std::string stats = (folder.path / "stats.json").string();
-  const auto rendered =
-      test::run_command(program +
-                        " render " LUCERNA_SOURCE_DIR
-                        "/scenes/furnace-closed/furnace-closed.gltf --size 16x16 --samples 2 "
-                        "--set components.tertiary=ambient --set ambient.radiance=2 --stats " +
-                        stats);
+  const std::string scene = std::string(LUCERNA_SOURCE_DIR) + "/scenes/furnace-closed/furnace-closed.gltf";
+  const auto rendered = test::run_command(program + " render " + scene +
+                                          " --size 16x16 --samples 2 --set components.tertiary=ambient "
+                                          "--set ambient.radiance=2 --stats " +
+                                          stats);
   INFO(rendered.out);
   REQUIRE(rendered.status == 0);
   const auto json = nlohmann::json::parse(read_file(stats));

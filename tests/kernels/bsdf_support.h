@@ -121,7 +121,8 @@ class Probe {
   gpu::Kernel kernel(const char* draws) {
     static gpu::ShaderCompiler compiler;
     defines_["TEST_DRAW"] = draws;
-    return {device(), compiler, LUCERNA_SOURCE_DIR "/tests/kernels/shaders/bsdf_probe.comp", defines_};
+    return {device(), compiler, std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/bsdf_probe.comp",
+            defines_};
   }
   void reserve(gpu::Buffer& buffer, const char* name, uint64_t bytes) {
     if (buffer && buffer.bytes() >= bytes) return;

@@ -12,8 +12,8 @@ using namespace lucerna;
 TEST_CASE("the device's tone curves are the host's, odd values too") {
   gpu::Device device({"", true});
   gpu::ShaderCompiler compiler;
-  const gpu::Kernel kernel(device, compiler, LUCERNA_SOURCE_DIR "/tests/kernels/shaders/film_tonemap.comp",
-                           {});
+  const gpu::Kernel kernel(device, compiler,
+                           std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/film_tonemap.comp", {});
   std::mt19937 random(19);
   std::uniform_real_distribution<float> stop(-18, 18);
   std::vector<vec3> colours(20000);

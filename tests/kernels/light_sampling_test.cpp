@@ -98,7 +98,8 @@ class Lights {
     static gpu::ShaderCompiler compiler;
     gpu::Defines defines = scene_.defines();
     defines["TEST_ASK"] = what;
-    const gpu::Kernel kernel(device(), compiler, LUCERNA_SOURCE_DIR "/tests/kernels/shaders/light_probe.comp",
+    const gpu::Kernel kernel(device(), compiler,
+                             std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/light_probe.comp",
                              defines);
     const gpu::Buffer results(device(), {name, push.count * sizeof(Result)});
     resources_.set(name, results);

@@ -30,7 +30,8 @@ gpu::Device& device() {
 
 std::vector<Point> points(const std::vector<Place>& places, const gpu::Defines& defines = {}) {
   static gpu::ShaderCompiler compiler;
-  const gpu::Kernel kernel(device(), compiler, LUCERNA_SOURCE_DIR "/tests/kernels/shaders/sampler_probe.comp",
+  const gpu::Kernel kernel(device(), compiler,
+                           std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/sampler_probe.comp",
                            defines);
   gpu::Buffer in(device(), {"places", places.size() * sizeof(Place)}),
       out(device(), {"points", places.size() * sizeof(Point)});

@@ -88,7 +88,8 @@ TEST_CASE("every texture reads as a plain bilinear filter would") {
     CHECK(flat.buckets.size() == (only_repeat ? 1 : 3));
     CHECK(flat.effects.tex_wraps == !only_repeat);
     const upload::DeviceScene on_device(device, flat, {});
-    const gpu::Kernel kernel(device, compiler, LUCERNA_SOURCE_DIR "/tests/kernels/shaders/texture_probe.comp",
+    const gpu::Kernel kernel(device, compiler,
+                             std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/texture_probe.comp",
                              on_device.defines());
     std::mt19937 engine(9);
     std::vector<vec2> at(s.materials.size() * 200);

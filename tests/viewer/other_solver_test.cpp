@@ -3,6 +3,7 @@
 // keys, a legend, a card, files and commands. Over a session without a renderer.
 #include "inside.h"
 #include "solvers/registry.h"
+#include "solvers/solver.h"
 
 using namespace lucerna;
 
@@ -34,6 +35,8 @@ const solvers::SolverInfo& lantern() {
   return info;
 }
 
+const solvers::SolverType k_lantern{.info = lantern()};
+
 solvers::Report told(const plan::Settings& settings, std::optional<vec2> looked_at) {
   solvers::Report r{.solver = "lantern", .state = "shines"};
   r.sections = {
@@ -62,7 +65,7 @@ solvers::Report told(const plan::Settings& settings, std::optional<vec2> looked_
 
 /// Before anything asks for the list of solvers.
 const bool k_added = [] {
-  solvers::add(lantern());
+  solvers::add(k_lantern);
   session::fake::more = [](const plan::Settings& settings,
                            std::optional<vec2> looked_at) -> std::optional<solvers::Report> {
     if (settings.text("components.caustic") != "lantern") return std::nullopt;
