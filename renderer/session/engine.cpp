@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "base/timer.h"
 #include "solvers/registry.h"
 #include "transport/vertex_hooks.h"
@@ -18,6 +19,15 @@ void merge(paths::LookupRoutes& into, const paths::LookupRoutes& more) {
     for (size_t part = 0; part < more.component[state].size(); ++part)
       if (into.component[state][part] == paths::k_no_component)
         into.component[state][part] = more.component[state][part];
+}
+
+/// Components (bits) that lookups bring.
+uint32_t brought(const paths::LookupRoutes& routes) {
+  uint32_t bits = 0;
+  for (const auto& by_part : routes.component)
+    for (const uint8_t component : by_part)
+      if (component != paths::k_no_component) bits |= 1u << component;
+  return bits;
 }
 
 }  // namespace
@@ -46,6 +56,7 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
     for (const auto& [name, value] : solver.defines()) defines[name] = value;
     if (!solver.hook().empty()) hooks.push_back({info->name, solver.hook()});
   }
+  check_partition(settings, effects);
   for (const auto& [name, value] : transport::hook_defines(hooks)) defines[name] = value;
   std::function<void(gpu::Resources&)> bind;
   if (!solvers_.empty())
@@ -57,6 +68,23 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
   estimator_.emplace(device, compiler, !solvers_.empty());
   routing_ = routing(settings, effects);
   compile_seconds_ = timer.seconds();
+}
+
+void Engine::check_partition(const plan::Settings& settings, const upload::Effects& effects) const {
+  std::array<const solvers::SolverInfo*, paths::k_component_count> by{};
+  for (const auto& solver : solvers_) {
+    const uint32_t bits = brought(solver->routing(task_of(solver->info(), settings, effects)).lookups);
+    for (size_t c = 0; c < by.size(); ++c) {
+      if ((bits >> c & 1u) == 0) continue;
+      if (by[c])
+        throw_error(
+            std::string("components.") + paths::k_component_names[c],
+            "light of the words {} would be counted twice: by '{}', with what it looks up for another "
+            "component, and by '{}'; give both components to one of them",
+            paths::k_component_expressions[c], by[c]->name, solver->info().name);
+      by[c] = &solver->info();
+    }
+  }
 }
 
 bool Engine::serves(const plan::Plan& plan, const plan::Settings& settings, const World& world) const {

@@ -23,7 +23,8 @@ struct PictureView {
 
 class Engine {
  public:
-  /// Throws Error: kernels that do not compile (located), no memory.
+  /// Throws Error: kernels that do not compile (located), no memory, a component's light that two solvers
+  /// would bring.
   Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
          const World& world, const plan::Plan& plan, const plan::Settings& settings, gpu::Defines defines);
 
@@ -71,6 +72,8 @@ class Engine {
                         const upload::Effects& effects) const;
   solvers::Task task_of(const plan::Plan& plan, const solvers::SolverInfo& solver,
                         const plan::Settings& settings, const upload::Effects& effects) const;
+  /// Throws Error, located at the component, where two solvers' lookups bring the same light.
+  void check_partition(const plan::Settings& settings, const upload::Effects& effects) const;
   /// Of all solvers together, for the present plan.
   solvers::Routing routing(const plan::Settings& settings, const upload::Effects& effects) const;
 

@@ -6,6 +6,7 @@
 #include "solvers/registry.h"
 #include "support/ambient/ambient.h"
 #include "support/render.h"
+#include "support/rooms.h"
 
 using namespace lucerna;
 
@@ -13,12 +14,19 @@ namespace {
 
 const bool k_added = (solvers::add(test::ambient_type()), true);
 
-test::Result furnace(const test::Settings& settings, uint32_t samples = 16) {
-  return test::render(
-      {.scene = "furnace-closed", .width = 16, .height = 16, .samples = samples, .settings = settings});
+/// The inside of a box that shines, all of one albedo and without gloss.
+scene::Scene closed_room() {
+  scene::Scene s;
+  s.name = "closed room";
+  s.materials = {test::diffuse(vec3(0.5f, 0.25f, 0.75f), vec3(1))};
+  test::add_box(s, vec3(-1), vec3(1));
+  s.cameras = {test::looking_down({0, 0.5f, 0}, 1)};
+  return s;
 }
 
-double solver_figure(session::Renderer& r, const char* name) { return r.figure(name); }
+test::Result furnace(const test::Settings& settings, uint32_t samples = 16) {
+  return test::render(closed_room(), settings, samples, 16);
+}
 
 }  // namespace
 
@@ -39,53 +47,48 @@ TEST_CASE("its light is looked up at the second diffuse vertex, and no other com
   const test::Result ambient = furnace({{"components.tertiary", "ambient"}, {"ambient.radiance", "2"}});
   // A closed room of one albedo: what the second vertex looks up is albedo x radiance, times the first one's
   // albedo.
-  for (size_t i = 0; i < ambient.image.samples.size(); ++i) {
-    const vec3 albedo = ambient.image.albedo[i];
-    for (int c = 0; c < 3; ++c)
-      CHECK(ambient.image.components[2][i][c] == Approx(2 * albedo[c] * albedo[c]).epsilon(1e-4));
-  }
+  const vec3 albedo = closed_room().materials[0].base_color;
+  for (const vec3& light : ambient.image.components[2])
+    for (int c = 0; c < 3; ++c) CHECK(light[c] == Approx(2 * albedo[c] * albedo[c]).epsilon(1e-4));
   for (const int c : {0, 1, 3}) CHECK(test::identical(path.image.components[c], ambient.image.components[c]));
   CHECK_FALSE(ambient.bias_known[2]);
   CHECK(ambient.bias_known[1]);
 }
 
-TEST_CASE("beside the irradiance cache it takes over what is deeper") {
-  const test::Settings cached{
-      {"components.secondary", "cache"}, {"cache.rays", "64"}, {"cache.max_rays", "64"}};
-  const test::Result off = furnace([&] {
-    test::Settings s = cached;
-    s["components.tertiary"] = "off";
-    return s;
-  }());
-  const test::Result both = furnace([&] {
-    test::Settings s = cached;
-    s["components.tertiary"] = "ambient";
-    return s;
-  }());
-  for (const int c : {0, 1, 3})
-    CHECK(test::mean(both.image.components[c]) == Approx(test::mean(off.image.components[c])).margin(1e-6));
+TEST_CASE("light that two solvers would bring is refused, and what was there stays") {
+  session::Renderer r(test::renderer_options());
+  r.set_size(16, 16);
+  r.set_scene(std::make_shared<scene::Scene>(closed_room()));
+  test::set(r, {{"components.tertiary", "ambient"}});
+  // Behind a cached secondary component the records bring tertiary light, too.
+  CHECK_THROWS_WITH(test::set(r, {{"components.secondary", "cache"}, {"cache.rays", "64"}}),
+                    Catch::Contains("components.tertiary: light of the words") &&
+                        Catch::Contains("would be counted twice: by 'cache'") &&
+                        Catch::Contains("by 'ambient'"));
+  CHECK(r.settings().text("components.secondary") == "path");
+  CHECK(r.solver("ambient"));
+  CHECK_FALSE(r.solver("cache"));
+  CHECK(r.step());
 }
 
 TEST_CASE("changes spoil of it what its table says; those of other solvers' settings nothing") {
   session::Renderer r(test::renderer_options());
   r.set_size(16, 16);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/furnace-closed/furnace-closed.gltf");
-  test::set(r, {{"components.tertiary", "ambient"}, {"components.secondary", "cache"}, {"cache.rays", "64"}});
-  const double first = solver_figure(r, "begun");
+  test::set(r, {{"components.tertiary", "ambient"}});
+  const double first = r.figure("begun");
   r.set_camera(r.camera());
-  CHECK(solver_figure(r, "begun") == first);
+  CHECK(r.figure("begun") == first);
   r.restart();
-  CHECK(solver_figure(r, "begun") == first + 1);
+  CHECK(r.figure("begun") == first + 1);
   CHECK_FALSE(solvers::spoiled_by_setting(test::ambient_info(), "cache.rays").any());
   CHECK_FALSE(solvers::spoiled_by_setting(*solvers::find("cache"), "ambient.radiance").any());
   CHECK(solvers::spoiled_by_setting(test::ambient_info(), "ambient.radiance") == solvers::k_spoils_all);
-  // Its own setting makes it anew, and leaves the records where they are.
-  while (r.preparing()) REQUIRE(r.step());
-  const uint32_t records = test::cache(r)->status().records;
-  REQUIRE(records > 0);
+  // Another solver's setting that begins the picture anew leaves it as it is; its own makes it anew.
+  test::set(r, {{"cache.rays", "64"}});
+  CHECK(r.figure("begun") == first + 1);
   test::set(r, {{"ambient.radiance", "3"}});
-  CHECK(test::cache(r)->ready());
-  CHECK(test::cache(r)->status().records == records);
+  CHECK(r.solver_statistics().at("ambient").at("radiance") == 3.0);
 }
 
 TEST_CASE("its view is drawn over the picture, and its report and figures are told") {
