@@ -29,12 +29,12 @@ constexpr uint32_t k_stored_bytes =
 CacheFile some_cache(uint32_t records) {
   CacheFile c;
   c.program = "1.2.3";
-  c.making.scene = "hall";
-  c.making.hashes = {{"geometry", 1}, {"lights", 0xfedcba9876543210ull}};
-  c.making.settings = {{"cache.error", "0.3"}, {"path.max_depth", "64"}};
-  c.making.parts = 0b0110;
-  c.making.recursive = records % 2 == 0;
-  c.making.seed = "7";
+  c.made_with.scene = "hall";
+  c.made_with.hashes = {{"geometry", 1}, {"lights", 0xfedcba9876543210ull}};
+  c.made_with.settings = {{"cache.error", "0.3"}, {"path.max_depth", "64"}};
+  c.made_with.parts = 0b0110;
+  c.made_with.recursive = records % 2 == 0;
+  c.made_with.seed = "7";
   c.view = "perspective 0.8 at 1 2 3";
   c.status.pass = 3, c.status.asked = 5, c.status.paths = 1ull << 40, c.status.rays = 123456789012ull;
   c.status.stop = StopReason::passes;
@@ -77,12 +77,12 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
     write_cache(file, c);
     const CacheFile d = read_cache(file);
     CHECK(d.program == c.program);
-    CHECK(d.making.scene == c.making.scene);
-    CHECK(d.making.hashes == c.making.hashes);
-    CHECK(d.making.settings == c.making.settings);
-    CHECK(d.making.parts == c.making.parts);
-    CHECK(d.making.recursive == c.making.recursive);
-    CHECK(d.making.seed == c.making.seed);
+    CHECK(d.made_with.scene == c.made_with.scene);
+    CHECK(d.made_with.hashes == c.made_with.hashes);
+    CHECK(d.made_with.settings == c.made_with.settings);
+    CHECK(d.made_with.parts == c.made_with.parts);
+    CHECK(d.made_with.recursive == c.made_with.recursive);
+    CHECK(d.made_with.seed == c.made_with.seed);
     CHECK(d.view == c.view);
     CHECK(d.status.pass == c.status.pass);
     CHECK(d.status.asked == c.status.asked);
@@ -186,36 +186,36 @@ TEST_CASE("what cannot be read or written says so, and leaves what was there") {
 
 TEST_CASE("a cache serves what it was made of, and says what differs") {
   const CacheFile c = some_cache(20);
-  const auto fits = [&](const std::function<void(Making&)>& change, uint32_t room = 20) {
-    Making wanted = c.making;
+  const auto fits = [&](const std::function<void(MadeWith&)>& change, uint32_t room = 20) {
+    MadeWith wanted = c.made_with;
     change(wanted);
     return complaint([&] { check_fits(c, wanted, room, "a.cache"); });
   };
-  CHECK(fits([](Making&) {}).empty());
-  CHECK(fits([](Making& m) { m.seed = "8", m.scene = "another name"; }).empty());
-  CHECK(fits([](Making& m) { m.hashes["lights"] = 2, m.scene = "attic"; }) ==
+  CHECK(fits([](MadeWith&) {}).empty());
+  CHECK(fits([](MadeWith& m) { m.seed = "8", m.scene = "another name"; }).empty());
+  CHECK(fits([](MadeWith& m) { m.hashes["lights"] = 2, m.scene = "attic"; }) ==
         "a.cache: records of another scene ('hall', this is 'attic'): they differ in lights");
-  CHECK_THAT(fits([](Making& m) { m.hashes["geometry"] = 2, m.hashes["lights"] = 2; }),
+  CHECK_THAT(fits([](MadeWith& m) { m.hashes["geometry"] = 2, m.hashes["lights"] = 2; }),
              Contains("they differ in geometry, lights"));
-  CHECK_THAT(fits([](Making& m) { m.hashes["fog"] = 2; }), Contains("they differ in fog"));
-  CHECK(fits([](Making& m) { m.settings["cache.error"] = "0.5"; }) ==
+  CHECK_THAT(fits([](MadeWith& m) { m.hashes["fog"] = 2; }), Contains("they differ in fog"));
+  CHECK(fits([](MadeWith& m) { m.settings["cache.error"] = "0.5"; }) ==
         "a.cache: its records were made with cache.error = 0.3 (now 0.5)");
-  CHECK_THAT(fits([](Making& m) {
+  CHECK_THAT(fits([](MadeWith& m) {
                m.settings = {{"cache.error", "1"}, {"cache.metric", "hessian"}};
              }),
              Contains("made with cache.error = 0.3 (now 1), cache.metric = unknown (now hessian), "
                       "path.max_depth = 64 (now unknown)"));
   // Parts that nobody asks for do no harm.
-  CHECK(fits([](Making& m) { m.parts = 0b0100; }).empty());
-  CHECK(fits([](Making& m) { m.parts = 0b1111; }) ==
+  CHECK(fits([](MadeWith& m) { m.parts = 0b0100; }).empty());
+  CHECK(fits([](MadeWith& m) { m.parts = 0b1111; }) ==
         "a.cache: its records hold secondary, tertiary light; the components that are looked up need "
         "environment, caustic light too");
   // Who gathered tertiary light matters where that is read, and there alone.
-  CHECK(c.making.recursive);
-  CHECK(fits([](Making& m) { m.recursive = false; }) ==
+  CHECK(c.made_with.recursive);
+  CHECK(fits([](MadeWith& m) { m.recursive = false; }) ==
         "a.cache: the tertiary light of its records was gathered by 'cache', here it is by 'path'; set "
         "components.tertiary cache");
-  CHECK(fits([](Making& m) { m.recursive = false, m.parts = 0b0010; }).empty());
-  CHECK(fits([](Making&) {}, 19) ==
+  CHECK(fits([](MadeWith& m) { m.recursive = false, m.parts = 0b0010; }).empty());
+  CHECK(fits([](MadeWith&) {}, 19) ==
         "a.cache: holds 20 records and there is room for 19; set cache.max_records to 20 or more");
 }

@@ -162,18 +162,19 @@ class Cache {
             const std::function<bool()>& cancel = {});
   const CacheStatus& status() const;
   const Records& records() const;
-  /// Of the records, when the last pass had its first level: how much of the picture reads them (worth.h).
+  /// Of the records, when the last pass had its first level: how much of the picture reads them
+  /// (picture_reads.h).
   const std::vector<float>& worth() const;
   uint32_t parts() const;  ///< that its records hold (bits); the others are 0
   bool recursive() const;  ///< their tertiary light is looked up in other records, not path traced
   /// Looks through the centre of every pixel, for bind_sight(), unless that has been done: while the cache is
   /// being built its own passes do. The wavefront's frame is the view's.
   void look_at_picture(transport::Wavefront& wavefront, const CacheView& view);
-  /// Goes on telling the film what the picture's records may be wrong by (picture_error.h), a piece at a
-  /// time, until Film::records_told(). Only when ready(); the wavefront's frame is the view's. `anew`: the
-  /// picture is begun. False when it was cancelled: it will be done again.
-  bool tell_picture(transport::Wavefront& wavefront, film::Film& film, const CacheView& view, bool anew,
-                    const std::function<bool()>& cancel = {});
+  /// Goes on estimating, for the film, what the picture's records make it wrong by (picture_error.h), a piece
+  /// at a time, until Film::records_told(). Only when ready(); the wavefront's frame is the view's. `anew`:
+  /// the picture is begun. False when it was cancelled: it will be done again.
+  bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const CacheView& view, bool anew,
+                       const std::function<bool()>& cancel = {});
   /// For shaders/overlay/asking.glsl: where pixels ask for records; overlay::k_no_sight before that is
   /// known.
   shared::SightGrid bind_sight(gpu::Resources& resources) const;

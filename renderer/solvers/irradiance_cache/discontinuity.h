@@ -49,8 +49,8 @@ class Discontinuity {
   bool begun() const;
   /// Whether all points of the picture have been looked at.
   bool seen() const;
-  /// Sends the next rays, as many as there are slots. The wavefront's frame is the picture's, its kernels
-  /// have been told k_probe_screen, and note what they meet in `candidates`. False when it was cancelled.
+  /// Sends the next rays, as many as there are slots. The wavefront's frame is the picture's, the cache
+  /// frame says k_probe_screen, and kernels note what they meet in `candidates`. False when it was cancelled.
   bool see(transport::Wavefront& wavefront, const gpu::Buffer& candidates,
            const std::function<bool()>& cancel = {});
   /// What has been seen of the points.

@@ -113,14 +113,14 @@ void assign(const bool&, uint8_t) {}
 template <class Archive, class File>
 void fields(Archive& a, File& f) {
   a.text(f.program);
-  a.text(f.making.scene);
-  a.map(f.making.hashes, [&](auto& value) { a.plain(value); });
-  a.map(f.making.settings, [&](auto& value) { a.text(value); });
-  a.plain(f.making.parts);
-  uint8_t recursive = f.making.recursive;
+  a.text(f.made_with.scene);
+  a.map(f.made_with.hashes, [&](auto& value) { a.plain(value); });
+  a.map(f.made_with.settings, [&](auto& value) { a.text(value); });
+  a.plain(f.made_with.parts);
+  uint8_t recursive = f.made_with.recursive;
   a.plain(recursive);
-  assign(f.making.recursive, recursive);
-  a.text(f.making.seed);
+  assign(f.made_with.recursive, recursive);
+  a.text(f.made_with.seed);
   a.text(f.view);
   a.plain(f.status.pass), a.plain(f.status.asked), a.plain(f.status.paths), a.plain(f.status.rays);
   a.plain(f.status.stop);
@@ -182,10 +182,10 @@ std::string encode(const CacheFile& cache) {
 CacheFile decode(const std::string& bytes, const std::string& where) {
   check_head(std::string_view(bytes).substr(0, k_head), bytes.size(), where);
   const std::string_view contents = std::string_view(bytes).substr(0, bytes.size() - k_checksum);
-  uint64_t told = 0;
-  std::memcpy(&told, bytes.data() + contents.size(), sizeof told);
-  if (const uint64_t found = checksum(contents); found != told)
-    throw_error(where, "damaged: its checksum is {:016x}, its contents have {:016x}", told, found);
+  uint64_t stored = 0;
+  std::memcpy(&stored, bytes.data() + contents.size(), sizeof stored);
+  if (const uint64_t found = checksum(contents); found != stored)
+    throw_error(where, "damaged: its checksum is {:016x}, its contents have {:016x}", stored, found);
   CacheFile cache;
   Reader reader(contents.substr(k_head), where);
   fields(reader, cache);
@@ -210,19 +210,20 @@ CacheFile read_cache(const std::filesystem::path& file) {
   return decode(read_file(file), file.string());
 }
 
-void check_fits(const CacheFile& cache, const Making& wanted, uint32_t room, const std::string& where) {
-  const Making& made = cache.making;
-  const auto differing = [](const auto& a, const auto& b, const auto& tell) {
+void check_fits(const CacheFile& cache, const MadeWith& wanted, uint32_t room, const std::string& where) {
+  const MadeWith& made = cache.made_with;
+  const auto differing = [](const auto& a, const auto& b, const auto& describe) {
     std::map<std::string, int> keys;  // of both, in order
     for (const auto& [key, value] : a) keys[key];
     for (const auto& [key, value] : b) keys[key];
-    std::vector<std::string> told;
+    std::vector<std::string> found;
     for (const auto& [key, unused] : keys) {
       const auto x = a.find(key), y = b.find(key);
       if (x == a.end() || y == b.end() || x->second != y->second)
-        told.push_back(tell(key, x == a.end() ? nullptr : &x->second, y == b.end() ? nullptr : &y->second));
+        found.push_back(
+            describe(key, x == a.end() ? nullptr : &x->second, y == b.end() ? nullptr : &y->second));
     }
-    return told;
+    return found;
   };
   const auto scene = differing(made.hashes, wanted.hashes,
                                [](const std::string& key, const auto*, const auto*) { return key; });

@@ -5,7 +5,8 @@
 //   8 bytes      "LUCCACHE"
 //   2 x u32      version of the format, layout of the records: k_cache_file_version, shared::k_record_layout
 //   u32, u64     bytes of a record, bytes of the whole file
-//   entries      program's version, making, view, status; texts as u32 length and bytes, lists as u32 count
+//   entries      program's version, what the records were made with, view, status; texts as u32 length and
+//                bytes, lists as u32 count
 //   u32, texels  the records: RawRecords, list by list
 //   u64          checksum of all before, Hash::low()
 //
@@ -20,8 +21,8 @@ namespace lucerna::irradiance_cache {
 
 inline constexpr uint32_t k_cache_file_version = 2;
 
-/// What records are made of.
-struct Making {
+/// What decides the light that records hold.
+struct MadeWith {
   std::string scene;                            ///< its name, for messages
   std::map<std::string, uint64_t> hashes;       ///< of the scene: "geometry", "lights", ...
   std::map<std::string, std::string> settings;  ///< those that decide what a record holds, by key
@@ -34,7 +35,7 @@ struct Making {
 
 struct CacheFile {
   std::string program;  ///< version of the one that wrote it
-  Making making;
+  MadeWith made_with;
   /// What the picture saw when the cache was complete for it, as a text that only that view gives.
   std::string view;
   CacheStatus status;  ///< pass, asked, paths, rays, stop
@@ -50,9 +51,9 @@ void write_cache(const std::filesystem::path& file, const CacheFile& cache);
 /// Throws Error located at `file`: cannot be read, or as decode().
 CacheFile read_cache(const std::filesystem::path& file);
 
-/// Throws Error at `where` unless these records can serve what is made like `wanted` with room for `room`
+/// Throws Error at `where` unless these records can serve what is made with `wanted` and room for `room`
 /// records: naming what of the scene, which settings, which parts or what gathered tertiary light (where that
 /// is wanted) differ, or the setting that would fit.
-void check_fits(const CacheFile& cache, const Making& wanted, uint32_t room, const std::string& where);
+void check_fits(const CacheFile& cache, const MadeWith& wanted, uint32_t room, const std::string& where);
 
 }  // namespace lucerna::irradiance_cache

@@ -5,6 +5,14 @@
 
 namespace lucerna::irradiance_cache {
 
+float dark_luminance(std::span<const float> light, uint32_t count) {
+  // Where records crowd they have none.
+  double sum = 0;
+  uint32_t lit = 0;
+  for (const float l : light.first(count)) sum += double(l), lit += l > 0;
+  return lit > 0 ? 0.1f * float(sum / lit) : 1.0f;
+}
+
 std::vector<uint32_t> too_noisy(std::span<const Noise> list, float darkest) {
   std::vector<uint32_t> found;
   for (size_t i = 0; i < list.size(); ++i) {

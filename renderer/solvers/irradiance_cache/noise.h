@@ -17,6 +17,10 @@ struct Noise {
 /// Records before a record and behind it, of the list, by which it is judged.
 inline constexpr size_t k_around = 4;
 
+/// Irradiance, luminance: what records of less are held against, because what they miss is seen less. A tenth
+/// of the mean of the first `count`, those without light left out; 1 where none has any.
+float dark_luminance(std::span<const float> light, uint32_t count);
+
 /// Indices, rising, of those that are too noisy: whose neighbours in the list have a root mean square error
 /// of more than `bound` times their mean light, or times `darkest` where they are darker. Neighbours should
 /// be alike: in the order of their places, with as many rays each.

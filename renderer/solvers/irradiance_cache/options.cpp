@@ -2,7 +2,10 @@
 
 namespace lucerna::irradiance_cache {
 
-std::vector<OptionInfo> option_rows() {
+namespace {
+
+/// How far records serve.
+std::vector<OptionInfo> radius_rows() {
   return {
       choice_option(
           "cache.metric", "hessian", {"split-sphere", "hessian"}, "",
@@ -41,6 +44,12 @@ std::vector<OptionInfo> option_rows() {
           "Irradiance cache: within that a record makes others superfluous that are tried with it. Less: "
           "more "
           "records, and more of them serve a point; 0: all that are tried are kept."),
+  };
+}
+
+/// What they hold, and how many there are.
+std::vector<OptionInfo> light_rows() {
+  return {
       choice_option("cache.rays", "256", {"64", "256", "1024", "4096"}, "rays",
                     "Irradiance cache: rays from a record over its hemisphere, at first.", "First rays"),
       choice_option(
@@ -76,6 +85,12 @@ std::vector<OptionInfo> option_rows() {
           "these are "
           "path traced.",
           "Stop at"),
+  };
+}
+
+/// Where the picture asks for them.
+std::vector<OptionInfo> candidate_rows() {
+  return {
       real_option(
           "cache.candidates", "1", 0, 16, "a cell",
           "Irradiance cache: candidates for records, on every scale, in a cell of the picture in which "
@@ -102,6 +117,12 @@ std::vector<OptionInfo> option_rows() {
           "Irradiance cache: how much a relative difference of irradiance between neighbouring cells counts "
           "as detail in later passes; 0: not at all.",
           "Light weighs"),
+  };
+}
+
+/// What a person sees of it.
+std::vector<OptionInfo> shown_rows() {
+  return {
       without_restart(choice_option(
           "cache.pause", "off", {"off", "pass", "stage"}, "",
           "Irradiance cache: building waits after every pass, or every stage of it, for cache.step or "
@@ -138,6 +159,15 @@ std::vector<OptionInfo> option_rows() {
                          "pixels wide.",
                          "Level")),
   };
+}
+
+}  // namespace
+
+std::vector<OptionInfo> option_rows() {
+  std::vector<OptionInfo> all;
+  for (const auto& rows : {radius_rows(), light_rows(), candidate_rows(), shown_rows()})
+    all.insert(all.end(), rows.begin(), rows.end());
+  return all;
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -64,7 +64,7 @@ bool PictureError::step(const Work& w) {
   const uint32_t end = std::min(blocks, done_ + std::max(1u, w.wavefront.slots() / (64 * k_paths)));
   w.wavefront.set_frame(frame, w.enabled);
   const bool complete = carry(w, side, end);
-  w.tell(k_probe_none);
+  w.write_frame(k_probe_none);
   w.wavefront.set_frame(w.frame, w.enabled);
   if (!complete) return false;
   done_ = end;
@@ -80,7 +80,7 @@ bool PictureError::carry(const Work& w, uint32_t side, uint32_t end) {
   for (const uint32_t probing : {k_probe_carry, k_probe_carry_on}) {
     if (probing == k_probe_carry_on && !w.recursive) continue;
     stream.fill(w.candidates, 0);
-    w.tell(probing);
+    w.write_frame(probing);
     if (!w.wavefront.probe(item, w.cancel)) return false;
     if (probing == k_probe_carry && w.recursive) stream.copy(w.candidates, first_, w.candidates.bytes());
   }

@@ -43,7 +43,7 @@ class PictureError {
 
   /// What the pass is done with: the paths' frame of the picture, the records that are evaluated, whether
   /// they read each other; binding of what lookup.glsl reads; the cache's note of where paths read,
-  /// `candidates`, and what tells paths of it: k_probe_*.
+  /// `candidates`, and what writes the cache frame that says what they note: k_probe_*.
   struct Work {
     transport::Wavefront& wavefront;
     film::Film& film;
@@ -53,7 +53,7 @@ class PictureError {
     bool recursive;
     const gpu::Buffer& candidates;
     std::function<void(gpu::Resources&)> bind;
-    std::function<void(uint32_t probing)> tell;
+    std::function<void(uint32_t probing)> write_frame;
     std::function<bool()> cancel;
   };
   /// Forgets how far the picture has been gone through.

@@ -2,11 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
-#include <cmath>
-#include <numeric>
-#include <set>
-#include <unordered_map>
+#include <utility>
 
 #include "sort/prefix_sum.h"
 #include "sort/radix_sort.h"
@@ -21,12 +17,6 @@ constexpr const char* k_stage = "placement";
 /// Choosings at most: the first leaves what clusters that were cut for their number could not see of each
 /// other.
 constexpr uint32_t k_rounds = 6;
-
-uint64_t mix(uint64_t x) {  // splitmix64's finalizer
-  x ^= x >> 30, x *= 0xbf58476d1ce4e5b9ull;
-  x ^= x >> 27, x *= 0x94d049bb133111ebull;
-  return x ^ x >> 31;
-}
 
 Place place_of(const vec4& place, const vec4& facing, uint32_t medium) {
   const auto bits = std::bit_cast<uint32_t>(facing.w);
@@ -54,44 +44,37 @@ std::vector<size_t> share_out(const std::vector<size_t>& having, size_t most) {
   return quota;
 }
 
-}  // namespace
+gpu::Kernel kernel_of(gpu::Device& device, gpu::ShaderCompiler& compiler, const char* name,
+                      const gpu::Defines& defines = {}) {
+  return gpu::Kernel(device, compiler, std::string("irradiance_cache/") + name + ".comp", defines);
+}
 
-struct Placement::Impl {
-  gpu::Device& device;
+gpu::Buffer small_buffer(gpu::Device& device, const char* name, uint64_t bytes,
+                         gpu::Memory memory = gpu::Memory::host) {
+  return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory, .texel = true});
+}
+
+/// Sums of flags before each, and in all.
+struct Sums {
   sort::PrefixSum prefix_sum;
-  sort::RadixSort sorter;
-  gpu::Kernel asks, collect_paths, collect_screen, bounds, grid, keys, heads, starts, choose, chosen, keep;
-  gpu::Buffer places, facings, media;  // of the candidates
-  gpu::Buffer asked, taken, before;    // while they are collected
-  gpu::Buffer entries[3], head_flags, head_sums, cluster_starts, ranks;
-  gpu::Buffer grid_buffer, run_bounds, total, count;
-  gpu::Resources resources;
-  uint32_t size = 0;
-  // Of the last choice:
-  const gpu::Buffer* sorted = nullptr;
-  std::vector<uint32_t> first_starts, picks;  // clusters begin there; source indices, in Morton order
+  gpu::Buffer total;
 
-  Impl(gpu::Device& d, gpu::ShaderCompiler& compiler)
-      : device(d), prefix_sum(d, compiler), sorter(d, compiler, sort::Keys::bits64) {
-    const auto kernel = [&](const char* name, const gpu::Defines& defines = {}) {
-      return gpu::Kernel(device, compiler, std::string("irradiance_cache/") + name + ".comp", defines);
-    };
-    asks = kernel("asks"), collect_paths = kernel("collect", {{"LUCERNA_FROM_SCREEN", "0"}});
-    collect_screen = kernel("collect", {{"LUCERNA_FROM_SCREEN", "1"}});
-    bounds = kernel("place_bounds"), grid = kernel("place_grid"), keys = kernel("place_keys");
-    heads = kernel("place_heads"), starts = kernel("place_starts"), choose = kernel("place_choose");
-    chosen = kernel("place_chosen"), keep = kernel("place_keep");
-    const auto small = [&](const char* name, uint64_t bytes, gpu::Memory memory) {
-      return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory, .texel = true});
-    };
-    asked = small("candidates asked", 16, gpu::Memory::host);
-    total = small("candidates' sum", 16, gpu::Memory::host);
-    count = small("candidates' count", 16, gpu::Memory::host);
-    grid_buffer = small("candidates' grid", 32, gpu::Memory::device);
-    run_bounds = small("candidates' bounds", k_bounds_runs * 32, gpu::Memory::device);
+  Sums(gpu::Device& device, gpu::ShaderCompiler& compiler)
+      : prefix_sum(device, compiler), total(small_buffer(device, "candidates' sum", 16)) {}
+  void encode(gpu::Stream& stream, const gpu::Buffer& flags, const gpu::Buffer& before, uint32_t count) {
+    prefix_sum.encode(stream, flags, before, {.most = count}, &total, 0, k_stage);
   }
+  /// Once the stream has run.
+  uint32_t sum() const { return *static_cast<const uint32_t*>(total.mapped()); }
+};
 
-  /// Room for that many candidates; what there is stays.
+/// The first `size` of each list are candidates, in the order in which they were collected.
+struct Candidates {
+  gpu::Device& device;
+  gpu::Buffer places, facings, media;
+  uint32_t size = 0;
+
+  /// Room for that many; what there is stays.
   void reserve(gpu::Stream& stream, uint32_t candidates) {
     for (auto [buffer, name, each] : {std::tuple{&places, "candidates", sizeof(vec4)},
                                       {&facings, "candidates' normals", sizeof(vec4)},
@@ -108,8 +91,20 @@ struct Placement::Impl {
       *buffer = std::move(larger);
     }
   }
-
-  /// All candidates, in the order in which they were collected.
+  void add(gpu::Stream& stream, std::span<const Place> list) {
+    reserve(stream, size + uint32_t(list.size()));
+    std::vector<vec4> where, facing;
+    std::vector<uint32_t> medium;
+    for (const Place& c : list) {
+      where.emplace_back(c.position, c.reach);
+      facing.emplace_back(c.normal, std::bit_cast<float>(c.facet | c.origin << k_place_origin_shift));
+      medium.push_back(c.medium);
+    }
+    places.write(std::span<const vec4>(where), size);
+    facings.write(std::span<const vec4>(facing), size);
+    media.write(std::span<const uint32_t>(medium), size);
+    size += uint32_t(list.size());
+  }
   std::vector<Place> read() const {
     std::vector<vec4> where(size), facing(size);
     std::vector<uint32_t> medium(size);
@@ -120,29 +115,22 @@ struct Placement::Impl {
     for (uint32_t i = 0; i < size; ++i) all.push_back(place_of(where[i], facing[i], medium[i]));
     return all;
   }
+};
 
-  uint32_t sum() const { return *static_cast<const uint32_t*>(total.mapped()); }
+/// Appends what asks to the candidates.
+struct Collector {
+  gpu::Device& device;
+  gpu::Kernel asks, from_paths, from_screen;
+  gpu::Buffer asked;          // by origin
+  gpu::Buffer taken, before;  // a slot, or a point of the picture
+  gpu::Resources resources;
 
-  /// Appends what `flags` mark, by a kernel that reads them.
-  uint32_t append(gpu::Stream& stream, const gpu::Kernel& kernel, const gpu::Buffer& flags,
-                  CollectPush push) {
-    gpu::make_texel_room(device, before, "candidates before", uint64_t{push.count} * 4);
-    prefix_sum.encode(stream, flags, before, {.most = push.count}, &total, 0, k_stage);
-    stream.run();
-    const uint32_t added = sum();
-    if (added == 0) return 0;
-    reserve(stream, size + added);
-    push.to = size;
-    resources.set("Taken", flags);
-    resources.set("TakenBefore", before);
-    resources.set("Places", places);
-    resources.set("Facings", facings);
-    resources.set("Media", media);
-    stream.dispatch(kernel, resources, push, gpu::groups_for(push.count, 64), k_stage);
-    stream.run();
-    size += added;
-    return added;
-  }
+  Collector(gpu::Device& d, gpu::ShaderCompiler& compiler)
+      : device(d),
+        asks(kernel_of(d, compiler, "asks")),
+        from_paths(kernel_of(d, compiler, "collect", {{"LUCERNA_FROM_SCREEN", "0"}})),
+        from_screen(kernel_of(d, compiler, "collect", {{"LUCERNA_FROM_SCREEN", "1"}})),
+        asked(small_buffer(d, "candidates asked", 16)) {}
 
   static CollectPush push_of(const ReachOptions& r, uint32_t count) {
     CollectPush push{};
@@ -153,6 +141,178 @@ struct Placement::Impl {
     push.eye = r.eye;
     return push;
   }
+
+  /// What `flags` mark, by a kernel that reads them. Returns how many.
+  uint32_t append(gpu::Stream& stream, Sums& sums, Candidates& to, const gpu::Kernel& kernel,
+                  const gpu::Buffer& flags, CollectPush push) {
+    gpu::make_texel_room(device, before, "candidates before", uint64_t{push.count} * 4);
+    sums.encode(stream, flags, before, push.count);
+    stream.run();
+    const uint32_t added = sums.sum();
+    if (added == 0) return 0;
+    to.reserve(stream, to.size + added);
+    push.to = to.size;
+    resources.set("Taken", flags);
+    resources.set("TakenBefore", before);
+    resources.set("Places", to.places);
+    resources.set("Facings", to.facings);
+    resources.set("Media", to.media);
+    stream.dispatch(kernel, resources, push, gpu::groups_for(push.count, 64), k_stage);
+    stream.run();
+    to.size += added;
+    return added;
+  }
+};
+
+struct ChoosingKernels {
+  gpu::Kernel bounds, grid, keys, heads, starts, choose, chosen, keep;
+
+  ChoosingKernels(gpu::Device& d, gpu::ShaderCompiler& c)
+      : bounds(kernel_of(d, c, "place_bounds")),
+        grid(kernel_of(d, c, "place_grid")),
+        keys(kernel_of(d, c, "place_keys")),
+        heads(kernel_of(d, c, "place_heads")),
+        starts(kernel_of(d, c, "place_starts")),
+        choose(kernel_of(d, c, "place_choose")),
+        chosen(kernel_of(d, c, "place_chosen")),
+        keep(kernel_of(d, c, "place_keep")) {}
+};
+
+struct ChoosingBuffers {
+  gpu::Buffer grid, run_bounds, count;
+  gpu::Buffer entries[3];  // keys of the candidates, sorted; then of those that are left, in turn
+  gpu::Buffer head_flags, head_sums, cluster_starts, ranks;
+
+  explicit ChoosingBuffers(gpu::Device& d)
+      : grid(small_buffer(d, "candidates' grid", 32, gpu::Memory::device)),
+        run_bounds(small_buffer(d, "candidates' bounds", k_bounds_runs * 32, gpu::Memory::device)),
+        count(small_buffer(d, "candidates' count", 16)) {}
+
+  void make_room(gpu::Device& device, uint32_t candidates) {
+    for (gpu::Buffer& e : entries)
+      gpu::make_texel_room(device, e, "candidates' keys", uint64_t{candidates} * sizeof(SortEntry64));
+    for (auto [buffer, name] : {std::pair{&head_flags, "heads of clusters"},
+                                {&head_sums, "heads' sums"},
+                                {&cluster_starts, "clusters"},
+                                {&ranks, "candidates' ranks"}})
+      gpu::make_texel_room(device, *buffer, name, uint64_t{candidates} * 4);
+  }
+  void bind(gpu::Resources& to, const Candidates& candidates) const {
+    to.set("Grid", grid);
+    to.set("place_texels", candidates.places);
+    to.set("facing_texels", candidates.facings);
+    to.set("RunBounds", run_bounds);
+    to.set("run_bound_texels", run_bounds);
+    to.set("Entries", entries[0]);
+    to.set("Heads", head_flags);
+    to.set("HeadsBefore", head_sums);
+    to.set("Starts", cluster_starts);
+    to.set("Ranks", ranks);
+    to.set("Total", count);
+  }
+};
+
+/// Clusters of what is left after the last round, and its entries.
+struct Round {
+  const gpu::Buffer* entries = nullptr;
+  uint32_t left = 0, clusters = 0;
+};
+
+/// Sorts candidates, cuts them into clusters and draws from each.
+struct Chooser {
+  gpu::Device& device;
+  sort::RadixSort sorter;
+  ChoosingKernels kernels;
+  ChoosingBuffers buffers;
+  gpu::Resources resources;
+  // Of the last choice:
+  const gpu::Buffer* sorted = nullptr;
+  std::vector<uint32_t> first_starts;  // clusters begin there
+  std::vector<uint32_t> picks;         // source indices, in Morton order
+
+  Chooser(gpu::Device& d, gpu::ShaderCompiler& compiler)
+      : device(d), sorter(d, compiler, sort::Keys::bits64), kernels(d, compiler), buffers(d) {}
+
+  void forget() {
+    sorted = nullptr;
+    first_starts.clear(), picks.clear();
+  }
+
+  /// Of `n` candidates, more than 0, all that are drawn get a rank on the device.
+  Round run(gpu::Stream& stream, Sums& sums, const Candidates& candidates, const ChoiceOptions& o) {
+    uint32_t n = candidates.size;
+    ChoosingBuffers& b = buffers;
+    b.make_room(device, n);
+    b.bind(resources, candidates);
+    ChoosePush push{n, o.seed, o.normal_tolerance};
+    const auto dispatch = [&](const gpu::Kernel& kernel, uint32_t items) {
+      push.count = &kernel == &kernels.choose ? items : n;
+      stream.dispatch(kernel, resources, &push, kernel.push_constant_bytes(), gpu::groups_for(items, 64),
+                      k_stage);
+    };
+    dispatch(kernels.bounds, k_bounds_runs);
+    dispatch(kernels.grid, 1);
+    dispatch(kernels.keys, n);
+    sorted = &sorter.encode(stream, b.entries[0], b.entries[1], {.most = n}, 3 * k_morton_bits, k_stage);
+    const gpu::Buffer* from = sorted;
+    const gpu::Buffer& spare = from == &b.entries[0] ? b.entries[1] : b.entries[0];
+    for (uint32_t round = 0;; ++round) {
+      b.count.write(&n, sizeof n);
+      resources.set("entry_texels", *from);
+      dispatch(kernels.heads, n);
+      sums.encode(stream, b.head_flags, b.head_sums, n);
+      dispatch(kernels.starts, n);
+      stream.run();
+      const uint32_t clusters = sums.sum();
+      if (round == 0) {
+        first_starts.resize(clusters);
+        b.cluster_starts.read(first_starts.data(), clusters * sizeof(uint32_t));
+      }
+      dispatch(kernels.choose, clusters);
+      dispatch(kernels.chosen, n);
+      sums.encode(stream, b.head_flags, b.head_sums, n);
+      stream.run();
+      if (sums.sum() == n || round + 1 == k_rounds) return {from, n, clusters};
+      const gpu::Buffer& to = from == &spare ? b.entries[2] : spare;
+      resources.set("Kept", to);
+      dispatch(kernels.keep, n);
+      stream.run();
+      n = sums.sum();
+      from = &to;
+    }
+  }
+
+  /// Of those that have a rank, no more than `most`.
+  void pick(const Round& last, size_t most) {
+    const uint32_t n = last.left, clusters = last.clusters;
+    std::vector<SortEntry64> entries(n);
+    std::vector<uint32_t> ranks(n), starts(clusters + 1, n);
+    last.entries->read(entries.data(), n * sizeof(SortEntry64));
+    buffers.ranks.read(ranks.data(), n * sizeof(uint32_t));
+    buffers.cluster_starts.read(starts.data(), clusters * sizeof(uint32_t));
+    std::vector<size_t> having(clusters, 0);
+    for (uint32_t c = 0; c < clusters; ++c)
+      for (uint32_t i = starts[c]; i < starts[c + 1]; ++i) having[c] += ranks[i] > 0;
+    const std::vector<size_t> quota = share_out(having, most);
+    for (uint32_t c = 0; c < clusters; ++c)
+      for (uint32_t i = starts[c]; i < starts[c + 1]; ++i)
+        if (ranks[i] > 0 && ranks[i] <= quota[c]) picks.push_back(entries[i].value);
+  }
+};
+
+}  // namespace
+
+struct Placement::Impl {
+  Sums sums;
+  Candidates candidates;
+  Collector collector;
+  Chooser chooser;
+
+  Impl(gpu::Device& device, gpu::ShaderCompiler& compiler)
+      : sums(device, compiler),
+        candidates{device, {}, {}, {}},
+        collector(device, compiler),
+        chooser(device, compiler) {}
 };
 
 Placement::Placement(gpu::Device& device, gpu::ShaderCompiler& compiler)
@@ -160,227 +320,88 @@ Placement::Placement(gpu::Device& device, gpu::ShaderCompiler& compiler)
 Placement::~Placement() = default;
 
 void Placement::clear() {
-  impl_->size = 0;
-  impl_->sorted = nullptr;
-  impl_->first_starts.clear(), impl_->picks.clear();
+  impl_->candidates.size = 0;
+  impl_->chooser.forget();
 }
 
-uint32_t Placement::size() const { return impl_->size; }
+uint32_t Placement::size() const { return impl_->candidates.size; }
 
 uint64_t Placement::bytes() const {
-  const Impl& p = *impl_;
+  const Candidates& c = impl_->candidates;
+  const Collector& collector = impl_->collector;
+  const ChoosingBuffers& b = impl_->chooser.buffers;
   uint64_t sum = 0;
-  for (const gpu::Buffer* b :
-       {&p.places, &p.facings, &p.media, &p.taken, &p.before, &p.entries[0], &p.entries[1], &p.entries[2],
-        &p.head_flags, &p.head_sums, &p.cluster_starts, &p.ranks})
-    sum += *b ? b->bytes() : 0;
+  for (const gpu::Buffer* buffer :
+       {&c.places, &c.facings, &c.media, &collector.taken, &collector.before, &b.entries[0], &b.entries[1],
+        &b.entries[2], &b.head_flags, &b.head_sums, &b.cluster_starts, &b.ranks})
+    sum += *buffer ? buffer->bytes() : 0;
   return sum;
 }
 
 std::array<uint32_t, 3> Placement::collect(gpu::Stream& stream, const gpu::Buffer& candidates, uint32_t slots,
                                            uint32_t samples, bool screen_too, const ReachOptions& reach) {
-  Impl& p = *impl_;
+  Collector& c = impl_->collector;
   if (slots == 0) return {};
-  CollectPush push = Impl::push_of(reach, slots);
+  CollectPush push = Collector::push_of(reach, slots);
   push.samples = samples;
   push.screen_too = screen_too;
-  gpu::make_texel_room(p.device, p.taken, "slots that ask", uint64_t{slots} * 4);
-  p.resources.set("candidate_texels", candidates);
-  p.resources.set("Taken", p.taken);
-  p.resources.set("Asked", p.asked);
-  stream.fill(p.asked, 0);
-  stream.dispatch(p.asks, p.resources, push, gpu::groups_for(slots, 64), k_stage);
-  p.append(stream, p.collect_paths, p.taken, push);
-  const auto* asked = static_cast<const uint32_t*>(p.asked.mapped());
+  gpu::make_texel_room(c.device, c.taken, "slots that ask", uint64_t{slots} * 4);
+  c.resources.set("candidate_texels", candidates);
+  c.resources.set("Taken", c.taken);
+  c.resources.set("Asked", c.asked);
+  stream.fill(c.asked, 0);
+  stream.dispatch(c.asks, c.resources, push, gpu::groups_for(slots, 64), k_stage);
+  c.append(stream, impl_->sums, impl_->candidates, c.from_paths, c.taken, push);
+  const auto* asked = static_cast<const uint32_t*>(c.asked.mapped());
   return {asked[0], asked[1], asked[2]};
 }
 
 uint32_t Placement::collect(gpu::Stream& stream, const Screen& screen, const ReachOptions& reach) {
-  Impl& p = *impl_;
+  Collector& c = impl_->collector;
   if (screen.points == 0) return 0;
-  CollectPush push = Impl::push_of(reach, screen.points);
+  CollectPush push = Collector::push_of(reach, screen.points);
   push.cell = screen.cell, push.pixel = screen.pixel;
-  p.resources.set("surface_texels", screen.surfaces);
-  p.resources.set("TakenLevels", screen.levels);
-  return p.append(stream, p.collect_screen, screen.taken, push);
+  c.resources.set("surface_texels", screen.surfaces);
+  c.resources.set("TakenLevels", screen.levels);
+  return c.append(stream, impl_->sums, impl_->candidates, c.from_screen, screen.taken, push);
 }
 
-void Placement::add(gpu::Stream& stream, std::span<const Place> list) {
-  Impl& p = *impl_;
-  p.reserve(stream, p.size + uint32_t(list.size()));
-  std::vector<vec4> places, facings;
-  std::vector<uint32_t> media;
-  for (const Place& c : list) {
-    places.emplace_back(c.position, c.reach);
-    facings.emplace_back(c.normal, std::bit_cast<float>(c.facet | c.origin << k_place_origin_shift));
-    media.push_back(c.medium);
-  }
-  p.places.write(std::span<const vec4>(places), p.size);
-  p.facings.write(std::span<const vec4>(facings), p.size);
-  p.media.write(std::span<const uint32_t>(media), p.size);
-  p.size += uint32_t(list.size());
-}
+void Placement::add(gpu::Stream& stream, std::span<const Place> list) { impl_->candidates.add(stream, list); }
 
 std::vector<Place> Placement::choose(gpu::Stream& stream, const ChoiceOptions& o) {
-  Impl& p = *impl_;
-  p.picks.clear(), p.first_starts.clear();
-  p.sorted = nullptr;
-  if (p.size == 0 || o.most == 0) return {};
-  uint32_t n = p.size;
-  for (gpu::Buffer& e : p.entries)
-    gpu::make_texel_room(p.device, e, "candidates' keys", uint64_t{n} * sizeof(SortEntry64));
-  for (auto [buffer, name] : {std::pair{&p.head_flags, "heads of clusters"},
-                              {&p.head_sums, "heads' sums"},
-                              {&p.cluster_starts, "clusters"},
-                              {&p.ranks, "candidates' ranks"}})
-    gpu::make_texel_room(p.device, *buffer, name, uint64_t{n} * 4);
-  gpu::Resources& r = p.resources;
-  r.set("Grid", p.grid_buffer);
-  r.set("place_texels", p.places);
-  r.set("facing_texels", p.facings);
-  r.set("RunBounds", p.run_bounds);
-  r.set("run_bound_texels", p.run_bounds);
-  r.set("Entries", p.entries[0]);
-  r.set("Heads", p.head_flags);
-  r.set("HeadsBefore", p.head_sums);
-  r.set("Starts", p.cluster_starts);
-  r.set("Ranks", p.ranks);
-  r.set("Total", p.count);
-  ChoosePush push{n, o.seed, o.normal_tolerance};
-  const auto run = [&](const gpu::Kernel& kernel, uint32_t items) {
-    push.count = &kernel == &p.choose ? items : n;
-    stream.dispatch(kernel, r, &push, kernel.push_constant_bytes(), gpu::groups_for(items, 64), k_stage);
-  };
-  run(p.bounds, k_bounds_runs);
-  run(p.grid, 1);
-  run(p.keys, n);
-  p.sorted = &p.sorter.encode(stream, p.entries[0], p.entries[1], {.most = n}, 3 * k_morton_bits, k_stage);
-  const gpu::Buffer* from = p.sorted;
-  const gpu::Buffer& spare = from == &p.entries[0] ? p.entries[1] : p.entries[0];
-  uint32_t clusters = 0;
-  for (uint32_t round = 0;; ++round) {
-    p.count.write(&n, sizeof n);
-    r.set("entry_texels", *from);
-    run(p.heads, n);
-    p.prefix_sum.encode(stream, p.head_flags, p.head_sums, {.most = n}, &p.total, 0, k_stage);
-    run(p.starts, n);
-    stream.run();
-    clusters = p.sum();
-    if (round == 0) {
-      p.first_starts.resize(clusters);
-      p.cluster_starts.read(p.first_starts.data(), clusters * sizeof(uint32_t));
-    }
-    run(p.choose, clusters);
-    run(p.chosen, n);
-    p.prefix_sum.encode(stream, p.head_flags, p.head_sums, {.most = n}, &p.total, 0, k_stage);
-    stream.run();
-    if (p.sum() == n || round + 1 == k_rounds) break;
-    const gpu::Buffer& to = from == &spare ? p.entries[2] : spare;
-    r.set("Kept", to);
-    run(p.keep, n);
-    stream.run();
-    n = p.sum();
-    from = &to;
-  }
-
-  std::vector<SortEntry64> entries(n);
-  std::vector<uint32_t> ranks(n), starts(clusters + 1, n);
-  from->read(entries.data(), n * sizeof(SortEntry64));
-  p.ranks.read(ranks.data(), n * sizeof(uint32_t));
-  p.cluster_starts.read(starts.data(), clusters * sizeof(uint32_t));
-  std::vector<size_t> having(clusters, 0);
-  for (uint32_t c = 0; c < clusters; ++c)
-    for (uint32_t i = starts[c]; i < starts[c + 1]; ++i) having[c] += ranks[i] > 0;
-  const std::vector<size_t> quota = share_out(having, o.most);
-  for (uint32_t c = 0; c < clusters; ++c)
-    for (uint32_t i = starts[c]; i < starts[c + 1]; ++i)
-      if (ranks[i] > 0 && ranks[i] <= quota[c]) p.picks.push_back(entries[i].value);
-  const std::vector<Place> collected = p.read();
+  Chooser& c = impl_->chooser;
+  c.forget();
+  if (size() == 0 || o.most == 0) return {};
+  c.pick(c.run(stream, impl_->sums, impl_->candidates, o), o.most);
+  const std::vector<Place> collected = impl_->candidates.read();
   std::vector<Place> all;
-  for (const uint32_t i : p.picks) all.push_back(collected[i]);
+  for (const uint32_t i : c.picks) all.push_back(collected[i]);
   return all;
 }
 
 Choice Placement::choice() const {
-  const Impl& p = *impl_;
+  const Chooser& c = impl_->chooser;
   Choice all;
-  if (p.size == 0) return all;
-  std::vector<Place> collected = p.read();
-  if (!p.sorted) {
+  if (size() == 0) return all;
+  std::vector<Place> collected = impl_->candidates.read();
+  if (!c.sorted) {
     all.candidates = std::move(collected);
     return all;
   }
-  std::vector<SortEntry64> entries(p.size);
-  p.sorted->read(entries.data(), p.size * sizeof(SortEntry64));
-  std::vector<uint32_t> rank_of(p.size);
-  for (uint32_t i = 0, cluster = 0; i < p.size; ++i) {
+  std::vector<SortEntry64> entries(size());
+  c.sorted->read(entries.data(), size() * sizeof(SortEntry64));
+  std::vector<uint32_t> rank_of(size());
+  for (uint32_t i = 0, cluster = 0; i < size(); ++i) {
     const uint32_t source = entries[i].value;
     rank_of[source] = i;
     all.candidates.push_back(collected[source]);
-    if (cluster + 1 < p.first_starts.size() && i == p.first_starts[cluster + 1]) ++cluster;
+    if (cluster + 1 < c.first_starts.size() && i == c.first_starts[cluster + 1]) ++cluster;
     all.cluster.push_back(cluster);
   }
-  for (const uint32_t pick : p.picks) all.chosen.push_back(rank_of[pick]);
+  for (const uint32_t pick : c.picks) all.chosen.push_back(rank_of[pick]);
   return all;
 }
 
-uint32_t Placement::clusters() const { return uint32_t(impl_->first_starts.size()); }
-
-std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const float> radii,
-                               std::span<const float> off_planes, const ThinningOptions& o) {
-  std::vector<uint32_t> order(places.size()), kept;
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return radii[a] > radii[b]; });
-  // Grids of those kept, one for each power of two of what they cover: cells are as wide as that at most, so
-  // that whatever covers a point is centred in its cell or one of the 26 around it.
-  struct Cell {
-    int level;
-    int64_t x, y, z;
-    bool operator==(const Cell&) const = default;
-  };
-  struct Hash {
-    size_t operator()(const Cell& c) const {
-      return mix(mix(mix(mix(uint64_t(c.level)) + uint64_t(c.x)) + uint64_t(c.y)) + uint64_t(c.z));
-    }
-  };
-  std::unordered_map<Cell, std::vector<uint32_t>, Hash> grid;
-  std::set<int> levels;
-  const auto cell_at = [](const vec3& p, int level) {
-    const auto along = [&](float x) {
-      return static_cast<int64_t>(std::floor(std::ldexp(double(x), -level)));
-    };
-    return Cell{level, along(p.x), along(p.y), along(p.z)};
-  };
-  const auto covers = [&](uint32_t k, const Place& p) {
-    const vec3 away = p.position - places[k].position;
-    const float covered = o.share * radii[k];
-    const float turned = std::max(0.0f, 1 - dot(p.normal, places[k].normal));
-    return p.medium == places[k].medium && dot(away, away) <= covered * covered &&
-           turned <= o.share * o.share * o.normal_tolerance &&
-           std::abs(dot(away, p.normal + places[k].normal)) <= 2 * off_planes[k];
-  };
-  for (const uint32_t i : order) {
-    const Place& p = places[i];
-    bool covered = false;
-    for (const int level : levels) {
-      const Cell at = cell_at(p.position, level);
-      for (int n = 0; n < 27 && !covered; ++n) {
-        const auto found = grid.find({level, at.x + n % 3 - 1, at.y + n / 3 % 3 - 1, at.z + n / 9 - 1});
-        covered = found != grid.end() && std::any_of(found->second.begin(), found->second.end(),
-                                                     [&](uint32_t k) { return covers(k, p); });
-      }
-      if (covered) break;
-    }
-    if (covered) continue;
-    kept.push_back(i);
-    const float reach = o.share * radii[i];
-    if (!(reach > 0) || !std::isfinite(reach)) continue;
-    const int level = static_cast<int>(std::ceil(std::log2(reach)));
-    levels.insert(level);
-    grid[cell_at(p.position, level)].push_back(i);
-  }
-  std::sort(kept.begin(), kept.end());
-  return kept;
-}
+uint32_t Placement::clusters() const { return uint32_t(impl_->chooser.first_starts.size()); }
 
 }  // namespace lucerna::irradiance_cache

@@ -143,7 +143,7 @@ bool CacheSolver::prepare(transport::Wavefront& wavefront, const Picture& pictur
 
 bool CacheSolver::estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,
                                   bool anew, const Cancel& cancel) {
-  return cache_.tell_picture(wavefront, film, view(picture), anew, cancel);
+  return cache_.estimate_errors(wavefront, film, view(picture), anew, cancel);
 }
 
 void CacheSolver::warn_of_full_cache() {

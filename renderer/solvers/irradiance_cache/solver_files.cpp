@@ -14,18 +14,19 @@ const std::set<std::string> k_amounts{
     "cache.max_records",        "cache.passes",       "cache.stop",          "cache.candidates",
     "cache.candidates_falloff", "cache.depth_weight", "cache.normal_weight", "cache.irradiance_weight"};
 
-Making making_of(const Cache& cache, const OptionValues& settings, const solvers::Provenance& provenance) {
-  Making making;
-  making.scene = provenance.scene;
-  making.hashes = provenance.hashes;
+MadeWith what_made(const Cache& cache, const OptionValues& settings, const solvers::Provenance& provenance) {
+  MadeWith made_with;
+  made_with.scene = provenance.scene;
+  made_with.hashes = provenance.hashes;
   for (const OptionInfo& o : info().options)
     if (o.key.starts_with("cache.") && o.restarts && !k_amounts.contains(o.key))
-      making.settings[o.key] = settings.text(o.key);
-  for (const char* key : {"path.max_depth", "path.roulette_depth"}) making.settings[key] = settings.text(key);
-  making.parts = cache.parts();
-  making.recursive = cache.recursive();
-  making.seed = settings.text("seed");
-  return making;
+      made_with.settings[o.key] = settings.text(o.key);
+  for (const char* key : {"path.max_depth", "path.roulette_depth"})
+    made_with.settings[key] = settings.text(key);
+  made_with.parts = cache.parts();
+  made_with.recursive = cache.recursive();
+  made_with.seed = settings.text("seed");
+  return made_with;
 }
 
 /// All that decides which records this picture asks for, as text.
@@ -50,7 +51,7 @@ void CacheSolver::save(const std::string& file, const solvers::Picture& picture,
                 status.pass + 1, status.records);
   const OptionValues& settings = picture.task.settings;
   write_cache(file, {.program = LUCERNA_VERSION,
-                     .making = making_of(cache_, settings, provenance),
+                     .made_with = what_made(cache_, settings, provenance),
                      .view = view_text(settings, provenance),
                      .status = status,
                      .records = cache_.records().raw(status.records)});
@@ -61,16 +62,17 @@ void CacheSolver::load(const std::string& file, transport::Wavefront& wavefront,
   const OptionValues& settings = picture.task.settings;
   CacheFile saved = read_cache(file);
   const uint32_t room = cache_.records().capacity();
-  check_fits(saved, making_of(cache_, settings, provenance), room, file);
+  check_fits(saved, what_made(cache_, settings, provenance), room, file);
   // Of the view that it was complete for it lacks nothing, unless only room was missing then.
   const bool full = saved.status.stop == StopReason::records;
   const bool complete =
       saved.view == view_text(settings, provenance) && (!full || saved.records.size() == room);
   const uint32_t count = saved.records.size();
   cache_.restore(wavefront, std::move(saved.records), saved.status, complete);
-  log::info("{}: {} records{}{}", file, count,
-            complete ? ", complete for this view" : "; what this view is missing is added",
-            saved.making.seed == settings.text("seed") ? "" : " (made with seed " + saved.making.seed + ")");
+  log::info(
+      "{}: {} records{}{}", file, count,
+      complete ? ", complete for this view" : "; what this view is missing is added",
+      saved.made_with.seed == settings.text("seed") ? "" : " (made with seed " + saved.made_with.seed + ")");
 }
 
 }  // namespace lucerna::irradiance_cache

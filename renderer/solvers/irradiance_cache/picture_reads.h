@@ -16,12 +16,13 @@
 
 namespace lucerna::irradiance_cache {
 
-class Worth {
+class PictureReads {
  public:
   static constexpr uint32_t k_most_pixels = 1u << 20;
 
   /// Room for `capacity` records. `defines`: Cache::defines().
-  Worth(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t capacity, const gpu::Defines& defines);
+  PictureReads(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t capacity,
+               const gpu::Defines& defines);
 
   /// Forgets what was seen: the picture is to be that of `frame`, in larger pixels where there are more than
   /// k_most_pixels.
@@ -29,11 +30,12 @@ class Worth {
   void forget() { begun_ = false; }
   bool begun() const { return begun_; }
   bool seen() const { return begun_ && done_ == blocks(); }
-  /// Sends the next paths, as many as there are slots. The wavefront's frame is to be frame(), its kernels
-  /// note in `candidates` where they look up once they have been told k_probe_reads, and where the paths go
-  /// on to with k_probe_next. `next`: that counts too. False when it was cancelled.
+  /// Sends the next paths, as many as there are slots. The wavefront's frame is to be frame(). `write_frame`
+  /// writes the cache frame: with k_probe_reads kernels note in `candidates` where they look up, with
+  /// k_probe_next where the paths go on to. `next`: that counts too. False when it was cancelled.
   bool see(transport::Wavefront& wavefront, const gpu::Buffer& candidates, bool next,
-           const std::function<void(uint32_t probing)>& tell, const std::function<bool()>& cancel = {});
+           const std::function<void(uint32_t probing)>& write_frame,
+           const std::function<bool()>& cancel = {});
   const shared::Frame& frame() const { return frame_; }
 
   /// Of the first `count` records the sum over the pixels of the squared share, in squares of the picture's

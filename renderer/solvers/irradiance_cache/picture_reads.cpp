@@ -1,4 +1,4 @@
-#include "solvers/irradiance_cache/worth.h"
+#include "solvers/irradiance_cache/picture_reads.h"
 
 #include <algorithm>
 
@@ -16,8 +16,8 @@ constexpr uint32_t k_paths = 2;  ///< a pixel
 
 }  // namespace
 
-Worth::Worth(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t capacity,
-             const gpu::Defines& defines)
+PictureReads::PictureReads(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t capacity,
+                           const gpu::Defines& defines)
     : device_(device),
       keeping_(device, compiler, "irradiance_cache/worth_keep.comp", defines),
       adding_(device, compiler, "irradiance_cache/worth_add.comp", defines),
@@ -25,11 +25,11 @@ Worth::Worth(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t capaci
                      .bytes = uint64_t{capacity} * sizeof(WideSum),
                      .memory = gpu::Memory::host}) {}
 
-uint32_t Worth::blocks() const {
+uint32_t PictureReads::blocks() const {
   return (frame_.width + k_block - 1) / k_block * ((frame_.height + k_block - 1) / k_block);
 }
 
-void Worth::begin(const Frame& frame) {
+void PictureReads::begin(const Frame& frame) {
   begun_ = false;
   frame_ = frame;
   for (uint32_t k = 2; pixels() > k_most_pixels; ++k)
@@ -39,8 +39,9 @@ void Worth::begin(const Frame& frame) {
   begun_ = true;
 }
 
-bool Worth::see(transport::Wavefront& wavefront, const gpu::Buffer& candidates, bool next,
-                const std::function<void(uint32_t probing)>& tell, const std::function<bool()>& cancel) {
+bool PictureReads::see(transport::Wavefront& wavefront, const gpu::Buffer& candidates, bool next,
+                       const std::function<void(uint32_t probing)>& write_frame,
+                       const std::function<bool()>& cancel) {
   schedule::WorkItem item{{}, k_paths};
   const uint32_t end = std::min(blocks(), done_ + std::max(1u, wavefront.slots() / (64 * k_paths)));
   for (uint32_t b = done_; b < end; ++b) item.blocks.push_back({b, 0});
@@ -51,9 +52,9 @@ bool Worth::see(transport::Wavefront& wavefront, const gpu::Buffer& candidates, 
        {std::pair{k_probe_reads, &places_}, std::pair{k_probe_next, &next_places_}}) {
     if (probing == k_probe_next && !next) continue;
     stream.fill(candidates, 0);
-    tell(probing);
+    write_frame(probing);
     const bool complete = wavefront.probe(item, cancel);
-    tell(k_probe_none);
+    write_frame(k_probe_none);
     if (!complete) return false;
     resources_.set("candidate_texels", candidates);
     resources_.set("Places", *to);
@@ -65,8 +66,8 @@ bool Worth::see(transport::Wavefront& wavefront, const gpu::Buffer& candidates, 
   return true;
 }
 
-std::vector<float> Worth::measure(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind,
-                                  uint32_t count) {
+std::vector<float> PictureReads::measure(gpu::Stream& stream,
+                                         const std::function<void(gpu::Resources&)>& bind, uint32_t count) {
   bind(resources_);
   resources_.set("place_texels", places_);
   resources_.set("next_place_texels", next_ ? next_places_ : places_);

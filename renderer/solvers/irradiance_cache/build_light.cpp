@@ -1,0 +1,164 @@
+// The light of a pass's records, level by level, and when lookups get it.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "gpu/stream.h"
+#include "solvers/irradiance_cache/build.h"
+#include "solvers/irradiance_cache/noise.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+/// How much of the picture reads a record (PictureReads) of which the option `noise` is true after the first
+/// level, in squares of the picture's height: about what one does with a radius of 3 % of that.
+constexpr float k_noisy_worth = 0.03f * 0.03f * 0.5f;
+
+}  // namespace
+
+bool Cache::Impl::see_reads(const Work& w) {
+  PictureReads& reads = picture.reads;
+  if (!reads.begun()) reads.begin(w.view.paths_frame);
+  StageTimer timer(w.wavefront);
+  w.wavefront.set_frame(reads.frame(), w.view.paths_enabled);
+  const bool complete = reads.see(
+      w.wavefront, tables.candidates, gathers.recursive, [this](uint32_t probing) { write_frame(probing); },
+      w.cancel);
+  w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
+  add_time(BuildStep::probe, timer.milliseconds());
+  return complete;
+}
+
+bool Cache::Impl::gather(const Work& w) {
+  RecordQueue& queue = progress.queue;
+  const RayLevels& levels = progress.levels;
+  const uint32_t rays = levels.round_rays(), elevations = elevations_for(rays);
+  const std::span<const uint32_t> batch = queue.next(std::max(1u, w.wavefront.slots() / rays));
+  w.wavefront.set_frame(w.view.records_frame, w.view.records_enabled);
+  write_frame(k_probe_none, tables.record_routes);
+  StageTimer timer(w.wavefront);
+  const size_t done = evaluator.evaluate(w.wavefront, w.automaton, tables.records, batch,
+                                         {.elevations = elevations,
+                                          .azimuths = 4 * elevations,
+                                          .rays_before = levels.rays_before(),
+                                          .parts = gathers.parts,
+                                          .seed = options.seed,
+                                          .near = radii.by_light() && levels.in_first_round(),
+                                          .guides = options.gather && levels.level() == 0},
+                                         w.cancel);
+  w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
+  write_frame();
+  if (done < batch.size()) return false;
+  add_time(BuildStep::evaluate, timer.milliseconds());
+  queue.advance(done);
+  if (status.relighting > 0 && levels.level() == 0)
+    status.relit = (float(ranges.evaluated()) +
+                    float(ranges.waiting()) * float(queue.done_count()) / float(queue.all().size())) /
+                   float(status.relighting);
+  add_rays(done, rays);
+  return true;
+}
+
+bool Cache::Impl::evaluate(const Work& w) {
+  if (!picture.reads.seen()) return see_reads(w);
+  RayLevels& levels = progress.levels;
+  if (!progress.queue.done()) {
+    if (!gather(w)) return false;
+    if (!progress.queue.done()) return true;
+    progress.queue.rewind();
+    if (!levels.end_round()) return true;
+  }
+  levels.end_level();
+  const uint32_t done_level = levels.level() + 1;
+  const bool first = ranges.waiting() > 0;
+  bool more_levels = true;
+  if (first) {
+    progress.stage = Stage::index;
+  } else {
+    more_levels = next_level();
+    publish_level(w);
+  }
+  end_stage(BuildStage::evaluate, !more_levels);
+  status.last->level = done_level;
+  if (!more_levels) end_pass(w);
+  return true;
+}
+
+/// Records of the first level get their radii and become those that paths find.
+bool Cache::Impl::index(const Work& w) {
+  progress.stage = Stage::evaluate;
+  publish_level(w);
+  StageTimer timer(w.wavefront);
+  picture.worth = picture.reads.measure(w.stream(), binding(), ranges.evaluated());
+  add_time(BuildStep::probe, timer.milliseconds());
+  const bool more_levels = next_level();
+  end_stage(BuildStage::octree, !more_levels);
+  if (!more_levels) end_pass(w);
+  return true;
+}
+
+void Cache::Impl::publish_level(const Work& w) {
+  tables.records.publish(w.stream());
+  // Radii come from the first level; what the rays of later ones meet clamps them at the end of the pass, and
+  // the next one fills the gaps. A cache that reads itself does so from the second level on: the first, of
+  // few rays, then is all that is traced without the records of its own pass.
+  ++status.published;
+  if (ranges.waiting() == 0) return;
+  // Ellipses are by the light; circles stand.
+  const bool anew = ranges.has_new() || radii.by_light();
+  if (anew) {
+    set_radii(w, radii.by_light() ? By::light : By::distance);
+    held = gathers;
+  }
+  ranges.evaluate_pass();
+  status.records = ranges.evaluated();
+  StageTimer timer(w.wavefront);
+  build_octree(w.wavefront);
+  if (anew && radii.bounded()) {
+    bound_radii(w);
+    build_octree(w.wavefront);
+  }
+  add_time(BuildStep::octree, timer.milliseconds());
+  if (anew) clamp_radii(w, ranges.evaluated(), options.nearest);
+  write_frame();
+}
+
+/// What noise a record may have and be done, over the option. One more level is worth what it takes from the
+/// picture's squared error, per ray: with n rays so far, noise^2 A / n where A is how much of the picture
+/// reads the record (PictureReads). Equal worth is noise in proportion to sqrt(n) / sqrt(A).
+float Cache::Impl::share_of_noise(uint32_t record) const {
+  // Nobody reads some: those stop at the first level.
+  constexpr float k_least = 1e-20f;
+  return std::ldexp(std::sqrt(k_noisy_worth / std::max(picture.worth[record], k_least)),
+                    int(progress.levels.level()));
+}
+
+bool Cache::Impl::next_level() {
+  RecordQueue& queue = progress.queue;
+  queue.set(without_crowded(queue.all()));  // the rays so far may have met what is near
+  if (queue.done() || uint64_t{4} * progress.levels.rays() > options.most_rays) return false;
+  const std::vector<Records::Figures> figures = tables.records.figures();
+  const std::vector<float> light = tables.records.luminances();
+  std::vector<Noise> noises;
+  for (const uint32_t r : queue.all())
+    noises.push_back({figures[r].error, light[r], options.noise * share_of_noise(r)});
+  std::vector<uint32_t> longer;
+  for (const uint32_t i : too_noisy(noises, dark_luminance(light, ranges.evaluated())))
+    longer.push_back(queue.all()[i]);
+  queue.set(std::move(longer));
+  if (queue.done()) return false;
+  progress.levels.next();
+  return true;
+}
+
+std::vector<uint32_t> Cache::Impl::without_crowded(std::vector<uint32_t> list) const {
+  if (!options.gather) return list;
+  const std::vector<bool> crowded = tables.records.crowded();
+  std::erase_if(list, [&](uint32_t record) { return crowded[record]; });
+  return list;
+}
+
+}  // namespace lucerna::irradiance_cache

@@ -1,0 +1,200 @@
+// The places of a pass's records: what asks for one, which of that is tried, which of that is needed.
+#include <algorithm>
+#include <cmath>
+
+#include "base/timer.h"
+#include "gpu/stream.h"
+#include "solvers/irradiance_cache/build.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+/// Spacing of the points that are tried in the first pass, in the scene's radius; each pass quarters it, down
+/// to a share of the least radius that records may have there. Of what is tried only what is needed is kept,
+/// so that this says how finely a pass looks, not how many records it leaves.
+constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
+/// Passes that ask beyond the lookup too, where the cache reads itself, and how finely they look there: what
+/// no record serves there costs time, not accuracy.
+constexpr uint32_t k_deep_passes = 3;
+constexpr float k_deep_spacing = 1.0f / 64;
+/// Width of the finest cells of the picture that ask, in the spacing of the pass: gaps about finer detail are
+/// left to later passes, whose records read those of the first and are cheaper.
+constexpr float k_finest_of_spacing = 0.5f;
+/// Passes that look along one path a pixel; paths a pixel that later ones look along at most, until so many
+/// of the pixels' number ask.
+constexpr uint32_t k_looks_once = 3, k_most_looks = 16;
+constexpr float k_enough_ask = 0.1f;
+/// Passes that go on for the irradiance that the records give, when few paths ask.
+constexpr uint32_t k_refining_passes = 4;
+
+/// Paths a pixel that a pass looks along at most: twice as many as the one before, once what is left is fine
+/// detail.
+uint32_t most_looks(uint32_t pass) {
+  uint32_t looks = 1;
+  for (uint32_t p = k_looks_once; p <= pass && looks < k_most_looks; ++p) looks *= 2;
+  return looks;
+}
+
+}  // namespace
+
+bool Cache::Impl::probe(const Work& w) {
+  PictureProbing& probing = progress.probing;
+  if (!probing.begun) {
+    probing.schedule = {((w.view.width + 7) / 8) * ((w.view.height + 7) / 8), 1, w.wavefront.slots()};
+    begin_pass(w);
+  }
+  bool cancelled = false;
+  if (!look(w, cancelled)) return !cancelled;
+  const schedule::UniformSchedule before = probing.schedule;
+  schedule::WorkItem item = probing.schedule.next();
+  // Each pass looks along paths of its own.
+  for (WorkBlock& b : item.blocks) b.first_sample += probing.paths_before;
+  write_frame(gathers.recursive && probing.asks_beyond && status.pass < k_deep_passes ? k_probe_beyond
+                                                                                      : k_probe_lookups);
+  StageTimer timer(w.wavefront);
+  w.stream().fill(tables.candidates, 0);
+  const bool complete = w.wavefront.probe(item, w.cancel);
+  write_frame();
+  if (!complete) {
+    probing.schedule = before;
+    return false;
+  }
+  add_time(BuildStep::probe, timer.milliseconds());
+  collect(w, item);
+  if (probing.schedule.done()) end_probing();
+  return true;
+}
+
+void Cache::Impl::end_probing() {
+  PictureProbing& probing = progress.probing;
+  const uint32_t looks = probing.schedule.complete();
+  const bool covered = double(status.asked) <= double(options.stop_share) * double(status.paths);
+  // Few that ask show where gaps are, not how wide they are: each would get a record that serves little else.
+  if (!covered && looks < most_looks(status.pass) &&
+      double(status.asked) * looks < double(k_enough_ask) * double(status.paths)) {
+    probing.schedule.set_samples(2 * looks);
+    return;
+  }
+  probing.paths_before += looks;
+  probing.begun = false;
+  const bool last = covered && (status.pass >= k_refining_passes ||
+                                double(pass().screen) <=
+                                    double(options.stop_share) * double(picture.screen.sight().points()));
+  // Few ask, and may stand side by side: a hole in a wall is seen however small its share of the picture is.
+  // Not when light has changed: then there would be a little more with every change.
+  probing.filling = last && probing.asks_beyond && status.asked > 0;
+  if (last && !probing.filling)
+    finish(StopReason::covered);
+  else
+    progress.stage = Stage::choose;
+  end_stage(BuildStage::probe);
+}
+
+bool Cache::Impl::looks_first() const {
+  return options.screen.density > 0 && tables.picture_routes[0] != k_no_routes && status.pass == 0;
+}
+
+ReachOptions Cache::Impl::reach(const CacheView& view) const {
+  return {.spacing = view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(status.pass)),
+          .spacing_beyond = view.scene_radius * k_deep_spacing,
+          .spacing_of_distance = k_spacing_of_least * tables.least.of_distance,
+          .eye = tables.least.eye,
+          .parallel = tables.least.parallel};
+}
+
+bool Cache::Impl::see(transport::Wavefront& wavefront, const CacheView& view,
+                      const std::function<bool()>& cancel) {
+  if (!picture.screen.begun()) picture.screen.begin(view.paths_frame);
+  write_frame(k_probe_screen);
+  const bool complete = picture.screen.see(wavefront, tables.candidates, cancel);
+  write_frame();
+  return complete;
+}
+
+void Cache::Impl::see_all(transport::Wavefront& wavefront, const CacheView& view) {
+  if (picture.screen.seen()) return;
+  wavefront.uncounted([&] {
+    while (!picture.screen.seen()) see(wavefront, view, {});
+  });
+}
+
+bool Cache::Impl::look(const Work& w, bool& cancelled) {
+  // The first pass looks at the geometry; later ones at what the records make of it.
+  const bool geometry = looks_first();
+  const bool irradiance = options.screen.density > 0 && options.screen.irradiance_weight > 0 &&
+                          tables.picture_routes[0] != k_no_routes && status.pass > 0 &&
+                          ranges.evaluated() > 0;
+  if (progress.probing.screen_done || !(geometry || irradiance)) return true;
+  StageTimer timer(w.wavefront);
+  Discontinuity& screen = picture.screen;
+  if (!screen.seen()) {
+    cancelled = !see(w.wavefront, w.view, w.cancel);
+  } else {
+    const Discontinuity::Of of = geometry ? Discontinuity::Of::geometry : Discontinuity::Of::irradiance;
+    screen.look_up(w.stream(), binding());
+    screen.measure(w.stream(), of, options.screen, dark());
+    const float spacing = reach(w.view).spacing;
+    screen.dither(w.stream(), of, options.screen,
+                  {.least_width = k_spacing_of_least * options.least_pixels,
+                   .finest = k_finest_of_spacing * spacing,
+                   .flat_side = geometry ? spacing : 0},
+                  options.seed + status.pass);
+    pass().screen = places.candidates.collect(w.stream(), screen.screen(), reach(w.view));
+    progress.probing.screen_done = true;
+  }
+  add_time(BuildStep::screen, timer.milliseconds());
+  return false;
+}
+
+void Cache::Impl::collect(const Work& w, const schedule::WorkItem& item) {
+  StageTimer timer(w.wavefront);
+  const std::array<uint32_t, 3> by_origin = places.candidates.collect(
+      w.stream(), tables.candidates, item.slots(), item.sample_count, !looks_first(), reach(w.view));
+  add_time(BuildStep::choose, timer.milliseconds());
+  status.asked += by_origin[0] + by_origin[1] + by_origin[2];
+  status.paths += item.slots();
+  pass().asked = status.asked, pass().paths = status.paths;
+  pass().asked_world += by_origin[1] + by_origin[2];
+  pass().candidates = places.candidates.size();
+  places.changed();
+}
+
+/// Which of the places asked for are tried.
+bool Cache::Impl::choose(const Work& w) {
+  const Timer wall;
+  Records& records = tables.records;
+  places.tried = places.candidates.choose(w.stream(), {.normal_tolerance = k_normal_tolerance,
+                                                       .seed = options.seed + status.pass,
+                                                       .most = records.capacity() - records.size()});
+  pass().tried = uint32_t(places.tried.size());
+  pass().clusters = places.candidates.clusters();
+  count_bytes();
+  records.append(places.tried, status.pass);
+  queue_until(records.size());
+  add_time(BuildStep::choose, wall.milliseconds());
+  progress.stage = Stage::measure;
+  end_stage(BuildStage::choose);
+  return true;
+}
+
+bool Cache::Impl::thin() {
+  const Timer host;
+  std::vector<float> off_planes;
+  for (size_t i = 0; i < places.tried.size(); ++i)
+    off_planes.push_back(tables.off_plane(places.tried[i], places.radii[i]));
+  places.chosen = thin_out(places.tried, places.radii, off_planes,
+                           {.share = options.thinning, .normal_tolerance = k_normal_tolerance});
+  tables.records.keep(ranges.evaluated(), places.chosen);
+  pass().records = uint32_t(places.chosen.size());
+  queue_until(tables.records.size());
+  add_time(BuildStep::choose, host.milliseconds());
+  progress.levels.restart();
+  progress.stage = Stage::evaluate;
+  end_stage(BuildStage::thin);
+  return true;
+}
+
+}  // namespace lucerna::irradiance_cache

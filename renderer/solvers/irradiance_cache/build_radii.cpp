@@ -1,0 +1,130 @@
+// How far the records of a pass serve, and which of them crowd.
+#include <algorithm>
+
+#include "gpu/stream.h"
+#include "solvers/irradiance_cache/build.h"
+#include "solvers/irradiance_cache/noise.h"
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+/// Of the least radius: where something is nearer, records crowd. They would be read by few pixels, each with
+/// a noise of its own.
+constexpr float k_crowds = 2;
+
+}  // namespace
+
+float Cache::Impl::crowd() const {
+  return options.gather && progress.stage == Stage::measure && status.relighting == 0 ? k_crowds : 0.0f;
+}
+
+Radii::Wanted Cache::Impl::wanted_radii() const {
+  return {
+      .first = ranges.evaluated(), .count = ranges.waiting(), .most = tables.least.most, .crowd = crowd()};
+}
+
+/// How far things are around what is tried, and how light bends there, says how wide its records will be, and
+/// so which are needed.
+bool Cache::Impl::measure(const Work& w) {
+  const std::span<const uint32_t> batch =
+      progress.queue.next(std::max(1u, w.wavefront.slots() / Evaluator::k_distance_rays));
+  w.wavefront.set_frame(w.view.records_frame, w.view.records_enabled);
+  write_frame(k_probe_none, tables.record_routes);
+  StageTimer timer(w.wavefront);
+  const size_t done =
+      radii.by_light()
+          ? evaluator.pilot(w.wavefront, w.automaton, tables.records, batch,
+                            {.elevations = Evaluator::k_distance_elevations,
+                             .azimuths = Evaluator::k_distance_rays / Evaluator::k_distance_elevations,
+                             .parts = gathers.parts,
+                             .seed = options.seed},
+                            w.cancel)
+          : evaluator.measure(w.wavefront, tables.records, batch, options.seed, w.cancel);
+  w.wavefront.set_frame(w.view.paths_frame, w.view.paths_enabled);
+  write_frame();
+  progress.queue.advance(done);
+  add_time(BuildStep::measure, timer.milliseconds());
+  add_rays(done, Evaluator::k_distance_rays);
+  if (done < batch.size()) return false;
+  if (!progress.queue.done()) return true;
+  set_radii(w, By::distance);
+  if (radii.by_light()) {
+    pool(w);
+    set_radii(w, By::light);
+  }
+  if (status.relighting > 0) {
+    queue_until(ranges.pass_end());
+    progress.stage = Stage::evaluate;
+  } else {
+    clamp_radii(w, ranges.pass_end(), radii.tried_near());
+    places.radii = tables.records.radii(ranges.evaluated());
+    progress.stage = Stage::thin;
+  }
+  end_stage(BuildStage::measure);
+  return true;
+}
+
+void Cache::Impl::pool(const Work& w) {
+  if (ranges.waiting() == 0) return;
+  StageTimer timer(w.wavefront);
+  build_octree(w.wavefront, ranges.pass_end());
+  radii.pool(w.stream(), binding(), ranges.evaluated(), ranges.waiting());
+  build_octree(w.wavefront);
+  add_time(BuildStep::radius, timer.milliseconds());
+}
+
+void Cache::Impl::set_radii(const Work& w, By by) {
+  if (ranges.waiting() == 0) return;
+  StageTimer timer(w.wavefront);
+  if (by == By::light)
+    radii.set_by_light(w.stream(), binding(), wanted_radii(), w.view.scene_radius,
+                       dark_luminance(tables.records.pilot_luminances(), ranges.pass_end()));
+  else
+    radii.set_by_distance(w.stream(), binding(), wanted_radii());
+  add_time(BuildStep::radius, timer.milliseconds());
+}
+
+void Cache::Impl::bound_radii(const Work& w) {
+  radii.bound(w.stream(), binding(), ranges.evaluated());
+  count_bytes();
+}
+
+void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near) {
+  const auto index_first = [&](uint32_t n) {
+    StageTimer timer(w.wavefront);
+    build_octree(w.wavefront, n);
+    add_time(BuildStep::octree, timer.milliseconds());
+  };
+  if (count > ranges.evaluated()) index_first(count);
+  StageTimer timer(w.wavefront);
+  radii.clamp(w.stream(), binding(), count, near, crowd(), ranges.evaluated());
+  add_time(BuildStep::radius, timer.milliseconds());
+  index_first(ranges.evaluated());
+}
+
+void Cache::Impl::drop_roomy(const Work& w) {
+  // Twice as much room as they need, so that they are not tried again with every move of the camera.
+  constexpr float k_roomy = 2;
+  if (!options.gather || ranges.complete() == 0) return;
+  RawRecords raw = tables.records.raw(ranges.complete());
+  std::vector<uint32_t> kept;
+  for (uint32_t r = 0; r < raw.size(); ++r) {
+    const vec4* const texels = &raw.places[size_t{r} * k_record_texels];
+    const float needed = k_roomy * tables.least.at(vec3(texels[0])), lesser_radius = texels[3].w,
+                nearest = texels[2].y;
+    if (!raw.crowded(r) || lesser_radius < needed || options.nearest * nearest < k_crowds * needed)
+      kept.push_back(r);
+  }
+  if (kept.size() == raw.size()) return;
+  raw.keep(kept);
+  const uint64_t published = status.published;
+  replace_records(raw);
+  status.published = published + 1;
+  build_octree(w.wavefront);
+  write_frame();
+}
+
+}  // namespace lucerna::irradiance_cache

@@ -1,0 +1,106 @@
+#include "solvers/irradiance_cache/lookup_tables.h"
+
+#include <cmath>
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+/// References of the octree that there is memory for, a record.
+constexpr uint32_t k_references = 16;
+
+/// Records that a leaf of it lists before it is split.
+constexpr uint32_t k_crowd = 16;
+
+/// Of a record's radius: how far off its plane it serves at most. Off the plane between its own and the
+/// point's it is `off_plane`; half of what the normals differ by turns that away from its own.
+float slab_thickness(float off_plane, float normal_tolerance) {
+  return off_plane + 0.5f * std::sqrt(2 * normal_tolerance);
+}
+
+/// As CacheFrame::routes.
+RouteTable packed(const paths::LookupRoutes& routes, const paths::LookupRoutes& gather) {
+  RouteTable table;
+  table.fill(k_no_routes);
+  for (const auto& [from, of] : {std::pair{0u, &routes}, std::pair{k_gather_state, &gather}})
+    for (size_t s = 0; s < of->component.size(); ++s) {
+      table[from + s] = 0;
+      for (uint32_t p = 0; p < k_part_count; ++p)
+        table[from + s] |= std::min<uint32_t>(of->component[s][p], k_component_count) << (4 * p);
+    }
+  return table;
+}
+
+bool looks_up(uint32_t routes) { return routes != k_no_routes; }
+
+}  // namespace
+
+LookupTables::LookupTables(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
+                           const CacheRoutes& routes, const CacheOptions& o)
+    : records(device, o.most_records),
+      octree(device, compiler,
+             {.spheres = o.most_records,
+              .references = k_references * o.most_records,
+              .copies = true,
+              .discs = true,
+              .crowd = k_crowd}),
+      frame(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)}),
+      candidates(device, {.name = "cache candidates",
+                          .bytes = uint64_t{slots} * 16 * k_candidate_texels,
+                          .memory = gpu::Memory::host,
+                          .texel = true}) {
+  const paths::LookupRoutes none;
+  picture_routes = packed(routes.picture, o.gather ? routes.picture_gather : none);
+  record_routes = packed(routes.records, o.gather ? routes.records_gather : none);
+}
+
+void LookupTables::bind(gpu::Resources& to) const {
+  records.bind(to, Records::Use::look_up);
+  to.set("CacheBlock", frame);
+  to.set("Candidates", candidates);
+  octree.bind(to);
+}
+
+double LookupTables::build_octree(transport::Wavefront& wavefront, uint32_t count) {
+  const lookup::Discs discs =
+      records.discs(slab_thickness(std::max(k_off_plane, k_off_plane_least), k_normal_tolerance));
+  const shared::OctreeHeader& h =
+      octree.build(wavefront.stream(), records.spheres(), {.most = count}, &discs);
+  const double references = h.spheres ? double(h.references) / h.spheres : 0;
+  wavefront.rebind_lookup();
+  return references;
+}
+
+void LookupTables::write_frame(uint32_t count, uint32_t probing, const RouteTable& routes) {
+  CacheFrame f{};
+  std::copy(routes.begin(), routes.end(), f.routes);
+  f.record_count = count;
+  f.normal_tolerance = k_normal_tolerance;
+  f.off_plane = k_off_plane, f.off_plane_least = k_off_plane_least;
+  f.least_of_distance = least.of_distance, f.least_most = least.most;
+  f.eye = least.eye, f.parallel = least.parallel;
+  f.probing = probing;
+  frame.write(&f, sizeof f);
+}
+
+bool LookupTables::records_look_up() const {
+  return std::any_of(record_routes.begin(), record_routes.end(), looks_up);
+}
+
+RouteTable LookupTables::routes_beyond_picture() const {
+  // Beyond the picture's lookups paths read where the rays of records do; and what those have read has read
+  // what its own rays met, however many diffuse events further on.
+  RouteTable table = picture_routes;
+  const auto end = record_routes.begin() + k_gather_state;
+  const auto own = std::find_if(record_routes.begin(), end, looks_up);
+  if (own != end) std::fill_n(table.begin() + k_fallback_state + 1, k_gather_state - 1, *own);
+  return table;
+}
+
+uint64_t LookupTables::bytes() const {
+  return uint64_t{records.capacity()} * k_record_bytes + candidates.bytes() + octree.bytes();
+}
+
+}  // namespace lucerna::irradiance_cache

@@ -1,0 +1,51 @@
+#pragma once
+// How far building has come: what of the picture has been asked, and how long stages have taken. No device:
+// pure state.
+#include <cstdint>
+#include <optional>
+
+#include "schedule/uniform.h"
+#include "solvers/irradiance_cache/build_log.h"
+
+namespace lucerna::irradiance_cache {
+
+/// How the picture is looked at, in this pass and in those before.
+struct PictureProbing {
+  schedule::UniformSchedule schedule;  ///< of the paths of this pass; it holds only while `begun`
+  bool begun = false;                  ///< probing, in this pass
+  bool screen_done = false;            ///< the screen-space stage, in this pass
+  bool camera_moved = false;           ///< since the last pass began
+  uint32_t paths_before = 0;           ///< a pixel, of the passes before: each looks along paths of its own
+  /// Paths ask beyond the picture's lookups too in the first passes, where the cache reads itself.
+  bool asks_beyond = true;
+  /// This pass is the last: few ask, but these may stand side by side.
+  bool filling = false;
+
+  /// Passes are counted from the beginning.
+  void restart(bool beyond) {
+    paths_before = 0;
+    asks_beyond = beyond;
+    filling = false;
+  }
+};
+
+/// Times the stages of a pass by what the pass has taken so far.
+class StageClock {
+ public:
+  /// A pass begins.
+  void restart() { ms_before_ = 0, rays_before_ = 0; }
+  /// A stage of it has ended.
+  StageDone end(BuildStage stage, const CachePass& pass) {
+    const double ms = pass.total_ms();
+    const StageDone done{
+        .stage = stage, .pass = pass.number, .ms = ms - ms_before_, .rays = pass.rays - rays_before_};
+    ms_before_ = ms, rays_before_ = pass.rays;
+    return done;
+  }
+
+ private:
+  double ms_before_ = 0;  // of this pass, at the end of the stage that ended last
+  uint64_t rays_before_ = 0;
+};
+
+}  // namespace lucerna::irradiance_cache

@@ -1,0 +1,74 @@
+#pragma once
+// Rays of the records of a pass: a first level for all, then levels of four times as many for those that are
+// still too noisy. No device: pure state.
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "solvers/irradiance_cache/evaluate.h"
+
+namespace lucerna::irradiance_cache {
+
+/// The records that a stage goes through, in their order, and how many of them it is done with.
+class RecordQueue {
+ public:
+  /// Those from `first` to `end`; none is done.
+  void set(uint32_t first, uint32_t end) {
+    list_.resize(end - first);
+    std::iota(list_.begin(), list_.end(), first);
+    done_ = 0;
+  }
+  /// Those; none is done.
+  void set(std::vector<uint32_t> records) { list_ = std::move(records), done_ = 0; }
+  /// All of them once more.
+  void rewind() { done_ = 0; }
+  const std::vector<uint32_t>& all() const { return list_; }
+  /// The next ones, `most` at most; advance() says how many of these are done.
+  std::span<const uint32_t> next(size_t most) const {
+    const std::span<const uint32_t> left = std::span(list_).subspan(done_);
+    return left.first(std::min(left.size(), most));
+  }
+  void advance(size_t count) { done_ += count; }
+  bool done() const { return done_ >= list_.size(); }
+  size_t done_count() const { return done_; }
+
+ private:
+  std::vector<uint32_t> list_;
+  size_t done_ = 0;
+};
+
+/// Level k has 4^k times the rays of the first. One of more rays than can be summed at once is done in rounds
+/// of as many: rays_before() is what each record in the queue has had, in all levels and rounds so far.
+class RayLevels {
+ public:
+  /// `rays`: of the first level.
+  explicit RayLevels(uint32_t rays) : first_(rays) {}
+  uint32_t level() const { return level_; }
+  uint32_t rays() const { return first_ << 2 * level_; }  ///< of each record, in this level
+  uint32_t round_rays() const {
+    uint32_t rays = this->rays();
+    while (rays > Evaluator::k_most_rays) rays /= 4;
+    return rays;
+  }
+  uint32_t rays_before() const { return before_; }
+  bool in_first_round() const { return level_ == 0 && in_level_ == 0; }
+
+  /// From the first ray on, for the records of another pass.
+  void restart() { level_ = in_level_ = before_ = 0; }
+  /// All records have had a round; true when that was the last of the level.
+  bool end_round() {
+    before_ += round_rays();
+    in_level_ += round_rays();
+    return in_level_ >= rays();
+  }
+  void end_level() { in_level_ = 0; }
+  void next() { ++level_; }
+
+ private:
+  uint32_t first_, level_ = 0, in_level_ = 0, before_ = 0;
+};
+
+}  // namespace lucerna::irradiance_cache
