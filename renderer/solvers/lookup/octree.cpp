@@ -91,13 +91,44 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
   slots_.write(free, sizeof(free));
 }
 
+/// One build: the stream it is encoded into, what its kernels read and are told.
+struct Octree::Work {
+  gpu::Stream& stream;
+  gpu::Resources resources{};
+  shared::OctreePush push{};
+
+  void run(const gpu::Kernel& kernel, uint32_t groups) {
+    // Those that use no push constant have none.
+    stream.dispatch(kernel, resources, &push, kernel.push_constant_bytes(), groups, k_stage);
+  }
+};
+
 const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer& spheres,
                                           const sort::Count& count, const Discs* discs) {
   assert(options_.discs == (discs != nullptr));
   if (count.most > options_.spheres || spheres.bytes() / sizeof(vec4) < count.most)
     throw_error("octree", "{} spheres were given; it was made for {}, and '{}' has room for {}", count.most,
                 options_.spheres, spheres.name(), spheres.bytes() / sizeof(vec4));
-  gpu::Resources r;
+  Work work{stream};
+  bind_spheres(work, spheres, count, discs);
+  write_references(work, count);
+  const sort::Count written{work.push.capacity, &header_buffer_, offsetof(shared::OctreeHeader, references)};
+  references_ = &sorter_.encode(stream, pairs_[0], pairs_[1], written, 3 * header_.level, k_stage);
+  if (options_.crowd > 0 && header_.overflow == 0) work.push.most_split = most_split(header_);
+  cut_into_leaves(work);
+  if (work.push.most_split > 0) split_crowded(work, written);
+  if (options_.copies) work.run(copy_, groups_);
+  stream.run();
+  const uint32_t split = header_.split;
+  header_buffer_.read(&header_, sizeof(header_));
+  header_.split = split;
+  header_.references = std::min(header_.references, header_.capacity);
+  return header_;
+}
+
+void Octree::bind_spheres(Work& work, const gpu::Buffer& spheres, const sort::Count& count,
+                          const Discs* discs) const {
+  gpu::Resources& r = work.resources;
   r.set("spheres", spheres);
   r.set("SphereCount", count.buffer ? *count.buffer : unused_);
   r.set("OctreeHeaders", header_buffer_);
@@ -116,89 +147,87 @@ const shared::OctreeHeader& Octree::build(gpu::Stream& stream, const gpu::Buffer
   r.set("SplitReferences", splits_);
   r.set("split_places", splits_);
   r.set("octree_slots", slots_);
-  shared::OctreePush push{count.most,
-                          count.buffer ? uint32_t(count.offset / 4) : shared::k_sort_count_here,
-                          std::max(options_.references, 1u),
-                          uint32_t(slots_.bytes() / sizeof(uvec4)),
-                          std::max(options_.crowd > 0 ? options_.references / 2 : options_.references, 1u),
-                          0,
-                          options_.crowd,
-                          options_.leaf_scale,
-                          discs ? discs->stride : 0,
-                          discs ? discs->at : 0,
-                          discs ? discs->thickness : 0};
   if (discs) r.set("disc_normals", discs->normals);
-  const auto run = [&](const gpu::Kernel& kernel, uint32_t groups) {
-    // Those that use no push constant have none.
-    stream.dispatch(kernel, r, &push, kernel.push_constant_bytes(), groups, k_stage);
-  };
-  run(bounds_, groups_);
-  run(grid_, 1);
-  run(levels_, groups_);
-  run(choose_, 1);
-  const uint32_t sphere_groups = gpu::groups_for(count.most, 64);
-  run(count_, sphere_groups);
-  prefix_sum_.encode(stream, sphere_references_, sphere_references_, count, &header_buffer_,
-                     offsetof(shared::OctreeHeader, references), k_stage);
-  run(write_, sphere_groups);
-  stream.run();
-  header_buffer_.read(&header_, sizeof(header_));
+  work.push = {count.most,
+               count.buffer ? uint32_t(count.offset / 4) : shared::k_sort_count_here,
+               std::max(options_.references, 1u),
+               uint32_t(slots_.bytes() / sizeof(uvec4)),
+               std::max(options_.crowd > 0 ? options_.references / 2 : options_.references, 1u),
+               0,
+               options_.crowd,
+               options_.leaf_scale,
+               discs ? discs->stride : 0,
+               discs ? discs->at : 0,
+               discs ? discs->thickness : 0};
+}
 
-  const sort::Count written{push.capacity, &header_buffer_, offsetof(shared::OctreeHeader, references)};
-  references_ = &sorter_.encode(stream, pairs_[0], pairs_[1], written, 3 * header_.level, k_stage);
-  const auto cut = [&] {
-    // What the sort leaves behind has room for one leaf a reference, and so for all.
-    const gpu::Buffer& leaves = references_ == &pairs_[0] ? pairs_[1] : pairs_[0];
-    r.set("octree_references", *references_);
-    r.set("Leaves", leaves);
-    r.set("leaf_texels", leaves);
-    run(heads_, groups_);
-    prefix_sum_.encode(stream, run_leaves_, run_leaves_, {.most = uint32_t(run_leaves_.bytes() / 4)},
-                       &header_buffer_, offsetof(shared::OctreeHeader, leaves), k_stage);
-    run(leaves_, groups_);
-    run(clear_, groups_);
-    run(insert_, groups_);
-    if (push.most_split == 0) run(expand_, groups_);
-  };
-  if (options_.crowd > 0 && header_.overflow == 0) push.most_split = most_split(header_);
-  cut();
-  while (push.most_split > 0) {
-    const uint32_t groups = gpu::groups_for(header_.references, 64);
-    run(crowd_, groups);  // there are no more leaves
+/// Chooses the level of the leaves by the room there is, and writes a reference for each leaf that a sphere
+/// overlaps, in the order of the spheres.
+void Octree::write_references(Work& work, const sort::Count& count) {
+  work.run(bounds_, groups_);
+  work.run(grid_, 1);
+  work.run(levels_, groups_);
+  work.run(choose_, 1);
+  const uint32_t sphere_groups = gpu::groups_for(count.most, 64);
+  work.run(count_, sphere_groups);
+  prefix_sum_.encode(work.stream, sphere_references_, sphere_references_, count, &header_buffer_,
+                     offsetof(shared::OctreeHeader, references), k_stage);
+  work.run(write_, sphere_groups);
+  work.stream.run();
+  header_buffer_.read(&header_, sizeof(header_));
+}
+
+/// Makes leaves of the sorted references, and the table that finds them.
+void Octree::cut_into_leaves(Work& work) {
+  // What the sort leaves behind has room for one leaf a reference, and so for all.
+  const gpu::Buffer& leaves = references_ == &pairs_[0] ? pairs_[1] : pairs_[0];
+  work.resources.set("octree_references", *references_);
+  work.resources.set("Leaves", leaves);
+  work.resources.set("leaf_texels", leaves);
+  work.run(heads_, groups_);
+  prefix_sum_.encode(work.stream, run_leaves_, run_leaves_, {.most = uint32_t(run_leaves_.bytes() / 4)},
+                     &header_buffer_, offsetof(shared::OctreeHeader, leaves), k_stage);
+  work.run(leaves_, groups_);
+  work.run(clear_, groups_);
+  work.run(insert_, groups_);
+  if (work.push.most_split == 0) work.run(expand_, groups_);
+}
+
+/// Splits leaves that list many spheres into cells of their own, by fewer levels where there is no room for
+/// all references of that.
+void Octree::split_crowded(Work& work, const sort::Count& written) {
+  gpu::Stream& stream = work.stream;
+  const uint32_t groups = gpu::groups_for(header_.references, 64);
+  shared::OctreeHeader now;
+  for (; work.push.most_split > 0; --work.push.most_split) {
+    work.run(crowd_, groups);  // there are no more leaves
     prefix_sum_.encode(stream, leaf_cells_, leaf_cells_,
                        {header_.references, &header_buffer_, offsetof(shared::OctreeHeader, leaves)},
                        &header_buffer_, offsetof(shared::OctreeHeader, split_cells), k_stage);
-    run(expand_, groups_);
-    run(split_count_, groups);
+    work.run(expand_, groups_);
+    work.run(split_count_, groups);
     prefix_sum_.encode(stream, splits_, splits_, {.most = header_.references}, &header_buffer_,
                        offsetof(shared::OctreeHeader, split_references), k_stage);
     stream.run();
-    shared::OctreeHeader now;
     header_buffer_.read(&now, sizeof(now));
-    if (now.split_references > header_.capacity || codes(now) > shared::k_octree_split) {
-      if (--push.most_split == 0) run(expand_, groups_);
-      continue;
-    }
-    header_.split = push.most_split;
-    push.most_split = 0;
-    if (now.split_references == header_.references) break;  // none is
-    r.set("References", references_ == &pairs_[0] ? pairs_[1] : pairs_[0]);
-    run(split_write_, groups);
-    stream.run();
-    header_.references = now.split_references;
-    header_buffer_.write(&header_.references, sizeof(uint32_t), offsetof(shared::OctreeHeader, references));
-    const bool second = references_ == &pairs_[0];
-    references_ = &sorter_.encode(stream, pairs_[second], pairs_[!second], written,
-                                  uint32_t(std::bit_width(codes(now) - 1)), k_stage);
-    cut();
+    if (now.split_references <= header_.capacity && codes(now) <= shared::k_octree_split) break;
   }
-  if (options_.copies) run(copy_, groups_);
+  header_.split = work.push.most_split;
+  work.push.most_split = 0;
+  if (header_.split == 0) {  // there is room for no level at all
+    work.run(expand_, groups_);
+    return;
+  }
+  if (now.split_references == header_.references) return;  // no leaf is crowded
+  const bool second = references_ == &pairs_[0];
+  work.resources.set("References", pairs_[second]);
+  work.run(split_write_, groups);
   stream.run();
-  const uint32_t split = header_.split;
-  header_buffer_.read(&header_, sizeof(header_));
-  header_.split = split;
-  header_.references = std::min(header_.references, header_.capacity);
-  return header_;
+  header_.references = now.split_references;
+  header_buffer_.write(&header_.references, sizeof(uint32_t), offsetof(shared::OctreeHeader, references));
+  references_ = &sorter_.encode(stream, pairs_[second], pairs_[!second], written,
+                                uint32_t(std::bit_width(codes(now) - 1)), k_stage);
+  cut_into_leaves(work);
 }
 
 void Octree::bind(gpu::Resources& resources) const {

@@ -74,6 +74,14 @@ class Octree {
   static uint32_t most_references(const gpu::Device& device);
 
  private:
+  // The steps of build(), in its order.
+  struct Work;
+  void bind_spheres(Work& work, const gpu::Buffer& spheres, const sort::Count& count,
+                    const Discs* discs) const;
+  void write_references(Work& work, const sort::Count& count);
+  void cut_into_leaves(Work& work);
+  void split_crowded(Work& work, const sort::Count& written);
+
   OctreeOptions options_;
   uint32_t groups_;
   sort::PrefixSum prefix_sum_;
