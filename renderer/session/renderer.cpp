@@ -290,7 +290,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
       return next->prepare(wavefront, picture, cancel);
     });
   // As soon as every pixel has a sample, so that the picture does not wait, and before errors are told.
-  if (!engine_->solvers().empty() && samples() > 0 && !film_->records_told()) {
+  if (!engine_->solvers().empty() && samples() > 0 && !film_->record_errors_complete()) {
     const bool anew = std::exchange(errors_restart_, restarts_) != restarts_;
     solvers::Solver& solver = *engine_->solvers().front();
     return engine_->with(solver, view, [&](const solvers::Picture& picture) {

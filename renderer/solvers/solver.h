@@ -104,11 +104,12 @@ class Solver {
   /// Preparation is long, and all kernels that it needs have run.
   virtual bool warm() const { return ready(); }
   /// Goes on telling the film what the picture's lookups may be wrong by, a piece at a time, until
-  /// Film::records_told(). Only when ready(). `anew`: the picture has begun. False when it was cancelled.
+  /// Film::record_errors_complete(). Only when ready(). `anew`: the picture has begun. False when it was
+  /// cancelled.
   virtual bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,
                                bool anew, const Cancel& cancel) {
     (void)wavefront, (void)picture, (void)anew, (void)cancel;
-    film.tell_records();
+    film.complete_record_errors();
     return true;
   }
 
