@@ -64,8 +64,8 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
     tell_tiles(j[name], film::tile_spread(tiles, of));
   };
   part("paths", error.rms[0], error.relative(0), &film::TileError::relative);
-  if (r.looks_up() && !r.film().records_told()) j["records"] = j["interpolation"] = nullptr;
-  if (r.film().records_told()) {
+  if (r.looks_up() && !r.film().record_errors_complete()) j["records"] = j["interpolation"] = nullptr;
+  if (r.film().record_errors_complete()) {
     part("records", error.records_rms, error.relative_records(), &film::TileError::relative_records);
     part("interpolation", error.interpolation_rms, error.relative_interpolation(),
          &film::TileError::relative_interpolation);
@@ -241,11 +241,15 @@ int render(const RenderArguments& a) {
   std::map<std::string, std::string> to_save;  // solvers' work that is not yet written
   for (const auto& [name, file] : a.solver_save)
     if (!file.empty()) to_save[name] = file;
-  if (!picture && to_save.empty())
-    throw Error(
-        "-o",
-        "name at least one output: OUT.exr or OUT.png, or figures alone: --stats OUT.json, or records "
-        "alone: --cache-save OUT.cache");
+  if (!picture && to_save.empty()) {
+    std::string work;
+    for (const solvers::SolverInfo* solver : solvers::registered())
+      if (solver->file)
+        work += fmt::format(", or {} alone: --{}-save OUT{}", solver->file->content, solver->name,
+                            solver->file->extension);
+    throw_error("-o", "name at least one output: OUT.exr or OUT.png, or figures alone: --stats OUT.json{}",
+                work);
+  }
   for (const std::string& file : a.outputs) {
     const auto dot = file.rfind('.');
     const std::string extension = dot == std::string::npos ? "" : file.substr(dot);

@@ -17,7 +17,7 @@ enum class ReachKind {
   measured,      ///< the curve passes through the error
   at_once,       ///< under it from the first point on: the time is an upper bound
   extrapolated,  ///< not reached: by error^2 * t = constant, from the last factor of four of the time
-  unknown  ///< no curve; or not reached, by one that begins later than that: building a cache is no part
+  unknown  ///< no curve; or not reached, by one that begins later than that: preparing records is no part
            ///< of how sampling goes on
 };
 

@@ -270,8 +270,9 @@ bool has_records(const Json& scene) {
 }
 
 std::string records_cells(const Json& cell) {
-  std::string html = fmt::format("<td>{:.0f}</td><td>{}</td>", records_of(cell),
-                                 count_text(median_of(cell.at("cache_rays"))));
+  std::string html =
+      fmt::format("<td>{:.0f}</td><td>{}</td>", records_of(cell),
+                  cell.contains("record_rays") ? count_text(median_of(cell.at("record_rays"))) : "–");
   for (const char* part : {"paths_error", "records_error", "interpolation_error"})
     html += fmt::format("<td>{}</td>", cell.contains(part) ? percent_text(median_of(cell.at(part))) : "–");
   return html;
@@ -284,10 +285,11 @@ std::string cells_table(const Json& report, const Json& scene) {
       "second</th><th>error told of<br/>the mean</th><th>of the<br/>median tile</th><th>of the "
       "worst<br/>tenth of "
       "the tiles</th><th>true error<br/>of the mean</th><th>not<br/>reached</th>";
-  const bool cached = has_records(scene);
-  html += cached ? "<th>records</th><th>their rays</th><th>told of the mean:<br/>paths</th><th>records</th>"
-                   "<th>inter-<br/>polation</th></tr>\n"
-                 : "</tr>\n";
+  const bool with_records = has_records(scene);
+  html += with_records
+              ? "<th>records</th><th>their rays</th><th>told of the mean:<br/>paths</th><th>records</th>"
+                "<th>inter-<br/>polation</th></tr>\n"
+              : "</tr>\n";
   for (const Json& s : scene.at("settings")) {
     for (const Json& c : s.at("cells")) {
       const double seconds = median_of(c.at("wall_s"));
@@ -306,7 +308,7 @@ std::string cells_table(const Json& report, const Json& scene) {
           median_of(c.at("tiles_over")) > 0 ? fmt::format("{:.0f} tile{}", median_of(c.at("tiles_over")),
                                                           median_of(c.at("tiles_over")) == 1 ? "" : "s")
                                             : "–");
-      if (cached)
+      if (with_records)
         html += records_of(c) > 0 ? records_cells(c) : "<td>–</td><td>–</td><td>–</td><td>–</td><td>–</td>";
       html += "</tr>\n";
     }

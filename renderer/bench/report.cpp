@@ -212,7 +212,7 @@ Json cells_json(const Matrix& m, size_t scene, size_t setting, const Group& grou
     add("heavy_tiles", [](const Result& r) { return r.heavy_tiles; });
     add("tiles_over", [](const Result& r) { return r.tiles_over; });
     add("records", [](const Result& r) { return r.records; });
-    add("cache_rays", [](const Result& r) { return r.cache_rays; });
+    add("record_rays", [](const Result& r) { return r.record_rays; });
     add("paths_error", [](const Result& r) { return r.paths_error; });
     add("records_error", [](const Result& r) { return r.records_error; });
     add("interpolation_error", [](const Result& r) { return r.interpolation_error; });
@@ -439,7 +439,7 @@ std::string make_csv(const Json& report) {
       "scene,setting,budget,repeat,seed,tracer,wall_s,device_s,setup_s,rays,paths,samples,mse,relmse,relmse_"
       "all,"
       "in_reference_noise,tiles_median,tiles_decile,tiles_worst,heavy_tiles,tiles_over,records,"
-      "cache_rays,paths_error,records_error,interpolation_error";
+      "record_rays,paths_error,records_error,interpolation_error";
   for (const char* what : {"estimated", "true", "device_s"})
     for (const char* layer : stats::k_layer_names) text += fmt::format(",{}_{}", what, layer);
   text += ",forecast_s,forecast_rays\n";
@@ -450,7 +450,7 @@ std::string make_csv(const Json& report) {
                     r.setting, r.budget, r.repeat, r.seed, r.tracer, r.wall_s, r.device_s, r.setup_s, r.rays,
                     r.paths, r.samples, r.mse, r.relmse, r.relmse_all, int(r.in_reference_noise),
                     r.tiles_median, r.tiles_decile, r.tiles_worst, r.heavy_tiles, r.tiles_over, r.records,
-                    r.cache_rays, r.paths_error, r.records_error, r.interpolation_error);
+                    r.record_rays, r.paths_error, r.records_error, r.interpolation_error);
     for (const Layers* layers : {&r.estimated, &r.truth, &r.component_s})
       for (const double x : *layers) text += fmt::format(",{}", x);
     text +=

@@ -85,7 +85,7 @@ void visit_result(V& v, R& r) {
   v("in_reference_noise", r.in_reference_noise);
   v("tiles_median", r.tiles_median), v("tiles_decile", r.tiles_decile), v("tiles_worst", r.tiles_worst);
   v("heavy_tiles", r.heavy_tiles), v("tiles_over", r.tiles_over), v("dropped", r.dropped);
-  v.later("records", r.records), v.later("cache_rays", r.cache_rays);
+  v.later("records", r.records), v.later("record_rays", r.record_rays);
   v.later("paths_error", r.paths_error), v.later("records_error", r.records_error);
   v.later("interpolation_error", r.interpolation_error);
 }

@@ -60,15 +60,15 @@ struct Result {
   uint64_t dropped = 0;     ///< contributions that were not finite
   /// Records that light was looked up in, in the end, and their rays; 0 without any, and in files
   /// from before they were counted.
-  uint64_t records = 0, cache_rays = 0;
+  uint64_t records = 0, record_rays = 0;
   std::optional<ForecastResult> forecast;
   std::vector<CurvePoint> curve;
 };
 
 nlohmann::ordered_json to_json(const Result& result);
 /// Throws Error, located at `where`, for anything that to_json() does not write: half a file, missing or
-/// wrong values (only records, cache_rays, relmse_all and a point's relmse may be missing), a curve that does
-/// not go forward.
+/// wrong values (only records, record_rays, relmse_all and a point's relmse may be missing), a curve that
+/// does not go forward.
 Result parse_result(const std::string& text, const std::string& where);
 Result result_from_json(const nlohmann::ordered_json& json, const std::string& where);
 

@@ -248,7 +248,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   result.tiles_worst = tiles.worst, result.heavy_tiles = tiles.heavy_tailed;
   if (r->adaptive()) result.tiles_over = r->adaptive()->count(schedule::TileState::capped);
   result.dropped = r->stats().dropped;
-  result.records = uint32_t(r->figure("records")), result.cache_rays = uint64_t(r->figure("rays"));
+  result.records = uint32_t(r->figure("records")), result.record_rays = uint64_t(r->figure("rays"));
   result.forecast = make_forecast(r->ledger(), r->adaptive() != nullptr);
   if (cell.repeat == 0 && cell.budget + 1 == matrix_.budgets(cell.scene, cell.setting).size())
     save_pictures(*r, cell, truth);

@@ -126,7 +126,7 @@ std::vector<TileError> tile_errors(const Film& film, uint32_t side) {
       for (uint32_t v = y; v < std::min(y + step, film.blocks_down()); ++v)
         for (uint32_t u = x; u < std::min(x + step, film.blocks_across()); ++u) {
           blocks.push_back(film.errors()[v * film.blocks_across() + u]);
-          if (film.records_told()) records.push_back(film.records()[v * film.blocks_across() + u]);
+          if (film.record_errors_complete()) records.push_back(film.records()[v * film.blocks_across() + u]);
         }
       tiles.push_back(tile_error(blocks, records));
     }

@@ -5,9 +5,10 @@
 //   it away.
 // - records: the noise of what the samples read of records, which all of them have in common.
 // - interpolation: what reading between records is off by, for ever; as an absolute value.
-// The last two are known where somebody has told the film of them (Film::records_told()), and 0 where nothing
-// is read. The noises are independent of each other, so that their variances add up; interpolation's part has
-// a sign that nobody knows, and is added to what they come to: sum = hypot(paths, records) + interpolation.
+// The last two are known where somebody has told the film of them (Film::record_errors_complete()), and 0
+// where nothing is read. The noises are independent of each other, so that their variances add up;
+// interpolation's part has a sign that nobody knows, and is added to what they come to: sum = hypot(paths,
+// records) + interpolation.
 //
 // What else a biased solver gets wrong for ever is not in it.
 #include <array>

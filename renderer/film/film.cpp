@@ -57,7 +57,7 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height)
   block_records_ = gpu::Buffer(device, {.name = "no records", .bytes = 0});
 }
 
-void Film::make_room_for_records() {
+void Film::make_room_for_record_errors() {
   gpu::make_room(device_, records_,
                  {.name = "records' errors", .bytes = uint64_t{width_} * height_ * sizeof(vec2)});
   gpu::make_room(device_, block_records_,
@@ -67,7 +67,7 @@ void Film::make_room_for_records() {
 }
 
 std::span<const shared::BlockRecords> Film::records() const {
-  if (!records_told_) return {};
+  if (!record_errors_complete_) return {};
   return {static_cast<const shared::BlockRecords*>(block_records_.mapped()), blocks()};
 }
 
@@ -83,7 +83,7 @@ void Film::clear(gpu::Stream& stream) {
   stream.fill(vertices_, 0);
   stream.fill(errors_, 0);
   stream.run();
-  records_told_ = false;
+  record_errors_complete_ = false;
 }
 
 void Film::bind(gpu::Resources& r) const {

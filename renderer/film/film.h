@@ -75,9 +75,9 @@ class Film {
   /// What the pixels read of records may be wrong by (BlockRecords, one a block in raster order), for kernels
   /// to write, as FilmRecords and BlockRecordSums; and that they have written all of it. Until then, and
   /// after a clear(), nothing is known.
-  void make_room_for_records();
-  void tell_records() { records_told_ = true; }
-  bool records_told() const { return records_told_; }
+  void make_room_for_record_errors();
+  void complete_record_errors() { record_errors_complete_ = true; }
+  bool record_errors_complete() const { return record_errors_complete_; }
   /// Empty while nothing is known.
   std::span<const shared::BlockRecords> records() const;
   Image read() const;
@@ -95,7 +95,7 @@ class Film {
   gpu::Buffer albedo_, normal_, count_, vertices_, picture_, errors_, tile_marks_;
   gpu::Device& device_;
   gpu::Buffer records_, block_records_;  // small where there are none
-  bool records_told_ = false;
+  bool record_errors_complete_ = false;
 };
 
 }  // namespace lucerna::film

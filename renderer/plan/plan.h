@@ -1,5 +1,6 @@
 #pragma once
-// Settings and scene -> what is to be done: which solver computes which component, and what cannot be reached.
+// Settings and scene -> what is to be done: which solver computes which component, and what cannot be
+// reached.
 #include <array>
 #include <optional>
 #include <string>
@@ -31,6 +32,7 @@ struct Plan {
 Plan make_plan(const Settings& settings);
 
 /// Light that the scene has and the plan's solvers cannot find, one line each, with what to do about it.
+/// Without what belongs to components that are off: that is not asked for.
 std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene& scene);
 
 }  // namespace lucerna::plan

@@ -10,7 +10,7 @@ namespace lucerna::raybench {
 namespace {
 
 // A file is only read by the version that wrote it: whoever changes a structure below changes the number.
-constexpr char k_magic[16] = "lucerna flat 3\n";
+constexpr char k_magic[16] = "lucerna flat 4\n";
 
 /// One description of the format serves both directions.
 class Writer {
@@ -87,8 +87,9 @@ void scene_fields(Archive& a, Scene& s) {
   a.list(s.positions), a.list(s.non_opaque), a.list(s.triangles);
   a.list(s.vertices), a.list(s.tangents), a.list(s.extra), a.list(s.materials);
   a.list(s.buckets);
-  a.list(s.lights), a.list(s.light_alias), a.list(s.primitive_light_pmf);
-  a.list(s.environment_texels), a.list(s.environment_alias), a.list(s.bsdf_tables);
+  a.list(s.entries), a.list(s.light_alias), a.list(s.primitive_light_pmf);
+  a.list(s.environment_alias), a.list(s.environment_density);
+  a.list(s.lights), a.list(s.environment_texels), a.list(s.bsdf_tables);
   a.plain(s.environment_width), a.plain(s.environment_height), a.plain(s.environment_radiance);
   a.plain(s.environment_rotation), a.plain(s.environment_light_pmf), a.plain(s.scene_radius);
   a.plain(s.effects);

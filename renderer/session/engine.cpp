@@ -30,7 +30,31 @@ uint32_t brought(const paths::LookupRoutes& routes) {
   return bits;
 }
 
+/// Notes who brings which components (bits). Throws Error, located at the component, where another one does.
+void claim(std::array<const solvers::SolverInfo*, paths::k_component_count>& by,
+           const solvers::SolverInfo& info, uint32_t bits) {
+  for (size_t c = 0; c < by.size(); ++c) {
+    if ((bits >> c & 1u) == 0) continue;
+    if (by[c])
+      throw_error(std::string("components.") + paths::k_component_names[c],
+                  "light of the words {} would be counted twice: by '{}', with what it looks up for another "
+                  "component, and by '{}'; give both components to one of them",
+                  paths::k_component_expressions[c], by[c]->name, info.name);
+    by[c] = &info;
+  }
+}
+
 }  // namespace
+
+solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
+                      const solvers::SolverInfo& solver, const plan::Settings& settings,
+                      const upload::Effects& effects) {
+  return {.automaton = automaton,
+          .settings = settings,
+          .enabled = plan.enabled(),
+          .own = plan.components_of(solver),
+          .effects = effects};
+}
 
 Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
                const World& world, const plan::Plan& plan, const plan::Settings& settings,
@@ -38,6 +62,7 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
     : automaton_(automaton),
       plan_(plan),
       scene_defines_(world.device->defines()),
+      routing_(routing(settings, world.flat.effects)),
       developer_(device, compiler) {
   const Timer timer;
   auto slots = uint32_t(settings.integer("path.batch")) / 64 * 64;
@@ -51,12 +76,12 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
   for (const solvers::SolverInfo* info : at_work) {
     const solvers::SolverType& type = solvers::type_of(*info);
     if (!type.make) continue;
-    solvers_.push_back(type.make(device, compiler, slots, task_of(*info, settings, effects)));
+    solvers_.push_back(
+        type.make(device, compiler, slots, task_of(automaton_, plan_, *info, settings, effects)));
     const solvers::Solver& solver = *solvers_.back();
     for (const auto& [name, value] : solver.defines()) defines[name] = value;
     if (!solver.hook().empty()) hooks.push_back({info->name, solver.hook()});
   }
-  check_partition(settings, effects);
   for (const auto& [name, value] : transport::hook_defines(hooks)) defines[name] = value;
   std::function<void(gpu::Resources&)> bind;
   if (!solvers_.empty())
@@ -66,25 +91,7 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
   wavefront_ = std::make_unique<transport::Wavefront>(device, compiler, *world.device, slots, world.trace(),
                                                       defines, bind);
   estimator_.emplace(device, compiler, !solvers_.empty());
-  routing_ = routing(settings, effects);
   compile_seconds_ = timer.seconds();
-}
-
-void Engine::check_partition(const plan::Settings& settings, const upload::Effects& effects) const {
-  std::array<const solvers::SolverInfo*, paths::k_component_count> by{};
-  for (const auto& solver : solvers_) {
-    const uint32_t bits = brought(solver->routing(task_of(solver->info(), settings, effects)).lookups);
-    for (size_t c = 0; c < by.size(); ++c) {
-      if ((bits >> c & 1u) == 0) continue;
-      if (by[c])
-        throw_error(
-            std::string("components.") + paths::k_component_names[c],
-            "light of the words {} would be counted twice: by '{}', with what it looks up for another "
-            "component, and by '{}'; give both components to one of them",
-            paths::k_component_expressions[c], by[c]->name, solver->info().name);
-      by[c] = &solver->info();
-    }
-  }
 }
 
 bool Engine::serves(const plan::Plan& plan, const plan::Settings& settings, const World& world) const {
@@ -96,7 +103,7 @@ bool Engine::serves(const plan::Plan& plan, const plan::Settings& settings, cons
     }
   if (wanted != solvers_.size() || world.device->defines() != scene_defines_) return false;
   return std::all_of(solvers_.begin(), solvers_.end(), [&](const auto& solver) {
-    return solver->serves(task_of(plan, solver->info(), settings, world.flat.effects));
+    return solver->serves(task_of(automaton_, plan, solver->info(), settings, world.flat.effects));
   });
 }
 
@@ -140,26 +147,16 @@ uint64_t Engine::published() const {
   return sum;
 }
 
-solvers::Task Engine::task_of(const plan::Plan& plan, const solvers::SolverInfo& solver,
-                              const plan::Settings& settings, const upload::Effects& effects) const {
-  return {.automaton = automaton_,
-          .settings = settings,
-          .enabled = plan.enabled(),
-          .own = plan.components_of(solver),
-          .effects = effects};
-}
-
-solvers::Task Engine::task_of(const solvers::SolverInfo& solver, const plan::Settings& settings,
-                              const upload::Effects& effects) const {
-  return task_of(plan_, solver, settings, effects);
-}
-
 solvers::Routing Engine::routing(const plan::Settings& settings, const upload::Effects& effects) const {
   // Nothing is looked up yet, and everything is traced.
   solvers::Routing all{
       .lookups = {.component = {}, .parts = 0, .traced = plan_.enabled()}, .fallback = 0, .gather = {}};
-  for (const auto& solver : solvers_) {
-    const solvers::Routing own = solver->routing(task_of(solver->info(), settings, effects));
+  std::array<const solvers::SolverInfo*, paths::k_component_count> by{};
+  for (const solvers::SolverInfo* info : plan_.at_work()) {
+    const auto routing_of = solvers::type_of(*info).routing;
+    if (!routing_of) continue;
+    const solvers::Routing own = routing_of(task_of(automaton_, plan_, *info, settings, effects));
+    claim(by, *info, brought(own.lookups));
     merge(all.lookups, own.lookups);
     all.fallback |= own.fallback;
     if (!own.gather.component.empty()) merge(all.gather, own.gather);
@@ -190,11 +187,7 @@ float wanted_sun_threshold(const paths::Automaton& automaton, const plan::Plan& 
   float threshold = 0;
   for (const solvers::SolverInfo* info : plan.at_work())
     if (const auto wanted = solvers::type_of(*info).sun_threshold)
-      threshold = std::max(threshold, wanted({.automaton = automaton,
-                                              .settings = settings,
-                                              .enabled = plan.enabled(),
-                                              .own = plan.components_of(*info),
-                                              .effects = {}}));
+      threshold = std::max(threshold, wanted(task_of(automaton, plan, *info, settings, {})));
   return threshold;
 }
 

@@ -21,6 +21,11 @@ struct PictureView {
   uint32_t width = 0, height = 0;
 };
 
+/// What a solver of the plan is to do. All but the numbers must outlive it.
+solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
+                      const solvers::SolverInfo& solver, const plan::Settings& settings,
+                      const upload::Effects& effects);
+
 class Engine {
  public:
   /// Throws Error: kernels that do not compile (located), no memory, a component's light that two solvers
@@ -52,10 +57,11 @@ class Engine {
 
   /// Frame of the picture's paths, in a size of its own.
   shared::Frame frame(const PictureView& picture, uint32_t width, uint32_t height) const;
-  /// Calls f(solver, picture) with the solver's own task.
+  /// Calls f(picture) with the solver's own task.
   template <class F>
-  decltype(auto) with(solvers::Solver& solver, const PictureView& view, F&& f) const {
-    const solvers::Task task = task_of(solver.info(), view.settings, view.world.flat.effects);
+  decltype(auto) with(const solvers::Solver& solver, const PictureView& view, F&& f) const {
+    const solvers::Task task =
+        task_of(automaton_, plan_, solver.info(), view.settings, view.world.flat.effects);
     return f(solvers::Picture{.task = task,
                               .flat = view.world.flat,
                               .camera = view.camera,
@@ -68,23 +74,18 @@ class Engine {
   double compile_seconds() const { return compile_seconds_; }
 
  private:
-  solvers::Task task_of(const solvers::SolverInfo& solver, const plan::Settings& settings,
-                        const upload::Effects& effects) const;
-  solvers::Task task_of(const plan::Plan& plan, const solvers::SolverInfo& solver,
-                        const plan::Settings& settings, const upload::Effects& effects) const;
-  /// Throws Error, located at the component, where two solvers' lookups bring the same light.
-  void check_partition(const plan::Settings& settings, const upload::Effects& effects) const;
-  /// Of all solvers together, for the present plan.
+  /// Of all solvers together, for the present plan. Throws Error, located at the component, where two of them
+  /// bring the same light.
   solvers::Routing routing(const plan::Settings& settings, const upload::Effects& effects) const;
 
   const paths::Automaton& automaton_;
   plan::Plan plan_;
   gpu::Defines scene_defines_;  ///< that the kernels were made with
+  solvers::Routing routing_;    ///< of the picture begun last
   std::vector<std::unique_ptr<solvers::Solver>> solvers_;
   std::unique_ptr<transport::Wavefront> wavefront_;
   film::Developer developer_;
   std::optional<film::ErrorEstimator> estimator_;
-  solvers::Routing routing_;  ///< of the picture begun last
   double compile_seconds_ = 0;
 };
 

@@ -30,8 +30,6 @@ void Renderer::load(const std::filesystem::path& file, const Progress& progress,
       file, options_.scenes,
       [&](float fraction, const std::string& what) { return !progress || progress(0.6f * fraction, what); }));
   scene::add_default_light(*scene);
-  for (std::string& line : plan::unreachable_light(plan::make_plan(settings_), *scene))
-    scene->warnings.push_back(std::move(line));
   for (const std::string& warning : scene->warnings) log::warning("{}", warning);
   set_scene(
       scene,
@@ -39,6 +37,10 @@ void Renderer::load(const std::filesystem::path& file, const Progress& progress,
         return !progress || progress(0.6f + 0.4f * fraction, what);
       },
       changes);
+  for (std::string& line : plan::unreachable_light(engine_->plan(), *scene)) {
+    log::warning("{}", line);
+    scene->warnings.push_back(std::move(line));
+  }
   load_seconds_ = timer.seconds() - compile_seconds();
 }
 
@@ -92,7 +94,7 @@ void Renderer::reload_shaders() {
   restart(scene::Change::shaders);
 }
 
-uint32_t Renderer::enabled_components() const { return plan::make_plan(settings_).enabled(); }
+uint32_t Renderer::enabled_components() const { return engine_ ? engine_->plan().enabled() : 0; }
 
 Renderer::Films Renderer::make_films(uint32_t width, uint32_t height) const {
   Films films;
@@ -168,8 +170,8 @@ film::ImageError Renderer::image_error() {
 
 std::optional<double> Renderer::bias(size_t component) const {
   // Light that is looked up for a component besides its solver's, straight from the sky.
-  if (engine_ && engine_->looked_up_besides(component)) return std::nullopt;
-  return plan::make_plan(settings_).bias(component);
+  if (!engine_ || engine_->looked_up_besides(component)) return std::nullopt;
+  return engine_->plan().bias(component);
 }
 
 std::vector<film::TileError> Renderer::tile_errors() const {
@@ -288,7 +290,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
       return next->prepare(wavefront, picture, cancel);
     });
   // As soon as every pixel has a sample, so that the picture does not wait, and before errors are told.
-  if (!engine_->solvers().empty() && samples() > 0 && !film_->records_told()) {
+  if (!engine_->solvers().empty() && samples() > 0 && !film_->record_errors_complete()) {
     const bool anew = std::exchange(errors_restart_, restarts_) != restarts_;
     solvers::Solver& solver = *engine_->solvers().front();
     return engine_->with(solver, view, [&](const solvers::Picture& picture) {

@@ -102,7 +102,8 @@ class Renderer {
   /// found it.
   std::vector<film::TileError> tile_errors() const;
   uint32_t tile_side() const;  ///< sampling.tile: pixels
-  /// What these errors, which are of the noise, do not tell: plan::Plan::bias of the settings in force.
+  /// What these errors, which are of the noise, do not tell: plan::Plan::bias of the settings in force;
+  /// nothing before the first scene.
   std::optional<double> bias(size_t component) const;
   /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled, or
   /// while preparation waits.
@@ -192,6 +193,7 @@ class Renderer {
   std::string tracer_name() const { return world_.host ? "host" : "compute-bvh"; }
   double load_seconds() const { return load_seconds_; }
   double compile_seconds() const { return engine_ ? engine_->compile_seconds() : 0; }
+  /// Components that are computed (bit i), by the settings in force; 0 before the first scene.
   uint32_t enabled_components() const;
 
  private:

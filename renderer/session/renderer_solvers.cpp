@@ -80,7 +80,7 @@ solvers::Solver& Renderer::solver_for_file(const std::string& name, const std::f
 void Renderer::solver_save(const std::string& name, const std::filesystem::path& file) {
   const solvers::Solver& found = solver_for_file(name, file, "there is nothing to save",
                                                  "there is nothing to save yet; load a scene first");
-  engine_->with(const_cast<solvers::Solver&>(found), picture_view(),
+  engine_->with(found, picture_view(),
                 [&](const solvers::Picture& picture) { found.save(file.string(), picture, provenance()); });
 }
 

@@ -26,7 +26,7 @@ struct ComponentStatus {
   std::string solver = "path";  ///< "path" or "off"
   double mean_luminance = 0;    ///< of its layer
   double share = 0;             ///< of the sum's mean luminance, 0..1
-  double ms_per_sample = 0;  ///< device time its rays cost, per sample a pixel; without the cache's building
+  double ms_per_sample = 0;     ///< device time its rays cost, per sample a pixel; without what was prepared
 };
 
 struct StageStatus {

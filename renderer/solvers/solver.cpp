@@ -15,8 +15,4 @@ shared::Frame Picture::frame_for(const Routing& routing, uint32_t enabled) const
                                 .gather = routing.gather});
 }
 
-Routing Solver::routing(const Task& task) const {
-  return {.lookups = {.component = {}, .parts = 0, .traced = task.enabled}, .fallback = 0, .gather = {}};
-}
-
 }  // namespace lucerna::solvers

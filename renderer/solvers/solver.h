@@ -76,7 +76,6 @@ class Solver {
   virtual std::string hook() const { return ""; }
   /// Sets what the hook reads; called again after Wavefront::rebind_lookup().
   virtual void bind(gpu::Resources& resources) const { (void)resources; }
-  virtual Routing routing(const Task& task) const;
   /// Whether kernels and solver, made for another task, do for this one: else both are made anew.
   virtual bool serves(const Task& task) const = 0;
 
@@ -105,11 +104,12 @@ class Solver {
   /// Preparation is long, and all kernels that it needs have run.
   virtual bool warm() const { return ready(); }
   /// Goes on telling the film what the picture's lookups may be wrong by, a piece at a time, until
-  /// Film::records_told(). Only when ready(). `anew`: the picture has begun. False when it was cancelled.
+  /// Film::record_errors_complete(). Only when ready(). `anew`: the picture has begun. False when it was
+  /// cancelled.
   virtual bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,
                                bool anew, const Cancel& cancel) {
     (void)wavefront, (void)picture, (void)anew, (void)cancel;
-    film.tell_records();
+    film.complete_record_errors();
     return true;
   }
 
@@ -147,9 +147,12 @@ class Solver {
   }
 };
 
-/// A way of computing light: what it says of itself, and how one is made.
+/// A way of computing light: what it says of itself, what its lookups bring, and how one is made.
 struct SolverType {
   const SolverInfo& info;
+  /// Null: nothing is looked up, and all components are traced. Known before one is made, so that a choice of
+  /// solvers that count light twice is refused before any takes memory.
+  Routing (*routing)(const Task& task) = nullptr;
   /// Null: nothing but the wavefront is needed. Throws Error: memory, kernels.
   std::unique_ptr<Solver> (*make)(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
                                   const Task& task) = nullptr;

@@ -13,13 +13,30 @@ gpu::Buffer upload(gpu::Device& device, const char* name, const std::vector<T>& 
   return buffer;
 }
 
+/// The environment's texels as shaders read them, radiance and density (shaders/shared/scene.h); in pieces,
+/// for maps are large.
+gpu::Buffer upload_environment(gpu::Device& device, const FlatLights& flat) {
+  constexpr size_t k_piece = 1 << 16;
+  const size_t count = flat.environment_texels.size();
+  gpu::Buffer buffer(
+      device, {.name = "environment", .bytes = std::max<uint64_t>(16, count * sizeof(vec4)), .texel = true});
+  std::vector<vec4> piece;
+  for (size_t first = 0; first < count; first += piece.size()) {
+    piece.resize(std::min(k_piece, count - first));
+    for (size_t i = 0; i < piece.size(); ++i)
+      piece[i] = vec4(flat.environment_texels[first + i], flat.environment_density[first + i]);
+    buffer.write(std::span<const vec4>(piece), first);
+  }
+  return buffer;
+}
+
 }  // namespace
 
 LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat)
     : lights(upload(device, "lights", flat.lights)),
       alias(upload(device, "light table", flat.light_alias)),
       pmf(upload(device, "light probabilities", flat.primitive_light_pmf, false)),
-      environment_texels(upload(device, "environment", flat.environment_texels)),
+      environment_texels(upload_environment(device, flat)),
       environment_alias(upload(device, "environment table", flat.environment_alias)),
       sun_cells(upload(device, "sun table", flat.sun_cells)),
       sun_density(upload(device, "sun densities", flat.sun_density)) {}

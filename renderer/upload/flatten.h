@@ -31,16 +31,38 @@ struct Bucket {
   std::vector<std::vector<uint8_t>> layers;  ///< rgba8, or rgba32f bytes
 };
 
-/// What flatten_lights() makes.
-struct FlatLights {
-  std::vector<vec4> lights, light_alias;
-  std::vector<float> primitive_light_pmf;  ///< pmf / area
-  std::vector<vec4> environment_texels, environment_alias;
-  std::vector<vec4> sun_cells, sun_density;
-  uint32_t environment_width = 0, environment_height = 0;
-  vec3 environment_radiance{0};
-  float environment_rotation = 0, environment_light_pmf = 0;
+/// What of the scene an entry of the light table is.
+struct LightEntry {
+  uint32_t kind = 0;  ///< shared::k_light_*
+  /// Primitive of an emissive triangle; lamp in scene::Scene::lights (k_none: one that is dark, so that the
+  /// table is not empty); of the environment 0.
+  uint32_t index = 0;
 };
+
+/// By what lights are chosen, and with which probability: flatten_light_distribution(). Nothing of it needs
+/// to be as bright as what it is about: samples are divided by the probabilities, whatever they are.
+struct LightDistribution {
+  std::vector<LightEntry> entries;         ///< of the light table; emissive triangles first
+  std::vector<vec4> light_alias;           ///< of these
+  std::vector<float> primitive_light_pmf;  ///< pmf / area [1/m^2]
+  float environment_light_pmf = 0;
+  std::vector<vec4> environment_alias;
+  /// By texel, of its directions [1/sr]; the sign bit: it is one of the sun's.
+  std::vector<float> environment_density;
+  std::vector<vec4> sun_cells, sun_density;
+};
+
+/// What lights emit and from where: flatten_emission().
+struct Emission {
+  std::vector<vec4> lights;                                ///< the light table
+  std::vector<vec3> environment_texels;                    ///< radiance, without the factor
+  uint32_t environment_width = 0, environment_height = 0;  ///< 0: it is dark
+  vec3 environment_radiance{0};                            ///< factor of the texels
+  float environment_rotation = 0;                          ///< radians
+};
+
+/// What flatten_lights() makes.
+struct FlatLights : LightDistribution, Emission {};
 
 /// What flatten_factors() makes, with the uses of textures.
 struct FlatMaterials {
@@ -68,8 +90,15 @@ FlatScene flatten(const scene::Scene& scene, float sun_threshold = 0);
 /// Materials without their textures only (after an edit that leaves textures, alpha mode and transmission as
 /// they were); flatten_lights() then, if emission has changed. `flat` must come from the same scene.
 void flatten_factors(const scene::Scene& scene, FlatScene& flat);
-/// Lights and environment only (after an edit of their strength, or of flat.sun_threshold); `flat` must come
-/// from the same scene.
+/// Lights and environment only (after an edit of them, or of flat.sun_threshold): distribution, then
+/// emission. `flat` must come from the same scene.
 void flatten_lights(const scene::Scene& scene, FlatScene& flat);
+/// By power; of the environment by the luminance of its texels, and with a share of all that an interior
+/// needs.
+void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat);
+/// For the distribution that `flat` has. That may have been made for other strengths, colours and an other
+/// rotation of the environment, where all that emits now has done so then: samples then bring the same light
+/// on average, with more noise.
+void flatten_emission(const scene::Scene& scene, FlatScene& flat);
 
 }  // namespace lucerna::upload

@@ -2,7 +2,7 @@
 #ifndef LUCERNA_IRRADIANCE_CACHE_READING
 #define LUCERNA_IRRADIANCE_CACHE_READING
 #include "irradiance_cache/lookup.glsl"
-#include "irradiance_cache/carried.glsl"
+#include "irradiance_cache/error_propagation.glsl"
 
 // The weight that cache_lookup() gives the record in place `at` of the octree's lists, 0: none.
 float read_weight(vec3 x, vec3 n, uint medium, uint at) {

@@ -5,7 +5,7 @@
 #include "transport/vertex_hook.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/guide.glsl"
-#include "irradiance_cache/carried.glsl"
+#include "irradiance_cache/error_propagation.glsl"
 
 struct cache_Vertex {
   bool looks;             // records are asked for
@@ -18,7 +18,7 @@ struct cache_Vertex {
   vec4 note, note_facing;
 };
 
-bool cache_carries() { return cache.probing == k_probe_carry || cache.probing == k_probe_carry_on; }
+bool cache_propagates() { return cache.probing == k_probe_errors || cache.probing == k_probe_errors_beyond; }
 // Beyond the lookup, where what records' rays read is noted.
 bool cache_next_read(uint state) { return cache.probing == k_probe_next && state >= k_fallback_state; }
 bool cache_coin(VertexIn v) { return (sample_vertex_bits(v.random, v.depth, k_pad_light_choice).x & 1u) != 0u; }
@@ -55,7 +55,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     Cached found = cache_lookup(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], medium, asks);
     bool missing = asks && found.weight <= 0.0;
     // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
-    bool notes = ((missing && found.guide == k_no_guide) || (asks && notes_all)) && cache.probing != k_probe_none && !cache_carries() &&
+    bool notes = ((missing && found.guide == k_no_guide) || (asks && notes_all)) && cache.probing != k_probe_none && !cache_propagates() &&
                  (cache.probing != k_probe_next || next_read) && !(beyond && cache_coin(v));
     bool servable = cache_can_serve(sign * x.smooth_side, sign * v.to_world[2]);
     if (notes && (servable || screen)) {
@@ -79,7 +79,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
 
 vec3 cache_cosine(VertexIn v, inout cache_Vertex x, vec2 u, vec3 cosine) {
   // Not while places are looked for: these are not to hang on the light.
-  bool guided = x.alone && x.gathers && (cache.probing == k_probe_none || cache_carries());
+  bool guided = x.alone && x.gathers && (cache.probing == k_probe_none || cache_propagates());
   x.guide = make_guide(guided ? x.guiding : k_no_guide, v.to_world[2]);
   return x.guide.total > 0.0 ? guide_sample(x.guide, u) * v.to_world : cosine;
 }
@@ -93,31 +93,31 @@ void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b)
 // In states that pass this lookup over, or all, or that have done with them.
 uint cache_state(VertexIn v, cache_Vertex x, BsdfSample b, uint state) {
   bool passes_all = (x.alone && !x.gathers) || cache.probing == k_probe_beyond || cache.probing == k_probe_next ||
-                    (cache.probing == k_probe_carry_on && !x.alone);
+                    (cache.probing == k_probe_errors_beyond && !x.alone);
   uint from = passes_all ? k_fallback_state : x.alone ? k_gather_state : k_known_state;
   bool another = x.looks && b.event == k_event_diffuse && state < k_fallback_state && (x.alone || passes_all || state >= k_gather_state);
   return another ? state % k_gather_state + from : state;
 }
 
 void cache_leave(VertexIn v, inout cache_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on) {
-  bool diffuse = l.b.event == k_event_diffuse, carries = cache_carries();
+  bool diffuse = l.b.event == k_event_diffuse, propagates = cache_propagates();
   bool ends_here = cache.probing == k_probe_lookups || cache.probing == k_probe_reads || cache_next_read(v.state);
   go_on = go_on && cache.probing != k_probe_screen && !(ends_here && x.looks && diffuse);
   // Of the lookups beyond the first a coin chooses one, and what it brings counts for those it passes over.
-  bool reads = carries && x.looks && !x.alone && diffuse, later = reads && v.state >= k_fallback_state;
+  bool reads = propagates && x.looks && !x.alone && diffuse, later = reads && v.state >= k_fallback_state;
   if (later) throughput *= 2.0;
-  if (reads && l.finite && (later ? cache_coin(v) : cache.probing == k_probe_carry)) {
+  if (reads && l.finite && (later ? cache_coin(v) : cache.probing == k_probe_errors)) {
     uint medium = 0u;
 #if LUCERNA_VOLUMES
     medium = !l.b.transmitted || !v.surface.parameters.solid ? v.path.medium : v.surface.front ? v.surface.material + 1u : 0u;
 #endif
     x.noted = true;
-    x.note = vec4(v.surface.position, uintBitsToFloat(1u + v.state + k_carried_medium * medium));
-    x.note_facing = vec4(l.b.transmitted ? -x.smooth_side : x.smooth_side, uintBitsToFloat(carried_pack(throughput * k_inv_pi)));
+    x.note = vec4(v.surface.position, uintBitsToFloat(1u + v.state + k_note_medium * medium));
+    x.note_facing = vec4(l.b.transmitted ? -x.smooth_side : x.smooth_side, uintBitsToFloat(throughput_pack(throughput * k_inv_pi)));
     go_on = false;
   }
   // What no record serves is path traced: nothing of it is read.
-  go_on = go_on && !(carries && x.looks && diffuse && x.alone && !x.gathers);
+  go_on = go_on && !(propagates && x.looks && diffuse && x.alone && !x.gathers);
 }
 
 void cache_end(VertexIn v, cache_Vertex x) {

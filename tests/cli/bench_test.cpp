@@ -154,7 +154,7 @@ TEST_CASE("bench counts the records of the irradiance cache and plots the error 
   REQUIRE(report["results"].size() == 9);
   for (const auto& result : report["results"]) {
     if (result["repeat"] == 0) records[result["setting"]] = result["records"];
-    CHECK((result["cache_rays"] > 0) == (result["setting"] != "plain"));
+    CHECK((result["record_rays"] > 0) == (result["setting"] != "plain"));
   }
   CHECK(records["plain"] == 0);
   CHECK(records["wide"] > 0);

@@ -145,8 +145,8 @@ TEST_CASE(
     if (!other.step([&] { return ++asked % 37 == 0; })) REQUIRE(++refused < 10000);
   CHECK(refused > 0);
   CHECK(test::identical(image, other.image()));
-  REQUIRE(one.film().records_told());
-  REQUIRE(other.film().records_told());
+  REQUIRE(one.film().record_errors_complete());
+  REQUIRE(other.film().record_errors_complete());
   const auto a = one.film().records(), b = other.film().records();
   REQUIRE(a.size() == b.size());
   CHECK(std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
@@ -159,14 +159,14 @@ TEST_CASE(
   CHECK(other.device().validation_messages() == 0);
   // Another view is told of anew.
   other.set_size(32, 32);
-  CHECK_FALSE(other.film().records_told());
+  CHECK_FALSE(other.film().record_errors_complete());
   test::finish(other);
-  CHECK(other.film().records_told());
+  CHECK(other.film().record_errors_complete());
   // Where nothing is read nothing is told.
   test::set(one, {{"components.secondary", "path"}, {"components.tertiary", "path"}});
   test::finish(one);
   const film::ImageError plain = one.image_error();
-  CHECK_FALSE(one.film().records_told());
+  CHECK_FALSE(one.film().record_errors_complete());
   CHECK(plain.relative_sum() == plain.relative(0));
 }
 

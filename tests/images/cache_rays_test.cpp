@@ -27,8 +27,8 @@ TEST_CASE("the more of the picture reads a record, the less noise it has when it
   shown.finish();
   REQUIRE(shown.status().stop == irradiance_cache::StopReason::passes);
   const std::vector<irradiance_cache::Record> records = test::cache(shown.r)->records().read();
-  const std::vector<float>& worth = test::cache(shown.r)->worth();
-  REQUIRE(worth.size() == records.size());
+  const std::vector<float>& importance = test::cache(shown.r)->importance();
+  REQUIRE(importance.size() == records.size());
 
   const auto light = [](const irradiance_cache::Record& r) {
     float sum = 0;
@@ -48,14 +48,14 @@ TEST_CASE("the more of the picture reads a record, the less noise it has when it
     if (r.crowded || double(light(r)) < 0.5 * mean) continue;
     const int level = r.rays == 256 ? 0 : r.rays == 1280 ? 1 : r.rays == 5376 ? 2 : 3;
     if (level == 3) continue;  // there are no more rays to be had
-    const float share = std::ldexp(0.03f * std::sqrt(0.5f / std::max(worth[i], 1e-20f)), level);
-    if (worth[i] > 0) {
+    const float share = std::ldexp(0.03f * std::sqrt(0.5f / std::max(importance[i], 1e-20f)), level);
+    if (importance[i] > 0) {
       const double over = double(r.error) / (k_noise * double(share) * double(light(r)));
       stopped += over * over, ++stops;
     }
     less += r.error > k_noise * light(r);
     more += r.rays > 256 && share < 1;
-    none += worth[i] <= 0;
+    none += importance[i] <= 0;
   }
   stopped = std::sqrt(stopped / stops);
   INFO(stopped << " of the bound where " << stops << " stop");
@@ -82,8 +82,8 @@ TEST_CASE("how much of the picture reads a record: the square of its share, summ
              {"samples", "1"}});
   shown.finish();
   const std::vector<irradiance_cache::Record> records = test::cache(shown.r)->records().read();
-  const std::vector<float>& worth = test::cache(shown.r)->worth();
-  REQUIRE(worth.size() == records.size());
+  const std::vector<float>& importance = test::cache(shown.r)->importance();
+  REQUIRE(importance.size() == records.size());
 
   // The camera sees the floor alone: a record's weight there falls from its centre to its border.
   const float half = 0.98f * std::tan(0.7f);
@@ -111,10 +111,10 @@ TEST_CASE("how much of the picture reads a record: the square of its share, summ
     }
   double all = 0, measured = 0, off = 0;
   for (size_t i = 0; i < records.size(); ++i) {
-    all += expected[i], measured += double(worth[i]);
+    all += expected[i], measured += double(importance[i]);
     // A pair of points a pixel says it with some noise, and in steps of 1/256 of a pixel.
-    off += std::abs(expected[i] - double(worth[i]));
-    if (expected[i] == 0) CHECK(worth[i] < 1e-6f);
+    off += std::abs(expected[i] - double(importance[i]));
+    if (expected[i] == 0) CHECK(importance[i] < 1e-6f);
   }
   INFO(records.size() << " records, " << measured << " where " << all << " is expected, off by " << off);
   CHECK(all > 0.05);
@@ -133,8 +133,8 @@ TEST_CASE("what the picture reads through another record counts by what it bring
              {"samples", "1"}});
   shown.finish();
   const std::vector<irradiance_cache::Record> records = test::cache(shown.r)->records().read();
-  const std::vector<float>& worth = test::cache(shown.r)->worth();
-  REQUIRE(worth.size() == records.size());
+  const std::vector<float>& importance = test::cache(shown.r)->importance();
+  REQUIRE(importance.size() == records.size());
 
   // Paths as the camera's: to the floor, then by a cosine's chance to a wall or the ceiling of a room of
   // 2 x 1 x 2 m; what meets the black panel brings nothing.
@@ -192,7 +192,7 @@ TEST_CASE("what the picture reads through another record counts by what it bring
   size_t beyond = 0;
   for (size_t i = 0; i < records.size(); ++i) {
     if (records[i].place.normal.y > 0.9f) continue;
-    all += expected[i], measured += double(worth[i]), ++beyond;
+    all += expected[i], measured += double(importance[i]), ++beyond;
   }
   INFO(beyond << " records, " << measured << " where " << all << " is expected");
   CHECK(beyond > 100);

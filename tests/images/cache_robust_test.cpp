@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/log.h"
+#include "support/complaints.h"
 #include "support/render.h"
 #include "support/rooms.h"
 
@@ -61,15 +62,6 @@ double compare(const Result& path, const Result& cached, double bias, uint32_t m
   }
   return sum;
 }
-
-/// What is logged as a warning or an error while it lives.
-struct Complaints {
-  std::vector<std::string> lines;
-  int token = log::add_listener([this](log::Level level, const std::string& line) {
-    if (level >= log::Level::warning) lines.push_back(line);
-  });
-  ~Complaints() { log::remove_listener(token); }
-};
 
 }  // namespace
 
@@ -192,7 +184,7 @@ TEST_CASE("a cache with too little room says so once, and what it cannot hold is
   room.wall(-1, 0.5f, 0.6f, 0.1f);
   Settings settings = k_both;
   settings["cache.max_records"] = "40";
-  const Complaints complaints;
+  const test::Complaints complaints;
   const Result path = render(room.s, {}, 128), cached = render(room.s, settings, 64);
   CHECK(cached.cache.stop == StopReason::records);
   CHECK(cached.cache.records == 40);
@@ -203,7 +195,7 @@ TEST_CASE("a cache with too little room says so once, and what it cannot hold is
 }
 
 TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing and says nothing") {
-  const Complaints complaints;
+  const test::Complaints complaints;
   Room mirrors;
   mirrors.s.materials[0].metallic = 1, mirrors.s.materials[0].roughness = 0.2f;
   const Result none = render(mirrors.s, k_both, 4), same = render(mirrors.s, {}, 4);

@@ -60,6 +60,7 @@ TEST_CASE("light that two solvers would bring is refused, and what was there sta
   r.set_size(16, 16);
   r.set_scene(std::make_shared<scene::Scene>(closed_room()));
   test::set(r, {{"components.tertiary", "ambient"}});
+  const int made = test::ambient_made();
   // Behind a cached secondary component the records bring tertiary light, too.
   CHECK_THROWS_WITH(test::set(r, {{"components.secondary", "cache"}, {"cache.rays", "64"}}),
                     Catch::Contains("components.tertiary: light of the words") &&
@@ -68,6 +69,7 @@ TEST_CASE("light that two solvers would bring is refused, and what was there sta
   CHECK(r.settings().text("components.secondary") == "path");
   CHECK(r.solver("ambient"));
   CHECK_FALSE(r.solver("cache"));
+  CHECK(test::ambient_made() == made);  // before any solver takes memory
   CHECK(r.step());
 }
 

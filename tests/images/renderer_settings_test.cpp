@@ -2,9 +2,11 @@
 // What a person sets stays while the scene stays, and goes with it.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "session/renderer.h"
+#include "support/complaints.h"
 #include "support/device.h"
 
 using namespace lucerna;
@@ -169,4 +171,29 @@ TEST_CASE("the heat map of cost shares the whole device time out") {
   CHECK(total == Approx(stages).epsilon(0.05));
   CHECK(most > 2 * least);  // rays that leave through the open front are cheap
   CHECK(r.device().validation_messages() == 0);
+}
+
+TEST_CASE("a scene's warnings are of the settings that it is loaded with, not of those before") {
+  const std::string atrium = std::string(LUCERNA_SOURCE_DIR) + "/scenes/atrium/atrium.gltf";  // has both
+  const auto lamps_behind_glass = [](const test::Complaints& said) {
+    return std::count_if(said.lines.begin(), said.lines.end(), [](const std::string& line) {
+      return line.find("does not come through solid glass") != std::string::npos;
+    });
+  };
+  session::Renderer r(test::renderer_options(true));
+  r.set_size(16, 16);
+  CHECK(r.enabled_components() == 0);
+  {
+    const test::Complaints said;
+    r.load(atrium, {},
+           {{"components.primary", "off", ""},
+            {"components.tertiary", "off", ""},
+            {"components.caustic", "off", ""}});
+    CHECK(r.enabled_components() == 2);
+    CHECK(lamps_behind_glass(said) == 0);
+  }
+  const test::Complaints said;
+  r.load(atrium);
+  CHECK(r.enabled_components() == 15);
+  CHECK(lamps_behind_glass(said) == 1);
 }

@@ -189,11 +189,10 @@ TEST_CASE(
                            [](const auto& a, const auto& b) { return a.weight > b.weight; }));
       if (found.under) {
         ++unders;
-        REQUIRE(found.record);
-        const Record& u = *found.record;
-        CHECK(u.place.position == all[*found.under].place.position);
-        CHECK(u.rays == all[*found.under].rays);
-        CHECK(u.radius == all[*found.under].radius);
+        const Record& u = found.under->record;
+        CHECK(u.place.position == all[found.under->index].place.position);
+        CHECK(u.rays == all[found.under->index].rays);
+        CHECK(u.radius == all[found.under->index].radius);
         const float from = length(u.place.position - found.position);
         CHECK(from <= u.radius);
         for (const Record& other : all)
@@ -329,7 +328,7 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
     for (uint32_t x = 10; x < k_size - 10 && centre == vec2(0); x += 5) {
       found = ask(r, x, y);
       here = vec2(float(x), float(y)) + 0.5f;
-      if (!found.solid || !found.record) continue;
+      if (!found.solid || !found.under) continue;
       for (const auto& s : found.serving) {
         const vec2 middle = 0.5f * (here + s.at);
         const bool alone = std::all_of(found.serving.begin(), found.serving.end(), [&](const auto& o) {
@@ -337,7 +336,7 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
         });
         const bool inside = s.at.x > 2 && s.at.y > 2 && s.at.x < k_size - 2 && s.at.y < k_size - 2;
         const bool off_ring =
-            std::abs(length(middle - found.under_at) - found.record->radius / found.size) > 5;
+            std::abs(length(middle - found.under->at) - found.under->record.radius / found.size) > 5;
         if (inside && alone && off_ring && s.weight > 0.02f && length(s.at - here) > 12) centre = s.at;
       }
     }
@@ -359,12 +358,12 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
     for (const auto& s : found.serving) nearest = std::min(nearest, from_line(p, here, s.at));
     return nearest;
   };
-  const float ring = found.record ? 1.5f * found.record->radius / found.size : 0;
+  const float ring = found.under ? 1.5f * found.under->record.radius / found.size : 0;
   const std::vector<uint32_t> list = changed(plain, lined);
   CHECK(list.size() > 8);
   for (const uint32_t p : list) {
     INFO("pixel " << p % k_size << " " << p / k_size);
-    CHECK((off(place_of(p)) < 6 || length(place_of(p) - found.under_at) < ring + 4));
+    CHECK((off(place_of(p)) < 6 || length(place_of(p) - found.under->at) < ring + 4));
   }
   // Along the line something has changed everywhere.
   for (const float t : {0.0f, 0.25f, 0.5f, 0.6f, 0.75f, 1.0f}) {

@@ -284,7 +284,7 @@ TEST_CASE(
   radiance.write(std::span<const vec4>(values));
   work.write(std::span<const shared::WorkBlock>(list));
   stream.fill(features, 0);
-  film.make_room_for_records();
+  film.make_room_for_record_errors();
   gpu::Resources resources;
   film.bind(resources);
   resources.set("WorkBlocks", work);

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <bit>
+#include <cstring>
 #include <random>
 
 #include "gpu/stream.h"
@@ -44,7 +45,8 @@ gpu::Device& device() {
 class Lights {
  public:
   explicit Lights(const scene::Scene& scene, float sun_threshold = 0)
-      : flat(upload::flatten(scene, sun_threshold)), scene_(device(), flat, {}) {
+      : Lights(upload::flatten(scene, sun_threshold)) {}
+  explicit Lights(upload::FlatScene flattened) : flat(std::move(flattened)), scene_(device(), flat, {}) {
     frame.light_count = static_cast<uint32_t>(flat.lights.size() / shared::k_light_texels);
     frame.environment_radiance = flat.environment_radiance;
     frame.environment_width = flat.environment_width;
@@ -425,7 +427,7 @@ TEST_CASE("directions of the environment map: by its density, which integrates t
       within[std::clamp(int(fy * k_grid), 0, k_grid - 1) * k_grid +
              std::clamp(int(fx * k_grid), 0, k_grid - 1)] += 1;
       const double exact =
-          lights.flat.environment_texels[size_t(row) * width + column].w * lights.frame.environment_light_pmf;
+          lights.flat.environment_density[size_t(row) * width + column] * lights.frame.environment_light_pmf;
       elsewhere += std::abs(d.pdf / exact - 1) > 1e-3;
       again.push_back(d.direction), pdfs.push_back(d.pdf);
     }
@@ -612,6 +614,52 @@ TEST_CASE("lamps: intensity over distance squared, a spot's cone, the sun's irra
     CHECK(pmfs[0] + pmfs[1] + pmfs[2] == Approx(1).epsilon(1e-5));
     for (double& p : pmfs) p *= 1 << 14;
     CHECK(chi_square({shares[0], shares[1], shares[2]}, {pmfs[0], pmfs[1], pmfs[2]}).p > 1e-5);
+  }
+}
+
+TEST_CASE(
+    "lights of another strength, chosen as they were: the distribution stays, the mean is the new light") {
+  for (const float sun_threshold : {0.f, 16.f}) {
+    const auto lit = [](const vec3& panel, const vec3& lamp, float sky_scale, float turn) {
+      scene::Scene scene = sky(48, 24, turn);
+      add_triangle(scene, {0, 4, 0}, {1, 4, 0}, {0, 4, 1}, panel);
+      scene.lights.resize(1);
+      scene.lights[0].intensity = lamp, scene.lights[0].position = {-1, 2, 0};
+      scene.environment.scale = sky_scale;
+      return scene;
+    };
+    const scene::Scene before = lit({20, 10, 5}, {300, 200, 100}, 1, 37);
+    const scene::Scene after = lit({2, 40, 30}, {100, 300, 900}, 2.5f, 80);
+    const upload::FlatScene made = upload::flatten(before, sun_threshold),
+                            anew = upload::flatten(after, sun_threshold);
+    upload::FlatScene kept = made;
+    upload::flatten_emission(after, kept);
+    const auto same = [](const auto& a, const auto& b) {
+      return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+    };
+    CHECK(same(kept.light_alias, made.light_alias));
+    CHECK_FALSE(same(kept.light_alias, anew.light_alias));
+    CHECK(same(kept.primitive_light_pmf, made.primitive_light_pmf));
+    CHECK(same(kept.environment_density, made.environment_density));
+    CHECK(kept.environment_light_pmf == made.environment_light_pmf);
+    CHECK(same(kept.lights, anew.lights));
+    CHECK(same(kept.environment_texels, anew.environment_texels));
+    CHECK(kept.environment_radiance == anew.environment_radiance);
+    CHECK(kept.environment_rotation == anew.environment_rotation);
+    // What arrives at a point from everywhere.
+    const auto mean = [](upload::FlatScene flat, uint32_t seed) {
+      Lights lights(std::move(flat));
+      Mean m;
+      for (const Draw& d : lights.draw({0.3f, 1, 0.4f}, 1 << 18, seed))
+        m.add(d.pdf > 0 ? double(luminance(d.radiance)) / double(d.pdf) : 0);
+      return m;
+    };
+    const Mean with_old = mean(kept, 3), with_own = mean(anew, 4), old_light = mean(made, 5);
+    INFO("sun threshold " << sun_threshold << ": " << with_old.value() << " and " << with_own.value());
+    const double error = std::hypot(with_old.error(), with_own.error());
+    CHECK(error < 0.02 * with_own.value());
+    CHECK(std::abs(with_old.value() - with_own.value()) < 4 * error);
+    CHECK(std::abs(old_light.value() - with_own.value()) > 10 * error);
   }
 }
 

@@ -29,18 +29,18 @@ struct Told {
 TEST_CASE("A result survives being written and read, to the bit") {
   const Matrix m = test::small_matrix();
   Result r = test::fake_result(m, m.cells()[3], 0.3, 7.7);
-  r.records = 1234, r.cache_rays = 5'000'000'000;
+  r.records = 1234, r.record_rays = 5'000'000'000;
   auto json = to_json(r);
   CHECK(to_json(parse_result(json.dump(), "x")) == json);
   CHECK(parse_result(json.dump(), "x").records == 1234);
-  CHECK(parse_result(json.dump(), "x").cache_rays == 5'000'000'000);
+  CHECK(parse_result(json.dump(), "x").record_rays == 5'000'000'000);
   Result without = r;
   without.forecast.reset();
   CHECK_FALSE(parse_result(to_json(without).dump(), "x").forecast);
   // Before records were counted files were without them; a wrong number of them is wrong all the same.
-  json.erase("records"), json.erase("cache_rays");
+  json.erase("records"), json.erase("record_rays");
   CHECK(parse_result(json.dump(), "x").records == 0);
-  CHECK(parse_result(json.dump(), "x").cache_rays == 0);
+  CHECK(parse_result(json.dump(), "x").record_rays == 0);
   json["records"] = "many";
   CHECK_THROWS_WITH(parse_result(json.dump(), "x"), Contains("records"));
 }

@@ -228,7 +228,7 @@ Json report_of_curves(bool with_records = true) {
     const bool fine = r.setting.ends_with("-30"), hessian = r.setting.starts_with("hessian");
     r.records =
         uint64_t((hessian ? 300 : 500) * (fine ? 4 : 1) + 10 * (c.repeat - 1) + (c.budget ? 0 : 1000));
-    r.cache_rays = 256 * r.records;
+    r.record_rays = 256 * r.records;
     r.truth[0] = (fine ? 0.03 : 0.06) * (hessian ? 0.8 : 1) * (1 + 0.1 * (c.repeat - 1));
   }
   return make_report(m, s, test::fake_about());
@@ -252,8 +252,8 @@ TEST_CASE("Error against records: a line for each curve, on the scenes that have
   CHECK(cell["records"]["median"] == 2000);
   CHECK(cell["records"]["low"] == 1990);
   CHECK(cell["records"]["high"] == 2010);
-  CHECK(cell["cache_rays"]["median"] == 512000);
-  CHECK_THAT(make_csv(r), Contains(",records,cache_rays,") && Contains(",2010,514560,"));
+  CHECK(cell["record_rays"]["median"] == 512000);
+  CHECK_THAT(make_csv(r), Contains(",records,record_rays,") && Contains(",2010,514560,"));
   const std::string html = make_page(r, "/no/pictures");
   CHECK(unbalanced(html.substr(html.find('\n'))) == "");
   const auto plots = record_plots(html);
@@ -317,7 +317,7 @@ TEST_CASE("Without records, or in a report from before they were counted, there 
   CHECK(record_plots(make_page(r, "/no/pictures")).empty());
   r = report_of_curves();
   for (Json& s : r["scenes"][0]["settings"])
-    for (Json& cell : s["cells"]) cell.erase("records"), cell.erase("cache_rays");
+    for (Json& cell : s["cells"]) cell.erase("records"), cell.erase("record_rays");
   const std::string html = make_page(r, "/no/pictures");
   CHECK(record_plots(html).empty());
   CHECK_THAT(html, !Contains("<th>records</th>"));

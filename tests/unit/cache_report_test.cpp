@@ -196,7 +196,7 @@ TEST_CASE(
   Record record;
   record.radius = 0.31f, record.lesser_radius = 0.1f, record.mean_distance = INFINITY, record.rays = 64;
   record.parts[1].value = vec3(0.5f, 0.25f, 0.125f);
-  c.inspection.under = 1508, c.inspection.record = record;
+  c.inspection.under = {1508, record, {}};
   const std::string much = told(), little = told(Room::little);
   CHECK_THAT(much, Contains("pass 1 \xC2\xB7 screen") && Contains("Radius|10.0 cm x 31.0 cm\n") &&
                        Contains("Mean distance (harmonic)|\xE2\x88\x9E") && Contains("secondary\n") &&

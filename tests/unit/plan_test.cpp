@@ -62,6 +62,12 @@ TEST_CASE("lamps behind solid glass are warned about, and nothing else is") {
   s.materials[0].thickness = 0.1f;
   REQUIRE(plan::unreachable_light(p, s).size() == 1);
   CHECK(plan::unreachable_light(p, s)[0].find("one.gltf") == 0);
+  // Nobody asks for that light where its components are off.
+  plan::Settings some;
+  for (const char* key : {"components.primary", "components.tertiary"}) some.set(key, "off");
+  CHECK(plan::unreachable_light(plan::make_plan(some), s).size() == 1);
+  some.set("components.caustic", "off");
+  CHECK(plan::unreachable_light(plan::make_plan(some), s).empty());
   for (scene::Light& l : s.lights) l.enabled = false;
   CHECK(plan::unreachable_light(p, s).empty());
 }

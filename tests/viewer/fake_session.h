@@ -287,13 +287,12 @@ struct Session::Impl {
     found.count = 9;
     for (uint32_t i = 0; i < 9; ++i)
       found.serving.push_back({100 + 37 * i, float(9 - i) / 45, {100 + 20 * float(i), 100}, 3});
-    found.under = 100;
     irradiance_cache::Record record;
     record.place.position = {1.02f, 0, 1.98f}, record.radius = 0.31f, record.mean_distance = 1.03f;
     record.least_distance = 0.42f, record.error = 0.021f, record.rays = 1280, record.pass = 1;
     record.parts[1].value = {0.62f, 0.41f, 0.22f}, record.parts[2].value = {0.012f, 0.0031f, 0.00004f};
     record.parts[1].translation[1] = {0.3f, 0, -0.8f};
-    found.record = record;
+    found.under = {100, record, {}};
     return c;
   }
 

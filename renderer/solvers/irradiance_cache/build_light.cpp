@@ -15,7 +15,7 @@ namespace {
 
 /// How much of the picture reads a record (PictureReads) of which the option `noise` is true after the first
 /// level, in squares of the picture's height: about what one does with a radius of 3 % of that.
-constexpr float k_noisy_worth = 0.03f * 0.03f * 0.5f;
+constexpr float k_noisy_importance = 0.03f * 0.03f * 0.5f;
 
 }  // namespace
 
@@ -92,7 +92,7 @@ bool Cache::Impl::index(const Work& w) {
   progress.stage = Stage::evaluate;
   publish_level(w);
   StageTimer timer(w.wavefront);
-  picture.worth = picture.reads.measure(w.stream(), binding(), ranges.evaluated());
+  picture.importance = picture.reads.measure(w.stream(), binding(), ranges.evaluated());
   add_time(BuildStep::probe, timer.milliseconds());
   const bool more_levels = next_level();
   end_stage(BuildStage::octree, !more_levels);
@@ -128,11 +128,11 @@ void Cache::Impl::publish_level(const Work& w) {
 
 /// What noise a record may have and be done, over the option. One more level is worth what it takes from the
 /// picture's squared error, per ray: with n rays so far, noise^2 A / n where A is how much of the picture
-/// reads the record (PictureReads). Equal worth is noise in proportion to sqrt(n) / sqrt(A).
+/// reads the record (PictureReads). Equal gain is noise in proportion to sqrt(n) / sqrt(A).
 float Cache::Impl::share_of_noise(uint32_t record) const {
   // Nobody reads some: those stop at the first level.
   constexpr float k_least = 1e-20f;
-  return std::ldexp(std::sqrt(k_noisy_worth / std::max(picture.worth[record], k_least)),
+  return std::ldexp(std::sqrt(k_noisy_importance / std::max(picture.importance[record], k_least)),
                     int(progress.levels.level()));
 }
 

@@ -116,7 +116,7 @@ PlacementShown Cache::placement() const { return impl_->places.shown(); }
 
 const CacheStatus& Cache::status() const { return impl_->status; }
 const Records& Cache::records() const { return impl_->tables.records; }
-const std::vector<float>& Cache::worth() const { return impl_->picture.worth; }
+const std::vector<float>& Cache::importance() const { return impl_->picture.importance; }
 uint32_t Cache::parts() const { return impl_->gathers.parts; }
 bool Cache::recursive() const { return impl_->gathers.recursive; }
 

@@ -51,7 +51,7 @@ struct CacheOptions {
   uint32_t rays = 0, most_rays = 0;
   /// Relative standard error of its luminance above which a record gets another level: after the first, and
   /// when as much of the picture reads it as one with a radius of 3 % of the picture's height. In proportion
-  /// to one over the square root of how much does (worth()) and to the square root of the rays so far.
+  /// to one over the square root of how much does (importance()) and to the square root of the rays so far.
   /// Records darker than a tenth of the mean are held against that. Judged by the records around (noise.h).
   float noise = 0;
   /// Of its radius: where a record makes others superfluous that are not yet evaluated, 0..1. The less, the
@@ -164,15 +164,15 @@ class Cache {
   const Records& records() const;
   /// Of the records, when the last pass had its first level: how much of the picture reads them
   /// (picture_reads.h).
-  const std::vector<float>& worth() const;
+  const std::vector<float>& importance() const;
   uint32_t parts() const;  ///< that its records hold (bits); the others are 0
   bool recursive() const;  ///< their tertiary light is looked up in other records, not path traced
   /// Looks through the centre of every pixel, for bind_sight(), unless that has been done: while the cache is
   /// being built its own passes do. The wavefront's frame is the view's.
   void look_at_picture(transport::Wavefront& wavefront, const CacheView& view);
   /// Goes on estimating, for the film, what the picture's records make it wrong by (picture_error.h), a piece
-  /// at a time, until Film::records_told(). Only when ready(); the wavefront's frame is the view's. `anew`:
-  /// the picture is begun. False when it was cancelled: it will be done again.
+  /// at a time, until Film::record_errors_complete(). Only when ready(); the wavefront's frame is the view's.
+  /// `anew`: the picture is begun. False when it was cancelled: it will be done again.
   bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const CacheView& view, bool anew,
                        const std::function<bool()>& cancel = {});
   /// For shaders/overlay/asking.glsl: where pixels ask for records; overlay::k_no_sight before that is

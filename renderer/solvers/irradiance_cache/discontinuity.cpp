@@ -20,8 +20,13 @@ struct Discontinuity::Impl {
   gpu::ShaderCompiler& compiler;
   gpu::Defines defines;
   overlay::Sight sight;
-  gpu::Kernel surface, lit_kernel, detail, dither, drawing;
-  gpu::Buffer lit, details, taken, taken_levels;
+  struct {
+    gpu::Kernel surface, lit, detail, dither, draw;
+  } kernels;  // compiled when they are called for
+  struct {
+    gpu::Buffer lit, taken, taken_levels;  // of the points
+    gpu::Buffer details;                   // of the cells, level by level
+  } buffers;
   gpu::Resources resources;
   bool begun = false;
   std::vector<uint32_t> first{0};  // entry of each level in `details`; then their sum
@@ -58,10 +63,13 @@ void Discontinuity::begin(const Frame& frame) {
     d.first.push_back(d.first.back() + d.cells(level));
     if (d.cells(level) <= 1) break;
   }
-  gpu::make_texel_room(d.device, d.lit, "irradiance of the picture", uint64_t{d.points()} * sizeof(vec3));
-  gpu::make_texel_room(d.device, d.details, "discontinuity", uint64_t{d.first.back()} * sizeof(float));
-  gpu::make_texel_room(d.device, d.taken, "points taken", uint64_t{d.points()} * sizeof(uint32_t));
-  gpu::make_texel_room(d.device, d.taken_levels, "levels of points", uint64_t{d.points()} * sizeof(uint32_t));
+  gpu::make_texel_room(d.device, d.buffers.lit, "irradiance of the picture",
+                       uint64_t{d.points()} * sizeof(vec3));
+  gpu::make_texel_room(d.device, d.buffers.details, "discontinuity",
+                       uint64_t{d.first.back()} * sizeof(float));
+  gpu::make_texel_room(d.device, d.buffers.taken, "points taken", uint64_t{d.points()} * sizeof(uint32_t));
+  gpu::make_texel_room(d.device, d.buffers.taken_levels, "levels of points",
+                       uint64_t{d.points()} * sizeof(uint32_t));
   d.begun = true;
 }
 
@@ -83,7 +91,7 @@ bool Discontinuity::see(transport::Wavefront& wavefront, const gpu::Buffer& cand
   gpu::Stream& stream = wavefront.stream();
   stream.fill(candidates, 0);
   const auto note = [&](const SeePush& push) {
-    d.run(stream, d.ready(d.surface, "surface"), &push, sizeof push, push.count);
+    d.run(stream, d.ready(d.kernels.surface, "surface"), &push, sizeof push, push.count);
   };
   return d.sight.see(wavefront, k_stage, note, cancel);
 }
@@ -92,16 +100,16 @@ void Discontinuity::look_up(gpu::Stream& stream, const std::function<void(gpu::R
   Impl& d = *impl_;
   bind(d.resources);
   d.resources.set("surface_texels", d.sight.surfaces());
-  d.resources.set("Lit", d.lit);
+  d.resources.set("Lit", d.buffers.lit);
   const LitPush push{d.points()};
-  d.run(stream, d.ready(d.lit_kernel, "lit"), &push, sizeof push, push.count);
+  d.run(stream, d.ready(d.kernels.lit, "lit"), &push, sizeof push, push.count);
 }
 
 void Discontinuity::measure(gpu::Stream& stream, Of of, const DiscontinuityOptions& o, float least) {
   Impl& d = *impl_;
   d.resources.set("surface_texels", d.sight.surfaces());
-  d.resources.set("Lit", d.lit);
-  d.resources.set("Details", d.details);
+  d.resources.set("Lit", d.buffers.lit);
+  d.resources.set("Details", d.buffers.details);
   for (uint32_t level = 0; level < d.levels(); ++level) {
     const DetailPush push{.across = d.sight.across(),
                           .down = d.sight.down(),
@@ -115,7 +123,7 @@ void Discontinuity::measure(gpu::Stream& stream, Of of, const DiscontinuityOptio
                           .irradiance_weight = of == Of::irradiance ? o.irradiance_weight : 0,
                           .irradiance_noise = o.irradiance_noise,
                           .least = std::max(least, 1e-30f)};
-    d.run(stream, d.ready(d.detail, "detail"), &push, sizeof push, d.cells(level));
+    d.run(stream, d.ready(d.kernels.detail, "detail"), &push, sizeof push, d.cells(level));
   }
 }
 
@@ -123,10 +131,10 @@ void Discontinuity::dither(gpu::Stream& stream, Of of, const DiscontinuityOption
                            uint32_t seed) {
   Impl& d = *impl_;
   d.resources.set("surface_texels", d.sight.surfaces());
-  d.resources.set("Lit", d.lit);
-  d.resources.set("Details", d.details);
-  d.resources.set("Taken", d.taken);
-  d.resources.set("TakenLevels", d.taken_levels);
+  d.resources.set("Lit", d.buffers.lit);
+  d.resources.set("Details", d.buffers.details);
+  d.resources.set("Taken", d.buffers.taken);
+  d.resources.set("TakenLevels", d.buffers.taken_levels);
   uint32_t first_level = 0;
   while (first_level + 1 < d.levels() &&
          float(1u << first_level) < scale.least_width / float(d.sight.stride()))
@@ -143,43 +151,45 @@ void Discontinuity::dither(gpu::Stream& stream, Of of, const DiscontinuityOption
                         .flat_side = scale.flat_side,
                         .spacing = of == Of::irradiance ? k_cell_share : 0,
                         .key = seed};
-  d.run(stream, d.ready(d.dither, "dither"), &push, sizeof push, d.points());
+  d.run(stream, d.ready(d.kernels.dither, "dither"), &push, sizeof push, d.points());
 }
 
 Placement::Screen Discontinuity::screen() const {
   const Impl& d = *impl_;
-  return {d.sight.surfaces(), d.taken, d.taken_levels, d.points(), d.sight.pixel(), k_cell_share};
+  return {d.sight.surfaces(), d.buffers.taken, d.buffers.taken_levels,
+          d.points(),         d.sight.pixel(), k_cell_share};
 }
 
 void Discontinuity::draw(gpu::Stream& stream, const gpu::Buffer& picture, uint32_t level) {
   Impl& d = *impl_;
   d.resources.set("surface_texels", d.sight.surfaces());
-  d.resources.set("Details", d.details);
+  d.resources.set("Details", d.buffers.details);
   d.resources.set("Picture", picture);
   level = std::min(level, d.levels() - 1);
   const overlay::Sight& s = d.sight;
   const DiscontinuityDrawPush push{s.width(),  s.height(), s.across(),    s.down(),
                                    s.stride(), level,      d.first[level]};
-  d.run(stream, d.ready(d.drawing, "discontinuity_draw"), &push, sizeof push, s.width() * s.height());
+  d.run(stream, d.ready(d.kernels.draw, "discontinuity_draw"), &push, sizeof push, s.width() * s.height());
 }
 
 uint64_t Discontinuity::bytes() const {
   uint64_t sum = impl_->sight.bytes();
-  for (const gpu::Buffer* b : {&impl_->lit, &impl_->details, &impl_->taken, &impl_->taken_levels})
+  for (const gpu::Buffer* b :
+       {&impl_->buffers.lit, &impl_->buffers.details, &impl_->buffers.taken, &impl_->buffers.taken_levels})
     sum += *b ? b->bytes() : 0;
   return sum;
 }
 
 std::vector<float> Discontinuity::level(uint32_t k) const {
   std::vector<float> values(impl_->cells(k));
-  impl_->details.read(values.data(), values.size() * sizeof(float), impl_->first[k] * sizeof(float));
+  impl_->buffers.details.read(values.data(), values.size() * sizeof(float), impl_->first[k] * sizeof(float));
   return values;
 }
 
 std::vector<uint32_t> Discontinuity::taken() const {
   std::vector<uint32_t> flags(impl_->points()), levels_of(impl_->points());
-  impl_->taken.read(flags.data(), flags.size() * sizeof(uint32_t));
-  impl_->taken_levels.read(levels_of.data(), levels_of.size() * sizeof(uint32_t));
+  impl_->buffers.taken.read(flags.data(), flags.size() * sizeof(uint32_t));
+  impl_->buffers.taken_levels.read(levels_of.data(), levels_of.size() * sizeof(uint32_t));
   for (size_t i = 0; i < flags.size(); ++i)
     if (flags[i] == 0) levels_of[i] = levels();
   return levels_of;
@@ -187,7 +197,7 @@ std::vector<uint32_t> Discontinuity::taken() const {
 
 void Discontinuity::set(const std::vector<vec4>& surfaces, const std::vector<vec3>& lit) {
   impl_->sight.set(surfaces);
-  impl_->lit.write(std::span<const vec3>(lit));
+  impl_->buffers.lit.write(std::span<const vec3>(lit));
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -21,8 +21,12 @@ constexpr float k_least_weight = 0.004f;  // of lines; a thinner one would not b
 struct Inspector::Impl {
   gpu::Device& device;
   gpu::ShaderCompiler& compiler;
-  gpu::Kernel inspect, overlap, lookups, lines, normals;
-  gpu::Buffer answer, counts, looked_up, line_list, segments;
+  struct {
+    gpu::Kernel inspect, overlap, look_up, lines, normals;
+  } kernels;  // compiled when they are called for
+  struct {
+    gpu::Buffer inspection, overlap, looked_up, lines, segments;
+  } buffers;
   overlay::Painter painter;
   gpu::Resources resources;
 
@@ -55,13 +59,14 @@ Inspector::~Inspector() = default;
 Inspection Inspector::ask(const overlay::Canvas& canvas, const Cache& cache, uint32_t x, uint32_t y) {
   Impl& i = *impl_;
   const film::Film& film = canvas.film;
-  const gpu::Kernel& kernel = i.ready(i.inspect, "irradiance_cache/inspect.comp");
+  const gpu::Kernel& kernel = i.ready(i.kernels.inspect, "irradiance_cache/inspect.comp");
   const InspectPush push{film.width(), film.height(), y * film.width() + x, i.bind(canvas, cache)};
-  i.resources.set("Inspection", i.ready(i.answer, "cache inspection", k_inspection_bytes, gpu::Memory::host));
+  i.resources.set("Inspection",
+                  i.ready(i.buffers.inspection, "cache inspection", k_inspection_bytes, gpu::Memory::host));
   canvas.stream().dispatch(kernel, i.resources, push, 1);
   canvas.finish();
 
-  const auto* header = static_cast<const InspectHeader*>(i.answer.mapped());
+  const auto* header = static_cast<const InspectHeader*>(i.buffers.inspection.mapped());
   const auto* served = reinterpret_cast<const InspectServing*>(header + 1);
   Inspection found;
   found.x = x, found.y = y;
@@ -81,20 +86,18 @@ Inspection Inspector::ask(const overlay::Canvas& canvas, const Cache& cache, uin
   for (Serving& s : found.serving) s.weight = float(s.weight / sum);
   std::stable_sort(found.serving.begin(), found.serving.end(),
                    [](const Serving& a, const Serving& b) { return a.weight > b.weight; });
-  if (header->under != k_no_record) {
-    found.under = header->under;
-    found.under_at = vec2(header->under_at);
-    found.record = cache.records().read(header->under);
-  }
+  if (header->under != k_no_record)
+    found.under = {header->under, cache.records().read(header->under), vec2(header->under_at)};
   return found;
 }
 
 Overlap Inspector::overlap(const overlay::Canvas& canvas, const Cache& cache) {
   Impl& i = *impl_;
   const film::Film& film = canvas.film;
-  const gpu::Kernel& kernel = i.ready(i.overlap, "irradiance_cache/overlap.comp");
+  const gpu::Kernel& kernel = i.ready(i.kernels.overlap, "irradiance_cache/overlap.comp");
   const OverlapPush push{film.width(), film.height(), i.bind(canvas, cache)};
-  const gpu::Buffer& counts = i.ready(i.counts, "cache overlap", sizeof(OverlapCounts), gpu::Memory::host);
+  const gpu::Buffer& counts =
+      i.ready(i.buffers.overlap, "cache overlap", sizeof(OverlapCounts), gpu::Memory::host);
   i.resources.set("Overlap", counts);
   canvas.stream().fill(counts, 0);
   canvas.stream().dispatch(kernel, i.resources, push,
@@ -116,11 +119,12 @@ void Inspector::look_up(const overlay::Canvas& canvas, const Cache& cache, const
   Impl& i = *impl_;
   const film::Film& film = canvas.film;
   const uint64_t pixels = uint64_t{film.width()} * film.height();
-  if (!i.lookups) i.lookups = gpu::Kernel(i.device, i.compiler, "irradiance_cache/lookups.comp", defines);
+  if (!i.kernels.look_up)
+    i.kernels.look_up = gpu::Kernel(i.device, i.compiler, "irradiance_cache/lookups.comp", defines);
   const OverlapPush push{film.width(), film.height(), i.bind(canvas, cache)};
   i.resources.set("LookedUp",
-                  i.ready(i.looked_up, "cache lookups", pixels * sizeof(float), gpu::Memory::device));
-  canvas.stream().dispatch(i.lookups, i.resources, push, gpu::groups_for(pixels, 64));
+                  i.ready(i.buffers.looked_up, "cache lookups", pixels * sizeof(float), gpu::Memory::device));
+  canvas.stream().dispatch(i.kernels.look_up, i.resources, push, gpu::groups_for(pixels, 64));
   canvas.finish();
 }
 
@@ -147,21 +151,23 @@ void Inspector::draw_lines(const overlay::Canvas& canvas, const Cache& cache, co
     list.push_back({s->at, s->at, s->depth, s->depth, 1.5f + strength, 0.5f + 0.5f * strength, k_line_ink});
   }
   list.push_back({here, here, found.depth, found.depth, 2.0f, 1.0f, vec3(1)});
-  if (found.record) cover(found.under_at, 1.5f * found.record->radius / std::max(found.size, 1e-20f) + 4);
+  if (found.under)
+    cover(found.under->at, 1.5f * found.under->record.radius / std::max(found.size, 1e-20f) + 4);
 
   const vec2 first = glm::clamp(glm::floor(lo), vec2(0), vec2(width, height));
   const vec2 last = glm::clamp(glm::ceil(hi), vec2(0), vec2(width, height));
   const vec2 size = last - first;
   if (size.x < 1 || size.y < 1) return;
-  const gpu::Kernel& kernel = i.ready(i.lines, "irradiance_cache/lines.comp");
+  const gpu::Kernel& kernel = i.ready(i.kernels.lines, "irradiance_cache/lines.comp");
   i.bind(canvas, cache);
-  gpu::Buffer& lines =
-      i.ready(i.line_list, "cache lines", (2 * k_inspect_most + 1) * sizeof(OverlayLine), gpu::Memory::host);
+  gpu::Buffer& lines = i.ready(i.buffers.lines, "cache lines", (2 * k_inspect_most + 1) * sizeof(OverlayLine),
+                               gpu::Memory::host);
   lines.write(list.data(), list.size() * sizeof(OverlayLine));
   i.resources.set("OverlayLines", lines);
-  const CacheLinesPush push{
-      film.width(),     film.height(),    uint32_t(first.x),     uint32_t(first.y),
-      uint32_t(size.x), uint32_t(size.y), uint32_t(list.size()), found.under.value_or(k_no_record)};
+  const CacheLinesPush push{film.width(),          film.height(),
+                            uint32_t(first.x),     uint32_t(first.y),
+                            uint32_t(size.x),      uint32_t(size.y),
+                            uint32_t(list.size()), found.under ? found.under->index : k_no_record};
   canvas.stream().dispatch(kernel, i.resources, push,
                            gpu::groups_for(uint64_t(size.x) * uint64_t(size.y), 64));
   canvas.finish();
@@ -172,14 +178,14 @@ void Inspector::draw_normals(const overlay::Canvas& canvas, const Cache& cache, 
   const uint32_t records = cache.status().records;
   if (records == 0) return;
   Impl& i = *impl_;
-  const gpu::Kernel& kernel = i.ready(i.normals, "irradiance_cache/normals.comp");
+  const gpu::Kernel& kernel = i.ready(i.kernels.normals, "irradiance_cache/normals.comp");
   i.bind(canvas, cache);
-  i.resources.set("OverlaySegments", i.ready(i.segments, "cache normals", records * sizeof(OverlaySegment),
-                                             gpu::Memory::device));
+  i.resources.set("OverlaySegments", i.ready(i.buffers.segments, "cache normals",
+                                             records * sizeof(OverlaySegment), gpu::Memory::device));
   const auto [lo, hi] = cache.scale(color);
   const CacheNormalsPush push{canvas.width(), canvas.height(), records, color, lo, hi};
   canvas.stream().dispatch(kernel, i.resources, push, gpu::groups_for(records, 64));
-  i.painter.draw(canvas, {.points = {}, .segments = {&i.segments, records}, .discs = {}},
+  i.painter.draw(canvas, {.points = {}, .segments = {&i.buffers.segments, records}, .discs = {}},
                  {.edge_alpha = 0.4f});
 }
 

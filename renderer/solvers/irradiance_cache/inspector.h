@@ -31,6 +31,13 @@ struct Serving {
   float depth = 0;      ///< of its centre along the view axis [m]; not above 0: behind the eye
 };
 
+/// A record in whose disc a pixel lies.
+struct Covering {
+  uint32_t index = 0;
+  Record record;  ///< its fields
+  vec2 at{0};     ///< its centre in the picture [pixels]
+};
+
 /// What there is at a pixel.
 struct Inspection {
   uint32_t x = 0, y = 0;          ///< the pixel
@@ -42,10 +49,8 @@ struct Inspection {
   uint32_t count = 0;             ///< records that serve
   bool gathers = false;           ///< none does: paths gather there themselves, as Record::crowded
   std::vector<Serving> serving;   ///< heaviest first; no more than shared::k_inspect_most
-  std::optional<uint32_t> under;  ///< the record in whose disc the pixel lies; of several the one whose
+  std::optional<Covering> under;  ///< the record in whose disc the pixel lies; of several the one whose
                                   ///< centre is nearest
-  std::optional<Record> record;   ///< its fields
-  vec2 under_at{0};               ///< its centre in the picture [pixels]
 };
 
 /// How many records serve the pixels that show a diffuse surface, and so ask for them.

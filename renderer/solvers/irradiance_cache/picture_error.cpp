@@ -8,7 +8,7 @@ namespace lucerna::irradiance_cache {
 
 using namespace shared;
 
-static_assert(k_carry_lanes == k_record_lanes);
+static_assert(k_error_lanes == k_record_lanes);
 
 namespace {
 
@@ -41,48 +41,48 @@ uint32_t side_for(const Frame& f) {
 
 PictureError::PictureError(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& defines)
     : device_(device),
-      leaving_(device, compiler, "irradiance_cache/carry_leave.comp", defines),
-      carrying_(device, compiler, "irradiance_cache/carry.comp", defines) {}
+      leave_one_out_(device, compiler, "irradiance_cache/leave_one_out.comp", defines),
+      propagating_(device, compiler, "irradiance_cache/propagate_errors.comp", defines) {}
 
-void PictureError::leave_out(const Work& w) {
-  if (left_.bytes() > 0 && left_for_ == w.records) return;
-  gpu::make_texel_room(device_, left_, "records left out",
-                       uint64_t{std::max(w.records, 1u)} * k_left_texels * sizeof(vec4));
+void PictureError::leave_one_out(const Work& w) {
+  if (residuals_.bytes() > 0 && residuals_for_ == w.records) return;
+  gpu::make_texel_room(device_, residuals_, "residuals of records",
+                       uint64_t{std::max(w.records, 1u)} * k_residual_texels * sizeof(vec4));
   w.bind(resources_);
-  resources_.set("Left", left_);
-  w.wavefront.stream().dispatch(leaving_, resources_, PoolPush{0, w.records}, gpu::groups_for(w.records, 64),
-                                k_stage);
-  left_for_ = w.records;
+  resources_.set("Residuals", residuals_);
+  w.wavefront.stream().dispatch(leave_one_out_, resources_, PoolPush{0, w.records},
+                                gpu::groups_for(w.records, 64), k_stage);
+  residuals_for_ = w.records;
 }
 
 bool PictureError::step(const Work& w) {
-  w.film.make_room_for_records();
-  leave_out(w);
+  w.film.make_room_for_record_errors();
+  leave_one_out(w);
   const uint32_t side = side_for(w.frame);
   const Frame frame = coarser(w.frame, side);
   const uint32_t blocks = (frame.width + k_block - 1) / k_block * ((frame.height + k_block - 1) / k_block);
   const uint32_t end = std::min(blocks, done_ + std::max(1u, w.wavefront.slots() / (64 * k_paths)));
   w.wavefront.set_frame(frame, w.enabled);
-  const bool complete = carry(w, side, end);
+  const bool complete = propagate(w, side, end);
   w.write_frame(k_probe_none);
   w.wavefront.set_frame(w.frame, w.enabled);
   if (!complete) return false;
   done_ = end;
-  if (done_ == blocks) w.film.tell_records();
+  if (done_ == blocks) w.film.complete_record_errors();
   return true;
 }
 
-bool PictureError::carry(const Work& w, uint32_t side, uint32_t end) {
+bool PictureError::propagate(const Work& w, uint32_t side, uint32_t end) {
   schedule::WorkItem item{{}, k_paths};
   for (uint32_t b = done_; b < end; ++b) item.blocks.push_back({b, 0});
   gpu::Stream& stream = w.wavefront.stream();
   gpu::make_texel_room(device_, first_, "first lookups", w.candidates.bytes());
-  for (const uint32_t probing : {k_probe_carry, k_probe_carry_on}) {
-    if (probing == k_probe_carry_on && !w.recursive) continue;
+  for (const uint32_t probing : {k_probe_errors, k_probe_errors_beyond}) {
+    if (probing == k_probe_errors_beyond && !w.recursive) continue;
     stream.fill(w.candidates, 0);
     w.write_frame(probing);
     if (!w.wavefront.probe(item, w.cancel)) return false;
-    if (probing == k_probe_carry && w.recursive) stream.copy(w.candidates, first_, w.candidates.bytes());
+    if (probing == k_probe_errors && w.recursive) stream.copy(w.candidates, first_, w.candidates.bytes());
   }
   gpu::make_room(
       device_, blocks_,
@@ -93,10 +93,10 @@ bool PictureError::carry(const Work& w, uint32_t side, uint32_t end) {
   resources_.set("WorkBlocks", blocks_);
   resources_.set("candidate_texels", w.recursive ? first_ : w.candidates);
   resources_.set("beyond_texels", w.candidates);
-  resources_.set("left_texels", left_);
+  resources_.set("residual_texels", residuals_);
   const uint32_t pixels = 64 * uint32_t(item.blocks.size());
-  const CarryPush push{w.film.width(), w.film.height(), side, pixels, w.recursive};
-  stream.dispatch(carrying_, resources_, push, gpu::groups_for(pixels, 64), k_stage);
+  const PropagatePush push{w.film.width(), w.film.height(), side, pixels, w.recursive};
+  stream.dispatch(propagating_, resources_, push, gpu::groups_for(pixels, 64), k_stage);
   stream.run();
   return true;
 }

@@ -9,7 +9,7 @@
 // add up.
 //
 // Noise: e_k = sigma_k xi_k, with the standard error that record k keeps and xi of mean 0 and variance 1,
-// independent from record to record. In each of k_carry_lanes lanes every xi_k is drawn anew as a fixed sign;
+// independent from record to record. In each of k_error_lanes lanes every xi_k is drawn anew as a fixed sign;
 // paths are sent through the picture, every lane is summed over R, and the mean over the lanes of the square
 // of that is Var(delta_R) = sum_k c_k^2 sigma_k^2 (M. Hutchinson's estimator, 1989): the lanes are its
 // degrees of freedom. Two independent paths a pixel, whose sums are multiplied, keep the paths' own noise out
@@ -17,13 +17,13 @@
 //
 // Records whose rays end in other records err with them. In the mean such a record's light is that of its
 // rays, so that paths which pass the first lookup over and go on as the rays do read what the record has
-// read: the errors are carried over all further lookups, as often as light is.
+// read: the errors are propagated over all further lookups, as often as light is.
 //
 // Interpolation: what the records around k say of the light at its place, less what k says, tells with its
-// sign how the light bends there and so by what k is off at any distance (carry_leave.comp); that is carried
-// along the same paths and summed the same way. The noise in it, mostly cancelled over a region because each
-// record comes in once with either sign, is known by the same lanes and taken off the square. Where a record
-// is alone, or all around miss the same thing, it does not tell.
+// sign how the light bends there and so by what k is off at any distance (leave_one_out.comp); that is
+// propagated along the same paths and summed the same way. The noise in it, mostly cancelled over a region
+// because each record comes in once with either sign, is known by the same lanes and taken off the square.
+// Where a record is alone, or all around miss the same thing, it does not tell.
 #include <functional>
 
 #include "film/film.h"
@@ -34,8 +34,8 @@ namespace lucerna::irradiance_cache {
 
 class PictureError {
  public:
-  /// Pixels of the film that have one of the carried pixels, at most so many; of larger pictures one stands
-  /// for several.
+  /// Pixels of the film that have one of the pixels that are traced, at most so many; of larger pictures one
+  /// stands for several.
   static constexpr uint32_t k_most_pixels = 1u << 18;
 
   /// `defines`: Cache::defines().
@@ -57,22 +57,22 @@ class PictureError {
     std::function<bool()> cancel;
   };
   /// Forgets how far the picture has been gone through.
-  void begin() { done_ = 0, left_for_ = 0; }
+  void begin() { done_ = 0, residuals_for_ = 0; }
   /// Goes through the next pixels, as many as there are slots, and through the last tells the film;
   /// afterwards the wavefront's frame is `frame` again. False when it was cancelled.
   bool step(const Work& work);
-  uint64_t bytes() const { return left_.bytes() + first_.bytes(); }
+  uint64_t bytes() const { return residuals_.bytes() + first_.bytes(); }
 
  private:
-  void leave_out(const Work& work);
-  bool carry(const Work& work, uint32_t side, uint32_t end);
+  void leave_one_out(const Work& work);
+  bool propagate(const Work& work, uint32_t side, uint32_t end);
 
   gpu::Device& device_;
-  gpu::Kernel leaving_, carrying_;
-  gpu::Buffer left_, first_, blocks_;
+  gpu::Kernel leave_one_out_, propagating_;
+  gpu::Buffer residuals_, first_, blocks_;
   gpu::Resources resources_;
-  uint32_t done_ = 0;      // blocks
-  uint32_t left_for_ = 0;  // records that have been left out
+  uint32_t done_ = 0;           // blocks
+  uint32_t residuals_for_ = 0;  // records that have residuals
 };
 
 }  // namespace lucerna::irradiance_cache

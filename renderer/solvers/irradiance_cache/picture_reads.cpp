@@ -11,7 +11,7 @@ using namespace shared;
 
 namespace {
 
-constexpr const char* k_stage = "worth";
+constexpr const char* k_stage = "importance";
 constexpr uint32_t k_paths = 2;  ///< a pixel
 
 }  // namespace
@@ -19,9 +19,9 @@ constexpr uint32_t k_paths = 2;  ///< a pixel
 PictureReads::PictureReads(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t capacity,
                            const gpu::Defines& defines)
     : device_(device),
-      keeping_(device, compiler, "irradiance_cache/worth_keep.comp", defines),
-      adding_(device, compiler, "irradiance_cache/worth_add.comp", defines),
-      sums_(device, {.name = "worth of records",
+      keeping_(device, compiler, "irradiance_cache/importance_places.comp", defines),
+      adding_(device, compiler, "irradiance_cache/importance_sum.comp", defines),
+      sums_(device, {.name = "importance of records",
                      .bytes = uint64_t{capacity} * sizeof(WideSum),
                      .memory = gpu::Memory::host}) {}
 
@@ -58,7 +58,7 @@ bool PictureReads::see(transport::Wavefront& wavefront, const gpu::Buffer& candi
     if (!complete) return false;
     resources_.set("candidate_texels", candidates);
     resources_.set("Places", *to);
-    const WorthPush push{64 * (end - done_), 64 * done_, next};
+    const ImportancePush push{64 * (end - done_), 64 * done_, next};
     stream.dispatch(keeping_, resources_, push, gpu::groups_for(item.slots(), 64), k_stage);
     stream.run();
   }
@@ -73,14 +73,15 @@ std::vector<float> PictureReads::measure(gpu::Stream& stream,
   resources_.set("next_place_texels", next_ ? next_places_ : places_);
   resources_.set("Sums", sums_);
   stream.fill(sums_, 0);
-  stream.dispatch(adding_, resources_, WorthPush{pixels(), 0, next_}, gpu::groups_for(pixels(), 64), k_stage);
+  stream.dispatch(adding_, resources_, ImportancePush{pixels(), 0, next_}, gpu::groups_for(pixels(), 64),
+                  k_stage);
   stream.run();
   const WideSum* const sums = static_cast<const WideSum*>(sums_.mapped());
-  const float pixel = 1.0f / (float(k_worth_steps) * float(frame_.height) * float(frame_.height));
-  std::vector<float> worth(count);
-  std::transform(sums, sums + count, worth.begin(),
+  const float pixel = 1.0f / (float(k_importance_steps) * float(frame_.height) * float(frame_.height));
+  std::vector<float> importance(count);
+  std::transform(sums, sums + count, importance.begin(),
                  [&](const WideSum& sum) { return pixel * float(value(sum)); });
-  return worth;
+  return importance;
 }
 
 }  // namespace lucerna::irradiance_cache

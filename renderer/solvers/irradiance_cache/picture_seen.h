@@ -13,7 +13,7 @@ struct PictureSeen {
   Discontinuity screen;  ///< where it changes
   PictureReads reads;    ///< where it reads records
   std::vector<float>
-      worth;           ///< how much of it reads each of the records that were evaluated when it was asked
+      importance;      ///< how much of it reads each of the records that were evaluated when it was asked
   PictureError error;  ///< what the records' errors make of it
 
   PictureSeen(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t most_records,

@@ -460,7 +460,7 @@ solvers::Report make_report(const CacheReport& told, const OptionValues& setting
   report.looked_at = told.looked_at;
   if (const Inspection& found = told.inspection; told.looked_at && found.solid) {
     report.card.emplace();
-    if (found.record && found.under) add_fields(*report.card, *found.under, *found.record);
+    if (found.under) add_fields(*report.card, found.under->index, found.under->record);
     add_weights(*report.card, found, building);
   }
   report.figures = {{"records", s.records},     {"room", told.room},

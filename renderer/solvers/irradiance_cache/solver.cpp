@@ -52,6 +52,13 @@ CacheRoutes all_routes(const Task& task) {
           .records_gather = paths::gather_routes(task.automaton, records.parts, records)};
 }
 
+solvers::Routing routing(const Task& task) {
+  CacheRoutes routes = all_routes(task);
+  return {.lookups = std::move(routes.picture),
+          .fallback = task.enabled,
+          .gather = std::move(routes.picture_gather)};
+}
+
 /// Texels brighter than this times the sky's mean are a sun, where records hold the sky's light.
 float sun_threshold(const Task& task) {
   if (!task.settings.boolean("cache.environment")) return 0;
@@ -69,6 +76,7 @@ std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& 
 
 const solvers::SolverType& type() {
   static const solvers::SolverType all{.info = irradiance_cache::info(),
+                                       .routing = routing,
                                        .make = make,
                                        .least_slots = Cache::k_least_slots,
                                        .sun_threshold = sun_threshold};
@@ -86,12 +94,6 @@ CacheSolver::CacheSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, uin
 const solvers::SolverInfo& CacheSolver::info() const { return irradiance_cache::info(); }
 
 gpu::Defines CacheSolver::defines() const { return Cache::defines(record_routes_, metric_); }
-
-solvers::Routing CacheSolver::routing(const Task& task) const {
-  return {.lookups = picture_routes(task),
-          .fallback = task.enabled,
-          .gather = paths::gather_routes(task.automaton, task.enabled, record_routes_)};
-}
 
 bool CacheSolver::serves(const Task& task) const {
   return picture_routes(task).component == picture_routes_.component &&

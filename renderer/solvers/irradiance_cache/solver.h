@@ -22,7 +22,6 @@ class CacheSolver final : public solvers::Solver {
   gpu::Defines defines() const override;
   std::string hook() const override { return "irradiance_cache/vertex_hook.glsl"; }
   void bind(gpu::Resources& resources) const override { cache_.bind(resources); }
-  solvers::Routing routing(const solvers::Task& task) const override;
   bool serves(const solvers::Task& task) const override;
 
   void adopt(transport::Wavefront& wavefront, const solvers::Solver& before) override;

@@ -1,7 +1,7 @@
 // The records of an irradiance cache. Read by C++ and GLSL.
 //
 // A record holds the irradiance of a point on a surface in parts, so that components stay apart wherever it
-// is read. The parts carry the numbers of the components that a path beginning with ED would bring them to:
+// is read. The parts have the numbers of the components that a path beginning with ED would bring them to:
 // light that comes from the hemisphere straight, over one diffuse event, over more, or over mirrors and glass
 // alone.
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
@@ -95,28 +95,28 @@ LUCERNA_CONST uint k_probe_reads = 4u;
 LUCERNA_CONST uint k_probe_next = 5u;
 
 /// Of the vertices that read records and from which the path goes on by a diffuse event, where it ends, is
-/// noted with what it carries there: CarriedNote, in place of a candidate. The mean of what is noted, times
+/// noted with its throughput there, in place of a candidate. The mean of what is noted, times
 /// what records there hold, is what pictures read of them.
-LUCERNA_CONST uint k_probe_carry = 6u;
+LUCERNA_CONST uint k_probe_errors = 6u;
 /// The same of what the records themselves have read: paths pass their first lookup over and note one of
 /// those beyond.
-LUCERNA_CONST uint k_probe_carry_on = 7u;
+LUCERNA_CONST uint k_probe_errors_beyond = 7u;
 
 // Noted by these, in candidate_texels:
-//   0: position; bits 1 + state of the automaton + k_carried_medium times the medium, 0: nothing is noted
-//   1: smooth normal on the side that is lit, bits carried_pack() of the throughput behind the diffuse lobe,
-//   over pi
-LUCERNA_CONST uint k_carried_medium = 32u;
+//   0: position; bits 1 + state of the automaton + k_note_medium times the medium, 0: nothing is noted
+//   1: smooth normal on the side that is lit, bits throughput_pack() of the throughput behind the diffuse
+//   lobe, over pi
+LUCERNA_CONST uint k_note_medium = 32u;
 
-/// Signs by which every record's error is carried into the picture (picture_error.h); a multiple of 4, at
+/// Signs by which every record's error is propagated into the picture (picture_error.h); a multiple of 4, at
 /// most 32.
-LUCERNA_CONST uint k_carry_lanes = 16u;
-/// carry_leave.comp leaves for every record, over the luminance of its irradiance: what it is off by where it
-/// ends, by what the others around say of it beyond what it says itself; 0, 0, 0; the same of their errors in
-/// every lane.
-LUCERNA_CONST uint k_left_texels = 1u + k_carry_lanes / 4u;
+LUCERNA_CONST uint k_error_lanes = 16u;
+/// leave_one_out.comp leaves for every record, over the luminance of its irradiance: what it is off by where
+/// it ends, by what the others around say of it beyond what it says itself; 0, 0, 0; the same of their errors
+/// in every lane.
+LUCERNA_CONST uint k_residual_texels = 1u + k_error_lanes / 4u;
 
-struct CarryPush {
+struct PropagatePush {
   uint width, height;  ///< of the picture, in pixels of the film
   uint step;  ///< of which so many along each side have one of this kernel's pixels: a power of 2, at most 8
   uint pixels;  ///< of these in the item, two paths each
@@ -174,16 +174,16 @@ struct ClampPush {
 LUCERNA_CONST uint k_no_bound = 0x7f800000u;
 
 /// How much of the picture reads a record.
-struct WorthPush {
+struct ImportancePush {
   uint pixels;
   uint first;  ///< pixels before these
   uint next;   ///< not 0: there are next places too
 };
-LUCERNA_CONST uint k_worth_steps = 256u;  ///< that a pixel of which a record has all is
+LUCERNA_CONST uint k_importance_steps = 256u;  ///< that a pixel of which a record has all is
 /// Most that a record is to bring through another one, over the irradiance of that: its square in steps is
 /// less than 2^32.
-LUCERNA_CONST float k_worth_most = 2048.0f;
-LUCERNA_CONST uint k_worth_there = 0x40000000u;  ///< a place is one; above the 22 bits of its normal
+LUCERNA_CONST float k_importance_most = 2048.0f;
+LUCERNA_CONST uint k_importance_place = 0x40000000u;  ///< a place is one; above the 22 bits of its normal
 
 struct EllipsePush {
   uint first, count;  ///< records

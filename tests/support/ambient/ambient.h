@@ -33,11 +33,16 @@ inline const solvers::SolverInfo& ambient_info() {
 
 inline constexpr vec3 k_ambient_ink{1, 0.25f, 0.8f};
 
+inline solvers::Routing ambient_routing(const solvers::Task& task) {
+  return {
+      .lookups = paths::lookup_routes(task.automaton, task.enabled, task.own), .fallback = 0, .gather = {}};
+}
+
 class AmbientSolver final : public solvers::Solver {
  public:
   AmbientSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const solvers::Task& task)
       : painter_(device, compiler),
-        routes_(routing(task).lookups),
+        routes_(ambient_routing(task).lookups),
         radiance_(float(task.settings.real("ambient.radiance"))) {
     struct {
       std::array<uint32_t, shared::k_automaton_states> component;
@@ -56,12 +61,8 @@ class AmbientSolver final : public solvers::Solver {
     return std::string(LUCERNA_SOURCE_DIR) + "/tests/support/ambient/vertex_hook.glsl";
   }
   void bind(gpu::Resources& resources) const override { resources.set("AmbientBlock", block_); }
-  solvers::Routing routing(const solvers::Task& task) const override {
-    return {
-        .lookups = paths::lookup_routes(task.automaton, task.enabled, task.own), .fallback = 0, .gather = {}};
-  }
   bool serves(const solvers::Task& task) const override {
-    return routing(task).lookups.component == routes_.component;
+    return ambient_routing(task).lookups.component == routes_.component;
   }
   void begin(const solvers::Picture&, solvers::Spoils spoils) override { begun_ += spoils.any(); }
   void draw(const overlay::Canvas& canvas, const solvers::Picture& picture) override {
@@ -99,11 +100,19 @@ class AmbientSolver final : public solvers::Solver {
   uint32_t begun_ = 0;  ///< pictures that have spoiled its work
 };
 
+/// How many have been made.
+inline int& ambient_made() {
+  static int count = 0;
+  return count;
+}
+
 inline const solvers::SolverType& ambient_type() {
   static const solvers::SolverType type{
       .info = ambient_info(),
+      .routing = ambient_routing,
       .make = [](gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
                  const solvers::Task& task) -> std::unique_ptr<solvers::Solver> {
+        ++ambient_made();
         return std::make_unique<AmbientSolver>(device, compiler, task);
       }};
   return type;

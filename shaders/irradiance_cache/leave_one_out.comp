@@ -2,15 +2,15 @@
 // itself. Beyond their noise that is what interpolation is off by there, with its sign. What a record extrapolates with its
 // slopes is off by the light's second derivatives, so in proportion to the square of the distance q = 1 - w, w its weight;
 // the mean of those squares over the others here, by their weights, says what the residual would be at distance 1, where
-// the record ends. That is kept: carry.comp scales it back. And since the residual is a sum of records' light, their errors
-// are carried through it lane by lane, so that over a region, where most of them cancel, what is left of the noise is known
+// the record ends. That is kept: propagate_errors.comp scales it back. And since the residual is a sum of records' light, their errors
+// are propagated through it lane by lane, so that over a region, where most of them cancel, what is left of the noise is known
 // too. (Leave-one-out residuals: D. M. Allen, "The relationship between variable selection and data
 // augmentation and a method for prediction", 1974.) One invocation a record.
 #include "irradiance_cache/reading.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PoolPush push; };
-layout(scalar) writeonly buffer Left { vec4 left[]; };
+layout(scalar) writeonly buffer Residuals { vec4 residuals[]; };
 
 // Where the others are as near as that (a third of the reach) they tell little of what is further off.
 const float k_least_square = 0.1;
@@ -38,8 +38,8 @@ void main() {
   vec3 x = texelFetch(record_texels, int(record * k_record_texels)).xyz;
   vec3 n = texelFetch(record_texels, int(record * k_record_texels + 1u)).xyz;
   float light = record_crowded(record) ? 0.0 : record_luminance(record);
-  vec4 noise[k_carry_lanes / 4u];
-  for (uint g = 0u; g < k_carry_lanes / 4u; ++g) noise[g] = vec4(0.0);
+  vec4 noise[k_error_lanes / 4u];
+  for (uint g = 0u; g < k_error_lanes / 4u; ++g) noise[g] = vec4(0.0);
   float others = 0.0, weights = 0.0, squares = 0.0;
   OctreeRange range = cache_range(x, light > 0.0);
   for (uint i = range.first; i < range.last; ++i) {
@@ -49,12 +49,12 @@ void main() {
     others += weight > 0.0 ? weight * extrapolated(other, facing, x - octree_copy(i).xyz, n) : 0.0;
     weights += weight;
     squares += weight * square(1.0 - weight);
-    for (uint g = 0u; g < k_carry_lanes / 4u; ++g) noise[g] += weight * record_error(other) * record_signs(other, g);
+    for (uint g = 0u; g < k_error_lanes / 4u; ++g) noise[g] += weight * record_error(other) * record_signs(other, g);
   }
   bool told = weights > 0.0;
   float at_border = 1.0 / max(squares / max(weights, 1e-30), k_least_square);
-  int at = int(record * k_left_texels);
-  left[at] = vec4(told ? at_border * (others / weights / light - 1.0) : 0.0, 0.0, 0.0, 0.0);
-  for (uint g = 0u; g < k_carry_lanes / 4u; ++g)
-    left[at + 1 + int(g)] = told ? at_border * (noise[g] / weights - record_error(record) * record_signs(record, g)) / light : vec4(0.0);
+  int at = int(record * k_residual_texels);
+  residuals[at] = vec4(told ? at_border * (others / weights / light - 1.0) : 0.0, 0.0, 0.0, 0.0);
+  for (uint g = 0u; g < k_error_lanes / 4u; ++g)
+    residuals[at + 1 + int(g)] = told ? at_border * (noise[g] / weights - record_error(record) * record_signs(record, g)) / light : vec4(0.0);
 }

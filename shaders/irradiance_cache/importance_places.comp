@@ -3,7 +3,7 @@
 #include "shaders/shared/facet.h"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push { WorthPush push; };
+layout(push_constant, scalar) uniform Push { ImportancePush push; };
 uniform samplerBuffer candidate_texels;
 layout(scalar) writeonly buffer Places { vec4 places[]; };
 
@@ -13,6 +13,6 @@ void main() {
   vec4 place = texelFetch(candidate_texels, int(slot * k_candidate_texels));
   vec3 normal = texelFetch(candidate_texels, int(slot * k_candidate_texels + 1u)).xyz;
   bool there = place.w > 0.0;
-  uint bits = there ? k_worth_there | facet_pack(normal) : 0u;
+  uint bits = there ? k_importance_place | facet_pack(normal) : 0u;
   places[2u * (push.first + slot % push.pixels) + slot / push.pixels] = vec4(place.xyz, uintBitsToFloat(bits));
 }

@@ -1,34 +1,34 @@
-// Carries the records' errors along the paths of a batch of pixels, two independent ones each: what is noted of a path
-// (k_probe_carry) says how much it reads there, lookup.glsl which records that is. One invocation a pixel, a block of 8x8 a
+// Propagates the records' errors along the paths of a batch of pixels, two independent ones each: what is noted of a path
+// (k_probe_errors) says how much it reads there, lookup.glsl which records that is. One invocation a pixel, a block of 8x8 a
 // workgroup; sums in a fixed order.
 #include "irradiance_cache/reading.glsl"
 #include "shaders/shared/transport.h"
 #include "lib/blocks.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push { CarryPush push; };
-uniform samplerBuffer candidate_texels;  // of the paths' first lookups: k_probe_carry
-uniform samplerBuffer beyond_texels;     // ... and of those beyond: k_probe_carry_on
-uniform samplerBuffer left_texels;       // carry_leave.comp
+layout(push_constant, scalar) uniform Push { PropagatePush push; };
+uniform samplerBuffer candidate_texels;  // of the paths' first lookups: k_probe_errors
+uniform samplerBuffer beyond_texels;     // ... and of those beyond: k_probe_errors_beyond
+uniform samplerBuffer residual_texels;       // leave_one_out.comp
 layout(scalar) writeonly buffer FilmRecords { vec2 film_records[]; };
 layout(scalar) writeonly buffer BlockRecordSums { BlockRecords block_records[]; };
 
-const uint k_groups = k_carry_lanes / 4u;
-const uint k_values = 2u * k_carry_lanes + 1u;  // of a path: noise, noise of interpolation, interpolation
+const uint k_groups = k_error_lanes / 4u;
+const uint k_values = 2u * k_error_lanes + 1u;  // of a path: noise, noise of interpolation, interpolation
 shared float sums[k_values * 64u];
 
-struct Carried {
+struct ErrorSums {
   vec4 noise[k_groups], interpolation_noise[k_groups];
   float interpolation;
 };
 
 // Adds what a path reads where that was noted, `share` of it.
-void carry(inout Carried sum, vec4 note, vec4 facing, float share) {
-  uint bits = floatBitsToUint(note.w), state = (bits - 1u) % k_carried_medium, medium = (bits - 1u) / k_carried_medium;
+void propagate(inout ErrorSums sum, vec4 note, vec4 facing, float share) {
+  uint bits = floatBitsToUint(note.w), state = (bits - 1u) % k_note_medium, medium = (bits - 1u) / k_note_medium;
   bool there = bits != 0u && share > 0.0;
-  vec3 brings = carried_unpack(floatBitsToUint(facing.w));
+  vec3 brings = throughput_unpack(floatBitsToUint(facing.w));
   uint routes = cache.routes[there ? state : 0u];
-  Carried here;
+  ErrorSums here;
   for (uint g = 0u; g < k_groups; ++g) here.noise[g] = here.interpolation_noise[g] = vec4(0.0);
   here.interpolation = 0.0;
   float weights = 0.0;
@@ -43,12 +43,12 @@ void carry(inout Carried sum, vec4 note, vec4 facing, float share) {
     weights += weight;
     light *= weight;
     float error = light * record_error(record) / max(record_luminance(record), 1e-30);
-    int left = int(record * k_left_texels);
-    float bent = light * square(1.0 - weight);  // by the square of the distance, as carry_leave.comp has it
-    here.interpolation += bent * texelFetch(left_texels, left).x;
+    int residual = int(record * k_residual_texels);
+    float bent = light * square(1.0 - weight);  // by the square of the distance, as leave_one_out.comp has it
+    here.interpolation += bent * texelFetch(residual_texels, residual).x;
     for (uint g = 0u; g < k_groups; ++g) {
       here.noise[g] += error * record_signs(record, g);
-      here.interpolation_noise[g] += bent * texelFetch(left_texels, left + 1 + int(g));
+      here.interpolation_noise[g] += bent * texelFetch(residual_texels, residual + 1 + int(g));
     }
   }
   float scale = weights > 0.0 ? share / weights : 0.0;
@@ -59,14 +59,14 @@ void carry(inout Carried sum, vec4 note, vec4 facing, float share) {
   }
 }
 
-Carried carried(uint slot, bool inside) {
-  Carried sum;
+ErrorSums path_errors(uint slot, bool inside) {
+  ErrorSums sum;
   for (uint g = 0u; g < k_groups; ++g) sum.noise[g] = sum.interpolation_noise[g] = vec4(0.0);
   sum.interpolation = 0.0;
   int at = int(slot * k_candidate_texels);
-  carry(sum, texelFetch(candidate_texels, at), texelFetch(candidate_texels, at + 1), inside ? 1.0 : 0.0);
+  propagate(sum, texelFetch(candidate_texels, at), texelFetch(candidate_texels, at + 1), inside ? 1.0 : 0.0);
   if (push.beyond != 0u)
-    carry(sum, texelFetch(beyond_texels, at), texelFetch(beyond_texels, at + 1), inside ? 1.0 : 0.0);
+    propagate(sum, texelFetch(beyond_texels, at), texelFetch(beyond_texels, at + 1), inside ? 1.0 : 0.0);
   return sum;
 }
 
@@ -94,23 +94,23 @@ void keep_sums(uint block, uint path, uint width) {
       pixels += counts ? 1.0 : 0.0;
     }
     uint film_block = to.y * film_across + to.x;
-    if (value < k_carry_lanes) block_records[film_block].noise[path * k_carry_lanes + value] = sum;
-    else if (value < 2u * k_carry_lanes)
-      block_records[film_block].interpolation_noise[path * k_carry_lanes + value - k_carry_lanes] = sum;
+    if (value < k_error_lanes) block_records[film_block].noise[path * k_error_lanes + value] = sum;
+    else if (value < 2u * k_error_lanes)
+      block_records[film_block].interpolation_noise[path * k_error_lanes + value - k_error_lanes] = sum;
     else block_records[film_block].interpolation[path] = sum;
     if (value == 0u) block_records[film_block].pixels = pixels;
   }
 }
 
-void keep(Carried c, uint block, uint path, uint width) {
+void keep(ErrorSums c, uint block, uint path, uint width) {
   uint lane = gl_LocalInvocationIndex;
   barrier();
   for (uint g = 0u; g < k_groups; ++g)
     for (uint k = 0u; k < 4u; ++k) {
       sums[(4u * g + k) * 64u + lane] = c.noise[g][k];
-      sums[(k_carry_lanes + 4u * g + k) * 64u + lane] = c.interpolation_noise[g][k];
+      sums[(k_error_lanes + 4u * g + k) * 64u + lane] = c.interpolation_noise[g][k];
     }
-  sums[2u * k_carry_lanes * 64u + lane] = c.interpolation;
+  sums[2u * k_error_lanes * 64u + lane] = c.interpolation;
   barrier();
   keep_sums(block, path, width);
 }
@@ -121,11 +121,11 @@ void main() {
   uint block = blocks[min(index, push.pixels - 1u) / 64u].index;
   uvec2 size = (uvec2(push.width, push.height) + push.step - 1u) / push.step, xy = block_pixel(block, index % 64u, size.x);
   bool inside = working && all(lessThan(xy, size));
-  Carried one = carried(min(index, push.pixels - 1u), inside), other = carried(push.pixels + min(index, push.pixels - 1u), inside);
+  ErrorSums one = path_errors(min(index, push.pixels - 1u), inside), other = path_errors(push.pixels + min(index, push.pixels - 1u), inside);
   vec2 squares = vec2(0.0, one.interpolation * other.interpolation);
   for (uint g = 0u; g < k_groups; ++g) {
-    squares.x += dot(one.noise[g], other.noise[g]) / float(k_carry_lanes);
-    squares.y -= dot(one.interpolation_noise[g], other.interpolation_noise[g]) / float(k_carry_lanes);
+    squares.x += dot(one.noise[g], other.noise[g]) / float(k_error_lanes);
+    squares.y -= dot(one.interpolation_noise[g], other.interpolation_noise[g]) / float(k_error_lanes);
   }
   if (inside) keep_pixel(xy, squares);
   keep(one, block, 0u, size.x);

@@ -1,6 +1,6 @@
 // links: irradiance_cache film
-// How records' errors are carried into the picture: the kernels against the same sums taken here, for a few
-// records with known errors, and what of them tiles come to.
+// How records' errors are propagated into the picture: the kernels against the same sums taken here, for a
+// few records with known errors, and what of them tiles come to.
 #include <cmath>
 
 #include "film/error.h"
@@ -8,11 +8,11 @@
 
 using namespace lucerna;
 using shared::BlockRecords;
-using shared::k_carry_lanes;
+using shared::k_error_lanes;
 
 namespace {
 
-/// As shaders/irradiance_cache/carried.glsl has it.
+/// As shaders/irradiance_cache/error_propagation.glsl has it.
 double sign_of(uint32_t record, uint32_t lane) {
   uint32_t x = record + 0x9e3779b9u;
   x = (x ^ x >> 16) * 0x7feb352du;
@@ -36,44 +36,44 @@ test::RecordDisc disc(float x, float light, float error) {
 
 struct Note {
   float x = 0;
-  double carries = 0;  ///< 0: nothing
+  double throughput = 0;  ///< 0: nothing
 };
 
 /// What the kernels make of paths that read records so: `notes` by path and pixel of a picture of 16 x 8.
-struct Carried {
+struct ErrorSums {
   std::vector<vec2> pixels;
   std::vector<BlockRecords> blocks;
-  std::vector<vec4> left;  ///< by record, k_left_texels each
+  std::vector<vec4> residuals;  ///< by record, k_residual_texels each
 };
-Carried carry(test::RecordBed& bed, const std::vector<test::RecordDisc>& discs,
-              const std::array<std::vector<Note>, 2>& notes, const std::array<std::vector<Note>, 2>& beyond,
-              uint32_t step = 1) {
+ErrorSums propagate(test::RecordBed& bed, const std::vector<test::RecordDisc>& discs,
+                    const std::array<std::vector<Note>, 2>& notes,
+                    const std::array<std::vector<Note>, 2>& beyond, uint32_t step = 1) {
   constexpr uint32_t k_width = 16, k_height = 8;
   const uint32_t blocks = 2 / step / step + (step == 2), pixels = 64 * blocks;
-  gpu::Kernel leave(bed.device, bed.compiler, "irradiance_cache/carry_leave.comp",
+  gpu::Kernel leave(bed.device, bed.compiler, "irradiance_cache/leave_one_out.comp",
                     {{"LUCERNA_CACHE_PARTS", "14"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
-  gpu::Kernel carry(bed.device, bed.compiler, "irradiance_cache/carry.comp",
-                    {{"LUCERNA_CACHE_PARTS", "14"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
+  gpu::Kernel propagating(bed.device, bed.compiler, "irradiance_cache/propagate_errors.comp",
+                          {{"LUCERNA_CACHE_PARTS", "14"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
   const auto texels = [&](const std::array<std::vector<Note>, 2>& of) {
     std::vector<vec4> all(size_t{2} * pixels * shared::k_candidate_texels, vec4(0));
     for (size_t path = 0; path < 2; ++path)
       for (size_t i = 0; i < of[path].size(); ++i)
-        if (const Note& n = of[path][i]; n.carries > 0) {
+        if (const Note& n = of[path][i]; n.throughput > 0) {
           vec4* const to = &all[(path * pixels + i) * shared::k_candidate_texels];
           to[0] = vec4(n.x, 0, 0, std::bit_cast<float>(1u));
-          to[1] = vec4(0, 1, 0, std::bit_cast<float>(packed(n.carries)));
+          to[1] = vec4(0, 1, 0, std::bit_cast<float>(packed(n.throughput)));
         }
     gpu::Buffer buffer(bed.device, {.name = "notes", .bytes = all.size() * sizeof(vec4), .texel = true});
     buffer.write(std::span<const vec4>(all));
     return buffer;
   };
   const gpu::Buffer first = texels(notes), then = texels(beyond);
-  gpu::Buffer left(
+  gpu::Buffer residuals(
       bed.device,
-      {.name = "left", .bytes = discs.size() * shared::k_left_texels * sizeof(vec4), .texel = true});
+      {.name = "residuals", .bytes = discs.size() * shared::k_residual_texels * sizeof(vec4), .texel = true});
   film::Film film(bed.device, k_width, k_height);
   film.clear(bed.stream);
-  film.make_room_for_records();
+  film.make_room_for_record_errors();
   gpu::Buffer work(bed.device, {.name = "blocks", .bytes = blocks * sizeof(shared::WorkBlock)});
   std::vector<shared::WorkBlock> list;
   for (uint32_t b = 0; b < blocks; ++b) list.push_back({b, 0});
@@ -82,26 +82,26 @@ Carried carry(test::RecordBed& bed, const std::vector<test::RecordDisc>& discs,
   std::fill(std::begin(frame.routes), std::end(frame.routes), shared::k_no_routes);
   frame.routes[0] = 0x4414;  // the secondary part to the secondary component
   frame.normal_tolerance = 0.06f, frame.off_plane = 1, frame.off_plane_least = 1;
-  Carried out;
+  ErrorSums out;
   bed.change(discs, 0, frame, [&](const auto& bind) {
     gpu::Resources r;
     bind(r);
     film.bind(r);
-    r.set("Left", left);
-    r.set("left_texels", left);
+    r.set("Residuals", residuals);
+    r.set("residual_texels", residuals);
     r.set("candidate_texels", first);
     r.set("beyond_texels", then);
     r.set("WorkBlocks", work);
     const auto count = uint32_t(discs.size());
     bed.stream.dispatch(leave, r, shared::PoolPush{0, count}, gpu::groups_for(count, 64));
-    bed.stream.dispatch(carry, r, shared::CarryPush{k_width, k_height, step, pixels, !beyond[0].empty()},
-                        blocks);
+    bed.stream.dispatch(propagating, r,
+                        shared::PropagatePush{k_width, k_height, step, pixels, !beyond[0].empty()}, blocks);
     bed.stream.run();
-    film.tell_records();
+    film.complete_record_errors();
     out.blocks.assign(film.records().begin(), film.records().end());
     const gpu::Resources::Entry* kept = r.find("FilmRecords");
     out.pixels = std::get<const gpu::Buffer*>(*kept)->read_all<vec2>();
-    out.left = left.read_all<vec4>();
+    out.residuals = residuals.read_all<vec4>();
   });
   return out;
 }
@@ -114,14 +114,15 @@ double share_of_right(double x) { return x; }
 TEST_CASE("a record's error reaches the pixels that read it by the weight that it has there") {
   test::RecordBed bed;
   const std::vector<test::RecordDisc> discs{disc(0, 2, 0.5f), disc(1, 4, 0.25f)};
-  // All pixels read at x = 1/4 and carry 1/2 of what is there; one half of the second block reads nothing.
+  // All pixels read at x = 1/4 with a throughput of 1/2 for what is there; one half of the second block reads
+  // nothing.
   std::vector<Note> notes(128, Note{0.25f, 0.5});
   for (size_t i = 96; i < 128; ++i) notes[i] = {};
-  const Carried got = carry(bed, discs, {notes, notes}, {});
+  const ErrorSums got = propagate(bed, discs, {notes, notes}, {});
   const double right = share_of_right(0.25), a = 0.5 * (1 - right) * 0.5, b = 0.5 * right * 0.25;
   double variance = 0;
-  for (uint32_t k = 0; k < k_carry_lanes; ++k)
-    variance += std::pow(a * sign_of(0, k) + b * sign_of(1, k), 2) / k_carry_lanes;
+  for (uint32_t k = 0; k < k_error_lanes; ++k)
+    variance += std::pow(a * sign_of(0, k) + b * sign_of(1, k), 2) / k_error_lanes;
   CHECK(variance == Approx(a * a + b * b).margin(2 * a * b));
   // The pixels of a block are in Morton order: those that read nothing are the lower half of the second
   // block.
@@ -130,11 +131,11 @@ TEST_CASE("a record's error reaches the pixels that read it by the weight that i
       INFO(x << ' ' << y);
       CHECK(got.pixels[y * 16 + x].x == Approx(x >= 8 && y >= 4 ? 0 : variance).epsilon(1e-4));
     }
-  for (uint32_t lane = 0; lane < k_carry_lanes; ++lane)
+  for (uint32_t lane = 0; lane < k_error_lanes; ++lane)
     for (uint32_t path = 0; path < 2; ++path) {
       const double each = a * sign_of(0, lane) + b * sign_of(1, lane);
-      CHECK(got.blocks[0].noise[path * k_carry_lanes + lane] == Approx(64 * each).epsilon(1e-4));
-      CHECK(got.blocks[1].noise[path * k_carry_lanes + lane] == Approx(32 * each).epsilon(1e-4));
+      CHECK(got.blocks[0].noise[path * k_error_lanes + lane] == Approx(64 * each).epsilon(1e-4));
+      CHECK(got.blocks[1].noise[path * k_error_lanes + lane] == Approx(32 * each).epsilon(1e-4));
     }
   CHECK(got.blocks[0].pixels == 64);
   // Pixels that read the same records err together: a tile of 64 is off by as much as one of them.
@@ -142,9 +143,9 @@ TEST_CASE("a record's error reaches the pixels that read it by the weight that i
   CHECK(one.noise == Approx(std::sqrt(variance)).epsilon(1e-4));
   const film::RecordsError both = film::records_error(got.blocks);
   CHECK(both.noise == Approx(0.75 * std::sqrt(variance)).epsilon(1e-4));
-  CHECK(both.degrees == k_carry_lanes);
+  CHECK(both.degrees == k_error_lanes);
   // The same bits again.
-  const Carried again = carry(bed, discs, {notes, notes}, {});
+  const ErrorSums again = propagate(bed, discs, {notes, notes}, {});
   CHECK(std::memcmp(again.blocks.data(), got.blocks.data(), got.blocks.size() * sizeof(BlockRecords)) == 0);
   CHECK(again.pixels == got.pixels);
 }
@@ -156,7 +157,7 @@ TEST_CASE("pixels that read different records err apart") {
   std::vector<Note> notes(128);
   for (uint32_t i = 0; i < 64; ++i)
     discs.push_back(disc(4.0f * float(i), 1, 0.5f)), notes[i] = {4.0f * float(i), 1};
-  const Carried got = carry(bed, discs, {notes, notes}, {});
+  const ErrorSums got = propagate(bed, discs, {notes, notes}, {});
   CHECK(got.pixels[0].x == Approx(0.25));
   // 16 lanes tell a variance to a third.
   const film::RecordsError tile = film::records_error({got.blocks.data(), 1});
@@ -170,10 +171,10 @@ TEST_CASE("paths' own noise is not taken for the records'") {
   // each, of which the product knows nothing but what they have in common, which is nothing.
   const std::vector<test::RecordDisc> discs{disc(0, 1, 0.5f), disc(8, 1, 0.5f)};
   const std::vector<Note> one(128, Note{0, 1}), other(128, Note{8, 1});
-  const Carried got = carry(bed, discs, {one, other}, {});
+  const ErrorSums got = propagate(bed, discs, {one, other}, {});
   double product = 0;
-  for (uint32_t k = 0; k < k_carry_lanes; ++k)
-    product += 0.25 * sign_of(0, k) * sign_of(1, k) / k_carry_lanes;
+  for (uint32_t k = 0; k < k_error_lanes; ++k)
+    product += 0.25 * sign_of(0, k) * sign_of(1, k) / k_error_lanes;
   CHECK(got.pixels[0].x == Approx(product).margin(1e-6));
   CHECK(std::abs(product) < 0.25);
 }
@@ -182,10 +183,10 @@ TEST_CASE("what records have read counts as what the picture reads") {
   test::RecordBed bed;
   const std::vector<test::RecordDisc> discs{disc(0, 1, 0.5f), disc(8, 1, 1)};
   const std::vector<Note> first(128, Note{0, 1}), beyond(128, Note{8, 0.25});
-  const Carried got = carry(bed, discs, {first, first}, {beyond, beyond});
+  const ErrorSums got = propagate(bed, discs, {first, first}, {beyond, beyond});
   double variance = 0;
-  for (uint32_t k = 0; k < k_carry_lanes; ++k)
-    variance += std::pow(0.5 * sign_of(0, k) + 0.25 * sign_of(1, k), 2) / k_carry_lanes;
+  for (uint32_t k = 0; k < k_error_lanes; ++k)
+    variance += std::pow(0.5 * sign_of(0, k) + 0.25 * sign_of(1, k), 2) / k_error_lanes;
   CHECK(got.pixels[0].x == Approx(variance).epsilon(1e-4));
 }
 
@@ -193,7 +194,7 @@ TEST_CASE("one pixel may stand for several of the film") {
   test::RecordBed bed;
   const std::vector<test::RecordDisc> discs{disc(0, 1, 0.5f)};
   const std::vector<Note> notes(64, Note{0, 1});
-  const Carried got = carry(bed, discs, {notes, notes}, {}, 2);
+  const ErrorSums got = propagate(bed, discs, {notes, notes}, {}, 2);
   for (const vec2& p : got.pixels) CHECK(p.x == Approx(0.25));
   for (const BlockRecords& b : got.blocks) CHECK(b.pixels == 16);
   CHECK(film::records_error(got.blocks).noise == Approx(0.5));
@@ -210,8 +211,8 @@ TEST_CASE(
     discs.push_back(disc(x, 4 + x * x, 0));
   }
   const std::vector<Note> notes(128, Note{0, 1});
-  const Carried calm = carry(bed, discs, {notes, notes}, {});
-  CHECK(calm.left[8 * shared::k_left_texels].x == Approx(1.0 / 4).epsilon(1e-3));
+  const ErrorSums calm = propagate(bed, discs, {notes, notes}, {});
+  CHECK(calm.residuals[8 * shared::k_residual_texels].x == Approx(1.0 / 4).epsilon(1e-3));
   // Read at 0, where the light is 4: one record with weight 1, two with 1 - 0.75.
   const double read = (4 + 2 * 0.25 * (4 + k_apart * k_apart)) / 1.5;
   CHECK(calm.pixels[0].y == Approx(std::pow(read - 4, 2)).epsilon(1e-3));
@@ -220,7 +221,7 @@ TEST_CASE(
   // it is.
   for (size_t i = 0; i < discs.size(); ++i)
     discs[i].light = vec3(float(4 + 0.5 * sign_of(uint32_t(i), 3))), discs[i].error = 0.5f;
-  const Carried noisy = carry(bed, discs, {notes, notes}, {});
+  const ErrorSums noisy = propagate(bed, discs, {notes, notes}, {});
   const film::RecordsError error = film::records_error(noisy.blocks);
   CHECK(error.noise > 0.3);
   CHECK(error.interpolation < 2 * error.noise);

@@ -5,8 +5,8 @@
 #include "lib/invocation.glsl"
 #include "lib/wide_sum.glsl"
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push { WorthPush push; };
-uniform samplerBuffer place_texels, next_place_texels;  // position; bits: normal, k_worth_there
+layout(push_constant, scalar) uniform Push { ImportancePush push; };
+uniform samplerBuffer place_texels, next_place_texels;  // position; bits: normal, k_importance_place
 layout(scalar) buffer Sums { WideSum sums[]; };  // of each record
 
 // Of the light that falls on what a record's ray meets, how much comes back: a wall's albedo.
@@ -18,7 +18,7 @@ struct Reader {
 };
 Reader reader(vec4 place) {
   uint bits = floatBitsToUint(place.w);
-  return Reader(place.xyz, facet_unpack(bits), (bits & k_worth_there) != 0u);
+  return Reader(place.xyz, facet_unpack(bits), (bits & k_importance_place) != 0u);
 }
 
 // Of the record in place i of the octree's lists; 0: it does not serve there.
@@ -49,7 +49,7 @@ void add(Reader one, Read all_one, OctreeRange range, Reader other, Read all_oth
   for (uint i = range.first; i < range.last; ++i) {
     float product = weight_at(one, i) * weight_at(other, i);
     if (product <= 0.0) continue;
-    uint steps = uint(scale * product / (all_one.weights * all_other.weights) * float(k_worth_steps) + 0.5);
+    uint steps = uint(scale * product / (all_one.weights * all_other.weights) * float(k_importance_steps) + 0.5);
     ADD_TO_WIDE_SUM(sums[octree_sphere(i)], steps);
   }
 }
@@ -70,7 +70,7 @@ void main() {
   Read all_next_other = read_at(next_other, cache_range(next_other.x, both_next));
   range = cache_range(next.x, both_next && all_next_other.weights > 0.0);
   Read all_next = read_at(next, range);
-  float brings = min(k_returned * all_next.light / max(all_one.light, 1e-30), k_worth_most);
-  float other_brings = min(k_returned * all_next_other.light / max(all_other.light, 1e-30), k_worth_most);
+  float brings = min(k_returned * all_next.light / max(all_one.light, 1e-30), k_importance_most);
+  float other_brings = min(k_returned * all_next_other.light / max(all_other.light, 1e-30), k_importance_most);
   add(next, all_next, range, next_other, all_next_other, brings * other_brings);
 }

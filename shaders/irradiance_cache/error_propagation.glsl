@@ -1,17 +1,17 @@
-// How records' errors are carried into the picture: what paths note where they read records (k_probe_carry), and the signs
+// How records' errors are propagated into the picture: what paths note where they read records (k_probe_errors), and the signs
 // by which every record errs.
-#ifndef LUCERNA_IRRADIANCE_CACHE_CARRIED
-#define LUCERNA_IRRADIANCE_CACHE_CARRIED
+#ifndef LUCERNA_IRRADIANCE_CACHE_ERROR_PROPAGATION
+#define LUCERNA_IRRADIANCE_CACHE_ERROR_PROPAGATION
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/math.glsl"
 
 // A colour, of any size, in eight bits a channel of its greatest and eight for that one's power of 2.
-uint carried_pack(vec3 color) {
+uint throughput_pack(vec3 color) {
   float most = max3(color);
   float power = clamp(ceil(log2(max(most, 1e-30))), -127.0, 127.0);
   return most > 0.0 ? packUnorm4x8(vec4(color * exp2(-power), (power + 127.0) / 255.0)) : 0u;
 }
-vec3 carried_unpack(uint bits) {
+vec3 throughput_unpack(uint bits) {
   vec4 c = unpackUnorm4x8(bits);
   return bits == 0u ? vec3(0.0) : c.rgb * exp2(round(c.a * 255.0) - 127.0);
 }
