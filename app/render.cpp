@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "app/interrupt.h"
+#include "app/render_stats.h"
 #include "app/verbs.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/timer.h"
 #include "session/renderer.h"
-#include "stats/forecast.h"
 
 namespace lucerna::app {
 namespace {
@@ -41,207 +40,14 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
   std::fflush(stderr);
 }
 
-/// Noise of the picture, estimated from its halves (film/error.h); beside it the bias, where the solver can
-/// tell.
-nlohmann::ordered_json make_error(session::Renderer& r) {
-  const film::ImageError error = r.image_error();
-  nlohmann::ordered_json j;
-  j["of"] = "sum";
-  j["rms"] = film::error_sum(error.rms[0], error.records_rms, error.interpolation_rms);
-  j["relative"] = error.relative_sum();
-  const std::vector<film::TileError> tiles = r.tile_errors();
-  const auto tell_tiles = [](nlohmann::ordered_json& to, const film::TileSpread& spread) {
-    to["tile_median"] = spread.median;
-    to["tile_worst_decile"] = spread.worst_tenth;
-    to["tile_worst"] = spread.worst;
-  };
-  const film::TileSpread sum = film::tile_spread(tiles);
-  tell_tiles(j, sum);
-  j["heavy_tailed_tiles"] = sum.heavy_tailed;
-  // The parts of that sum, by where they come from.
-  const auto part = [&](const char* name, double rms, double relative, double film::TileError::*of) {
-    j[name] = {{"rms", rms}, {"relative", relative}};
-    tell_tiles(j[name], film::tile_spread(tiles, of));
-  };
-  part("paths", error.rms[0], error.relative(0), &film::TileError::relative);
-  if (r.looks_up() && !r.film().record_errors_complete()) j["records"] = j["interpolation"] = nullptr;
-  if (r.film().record_errors_complete()) {
-    part("records", error.records_rms, error.relative_records(), &film::TileError::relative_records);
-    part("interpolation", error.interpolation_rms, error.relative_interpolation(),
-         &film::TileError::relative_interpolation);
-  }
-  for (int c = 0; c < paths::k_component_count; ++c) {
-    auto& component = j["components"][paths::k_component_names[c]];
-    component = {{"rms", error.rms[c + 1]}, {"relative", error.relative(c + 1)}, {"bias", nullptr}};
-    if (const auto bias = r.bias(size_t(c))) component["bias"] = *bias;
-  }
-  return j;
+/// Whether anything but solvers' work is asked for.
+bool makes_picture(const RenderArguments& a) {
+  return !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty();
 }
 
-/// Difference from the reference, whose own noise is taken off where its file tells it.
-nlohmann::ordered_json make_truth(const film::Reference& reference, const stats::Ledger& ledger) {
-  nlohmann::ordered_json j;
-  j["reference"] = reference.file.string();
-  for (int k = 0; k < stats::k_layers; ++k) {
-    auto& layer = j[stats::k_layer_names[k]];
-    if (!ledger.entries().empty() && ledger.entries().back().truth)
-      layer["relative"] = (*ledger.entries().back().truth)[k];
-    if (reference.noise) layer["reference_noise"] = (*reference.noise)[k] / reference.mean_luminance;
-  }
-  return j;
-}
-
-/// Tiles that are over the target though they have all the samples they may have, the worst first.
-std::vector<uint32_t> unreached(const schedule::AdaptiveSchedule& s) {
-  std::vector<uint32_t> list;
-  for (uint32_t t = 0; t < s.tiles().size(); ++t)
-    if (s.tiles()[t].state != schedule::TileState::done) list.push_back(t);
-  std::sort(list.begin(), list.end(), [&](uint32_t a, uint32_t b) {
-    const float ea = s.tiles()[a].sum(), eb = s.tiles()[b].sum();
-    return ea != eb ? ea > eb : a < b;
-  });
-  return list;
-}
-
-/// Of these, those that records keep over it: more samples would not help.
-size_t limited(const schedule::AdaptiveSchedule& s) {
-  return size_t(std::count_if(s.tiles().begin(), s.tiles().end(),
-                              [&](const schedule::Tile& t) { return t.limited(s.options().target_error); }));
-}
-
-nlohmann::ordered_json make_tiles(const schedule::AdaptiveSchedule& s) {
-  using schedule::TileState;
-  nlohmann::ordered_json j;
-  j["side"] = s.options().tile;
-  j["target_error"] = s.options().target_error;
-  j["count"] = s.tiles().size();
-  j["done"] = s.count(TileState::done);
-  j["capped"] = s.count(TileState::capped);
-  j["limited_by_records"] = limited(s);
-  j["unfinished"] = s.count(TileState::active) + s.count(TileState::waiting);
-  j["least_samples"] = s.least_samples();
-  j["most_samples"] = s.most_samples();
-  j["unreached"] = nlohmann::ordered_json::array();
-  for (const uint32_t t : unreached(s)) {
-    const schedule::Tile& tile = s.tiles()[t];
-    j["unreached"].push_back({{"x", t % s.tiles_across() * s.options().tile},
-                              {"y", t / s.tiles_across() * s.options().tile},
-                              {"error", tile.sum()},
-                              {"paths", tile.error},
-                              {"records", tile.records},
-                              {"interpolation", tile.interpolation},
-                              {"samples", tile.samples}});
-  }
-  return j;
-}
-
-void report_unreached(const schedule::AdaptiveSchedule& s, const std::string& advice) {
-  const std::vector<uint32_t> list = unreached(s);
-  if (list.empty()) return;
-  const schedule::Tile& worst = s.tiles()[list.front()];
-  const size_t by_records = limited(s);
-  if (by_records > 0)
-    log::warning(
-        "{} of {} tiles stay over the error of {} because of the records that they read; the worst is off by "
-        "{:.3f}, the paths by {:.3f} of that, at x {} y {}. More samples do not help; {}",
-        by_records, s.tiles().size(), s.options().target_error, worst.sum(), worst.error,
-        list.front() % s.tiles_across() * s.options().tile,
-        list.front() / s.tiles_across() * s.options().tile, advice);
-  if (by_records == list.size()) return;
-  log::warning(
-      "{} of {} tiles are over the error of {}: {} with all of {} samples, {} not finished; the worst, "
-      "{:.3f}, "
-      "at x {} y {}. More samples: --set sampling.max_samples=N",
-      list.size() - by_records, s.tiles().size(), s.options().target_error,
-      s.count(schedule::TileState::capped) - by_records, s.options().max_samples,
-      list.size() - s.count(schedule::TileState::capped), worst.sum(),
-      list.front() % s.tiles_across() * s.options().tile, list.front() / s.tiles_across() * s.options().tile);
-}
-
-nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
-  auto list = nlohmann::ordered_json::array();
-  for (const stats::Entry& e : ledger.entries()) {
-    nlohmann::ordered_json j{{"wall_s", e.wall_s},         {"render_s", e.render_s}, {"device_s", e.device_s},
-                             {"prepared_s", e.prepared_s}, {"paths", e.paths},       {"rays", e.rays},
-                             {"samples", e.samples}};
-    for (int k = 0; k < stats::k_layers; ++k) {
-      if (e.told) j["error"][stats::k_layer_names[k]] = e.error[k];
-      j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
-    }
-    if (e.told)
-      j["error_records"] = e.records, j["error_interpolation"] = e.interpolation, j["error_told"] = e.sum(),
-      j["tile_median"] = e.tile_median, j["tile_worst_decile"] = e.tile_worst_tenth,
-      j["error_degrees"] = e.degrees;
-    if (e.truth)
-      for (int k = 0; k < stats::k_layers; ++k) j["truth"][stats::k_layer_names[k]] = (*e.truth)[k];
-    if (e.total_rays) j["forecast_rays"] = {e.total_rays->low, e.total_rays->middle, e.total_rays->high};
-    list.push_back(std::move(j));
-  }
-  return list;
-}
-
-/// Seconds that smaller errors take or took, as [low, middle, high]; in uniform sampling. Empty before there
-/// is enough to tell by. Errors that records keep the picture over, whatever the samples, are listed.
-nlohmann::ordered_json make_forecast(const stats::Ledger& ledger) {
-  auto j = nlohmann::ordered_json::object();
-  for (const double target : {0.05, 0.02, 0.01, 0.005}) {
-    if (const auto band = stats::seconds_to(ledger, target))
-      j["seconds_to"][fmt::format("{}", target)] = {band->low, band->middle, band->high};
-    if (stats::paths_target(ledger, target) <= 0) j["limited_by_records"].push_back(target);
-  }
-  if (const stats::Outlook outlook(ledger); outlook.known()) j["exponent"] = outlook.exponent();
-  return j;
-}
-
-nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
-  const auto means = film::Film::means(r.image());
-  nlohmann::ordered_json j;
-  j["version"] = LUCERNA_VERSION;
-  j["scene"] = r.scene()->file;
-  j["device"] = r.device().info().name;
-  j["tracer"] = r.tracer_name();
-  j["width"] = r.film().width();
-  j["height"] = r.film().height();
-  j["settings"] = nlohmann::ordered_json::parse(r.settings().changed_json());
-  j["wall_s"] = wall;
-  j["load_s"] = r.load_seconds();
-  j["compile_s"] = r.compile_seconds();
-  j["samples"] = r.samples();
-  j["paths"] = r.stats().paths;
-  j["rays"] = r.stats().rays;
-  j["shadow_rays"] = r.stats().shadow_rays;
-  j["mrays_per_s"] = 1e-6 * double(r.stats().rays) / std::max(wall, 1e-9);
-  j["dropped"] = r.stats().dropped;
-  j["ended_by_roulette"] = r.stats().roulette;
-  j["ended_by_depth"] = r.stats().depth;
-  j["peak_host_mb"] = session::peak_host_mb();
-  j["peak_device_mb"] = double(r.device().peak_bytes()) / (1 << 20);
-  j["error"] = make_error(r);
-  if (const film::Reference* reference = r.reference()) j["truth"] = make_truth(*reference, r.ledger());
-  if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
-  j["ledger"] = make_ledger(r.ledger());
-  if (!r.adaptive()) j["forecast"] = make_forecast(r.ledger());
-  j.update(r.solver_statistics());
-  for (const auto& s : r.stats().stages)
-    j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
-  for (int c = 0; c < paths::k_component_count; ++c) {
-    const std::string name = paths::k_component_names[c];
-    j["components"][name] = {{"solver", r.settings().text("components." + name)},
-                             {"mean_radiance", {means[c].x, means[c].y, means[c].z}},
-                             {"ms", r.stats().component_ms[c]}};
-  }
-  return j;
-}
-
-}  // namespace
-
-int render(const RenderArguments& a) {
-  const auto [width, height] = parse_size(a.size);
-  const bool picture = !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty();
-  std::map<std::string, std::string> to_save;  // solvers' work that is not yet written
-  for (const auto& [name, file] : a.solver_save)
-    if (!file.empty()) to_save[name] = file;
-  if (!picture && to_save.empty()) {
+/// Throws Error where nothing would be written, or something cannot be: before hours are spent on it.
+void check_outputs(const RenderArguments& a, const std::map<std::string, std::string>& to_save) {
+  if (!makes_picture(a) && to_save.empty()) {
     std::string work;
     for (const solvers::SolverInfo* solver : solvers::registered())
       if (solver->file)
@@ -262,11 +68,11 @@ int render(const RenderArguments& a) {
   for (const auto& [name, file] : to_save) check_writable(file);
   if (a.seconds && !(std::isfinite(*a.seconds) && *a.seconds > 0))
     throw_error("--time", "'{}': expected a positive number of seconds", *a.seconds);
-  const double limit = a.seconds.value_or(0);  // 0: none
-  session::Renderer r(
-      {.device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
-  r.set_size(width, height);
-  // What the command line says stands above the scene's own settings; checked before the scene is loaded.
+}
+
+/// What the command line says of settings, which stands above the scene's own. Throws Error for what is no
+/// setting: before the scene is loaded.
+std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
   std::vector<session::SettingChange> changes;
   const auto change = [&](std::string key, std::string value, const char* where = "--set") {
     changes.push_back({std::move(key), std::move(value), where});
@@ -289,9 +95,11 @@ int render(const RenderArguments& a) {
   if (a.seconds && a.samples == -1) change("samples", "1048576");
   plan::Settings probe;
   for (const session::SettingChange& c : changes) probe.set(c.key, c.value, c.where);
+  return changes;
+}
 
-  const Interrupt interrupt;
-  const bool terminal = !a.quiet && isatty(2);
+/// Scene, camera, reference and kept work. False: interrupted.
+bool load(session::Renderer& r, const RenderArguments& a, const Interrupt& interrupt, bool terminal) {
   try {
     r.load(
         a.scene,
@@ -299,39 +107,43 @@ int render(const RenderArguments& a) {
           if (terminal) std::fprintf(stderr, "\rloading %3.0f %%  %-40.40s", 100 * fraction, what.c_str());
           return !interrupt.signal();
         },
-        changes);
+        setting_changes(a));
   } catch (const Error&) {
     if (!interrupt.signal()) throw;
     std::fprintf(stderr, "%slucerna: interrupted while loading; there is nothing to write\n",
                  terminal ? "\n" : "");
-    return interrupt.status();
+    return false;
   }
   if (terminal) std::fprintf(stderr, "\r%-60s\r", "");
   if (!a.camera.empty()) r.choose_camera(a.camera);
   if (!a.reference.empty()) r.set_reference(a.reference);
   for (const auto& [name, file] : a.solver_load)
     if (!file.empty()) r.solver_load(name, file);
-  for (const auto& [name, file] : to_save)
-    if (!r.solver(name))
-      throw_error(fmt::format("--{}-save", name),
-                  "no component is computed by '{}'; add --set components.secondary={}", name, name);
+  return true;
+}
 
+/// Writes solvers' work that is ready, and forgets that it was asked for.
+void save_ready(session::Renderer& r, std::map<std::string, std::string>& to_save) {
+  std::erase_if(to_save, [&](const auto& entry) {
+    const auto& [name, file] = entry;
+    const bool ready = r.solver(name)->ready();
+    if (ready) r.solver_save(name, file);
+    return ready;
+  });
+}
+
+/// Until picture and work are done, time is up or somebody interrupts. Seconds that it took.
+double run(session::Renderer& r, const RenderArguments& a, std::map<std::string, std::string>& to_save,
+           const Interrupt& interrupt, bool terminal) {
+  const double limit = a.seconds.value_or(0);  // 0: none
   const Timer timer;
   Timer since_line;
-  const auto save_ready = [&] {
-    std::erase_if(to_save, [&](const auto& entry) {
-      const auto& [name, file] = entry;
-      const bool ready = r.solver(name)->ready();
-      if (ready) r.solver_save(name, file);
-      return ready;
-    });
-  };
-  save_ready();
+  save_ready(r, to_save);
   bool covered = false;  // every pixel has a sample
-  while ((picture || !to_save.empty()) && !r.done() && !interrupt.signal() &&
+  while ((makes_picture(a) || !to_save.empty()) && !r.done() && !interrupt.signal() &&
          (!a.seconds || timer.seconds() < limit)) {
     if (!r.step()) break;
-    save_ready();
+    save_ready(r, to_save);
     if (!covered && r.samples() > 0) log::info("a sample of every pixel after {:.2f} s", timer.seconds());
     covered = r.samples() > 0;
     if (terminal && since_line.seconds() > 0.2)
@@ -340,18 +152,45 @@ int render(const RenderArguments& a) {
   const double wall = timer.seconds();
   r.finish_ledger();
   if (terminal) print_progress(r, wall, limit, true);
+  return wall;
+}
+
+/// What helps where it is solvers' work that keeps the error up.
+std::string advice(const session::Renderer& r) {
+  std::string text;
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    if (r.solver(solver->name))
+      text += fmt::format("{}other settings of {} do: {} against its noise, {} against its bias",
+                          text.empty() ? "" : "; ", solver->title, fmt::join(solver->against_noise, ", "),
+                          fmt::join(solver->against_bias, ", "));
+  return text;
+}
+
+}  // namespace
+
+int render(const RenderArguments& a) {
+  const auto [width, height] = parse_size(a.size);
+  std::map<std::string, std::string> to_save;  // solvers' work that is not yet written
+  for (const auto& [name, file] : a.solver_save)
+    if (!file.empty()) to_save[name] = file;
+  check_outputs(a, to_save);
+  setting_changes(a);
+  session::Renderer r(
+      {.device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
+  r.set_size(width, height);
+
+  const Interrupt interrupt;
+  const bool terminal = !a.quiet && isatty(2);
+  if (!load(r, a, interrupt, terminal)) return interrupt.status();
+  for (const auto& [name, file] : to_save)
+    if (!r.solver(name))
+      throw_error(fmt::format("--{}-save", name),
+                  "no component is computed by '{}'; add --set components.secondary={}", name, name);
+  const double wall = run(r, a, to_save, interrupt, terminal);
   const bool interrupted = interrupt.signal() != 0;
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
-  if (picture && r.adaptive() && !interrupted) {
-    std::string advice;
-    for (const solvers::SolverInfo* solver : solvers::registered())
-      if (r.solver(solver->name))
-        advice += fmt::format("{}other settings of {} do: {} against its noise, {} against its bias",
-                              advice.empty() ? "" : "; ", solver->title,
-                              fmt::join(solver->against_noise, ", "), fmt::join(solver->against_bias, ", "));
-    report_unreached(*r.adaptive(), advice);
-  }
+  if (makes_picture(a) && r.adaptive() && !interrupted) report_unreached(*r.adaptive(), advice(r));
   for (const std::string& file : a.outputs) r.save(file);
   if (!a.ledger.empty()) write_file(a.ledger, r.ledger().csv());
   if (!a.stats.empty()) write_file(a.stats, make_stats(r, wall).dump(2) + "\n");

@@ -58,12 +58,11 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
 
 Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
                const World& world, const plan::Plan& plan, const plan::Settings& settings,
-               gpu::Defines defines)
+               gpu::Defines defines, const Engine* before)
     : automaton_(automaton),
       plan_(plan),
       scene_defines_(world.device->defines()),
-      routing_(routing(settings, world.flat.effects)),
-      developer_(device, compiler) {
+      routing_(routing(settings, world.flat.effects)) {
   const Timer timer;
   auto slots = uint32_t(settings.integer("path.batch")) / 64 * 64;
   if (settings.boolean("sampling.coherent"))
@@ -90,7 +89,11 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
     };
   wavefront_ = std::make_unique<transport::Wavefront>(device, compiler, *world.device, slots, world.trace(),
                                                       defines, bind);
-  estimator_.emplace(device, compiler, !solvers_.empty());
+  const bool looks_up = !solvers_.empty();
+  developer_ = before ? before->developer_ : std::make_shared<film::Developer>(device, compiler);
+  estimator_ = before && before->solvers_.empty() == solvers_.empty()
+                   ? before->estimator_
+                   : std::make_shared<film::ErrorEstimator>(device, compiler, looks_up);
   compile_seconds_ = timer.seconds();
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 // The wavefront's kernels with the solvers of a plan, made for one world.
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "film/developer.h"
@@ -28,10 +27,12 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
 
 class Engine {
  public:
+  /// `before`: one whose film kernels, which know neither scene nor plan, serve on; null: they are compiled.
   /// Throws Error: kernels that do not compile (located), no memory, a component's light that two solvers
   /// would bring.
   Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
-         const World& world, const plan::Plan& plan, const plan::Settings& settings, gpu::Defines defines);
+         const World& world, const plan::Plan& plan, const plan::Settings& settings, gpu::Defines defines,
+         const Engine* before);
 
   /// Whether kernels and solvers do for another plan and these settings of the same world.
   bool serves(const plan::Plan& plan, const plan::Settings& settings, const World& world) const;
@@ -43,7 +44,7 @@ class Engine {
   /// The picture begins anew: sets the wavefront's frame, and tells the solvers.
   void begin(const PictureView& picture, const scene::Changes& changes);
 
-  film::Developer& developer() { return developer_; }
+  film::Developer& developer() { return *developer_; }
   film::ErrorEstimator& estimator() { return *estimator_; }
   transport::Wavefront& wavefront() { return *wavefront_; }
   const transport::Wavefront& wavefront() const { return *wavefront_; }
@@ -84,8 +85,8 @@ class Engine {
   solvers::Routing routing_;    ///< of the picture begun last
   std::vector<std::unique_ptr<solvers::Solver>> solvers_;
   std::unique_ptr<transport::Wavefront> wavefront_;
-  film::Developer developer_;
-  std::optional<film::ErrorEstimator> estimator_;
+  std::shared_ptr<film::Developer> developer_;
+  std::shared_ptr<film::ErrorEstimator> estimator_;
   double compile_seconds_ = 0;
 };
 

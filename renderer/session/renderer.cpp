@@ -64,8 +64,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   World world = make_world(*device_, std::move(scene), settings.text("tracer"),
                            wanted_sun_threshold(automaton_, plan, settings), progress);
   report_progress(progress, 0.9f, "compiling kernels");
-  std::unique_ptr<Engine> engine = make_engine(world, plan, settings);
-  if (engine_) engine->adopt(*engine_, changes);
+  std::unique_ptr<Engine> engine = make_engine(world, plan, settings, changes);
   Films films = film_ ? Films{} : make_films(width_, height_);
   if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
   engine_ = std::move(engine);
@@ -77,19 +76,18 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
 }
 
 std::unique_ptr<Engine> Renderer::make_engine(const World& world, const plan::Plan& plan,
-                                              const plan::Settings& settings) {
-  return std::make_unique<Engine>(*device_, *compiler_, automaton_, world, plan, settings, options_.defines);
-}
-
-std::unique_ptr<Engine> Renderer::engine_for(const plan::Plan& plan, const scene::Changes& changes) {
-  std::unique_ptr<Engine> engine = make_engine(world_, plan, settings_);
-  engine->adopt(*engine_, changes);
+                                              const plan::Settings& settings,
+                                              const scene::Changes& changes) const {
+  const bool same_shaders = !changes.edits.contains(scene::Change::shaders);
+  auto engine = std::make_unique<Engine>(*device_, *compiler_, automaton_, world, plan, settings,
+                                         options_.defines, same_shaders ? engine_.get() : nullptr);
+  if (engine_) engine->adopt(*engine_, changes);
   return engine;
 }
 
 void Renderer::reload_shaders() {
   if (!engine_) return;
-  engine_ = engine_for(engine_->plan(), scene::Change::shaders);
+  engine_ = make_engine(world_, engine_->plan(), settings_, scene::Change::shaders);
   heed_settings();
   restart(scene::Change::shaders);
 }
@@ -241,7 +239,7 @@ bool Renderer::apply_plan(const scene::Changes& changes) {
     if (const solvers::SolverInfo* owner = solvers::owner_of(key); owner && engine_->find(owner->name))
       anew |= plan::find_option(key)->restarts;
   if (anew)
-    engine_ = engine_for(plan, changes);
+    engine_ = make_engine(world_, plan, settings_, changes);
   else
     engine_->set_plan(plan);
   if (edit) edit->keep();

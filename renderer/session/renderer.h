@@ -204,11 +204,10 @@ class Renderer {
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
   void install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings, scene::Camera camera,
                const Progress& progress, const scene::Changes& changes);
+  /// `changes` say what it may take over from the one in use, if there is one. On failure throws Error and
+  /// everything stays.
   std::unique_ptr<Engine> make_engine(const World& world, const plan::Plan& plan,
-                                      const plan::Settings& settings);
-  /// Takes an engine into use that serves `plan`, or makes one; `changes` say what its solvers may take over.
-  /// On failure throws Error and everything stays.
-  std::unique_ptr<Engine> engine_for(const plan::Plan& plan, const scene::Changes& changes);
+                                      const plan::Settings& settings, const scene::Changes& changes) const;
   /// The scene with other lights, environment or factors of materials. Kernels are made for what it calls for
   /// now. On failure throws Error and everything stays as it was.
   void edit(std::shared_ptr<const scene::Scene> edited, scene::Change change, bool factors);

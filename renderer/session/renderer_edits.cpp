@@ -56,7 +56,7 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
 void Renderer::edit(std::shared_ptr<const scene::Scene> edited, scene::Change change, bool factors) {
   WorldEdit trial(*device_, world_, std::move(edited), factors);
   const bool anew = !engine_->serves(engine_->plan(), settings_, world_);
-  if (anew) engine_ = engine_for(engine_->plan(), change);
+  if (anew) engine_ = make_engine(world_, engine_->plan(), settings_, change);
   trial.keep();
   if (anew)
     heed_settings();

@@ -36,7 +36,7 @@ bool serves(const irradiance_cache::Record& record, const irradiance_cache::Plac
 TEST_CASE("records reach no farther than a share of what is nearest to them or to one that they serve") {
   const scene::Scene room = test::block_room();
   const auto records = [&](const char* nearest, const char* metric) {
-    test::CacheRenderer shown(room, 24);
+    test::CacheRenderer shown(room, 24, false);
     shown.set(test::k_cached);
     shown.set({{"cache.nearest", nearest},
                {"cache.metric", metric},
@@ -79,7 +79,7 @@ TEST_CASE("records reach no farther than a share of what is nearest to them or t
 // Those of the first pass are the widest, and most who stand around them come later.
 TEST_CASE("with cache.neighbours no record reaches beyond those all around it, of whatever pass") {
   for (const char* metric : {"split-sphere", "hessian"}) {
-    test::CacheRenderer shown(test::block_room(), 24);
+    test::CacheRenderer shown(test::block_room(), 24, false);
     shown.set(test::k_cached);
     shown.set({{"cache.neighbours", "true"},
                {"cache.metric", metric},

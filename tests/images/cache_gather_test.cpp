@@ -62,7 +62,7 @@ TEST_CASE("where all of a picture is gathered by paths it is path tracing's, wit
     INFO((environment ? "with a sky" : "with a lamp alone"));
     const scene::Scene room = test::block_room(environment);
     std::vector<film::Image> cached, traced;
-    test::CacheRenderer by_cache(room, k_size), by_paths(room, k_size);
+    test::CacheRenderer by_cache(room, k_size, false), by_paths(room, k_size, false);
     by_cache.set(test::k_cached);
     by_cache.set(k_all_gathered);
     for (int seed = 1; seed <= 8; ++seed) {
@@ -100,7 +100,7 @@ TEST_CASE("paths that gather find light that comes from little of the hemisphere
   up.to_world = glm::inverse(glm::lookAt(vec3(0, 0.5f, 0), vec3(0, 1, -1), vec3(0, 1, 0)));
   s.cameras = {up};
   const auto noise = [&](const char* gather) {
-    test::CacheRenderer shown(s, k_size);
+    test::CacheRenderer shown(s, k_size, false);
     shown.set(test::k_cached);
     shown.set(k_all_gathered);
     shown.set({{"cache.max_radius", "0.05"}});

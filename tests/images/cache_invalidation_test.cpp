@@ -33,7 +33,7 @@ const Settings k_base{{"components.secondary", "cache"},
 scene::Scene room() { return test::block_room(true); }
 
 struct Bed : test::CacheRenderer {
-  explicit Bed(const Settings& more = {}) : CacheRenderer(room(), 24) {
+  explicit Bed(const Settings& more = {}, bool validated = false) : CacheRenderer(room(), 24, validated) {
     set(k_base);
     if (!more.empty()) set(more);
   }
@@ -63,7 +63,7 @@ double mean(const film::Image& image, int component) { return test::mean(image.c
 TEST_CASE("every kind of change spoils what its row says, and nothing else") {
   const test::Folder folder;
   const auto file = folder.path / "base.cache";
-  Bed bed;
+  Bed bed({}, true);
   bed.finish();
   bed.r.solver_save("cache", file);
   const RawRecords base = bed.records();

@@ -17,7 +17,7 @@ using namespace lucerna;
 TEST_CASE("the more of the picture reads a record, the less noise it has when it is done") {
   constexpr float k_noise = 0.05f;
   const scene::Scene room = test::block_room();
-  test::CacheRenderer shown(room, 64);
+  test::CacheRenderer shown(room, 64, false);
   shown.set(test::k_cached);
   shown.set({{"cache.noise", std::to_string(k_noise)},
              {"cache.min_radius", "1"},
@@ -125,7 +125,7 @@ TEST_CASE("how much of the picture reads a record: the square of its share, summ
 TEST_CASE("what the picture reads through another record counts by what it brings there") {
   const test::PanelRoom room;
   constexpr uint32_t k_size = 64;
-  test::CacheRenderer shown(room.s, k_size);
+  test::CacheRenderer shown(room.s, k_size, false);
   shown.set(test::k_cached);
   shown.set({{"cache.max_rays", "256"},
              {"cache.gather", "false"},

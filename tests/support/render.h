@@ -16,6 +16,7 @@ namespace lucerna::test {
 using Settings = std::map<std::string, std::string>;
 
 /// Pictures of more samples do the same things more often, and the validation layers take half of the time.
+/// So does a case that renders once more what another one has rendered validated.
 inline constexpr uint32_t k_validated_samples = 16;
 
 struct Render {
@@ -24,6 +25,7 @@ struct Render {
   Settings settings;
   gpu::Defines defines;
   std::string camera;
+  bool validated = true;  ///< if there are at most k_validated_samples
 };
 
 struct Result {
@@ -50,7 +52,8 @@ inline film::Image finish(session::Renderer& renderer) {
 
 /// `made`: the scene, instead of the one that is named.
 inline Result render(const Render& r, const scene::Scene* made = nullptr) {
-  session::Renderer renderer(test::renderer_options(r.samples <= k_validated_samples, r.defines));
+  session::Renderer renderer(
+      test::renderer_options(r.validated && r.samples <= k_validated_samples, r.defines));
   for (const char* key : {"tracer", "path.batch"})
     if (const auto at = r.settings.find(key); at != r.settings.end())
       renderer.settings().set(key, at->second);
@@ -78,9 +81,15 @@ inline Result render(const Render& r, const scene::Scene* made = nullptr) {
 
 /// A scene made by the test, in a square picture; nothing is dropped, and the device has nothing to say (of
 /// up to k_validated_samples).
-inline Result render(const scene::Scene& scene, const Settings& settings, uint32_t samples, uint32_t size) {
-  const Result r =
-      render({.scene = {}, .width = size, .height = size, .samples = samples, .settings = settings}, &scene);
+inline Result render(const scene::Scene& scene, const Settings& settings, uint32_t samples, uint32_t size,
+                     bool validated = true) {
+  const Result r = render({.scene = {},
+                           .width = size,
+                           .height = size,
+                           .samples = samples,
+                           .settings = settings,
+                           .validated = validated},
+                          &scene);
   CHECK(r.validation_messages == 0);
   CHECK(r.stats.dropped == 0);
   return r;

@@ -1,0 +1,205 @@
+#include "app/render_stats.h"
+
+#include <algorithm>
+
+#include "base/log.h"
+#include "stats/forecast.h"
+
+namespace lucerna::app {
+namespace {
+
+/// Noise of the picture, estimated from its halves (film/error.h); beside it the bias, where the solver can
+/// tell.
+nlohmann::ordered_json make_error(session::Renderer& r) {
+  const film::ImageError error = r.image_error();
+  nlohmann::ordered_json j;
+  j["of"] = "sum";
+  j["rms"] = film::error_sum(error.rms[0], error.records_rms, error.interpolation_rms);
+  j["relative"] = error.relative_sum();
+  const std::vector<film::TileError> tiles = r.tile_errors();
+  const auto tell_tiles = [](nlohmann::ordered_json& to, const film::TileSpread& spread) {
+    to["tile_median"] = spread.median;
+    to["tile_worst_decile"] = spread.worst_tenth;
+    to["tile_worst"] = spread.worst;
+  };
+  const film::TileSpread sum = film::tile_spread(tiles);
+  tell_tiles(j, sum);
+  j["heavy_tailed_tiles"] = sum.heavy_tailed;
+  // The parts of that sum, by where they come from.
+  const auto part = [&](const char* name, double rms, double relative, double film::TileError::*of) {
+    j[name] = {{"rms", rms}, {"relative", relative}};
+    tell_tiles(j[name], film::tile_spread(tiles, of));
+  };
+  part("paths", error.rms[0], error.relative(0), &film::TileError::relative);
+  if (r.looks_up() && !r.film().record_errors_complete()) j["records"] = j["interpolation"] = nullptr;
+  if (r.film().record_errors_complete()) {
+    part("records", error.records_rms, error.relative_records(), &film::TileError::relative_records);
+    part("interpolation", error.interpolation_rms, error.relative_interpolation(),
+         &film::TileError::relative_interpolation);
+  }
+  for (int c = 0; c < paths::k_component_count; ++c) {
+    auto& component = j["components"][paths::k_component_names[c]];
+    component = {{"rms", error.rms[c + 1]}, {"relative", error.relative(c + 1)}, {"bias", nullptr}};
+    if (const auto bias = r.bias(size_t(c))) component["bias"] = *bias;
+  }
+  return j;
+}
+
+/// Difference from the reference, whose own noise is taken off where its file tells it.
+nlohmann::ordered_json make_truth(const film::Reference& reference, const stats::Ledger& ledger) {
+  nlohmann::ordered_json j;
+  j["reference"] = reference.file.string();
+  for (int k = 0; k < stats::k_layers; ++k) {
+    auto& layer = j[stats::k_layer_names[k]];
+    if (!ledger.entries().empty() && ledger.entries().back().truth)
+      layer["relative"] = (*ledger.entries().back().truth)[k];
+    if (reference.noise) layer["reference_noise"] = (*reference.noise)[k] / reference.mean_luminance;
+  }
+  return j;
+}
+
+/// Tiles that are over the target though they have all the samples they may have, the worst first.
+std::vector<uint32_t> unreached(const schedule::AdaptiveSchedule& s) {
+  std::vector<uint32_t> list;
+  for (uint32_t t = 0; t < s.tiles().size(); ++t)
+    if (s.tiles()[t].state != schedule::TileState::done) list.push_back(t);
+  std::sort(list.begin(), list.end(), [&](uint32_t a, uint32_t b) {
+    const float ea = s.tiles()[a].sum(), eb = s.tiles()[b].sum();
+    return ea != eb ? ea > eb : a < b;
+  });
+  return list;
+}
+
+/// Of these, those that records keep over it: more samples would not help.
+size_t limited(const schedule::AdaptiveSchedule& s) {
+  return size_t(std::count_if(s.tiles().begin(), s.tiles().end(),
+                              [&](const schedule::Tile& t) { return t.limited(s.options().target_error); }));
+}
+
+nlohmann::ordered_json make_tiles(const schedule::AdaptiveSchedule& s) {
+  using schedule::TileState;
+  nlohmann::ordered_json j;
+  j["side"] = s.options().tile;
+  j["target_error"] = s.options().target_error;
+  j["count"] = s.tiles().size();
+  j["done"] = s.count(TileState::done);
+  j["capped"] = s.count(TileState::capped);
+  j["limited_by_records"] = limited(s);
+  j["unfinished"] = s.count(TileState::active) + s.count(TileState::waiting);
+  j["least_samples"] = s.least_samples();
+  j["most_samples"] = s.most_samples();
+  j["unreached"] = nlohmann::ordered_json::array();
+  for (const uint32_t t : unreached(s)) {
+    const schedule::Tile& tile = s.tiles()[t];
+    j["unreached"].push_back({{"x", t % s.tiles_across() * s.options().tile},
+                              {"y", t / s.tiles_across() * s.options().tile},
+                              {"error", tile.sum()},
+                              {"paths", tile.error},
+                              {"records", tile.records},
+                              {"interpolation", tile.interpolation},
+                              {"samples", tile.samples}});
+  }
+  return j;
+}
+
+nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
+  auto list = nlohmann::ordered_json::array();
+  for (const stats::Entry& e : ledger.entries()) {
+    nlohmann::ordered_json j{{"wall_s", e.wall_s},         {"render_s", e.render_s}, {"device_s", e.device_s},
+                             {"prepared_s", e.prepared_s}, {"paths", e.paths},       {"rays", e.rays},
+                             {"samples", e.samples}};
+    for (int k = 0; k < stats::k_layers; ++k) {
+      if (e.told) j["error"][stats::k_layer_names[k]] = e.error[k];
+      j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
+    }
+    if (e.told)
+      j["error_records"] = e.records, j["error_interpolation"] = e.interpolation, j["error_told"] = e.sum(),
+      j["tile_median"] = e.tile_median, j["tile_worst_decile"] = e.tile_worst_tenth,
+      j["error_degrees"] = e.degrees;
+    if (e.truth)
+      for (int k = 0; k < stats::k_layers; ++k) j["truth"][stats::k_layer_names[k]] = (*e.truth)[k];
+    if (e.total_rays) j["forecast_rays"] = {e.total_rays->low, e.total_rays->middle, e.total_rays->high};
+    list.push_back(std::move(j));
+  }
+  return list;
+}
+
+/// Seconds that smaller errors take or took, as [low, middle, high]; in uniform sampling. Empty before there
+/// is enough to tell by. Errors that records keep the picture over, whatever the samples, are listed.
+nlohmann::ordered_json make_forecast(const stats::Ledger& ledger) {
+  auto j = nlohmann::ordered_json::object();
+  for (const double target : {0.05, 0.02, 0.01, 0.005}) {
+    if (const auto band = stats::seconds_to(ledger, target))
+      j["seconds_to"][fmt::format("{}", target)] = {band->low, band->middle, band->high};
+    if (stats::paths_target(ledger, target) <= 0) j["limited_by_records"].push_back(target);
+  }
+  if (const stats::Outlook outlook(ledger); outlook.known()) j["exponent"] = outlook.exponent();
+  return j;
+}
+
+}  // namespace
+
+void report_unreached(const schedule::AdaptiveSchedule& s, const std::string& advice) {
+  const std::vector<uint32_t> list = unreached(s);
+  if (list.empty()) return;
+  const schedule::Tile& worst = s.tiles()[list.front()];
+  const size_t by_records = limited(s);
+  if (by_records > 0)
+    log::warning(
+        "{} of {} tiles stay over the error of {} because of the records that they read; the worst is off by "
+        "{:.3f}, the paths by {:.3f} of that, at x {} y {}. More samples do not help; {}",
+        by_records, s.tiles().size(), s.options().target_error, worst.sum(), worst.error,
+        list.front() % s.tiles_across() * s.options().tile,
+        list.front() / s.tiles_across() * s.options().tile, advice);
+  if (by_records == list.size()) return;
+  log::warning(
+      "{} of {} tiles are over the error of {}: {} with all of {} samples, {} not finished; the worst, "
+      "{:.3f}, "
+      "at x {} y {}. More samples: --set sampling.max_samples=N",
+      list.size() - by_records, s.tiles().size(), s.options().target_error,
+      s.count(schedule::TileState::capped) - by_records, s.options().max_samples,
+      list.size() - s.count(schedule::TileState::capped), worst.sum(),
+      list.front() % s.tiles_across() * s.options().tile, list.front() / s.tiles_across() * s.options().tile);
+}
+
+nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
+  const auto means = film::Film::means(r.image());
+  nlohmann::ordered_json j;
+  j["version"] = LUCERNA_VERSION;
+  j["scene"] = r.scene()->file;
+  j["device"] = r.device().info().name;
+  j["tracer"] = r.tracer_name();
+  j["width"] = r.film().width();
+  j["height"] = r.film().height();
+  j["settings"] = nlohmann::ordered_json::parse(r.settings().changed_json());
+  j["wall_s"] = wall;
+  j["load_s"] = r.load_seconds();
+  j["compile_s"] = r.compile_seconds();
+  j["samples"] = r.samples();
+  j["paths"] = r.stats().paths;
+  j["rays"] = r.stats().rays;
+  j["shadow_rays"] = r.stats().shadow_rays;
+  j["mrays_per_s"] = 1e-6 * double(r.stats().rays) / std::max(wall, 1e-9);
+  j["dropped"] = r.stats().dropped;
+  j["ended_by_roulette"] = r.stats().roulette;
+  j["ended_by_depth"] = r.stats().depth;
+  j["peak_host_mb"] = session::peak_host_mb();
+  j["peak_device_mb"] = double(r.device().peak_bytes()) / (1 << 20);
+  j["error"] = make_error(r);
+  if (const film::Reference* reference = r.reference()) j["truth"] = make_truth(*reference, r.ledger());
+  if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
+  j["ledger"] = make_ledger(r.ledger());
+  if (!r.adaptive()) j["forecast"] = make_forecast(r.ledger());
+  j.update(r.solver_statistics());
+  for (const auto& s : r.stats().stages)
+    j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
+  for (int c = 0; c < paths::k_component_count; ++c) {
+    const std::string name = paths::k_component_names[c];
+    j["components"][name] = {{"solver", r.settings().text("components." + name)},
+                             {"mean_radiance", {means[c].x, means[c].y, means[c].z}},
+                             {"ms", r.stats().component_ms[c]}};
+  }
+  return j;
+}
+
+}  // namespace lucerna::app
