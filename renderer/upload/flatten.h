@@ -96,7 +96,7 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat);
 /// By power; of the environment by the luminance of its texels, and with a share of all that an interior
 /// needs.
 void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat);
-/// For the distribution that `flat` has. That may have been made for other strengths, colours and an other
+/// For the distribution that `flat` has. That may have been made for other strengths, colours and another
 /// rotation of the environment, where all that emits now has done so then: samples then bring the same light
 /// on average, with more noise.
 void flatten_emission(const scene::Scene& scene, FlatScene& flat);

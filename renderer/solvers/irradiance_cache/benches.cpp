@@ -1,12 +1,36 @@
+#include <fmt/format.h>
+
 #include "solvers/irradiance_cache/options.h"
 
 namespace lucerna::irradiance_cache {
 namespace {
 
+/// `set` of a setting: secondary and tertiary light from the cache, and `more` (", "KEY": VALUE ...").
+std::string cached(const std::string& more = "") {
+  return R"("set": {"components.secondary": "cache", "components.tertiary": "cache")" + more + "}";
+}
+
+/// A setting of a matrix.
+std::string setting(const std::string& name, const std::string& about, const std::string& rest) {
+  return fmt::format(R"({{"name": "{}", "about": "{}", {}}})", name, about, rest);
+}
+
+/// One curve: records of a metric, by error bounds in hundredths.
+std::vector<std::string> curve(const char* name, const char* about, const char* title, const char* metric) {
+  std::vector<std::string> settings;
+  for (const int error : {60, 40, 30, 20, 15})
+    settings.push_back(setting(
+        fmt::format("{}-{}", name, error), about,
+        fmt::format(R"("curve": "{}", )", title) +
+            cached(fmt::format(R"(, "cache.metric": "{}", "cache.error": {})", metric, error / 100.0))));
+  return settings;
+}
+
 /// Cached light alone is held against the reference, of records so little noisy that it is the interpolation
 /// that errs. Nothing but the metric decides their radii: in a small picture the bounds that they have
 /// otherwise leave most records one size, whatever the metric says.
-const char* const k_cache = R"({
+std::string cache_matrix() {
+  const char* const k_head = R"({
   "name": "cache",
   "repeats": 3,
   "warmup": 1,
@@ -21,42 +45,18 @@ const char* const k_cache = R"({
   ],
   "settings": [
     {"name": "plain", "about": "path tracing, no cache"},
-    {"name": "split-60", "about": "cache, records reach as far as things are away", "curve": "split sphere",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
-             "cache.error": 0.6}},
-    {"name": "split-40", "about": "cache, records reach as far as things are away", "curve": "split sphere",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
-             "cache.error": 0.4}},
-    {"name": "split-30", "about": "cache, records reach as far as things are away", "curve": "split sphere",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
-             "cache.error": 0.3}},
-    {"name": "split-20", "about": "cache, records reach as far as things are away", "curve": "split sphere",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
-             "cache.error": 0.2}},
-    {"name": "split-15", "about": "cache, records reach as far as things are away", "curve": "split sphere",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "split-sphere",
-             "cache.error": 0.15}},
-    {"name": "hessian-60", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
-             "cache.error": 0.6}},
-    {"name": "hessian-40", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
-             "cache.error": 0.4}},
-    {"name": "hessian-30", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
-             "cache.error": 0.3}},
-    {"name": "hessian-20", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
-             "cache.error": 0.2}},
-    {"name": "hessian-15", "about": "cache, records reach in ellipses, by how their light bends", "curve": "hessian",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.metric": "hessian",
-             "cache.error": 0.15}}
-  ]
-})";
+    )";
+  const auto split =
+      curve("split", "cache, records reach as far as things are away", "split sphere", "split-sphere");
+  const auto hessian =
+      curve("hessian", "cache, records reach in ellipses, by how their light bends", "hessian", "hessian");
+  return k_head + fmt::format("{},\n{}]}}", fmt::join(split, ",\n"), fmt::join(hessian, ",\n"));
+}
 
 /// Cached light alone, to an error that is hard to see: each scene with what leads there, found by trying,
 /// with the metric that it was tried with.
-const char* const k_indirect = R"({
+std::string indirect_matrix() {
+  const char* const k_head = R"({
   "name": "indirect",
   "repeats": 3,
   "warmup": 1,
@@ -81,10 +81,11 @@ const char* const k_indirect = R"({
   ],
   "settings": [
     {"name": "plain", "about": "path tracing", "budget": "seconds"},
-    {"name": "cache", "about": "secondary and tertiary light from an irradiance cache, built anew",
-     "set": {"components.secondary": "cache", "components.tertiary": "cache"}}
-  ]
-})";
+    )";
+  return k_head +
+         setting("cache", "secondary and tertiary light from an irradiance cache, built anew", cached()) +
+         "]}";
+}
 
 }  // namespace
 
@@ -92,22 +93,20 @@ std::vector<solvers::BenchInfo> bench_rows() {
   return {{"cache",
            "error of cached light against the records of the irradiance cache, by either metric; an hour and "
            "a quarter",
-           k_cache},
+           cache_matrix()},
           {"indirect",
            "how much sooner than path tracing cached light is right to 2 % in five interiors; two and a half "
            "hours",
-           k_indirect}};
+           indirect_matrix()}};
 }
 
 std::vector<std::string> bench_settings() {
   return {
-      R"({"name": "cache", "about": "as plain, secondary and tertiary light from an irradiance cache",
-          "set": {"components.secondary": "cache", "components.tertiary": "cache"}})",
-      R"({"name": "cache-split", "about": "as cache, records reach as far as things are away",
-          "set": {"components.secondary": "cache", "components.tertiary": "cache",
-                  "cache.metric": "split-sphere"}})",
-      R"({"name": "cache-sky", "about": "as cache, the sky's light on diffuse surfaces too",
-          "set": {"components.secondary": "cache", "components.tertiary": "cache", "cache.environment": true}})",
+      setting("cache", "as plain, secondary and tertiary light from an irradiance cache", cached()),
+      setting("cache-split", "as cache, records reach as far as things are away",
+              cached(R"(, "cache.metric": "split-sphere")")),
+      setting("cache-sky", "as cache, the sky's light on diffuse surfaces too",
+              cached(R"(, "cache.environment": true)")),
   };
 }
 
