@@ -8,17 +8,11 @@
 
 #include "cache_support.h"
 #include "solvers/irradiance_cache/build.h"
-#include "support/neighbours.h"
 #include "support/rooms.h"
 
 using namespace lucerna;
 
 namespace {
-
-/// The way there as the record's ellipse has it, in which it is a circle.
-vec3 in_circle(const irradiance_cache::Record& record, const vec3& away) {
-  return away - (1 - record.lesser_radius / record.radius) * dot(away, record.along) * record.along;
-}
 
 /// Whether a record would serve there, where the least radius is 0.
 bool serves(const irradiance_cache::Record& record, const irradiance_cache::Place& at) {
@@ -73,43 +67,6 @@ TEST_CASE("records reach no farther than a share of what is nearest to them or t
       CHECK(double(all.size()) > 1.5 * double(count));
       count = all.size();
     }
-  }
-}
-
-// Those of the first pass are the widest, and most who stand around them come later.
-TEST_CASE("with cache.neighbours no record reaches beyond those all around it, of whatever pass") {
-  for (const char* metric : {"split-sphere", "hessian"}) {
-    test::CacheRenderer shown(test::block_room(), 24, false);
-    shown.set(test::k_cached);
-    shown.set({{"cache.neighbours", "true"},
-               {"cache.metric", metric},
-               {"cache.thinning", "0"},
-               {"cache.min_radius", "0"},
-               {"cache.max_rays", "256"},
-               {"cache.passes", "4"},
-               {"samples", "1"}});
-    shown.finish();
-    const std::vector<irradiance_cache::Record> all = test::cache(shown.r)->records().read();
-    const auto& passes = shown.status().passes;
-    REQUIRE(passes.size() == 4);
-    const size_t of_first = passes[0].records;
-    size_t beyond = 0, surrounded = 0;
-    for (size_t i = 0; i < all.size(); ++i) {
-      std::vector<test::Neighbour> served;
-      for (size_t j = 0; j < all.size(); ++j)
-        if (i != j && serves(all[i], all[j].place))
-          served.push_back(
-              {double(test::far_of(all[i], all[j].place.position)),
-               test::angle_in_plane(in_circle(all[i], all[j].place.position - all[i].place.position),
-                                    all[i].place.normal)});
-      beyond += test::share_by_neighbours(served) < 0.999;
-      surrounded += served.size() > 3;
-    }
-    INFO(metric << ": of " << all.size() << " records, " << of_first << " of the first pass, " << beyond
-                << " reach too far; " << surrounded << " would serve more than three others");
-    CHECK(beyond == 0);
-    CHECK(of_first < all.size());
-    CHECK(surrounded > 0);
   }
 }
 

@@ -8,8 +8,8 @@ namespace lucerna::test {
 /// All that may be looked up.
 inline const Settings k_cached{{"components.secondary", "cache"}, {"components.tertiary", "cache"}};
 
-/// Shows a scene of the test's; when it goes the device must have had nothing to say. `validated`: the layers take
-/// half of the time, which repetitions need not spend.
+/// Shows a scene of the test's; when it goes the device must have had nothing to say. `validated`: the layers
+/// take half of the time, which repetitions need not spend.
 struct CacheRenderer {
   session::Renderer r;
   CacheRenderer(const scene::Scene& scene, uint32_t size, bool validated = true)

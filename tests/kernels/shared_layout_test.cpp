@@ -11,7 +11,6 @@
 #include "shaders/shared/film.h"
 #include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "shaders/shared/irradiance_cache/inspect.h"
-#include "shaders/shared/irradiance_cache/neighbours.h"
 #include "shaders/shared/irradiance_cache/placement.h"
 #include "shaders/shared/irradiance_cache/placement_view.h"
 #include "shaders/shared/irradiance_cache/records.h"
@@ -97,7 +96,6 @@ std::vector<SharedStruct> structs() {
       SHARED("irradiance_cache/records.h", PoolPush, first, count),
       SHARED("irradiance_cache/records.h", OverlayPush, width, height, discs, overlap, color, lo, hi,
              overlap_most, grid),
-      SHARED("irradiance_cache/neighbours.h", NeighbourPush, count, pairs, apart, gap),
       SHARED("overlay.h", OverlayPoint, position, half_width, color, alpha, edge_width, rank),
       SHARED("overlay.h", OverlaySegment, from, to, half_width, edge_width, color, alpha, strength, slack,
              rank),

@@ -36,7 +36,7 @@ std::string cache_matrix() {
   "warmup": 1,
   "reference": {"samples": 16384},
   "set": {"components.primary": "off", "components.caustic": "off", "cache.noise": 0.03,
-          "cache.max_rays": 16384, "cache.min_radius": 0, "cache.max_radius": 1, "cache.neighbours": false},
+          "cache.max_rays": 16384, "cache.min_radius": 0, "cache.max_radius": 1},
   "budgets": {"samples": [256]},
   "scenes": [
     {"file": "cornell/cornell.gltf", "size": "128x128"},
@@ -110,18 +110,13 @@ std::vector<std::string> bench_settings() {
   };
 }
 
-/// By who keeps records from serving the same points twice.
+/// Whether records are kept from serving the same points twice.
 std::vector<solvers::LookupWay> lookup_ways() {
-  const auto way = [](const char* name, const char* neighbours, bool thinned) {
-    solvers::LookupWay w{name,
-                         {{"components.secondary", "cache"},
-                          {"components.tertiary", "cache"},
-                          {"cache.neighbours", neighbours}}};
-    if (!thinned) w.set["cache.thinning"] = "0";
-    return w;
-  };
-  return {way("as they were placed", "false", false), way("bounded by neighbours", "true", false),
-          way("thinned", "false", true), way("thinned and bounded", "true", true)};
+  const std::map<std::string, std::string> looked_up{{"components.secondary", "cache"},
+                                                     {"components.tertiary", "cache"}};
+  solvers::LookupWay placed{"as they were placed", looked_up}, thinned{"thinned", looked_up};
+  placed.set["cache.thinning"] = "0";
+  return {placed, thinned};
 }
 
 }  // namespace lucerna::irradiance_cache

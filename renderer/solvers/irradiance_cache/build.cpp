@@ -16,11 +16,11 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
     : options(o),
       tables(device, compiler, slots, routes, o),
       gathers{.parts = routes.records.parts, .recursive = tables.records_look_up()},
-      radii(device, compiler, options, defines(routes.records, o.metric)),
+      radii(device, compiler, options.radius, o.most_records, defines(routes.records, o.radius.metric)),
       evaluator(device, compiler, slots),
       places(device, compiler),
-      picture(device, compiler, o.most_records, defines(routes.records, o.metric)),
-      overlay(device, compiler, defines(routes.records, o.metric)),
+      picture(device, compiler, o.most_records, defines(routes.records, o.radius.metric)),
+      overlay(device, compiler, defines(routes.records, o.radius.metric)),
       progress{.probing = {}, .queue = {}, .levels = RayLevels(o.rays), .clock = {}, .pauses = {}} {
   count_bytes();
 }
@@ -45,10 +45,11 @@ void Cache::Impl::clear() {
 
 void Cache::Impl::look_from(const CacheView& view) {
   const Frame& f = view.paths_frame;
-  const LeastRadius now{.eye = f.camera_origin,
-                        .parallel = f.orthographic != 0,
-                        .of_distance = options.least_pixels * 2 * glm::length(f.camera_up) / float(f.height),
-                        .most = options.most_radius * view.scene_radius};
+  const LeastRadius now{
+      .eye = f.camera_origin,
+      .parallel = f.orthographic != 0,
+      .of_distance = options.radius.least_pixels * 2 * glm::length(f.camera_up) / float(f.height),
+      .most = options.radius.most_radius * view.scene_radius};
   if (now == tables.least) return;
   tables.least = now;
   write_frame();
@@ -92,7 +93,7 @@ void Cache::Impl::end_pass(const Work& w) {
   // The levels' rays have met more than the first's. Records that are relit stay as they are: nobody would
   // fill gaps.
   if (progress.levels.level() > 0 && status.relighting == 0)
-    clamp_radii(w, ranges.evaluated(), options.nearest);
+    clamp_radii(w, ranges.evaluated(), options.radius.nearest);
   overlay.set_scales(tables.records.figures());
   pass().complete = true;
   if (status.relighting > 0) return relight_pass();

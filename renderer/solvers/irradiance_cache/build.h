@@ -141,7 +141,6 @@ struct Cache::Impl {
   enum class By { distance, light };
   void set_radii(const Work& work, By by);
   /// ... of all, also of earlier passes, by the records around, that they be no wider than they need be.
-  void bound_radii(const Work& work);
   /// ... of the first `count`, those that are evaluated at least, by what is nearest to any of them; the
   /// octree is built anew.
   void clamp_radii(const Work& work, uint32_t count, float near);

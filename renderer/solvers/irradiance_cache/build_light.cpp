@@ -117,12 +117,8 @@ void Cache::Impl::publish_level(const Work& w) {
   status.records = ranges.evaluated();
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
-  if (anew && radii.bounded()) {
-    bound_radii(w);
-    build_octree(w.wavefront);
-  }
   add_time(BuildStep::octree, timer.milliseconds());
-  if (anew) clamp_radii(w, ranges.evaluated(), options.nearest);
+  if (anew) clamp_radii(w, ranges.evaluated(), options.radius.nearest);
   write_frame();
 }
 

@@ -138,7 +138,7 @@ bool Cache::Impl::look(const Work& w, bool& cancelled) {
     screen.measure(w.stream(), of, options.screen, dark());
     const float spacing = reach(w.view).spacing;
     screen.dither(w.stream(), of, options.screen,
-                  {.least_width = k_spacing_of_least * options.least_pixels,
+                  {.least_width = k_spacing_of_least * options.radius.least_pixels,
                    .finest = k_finest_of_spacing * spacing,
                    .flat_side = geometry ? spacing : 0},
                   options.seed + status.pass);

@@ -87,11 +87,6 @@ void Cache::Impl::set_radii(const Work& w, By by) {
   add_time(BuildStep::radius, timer.milliseconds());
 }
 
-void Cache::Impl::bound_radii(const Work& w) {
-  radii.bound(w.stream(), binding(), ranges.evaluated());
-  count_bytes();
-}
-
 void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near) {
   const auto index_first = [&](uint32_t n) {
     StageTimer timer(w.wavefront);
@@ -115,7 +110,7 @@ void Cache::Impl::drop_roomy(const Work& w) {
     const vec4* const texels = &raw.places[size_t{r} * k_record_texels];
     const float needed = k_roomy * tables.least.at(vec3(texels[0])), lesser_radius = texels[3].w,
                 nearest = texels[2].y;
-    if (!raw.crowded(r) || lesser_radius < needed || options.nearest * nearest < k_crowds * needed)
+    if (!raw.crowded(r) || lesser_radius < needed || options.radius.nearest * nearest < k_crowds * needed)
       kept.push_back(r);
   }
   if (kept.size() == raw.size()) return;

@@ -34,8 +34,8 @@ enum class Metric : uint32_t {
   hessian,       ///< how its irradiance bends (shaders/irradiance_cache/hessian.comp); radii are of ellipses
 };
 
-/// As the registry has them, where their ranges and defaults stand (plan/settings.cpp).
-struct CacheOptions {
+/// How far records serve.
+struct RadiusOptions {
   Metric metric = Metric::split_sphere;
   /// Above 0; radii are in proportion to it. Split sphere: radius of a record over the harmonic mean distance
   /// of what it sees. Hessian: so that the integral of its relative error over its ellipse is pi/4 of the
@@ -46,6 +46,11 @@ struct CacheOptions {
   float nearest = 0;
   float least_pixels = 0;  ///< least radius as the camera sees it; 0 or more
   float most_radius = 0;   ///< of the scene's radius
+};
+
+/// As the registry has them, where their ranges and defaults stand (options.cpp).
+struct CacheOptions {
+  RadiusOptions radius;
   /// Rays of a record's first level: four times a square. Each further level has four times as many, up to
   /// `most_rays`; what is more than k_least_slots is gathered in rounds of as many.
   uint32_t rays = 0, most_rays = 0;
@@ -60,7 +65,6 @@ struct CacheOptions {
   /// Where something is nearer than twice the least radius paths gather themselves and end in records one
   /// vertex later.
   bool gather = false;
-  bool neighbours = false;  ///< radii are bounded by the records around
   uint32_t most_records = 0, most_passes = 0;
   float stop_share = 0;  ///< building ends when no more of the paths than this ask for records
   uint32_t seed = 0;

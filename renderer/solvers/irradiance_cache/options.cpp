@@ -35,10 +35,6 @@ std::vector<OptionInfo> radius_rows() {
           "only "
           "tell where light comes from. Paths gather it from there and end in records one vertex later: "
           "grain that more samples take away, instead of specks that stay."),
-      boolean_option(
-          "cache.neighbours", "false",
-          "Irradiance cache: records reach no farther than the nearest others in different directions: "
-          "fewer serve a point, which is faster and closer to the light there."),
       real_option(
           "cache.thinning", "0.6", 0, 1, "of the radius",
           "Irradiance cache: within that a record makes others superfluous that are tried with it. Less: "
@@ -97,21 +93,6 @@ std::vector<OptionInfo> candidate_rows() {
           "geometry or irradiance changes fully; few fall on smooth walls. 0: every pixel that no record "
           "serves asks.",
           "Candidates"),
-      real_option(
-          "cache.candidates_falloff", "0.25", 0, 1, "a level",
-          "Irradiance cache: of a pixel's probability to be a candidate, from each scale to the next, twice "
-          "as wide. 0.25: as many candidates a cell on all; less: denser about edges, sparser elsewhere.",
-          "Falling off"),
-      real_option(
-          "cache.depth_weight", "3", 0, 1000, "",
-          "Irradiance cache: how much a step between neighbouring surfaces counts as detail, for its height "
-          "in cells; 3: a third of a cell counts fully.",
-          "Steps weigh"),
-      real_option(
-          "cache.normal_weight", "3", 0, 1000, "",
-          "Irradiance cache: how much a turn of the surface counts as detail, a radian; 3: 20 degrees count "
-          "fully.",
-          "Turns weigh"),
       real_option(
           "cache.irradiance_weight", "1", 0, 1000, "",
           "Irradiance cache: how much a relative difference of irradiance between neighbouring cells counts "

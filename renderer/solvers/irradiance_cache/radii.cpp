@@ -17,19 +17,17 @@ constexpr float k_tried_near = 0.8f;
 
 }  // namespace
 
-Radii::Radii(gpu::Device& device, gpu::ShaderCompiler& compiler, const CacheOptions& options,
-             const gpu::Defines& defines)
+Radii::Radii(gpu::Device& device, gpu::ShaderCompiler& compiler, const RadiusOptions& options,
+             uint32_t most_records, const gpu::Defines& defines)
     : options_(options),
       distance_(device, compiler, "irradiance_cache/radius.comp"),
-      clamping_(device, compiler, options.most_records, defines) {
-  if (options.neighbours) neighbours_.emplace(device, compiler, defines);
+      clamping_(device, compiler, most_records, defines) {
   if (!by_light()) return;
   ellipse_ = gpu::Kernel(device, compiler, "irradiance_cache/ellipse.comp");
   pooling_ = gpu::Kernel(device, compiler, "irradiance_cache/pool.comp", defines);
   pool_keep_ = gpu::Kernel(device, compiler, "irradiance_cache/pool_keep.comp");
   pooled_ = gpu::Buffer(
-      device,
-      {.name = "pooled pilots", .bytes = uint64_t{options.most_records} * sizeof(vec4), .texel = true});
+      device, {.name = "pooled pilots", .bytes = uint64_t{most_records} * sizeof(vec4), .texel = true});
 }
 
 float Radii::tried_near() const { return options_.nearest * (by_light() ? k_tried_near : 1); }
@@ -68,12 +66,6 @@ void Radii::clamp(gpu::Stream& stream, const Bind& bind, uint32_t count, float n
   clamping_.clamp(stream, bind, count, near, crowd, undecided);
 }
 
-void Radii::bound(gpu::Stream& stream, const Bind& bind, uint32_t count) {
-  neighbours_->bound(stream, bind, count);
-}
-
-uint64_t Radii::bytes() const {
-  return clamping_.bytes() + pooled_.bytes() + (neighbours_ ? neighbours_->bytes() : uint64_t{0});
-}
+uint64_t Radii::bytes() const { return clamping_.bytes() + pooled_.bytes(); }
 
 }  // namespace lucerna::irradiance_cache

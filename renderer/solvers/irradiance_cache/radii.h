@@ -2,11 +2,9 @@
 // How far records serve, on the device: by how far things are, or by how light bends too; then held to what
 // the records around know.
 #include <functional>
-#include <optional>
 
 #include "solvers/irradiance_cache/cache.h"
 #include "solvers/irradiance_cache/clamping.h"
-#include "solvers/irradiance_cache/neighbours.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -24,8 +22,8 @@ class Radii {
   };
 
   /// `options` must outlive it. `defines`: Cache::defines().
-  Radii(gpu::Device& device, gpu::ShaderCompiler& compiler, const CacheOptions& options,
-        const gpu::Defines& defines);
+  Radii(gpu::Device& device, gpu::ShaderCompiler& compiler, const RadiusOptions& options,
+        uint32_t most_records, const gpu::Defines& defines);
   /// Whether radii are by the light, of which pilot rays tell.
   bool by_light() const { return options_.metric == Metric::hessian; }
   /// Greatest radius, of ellipses the lesser, over the distance of the nearest thing: of what is only tried.
@@ -41,19 +39,14 @@ class Radii {
   /// As Clamping::clamp().
   void clamp(gpu::Stream& stream, const Bind& bind, uint32_t count, float near, float crowd,
              uint32_t undecided);
-  /// Whether the options want bound().
-  bool bounded() const { return neighbours_.has_value(); }
-  /// As Neighbours::bound().
-  void bound(gpu::Stream& stream, const Bind& bind, uint32_t count);
   uint64_t bytes() const;  ///< of device memory
 
  private:
-  const CacheOptions& options_;
+  const RadiusOptions& options_;
   gpu::Kernel distance_, ellipse_, pooling_, pool_keep_;  // the last three only where radii are by the light
   gpu::Buffer pooled_;                                    // the same
   gpu::Resources resources_;
   Clamping clamping_;
-  std::optional<Neighbours> neighbours_;
 };
 
 }  // namespace lucerna::irradiance_cache

@@ -11,25 +11,21 @@ namespace {
 using solvers::Picture, solvers::Task, solvers::Cancel;
 
 CacheOptions read_options(const OptionValues& s) {
-  return {.metric = Metric(s.choice("cache.metric")),
-          .error = float(s.real("cache.error")),
-          .nearest = float(s.real("cache.nearest")),
-          .least_pixels = float(s.real("cache.min_radius")),
-          .most_radius = float(s.real("cache.max_radius")),
+  return {.radius = {.metric = Metric(s.choice("cache.metric")),
+                     .error = float(s.real("cache.error")),
+                     .nearest = float(s.real("cache.nearest")),
+                     .least_pixels = float(s.real("cache.min_radius")),
+                     .most_radius = float(s.real("cache.max_radius"))},
           .rays = uint32_t(std::stoul(s.text("cache.rays"))),
           .most_rays = uint32_t(std::stoul(s.text("cache.max_rays"))),
           .noise = float(s.real("cache.noise")),
           .thinning = float(s.real("cache.thinning")),
           .gather = s.boolean("cache.gather"),
-          .neighbours = s.boolean("cache.neighbours"),
           .most_records = uint32_t(s.integer("cache.max_records")),
           .most_passes = uint32_t(s.integer("cache.passes")),
           .stop_share = float(s.real("cache.stop")),
           .seed = uint32_t(s.integer("seed")),
           .screen = {.density = float(s.real("cache.candidates")),
-                     .falloff = float(s.real("cache.candidates_falloff")),
-                     .depth_weight = float(s.real("cache.depth_weight")),
-                     .normal_weight = float(s.real("cache.normal_weight")),
                      .irradiance_weight = float(s.real("cache.irradiance_weight")),
                      .irradiance_noise = 2 * float(s.real("cache.noise"))}};
 }

@@ -10,9 +10,8 @@ namespace lucerna::irradiance_cache {
 namespace {
 
 /// Options that decide how many records there are, not what one holds.
-const std::set<std::string> k_amounts{
-    "cache.max_records",        "cache.passes",       "cache.stop",          "cache.candidates",
-    "cache.candidates_falloff", "cache.depth_weight", "cache.normal_weight", "cache.irradiance_weight"};
+const std::set<std::string> k_amounts{"cache.max_records", "cache.passes", "cache.stop", "cache.candidates",
+                                      "cache.irradiance_weight"};
 
 MadeWith what_made(const Cache& cache, const OptionValues& settings, const solvers::Provenance& provenance) {
   MadeWith made_with;
