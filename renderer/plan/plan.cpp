@@ -37,7 +37,9 @@ Plan make_plan(const Settings& settings) {
   return plan;
 }
 
-std::vector<std::string> unreachable_light(const Plan&, const scene::Scene& scene) {
+std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene& scene) {
+  constexpr size_t k_caustic = 3;
+  if (plan.solver[k_caustic] && plan.solver[k_caustic]->finds_points) return {};
   size_t lamps = 0, solids = 0;
   for (const scene::Light& light : scene.lights) lamps += light.enabled;
   for (const scene::Material& m : scene.materials) solids += m.transmission > 0 && m.thickness > 0;

@@ -129,6 +129,17 @@ solvers::Solver* Engine::unready() const {
   return nullptr;
 }
 
+bool Engine::in_rounds() const {
+  return std::any_of(solvers_.begin(), solvers_.end(),
+                     [](const auto& solver) { return solver->in_rounds(); });
+}
+
+solvers::Solver* Engine::unready_for(uint32_t sample) const {
+  for (const auto& solver : solvers_)
+    if (solver->in_rounds() && !solver->round_ready(sample)) return solver.get();
+  return nullptr;
+}
+
 bool Engine::waits() const {
   const solvers::Solver* next = unready();
   return next && next->waits();
@@ -146,7 +157,8 @@ solvers::Task Engine::task_of(const plan::Plan& plan, const solvers::SolverInfo&
           .settings = settings,
           .enabled = plan.enabled(),
           .own = plan.components_of(solver),
-          .effects = effects};
+          .effects = effects,
+          .scene_defines = &scene_defines_};
 }
 
 solvers::Task Engine::task_of(const solvers::SolverInfo& solver, const plan::Settings& settings,
@@ -158,12 +170,16 @@ solvers::Routing Engine::routing(const plan::Settings& settings, const upload::E
   // Nothing is looked up yet, and everything is traced.
   solvers::Routing all{
       .lookups = {.component = {}, .parts = 0, .traced = plan_.enabled()}, .fallback = 0, .gather = {}};
+  uint32_t always = 0;  // what those bring who never leave a path alone
   for (const auto& solver : solvers_) {
     const solvers::Routing own = solver->routing(task_of(solver->info(), settings, effects));
     merge(all.lookups, own.lookups);
     all.fallback |= own.fallback;
+    if (own.fallback == 0) always |= brought(own.lookups);
     if (!own.gather.component.empty()) merge(all.gather, own.gather);
   }
+  // Paths that one lookup has left alone still find another's.
+  all.fallback &= ~always;
   return all;
 }
 

@@ -35,6 +35,10 @@ struct Bucket {
 struct FlatLights {
   std::vector<vec4> lights, light_alias;
   std::vector<float> primitive_light_pmf;  ///< pmf / area
+  /// Luminance of the flux that each of `lights` sends into the scene [W] (of distant ones through the
+  /// scene's disk, of textured ones by 16 points a triangle); of an environment that is apart from them.
+  std::vector<double> light_power;
+  double sky_power = 0;
   std::vector<vec4> environment_texels, environment_alias;
   std::vector<vec4> sun_cells, sun_density;
   uint32_t environment_width = 0, environment_height = 0;
@@ -59,7 +63,8 @@ struct FlatScene : FlatLights, FlatMaterials {
   /// Above 0: the environment is two emitters (shared/scene.h), its sun the texels of more than so many times
   /// its mean luminance.
   float sun_threshold = 0;
-  float scene_radius = 1;
+  vec3 scene_centre{0};
+  float scene_radius = 1;  ///< of a sphere around that which holds all surfaces
   Effects effects;
 };
 

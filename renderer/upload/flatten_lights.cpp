@@ -112,20 +112,31 @@ double texture_mean(const scene::Scene& scene, const scene::TextureUse& use, con
   return sum / 16;
 }
 
+/// Solid angle of a spot's cone, each direction weighted with its intensity over that on the axis: full
+/// within the inner cone, and the square of what is left of the way to the outer cosine, as
+/// shaders/lib/lights.glsl.
+double spot_solid_angle(double inner, double outer) {
+  const double width = std::max(inner - outer, 1e-4), ramp = std::min(1.0, (1 - outer) / width);
+  return 2 * std::numbers::pi * (std::max(0.0, 1 - outer - width) + width * ramp * ramp * ramp / 3);
+}
+
 }  // namespace
 
 void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
   flat.lights.clear();
   flat.primitive_light_pmf.clear();
+  flat.light_power.clear();
+  flat.sky_power = 0;
   flat.environment_texels.clear();
   flat.environment_alias.clear();
   flat.sun_cells.clear();
   flat.sun_density.clear();
   flat.environment_width = flat.environment_height = 0;
-  std::vector<double> weights;
-  const auto add = [&](uint32_t kind, vec3 a, vec4 b, vec4 c, vec4 d, double power) {
+  std::vector<double> weights;  // of light samples
+  const auto add = [&](uint32_t kind, vec3 a, vec4 b, vec4 c, vec4 d, double weight, double power) {
     flat.lights.insert(flat.lights.end(), {vec4(a, as_float(kind)), b, c, d});
-    weights.push_back(power);
+    weights.push_back(weight);
+    flat.light_power.push_back(power);
   };
   const auto is_distant = [&](size_t light) {
     return std::bit_cast<uint32_t>(flat.lights[light * k_light_texels].w) == k_light_directional;
@@ -142,8 +153,9 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
     emissive.emplace_back(i, area);
     const uint32_t sides = (m.double_sided ? k_light_both_sides : 0u) |
                            (flat.triangles[i].w & k_triangle_flipped ? k_light_flipped : 0u);
+    const double power = double(k_pi) * area * luminance(m.emission) * mean * (m.double_sided ? 2 : 1);
     add(k_light_triangle, p[0], vec4(p[1], area), vec4(p[2], as_float(i)), vec4(m.emission, as_float(sides)),
-        double(k_pi) * area * luminance(m.emission) * mean * (m.double_sided ? 2 : 1));
+        power, power);
   }
   const double disk = double(k_pi) * flat.scene_radius * flat.scene_radius;
   for (const scene::Light& l : scene.lights) {
@@ -152,10 +164,12 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
     const double y = luminance(l.intensity);
     const bool spot = l.kind == scene::LightKind::spot;
     if (l.kind == scene::LightKind::directional)
-      add(k_light_directional, vec3(0), vec4(l.intensity, 0), vec4(l.direction, 0), vec4(0), y * disk);
+      add(k_light_directional, vec3(0), vec4(l.intensity, 0), vec4(l.direction, 0), vec4(0), y * disk,
+          y * disk);
     else
       add(spot ? k_light_spot : k_light_point, l.position, vec4(l.intensity, inner), vec4(l.direction, outer),
-          vec4(0), y * (spot ? 2 * k_pi * (1 - 0.5 * (inner + outer)) : 4 * k_pi));
+          vec4(0), y * (spot ? 2 * k_pi * (1 - 0.5 * (inner + outer)) : 4 * k_pi),
+          y * (spot ? spot_solid_angle(double(inner), double(outer)) : 4 * std::numbers::pi));
   }
   // Environment. A constant one is a map of one texel: sampled like any light it has 1.2 times less variance
   // a second in an interior than left to the scattered rays alone.
@@ -195,6 +209,7 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
     }
   }
   flat.effects.sun = sun_weight > 0;
+  const double sky_power = environment_weight, sun_power = sun_weight;
   // The environment and the sun count with the whole scene's cross-section, of which an interior receives
   // little: neither they nor the lamps get less than a share of the samples.
   double local = 0, distant = environment_weight + sun_weight;
@@ -215,12 +230,14 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat) {
     if (all > 0) flat.environment_light_pmf = float(environment_weight / all);
     if (flat.effects.sun) {
       const uint32_t cells = flatten_sun(sun_weights, flat);
-      add(k_light_environment, vec3(0), vec4(as_float(cells), 0, 0, 0), vec4(0), vec4(0), sun_weight);
+      add(k_light_environment, vec3(0), vec4(as_float(cells), 0, 0, 0), vec4(0), vec4(0), sun_weight,
+          sun_power);
     }
     if (weights.empty())
-      add(k_light_point, vec3(0), vec4(0), vec4(0), vec4(0), 1);  // dark: a table is never empty
+      add(k_light_point, vec3(0), vec4(0), vec4(0), vec4(0), 1, 0);  // dark: a table is never empty
+    flat.sky_power = sky_power;
   } else if (environment_weight > 0) {
-    add(k_light_environment, vec3(0), vec4(0), vec4(0), vec4(0), environment_weight);
+    add(k_light_environment, vec3(0), vec4(0), vec4(0), vec4(0), environment_weight, sky_power);
     double total = 0;
     for (double w : weights) total += w;
     flat.environment_light_pmf = float(environment_weight / total);

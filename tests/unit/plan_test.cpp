@@ -62,6 +62,9 @@ TEST_CASE("lamps behind solid glass are warned about, and nothing else is") {
   s.materials[0].thickness = 0.1f;
   REQUIRE(plan::unreachable_light(p, s).size() == 1);
   CHECK(plan::unreachable_light(p, s)[0].find("one.gltf") == 0);
+  plan::Settings photons;  // find it
+  photons.set("components.caustic", "photons");
+  CHECK(plan::unreachable_light(plan::make_plan(photons), s).empty());
   for (scene::Light& l : s.lights) l.enabled = false;
   CHECK(plan::unreachable_light(p, s).empty());
 }
