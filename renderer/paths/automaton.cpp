@@ -340,18 +340,19 @@ namespace {
 
 /// For each state the components (bits) that lookups bring, there or further on.
 std::vector<uint32_t> brought(const Automaton& automaton, const LookupRoutes& routes) {
-  std::vector<uint32_t> all(automaton.states.size(), 0);
-  if (routes.component.empty()) return all;
-  std::vector<bool> looks(all.size(), false);
-  for (size_t s = 0; s < all.size(); ++s)
+  std::vector<uint32_t> here(automaton.states.size(), 0);
+  if (routes.component.empty()) return here;
+  for (size_t s = 0; s < here.size(); ++s)
     for (const uint8_t c : routes.component[s])
-      if (c != k_no_component) all[s] |= 1u << c, looks[s] = true;
+      if (c != k_no_component) here[s] |= 1u << c;
+  std::vector<uint32_t> all = here;
   for (bool changed = true; changed;) {
     changed = false;
     for (size_t s = 0; s < all.size(); ++s)
       for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
-        if (e == Event::diffuse && looks[s]) continue;  // nothing is looked up behind a lookup
-        const uint32_t more = all[s] | all[automaton.after(static_cast<uint8_t>(s), e)];
+        // What a lookup brings is looked up no more behind it.
+        const uint32_t further = all[automaton.after(static_cast<uint8_t>(s), e)];
+        const uint32_t more = all[s] | (e == Event::diffuse ? further & ~here[s] : further);
         changed |= more != all[s];
         all[s] = more;
       }

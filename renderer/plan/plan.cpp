@@ -41,6 +41,8 @@ std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene&
   // Words that end in SL: no secondary light, which reaches its lamp from a diffuse vertex (...DL).
   constexpr uint32_t k_secondary = 1u << 1;
   if ((plan.enabled() & ~k_secondary) == 0) return {};
+  constexpr size_t k_caustic = 3;
+  if (plan.solver[k_caustic] && plan.solver[k_caustic]->finds_points) return {};
   size_t lamps = 0, solids = 0;
   for (const scene::Light& light : scene.lights) lamps += light.enabled;
   for (const scene::Material& m : scene.materials) solids += m.transmission > 0 && m.thickness > 0;

@@ -54,8 +54,9 @@ AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
     tile.records = errors[t].records, tile.interpolation = errors[t].interpolation;
     tile.state = tile.samples < options_.min_samples ? TileState::waiting : TileState::active;
   }
-  std::stable_sort(behind_.begin(), behind_.end(),
-                   [](const Behind& a, const Behind& b) { return a.lacks < b.lacks; });
+  std::stable_sort(behind_.begin(), behind_.end(), [&](const Behind& a, const Behind& b) {
+    return options_.one_sample ? a.have > b.have : a.lacks < b.lacks;
+  });
   update_states();
   start_round();
 }
@@ -97,6 +98,7 @@ void AdaptiveSchedule::start_round() {
     const uint32_t fitting =
         std::max(k_few, options_.slots / std::max<uint32_t>(1, pixels * uint32_t(round_.size())));
     pass_ = std::min({std::max(1u, have), fitting, most, options_.min_samples - have});
+    order_round();
     return;
   }
   for (uint32_t t = 0; t < tiles_.size(); ++t)
@@ -104,6 +106,14 @@ void AdaptiveSchedule::start_round() {
   pass_ = std::min(k_few, most);
   while (!round_.empty() && uint64_t{2} * pass_ * pixels * round_.size() <= options_.slots) pass_ *= 2;
   if (pass_ > 1) pass_ = pass_ / 2 * 2;
+  order_round();
+}
+
+void AdaptiveSchedule::order_round() {
+  if (!options_.one_sample) return;
+  pass_ = 1;
+  std::stable_sort(round_.begin(), round_.end(),
+                   [&](uint32_t a, uint32_t b) { return tiles_[a].samples < tiles_[b].samples; });
 }
 
 WorkItem AdaptiveSchedule::next() {
@@ -112,10 +122,14 @@ WorkItem AdaptiveSchedule::next() {
   if (done()) return {};
   if (!behind_.empty()) {
     // Those that lack as many as the last, as far as there is room.
-    WorkItem item{{}, std::min(behind_.back().lacks, std::max(1u, options_.slots / 64))};
+    const bool one = options_.one_sample;
+    WorkItem item{{}, one ? 1 : std::min(behind_.back().lacks, std::max(1u, options_.slots / 64))};
     const size_t most = std::max(1u, options_.slots / (64 * item.sample_count));
+    const Behind& last = behind_.back();
     for (auto b = behind_.rbegin();
-         b != behind_.rend() && b->lacks == behind_.back().lacks && item.blocks.size() < most; ++b)
+         b != behind_.rend() && (one ? b->have == last.have : b->lacks == last.lacks) &&
+         item.blocks.size() < most;
+         ++b)
       item.blocks.push_back({b->block, b->have});
     item_behind_ = item.blocks.size();
     item_samples_ = item.sample_count;
@@ -124,7 +138,9 @@ WorkItem AdaptiveSchedule::next() {
   item_first_ = at_;
   const uint32_t pixels = options_.tile * options_.tile;
   const uint32_t at_once = std::max(1u, options_.slots / (pixels * pass_));
-  const size_t end = std::min(round_.size(), at_ + at_once);
+  size_t end = std::min(round_.size(), at_ + at_once);
+  if (options_.one_sample)
+    while (tiles_[round_[end - 1]].samples != tiles_[round_[at_]].samples) --end;
   // Nobody gets more than the cap. Those near it share an item with others, who then get less this time.
   WorkItem item{{}, pass_};
   for (size_t i = at_; i < end; ++i)
@@ -152,7 +168,7 @@ void AdaptiveSchedule::report(const std::vector<TileErrors>& errors) {
   if (item_behind_ > 0) {
     for (auto b = behind_.end() - static_cast<std::ptrdiff_t>(item_behind_); b != behind_.end(); ++b)
       b->have += item_samples_, b->lacks -= item_samples_;
-    while (!behind_.empty() && behind_.back().lacks == 0) behind_.pop_back();
+    std::erase_if(behind_, [](const Behind& b) { return b.lacks == 0; });
     item_behind_ = 0;
     return;
   }

@@ -66,6 +66,7 @@ struct AdaptiveOptions {
   uint32_t min_samples = 64,
            max_samples = 1024;  ///< a pixel; made even, so that both halves of the film agree
   uint32_t slots = 131072;      ///< paths at once, at least those of one sample of a tile
+  bool one_sample = false;      ///< items are of one sample a pixel, the same for all of their blocks
 };
 
 class AdaptiveSchedule {
@@ -110,6 +111,8 @@ class AdaptiveSchedule {
  private:
   void set_limits(const AdaptiveOptions& options);
   void start_round();
+  /// Where items are of one sample: tiles with the same next sample stand together.
+  void order_round();
   void update_states();
 
   AdaptiveOptions options_;

@@ -14,16 +14,19 @@ namespace lucerna::schedule {
 class UniformSchedule {
  public:
   UniformSchedule() = default;
-  UniformSchedule(uint32_t blocks, uint32_t samples, uint32_t slots_at_once)
-      : blocks_(blocks), samples_(samples), slots_(slots_at_once) {
+  /// `one_sample`: passes are of one sample a pixel, which all items of a pass share.
+  UniformSchedule(uint32_t blocks, uint32_t samples, uint32_t slots_at_once, bool one_sample = false)
+      : blocks_(blocks), samples_(samples), slots_(slots_at_once), one_sample_(one_sample) {
     start_pass();
   }
   /// Goes on with a picture whose blocks have these samples a pixel, in raster order: those that have fewest
   /// are given theirs first, until all have as many. No sample is given twice, none is left out.
-  UniformSchedule(std::vector<uint32_t> have, uint32_t samples, uint32_t slots_at_once)
+  UniformSchedule(std::vector<uint32_t> have, uint32_t samples, uint32_t slots_at_once,
+                  bool one_sample = false)
       : blocks_(static_cast<uint32_t>(have.size())),
         samples_(samples),
         slots_(slots_at_once),
+        one_sample_(one_sample),
         have_(std::move(have)) {
     start_pass();
   }
@@ -78,10 +81,11 @@ class UniformSchedule {
     // The first passes are single, so that something is seen at once; then as many samples as fill the
     // device, or twice as many as before: adding to the film costs the same for one sample as for several.
     const uint32_t fitting = std::max(k_least_pass, slots_ / std::max(1u, 64 * behind));
-    pass_ = std::min({fitting, std::max(1u, sample_), level - sample_});
+    pass_ = one_sample_ ? 1 : std::min({fitting, std::max(1u, sample_), level - sample_});
   }
   uint32_t blocks_ = 0, samples_ = 0, slots_ = 64;
   uint32_t block_ = 0, sample_ = 0, pass_ = 1, passes_ = 0;
+  bool one_sample_ = false;
   std::vector<uint32_t> have_;  // samples of every block, while they differ; sample_ the least of them
 };
 

@@ -75,8 +75,9 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
   for (const solvers::SolverInfo* info : at_work) {
     const solvers::SolverType& type = solvers::type_of(*info);
     if (!type.make) continue;
-    solvers_.push_back(
-        type.make(device, compiler, slots, task_of(automaton_, plan_, *info, settings, effects)));
+    solvers::Task task = task_of(automaton_, plan_, *info, settings, effects);
+    task.scene_defines = &scene_defines_;
+    solvers_.push_back(type.make(device, compiler, slots, task));
     const solvers::Solver& solver = *solvers_.back();
     for (const auto& [name, value] : solver.defines()) defines[name] = value;
     if (!solver.hook().empty()) hooks.push_back({info->name, solver.hook()});
@@ -139,6 +140,17 @@ solvers::Solver* Engine::unready() const {
   return nullptr;
 }
 
+bool Engine::in_rounds() const {
+  return std::any_of(solvers_.begin(), solvers_.end(),
+                     [](const auto& solver) { return solver->in_rounds(); });
+}
+
+solvers::Solver* Engine::unready_for(uint32_t sample) const {
+  for (const auto& solver : solvers_)
+    if (solver->in_rounds() && !solver->round_ready(sample)) return solver.get();
+  return nullptr;
+}
+
 bool Engine::waits() const {
   const solvers::Solver* next = unready();
   return next && next->waits();
@@ -155,6 +167,7 @@ solvers::Routing Engine::routing(const plan::Settings& settings, const upload::E
   solvers::Routing all{
       .lookups = {.component = {}, .parts = 0, .traced = plan_.enabled()}, .fallback = 0, .gather = {}};
   std::array<const solvers::SolverInfo*, paths::k_component_count> by{};
+  uint32_t always = 0;  // what those bring who never leave a path alone
   for (const solvers::SolverInfo* info : plan_.at_work()) {
     const auto routing_of = solvers::type_of(*info).routing;
     if (!routing_of) continue;
@@ -162,8 +175,11 @@ solvers::Routing Engine::routing(const plan::Settings& settings, const upload::E
     claim(by, *info, brought(own.lookups));
     merge(all.lookups, own.lookups);
     all.fallback |= own.fallback;
+    if (own.fallback == 0) always |= brought(own.lookups);
     if (!own.gather.component.empty()) merge(all.gather, own.gather);
   }
+  // Paths that one lookup has left alone still find another's.
+  all.fallback &= ~always;
   return all;
 }
 

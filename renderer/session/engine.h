@@ -53,6 +53,10 @@ class Engine {
   solvers::Solver* find(std::string_view name) const;
   /// The first that is not ready; null: all are.
   solvers::Solver* unready() const;
+  /// Some solver makes what paths read anew for each sample.
+  bool in_rounds() const;
+  /// The first whose round for that sample is not ready; null: all are.
+  solvers::Solver* unready_for(uint32_t sample) const;
   bool waits() const;
   uint64_t published() const;
 

@@ -124,7 +124,7 @@ void Renderer::start_schedule() {
         schedule::AdaptiveSchedule(film_->blocks_across(), film_->blocks_down(), adaptive_options()));
   else
     sampling_.start(schedule::UniformSchedule(film_->blocks(), uint32_t(settings_.integer("samples")),
-                                              engine_->wavefront().slots()));
+                                              engine_->wavefront().slots(), engine_->in_rounds()));
 }
 
 void Renderer::change_schedule() {
@@ -138,7 +138,7 @@ void Renderer::change_schedule() {
                                                adaptive_options(), have, errors));
   } else {
     sampling_.start(schedule::UniformSchedule(have, uint32_t(settings_.integer("samples")),
-                                              engine_->wavefront().slots()));
+                                              engine_->wavefront().slots(), engine_->in_rounds()));
   }
 }
 
@@ -149,6 +149,7 @@ schedule::AdaptiveOptions Renderer::adaptive_options() const {
       .min_samples = uint32_t(settings_.integer("sampling.min_samples")),
       .max_samples = uint32_t(settings_.integer("sampling.max_samples")),
       .slots = engine_->wavefront().slots(),
+      .one_sample = engine_->in_rounds(),
   };
 }
 
@@ -297,6 +298,10 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
   }
   if (schedule::AdaptiveSchedule* adaptive = sampling_.adaptive()) {
     const schedule::WorkItem item = adaptive->next();
+    if (const std::optional<bool> went = prepare_round(item, cancel)) {
+      adaptive->give_back();
+      return *went;
+    }
     if (!wavefront.run(item, *film_, cancel)) {
       adaptive->give_back();
       return false;
@@ -317,9 +322,24 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
   }
   const schedule::UniformSchedule before = sampling_.uniform();
   const schedule::WorkItem item = sampling_.uniform().next();
+  if (const std::optional<bool> went = prepare_round(item, cancel)) {
+    sampling_.uniform() = before;
+    return *went;
+  }
   if (wavefront.run(item, *film_, cancel)) return true;
   sampling_.uniform() = before;
   return false;
+}
+
+std::optional<bool> Renderer::prepare_round(const schedule::WorkItem& item,
+                                            const std::function<bool()>& cancel) {
+  if (item.blocks.empty()) return std::nullopt;
+  const uint32_t sample = item.blocks.front().first_sample;  // of all of them
+  solvers::Solver* next = engine_->unready_for(sample);
+  if (!next) return std::nullopt;
+  return engine_->with(*next, picture_view(), [&](const solvers::Picture& picture) {
+    return next->prepare_round(engine_->wavefront(), picture, sample, cancel);
+  });
 }
 
 void Renderer::render_coarse(const std::function<bool()>& cancel) {

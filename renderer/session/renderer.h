@@ -229,6 +229,8 @@ class Renderer {
   bool apply_plan(const scene::Changes& changes);
   void heed_settings();  ///< tells the solvers
   bool render_item(const std::function<bool()>& cancel);
+  /// Where the item cannot be traced yet: a piece of the round that it reads, and whether that was done.
+  std::optional<bool> prepare_round(const schedule::WorkItem& item, const std::function<bool()>& cancel);
   /// Adds a line to the ledger when one is due, or at once.
   void note_progress(bool at_once);
 

@@ -94,6 +94,9 @@ struct SolverInfo {
   bool unbiased = false;
   /// Whether its light is looked up at a diffuse vertex (paths::lookup_routes), not traced on from there.
   bool looked_up = false;
+  /// Whether it finds light of points and directions behind what refracts or mirrors it, which paths from the
+  /// eye cannot aim at.
+  bool finds_points = false;
   std::vector<OptionInfo> options{};
   std::vector<ChangeRow> changes{};
   std::vector<ViewInfo> views{};

@@ -4,6 +4,7 @@
 
 #include "solvers/irradiance_cache/solver.h"
 #include "solvers/path_tracing/info.h"
+#include "solvers/photons/solver.h"
 
 namespace lucerna::solvers {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 const SolverType k_path_tracing{.info = path_tracing::info()};
 
 struct Registry {
-  std::vector<const SolverType*> types{&k_path_tracing, &irradiance_cache::type()};
+  std::vector<const SolverType*> types{&k_path_tracing, &irradiance_cache::type(), &photons::type()};
   std::vector<const SolverInfo*> infos;  ///< empty until somebody has asked for them
 };
 

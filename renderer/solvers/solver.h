@@ -5,8 +5,9 @@
 //
 // What calls these: session/renderer.h, in this order. A solver is made for a task with its kernels' needs
 // known; adopt() may hand it what the one before it had; begin() starts a picture, and says what of the
-// present work has been spoiled; prepare() is called until ready(); then paths are traced, and
-// estimate_errors() says what they read may be wrong by. Everything runs on one thread.
+// present work has been spoiled; prepare() is called until ready(); then paths are traced, each sample of the
+// picture behind prepare_round() where a solver works in rounds, and estimate_errors() says what they read
+// may be wrong by. Everything runs on one thread.
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -28,9 +29,10 @@ namespace lucerna::solvers {
 struct Task {
   const paths::Automaton& automaton;
   const OptionValues& settings;
-  uint32_t enabled = 0;     ///< components that anybody computes
-  uint32_t own = 0;         ///< of these, this solver
-  upload::Effects effects;  ///< what the scene calls for
+  uint32_t enabled = 0;                         ///< components that anybody computes
+  uint32_t own = 0;                             ///< of these, this solver
+  upload::Effects effects;                      ///< what the scene calls for
+  const gpu::Defines* scene_defines = nullptr;  ///< of kernels that know its surfaces and lights; when it is made
 };
 
 /// What of the paths is looked up: the tables of the automaton that paths carry (transport/frame.h).
@@ -101,6 +103,23 @@ class Solver {
     (void)wavefront, (void)picture, (void)cancel;
     return true;
   }
+
+  // In rounds: what paths read is made anew for each of the picture's samples, besides what prepare() makes.
+  // Sample i of every pixel reads round i. Items are then of one sample a pixel (schedule/).
+
+  virtual bool in_rounds() const { return false; }
+  /// Whether these samples' paths can be traced now.
+  virtual bool round_ready(uint32_t sample) const {
+    (void)sample;
+    return true;
+  }
+  /// As prepare(), towards that round, in place of the one that there is.
+  virtual bool prepare_round(transport::Wavefront& wavefront, const Picture& picture, uint32_t sample,
+                             const Cancel& cancel) {
+    (void)wavefront, (void)picture, (void)sample, (void)cancel;
+    return true;
+  }
+
   /// Preparation is long, and all kernels that it needs have run.
   virtual bool warm() const { return ready(); }
   /// Goes on telling the film what the picture's lookups may be wrong by, a piece at a time, until

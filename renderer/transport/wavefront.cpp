@@ -241,6 +241,11 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
   TransportPush push{count, 0, 64, 0};
   uint32_t closest[k_component_count] = {}, shadows[k_component_count] = {};
   closest[w.first_account] = count;
+  std::array<gpu::Resources, 2> own;  // of the caller's kernel
+  for (size_t k = 0; ends.vertex && k < own.size(); ++k) {
+    own[k] = w.main[k];
+    if (ends.bind_vertex) ends.bind_vertex(own[k]);
+  }
   w.stream.fill(w.counters, 0);
   ends.begin();
   const uint32_t* counters = static_cast<const uint32_t*>(w.counters.mapped());
@@ -294,7 +299,11 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       w.stream.fill(w.counters, 0, 4 * k_counter_rays, 32);
       push.count = active;
       push.use_queue = first ? 0 : 1;
-      w.stream.dispatch(w.shade, w.main[parity], push, Impl::groups(active), "shade");
+      if (ends.vertex)
+        w.stream.dispatch(*ends.vertex, own[parity], push, Impl::groups(active), ends.vertex_stage);
+      else
+        w.stream.dispatch(w.shade, w.main[parity], push, Impl::groups(active), "shade");
+      if (ends.after_vertex) ends.after_vertex();
     } else {
       w.stream.fill(w.counters, 0, 0, 12);
     }

@@ -49,6 +49,13 @@ struct PathEnds {
       first_hits;             ///< reads the hits of the first rays (before they are shaded); may be empty
   std::function<void()> end;  ///< reads the radiance of every slot, by component
   bool hits_only = false;     ///< only the first rays are traced, and nothing is shaded
+  /// What is done at every vertex in place of shade.comp, for paths that come from lights: a kernel that
+  /// begins with shaders/lib/wavefront.glsl and is told a TransportPush, as a stage of that name. Null:
+  /// shade.comp.
+  const gpu::Kernel* vertex = nullptr;
+  std::string vertex_stage = {};
+  std::function<void(gpu::Resources&)> bind_vertex = {};  ///< what it reads besides the paths
+  std::function<void()> after_vertex = {};  ///< records what follows a vertex of all paths; may be empty
 };
 
 class Wavefront {

@@ -73,6 +73,7 @@ void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
     }
   }
   const Box box = scene::bounds(scene);
+  flat.scene_centre = box.empty() ? vec3(0) : box.centre();
   flat.scene_radius = box.empty() ? 1.f : std::max(box.radius(), 1e-6f);
 }
 

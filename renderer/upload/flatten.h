@@ -50,6 +50,10 @@ struct LightDistribution {
   /// By texel, of its directions [1/sr]; the sign bit: it is one of the sun's.
   std::vector<float> environment_density;
   std::vector<vec4> sun_cells, sun_density;
+  /// Luminance of the flux that each entry sends into the scene [W], for paths that begin at lights: of
+  /// distant ones through the scene's disk, of textured triangles by 16 points of each.
+  std::vector<double> light_power;
+  double sky_power = 0;  ///< of an environment that is no entry
 };
 
 /// What lights emit and from where: flatten_emission().
@@ -81,7 +85,8 @@ struct FlatScene : FlatLights, FlatMaterials {
   /// Above 0: the environment is two emitters (shared/scene.h), its sun the texels of more than so many times
   /// its mean luminance.
   float sun_threshold = 0;
-  float scene_radius = 1;
+  vec3 scene_centre{0};
+  float scene_radius = 1;  ///< of a sphere around that which holds all surfaces
   Effects effects;
 };
 

@@ -142,15 +142,25 @@ float triangle_area(const FlatScene& flat, uint32_t primitive) {
   return 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
 }
 
-/// Entries of the light table, with the power that each is chosen by.
+/// Entries of the light table, with the weight that each is chosen by from the scene, and the flux that it
+/// sends there.
 struct Choice {
   std::vector<LightEntry> entries;
-  std::vector<double> powers;
-  void add(uint32_t kind, uint32_t index, double power) {
+  std::vector<double> weights, fluxes;
+  void add(uint32_t kind, uint32_t index, double weight, double flux) {
     entries.push_back({kind, index});
-    powers.push_back(power);
+    weights.push_back(weight);
+    fluxes.push_back(flux);
   }
 };
+
+/// Solid angle of a spot's cone, each direction weighted with its intensity over that on the axis: full
+/// within the inner cone, and the square of what is left of the way to the outer cosine, as
+/// shaders/lib/lights.glsl.
+double spot_solid_angle(double inner, double outer) {
+  const double width = std::max(inner - outer, 1e-4), ramp = std::min(1.0, (1 - outer) / width);
+  return 2 * std::numbers::pi * (std::max(0.0, 1 - outer - width) + width * ramp * ramp * ramp / 3);
+}
 
 /// Emissive triangles: flux pi * L * A, twice that when both sides emit.
 void add_triangles(const scene::Scene& scene, const FlatScene& flat, Choice& choice) {
@@ -160,8 +170,8 @@ void add_triangles(const scene::Scene& scene, const FlatScene& flat, Choice& cho
     const float area = triangle_area(flat, i);
     if (!(area > 0)) continue;
     const double mean = texture_mean(scene, m.emission_texture, flat, flat.triangles[i]);
-    choice.add(k_light_triangle, i,
-               double(k_pi) * area * luminance(m.emission) * mean * (m.double_sided ? 2 : 1));
+    const double flux = double(k_pi) * area * luminance(m.emission) * mean * (m.double_sided ? 2 : 1);
+    choice.add(k_light_triangle, i, flux, flux);
   }
 }
 
@@ -172,12 +182,13 @@ void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
     if (!l.enabled || !(luminance(l.intensity) > 0)) continue;
     const double y = luminance(l.intensity);
     if (l.kind == scene::LightKind::directional) {
-      choice.add(k_light_directional, i, y * disk);
+      choice.add(k_light_directional, i, y * disk, y * disk);
     } else if (l.kind == scene::LightKind::spot) {
       const float inner = std::cos(l.inner_cone), outer = std::cos(l.outer_cone);
-      choice.add(k_light_spot, i, y * (2 * k_pi * (1 - 0.5 * (inner + outer))));
+      choice.add(k_light_spot, i, y * (2 * k_pi * (1 - 0.5 * (inner + outer))),
+                 y * spot_solid_angle(double(inner), double(outer)));
     } else {
-      choice.add(k_light_point, i, y * (4 * k_pi));
+      choice.add(k_light_point, i, y * (4 * k_pi), y * 4 * std::numbers::pi);
     }
   }
 }
@@ -187,11 +198,11 @@ void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
 void balance(Choice& choice, double& environment, double& sun) {
   const auto is_distant = [&](size_t i) { return choice.entries[i].kind == k_light_directional; };
   double local = 0, distant = environment + sun;
-  for (size_t i = 0; i < choice.powers.size(); ++i) (is_distant(i) ? distant : local) += choice.powers[i];
+  for (size_t i = 0; i < choice.weights.size(); ++i) (is_distant(i) ? distant : local) += choice.weights[i];
   if (!(local > 0 && distant > 0)) return;
   const double share = std::clamp(distant / (local + distant), 0.25, 0.75);
-  for (size_t i = 0; i < choice.powers.size(); ++i)
-    choice.powers[i] *= is_distant(i) ? share / distant : (1 - share) / local;
+  for (size_t i = 0; i < choice.weights.size(); ++i)
+    choice.weights[i] *= is_distant(i) ? share / distant : (1 - share) / local;
   environment *= share / distant;
   sun *= share / distant;
 }
@@ -229,21 +240,24 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
     choose_texels(map, weights, d);
   }
   const bool has_sun = sun > 0;
+  const double sky_power = environment, sun_power = sun;
   balance(choice, environment, sun);
   if (sun_apart) {
-    const double all = environment + sun + sum_of(choice.powers);
+    const double all = environment + sun + sum_of(choice.weights);
     if (all > 0) d.environment_light_pmf = float(environment / all);
+    d.sky_power = sky_power;
     if (has_sun) {
       choose_sun_cells(map, weights.sun_texels, d);
-      choice.add(k_light_environment, 0, sun);
+      choice.add(k_light_environment, 0, sun, sun_power);
     }
-    if (choice.entries.empty()) choice.add(k_light_point, scene::k_none, 1);  // dark: a table is never empty
+    if (choice.entries.empty())
+      choice.add(k_light_point, scene::k_none, 1, 0);  // dark: a table is never empty
   } else if (environment > 0) {
-    choice.add(k_light_environment, 0, environment);
-    d.environment_light_pmf = float(environment / sum_of(choice.powers));
+    choice.add(k_light_environment, 0, environment, sky_power);
+    d.environment_light_pmf = float(environment / sum_of(choice.weights));
   }
-  d.light_alias = build_alias_table(choice.powers);
-  if (!d.light_alias.empty()) d.entries = std::move(choice.entries);
+  d.light_alias = build_alias_table(choice.weights);
+  if (!d.light_alias.empty()) d.entries = std::move(choice.entries), d.light_power = std::move(choice.fluxes);
   if (has_sun)
     for (vec4& four : d.sun_density) four *= d.light_alias.back().z;
   if (emissive) d.primitive_light_pmf = triangle_densities(flat, d);

@@ -334,6 +334,16 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   return v;
 }
 
+// The diffuse lobes alone: f_D |cos|, as bsdf_eval has it.
+vec3 bsdf_diffuse(Bsdf b, vec3 wi) {
+  float cos_i = abs(wi.z);
+  vec3 diffuse = wi.z > 0.0 ? b.diffuse : b.transmitted;
+#if LUCERNA_SPECULAR
+  diffuse *= coat_transmittance(b, cos_i);
+#endif
+  return diffuse * (cos_i * k_inv_pi);
+}
+
 // Whether it has a glossy lobe that light samples can reach.
 bool bsdf_glossy(Bsdf b) {
 #if LUCERNA_SPECULAR || LUCERNA_GLASS

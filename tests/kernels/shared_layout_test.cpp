@@ -8,6 +8,7 @@
 
 #include "gpu/spirv.h"
 #include "kernels/gpu_support.h"
+#include "shaders/shared/emission.h"
 #include "shaders/shared/film.h"
 #include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "shaders/shared/irradiance_cache/inspect.h"
@@ -16,6 +17,7 @@
 #include "shaders/shared/irradiance_cache/records.h"
 #include "shaders/shared/octree.h"
 #include "shaders/shared/overlay.h"
+#include "shaders/shared/photons/photons.h"
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
@@ -66,6 +68,13 @@ std::vector<SharedStruct> structs() {
       SHARED("irradiance_cache/placement_view.h", PlacedPoint, position, bits, normal, radius),
       SHARED("irradiance_cache/placement_view.h", PlacementPush, count, rings, dot, tried_dot, by_cluster),
       SHARED("sight.h", SightGrid, across, stride),
+      SHARED("emission.h", EmissionTable, centre, radius, count, sky, sun_pmf, pad0),
+      SHARED("photons/photons.h", Photon, position, direction, flux, bits),
+      SHARED("photons/photons.h", PhotonFrame, eye, slope, base, least, most, count, mask, round, pad0, pad1,
+             component),
+      SHARED("photons/photons.h", PhotonEmitPush, count, first, round, share),
+      SHARED("photons/photons.h", PhotonListPush, count, capacity),
+      SHARED("photons/photons.h", PhotonPointsPush, count, step, by, pad0),
       SHARED("sight.h", SeePush, first, count, across, down, stride),
       SHARED("irradiance_cache/discontinuity.h", LitPush, count),
       SHARED("irradiance_cache/discontinuity.h", DetailPush, across, down, level, first, finer, pixel,

@@ -52,6 +52,27 @@ inline void add_box(scene::Scene& s, const vec3& lo, const vec3& hi, uint32_t ma
   add_mesh(s, "box", p);
 }
 
+/// A ball of `rings` times twice as many quads, with the normals of a sphere.
+inline void add_ball(scene::Scene& s, const vec3& at, float radius, uint32_t material, uint32_t rings = 24) {
+  scene::Primitive p;
+  p.material = material;
+  const uint32_t around = 2 * rings;
+  for (uint32_t i = 0; i <= rings; ++i)
+    for (uint32_t k = 0; k <= around; ++k) {
+      const float theta = k_pi * float(i) / float(rings), phi = 2 * k_pi * float(k % around) / float(around);
+      const vec3 n(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
+      p.positions.push_back(at + radius * n);
+      p.normals.push_back(n);
+    }
+  for (uint32_t i = 0; i < rings; ++i)
+    for (uint32_t k = 0; k < around; ++k) {
+      const uint32_t a = i * (around + 1) + k, b = a + around + 1;
+      if (i > 0) p.triangles.emplace_back(a, a + 1, b);
+      if (i + 1 < rings) p.triangles.emplace_back(a + 1, b + 1, b);
+    }
+  add_mesh(s, "ball", p);
+}
+
 /// At `eye`; its right is +x, its up -z.
 inline scene::Camera looking_down(const vec3& eye, float yfov) {
   scene::Camera c;

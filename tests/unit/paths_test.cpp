@@ -1,7 +1,9 @@
 // links: paths
 #include "paths/automaton.h"
+#include "paths/light_paths.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 using namespace lucerna;
 using namespace lucerna::paths;
@@ -211,4 +213,140 @@ TEST_CASE("a path lives as long as a light or a lookup can bring it something") 
   CHECK_FALSE(live(paths::pack(a, own.traced, own, false)[dd]));
   // A path tracer of all components always has a further vertex to go to.
   for (const uint32_t packed : paths::pack(a, 15, {}, false)) CHECK(live(packed));
+}
+
+TEST_CASE("a path from a light and one from the eye make the word that they make together") {
+  const paths::Automaton a = paths::compile_components();
+  const paths::LightAutomaton light = paths::reverse(a);
+  CHECK(light.states.size() < 8);
+  const char* letters = "DGS";
+  // All words of up to six events, cut at every place.
+  for (int length = 0; length <= 6; ++length)
+    for (int number = 0, all = int(std::pow(3, length)); number < all; ++number) {
+      std::string events;
+      for (int k = 0, rest = number; k < length; ++k, rest /= 3) events += letters[rest % 3];
+      const uint8_t component = a.classify("E" + events + "L");
+      for (int cut = 0; cut <= length; ++cut) {
+        uint8_t eye = 0, from_light = 0;
+        for (int k = 0; k < cut; ++k)
+          eye = a.after(eye, paths::Event(std::string(letters).find(events[size_t(k)])));
+        for (int k = length; k-- > cut;)
+          from_light = light.after(from_light, paths::Event(std::string(letters).find(events[size_t(k)])));
+        REQUIRE(light.states[from_light].component[eye] == component);
+      }
+      if (length > 0 && events[0] == 'D') {
+        uint8_t from_light = 0;
+        for (int k = length; k-- > 1;)
+          from_light = light.after(from_light, paths::Event(std::string(letters).find(events[size_t(k)])));
+        CHECK(light.states[from_light].part == component);
+      }
+    }
+}
+
+TEST_CASE(
+    "photons are stored where some eye path reads them, and light paths end where none can be any more") {
+  const paths::Automaton a = paths::compile_components();
+  const paths::LightAutomaton light = paths::reverse(a);
+  const auto after = [&](const char* word) {
+    uint8_t state = 0;
+    for (const char* e = word; *e; ++e)
+      state = light.after(state, paths::Event(*e == 'D' ? 0 : *e == 'G' ? 1 : 2));
+    return state;
+  };
+  const auto part = [](uint32_t packed) { return packed >> 24 & 7u; };
+  const auto live = [](uint32_t packed) { return (packed >> 27 & 1u) != 0; };
+  // Caustics alone: light that has met mirrors and glass, and nothing that has been scattered diffusely.
+  const auto caustics = paths::pack(light, 0b1000, 3);
+  CHECK(part(caustics[after("")]) == paths::k_component_count);
+  CHECK(live(caustics[after("")]));
+  CHECK(part(caustics[after("SG")]) == 3);
+  CHECK_FALSE(live(caustics[after("SD")]));
+  CHECK_FALSE(live(caustics[after("D")]));
+  CHECK((caustics[0] >> 29 & 3u) == 3);
+  const auto all = paths::pack(light, 0b1110, 1);
+  CHECK(part(all[after("")]) == paths::k_component_count);  // direct light is not theirs
+  CHECK(part(all[after("DS")]) == 1);
+  CHECK(part(all[after("SD")]) == 2);
+  for (const uint32_t packed : all) CHECK(live(packed));
+  for (const uint32_t packed : paths::pack(light, 0, 0)) CHECK_FALSE(live(packed));
+}
+
+TEST_CASE(
+    "photons are looked up at the first diffuse vertex, or where secondary light is traced at the next") {
+  const paths::Automaton a = paths::compile_components();
+  const auto after = [&](const char* word) {
+    uint8_t state = 0;
+    for (const char* e = word; *e; ++e)
+      state = a.after(state, static_cast<paths::Event>(*e == 'D' ? 0 : *e == 'G' ? 1 : 2));
+    return state;
+  };
+  const uint8_t none = paths::k_no_component;
+  const std::array<uint8_t, 4> nothing{none, none, none, none};
+  const auto caustic = paths::photon_routes(a, 15, 0b1000);
+  CHECK(caustic.traced == 0b0111);
+  CHECK(caustic.parts == 0b1000);
+  CHECK(caustic.component[after("")] == std::array<uint8_t, 4>{none, none, none, 3});
+  CHECK(caustic.component[after("GS")] == caustic.component[0]);
+  for (const char* word : {"D", "DS", "DD"}) CHECK(caustic.component[after(word)] == nothing);
+  const auto all = paths::photon_routes(a, 15, 0b1110);
+  CHECK(all.traced == 0b0001);
+  CHECK(all.component[0] == std::array<uint8_t, 4>{none, 1, 2, 3});
+  for (const char* word : {"D", "DS", "DD", "DDD"}) CHECK(all.component[after(word)] == nothing);
+  // Secondary light alone: the path goes on for tertiary light.
+  const auto secondary = paths::photon_routes(a, 15, 0b0010);
+  CHECK(secondary.traced == 0b1101);
+  CHECK(secondary.component[0] == std::array<uint8_t, 4>{none, 1, none, none});
+  CHECK(secondary.component[after("D")] == nothing);
+  // Final gathering: all that comes to the second diffuse vertex but direct light.
+  const auto gathered = paths::photon_routes(a, 15, 0b1100);
+  CHECK(gathered.traced == 0b0011);
+  CHECK(gathered.component[0] == std::array<uint8_t, 4>{none, none, none, 3});
+  CHECK(gathered.component[after("SDG")] == std::array<uint8_t, 4>{none, 2, 2, 2});
+  CHECK(gathered.component[after("DD")] == nothing);
+  CHECK(paths::photon_routes(a, 0b1101, 0b0100).component[0] == std::array<uint8_t, 4>{none, none, 2, none});
+  CHECK(paths::photon_routes(a, 15, 0).parts == 0);
+  // Every word is brought exactly once: by the path that traces it, or by the first lookup of it.
+  const paths::LightAutomaton light = paths::reverse(a);
+  const char* letters = "DGS";
+  for (uint32_t own = 0; own < 16; own += 2) {
+    const auto routes = paths::photon_routes(a, 15, own);
+    for (int number = 0; number < 729; ++number) {
+      std::string events;
+      for (int k = 0, rest = number; k < 6; ++k, rest /= 3) events += letters[rest % 3];
+      events.resize(size_t(number % 7));
+      const uint8_t component = a.classify("E" + events + "L");
+      int times = (routes.traced >> component & 1u) != 0;
+      uint8_t eye = 0;
+      for (size_t k = 0; k < events.size(); ++k) {
+        const auto event = paths::Event(std::string(letters).find(events[k]));
+        if (event == paths::Event::diffuse) {
+          uint8_t from_light = 0;
+          for (size_t j = events.size(); j-- > k + 1;)
+            from_light = light.after(from_light, paths::Event(std::string(letters).find(events[j])));
+          const uint8_t part = light.states[from_light].part;
+          if (routes.component[eye][part] == component)
+            ++times;
+          else
+            CHECK(routes.component[eye][part] == none);
+        }
+        eye = a.after(eye, event);
+      }
+      INFO("E" << events << "L, own " << own);
+      CHECK(times == 1);
+    }
+  }
+}
+
+TEST_CASE("a path goes on through a lookup for what another lookup brings further on") {
+  const paths::Automaton a = paths::compile_components();
+  const uint8_t d = a.after(0, paths::Event::diffuse);
+  // Secondary light among photons at the first diffuse vertex, tertiary light in records at the second.
+  auto routes = paths::photon_routes(a, 0b0110, 0b0010);
+  const auto records = paths::lookup_routes(a, 0b0110, 0b0100);
+  for (size_t s = 0; s < routes.component.size(); ++s)
+    for (size_t p = 0; p < 4; ++p)
+      if (routes.component[s][p] == paths::k_no_component) routes.component[s][p] = records.component[s][p];
+  const auto packed = paths::pack(a, 0, routes);
+  CHECK((packed[d] >> 27 & 1u) == 1);
+  CHECK((packed[a.after(d, paths::Event::diffuse)] >> 27 & 1u) == 0);
 }

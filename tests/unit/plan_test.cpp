@@ -68,6 +68,9 @@ TEST_CASE("lamps behind solid glass are warned about, and nothing else is") {
   CHECK(plan::unreachable_light(plan::make_plan(some), s).size() == 1);
   some.set("components.caustic", "off");
   CHECK(plan::unreachable_light(plan::make_plan(some), s).empty());
+  plan::Settings photons;  // find it
+  photons.set("components.caustic", "photons");
+  CHECK(plan::unreachable_light(plan::make_plan(photons), s).empty());
   for (scene::Light& l : s.lights) l.enabled = false;
   CHECK(plan::unreachable_light(p, s).empty());
 }

@@ -344,3 +344,50 @@ TEST_CASE("uniform and adaptive take over from one another, at any time: no samp
   }
   CHECK(resumed.done());
 }
+
+TEST_CASE("items of one sample: all their blocks have the same next sample, whoever is behind") {
+  constexpr uint32_t k_slots = 4096;
+  AdaptiveOptions options{.tile = 16,
+                          .target_error = 0.3f,
+                          .min_samples = 4,
+                          .max_samples = 20,
+                          .slots = k_slots,
+                          .one_sample = true};
+  const auto all_alike = [](const Player& p) {
+    for (const WorkItem& item : p.items) {
+      REQUIRE(item.sample_count == 1);
+      for (const WorkBlock& b : item.blocks) REQUIRE(b.first_sample == item.blocks[0].first_sample);
+    }
+  };
+  const auto sigma = [](uint32_t t) { return 0.2 + 0.1 * double(t % 9); };
+  Player p{AdaptiveSchedule(13, 9, options), {}, {}};
+  p.play(sigma, k_slots);
+  all_alike(p);
+  // Another target finds tiles with more samples beside others with fewer.
+  options.target_error = 0.001f;
+  p.schedule.retarget(options);
+  p.play(sigma, k_slots);
+  all_alike(p);
+  for (const auto& [block, samples] : p.samples) CHECK(samples == 20);
+  // Taken over from counts that differ within a tile.
+  std::vector<uint32_t> have(13 * 9);
+  Player later{{}, {}, {}};
+  for (uint32_t b = 0; b < have.size(); ++b) later.samples[b] = have[b] = (b * 7) % 11;
+  const std::vector<TileErrors> errors(7 * 5, TileErrors{1, 0, 0});
+  later.schedule = AdaptiveSchedule(13, 9, options, have, errors);
+  later.play(sigma, k_slots);
+  all_alike(later);
+  for (const auto& [block, samples] : later.samples) CHECK(samples == 20);
+  // Uniform.
+  UniformSchedule uniform(117, 8, k_slots, true);
+  std::vector<uint32_t> samples(117, 0);
+  while (!uniform.done()) {
+    const WorkItem item = uniform.next();
+    REQUIRE(item.sample_count == 1);
+    for (const WorkBlock& b : item.blocks) {
+      REQUIRE(b.first_sample == item.blocks[0].first_sample);
+      CHECK(b.first_sample == samples[b.index]++);
+    }
+  }
+  for (const uint32_t n : samples) CHECK(n == 8);
+}

@@ -1,0 +1,86 @@
+#include "solvers/photons/info.h"
+
+namespace lucerna::photons {
+namespace {
+
+using scene::Change;
+using namespace solvers;
+
+std::vector<OptionInfo> option_rows() {
+  return {
+      integer_option("photons.per_round", 0, 0, 1 << 24, "paths",
+                     "Photons: paths from lights in a round, of which there is one for every sample of the "
+                     "picture; 0: as many as the picture has pixels, at least 16384.",
+                     "Paths a round"),
+      real_option(
+          "photons.radius", "3", 0.1, 1000, "pixels",
+          "Photons: radius of the first round, as the camera sees it. Less: less blur, and more grain.",
+          "First radius"),
+      real_option("photons.floor", "0.75", 0, 1000, "pixels",
+                  "Photons: least radius, from which on it shrinks no further.", "Least radius"),
+      real_option("photons.alpha", "0.6667", 0.01, 1, "",
+                  "Photons: how slowly the radius shrinks from round to round: grain falls with its power, "
+                  "blur with that of the rest to 1; 1: it does not shrink.",
+                  "Shrinking"),
+      without_restart(
+          choice_option("overlay.photons", "off", {"off", "flux", "bounce"}, "",
+                        "Shows the photons of the last round where they lie: flux in the colour of "
+                        "their light, bounce by the number of surfaces before.",
+                        "Show photons")),
+  };
+}
+
+/// Photons are another round's as soon as the picture begins anew; what is told here is whether the last ones
+/// may serve until then.
+std::vector<ChangeRow> change_rows() {
+  return {
+      {Change::camera, k_spoils_nothing, "photons lie on surfaces, whoever looks"},
+      {Change::size, k_spoils_nothing, "photons lie on surfaces, whoever looks"},
+      {Change::lamp, k_spoils_light, "other light on the same surfaces"},
+      {Change::environment, k_spoils_light, "other light on the same surfaces"},
+      {Change::colour, k_spoils_light, "of a material, or its emission: other light on the same surfaces"},
+      {Change::material, k_spoils_light, "other light on the same surfaces"},
+      {Change::shape, k_spoils_all, "other surfaces"},
+      {Change::shaders, k_spoils_all, "whatever they compute"},
+      {Change::restart, k_spoils_all, "asked for: all anew"},
+      {"components.", k_spoils_all, "which light is stored"},
+      {"samples", k_spoils_nothing, "of the picture alone"},
+      {"sampling.", k_spoils_nothing, "of the picture alone"},
+      {"film.", k_spoils_nothing, "how it is shown"},
+      {"show.", k_spoils_nothing, "how it is shown"},
+      {"overlay.", k_spoils_nothing, "how it is shown"},
+      {"about", k_spoils_nothing, "words"},
+      {"camera", k_spoils_nothing, "photons lie on surfaces, whoever looks"},
+      {"tracer", k_spoils_nothing, "all tracers find the same surfaces"},
+      {"path.batch", k_spoils_nothing, "how work is cut"},
+      {"path.", k_spoils_light, "how far paths go"},
+      {"seed", k_spoils_light, "other photons, as good as these"},
+      {"photons.", k_spoils_light, "how many photons, and within which radius they count"},
+  };
+}
+
+}  // namespace
+
+const SolverInfo& info() {
+  static const SolverInfo all{
+      .name = "photons",
+      .label = "Photons",
+      .title = "the photons",
+      .help =
+          "Photons: paths from the lights leave photons on surfaces, anew for every sample of the picture, "
+          "and "
+          "what lies within a shrinking radius counts; finds light behind glass and mirrors, blurs it a "
+          "little at first.",
+      .serves = {false, true, true, true},
+      .looked_up = true,
+      .finds_points = true,
+      .options = option_rows(),
+      .changes = change_rows(),
+      .views = {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'}},
+      .against_noise = {"photons.per_round"},
+      .against_bias = {"photons.radius"},
+  };
+  return all;
+}
+
+}  // namespace lucerna::photons

@@ -1,0 +1,224 @@
+#include "solvers/photons/photon_map.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+namespace lucerna::photons {
+
+using namespace shared;
+
+namespace {
+
+constexpr uint32_t k_first_capacity = 65536;                           // photons
+constexpr uint32_t k_least_entries = 1024, k_most_entries = 1u << 22;  // of the table
+constexpr uint32_t k_entries_a_photon = 4;
+
+gpu::Buffer texels(gpu::Device& device, const char* name, uint64_t bytes) {
+  return gpu::Buffer(device, {.name = name, .bytes = (bytes + 15) / 16 * 16, .texel = true});
+}
+
+}  // namespace
+
+PhotonMap::PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
+                     const paths::Automaton& automaton)
+    : device_(device),
+      automaton_(paths::reverse(automaton)),
+      emit_(device, compiler, "photons/emit.comp", scene_defines),
+      trace_(device, compiler, "photons/trace.comp", scene_defines),
+      append_(device, compiler, "photons/append.comp"),
+      advance_(device, compiler, "photons/advance.comp"),
+      keys_(device, compiler, "photons/keys.comp"),
+      arrange_(device, compiler, "photons/arrange.comp"),
+      prefix_sum_(device, compiler),
+      radix_sort_(device, compiler, sort::Keys::bits32),
+      pending_(device, {.name = "photons of a bounce", .bytes = k_batch * sizeof(Photon)}),
+      flags_(texels(device, "photon flags", k_batch * 4)),
+      places_(texels(device, "photon places", k_batch * 4)),
+      counts_(device, {.name = "photon counts", .bytes = 4 * k_photon_counts, .memory = gpu::Memory::host}),
+      map_(texels(device, "photons", sizeof(Photon))),
+      table_(texels(device, "table of photons", 8 * k_least_entries)),
+      block_(device, {.name = "photon lookups", .bytes = sizeof(PhotonFrame)}) {
+  clear();
+}
+
+void PhotonMap::bind(gpu::Resources& resources) const {
+  resources.set("photon_texels", map_);
+  resources.set("photon_table", table_);
+  resources.set("PhotonBlock", block_);
+}
+
+void PhotonMap::clear() {
+  lookup_ = {};
+  lookup_.least = lookup_.most = 1;
+  std::fill(std::begin(lookup_.component), std::end(lookup_.component), 0xffffu);
+  write_lookup();
+  figures_ = {};
+  complete_ = tracing_ = false;
+}
+
+void PhotonMap::write_lookup() { block_.write(&lookup_, sizeof lookup_); }
+
+uint64_t PhotonMap::bytes() const {
+  uint64_t sum = 0;
+  for (const gpu::Buffer* b : {&pending_, &flags_, &places_, &list_, &pairs_, &scratch_, &map_, &table_})
+    sum += *b ? b->bytes() : 0;
+  return sum;
+}
+
+Frame PhotonMap::light_frame(const Round& round, const Frame& picture) const {
+  Frame frame = picture;
+  const std::vector<uint32_t> states = paths::pack(automaton_, round.parts, round.account);
+  std::fill(std::begin(frame.automaton), std::end(frame.automaton), uint32_t{paths::k_component_count} << 24);
+  std::copy(states.begin(), states.end(), frame.automaton);
+  return frame;
+}
+
+bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSource& lights,
+                      const Round& round, const Frame& picture, uint32_t enabled,
+                      const std::function<bool()>& cancel) {
+  if (!tracing_ || next_.round != round.number || next_.paths != round.paths) {
+    next_ = {.round = round.number, .paths = round.paths, .grown = figures_.grown};
+    tracing_ = true;
+    traced_ = stored_ = 0;
+  }
+  if (lights.power() > 0 && traced_ < round.paths) {
+    const uint32_t count = std::min(k_batch, round.paths - traced_);
+    wavefront.set_frame(light_frame(round, picture), 1);
+    const auto back = [&] { wavefront.set_frame(picture, enabled); };
+    try {
+      if (!trace_batch(wavefront, lights, round, count, cancel)) {
+        back();
+        return false;
+      }
+    } catch (...) {
+      back();
+      throw;
+    }
+    back();
+    traced_ += count;
+    if (traced_ < round.paths) return true;
+  }
+  build(wavefront, round);
+  return true;
+}
+
+bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
+                            const Round& round, uint32_t count, const std::function<bool()>& cancel) {
+  assert(wavefront.slots() >= k_batch);
+  gpu::Stream& stream = wavefront.stream();
+  if (!list_) grow(wavefront, k_first_capacity);
+  const uint32_t groups = gpu::groups_for(count, 64);
+  const auto bind = [&](gpu::Resources& r) {
+    lights.bind(r);
+    bind_round(r);
+  };
+  for (;;) {
+    uint32_t counts[k_photon_counts] = {};
+    counts[k_photons_stored] = stored_;
+    counts_.write(counts, sizeof counts);
+    gpu::Resources emitting;
+    wavefront.bind_paths(emitting);
+    bind(emitting);
+    bind_round(resources_);
+    transport::PathEnds ends;
+    ends.begin = [&] {
+      stream.fill(flags_, 0);
+      const PhotonEmitPush push{count, traced_, round.number, 1 / float(round.paths)};
+      stream.dispatch(emit_, emitting, push, groups, "photon emission");
+    };
+    ends.vertex = &trace_;
+    ends.vertex_stage = "photon vertex";
+    ends.bind_vertex = bind;
+    ends.after_vertex = [&] {
+      prefix_sum_.encode(stream, flags_, places_, {.most = count}, &counts_, 4 * k_photons_added,
+                         "photon list");
+      stream.dispatch(append_, resources_, PhotonListPush{count, capacity_}, groups, "photon list");
+      stream.dispatch(advance_, resources_, nullptr, 0, 1, "photon list");
+    };
+    if (!wavefront.run(count, ends, cancel)) return false;
+    counts_.read(counts, sizeof counts);
+    if (counts[k_photons_stored] <= capacity_) {
+      stored_ = counts[k_photons_stored];
+      next_.escaped += counts[k_photons_escaped], next_.dark += counts[k_photons_dark];
+      return true;
+    }
+    grow(wavefront, counts[k_photons_stored]);
+    ++next_.grown;
+  }
+}
+
+void PhotonMap::bind_round(gpu::Resources& r) const {
+  r.set("PhotonPending", pending_);
+  r.set("PhotonFlags", flags_);
+  r.set("PhotonPlaces", places_);
+  r.set("PhotonCounts", counts_);
+  r.set("PhotonList", list_);
+  r.set("photon_list_texels", list_);
+}
+
+void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
+  const uint64_t most =
+      std::min<uint64_t>(device_.info().limits.max_storage_buffer / sizeof(Photon), ~0u >> 1);
+  if (needed > most)
+    throw_error(
+        "photons.per_round",
+        "a round leaves more than {} photons, the most that this device can hold in one array; ask for "
+        "fewer light paths a round",
+        most);
+  const auto capacity = uint32_t(std::min<uint64_t>(most, std::bit_ceil(needed)));
+  gpu::Buffer list = texels(device_, "photons of a round", uint64_t{capacity} * sizeof(Photon));
+  if (stored_ > 0) {
+    wavefront.stream().copy(list_, list, uint64_t{stored_} * sizeof(Photon));
+    wavefront.account_stages();
+  }
+  list_ = std::move(list);
+  capacity_ = capacity;
+}
+
+void PhotonMap::build(transport::Wavefront& wavefront, const Round& round) {
+  gpu::Stream& stream = wavefront.stream();
+  lookup_ = round.lookup;
+  lookup_.count = stored_;
+  lookup_.round = round.number;
+  const uint32_t entries =
+      std::clamp(std::bit_ceil(std::max(1u, k_entries_a_photon * std::min(stored_, 1u << 28))),
+                 k_least_entries, k_most_entries);
+  lookup_.mask = entries - 1;
+  bool moved = false;
+  const auto room = [&](gpu::Buffer& buffer, const char* name, uint64_t bytes) {
+    if (buffer && buffer.bytes() >= bytes) return;
+    buffer = texels(device_, name, bytes);
+    moved = true;
+  };
+  room(table_, "table of photons", uint64_t{8} * entries);
+  room(map_, "photons", uint64_t{stored_} * sizeof(Photon));
+  room(pairs_, "photon keys", uint64_t{8} * std::max(stored_, 2u));
+  room(scratch_, "photon keys", uint64_t{8} * std::max(stored_, 2u));
+  write_lookup();
+  stream.fill(table_, 0);
+  if (stored_ > 0) {
+    gpu::Resources r;
+    bind_round(r);
+    bind(r);
+    r.set("PhotonPairs", pairs_);
+    r.set("PhotonMap", map_);
+    r.set("PhotonTable", table_);
+    const PhotonListPush push{stored_, capacity_};
+    const uint32_t groups = gpu::groups_for(stored_, 64);
+    stream.dispatch(keys_, r, push, groups, "photon map");
+    const gpu::Buffer& sorted = radix_sort_.encode(stream, pairs_, scratch_, {.most = stored_},
+                                                   uint32_t(std::bit_width(entries - 1)), "photon map");
+    r.set("PhotonSorted", sorted);
+    stream.dispatch(arrange_, r, push, groups, "photon map");
+    wavefront.account_stages();
+  }
+  wavefront.account_stages();
+  if (moved) wavefront.rebind_lookup();
+  figures_ = next_;
+  figures_.photons = stored_, figures_.entries = entries;
+  tracing_ = false;
+  complete_ = true;
+}
+
+}  // namespace lucerna::photons

@@ -1,0 +1,89 @@
+#pragma once
+// The photons of one round: traced in batches, stored in an order of their own, found by cells
+// (shaders/shared/photons/photons.h).
+//
+// Bit-identical, however threads run and however many paths are in flight: a batch is of k_batch paths, its
+// photons are stored bounce by bounce in the order of the paths' numbers, and the sort that puts them into
+// their cells keeps that order.
+#include <functional>
+
+#include "paths/light_paths.h"
+#include "shaders/shared/photons/photons.h"
+#include "sort/radix_sort.h"
+#include "transport/light_source.h"
+#include "transport/wavefront.h"
+
+namespace lucerna::photons {
+
+/// What a round is to be.
+struct Round {
+  uint32_t number = 0;
+  uint32_t paths = 0;            ///< from lights
+  uint32_t parts = 0;            ///< of light that are stored (bits, paths::k_part_count)
+  uint32_t account = 0;          ///< component that their time is accounted to
+  shared::PhotonFrame lookup{};  ///< as lookups are to read it; count, mask and round are filled in
+};
+
+/// Of the last complete round.
+struct RoundFigures {
+  uint32_t round = 0, paths = 0, photons = 0;
+  uint32_t escaped = 0;  ///< paths that left the scene
+  uint32_t dark = 0;     ///< paths that began where their light has no light
+  uint32_t entries = 0;  ///< of the table
+  uint32_t grown = 0;    ///< batches traced again because there was no room, so far
+};
+
+class PhotonMap {
+ public:
+  static constexpr uint32_t k_batch = 65536;  ///< paths at once; the wavefront has at least as many slots
+
+  /// `scene_defines`: of the kernels that know the scene. Throws Error: a kernel does not compile (located),
+  /// no memory.
+  PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
+            const paths::Automaton& automaton);
+
+  /// photon_texels, photon_table, PhotonBlock: as they are until a round is complete.
+  void bind(gpu::Resources& resources) const;
+  /// Lookups find nothing, until the next round is complete.
+  void clear();
+  /// The next round is to begin anew.
+  void restart() { tracing_ = false; }
+
+  /// One batch of the round, which begins with the first; with the last the round is complete. The
+  /// wavefront's frame is then `picture`, of `enabled` components, again. False when it was cancelled: it
+  /// will be done again. Throws Error: more photons than the device can hold.
+  bool trace(transport::Wavefront& wavefront, const transport::LightSource& lights, const Round& round,
+             const shared::Frame& picture, uint32_t enabled, const std::function<bool()>& cancel);
+  /// The round that lookups read; false: none.
+  bool complete() const { return complete_; }
+  uint32_t round() const { return figures_.round; }
+  /// Paths of the round under way.
+  uint32_t traced() const { return tracing_ ? traced_ : 0; }
+  const RoundFigures& figures() const { return figures_; }
+  const shared::PhotonFrame& lookup() const { return lookup_; }
+  uint64_t bytes() const;
+
+ private:
+  shared::Frame light_frame(const Round& round, const shared::Frame& picture) const;
+  bool trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights, const Round& round,
+                   uint32_t count, const std::function<bool()>& cancel);
+  void bind_round(gpu::Resources& resources) const;  ///< what stores photons
+  void grow(transport::Wavefront& wavefront, uint32_t needed);
+  void build(transport::Wavefront& wavefront, const Round& round);
+  void write_lookup();
+
+  gpu::Device& device_;
+  paths::LightAutomaton automaton_;
+  gpu::Kernel emit_, trace_, append_, advance_, keys_, arrange_;
+  sort::PrefixSum prefix_sum_;
+  sort::RadixSort radix_sort_;
+  gpu::Buffer pending_, flags_, places_, counts_, list_, pairs_, scratch_, map_, table_, block_;
+  gpu::Resources resources_;
+  shared::PhotonFrame lookup_{};
+  RoundFigures figures_, next_;  ///< of the last complete round, of the one under way
+  bool tracing_ = false, complete_ = false;
+  uint32_t traced_ = 0, stored_ = 0;  ///< paths and photons of the round under way
+  uint32_t capacity_ = 0;
+};
+
+}  // namespace lucerna::photons

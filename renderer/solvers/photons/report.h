@@ -1,0 +1,22 @@
+#pragma once
+// What photons tell a person.
+#include "solvers/photons/photon_map.h"
+#include "solvers/report.h"
+
+namespace lucerna::photons {
+
+struct PhotonReport {
+  double lights_power = 0;  ///< luminance of all lights' flux [W]
+  bool sends = true;        ///< photons: else there are only caustics to bring, and nothing focuses light
+  uint64_t rounds = 0, paths = 0, photons = 0, escaped = 0, dark = 0;  ///< of the picture
+  RoundFigures last;
+  double radius_pixels = 0;
+  bool at_floor = false;
+  bool limited = false;  ///< held to less than what was asked for
+  uint64_t bytes = 0;
+  uint32_t view = 0;  ///< overlay.photons
+};
+
+solvers::Report make_report(const PhotonReport& r);
+
+}  // namespace lucerna::photons

@@ -1,0 +1,180 @@
+#include "solvers/photons/solver.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "solvers/photons/info.h"
+#include "solvers/photons/radius.h"
+
+namespace lucerna::photons {
+
+using namespace shared;
+using solvers::Picture, solvers::Task, solvers::Cancel;
+
+namespace {
+
+constexpr uint32_t k_caustic_part = 3;
+constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where their number is left to us
+/// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
+/// are very wide.
+constexpr float k_least_radius = 1e-6f, k_most_radius = 0.25f;
+
+paths::LookupRoutes routes_of(const Task& task) {
+  return paths::photon_routes(task.automaton, task.enabled, task.own);
+}
+
+/// Parts of light that are looked up and that there are: of caustics only where something scatters otherwise
+/// than diffusely.
+uint32_t parts_of(const Task& task) {
+  const upload::Effects& e = task.effects;
+  const bool focuses = e.specular || e.solid_glass || e.thin_glass;
+  return routes_of(task).parts & (focuses ? ~0u : ~(1u << k_caustic_part));
+}
+
+solvers::Routing routing(const Task& task) {
+  paths::LookupRoutes routes = routes_of(task);
+  if (parts_of(task) == 0) routes.component.clear(), routes.parts = 0;
+  return {.lookups = routes, .fallback = 0, .gather = {}};
+}
+
+std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
+                                      const Task& task) {
+  return std::make_unique<PhotonSolver>(device, compiler, task);
+}
+
+}  // namespace
+
+const solvers::SolverType& type() {
+  static const solvers::SolverType all{.info = photons::info(),
+                                       .routing = routing,
+                                       .make = make,
+                                       .least_slots = PhotonMap::k_batch,
+                                       .sun_threshold = nullptr};
+  return all;
+}
+
+PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const Task& task)
+    : device_(device),
+      routes_(routes_of(task)),
+      parts_(parts_of(task)),
+      sends_(parts_ != 0),
+      map_(device, compiler, *task.scene_defines, task.automaton),
+      view_(device, compiler) {}
+
+const solvers::SolverInfo& PhotonSolver::info() const { return photons::info(); }
+
+bool PhotonSolver::serves(const Task& task) const {
+  return routes_of(task).component == routes_.component && parts_of(task) == parts_;
+}
+
+void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
+  if (!lit_ || spoils.light || spoils.places) {
+    lights_ =
+        transport::LightSource(device_, picture.flat, picture.flat.scene_centre, picture.flat.scene_radius);
+    lit_ = true;
+  }
+  if (spoils.places) map_.clear();
+  map_.restart();
+  fresh_ = true;
+  rounds_ = paths_ = photons_ = escaped_ = dark_ = 0;
+}
+
+bool PhotonSolver::round_ready(uint32_t sample) const {
+  return !fresh_ && map_.complete() && last_sample_ == sample;
+}
+
+Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
+  const OptionValues& s = picture.task.settings;
+  Round round;
+  round.number = sample;
+  const uint64_t pixels = uint64_t{picture.width} * picture.height;
+  const auto asked = uint32_t(s.integer("photons.per_round"));
+  round.paths = asked > 0 ? asked : uint32_t(std::clamp<uint64_t>(pixels, k_least_paths, k_most_paths));
+  round.parts = parts_;
+  round.account = uint32_t(std::countr_zero(std::max(1u, picture.task.own)));
+
+  PhotonFrame& f = round.lookup;
+  const Frame& frame = picture.frame;
+  const double shrunk = s.real("photons.radius") * radius_ratio(sample, s.real("photons.alpha"));
+  const auto pixel =
+      float(2 * glm::length(frame.camera_right) / float(frame.width));  // at 1 m, or everywhere
+  const float radius = pixel * float(std::max(shrunk, s.real("photons.floor")));
+  f.eye = frame.camera_origin;
+  f.slope = frame.orthographic ? 0 : std::min(radius, k_photon_most_slope);
+  f.base = frame.orthographic ? radius : 0;
+  f.least = k_least_radius * picture.flat.scene_radius;
+  f.most = k_most_radius * picture.flat.scene_radius;
+  // Paths that another solver's lookup has left alone find photons as all others do.
+  for (uint32_t state = 0; state < k_automaton_states; ++state) {
+    const uint32_t of_eye = state % k_gather_state;
+    f.component[state] = 0xffffu;
+    if (state >= k_known_state || of_eye >= routes_.component.size()) continue;
+    uint32_t packed = 0;
+    for (uint32_t p = 0; p < paths::k_part_count; ++p) {
+      const uint8_t c = routes_.component[of_eye][p];
+      packed |= (c == paths::k_no_component ? k_photon_no_component : uint32_t{c}) << 4 * p;
+    }
+    f.component[state] = packed;
+  }
+  return round;
+}
+
+bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture& picture, uint32_t sample,
+                                 const Cancel& cancel) {
+  const Round round = round_of(picture, sample);
+  if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
+  if (map_.traced() > 0) return true;  // not yet complete
+  const RoundFigures& f = map_.figures();
+  fresh_ = false, last_sample_ = sample;
+  ++rounds_, paths_ += lights_.power() > 0 ? f.paths : 0, photons_ += f.photons;
+  escaped_ += f.escaped, dark_ += f.dark;
+  return true;
+}
+
+void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
+  view_.draw(canvas, map_, uint32_t(picture.task.settings.choice("overlay.photons")));
+}
+
+PhotonReport PhotonSolver::state(const Picture& picture) const {
+  PhotonReport r;
+  const OptionValues& s = picture.task.settings;
+  r.lights_power = lights_.power();
+  r.sends = sends_;
+  r.rounds = rounds_, r.paths = paths_, r.photons = photons_, r.escaped = escaped_, r.dark = dark_;
+  r.last = map_.figures();
+  r.bytes = map_.bytes() + lights_.bytes();
+  const double shrunk =
+      s.real("photons.radius") * radius_ratio(rounds_ > 0 ? last_sample_ : 0, s.real("photons.alpha"));
+  r.radius_pixels = std::max(shrunk, s.real("photons.floor"));
+  r.at_floor = shrunk <= s.real("photons.floor");
+  const auto pixel = double(2 * glm::length(picture.frame.camera_right) / float(picture.frame.width));
+  r.limited = picture.frame.orthographic
+                  ? r.radius_pixels * pixel > double(k_most_radius * picture.flat.scene_radius)
+                  : r.radius_pixels * pixel > double{k_photon_most_slope};
+  r.view = uint32_t(s.choice("overlay.photons"));
+  return r;
+}
+
+std::shared_ptr<const solvers::Report> PhotonSolver::report(const overlay::Canvas&, const Picture& picture,
+                                                            bool) {
+  return std::make_shared<const solvers::Report>(make_report(state(picture)));
+}
+
+nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas&, const Picture& picture) {
+  const PhotonReport r = state(picture);
+  return {{"rounds", r.rounds},
+          {"paths", r.paths},
+          {"photons", r.photons},
+          {"escaped", r.escaped},
+          {"dark", r.dark},
+          {"last_round_photons", r.last.photons},
+          {"radius_pixels", r.radius_pixels},
+          {"bytes", r.bytes}};
+}
+
+std::map<std::string, double> PhotonSolver::figures() const {
+  return {{"photon rounds", double(rounds_)}, {"light paths", double(paths_)}, {"photons", double(photons_)}};
+}
+
+}  // namespace lucerna::photons

@@ -1,0 +1,46 @@
+// Source `light`: light paths of a batch, one a slot.
+#define LUCERNA_PUSH PhotonEmitPush
+#include "shaders/shared/photons/photons.h"
+#include "lib/wavefront.glsl"
+#include "lib/emission.glsl"
+
+layout(scalar) buffer PhotonCounts { uint photon_counts[]; };
+
+void main() {
+  uint slot = global_index();
+  if (slot >= push.count) return;
+  uint index = push.first + slot;
+  Ray ray;
+  ray.origin = vec3(0.0);
+  ray.direction = vec3(0.0, 0.0, 1.0);
+  ray.tmax = -1.0;
+  ray.slot = slot;
+  vec3 flux = vec3(0.0);
+#if LUCERNA_LIGHTS
+  Sampler random = make_light_sampler(index, push.round, frame.seed);
+  Emission e = sample_emission(sample_vertex_bits(random, 0u, k_pad_light_choice), sample_vertex(random, 0u, k_pad_light_uv),
+                               sample_vertex(random, 0u, k_pad_direction), sample_vertex_bits(random, 0u, k_pad_light_detail));
+  flux = e.flux * push.share;
+  bool finite = is_finite(flux);
+  if (!finite) atomicAdd(counters[k_counter_dropped], 1u);
+  bool lit = finite && max3(flux) > 0.0;
+  if (!lit) atomicAdd(photon_counts[k_photons_dark], 1u);
+  ray.origin = e.origin;
+  ray.direction = e.direction;
+  ray.tmax = lit ? k_infinity : -1.0;
+  flux = lit ? flux : vec3(0.0);
+#endif
+  rays[slot] = ray;
+  PathState p;
+  p.throughput = flux;
+  p.pdf = 0.0;
+  p.pixel = max3(flux) > 0.0 ? index : 0xffffffffu;
+  p.sample_index = push.round;
+  p.bits = 1u << 8;  // the emission has the random numbers of depth 0
+  p.medium = 0u;
+  p.travelled = 0.0;
+  p.eta_scale = 1.0;
+  p.nulls = 0u;
+  p.pad0 = 0.0;
+  paths[slot] = p;
+}

@@ -1,0 +1,39 @@
+// A photon's words, its radius, and the cell that it lies in (shared/photons/photons.h).
+#ifndef LUCERNA_PHOTONS_PHOTON
+#define LUCERNA_PHOTONS_PHOTON
+#include "shaders/shared/photons/photons.h"
+#include "lib/math.glsl"
+#include "lib/sampler.glsl"
+
+layout(scalar) readonly buffer PhotonBlock { PhotonFrame photons; };
+
+// Octahedral map, 16 bits an axis (Cigolle et al. 2014).
+uint photon_pack_direction(vec3 d) {
+  vec2 p = d.xy / (abs(d.x) + abs(d.y) + abs(d.z));
+  if (d.z < 0.0) p = facet_fold(p);
+  uvec2 q = uvec2(clamp((p * 0.5 + 0.5) * 65535.0 + 0.5, vec2(0.0), vec2(65535.0)));
+  return q.x | q.y << 16;
+}
+vec3 photon_direction(uint bits) {
+  vec2 p = vec2(bits & 0xffffu, bits >> 16) * (2.0 / 65535.0) - 1.0;
+  float z = 1.0 - abs(p.x) - abs(p.y);
+  if (z < 0.0) p = facet_fold(p);
+  return normalize(vec3(p, z));
+}
+
+// Within which a photon at x counts; changes by no more than `slope` a metre.
+float photon_radius(vec3 x) { return clamp(photons.base + photons.slope * distance(x, photons.eye), photons.least, photons.most); }
+
+// The level whose cells are as wide as a photon of that radius needs them.
+int photon_level(float radius) { return int(ceil(2.0 * log2(2.0 * k_photon_slack * radius))); }
+// 2^(-level / 2).
+float photon_inverse_cell(int level) { return ldexp((level & 1) != 0 ? 0.70710678 : 1.0, -(level >> 1)); }
+
+// Entry of the table for a cell.
+uint photon_entry(ivec3 cell, int level) {
+  uvec3 above = uvec3(cell >> 1);
+  uint hash = hash_combine(hash_combine(hash_combine(uint(level >> 2), above.x), above.y), above.z);
+  uint low = uint(cell.x & 1) | uint(cell.y & 1) << 1 | uint(cell.z & 1) << 2 | uint(level & 3) << 3;
+  return (hash << k_photon_entry_bits | low) & photons.mask;
+}
+#endif

@@ -1,0 +1,42 @@
+// One vertex of every live light path: the photon that it leaves there, if any eye path can read it, and how it goes on.
+#include "shaders/shared/photons/photons.h"
+#include "transport/light_vertex.glsl"
+#include "lib/emission.glsl"
+#include "photons/photon.glsl"
+
+layout(scalar) writeonly buffer PhotonPending { Photon photon_pending[]; };  // one a slot
+layout(scalar) writeonly buffer PhotonFlags { uint photon_flags[]; };        // whether it is there
+layout(scalar) buffer PhotonCounts { uint photon_counts[]; };
+
+void main() {
+  uint index = global_index();
+  if (index >= push.count) return;
+  uint slot = push.use_queue != 0u ? queue[index] : index;
+  Ray ray = load_ray(slot);
+  Hit hit = load_hit(slot);
+  PathState path = load_path(slot);
+  if (path.pixel == 0xffffffffu) return;
+  if (hit.prim == k_no_hit) {
+    atomicAdd(photon_counts[k_photons_escaped], 1u);
+    return;
+  }
+  uint state = path_automaton(path), depth = path_depth(path);
+  Sampler random = make_light_sampler(path.pixel, path.sample_index, frame.seed);
+  LightVertex v = light_vertex(path, ray, hit, random);
+  uint part = automaton_component(state);
+  bool wanted = v.lit && part < k_component_count && max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
+  if (wanted && !is_finite(v.arriving)) {
+    atomicAdd(counters[k_counter_dropped], 1u);
+    wanted = false;
+  }
+  if (wanted) {
+    Photon p;
+    p.position = v.surface.position;
+    p.direction = photon_pack_direction(-ray.direction);
+    p.flux = v.arriving;
+    p.bits = facet_pack(v.surface.normal_g) | part << k_photon_part_shift | min(depth - 1u, 255u) << k_photon_events_shift;
+    photon_pending[slot] = p;
+    photon_flags[slot] = 1u;
+  }
+  light_continue(slot, v, path, ray, path.travelled + hit.t, random);
+}

@@ -1,0 +1,88 @@
+// What photons bring to a vertex of an eye path: a density estimate (H. W. Jensen 1996) with discs of given radius and
+// Epanechnikov's kernel, of the diffuse lobe alone; what arrives by its other lobes is traced on.
+#ifndef LUCERNA_PHOTONS_VERTEX_HOOK
+#define LUCERNA_PHOTONS_VERTEX_HOOK
+#include "transport/vertex_hook.glsl"
+#include "photons/photon.glsl"
+
+uniform samplerBuffer photon_texels;
+uniform usamplerBuffer photon_table;  // two entries a texel
+
+struct photons_Vertex { uint none; };
+
+uvec2 photon_range(uint entry) {
+  uvec4 two = texelFetch(photon_table, int(entry >> 1));
+  return (entry & 1u) != 0u ? two.zw : two.xy;
+}
+
+// f_D |cos| over the geometric cosine: flux arrives on the surface that is there, and paths weigh it by the shading normal.
+vec3 photon_reflected(VertexIn v, vec3 wi_world, bool reflected) {
+  vec3 wi = wi_world * v.to_world;
+  vec3 f = bsdf_diffuse(v.bsdf, wi);
+  bool sides_agree = reflected == (wi.z > 0.0);
+  return sides_agree ? f / max(abs(dot(wi_world, v.surface.normal_g)), 1e-4) : vec3(0.0);
+}
+
+photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
+  uint components = photons.component[v.state];
+  vec3 x = v.surface.position;
+  float radius = photon_radius(x);
+  bool looks = components != 0xffffu && photons.count > 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0;
+  // Photons that reach x have a radius between these, because it changes slowly.
+  int lowest = photon_level(radius / (1.0 + photons.slope) * (2.0 - k_photon_slack));
+  int highest = photon_level(radius / (1.0 - photons.slope) * k_photon_slack);
+  uint candidates = 0u;
+  for (int level = lowest; looks && level <= highest; ++level) {
+    ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
+    for (uint k = 0u; k < k_photon_near_cells; ++k) {
+      uvec2 range = photon_range(photon_entry(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level));
+      candidates += range.y - range.x;
+    }
+  }
+  // Where very many lie together every so-manyth is taken, beginning anywhere.
+  uint step = (candidates + k_photon_most_candidates - 1u) / k_photon_most_candidates;
+  step = max(step, 1u);
+  uint skip = step > 1u ? hash_combine(hash_combine(v.path.pixel, v.path.sample_index), v.depth) % step : 0u;
+  vec3 found_1 = vec3(0.0), found_2 = vec3(0.0), found_3 = vec3(0.0);  // by part
+  for (int level = lowest; looks && level <= highest; ++level) {
+    ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
+    for (uint k = 0u; k < k_photon_near_cells; ++k) {
+      uvec2 range = photon_range(photon_entry(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level));
+      uint at = range.x + skip;
+      for (; at < range.y; at += step) {
+        vec4 a = texelFetch(photon_texels, int(k_photon_texels * at));
+        vec3 away = a.xyz - x;
+        float r = photon_radius(a.xyz), d2 = dot(away, away);
+        if (d2 >= r * r) continue;
+        vec4 b = texelFetch(photon_texels, int(k_photon_texels * at + 1u));
+        uint bits = floatBitsToUint(b.w), part = bits >> k_photon_part_shift & 3u;
+        vec3 wi = photon_direction(floatBitsToUint(a.w)), front = facet_unpack(bits & k_photon_facet);
+        // The side on which it arrives is the one that the path sees, or its surface is this one, lit from behind.
+        bool reflected = dot(wi, v.side) > 0.0;
+        vec3 side = dot(wi, front) > 0.0 ? front : -front;
+        float agree = reflected ? dot(side, v.side) : dot(front, v.surface.normal_g);
+        bool counts = agree > k_photon_normals && abs(dot(away, v.surface.normal_g)) < k_photon_slab * r;
+        float kernel = counts ? 2.0 * k_inv_pi * (1.0 - d2 / (r * r)) / (r * r) : 0.0;
+        vec3 light = photon_reflected(v, wi, reflected) * b.rgb * kernel;
+        found_1 += part == 1u ? light : vec3(0.0);
+        found_2 += part == 2u ? light : vec3(0.0);
+        found_3 += part == 3u ? light : vec3(0.0);
+      }
+      skip = at >= range.y ? at - range.y : skip;
+    }
+  }
+  vec3 weight = v.path.throughput * float(step);
+  for (uint component = 0u; component < k_component_count; ++component) {
+    vec3 light = ((components >> 4 & 15u) == component ? found_1 : vec3(0.0)) +
+                 ((components >> 8 & 15u) == component ? found_2 : vec3(0.0)) +
+                 ((components >> 12 & 15u) == component ? found_3 : vec3(0.0));
+    o.radiance[lane_of(0u, component)] += weight * light;
+  }
+  return photons_Vertex(0u);
+}
+vec3 photons_cosine(VertexIn v, inout photons_Vertex x, vec2 u, vec3 cosine) { return cosine; }
+void photons_weigh(VertexIn v, photons_Vertex x, vec3 direction, inout BsdfSample b) {}
+uint photons_state(VertexIn v, photons_Vertex x, BsdfSample b, uint state) { return state; }
+void photons_leave(VertexIn v, inout photons_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on) {}
+void photons_end(VertexIn v, photons_Vertex x) {}
+#endif

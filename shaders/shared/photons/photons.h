@@ -1,0 +1,83 @@
+// Photons and how they are found. Read by C++ and GLSL.
+#ifndef LUCERNA_SHARED_PHOTONS_H
+#define LUCERNA_SHARED_PHOTONS_H
+#include "shaders/shared/facet.h"
+#include "shaders/shared/transport.h"
+LUCERNA_SHARED_BEGIN
+
+/// Flux that arrives at a surface with a diffuse lobe. Two texels.
+struct Photon {
+  vec3 position;   ///< world space [m]
+  uint direction;  ///< whence it comes, unit: octahedral, 16 + 16 bits
+  vec3 flux;       ///< its share of the round's light [W]
+  uint bits;       ///< 0-21 geometric normal of the surface's front (facet.h), k_photon_*
+};
+LUCERNA_CONST uint k_photon_texels = 2u;
+LUCERNA_CONST uint k_photon_facet = 0x3fffffu;
+LUCERNA_CONST uint k_photon_part_shift = 22u;    ///< 2 bits: by which events it came (paths::k_part_count)
+LUCERNA_CONST uint k_photon_events_shift = 24u;  ///< 8 bits: scattering events since its light, at most 255
+
+// Photons are found by cells. The radius within which one counts is a function of the place where it lies, so that the places
+// that it counts for are known without asking the others. Cells come in levels, each sqrt(2) times as wide as the one before;
+// a photon lies in the level whose cells are just wider than its disc, so that the eight cells around a place hold all that
+// can reach it. Cells share entries of a hash table, but never two of the eight, nor two of neighbouring levels: a photon is
+// met at most once, and one that is met by chance is too far away. Lower bits of an entry's number: 0-2 where the cell lies
+// among the eight, 3-4 its level's lowest bits; above them the hash of the rest.
+LUCERNA_CONST uint k_photon_near_cells = 8u;
+LUCERNA_CONST uint k_photon_entry_bits = 5u;
+LUCERNA_CONST float k_photon_slack = 1.0002f;     ///< cells are so much wider than they must be, against rounding
+LUCERNA_CONST float k_photon_most_slope = 0.25f;  ///< of the radius over the distance from the eye
+/// Of candidates that a lookup meets it looks at no more than about so many, at random, each counting for several. (All loops
+/// of eight neighbouring invocations together end after 65535 iterations on lavapipe.)
+LUCERNA_CONST uint k_photon_most_candidates = 4096u;
+LUCERNA_CONST float k_photon_slab = 0.25f;  ///< half the thickness of what a photon's disc counts for, in radii
+LUCERNA_CONST float k_photon_normals = 0.9f;  ///< least cosine between the normals of photon and place
+
+/// What lookups read besides the photons.
+struct PhotonFrame {
+  vec3 eye;         ///< from which radii are measured [m]
+  float slope;      ///< radius over the distance from there
+  float base;       ///< ... and beside it, where the camera is orthographic [m]
+  float least, most;///< the radius is held between these [m]
+  uint count;       ///< photons; 0: none
+  uint mask;        ///< entries of the table, less 1
+  uint round;
+  uint pad0, pad1;
+  uint component[k_automaton_states];  ///< by state of the eye path: four bits a part, the component that it brings light to
+};
+LUCERNA_CONST uint k_photon_no_component = 15u;
+
+/// `count` is the first word of all, as wavefront.glsl has it.
+struct PhotonEmitPush {
+  uint count;      ///< paths of this batch
+  uint first;      ///< number of the first of them in the round
+  uint round;
+  float share;     ///< 1 / paths of the round
+};
+struct PhotonListPush {
+  uint count;      ///< slots, or photons
+  uint capacity;
+};
+
+// PhotonCounts, uint each.
+LUCERNA_CONST uint k_photons_stored = 0u;   ///< in the batches before and the bounces before
+LUCERNA_CONST uint k_photons_added = 1u;    ///< in this bounce
+LUCERNA_CONST uint k_photons_escaped = 2u;  ///< paths that left the scene
+LUCERNA_CONST uint k_photons_dark = 3u;     ///< paths that began where a light has none
+LUCERNA_CONST uint k_photon_counts = 4u;
+
+/// Which photons are drawn, and how.
+struct PhotonPointsPush {
+  uint count;       ///< photons
+  uint step;        ///< every so-manyth is drawn
+  uint by;          ///< k_photons_by_*
+  uint pad0;
+};
+LUCERNA_CONST uint k_photons_by_flux = 1u;
+LUCERNA_CONST uint k_photons_by_bounce = 2u;
+
+LUCERNA_SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(lucerna::shared::Photon) == 32);
+#endif
+#endif

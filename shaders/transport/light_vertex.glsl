@@ -1,0 +1,107 @@
+// One vertex of a path from a light: it carries flux, and f goes the other way round than for a path from the eye. For kernels
+// that run in place of shade.comp (transport/wavefront.h, PathEnds::vertex).
+#ifndef LUCERNA_TRANSPORT_LIGHT_VERTEX
+#define LUCERNA_TRANSPORT_LIGHT_VERTEX
+#include "lib/variants.glsl"
+#include "lib/wavefront.glsl"
+#include "lib/sampler.glsl"
+#include "lib/surface.glsl"
+
+struct LightVertex {
+  bool met;        // there is a surface, and it is there for this path (alpha)
+  Surface surface;
+  Bsdf bsdf;       // as seen from where the light comes
+  mat3 to_world;
+  vec3 wo;         // whence the light comes, local
+  vec3 arriving;   // flux
+  bool lit;        // scatters
+  bool passed;     // the path goes straight on
+};
+
+// Flux is scattered by f(wi, wo) |wo . n_g| / |wo . n_s| over directions wi in projected solid angle about the geometric
+// normal; bsdf_sample has f(wo, wi) |wi . n_s| / pdf (E. Veach 1997, 5.3.2).
+float adjoint_correction(vec3 n_g, vec3 n_s, vec3 wo, vec3 wi) {
+  float above = abs(dot(wo, n_s) * dot(wi, n_g)), below = abs(dot(wo, n_g) * dot(wi, n_s));
+  return below > 0.0 ? above / below : 0.0;
+}
+
+LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random) {
+  LightVertex v;
+  v.surface = make_surface(ray, hit);
+#if LUCERNA_VOLUMES
+  if (path.medium != 0u) path.throughput *= exp(-material_absorption(path.medium - 1u) * hit.t);
+#endif
+  v.arriving = path.throughput;
+  v.passed = false;
+#if LUCERNA_TRANSPARENT
+  Sampler random_null = null_sampler(random, path.nulls);
+  vec2 u_null = sample_vertex(random_null, path_depth(path), k_pad_lobe);
+#endif
+#if LUCERNA_ALPHA
+  v.passed = u_null.x >= surface_coverage(v.surface);
+#endif
+  v.met = !v.passed;
+  vec3 wo_world = -ray.direction;
+  v.to_world = shading_frame(v.surface, wo_world);
+  v.wo = wo_world * v.to_world;   // transposed
+  v.bsdf = make_bsdf(v.surface.parameters, v.wo.z);
+  v.lit = v.met;
+#if LUCERNA_UNLIT
+  v.lit = v.lit && (v.surface.flags & k_flag_unlit) == 0u;
+#endif
+#if LUCERNA_THIN_GLASS
+  float p_straight = bsdf_straight_probability(v.bsdf, v.wo.z);
+  if (v.lit && u_null.y < p_straight) {
+    v.passed = true;
+    // What the path carries on; the surface's other lobes are lit by what it has brought.
+    path.throughput *= bsdf_straight(v.bsdf, v.wo.z) / p_straight;
+  }
+#endif
+  return v;
+}
+
+// Goes on by an event, or straight on; puts the next ray into the queue. Roulette keeps the flux of those that go on as near
+// to what it was as their colour allows (J. Arvo and D. Kirk 1990).
+void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float travelled, Sampler random) {
+  uint depth = path_depth(path);
+  vec3 direction = ray.direction;
+  bool go_on = false;
+  if (v.passed) {
+    go_on = max3(path.throughput) > 0.0;
+    path.travelled = travelled;
+    ++path.nulls;
+  } else if (v.lit) {
+    bool ends = depth > frame.max_depth;
+    if (ends) atomicAdd(counters[k_counter_depth], 1u);
+    vec2 u = sample_vertex(random, depth, k_pad_direction);
+    BsdfSample b = bsdf_sample(v.bsdf, v.wo, u, sample_vertex(random, depth, k_pad_lobe));
+    direction = normalize(v.to_world * b.wi);
+    vec3 side = v.surface.front ? v.surface.normal_g : -v.surface.normal_g;
+    bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
+    uint next = automaton_after(path_automaton(path), b.event);
+    // Radiance is scaled where it is refracted, flux is not.
+    vec3 weight = b.weight * (adjoint_correction(v.surface.normal_g, v.to_world[2], ray.direction, direction) / b.eta2);
+    vec3 throughput = path.throughput * weight;
+    bool finite = is_finite(throughput);
+    go_on = !ends && sides_agree && (!finite || max3(throughput) > 0.0) && automaton_live(next);
+    if (go_on && !finite) atomicAdd(counters[k_counter_dropped], 1u);
+    float q = clamp(max3(throughput) / max(max3(path.throughput), 1e-37), 0.0, 1.0);
+    bool survives = to_unit(sample_vertex_bits(random, depth, k_pad_light_choice)).y < q;
+    if (go_on && finite && !survives) atomicAdd(counters[k_counter_roulette], 1u);
+    go_on = go_on && finite && survives;
+    path.throughput = throughput / max(q, 1e-30);
+    path.bits = next | (depth + 1u) << 8;
+    path.travelled = 0.0;
+    path.nulls = 0u;
+#if LUCERNA_VOLUMES
+    if (b.transmitted && v.surface.parameters.solid) path.medium = v.surface.front ? v.surface.material + 1u : 0u;
+#endif
+  }
+  if (!go_on) return;
+  rays[slot].origin = offset_origin(v.surface, direction);
+  rays[slot].direction = direction;
+  store_path(slot, path);
+  next_queue[atomicAdd(counters[k_counter_next], 1u)] = slot;
+  atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);
+}
+#endif

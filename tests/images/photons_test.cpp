@@ -1,0 +1,306 @@
+// links: session
+// Photons through the real program: their light against closed forms and against path tracing, what they must
+// not see, that the picture is one of settings and seed alone, and what there is when there is little.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "solvers/registry.h"
+#include "support/render.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+
+namespace {
+
+const test::Settings k_all{{"components.secondary", "photons"},
+                           {"components.tertiary", "photons"},
+                           {"components.caustic", "photons"}};
+
+test::Settings with(test::Settings settings, const test::Settings& more) {
+  for (const auto& [key, value] : more) settings[key] = value;
+  return settings;
+}
+
+/// The inside of a box that shines, all of one albedo and without gloss.
+scene::Scene closed_room(const vec3& albedo) {
+  scene::Scene s;
+  s.name = "closed room";
+  s.materials = {test::diffuse(albedo, vec3(1))};
+  test::add_box(s, vec3(-1), vec3(1));
+  s.cameras = {test::looking_down({0, 0.5f, 0}, 1)};
+  return s;
+}
+
+/// A sun along +x that a mirror turns straight down onto a floor.
+scene::Scene turned_sun() {
+  scene::Scene s;
+  s.name = "turned sun";
+  s.materials = {test::diffuse({0.8f, 0.5f, 0.2f}), {}};
+  s.materials[1].metallic = 1, s.materials[1].roughness = 0;
+  s.materials[1].base_color = vec4(0.9f, 0.8f, 0.7f, 1);
+  test::add_quad(s, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0);
+  test::add_quad(s, {-1, 3, -1}, {2, -2, 0}, {0, 0, 2}, 1);
+  s.materials[1].double_sided = true;
+  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = {3, 4, 5}}};
+  s.lights[0].direction = {1, 0, 0};
+  s.cameras = {test::looking_down({0, 0.9f, 0}, 0.8f)};
+  s.environment.given = true;
+  return s;
+}
+
+/// A room of four metres with a lamp under its ceiling and a ball of glass on its floor.
+scene::Scene glass_room(float lamp = 0.5f) {
+  scene::Scene s;
+  s.name = "glass room", s.file = "glass.gltf";
+  s.materials = {test::diffuse({0.7f, 0.6f, 0.5f}), test::diffuse(vec3(0), vec3(6 / (lamp * lamp))), {}};
+  s.materials[2].metallic = 0, s.materials[2].roughness = 0, s.materials[2].transmission = 1;
+  s.materials[2].thickness = 1;
+  test::add_box(s, {-2, 0, -2}, {2, 2.5f, 2});
+  test::add_quad(s, {-lamp, 2.45f, -lamp}, {2 * lamp, 0, 0}, {0, 0, 2 * lamp}, 1);
+  test::add_ball(s, {0.3f, 0.6f, 0}, 0.55f, 2);
+  scene::Camera front;
+  front.yfov = 1.1f, front.to_world[3] = vec4(0, 1.2f, 1.95f, 1);
+  s.cameras = {front};
+  s.environment.given = true;
+  return s;
+}
+
+struct MeanOf {
+  glm::dvec3 value{0}, noise{0};
+};
+/// Of a component over the whole picture; the noise from the two halves, which for photons hold rounds of
+/// their own, so that what neighbouring pixels share is seen in the difference of the halves' means.
+MeanOf picture_mean(const film::Image& image, int component) {
+  MeanOf m;
+  glm::dvec3 odd(0), squares(0);
+  const auto n = double(image.samples.size());
+  for (size_t i = 0; i < image.samples.size(); ++i) {
+    const glm::dvec3 all(image.components[size_t(component)][i]), half(image.odd_half[size_t(component)][i]);
+    m.value += all / n, odd += half / n;
+    squares += (all - half) * (all - half);
+  }
+  m.noise = glm::max(glm::abs(m.value - odd), glm::sqrt(squares) / n);
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("a beam of even light on a plane has the irradiance that it brings there") {
+  const test::Result r =
+      test::render(turned_sun(), {{"components.caustic", "photons"}, {"photons.per_round", "40000"}}, 16, 32);
+  const vec3 radiance = vec3(0.8f, 0.5f, 0.2f) * vec3(3, 4, 5) * vec3(0.9f, 0.8f, 0.7f) / k_pi;
+  for (uint32_t block = 0; block < 16; ++block) {
+    glm::dvec3 sum(0);
+    for (uint32_t k = 0; k < 64; ++k)
+      sum += glm::dvec3(r.image.components[3][size_t(block / 4 * 8 + k / 8) * 32 + block % 4 * 8 + k % 8]);
+    for (int c = 0; c < 3; ++c) CHECK(sum[c] / 64 == Approx(radiance[c]).epsilon(0.03));
+  }
+  const MeanOf all = picture_mean(r.image, 3);
+  for (int c = 0; c < 3; ++c) CHECK(all.value[c] == Approx(radiance[c]).epsilon(0.005));
+  // Paths from the eye never meet it.
+  const test::Result path = test::render(turned_sun(), {}, 16, 32);
+  CHECK(test::mean(path.image.components[3]) == 0);
+}
+
+TEST_CASE("flux is conserved in a closed room of one albedo") {
+  const vec3 albedo(0.5f, 0.25f, 0.75f);
+  for (const bool final_gather : {false, true}) {
+    test::Settings settings = k_all;
+    if (final_gather) settings["components.secondary"] = "path";
+    const test::Result r = test::render(closed_room(albedo), settings, 32, 32);
+    const MeanOf secondary = picture_mean(r.image, 1), tertiary = picture_mean(r.image, 2);
+    for (int c = 0; c < 3; ++c) {
+      INFO("channel " << c << ", final gather " << final_gather);
+      const double a = double(albedo[c]);
+      CHECK(secondary.value[c] == Approx(a * a).epsilon(0.01));
+      // Final gathering sees the dark rims of the map's edges: r / a room's width of its light.
+      CHECK(tertiary.value[c] == Approx(a * a * a / (1 - a)).epsilon(final_gather ? 0.03 : 0.01));
+    }
+    for (const vec3& v : r.image.components[3]) CHECK(v == vec3(0));
+  }
+}
+
+TEST_CASE("every choice of solvers makes the picture that path tracing makes") {
+  const scene::Scene room = glass_room();
+  const test::Result path =
+      test::render({.width = 64, .height = 64, .samples = 512, .settings = {{"seed", "5"}}}, &room);
+  for (int c = 0; c < 4; ++c) REQUIRE(test::mean(path.image.components[size_t(c)]) > 1e-3);
+  const std::vector<test::Settings> choices{
+      {{"components.caustic", "photons"}},
+      {{"components.secondary", "photons"}},
+      {{"components.tertiary", "photons"}},
+      {{"components.secondary", "photons"}, {"components.tertiary", "photons"}},
+      k_all,
+      with(k_all, {{"components.secondary", "path"}}),
+      {{"components.secondary", "cache"},
+       {"components.tertiary", "cache"},
+       {"components.caustic", "photons"}},
+      {{"components.secondary", "photons"},
+       {"components.tertiary", "cache"},
+       {"components.caustic", "photons"}},
+  };
+  for (size_t k = 0; k < choices.size(); ++k) {
+    const test::Result r = test::render(
+        {.width = 64, .height = 64, .samples = 48, .settings = with(choices[k], {{"seed", "9"}})}, &room);
+    CHECK(r.stats.dropped == 0);
+    for (int c = 0; c < 4; ++c) {
+      const std::string name = std::string("components.") + paths::k_component_names[size_t(c)];
+      const bool own = choices[k].contains(name);
+      const MeanOf truth = picture_mean(path.image, c), here = picture_mean(r.image, c);
+      INFO("choice " << k << ", " << name << ": " << here.value.y << " +- " << here.noise.y << ", path "
+                     << truth.value.y << " +- " << truth.noise.y);
+      // Blur moves light across edges and loses some of it there: 2 % of this room's.
+      CHECK(std::abs(here.value.y - truth.value.y) <
+            4.5 * std::hypot(here.noise.y, truth.noise.y) + (own ? 0.02 : 0.0) * truth.value.y);
+      CHECK(r.bias_known[size_t(c)] == !own);
+    }
+  }
+}
+
+TEST_CASE("solvers that photons do not touch make the same picture to the bit") {
+  const scene::Scene room = glass_room();
+  const test::Result path = test::render({.samples = 8}, &room);
+  const test::Result r = test::render({.samples = 8, .settings = {{"components.caustic", "photons"}}}, &room);
+  for (const size_t c : {0u, 1u, 2u}) CHECK(test::identical(path.image.components[c], r.image.components[c]));
+  CHECK_FALSE(test::identical(path.image.components[3], r.image.components[3]));
+}
+
+TEST_CASE("photons behind a wall of a millimetre change nothing") {
+  // Two rooms; the lamp is in the left one, the camera in the right one.
+  scene::Scene s;
+  s.name = "two rooms";
+  s.materials = {test::diffuse(vec3(0.8f))};
+  test::add_box(s, {-2, 0, -1}, {0, 2, 1});
+  test::add_box(s, {0.001f, 0, -1}, {2, 2, 1});
+  s.lights = {{.name = "lamp", .intensity = vec3(5), .position = {-0.3f, 1, 0}}};
+  scene::Camera camera;
+  camera.yfov = 1.2f;
+  camera.to_world =
+      mat4(vec4(0, 0, -1, 0), vec4(0, 1, 0, 0), vec4(1, 0, 0, 0), vec4(1.5f, 1, 0, 1));  // to -x
+  s.cameras = {camera};
+  s.environment.given = true;
+  const test::Result r = test::render(s, k_all, 4, 32);
+  for (const auto& component : r.image.components)
+    for (const vec3& v : component) REQUIRE(v == vec3(0));
+  // On the lamp's side the same wall is lit.
+  s.cameras[0].to_world[3] = vec4(-0.5f, 1, 0, 1);
+  const test::Result lit = test::render(s, k_all, 4, 32);
+  CHECK(test::mean(lit.image.components[1]) > 0.01);
+}
+
+TEST_CASE("the picture does not depend on batches or on a second run, and adaptive sampling gives the same") {
+  const scene::Scene room = glass_room();
+  const test::Render base{
+      .width = 40, .height = 36, .samples = 6, .settings = with(k_all, {{"photons.per_round", "100000"}})};
+  const test::Result a = test::render(base, &room), b = test::render(base, &room);
+  CHECK(test::identical(a.image, b.image));
+  test::Render large = base;
+  large.settings["path.batch"] = "200000";
+  CHECK(test::identical(a.image, test::render(large, &room).image));
+  test::Render adaptive = base;
+  adaptive.settings =
+      with(base.settings,
+           {{"sampling.mode", "adaptive"}, {"sampling.min_samples", "6"}, {"sampling.max_samples", "6"}});
+  CHECK(test::identical(a.image, test::render(adaptive, &room).image));
+  test::Render other = base;
+  other.settings["seed"] = "7";
+  CHECK_FALSE(test::identical(a.image, test::render(other, &room).image));
+}
+
+TEST_CASE("adaptive sampling of tiles that are apart reads each sample's own round") {
+  const scene::Scene room = glass_room();
+  session::Renderer r(test::renderer_options(false));
+  r.set_size(48, 48);
+  r.set_scene(std::make_shared<scene::Scene>(room));
+  const test::Settings settings = with(k_all, {{"sampling.mode", "adaptive"},
+                                               {"sampling.min_samples", "4"},
+                                               {"sampling.max_samples", "12"},
+                                               {"sampling.target_error", "0.4"}});
+  test::set(r, settings);
+  test::finish(r);
+  // Another target: tiles that were done go on, beside others that have more samples.
+  test::set(r, {{"sampling.target_error", "0.0001"}});
+  const film::Image image = test::finish(r);
+  const test::Result whole =
+      test::render({.width = 48, .height = 48, .samples = 12, .settings = k_all}, &room);
+  CHECK(test::identical(image, whole.image));
+}
+
+TEST_CASE("without anything that focuses light no photons are sent for caustics, and nothing is paid") {
+  const scene::Scene room = test::block_room();
+  const test::Result path = test::render(room, {}, 8, 32);
+  session::Renderer r(test::renderer_options());
+  r.set_size(32, 32);
+  r.set_scene(std::make_shared<scene::Scene>(room));
+  test::set(r, {{"components.caustic", "photons"}, {"samples", "8"}});
+  const film::Image image = test::finish(r);
+  for (const size_t c : {0u, 1u, 2u, 3u})
+    CHECK(test::identical(path.image.components[c], image.components[c]));
+  CHECK(r.figure("light paths") == 0);
+  CHECK(r.stats().rays <= path.stats.rays);
+}
+
+TEST_CASE("no lamp, a lamp in a closed shell, few photons and absurd radii have clear outcomes") {
+  scene::Scene dark = glass_room();
+  dark.materials[1].emission = vec3(0);
+  const test::Result none = test::render(dark, k_all, 2, 16);
+  for (const auto& component : none.image.components)
+    for (const vec3& v : component) REQUIRE(v == vec3(0));
+  // Its lamp is outside of the room.
+  scene::Scene shut = dark;
+  shut.lights = {{.name = "lamp", .intensity = vec3(5), .position = {5, 1, 0}}};
+  const test::Result outside = test::render(shut, k_all, 2, 16);
+  for (const auto& component : outside.image.components)
+    for (const vec3& v : component) REQUIRE(v == vec3(0));
+  const scene::Scene room = glass_room();
+  for (const auto& [paths, radius, least] :
+       {std::array{"1", "3", "0.75"}, {"100", "1000", "1000"}, {"0", "1000", "0"}, {"20000", "0.1", "0"}}) {
+    const test::Result r = test::render(
+        room,
+        with(k_all, {{"photons.per_round", paths}, {"photons.radius", radius}, {"photons.floor", least}}), 4,
+        16);
+    INFO(paths << " paths, " << radius << " pixels");
+    for (const auto& component : r.image.components)
+      for (const vec3& v : component)
+        REQUIRE((std::isfinite(v.x + v.y + v.z) && std::min({v.x, v.y, v.z}) >= 0));
+  }
+}
+
+TEST_CASE("very many photons in one place are looked at in part, and their light stays the same") {
+  // All of a narrow beam falls on a few pixels.
+  scene::Scene s = turned_sun();
+  s.lights[0].kind = scene::LightKind::spot;
+  s.lights[0].position = {-3, 2, 0}, s.lights[0].inner_cone = 0.01f, s.lights[0].outer_cone = 0.012f;
+  s.lights[0].intensity = vec3(1000);
+  const auto sum = [&](const char* paths) {
+    const test::Result r = test::render(
+        s, {{"components.caustic", "photons"}, {"photons.per_round", paths}, {"photons.radius", "8"}}, 4, 32);
+    return test::mean(r.image.components[3]);
+  };
+  const double few = sum("8000"), many = sum("400000");
+  CHECK(few > 0);
+  CHECK(many == Approx(few).epsilon(0.01));
+}
+
+TEST_CASE("photons are drawn over the picture, and told of") {
+  session::Renderer r(test::renderer_options());
+  r.set_size(32, 32);
+  r.set_scene(std::make_shared<scene::Scene>(glass_room()));
+  test::set(r, with(k_all, {{"samples", "2"}}));
+  test::finish(r);
+  const std::vector<uint8_t> plain = r.picture(false);
+  for (const char* by : {"flux", "bounce"}) {
+    test::set(r, {{"overlay.photons", by}});
+    const std::vector<uint8_t> shown = r.picture(false);
+    CHECK(shown != plain);
+  }
+  const auto reports = r.reports();
+  REQUIRE(reports.size() == 1);
+  CHECK(reports[0]->solver == "photons");
+  CHECK(reports[0]->figure("rounds") == 2);
+  CHECK(reports[0]->figure("photons") > 1000);
+  CHECK(reports[0]->figure("radius pixels") == Approx(3 * std::sqrt((1 + 0.6667) / 2)));
+  CHECK(reports[0]->legends.size() == 1);
+  CHECK(r.solver_statistics().at("photons").at("rounds") == 2);
+  CHECK(r.samples() == 2);
+}

@@ -1,0 +1,338 @@
+// links: transport
+// Where light paths begin (shaders/lib/emission.glsl), of every kind of light: how much flux they carry,
+// whence and whither, and how often each light is chosen.
+#include <fmt/format.h>
+#include <bit>
+#include <catch2/catch.hpp>
+
+#include "gpu/stream.h"
+#include "kernels/statistics_support.h"
+#include "shaders/shared/transport.h"
+#include "transport/light_source.h"
+#include "upload/device_scene.h"
+
+using namespace lucerna;
+using namespace lucerna::test;
+
+namespace {
+
+constexpr double k_pi_d = 3.14159265358979323846;
+
+struct Beginning {
+  vec3 origin;
+  float pmf;
+  vec3 direction;
+  float pdf_place;
+  vec3 flux;
+  float pdf_direction;
+  uint32_t light;
+};
+
+gpu::Device& device() {
+  static gpu::Device instance({"", true});
+  return instance;
+}
+
+struct Emitted {
+  upload::FlatScene flat;
+  transport::LightSource source;
+  std::vector<Beginning> paths;
+
+  explicit Emitted(const scene::Scene& scene, uint32_t count = 1 << 16, float sun_threshold = 0)
+      : flat(upload::flatten(scene, sun_threshold)),
+        source(device(), flat, flat.scene_centre, flat.scene_radius) {
+    static gpu::ShaderCompiler compiler;
+    const upload::DeviceScene on_device(device(), flat, {});
+    shared::Frame frame{};
+    frame.seed = 3;
+    frame.light_count = uint32_t(flat.lights.size() / shared::k_light_texels);
+    frame.environment_radiance = flat.environment_radiance;
+    frame.environment_width = flat.environment_width;
+    frame.environment_height = flat.environment_height;
+    frame.environment_rotation = flat.environment_rotation;
+    frame.environment_light_pmf = flat.environment_light_pmf;
+    gpu::Buffer frames(device(), {"frame", sizeof frame});
+    frames.write(&frame, sizeof frame);
+    const gpu::Kernel kernel(device(), compiler,
+                             std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/emission_probe.comp",
+                             on_device.defines());
+    const gpu::Buffer results(device(), {"beginnings", count * sizeof(Beginning)});
+    gpu::Resources resources;
+    on_device.bind(resources);
+    source.bind(resources);
+    resources.set("FrameBlock", frames);
+    resources.set("Beginnings", results);
+    struct {
+      uint32_t count, round;
+    } push{count, 7};
+    gpu::Stream stream(device());
+    stream.dispatch(kernel, resources, push, gpu::groups_for(count, 64));
+    stream.run();
+    paths = results.read_all<Beginning>();
+  }
+};
+
+/// A square floor of 2 m, so that a scene has a size; light falls on it from above.
+scene::Scene floor() {
+  scene::Scene s;
+  s.materials.resize(1);
+  scene::Primitive p;
+  p.positions = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}};
+  p.normals.assign(4, vec3(0, 1, 0));
+  p.uv0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  p.triangles = {{0, 2, 1}, {0, 3, 2}};
+  s.meshes = {{"floor", {p}}};
+  s.instances = {{"floor", 0, mat4(1), false}};
+  s.environment.given = true;
+  return s;
+}
+scene::Light lamp(scene::LightKind kind, const vec3& intensity) {
+  scene::Light l;
+  l.kind = kind, l.intensity = intensity;
+  l.position = {0.2f, 3, -0.1f};
+  l.direction = glm::normalize(vec3(0.3f, -0.8f, 0.2f));
+  return l;
+}
+
+void check_all(const Emitted& e, const vec3& flux, double tolerance = 1e-5) {
+  size_t off = 0;
+  for (const Beginning& b : e.paths)
+    for (int c = 0; c < 3; ++c) off += !(std::abs(b.flux[c] / flux[c] - 1) < tolerance);
+  INFO("first " << e.paths[0].flux.x << " of " << flux.x);
+  CHECK(off == 0);
+}
+vec3 mean_flux(const Emitted& e) {
+  glm::dvec3 sum(0);
+  for (const Beginning& b : e.paths) sum += glm::dvec3(b.flux);
+  return sum / double(e.paths.size());
+}
+/// Counts in cells of u, v in 0..1, where all are equally likely.
+double even_tail(const std::vector<vec2>& places, int side = 16) {
+  std::vector<double> observed(size_t(side * side), 0.0);
+  for (const vec2& p : places)
+    observed[size_t(std::clamp(int(p.x * float(side)), 0, side - 1) * side +
+                    std::clamp(int(p.y * float(side)), 0, side - 1))] += 1;
+  const std::vector<double> expected(observed.size(), double(places.size()) / double(observed.size()));
+  return chi_square(observed, expected).p;
+}
+/// Azimuth about an axis, 0..1.
+float turn(const vec3& d, const vec3& axis) {
+  const vec3 t = glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.9f ? vec3(1, 0, 0) : vec3(0, 1, 0)));
+  const float phi = std::atan2(glm::dot(d, glm::cross(axis, t)), glm::dot(d, t));
+  return phi / float(2 * k_pi_d) + 0.5f;
+}
+
+}  // namespace
+
+TEST_CASE("a point sends 4 pi times its intensity, each path the same, evenly in all directions") {
+  scene::Scene s = floor();
+  s.lights = {lamp(scene::LightKind::point, {3, 2, 1})};
+  const Emitted e(s);
+  check_all(e, vec3(float(4 * k_pi_d)) * vec3(3, 2, 1));
+  std::vector<vec2> sphere;
+  for (const Beginning& b : e.paths) {
+    CHECK(b.origin == s.lights[0].position);
+    sphere.emplace_back(0.5f * b.direction.z + 0.5f, turn(b.direction, {0, 0, 1}));
+  }
+  CHECK(even_tail(sphere) > 1e-4);
+}
+
+TEST_CASE(
+    "a spot sends the integral of its intensity, each path the same to 1e-3, and as its intensity says") {
+  struct Cones {
+    float inner, outer;
+  };
+  for (const Cones cones :
+       {Cones{0.2f, 0.6f}, {0.f, 0.4f}, {0.5f, 0.5001f}, {0.3f, 1.5f}, {0.002f, 0.004f}}) {
+    scene::Scene s = floor();
+    s.lights = {lamp(scene::LightKind::spot, {3, 2, 1})};
+    s.lights[0].inner_cone = cones.inner, s.lights[0].outer_cone = cones.outer;
+    const Emitted e(s);
+    // By quadrature of what sample_light makes of the cones, in their cosines as floats.
+    const double inner = std::cos(cones.inner), outer = std::cos(cones.outer);
+    constexpr int k_steps = 200000, k_rings = 24;
+    const double width = std::max(double(float(inner) - float(outer)), 1e-4), low = double(float(outer));
+    const auto fade = [&](double c) { return std::pow(std::clamp((c - low) / width, 0.0, 1.0), 2); };
+    double angle = 0;
+    std::vector<double> rings(k_rings, 0.0);
+    for (int i = 0; i < k_steps; ++i) {
+      const double c = low + (1 - low) * (i + 0.5) / k_steps;
+      const double part = 2 * k_pi_d * fade(c) * (1 - low) / k_steps;
+      angle += part, rings[size_t(i) * k_rings / k_steps] += part;
+    }
+    INFO("cones " << cones.inner << " " << cones.outer);
+    check_all(e, vec3(float(angle)) * vec3(3, 2, 1), 1e-3);
+    CHECK(e.source.power() == Approx(angle * double(luminance(vec3(3, 2, 1)))).epsilon(1e-3));
+    if (cones.inner < 0.01f && cones.outer < 0.01f) continue;  // cosines of so narrow a cone have few digits
+    std::vector<double> observed(k_rings, 0.0);
+    std::vector<vec2> around;
+    size_t outside = 0;
+    for (const Beginning& b : e.paths) {
+      const double c = glm::dot(glm::dvec3(b.direction), glm::dvec3(s.lights[0].direction));
+      outside += c < low - 1e-6;
+      observed[size_t(std::clamp(int((c - low) / (1 - low) * k_rings), 0, k_rings - 1))] += 1;
+      around.emplace_back(turn(b.direction, s.lights[0].direction), 0.5f);
+    }
+    CHECK(outside == 0);
+    for (double& r : rings) r *= double(e.paths.size()) / angle;
+    CHECK(chi_square(observed, rings).p > 1e-4);
+    CHECK(even_tail(around, 1) > 1e-4);
+  }
+}
+
+TEST_CASE("a sun sends its irradiance through a disk that hides the whole scene") {
+  scene::Scene s = floor();
+  s.lights = {lamp(scene::LightKind::directional, {3, 2, 1})};
+  const Emitted e(s);
+  const double radius = double(e.flat.scene_radius);
+  CHECK(radius == Approx(std::sqrt(2.0)));
+  check_all(e, vec3(float(k_pi_d * radius * radius)) * vec3(3, 2, 1), 1e-3);
+  std::vector<vec2> disk;
+  for (const Beginning& b : e.paths) {
+    REQUIRE(b.direction == s.lights[0].direction);
+    const vec3 off = b.origin - e.flat.scene_centre;
+    REQUIRE(glm::dot(off, b.direction) == Approx(-radius).epsilon(1e-3));  // before all surfaces
+    const vec3 across = off - glm::dot(off, b.direction) * b.direction;
+    disk.emplace_back(glm::dot(across, across) / (radius * radius), turn(across, b.direction));
+  }
+  CHECK(even_tail(disk) > 1e-4);
+  // So many come through the floor as its projected area says.
+  double through = 0;
+  for (const Beginning& b : e.paths) {
+    const vec3 at = b.origin - b.direction * (b.origin.y / b.direction.y);
+    through += std::abs(at.x) <= 1 && std::abs(at.z) <= 1;
+  }
+  const double share = 4 * std::abs(double(s.lights[0].direction.y)) / (k_pi_d * radius * radius);
+  CHECK(through / double(e.paths.size()) == Approx(share).epsilon(0.01));
+}
+
+TEST_CASE(
+    "a shining triangle sends pi times radiance times area, by the cosine, from its front or both sides") {
+  for (const bool both : {false, true}) {
+    scene::Scene s = floor();
+    s.materials[0].emission = {5, 3, 2};
+    s.materials[0].double_sided = both;
+    const Emitted e(s);
+    check_all(e, vec3(float(4 * k_pi_d * (both ? 2 : 1))) * vec3(5, 3, 2));
+    std::vector<vec2> places, directions;
+    double below = 0;
+    for (const Beginning& b : e.paths) {
+      REQUIRE(std::abs(b.origin.y) < 1e-4f);
+      places.emplace_back(0.5f * b.origin.x + 0.5f, 0.5f * b.origin.z + 0.5f);
+      directions.emplace_back(b.direction.y * b.direction.y, turn(b.direction, {0, 1, 0}));
+      below += b.direction.y < 0;
+      REQUIRE(b.origin.y * b.direction.y > 0);  // moved off the side that it leaves
+      const float cosine = std::abs(b.direction.y);
+      REQUIRE(b.pdf_direction == Approx(cosine / k_pi_d).epsilon(1e-3).margin(1e-4));
+      REQUIRE(b.pdf_place == Approx(both ? 0.25 : 0.5).epsilon(1e-4));  // each triangle has half of the area
+    }
+    CHECK(even_tail(places) > 1e-4);
+    CHECK(even_tail(directions) > 1e-4);
+    CHECK(below == Approx(both ? 0.5 * double(e.paths.size()) : 0).epsilon(0.02));
+  }
+}
+
+TEST_CASE("a texture of emission is sent from where it is bright") {
+  scene::Scene s = floor();
+  s.materials[0].emission = {2, 2, 2};
+  scene::Image image;
+  image.name = "halves", image.width = 2, image.height = 1;
+  image.bytes = {255, 255, 255, 255, 0, 0, 0, 255};
+  s.images = {image};
+  s.textures = {{.image = 0, .wrap_u = scene::Wrap::clamp, .nearest = true, .srgb = true}};
+  s.materials[0].emission_texture.texture = 0;
+  const Emitted e(s, 1 << 17);
+  // Half of the floor shines.
+  CHECK(mean_flux(e).x == Approx(2 * k_pi_d * 2).epsilon(5e-3));
+  size_t wrong = 0;
+  for (const Beginning& b : e.paths)
+    if (std::abs(b.origin.x) > 1e-3f) wrong += (b.flux.x > 0) != (b.origin.x < 0);
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("an environment sends what comes through the scene's disk from each direction") {
+  constexpr uint32_t k_width = 16, k_height = 8;
+  for (const float threshold : {0.f, 20.f}) {
+    scene::Scene s = floor();
+    scene::Image image;
+    image.name = "sky", image.width = k_width, image.height = k_height;
+    for (uint32_t y = 0; y < k_height; ++y)
+      for (uint32_t x = 0; x < k_width; ++x) {
+        const float value = y == 2 && x == 5 ? 200.f : y > 5 ? 0 : 0.5f + 0.1f * float(x);
+        image.floats.insert(image.floats.end(), {value, 0.5f * value, 0.25f * value, 1});
+      }
+    s.images = {image};
+    s.environment.image = 0, s.environment.rotation = 40, s.environment.scale = 2;
+    s.lights = {lamp(scene::LightKind::point, {3, 2, 1})};
+    const Emitted e(s, 1 << 18, threshold);
+    CHECK(e.flat.effects.sky_apart == (threshold > 0));
+    CHECK(e.flat.effects.sun == (threshold > 0));
+    // Integral of the map as it is read, bilinear, over all directions.
+    constexpr int k_fine = 16;
+    double integral = 0;
+    for (uint32_t y = 0; y < k_height * k_fine; ++y)
+      for (uint32_t x = 0; x < k_width * k_fine; ++x) {
+        const double v = (y + 0.5) / k_fine - 0.5, u = (x + 0.5) / k_fine - 0.5;
+        const int y0 = int(std::floor(v)), x0 = int(std::floor(u));
+        const double fv = v - y0, fu = u - x0;
+        const auto at = [&](int row, int column) {
+          const auto r = size_t(std::clamp(row, 0, int(k_height) - 1)),
+                     c = size_t((column + int(k_width)) % int(k_width));
+          return double(image.floats[4 * (r * k_width + c)]);
+        };
+        const double value = (1 - fv) * ((1 - fu) * at(y0, x0) + fu * at(y0, x0 + 1)) +
+                             fv * ((1 - fu) * at(y0 + 1, x0) + fu * at(y0 + 1, x0 + 1));
+        const double theta = k_pi_d * (y + 0.5) / (k_height * k_fine);
+        integral += value * std::sin(theta) * k_pi_d / (k_height * k_fine) * 2 * k_pi_d / (k_width * k_fine);
+      }
+    const double disk = k_pi_d * std::pow(double(e.source.table().radius), 2);
+    test::Mean red;
+    for (const Beginning& b : e.paths) {
+      const bool point = b.light == 0;
+      red.add(point ? 0 : double(b.flux.x));
+      if (point) REQUIRE(b.flux.x == Approx(e.paths[0].light == 0 ? e.paths[0].flux.x : b.flux.x));
+    }
+    INFO("threshold " << threshold << ": " << red.value() << " +- " << red.error() << " of "
+                      << 2 * integral * disk);
+    // Draws are stratified, so that their error is less than that of independent ones.
+    CHECK(std::abs(red.value() - 2 * integral * disk) < 4 * red.error() + 2e-3 * red.value());
+    // Flux over densities is the radiance that the direction has, of either emitter.
+    for (size_t i = 0; i < 1000; ++i) {
+      const Beginning& b = e.paths[i];
+      if (b.light == 0) continue;
+      const double radiance =
+          double(b.flux.x) * double(b.pmf) * double(b.pdf_place) * double(b.pdf_direction);
+      CHECK(radiance <= 2 * 200 * 1.001);
+    }
+  }
+}
+
+TEST_CASE("lights are chosen by their power, so that paths of all carry as much") {
+  scene::Scene s = floor();
+  s.materials[0].emission = {5, 3, 2};
+  s.lights = {lamp(scene::LightKind::point, {3, 2, 1}), lamp(scene::LightKind::spot, {300, 200, 900}),
+              lamp(scene::LightKind::directional, {1, 1, 1}), lamp(scene::LightKind::point, {1e-6f, 0, 0})};
+  s.lights[1].inner_cone = 0.1f, s.lights[1].outer_cone = 0.3f;
+  s.lights.push_back(lamp(scene::LightKind::point, {100, 100, 100}));
+  s.lights.back().enabled = false;
+  const Emitted e(s);
+  const auto power = float(e.source.power());
+  std::vector<double> observed(6, 0.0), expected(6, 0.0);
+  for (const Beginning& b : e.paths) {
+    REQUIRE(luminance(b.flux) == Approx(power).epsilon(1e-3));
+    REQUIRE(b.light < 6);
+    observed[b.light] += 1, expected[b.light] = double(b.pmf) * double(e.paths.size());
+  }
+  CHECK(expected[0] + expected[1] > 0);  // the floor's triangles
+  const double floor_power = 4 * k_pi_d * double(luminance(vec3(5, 3, 2)));
+  CHECK((observed[0] + observed[1]) / double(e.paths.size()) ==
+        Approx(floor_power / e.source.power()).epsilon(0.01));
+  for (size_t i = 0; i < 6; ++i) CHECK(std::abs(observed[i] - expected[i]) < 5 * std::sqrt(expected[i] + 1));
+}
+
+TEST_CASE("where nothing shines nothing is sent") {
+  const upload::FlatScene flat = upload::flatten(floor());
+  const transport::LightSource none(device(), flat, flat.scene_centre, flat.scene_radius);
+  CHECK(none.power() == 0);
+  CHECK(none.table().count == 0);
+}
