@@ -41,7 +41,7 @@ std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& 
 
 const solvers::SolverType& type() {
   static const solvers::SolverType all{
-      .info = photons::info(), .make = make, .least_slots = PhotonMap::k_batch, .sun_threshold = nullptr};
+      .info = photons::info(), .make = make, .least_slots = 0, .sun_threshold = nullptr};
   return all;
 }
 
