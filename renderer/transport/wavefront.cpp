@@ -303,7 +303,6 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
         w.stream.dispatch(*ends.vertex, own[parity], push, Impl::groups(active), ends.vertex_stage);
       else
         w.stream.dispatch(w.shade, w.main[parity], push, Impl::groups(active), "shade");
-      if (ends.after_vertex) ends.after_vertex();
     } else {
       w.stream.fill(w.counters, 0, 0, 12);
     }

@@ -55,7 +55,6 @@ struct PathEnds {
   const gpu::Kernel* vertex = nullptr;
   std::string vertex_stage = {};
   std::function<void(gpu::Resources&)> bind_vertex = {};  ///< what it reads besides the paths
-  std::function<void()> after_vertex = {};  ///< records what follows a vertex of all paths; may be empty
 };
 
 class Wavefront {

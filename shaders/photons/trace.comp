@@ -4,8 +4,8 @@
 #include "lib/emission.glsl"
 #include "photons/photon.glsl"
 
-layout(scalar) writeonly buffer PhotonPending { Photon photon_pending[]; };  // one a slot
-layout(scalar) writeonly buffer PhotonFlags { uint photon_flags[]; };        // whether it is there
+layout(scalar) writeonly buffer PhotonList { Photon photon_list[]; };  // in the order in which they come ...
+layout(scalar) writeonly buffer PhotonIds { uint photon_ids[]; };      // ... and the one in which they will be
 layout(scalar) buffer PhotonCounts { uint photon_counts[]; };
 
 void main() {
@@ -34,9 +34,12 @@ void main() {
     p.position = v.surface.position;
     p.direction = photon_pack_direction(-ray.direction);
     p.flux = v.arriving;
-    p.bits = facet_pack(v.surface.normal_g) | part << k_photon_part_shift | min(depth - 1u, 255u) << k_photon_events_shift;
-    photon_pending[slot] = p;
-    photon_flags[slot] = 1u;
+    p.bits = facet_pack(v.surface.normal_g) | part << k_photon_part_shift | (depth - 1u) << k_photon_events_shift;
+    uint at = atomicAdd(photon_counts[k_photons_stored], 1u);
+    if (at < photon_counts[k_photons_capacity]) {
+      photon_list[at] = p;
+      photon_ids[at] = path.pixel << k_photon_id_events | (depth & k_photon_most_events);
+    }
   }
-  light_continue(slot, v, path, ray, path.travelled + hit.t, random);
+  light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_photon_most_events - 1u), random);
 }

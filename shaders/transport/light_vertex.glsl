@@ -60,9 +60,9 @@ LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random)
   return v;
 }
 
-// Goes on by an event, or straight on; puts the next ray into the queue. Roulette keeps the flux of those that go on as near
+// Goes on by an event, of which there are no more than `most_events`, or straight on; puts the next ray into the queue. Roulette keeps the flux of those that go on as near
 // to what it was as their colour allows (J. Arvo and D. Kirk 1990).
-void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float travelled, Sampler random) {
+void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float travelled, uint most_events, Sampler random) {
   uint depth = path_depth(path);
   vec3 direction = ray.direction;
   bool go_on = false;
@@ -71,7 +71,7 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     path.travelled = travelled;
     ++path.nulls;
   } else if (v.lit) {
-    bool ends = depth > frame.max_depth;
+    bool ends = depth > most_events;
     if (ends) atomicAdd(counters[k_counter_depth], 1u);
     vec2 u = sample_vertex(random, depth, k_pad_direction);
     BsdfSample b = bsdf_sample(v.bsdf, v.wo, u, sample_vertex(random, depth, k_pad_lobe));

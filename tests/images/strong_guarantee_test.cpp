@@ -167,13 +167,15 @@ TEST_CASE("shaders that do not compile leave the kernels in use") {
       std::ofstream(file) << text << "\nvoid broken() { nonsense; }\n";
       const auto scene = r.scene();
       CHECK_THROWS_WITH(r.reload_shaders(), Catch::Contains("nonsense"));
-      // Edits that need new kernels are refused too, and change nothing.
-      scene::Material m = scene->materials[0];
-      m.metallic = 1, m.roughness = 0.3f, m.emission = vec3(0.1f);
-      CHECK_THROWS_WITH(r.set_material(0, m), Catch::Contains("nonsense"));
-      CHECK(r.scene() == scene);
-      CHECK_THROWS(test::set(r, {{"cache.metric", "split-sphere"}}));
-      CHECK(r.settings().text("cache.metric") == "hessian");
+      // Edits that need new kernels are refused too, and change nothing; those of the film no edit needs.
+      if (!std::string_view(broken).starts_with("film/")) {
+        scene::Material m = scene->materials[0];
+        m.metallic = 1, m.roughness = 0.3f, m.emission = vec3(0.1f);
+        CHECK_THROWS_WITH(r.set_material(0, m), Catch::Contains("nonsense"));
+        CHECK(r.scene() == scene);
+        CHECK_THROWS(test::set(r, {{"cache.metric", "split-sphere"}}));
+        CHECK(r.settings().text("cache.metric") == "hessian");
+      }
       std::ofstream(file) << text;
     }
     return test::finish(r);

@@ -73,7 +73,7 @@ std::vector<SharedStruct> structs() {
       SHARED("photons/photons.h", PhotonFrame, eye, slope, base, least, most, count, mask, round, pad0, pad1,
              component),
       SHARED("photons/photons.h", PhotonEmitPush, count, first, round, share),
-      SHARED("photons/photons.h", PhotonListPush, count, capacity),
+      SHARED("photons/photons.h", PhotonListPush, count),
       SHARED("photons/photons.h", PhotonPointsPush, count, step, by, pad0),
       SHARED("sight.h", SeePush, first, count, across, down, stride),
       SHARED("irradiance_cache/discontinuity.h", LitPush, count),

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 
 namespace lucerna::photons {
 
@@ -26,15 +25,9 @@ PhotonMap::PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const g
       automaton_(paths::reverse(automaton)),
       emit_(device, compiler, "photons/emit.comp", scene_defines),
       trace_(device, compiler, "photons/trace.comp", scene_defines),
-      append_(device, compiler, "photons/append.comp"),
-      advance_(device, compiler, "photons/advance.comp"),
       keys_(device, compiler, "photons/keys.comp"),
       arrange_(device, compiler, "photons/arrange.comp"),
-      prefix_sum_(device, compiler),
-      radix_sort_(device, compiler, sort::Keys::bits32),
-      pending_(device, {.name = "photons of a bounce", .bytes = k_batch * sizeof(Photon)}),
-      flags_(texels(device, "photon flags", k_batch * 4)),
-      places_(texels(device, "photon places", k_batch * 4)),
+      radix_sort_(device, compiler, sort::Keys::bits64),
       counts_(device, {.name = "photon counts", .bytes = 4 * k_photon_counts, .memory = gpu::Memory::host}),
       map_(texels(device, "photons", sizeof(Photon))),
       table_(texels(device, "table of photons", 8 * k_least_entries)),
@@ -61,7 +54,7 @@ void PhotonMap::write_lookup() { block_.write(&lookup_, sizeof lookup_); }
 
 uint64_t PhotonMap::bytes() const {
   uint64_t sum = 0;
-  for (const gpu::Buffer* b : {&pending_, &flags_, &places_, &list_, &pairs_, &scratch_, &map_, &table_})
+  for (const gpu::Buffer* b : {&list_, &ids_, &entries_, &scratch_, &map_, &table_})
     sum += *b ? b->bytes() : 0;
   return sum;
 }
@@ -83,7 +76,7 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
     traced_ = stored_ = 0;
   }
   if (lights.power() > 0 && traced_ < round.paths) {
-    const uint32_t count = std::min(k_batch, round.paths - traced_);
+    const uint32_t count = std::min(wavefront.slots(), round.paths - traced_);
     wavefront.set_frame(light_frame(round, picture), 1);
     const auto back = [&] { wavefront.set_frame(picture, enabled); };
     try {
@@ -105,37 +98,27 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
 
 bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
                             const Round& round, uint32_t count, const std::function<bool()>& cancel) {
-  assert(wavefront.slots() >= k_batch);
   gpu::Stream& stream = wavefront.stream();
   if (!list_) grow(wavefront, k_first_capacity);
-  const uint32_t groups = gpu::groups_for(count, 64);
   const auto bind = [&](gpu::Resources& r) {
     lights.bind(r);
-    bind_round(r);
+    bind_list(r);
   };
   for (;;) {
     uint32_t counts[k_photon_counts] = {};
-    counts[k_photons_stored] = stored_;
+    counts[k_photons_stored] = stored_, counts[k_photons_capacity] = capacity_;
     counts_.write(counts, sizeof counts);
     gpu::Resources emitting;
     wavefront.bind_paths(emitting);
     bind(emitting);
-    bind_round(resources_);
     transport::PathEnds ends;
     ends.begin = [&] {
-      stream.fill(flags_, 0);
       const PhotonEmitPush push{count, traced_, round.number, 1 / float(round.paths)};
-      stream.dispatch(emit_, emitting, push, groups, "photon emission");
+      stream.dispatch(emit_, emitting, push, gpu::groups_for(count, 64), "photon emission");
     };
     ends.vertex = &trace_;
     ends.vertex_stage = "photon vertex";
     ends.bind_vertex = bind;
-    ends.after_vertex = [&] {
-      prefix_sum_.encode(stream, flags_, places_, {.most = count}, &counts_, 4 * k_photons_added,
-                         "photon list");
-      stream.dispatch(append_, resources_, PhotonListPush{count, capacity_}, groups, "photon list");
-      stream.dispatch(advance_, resources_, nullptr, 0, 1, "photon list");
-    };
     if (!wavefront.run(count, ends, cancel)) return false;
     counts_.read(counts, sizeof counts);
     if (counts[k_photons_stored] <= capacity_) {
@@ -148,13 +131,11 @@ bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::Li
   }
 }
 
-void PhotonMap::bind_round(gpu::Resources& r) const {
-  r.set("PhotonPending", pending_);
-  r.set("PhotonFlags", flags_);
-  r.set("PhotonPlaces", places_);
+void PhotonMap::bind_list(gpu::Resources& r) const {
   r.set("PhotonCounts", counts_);
   r.set("PhotonList", list_);
   r.set("photon_list_texels", list_);
+  r.set("PhotonIds", ids_);
 }
 
 void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
@@ -168,11 +149,13 @@ void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
         most);
   const auto capacity = uint32_t(std::min<uint64_t>(most, std::bit_ceil(needed)));
   gpu::Buffer list = texels(device_, "photons of a round", uint64_t{capacity} * sizeof(Photon));
+  gpu::Buffer ids = texels(device_, "numbers of photons", uint64_t{capacity} * 4);
   if (stored_ > 0) {
     wavefront.stream().copy(list_, list, uint64_t{stored_} * sizeof(Photon));
+    wavefront.stream().copy(ids_, ids, uint64_t{stored_} * 4);
     wavefront.account_stages();
   }
-  list_ = std::move(list);
+  list_ = std::move(list), ids_ = std::move(ids);
   capacity_ = capacity;
 }
 
@@ -193,23 +176,23 @@ void PhotonMap::build(transport::Wavefront& wavefront, const Round& round) {
   };
   room(table_, "table of photons", uint64_t{8} * entries);
   room(map_, "photons", uint64_t{stored_} * sizeof(Photon));
-  room(pairs_, "photon keys", uint64_t{8} * std::max(stored_, 2u));
-  room(scratch_, "photon keys", uint64_t{8} * std::max(stored_, 2u));
+  room(entries_, "keys of photons", uint64_t{16} * stored_);
+  room(scratch_, "keys of photons", uint64_t{16} * stored_);
   write_lookup();
   stream.fill(table_, 0);
   if (stored_ > 0) {
     gpu::Resources r;
-    bind_round(r);
+    bind_list(r);
     bind(r);
-    r.set("PhotonPairs", pairs_);
+    r.set("PhotonKeys", entries_);
     r.set("PhotonMap", map_);
     r.set("PhotonTable", table_);
-    const PhotonListPush push{stored_, capacity_};
+    const PhotonListPush push{stored_};
     const uint32_t groups = gpu::groups_for(stored_, 64);
     stream.dispatch(keys_, r, push, groups, "photon map");
-    const gpu::Buffer& sorted = radix_sort_.encode(stream, pairs_, scratch_, {.most = stored_},
-                                                   uint32_t(std::bit_width(entries - 1)), "photon map");
-    r.set("PhotonSorted", sorted);
+    const gpu::Buffer& sorted = radix_sort_.encode(stream, entries_, scratch_, {.most = stored_},
+                                                   32 + uint32_t(std::bit_width(entries - 1)), "photon map");
+    r.set("photon_sorted", sorted);
     stream.dispatch(arrange_, r, push, groups, "photon map");
     wavefront.account_stages();
   }

@@ -2,9 +2,9 @@
 // The photons of one round: traced in batches, stored in an order of their own, found by cells
 // (shaders/shared/photons/photons.h).
 //
-// Bit-identical, however threads run and however many paths are in flight: a batch is of k_batch paths, its
-// photons are stored bounce by bounce in the order of the paths' numbers, and the sort that puts them into
-// their cells keeps that order.
+// Bit-identical, however threads run and however many paths are in flight: photons are stored in whatever
+// order they come, and the sort that puts them into their cells also puts those of one cell into the order of
+// their paths' numbers.
 #include <functional>
 
 #include "paths/light_paths.h"
@@ -35,8 +35,6 @@ struct RoundFigures {
 
 class PhotonMap {
  public:
-  static constexpr uint32_t k_batch = 65536;  ///< paths at once; the wavefront has at least as many slots
-
   /// `scene_defines`: of the kernels that know the scene. Throws Error: a kernel does not compile (located),
   /// no memory.
   PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
@@ -49,8 +47,8 @@ class PhotonMap {
   /// The next round is to begin anew.
   void restart() { tracing_ = false; }
 
-  /// One batch of the round, which begins with the first; with the last the round is complete. The
-  /// wavefront's frame is then `picture`, of `enabled` components, again. False when it was cancelled: it
+  /// One batch of the round, as many paths as the wavefront has slots; with the last the round is complete.
+  /// The wavefront's frame is then `picture`, of `enabled` components, again. False when it was cancelled: it
   /// will be done again. Throws Error: more photons than the device can hold.
   bool trace(transport::Wavefront& wavefront, const transport::LightSource& lights, const Round& round,
              const shared::Frame& picture, uint32_t enabled, const std::function<bool()>& cancel);
@@ -67,18 +65,16 @@ class PhotonMap {
   shared::Frame light_frame(const Round& round, const shared::Frame& picture) const;
   bool trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights, const Round& round,
                    uint32_t count, const std::function<bool()>& cancel);
-  void bind_round(gpu::Resources& resources) const;  ///< what stores photons
+  void bind_list(gpu::Resources& resources) const;  ///< what stores photons
   void grow(transport::Wavefront& wavefront, uint32_t needed);
   void build(transport::Wavefront& wavefront, const Round& round);
   void write_lookup();
 
   gpu::Device& device_;
   paths::LightAutomaton automaton_;
-  gpu::Kernel emit_, trace_, append_, advance_, keys_, arrange_;
-  sort::PrefixSum prefix_sum_;
+  gpu::Kernel emit_, trace_, keys_, arrange_;
   sort::RadixSort radix_sort_;
-  gpu::Buffer pending_, flags_, places_, counts_, list_, pairs_, scratch_, map_, table_, block_;
-  gpu::Resources resources_;
+  gpu::Buffer counts_, list_, ids_, entries_, scratch_, map_, table_, block_;
   shared::PhotonFrame lookup_{};
   RoundFigures figures_, next_;  ///< of the last complete round, of the one under way
   bool tracing_ = false, complete_ = false;

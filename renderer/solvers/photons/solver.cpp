@@ -46,11 +46,8 @@ std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& 
 }  // namespace
 
 const solvers::SolverType& type() {
-  static const solvers::SolverType all{.info = photons::info(),
-                                       .routing = routing,
-                                       .make = make,
-                                       .least_slots = PhotonMap::k_batch,
-                                       .sun_threshold = nullptr};
+  static const solvers::SolverType all{
+      .info = photons::info(), .routing = routing, .make = make, .least_slots = 0, .sun_threshold = nullptr};
   return all;
 }
 

@@ -55,15 +55,18 @@ struct PhotonEmitPush {
   float share;     ///< 1 / paths of the round
 };
 struct PhotonListPush {
-  uint count;      ///< slots, or photons
-  uint capacity;
+  uint count;      ///< photons
 };
+/// Number of a photon in its round, whatever the order in which photons are stored: of its path, then of its events.
+LUCERNA_CONST uint k_photon_id_events = 8u;          ///< bits
+LUCERNA_CONST uint k_photon_most_events = 255u;      ///< after which a light path ends
+LUCERNA_CONST uint k_photon_most_paths = 1u << 24;   ///< of a round
 
 // PhotonCounts, uint each.
-LUCERNA_CONST uint k_photons_stored = 0u;   ///< in the batches before and the bounces before
-LUCERNA_CONST uint k_photons_added = 1u;    ///< in this bounce
-LUCERNA_CONST uint k_photons_escaped = 2u;  ///< paths that left the scene
-LUCERNA_CONST uint k_photons_dark = 3u;     ///< paths that began where a light has none
+LUCERNA_CONST uint k_photons_stored = 0u;    ///< so far, or wanted to be
+LUCERNA_CONST uint k_photons_capacity = 1u;  ///< for which there is room
+LUCERNA_CONST uint k_photons_escaped = 2u;   ///< paths that left the scene
+LUCERNA_CONST uint k_photons_dark = 3u;      ///< paths that began where a light has none
 LUCERNA_CONST uint k_photon_counts = 4u;
 
 /// Which photons are drawn, and how.
