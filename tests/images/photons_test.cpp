@@ -58,6 +58,9 @@ scene::Scene glass_room(float lamp = 0.5f) {
   test::add_box(s, {-2, 0, -2}, {2, 2.5f, 2});
   test::add_quad(s, {-lamp, 2.45f, -lamp}, {2 * lamp, 0, 0}, {0, 0, 2 * lamp}, 1);
   test::add_ball(s, {0.3f, 0.6f, 0}, 0.55f, 2);
+  // A mat whose shading normals lean away from its plane.
+  test::add_quad(s, {-1.9f, 0.01f, 1.9f}, {3.8f, 0, 0}, {0, 0, -3.8f}, 0);
+  s.meshes.back().primitives[0].normals.assign(4, glm::normalize(vec3(0.5f, 0.8f, -0.3f)));
   scene::Camera front;
   front.yfov = 1.1f, front.to_world[3] = vec4(0, 1.2f, 1.95f, 1);
   s.cameras = {front};
@@ -100,6 +103,34 @@ TEST_CASE("a beam of even light on a plane has the irradiance that it brings the
   // Paths from the eye never meet it.
   const test::Result path = test::render(turned_sun(), {}, 16, 32);
   CHECK(test::mean(path.image.components[3]) == 0);
+}
+
+TEST_CASE("light that is refracted into water has there the irradiance that comes through") {
+  // The sun stands overhead, the camera is under water: whoever scaled flux as radiance would be off by 1.77.
+  scene::Scene s;
+  s.name = "pool";
+  s.materials = {test::diffuse({0.8f, 0.5f, 0.2f}), {}};
+  s.materials[1].metallic = 0, s.materials[1].roughness = 0, s.materials[1].transmission = 1;
+  s.materials[1].thickness = 1, s.materials[1].ior = 1.33f;
+  test::add_quad(s, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0);
+  test::add_quad(s, {-2, 1, 2}, {4, 0, 0}, {0, 0, -4}, 1);
+  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = {3, 4, 5}}};
+  s.lights[0].direction = {0, -1, 0};
+  s.cameras = {test::looking_down({0, 0.9f, 0}, 0.8f)};
+  s.environment.given = true;
+  const test::Settings settings{{"components.caustic", "photons"}, {"photons.per_round", "100000"}};
+  const double through = 1 - std::pow(0.33 / 2.33, 2);
+  const MeanOf flat = picture_mean(test::render(s, settings, 8, 32).image, 3);
+  // Shading normals that lean are those that paths weigh light by.
+  const vec3 leaning = glm::normalize(vec3(0.5f, 0.8f, -0.3f));
+  s.meshes[0].primitives[0].normals.assign(4, leaning);
+  const MeanOf leant = picture_mean(test::render(s, settings, 8, 32).image, 3);
+  for (int c = 0; c < 3; ++c) {
+    const double radiance =
+        double(s.materials[0].base_color[c] * s.lights[0].intensity[c]) * through / double(k_pi);
+    CHECK(flat.value[c] == Approx(radiance).epsilon(0.015));
+    CHECK(leant.value[c] == Approx(radiance * double(leaning.y)).epsilon(0.015));
+  }
 }
 
 TEST_CASE("flux is conserved in a closed room of one albedo") {
