@@ -36,7 +36,8 @@ class Engine {
   /// Takes over what the solvers of another engine have, where `changes` do not spoil all of it.
   void adopt(const Engine& before, const scene::Changes& changes);
   /// The picture begins anew: sets the wavefront's frame, and tells the solvers.
-  void begin(const PictureView& picture, const scene::Changes& changes);
+  /// `light_factor`: solvers::Picture::light_factor.
+  void begin(const PictureView& picture, const scene::Changes& changes, const vec3& light_factor = vec3(1));
 
   film::Developer& developer() { return developer_; }
   film::ErrorEstimator& estimator() { return *estimator_; }
@@ -48,6 +49,8 @@ class Engine {
   /// The first that is not ready; null: all are.
   solvers::Solver* unready() const;
   bool waits() const;
+  /// Some solver has more to do for display (Solver::previews).
+  bool previews() const;
   uint64_t published() const;
 
   /// Frame of the picture's paths, in a size of its own.
