@@ -187,10 +187,13 @@ class Latency {
     s.set("film.tone_curve", "linear");
     const bool wanted = std::find(o_.edits.begin(), o_.edits.end(), Edit::load) != o_.edits.end();
     double loading = 0;
-    while (!s.scene()) {
+    for (;;) {
       check();
       const auto now = s.snapshot();
-      if (now && now->commands >= s.commands()) throw Error(file.string(), "it was not loaded");
+      if (now && now->commands >= s.commands()) {
+        if (!s.scene()) throw Error(file.string(), "it was not loaded");
+        break;
+      }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     loading = clock.seconds();
@@ -225,12 +228,12 @@ class Latency {
     const std::vector<float>& reference = reference_of(file, float(std::exp2(s.settings().real("film.ev"))));
     std::vector<Moment> moments;
     for (const Shown& at : shown) {
-      Moment m{at.seconds, {1, 1}};
+      Moment m{at.seconds - loading, {1, 1}};
       if (at.snapshot && at.snapshot->rgba.size() == reference.size() * 4)
         m.distance = picture_distance(shown_luminance(at.snapshot->rgba), reference, o_.width);
       moments.push_back(m);
     }
-    LatencyResult result = latency_of(moments, shown.back().seconds);
+    LatencyResult result = latency_of(moments, shown.back().seconds - loading);
     result.scene = file.stem().string(), result.solver = solver, result.edit = k_edit_names[size_t(edit)];
     result.loading_s = loading;
     if (!o_.pictures.empty()) {

@@ -16,7 +16,7 @@
 namespace lucerna::bench {
 
 enum class Edit {
-  load,      ///< the scene is loaded; the clock runs from then on, loading itself included
+  load,      ///< the scene is loaded; the clock runs from when that is done
   strength,  ///< the brightest lamp to a third; without lamps nothing is measured (move likewise)
   move,      ///< ... a tenth of the scene's radius aside; one without a place turns by 25 degrees
   sky,       ///< the environment turns by 90 degrees; without an image nothing is measured
