@@ -56,6 +56,7 @@ class Program {
   void add_bench();
   void add_bench_rays();
   void add_small_benches();
+  void add_bench_latency();
   void add_scene_options(CLI::App* verb);
   int view();
 
@@ -67,7 +68,8 @@ class Program {
   double scene_memory_ = double(scene::k_scene_bytes) / k_gib;
 
   CLI::App *render_ = nullptr, *info_ = nullptr, *devices_ = nullptr, *compare_ = nullptr, *bench_ = nullptr,
-           *rays_ = nullptr, *sort_ = nullptr, *lookup_ = nullptr, *interpolation_ = nullptr;
+           *rays_ = nullptr, *sort_ = nullptr, *lookup_ = nullptr, *interpolation_ = nullptr,
+           *latency_ = nullptr;
   RenderArguments r;
   std::string info_scene_;
   bool info_json_ = false, devices_json_ = false;
@@ -77,6 +79,7 @@ class Program {
   BenchSortArguments bs;
   BenchLookupArguments bl;
   BenchInterpolationArguments bi;
+  BenchLatencyArguments bt;
 };
 
 Program::Program() {
@@ -88,6 +91,7 @@ Program::Program() {
   add_bench();
   add_bench_rays();
   add_small_benches();
+  add_bench_latency();
   app_.require_subcommand(0, 1);
 }
 
@@ -255,7 +259,44 @@ void Program::add_small_benches() {
   add_scene_options(interpolation_);
 }
 
+void Program::add_bench_latency() {
+  latency_ = bench_->add_subcommand(
+      "latency", "seconds until the window shows a usable picture after an edit (--latency is the same)");
+  latency_->add_option("SCENES", bt.scenes, "glTF scenes, or names of folders in scenes/")->required();
+  latency_
+      ->add_option("--edits", bt.edits,
+                   "some of load, strength, move (the brightest lamp), sky (turned), material, camera, "
+                   "solver (switched); each on top of those before")
+      ->delimiter(',');
+  latency_->add_option("--solvers", bt.solvers, "of secondary and tertiary light [path,cache]")
+      ->delimiter(',');
+  latency_->add_option("--size", bt.size, "picture, WIDTHxHEIGHT")->capture_default_str();
+  latency_->add_option("--seconds", bt.seconds, "that each edit is watched")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  latency_
+      ->add_option("--settle", bt.settle,
+                   "seconds, at most, that are waited before an edit until the picture is complete")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  latency_
+      ->add_option("--reference-samples", bt.reference_samples, "samples a pixel of the reference pictures")
+      ->check(CLI::Range(1u, 1u << 20))
+      ->capture_default_str();
+  latency_->add_option("--references", bt.references, "folder that keeps the reference pictures")
+      ->capture_default_str();
+  latency_->add_option("--pictures", bt.pictures, "folder for what was shown at 0.3, 1, 3 and 10 s");
+  latency_->add_option("--set", bt.set, "KEY=VALUE, as of the viewer")->allow_extra_args(false);
+  latency_->add_option("--json", bt.json, "file to write the figures to");
+  latency_->add_option("--device", bt.device, "as above");
+  add_scene_options(latency_);
+}
+
 int Program::run(int argc, char** argv) {
+  // It is asked for like a built-in matrix, too.
+  std::string latency = "latency";
+  if (argc > 2 && argv[1] == std::string("bench") && argv[2] == std::string("--latency"))
+    argv[2] = latency.data();
   try {
     app_.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -263,8 +304,9 @@ int Program::run(int argc, char** argv) {
   }
   if (verbose_) log::set_console_level(log::Level::info);
   scenes_.most_bytes = uint64_t(scene_memory_ * k_gib);
-  r.scenes = b.scenes = bi.scenes = bm.scenes = scenes_;
-  for (std::string* device : {&r.device, &b.device, &bs.device, &bl.device, &bi.device, &bm.device})
+  r.scenes = b.scenes = bi.scenes = bm.scenes = bt.load = scenes_;
+  for (std::string* device :
+       {&r.device, &b.device, &bs.device, &bl.device, &bi.device, &bm.device, &bt.device})
     if (device->empty()) *device = device_;
   if (*render_) return render(r);
   if (*info_) return info(info_scene_, info_json_, scenes_);
@@ -274,6 +316,7 @@ int Program::run(int argc, char** argv) {
   if (*sort_) return bench_sort(bs);
   if (*lookup_) return bench_lookup(bl);
   if (*interpolation_) return bench_interpolation(bi);
+  if (*latency_) return bench_latency(bt);
   if (*bench_) {
     for (int i = 0; i < argc; ++i) bm.command += std::string(i ? " " : "") + (i ? argv[i] : "lucerna");
     return bench_matrix(bm);

@@ -69,6 +69,18 @@ struct BenchInterpolationArguments {
 };
 int bench_interpolation(const BenchInterpolationArguments& arguments);
 
+struct BenchLatencyArguments {
+  std::vector<std::string> scenes;          ///< files, or names of the program's own
+  std::vector<std::string> solvers, edits;  ///< empty: all
+  std::string size = "960x540", references = "latency-references", pictures, device;
+  uint32_t reference_samples = 64;
+  double seconds = 10, settle = 120;
+  std::vector<std::string> set;
+  std::string json;  ///< file to write the figures to; empty: none
+  scene::LoadOptions load;
+};
+int bench_latency(const BenchLatencyArguments& arguments);
+
 struct BenchArguments {
   std::string matrix;                 ///< file; or
   std::vector<std::string> built_in;  ///< the name of a built-in one; more than one matrix is refused

@@ -223,6 +223,10 @@ void view_menu(Ui& ui) {
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");
       entry("Tiles", "T", tiles->help.c_str(), ui.setting_on(tiles->key)))
     ui.toggle(tiles->key);
+  if (entry("Samples as they are", "B",
+            "Neither filters the noise of the first samples nor keeps what was shown before an edit.",
+            ui.setting("preview.filter") == "off"))
+    ui.act("set", "preview.filter", ui.setting("preview.filter") == "off" ? "auto" : "off");
   for (const solvers::SolverInfo* solver : solvers::registered()) solver_views(ui, *solver);
   if (entry("Forget earlier renders", nullptr,
             "Takes the lines of earlier renders out of the plot of accuracy.", false,
@@ -266,6 +270,13 @@ void help_menu(Ui& ui) {
   if (entry("Commands", nullptr, "Lists in the log what can be typed below it and written into scripts."))
     ui.typed.push_back("help");
   end_menu();
+}
+
+/// What of the picture is not its samples: "42 % from before", or "filtered". Empty where all is.
+std::string preview_text(const session::Snapshot& s) {
+  if (s.stale > 0.005)
+    return fmt::format("{} from before", padded(fmt::format("{:.0f} %", 100 * s.stale), 5));
+  return s.filtered > 0.02 ? "filtered" : "";
 }
 
 /// "142 / 256 samples · 1.82 % · 12.3 s", each number in the width of the largest.
@@ -333,6 +344,17 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     }()));
     draw_text(list, {right - std::max(wide, text_width(state)), area.lo.y}, {right, area.hi.y}, state,
               colour::text, Align::right);
+    if (const std::string preview = preview_text(*s); !preview.empty()) {
+      const float end = right - std::max(wide, text_width(state)) - px(16),
+                  begin = end - text_width("100 % from before");
+      draw_text(list, {begin, area.lo.y}, {end, area.hi.y}, preview, colour::accent, Align::right);
+      ImGui::SetCursorScreenPos({begin, area.lo.y});
+      ImGui::InvisibleButton("##preview", {end - begin, area.hi.y - area.lo.y - px(2)});
+      tooltip(
+          "What is shown is not the samples alone: light from before the last edit stays until the new is "
+          "better, and the noise of the first samples is filtered. Files have the samples. B shows them as "
+          "they are.");
+    }
     state_left = right - std::max(wide, text_width(state));
     ImGui::SetCursorScreenPos({state_left, area.lo.y});
     ImGui::InvisibleButton("##state", {right - state_left, area.hi.y - area.lo.y - px(2)});
@@ -340,7 +362,8 @@ void draw_menu_bar(Ui& ui, const Area& area) {
         "Samples a pixel, noise of the mean (estimated; the panel Accuracy tells that of the tiles beside "
         "it), "
         "and the time that has gone by since this picture was begun, pauses left out.");
-    right = state_left - px(24);
+    // Room for preview_text(), so that nothing moves when it goes.
+    right = state_left - text_width("100 % from before") - px(40);
   }
   if (s && !s->device.empty()) {
     const float room = std::max(0.0f, right - left - px(160));

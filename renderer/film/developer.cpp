@@ -39,7 +39,12 @@ void Developer::develop(gpu::Stream& stream, const Film& film, const View& view,
 void Developer::tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {
   if (coarse) develop(stream, *coarse, view, nullptr);
   develop(stream, film, view, coarse);
+  draw_tiles(stream, film, view);
+}
+
+void Developer::draw_tiles(gpu::Stream& stream, const Film& film, const View& view) {
   if (view.tiles > 0) {
+    film.bind(resources_);
     const TilesPush push{film.width(), film.height(), view.tiles,
                          (film.width() + view.tiles - 1) / view.tiles, 1};
     stream.dispatch(tiles_, resources_, push, groups(film));

@@ -13,6 +13,8 @@ class Developer {
   /// Film -> its picture. `coarse` fills pixels without samples, if given (it is tone-mapped first). Runs the
   /// stream; what it takes is nobody's stage.
   void tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse = nullptr);
+  /// Draws over the film's picture the state of its tiles, where the view has any. Runs the stream.
+  void draw_tiles(gpu::Stream& stream, const Film& film, const View& view);
 
  private:
   void develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse);

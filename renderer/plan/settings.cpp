@@ -85,6 +85,12 @@ void add_display_options(std::vector<OptionInfo>& list) {
   list.push_back(without_restart(boolean_option(
       "overlay.tiles", "false",
       "Shows over the picture which tiles are at work and how far their error is from the target.")));
+  list.push_back(without_restart(choice_option(
+      "preview.filter", "auto", {"auto", "off"}, "",
+      "What the window shows while a picture is made: auto filters the noise of its first samples, and keeps "
+      "what was shown before an edit until the new light is better; off shows the samples as they are. Files "
+      "and figures always have the samples.",
+      "Preview")));
   list.push_back(without_restart(text_option("about", "What the scene is for.")));
   for (const char* name : paths::k_component_names) {
     const std::string key = std::string("show.") + name;

@@ -118,11 +118,12 @@ void Engine::adopt(const Engine& before, const scene::Changes& changes) {
       solver->adopt(*wavefront_, *old);
 }
 
-void Engine::begin(const PictureView& picture, const scene::Changes& changes) {
+void Engine::begin(const PictureView& picture, const scene::Changes& changes, const vec3& light_factor) {
   // What is switched off changes without new kernels.
   routing_ = routing(picture.settings, picture.world.flat.effects);
   for (const auto& solver : solvers_)
-    with(*solver, picture, [&](const solvers::Picture& own) {
+    with(*solver, picture, [&](solvers::Picture own) {
+      own.light_factor = light_factor;
       solver->begin(own, solvers::spoiled_by(solver->info(), changes));
     });
   wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
@@ -154,6 +155,10 @@ solvers::Solver* Engine::unready_for(uint32_t sample) const {
 bool Engine::waits() const {
   const solvers::Solver* next = unready();
   return next && next->waits();
+}
+
+bool Engine::previews() const {
+  return std::any_of(solvers_.begin(), solvers_.end(), [](const auto& s) { return s->previews(); });
 }
 
 uint64_t Engine::published() const {

@@ -42,7 +42,8 @@ class Engine {
   /// Takes over what the solvers of another engine have, where `changes` do not spoil all of it.
   void adopt(const Engine& before, const scene::Changes& changes);
   /// The picture begins anew: sets the wavefront's frame, and tells the solvers.
-  void begin(const PictureView& picture, const scene::Changes& changes);
+  /// `light_factor`: solvers::Picture::light_factor.
+  void begin(const PictureView& picture, const scene::Changes& changes, const vec3& light_factor = vec3(1));
 
   film::Developer& developer() { return *developer_; }
   film::ErrorEstimator& estimator() { return *estimator_; }
@@ -58,6 +59,8 @@ class Engine {
   /// The first whose round for that sample is not ready; null: all are.
   solvers::Solver* unready_for(uint32_t sample) const;
   bool waits() const;
+  /// Some solver has more to do for display (Solver::previews).
+  bool previews() const;
   uint64_t published() const;
 
   /// Frame of the picture's paths, in a size of its own.

@@ -67,6 +67,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   std::unique_ptr<Engine> engine = make_engine(world, plan, settings, changes);
   Films films = film_ ? Films{} : make_films(width_, height_);
   if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
+  if (options_.interactive && !display_) display_ = std::make_unique<Display>(*device_, *compiler_);
   engine_ = std::move(engine);
   world_ = std::move(world);
   settings_ = std::move(settings);
@@ -102,14 +103,17 @@ Renderer::Films Renderer::make_films(uint32_t width, uint32_t height) const {
   return films;
 }
 
-void Renderer::restart(const scene::Changes& changes) {
+void Renderer::restart(const scene::Changes& changes, const vec3& factor) {
   if (!engine_ || !film_) return;
-  engine_->begin(picture_view(), changes);
+  engine_->begin(picture_view(), changes, factor);
   transport::Wavefront& wavefront = engine_->wavefront();
+  if (display_ && samples() > 0) display_->take(wavefront.stream(), *film_);
   film_->clear(wavefront.stream());
   coarse_->clear(wavefront.stream());
   wavefront.reset_stats();
   start_schedule();
+  if (display_) display_->restart(changes, factor);
+  draft_preparing_ = false;
   ++restarts_;
   ledger_.clear();
   clock_.reset();
@@ -273,6 +277,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   const bool prepares = preparing();
   const bool progress = render_item(cancel);
   render_s_ += timer.seconds();
+  if (display_) display_->plan().worked(timer.seconds());
   if (prepares)
     prepared_s_ = clock_.seconds(), prepared_ = stats();
   else if (progress)
@@ -340,6 +345,19 @@ std::optional<bool> Renderer::prepare_round(const schedule::WorkItem& item,
   return engine_->with(*next, picture_view(), [&](const solvers::Picture& picture) {
     return next->prepare_round(engine_->wavefront(), picture, sample, cancel);
   });
+}
+
+bool Renderer::draw_draft(const std::function<bool()>& cancel) {
+  if (!engine_ || !display_) return false;
+  const bool prepares = preparing();
+  if (std::exchange(draft_preparing_, prepares) && !prepares) display_->prepared();
+  const DraftPlan::Next what = display_->plan().next(prepares, samples() > 0, engine_->previews());
+  if (what == DraftPlan::Next::nothing) return false;
+  clock_.go();
+  const Timer timer;
+  if (!display_->draw(what, *engine_, picture_view(), *coarse_, cancel)) return false;
+  display_->plan().drawn(what, timer.seconds());
+  return true;
 }
 
 void Renderer::render_coarse(const std::function<bool()>& cancel) {

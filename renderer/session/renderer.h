@@ -21,6 +21,7 @@
 #include "plan/settings.h"
 #include "scene/io/load.h"
 #include "scene/scene.h"
+#include "session/display.h"
 #include "session/engine.h"
 #include "session/sampling.h"
 #include "session/world.h"
@@ -112,6 +113,10 @@ class Renderer {
   /// Its paths, rays and time are not in stats().
   void render_coarse(const std::function<bool()>& cancel = {});
 
+  /// For display, where RendererOptions::interactive: another sample of a draft, if it is time for one. False
+  /// when nothing was drawn.
+  bool draw_draft(const std::function<bool()>& cancel = {});
+
   /// The person's clock: seconds since this image's first step() or render_coarse(), whatever else was done
   /// meanwhile; not between rest() and the next of these, nor after the last.
   double seconds() const { return clock_.seconds(); }
@@ -127,6 +132,11 @@ class Renderer {
   /// Tone-mapped picture with the settings' view, or a heat map on view().heat's scale; tiles over it where
   /// overlay.tiles is on.
   std::vector<uint8_t> picture(bool with_coarse);
+  /// The same as the window shows it while it is made (Display), with the setting preview.filter; where there
+  /// is no such thing, picture(with_coarse).
+  std::vector<uint8_t> shown_picture(bool with_coarse);
+  /// Of the picture that shown_picture() has made last.
+  film::PreviewShares preview_shares() const { return display_ ? display_->shares() : film::PreviewShares{}; }
   film::View view() const;
   film::Image image() const { return film_->read(); }
   /// The image with its layers and metadata (its own noise among them), as EXR files hold it.
@@ -211,8 +221,10 @@ class Renderer {
   /// The scene with other lights, environment or factors of materials. Kernels are made for what it calls for
   /// now. On failure throws Error and everything stays as it was.
   void edit(std::shared_ptr<const scene::Scene> edited, scene::Change change, bool factors);
-  void restart(const scene::Changes& changes);
+  /// `factor`: of all light, where an edit is known to do no more than that (scene::light_factor).
+  void restart(const scene::Changes& changes, const vec3& factor = vec3(1));
   PictureView picture_view() const { return {automaton_, settings_, world_, camera_, width_, height_}; }
+  void mark_tiles(const film::View& view);
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
   void start_schedule();
@@ -243,6 +255,8 @@ class Renderer {
   World world_;
   std::unique_ptr<Engine> engine_;  ///< null before the first scene; goes before the world
   std::unique_ptr<film::Film> film_, coarse_;
+  std::unique_ptr<Display> display_;  ///< null in batch
+  bool draft_preparing_ = false;      ///< when a draft was drawn last
   scene::Camera camera_;
   uint32_t width_ = 1280, height_ = 720;
   Sampling sampling_;

@@ -1,6 +1,7 @@
 // Edits of a renderer's scene: lights, environment, materials.
 #include <utility>
 
+#include "scene/light_factor.h"
 #include "session/renderer.h"
 
 namespace lucerna::session {
@@ -54,6 +55,7 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
 }
 
 void Renderer::edit(std::shared_ptr<const scene::Scene> edited, scene::Change change, bool factors) {
+  const vec3 factor = factors ? vec3(1) : scene::light_factor(*world_.scene, *edited).value_or(vec3(1));
   WorldEdit trial(*device_, world_, std::move(edited), factors);
   const bool anew = !engine_->serves(engine_->plan(), settings_, world_);
   if (anew) engine_ = make_engine(world_, engine_->plan(), settings_, change);
@@ -62,7 +64,7 @@ void Renderer::edit(std::shared_ptr<const scene::Scene> edited, scene::Change ch
     heed_settings();
   else
     engine_->wavefront().rebind(*world_.device);
-  restart(change);
+  restart(change, factor);
 }
 
 }  // namespace lucerna::session

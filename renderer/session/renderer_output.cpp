@@ -3,6 +3,7 @@
 #include <fstream>
 #include <utility>
 
+#include "base/log.h"
 #include "film/overlay.h"
 #include "film/tile_scale.h"
 #include "session/accuracy.h"
@@ -37,15 +38,44 @@ film::HeatScale Renderer::heat_scale(uint32_t layer) const {
                           adaptive() != nullptr);
 }
 
+void Renderer::mark_tiles(const film::View& v) {
+  if (v.tiles == 0) return;
+  std::vector<shared::TileMark> marks;
+  for (const TileStatus& t : tile_status(*this, true))
+    marks.push_back({film::tile_position(double{t.sum()}, settings_.real("sampling.target_error")),
+                     t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
+  film_->mark_tiles(marks);
+}
+
+std::vector<uint8_t> Renderer::shown_picture(bool with_coarse) {
+  const film::View v = view();
+  // Samples from which on the picture is shown as it is, whatever they are worth.
+  constexpr uint32_t k_previewed_samples = 256;
+  const bool wanted = display_ && settings_.text("preview.filter") == "auto" && !done() &&
+                      samples() < k_previewed_samples && display_->shows(v, *film_);
+  if (!wanted) {
+    if (display_) display_->plain(*engine_, picture_view(), v);
+    return picture(with_coarse);
+  }
+  mark_tiles(v);
+  try {
+    display_->develop(*engine_, picture_view(), *film_, *coarse_, v, samples(), true);
+  } catch (const Error& e) {
+    // The picture itself does not need it.
+    log::warning("{}; the window shows the samples as they are", e.what());
+    settings_.set("preview.filter", "off");
+    return picture(with_coarse);
+  }
+  engine_->developer().draw_tiles(engine_->wavefront().stream(), *film_, v);
+  visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
+    solver.draw(canvas, picture);
+  });
+  return film_->read_picture();
+}
+
 std::vector<uint8_t> Renderer::picture(bool with_coarse) {
   const film::View v = view();
-  if (v.tiles > 0) {
-    std::vector<shared::TileMark> marks;
-    for (const TileStatus& t : tile_status(*this, true))
-      marks.push_back({film::tile_position(double{t.sum()}, settings_.real("sampling.target_error")),
-                       t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
-    film_->mark_tiles(marks);
-  }
+  mark_tiles(v);
   engine_->developer().tone_map(engine_->wavefront().stream(), *film_, v,
                                 with_coarse ? coarse_.get() : nullptr);
   visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {

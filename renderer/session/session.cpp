@@ -20,6 +20,7 @@ const std::array<const char*, k_components> k_component_names = paths::k_compone
 
 namespace {
 constexpr double k_publish_seconds = 0.1;  // between pictures while the image refines
+constexpr double k_draft_seconds = 0.25;   // between drafts, while edits come one after the other
 constexpr double k_numbers_seconds = 0.5;  // between read-backs of the film for shares
 constexpr int k_nice = 10;                 // rendering yields to the window's thread
 }  // namespace
@@ -46,10 +47,10 @@ struct Session::Impl {
   // Of the session thread alone.
   Snapshot next;
   AccuracyKeeper accuracy;
-  Timer since_publish, since_numbers;
+  Timer since_publish, since_numbers, since_draft;
   bool paused = false, dirty = true, coarse_wanted = false, size_known = false;
   bool filled = false;
-  uint64_t published_shown = 0;  // Renderer::published, by the coarse picture
+  double publish_seconds = k_publish_seconds;  // showing takes no more than a fifth of the time
   struct Save {
     std::filesystem::path file;
     std::string solver;  // whose work it keeps; "": the picture
@@ -151,7 +152,10 @@ struct Session::Impl {
   void fill_snapshot(Renderer& r, bool numbers) {
     next.width = r.film().width();
     next.height = r.film().height();
-    next.rgba = r.picture(!filled);
+    const Timer shown;
+    next.rgba = r.shown_picture(!filled);
+    publish_seconds = std::max(k_publish_seconds, 4 * shown.seconds());
+    next.stale = r.preview_shares().stale, next.filtered = r.preview_shares().filtered;
     const film::View view = r.view();
     next.legend = {};
     if (view.layer >= shared::k_layer_samples)
@@ -253,16 +257,15 @@ void Session::Impl::run() {
     try {
       if (renderer && renderer->ready()) {
         bool changed = dirty;
-        if (coarse_wanted && !paused) {
-          renderer->render_coarse(cancelled);
-          coarse_wanted = false;
-          changed = true;
+        // A row of edits that come faster than drafts are drawn shows some of them all the same.
+        const auto draft_cancelled = [&] {
+          return quit || (pending && since_draft.seconds() < k_draft_seconds);
+        };
+        if (!paused && renderer->draw_draft(draft_cancelled)) {
+          since_draft.restart();
+          // The first one is shown at once; more of them as pictures are.
+          changed = changed || std::exchange(coarse_wanted, false);
         } else if (work && renderer->step(cancelled)) {
-          // While something is prepared the coarse picture shows what has come of it.
-          if (renderer->preparing() && renderer->published() != published_shown) {
-            published_shown = renderer->published();
-            coarse_wanted = true;
-          }
           accuracy.follow(*renderer, next.scene_id);
         }
         // The last line of the ledger is that of the finished image.
@@ -270,7 +273,7 @@ void Session::Impl::run() {
             renderer->ledger().entries().back().paths != renderer->stats().paths)
           renderer->finish_ledger();
         if (!filled && renderer->samples() > 0) filled = changed = true;
-        if (changed || since_publish.seconds() > k_publish_seconds || renderer->done() || renderer->waits()) {
+        if (changed || since_publish.seconds() > publish_seconds || renderer->done() || renderer->waits()) {
           const bool numbers = since_numbers.seconds() > k_numbers_seconds || renderer->done();
           if (numbers) since_numbers.restart();
           fill_snapshot(*renderer, numbers);

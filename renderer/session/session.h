@@ -56,6 +56,8 @@ struct Snapshot {
   double mean_samples = 0;         ///< a pixel, of those there are
   uint32_t max_samples = 0;        ///< where it stops
   bool coarse = false;             ///< some of the picture still is the coarse first image
+  /// Of what is shown, by luminance, 0..1: light from before the last edit; filtered light of the present.
+  double stale = 0, filtered = 0;
   bool paused = false, finished = false;
   /// "" or what is made before the first sample (solvers::Report::preparing).
   std::string preparing;

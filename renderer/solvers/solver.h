@@ -51,6 +51,8 @@ struct Picture {
   const scene::Camera& camera;
   uint32_t width = 0, height = 0;
   shared::Frame frame;  ///< of its paths
+  /// To begin(): what all light is known to be multiplied by since the last one; for display.
+  vec3 light_factor{1};
   /// A frame for paths of the solver's own, from the same camera: with these routes and `enabled` components.
   shared::Frame frame_for(const Routing& routing, uint32_t enabled) const;
 };
@@ -119,6 +121,21 @@ class Solver {
     (void)wavefront, (void)picture, (void)sample, (void)cancel;
     return true;
   }
+
+  // For display, while preparation makes light anew that paths have been reading: something of all of it at
+  // once, for the window's drafts. What is prepared does not depend on it.
+
+  /// There is more to do for it: preview() does a bounded piece. False when that was cancelled.
+  virtual bool previews() const { return false; }
+  virtual bool preview(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
+    (void)wavefront, (void)picture, (void)cancel;
+    return true;
+  }
+  /// Grows as it becomes better.
+  virtual uint64_t previewed() const { return 0; }
+  /// Lookups of the wavefront's paths read it from now on, or no longer; where there is none they read what
+  /// is prepared.
+  virtual void look_up_preview(transport::Wavefront& wavefront, bool on) { (void)wavefront, (void)on; }
 
   /// Preparation is long, and all kernels that it needs have run.
   virtual bool warm() const { return ready(); }

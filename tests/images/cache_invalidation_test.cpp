@@ -105,6 +105,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
       {"sampling.", {{"sampling.mode", "adaptive"}, {"sampling.max_samples", "64"}}},
       {"film.", {{"film.ev", "1"}, {"film.layer", "depth"}}},
       {"show.", {{"show.primary", "false"}}},
+      {"preview.", {{"preview.filter", "off"}}},
       {"overlay.", {{"overlay.records", "true"}, {"overlay.overlap", "true"}}},
       {"about", {{"about", "nothing"}}},
       {"camera", {{"camera", "above"}}},

@@ -18,6 +18,7 @@
 #include "shaders/shared/octree.h"
 #include "shaders/shared/overlay.h"
 #include "shaders/shared/photons/photons.h"
+#include "shaders/shared/preview.h"
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
@@ -92,6 +93,16 @@ std::vector<SharedStruct> structs() {
       SHARED("film.h", FilmPush, width, height, pixel_count, sample_count),
       SHARED("film.h", TonePush, width, height, layer, show, curve, exposure, scale, coarse_width,
              coarse_height, use_coarse_film),
+      SHARED("preview.h", PreviewCamera, origin, right, up, forward),
+      SHARED("preview.h", PreviewPackPush, width, height, exposure, guided),
+      SHARED("preview.h", PreviewHalvePush, width, height, across, down, draft_width, draft_height,
+             history, repainted, history_scale, draft_share),
+      SHARED("preview.h", PreviewFilterPush, across, down, step, orthographic, right, up, forward),
+      SHARED("preview.h", PreviewReprojectPush, width, height, pass, orthographic, before, now),
+      SHARED("preview.h", PreviewResolvePush, width, height, across, down, show, curve, filtering, history,
+             repainted, history_scale),
+      SHARED("preview.h", PreviewShares, all, stale, filtered),
+      SHARED("irradiance_cache/records.h", RelightPreviewPush, factor, count, parts, rays),
       SHARED("irradiance_cache/records.h", CacheFrame, routes, record_count, normal_tolerance, off_plane,
              probing, off_plane_least, least_of_distance, least_most, parallel, eye),
       SHARED("irradiance_cache/records.h", RecordPush, first, records, elevations, azimuths, rays_before,

@@ -21,7 +21,8 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
       places(device, compiler),
       picture(device, compiler, o.most_records, defines(routes.records, o.radius.metric)),
       overlay(device, compiler, defines(routes.records, o.radius.metric)),
-      progress{.probing = {}, .queue = {}, .levels = RayLevels(o.rays), .clock = {}, .pauses = {}} {
+      progress{.probing = {}, .queue = {}, .levels = RayLevels(o.rays), .clock = {}, .pauses = {}},
+      preview(device, compiler) {
   count_bytes();
 }
 
@@ -30,6 +31,7 @@ void Cache::Impl::count_bytes() {
 }
 
 void Cache::Impl::clear() {
+  preview.end();
   tables.records.clear();
   places.forget();
   progress.pauses.dropped();

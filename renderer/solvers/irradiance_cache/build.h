@@ -17,6 +17,7 @@
 #include "solvers/irradiance_cache/ray_levels.h"
 #include "solvers/irradiance_cache/record_ranges.h"
 #include "solvers/irradiance_cache/records_overlay.h"
+#include "solvers/irradiance_cache/relight_preview.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -59,6 +60,8 @@ struct Cache::Impl {
   RecordsOverlay overlay;
   BuildProgress progress;
   CacheStatus status;
+  RelightPreview preview;
+  bool previews = false;  ///< somebody watches
 
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheRoutes& routes,
        const CacheOptions& o);
@@ -78,7 +81,7 @@ struct Cache::Impl {
   void count_anew(bool beyond);
   /// What is placed and not evaluated is dropped, and what was asked for.
   void drop_pass();
-  void relight();
+  void relight(const vec3& factor);
   /// The records of the next pass that stand without light; after the last, building goes on where it was.
   void relight_pass();
   /// Complete records from elsewhere, in place of all.

@@ -106,6 +106,7 @@ void Cache::Impl::publish_level(const Work& w) {
   // the next one fills the gaps. A cache that reads itself does so from the second level on: the first, of
   // few rays, then is all that is traced without the records of its own pass.
   ++status.published;
+  if (status.relighting > 0) preview.take(w.stream(), tables, ranges.pass_end());
   if (ranges.waiting() == 0) return;
   // Ellipses are by the light; circles stand.
   const bool anew = ranges.has_new() || radii.by_light();

@@ -55,7 +55,10 @@ gpu::Defines Cache::defines(const paths::LookupRoutes& own, Metric metric) {
           {"LUCERNA_CACHE_ELLIPSES", metric == Metric::hessian ? "1" : "0"}};
 }
 
-void Cache::bind(gpu::Resources& resources) const { impl_->tables.bind(resources); }
+void Cache::bind(gpu::Resources& resources) const {
+  impl_->tables.bind(resources);
+  if (impl_->preview.looked_up()) impl_->preview.bind(resources);
+}
 
 void Cache::clear() { impl_->clear(); }
 

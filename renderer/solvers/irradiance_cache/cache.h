@@ -141,7 +141,17 @@ class Cache {
   /// goes on where it was, or is complete as it was. Meanwhile those that are relit serve, and no others. The
   /// outcome is that of a cache built in this light, to the bit where places do not depend on light. Ellipses
   /// do: they are made anew, and passes added where they leave gaps.
-  void relight();
+  /// `factor`: of all light, as far as that is known; for preview_relighting() alone.
+  void relight(const vec3& factor = vec3(1));
+  /// Somebody watches: while records are relit there is a light of them all for display
+  /// (relight_preview.h), which look_up_preview() has lookups read, and no longer. preview() goes on with it
+  /// a piece at a time while there is something left; previewed() grows as it gets better.
+  void preview_relighting(bool on);
+  bool preview_left() const;
+  uint64_t previewed() const;
+  bool preview(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
+               const std::function<bool()>& cancel = {});
+  void look_up_preview(transport::Wavefront& wavefront, bool on);
   /// In place of its own, the records of another cache of the same scene, made for other lookups, options or
   /// kernels: as far as passes are complete. Returns what of them does not serve here, for the caller to see
   /// to: coverage, light, or places, where there is no room for them; then this is as after clear().

@@ -27,6 +27,7 @@ std::vector<ChangeRow> change_rows() {
       {"sampling.", k_spoils_nothing, "of the picture alone"},
       {"film.", k_spoils_nothing, "how it is shown"},
       {"show.", k_spoils_nothing, "how it is shown"},
+      {"preview.", k_spoils_nothing, "how it is shown"},
       {"overlay.", k_spoils_nothing, "how it is shown"},
       {"about", k_spoils_nothing, "words"},
       {"camera", k_spoils_coverage, "records lie on surfaces, whoever looks"},

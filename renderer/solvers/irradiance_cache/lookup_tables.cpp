@@ -40,12 +40,7 @@ bool looks_up(uint32_t routes) { return routes != k_no_routes; }
 LookupTables::LookupTables(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
                            const CacheRoutes& routes, const CacheOptions& o)
     : records(device, o.most_records),
-      octree(device, compiler,
-             {.spheres = o.most_records,
-              .references = k_references * o.most_records,
-              .copies = true,
-              .discs = true,
-              .crowd = k_crowd}),
+      octree(device, compiler, octree_options(o.most_records)),
       frame(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)}),
       candidates(device, {.name = "cache candidates",
                           .bytes = uint64_t{slots} * 16 * k_candidate_texels,
@@ -63,9 +58,20 @@ void LookupTables::bind(gpu::Resources& to) const {
   octree.bind(to);
 }
 
+lookup::OctreeOptions LookupTables::octree_options(uint32_t records) {
+  return {.spheres = records,
+          .references = k_references * records,
+          .copies = true,
+          .discs = true,
+          .crowd = k_crowd};
+}
+
+lookup::Discs LookupTables::discs(const Records& records) {
+  return records.discs(slab_thickness(std::max(k_off_plane, k_off_plane_least), k_normal_tolerance));
+}
+
 double LookupTables::build_octree(transport::Wavefront& wavefront, uint32_t count) {
-  const lookup::Discs discs =
-      records.discs(slab_thickness(std::max(k_off_plane, k_off_plane_least), k_normal_tolerance));
+  const lookup::Discs discs = LookupTables::discs(records);
   const shared::OctreeHeader& h =
       octree.build(wavefront.stream(), records.spheres(), {.most = count}, &discs);
   const double references = h.spheres ? double(h.references) / h.spheres : 0;
@@ -73,7 +79,7 @@ double LookupTables::build_octree(transport::Wavefront& wavefront, uint32_t coun
   return references;
 }
 
-void LookupTables::write_frame(uint32_t count, uint32_t probing, const RouteTable& routes) {
+CacheFrame LookupTables::frame_for(uint32_t count, uint32_t probing, const RouteTable& routes) const {
   CacheFrame f{};
   std::copy(routes.begin(), routes.end(), f.routes);
   f.record_count = count;
@@ -82,6 +88,11 @@ void LookupTables::write_frame(uint32_t count, uint32_t probing, const RouteTabl
   f.least_of_distance = least.of_distance, f.least_most = least.most;
   f.eye = least.eye, f.parallel = least.parallel;
   f.probing = probing;
+  return f;
+}
+
+void LookupTables::write_frame(uint32_t count, uint32_t probing, const RouteTable& routes) {
+  const CacheFrame f = frame_for(count, probing, routes);
   frame.write(&f, sizeof f);
 }
 

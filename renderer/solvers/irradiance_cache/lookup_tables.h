@@ -49,6 +49,10 @@ struct LookupTables {
   /// What paths know of the cache from here on: `count` records are evaluated; paths are to note what
   /// `probing` says (shared::k_probe_*) and look up where `routes` says.
   void write_frame(uint32_t count, uint32_t probing, const RouteTable& routes);
+  shared::CacheFrame frame_for(uint32_t count, uint32_t probing, const RouteTable& routes) const;
+  /// Of an octree over so many records, and the records as it lists them.
+  static lookup::OctreeOptions octree_options(uint32_t records);
+  static lookup::Discs discs(const Records& records);
   /// Whether records' rays end in other records.
   bool records_look_up() const;
   /// Where paths look up that have passed the picture's lookups over and go on as the rays of records do.

@@ -106,6 +106,8 @@ class Records {
   enum class Use { gather, look_up };
   void bind(gpu::Resources& resources, Use use) const;
   void publish(gpu::Stream& stream) const;
+  /// Their light as these read it.
+  const gpu::Buffer& light(Use use) const { return use == Use::gather ? irradiance_ : read_; }
 
  private:
   std::vector<vec4> texels(uint32_t which) const;  ///< one of k_record_texels, of every record

@@ -22,7 +22,7 @@ void Cache::Impl::replace_records(const RawRecords& raw) {
   status.records = raw.size();
 }
 
-void Cache::Impl::relight() {
+void Cache::Impl::relight(const vec3& factor) {
   if (status.relighting == 0) {
     progress.stopped_before = status.stop == StopReason::dark ? StopReason::building : status.stop;
     // A pass that has its first level has places and radii, and is complete when it is relit. Of one before
@@ -30,6 +30,7 @@ void Cache::Impl::relight() {
     if (ranges.complete_pass()) ++status.pass;
   }
   ranges.keep_complete();
+  if (previews) preview.begin(tables, ranges.placed(), factor);
   drop_pass();
   progress.probing.filling = false;
   progress.pauses.dropped();
@@ -58,6 +59,7 @@ void Cache::Impl::relight_pass() {
     return;
   }
   status.relighting = 0;
+  preview.end();
   if (progress.stopped_before == StopReason::building) return next_pass();
   if (!radii.by_light()) return finish(progress.stopped_before);
   // Ellipses are by the light: where they no longer reach is asked for as if it had come into view. Not
@@ -67,7 +69,33 @@ void Cache::Impl::relight_pass() {
   next_pass();
 }
 
-void Cache::relight() { impl_->relight(); }
+void Cache::relight(const vec3& factor) { impl_->relight(factor); }
+
+void Cache::preview_relighting(bool on) {
+  Impl& c = *impl_;
+  c.previews = on;
+  if (!on) c.preview.end();
+  if (on && ready()) c.preview.make_room(c.ranges.placed());
+}
+
+bool Cache::preview_left() const { return !impl_->preview.complete(); }
+uint64_t Cache::previewed() const { return impl_->preview.published(); }
+
+bool Cache::preview(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
+                    const std::function<bool()>& cancel) {
+  Impl& c = *impl_;
+  wavefront.set_frame(view.records_frame, view.records_enabled);
+  // Another seed than the one that relighting goes by: the picture does not see its rays before it does.
+  const bool complete = c.preview.step(wavefront, automaton, c.tables, c.evaluator, c.gathers.parts,
+                                       c.options.seed ^ 0x5bd1e995u, cancel);
+  wavefront.set_frame(view.paths_frame, view.paths_enabled);
+  return complete;
+}
+
+void Cache::look_up_preview(transport::Wavefront& wavefront, bool on) {
+  Impl& c = *impl_;
+  if (c.preview.active()) c.preview.look_up(wavefront, c.tables, c.tables.picture_routes, on);
+}
 
 solvers::Spoils Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {
   Impl& c = *impl_;

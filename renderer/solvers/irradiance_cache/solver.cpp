@@ -125,17 +125,22 @@ void CacheSolver::begin(const Picture& picture, solvers::Spoils spoils) {
     cache_.clear();
     return;
   }
-  if (spoils.light) cache_.relight();
+  if (spoils.light) cache_.relight(picture.light_factor);
   if (spoils.coverage) cache_.extend();
 }
 
 void CacheSolver::heed(const OptionValues& settings, bool interactive) {
+  interactive_ = interactive;
+  cache_.preview_relighting(interactive);
   if (interactive) cache_.pause(PauseAfter(settings.choice("cache.pause")));
 }
 
 bool CacheSolver::prepare(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
   const bool progress = cache_.step(wavefront, picture.task.automaton, view(picture), cancel);
-  if (cache_.ready()) warn_of_full_cache();
+  if (cache_.ready()) {
+    warn_of_full_cache();
+    cache_.preview_relighting(interactive_);
+  }
   return progress;
 }
 

@@ -30,6 +30,15 @@ class CacheSolver final : public solvers::Solver {
   bool ready() const override { return cache_.ready(); }
   bool waits() const override { return cache_.status().waits; }
   uint64_t published() const override { return cache_.status().published; }
+  bool previews() const override { return cache_.preview_left(); }
+  bool preview(transport::Wavefront& wavefront, const solvers::Picture& picture,
+               const solvers::Cancel& cancel) override {
+    return cache_.preview(wavefront, picture.task.automaton, view(picture), cancel);
+  }
+  uint64_t previewed() const override { return cache_.previewed(); }
+  void look_up_preview(transport::Wavefront& wavefront, bool on) override {
+    cache_.look_up_preview(wavefront, on);
+  }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
   bool warm() const override { return ready() || cache_.status().pass >= 2; }
@@ -73,6 +82,7 @@ class CacheSolver final : public solvers::Solver {
   std::optional<vec2> looked_at_;
   Inspection inspection_;
   std::optional<Overlap> overlap_;  ///< of the picture begun last
+  bool interactive_ = false;
   uint32_t full_at_ = 0;  ///< records at which a person was last told that there is no room for more
 };
 

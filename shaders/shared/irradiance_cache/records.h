@@ -77,6 +77,13 @@ LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + 2u * k_part_count *
 LUCERNA_CONST uint k_candidate_medium = 4u;
 LUCERNA_CONST uint k_candidate_texels = 2u;
 
+struct RelightPreviewPush {
+  vec3 factor;  ///< of the light before
+  uint count;  ///< records
+  uint parts;  ///< in bits: those that are gathered anew
+  uint rays;   ///< that each record has had; 0: all light is that of before
+};
+
 LUCERNA_CONST uint k_no_routes = 0x4444u;  ///< k_component_count for every part
 
 LUCERNA_CONST uint k_probe_none = 0u;

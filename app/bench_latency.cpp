@@ -1,0 +1,72 @@
+// How soon the window shows something to work with after an edit.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/interrupt.h"
+#include "app/verbs.h"
+#include "base/file.h"
+#include "base/log.h"
+#include "bench/latency.h"
+#include "bench/machine.h"
+
+namespace lucerna::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
+  unsigned width = 0, height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) != 2 || width == 0 || height == 0)
+    throw_error("--size", "'{}': expected WIDTHxHEIGHT, such as 960x540", text);
+  return {width, height};
+}
+
+/// A file, or the name of a scene that comes with the program.
+fs::path scene_file(const std::string& name) {
+  const fs::path own = fs::path(LUCERNA_SOURCE_DIR) / "scenes" / name / (name + ".gltf");
+  return fs::exists(name) || !fs::exists(own) ? fs::path(name) : own;
+}
+
+}  // namespace
+
+int bench_latency(const BenchLatencyArguments& a) {
+  bench::LatencyOptions o;
+  for (const std::string& name : a.scenes) o.files.push_back(scene_file(name));
+  if (!a.solvers.empty()) o.solvers = a.solvers;
+  for (const std::string& name : a.edits) o.edits.push_back(bench::edit_of(name));
+  if (a.edits.empty())
+    for (const char* name : bench::k_edit_names) o.edits.push_back(bench::edit_of(name));
+  std::tie(o.width, o.height) = parse_size(a.size);
+  o.reference_samples = a.reference_samples, o.seconds = a.seconds, o.settle_s = a.settle;
+  o.device = a.device, o.references = a.references, o.pictures = a.pictures, o.scenes = a.load;
+  for (const std::string& pair : a.set) {
+    const size_t at = pair.find('=');
+    if (at == std::string::npos) throw_error("--set", "'{}': expected KEY=VALUE", pair);
+    o.set.emplace_back(pair.substr(0, at), pair.substr(at + 1));
+  }
+  log::set_console_level(log::Level::error);
+  const Interrupt interrupt;
+  std::printf("%s\n", bench::latency_heading().c_str());
+  const std::vector<bench::LatencyResult> results = bench::measure_latency(
+      o, [](const std::string& line) { std::fprintf(stderr, "lucerna: %s\n", line.c_str()); },
+      [](const bench::LatencyResult& r) {
+        std::printf("%s\n", bench::latency_row(r).c_str());
+        std::fflush(stdout);
+      },
+      [&] { return interrupt.signal() != 0; });
+  if (a.json.empty()) return 0;
+  const bench::Machine machine = bench::this_machine();
+  nlohmann::ordered_json j{{"version", LUCERNA_VERSION},
+                           {"date", bench::now_utc()},
+                           {"cpu", machine.cpu},
+                           {"cores", machine.cores},
+                           {"load", bench::load_average()},
+                           {"size", a.size},
+                           {"reference_samples", a.reference_samples}};
+  for (const bench::LatencyResult& r : results) j["rows"].push_back(bench::to_json(r));
+  write_file(a.json, j.dump(2) + "\n");
+  return 0;
+}
+
+}  // namespace lucerna::app

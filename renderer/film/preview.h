@@ -1,0 +1,74 @@
+#pragma once
+// What the window shows of a picture until its samples are enough: their light filtered over surfaces that
+// are alike, a draft of fewer pixels where there are none yet, and what was shown before an edit as far as
+// the new light does not contradict it (shaders/film/preview_resolve.comp says how they are mixed). It is
+// display only: the film, and what files get of it, know nothing of it.
+//
+// Filtering is done on a grid of half the picture's resolution, on light divided by the surface's colour: an
+// edge-avoiding a-trous filter (H. Dammertz et al. 2010) that stops at differences of more than the noise (C.
+// Schied et al. 2017), which the two halves of the samples tell of.
+#include "film/film.h"
+#include "shaders/shared/preview.h"
+
+namespace lucerna::film {
+
+/// Of what is shown, by luminance, 0..1.
+struct PreviewShares {
+  double stale = 0;     ///< light from before the last edit
+  double filtered = 0;  ///< filtered light of the present
+};
+
+/// Where the picture was taken from.
+struct PreviewCamera {
+  shared::PreviewCamera axes{};
+  bool orthographic = false;
+  bool operator==(const PreviewCamera& o) const;
+};
+
+class Preview {
+ public:
+  /// Compiles its kernels; throws Error, located.
+  Preview(gpu::Device& device, gpu::ShaderCompiler& compiler);
+
+  /// Whether pictures of that size can be previewed on this device.
+  static bool fits(const gpu::Limits& limits, uint32_t width, uint32_t height);
+  /// Nothing has been shown yet.
+  void forget();
+  /// The picture begins anew: what was shown last is what was there before. Its light is to be multiplied by
+  /// `scale`, where an edit is known to do that to all light; `repainted`: surfaces may have other colours.
+  void keep(const vec3& scale = vec3(1), bool repainted = false);
+  /// Film -> its picture, of the layers that show light (View::layer up to shared::k_layer_primary + 3).
+  /// `draft`: a film of the same view with pixels of whole pixels, or null; `filtered`: noise is filtered,
+  /// not only where there are no samples. `sampled`: every pixel has one. Films must fit(). Throws Error when
+  /// memory is short. The stream is run.
+  PreviewShares develop(gpu::Stream& stream, const Film& film, const Film* draft, const View& view,
+                        const PreviewCamera& camera, bool filtered, bool sampled = false);
+  /// The film's picture has been shown as it is, with that exposure: keep() is to know it. Every pixel has a
+  /// sample. Throws as develop(). The stream is run.
+  void take(gpu::Stream& stream, const Film& film, float exposure, const PreviewCamera& camera);
+  uint64_t bytes() const;  ///< of device memory
+
+ private:
+  struct Pixels {
+    gpu::Buffer light, surfaces;
+  };
+  void make_room(uint32_t width, uint32_t height, const Film* draft);
+  void pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure, bool guided);
+  void reproject(gpu::Stream& stream, const PreviewCamera& now);
+  uint32_t pixels() const { return width_ * height_; }
+
+  gpu::Device& device_;
+  gpu::Kernel pack_, halve_, filter_, reproject_, resolve_;
+  uint32_t width_ = 0, height_ = 0;
+  Pixels now_, history_, draft_;
+  gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], noise_, shares_, depths_, nearest_;
+  gpu::Resources resources_;
+  PreviewCamera camera_, history_camera_;
+  float exposure_ = 1, history_exposure_ = 1;
+  vec3 history_scale_{1};
+  bool shown_ = false;  ///< `now_` is what was developed last
+  bool has_history_ = false;
+  bool repainted_ = false;  ///< of the surfaces that come from before
+};
+
+}  // namespace lucerna::film

@@ -1,0 +1,117 @@
+#include "session/display.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "schedule/uniform.h"
+
+namespace lucerna::session {
+
+namespace {
+
+/// Samples of every pixel from which on a draft, of wider pixels, tells nothing any more.
+constexpr uint32_t k_draft_until = 4;
+
+film::PreviewCamera camera_of(const shared::Frame& f) {
+  return {{f.camera_origin, f.camera_right, f.camera_up, f.camera_forward}, f.orthographic != 0};
+}
+
+}  // namespace
+
+void Display::restart(const scene::Changes& changes, const vec3& scale) {
+  const auto is = [&](scene::Change c) { return changes.edits.contains(c); };
+  if (is(scene::Change::shape) || is(scene::Change::size))
+    preview_.forget();
+  else
+    preview_.keep(scale,
+                  is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders));
+  plan_.restart();
+  draft_serves_ = true;
+}
+
+void Display::take(gpu::Stream& stream, const film::Film& film) {
+  if (plain_ && film::Preview::fits(device_.info().limits, film.width(), film.height())) try {
+      preview_.take(stream, film, plain_->exposure, plain_->camera);
+    } catch (const Error&) {
+      preview_.forget();  // no memory: the next picture begins with nothing
+    }
+  plain_.reset();
+}
+
+void Display::plain(const Engine& engine, const PictureView& view, const film::View& shown) {
+  shares_ = {};
+  plain_ = {camera_of(engine.frame(view, view.width, view.height)), shown.exposure};
+}
+
+void Display::light_changed() {
+  preview_.keep();
+  plan_.light_changed();
+}
+
+void Display::prepared() {
+  preview_.keep();
+  draft_serves_ = false;
+}
+
+bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
+                   const std::function<bool()>& cancel) {
+  if (what == DraftPlan::Next::light) return preview_light(engine, view, cancel);
+  const bool fine = what == DraftPlan::Next::fine;
+  const uint32_t step = fine ? shared::k_preview_step : shared::k_coarse_step;
+  if (fine) {
+    const uint32_t width = std::max(1u, view.width / step), height = std::max(1u, view.height / step);
+    if (!fine_ || fine_->width() != width || fine_->height() != height)
+      fine_ = std::make_unique<film::Film>(device_, width, height);
+  }
+  film::Film& film = fine ? *fine_ : coarse;
+  transport::Wavefront& wavefront = engine.wavefront();
+  const uint32_t before = fine ? plan_.fine_samples() : plan_.coarse_samples();
+  if (before == 0) film.clear(wavefront.stream());
+  wavefront.set_frame(engine.frame(view, film.width(), film.height()), engine.plan().enabled());
+  schedule::UniformSchedule schedule(film.blocks(), 1, wavefront.slots());
+  bool complete = true;
+  for (const auto& solver : engine.solvers()) solver->look_up_preview(wavefront, true);
+  wavefront.uncounted([&] {
+    while (complete && !schedule.done()) {
+      schedule::WorkItem item = schedule.next();
+      for (shared::WorkBlock& block : item.blocks) block.first_sample += before;
+      complete = wavefront.run(item, film, cancel);
+    }
+  });
+  for (const auto& solver : engine.solvers()) solver->look_up_preview(wavefront, false);
+  wavefront.set_frame(engine.frame(view, view.width, view.height), engine.plan().enabled());
+  return complete;
+}
+
+bool Display::preview_light(Engine& engine, const PictureView& view, const std::function<bool()>& cancel) {
+  for (const auto& solver : engine.solvers()) {
+    if (!solver->previews()) continue;
+    const uint64_t before = solver->previewed();
+    bool complete = true;
+    engine.wavefront().uncounted([&] {
+      complete = engine.with(*solver, view, [&](const solvers::Picture& picture) {
+        return solver->preview(engine.wavefront(), picture, cancel);
+      });
+    });
+    if (solver->previewed() != before) light_changed();
+    return complete;
+  }
+  return true;
+}
+
+bool Display::shows(const film::View& view, const film::Film& film) const {
+  return view.layer < shared::k_layer_albedo &&
+         film::Preview::fits(device_.info().limits, film.width(), film.height());
+}
+
+void Display::develop(Engine& engine, const PictureView& view, const film::Film& film,
+                      const film::Film& coarse, const film::View& shown, uint32_t samples, bool filtered) {
+  plain_.reset();
+  const bool fine = plan_.fine_samples() > 0;
+  const film::Film* draft = fine ? fine_.get() : plan_.coarse_samples() > 0 ? &coarse : nullptr;
+  if (!draft_serves_ || samples >= k_draft_until) draft = nullptr;
+  shares_ = preview_.develop(engine.wavefront().stream(), film, draft, shown,
+                             camera_of(engine.frame(view, view.width, view.height)), filtered, samples > 0);
+}
+
+}  // namespace lucerna::session

@@ -1,0 +1,62 @@
+#pragma once
+// What the window shows of the picture while it is made (film/preview.h), and the drafts that this needs.
+// Batch rendering has none of it.
+#include <memory>
+#include <optional>
+
+#include "film/preview.h"
+#include "scene/change.h"
+#include "session/draft_plan.h"
+#include "session/engine.h"
+
+namespace lucerna::session {
+
+class Display {
+ public:
+  Display(gpu::Device& device, gpu::ShaderCompiler& compiler) : device_(device), preview_(device, compiler) {}
+
+  /// The picture begins anew, of other light or as seen from elsewhere. `scale`: what an edit is known to
+  /// multiply all light by.
+  void restart(const scene::Changes& changes, const vec3& scale = vec3(1));
+  /// Before that, and before the film is cleared of which every pixel has samples: it is what has been shown,
+  /// where plain() has been told so.
+  void take(gpu::Stream& stream, const film::Film& film);
+  /// What was looked up so far is not the light any more that will be: drafts begin anew, and what they have
+  /// shown stays until the new is better.
+  void light_changed();
+  /// Samples of the picture itself come from now on.
+  void prepared();
+
+  DraftPlan& plan() { return plan_; }
+  /// Another sample of a draft, or a piece of light for it. `coarse`: the film of a quarter of the
+  /// resolution. False when it was cancelled.
+  bool draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
+            const std::function<bool()>& cancel);
+  /// Whether pictures of that layer and size are previewed at all.
+  bool shows(const film::View& view, const film::Film& film) const;
+  /// Film -> its picture. `samples`: that every pixel has.
+  void develop(Engine& engine, const PictureView& view, const film::Film& film, const film::Film& coarse,
+               const film::View& shown, uint32_t samples, bool filtered);
+  /// Of the picture developed last.
+  film::PreviewShares shares() const { return shares_; }
+  /// It was developed without a preview.
+  void plain(const Engine& engine, const PictureView& view, const film::View& shown);
+
+ private:
+  bool preview_light(Engine& engine, const PictureView& view, const std::function<bool()>& cancel);
+
+  gpu::Device& device_;
+  film::Preview preview_;
+  std::unique_ptr<film::Film> fine_;  ///< of half the resolution; made when it is called for
+  DraftPlan plan_;
+  bool draft_serves_ = true;  ///< it shows the light that the picture's samples bring
+  film::PreviewShares shares_;
+  /// How the picture was shown that is not a preview.
+  struct Plain {
+    film::PreviewCamera camera;
+    float exposure = 1;
+  };
+  std::optional<Plain> plain_;
+};
+
+}  // namespace lucerna::session

@@ -1,0 +1,61 @@
+#pragma once
+// When the window gets samples of drafts: pictures of fewer pixels that stand for the picture until it has
+// samples of its own. No device: pure state.
+#include <cstdint>
+
+namespace lucerna::session {
+
+class DraftPlan {
+ public:
+  enum class Next {
+    nothing,  ///< the picture's own work goes on
+    coarse,   ///< a sample of the draft of a quarter of the resolution
+    fine,     ///< ... of half of it
+    light     ///< a piece of what solvers make for drafts to look up
+  };
+  /// The picture begins anew.
+  void restart() { *this = {}; }
+  /// Light that drafts have looked up has got better: they begin anew.
+  void light_changed() { coarse_ = fine_ = 0; }
+  /// That has been done, and took so long.
+  void drawn(Next what, double seconds) {
+    if (what == Next::light) {
+      light_s_ += seconds;
+      return;
+    }
+    ++(what == Next::coarse ? coarse_ : fine_);
+    draft_s_ += seconds;
+  }
+  /// ... the picture's own work, which took so long.
+  void worked(double seconds) { work_s_ += seconds; }
+
+  /// `preparing`: the picture's samples wait for what they look up, maybe for long; `filled`: every pixel has
+  /// one. A first sample comes at once. While the picture's samples come, a few more: its first ones fill it
+  /// from one side to the other. While they wait the draft is all that there is to be seen, and gets finer;
+  /// half of the time at first, less and less as more helps less.
+  /// `light`: solvers have more to make for drafts; drafts and that take half of the time each.
+  Next next(bool preparing, bool filled, bool light) const {
+    if (filled) return Next::nothing;
+    if (coarse_ == 0) return Next::coarse;
+    if (light && preparing) {
+      if (light_s_ <= draft_s_) return Next::light;
+      return coarse_ < 2 ? Next::coarse : Next::fine;
+    }
+    if (coarse_ < k_coarse_samples) {
+      if (!preparing || draft_s_ <= work_s_) return Next::coarse;
+      return Next::nothing;
+    }
+    if (!preparing || fine_ >= k_fine_samples) return Next::nothing;
+    const double share = fine_ < 4 ? 0.5 : fine_ < 16 ? 0.25 : 0.1;
+    return draft_s_ <= share * (draft_s_ + work_s_) ? Next::fine : Next::nothing;
+  }
+  uint32_t coarse_samples() const { return coarse_; }
+  uint32_t fine_samples() const { return fine_; }
+
+ private:
+  static constexpr uint32_t k_coarse_samples = 4, k_fine_samples = 64;
+  uint32_t coarse_ = 0, fine_ = 0;
+  double draft_s_ = 0, work_s_ = 0, light_s_ = 0;
+};
+
+}  // namespace lucerna::session

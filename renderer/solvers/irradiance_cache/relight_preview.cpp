@@ -1,0 +1,129 @@
+#include "solvers/irradiance_cache/relight_preview.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lucerna::irradiance_cache {
+
+using namespace shared;
+
+namespace {
+
+constexpr uint64_t k_light_bytes = uint64_t{k_part_count} * k_part_texels * 16;
+
+}  // namespace
+
+void RelightPreview::make_room(uint32_t count) {
+  if (!kernel_) kernel_ = gpu::Kernel(device_, compiler_, "irradiance_cache/relight_preview.comp");
+  if (!frame_)
+    frame_ = gpu::Buffer(device_, {.name = "cache frame of a preview", .bytes = sizeof(CacheFrame)});
+  if (records_ && records_->capacity() >= count) return;
+  const uint32_t room = std::min(count + count / 4 + 64, Records::most_records(device_));
+  records_.reset(), octree_.reset();
+  records_ = std::make_unique<Records>(device_, room);
+  octree_ = std::make_unique<lookup::Octree>(device_, compiler_, LookupTables::octree_options(room));
+  old_ =
+      gpu::Buffer(device_, {.name = "cache irradiance before", .bytes = room * k_light_bytes, .texel = true});
+}
+
+void RelightPreview::begin(const LookupTables& tables, uint32_t count, const vec3& factor) {
+  if (count == 0) return end();
+  if (!active() || count != count_) {
+    make_room(count);
+    records_->restore(tables.records.raw(count));
+    indexed_ = false;
+    factor_ = vec3(1);
+  }
+  count_ = count;
+  factor_ *= factor;
+  begun_ = true;
+  // Those that bring no light because paths gather there keep telling where it came from.
+  const std::vector<bool> crowded = records_->crowded();
+  std::vector<uint32_t> list;
+  for (uint32_t r = 0; r < count; ++r)
+    if (!crowded[r]) list.push_back(r);
+  queue_.set(std::move(list));
+  round_ = 0, rays_ = 0;
+}
+
+void RelightPreview::make_ready(gpu::Stream& stream) {
+  if (!std::exchange(indexed_, true)) {
+    const lookup::Discs discs = LookupTables::discs(*records_);
+    octree_->build(stream, records_->spheres(), {.most = count_}, &discs);
+  }
+  if (!std::exchange(begun_, false)) return;
+  stream.copy(records_->light(Records::Use::look_up), old_, count_ * k_light_bytes);
+  mix(stream, ~0u);
+  stream.copy(records_->light(Records::Use::look_up), old_, count_ * k_light_bytes);
+  stream.run();
+  factor_ = vec3(1);
+}
+
+bool RelightPreview::step(transport::Wavefront& wavefront, const paths::Automaton& automaton,
+                          const LookupTables& tables, Evaluator& evaluator, uint32_t parts, uint32_t seed,
+                          const std::function<bool()>& cancel) {
+  if (complete()) return true;
+  const uint32_t elevations = k_rounds[round_], cells = 4 * elevations * elevations;
+  const std::span<const uint32_t> batch = queue_.next(std::max(1u, wavefront.slots() / cells));
+  look_up(wavefront, tables, tables.record_routes, true);
+  const size_t done = evaluator.evaluate(wavefront, automaton, *records_, batch,
+                                         {.elevations = elevations,
+                                          .azimuths = 4 * elevations,
+                                          .rays_before = rays_,
+                                          .parts = parts,
+                                          .seed = seed},
+                                         cancel);
+  look_up(wavefront, tables, tables.picture_routes, false);
+  queue_.advance(done);
+  if (done < batch.size()) return false;
+  if (!queue_.done()) return true;
+  queue_.rewind();
+  rays_ += cells;
+  ++round_;
+  mix(wavefront.stream(), parts);
+  ++published_;
+  return true;
+}
+
+void RelightPreview::mix(gpu::Stream& stream, uint32_t parts) {
+  records_->bind(resources_, Records::Use::gather);
+  resources_.set("old_texels", old_);
+  resources_.set("Shown", records_->light(Records::Use::look_up));
+  stream.dispatch(kernel_, resources_, RelightPreviewPush{factor_, count_, parts, rays_},
+                  gpu::groups_for(count_, 64));
+  stream.run();
+  stream.take_times();
+}
+
+void RelightPreview::take(gpu::Stream& stream, const LookupTables& tables, uint32_t count) {
+  if (!active()) return;
+  const uint64_t bytes = std::min(count, count_) * k_light_bytes;
+  if (bytes == 0) return;
+  make_ready(stream);
+  stream.copy(tables.records.light(Records::Use::gather), records_->light(Records::Use::look_up), bytes);
+  stream.copy(tables.records.light(Records::Use::gather), old_, bytes);
+  stream.run();
+}
+
+void RelightPreview::look_up(transport::Wavefront& wavefront, const LookupTables& tables,
+                             const RouteTable& routes, bool on) {
+  looked_up_ = on && active();
+  if (looked_up_) {
+    make_ready(wavefront.stream());
+    const CacheFrame frame = tables.frame_for(count_, k_probe_none, routes);
+    frame_.write(&frame, sizeof frame);
+  }
+  wavefront.rebind_lookup();
+}
+
+void RelightPreview::bind(gpu::Resources& to) const {
+  records_->bind(to, Records::Use::look_up);
+  to.set("CacheBlock", frame_);
+  octree_->bind(to);
+}
+
+uint64_t RelightPreview::bytes() const {
+  return records_ ? uint64_t{records_->capacity()} * k_record_bytes + octree_->bytes() + old_.bytes() : 0;
+}
+
+}  // namespace lucerna::irradiance_cache

@@ -1,0 +1,72 @@
+// Pixels as shaders/shared/preview.h has them.
+#ifndef LUCERNA_FILM_PREVIEW
+#define LUCERNA_FILM_PREVIEW
+#include "lib/math.glsl"
+#include "shaders/shared/lanes.h"
+#include "shaders/shared/preview.h"
+
+// By component: rgb, standard error of the luminance.
+struct PreviewLight {
+  vec4 of[k_component_count];
+};
+
+PreviewLight preview_unpack(vec4 a, vec4 b) {
+  uvec4 x = floatBitsToUint(a), y = floatBitsToUint(b);
+  PreviewLight l;
+  l.of[0] = vec4(unpackHalf2x16(x.x), unpackHalf2x16(x.y));
+  l.of[1] = vec4(unpackHalf2x16(x.z), unpackHalf2x16(x.w));
+  l.of[2] = vec4(unpackHalf2x16(y.x), unpackHalf2x16(y.y));
+  l.of[3] = vec4(unpackHalf2x16(y.z), unpackHalf2x16(y.w));
+  return l;
+}
+uvec2 preview_pack(vec4 c) {
+  vec4 v = min(c, vec4(60000.0));
+  return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
+}
+vec4 preview_texel(vec4 c, vec4 d) { return uintBitsToFloat(uvec4(preview_pack(c), preview_pack(d))); }
+
+// Normals on an octahedron (Cigolle et al. 2014).
+uint preview_normal(vec3 n) {
+  n /= abs(n.x) + abs(n.y) + abs(n.z) + 1e-20;
+  vec2 o = n.z >= 0.0 ? n.xy : (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
+  return packSnorm2x16(o);
+}
+vec3 preview_normal(uint bits) {
+  vec2 o = unpackSnorm2x16(bits);
+  vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
+  float t = max(-n.z, 0.0);
+  n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);
+  return normalize(n);
+}
+
+struct PreviewSurface {
+  float depth;  // [m]; 0: nothing is there; below 0: not known
+  vec3 normal, albedo;
+  float samples;
+};
+PreviewSurface preview_surface(vec4 texel) {
+  return PreviewSurface(texel.x, preview_normal(floatBitsToUint(texel.y)), unpackUnorm4x8(floatBitsToUint(texel.z)).rgb,
+                        texel.w);
+}
+vec4 preview_texel(PreviewSurface s) {
+  return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)),
+              uintBitsToFloat(packUnorm4x8(vec4(s.albedo, 1.0))), s.samples);
+}
+
+// Whether a pixel that was shown, or holds samples, tells of light at all.
+bool preview_lit(PreviewLight l, PreviewSurface s) { return l.of[0].w >= 0.0 || s.samples > 0.0; }
+
+// What light is divided by to be filtered: the surface's colour, where it has one.
+vec3 preview_modulation(PreviewSurface s) { return s.depth > 0.0 ? max(s.albedo, vec3(0.04)) : vec3(1.0); }
+
+// Whether one surface's light tells of the other's: 0..1. `offset`: between their points; `scale`: how far they may be off
+// each other's plane [m].
+float preview_alike(PreviewSurface a, PreviewSurface b, vec3 offset, float scale) {
+  if (a.depth < 0.0 || b.depth < 0.0) return 1.0;
+  if (a.depth == 0.0 || b.depth == 0.0) return a.depth == b.depth ? 1.0 : 0.0;
+  float facing = max(dot(a.normal, b.normal), 0.0);
+  float off = max(abs(dot(a.normal, offset)), abs(dot(b.normal, offset))) / scale;
+  float facing8 = square(square(square(facing)));
+  return square(facing8) * exp2(-off * off);
+}
+#endif

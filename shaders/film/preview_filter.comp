@@ -1,0 +1,84 @@
+// A pass of an edge-avoiding a-trous filter over the grid (Dammertz et al. 2010): 3x3 cells, `step` apart, weighed by
+// whether they are of one surface, and by whether their light differs by more than its noise (Schied et al. 2017). The first
+// pass weighs by surfaces alone and finds the noise, from the halves of the samples where there are two, else from how much
+// neighbours differ.
+#include "lib/invocation.glsl"
+#include "film/preview.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { PreviewFilterPush push; };
+uniform samplerBuffer grid_texels, grid_surfaces, before_texels;
+layout(scalar) writeonly buffer FilteredBefore { vec4 filtered_before[]; };  // the same way, so that both can be compared
+layout(scalar) writeonly buffer Filtered { vec4 filtered[]; };
+layout(scalar) writeonly buffer GridNoise { vec4 grid_noise[]; };  // standard error of a cell, by component
+
+vec3 ray_at(vec2 cell) {
+  vec2 p = vec2(2.0, -2.0) * (cell + 0.5) / vec2(push.across, push.down) + vec2(-1.0, 1.0);
+  return p.x * push.right + p.y * push.up;
+}
+vec3 point_at(vec3 ray, float depth) {
+  return push.orthographic != 0u ? ray + depth * push.forward : depth * (ray + push.forward);
+}
+vec4 luminances(PreviewLight l) {
+  return vec4(luminance(l.of[0].rgb), luminance(l.of[1].rgb), luminance(l.of[2].rgb), luminance(l.of[3].rgb));
+}
+
+void main() {
+  uint cell = global_index();
+  if (cell >= push.across * push.down) return;
+  ivec2 xy = ivec2(cell % push.across, cell / push.across);
+  PreviewSurface here = preview_surface(texelFetch(grid_surfaces, int(cell)));
+  PreviewLight own = preview_unpack(texelFetch(grid_texels, int(2u * cell)), texelFetch(grid_texels, int(2u * cell) + 1));
+  vec4 own_luminance = luminances(own), own_noise = vec4(own.of[0].w, own.of[1].w, own.of[2].w, own.of[3].w);
+  vec3 ray = ray_at(vec2(xy)), point = point_at(ray, max(here.depth, 0.0));
+  // A cell's width there, and a little more for surfaces that are not plane.
+  float scale = (push.orthographic != 0u ? 1.0 : max(here.depth, 0.0)) *
+                    (2.0 * length(push.right) / float(push.across) * float(push.step)) + 1e-3 * max(here.depth, 0.0) + 1e-6;
+  bool first = push.step == 1u;
+  vec3 sum[k_component_count];
+  for (uint c = 0u; c < k_component_count; ++c) sum[c] = vec3(0.0);
+  vec4 weights = vec4(0.0), variance = vec4(0.0), mean = vec4(0.0), square_mean = vec4(0.0), known = vec4(0.0),
+       before = vec4(0.0);
+  float alike_sum = 0.0, known_sum = 0.0;
+  for (int k = 0; k < 9; ++k) {
+    ivec2 at = xy + int(push.step) * (ivec2(k % 3, k / 3) - 1);
+    bool inside = all(greaterThanEqual(at, ivec2(0))) && at.x < int(push.across) && at.y < int(push.down);
+    int there = inside ? at.y * int(push.across) + at.x : int(cell);
+    PreviewSurface s = preview_surface(texelFetch(grid_surfaces, there));
+    PreviewLight l = preview_unpack(texelFetch(grid_texels, 2 * there), texelFetch(grid_texels, 2 * there + 1));
+    float kernel = (k == 4 ? 4.0 : (k & 1) == 1 ? 2.0 : 1.0) * (inside ? 1.0 : 0.0) * min(s.samples, 1.0);
+    float alike = preview_alike(here, s, point_at(ray_at(vec2(at)), max(s.depth, 0.0)) - point, scale);
+    // What knows of no samples takes whatever there is, rather than nothing.
+    if (here.samples <= 0.0) alike = max(alike, 1e-4);
+    vec4 y = luminances(l), noise = vec4(l.of[0].w, l.of[1].w, l.of[2].w, l.of[3].w);
+    vec4 w = vec4(kernel * alike);
+    if (first) {
+      // Few cells hold most of what single paths bring: shown bright, they count for less.
+      w /= 1.0 + max(y - 1.0, vec4(0.0));
+    } else {
+      w *= exp2(-min(abs(y - own_luminance) / (3.0 * max(own_noise, vec4(0.0)) + 0.02 * own_luminance + 1e-4), vec4(40.0)));
+    }
+    for (uint c = 0u; c < k_component_count; ++c) sum[c] += w[c] * l.of[c].rgb;
+    before += w * texelFetch(before_texels, there);
+    weights += w;
+    variance += w * w * max(noise, vec4(0.0)) * max(noise, vec4(0.0));
+    float plain = kernel * alike;
+    alike_sum += plain;
+    mean += plain * y;
+    square_mean += plain * y * y;
+    if (l.of[0].w >= 0.0) known += plain * noise * noise, known_sum += plain;
+  }
+  vec4 inverse = vec4(1.0) / max(weights, vec4(1e-20));
+  vec4 error = sqrt(variance) * inverse;
+  if (first) {
+    mean /= max(alike_sum, 1e-20);
+    vec4 spread = max(square_mean / max(alike_sum, 1e-20) - mean * mean, vec4(0.0)) * (9.0 / 8.0);
+    vec4 of_cell = known_sum > 0.5 * alike_sum ? known / max(known_sum, 1e-20) : spread;
+    grid_noise[cell] = sqrt(of_cell);
+    error = sqrt(of_cell * 0.14);  // squares of the weights 4, 2, 1 over the square of their sum
+  }
+  vec4 result[k_component_count];
+  for (uint c = 0u; c < k_component_count; ++c) result[c] = vec4(sum[c] * inverse[c], error[c]);
+  filtered_before[cell] = before * inverse;
+  filtered[2u * cell] = preview_texel(result[0], result[1]);
+  filtered[2u * cell + 1u] = preview_texel(result[2], result[3]);
+}

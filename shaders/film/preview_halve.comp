@@ -1,0 +1,76 @@
+// Pixels of the preview -> the grid that is filtered: light over the surface's colour, of all samples there are in a cell,
+// the draft's among them.
+#include "lib/invocation.glsl"
+#include "film/preview.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { PreviewHalvePush push; };
+uniform samplerBuffer packed_texels, surface_texels, draft_texels, draft_surfaces, history_texels, history_surfaces;
+layout(scalar) writeonly buffer Grid { vec4 grid[]; };
+layout(scalar) writeonly buffer GridSurfaces { vec4 grid_surfaces[]; };
+// Luminance by component of what was shown before, likewise over the colour; the present's where that is not known.
+layout(scalar) writeonly buffer GridBefore { vec4 grid_before[]; };
+
+PreviewLight total;
+float weights = 0.0;
+bool noise_known = true;
+
+void add(vec4 a, vec4 b, PreviewSurface s, float weight) {
+  if (weight <= 0.0) return;
+  PreviewLight l = preview_unpack(a, b);
+  vec3 m = preview_modulation(s);
+  for (uint c = 0u; c < k_component_count; ++c) {
+    noise_known = noise_known && l.of[c].w >= 0.0;
+    total.of[c] += vec4(weight * l.of[c].rgb / m, square(weight * l.of[c].w / luminance(m)));
+  }
+  weights += weight;
+}
+
+void main() {
+  uint cell = global_index();
+  if (cell >= push.across * push.down) return;
+  uvec2 xy = k_preview_step * uvec2(cell % push.across, cell / push.across);
+  for (uint c = 0u; c < k_component_count; ++c) total.of[c] = vec4(0.0);
+  // The cell's surface is that of its first pixel; pixels that show another one are left out where that is known.
+  PreviewSurface here = preview_surface(texelFetch(surface_texels, int(xy.y * push.width + xy.x)));
+  if (push.draft_width > 0u) {
+    uvec2 at = min(xy * uvec2(push.draft_width, push.draft_height) / uvec2(push.width, push.height),
+                   uvec2(push.draft_width, push.draft_height) - 1u);
+    int pixel = int(at.y * push.draft_width + at.x);
+    PreviewSurface s = preview_surface(texelFetch(draft_surfaces, pixel));
+    if (here.depth < 0.0 && s.samples > 0.0) here = s;
+    if (push.repainted != 0u && here.samples <= 0.0 && s.samples > 0.0) here.albedo = s.albedo;
+    // Across an edge it is another surface's light, and better than none.
+    bool alike = (s.depth > 0.0) == (here.depth > 0.0) &&
+                 (s.depth <= 0.0 || (dot(s.normal, here.normal) > 0.8 && abs(s.depth - here.depth) < 0.1 * here.depth));
+    float weight = push.draft_share * s.samples * (alike ? 1.0 : 1e-3);
+    add(texelFetch(draft_texels, 2 * pixel), texelFetch(draft_texels, 2 * pixel + 1), s, weight);
+  }
+  vec4 before = vec4(0.0);
+  float before_known = 0.0;
+  for (uint k = 0u; k < k_preview_step * k_preview_step; ++k) {
+    uvec2 at = min(xy + uvec2(k % k_preview_step, k / k_preview_step), uvec2(push.width, push.height) - 1u);
+    int pixel = int(at.y * push.width + at.x);
+    PreviewSurface s = preview_surface(texelFetch(surface_texels, pixel));
+    bool alike = (s.depth > 0.0) == (here.depth > 0.0) && dot(s.normal, here.normal) > 0.8;
+    if (s.samples > 0.0 && (alike || s.depth <= 0.0))
+      add(texelFetch(packed_texels, 2 * pixel), texelFetch(packed_texels, 2 * pixel + 1), s, s.samples);
+    PreviewSurface was = preview_surface(texelFetch(history_surfaces, pixel));
+    PreviewLight l = preview_unpack(texelFetch(history_texels, 2 * pixel), texelFetch(history_texels, 2 * pixel + 1));
+    if (push.history != 0u && preview_lit(l, was) && (alike || s.depth <= 0.0)) {
+      vec3 m = push.history_scale / (was.depth >= 0.0 ? preview_modulation(was) : preview_modulation(here));
+      before += vec4(luminance(m * l.of[0].rgb), luminance(m * l.of[1].rgb), luminance(m * l.of[2].rgb), luminance(m * l.of[3].rgb));
+      before_known += 1.0;
+    }
+  }
+  float scale = weights > 0.0 ? 1.0 / weights : 0.0;
+  for (uint c = 0u; c < k_component_count; ++c) {
+    total.of[c].rgb *= scale;
+    total.of[c].w = noise_known && weights > 0.0 ? scale * sqrt(total.of[c].w) : -1.0;
+  }
+  vec4 now = vec4(luminance(total.of[0].rgb), luminance(total.of[1].rgb), luminance(total.of[2].rgb), luminance(total.of[3].rgb));
+  grid_before[cell] = before_known > 0.0 ? before / before_known : now;
+  grid[2u * cell] = preview_texel(total.of[0], total.of[1]);
+  grid[2u * cell + 1u] = preview_texel(total.of[2], total.of[3]);
+  here.samples = weights;
+  grid_surfaces[cell] = preview_texel(here);
+}

@@ -1,0 +1,42 @@
+// Film -> pixels of the preview: means, their noise by the two halves of the samples, surfaces.
+#include "lib/film.glsl"
+#include "lib/invocation.glsl"
+#include "film/preview.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { PreviewPackPush push; };
+layout(scalar) writeonly buffer Packed { vec4 packed[]; };
+layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
+uniform samplerBuffer history_surfaces;
+
+void main() {
+  uint pixel = global_index();
+  if (pixel >= push.width * push.height) return;
+  uint count = film_count[pixel];
+  float n = float(max(count, 1u)), even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
+  vec4 light[k_component_count];
+  for (uint c = 0u; c < k_component_count; ++c) {
+    vec3 a = vec3(0.0), b = vec3(0.0);
+    for (uint group = 0u; group < k_group_count; ++group) {
+      FilmPixel p = film_load(lane_of(group, c), pixel, push.width * push.height);
+      a += p.even.sum + p.even.compensation;
+      b += p.odd.sum + p.odd.compensation;
+    }
+    float noise = count < 2u ? -1.0 : 0.5 * abs(luminance(a) / even - luminance(b) / odd);
+    light[c] = push.exposure * vec4((a + b) / n, noise);
+    if (count < 2u) light[c].w = -1.0;
+  }
+  packed[2u * pixel] = preview_texel(light[0], light[1]);
+  packed[2u * pixel + 1u] = preview_texel(light[2], light[3]);
+  vec4 albedo = texelFetch(film_albedo, int(pixel)), normal = texelFetch(film_normal, int(pixel));
+  PreviewSurface s;
+  s.depth = albedo.w > 0.0 ? normal.w / albedo.w : 0.0;
+  s.normal = normal.xyz / max(length(normal.xyz), 1e-20);
+  s.albedo = albedo.xyz / max(albedo.w, 1.0);
+  s.samples = float(count);
+  vec4 texel = preview_texel(s);
+  if (count == 0u) {
+    texel = push.guided != 0u ? texelFetch(history_surfaces, int(pixel)) : vec4(-1.0, 0.0, 0.0, 0.0);
+    texel.w = 0.0;
+  }
+  packed_surfaces[pixel] = texel;
+}

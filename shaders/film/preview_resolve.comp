@@ -1,0 +1,112 @@
+// The preview's picture: of each component the pixel's own samples as far as their noise allows, else the filtered grid
+// times the surface's colour; mixed with what was shown before as far as that is not seen to be wrong.
+//
+// With new light N of variance v and older light O of variance u the difference d = N - O tells of a change: its square is
+// on average v + u + change^2. The mix w O + (1 - w) N errs least with w = v / (v + u + change^2). Both are filtered for the
+// difference, so that detail which the filter takes away is no change.
+#include "lib/invocation.glsl"
+#include "lib/picture.glsl"
+#include "film/preview.glsl"
+#include "shaders/shared/tone.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { PreviewResolvePush push; };
+uniform samplerBuffer packed_texels, surface_texels, history_texels, history_surfaces;
+uniform samplerBuffer filtered_texels, grid_surfaces, noise_texels, before_texels;
+layout(scalar) writeonly buffer Packed { vec4 packed[]; };
+layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
+layout(scalar) writeonly buffer Picture { uint picture[]; };
+layout(scalar) writeonly buffer Shares { PreviewShares shares[]; };
+
+// Relative noise of a pixel up to which it is shown as it is, and from which on it is filtered.
+const float k_clean = 0.02, k_noisy = 0.08;
+// Of filtered light, what the filter may be off by.
+const float k_filter_error = 0.04;
+const float k_floor = 0.02;  // film::k_luminance_floor
+
+shared vec3 group_shares[64];
+
+void main() {
+  uint pixel = global_index(), lane = gl_LocalInvocationIndex;
+  vec3 told = vec3(0.0);
+  if (pixel < push.width * push.height) {
+    PreviewSurface here = preview_surface(texelFetch(surface_texels, int(pixel)));
+    PreviewLight own = preview_unpack(texelFetch(packed_texels, int(2u * pixel)), texelFetch(packed_texels, int(2u * pixel) + 1));
+    vec2 p = (vec2(pixel % push.width, pixel / push.width) + 0.5) / float(k_preview_step) - 0.5;
+    ivec2 base = ivec2(floor(p));
+    vec2 f = p - vec2(base);
+    // The grid's four nearest cells, those of another surface left out.
+    vec4 light[k_component_count];
+    for (uint c = 0u; c < k_component_count; ++c) light[c] = vec4(0.0);
+    vec4 noise = vec4(0.0), before_smooth = vec4(0.0);
+    vec3 modulation = vec3(0.0);
+    float weights = 0.0, nearest_weight = 0.0, nearest_depth = -1.0;
+    for (int k = 0; k < 4; ++k) {
+      ivec2 corner = ivec2(k & 1, k >> 1);
+      ivec2 at = clamp(base + corner, ivec2(0), ivec2(push.across, push.down) - 1);
+      int cell = at.y * int(push.across) + at.x;
+      PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
+      vec2 g = mix(1.0 - f, f, vec2(corner));
+      float w = g.x * g.y + 1e-3;
+      if (here.depth >= 0.0 && s.depth >= 0.0) {
+        bool alike = here.depth > 0.0 && s.depth > 0.0 ? abs(here.depth - s.depth) < 0.1 * here.depth && dot(here.normal, s.normal) > 0.7
+                                                       : here.depth == s.depth;
+        w *= alike ? 1.0 : 1e-4;
+      }
+      PreviewLight l = preview_unpack(texelFetch(filtered_texels, 2 * cell), texelFetch(filtered_texels, 2 * cell + 1));
+      float there = (l.of[0].w + l.of[1].w + l.of[2].w + l.of[3].w) >= 0.0 && s.samples > 0.0 ? w : 1e-6 * w;
+      for (uint c = 0u; c < k_component_count; ++c) light[c] += there * l.of[c];
+      before_smooth += there * texelFetch(before_texels, cell);
+      noise += there * texelFetch(noise_texels, cell) * sqrt(max(s.samples, 1e-3));  // of one sample
+      modulation += there * preview_modulation(s);
+      weights += there;
+      if (s.samples > 0.0 && s.depth >= 0.0 && there > nearest_weight) nearest_weight = there, nearest_depth = s.depth;
+    }
+    float inverse = 1.0 / max(weights, 1e-20);
+    if (here.depth >= 0.0 && (push.repainted == 0u || here.samples > 0.0)) {
+      modulation = preview_modulation(here);
+    } else {
+      modulation *= inverse;
+    }
+    noise *= inverse * luminance(modulation) * inversesqrt(max(here.samples, 1.0));
+    PreviewLight old = preview_unpack(texelFetch(history_texels, int(2u * pixel)), texelFetch(history_texels, int(2u * pixel) + 1));
+    bool has_old = push.history != 0u && preview_lit(old, preview_surface(texelFetch(history_surfaces, int(pixel))));
+    // For cameras that come after this one.
+    if (here.depth < 0.0 && nearest_depth >= 0.0) packed_surfaces[pixel] = vec4(k_preview_about - nearest_depth, 0.0, 0.0, 0.0);
+    vec4 result[k_component_count];
+    vec3 color = vec3(0.0);
+    for (uint c = 0u; c < k_component_count; ++c) {
+      vec3 smooth_light = light[c].rgb * inverse * modulation;
+      float smooth_luminance = luminance(smooth_light), own_luminance = luminance(own.of[c].rgb);
+      float relative = noise[c] / max(max(smooth_luminance, own_luminance), k_floor);
+      // How far its own samples are not to be shown alone.
+      float rough = here.samples > 0.0 ? smoothstep(k_clean, k_noisy, relative) : 1.0;
+      float amount = push.filtering != 0u || here.samples <= 0.0 ? rough : 0.0;
+      vec3 now = mix(own.of[c].rgb, smooth_light, amount);
+      float error = mix(noise[c], luminance(modulation) * max(light[c].w, 0.0) * inverse + k_filter_error * smooth_luminance, amount);
+      vec3 before = has_old ? old.of[c].rgb * push.history_scale : vec3(0.0);
+      float u = has_old ? square(old.of[c].w) : 0.0, v = square(error) + 1e-8;
+      float difference = luminance(modulation) * before_smooth[c] * inverse - smooth_luminance;
+      float change = max(square(difference) - u - v, 0.0);
+      float keep = has_old ? rough * v / (v + u + change) : 0.0;
+      bool nothing = weights <= 1e-5 && here.samples <= 0.0;
+      if (nothing) keep = has_old ? 1.0 : 0.0;
+      now = mix(now, before, keep);
+      float left = sqrt(square((1.0 - keep) * error) + keep * keep * (u + change));
+      result[c] = vec4(now, nothing && !has_old ? -1.0 : left);
+      if ((push.show >> c & 1u) != 0u) color += now;
+      float shown = luminance(now) * float(push.show >> c & 1u);
+      told += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
+    }
+    packed[2u * pixel] = preview_texel(result[0], result[1]);
+    packed[2u * pixel + 1u] = preview_texel(result[2], result[3]);
+    picture[pixel] = picture_packed(tone_map(color, push.curve));
+  }
+  group_shares[lane] = min(told, vec3(4.0));
+  barrier();
+  if (lane == 0u) {
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < 64u; ++i) sum += group_shares[i];
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (group < (push.width * push.height + 63u) / 64u) shares[group] = PreviewShares(sum.x, sum.y, sum.z);
+  }
+}

@@ -1,0 +1,66 @@
+// What is shown of a picture until its samples are enough: layout and what the kernels are told. Read by C++ and GLSL.
+//
+// Of a pixel: k_preview_texels texels of sixteen half floats, component by component red, green, blue and the standard
+// error of the luminance (below 0: not known), in units of what is shown white; and one texel of its surface: depth along the
+// view axis [m] (0: nothing is there; below 0: not known, and where a draft has seen it about k_preview_about less
+// this), bits packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, 1), samples.
+#ifndef LUCERNA_SHARED_PREVIEW_H
+#define LUCERNA_SHARED_PREVIEW_H
+#include "shaders/shared/compat.h"
+LUCERNA_SHARED_BEGIN
+
+LUCERNA_CONST uint k_preview_texels = 2u;
+LUCERNA_CONST float k_preview_about = -2.0f;
+LUCERNA_CONST uint k_preview_step = 2u;  ///< pixels along the side of one of the grid that is filtered
+
+struct PreviewCamera {
+  vec3 origin, right, up, forward;  ///< as Frame's
+};
+
+struct PreviewPackPush {
+  uint width, height;
+  float exposure;
+  uint guided;  ///< not 0: where there are no samples the surface is the one that was shown before
+};
+
+struct PreviewHalvePush {
+  uint width, height;              ///< of the picture
+  uint across, down;               ///< of the grid
+  uint draft_width, draft_height;  ///< 0: none
+  uint history;                    ///< 0: nothing was shown before
+  uint repainted;                  ///< not 0: surfaces may have other colours than were shown before
+  vec3 history_scale;              ///< of what was shown before
+  float draft_share;               ///< of a draft's sample, what a pixel of the grid gets: its area over the draft pixel's
+};
+
+struct PreviewFilterPush {
+  uint across, down;
+  uint step;             ///< between the pixels that are weighed; 1: the first pass, which says how noisy the grid is
+  uint orthographic;
+  vec3 right, up, forward;
+};
+
+struct PreviewReprojectPush {
+  uint width, height;
+  uint pass;             ///< 0: depths, 1: which pixel is the nearest, 2: pixels are taken over
+  uint orthographic;     ///< bit 0: before, bit 1: now
+  PreviewCamera before, now;
+};
+
+struct PreviewResolvePush {
+  uint width, height, across, down;
+  uint show;             ///< bit i: component i is part of what is shown
+  uint curve;
+  uint filtering;        ///< 0: where there are samples they are shown as they are
+  uint history;          ///< 0: there is none
+  uint repainted;        ///< as PreviewHalvePush has it
+  vec3 history_scale;    ///< of what was shown before
+};
+
+/// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered.
+struct PreviewShares {
+  float all, stale, filtered;
+};
+
+LUCERNA_SHARED_END
+#endif

@@ -1,0 +1,127 @@
+// links: session
+// Light for the window while records are relit: it is there for all of them after a few rays, near what
+// relighting ends with, and that does not depend on it.
+#include <catch2/catch.hpp>
+
+#include "images/cache_support.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+using irradiance_cache::Cache;
+using irradiance_cache::RawRecords;
+using test::begins_with, test::Settings;
+
+namespace {
+
+const Settings k_base{{"components.secondary", "cache"},
+                      {"components.tertiary", "cache"},
+                      {"components.primary", "off"},
+                      {"cache.rays", "64"},
+                      {"cache.max_rays", "256"},
+                      {"cache.error", "0.4"},
+                      {"cache.gather", "false"},
+                      {"cache.max_records", "5000"},
+                      {"samples", "2"},
+                      {"path.batch", "8192"}};
+
+/// The window's renderer, step by step.
+struct Bed {
+  session::Renderer r;
+  explicit Bed(bool interactive, const char* metric)
+      : r([&] {
+          session::RendererOptions o = test::renderer_options(true);
+          o.interactive = interactive;
+          return o;
+        }()) {
+    r.set_size(32, 32);
+    r.settings().set("path.batch", "8192");
+    r.set_scene(std::make_shared<scene::Scene>(test::block_room(true)));
+    Settings all = k_base;
+    all["cache.metric"] = metric;
+    test::set(r, all);
+    test::finish(r);
+  }
+  ~Bed() { CHECK(r.device().validation_messages() == 0); }
+  Cache& cache() { return *const_cast<Cache*>(test::cache(r)); }
+  RawRecords records() { return cache().records().raw(cache().records().size()); }
+  void set_lamp(vec3 intensity, vec3 position) {
+    scene::Light lamp = r.scene()->lights[0];
+    lamp.intensity = intensity, lamp.position = position;
+    r.set_light(0, lamp);
+  }
+  /// All that drafts want before the work goes on; how often the light for them became better.
+  uint64_t draw_drafts() {
+    const uint64_t before = cache().previewed();
+    while (cache().preview_left() && r.draw_draft()) {
+    }
+    return cache().previewed() - before;
+  }
+  /// Mean of what the window shows, 0..1, encoded.
+  double shown() {
+    const std::vector<uint8_t> rgba = r.shown_picture(r.samples() == 0);
+    double sum = 0;
+    for (size_t i = 0; i < rgba.size(); i += 4) sum += rgba[i] + rgba[i + 1] + rgba[i + 2];
+    return sum / (255.0 * 3 / 4 * double(rgba.size()));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("what relighting brings does not depend on what is shown meanwhile, to the bit") {
+  for (const char* metric : {"split-sphere", "hessian"}) {
+    INFO(metric);
+    Bed window(true, metric), batch(false, metric);
+    REQUIRE(begins_with(window.records(), batch.records()));
+    int round = 0;
+    for (const vec3 position : {vec3(-1.2f, 1.5f, 0.6f), vec3(0.8f, 1.6f, -0.4f), vec3(0, 1, 0)}) {
+      for (Bed* bed : {&window, &batch}) bed->set_lamp(vec3(2, 5, 9), position);
+      if (round != 1) CHECK(window.draw_drafts() >= 3);
+      // In the second round the next edit comes while some are relit and some are not.
+      for (int step = 0; step < (round == 1 ? 40 : 0); ++step) {
+        window.r.draw_draft();
+        window.r.step();
+        window.shown();
+      }
+      if (++round == 2) continue;
+      const film::Image a = test::finish(window.r), b = test::finish(batch.r);
+      if (round == 1) {
+        CHECK(test::identical(a, b));
+        CHECK(begins_with(window.records(), batch.records()));
+        CHECK(window.records().size() == batch.records().size());
+      }
+      CHECK_FALSE(window.cache().preview_left());
+    }
+  }
+}
+
+TEST_CASE("after an edit the window shows the light that will be, long before records are relit") {
+  Bed bed(true, "hessian");
+  const double before = bed.shown();
+  // Twice as bright and elsewhere.
+  bed.set_lamp(vec3(14), {-1.2f, 1.5f, 0.6f});
+  REQUIRE_FALSE(bed.cache().ready());
+  REQUIRE(bed.cache().status().relit == 0);
+  // At once what was there is.
+  CHECK(bed.shown() == Approx(before).epsilon(0.02));
+  CHECK(bed.r.preview_shares().stale > 0.95);
+  const uint64_t rays = bed.cache().status().rays;
+  CHECK(bed.draw_drafts() >= 3);
+  for (int i = 0; i < 12; ++i) bed.r.draw_draft(), bed.r.step();
+  const double early = bed.shown();
+  CHECK(bed.cache().status().relit < 1);
+  CHECK(bed.r.preview_shares().stale < 0.4);
+  INFO("before " << before << ", early " << early << ", rays of relighting " << rays);
+  test::finish(bed.r);
+  const double finally = bed.shown();
+  INFO("finally " << finally);
+  REQUIRE(std::abs(finally - before) > 0.1 * before);
+  CHECK(early == Approx(finally).epsilon(0.06));
+}
+
+TEST_CASE("batch rendering has neither drafts nor light for them") {
+  Bed batch(false, "hessian");
+  batch.set_lamp(vec3(1), vec3(0, 1, 0));
+  CHECK_FALSE(batch.cache().preview_left());
+  CHECK_FALSE(batch.r.draw_draft());
+  CHECK(batch.r.preview_shares().stale == 0);
+}

@@ -1,0 +1,273 @@
+// links: film film_io
+// What the window shows of a film with few samples, through the real shaders: noise goes and edges of colour
+// stay, what was there before stays until the new light says otherwise, and goes where the camera sees it.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "film/developer.h"
+#include "film/preview.h"
+#include "film/tonemap.h"
+
+using namespace lucerna;
+using film::Film;
+
+namespace {
+
+uint32_t compact(uint32_t x) { return (x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u); }
+
+/// What a sample of a pixel brings.
+struct Sample {
+  vec3 light{0}, albedo{1}, normal{0, 0, 1};
+  float depth = 5;  ///< 0: nothing is there
+};
+using Source = std::function<Sample(uint32_t x, uint32_t y)>;
+
+struct Stage {
+  uint32_t width, height;
+  gpu::Device device{{"cpu", true}};
+  gpu::ShaderCompiler compiler;
+  gpu::Stream stream{device};
+  gpu::Kernel add{device, compiler, "film/add.comp"};
+  film::Developer developer{device, compiler};
+  film::Preview preview{device, compiler};
+  Film film{device, width, height};
+  film::View view;
+  film::PreviewCamera camera{{vec3(0), vec3(1, 0, 0), vec3(0, 0.75f, 0), vec3(0, 0, -1)}, false};
+
+  Stage(uint32_t w, uint32_t h) : width(w), height(h) {
+    view.curve = shared::k_tone_linear;
+    film.clear(stream);
+  }
+  ~Stage() { CHECK(device.validation_messages() == 0); }
+
+  /// Adds samples to all of a film's pixels, or to those of its blocks where `where` is true.
+  void sample(
+      Film& to, uint32_t samples, const Source& source,
+      const std::function<bool(uint32_t block)>& where = [](uint32_t) { return true; }) {
+    std::vector<shared::WorkBlock> list;
+    for (uint32_t b = 0; b < to.blocks(); ++b)
+      if (where(b)) list.push_back({b, 0});
+    const size_t slots = list.size() * 64 * samples;
+    std::vector<vec4> light(slots * 4, vec4(0)), features(slots * 2, vec4(0));
+    for (uint32_t s = 0; s < samples; ++s)
+      for (size_t b = 0; b < list.size(); ++b)
+        for (uint32_t code = 0; code < 64; ++code) {
+          const uint32_t across = to.blocks_across(), x = list[b].index % across * 8 + compact(code),
+                         y = list[b].index / across * 8 + compact(code >> 1);
+          const Sample v = source(x, y);
+          const size_t slot = (s * list.size() + b) * 64 + code;
+          light[slot * 4 + 1] = vec4(v.light, 0);
+          if (v.depth > 0)
+            features[2 * slot] = vec4(v.albedo, 1), features[2 * slot + 1] = vec4(v.normal, v.depth);
+        }
+    gpu::Buffer radiance(device, {.name = "radiance", .bytes = light.size() * 16, .texel = true});
+    gpu::Buffer surfaces(device, {.name = "features", .bytes = features.size() * 16, .texel = true});
+    gpu::Buffer work(device, {.name = "work", .bytes = list.size() * sizeof(shared::WorkBlock)});
+    radiance.write(std::span<const vec4>(light));
+    surfaces.write(std::span<const vec4>(features));
+    work.write(std::span<const shared::WorkBlock>(list));
+    gpu::Resources resources;
+    to.bind(resources);
+    resources.set("WorkBlocks", work);
+    resources.set("radiance_texels", radiance);
+    resources.set("feature_texels", surfaces);
+    const auto n = uint32_t(list.size());
+    stream.dispatch(add, resources, shared::FilmPush{to.width(), to.height(), 64 * n, samples}, n);
+    stream.run();
+  }
+  film::PreviewShares show(const Film* draft = nullptr, bool filtered = true) {
+    return preview.develop(stream, film, draft, view, camera, filtered);
+  }
+  /// Linear red, as the picture shows it.
+  std::vector<float> shown() const {
+    const std::vector<uint8_t> rgba = film.read_picture();
+    std::vector<float> red;
+    for (size_t i = 0; i < rgba.size(); i += 4) {
+      const float c = float(rgba[i]) / 255;
+      red.push_back(c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f));
+    }
+    return red;
+  }
+};
+
+double rms(const std::vector<float>& shown, const std::function<float(uint32_t, uint32_t)>& truth,
+           uint32_t width) {
+  double sum = 0;
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const double d = shown[i] / truth(uint32_t(i) % width, uint32_t(i) / width) - 1;
+    sum += d * d;
+  }
+  return std::sqrt(sum / double(shown.size()));
+}
+
+}  // namespace
+
+TEST_CASE("noise of few samples is filtered, and edges of the surfaces' colours stay sharp") {
+  for (const uint32_t samples : {1u, 4u}) {
+    Stage stage(96, 64);
+    std::mt19937 random(3);
+    std::exponential_distribution<float> noise(1);
+    const auto albedo = [](uint32_t x, uint32_t y) { return (x / 11 + y / 11) % 2 ? 0.8f : 0.2f; };
+    stage.sample(stage.film, samples, [&](uint32_t x, uint32_t y) {
+      return Sample{.light = vec3(0.5f * albedo(x, y) * noise(random)), .albedo = vec3(albedo(x, y))};
+    });
+    const auto truth = [&](uint32_t x, uint32_t y) { return 0.5f * albedo(x, y); };
+    stage.developer.tone_map(stage.stream, stage.film, stage.view);
+    const double before = rms(stage.shown(), truth, stage.width);
+    const film::PreviewShares shares = stage.show();
+    const double after = rms(stage.shown(), truth, stage.width);
+    INFO(samples << " samples: relative noise " << before << ", filtered " << after);
+    CHECK(before > 0.35);
+    CHECK(after < 0.25 * before);
+    CHECK(shares.filtered > 0.9);
+    CHECK(shares.stale == 0);
+  }
+}
+
+TEST_CASE("what has little noise is shown as it is, pixel for pixel, also without a filter") {
+  Stage stage(60, 44);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> any(0, 1);
+  std::vector<float> value(size_t(stage.width) * stage.height);
+  for (float& v : value) v = 0.05f + 0.9f * any(random);  // detail of one pixel that surfaces know nothing of
+  stage.sample(stage.film, 8, [&](uint32_t x, uint32_t y) {
+    return Sample{.light = vec3(x < stage.width && y < stage.height ? value[y * stage.width + x] : 0)};
+  });
+  stage.developer.tone_map(stage.stream, stage.film, stage.view);
+  const std::vector<uint8_t> plain = stage.film.read_picture();
+  for (const bool filtered : {true, false}) {
+    const film::PreviewShares shares = stage.show(nullptr, filtered);
+    const std::vector<uint8_t> shown = stage.film.read_picture();
+    int farthest = 0;
+    for (size_t i = 0; i < plain.size(); ++i)
+      farthest = std::max(farthest, std::abs(int(plain[i]) - int(shown[i])));
+    CHECK(farthest <= 1);  // half floats
+    CHECK(shares.filtered < 0.01);
+  }
+}
+
+TEST_CASE("pixels without samples show the draft, without black ones or seams of blocks") {
+  Stage stage(96, 64);
+  Film draft(stage.device, 24, 16);
+  draft.clear(stage.stream);
+  stage.sample(draft, 2, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.4f)}; });
+  stage.sample(
+      stage.film, 2, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.4f)}; },
+      [](uint32_t block) { return block % 5 == 1; });
+  stage.show(&draft);
+  for (const float v : stage.shown()) CHECK(v == Approx(0.4f).epsilon(0.02));
+}
+
+TEST_CASE("after an edit what was there stays until new light says otherwise") {
+  Stage stage(64, 48);
+  const auto light = [](uint32_t x, uint32_t y) { return 0.2f + 0.3f * float((x / 8 + y / 8) % 2); };
+  stage.sample(stage.film, 8, [&](uint32_t x, uint32_t y) { return Sample{.light = vec3(light(x, y))}; });
+  stage.show();
+  const std::vector<float> before = stage.shown();
+
+  // Nothing new is known.
+  stage.preview.keep();
+  stage.film.clear(stage.stream);
+  CHECK(stage.show().stale == Approx(1));
+  for (size_t i = 0; i < before.size(); ++i) REQUIRE(stage.shown()[i] == Approx(before[i]).margin(0.004));
+  // All light is known to be half.
+  stage.preview.keep(vec3(0.5f));
+  stage.show();
+  for (size_t i = 0; i < before.size(); ++i)
+    REQUIRE(stage.shown()[i] == Approx(0.5f * before[i]).margin(0.004));
+
+  // Noisy samples of that light, one a pixel: hardly anything is taken from them.
+  std::mt19937 random(5);
+  std::exponential_distribution<float> noise(1);
+  stage.sample(stage.film, 1, [&](uint32_t x, uint32_t y) {
+    return Sample{.light = vec3(0.5f * light(x, y) * noise(random))};
+  });
+  const auto half = [&](uint32_t x, uint32_t y) { return 0.5f * light(x, y); };
+  stage.developer.tone_map(stage.stream, stage.film, stage.view);
+  const double raw = rms(stage.shown(), half, stage.width);
+  CHECK(stage.show().stale > 0.4);
+  INFO("noise " << raw << ", shown " << rms(stage.shown(), half, stage.width));
+  CHECK(rms(stage.shown(), half, stage.width) < 0.15 * raw);
+
+  // Clean samples of other light: nothing is left of the old.
+  stage.preview.keep();
+  stage.film.clear(stage.stream);
+  stage.sample(stage.film, 8, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.7f)}; });
+  CHECK(stage.show().stale < 0.01);
+  for (const float v : stage.shown()) REQUIRE(v == Approx(0.7f).epsilon(0.01));
+
+  // Noisy samples of light five times as dim contradict it at once.
+  stage.preview.keep();
+  stage.film.clear(stage.stream);
+  stage.sample(stage.film, 4,
+               [&](uint32_t, uint32_t) { return Sample{.light = vec3(0.14f * noise(random))}; });
+  CHECK(stage.show().stale < 0.3);
+  CHECK(rms(
+            stage.shown(), [](uint32_t, uint32_t) { return 0.14f; }, stage.width) < 0.4);
+
+  stage.preview.forget();
+  stage.film.clear(stage.stream);
+  CHECK(stage.show().stale == 0);
+  for (const float v : stage.shown()) REQUIRE(v == 0);
+}
+
+TEST_CASE("what a draft alone has shown stays after an edit, and goes with the camera") {
+  Stage stage(64, 48);
+  Film draft(stage.device, 16, 12);
+  draft.clear(stage.stream);
+  stage.sample(draft, 4, [](uint32_t x, uint32_t) { return Sample{.light = vec3(x < 8 ? 0.2f : 0.6f)}; });
+  stage.show(&draft);
+  const std::vector<float> before = stage.shown();
+  CHECK(before[24 * 64 + 8] == Approx(0.2f).epsilon(0.03));
+  CHECK(before[24 * 64 + 56] == Approx(0.6f).epsilon(0.03));
+  stage.preview.keep();
+  CHECK(stage.show().stale == Approx(1));
+  for (size_t i = 0; i < before.size(); ++i) REQUIRE(stage.shown()[i] == Approx(before[i]).margin(0.004));
+  stage.preview.keep();
+  stage.camera.axes.origin.x = 8 * 2 * 5 / 64.0f;  // eight pixels
+  stage.show();
+  for (uint32_t x = 1; x < 54; ++x)
+    REQUIRE(stage.shown()[24 * 64 + x] == Approx(before[24 * 64 + x + 8]).margin(0.02));
+}
+
+TEST_CASE("after a move of the camera what was there is where the camera sees it now") {
+  Stage stage(64, 48);
+  // A wall 5 m away, and to the right one 2.5 m away.
+  const auto wall = [](uint32_t x, uint32_t y) {
+    const bool near = x >= 40;
+    return Sample{.light = vec3(near ? 0.8f : 0.1f + 0.01f * float((3 * x + 7 * y) % 16)),
+                  .depth = near ? 2.5f : 5};
+  };
+  stage.sample(stage.film, 8, wall);
+  stage.show();
+  // By four pixels of the far wall's, which are 2 * 5 / 64 m wide, and so by eight of the near one's.
+  stage.preview.keep();
+  stage.film.clear(stage.stream);
+  stage.camera.axes.origin.x = 4 * 2 * 5 / 64.0f;
+  stage.show();
+  const std::vector<float> shown = stage.shown();
+  size_t hidden = 0;
+  for (uint32_t y = 2; y < 46; ++y)
+    for (uint32_t x = 0; x < 56; ++x) {
+      INFO(x << ", " << y);
+      const float expected = wall(x < 32 ? x + 4 : x + 8, y).light.x;
+      REQUIRE(shown[y * 64 + x] == Approx(expected).margin(0.01));
+    }
+  for (uint32_t x = 60; x < 64; ++x) hidden += shown[24 * 64 + x] == 0;
+  CHECK(hidden == 4);  // it has come into view; nobody knows it
+  // A turn by half of the picture's width moves all alike, whatever its distance, also what is far.
+  stage.preview.forget();
+  stage.camera.axes = {vec3(0), vec3(1, 0, 0), vec3(0, 0.75f, 0), vec3(0, 0, -1)};
+  stage.sample(stage.film, 8,
+               [](uint32_t x, uint32_t) { return Sample{.light = vec3(x < 32 ? 0.2f : 0.6f), .depth = 0}; });
+  stage.show();
+  stage.preview.keep();
+  stage.film.clear(stage.stream);
+  stage.camera.axes.right = vec3(0.70710678f, 0, 0.70710678f);
+  stage.camera.axes.forward = vec3(0.70710678f, 0, -0.70710678f);
+  stage.show();
+  CHECK(stage.shown()[24 * 64 + 4] == Approx(0.6f).epsilon(0.02));
+  CHECK(stage.shown()[24 * 64 + 40] == 0);
+}

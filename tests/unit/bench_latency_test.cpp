@@ -1,0 +1,73 @@
+// links: bench
+// How far a shown picture is from a reference, and what is told of a row of them.
+#include <catch2/catch.hpp>
+
+#include "bench/latency.h"
+
+using namespace lucerna;
+using namespace lucerna::bench;
+using Catch::Contains;
+
+TEST_CASE("the distance of a picture is its mean relative error after a mean over 3x3 pixels") {
+  constexpr uint32_t k_width = 12, k_height = 9;
+  const std::vector<float> grey(k_width * k_height, 0.5f);
+  CHECK(picture_distance(grey, grey, k_width).error == 0);
+  CHECK(picture_distance(grey, grey, k_width).black == 0);
+
+  std::vector<float> brighter(grey.size(), 0.6f);
+  CHECK(picture_distance(brighter, grey, k_width).error == Approx(0.2).epsilon(1e-5));
+
+  // Noise of one pixel in nine is its ninth; at a border there are fewer neighbours.
+  std::vector<float> speck = grey;
+  speck[4 * k_width + 5] = 1.4f;
+  CHECK(picture_distance(speck, grey, k_width).error ==
+        Approx(9 * (0.9 / 9) / 0.5 / double(grey.size())).epsilon(1e-4));
+
+  // What is darker than k_dark is held against that.
+  const std::vector<float> dark(grey.size(), 0.001f), lighter(grey.size(), 0.003f);
+  CHECK(picture_distance(lighter, dark, k_width).error == Approx(0.002 / k_dark).epsilon(1e-4));
+}
+
+TEST_CASE("black is what shows no light where the reference has some") {
+  constexpr uint32_t k_width = 10;
+  std::vector<float> reference(100, 0.4f), shown(100, 0.3f);
+  for (size_t i = 0; i < 50; ++i) shown[i] = 0;  // the upper half; its last row has lit neighbours
+  CHECK(picture_distance(shown, reference, k_width).black == Approx(0.4));
+  for (float& r : reference) r = 0.5f * k_dark;
+  CHECK(picture_distance(shown, reference, k_width).black == 0);
+}
+
+TEST_CASE("published bytes are read as sRGB") {
+  const std::vector<uint8_t> rgba{255, 255, 255, 255, 0, 0, 0, 255, 188, 188, 188, 255, 0, 255, 0, 255};
+  const std::vector<float> y = shown_luminance(rgba);
+  REQUIRE(y.size() == 4);
+  CHECK(y[0] == Approx(1).epsilon(1e-4));
+  CHECK(y[1] == 0);
+  CHECK(y[2] == Approx(0.5029).epsilon(1e-3));
+  CHECK(y[3] == Approx(0.7152).epsilon(1e-3));
+}
+
+TEST_CASE("a picture counts as usable from when it stays so, and every step back is told") {
+  const std::vector<Moment> moments{{0, {0.9, 0.2}},  {0.2, {0.12, 0.01}}, {0.5, {0.3, 0}},
+                                    {0.8, {0.14, 0}}, {2, {0.05, 0}},      {4, {0.06, 0}}};
+  const LatencyResult r = latency_of(moments, 5);
+  REQUIRE(r.usable_s);
+  CHECK(*r.usable_s == 0.8);
+  REQUIRE(r.lit_s);
+  CHECK(*r.lit_s == 0.5);
+  CHECK(r.rise == Approx(0.18));
+  CHECK(*r.error[0] == 0.12);  // at 0.3 s
+  CHECK(*r.error[1] == 0.14);
+  CHECK(*r.error[2] == 0.05);
+  CHECK_FALSE(r.error[3]);  // it was not watched for ten seconds
+
+  const std::vector<Moment> worse{{0, {0.1, 0}}, {1, {0.5, 0.5}}};
+  CHECK_FALSE(latency_of(worse, 5).usable_s);
+  CHECK_FALSE(latency_of(worse, 5).lit_s);
+  CHECK(latency_row(latency_of(worse, 5)).size() >= latency_heading().size());
+}
+
+TEST_CASE("edits are known by their names") {
+  for (size_t i = 0; i < k_edit_names.size(); ++i) CHECK(size_t(edit_of(k_edit_names[i])) == i);
+  CHECK_THROWS_WITH(edit_of("lamp"), Contains("'lamp'") && Contains("strength") && Contains("solver"));
+}

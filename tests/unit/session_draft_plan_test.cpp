@@ -1,0 +1,79 @@
+// links: session
+// When drafts get samples: a first one at once, a few while the picture fills, more while it has to wait, and
+// what share of the time they take.
+#include <catch2/catch.hpp>
+
+#include "session/draft_plan.h"
+
+using lucerna::session::DraftPlan;
+using Next = DraftPlan::Next;
+
+TEST_CASE("a picture that is begun gets a draft at once, a filled one none") {
+  for (const bool preparing : {false, true})
+    for (const bool light : {false, true}) {
+      DraftPlan plan;
+      plan.worked(0.001);
+      CHECK(plan.next(preparing, false, light) == Next::coarse);
+      CHECK(plan.next(preparing, true, light) == Next::nothing);
+      plan.drawn(Next::coarse, 1);
+      plan.restart();
+      CHECK(plan.next(preparing, false, light) == Next::coarse);
+    }
+}
+
+TEST_CASE("while the picture's samples come there are four of the coarse draft, whatever they take") {
+  DraftPlan plan;
+  int drawn = 0;
+  for (int step = 0; step < 100; ++step) {
+    const Next next = plan.next(false, false, false);
+    if (next == Next::nothing) {
+      plan.worked(0.1);
+      continue;
+    }
+    CHECK(next == Next::coarse);
+    plan.drawn(next, 10);
+    ++drawn;
+  }
+  CHECK(drawn == 4);
+}
+
+TEST_CASE("while the samples wait drafts take half of the time, then less, and end") {
+  DraftPlan plan;
+  double drafts = 0, work = 0, halved = 0;
+  uint32_t coarse = 0, fine = 0;
+  for (int step = 0; step < 100000; ++step) {
+    const Next next = plan.next(true, false, false);
+    if (next == Next::nothing) {
+      plan.worked(0.02), work += 0.02;
+      continue;
+    }
+    plan.drawn(next, 0.3), drafts += 0.3;
+    ++(next == Next::coarse ? coarse : fine);
+    if (fine == 4) halved = drafts / (drafts + work);
+  }
+  CHECK(halved == Approx(0.5).margin(0.15));
+  CHECK(coarse == 4);
+  CHECK(fine == 64);
+  // All of the 68 samples together within a tenth of the time that they are spread over.
+  CHECK(drafts / 0.3 == Approx(68));
+}
+
+TEST_CASE("light for drafts and drafts take turns, and better light begins drafts anew") {
+  DraftPlan plan;
+  double light = 0, drafts = 0;
+  for (int step = 0; step < 200; ++step) {
+    const Next next = plan.next(true, false, true);
+    REQUIRE(next != Next::nothing);  // the work waits for both
+    if (next == Next::light) {
+      plan.drawn(next, 0.2), light += 0.2;
+      if (step % 10 == 9) {
+        plan.light_changed();
+        CHECK(plan.coarse_samples() + plan.fine_samples() == 0);
+        CHECK(plan.next(true, false, true) == Next::coarse);
+      }
+    } else {
+      plan.drawn(next, 0.1), drafts += 0.1;
+    }
+  }
+  CHECK(light == Approx(drafts).epsilon(0.1));
+}
