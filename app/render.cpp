@@ -348,6 +348,18 @@ int render(const RenderArguments& a) {
                               fmt::join(solver->against_noise, ", "), fmt::join(solver->against_bias, ", "));
     report_unreached(*r.adaptive(), advice);
   }
+  if (picture && r.settings().text("film.exposure_at_load") == "always") {
+    const auto names_ev = [](const auto& list, const auto& key_of) {
+      return std::any_of(list.begin(), list.end(), [&](const auto& s) { return key_of(s) == "film.ev"; });
+    };
+    const bool given = names_ev(changes, [](const session::SettingChange& c) { return c.key; }) ||
+                       names_ev(r.scene()->settings, [](const auto& s) { return s.first; });
+    if (const auto ev = given ? std::nullopt : r.measure(std::nullopt).ev) {
+      r.settings().set("film.ev", fmt::format("{:.1f}", *ev));
+      r.apply_settings();
+      log::info("exposure found: film.ev={:.1f}", *ev);
+    }
+  }
   for (const std::string& file : a.outputs) r.save(file);
   if (!a.ledger.empty()) write_file(a.ledger, r.ledger().csv());
   if (!a.stats.empty()) write_file(a.stats, make_stats(r, wall).dump(2) + "\n");
