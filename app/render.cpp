@@ -166,6 +166,20 @@ std::string advice(const session::Renderer& r) {
   return text;
 }
 
+/// Where the settings ask for it and nobody gives one.
+void find_exposure(session::Renderer& r, const std::vector<session::SettingChange>& changes) {
+  if (r.settings().text("film.exposure_at_load") != "always") return;
+  for (const session::SettingChange& change : changes)
+    if (change.key == "film.ev") return;
+  for (const auto& [key, value] : r.scene()->settings)
+    if (key == "film.ev") return;
+  const std::optional<float> ev = r.measure(std::nullopt).ev;
+  if (!ev) return;
+  r.settings().set("film.ev", fmt::format("{:.1f}", *ev));
+  r.apply_settings();
+  log::info("exposure found: film.ev={:.1f}", *ev);
+}
+
 }  // namespace
 
 int render(const RenderArguments& a) {
@@ -191,6 +205,7 @@ int render(const RenderArguments& a) {
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
   if (makes_picture(a) && r.adaptive() && !interrupted) report_unreached(*r.adaptive(), advice(r));
+  if (makes_picture(a)) find_exposure(r, setting_changes(a));
   for (const std::string& file : a.outputs) r.save(file);
   if (!a.ledger.empty()) write_file(a.ledger, r.ledger().csv());
   if (!a.stats.empty()) write_file(a.stats, make_stats(r, wall).dump(2) + "\n");

@@ -229,15 +229,21 @@ constexpr float k_key_names = 220, k_key_text = 400;  // widths of the page's co
 /// Keys and what they do; rows without keys are gaps.
 std::vector<std::pair<std::string, std::string>> key_rows() {
   std::vector<std::pair<std::string, std::string>> rows = {
-      {"Left drag", "orbit"},
+      {"Left drag", "orbit about what the pointer is on"},
+      {"Right drag", "look about"},
       {"Middle drag, Shift + left drag", "pan"},
-      {"Wheel, right drag", "come closer, go away"},
-      {"W A S D, Q E", "fly; down and up; drag to look about, wheel for speed"},
+      {"Wheel", "come closer to what the pointer is on, go away"},
+      {"W A S D, Q E", "fly; down and up; wheel for speed, Shift for four times as fast"},
+      {"H", "walk along the floor instead; Q E set the eye's height"},
+      {"Alt while moving", "pass through walls"},
+      {"Ctrl + left drag", "turn the environment, or else the sun"},
       {"Click", "select the object, its material with a second click"},
       {"F", "frame the selection, or the scene"},
       {"L", "mark the lamps, to click on them"},
       {"T", "show the tiles at work"},
-      {"1 \xE2\x80\x93 9", "scene cameras"}};
+      {"1 \xE2\x80\x93 9", "scene cameras"},
+      {"Ctrl + B", "bookmark this view; they are in the menu Camera"},
+      {"B", "exposure by a click on something grey"}};
   bool panels = false, asks = false;
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     panels = panels || solver->has_panel();
@@ -415,7 +421,11 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_F1)) ui.act("window.keys");
   if (ui.pressed(GLFW_KEY_TAB)) ui.act("window.panels", !ui.layout.panels), ui.wake(3);
   if (ui.pressed(GLFW_KEY_ESCAPE)) {
-    if (ui.loading())
+    if (ui.welcome)
+      ui.welcome = false;
+    else if (ui.dropper)
+      ui.act("exposure.dropper", false);
+    else if (ui.loading())
       ui.act("scene.cancel");
     else if (!ui.errors.empty())
       ui.act("dismiss");
@@ -424,6 +434,9 @@ void handle_keys(Ui& ui) {
   }
   if (!ui.snapshot) return;
   if (ui.pressed(GLFW_KEY_F) && ui.view) ui.act("camera.frame");
+  if (ui.pressed(GLFW_KEY_H) && ui.view) ui.act("camera.walking", !ui.walking);
+  if (ui.pressed(GLFW_KEY_B, GLFW_MOD_CONTROL) && ui.view) keep_view(ui);
+  if (ui.pressed(GLFW_KEY_B) && ui.view) ui.act("exposure.dropper", !ui.dropper);
   if (ui.pressed(GLFW_KEY_R)) ui.act("render.restart");
   if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
   if (ui.pressed(GLFW_KEY_T)) ui.toggle("overlay.tiles");

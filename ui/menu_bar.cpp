@@ -211,10 +211,6 @@ void view_menu(Ui& ui) {
   if (entry("Accuracy, passes and log", nullptr, "The strip at the bottom.", ui.layout.bottom_open))
     ui.act("window.fold", "bottom", ui.layout.bottom_open);
   divide();
-  if (entry("Frame selection", "F",
-            "Moves the camera so that the selection, or else the whole scene, fills the picture.", false,
-            ui.view.has_value()))
-    ui.act("camera.frame");
   if (entry("Selection", nullptr, "Marks the selected object in the picture.", ui.brackets))
     ui.act("view.selection", !ui.brackets);
   if (entry("Lamps", "L", "Marks the lamps in the picture; a click on a mark selects the lamp.",
@@ -238,6 +234,40 @@ void view_menu(Ui& ui) {
     if (entry(name, nullptr, "Pixels of the picture for each pixel of the window; fewer converge sooner.",
               ui.picture_divisor == divisor))
       ui.act("view.divisor", divisor);
+  end_menu();
+}
+
+void camera_menu(Ui& ui) {
+  if (!begin_menu("Camera")) return;
+  const bool view = ui.view.has_value();
+  if (entry(
+          "Frame selection", "F",
+          "Moves the camera so that the selection, or else the whole scene, fills the picture, and not into "
+          "or behind a wall.",
+          false, view))
+    ui.act("camera.frame");
+  if (entry("Walk along the floor", "H", "W A S D then walk at eye height instead of flying.", ui.walking,
+            view))
+    ui.act("camera.walking", !ui.walking);
+  divide();
+  if (entry("Bookmark this view", "Ctrl+B", "Keeps the view for this scene, for later runs too.", false,
+            view))
+    keep_view(ui);
+  int row = 0;
+  for (const auto& [name, line] : ui.bookmarks_here()) {
+    ImGui::PushID(row++);
+    if (entry(elided(name, px(180)).c_str(), nullptr, (name + ": takes this view again.").c_str()))
+      ui.act("camera.go", name);
+    ImGui::PopID();
+  }
+  divide();
+  if (entry("Find exposure", nullptr, "Sets the exposure so that the picture as a whole is seen well.", false,
+            view))
+    ui.act("exposure.find");
+  if (entry("Exposure by something grey", "B",
+            "The next click in the picture sets the exposure so that what it hits is middle grey.",
+            ui.dropper, view))
+    ui.act("exposure.dropper", !ui.dropper);
   end_menu();
 }
 
@@ -267,6 +297,7 @@ void render_menu(Ui& ui) {
 void help_menu(Ui& ui) {
   if (!begin_menu("Help")) return;
   if (entry("Keys and mouse", "F1", "How to move and what the keys do.")) ui.act("window.keys");
+  if (entry("First steps", nullptr, "What the first start has told.")) ui.act("window.welcome");
   if (entry("Commands", nullptr, "Lists in the log what can be typed below it and written into scripts."))
     ui.typed.push_back("help");
   end_menu();
@@ -320,7 +351,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(16), 0});
   float menus_end = area.lo.x;
   if (ImGui::BeginMenuBar()) {
-    file_menu(ui), edit_menu(ui), view_menu(ui), render_menu(ui), help_menu(ui);
+    file_menu(ui), edit_menu(ui), view_menu(ui), camera_menu(ui), render_menu(ui), help_menu(ui);
     menus_end = ImGui::GetCursorScreenPos().x;
     ImGui::EndMenuBar();
   }

@@ -38,8 +38,13 @@ void recall(Ui& ui) {
     layout.right_open = json.value("right_open", true);
     layout.bottom_open = json.value("bottom_open", true);
     ui.layout = layout;
-    for (const auto& [name, open] : json.value("sections", nlohmann::json::object()).items())
-      ui.sections[name] = open.get<bool>();
+    ui.welcomed = json.value("welcomed", false);
+    // items() keeps no temporary alive.
+    const auto bookmarks = json.value("bookmarks", nlohmann::json::object());
+    for (const auto& [file, views] : bookmarks.items())
+      for (const auto& [name, line] : views.items()) ui.bookmarks[file][name] = line.get<std::string>();
+    const auto sections = json.value("sections", nlohmann::json::object());
+    for (const auto& [name, open] : sections.items()) ui.sections[name] = open.get<bool>();
   } catch (const nlohmann::json::exception&) {
     // Somebody else's file, or an older one: what was read so far holds.
   }
@@ -54,6 +59,10 @@ void remember(const Ui& ui) {
   json["strip"] = {{"passes", ui.layout.passes_share}, {"log", ui.layout.log_share}};
   json["left_open"] = ui.layout.left_open, json["right_open"] = ui.layout.right_open,
   json["bottom_open"] = ui.layout.bottom_open;
+  json["welcomed"] = ui.welcomed;
+  auto& bookmarks = json["bookmarks"] = nlohmann::ordered_json::object();
+  for (const auto& [scene, views] : ui.bookmarks)
+    if (!views.empty()) bookmarks[scene] = views;
   json["sections"] = ui.sections;
   std::error_code error;
   fs::create_directories(file.parent_path(), error);

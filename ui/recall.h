@@ -1,5 +1,6 @@
 #pragma once
-// What the window keeps between runs: recent files and the sizes of its panels, in the user's state folder
+// What the window keeps between runs: recent files, bookmarks of scenes' views, whether the first steps were
+// shown, and the sizes of its panels, in the user's state folder
 // ($XDG_STATE_HOME or ~/.local/state, lucerna/window.json). A file that cannot be read or written is passed
 // over in silence: nothing depends on it.
 #include "state.h"

@@ -48,6 +48,16 @@ int button_of(const commands::Arguments& a) {
   return static_cast<int>(std::find(k_buttons.begin(), k_buttons.end(), name) - k_buttons.begin());
 }
 
+/// A key that is held: a modifier by itself too. Throws Error when there is none such.
+int held_key_of(const std::string& name) {
+  if (name == "ctrl") return GLFW_KEY_LEFT_CONTROL;
+  if (name == "shift") return GLFW_KEY_LEFT_SHIFT;
+  if (name == "alt") return GLFW_KEY_LEFT_ALT;
+  const auto [key, mods] = key_of(name);
+  if (mods != 0) throw Error("", fmt::format("'{}': one key at a time is held", name));
+  return key;
+}
+
 /// The first script in the row of calls.
 const Call& root(const Call& call) {
   const Call* at = &call;
@@ -158,6 +168,22 @@ void Runner::add_commands() {
                 .parameters = {{.name = "name"}},
                 .check = [](const Arguments& a) { key_of(a.text("name")); },
                 .run = [this](const Arguments& a) { ui_.key_strokes.push_back(key_of(a.text("name"))); },
+                .done = drawn,
+                .recorded = false});
+  registry.add({.name = "key.hold",
+                .help = "In a script: holds a key down, such as w or ctrl, shift, alt; or lets it go.",
+                .parameters = {{.name = "name"}, {.name = "down", .type = Type::boolean}},
+                .check = [](const Arguments& a) { held_key_of(a.text("name")); },
+                .run =
+                    [this](const Arguments& a) {
+                      ui_.key_holds.emplace_back(held_key_of(a.text("name")), a.boolean("down"));
+                    },
+                .done = drawn,
+                .recorded = false});
+  registry.add({.name = "mouse.wheel",
+                .help = "In a script: turns the wheel.",
+                .parameters = {{.name = "notches", .type = Type::real, .lo = -100, .hi = 100}},
+                .run = [this](const Arguments& a) { ui_.wheel += a.number("notches"); },
                 .done = drawn,
                 .recorded = false});
   registry.add({.name = "type",

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/blackbody.h"
+#include "commands/light_edit.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -37,16 +39,9 @@ bool list_row(const char* id, bool chosen, const std::string& name, const std::s
   return pressed;
 }
 
-ImU32 display_colour(const vec3& linear) {
-  const auto encode = [](float v) {
-    v = std::clamp(v, 0.0f, 1.0f);
-    v = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
-    return static_cast<int>(v * 255 + 0.5f);
-  };
-  return IM_COL32(encode(linear.x), encode(linear.y), encode(linear.z), 255);
-}
+using commands::strength_of;
+using commands::tint_of;
 
-float brightest(const vec3& c) { return std::max({c.x, c.y, c.z}); }
 std::string name_or(const std::string& name, const char* kind, size_t index) {
   return name.empty() ? fmt::format("{} {}", kind, index + 1) : name;
 }
@@ -104,52 +99,211 @@ void cameras(Ui& ui) {
   tooltip(
       "Speed of flight with W A S D Q E while the pointer is over the picture; Shift flies four times "
       "faster.");
+  if (!view.camera.orthographic) {
+    if (button("##walk", "Walk along the floor", ui.walking, ImGui::CalcItemWidth()))
+      ui.act("camera.walking", !ui.walking);
+    tooltip("W A S D then walk at eye height, up and down stairs. H.");
+    float height = ui.eye_height;
+    if (ui.walking) {
+      if (slider("##eye_height", "Eye height", height,
+                 {.lo = 0.1f, .hi = 10, .log = true, .decimals = 2, .unit = "m"}))
+        ui.act("camera.eye_height", height);
+      tooltip("Of the eye above the floor. Q and E too.");
+    }
+  }
   const vec3 eye = commands::eye_of(view.camera);
   value_row("Eye",
             fmt::format("{} {} {} m", padded(real_text(eye.x, 2), 6), padded(real_text(eye.y, 2), 6),
                         padded(real_text(eye.z, 2), 6)),
             "Position of the camera: x, y (up), z in metres.");
+  std::string forgotten;
+  int row = 0;
+  for (const auto& [name, place] : ui.bookmarks_here()) {
+    ImGui::PushID(row++);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (list_row("##bookmark", false, name, "bookmark", 0, 28)) ui.act("camera.go", name);
+    tooltip(fmt::format("{}: takes this view again.", name));
+    const float below = ImGui::GetCursorScreenPos().y;
+    ImGui::SetCursorScreenPos({at.x + ImGui::CalcItemWidth() - px(22), at.y + px(1)});
+    if (sign_button("##forget", Sign::close, false)) forgotten = name;
+    tooltip("Takes the bookmark away.");
+    ImGui::SetCursorScreenPos({at.x, below});
+    ImGui::PopID();
+  }
+  if (!forgotten.empty()) ui.act("camera.forget", forgotten);
+  if (button("##bookmark", "Bookmark this view", false, ImGui::CalcItemWidth())) keep_view(ui);
+  tooltip("Keeps the view for this scene, for later runs too. Ctrl+B.");
+}
+
+/// Colour by a picker and by temperature: `command` is run with color_name or kelvin.
+void colour_rows(Ui& ui, const char* command, size_t item, const char* color_name, const vec3& tint,
+                 const std::string& note = "") {
+  vec3 picked = tint;
+  if (colour_field("##colour", "Colour", picked, note) && strength_of(picked) > 0)
+    ui.act(command, item, named(color_name, tint_of(picked)));
+  tooltip("Colour of the light, its strongest channel 1. Press to choose another.");
+  const NearestKelvin nearest = nearest_kelvin(tint);
+  float kelvin = nearest.kelvin;
+  const bool near = nearest.off < 0.02f;
+  if (slider("##kelvin", near ? "Temperature" : "Temperature, about", kelvin,
+             {.lo = k_coolest_kelvin,
+              .hi = k_hottest_kelvin,
+              .log = true,
+              .decimals = 0,
+              .unit = "K",
+              .bar = near,
+              .step = 10,
+              .travel = 0.5f}))
+    ui.act(command, item, named("kelvin", kelvin));
+  tooltip(
+      near ? "Temperature of the black body of this colour. Candles 1900 K, bulbs 2700 K, daylight 6500 K."
+           : "No black body has this colour; the nearest by blue over red. A drag takes the colour of that "
+             "temperature.");
+}
+
+/// What a selected lamp is, beside its strength.
+void light_details(Ui& ui, size_t i, const scene::Light& light) {
+  colour_rows(ui, "light.set", i + 1, "color", tint_of(light.intensity));
+  if (light.kind != scene::LightKind::directional) {
+    const float solid = commands::solid_angle(light);
+    float power = std::max(strength_of(light.intensity) * solid, 1e-3f);
+    if (slider(
+            "##power", "Power", power,
+            {.lo = 1e-3f, .hi = 1e6f, .log = true, .decimals = 2, .unit = "W", .bar = false, .travel = 0.2f}))
+      ui.act("light.set", i + 1, named("power", power));
+    tooltip("All the light that the lamp gives off, in its strongest channel.");
+    const vec3 middle = ui.bounds.empty() ? vec3(0) : ui.bounds.centre();
+    const float radius = std::max(ui.bounds.empty() ? 1.0f : ui.bounds.radius(), 1e-2f);
+    const float reach = 4 * radius + glm::length(middle);
+    vec3 position = light.position;
+    if (slider_row("##position", "Position", position,
+                   {.lo = -reach,
+                    .hi = reach,
+                    .decimals = radius < 1 ? 3 : 2,
+                    .bar = false,
+                    .travel = 0.25f * radius / reach,
+                    .typed_lo = -1e6f,
+                    .typed_hi = 1e6f}) >= 0)
+      ui.act("light.set", i + 1, named("position", position));
+    tooltip("Place of the lamp in metres: x, y (up), z.");
+  }
+  if (light.kind != scene::LightKind::point) {
+    const commands::Bearing bearing = commands::bearing_of(light.direction);
+    float azimuth = bearing.azimuth, elevation = bearing.elevation;
+    if (slider("##azimuth", "Azimuth", azimuth,
+               {.lo = 0, .hi = 360, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
+      ui.act("light.set", i + 1, named("azimuth", azimuth));
+    tooltip("From where it shines, as on a compass seen from above: 0 from \xE2\x88\x92Z, 90 from +X.");
+    if (slider("##elevation", "Elevation", elevation,
+               {.lo = -90, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
+      ui.act("light.set", i + 1, named("elevation", elevation));
+    tooltip("From how high above the horizon it shines; 90 from straight above.");
+  }
+  if (light.kind == scene::LightKind::spot) {
+    float cone = light.outer_cone * 180 / k_pi, inner = light.inner_cone * 180 / k_pi;
+    if (slider("##cone", "Cone", cone, {.lo = 0.5f, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
+      ui.act("light.set", i + 1, named("cone", cone));
+    tooltip("Angle from the axis at which there is no light any more.");
+    if (slider("##inner", "Inner cone", inner, {.lo = 0, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
+      ui.act("light.set", i + 1, named("inner_cone", inner));
+    tooltip("Angle from the axis at which its light begins to fade.");
+  }
+}
+
+/// A row of the list of lights with its switch, and what is under it when chosen. Returns whether its switch
+/// was pressed.
+bool light_row(Ui& ui, bool chosen, bool reveal, const std::string& name, const char* note, const vec3& tint,
+               bool on, const char* kind, size_t index) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  if (chosen && reveal) show_row(at.y);
+  if (list_row("##light", chosen, name, note, colour::with_alpha(display_colour(tint), on ? 1.0f : 0.3f), 28))
+    choose(ui, chosen, kind, index);
+  tooltip(fmt::format("{}. Selects it, to edit it here; F then frames it.", name));
+  const float below = ImGui::GetCursorScreenPos().y;
+  ImGui::SetCursorScreenPos({at.x + ImGui::CalcItemWidth() - px(22), at.y + px(1)});
+  const bool pressed = sign_button("##on", Sign::power, on);
+  tooltip(on ? "Switches the light off." : "Switches the light on.");
+  ImGui::SetCursorScreenPos({at.x, below});
+  return pressed;
+}
+
+/// Drags move by a share of the value; a light turned down to nothing starts from a thousandth.
+Slider strength_slider(const char* unit) {
+  return {.lo = 1e-3f, .hi = 1e5f, .log = true, .decimals = 2, .unit = unit, .bar = false, .travel = 0.25f};
+}
+constexpr const char* k_radiance_unit = "W/m\xC2\xB2sr";
+
+void emission_slider(Ui& ui, uint32_t index) {
+  const Slider how = strength_slider(k_radiance_unit);
+  float shown = std::max(strength_of(ui.emission(index)), how.lo);
+  ImGui::BeginDisabled(!ui.emits(index));
+  if (slider("##strength", "Radiance", shown, how))
+    ui.act("material.set", index + 1, named("strength", shown));
+  ImGui::EndDisabled();
+  tooltip("Radiance that the surface emits, of its strongest channel; a texture goes on multiplying it.");
+}
+
+/// Materials that some surface is made of.
+std::vector<bool> used_materials(const scene::Scene& scene) {
+  std::vector<bool> used(scene.materials.size());
+  for (const scene::Instance& instance : scene.instances)
+    if (instance.mesh < scene.meshes.size())
+      for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives) used[p.material] = true;
+  return used;
+}
+
+/// Indices of the materials that emit, or would if they were not switched off.
+const std::vector<uint32_t>& emitters(const Ui& ui) {
+  static uint64_t of = 0;
+  static std::vector<bool> used;
+  static std::vector<uint32_t> list;
+  if (of != ui.view_scene || used.size() != ui.scene->materials.size())
+    used = used_materials(*ui.scene), of = ui.view_scene;
+  list.clear();
+  for (uint32_t i = 0; i < used.size(); ++i)
+    if (used[i] && strength_of(ui.emission(i)) > 0 && !ui.scene->materials[i].unlit) list.push_back(i);
+  return list;
 }
 
 void light_rows(Ui& ui, bool reveal) {
   const auto& lights = ui.scene->lights;
-  size_t emitters = 0;
-  for (const scene::Material& m : ui.scene->materials) emitters += brightest(m.emission) > 0;
-  if (lights.empty())
-    quiet_line(emitters == 0 ? "No lights"
-                             : fmt::format("No lamps; {} material{} light", emitters,
-                                           emitters == 1 ? " emits" : "s emit"));
+  const std::vector<uint32_t> glowing = emitters(ui);
+  if (lights.empty() && glowing.empty()) quiet_line("No lights");
   static const char* kinds[] = {"point", "spot", "sun"};
   for (size_t i = 0; i < lights.size(); ++i) {
     const auto index = static_cast<uint32_t>(i);
     const scene::Light light = ui.light(index);
     ImGui::PushID(static_cast<int>(i));
-    const float strength = brightest(light.intensity);
-    const vec3 tint = strength > 0 ? light.intensity / strength : vec3(1);
-    const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool chosen = ui.selection == Selection{Kind::light, index};
-    if (chosen && reveal) show_row(at.y);
-    if (list_row("##light", chosen, name_or(light.name, "Light", i), kinds[static_cast<size_t>(light.kind)],
-                 colour::with_alpha(display_colour(tint), light.enabled ? 1.0f : 0.3f), 28))
-      choose(ui, chosen, "light", index);
-    tooltip("Selects the light; F then frames it.");
-    const float below = ImGui::GetCursorScreenPos().y;
-    ImGui::SetCursorScreenPos({at.x + ImGui::CalcItemWidth() - px(22), at.y + px(1)});
-    if (sign_button("##on", Sign::power, light.enabled))
+    if (light_row(ui, chosen, reveal, name_or(light.name, "Light", i), kinds[static_cast<size_t>(light.kind)],
+                  tint_of(light.intensity), light.enabled, "light", i))
       ui.act("light.set", i + 1, named("on", !light.enabled));
-    tooltip(light.enabled ? "Switches the light off." : "Switches the light on.");
-    ImGui::SetCursorScreenPos({at.x, below});
     const bool sun = light.kind == scene::LightKind::directional;
-    Slider how{.lo = 0, .hi = 1000, .decimals = 2, .unit = sun ? "W/m\xC2\xB2" : "W/sr", .bar = false};
-    // Drags move by a share of the value; a light turned down to nothing starts from a thousandth.
-    how.lo = 1e-3f, how.hi = 1e5f, how.log = true, how.travel = 0.25f;
+    const Slider how = strength_slider(sun ? "W/m\xC2\xB2" : "W/sr");
     ImGui::BeginDisabled(!light.enabled);
-    float shown = std::max(strength, how.lo);
+    float shown = std::max(strength_of(light.intensity), how.lo);
     if (slider("##strength", sun ? "Irradiance" : "Intensity", shown, how))
       ui.act("light.set", i + 1, named("intensity", shown));
     ImGui::EndDisabled();
     tooltip(sun ? "Irradiance on a surface that faces the light, of its strongest channel."
                 : "Radiant intensity of the strongest channel.");
+    if (chosen) light_details(ui, i, light);
+    ImGui::PopID();
+    gap(4);
+  }
+  // Surfaces that emit are lights as well; in many interiors the only ones.
+  for (const uint32_t index : glowing) {
+    const scene::Material m = ui.material(index);
+    ImGui::PushID(static_cast<int>(lights.size() + index));
+    const bool chosen = ui.selection == Selection{Kind::material, index}, on = ui.emits(index);
+    const vec3 tint = tint_of(ui.emission(index));
+    if (light_row(ui, chosen, false, name_or(m.name, "Material", index), "surface", tint, on, "material",
+                  index))
+      ui.act("material.set", index + 1, named("on", !on));
+    emission_slider(ui, index);
+    if (chosen)
+      colour_rows(ui, "material.set", index + 1, "emission_color", tint,
+                  m.emission_texture ? "\xC3\x97 texture" : "");
     ImGui::PopID();
     gap(4);
   }
@@ -158,12 +312,14 @@ void light_rows(Ui& ui, bool reveal) {
 void environment(Ui& ui) {
   const scene::Environment& e = ui.scene->environment;
   const bool image = e.image != scene::k_none;
-  const bool dark = !image && brightest(e.radiance) <= 0;
-  value_row("Light",
-            image  ? (e.file.empty() ? "image" : e.file)
-            : dark ? "none"
-                   : "even radiance",
-            image ? "A latitude-longitude image around the scene." : "Radiance from every direction.");
+  const bool dark = !image && strength_of(e.radiance) <= 0;
+  value_row(
+      "Light",
+      image  ? (e.file.empty() ? "image" : e.file)
+      : dark ? "none"
+             : "even radiance",
+      std::string(image ? "A latitude-longitude image around the scene." : "Radiance from every direction.") +
+          " Drop an .exr or .hdr on the window to light the scene by it.");
   gap(4);
   ImGui::BeginDisabled(dark);
   float shown = std::max(ui.environment_scale(), 1e-3f);
@@ -181,22 +337,43 @@ void environment(Ui& ui) {
   float turn = std::remainder(ui.environment_rotation(), 360.0f);
   if (slider("##rotation", "Rotation", turn, {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0"}))
     ui.act("environment.set", named("rotation", turn));
-  tooltip("Turns the image counter-clockwise, seen from above.");
+  tooltip("Turns the image counter-clockwise, seen from above. Ctrl and a drag in the picture turn it too.");
   ImGui::EndDisabled();
   ImGui::EndDisabled();
+  option_control(ui, "film.background", "Background");
+  if (!ui.environment_file().empty()) {
+    if (button("##own", "The scene's own again", false, ImGui::CalcItemWidth())) ui.act("environment.own");
+    tooltip("Lights the scene by the environment that it came with.");
+  }
 }
 
-void material_details(const scene::Material& m) {
+void material_details(Ui& ui, uint32_t index, const scene::Material& m) {
   const auto colour_text = [](const vec3& c) { return fmt::format("{:.3f} {:.3f} {:.3f}", c.x, c.y, c.z); };
   const auto textured = [](const scene::TextureUse& use) { return use ? " \xC3\x97 texture" : ""; };
-  value_row("Base colour", colour_text(vec3(m.base_color)) + textured(m.base_color_texture),
-            "Linear reflectance.");
-  value_row("Roughness", fmt::format("{:.3f}{}", m.roughness, textured(m.metallic_roughness_texture)),
-            "Perceptual roughness, 0 to 1.");
-  value_row("Metallic", fmt::format("{:.3f}{}", m.metallic, textured(m.metallic_roughness_texture)),
-            "0 dielectric, 1 metal.");
-  if (brightest(m.emission) > 0)
-    value_row("Emission", colour_text(m.emission) + textured(m.emission_texture), "Emitted radiance.");
+  const auto set = [&](const auto& value) { ui.act("material.set", index + 1, value); };
+  vec3 colour(m.base_color);
+  if (colour_field("##base", "Base colour", colour, m.base_color_texture ? "\xC3\x97 texture" : ""))
+    set(named("color", colour));
+  tooltip("Share of the light that is reflected, linear. Press to choose another.");
+  float roughness = m.roughness, metallic = m.metallic;
+  if (slider("##roughness", std::string("Roughness") + textured(m.metallic_roughness_texture), roughness,
+             {.decimals = 3}))
+    set(named("roughness", roughness));
+  tooltip("Perceptual roughness: 0 a mirror, 1 matt.");
+  if (slider("##metallic", std::string("Metalness") + textured(m.metallic_roughness_texture), metallic,
+             {.decimals = 3}))
+    set(named("metallic", metallic));
+  tooltip("0 is a dielectric such as paint, stone or wood; 1 is metal.");
+  if (!m.unlit && strength_of(ui.emission(index)) > 0) {
+    emission_slider(ui, index);
+    colour_rows(ui, "material.set", index + 1, "emission_color", tint_of(ui.emission(index)),
+                m.emission_texture ? "\xC3\x97 texture" : "");
+    if (button("##dark", "Emit nothing", false, ImGui::CalcItemWidth())) set(named("strength", 0));
+    tooltip("Takes its emission away. Undo brings it back.");
+  } else if (!m.unlit) {
+    if (button("##glow", "Let it emit light", false, ImGui::CalcItemWidth())) set(named("strength", 1));
+    tooltip("Makes the surface a light of radiance 1, to be edited here and under Lights.");
+  }
   if (m.transmission > 0)
     value_row("Transmission", fmt::format("{:.3f}{}", m.transmission, textured(m.transmission_texture)),
               "Share of light let through.");
@@ -231,24 +408,24 @@ void materials(Ui& ui, bool reveal) {
   const auto& list = ui.scene->materials;
   for (size_t i = 0; i < list.size(); ++i) {
     const auto index = static_cast<uint32_t>(i);
-    const scene::Material& m = list[i];
+    const scene::Material m = ui.material(index);
     const bool chosen = ui.selection == Selection{Kind::material, index};
     if (chosen && reveal) show_row(ImGui::GetCursorScreenPos().y);
     ImGui::PushID(static_cast<int>(i));
-    const bool emits = brightest(m.emission) > 0;
+    const bool emits = strength_of(m.emission) > 0;
     const char* note = emits                                                ? "emits"
                        : m.transmission > 0                                 ? "glass"
                        : m.metallic > 0.5f && !m.metallic_roughness_texture ? "metal"
                                                                             : "";
     if (list_row("##material", chosen, name_or(m.name, "Material", i), note,
-                 display_colour(emits ? m.emission / brightest(m.emission) : vec3(m.base_color)), 0))
+                 display_colour(emits ? m.emission / strength_of(m.emission) : vec3(m.base_color)), 0))
       choose(ui, chosen, "material", index);
     tooltip(fmt::format("{}. Selects the material; F then frames what is made of it.",
                         name_or(m.name, "Material", i)));
     if (chosen) {
       ImGui::Indent(px(18));
       ImGui::PushItemWidth(ImGui::CalcItemWidth() - px(18));
-      material_details(m);
+      material_details(ui, index, ui.material(index));
       ImGui::PopItemWidth();
       ImGui::Unindent(px(18));
       gap(4);
@@ -295,9 +472,11 @@ void draw_scene_panel(Ui& ui, const Area& area) {
   const auto block = [&](const char* title, size_t count, bool fallback, auto&& draw) {
     if (panel_section(ui, title, fallback, count > 0 ? fmt::format("{}", count) : "")) {
       begin_padded();
+      ImGui::PushID(title);
       ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
       draw();
       ImGui::PopStyleVar();
+      ImGui::PopID();
       end_padded();
       gap(10);
     }
@@ -308,7 +487,7 @@ void draw_scene_panel(Ui& ui, const Area& area) {
   if (reveal && ui.selection.kind == Kind::material) ui.sections["Materials"] = true;
   if (reveal && ui.selection.kind == Kind::light) ui.sections["Lights"] = true;
   block("Camera", ui.scene->cameras.size(), true, [&] { cameras(ui); });
-  block("Lights", ui.scene->lights.size(), true, [&] { light_rows(ui, reveal); });
+  block("Lights", ui.scene->lights.size() + emitters(ui).size(), true, [&] { light_rows(ui, reveal); });
   block("Environment", 0, true, [&] { environment(ui); });
   block("Materials", ui.scene->materials.size(), true, [&] { materials(ui, reveal); });
   block("Objects", ui.scene->instances.size(), false, [&] { objects(ui, reveal); });

@@ -40,8 +40,11 @@ double Ui::time() { return clock().seconds(); }
 Ui::Ui(session::Session& s) : Workspace(s) { add_window_commands(*this); }
 
 void Ui::act_line(const std::string& line) {
+  // What changes as soon as it is pressed belongs to the drag that begins there.
+  if (gesture == 0 && ImGui::GetActiveID() != 0) follow_gesture();
   try {
     run(line, gesture);
+    last_line = line;
   } catch (const Error& error) {
     log::error("{}", error.what());
   }
@@ -58,6 +61,42 @@ void Ui::follow_gesture() {
 bool Ui::reveals() { return std::exchange(revealed_, selection) != selection; }
 
 void Ui::place(const Viewpoint& to) { act_line(place_line(to)); }
+
+void Ui::place_by_wheel(const Viewpoint& to) {
+  if (now - wheeled_ > 0.8) wheel_gesture_ = ++gestures_;
+  wheeled_ = now;
+  const uint64_t held = std::exchange(gesture, wheel_gesture_);
+  place(to);
+  gesture = held;
+}
+
+void Ui::notice(const std::string& text, double seconds) {
+  note.text = text, note.until = now + seconds;
+  wake(3);
+}
+
+void Ui::say_blocked() {
+  if (now - blocked_said_ < 20) return;
+  blocked_said_ = now;
+  notice("A surface is in the way. Hold Alt to pass through it.", 4);
+}
+
+void Ui::measured(const std::string& text) {
+  notice(text + ". Ctrl+Z takes it back.", 8);
+  print(log::Level::info, text);
+}
+
+double Ui::busy_seconds() const {
+  const double seconds = busy.command != 0 ? now - busy.since : 0;
+  return seconds > 0.5 ? seconds : 0;
+}
+
+void Ui::follow_busy() {
+  const uint64_t given = session.commands(), carried_out = snapshot ? snapshot->commands : 0;
+  if (busy.command != 0 && carried_out < busy.command) return;
+  busy.command = given > carried_out ? given : 0;
+  busy.since = now, busy.text = last_line;
+}
 
 void Ui::scene_changed() {
   flight = {};
@@ -124,8 +163,12 @@ void Ui::drop(const std::string& file) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (ending == ".gltf" || ending == ".glb")
     act("scene.open", file);
+  else if (ending == ".exr" || ending == ".hdr")
+    act("environment.load", file);
   else
-    log::error("{}: cannot be opened; expected a .gltf or .glb file", file);
+    log::error(
+        "{}: cannot be opened; expected a scene (.gltf or .glb) or an image to light it with (.exr or .hdr)",
+        file);
 }
 
 void Ui::print(log::Level level, const std::string& text) {

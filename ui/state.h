@@ -91,6 +91,40 @@ struct Ui : commands::Workspace {
   bool reveals();
   /// Puts the camera where a drag or a flight has taken it.
   void place(const Viewpoint& view);
+  /// The same for turns of the wheel: those that follow one another closely are one step.
+  void place_by_wheel(const Viewpoint& view);
+  /// What a drag in the picture began on.
+  struct {
+    std::optional<vec3> point;  ///< of the scene
+    float azimuth = 0;          ///< of what is turned by it, degrees
+  } drag;
+  /// The next click in the picture sets the exposure by what it hits.
+  bool dropper = false;
+
+  /// A sentence over the picture that goes by itself.
+  struct {
+    std::string text;
+    double until = 0;
+  } note;
+  void notice(const std::string& text, double seconds = 6);
+  /// Says that a wall stands in the way, now and then.
+  void say_blocked();
+
+  /// Carried out without anybody at the window: nothing is remembered, nothing done unasked.
+  bool scripted = false;
+  bool welcome = false;   ///< the first steps are shown
+  bool welcomed = false;  ///< ... and were, now or in an earlier run
+
+  /// What the renderer has been at for a while, and since when; no text while it is not.
+  struct {
+    uint64_t command = 0;  ///< the session's number of it
+    double since = 0;
+    std::string text;
+  } busy;
+  std::string last_line;  ///< done by a control or a script
+  /// Seconds that the renderer has been at one thing; 0 while that is not worth telling.
+  double busy_seconds() const;
+  void follow_busy();
 
   // The window.
   Layout layout;
@@ -156,6 +190,8 @@ struct Ui : commands::Workspace {
     bool down = false;
   };
   std::vector<Input> inputs;
+  std::vector<std::pair<int, bool>> key_holds;   ///< GLFW keys that go down and stay, or come up
+  float wheel = 0;                               ///< notches that it is turned
   std::vector<std::pair<int, int>> key_strokes;  ///< GLFW keys with their modifiers
   std::string keyboard;                          ///< text typed
   std::vector<std::string> drops;                ///< files that a script drops on the window
@@ -170,12 +206,16 @@ struct Ui : commands::Workspace {
 
  protected:
   void scene_changed() override;
+  void measured(const std::string& text) override;
+  bool exposes_at_load() const override { return !scripted; }
 
  private:
   Selection revealed_;
   unsigned held_ = 0;  ///< id of the control that is held
   bool flying_ = false;
   uint64_t gestures_ = 0;
+  double wheeled_ = -10, blocked_said_ = -60;
+  uint64_t wheel_gesture_ = 0;
   struct {
     std::shared_ptr<const session::Accuracy> of;
     double target = 0;
@@ -199,6 +239,8 @@ void draw_log(Ui& ui, const Area& area);
 void draw_legend(Ui& ui, const Area& area);
 /// What inspect.at has found, in a card over the picture; part of draw_picture.
 void draw_inspection(Ui& ui, const Area& area);
+/// Keeps the view under the next free name, and says so.
+void keep_view(Ui& ui);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
 void handle_keys(Ui& ui);

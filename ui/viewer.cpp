@@ -29,7 +29,13 @@ class Viewer {
         runner_(ui_, options.script, options.script_name, options.stay),  // before a window is opened
         settings_(checked(ui_.registry, options.set)),
         window_(options.width, options.height, options.hidden, options.scale) {
-    if (remembers()) recall(ui_);
+    ui_.scripted = !options.script.empty();
+    if (remembers()) {
+      recall(ui_);
+      // Now, so that it is never shown again, however this run ends.
+      ui_.welcome = !std::exchange(ui_.welcomed, true);
+      if (ui_.welcome) remember(ui_);
+    }
     if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
     session.on_publish([] { Window::wake(); });
     if (!options.scene.empty()) ui_.act("scene.open", options.scene.string());
@@ -78,6 +84,8 @@ class Viewer {
       sleep = 0.02;
     else if (size_changed_at_ >= 0)
       sleep = k_settle;
+    else if (ui_.busy.command != 0 || ui_.now < ui_.note.until || ui_.measuring())
+      sleep = 0.1;
     if (window_.wait(sleep)) ui_.wake(3), hovering_since_ = ui_.time();
   }
 
@@ -107,6 +115,9 @@ class Viewer {
       hold_selection();
     }
     for (const std::string& file : window_.dropped()) ui_.drop(file);
+    ui_.follow_busy();
+    if (ui_.busy_seconds() > 0) ui_.wake(1);
+    if (!ui_.note.text.empty() && ui_.now >= ui_.note.until) ui_.note.text.clear(), ui_.wake(2);
     // Tooltips and the text cursor need a frame after the pointer has come to rest.
     if (ui_.now - hovering_since_ < 0.7 || ImGui::GetIO().WantTextInput) ui_.wake(1);
     if (runner_.measuring() || ui_.moving) ui_.wake(1);
@@ -121,6 +132,8 @@ class Viewer {
         window_.move_mouse(input.x, input.y);
       else
         window_.press_mouse(input.button, input.down);
+    for (const auto& [key, down] : std::exchange(ui_.key_holds, {})) window_.hold_key(key, down);
+    if (ui_.wheel != 0) window_.turn_wheel(std::exchange(ui_.wheel, 0.0f));
     for (const auto& [key, mods] : std::exchange(ui_.key_strokes, {})) window_.press_key(key, mods);
     if (!ui_.keyboard.empty()) window_.type(std::exchange(ui_.keyboard, {}));
     for (const std::string& file : std::exchange(ui_.drops, {})) window_.drop(file);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/figures.h"
+#include "commands/light_edit.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -171,20 +173,107 @@ void draw_marks(const Ui& ui, const Area& shown) {
   list->PopClipRect();
 }
 
+/// The point of the scene under the pointer, where there is one.
+std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
+  const session::Probe* rays = ui.probe();
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
+  const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
+  if (!rays || !ui.view || x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
+  const session::PickRay ray = session::pick_ray(ui.view->camera, x, y, ui.aspect);
+  const auto hit = rays->nearest(ray.origin, ray.direction);
+  if (!hit) return std::nullopt;
+  return hit->position;
+}
+
+/// The sun that a drag turns where there is no image: the first that is on.
+std::optional<uint32_t> first_sun(const Ui& ui) {
+  for (uint32_t i = 0; ui.scene && i < ui.scene->lights.size(); ++i)
+    if (ui.scene->lights[i].kind == scene::LightKind::directional && ui.light(i).enabled) return i;
+  return std::nullopt;
+}
+bool has_environment_image(const Ui& ui) {
+  return ui.scene && (ui.scene->environment.image != scene::k_none || !ui.environment_file().empty());
+}
+
+/// Turns the sky with the pointer: what is infinitely far stays under it.
+void turn_sky(Ui& ui, float pixels, float width) {
+  const scene::Camera& camera = ui.view->camera;
+  const float across = camera.orthographic ? k_pi : 2 * std::atan(std::tan(0.5f * camera.yfov) * ui.aspect);
+  const float degrees = pixels * across / std::max(1.0f, width) * 180 / k_pi;
+  // To the right is clockwise seen from above: with a compass, against the image's rotation.
+  if (has_environment_image(ui))
+    ui.act("environment.set", named("rotation", std::remainder(ui.drag.azimuth - degrees, 360.0f)));
+  else if (const auto sun = first_sun(ui))
+    ui.act("light.set", *sun + 1, named("azimuth", std::remainder(ui.drag.azimuth + degrees, 360.0f)));
+  else
+    ui.notice("There is no environment image and no sun to turn.", 3);
+}
+
+/// What a drag begins on.
+void begin_drag(Ui& ui, const Area& shown) {
+  ui.drag.point = under_pointer(ui, shown);
+  ui.drag.azimuth = ui.environment_rotation();
+  if (const auto sun = first_sun(ui); sun && !has_environment_image(ui))
+    ui.drag.azimuth = commands::bearing_of(ui.light(*sun).direction).azimuth;
+}
+
+/// Goes where the view is to go unless something stands between.
+void go(Ui& ui, const Viewpoint& to, bool through, bool by_wheel) {
+  Viewpoint view = to;
+  const vec3 from = commands::eye_of(ui.view->camera), step = commands::eye_of(to.camera) - from;
+  if (!through && !to.camera.orthographic && glm::length(step) > 0) {
+    bool blocked = false;
+    // Closer than a walker: one wants to look at small things.
+    const float clear = 0.25f * commands::clearance(to.extent);
+    const vec3 end = commands::step_straight(ui.look(), from, step, clear, &blocked);
+    if (blocked) {
+      ui.say_blocked();
+      if (!by_wheel) return;
+      view.camera.to_world[3] = vec4(end, 1);
+    }
+  }
+  if (by_wheel)
+    ui.place_by_wheel(view);
+  else
+    ui.place(view);
+}
+
+/// Flies or walks by `metres` to the right, upwards and forwards.
+void advance_view(Ui& ui, const vec3& metres, bool through) {
+  Viewpoint view = *ui.view;
+  bool blocked = false;
+  if (ui.walking && !view.camera.orthographic) {
+    if (metres.y != 0) ui.act("camera.eye_height", std::clamp(ui.eye_height + metres.y, 0.05f, 100.0f));
+    if (metres.x == 0 && metres.z == 0) return;
+    view = *ui.view;
+    blocked = commands::walk(view, ui.look(), {metres.x, metres.z}, ui.eye_height, through);
+  } else if (through || view.camera.orthographic) {
+    commands::fly(view, metres);
+  } else {
+    const vec3 step = metres.x * commands::right_of(view.camera) + metres.y * commands::up_of(view.camera) +
+                      metres.z * commands::forward_of(view.camera);
+    view.camera.to_world[3] = vec4(commands::step_among(ui.look(), commands::eye_of(view.camera), step,
+                                                        commands::clearance(view.extent), &blocked),
+                                   1);
+  }
+  if (blocked) ui.say_blocked();
+  ui.place(view);
+}
+
 /// Keys and mouse over the picture.
-void navigate(Ui& ui, bool hovered, bool active) {
+void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
   ImGuiIO& io = ImGui::GetIO();
   if (!ui.view) return;
-  Viewpoint view = *ui.view;
   const float height = std::max(1.0f, ui.picture.height());
   const vec2 drag(io.MouseDelta.x, io.MouseDelta.y);
   const bool typing = io.WantTextInput ||
                       ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-  bool moved = false;
+  const bool through = io.KeyAlt;
 
   // Flight: while the pointer is over the picture.
   vec3 wish(0);
-  if ((hovered || active) && !typing && !io.KeyCtrl && !io.KeyAlt) {
+  if ((hovered || active) && !typing && !io.KeyCtrl) {
     const auto down = [&](int key) { return io.KeysDown[key] ? 1.0f : 0.0f; };
     wish = {down(GLFW_KEY_D) - down(GLFW_KEY_A), down(GLFW_KEY_E) - down(GLFW_KEY_Q),
             down(GLFW_KEY_W) - down(GLFW_KEY_S)};
@@ -192,42 +281,63 @@ void navigate(Ui& ui, bool hovered, bool active) {
   const bool flying = wish != vec3(0);
   if (flying || ui.flight.moving()) {
     const float seconds = std::min(io.DeltaTime, 0.1f);
-    commands::fly(view, advance(ui.flight, wish, ui.speed * (io.KeyShift ? 4.0f : 1.0f), seconds));
-    ui.moving = moved = true;
+    const vec3 metres = advance(ui.flight, wish, ui.speed * (io.KeyShift ? 4.0f : 1.0f), seconds);
+    if (flying) ui.follow_gesture();  // the first move belongs to the flight already
+    advance_view(ui, metres, through);
+    ui.moving = true;
   }
   // A press that hardly moves is a click; it begins to drag after three pixels.
   if (active && (drag.x != 0 || drag.y != 0) && (flying || dragging())) {
     // Half a turn across the height of the picture.
     const vec2 angles = -drag * (k_pi / height);
-    if (flying && (io.MouseDown[0] || io.MouseDown[1]))
+    Viewpoint view = *ui.view;
+    if (io.MouseDown[0] && io.KeyCtrl) {
+      turn_sky(ui, io.MousePos.x - io.MouseClickedPos[0].x, ui.picture.width());
+    } else if (io.MouseDown[1] || (flying && io.MouseDown[0])) {
       commands::look(view, 0.5f * angles);
-    else if (io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift))
+      ui.place(view);
+    } else if (io.MouseDown[2] || io.KeyShift) {
       commands::pan(view, drag, height);
-    else if (io.MouseDown[1])
-      commands::dolly(view, 12 * (drag.x - drag.y) / height);
-    else if (io.MouseDown[0])
-      commands::orbit(view, {angles.x, -angles.y});
-    moved = true;
+      go(ui, view, through, false);
+    } else if (io.MouseDown[0]) {
+      if (ui.drag.point && !view.camera.orthographic)
+        commands::orbit_about(view, *ui.drag.point, {angles.x, -angles.y});
+      else
+        commands::orbit(view, {angles.x, -angles.y});
+      go(ui, view, through, false);
+    }
   }
-  if (moved) ui.place(view);
   if (hovered && io.MouseWheel != 0) {
-    if (flying)
+    if (flying) {
       ui.act("camera.speed", std::clamp(ui.speed * std::pow(1.2f, io.MouseWheel), 0.01f, 1000.0f));
+      return;
+    }
+    Viewpoint view = *ui.view;
+    if (const auto point = under_pointer(ui, shown))
+      commands::dolly_towards(view, *point, io.MouseWheel);
     else
-      ui.act("camera.dolly", io.MouseWheel);
+      commands::dolly(view, io.MouseWheel);
+    go(ui, view, through, true);
   }
 }
 
-/// A click selects what is under it: a light where its mark is shown, or else an object.
+/// A click selects what is under it: a light where its mark is shown, or else an object. With the dropper it
+/// sets the exposure.
 void click(Ui& ui, const Area& shown) {
   const ImVec2 at = ImGui::GetIO().MousePos;
-  if (ui.light_marks)
+  if (ui.light_marks && !ui.dropper)
     for (const Mark& mark : marks(ui, shown))
       if (std::hypot(mark.at.x - at.x, mark.at.y - at.y) <= px(9))
         return ui.act("select", "light", mark.light + 1);
   const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
   const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
-  if (x >= 0 && x <= 1 && y >= 0 && y <= 1) ui.act("pick", x, y);
+  if (x < 0 || x > 1 || y < 0 || y > 1) return;
+  if (ui.dropper) {
+    ui.act("exposure.dropper", false);
+    ui.act("exposure.at", x, y);
+  } else {
+    ui.act("pick", x, y);
+  }
 }
 
 constexpr double k_rest = 0.15;  // seconds
@@ -282,6 +392,81 @@ void empty_state(Ui& ui, const Area& area) {
               ImGui::IsItemHovered() ? colour::text : colour::text_dim, Align::centre);
     ImGui::PopID();
   }
+}
+
+/// A sentence in the middle below, that goes by itself.
+void draw_note(Ui& ui, const Area& area) {
+  if (ui.note.text.empty()) return;
+  // Above what else is told below.
+  const bool beside = (ui.snapshot && !ui.snapshot->activity.empty()) || ui.busy_seconds() > 0;
+  const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24)), h = px(32);
+  const ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)), area.hi.y - h - px(beside ? 76.0f : 16.0f));
+  const ImVec2 hi(lo.x + w, lo.y + h);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(lo, hi, colour::with_alpha(colour::bar, 0.95f), px(3));
+  list->AddRect(lo, hi, colour::hairline, px(3));
+  draw_text(list, lo, hi, elided(ui.note.text, w - px(24)), colour::text, Align::centre);
+}
+
+/// What to do first: three sentences, in the middle of the picture until they are put away.
+void welcome_card(Ui& ui, const Area& area) {
+  if (!ui.welcome) return;
+  static const char* sentences[] = {
+      "Drop a glTF scene on the window or press Ctrl+O; drag with the left button to orbit about what the "
+      "pointer is on, with the right one to look about, and turn the wheel to come closer.",
+      "W A S D fly and H walks along the floor, F frames what you have clicked on, Space pauses, and Ctrl+Z "
+      "takes back whatever you did.",
+      "On the left you choose how each part of the light is computed, on the right you change lamps, sky and "
+      "materials; F1 shows all keys."};
+  ImFont* font = theme().fonts.regular;
+  const float w = std::min(px(520), area.width() - px(32)), pad = px(20), room = w - 2 * pad;
+  float h = pad + px(28) + px(40) + pad;
+  for (const char* text : sentences) h += font->CalcTextSizeA(font->FontSize, 1e9f, room, text).y + px(10);
+  h = std::min(h, area.height() - px(16));
+  const ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)),
+                  std::floor(0.5f * (area.lo.y + area.hi.y - h)));
+  ImGui::SetCursorScreenPos(lo);
+  ImGui::BeginChild("##welcome", {w, h}, false, ImGuiWindowFlags_NoScrollbar);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(lo, {lo.x + w, lo.y + h}, colour::with_alpha(colour::bar, 0.97f), px(3));
+  list->AddRect(lo, {lo.x + w, lo.y + h}, colour::hairline, px(3));
+  float y = lo.y + pad;
+  draw_text(list, {lo.x + pad, y}, {lo.x + w - pad, y + px(20)}, "First steps", colour::text, Align::left,
+            theme().fonts.strong);
+  y += px(28);
+  for (const char* text : sentences) {
+    list->AddText(font, font->FontSize, {lo.x + pad, y}, colour::text, text, nullptr, room);
+    y += font->CalcTextSizeA(font->FontSize, 1e9f, room, text).y + px(10);
+  }
+  ImGui::SetCursorScreenPos({lo.x + w - pad - px(96), lo.y + h - pad - px(24)});
+  if (button("##begin", "Begin", true, px(96))) ui.welcome = false;
+  tooltip("Puts this away for good; Help > First steps shows it again. Esc.");
+  ImGui::EndChild();
+}
+
+/// What has kept the renderer for more than half a second, and for how long, at the lower right.
+void busy_card(Ui& ui, const Area& area) {
+  const double seconds = ui.busy_seconds();
+  if (seconds <= 0 || (ui.snapshot && !ui.snapshot->activity.empty())) return;
+  const float w = std::min(px(320), area.width() - px(24)), h = px(44);
+  // At the right: legends lie at the left.
+  const ImVec2 lo(area.hi.x - w - px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(lo, hi, colour::with_alpha(colour::bar, 0.95f), px(3));
+  list->AddRect(lo, hi, colour::hairline, px(3));
+  const std::string time = seconds_text(seconds);
+  draw_text(list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)}, time, colour::text_dim,
+            Align::right);
+  draw_text(
+      list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)},
+      elided(ui.busy.text.empty() ? "Working" : "Working: " + ui.busy.text, w - px(36) - text_width(time)),
+      colour::text);
+  // How far it is nobody knows; that it goes on is seen.
+  const float lo_x = lo.x + px(12), room = hi.x - px(12) - lo_x, part = 0.25f;
+  const float at = static_cast<float>(0.5 - 0.5 * std::cos(2 * seconds)) * (1 - part);
+  list->AddRectFilled({lo_x, hi.y - px(9)}, {lo_x + room, hi.y - px(6)}, colour::field, px(1));
+  list->AddRectFilled({lo_x + at * room, hi.y - px(9)}, {lo_x + (at + part) * room, hi.y - px(6)},
+                      colour::accent, px(1));
 }
 
 /// What is going on, at the lower left, with a way out.
@@ -339,12 +524,19 @@ void error_strip(Ui& ui, const Area& area) {
 
 }  // namespace
 
+void keep_view(Ui& ui) {
+  const commands::Workspace::Bookmarks before = ui.bookmarks_here();
+  ui.act("camera.bookmark");
+  for (const auto& [name, line] : ui.bookmarks_here())
+    if (!before.contains(name)) ui.notice(fmt::format("Kept as '{}', in the menu Camera.", name), 4);
+}
+
 void draw_toolbar(Ui& ui, const Area& area) {
   begin_panel("##toolbar", area, colour::bar, false);
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->AddRectFilled({area.lo.x, area.hi.y - 1}, area.hi, colour::hairline);
   const float pad = px(8), y = area.lo.y + px(6);
-  const float tone_width = px(88), ev_width = px(92), tiles_width = px(46);
+  const float tone_width = px(88), ev_width = px(92), grey_width = px(46), tiles_width = px(46);
   float right = area.hi.x - pad;
   const OptionInfo* tone = plan::find_option("film.tone_curve");
   if (tone) {
@@ -376,6 +568,10 @@ void draw_toolbar(Ui& ui, const Area& area) {
                      .typed_hi = static_cast<float>(ev->hi)};
     if (slider("##ev", "", value, how, ev_width)) ui.act("set", "film.ev", fmt::format("{:.4g}", value));
     tooltip(ev->help + " Double-click to type.");
+    right -= px(4) + grey_width;
+    ImGui::SetCursorScreenPos({right, y});
+    if (button("##grey", "Grey", ui.dropper, grey_width)) ui.act("exposure.dropper", !ui.dropper);
+    tooltip("The next click in the picture sets the exposure so that what it hits is middle grey. B.");
     right -= px(4);
   }
   right -= tiles_width;
@@ -418,7 +614,10 @@ void draw_picture(Ui& ui, const Area& area) {
   draw_legend(ui, frame);
   draw_inspection(ui, frame);
   activity_card(ui, area);
+  busy_card(ui, area);
+  draw_note(ui, area);
   error_strip(ui, area);
+  welcome_card(ui, area);
 
   bool active = false;
   ui.picture_hovered = false;
@@ -429,12 +628,14 @@ void draw_picture(Ui& ui, const Area& area) {
                                ImGuiButtonFlags_MouseButtonMiddle);
     ui.picture_hovered = ImGui::IsItemHovered();
     active = ImGui::IsItemActive();
+    if (ImGui::IsItemActivated()) begin_drag(ui, frame);
+    if (ui.dropper && ui.picture_hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (ui.picture_hovered && ImGui::IsMouseReleased(0) && ImGui::IsItemDeactivated() &&
         ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))
       click(ui, frame);
   }
   ask(ui, frame, active);
-  navigate(ui, ui.picture_hovered, active);
+  navigate(ui, frame, ui.picture_hovered, active);
   ImGui::End();
 }
 

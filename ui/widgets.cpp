@@ -308,6 +308,94 @@ bool slider(const char* id, const std::string& name, float& value, const Slider&
   return changed;
 }
 
+int slider_row(const char* id, const std::string& name, vec3& value, const Slider& how) {
+  static const char* axes[] = {"x", "y", "z"};
+  const float all = ImGui::CalcItemWidth(), between = px(4);
+  const float name_width = px(64), width = std::floor((all - name_width - 2 * between) / 3);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  draw_text(ImGui::GetWindowDrawList(), at, {at.x + name_width, at.y + row_height()},
+            elided(name, name_width - px(4)), colour::text_dim);
+  ImGui::PushID(id);
+  int changed = -1;
+  for (int i = 0; i < 3; ++i) {
+    ImGui::SetCursorScreenPos({at.x + name_width + static_cast<float>(i) * (width + between), at.y});
+    if (slider(axes[i], "", value[i], how, width)) changed = i;
+  }
+  ImGui::PopID();
+  // What follows, and a tooltip, belong to the row.
+  ImGui::SetCursorScreenPos(at);
+  ImGui::Dummy({all, row_height()});
+  return changed;
+}
+
+namespace {
+
+float encoded(float v) {
+  v = std::clamp(v, 0.0f, 1.0f);
+  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+}
+float decoded(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
+
+}  // namespace
+
+ImU32 display_colour(const vec3& linear) {
+  const auto byte = [](float v) { return static_cast<int>(encoded(v) * 255 + 0.5f); };
+  return IM_COL32(byte(linear.x), byte(linear.y), byte(linear.z), 255);
+}
+
+bool colour_field(const char* id, const std::string& name, vec3& linear, const std::string& note) {
+  const float w = ImGui::CalcItemWidth();
+  const ImVec2 lo = ImGui::GetCursorScreenPos(), hi(lo.x + w, lo.y + row_height());
+  ImGui::PushID(id);
+  if (ImGui::InvisibleButton("##open", {w, row_height()})) ImGui::OpenPopup("##picker");
+  const ImGuiLastItemData item = GImGui->LastItemData;
+  const bool hovered = ImGui::IsItemHovered(), open = ImGui::IsPopupOpen("##picker");
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(lo, hi,
+                      open      ? colour::field_active
+                      : hovered ? colour::field_hover
+                                : colour::field,
+                      px(3));
+  const ImVec2 inner(hi.x - px(52), lo.y + px(5));
+  list->AddRectFilled(inner, {hi.x - px(8), hi.y - px(5)}, display_colour(linear), px(2));
+  list->AddRect(inner, {hi.x - px(8), hi.y - px(5)}, colour::grey(80), px(2));
+  draw_text(list, {lo.x + px(8), lo.y}, {inner.x - px(8), hi.y}, name, colour::text_dim);
+  if (!note.empty())
+    draw_text(list, {lo.x + px(8), lo.y}, {inner.x - px(8), hi.y}, note, colour::text_faint, Align::right);
+  bool changed = false;
+  ImGui::SetNextWindowPos({hi.x, hi.y + px(2)}, 0, {1, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(12), px(12)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(6)});
+  if (ImGui::BeginPopup("##picker", ImGuiWindowFlags_NoMove)) {
+    // The square keeps its hue where a colour has none: it is moved by ImGui's own copy.
+    static vec3 shown, sent;
+    if (sent != linear) {
+      shown = {encoded(linear.x), encoded(linear.y), encoded(linear.z)};
+      sent = linear;
+    }
+    ImGui::SetNextItemWidth(px(216));
+    if (ImGui::ColorPicker3("##square", &shown.x,
+                            ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoInputs |
+                                ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoSmallPreview |
+                                ImGuiColorEditFlags_NoOptions | ImGuiColorEditFlags_NoTooltip))
+      changed = true;
+    vec3 typed(decoded(shown.x), decoded(shown.y), decoded(shown.z));
+    if (changed) sent = linear = typed;
+    static const char* names[] = {"Red", "Green", "Blue"};
+    for (int i = 0; i < 3; ++i)
+      if (slider(names[i], names[i], typed[i], {.decimals = 3}, px(216))) {
+        linear = sent = typed, changed = true;
+        shown = {encoded(linear.x), encoded(linear.y), encoded(linear.z)};
+      }
+    label("Linear Rec.709; double-click to type", colour::text_faint, theme().fonts.small);
+    ImGui::EndPopup();
+  }
+  ImGui::PopStyleVar(2);
+  ImGui::PopID();
+  GImGui->LastItemData = item;
+  return changed;
+}
+
 bool choice(const char* id, const std::string& name, const std::vector<std::string>& entries, int& index,
             float width) {
   const float w = full_width(width > 0 ? width : ImGui::CalcItemWidth());

@@ -65,6 +65,16 @@ struct Slider {
 };
 bool slider(const char* id, const std::string& name, float& value, const Slider& how, float width = 0);
 
+/// Three numbers with one name in a row of fields, each dragged by itself; `how` is that of each. Returns
+/// which one changed (0, 1, 2), or -1.
+int slider_row(const char* id, const std::string& name, vec3& value, const Slider& how);
+
+/// Linear colours as bytes of the display.
+ImU32 display_colour(const vec3& linear);
+/// A field with a name and a colour; pressed, it opens a picker. `note` stands beside the name. The colour is
+/// linear, 0..1 in each channel. Returns whether it changed.
+bool colour_field(const char* id, const std::string& name, vec3& linear, const std::string& note = "");
+
 /// A drop-down; `index` < 0 shows nothing chosen. `marks` colours the entries (0: none).
 bool choice(const char* id, const std::string& name, const std::vector<std::string>& entries, int& index,
             float width = 0);

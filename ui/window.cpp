@@ -8,8 +8,11 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "base/error.h"
@@ -26,6 +29,10 @@ struct Window::Events {
   bool scripted = false;  // the pointer is a script's
   float x = 0, y = 0;
   bool down[3] = {};
+  std::set<int> held;                            // by a script
+  std::vector<int> lifted;                       // of these, those that nobody else holds
+  std::optional<std::array<bool, 3>> modifiers;  // Ctrl, Shift, Alt without them
+  float wheel = 0;
 
   /// What GLFW's callback does with dropped files; a script's go the same way.
   void take(int count, const char** files) {
@@ -161,14 +168,30 @@ void Window::begin_frame() {
     io.MousePos = {events_->x, events_->y};
     std::copy(std::begin(events_->down), std::end(events_->down), io.MouseDown);
   }
+  io.MouseWheel += std::exchange(events_->wheel, 0.0f);
+  if (!events_->held.empty()) events_->modifiers = {{io.KeyCtrl, io.KeyShift, io.KeyAlt}};
+  io.KeyCtrl |= events_->held.contains(GLFW_KEY_LEFT_CONTROL);
+  io.KeyShift |= events_->held.contains(GLFW_KEY_LEFT_SHIFT);
+  io.KeyAlt |= events_->held.contains(GLFW_KEY_LEFT_ALT);
   std::vector<int> revived;
+  for (int key : events_->held)
+    if (!io.KeysDown[key]) io.KeysDown[key] = true, revived.push_back(key);
   for (int key : std::exchange(events_->quick, {}))
     if (!io.KeysDown[key]) io.KeysDown[key] = true, revived.push_back(key);
   ImGui::NewFrame();
-  for (int key : revived) io.KeysDown[key] = false;
+  // What a script holds is held for the whole frame; its parts look at the keys while they are drawn.
+  std::erase_if(revived, [&](int key) {
+    if (events_->held.contains(key)) return events_->lifted.push_back(key), true;
+    io.KeysDown[key] = false;
+    return true;
+  });
 }
 
 void Window::end_frame() {
+  ImGuiIO& io = ImGui::GetIO();
+  for (int key : std::exchange(events_->lifted, {})) io.KeysDown[key] = false;
+  if (const auto before = std::exchange(events_->modifiers, std::nullopt))
+    io.KeyCtrl = (*before)[0], io.KeyShift = (*before)[1], io.KeyAlt = (*before)[2];
   ImGui::Render();
   int width = 0, height = 0;
   glfwGetFramebufferSize(window_, &width, &height);
@@ -230,6 +253,14 @@ void Window::press_mouse(int button, bool down) {
   events_->down[button] = down;
 }
 void Window::press_key(int key, int mods) { events_->take_key(key, mods); }
+void Window::hold_key(int key, bool down) {
+  if (down)
+    events_->held.insert(key);
+  else
+    events_->held.erase(key);
+  events_->any = true;
+}
+void Window::turn_wheel(float notches) { events_->wheel += notches, events_->any = true; }
 void Window::type(const std::string& text) { ImGui::GetIO().AddInputCharactersUTF8(text.c_str()); }
 void Window::drop(const std::string& file) {
   const char* name = file.c_str();

@@ -47,6 +47,8 @@ class Window {
   void move_mouse(float x, float y);  ///< window units
   void press_mouse(int button, bool down);
   void press_key(int key, int mods);
+  void hold_key(int key, bool down);  ///< GLFW's; a modifier's too
+  void turn_wheel(float notches);     ///< upwards
   void type(const std::string& text);
   void drop(const std::string& file);
 

@@ -136,6 +136,17 @@ void add_window_commands(Ui& ui) {
   add(
       "window.keys", "Shows what keys and mouse do.", {}, [&ui](const Arguments&) { ui.help = true; }, false);
 
+  add(
+      "window.welcome", "Shows the first steps.", {}, [&ui](const Arguments&) { ui.welcome = true; }, false);
+  add(
+      "exposure.dropper", "Whether the next click in the picture sets the exposure by what it hits.", {on},
+      [&ui](const Arguments& a) {
+        ui.dropper = a.boolean("on");
+        if (ui.dropper)
+          ui.notice("Click on something grey: it is then shown as middle grey. Esc gives it up.");
+      },
+      false);
+
   add("view.divisor", "Pixels of the window for each pixel of the picture, along a side.",
       {{.name = "divisor", .type = Type::choice, .choices = {"1", "2", "4"}}},
       [&ui](const Arguments& a) { ui.picture_divisor = static_cast<int>(a.integer("divisor")); });

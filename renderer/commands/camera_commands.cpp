@@ -90,24 +90,30 @@ void Workspace::add_camera_commands() {
     registry.add({.name = std::move(name),
                   .help = std::move(help),
                   .parameters = std::move(parameters),
-                  .run = [this, act = std::move(act)](const Arguments& a) {
-                    needs_view();
-                    Viewpoint moving = *view;
-                    act(moving, a);
-                    view = moving;
-                    moved();
-                  }});
+                  .run =
+                      [this, act = std::move(act)](const Arguments& a) {
+                        needs_view();
+                        Viewpoint moving = *view;
+                        act(moving, a);
+                        view = moving;
+                        moved();
+                      },
+                  .moves = true});
   };
-  move("camera.orbit", "Turns the eye about what it looks at.",
+  move("camera.orbit", "Turns the eye about what it looks at, or about any point.",
        {real("right", "counter-clockwise seen from above", "radians"),
-        real("up", "raises the eye", "radians")},
+        real("up", "raises the eye", "radians"), optional(vector("about", "a point of the scene", "m"))},
        [](Viewpoint& v, const Arguments& a) {
-         orbit(v, {a.number("right"), a.number("up")});
+         const vec2 angles(a.number("right"), a.number("up"));
+         if (a.has("about"))
+           orbit_about(v, a.vector("about"), angles);
+         else
+           orbit(v, angles);
        });
   move("camera.look", "Turns the view about the eye.",
        {real("left", "to the left", "radians"), real("up", "upwards", "radians")},
        [](Viewpoint& v, const Arguments& a) {
-         look(v, {a.number("left"), a.number("up")});
+         commands::look(v, {a.number("left"), a.number("up")});
        });
   move("camera.pan", "Moves sideways, as a drag across the picture does.",
        {real("right", "the picture moves to the right", "picture heights"),
@@ -140,8 +146,17 @@ void Workspace::add_camera_commands() {
        {real("length", "focal length", "mm", 1, 2000)}, [this](Viewpoint& v, const Arguments& a) {
          set_fov(v.camera, k_degrees * yfov_from_focal_length(a.number("length"), aspect));
        });
-  move("camera.frame", "Moves so that the selection, or else the whole scene, fills the picture.", {},
-       [this](Viewpoint& v, const Arguments&) { frame(v, selection_bounds(), aspect); });
+  move("camera.frame",
+       "Moves so that the selection, or else the whole scene, fills the picture; not into or behind a wall.",
+       {}, [this](Viewpoint& v, const Arguments&) {
+         probe(true);
+         if (selection.kind != Kind::none)
+           frame_clear(v, selection_bounds(), aspect, look_past_selection());
+         else if (!v.camera.orthographic && enclosed(look(), eye_of(v.camera), v.extent))
+           frame_inside(v, selection_bounds(), aspect, look());
+         else
+           frame(v, selection_bounds(), aspect);
+       });
 
   registry.add({.name = "camera.speed",
                 .help = "Sets the speed of flight.",
@@ -155,12 +170,14 @@ void Workspace::add_camera_commands() {
                                     [this](const std::vector<std::string>&) {
                                       return scene ? names_of(scene->cameras) : std::vector<std::string>{};
                                     }}},
-                .run = [this](const Arguments& a) {
-                  const int index = camera_index(a.text("camera"));
-                  view = make_viewpoint(scene->cameras[static_cast<size_t>(index)], bounds);
-                  moved();
-                  scene_camera = index;
-                }});
+                .run =
+                    [this](const Arguments& a) {
+                      const int index = camera_index(a.text("camera"));
+                      view = make_viewpoint(scene->cameras[static_cast<size_t>(index)], bounds);
+                      moved();
+                      scene_camera = index;
+                    },
+                .moves = true});
 
   registry.add(
       {.name = "select",

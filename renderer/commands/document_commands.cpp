@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/blackbody.h"
 #include "base/error.h"
+#include "commands/light_edit.h"
 #include "commands/workspace.h"
 
 namespace lucerna::commands {
@@ -27,7 +29,87 @@ const OptionInfo& known_option(const std::string& key) {
   throw Error("", fmt::format("there is no setting '{}'{}", key, suggestion(key, setting_keys())));
 }
 
-float brightest(const vec3& c) { return std::max({c.x, c.y, c.z}); }
+Parameter kelvin() {
+  return {.name = "kelvin",
+          .type = Type::real,
+          .help = "colour of a black body of that temperature",
+          .lo = k_coolest_kelvin,
+          .hi = k_hottest_kelvin,
+          .unit = "K",
+          .optional = true};
+}
+
+Parameter angle(const char* name, const char* help, double lo, double hi) {
+  return {.name = name,
+          .type = Type::real,
+          .help = help,
+          .lo = lo,
+          .hi = hi,
+          .unit = "degrees",
+          .optional = true};
+}
+
+void exclude(const Arguments& a, const char* one, const char* other) {
+  if (a.has(one) && a.has(other))
+    throw Error("", fmt::format("{} and {} exclude each other: give one", one, other));
+}
+
+/// The colour asked for, its strongest channel 1, by the parameter of that name or in kelvin; else `before`.
+vec3 tint_asked(const Arguments& a, const char* color, const vec3& before) {
+  if (a.has("kelvin")) return blackbody_color(a.number("kelvin"));
+  if (!a.has(color)) return before;
+  if (strength_of(a.vector(color)) <= 0)
+    throw Error("", fmt::format("{}: at least one channel must be above 0", color));
+  return tint_of(a.vector(color));
+}
+
+const char* kind_of(const scene::Light& light) {
+  return light.kind == scene::LightKind::directional ? "sun"
+         : light.kind == scene::LightKind::spot      ? "spot lamp"
+                                                     : "point lamp";
+}
+
+/// Refuses what a lamp of its kind does not have.
+void check_kind(const Arguments& a, const scene::Light& light) {
+  const auto refuse = [&](const char* name, const char* why) {
+    if (a.has(name)) throw Error("", fmt::format("{}: a {} {}", name, kind_of(light), why));
+  };
+  if (light.kind == scene::LightKind::directional) {
+    refuse("power", "shines from infinitely far: its intensity is what counts");
+    refuse("position", "is infinitely far: azimuth and elevation say where");
+  }
+  if (light.kind == scene::LightKind::point)
+    for (const char* name : {"direction", "azimuth", "elevation"}) refuse(name, "shines in all directions");
+  if (light.kind != scene::LightKind::spot)
+    for (const char* name : {"cone", "inner_cone"}) refuse(name, "has no cone");
+}
+
+/// Place, direction and cones as asked for.
+void aim(const Arguments& a, scene::Light& light) {
+  constexpr float degree = k_pi / 180;
+  if (a.has("position")) light.position = a.vector("position");
+  if (a.has("direction")) {
+    const vec3 d = a.vector("direction");
+    if (!(glm::length(d) > 1e-6f)) throw Error("", "direction: its length is 0");
+    light.direction = glm::normalize(d);
+  }
+  if (a.has("azimuth") || a.has("elevation")) {
+    Bearing bearing = bearing_of(light.direction);
+    if (a.has("azimuth")) bearing.azimuth = a.number("azimuth");
+    if (a.has("elevation")) bearing.elevation = a.number("elevation");
+    light.direction = direction_from(bearing);
+  }
+  if (a.has("cone") && a.has("inner_cone") && a.real("inner_cone") > a.real("cone"))
+    throw Error("", fmt::format("inner_cone: {} degrees is more than the cone's {}", a.real("inner_cone"),
+                                a.real("cone")));
+  // One alone moves the other where it must.
+  if (a.has("cone")) light.outer_cone = degree * a.number("cone");
+  if (a.has("inner_cone"))
+    light.inner_cone = degree * a.number("inner_cone");
+  else
+    light.inner_cone = std::min(light.inner_cone, light.outer_cone);
+  light.outer_cone = std::max(light.outer_cone, light.inner_cone);
+}
 
 }  // namespace
 
@@ -100,6 +182,7 @@ void Workspace::add_setting_commands() {
            [this](const Arguments& a) {
              if (a.text("key") == "camera" && view && !loading())
                throw Error("", "the camera to start with; camera.select takes another one now");
+             if (a.text("key") == "film.ev") exposure_given_ = true;
              edit().settings[a.text("key")] = a.text("value");
              touched_.push_back(a.text("key"));
            },
@@ -149,21 +232,54 @@ void Workspace::add_light_commands() {
              .lo = 0,
              .hi = 1e9,
              .optional = true},
-            {.name = "on", .type = Type::boolean, .help = "whether it shines", .optional = true}},
+            {.name = "on", .type = Type::boolean, .help = "whether it shines", .optional = true},
+            kelvin(),
+            {.name = "power",
+             .type = Type::real,
+             .help = "all that a lamp gives off, in its strongest channel; instead of intensity",
+             .lo = 0,
+             .hi = 1e9,
+             .unit = "W",
+             .optional = true},
+            {.name = "position",
+             .type = Type::vector,
+             .help = "of a lamp",
+             .lo = -1e6,
+             .hi = 1e6,
+             .unit = "m",
+             .optional = true},
+            {.name = "direction",
+             .type = Type::vector,
+             .help = "in which a sun or a spot shines; any length above 0",
+             .lo = -1e6,
+             .hi = 1e6,
+             .optional = true},
+            angle("azimuth", "from where a sun or a spot shines, as a compass: 0 from -Z, 90 from +X", -360,
+                  360),
+            angle("elevation", "the same above the horizon", -90, 90),
+            angle("cone", "of a spot, from its axis to where there is no light", 0.01, 90),
+            angle("inner_cone", "of a spot, from its axis to where its light begins to fade", 0, 90)},
+       .check =
+           [](const Arguments& a) {
+             exclude(a, "intensity", "power"), exclude(a, "color", "kelvin");
+             exclude(a, "direction", "azimuth"), exclude(a, "direction", "elevation");
+           },
        .run =
            [this](const Arguments& a) {
              const uint32_t index = light_index(a.text("light"));
-             Document::Light& light = edit().lights[index];
-             float strength = brightest(light.intensity);
-             vec3 tint = strength > 0 ? light.intensity / strength : vec3(1);
+             Document::Light& edited = edit().lights[index];
+             scene::Light light = scene->lights[index];
+             edited.put(light);
+             check_kind(a, light);
+             aim(a, light);
+             float strength = strength_of(light.intensity);
+             const vec3 tint = tint_asked(a, "color", tint_of(light.intensity));
              if (a.has("intensity")) strength = a.number("intensity");
-             if (a.has("color")) {
-               tint = a.vector("color");
-               if (brightest(tint) <= 0) throw Error("", "color: at least one channel must be above 0");
-               tint /= brightest(tint);
-             }
-             light.intensity = tint * strength;
+             if (a.has("power")) strength = a.number("power") / std::max(solid_angle(light), 1e-9f);
+             if (a.has("intensity") || a.has("power") || a.has("color") || a.has("kelvin"))
+               light.intensity = strength * tint;
              if (a.has("on")) light.enabled = a.boolean("on");
+             edited = Document::of(light);
            },
        .undoable = true});
 
@@ -221,7 +337,27 @@ void Workspace::add_material_commands() {
                        .help = "linear; emitted radiance",
                        .lo = 0,
                        .hi = 1e9,
-                       .optional = true}},
+                       .optional = true},
+                      {.name = "emission_color",
+                       .type = Type::vector,
+                       .help = "linear; its strongest channel is scaled to 1",
+                       .lo = 0,
+                       .hi = 1e9,
+                       .optional = true},
+                      kelvin(),
+                      {.name = "strength",
+                       .type = Type::real,
+                       .help = "emitted radiance of the strongest channel",
+                       .lo = 0,
+                       .hi = 1e9,
+                       .unit = "W/(m2 sr)",
+                       .optional = true},
+                      {.name = "on", .type = Type::boolean, .help = "whether it emits", .optional = true}},
+       .check =
+           [](const Arguments& a) {
+             for (const char* part : {"emission_color", "kelvin", "strength"}) exclude(a, "emission", part);
+             exclude(a, "emission_color", "kelvin");
+           },
        .run =
            [this](const Arguments& a) {
              Document::Material& m = edit().materials[material_index(a.text("material"))];
@@ -229,6 +365,12 @@ void Workspace::add_material_commands() {
              if (a.has("roughness")) m.roughness = a.number("roughness");
              if (a.has("metallic")) m.metallic = a.number("metallic");
              if (a.has("emission")) m.emission = a.vector("emission");
+             float strength = strength_of(m.emission);
+             const vec3 tint = tint_asked(a, "emission_color", tint_of(m.emission));
+             if (a.has("strength")) strength = a.number("strength");
+             if (a.has("strength") || a.has("emission_color") || a.has("kelvin"))
+               m.emission = strength * tint;
+             if (a.has("on")) m.emits = a.boolean("on");
            },
        .undoable = true});
 }

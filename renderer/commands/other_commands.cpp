@@ -37,6 +37,7 @@ void Workspace::add_other_commands() {
                 .run = [this](const Arguments& a) {
                   opening_ = true, open_failed_ = false;
                   scene_at_open_ = snapshot ? snapshot->scene_id : 0;
+                  exposure_given_ = false;
                   session.load(a.text("file"));
                   opened_by_ = session.commands();
                 }});
@@ -147,6 +148,8 @@ void Workspace::add_other_commands() {
                throw Error("", told->to_go_on);
              // A picture of an earlier camera does not count.
              if (view && !same_view(snapshot->camera, view->camera)) return false;
+             // Nor does one from before the last edits.
+             if (!up_to_date()) return false;
              return snapshot->finished || (!snapshot->coarse && snapshot->samples >= a.integer("samples"));
            }});
 }

@@ -83,6 +83,7 @@ struct Command {
   /// wait).
   std::function<bool(const Arguments&)> done = {};
   bool undoable = false;  ///< changes the document (workspace.h)
+  bool moves = false;     ///< moves the camera, which can be undone too
   bool recorded = true;   ///< belongs into the script of a session
 };
 

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/log.h"
 
 namespace lucerna::commands {
 namespace {
@@ -29,11 +30,28 @@ bool failed(const session::Saved& saved) {
   }
 }
 
-Document::Material editable(const scene::Material& m) {
-  return {vec3(m.base_color), m.roughness, m.metallic, m.emission};
+/// As the scene knows it.
+Document::Material seen(Document::Material m) {
+  if (!m.emits) m.emission = vec3(0);
+  m.emits = true;
+  return m;
 }
 
 }  // namespace
+
+Document::Light Document::of(const scene::Light& l) {
+  return {l.intensity, l.enabled, l.position, l.direction, l.inner_cone, l.outer_cone};
+}
+
+void Document::Light::put(scene::Light& light) const {
+  light.intensity = intensity, light.enabled = enabled;
+  light.position = position, light.direction = direction;
+  light.inner_cone = inner_cone, light.outer_cone = outer_cone;
+}
+
+Document::Material Document::of(const scene::Material& m) {
+  return {vec3(m.base_color), m.roughness, m.metallic, m.emission, true};
+}
 
 const char* kind_name(Kind kind) {
   static const char* names[] = {"none", "material", "object", "light"};
@@ -43,6 +61,9 @@ const char* kind_name(Kind kind) {
 Workspace::Workspace(session::Session& s) : session(s) {
   add_document_commands();
   add_camera_commands();
+  add_interior_commands();
+  add_bookmark_commands();
+  add_exposure_commands();
   add_other_commands();
   add_inspect_commands();
   add_solver_commands();
@@ -60,6 +81,7 @@ void Workspace::refresh(double time) {
     opening_ = false, open_failed_ = true;
     forget_open();
   }
+  take_measure();
 }
 
 void Workspace::drop_taken() {
@@ -72,14 +94,19 @@ void Workspace::drop_taken() {
   std::erase_if(pending_lights_, [&](const auto& entry) {
     const auto& [index, edit] = entry;
     if (!scene || index >= scene->lights.size() || over(edit.since)) return true;
-    return scene->lights[index].intensity == edit.value.intensity &&
-           scene->lights[index].enabled == edit.value.enabled;
+    return Document::of(scene->lights[index]) == edit.value;
   });
   std::erase_if(pending_materials_, [&](const auto& entry) {
     const auto& [index, edit] = entry;
     return !scene || index >= scene->materials.size() || over(edit.since) ||
-           editable(scene->materials[index]) == edit.value;
+           Document::of(scene->materials[index]) == edit.value;
   });
+  // A file that could not be read lights nothing.
+  if (environment_sent_ != 0 && snapshot && snapshot->commands >= environment_sent_) {
+    environment_sent_ = 0;
+    if (scene && !environment_file_.empty() && scene->environment.file != environment_file_)
+      environment_file_.clear();
+  }
   if (pending_environment_) {
     const bool taken = scene && scene->environment.scale == pending_environment_->scale &&
                        scene->environment.rotation == pending_environment_->rotation;
@@ -96,6 +123,19 @@ void Workspace::follow_scene() {
   selection = {};
   pending_lights_.clear(), pending_materials_.clear(), pending_environment_.reset();
   undo_.clear(), redo_.clear();
+  dark_.clear(), environment_file_.clear(), environment_sent_ = 0;
+  walking = false;
+  // Beside the window: it is a second's work in a large scene. One that is still at work is not waited for.
+  probe_.reset();
+  std::erase_if(retired_,
+                [](auto& f) { return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
+  if (probing_.valid()) retired_.push_back(std::move(probing_));
+  probing_ =
+      std::async(std::launch::async, [s = scene] { return std::make_shared<const session::Probe>(s); });
+  measuring_.reset();
+  const bool brings = std::any_of(scene->settings.begin(), scene->settings.end(),
+                                  [](const auto& setting) { return setting.first == "film.ev"; });
+  exposure_due_ = brings || std::exchange(exposure_given_, false) ? 0 : view_scene;
   solo_ = -1;
   scene_camera = -1;
   for (size_t i = 0; i < scene->cameras.size(); ++i)
@@ -113,13 +153,14 @@ Document Workspace::document() const {
   d.settings = known_.all();
   for (const auto& [key, edit] : pending_) d.settings[key] = edit.value;
   if (scene)
-    for (uint32_t i = 0; i < scene->lights.size(); ++i) {
-      const scene::Light l = light(i);
-      d.lights.push_back({l.intensity, l.enabled});
-    }
+    for (uint32_t i = 0; i < scene->lights.size(); ++i) d.lights.push_back(Document::of(light(i)));
   if (scene)
-    for (uint32_t i = 0; i < scene->materials.size(); ++i) d.materials.push_back(editable(material(i)));
+    for (uint32_t i = 0; i < scene->materials.size(); ++i) {
+      d.materials.push_back(Document::of(material(i)));
+      d.materials.back().emission = emission(i), d.materials.back().emits = emits(i);
+    }
   std::tie(d.environment_scale, d.environment_rotation) = environment_();
+  d.environment_file = environment_file_;
   d.solo = solo_;
   d.shown_before = shown_before_;
   return d;
@@ -139,7 +180,7 @@ double Workspace::setting_real(const std::string& key) const {
 scene::Light Workspace::light(uint32_t index) const {
   scene::Light light = scene->lights.at(index);
   if (const auto found = pending_lights_.find(index); found != pending_lights_.end())
-    light.intensity = found->second.value.intensity, light.enabled = found->second.value.enabled;
+    found->second.value.put(light);
   return light;
 }
 
@@ -151,6 +192,11 @@ scene::Material Workspace::material(uint32_t index) const {
     m.roughness = edit.roughness, m.metallic = edit.metallic, m.emission = edit.emission;
   }
   return m;
+}
+
+vec3 Workspace::emission(uint32_t index) const {
+  const auto found = dark_.find(index);
+  return found != dark_.end() ? found->second : material(index).emission;
 }
 
 std::pair<float, float> Workspace::environment_() const {
@@ -182,9 +228,19 @@ void Workspace::send(const Document& before, const Document& after) {
   if (scene)
     for (uint32_t i = 0; i < std::min(after.materials.size(), scene->materials.size()); ++i) {
       if (i < before.materials.size() && before.materials[i] == after.materials[i]) continue;
-      pending_materials_[i] = {after.materials[i], now};
+      if (after.materials[i].emits)
+        dark_.erase(i);
+      else
+        dark_[i] = after.materials[i].emission;
+      if (i < before.materials.size() && seen(before.materials[i]) == seen(after.materials[i])) continue;
+      pending_materials_[i] = {seen(after.materials[i]), now};
       session.set_material(i, material(i));
     }
+  if (before.environment_file != after.environment_file) {
+    environment_file_ = after.environment_file;
+    session.set_environment_file(environment_file_);
+    environment_sent_ = session.commands();
+  }
   if (before.environment_scale != after.environment_scale ||
       before.environment_rotation != after.environment_rotation) {
     pending_environment_ = PendingEnvironment{after.environment_scale, after.environment_rotation, now};
@@ -208,13 +264,16 @@ Line Workspace::run(const std::string& text, uint64_t gesture, const std::string
     }
   };
   if (!line.command->undoable) {
+    const std::optional<Viewpoint> view_before = view;
+    const int camera_before = scene_camera;
     located([&] { line.command->run(line.arguments); });
+    if (line.command->moves && view_before) note_move(line, gesture, *view_before, camera_before);
     record(line, gesture);
     return line;
   }
   const std::string target = registry.target(line);
-  const bool merges =
-      gesture != 0 && !undo_.empty() && undo_.back().gesture == gesture && undo_.back().target == target;
+  const bool merges = gesture != 0 && !undo_.empty() && undo_.back().gesture == gesture &&
+                      undo_.back().target == target && !undo_.back().move;
   const Document now_seen = document();
   // A step of a drag starts from where the drag began, so that the last step alone gives the same.
   working_ = merges ? undo_.back().before : now_seen;
@@ -236,12 +295,42 @@ Line Workspace::run(const std::string& text, uint64_t gesture, const std::string
   return line;
 }
 
+void Workspace::note_move(const Line& line, uint64_t gesture, const Viewpoint& before, int camera_before) {
+  if (!view || (same_view(before.camera, view->camera) && before.distance == view->distance &&
+                camera_before == scene_camera))
+    return;
+  const std::string target = registry.target(line);
+  if (gesture != 0 && !undo_.empty() && undo_.back().gesture == gesture && undo_.back().move) {
+    Step& step = undo_.back();
+    step.move->after = *view, step.move->camera_after = scene_camera;
+    step.line = registry.print(line), step.target = target;
+  } else {
+    undo_.push_back({registry.print(line),
+                     target,
+                     gesture,
+                     {},
+                     {},
+                     Step::Move{before, *view, camera_before, scene_camera}});
+    if (undo_.size() > k_steps) undo_.erase(undo_.begin());
+  }
+  redo_.clear();
+}
+
+void Workspace::show(const Viewpoint& to, int camera) {
+  view = to;
+  moved();
+  scene_camera = camera;
+}
+
 void Workspace::undo() {
   if (undo_.empty()) throw Error("", "there is nothing to undo");
   Step step = std::move(undo_.back());
   undo_.pop_back();
   touched_.clear();
-  send(document(), step.before);
+  if (step.move)
+    show(step.move->before, step.move->camera_before);
+  else
+    send(document(), step.before);
   step.gesture = 0;
   redo_.push_back(std::move(step));
 }
@@ -251,7 +340,10 @@ void Workspace::redo() {
   Step step = std::move(redo_.back());
   redo_.pop_back();
   touched_.clear();
-  send(document(), step.after);
+  if (step.move)
+    show(step.move->after, step.move->camera_after);
+  else
+    send(document(), step.after);
   undo_.push_back(std::move(step));
 }
 
@@ -318,6 +410,41 @@ void Workspace::send_camera() {
 void Workspace::moved() {
   camera_moved = true;
   scene_camera = -1;
+}
+
+const session::Probe* Workspace::probe(bool wait) {
+  if (probing_.valid() && (wait || probing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
+    try {
+      probe_ = probing_.get();
+    } catch (const std::exception& error) {
+      log::warning("walls will not stop the camera: {}", error.what());
+    }
+  }
+  return probe_.get();
+}
+
+Look Workspace::look() {
+  probe();
+  return [rays = probe_](const vec3& origin, const vec3& direction, float limit) -> std::optional<Obstacle> {
+    if (!rays) return std::nullopt;
+    const auto hit = rays->nearest(origin, direction, limit);
+    if (!hit) return std::nullopt;
+    return Obstacle{hit->distance, hit->normal};
+  };
+}
+
+Look Workspace::look_past_selection() {
+  probe();
+  return [rays = probe_, chosen = selection](const vec3& origin, const vec3& direction,
+                                             float limit) -> std::optional<Obstacle> {
+    if (!rays) return std::nullopt;
+    const auto hit = rays->nearest(origin, direction, limit, [&](const session::Picked& p) {
+      return !(chosen.kind == Kind::instance && p.instance == chosen.index) &&
+             !(chosen.kind == Kind::material && p.material == chosen.index);
+    });
+    if (!hit) return std::nullopt;
+    return Obstacle{hit->distance, hit->normal};
+  };
 }
 
 Box Workspace::selection_bounds() const {

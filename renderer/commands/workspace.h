@@ -6,11 +6,14 @@
 // An edit is seen here at once and handed to the session, which takes it when it can; until then the edit
 // stands above what the session says (or for two seconds: then the session has refused it).
 #include <array>
+#include <future>
 #include <memory>
 #include <optional>
 
 #include "commands/camera_control.h"
+#include "commands/interior.h"
 #include "commands/registry.h"
+#include "session/pick.h"
 #include "session/session.h"
 #include "solvers/info.h"
 
@@ -19,23 +22,28 @@ namespace lucerna::commands {
 /// What can be undone. Plain values; a command that edits changes them, and the session is told what differs.
 struct Document {
   struct Light {
-    vec3 intensity{0};  ///< as scene::Light
+    vec3 intensity{0};  ///< all as scene::Light
     bool enabled = true;
-    bool operator==(const Light& o) const { return intensity == o.intensity && enabled == o.enabled; }
+    vec3 position{0}, direction{0, 0, -1};
+    float inner_cone = 0, outer_cone = 0;
+    void put(scene::Light& light) const;
+    bool operator==(const Light&) const = default;
   };
   struct Material {
     vec3 color{1};  ///< the rest as scene::Material
     float roughness = 1, metallic = 0;
     vec3 emission{0};
-    bool operator==(const Material& o) const {
-      return color == o.color && roughness == o.roughness && metallic == o.metallic && emission == o.emission;
-    }
+    bool emits = true;  ///< false: its emission is kept, but switched off
+    bool operator==(const Material&) const = default;
   };
-  std::map<std::string, std::string> settings;  ///< by key
-  std::vector<Light> lights;                    ///< of the scene, in its order
-  std::vector<Material> materials;              ///< likewise
+  static Light of(const scene::Light& light);
+  static Material of(const scene::Material& material);  ///< emits
+  std::map<std::string, std::string> settings;          ///< by key
+  std::vector<Light> lights;                            ///< of the scene, in its order
+  std::vector<Material> materials;                      ///< likewise
   float environment_scale = 1;
   float environment_rotation = 0;                          ///< degrees
+  std::string environment_file;                            ///< lights in place of the scene's own; "": that
   int solo = -1;                                           ///< component shown alone, or -1
   std::array<bool, session::k_components> shown_before{};  ///< to come back to after solo
   bool operator==(const Document&) const = default;
@@ -83,6 +91,9 @@ class Workspace {
   bool setting_on(const std::string& key) const { return setting(key) == "true"; }
   scene::Light light(uint32_t index) const;
   scene::Material material(uint32_t index) const;
+  /// What a material emits, or would if it were not switched off.
+  vec3 emission(uint32_t index) const;
+  bool emits(uint32_t index) const { return !dark_.contains(index); }
   /// Whether the settings have some component computed by that solver.
   bool uses(const solvers::SolverInfo& solver) const;
   /// What it told with the newest picture; null where it is not looked up.
@@ -91,6 +102,8 @@ class Workspace {
   const solvers::Report* waiting() const;
   float environment_scale() const { return environment_().first; }
   float environment_rotation() const { return environment_().second; }
+  /// The image that lights in place of the scene's own environment; "" for none.
+  const std::string& environment_file() const { return environment_file_; }
   int solo() const { return solo_; }
 
   bool can_undo() const { return !undo_.empty(); }
@@ -124,6 +137,21 @@ class Workspace {
   void send_camera();
   /// "camera.place ..." that makes exactly this view.
   static std::string place_line(const Viewpoint& view);
+  bool walking = false;             ///< keys lead along the floor
+  float eye_height = k_eye_height;  ///< above it, metres
+  /// Rays against the scene shown: null until they can be asked for, which takes a moment after a scene has
+  /// come. `wait`: waits for them.
+  const session::Probe* probe(bool wait = false);
+  /// What stands in the way, by them; nothing does while there are none.
+  Look look();
+  /// Views with a name, of all scenes: by the scene's file, then by name, as lines "camera.place ...".
+  using Bookmarks = std::map<std::string, std::string>;
+  std::map<std::string, Bookmarks> bookmarks;
+  /// Those of the scene shown.
+  const Bookmarks& bookmarks_here() const;
+
+  /// Where exposure.find and exposure.at wait for what the renderer measures.
+  bool measuring() const { return measuring_.has_value(); }
 
   Selection selection;
   Box selection_bounds() const;  ///< of the scene when nothing is selected
@@ -132,12 +160,22 @@ class Workspace {
  protected:
   /// Called when another scene has appeared and the view has been set up for it.
   virtual void scene_changed() {}
+  /// Called when what was measured has set exposure or white balance; `text` says to what.
+  virtual void measured(const std::string& text) { (void)text; }
+  /// Whether the exposure is to be found when a scene comes that brings none.
+  virtual bool exposes_at_load() const { return false; }
 
  private:
   struct Step {
     std::string line, target;
     uint64_t gesture;
     Document before, after;
+    /// Of a move of the camera, which changes nothing else.
+    struct Move {
+      Viewpoint before, after;
+      int camera_before, camera_after;
+    };
+    std::optional<Move> move = {};
   };
   struct Recorded {
     std::string line, target;
@@ -167,6 +205,9 @@ class Workspace {
   void add_material_commands();
   void add_shown_commands();
   void add_camera_commands();
+  void add_interior_commands();
+  void add_bookmark_commands();
+  void add_exposure_commands();
   void add_other_commands();
   void add_inspect_commands();
   void add_solver_commands();
@@ -194,12 +235,35 @@ class Workspace {
   int camera_index(const std::string& which) const;
   Selection selection_of(const std::string& kind, const std::string& which) const;
   void moved();
+  void note_move(const Line& line, uint64_t gesture, const Viewpoint& before, int camera_before);
+  void show(const Viewpoint& view, int camera);
+  std::vector<std::string> bookmark_names() const;
+  /// Looks through what is selected.
+  Look look_past_selection();
+  /// Asks for the brightness of the picture, or at a point; `of_load`: nobody has asked for it.
+  void measure(std::optional<vec2> at, bool of_load);
+  void take_measure();
 
   plan::Settings known_;
   std::map<std::string, Pending> pending_;
   std::map<uint32_t, PendingLight> pending_lights_;
   std::map<uint32_t, PendingMaterial> pending_materials_;
   std::optional<PendingEnvironment> pending_environment_;
+  std::map<uint32_t, vec3> dark_;  ///< emission of the materials that are switched off
+  std::string environment_file_;
+  uint64_t environment_sent_ = 0;  ///< number of the command that asked for it; 0: none is on its way
+  std::future<std::shared_ptr<const session::Probe>> probing_;
+  std::vector<std::future<std::shared_ptr<const session::Probe>>> retired_;  ///< of scenes that are gone
+  std::shared_ptr<const session::Probe> probe_;
+  struct Measuring {
+    std::shared_future<film::Brightness> result;
+    bool at_point, of_load;
+    uint64_t scene;
+  };
+  std::optional<Measuring> measuring_;
+  std::string measure_failure_;  ///< of the last that was asked for
+  uint64_t exposure_due_ = 0;    ///< scene that waits for its exposure to be found; 0: none
+  bool exposure_given_ = false;  ///< film.ev was set since a scene was asked for
   int solo_ = -1;
   std::array<bool, session::k_components> shown_before_{};
   std::optional<Document> working_;

@@ -76,6 +76,15 @@ void add_display_options(std::vector<OptionInfo>& list) {
   list.push_back(text_option("camera", "Name of the scene camera to start with."));
   list.push_back(without_restart(
       real_option("film.ev", "0", -20, 20, "EV", "Exposure: the picture is multiplied by 2 to this power.")));
+  list.push_back(without_restart(choice_option(
+      "film.exposure_at_load", "window", {"window", "always", "never"}, "",
+      "Where a scene that names no exposure has it found from its first image: in the window when no script "
+      "runs, in batch renders too, or nowhere.",
+      "Exposure at load")));
+  list.push_back(choice_option("film.background", "shown", {"shown", "hidden"}, "",
+                               "Whether the eye sees the environment behind the scene. It goes on lighting, "
+                               "and mirrors and glass show it.",
+                               "Background"));
   list.push_back(without_restart(choice_option("film.tone_curve", "neutral", {"neutral", "agx", "linear"}, "",
                                                "Tone curve of what is shown and of PNG files.")));
   list.push_back(without_restart(choice_option("film.layer", "beauty",

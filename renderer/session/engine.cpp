@@ -67,6 +67,7 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
   auto slots = uint32_t(settings.integer("path.batch")) / 64 * 64;
   if (settings.boolean("sampling.coherent"))
     defines["LUCERNA_COHERENT"] = settings.text("sampling.tile") == "8" ? "3" : "4";
+  if (settings.text("film.background") == "hidden") defines["LUCERNA_HIDDEN_BACKGROUND"] = "1";
   const std::vector<const solvers::SolverInfo*> at_work = plan.at_work();
   for (const solvers::SolverInfo* info : at_work)
     slots = std::max(slots, solvers::type_of(*info).least_slots);

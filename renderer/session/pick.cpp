@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lucerna::session {
 namespace {
@@ -50,16 +51,19 @@ bool stops(const scene::Scene& s, const scene::Primitive& p, const uvec3& t, flo
 
 }  // namespace
 
-std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camera, float x, float y,
-                           float aspect) {
+PickRay pick_ray(const scene::Camera& camera, float x, float y, float aspect) {
   const mat4& m = camera.to_world;
   const vec3 right = glm::normalize(vec3(m[0])), up = glm::normalize(vec3(m[1]));
   const vec3 forward = -glm::normalize(vec3(m[2]));
   const float half = camera.orthographic ? camera.ymag : std::tan(0.5f * camera.yfov);
   const vec3 offset = (2 * x - 1) * half * aspect * right + (1 - 2 * y) * half * up;
-  const vec3 origin = camera.orthographic ? vec3(m[3]) + offset : vec3(m[3]);
-  const vec3 direction = camera.orthographic ? forward : glm::normalize(forward + offset);
+  if (camera.orthographic) return {vec3(m[3]) + offset, forward};
+  return {vec3(m[3]), glm::normalize(forward + offset)};
+}
 
+std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camera, float x, float y,
+                           float aspect) {
+  const auto [origin, direction] = pick_ray(camera, x, y, aspect);
   std::optional<Picked> best;
   float nearest = k_infinity;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
@@ -79,10 +83,49 @@ std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camer
         if (!(a >= 0 && b >= 0 && a + b <= 1 && distance > 0 && distance < nearest)) continue;
         if (!stops(scene, p, t, a, b)) continue;
         nearest = distance;
-        best = Picked{i, p.material, distance, origin + distance * direction};
+        const vec3 normal = glm::normalize(glm::transpose(glm::mat3(to_object)) * glm::cross(e1, e2));
+        best = Picked{i, p.material, distance, origin + distance * direction,
+                      glm::dot(normal, direction) > 0 ? -normal : normal};
       }
   }
   return best;
+}
+
+namespace {
+
+bvh::InstancedTracer make_tracer(const scene::Scene& scene) {
+  std::vector<bvh::InstancedTracer::Mesh> meshes;
+  for (const scene::Mesh& mesh : scene.meshes) {
+    meshes.emplace_back();
+    for (const scene::Primitive& p : mesh.primitives) meshes.back().push_back({p.positions, p.triangles});
+  }
+  std::vector<bvh::InstancedTracer::Instance> instances;
+  for (const scene::Instance& instance : scene.instances)
+    instances.push_back({instance.mesh, instance.to_world});
+  // One thread: the others are at work on the picture.
+  return {meshes, instances, 1};
+}
+
+}  // namespace
+
+Probe::Probe(std::shared_ptr<const scene::Scene> scene)
+    : scene_(std::move(scene)), tracer_(make_tracer(*scene_)) {}
+
+std::optional<Picked> Probe::nearest(const vec3& origin, const vec3& direction, float limit,
+                                     const std::function<bool(const Picked&)>& wanted) const {
+  const auto primitive = [&](const bvh::InstancedTracer::Hit& hit) -> const scene::Primitive& {
+    return scene_->meshes[scene_->instances[hit.instance].mesh].primitives[hit.part];
+  };
+  const auto picked = [&](const bvh::InstancedTracer::Hit& hit) {
+    return Picked{hit.instance, primitive(hit).material, hit.distance, origin + hit.distance * direction,
+                  hit.normal};
+  };
+  const auto hit = tracer_.nearest(origin, direction, limit, [&](const bvh::InstancedTracer::Hit& h) {
+    const scene::Primitive& p = primitive(h);
+    return stops(*scene_, p, p.triangles[h.triangle], h.u, h.v) && (!wanted || wanted(picked(h)));
+  });
+  if (!hit) return std::nullopt;
+  return picked(*hit);
 }
 
 }  // namespace lucerna::session

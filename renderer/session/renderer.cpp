@@ -53,7 +53,9 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
   for (const SettingChange& change : changes) settings.set(change.key, change.value, change.where);
   scene::Camera camera = scene::starting_camera(*scene, settings.text("camera"));
+  const auto loaded = scene;
   install(std::move(scene), std::move(settings), camera, progress, scene::Change::shape);
+  loaded_ = loaded;
 }
 
 void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings,
@@ -239,6 +241,7 @@ bool Renderer::apply_plan(const scene::Changes& changes) {
     edit.emplace(*device_, world_, threshold);
   const auto changed = [&](const char* key) { return changes.settings.contains(key); };
   bool anew = !engine_->serves(plan, settings_, world_) || changed("sampling.coherent") ||
+              changed("film.background") ||
               (changed("sampling.tile") && settings_.boolean("sampling.coherent"));
   for (const std::string& key : changes.settings)
     if (const solvers::SolverInfo* owner = solvers::owner_of(key); owner && engine_->find(owner->name))

@@ -12,6 +12,7 @@
 #include "base/timer.h"
 #include "film/error.h"
 #include "film/estimator.h"
+#include "film/exposure.h"
 #include "film/film.h"
 #include "film/io/image_file.h"
 #include "film/io/reference.h"
@@ -78,6 +79,9 @@ class Renderer {
   void choose_camera(const std::string& name);
   void set_light(uint32_t index, const scene::Light& light);
   void set_environment(float scale, float rotation_degrees);
+  /// Lights the scene by this latitude-longitude image instead of its own environment; "": by its own again.
+  /// Throws Error as scene::load_environment; the environment before stays.
+  void set_environment_file(const std::filesystem::path& file);
   /// Throws Error when there is no such material, or when textures or what a surface lets through (alpha
   /// mode, transmission, thickness) would be others: these are the scene's shape, as rays find it.
   void set_material(uint32_t index, const scene::Material& material);
@@ -139,6 +143,9 @@ class Renderer {
   film::PreviewShares preview_shares() const { return display_ ? display_->shares() : film::PreviewShares{}; }
   film::View view() const;
   film::Image image() const { return film_->read(); }
+  /// The picture's brightness, or that at a point (0..1 to the right and down): of the coarse image while
+  /// there is no other. Throws Error when there is none at all.
+  film::Brightness measure(std::optional<vec2> at) const;
   /// The image with its layers and metadata (its own noise among them), as EXR files hold it.
   film::FilmImage film_image();
   void save(const std::filesystem::path& file);
@@ -253,7 +260,8 @@ class Renderer {
   plan::Settings settings_;
   std::map<std::string, std::string> applied_;  ///< settings that the picture is made with
   World world_;
-  std::unique_ptr<Engine> engine_;  ///< null before the first scene; goes before the world
+  std::shared_ptr<const scene::Scene> loaded_;  ///< as set_scene() was given it
+  std::unique_ptr<Engine> engine_;              ///< null before the first scene; goes before the world
   std::unique_ptr<film::Film> film_, coarse_;
   std::unique_ptr<Display> display_;  ///< null in batch
   bool draft_preparing_ = false;      ///< when a draft was drawn last

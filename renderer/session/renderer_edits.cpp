@@ -1,6 +1,7 @@
 // Edits of a renderer's scene: lights, environment, materials.
 #include <utility>
 
+#include "scene/io/environment_file.h"
 #include "scene/light_factor.h"
 #include "session/renderer.h"
 
@@ -19,6 +20,25 @@ void Renderer::set_environment(float scale, float rotation_degrees) {
   auto edited = std::make_shared<scene::Scene>(*world_.scene);
   edited->environment.scale = scale;
   edited->environment.rotation = rotation_degrees;
+  edit(edited, scene::Change::environment, false);
+}
+
+void Renderer::set_environment_file(const std::filesystem::path& file) {
+  if (!world_.scene || !loaded_) throw_error(file.string(), "there is no scene to be lit");
+  auto edited = std::make_shared<scene::Scene>(*world_.scene);
+  // The images as they were loaded, so that those of earlier files go.
+  edited->images = loaded_->images;
+  scene::Environment environment = loaded_->environment;
+  if (!file.empty()) {
+    scene::Image image = scene::load_environment(file, options_.scenes.most_bytes);
+    environment.image = scene::Id(edited->images.size());
+    environment.file = file.string();
+    environment.given = true;
+    edited->images.push_back(std::move(image));
+  }
+  environment.scale = world_.scene->environment.scale;
+  environment.rotation = world_.scene->environment.rotation;
+  edited->environment = environment;
   edit(edited, scene::Change::environment, false);
 }
 

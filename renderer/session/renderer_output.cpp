@@ -1,4 +1,5 @@
 // The picture as it is shown and written.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <utility>
@@ -82,6 +83,19 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
     solver.draw(canvas, picture);
   });
   return film_->read_picture();
+}
+
+film::Brightness Renderer::measure(std::optional<vec2> at) const {
+  if (!engine_ || !film_) throw Error("", "there is no picture to measure");
+  const film::Image image = samples() > 0 ? film_->read() : coarse_->read();
+  const auto sampled = [](uint32_t n) { return n > 0; };
+  if (std::none_of(image.samples.begin(), image.samples.end(), sampled))
+    throw Error("", "there is no picture to measure yet");
+  std::vector<vec3> sum(image.samples.size(), vec3(0));
+  for (const auto& component : image.components)
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
+  return at ? film::measure_point(sum, image.width, image.height, *at)
+            : film::measure_picture(sum, image.width, image.height);
 }
 
 film::FilmImage Renderer::film_image() {

@@ -389,6 +389,15 @@ void Session::set_environment(float scale, float rotation_degrees) {
   });
 }
 
+void Session::set_environment_file(const std::filesystem::path& file) {
+  impl_->post([s = impl_.get(), file](Renderer& r) {
+    if (!file.empty()) s->publish_activity(fmt::format("reading {}", file.filename().string()), -1);
+    r.set_environment_file(file);
+    s->restarted();
+    if (!file.empty()) log::info("{} lights the scene", file.string());
+  });
+}
+
 void Session::set_material(uint32_t index, const scene::Material& material) {
   impl_->post([s = impl_.get(), index, material](Renderer& r) {
     r.set_material(index, material);
@@ -430,6 +439,19 @@ void Session::clear_reference() {
 
 void Session::inspect(std::optional<vec2> at) {
   impl_->post([at](Renderer& r) { r.inspect(at); });
+}
+
+std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at) {
+  auto promise = std::make_shared<std::promise<film::Brightness>>();
+  auto result = promise->get_future().share();
+  impl_->post([at, promise](Renderer& r) {
+    try {
+      promise->set_value(r.measure(at));
+    } catch (...) {
+      promise->set_exception(std::current_exception());
+    }
+  });
+  return result;
 }
 
 Saved Session::save(const std::filesystem::path& file) { return impl_->post_save(file, ""); }

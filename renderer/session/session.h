@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "film/exposure.h"
 #include "plan/settings.h"
 #include "scene/io/load.h"
 #include "scene/scene.h"
@@ -106,6 +107,8 @@ class Session {
   void set_size(uint32_t width, uint32_t height);
   void set_light(uint32_t index, const scene::Light& light);
   void set_environment(float scale, float rotation_degrees);
+  /// Renderer::set_environment_file
+  void set_environment_file(const std::filesystem::path& file);
   void set_material(uint32_t index, const scene::Material& material);  ///< Renderer::set_material
   void set_paused(bool paused);
   void restart();         ///< throws the samples away and starts anew
@@ -116,6 +119,9 @@ class Session {
   /// What solvers hold at that point of the picture (0..1 to the right and down): told by Snapshot::reports
   /// and drawn over the picture from now on; nothing: no longer.
   void inspect(std::optional<vec2> at);
+  /// Renderer::measure, as soon as there is an image; get() throws what kept it from being. Nothing is
+  /// logged.
+  std::shared_future<film::Brightness> measure(std::optional<vec2> at);
   /// EXR or PNG of what there is, as soon as every pixel has a sample; where rendering rests without, at
   /// once.
   Saved save(const std::filesystem::path& file);

@@ -96,6 +96,10 @@ void main() {
   found.samples_lights = true;
   if (hit.prim == k_no_hit) {
     gain = environment_met(path, ray.direction);
+#if LUCERNA_HIDDEN_BACKGROUND
+    // Straight from the eye; what mirrors and glass show of it stays, and all that it lights.
+    if (depth == 0u && automaton_no_diffuse(state)) gain = vec3(0.0);
+#endif
   }
   if (hit.prim != k_no_hit) {
     Surface surface = make_surface(ray, hit);

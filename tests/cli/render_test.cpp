@@ -76,6 +76,35 @@ TEST_CASE("render writes layers, PNG and figures") {
   fs::remove_all(f);
 }
 
+TEST_CASE("the exposure is found in a batch render only where that is asked for, and none is named") {
+  // The box of the tests with its lamp turned down by 6 stops or so, and without its settings.
+  const fs::path f = folder() / "dim";
+  fs::create_directories(f);
+  fs::copy(fs::path(scene("cornell")).parent_path(), f,
+           fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  fs::remove(f / "settings.json");
+  const auto brightness = [&](const std::string& more) {
+    const fs::path file = f / "a.png";
+    const Run r = run("render " + (f / "cornell.gltf").string() + " --samples 4 --size 40x30 --quiet -o " +
+                      file.string() + " " + more);
+    INFO(r.out);
+    REQUIRE(r.status == 0);
+    const film::FilmImage image = film::read_exr(file);
+    double sum = 0;
+    for (const float v : image.channels[1].second) sum += double{v};
+    return sum / double(image.channels[1].second.size());
+  };
+  const double plain = brightness(""), own = brightness("--set film.ev=-4");
+  CHECK(own < 0.5 * plain);
+  CHECK(brightness("--set film.exposure_at_load=window") == plain);
+  // Whatever the scene's brightness, its log-average is middle grey, whose encoded value is 0.46.
+  const double found = brightness("--set film.exposure_at_load=always");
+  CHECK(found != plain);
+  CHECK(found > 0.3);
+  CHECK(found < 0.65);
+  CHECK(brightness("--set film.exposure_at_load=always --set film.ev=-4") == own);
+}
+
 TEST_CASE("wrong arguments are refused with their place") {
   const std::string good = "render " + scene("cornell") + " --quiet -o /tmp/lucerna-never.exr ";
   refused("render no/such.gltf -o /tmp/lucerna-never.exr", "no/such.gltf");

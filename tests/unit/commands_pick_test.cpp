@@ -98,3 +98,41 @@ TEST_CASE("one sees through the holes of a mask and through thin cover") {
   CHECK(at(-0.5f) == 2);
   CHECK(at(0.5f) == 0);
 }
+
+TEST_CASE("many rays by the tree find what one ray against all triangles finds") {
+  auto s = std::make_shared<scene::Scene>(make_scene());
+  // The first square has holes: a checkerboard of 8 x 8 texels.
+  scene::Image image;
+  image.width = image.height = 8;
+  for (uint32_t i = 0; i < 64; ++i)
+    for (int c = 0; c < 4; ++c) image.bytes.push_back((i + i / 8) % 2 ? 255 : 0);
+  s->images.push_back(image);
+  s->textures.push_back({.image = 0});
+  s->materials[0].alpha_mode = scene::AlphaMode::mask;
+  s->materials[0].base_color_texture.texture = 0;
+  s->instances[2].to_world = glm::rotate(s->instances[2].to_world, 0.4f, vec3(1, 2, 0));
+  const session::Probe probe(s);
+  int hits = 0, first = 0, second = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const float x = (float(i % 80) + 0.37f) / 80, y = (float(i / 80) + 0.41f) / 50;
+    const session::PickRay ray = session::pick_ray(camera(), x, y, 1.5f);
+    const auto expected = session::pick(*s, camera(), x, y, 1.5f);
+    const auto found = probe.nearest(ray.origin, ray.direction);
+    INFO(x << ' ' << y);
+    REQUIRE(found.has_value() == expected.has_value());
+    if (!found) continue;
+    REQUIRE(found->instance == expected->instance);
+    REQUIRE(found->distance == Approx(expected->distance).epsilon(1e-5));
+    REQUIRE(glm::length(found->normal - expected->normal) < 1e-4f);
+    REQUIRE(glm::dot(found->normal, ray.direction) < 0);
+    ++hits, first += found->instance == 0, second += found->instance == 1;
+    CHECK_FALSE(probe.nearest(ray.origin, ray.direction, 0.999f * found->distance));
+    const auto behind = probe.nearest(ray.origin, ray.direction, k_infinity, [&](const session::Picked& p) {
+      return p.instance != found->instance;
+    });
+    if (behind) REQUIRE(behind->distance > found->distance);
+  }
+  CHECK(hits > 1000);
+  CHECK(first > 20);
+  CHECK(second > 200);
+}

@@ -164,12 +164,12 @@ TEST_CASE("what is typed is completed") {
   const auto offers = [&](const std::string& line) { return work.registry.complete(line); };
   using List = std::vector<std::string>;
   CHECK(offers("camera.or") == List{"camera.orbit"});
-  CHECK(offers("film.e") == List{"film.ev"});
+  CHECK(offers("film.e") == List{"film.ev", "film.exposure_at_load"});
   CHECK(offers("set film.tone") == List{"film.tone_curve"});
   CHECK(offers("set film.tone_curve a") == List{"agx"});
   CHECK(offers("film.tone_curve l") == List{"linear"});
   CHECK(offers("view.solo te") == List{"tertiary"});
-  CHECK(offers("light.set lamp in") == List{"intensity="});
+  CHECK(offers("light.set lamp in") == List{"intensity=", "inner_cone="});
   CHECK(offers("light.set lamp on=t") == List{"on=true"});
   CHECK(offers("light.set lamp on=true o").empty());
   CHECK(offers("nonsense x").empty());

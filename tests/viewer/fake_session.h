@@ -395,6 +395,30 @@ void Session::set_environment(float scale, float rotation) {
     impl_->restart(), impl_->publish();
   });
 }
+/// Files that are named "broken" cannot be read.
+void Session::set_environment_file(const std::filesystem::path& file) {
+  impl_->post([this, file] {
+    if (file.string().find("broken") != std::string::npos)
+      return log::error("{}: the image cannot be decoded", file.string());
+    auto edited = std::make_shared<scene::Scene>(*impl_->scene);
+    edited->environment.file = file.empty() ? fake::make_scene("hall.gltf").environment.file : file.string();
+    {
+      std::lock_guard lock(impl_->mutex);
+      impl_->scene = edited;
+    }
+    impl_->restart(), impl_->publish();
+  });
+}
+/// A grey of half the middle one's brightness, black at the left border; the whole asks for 2.5 stops more.
+std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at) {
+  auto promise = std::make_shared<std::promise<film::Brightness>>();
+  impl_->post([at, promise] {
+    film::Brightness found{vec3(0.09f), at ? 1.0f : 2.5f};
+    if (at && at->x < 0.05f) found = {};
+    promise->set_value(found);
+  });
+  return promise->get_future().share();
+}
 void Session::set_material(uint32_t index, const scene::Material& material) {
   impl_->post([this, index, material] {
     auto edited = std::make_shared<scene::Scene>(*impl_->scene);

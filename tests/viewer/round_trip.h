@@ -55,10 +55,12 @@ inline size_t round_trip(const commands::Registry& registry) {
     ++lines;
   };
   for (const auto& [name, command] : registry.all()) {
-    if (command.check) continue;  // below
+    // What a check excludes from being given together is given one by one; settings are below.
+    const bool refuses = command.check != nullptr;
+    if (name == "set" || name == "reset" || name == "key" || name == "key.hold") continue;
     std::string all = name;
     for (const auto& p : command.parameters) all += " " + p.name + "=" + commands::quote(samples(p)[0]);
-    check(all);
+    if (!refuses) check(all);
     for (const auto& varied : command.parameters)
       for (const std::string& value : samples(varied)) {
         std::string line = name;

@@ -220,7 +220,7 @@ TEST_CASE("a dropped scene opens; what cannot be opened is an error over the sce
   REQUIRE(outcome.status == 0);
   CHECK_THAT(outcome.output,
              Catch::Contains("missing.glb: no such file") &&
-                 Catch::Contains("picture.jpg: cannot be opened; expected a .gltf or .glb file"));
+                 Catch::Contains("picture.jpg: cannot be opened; expected a scene (.gltf or .glb)"));
   const auto strip = [&](const char* name) {
     const vec3 c = test::Picture(file(name)).at(1084, 72);
     return c.x > 1.5f * c.y;

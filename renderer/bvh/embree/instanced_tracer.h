@@ -1,0 +1,51 @@
+#pragma once
+// One ray at a time against meshes and their instances, without flattening them: for the hand (what is under
+// the pointer, what stands in the way), not for light.
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/math.h"
+
+namespace lucerna::bvh {
+
+class InstancedTracer {
+ public:
+  /// Triangles in the mesh's own space.
+  struct Part {
+    std::span<const vec3> positions;
+    std::span<const uvec3> triangles;
+  };
+  using Mesh = std::vector<Part>;
+  struct Instance {
+    uint32_t mesh;
+    mat4 to_world;
+  };
+  struct Hit {
+    float distance;  ///< in lengths of the ray's direction
+    vec3 normal;     ///< of the triangle in the world, unit, towards the ray's origin
+    uint32_t instance, part, triangle;
+    float u, v;  ///< barycentric coordinates of the second and third vertex
+  };
+
+  /// Copies what it needs. `threads` build. Throws Error: out of memory. An instance of a mesh that is not
+  /// there, or has no triangles, is never hit.
+  InstancedTracer(const std::vector<Mesh>& meshes, const std::vector<Instance>& instances, int threads);
+  ~InstancedTracer();
+  InstancedTracer(InstancedTracer&&) noexcept;
+  InstancedTracer& operator=(InstancedTracer&&) noexcept;
+
+  /// The nearest hit nearer than `limit` that `accepts` (its normal is not known to it); without one all are.
+  /// Any thread.
+  using Accepts = std::function<bool(const Hit&)>;
+  std::optional<Hit> nearest(const vec3& origin, const vec3& direction, float limit,
+                             const Accepts& accepts = {}) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lucerna::bvh

@@ -1,0 +1,149 @@
+// links: ui film_io
+// What the hand does in the window: lamps and materials edited in the panel, the camera led by the mouse, the
+// sky turned, the exposure taken from a grey, an image dropped; all of it commands that a saved session
+// holds.
+#include "inside.h"
+
+#include <sstream>
+
+using namespace lucerna;
+
+namespace {
+
+/// The lines that a saved session of these steps holds, after the scene's.
+std::vector<std::string> session_of(const std::string& steps) {
+  const test::Folder folder;
+  const std::string file = (folder.path / "session.lucerna").string();
+  const auto outcome = test::window("wait_scene\nwindow.size 1440 900\nwait 0.5\n" + steps +
+                                    "\nscript.save " + file + "\nquit 0\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  REQUIRE(lines.size() >= 4);
+  lines.erase(lines.begin(), lines.begin() + 4);  // a remark, the scene, the wait for it, the size
+  return lines;
+}
+
+/// A drag with a button from a point in steps of this size.
+std::string drag(int x, int y, int dx, int dy, const char* button = "left") {
+  std::string steps = fmt::format("mouse.move {} {}\nmouse.down {}\n", x, y, button);
+  for (int i = 1; i <= 4; ++i) steps += fmt::format("mouse.move {} {}\n", x + i * dx, y + i * dy);
+  return steps + fmt::format("mouse.up {}\n", button);
+}
+
+/// Three numbers of "name x,y,z ...": the n-th word.
+vec3 vector_in(const std::string& line, int word) {
+  std::istringstream stream(line);
+  std::string text;
+  for (int i = 0; i <= word; ++i) stream >> text;
+  vec3 v(NAN);
+  std::sscanf(text.c_str(), "%f,%f,%f", &v.x, &v.y, &v.z);
+  return v;
+}
+
+constexpr const char* k_start = "camera.place 3,1.5,20 1,0.5,-1.5 0,1,0\n";
+
+}  // namespace
+
+TEST_CASE("the right button looks about from where one stands, the left one turns about what it is on") {
+  if (test::no_display()) return;
+  const auto looked = session_of(k_start + drag(700, 300, 20, 5, "right"));
+  REQUIRE(looked.size() == 2);
+  CHECK(vector_in(looked[1], 1) == vec3(3, 1.5f, 20));
+  CHECK(vector_in(looked[1], 2) != vec3(1, 0.5f, -1.5f));
+
+  // The triangle's middle is in the middle of the picture: its distance stays what it was.
+  const auto turned = session_of(k_start + std::string("wait 0.5\n") + drag(712, 372, 25, 6));
+  REQUIRE(turned.size() == 2);
+  const vec3 eye = vector_in(turned[1], 1), middle(1, 0.5f, -1.5f);
+  CHECK(glm::length(eye - vec3(3, 1.5f, 20)) > 1);
+  CHECK(glm::length(eye - middle) == Approx(glm::length(vec3(3, 1.5f, 20) - middle)).epsilon(0.05));
+}
+
+TEST_CASE("a drag with Ctrl turns the sky, one step to undo") {
+  if (test::no_display()) return;
+  const auto lines = session_of("mouse.move 700 300\nkey.hold ctrl on\n" + drag(700, 300, 25, 0) +
+                                "key.hold ctrl off\nkey ctrl+z\n");
+  REQUIRE(lines.size() == 2);
+  CHECK_THAT(lines[0], Catch::StartsWith("environment.set rotation=-"));
+  CHECK(lines[1] == "undo");
+}
+
+TEST_CASE("a click on a grey sets the exposure, and the wheel is one step") {
+  if (test::no_display()) return;
+  const auto lines = session_of(
+      "key b\nmouse.move 700 300\nmouse.down\nmouse.up\nwait 0.5\n"
+      "mouse.wheel 1\nmouse.wheel 1\nmouse.wheel 1\nwait 1.2\nmouse.wheel -1\n");
+  REQUIRE(lines.size() == 3);
+  CHECK(lines[0] == "set film.ev 1");
+  CHECK_THAT(lines[1], Catch::StartsWith("camera.place "));
+  CHECK_THAT(lines[2], Catch::StartsWith("camera.place "));
+}
+
+TEST_CASE("H walks, W leads along the floor, Ctrl+B keeps the view") {
+  if (test::no_display()) return;
+  // The fake's one triangle is a ramp that rises towards +z; at (2, -3) its height is 0.375.
+  const auto lines = session_of(
+      "camera.place 2,1,-3 2,1,-2 0,1,0\nwait 0.5\nmouse.move 700 300\nkey h\n"
+      "key.hold w on\nwait 0.4\nkey.hold w off\nwait 0.5\nkey ctrl+b\n");
+  REQUIRE(lines.size() == 4);
+  CHECK(lines[1] == "camera.walking true");
+  const vec3 eye = vector_in(lines[2], 1);
+  CHECK(eye.z > -2.95f);
+  CHECK(eye.y == Approx(3 * (eye.z + 4) / 8 + 1.65f).margin(0.01));
+  CHECK(eye.x == Approx(2).margin(1e-3));
+  CHECK(lines[3] == "camera.bookmark");
+}
+
+TEST_CASE("a dropped image lights the scene; the first steps are shown when asked for") {
+  if (test::no_display()) return;
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  std::ofstream(file("sky.hdr")) << "x";
+  const auto lines = session_of("drop " + file("sky.hdr") + "\nwait 0.3\nscreenshot " + file("before.png") +
+                                "\nwindow.welcome\nwait 0.3\nscreenshot " + file("welcome.png") +
+                                "\nkey escape\nwait 0.3\nscreenshot " + file("after.png"));
+  REQUIRE(lines.size() == 1);
+  CHECK(lines[0] == "environment.load " + file("sky.hdr"));
+  const auto greys = [&](const char* name) {  // of the card
+    return test::near_colour(test::Picture(file(name)), 480, 300, 940, 460, {38, 38, 38}, 0.02f);
+  };
+  CHECK(greys("welcome.png") > 40000);
+  CHECK(greys("before.png") < 20000);
+  CHECK(greys("after.png") < 20000);
+}
+
+TEST_CASE("a lamp's strength, temperature and place are dragged in the panel, each drag one step") {
+  if (test::no_display()) return;
+  const auto lines =
+      session_of("select light 3\nwait 0.3\n" + drag(1200, 494, 10, 0) + drag(1200, 546, 10, 0) +
+                 drag(1250, 598, 10, 0) + drag(1240, 624, 10, 0) + "key ctrl+z\nkey ctrl+z\nkey ctrl+z\n");
+  REQUIRE(lines.size() == 8);
+  CHECK_THAT(lines[1], Catch::StartsWith("light.set 3 intensity="));
+  CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 kelvin="));
+  CHECK_THAT(lines[3], Catch::StartsWith("light.set 3 position=") && Catch::EndsWith(",2,0"));
+  CHECK_THAT(lines[4], Catch::StartsWith("light.set 3 azimuth="));
+  for (size_t i = 5; i < 8; ++i) CHECK(lines[i] == "undo");
+}
+
+TEST_CASE("a colour is picked; surfaces that emit stand among the lights") {
+  if (test::no_display()) return;
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  const auto lines =
+      session_of("select light 3\nwait 0.3\nmouse.move 1200 520\nmouse.down\nmouse.up\nwait 0.4\n" +
+                 ("screenshot " + file("picker.png") + "\n") + drag(1230, 600, 8, 8) +
+                 "key escape\nwait 0.3\nwindow.section Camera false\nmaterial.set 1 strength=2\nselect "
+                 "material 1\nwait 0.4\n"
+                 "screenshot " +
+                 file("surface.png"));
+  if (const char* keep = std::getenv("LUCERNA_TEST_KEEP"))
+    for (const char* name : {"picker.png", "surface.png"})
+      std::filesystem::copy_file(file(name), std::string(keep) + "/" + name,
+                                 std::filesystem::copy_options::overwrite_existing);
+  REQUIRE(lines.size() == 5);
+  CHECK_THAT(lines[1], Catch::StartsWith("light.set 3 color="));
+  CHECK(lines[4] == "select material 1");
+}
