@@ -60,8 +60,8 @@ LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random)
   return v;
 }
 
-// Goes on by an event, of which there are no more than `most_events`, or straight on; puts the next ray into the queue. Roulette keeps the flux of those that go on as near
-// to what it was as their colour allows (J. Arvo and D. Kirk 1990).
+// Goes on by an event, of which there are no more than `most_events`, or straight on; puts the next ray into the queue.
+// Roulette keeps the flux of those that go on as near to what it was as their colour allows (J. Arvo and D. Kirk 1990).
 void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float travelled, uint most_events, Sampler random) {
   uint depth = path_depth(path);
   vec3 direction = ray.direction;
