@@ -161,6 +161,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
       .draft_share = draft ? float(draft->width()) * float(draft->height()) / float(cells) : 0};
   stream.dispatch(halve_, resources_, halve, groups(cells));
   const gpu::Buffer *from = &grid_, *to = &filtered_, *before = &before_[0], *before_to = &before_[1];
+  // Cells that show one pixel of a draft tell nothing of its noise.
+  const uint32_t base = draft && 3 * draft->width() < 2 * across ? 2 : 1;
   for (uint32_t pass = 0; pass < k_filter_passes; ++pass) {
     resources_.set("grid_texels", *from);
     resources_.set("Filtered", *to);
@@ -168,7 +170,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
     resources_.set("FilteredBefore", *before_to);
     const PreviewFilterPush push{.across = across,
                                  .down = down,
-                                 .step = 1u << pass,
+                                 .step = base << pass,
+                                 .first = pass == 0,
                                  .orthographic = camera.orthographic,
                                  .right = camera.axes.right,
                                  .up = camera.axes.up,

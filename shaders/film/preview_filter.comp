@@ -33,12 +33,13 @@ void main() {
   // A cell's width there, and a little more for surfaces that are not plane.
   float scale = (push.orthographic != 0u ? 1.0 : max(here.depth, 0.0)) *
                     (2.0 * length(push.right) / float(push.across) * float(push.step)) + 1e-3 * max(here.depth, 0.0) + 1e-6;
-  bool first = push.step == 1u;
+  bool first = push.first != 0u;
   vec3 sum[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) sum[c] = vec3(0.0);
   vec4 weights = vec4(0.0), variance = vec4(0.0), mean = vec4(0.0), square_mean = vec4(0.0), known = vec4(0.0),
        before = vec4(0.0);
-  float alike_sum = 0.0, known_sum = 0.0;
+  vec4 any_mean = vec4(0.0), any_square = vec4(0.0);
+  float alike_sum = 0.0, alike_square = 0.0, known_sum = 0.0, any_sum = 0.0;
   for (int k = 0; k < 9; ++k) {
     ivec2 at = xy + int(push.step) * (ivec2(k % 3, k / 3) - 1);
     bool inside = all(greaterThanEqual(at, ivec2(0))) && at.x < int(push.across) && at.y < int(push.down);
@@ -63,6 +64,10 @@ void main() {
     variance += w * w * max(noise, vec4(0.0)) * max(noise, vec4(0.0));
     float plain = kernel * alike;
     alike_sum += plain;
+    alike_square += plain * plain;
+    any_sum += kernel;
+    any_mean += kernel * y;
+    any_square += kernel * y * y;
     mean += plain * y;
     square_mean += plain * y * y;
     if (l.of[0].w >= 0.0) known += plain * noise * noise, known_sum += plain;
@@ -71,10 +76,14 @@ void main() {
   vec4 error = sqrt(variance) * inverse;
   if (first) {
     mean /= max(alike_sum, 1e-20);
-    vec4 spread = max(square_mean / max(alike_sum, 1e-20) - mean * mean, vec4(0.0)) * (9.0 / 8.0);
+    // Where few are alike, their differences tell little: all around then stand for them.
+    any_mean /= max(any_sum, 1e-20);
+    vec4 any = max(any_square / max(any_sum, 1e-20) - any_mean * any_mean, vec4(0.0));
+    vec4 alike = max(square_mean / max(alike_sum, 1e-20) - mean * mean, vec4(0.0));
+    vec4 spread = mix(any, alike, clamp(alike_sum / max(any_sum, 1e-20) * 2.0 - 1.0, 0.0, 1.0)) * (9.0 / 8.0);
     vec4 of_cell = known_sum > 0.5 * alike_sum ? known / max(known_sum, 1e-20) : spread;
     grid_noise[cell] = sqrt(of_cell);
-    error = sqrt(of_cell * 0.14);  // squares of the weights 4, 2, 1 over the square of their sum
+    error = sqrt(of_cell * alike_square) / max(alike_sum, 1e-20);
   }
   vec4 result[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) result[c] = vec4(sum[c] * inverse[c], error[c]);

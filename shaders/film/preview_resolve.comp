@@ -21,6 +21,8 @@ layout(scalar) writeonly buffer Shares { PreviewShares shares[]; };
 const float k_clean = 0.02, k_noisy = 0.08;
 // Of filtered light, what the filter may be off by.
 const float k_filter_error = 0.04;
+// Square of a difference, over its variance, up to which it is taken for chance.
+const float k_by_chance = 3.0;
 const float k_floor = 0.02;  // film::k_luminance_floor
 
 shared vec3 group_shares[64];
@@ -86,7 +88,8 @@ void main() {
       vec3 before = has_old ? old.of[c].rgb * push.history_scale : vec3(0.0);
       float u = has_old ? square(old.of[c].w) : 0.0, v = square(error) + 1e-8;
       float difference = luminance(modulation) * before_smooth[c] * inverse - smooth_luminance;
-      float change = max(square(difference) - u - v, 0.0);
+      // What noise alone brings now and then is no change: it would show as specks.
+      float change = max(square(difference) - k_by_chance * (u + v), 0.0);
       float keep = has_old ? rough * v / (v + u + change) : 0.0;
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;
       if (nothing) keep = has_old ? 1.0 : 0.0;

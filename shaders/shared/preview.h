@@ -35,7 +35,8 @@ struct PreviewHalvePush {
 
 struct PreviewFilterPush {
   uint across, down;
-  uint step;             ///< between the pixels that are weighed; 1: the first pass, which says how noisy the grid is
+  uint step;             ///< between the cells that are weighed: in the first pass no less than a draft's pixel is wide
+  uint first;            ///< not 0: the first pass, which says how noisy the grid is
   uint orthographic;
   vec3 right, up, forward;
 };

@@ -232,6 +232,31 @@ TEST_CASE("what a draft alone has shown stays after an edit, and goes with the c
     REQUIRE(stage.shown()[24 * 64 + x] == Approx(before[24 * 64 + x + 8]).margin(0.02));
 }
 
+TEST_CASE("a draft of one noisy sample does not put its specks in the place of what was there") {
+  Stage stage(96, 64);
+  // Narrow surfaces side by side, so that few cells have neighbours of their own kind.
+  const auto surface = [](uint32_t x, float scale) {
+    const float turn = 1.5f * float(uint32_t(float(x) * scale) / 4 % 2);
+    return vec3(std::sin(turn), 0, std::cos(turn));
+  };
+  stage.sample(stage.film, 8,
+               [&](uint32_t x, uint32_t) { return Sample{.light = vec3(0.4f), .normal = surface(x, 1)}; });
+  stage.show();
+  stage.preview.keep();
+  stage.film.clear(stage.stream);
+  Film draft(stage.device, 24, 16);
+  draft.clear(stage.stream);
+  std::mt19937 random(6);
+  stage.sample(draft, 1, [&](uint32_t x, uint32_t) {
+    return Sample{.light = vec3(random() % 4 == 0 ? 1.6f : 0), .normal = surface(x, 4)};
+  });
+  stage.show(&draft);
+  const double error = rms(
+      stage.shown(), [](uint32_t, uint32_t) { return 0.4f; }, stage.width);
+  INFO("error " << error);
+  CHECK(error < 0.5);
+}
+
 TEST_CASE("after a move of the camera what was there is where the camera sees it now") {
   Stage stage(64, 48);
   // A wall 5 m away, and to the right one 2.5 m away.

@@ -97,7 +97,7 @@ std::vector<SharedStruct> structs() {
       SHARED("preview.h", PreviewPackPush, width, height, exposure, guided),
       SHARED("preview.h", PreviewHalvePush, width, height, across, down, draft_width, draft_height,
              history, repainted, history_scale, draft_share),
-      SHARED("preview.h", PreviewFilterPush, across, down, step, orthographic, right, up, forward),
+      SHARED("preview.h", PreviewFilterPush, across, down, step, first, orthographic, right, up, forward),
       SHARED("preview.h", PreviewReprojectPush, width, height, pass, orthographic, before, now),
       SHARED("preview.h", PreviewResolvePush, width, height, across, down, show, curve, filtering, history,
              repainted, history_scale),
