@@ -273,7 +273,7 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
            {"", ""},
            {"Space", "pause, resume"},
            {"R", "start the picture again"},
-           {"B", "the samples as they are, without the preview"},
+           {"U", "the samples as they are, without the preview"},
            {"Tab", "panels"},
            {"F5", "reload shaders"},
            {"F12", "screenshot of the window"},
@@ -440,7 +440,7 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_R)) ui.act("render.restart");
   if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
   if (ui.pressed(GLFW_KEY_T)) ui.toggle("overlay.tiles");
-  if (ui.pressed(GLFW_KEY_B))
+  if (ui.pressed(GLFW_KEY_U))
     ui.act("set", "preview.filter", ui.setting("preview.filter") == "off" ? "auto" : "off");
   solver_keys(ui);
   if (ui.pressed(GLFW_KEY_K)) ui.act("window.side", ui.next_side());

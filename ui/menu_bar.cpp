@@ -219,7 +219,7 @@ void view_menu(Ui& ui) {
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");
       entry("Tiles", "T", tiles->help.c_str(), ui.setting_on(tiles->key)))
     ui.toggle(tiles->key);
-  if (entry("Samples as they are", "B",
+  if (entry("Samples as they are", "U",
             "Neither filters the noise of the first samples nor keeps what was shown before an edit.",
             ui.setting("preview.filter") == "off"))
     ui.act("set", "preview.filter", ui.setting("preview.filter") == "off" ? "auto" : "off");
