@@ -386,7 +386,12 @@ void Workspace::save_script(const std::string& file) const {
 void Workspace::record_wait() {
   if (!up_to_date() || snapshot->samples == 0) return;
   if (!recorded_.empty() && recorded_.back().line.starts_with("wait_samples ")) recorded_.pop_back();
-  recorded_.push_back({line("wait_samples", snapshot->samples, named("limit", 86400)), "wait_samples"});
+  Recorded wait{line("wait_samples", snapshot->samples, named("limit", 86400)), "wait_samples"};
+  // Who saves the same picture twice has waited once.
+  const auto before = std::find_if(recorded_.rbegin(), recorded_.rend(), [](const Recorded& entry) {
+    return !entry.line.starts_with("image.save ");
+  });
+  if (before == recorded_.rend() || before->line != wait.line) recorded_.push_back(std::move(wait));
 }
 
 void Workspace::forget_open() {

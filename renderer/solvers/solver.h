@@ -29,10 +29,11 @@ namespace lucerna::solvers {
 struct Task {
   const paths::Automaton& automaton;
   const OptionValues& settings;
-  uint32_t enabled = 0;                         ///< components that anybody computes
-  uint32_t own = 0;                             ///< of these, this solver
-  upload::Effects effects;                      ///< what the scene calls for
-  const gpu::Defines* scene_defines = nullptr;  ///< of kernels that know its surfaces and lights; when it is made
+  uint32_t enabled = 0;     ///< components that anybody computes
+  uint32_t own = 0;         ///< of these, this solver
+  upload::Effects effects;  ///< what the scene calls for
+  const gpu::Defines* scene_defines =
+      nullptr;  ///< of kernels that know its surfaces and lights; when it is made
 };
 
 /// What of the paths is looked up: the tables of the automaton that paths carry (transport/frame.h).
