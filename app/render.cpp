@@ -99,7 +99,8 @@ std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
 }
 
 /// Scene, camera, reference and kept work. False: interrupted.
-bool load(session::Renderer& r, const RenderArguments& a, const Interrupt& interrupt, bool terminal) {
+bool load(session::Renderer& r, const RenderArguments& a, const std::vector<session::SettingChange>& changes,
+          const Interrupt& interrupt, bool terminal) {
   try {
     r.load(
         a.scene,
@@ -107,7 +108,7 @@ bool load(session::Renderer& r, const RenderArguments& a, const Interrupt& inter
           if (terminal) std::fprintf(stderr, "\rloading %3.0f %%  %-40.40s", 100 * fraction, what.c_str());
           return !interrupt.signal();
         },
-        setting_changes(a));
+        changes);
   } catch (const Error&) {
     if (!interrupt.signal()) throw;
     std::fprintf(stderr, "%slucerna: interrupted while loading; there is nothing to write\n",
@@ -188,14 +189,14 @@ int render(const RenderArguments& a) {
   for (const auto& [name, file] : a.solver_save)
     if (!file.empty()) to_save[name] = file;
   check_outputs(a, to_save);
-  setting_changes(a);
+  const std::vector<session::SettingChange> changes = setting_changes(a);
   session::Renderer r(
       {.device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
   r.set_size(width, height);
 
   const Interrupt interrupt;
   const bool terminal = !a.quiet && isatty(2);
-  if (!load(r, a, interrupt, terminal)) return interrupt.status();
+  if (!load(r, a, changes, interrupt, terminal)) return interrupt.status();
   for (const auto& [name, file] : to_save)
     if (!r.solver(name))
       throw_error(fmt::format("--{}-save", name),
@@ -205,7 +206,7 @@ int render(const RenderArguments& a) {
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
   if (makes_picture(a) && r.adaptive() && !interrupted) report_unreached(*r.adaptive(), advice(r));
-  if (makes_picture(a)) find_exposure(r, setting_changes(a));
+  if (makes_picture(a)) find_exposure(r, changes);
   for (const std::string& file : a.outputs) r.save(file);
   if (!a.ledger.empty()) write_file(a.ledger, r.ledger().csv());
   if (!a.stats.empty()) write_file(a.stats, make_stats(r, wall).dump(2) + "\n");

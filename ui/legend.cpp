@@ -189,9 +189,7 @@ void draw_legend(Ui& ui, const Area& area) {
   const float w = px(k_ramp_width) + 2 * pad, h = heat_height + tiles_height + solver_height + pad + between;
   if (h > area.height() - px(24) || w > area.width() - px(24)) return;
   const ImVec2 lo(area.lo.x + px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddRectFilled(lo, hi, colour::with_alpha(colour::bar, 0.92f), px(3));
-  list->AddRect(lo, hi, colour::hairline, px(3));
+  ImDrawList* list = card(lo, hi, 0.92f);
   ImFont* font = theme().fonts.small;
   float y = lo.y + px(6);
   const auto title = [&](const std::string& text) {

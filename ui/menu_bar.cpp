@@ -383,7 +383,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
       ImGui::InvisibleButton("##preview", {end - begin, area.hi.y - area.lo.y - px(2)});
       tooltip(
           "What is shown is not the samples alone: light from before the last edit stays until the new is "
-          "better, and the noise of the first samples is filtered. Files have the samples. B shows them as "
+          "better, and the noise of the first samples is filtered. Files have the samples. U shows them as "
           "they are.");
     }
     state_left = right - std::max(wide, text_width(state));

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "base/blackbody.h"
+#include "base/color.h"
 #include "commands/light_edit.h"
+#include "scene/lamp.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -39,9 +41,6 @@ bool list_row(const char* id, bool chosen, const std::string& name, const std::s
   return pressed;
 }
 
-using commands::strength_of;
-using commands::tint_of;
-
 std::string name_or(const std::string& name, const char* kind, size_t index) {
   return name.empty() ? fmt::format("{} {}", kind, index + 1) : name;
 }
@@ -53,6 +52,16 @@ void choose(Ui& ui, bool chosen, const char* kind, size_t index) {
     ui.act("select", kind, index + 1);
 }
 void quiet_line(const std::string& text) { label(text, colour::text_faint); }
+
+/// A sign at the right of the row that begins at `row` and has just been made. Whether it was pressed.
+bool row_sign(const ImVec2& row, const char* id, Sign sign, bool on, const char* help) {
+  const float below = ImGui::GetCursorScreenPos().y;
+  ImGui::SetCursorScreenPos({row.x + ImGui::CalcItemWidth() - px(22), row.y + px(1)});
+  const bool pressed = sign_button(id, sign, on);
+  tooltip(help);
+  ImGui::SetCursorScreenPos({row.x, below});
+  return pressed;
+}
 
 /// Scrolls so that the row at `y` (window pixels) is in view.
 void show_row(float y) {
@@ -123,11 +132,7 @@ void cameras(Ui& ui) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (list_row("##bookmark", false, name, "bookmark", 0, 28)) ui.act("camera.go", name);
     tooltip(fmt::format("{}: takes this view again.", name));
-    const float below = ImGui::GetCursorScreenPos().y;
-    ImGui::SetCursorScreenPos({at.x + ImGui::CalcItemWidth() - px(22), at.y + px(1)});
-    if (sign_button("##forget", Sign::close, false)) forgotten = name;
-    tooltip("Takes the bookmark away.");
-    ImGui::SetCursorScreenPos({at.x, below});
+    if (row_sign(at, "##forget", Sign::close, false, "Takes the bookmark away.")) forgotten = name;
     ImGui::PopID();
   }
   if (!forgotten.empty()) ui.act("camera.forget", forgotten);
@@ -165,7 +170,7 @@ void colour_rows(Ui& ui, const char* command, size_t item, const char* color_nam
 void light_details(Ui& ui, size_t i, const scene::Light& light) {
   colour_rows(ui, "light.set", i + 1, "color", tint_of(light.intensity));
   if (light.kind != scene::LightKind::directional) {
-    const float solid = commands::solid_angle(light);
+    const auto solid = float(scene::solid_angle(light));
     float power = std::max(strength_of(light.intensity) * solid, 1e-3f);
     if (slider(
             "##power", "Power", power,
@@ -219,12 +224,7 @@ bool light_row(Ui& ui, bool chosen, bool reveal, const std::string& name, const 
   if (list_row("##light", chosen, name, note, colour::with_alpha(display_colour(tint), on ? 1.0f : 0.3f), 28))
     choose(ui, chosen, kind, index);
   tooltip(fmt::format("{}. Selects it, to edit it here; F then frames it.", name));
-  const float below = ImGui::GetCursorScreenPos().y;
-  ImGui::SetCursorScreenPos({at.x + ImGui::CalcItemWidth() - px(22), at.y + px(1)});
-  const bool pressed = sign_button("##on", Sign::power, on);
-  tooltip(on ? "Switches the light off." : "Switches the light on.");
-  ImGui::SetCursorScreenPos({at.x, below});
-  return pressed;
+  return row_sign(at, "##on", Sign::power, on, on ? "Switches the light off." : "Switches the light on.");
 }
 
 /// Drags move by a share of the value; a light turned down to nothing starts from a thousandth.

@@ -402,9 +402,7 @@ void draw_note(Ui& ui, const Area& area) {
   const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24)), h = px(32);
   const ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)), area.hi.y - h - px(beside ? 76.0f : 16.0f));
   const ImVec2 hi(lo.x + w, lo.y + h);
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddRectFilled(lo, hi, colour::with_alpha(colour::bar, 0.95f), px(3));
-  list->AddRect(lo, hi, colour::hairline, px(3));
+  ImDrawList* list = card(lo, hi);
   draw_text(list, lo, hi, elided(ui.note.text, w - px(24)), colour::text, Align::centre);
 }
 
@@ -427,9 +425,7 @@ void welcome_card(Ui& ui, const Area& area) {
                   std::floor(0.5f * (area.lo.y + area.hi.y - h)));
   ImGui::SetCursorScreenPos(lo);
   ImGui::BeginChild("##welcome", {w, h}, false, ImGuiWindowFlags_NoScrollbar);
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddRectFilled(lo, {lo.x + w, lo.y + h}, colour::with_alpha(colour::bar, 0.97f), px(3));
-  list->AddRect(lo, {lo.x + w, lo.y + h}, colour::hairline, px(3));
+  ImDrawList* list = card(lo, {lo.x + w, lo.y + h}, 0.97f);
   float y = lo.y + pad;
   draw_text(list, {lo.x + pad, y}, {lo.x + w - pad, y + px(20)}, "First steps", colour::text, Align::left,
             theme().fonts.strong);
@@ -451,9 +447,7 @@ void busy_card(Ui& ui, const Area& area) {
   const float w = std::min(px(320), area.width() - px(24)), h = px(44);
   // At the right: legends lie at the left.
   const ImVec2 lo(area.hi.x - w - px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddRectFilled(lo, hi, colour::with_alpha(colour::bar, 0.95f), px(3));
-  list->AddRect(lo, hi, colour::hairline, px(3));
+  ImDrawList* list = card(lo, hi);
   const std::string time = seconds_text(seconds);
   draw_text(list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)}, time, colour::text_dim,
             Align::right);
@@ -478,9 +472,7 @@ void activity_card(Ui& ui, const Area& area) {
   const ImVec2 lo(empty ? std::floor(0.5f * (area.lo.x + area.hi.x - w)) : area.lo.x + px(12),
                   empty ? std::floor(area.lo.y + 0.42f * area.height()) : area.hi.y - h - px(12));
   const ImVec2 hi(lo.x + w, lo.y + h);
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddRectFilled(lo, hi, colour::with_alpha(colour::bar, 0.95f), px(3));
-  list->AddRect(lo, hi, colour::hairline, px(3));
+  ImDrawList* list = card(lo, hi);
   const float text_right = hi.x - px(cancels ? 96.0f : 12.0f);
   draw_text(list, {lo.x + px(12), lo.y}, {text_right, lo.y + px(cancels ? 44.0f : 36.0f)},
             elided(ui.snapshot->activity, text_right - lo.x - px(12)), colour::text);

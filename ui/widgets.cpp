@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/color.h"
+#include "shaders/shared/tone.h"
+
 namespace lucerna::ui {
 namespace {
 
@@ -222,6 +225,13 @@ void draw_sign(ImDrawList* list, const ImVec2& c, float size, Sign sign, bool on
   }
 }
 
+ImDrawList* card(const ImVec2& lo, const ImVec2& hi, float alpha) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(lo, hi, colour::with_alpha(colour::bar, alpha), px(3));
+  list->AddRect(lo, hi, colour::hairline, px(3));
+  return list;
+}
+
 bool sign_button(const char* id, Sign sign, bool on, ImU32 on_colour, float size) {
   const ImVec2 lo = ImGui::GetCursorScreenPos(), hi(lo.x + px(size), lo.y + px(size));
   const bool pressed = ImGui::InvisibleButton(id, {px(size), px(size)});
@@ -330,11 +340,7 @@ int slider_row(const char* id, const std::string& name, vec3& value, const Slide
 
 namespace {
 
-float encoded(float v) {
-  v = std::clamp(v, 0.0f, 1.0f);
-  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
-}
-float decoded(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
+float encoded(float v) { return shared::srgb_encode(std::clamp(v, 0.0f, 1.0f)); }
 
 }  // namespace
 
@@ -379,7 +385,7 @@ bool colour_field(const char* id, const std::string& name, vec3& linear, const s
                                 ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoSmallPreview |
                                 ImGuiColorEditFlags_NoOptions | ImGuiColorEditFlags_NoTooltip))
       changed = true;
-    vec3 typed(decoded(shown.x), decoded(shown.y), decoded(shown.z));
+    vec3 typed(linear_from_srgb(shown.x), linear_from_srgb(shown.y), linear_from_srgb(shown.z));
     if (changed) sent = linear = typed;
     static const char* names[] = {"Red", "Green", "Blue"};
     for (int i = 0; i < 3; ++i)

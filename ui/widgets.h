@@ -41,6 +41,10 @@ void hairline();
 void value_row(const std::string& name, const std::string& value, const std::string& help = "",
                ImU32 value_colour = colour::text);
 
+/// A panel that lies over the picture: background and outline; what is drawn goes to the list that is
+/// returned.
+ImDrawList* card(const ImVec2& lo, const ImVec2& hi, float alpha = 0.95f);
+
 /// A flat button; `on` shows it pressed. Width 0: that of its text.
 bool button(const char* id, const std::string& text, bool on = false, float width = 0, ImU32 mark = 0);
 /// A small square toggle with a drawn sign: 'eye', 'S' and the like.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/color.h"
+
 namespace lucerna {
 namespace {
 
@@ -25,11 +27,6 @@ double sum(const Lobe (&lobes)[N], double nm) {
   return all;
 }
 
-vec3 of_strongest_one(const vec3& c) {
-  const float most = std::max({c.x, c.y, c.z});
-  return most > 0 ? c / most : vec3(1);
-}
-
 }  // namespace
 
 vec3 blackbody_color(float kelvin) {
@@ -43,11 +40,11 @@ vec3 blackbody_color(float kelvin) {
   const vec3 rgb(3.2404542 * x - 1.5371385 * y - 0.4985314 * z,
                  -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
                  0.0556434 * x - 0.2040259 * y + 1.0572252 * z);
-  return of_strongest_one(glm::max(rgb, vec3(0)));
+  return tint_of(glm::max(rgb, vec3(0)));
 }
 
 NearestKelvin nearest_kelvin(const vec3& color) {
-  const vec3 wanted = of_strongest_one(color);
+  const vec3 wanted = tint_of(color);
   // Blue over red grows with the temperature; compared crosswise, for either may be 0.
   float lo = k_coolest_kelvin, hi = k_hottest_kelvin;
   for (int i = 0; i < 40; ++i) {

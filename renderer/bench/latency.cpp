@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/color.h"
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/timer.h"
@@ -186,7 +187,6 @@ class Latency {
     for (const auto& [key, value] : o_.set) s.set(key, value);
     s.set("film.tone_curve", "linear");
     const bool wanted = std::find(o_.edits.begin(), o_.edits.end(), Edit::load) != o_.edits.end();
-    double loading = 0;
     for (;;) {
       check();
       const auto now = s.snapshot();
@@ -196,13 +196,11 @@ class Latency {
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
-    loading = clock.seconds();
+    const double loading = clock.seconds();
     if (wanted) report(file, solver, Edit::load, watch(s, clock, loading + o_.seconds), s, loading);
     for (const Edit edit : o_.edits) {
       if (edit == Edit::load) continue;
-      if (edit == Edit::solver)
-        for (const char* c : {"components.secondary", "components.tertiary"})
-          s.set(c, solver == "path" ? "cache" : "path");
+      if (edit == Edit::solver) choose(s, solver == "path" ? "cache" : "path");
       settle(s);
       const std::optional<Change> change = change_of(edit, *s.scene(), s.snapshot()->camera);
       if (!change) {
@@ -343,8 +341,7 @@ PictureDistance picture_distance(std::span<const float> shown, std::span<const f
 std::vector<float> shown_luminance(std::span<const uint8_t> rgba) {
   std::array<float, 256> linear;
   for (size_t i = 0; i < 256; ++i) {
-    const float c = float(i) / 255;
-    linear[i] = c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+    linear[i] = linear_from_srgb(float(i) / 255);
   }
   std::vector<float> all(rgba.size() / 4);
   for (size_t i = 0; i < all.size(); ++i)

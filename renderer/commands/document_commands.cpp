@@ -3,9 +3,11 @@
 #include <cmath>
 
 #include "base/blackbody.h"
+#include "base/color.h"
 #include "base/error.h"
 #include "commands/light_edit.h"
 #include "commands/workspace.h"
+#include "scene/lamp.h"
 
 namespace lucerna::commands {
 namespace {
@@ -275,7 +277,8 @@ void Workspace::add_light_commands() {
              float strength = strength_of(light.intensity);
              const vec3 tint = tint_asked(a, "color", tint_of(light.intensity));
              if (a.has("intensity")) strength = a.number("intensity");
-             if (a.has("power")) strength = a.number("power") / std::max(solid_angle(light), 1e-9f);
+             if (a.has("power"))
+               strength = a.number("power") / std::max(float(scene::solid_angle(light)), 1e-9f);
              if (a.has("intensity") || a.has("power") || a.has("color") || a.has("kelvin"))
                light.intensity = strength * tint;
              if (a.has("on")) light.enabled = a.boolean("on");

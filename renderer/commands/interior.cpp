@@ -113,13 +113,12 @@ bool walk(Viewpoint& view, const Look& look, const vec2& metres, float height, b
   const float clear = clearance(view.extent);
   eye = through ? eye + step : step_among(look, eye, vec3(step.x, 0, step.z), clear, &blocked);
   // Tables and chairs are walked through below the eye: only what is low enough to step on is a floor.
-  if (const auto floor = floor_below(look, eye, std::max(height - k_stair, 0.1f * height), view.extent))
-    if (*floor >= std::max(height - k_stair, 0.1f * height)) {
-      const float rise = height - *floor;
-      const vec3 wanted = eye + vec3(0, rise, 0);
-      // Under a low ceiling one stoops.
-      eye = rise > 0 && !through ? step_straight(look, eye, wanted - eye, clear) : wanted;
-    }
+  const float least = std::max(height - k_stair, 0.1f * height);
+  if (const auto floor = floor_below(look, eye, least, view.extent); floor && *floor >= least) {
+    const vec3 rise(0, height - *floor, 0);
+    // Under a low ceiling one stoops.
+    eye = rise.y > 0 && !through ? step_straight(look, eye, rise, clear) : eye + rise;
+  }
   view.camera.to_world = at(view.camera.to_world, eye);
   return blocked;
 }

@@ -428,28 +428,24 @@ const session::Probe* Workspace::probe(bool wait) {
   return probe_.get();
 }
 
-Look Workspace::look() {
+Look Workspace::look_at(std::function<bool(const session::Picked&)> wanted) {
   probe();
-  return [rays = probe_](const vec3& origin, const vec3& direction, float limit) -> std::optional<Obstacle> {
+  return [rays = probe_, wanted = std::move(wanted)](const vec3& origin, const vec3& direction,
+                                                     float limit) -> std::optional<Obstacle> {
     if (!rays) return std::nullopt;
-    const auto hit = rays->nearest(origin, direction, limit);
+    const auto hit = rays->nearest(origin, direction, limit, wanted);
     if (!hit) return std::nullopt;
     return Obstacle{hit->distance, hit->normal};
   };
 }
 
+Look Workspace::look() { return look_at({}); }
+
 Look Workspace::look_past_selection() {
-  probe();
-  return [rays = probe_, chosen = selection](const vec3& origin, const vec3& direction,
-                                             float limit) -> std::optional<Obstacle> {
-    if (!rays) return std::nullopt;
-    const auto hit = rays->nearest(origin, direction, limit, [&](const session::Picked& p) {
-      return !(chosen.kind == Kind::instance && p.instance == chosen.index) &&
-             !(chosen.kind == Kind::material && p.material == chosen.index);
-    });
-    if (!hit) return std::nullopt;
-    return Obstacle{hit->distance, hit->normal};
-  };
+  return look_at([chosen = selection](const session::Picked& p) {
+    return !(chosen.kind == Kind::instance && p.instance == chosen.index) &&
+           !(chosen.kind == Kind::material && p.material == chosen.index);
+  });
 }
 
 Box Workspace::selection_bounds() const {

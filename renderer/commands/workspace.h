@@ -160,7 +160,7 @@ class Workspace {
  protected:
   /// Called when another scene has appeared and the view has been set up for it.
   virtual void scene_changed() {}
-  /// Called when what was measured has set exposure or white balance; `text` says to what.
+  /// Called when what was measured has set the exposure; `text` says to what.
   virtual void measured(const std::string& text) { (void)text; }
   /// Whether the exposure is to be found when a scene comes that brings none.
   virtual bool exposes_at_load() const { return false; }
@@ -238,6 +238,8 @@ class Workspace {
   void note_move(const Line& line, uint64_t gesture, const Viewpoint& before, int camera_before);
   void show(const Viewpoint& view, int camera);
   std::vector<std::string> bookmark_names() const;
+  /// At what is `wanted`, of which nothing is all.
+  Look look_at(std::function<bool(const session::Picked&)> wanted);
   /// Looks through what is selected.
   Look look_past_selection();
   /// Asks for the brightness of the picture, or at a point; `of_load`: nobody has asked for it.

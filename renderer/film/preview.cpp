@@ -62,12 +62,8 @@ uint64_t Preview::bytes() const {
 }
 
 void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
-  const auto make = [&](gpu::Buffer& buffer, const char* name, uint64_t bytes, bool host = false) {
-    if (!buffer || buffer.bytes() < bytes)
-      buffer = gpu::Buffer(device_, {.name = name,
-                                     .bytes = (bytes + 15) / 16 * 16,
-                                     .memory = host ? gpu::Memory::host : gpu::Memory::device,
-                                     .texel = true});
+  const auto make = [&](gpu::Buffer& buffer, const char* name, uint64_t bytes) {
+    gpu::make_texel_room(device_, buffer, name, bytes);
   };
   if (width != width_ || height != height_) forget();
   width_ = width, height_ = height;
@@ -84,7 +80,10 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
   make(grid_surfaces_, "preview grid surfaces", cells * 16);
   for (gpu::Buffer& b : before_) make(b, "preview before", cells * 16);
   make(noise_, "preview noise", cells * 16);
-  make(shares_, "preview shares", groups(n) * sizeof(shared::PreviewShares), true);
+  gpu::make_room(device_, shares_,
+                 {.name = "preview shares",
+                  .bytes = groups(n) * sizeof(shared::PreviewShares),
+                  .memory = gpu::Memory::host});
   make(depths_, "preview depths", n * 4);
   make(nearest_, "preview nearest", n * 4);
 }
@@ -182,8 +181,6 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   }
   resources_.set("filtered_texels", *from);
   resources_.set("before_texels", *before);
-  resources_.set("history_texels", history_.light);
-  resources_.set("history_surfaces", history_.surfaces);
   resources_.set("Packed", now_.light);
   resources_.set("PackedSurfaces", now_.surfaces);
   resources_.set("Picture", film.picture());

@@ -105,13 +105,13 @@ bool Display::shows(const film::View& view, const film::Film& film) const {
 }
 
 void Display::develop(Engine& engine, const PictureView& view, const film::Film& film,
-                      const film::Film& coarse, const film::View& shown, uint32_t samples, bool filtered) {
+                      const film::Film& coarse, const film::View& shown, uint32_t samples) {
   plain_.reset();
   const bool fine = plan_.fine_samples() > 0;
   const film::Film* draft = fine ? fine_.get() : plan_.coarse_samples() > 0 ? &coarse : nullptr;
   if (!draft_serves_ || samples >= k_draft_until) draft = nullptr;
   shares_ = preview_.develop(engine.wavefront().stream(), film, draft, shown,
-                             camera_of(engine.frame(view, view.width, view.height)), filtered, samples > 0);
+                             camera_of(engine.frame(view, view.width, view.height)), true, samples > 0);
 }
 
 }  // namespace lucerna::session

@@ -36,7 +36,7 @@ class Display {
   bool shows(const film::View& view, const film::Film& film) const;
   /// Film -> its picture. `samples`: that every pixel has.
   void develop(Engine& engine, const PictureView& view, const film::Film& film, const film::Film& coarse,
-               const film::View& shown, uint32_t samples, bool filtered);
+               const film::View& shown, uint32_t samples);
   /// Of the picture developed last.
   film::PreviewShares shares() const { return shares_; }
   /// It was developed without a preview.

@@ -91,11 +91,10 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
     };
   wavefront_ = std::make_unique<transport::Wavefront>(device, compiler, *world.device, slots, world.trace(),
                                                       defines, bind);
-  const bool looks_up = !solvers_.empty();
   developer_ = before ? before->developer_ : std::make_shared<film::Developer>(device, compiler);
   estimator_ = before && before->solvers_.empty() == solvers_.empty()
                    ? before->estimator_
-                   : std::make_shared<film::ErrorEstimator>(device, compiler, looks_up);
+                   : std::make_shared<film::ErrorEstimator>(device, compiler, !solvers_.empty());
   compile_seconds_ = timer.seconds();
 }
 
@@ -160,12 +159,6 @@ bool Engine::waits() const {
 
 bool Engine::previews() const {
   return std::any_of(solvers_.begin(), solvers_.end(), [](const auto& s) { return s->previews(); });
-}
-
-uint64_t Engine::published() const {
-  uint64_t sum = 0;
-  for (const auto& solver : solvers_) sum += solver->published();
-  return sum;
 }
 
 solvers::Routing Engine::routing(const plan::Settings& settings, const upload::Effects& effects) const {

@@ -61,7 +61,6 @@ class Engine {
   bool waits() const;
   /// Some solver has more to do for display (Solver::previews).
   bool previews() const;
-  uint64_t published() const;
 
   /// Frame of the picture's paths, in a size of its own.
   shared::Frame frame(const PictureView& picture, uint32_t width, uint32_t height) const;

@@ -166,8 +166,6 @@ class Renderer {
   bool preparing() const { return engine_ && engine_->unready(); }
   /// ... and waits for a command.
   bool waits() const { return engine_ && engine_->waits(); }
-  /// Grows whenever what lookups read while it is being prepared has become better.
-  uint64_t published() const { return engine_ ? engine_->published() : 0; }
   /// One of SolverInfo::commands; nothing where the solver is not at work.
   void solver_command(const std::string& name, const std::string& command);
   /// Writes the work of a solver (SolverInfo::file), once it is ready. Throws Error located at `file`: the
@@ -231,6 +229,8 @@ class Renderer {
   /// `factor`: of all light, where an edit is known to do no more than that (scene::light_factor).
   void restart(const scene::Changes& changes, const vec3& factor = vec3(1));
   PictureView picture_view() const { return {automaton_, settings_, world_, camera_, width_, height_}; }
+  /// What the film has developed, with what solvers draw over it.
+  std::vector<uint8_t> finished_picture();
   void mark_tiles(const film::View& view);
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;

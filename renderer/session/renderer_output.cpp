@@ -48,6 +48,13 @@ void Renderer::mark_tiles(const film::View& v) {
   film_->mark_tiles(marks);
 }
 
+std::vector<uint8_t> Renderer::finished_picture() {
+  visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
+    solver.draw(canvas, picture);
+  });
+  return film_->read_picture();
+}
+
 std::vector<uint8_t> Renderer::shown_picture(bool with_coarse) {
   const film::View v = view();
   // Samples from which on the picture is shown as it is, whatever they are worth.
@@ -60,7 +67,7 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse) {
   }
   mark_tiles(v);
   try {
-    display_->develop(*engine_, picture_view(), *film_, *coarse_, v, samples(), true);
+    display_->develop(*engine_, picture_view(), *film_, *coarse_, v, samples());
   } catch (const Error& e) {
     // The picture itself does not need it.
     log::warning("{}; the window shows the samples as they are", e.what());
@@ -68,10 +75,7 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse) {
     return picture(with_coarse);
   }
   engine_->developer().draw_tiles(engine_->wavefront().stream(), *film_, v);
-  visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
-    solver.draw(canvas, picture);
-  });
-  return film_->read_picture();
+  return finished_picture();
 }
 
 std::vector<uint8_t> Renderer::picture(bool with_coarse) {
@@ -79,10 +83,7 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse) {
   mark_tiles(v);
   engine_->developer().tone_map(engine_->wavefront().stream(), *film_, v,
                                 with_coarse ? coarse_.get() : nullptr);
-  visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
-    solver.draw(canvas, picture);
-  });
-  return film_->read_picture();
+  return finished_picture();
 }
 
 film::Brightness Renderer::measure(std::optional<vec2> at) const {

@@ -98,8 +98,6 @@ class Solver {
   virtual bool ready() const { return true; }
   /// Preparation waits for a command.
   virtual bool waits() const { return false; }
-  /// Grows whenever what lookups read while it is being prepared has become better.
-  virtual uint64_t published() const { return 0; }
   /// One bounded piece of preparation, cancellable between bounces; on return the wavefront's frame is the
   /// picture's. False when it was cancelled (it will be done again), or while it waits.
   virtual bool prepare(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {

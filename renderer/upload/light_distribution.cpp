@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/lamp.h"
 #include "upload/alias_table.h"
 #include "upload/environment_map.h"
 #include "upload/flatten.h"
@@ -154,14 +155,6 @@ struct Choice {
   }
 };
 
-/// Solid angle of a spot's cone, each direction weighted with its intensity over that on the axis: full
-/// within the inner cone, and the square of what is left of the way to the outer cosine, as
-/// shaders/lib/lights.glsl.
-double spot_solid_angle(double inner, double outer) {
-  const double width = std::max(inner - outer, 1e-4), ramp = std::min(1.0, (1 - outer) / width);
-  return 2 * std::numbers::pi * (std::max(0.0, 1 - outer - width) + width * ramp * ramp * ramp / 3);
-}
-
 /// Emissive triangles: flux pi * L * A, twice that when both sides emit.
 void add_triangles(const scene::Scene& scene, const FlatScene& flat, Choice& choice) {
   for (uint32_t i = 0; i < flat.triangles.size(); ++i) {
@@ -185,10 +178,9 @@ void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
       choice.add(k_light_directional, i, y * disk, y * disk);
     } else if (l.kind == scene::LightKind::spot) {
       const float inner = std::cos(l.inner_cone), outer = std::cos(l.outer_cone);
-      choice.add(k_light_spot, i, y * (2 * k_pi * (1 - 0.5 * (inner + outer))),
-                 y * spot_solid_angle(double(inner), double(outer)));
+      choice.add(k_light_spot, i, y * (2 * k_pi * (1 - 0.5 * (inner + outer))), y * scene::solid_angle(l));
     } else {
-      choice.add(k_light_point, i, y * (4 * k_pi), y * 4 * std::numbers::pi);
+      choice.add(k_light_point, i, y * (4 * k_pi), y * scene::solid_angle(l));
     }
   }
 }

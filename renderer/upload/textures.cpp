@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/color.h"
 #include "base/error.h"
 
 namespace lucerna::upload {
@@ -90,8 +91,6 @@ void copy_with_border(const Item& item, const std::vector<T>& from, uint32_t pag
   }
 }
 
-double srgb_to_linear(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
-
 }  // namespace
 
 uint32_t TextureMap::bits(const scene::TextureUse& use) const {
@@ -170,7 +169,7 @@ vec3 read_texture(const scene::Scene& scene, const scene::TextureUse& use, vec2 
   vec3 c;
   for (int k = 0; k < 3; ++k) {
     const double x = image.floats.empty() ? image.bytes[at + k] / 255.0 : image.floats[at + k];
-    c[k] = float(t.srgb && image.floats.empty() ? srgb_to_linear(x) : x);
+    c[k] = float(t.srgb && image.floats.empty() ? linear_from_srgb(x) : x);
   }
   return c;
 }

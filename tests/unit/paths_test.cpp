@@ -10,6 +10,14 @@ using namespace lucerna::paths;
 
 namespace {
 
+/// The state that the events of a word, D, G and S, lead to.
+uint8_t state_after(const paths::Automaton& a, const char* word) {
+  uint8_t state = 0;
+  for (const char* e = word; *e; ++e)
+    state = a.after(state, static_cast<paths::Event>(*e == 'D' ? 0 : *e == 'G' ? 1 : 2));
+  return state;
+}
+
 /// The partition in words, by counting letters: no expression, no automaton.
 int classify_by_counting(const std::string& word) {
   const std::string middle = word.substr(1, word.size() - 2);
@@ -99,12 +107,7 @@ TEST_CASE("wrong expressions are refused with their place") {
 
 TEST_CASE("lookups stand where nothing but cached components goes on, each part for its component") {
   const paths::Automaton a = paths::compile_components();
-  const auto after = [&](const char* word) {
-    uint8_t state = 0;
-    for (const char* e = word; *e; ++e)
-      state = a.after(state, static_cast<paths::Event>(*e == 'D' ? 0 : *e == 'G' ? 1 : 2));
-    return state;
-  };
+  const auto after = [&](const char* word) { return state_after(a, word); };
   const uint8_t none = paths::k_no_component;
   const auto nothing = std::array<uint8_t, 4>{none, none, none, none};
   // Both: at the first diffuse vertex, also behind mirrors; nothing behind it, caustics are left to the path.
@@ -274,12 +277,7 @@ TEST_CASE(
 TEST_CASE(
     "photons are looked up at the first diffuse vertex, or where secondary light is traced at the next") {
   const paths::Automaton a = paths::compile_components();
-  const auto after = [&](const char* word) {
-    uint8_t state = 0;
-    for (const char* e = word; *e; ++e)
-      state = a.after(state, static_cast<paths::Event>(*e == 'D' ? 0 : *e == 'G' ? 1 : 2));
-    return state;
-  };
+  const auto after = [&](const char* word) { return state_after(a, word); };
   const uint8_t none = paths::k_no_component;
   const std::array<uint8_t, 4> nothing{none, none, none, none};
   const auto caustic = paths::photon_routes(a, 15, 0b1000);

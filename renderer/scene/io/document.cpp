@@ -183,6 +183,10 @@ std::vector<std::string> Warnings::lines() const {
 
 std::vector<uint8_t> read_file(const Document& document, const std::filesystem::path& path,
                                const std::string& where) {
+  return read_file(path, where, document.budget);
+}
+
+std::vector<uint8_t> read_file(const std::filesystem::path& path, const std::string& where, Budget& budget) {
   const std::string name = where == path.string() ? "" : fmt::format(" '{}'", path.string());
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -192,7 +196,7 @@ std::vector<uint8_t> read_file(const Document& document, const std::filesystem::
   const uintmax_t size = std::filesystem::file_size(path, error);
   std::ifstream stream(path, std::ios::binary);
   if (error || !stream) throw_error(where, "the file cannot be opened{}", name);
-  document.budget.take(size, where, "a file of {} bytes", size);
+  budget.take(size, where, "a file of {} bytes", size);
   std::vector<uint8_t> bytes(size);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   if (static_cast<uintmax_t>(stream.gcount()) != size) throw_error(where, "the file cannot be read{}", name);

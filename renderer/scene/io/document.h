@@ -90,6 +90,7 @@ struct Document {
 /// The bytes of a regular file. Throws an Error that starts with `where`.
 std::vector<uint8_t> read_file(const Document& document, const std::filesystem::path& path,
                                const std::string& where);
+std::vector<uint8_t> read_file(const std::filesystem::path& path, const std::string& where, Budget& budget);
 
 /// Bytes behind a "data:" URI. Throws an Error at `item` unless it is base64 or percent-encoded text.
 std::vector<uint8_t> decode_data_uri(const Item& item);

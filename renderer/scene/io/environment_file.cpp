@@ -1,7 +1,6 @@
 #include "scene/io/environment_file.h"
 
 #include <cmath>
-#include <fstream>
 
 #include "scene/io/document.h"
 #include "scene/io/images.h"
@@ -11,15 +10,11 @@ namespace lucerna::scene {
 Image load_environment(const std::filesystem::path& file, uint64_t most_bytes) {
   const std::string where = file.string();
   std::error_code error;
-  const uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) throw_error(where, "cannot be read: {}", error.message());
+  if (std::filesystem::file_size(file, error) == uintmax_t(-1))
+    throw_error(where, "cannot be read: {}", error.message());
   Budget budget(most_bytes);
-  budget.take(size, where, "the file");
-  std::vector<uint8_t> bytes(size);
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!stream) throw_error(where, "cannot be read");
-  Image image = decode_image(bytes, file.filename().string(), where, Precision::linear_floats, budget);
+  Image image = decode_image(read_file(file, where, budget), file.filename().string(), where,
+                             Precision::linear_floats, budget);
   image.name = where;
   const double ratio = double(image.width) / image.height;
   if (std::abs(ratio / 2 - 1) > 0.02)

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/color.h"
 #include "base/error.h"
 
 namespace lucerna::scene {
@@ -43,8 +44,6 @@ std::string reader_error(const std::string& message) {
   while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
   return text.empty() ? "the file is damaged" : text;
 }
-
-float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
 
 // n channels to RGBA; one and two channels are grey and grey with alpha.
 template <class T>

@@ -29,7 +29,6 @@ class CacheSolver final : public solvers::Solver {
   void heed(const OptionValues& settings, bool interactive) override;
   bool ready() const override { return cache_.ready(); }
   bool waits() const override { return cache_.status().waits; }
-  uint64_t published() const override { return cache_.status().published; }
   bool previews() const override { return cache_.preview_left(); }
   bool preview(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override {

@@ -194,7 +194,6 @@ void PhotonMap::build(transport::Wavefront& wavefront, const Round& round) {
                                                    32 + uint32_t(std::bit_width(entries - 1)), "photon map");
     r.set("photon_sorted", sorted);
     stream.dispatch(arrange_, r, push, groups, "photon map");
-    wavefront.account_stages();
   }
   wavefront.account_stages();
   if (moved) wavefront.rebind_lookup();
