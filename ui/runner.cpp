@@ -319,7 +319,8 @@ void Runner::presented(double interval_ms) {
   ++frames_;
   if (!measure_) return;
   Measure& m = *measure_;
-  m.frames.push_back(interval_ms);
+  // Before the first frame the window may have slept for want of anything to draw.
+  if (std::exchange(m.begun, true)) m.frames.push_back(interval_ms);
   // The first picture on the screen that was made with the new camera.
   if (m.moved_at >= 0 && ui_.snapshot && commands::same_view(ui_.snapshot->camera, m.target)) {
     m.coarse.push_back(1e3 * (ui_.time() - m.moved_at));

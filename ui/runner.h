@@ -36,6 +36,7 @@ class Runner {
     double moved_at = -1;
     scene::Camera target;
     int moves = 0;
+    bool begun = false;  ///< a frame has been shown since
   };
 
   /// True when the step is done; false: to be asked again.

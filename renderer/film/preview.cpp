@@ -10,6 +10,7 @@ using namespace shared;
 namespace {
 
 constexpr uint32_t k_filter_passes = 4;
+constexpr uint32_t k_none = 0xffffffff;  // k_preview_none of film/preview.glsl
 constexpr uint64_t k_light_bytes = 16 * k_preview_texels;
 
 uint32_t groups(uint64_t items) { return gpu::groups_for(items, 64); }
@@ -30,21 +31,28 @@ Preview::Preview(gpu::Device& device, gpu::ShaderCompiler& compiler)
     : device_(device),
       pack_(device, compiler, "film/preview_pack.comp"),
       halve_(device, compiler, "film/preview_halve.comp"),
+      first_filter_(device, compiler, "film/preview_filter.comp", {{"LUCERNA_PREVIEW_FIRST", "1"}}),
       filter_(device, compiler, "film/preview_filter.comp"),
-      reproject_(device, compiler, "film/preview_reproject.comp"),
+      scatter_(device, compiler, "film/preview_scatter.comp"),
+      gather_(device, compiler, "film/preview_gather.comp"),
+      recall_(device, compiler, "film/preview_recall.comp"),
       resolve_(device, compiler, "film/preview_resolve.comp") {}
 
 bool Preview::fits(const gpu::Limits& limits, uint32_t width, uint32_t height) {
   return uint64_t{width} * height * k_light_bytes <= limits.max_storage_buffer;
 }
 
-void Preview::forget() { shown_ = has_history_ = repainted_ = false; }
+void Preview::forget() {
+  shown_ = has_history_ = repainted_ = false;
+  moved_camera_.reset();
+}
 
 void Preview::keep(const vec3& scale, bool repainted) {
   if (shown_) {
     std::swap(now_, history_);
     history_camera_ = camera_, history_exposure_ = exposure_;
     history_scale_ = vec3(1);
+    moved_camera_.reset();
     has_history_ = true;
     shown_ = false;
   }
@@ -54,11 +62,17 @@ void Preview::keep(const vec3& scale, bool repainted) {
 
 uint64_t Preview::bytes() const {
   uint64_t sum = 0;
-  for (const gpu::Buffer* b : {&now_.light, &now_.surfaces, &history_.light, &history_.surfaces,
-                               &draft_.light, &draft_.surfaces, &grid_, &grid_surfaces_, &filtered_,
-                               &before_[0], &before_[1], &noise_, &shares_, &depths_, &nearest_})
+  for (const gpu::Buffer* b :
+       {&now_.light, &now_.surfaces, &history_.light, &history_.surfaces, &moved_.light, &moved_.surfaces,
+        &draft_.light, &draft_.surfaces, &grid_, &grid_surfaces_, &filtered_, &before_[0], &before_[1],
+        &noise_, &shares_, &depths_, &nearest_})
     if (*b) sum += b->bytes();
   return sum;
+}
+
+void Preview::make_pixels(Pixels& to) {
+  gpu::make_texel_room(device_, to.light, "preview", pixels() * k_light_bytes);
+  gpu::make_texel_room(device_, to.surfaces, "preview surfaces", pixels() * uint64_t{16});
 }
 
 void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
@@ -68,10 +82,7 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
   if (width != width_ || height != height_) forget();
   width_ = width, height_ = height;
   const uint64_t n = pixels(), cells = uint64_t{(width + 1) / 2} * ((height + 1) / 2);
-  for (Pixels* p : {&now_, &history_}) {
-    make(p->light, "preview", n * k_light_bytes);
-    make(p->surfaces, "preview surfaces", n * 16);
-  }
+  make_pixels(now_), make_pixels(history_);
   const uint64_t drafted = draft ? uint64_t{draft->width()} * draft->height() : 1;
   make(draft_.light, "preview draft", drafted * k_light_bytes);
   make(draft_.surfaces, "preview draft surfaces", drafted * 16);
@@ -84,63 +95,94 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
                  {.name = "preview shares",
                   .bytes = groups(n) * sizeof(shared::PreviewShares),
                   .memory = gpu::Memory::host});
-  make(depths_, "preview depths", n * 4);
-  make(nearest_, "preview nearest", n * 4);
+  for (gpu::Buffer* b : {&depths_, &nearest_}) make(*b, "preview nearest", n * 4);
 }
 
-void Preview::pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure, bool guided) {
+void Preview::pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure,
+                   const Pixels* guide) {
   film.bind(resources_);
+  resources_.set("history_surfaces", (guide ? *guide : history_).surfaces);
   resources_.set("Packed", to.light);
   resources_.set("PackedSurfaces", to.surfaces);
-  resources_.set("history_surfaces", history_.surfaces);
-  stream.dispatch(pack_, resources_, PreviewPackPush{film.width(), film.height(), exposure, guided},
+  stream.dispatch(pack_, resources_, PreviewPackPush{film.width(), film.height(), exposure, guide != nullptr},
                   groups(uint64_t{film.width()} * film.height()));
 }
 
-void Preview::reproject(gpu::Stream& stream, const PreviewCamera& now) {
-  // What was developed last is kept or forgotten: its place is free.
+void Preview::move(gpu::Stream& stream, PreviewReprojectPush push) {
+  make_pixels(moved_);
   resources_.set("from_texels", history_.light);
   resources_.set("from_surfaces", history_.surfaces);
   resources_.set("NearestDepth", depths_);
   resources_.set("NearestPixel", nearest_);
-  resources_.set("Packed", now_.light);
-  resources_.set("PackedSurfaces", now_.surfaces);
-  stream.fill(depths_, 0xffffffffu);
-  stream.fill(nearest_, 0xffffffffu);
-  for (uint32_t pass = 0; pass < 3; ++pass)
-    stream.dispatch(reproject_, resources_,
-                    PreviewReprojectPush{width_, height_, pass,
-                                         uint32_t(history_camera_.orthographic) | now.orthographic << 1,
-                                         history_camera_.axes, now.axes},
-                    groups(pixels()));
+  resources_.set("nearest_depths", depths_);
+  resources_.set("nearest_pixels", nearest_);
+  resources_.set("Packed", moved_.light);
+  resources_.set("PackedSurfaces", moved_.surfaces);
+  stream.fill(depths_, k_none);
+  stream.fill(nearest_, k_none);
+  for (push.pass = 0; push.pass < 2; ++push.pass)
+    stream.dispatch(scatter_, resources_, push, groups(pixels()));
+  stream.dispatch(gather_, resources_, push, groups(pixels()));
+}
+
+/// What was shown before, as it is seen now. It is always taken from the picture that was shown then, and not
+/// from what the last camera saw of that, so that nothing is lost on the way.
+const Preview::Pixels& Preview::history(gpu::Stream& stream, const PreviewCamera& now) {
+  if (!has_history_ || history_camera_ == now) return history_;
+  if (moved_camera_ == now) return moved_;
+  move(stream, PreviewReprojectPush{width_, height_, 0,
+                                    uint32_t(history_camera_.orthographic) | now.orthographic << 1,
+                                    history_camera_.axes, now.axes});
   stream.run();
-  std::swap(now_, history_);
-  history_camera_ = now;
+  moved_camera_ = now;
+  return moved_;
+}
+
+void Preview::show(gpu::Stream& stream, const Film& film, const Pixels& seen, const PreviewRecallPush& push) {
+  resources_.set("history_texels", seen.light);
+  resources_.set("history_surfaces", seen.surfaces);
+  resources_.set("Picture", film.picture());
+  stream.dispatch(recall_, resources_, push, groups(pixels()));
+  stream.run();
+  stream.take_times();
+}
+
+void Preview::warm(gpu::Stream& stream, const Film& film) {
+  move(stream, {});  // no pixels
+  show(stream, film, moved_, {});
+}
+
+void Preview::recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera) {
+  show(stream, film, history(stream, camera),
+       {width_, height_, shown_components(view), view.curve, history_scale(view)});
 }
 
 void Preview::take(gpu::Stream& stream, const Film& film, float exposure, const PreviewCamera& camera) {
   make_room(film.width(), film.height(), nullptr);
-  pack(stream, film, now_, exposure, false);
+  pack(stream, film, now_, exposure, nullptr);
   stream.run();
   camera_ = camera, exposure_ = exposure;
   shown_ = true;
 }
 
 PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film* draft, const View& view,
-                               const PreviewCamera& camera, bool filtered, bool sampled) {
+                               const PreviewCamera& camera, bool filtered, Sampled sampled) {
   make_room(film.width(), film.height(), draft);
-  if (has_history_ && !(history_camera_ == camera)) reproject(stream, camera);
-  const uint32_t across = (width_ + 1) / 2, down = (height_ + 1) / 2, cells = across * down;
-  pack(stream, film, now_, view.exposure, has_history_);
-  if (draft) pack(stream, *draft, draft_, view.exposure, false);
+  const Pixels& seen = history(stream, camera);
+  // Wide cells lose nothing while each has no more than one pixel of a draft.
+  const bool wide = sampled == Sampled::none && draft && draft->width() <= width_ / k_preview_first_step;
+  const uint32_t step = wide ? k_preview_first_step : k_preview_step;
+  const uint32_t across = (width_ + step - 1) / step, down = (height_ + step - 1) / step,
+                 cells = across * down;
+  if (sampled != Sampled::none) pack(stream, film, now_, view.exposure, has_history_ ? &seen : nullptr);
+  if (draft) pack(stream, *draft, draft_, view.exposure, nullptr);
 
-  const vec3 history_scale = history_scale_ * (view.exposure / history_exposure_);
   resources_.set("packed_texels", now_.light);
   resources_.set("surface_texels", now_.surfaces);
   resources_.set("draft_texels", draft_.light);
   resources_.set("draft_surfaces", draft_.surfaces);
-  resources_.set("history_texels", history_.light);
-  resources_.set("history_surfaces", history_.surfaces);
+  resources_.set("history_texels", seen.light);
+  resources_.set("history_surfaces", seen.surfaces);
   resources_.set("GridBefore", before_[0]);
   resources_.set("Grid", grid_);
   resources_.set("GridSurfaces", grid_surfaces_);
@@ -156,8 +198,10 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
       .draft_height = draft ? draft->height() : 0,
       .history = has_history_,
       .repainted = repainted_,
-      .history_scale = history_scale,
-      .draft_share = draft ? float(draft->width()) * float(draft->height()) / float(cells) : 0};
+      .history_scale = history_scale(view),
+      .draft_share = draft ? float(draft->width()) * float(draft->height()) / float(cells) : 0,
+      .step = step,
+      .sampled = sampled != Sampled::none};
   stream.dispatch(halve_, resources_, halve, groups(cells));
   const gpu::Buffer *from = &grid_, *to = &filtered_, *before = &before_[0], *before_to = &before_[1];
   // Cells that show one pixel of a draft tell nothing of its noise.
@@ -170,12 +214,12 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
     const PreviewFilterPush push{.across = across,
                                  .down = down,
                                  .step = base << pass,
-                                 .first = pass == 0,
                                  .orthographic = camera.orthographic,
+                                 .history = has_history_,
                                  .right = camera.axes.right,
                                  .up = camera.axes.up,
                                  .forward = camera.axes.forward};
-    stream.dispatch(filter_, resources_, push, groups(cells));
+    stream.dispatch(pass == 0 ? first_filter_ : filter_, resources_, push, groups(cells));
     std::swap(from, to);
     std::swap(before, before_to);
   }
@@ -194,13 +238,15 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                    .filtering = filtered,
                                    .history = has_history_,
                                    .repainted = repainted_,
-                                   .history_scale = history_scale};
+                                   .history_scale = history_scale(view),
+                                   .step = step,
+                                   .sampled = sampled != Sampled::none};
   stream.dispatch(resolve_, resources_, resolve, groups(pixels()));
   stream.run();
   stream.take_times();
   camera_ = camera, exposure_ = view.exposure;
-  shown_ = true;
-  repainted_ = repainted_ && !sampled;
+  shown_ = draft || sampled != Sampled::none;
+  repainted_ = repainted_ && sampled != Sampled::all;
 
   PreviewShares told;
   double all = 0;

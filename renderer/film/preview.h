@@ -7,6 +7,8 @@
 // Filtering is done on a grid of half the picture's resolution, on light divided by the surface's colour: an
 // edge-avoiding a-trous filter (H. Dammertz et al. 2010) that stops at differences of more than the noise (C.
 // Schied et al. 2017), which the two halves of the samples tell of.
+#include <optional>
+
 #include "film/film.h"
 #include "shaders/shared/preview.h"
 
@@ -17,6 +19,9 @@ struct PreviewShares {
   double stale = 0;     ///< light from before the last edit
   double filtered = 0;  ///< filtered light of the present
 };
+
+/// Of the film's pixels, which have samples.
+enum class Sampled { none, some, all };
 
 /// Where the picture was taken from.
 struct PreviewCamera {
@@ -39,10 +44,19 @@ class Preview {
   void keep(const vec3& scale = vec3(1), bool repainted = false);
   /// Film -> its picture, of the layers that show light (View::layer up to shared::k_layer_primary + 3).
   /// `draft`: a film of the same view with pixels of whole pixels, or null; `filtered`: noise is filtered,
-  /// not only where there are no samples. `sampled`: every pixel has one. Films must fit(). Throws Error when
-  /// memory is short. The stream is run.
+  /// not only where there are no samples. Films must fit(). Throws Error when memory is short. The stream is
+  /// run.
   PreviewShares develop(gpu::Stream& stream, const Film& film, const Film* draft, const View& view,
-                        const PreviewCamera& camera, bool filtered, bool sampled = false);
+                        const PreviewCamera& camera, bool filtered, Sampled sampled = Sampled::some);
+  /// Whether anything is known from before the picture began anew.
+  bool has_history() const { return has_history_; }
+  /// Has the device compile what recall() needs, which takes it long, so that the first one does not wait for
+  /// it. After develop() or take(). The stream is run.
+  void warm(gpu::Stream& stream, const Film& film);
+  /// What was there before, as this camera sees it, becomes the film's picture: what can be shown at once,
+  /// without any new light. has_history(). What comes into view is taken from what is beside it. Throws and
+  /// runs as develop().
+  void recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera);
   /// The film's picture has been shown as it is, with that exposure: keep() is to know it. Every pixel has a
   /// sample. Throws as develop(). The stream is run.
   void take(gpu::Stream& stream, const Film& film, float exposure, const PreviewCamera& camera);
@@ -52,21 +66,28 @@ class Preview {
   struct Pixels {
     gpu::Buffer light, surfaces;
   };
+  void make_pixels(Pixels& to);
   void make_room(uint32_t width, uint32_t height, const Film* draft);
-  void pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure, bool guided);
-  void reproject(gpu::Stream& stream, const PreviewCamera& now);
+  void pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure, const Pixels* guide);
+  void move(gpu::Stream& stream, shared::PreviewReprojectPush push);
+  void show(gpu::Stream& stream, const Film& film, const Pixels& seen, const shared::PreviewRecallPush& push);
+  const Pixels& history(gpu::Stream& stream, const PreviewCamera& now);
+  vec3 history_scale(const View& view) const { return history_scale_ * (view.exposure / history_exposure_); }
   uint32_t pixels() const { return width_ * height_; }
 
   gpu::Device& device_;
-  gpu::Kernel pack_, halve_, filter_, reproject_, resolve_;
+  gpu::Kernel pack_, halve_, first_filter_, filter_, scatter_, gather_, recall_, resolve_;
   uint32_t width_ = 0, height_ = 0;
-  Pixels now_, history_, draft_;
+  Pixels now_, draft_;
+  Pixels history_;  ///< what was shown before, as it was seen then
+  Pixels moved_;    ///< ... as it is seen now, where that is from elsewhere
   gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], noise_, shares_, depths_, nearest_;
   gpu::Resources resources_;
   PreviewCamera camera_, history_camera_;
+  std::optional<PreviewCamera> moved_camera_;  ///< of `moved_`
   float exposure_ = 1, history_exposure_ = 1;
   vec3 history_scale_{1};
-  bool shown_ = false;  ///< `now_` is what was developed last
+  bool shown_ = false;  ///< `now_` is what was developed last, of light that `history_` knows nothing of
   bool has_history_ = false;
   bool repainted_ = false;  ///< of the surfaces that come from before
 };

@@ -1,6 +1,7 @@
 #include "session/display.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 #include "schedule/uniform.h"
@@ -41,6 +42,10 @@ void Display::take(gpu::Stream& stream, const film::Film& film) {
 void Display::plain(const Engine& engine, const PictureView& view, const film::View& shown) {
   shares_ = {};
   plain_ = {camera_of(engine.frame(view, view.width, view.height)), shown.exposure};
+}
+
+void Display::warm(gpu::Stream& stream, const film::Film& film) {
+  if (developed_ && !std::exchange(warm_, true)) preview_.warm(stream, film);
 }
 
 void Display::light_changed() {
@@ -105,13 +110,22 @@ bool Display::shows(const film::View& view, const film::Film& film) const {
 }
 
 void Display::develop(Engine& engine, const PictureView& view, const film::Film& film,
-                      const film::Film& coarse, const film::View& shown, uint32_t samples) {
+                      const film::Film& coarse, const film::View& shown, uint32_t samples, bool begun) {
   plain_.reset();
+  developed_ = true;
   const bool fine = plan_.fine_samples() > 0;
   const film::Film* draft = fine ? fine_.get() : plan_.coarse_samples() > 0 ? &coarse : nullptr;
   if (!draft_serves_ || samples >= k_draft_until) draft = nullptr;
-  shares_ = preview_.develop(engine.wavefront().stream(), film, draft, shown,
-                             camera_of(engine.frame(view, view.width, view.height)), true, samples > 0);
+  const film::Sampled sampled = samples > 0 ? film::Sampled::all
+                                : begun     ? film::Sampled::some
+                                            : film::Sampled::none;
+  const film::PreviewCamera camera = camera_of(engine.frame(view, view.width, view.height));
+  if (!draft && sampled == film::Sampled::none && preview_.has_history()) {
+    preview_.recall(engine.wavefront().stream(), film, shown, camera);
+    shares_ = {.stale = 1, .filtered = 0};
+    return;
+  }
+  shares_ = preview_.develop(engine.wavefront().stream(), film, draft, shown, camera, true, sampled);
 }
 
 }  // namespace lucerna::session

@@ -34,9 +34,14 @@ class Display {
             const std::function<bool()>& cancel);
   /// Whether pictures of that layer and size are previewed at all.
   bool shows(const film::View& view, const film::Film& film) const;
-  /// Film -> its picture. `samples`: that every pixel has.
+  /// Film -> its picture; what was there before, where neither the film nor a draft has new light. `samples`:
+  /// that every pixel has; `begun`: some have one.
   void develop(Engine& engine, const PictureView& view, const film::Film& film, const film::Film& coarse,
-               const film::View& shown, uint32_t samples);
+               const film::View& shown, uint32_t samples, bool begun);
+  /// What the first edit will need is made ready; a thing to do once there is a picture.
+  void warm(gpu::Stream& stream, const film::Film& film);
+  /// Whether what was there before can be shown at once.
+  bool remembers() const { return preview_.has_history(); }
   /// Of the picture developed last.
   film::PreviewShares shares() const { return shares_; }
   /// It was developed without a preview.
@@ -51,6 +56,7 @@ class Display {
   DraftPlan plan_;
   bool draft_serves_ = true;  ///< it shows the light that the picture's samples bring
   film::PreviewShares shares_;
+  bool developed_ = false, warm_ = false;
   /// How the picture was shown that is not a preview.
   struct Plain {
     film::PreviewCamera camera;

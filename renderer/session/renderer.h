@@ -139,6 +139,8 @@ class Renderer {
   /// The same as the window shows it while it is made (Display), with the setting preview.filter; where there
   /// is no such thing, picture(with_coarse).
   std::vector<uint8_t> shown_picture(bool with_coarse);
+  /// Whether shown_picture() has something to show before there is any new light: what was there before.
+  bool remembers() const;
   /// Of the picture that shown_picture() has made last.
   film::PreviewShares preview_shares() const { return display_ ? display_->shares() : film::PreviewShares{}; }
   film::View view() const;
@@ -232,6 +234,7 @@ class Renderer {
   /// What the film has developed, with what solvers draw over it.
   std::vector<uint8_t> finished_picture();
   void mark_tiles(const film::View& view);
+  bool previewed(const film::View& view) const;  ///< whether the window shows a preview of it
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
   void start_schedule();

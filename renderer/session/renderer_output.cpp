@@ -55,19 +55,24 @@ std::vector<uint8_t> Renderer::finished_picture() {
   return film_->read_picture();
 }
 
-std::vector<uint8_t> Renderer::shown_picture(bool with_coarse) {
-  const film::View v = view();
+bool Renderer::previewed(const film::View& v) const {
   // Samples from which on the picture is shown as it is, whatever they are worth.
   constexpr uint32_t k_previewed_samples = 256;
-  const bool wanted = display_ && settings_.text("preview.filter") == "auto" && !done() &&
-                      samples() < k_previewed_samples && display_->shows(v, *film_);
-  if (!wanted) {
+  return display_ && settings_.text("preview.filter") == "auto" && !done() &&
+         samples() < k_previewed_samples && display_->shows(v, *film_);
+}
+
+bool Renderer::remembers() const { return engine_ && film_ && previewed(view()) && display_->remembers(); }
+
+std::vector<uint8_t> Renderer::shown_picture(bool with_coarse) {
+  const film::View v = view();
+  if (!previewed(v)) {
     if (display_) display_->plain(*engine_, picture_view(), v);
     return picture(with_coarse);
   }
   mark_tiles(v);
   try {
-    display_->develop(*engine_, picture_view(), *film_, *coarse_, v, samples());
+    display_->develop(*engine_, picture_view(), *film_, *coarse_, v, samples(), stats().paths > 0);
   } catch (const Error& e) {
     // The picture itself does not need it.
     log::warning("{}; the window shows the samples as they are", e.what());

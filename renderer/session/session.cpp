@@ -20,7 +20,7 @@ const std::array<const char*, k_components> k_component_names = paths::k_compone
 
 namespace {
 constexpr double k_publish_seconds = 0.1;  // between pictures while the image refines
-constexpr double k_draft_seconds = 0.25;   // between drafts, while edits come one after the other
+constexpr double k_draft_seconds = 0.5;    // without a draft at most, while edits come one after the other
 constexpr double k_numbers_seconds = 0.5;  // between read-backs of the film for shares
 constexpr int k_nice = 10;                 // rendering yields to the window's thread
 }  // namespace
@@ -47,10 +47,12 @@ struct Session::Impl {
   // Of the session thread alone.
   Snapshot next;
   AccuracyKeeper accuracy;
-  Timer since_publish, since_numbers, since_draft;
-  bool paused = false, dirty = true, coarse_wanted = false, size_known = false;
+  Timer since_publish, since_numbers, since_given_up;
+  bool paused = false, dirty = true, coarse_wanted = false, recall_wanted = false, draft_given_up = false,
+       size_known = false;
   bool filled = false;
   double publish_seconds = k_publish_seconds;  // showing takes no more than a fifth of the time
+  double numbers_seconds = k_numbers_seconds;  // and read-backs no more than a twentieth
   struct Save {
     std::filesystem::path file;
     std::string solver;  // whose work it keeps; "": the picture
@@ -145,7 +147,7 @@ struct Session::Impl {
   }
 
   void restarted() {
-    coarse_wanted = dirty = true;
+    coarse_wanted = recall_wanted = dirty = true;
     filled = false;
   }
 
@@ -191,6 +193,7 @@ struct Session::Impl {
       next.components[c].ms_per_sample = ms[size_t(c)];
     }
     if (numbers) {
+      const Timer taken;
       next.host_mb = peak_host_mb();
       const auto means = film::Film::means(r.image());
       double total = 0;
@@ -199,6 +202,7 @@ struct Session::Impl {
         next.components[c].mean_luminance = luminance(means[c]);
         next.components[c].share = total > 0 ? luminance(means[c]) / total : 0;
       }
+      numbers_seconds = std::max(k_numbers_seconds, 20 * taken.seconds());
     }
   }
 
@@ -256,15 +260,24 @@ void Session::Impl::run() {
     const auto cancelled = [&] { return pending.load() || quit; };
     try {
       if (renderer && renderer->ready()) {
+        // What was there before, as it is seen now, does not wait for new light.
+        if (std::exchange(recall_wanted, false) && renderer->remembers()) {
+          fill_snapshot(*renderer, false);
+          publish();
+          since_publish.restart();
+          dirty = false;
+        }
         bool changed = dirty;
         // A row of edits that come faster than drafts are drawn shows some of them all the same.
         const auto draft_cancelled = [&] {
-          return quit || (pending && since_draft.seconds() < k_draft_seconds);
+          return quit || (pending && (!draft_given_up || since_given_up.seconds() < k_draft_seconds));
         };
         if (!paused && renderer->draw_draft(draft_cancelled)) {
-          since_draft.restart();
+          draft_given_up = false;
           // The first one is shown at once; more of them as pictures are.
           changed = changed || std::exchange(coarse_wanted, false);
+        } else if (pending && coarse_wanted) {
+          if (!std::exchange(draft_given_up, true)) since_given_up.restart();
         } else if (work && renderer->step(cancelled)) {
           accuracy.follow(*renderer, next.scene_id);
         }
@@ -274,7 +287,8 @@ void Session::Impl::run() {
           renderer->finish_ledger();
         if (!filled && renderer->samples() > 0) filled = changed = true;
         if (changed || since_publish.seconds() > publish_seconds || renderer->done() || renderer->waits()) {
-          const bool numbers = since_numbers.seconds() > k_numbers_seconds || renderer->done();
+          const bool numbers =
+              renderer->samples() > 0 && (since_numbers.seconds() > numbers_seconds || renderer->done());
           if (numbers) since_numbers.restart();
           fill_snapshot(*renderer, numbers);
           publish();

@@ -4,6 +4,9 @@
 // neighbours differ.
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"
+#ifndef LUCERNA_PREVIEW_FIRST
+#define LUCERNA_PREVIEW_FIRST 0  // of the passes
+#endif
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewFilterPush push; };
 uniform samplerBuffer grid_texels, grid_surfaces, before_texels;
@@ -33,13 +36,15 @@ void main() {
   // A cell's width there, and a little more for surfaces that are not plane.
   float scale = (push.orthographic != 0u ? 1.0 : max(here.depth, 0.0)) *
                     (2.0 * length(push.right) / float(push.across) * float(push.step)) + 1e-3 * max(here.depth, 0.0) + 1e-6;
-  bool first = push.first != 0u;
   vec3 sum[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) sum[c] = vec3(0.0);
-  vec4 weights = vec4(0.0), variance = vec4(0.0), mean = vec4(0.0), square_mean = vec4(0.0), known = vec4(0.0),
-       before = vec4(0.0);
-  vec4 any_mean = vec4(0.0), any_square = vec4(0.0);
+  vec4 weights = vec4(0.0), variance = vec4(0.0), before = vec4(0.0);
+#if LUCERNA_PREVIEW_FIRST
+  vec4 mean = vec4(0.0), square_mean = vec4(0.0), known = vec4(0.0), any_mean = vec4(0.0), any_square = vec4(0.0);
   float alike_sum = 0.0, alike_square = 0.0, known_sum = 0.0, any_sum = 0.0;
+#else
+  vec4 less = vec4(1.0) / (3.0 * max(own_noise, vec4(0.0)) + 0.02 * own_luminance + 1e-4);
+#endif
   for (int k = 0; k < 9; ++k) {
     ivec2 at = xy + int(push.step) * (ivec2(k % 3, k / 3) - 1);
     bool inside = all(greaterThanEqual(at, ivec2(0))) && at.x < int(push.across) && at.y < int(push.down);
@@ -52,16 +57,9 @@ void main() {
     if (here.samples <= 0.0) alike = max(alike, 1e-4);
     vec4 y = luminances(l), noise = vec4(l.of[0].w, l.of[1].w, l.of[2].w, l.of[3].w);
     vec4 w = vec4(kernel * alike);
-    if (first) {
-      // Few cells hold most of what single paths bring: shown bright, they count for less.
-      w /= 1.0 + max(y - 1.0, vec4(0.0));
-    } else {
-      w *= exp2(-min(abs(y - own_luminance) / (3.0 * max(own_noise, vec4(0.0)) + 0.02 * own_luminance + 1e-4), vec4(40.0)));
-    }
-    for (uint c = 0u; c < k_component_count; ++c) sum[c] += w[c] * l.of[c].rgb;
-    before += w * texelFetch(before_texels, there);
-    weights += w;
-    variance += w * w * max(noise, vec4(0.0)) * max(noise, vec4(0.0));
+#if LUCERNA_PREVIEW_FIRST
+    // Few cells hold most of what single paths bring: shown bright, they count for less.
+    w /= 1.0 + max(y - 1.0, vec4(0.0));
     float plain = kernel * alike;
     alike_sum += plain;
     alike_square += plain * plain;
@@ -71,23 +69,30 @@ void main() {
     mean += plain * y;
     square_mean += plain * y * y;
     if (l.of[0].w >= 0.0) known += plain * noise * noise, known_sum += plain;
+#else
+    w *= exp2(-min(abs(y - own_luminance) * less, vec4(40.0)));
+#endif
+    for (uint c = 0u; c < k_component_count; ++c) sum[c] += w[c] * l.of[c].rgb;
+    if (push.history != 0u) before += w * texelFetch(before_texels, there);
+    weights += w;
+    variance += w * w * max(noise, vec4(0.0)) * max(noise, vec4(0.0));
   }
   vec4 inverse = vec4(1.0) / max(weights, vec4(1e-20));
   vec4 error = sqrt(variance) * inverse;
-  if (first) {
-    mean /= max(alike_sum, 1e-20);
-    // Where few are alike, their differences tell little: all around then stand for them.
-    any_mean /= max(any_sum, 1e-20);
-    vec4 any = max(any_square / max(any_sum, 1e-20) - any_mean * any_mean, vec4(0.0));
-    vec4 alike = max(square_mean / max(alike_sum, 1e-20) - mean * mean, vec4(0.0));
-    vec4 spread = mix(any, alike, clamp(alike_sum / max(any_sum, 1e-20) * 2.0 - 1.0, 0.0, 1.0)) * (9.0 / 8.0);
-    vec4 of_cell = known_sum > 0.5 * alike_sum ? known / max(known_sum, 1e-20) : spread;
-    grid_noise[cell] = sqrt(of_cell);
-    error = sqrt(of_cell * alike_square) / max(alike_sum, 1e-20);
-  }
+#if LUCERNA_PREVIEW_FIRST
+  mean /= max(alike_sum, 1e-20);
+  // Where few are alike, their differences tell little: all around then stand for them.
+  any_mean /= max(any_sum, 1e-20);
+  vec4 any = max(any_square / max(any_sum, 1e-20) - any_mean * any_mean, vec4(0.0));
+  vec4 alike = max(square_mean / max(alike_sum, 1e-20) - mean * mean, vec4(0.0));
+  vec4 spread = mix(any, alike, clamp(alike_sum / max(any_sum, 1e-20) * 2.0 - 1.0, 0.0, 1.0)) * (9.0 / 8.0);
+  vec4 of_cell = known_sum > 0.5 * alike_sum ? known / max(known_sum, 1e-20) : spread;
+  grid_noise[cell] = sqrt(of_cell);
+  error = sqrt(of_cell * alike_square) / max(alike_sum, 1e-20);
+#endif
   vec4 result[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) result[c] = vec4(sum[c] * inverse[c], error[c]);
-  filtered_before[cell] = before * inverse;
+  if (push.history != 0u) filtered_before[cell] = before * inverse;
   filtered[2u * cell] = preview_texel(result[0], result[1]);
   filtered[2u * cell + 1u] = preview_texel(result[2], result[3]);
 }

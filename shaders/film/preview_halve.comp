@@ -10,6 +10,13 @@ layout(scalar) writeonly buffer GridSurfaces { vec4 grid_surfaces[]; };
 // Luminance by component of what was shown before, likewise over the colour; the present's where that is not known.
 layout(scalar) writeonly buffer GridBefore { vec4 grid_before[]; };
 
+// Where the film has no samples, of what was shown before.
+PreviewSurface surface_at(int pixel) {
+  if (push.sampled != 0u) return preview_surface(texelFetch(surface_texels, pixel));
+  vec4 texel = push.history != 0u ? texelFetch(history_surfaces, pixel) : vec4(-1.0, 0.0, 0.0, 0.0);
+  return preview_surface(vec4(texel.xyz, 0.0));
+}
+
 PreviewLight total;
 float weights = 0.0;
 bool noise_known = true;
@@ -28,16 +35,16 @@ void add(vec4 a, vec4 b, PreviewSurface s, float weight) {
 void main() {
   uint cell = global_index();
   if (cell >= push.across * push.down) return;
-  uvec2 xy = k_preview_step * uvec2(cell % push.across, cell / push.across);
+  uvec2 xy = push.step * uvec2(cell % push.across, cell / push.across);
   for (uint c = 0u; c < k_component_count; ++c) total.of[c] = vec4(0.0);
   // The cell's surface is that of its first pixel; pixels that show another one are left out where that is known.
-  PreviewSurface here = preview_surface(texelFetch(surface_texels, int(xy.y * push.width + xy.x)));
+  PreviewSurface here = surface_at(int(xy.y * push.width + xy.x));
   if (push.draft_width > 0u) {
     uvec2 at = min(xy * uvec2(push.draft_width, push.draft_height) / uvec2(push.width, push.height),
                    uvec2(push.draft_width, push.draft_height) - 1u);
     int pixel = int(at.y * push.draft_width + at.x);
     PreviewSurface s = preview_surface(texelFetch(draft_surfaces, pixel));
-    if (here.depth < 0.0 && s.samples > 0.0) here = s;
+    if ((here.depth < 0.0 || push.sampled == 0u) && s.samples > 0.0) here = s;
     if (push.repainted != 0u && here.samples <= 0.0 && s.samples > 0.0) here.albedo = s.albedo;
     // Across an edge it is another surface's light, and better than none.
     bool alike = (s.depth > 0.0) == (here.depth > 0.0) &&
@@ -47,16 +54,17 @@ void main() {
   }
   vec4 before = vec4(0.0);
   float before_known = 0.0;
-  for (uint k = 0u; k < k_preview_step * k_preview_step; ++k) {
-    uvec2 at = min(xy + uvec2(k % k_preview_step, k / k_preview_step), uvec2(push.width, push.height) - 1u);
+  for (uint k = 0u; k < 4u; ++k) {  // of a wider cell, which is one of a draft alone, these tell enough
+    uvec2 at = min(xy + push.step / 2u * uvec2(k % 2u, k / 2u), uvec2(push.width, push.height) - 1u);
     int pixel = int(at.y * push.width + at.x);
-    PreviewSurface s = preview_surface(texelFetch(surface_texels, pixel));
+    PreviewSurface s = surface_at(pixel);
     bool alike = (s.depth > 0.0) == (here.depth > 0.0) && dot(s.normal, here.normal) > 0.8;
     if (s.samples > 0.0 && (alike || s.depth <= 0.0))
       add(texelFetch(packed_texels, 2 * pixel), texelFetch(packed_texels, 2 * pixel + 1), s, s.samples);
+    if (push.history == 0u) continue;
     PreviewSurface was = preview_surface(texelFetch(history_surfaces, pixel));
     PreviewLight l = preview_unpack(texelFetch(history_texels, 2 * pixel), texelFetch(history_texels, 2 * pixel + 1));
-    if (push.history != 0u && preview_lit(l, was) && (alike || s.depth <= 0.0)) {
+    if (preview_lit(l, was) && (alike || s.depth <= 0.0)) {
       vec3 m = push.history_scale / (was.depth >= 0.0 ? preview_modulation(was) : preview_modulation(here));
       before += vec4(luminance(m * l.of[0].rgb), luminance(m * l.of[1].rgb), luminance(m * l.of[2].rgb), luminance(m * l.of[3].rgb));
       before_known += 1.0;

@@ -31,9 +31,17 @@ void main() {
   uint pixel = global_index(), lane = gl_LocalInvocationIndex;
   vec3 told = vec3(0.0);
   if (pixel < push.width * push.height) {
-    PreviewSurface here = preview_surface(texelFetch(surface_texels, int(pixel)));
-    PreviewLight own = preview_unpack(texelFetch(packed_texels, int(2u * pixel)), texelFetch(packed_texels, int(2u * pixel) + 1));
-    vec2 p = (vec2(pixel % push.width, pixel / push.width) + 0.5) / float(k_preview_step) - 0.5;
+    vec4 surface = vec4(-1.0, 0.0, 0.0, 0.0);
+    PreviewLight own;
+    for (uint c = 0u; c < k_component_count; ++c) own.of[c] = vec4(0.0, 0.0, 0.0, -1.0);
+    if (push.sampled != 0u) {
+      surface = texelFetch(surface_texels, int(pixel));
+      own = preview_unpack(texelFetch(packed_texels, int(2u * pixel)), texelFetch(packed_texels, int(2u * pixel) + 1));
+    } else if (push.history != 0u) {
+      surface = vec4(texelFetch(history_surfaces, int(pixel)).xyz, 0.0);
+    }
+    PreviewSurface here = preview_surface(surface);
+    vec2 p = (vec2(pixel % push.width, pixel / push.width) + 0.5) / float(push.step) - 0.5;
     ivec2 base = ivec2(floor(p));
     vec2 f = p - vec2(base);
     // The grid's four nearest cells, those of another surface left out.
@@ -57,8 +65,8 @@ void main() {
       PreviewLight l = preview_unpack(texelFetch(filtered_texels, 2 * cell), texelFetch(filtered_texels, 2 * cell + 1));
       float there = (l.of[0].w + l.of[1].w + l.of[2].w + l.of[3].w) >= 0.0 && s.samples > 0.0 ? w : 1e-6 * w;
       for (uint c = 0u; c < k_component_count; ++c) light[c] += there * l.of[c];
-      before_smooth += there * texelFetch(before_texels, cell);
-      noise += there * texelFetch(noise_texels, cell) * sqrt(max(s.samples, 1e-3));  // of one sample
+      if (push.history != 0u) before_smooth += there * texelFetch(before_texels, cell);
+      if (push.sampled != 0u) noise += there * texelFetch(noise_texels, cell) * sqrt(max(s.samples, 1e-3));  // of one sample
       modulation += there * preview_modulation(s);
       weights += there;
       if (s.samples > 0.0 && s.depth >= 0.0 && there > nearest_weight) nearest_weight = there, nearest_depth = s.depth;
@@ -70,10 +78,16 @@ void main() {
       modulation *= inverse;
     }
     noise *= inverse * luminance(modulation) * inversesqrt(max(here.samples, 1.0));
-    PreviewLight old = preview_unpack(texelFetch(history_texels, int(2u * pixel)), texelFetch(history_texels, int(2u * pixel) + 1));
-    bool has_old = push.history != 0u && preview_lit(old, preview_surface(texelFetch(history_surfaces, int(pixel))));
+    PreviewLight old;
+    for (uint c = 0u; c < k_component_count; ++c) old.of[c] = vec4(0.0);
+    bool has_old = false;
+    if (push.history != 0u) {
+      old = preview_unpack(texelFetch(history_texels, int(2u * pixel)), texelFetch(history_texels, int(2u * pixel) + 1));
+      has_old = preview_lit(old, preview_surface(texelFetch(history_surfaces, int(pixel))));
+    }
     // For cameras that come after this one.
-    if (here.depth < 0.0 && nearest_depth >= 0.0) packed_surfaces[pixel] = vec4(k_preview_about - nearest_depth, 0.0, 0.0, 0.0);
+    if (here.depth < 0.0 && nearest_depth >= 0.0) surface = vec4(k_preview_about - nearest_depth, 0.0, 0.0, 0.0);
+    packed_surfaces[pixel] = surface;
     vec4 result[k_component_count];
     vec3 color = vec3(0.0);
     for (uint c = 0u; c < k_component_count; ++c) {

@@ -11,7 +11,8 @@ LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_preview_texels = 2u;
 LUCERNA_CONST float k_preview_about = -2.0f;
-LUCERNA_CONST uint k_preview_step = 2u;  ///< pixels along the side of one of the grid that is filtered
+LUCERNA_CONST uint k_preview_step = 2u;  ///< pixels along the side of a cell of the grid that is filtered
+LUCERNA_CONST uint k_preview_first_step = 4u;  ///< ... while there is a draft of a quarter of the resolution alone
 
 struct PreviewCamera {
   vec3 origin, right, up, forward;  ///< as Frame's
@@ -30,22 +31,31 @@ struct PreviewHalvePush {
   uint history;                    ///< 0: nothing was shown before
   uint repainted;                  ///< not 0: surfaces may have other colours than were shown before
   vec3 history_scale;              ///< of what was shown before
-  float draft_share;               ///< of a draft's sample, what a pixel of the grid gets: its area over the draft pixel's
+  float draft_share;               ///< of a draft's sample, what a cell of the grid gets: its area over the draft pixel's
+  uint step;                       ///< pixels along the side of a cell
+  uint sampled;                    ///< 0: the film has no sample yet
 };
 
 struct PreviewFilterPush {
   uint across, down;
   uint step;             ///< between the cells that are weighed: in the first pass no less than a draft's pixel is wide
-  uint first;            ///< not 0: the first pass, which says how noisy the grid is
   uint orthographic;
+  uint history;          ///< 0: nothing was shown before
   vec3 right, up, forward;
 };
 
 struct PreviewReprojectPush {
   uint width, height;
-  uint pass;             ///< 0: depths, 1: which pixel is the nearest, 2: pixels are taken over
+  uint pass;             ///< of preview_scatter.comp. 0: depths, 1: which pixel is the nearest
   uint orthographic;     ///< bit 0: before, bit 1: now
   PreviewCamera before, now;
+};
+
+struct PreviewRecallPush {
+  uint width, height;
+  uint show;             ///< bit i: component i is part of what is shown
+  uint curve;
+  vec3 history_scale;    ///< of what was shown before
 };
 
 struct PreviewResolvePush {
@@ -56,6 +66,8 @@ struct PreviewResolvePush {
   uint history;          ///< 0: there is none
   uint repainted;        ///< as PreviewHalvePush has it
   vec3 history_scale;    ///< of what was shown before
+  uint step;             ///< pixels along the side of a cell of the grid
+  uint sampled;          ///< 0: the film has no sample yet
 };
 
 /// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered.

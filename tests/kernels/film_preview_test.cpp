@@ -296,3 +296,43 @@ TEST_CASE("after a move of the camera what was there is where the camera sees it
   CHECK(stage.shown()[24 * 64 + 4] == Approx(0.6f).epsilon(0.02));
   CHECK(stage.shown()[24 * 64 + 40] == 0);
 }
+
+TEST_CASE("what was there before can be shown at once, as the camera sees it now and without holes") {
+  Stage stage(64, 48);
+  // Two walls, the right one nearer, so that a step to the right uncovers nothing and one to the left a strip
+  // of the far one.
+  const auto wall = [](uint32_t x, uint32_t y) {
+    const bool near = x >= 40;
+    return Sample{.light = vec3(near ? 0.8f : 0.2f + 0.01f * float((3 * x + 7 * y) % 8)),
+                  .depth = near ? 2.5f : 5};
+  };
+  CHECK_FALSE(stage.preview.has_history());
+  stage.sample(stage.film, 8, wall);
+  stage.show();
+  stage.preview.keep(vec3(0.5f));
+  REQUIRE(stage.preview.has_history());
+  stage.film.clear(stage.stream);
+  stage.preview.recall(stage.stream, stage.film, stage.view, stage.camera);
+  for (uint32_t i = 0; i < 64 * 48; ++i) {
+    INFO(i % 64 << ", " << i / 64);
+    REQUIRE(stage.shown()[i] == Approx(0.5f * wall(i % 64, i / 64).light.x).margin(0.004));
+  }
+  // Any number of moves are shown as one: what went out of the picture on the way is there when it comes
+  // back.
+  for (const float pixels : {30.0f, 12.0f, -4.0f}) {
+    stage.preview.keep();
+    stage.camera.axes.origin.x = pixels * 2 * 5 / 64.0f;
+    stage.preview.recall(stage.stream, stage.film, stage.view, stage.camera);
+  }
+  const std::vector<float> shown = stage.shown();
+  for (uint32_t y = 1; y < 47; ++y)
+    for (uint32_t x = 0; x < 64; ++x) {
+      INFO(x << ", " << y);
+      if (x >= 5 && x < 44)  // the far wall, four pixels to the right
+        REQUIRE(shown[y * 64 + x] == Approx(0.5f * wall(x - 4, y).light.x).margin(0.004));
+      else if (x < 47)  // what has come into view between the walls, and at the border: like the far one
+        REQUIRE(shown[y * 64 + x] == Approx(0.12f).margin(0.06));
+      else if (x >= 50)
+        REQUIRE(shown[y * 64 + x] == Approx(0.4f).margin(0.004));
+    }
+}

@@ -1,0 +1,48 @@
+// What was shown before, as another camera sees it (preview_scatter.comp): a pixel between those that moved apart takes that
+// of a neighbour. Seams and what comes into view stay unknown.
+#include "lib/invocation.glsl"
+#include "film/preview.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { PreviewReprojectPush push; };
+uniform samplerBuffer from_texels, from_surfaces;
+uniform usamplerBuffer nearest_depths, nearest_pixels;
+layout(scalar) writeonly buffer Packed { vec4 packed[]; };
+layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
+
+uint depth_bits(int at) { return texelFetch(nearest_depths, at >> 2)[at & 3]; }
+uint nearest_pixel(int at) { return texelFetch(nearest_pixels, at >> 2)[at & 3]; }
+
+void main() {
+  uint pixel = global_index();
+  if (pixel >= push.width * push.height) return;
+  uint from = nearest_pixel(int(pixel)), depth = depth_bits(int(pixel));
+  ivec2 xy = ivec2(pixel % push.width, pixel / push.width), size = ivec2(push.width, push.height);
+  // What lies between pixels that moved apart: the nearest of its neighbours, where most of them are there. So are pixels
+  // of what is behind that show through.
+  uint around = 0u, best_depth = k_preview_none;
+  ivec2 best_at = xy;
+  float near = from == k_preview_none ? uintBitsToFloat(0x7f7fffffu) : 0.95 * uintBitsToFloat(depth);
+  for (int k = 0; k < 9; ++k) {
+    ivec2 at = xy + ivec2(k % 3, k / 3) - 1;
+    bool inside = k != 4 && all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, size));
+    uint d = inside ? depth_bits(at.y * size.x + at.x) : k_preview_none;
+    if (d == k_preview_none || uintBitsToFloat(d) >= near) continue;
+    ++around;
+    if (d < best_depth) best_at = at, best_depth = d;
+  }
+  if (around >= (from == k_preview_none ? 3u : 6u)) {
+    from = nearest_pixel(best_at.y * size.x + best_at.x);
+    depth = best_depth;
+  }
+  vec4 surface = vec4(-1.0, 0.0, 0.0, 0.0), a = preview_texel(vec4(0.0, 0.0, 0.0, -1.0), vec4(0.0)), b = vec4(0.0);
+  if (from != k_preview_none) {
+    surface = texelFetch(from_surfaces, int(from));
+    if (surface.x > 0.0) surface.x = uintBitsToFloat(depth);
+    if (surface.x < k_preview_about) surface.x = k_preview_about - uintBitsToFloat(depth);
+    a = texelFetch(from_texels, int(2u * from));
+    b = texelFetch(from_texels, int(2u * from) + 1);
+  }
+  packed_surfaces[pixel] = surface;
+  packed[2u * pixel] = a;
+  packed[2u * pixel + 1u] = b;
+}
