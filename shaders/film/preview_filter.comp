@@ -42,8 +42,6 @@ void main() {
 #if LUCERNA_PREVIEW_FIRST
   vec4 mean = vec4(0.0), square_mean = vec4(0.0), known = vec4(0.0), any_mean = vec4(0.0), any_square = vec4(0.0);
   float alike_sum = 0.0, alike_square = 0.0, known_sum = 0.0, any_sum = 0.0;
-#else
-  vec4 less = vec4(1.0) / (3.0 * max(own_noise, vec4(0.0)) + 0.02 * own_luminance + 1e-4);
 #endif
   for (int k = 0; k < 9; ++k) {
     ivec2 at = xy + int(push.step) * (ivec2(k % 3, k / 3) - 1);
@@ -70,7 +68,9 @@ void main() {
     square_mean += plain * y * y;
     if (l.of[0].w >= 0.0) known += plain * noise * noise, known_sum += plain;
 #else
-    w *= exp2(-min(abs(y - own_luminance) * less, vec4(40.0)));
+    // Of both: where no path has found light yet, its absence seems certain.
+    vec4 chance = 3.0 * max(max(own_noise, noise), vec4(0.0)) + 0.02 * own_luminance + 1e-4;
+    w *= exp2(-min(abs(y - own_luminance) / chance, vec4(40.0)));
 #endif
     for (uint c = 0u; c < k_component_count; ++c) sum[c] += w[c] * l.of[c].rgb;
     if (push.history != 0u) before += w * texelFetch(before_texels, there);

@@ -9,8 +9,28 @@ uniform usamplerBuffer nearest_depths, nearest_pixels;
 layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 
+const int k_apart = 3;  // pixels
+
 uint depth_bits(int at) { return texelFetch(nearest_depths, at >> 2)[at & 3]; }
 uint nearest_pixel(int at) { return texelFetch(nearest_pixels, at >> 2)[at & 3]; }
+
+// Pixels that the camera came close to lie farther apart: the nearest one, where there are some on three sides at least.
+bool between(ivec2 xy, ivec2 size, out ivec2 nearest) {
+  uint sides = 0u;
+  int least = 3 * k_apart * k_apart;
+  for (int y = -k_apart; y <= k_apart; ++y)
+    for (int x = -k_apart; x <= k_apart; ++x) {
+      ivec2 at = xy + ivec2(x, y);
+      if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size)) || depth_bits(at.y * size.x + at.x) == k_preview_none)
+        continue;
+      sides |= 1u << ((x > 0 || (x == 0 && y > 0) ? 1 : 0) + (y > 0 || (y == 0 && x < 0) ? 2 : 0));
+      if (x * x + y * y < least) {
+        least = x * x + y * y;
+        nearest = at;
+      }
+    }
+  return bitCount(sides) >= 3;
+}
 
 void main() {
   uint pixel = global_index();
@@ -33,6 +53,14 @@ void main() {
   if (around >= (from == k_preview_none ? 3u : 6u)) {
     from = nearest_pixel(best_at.y * size.x + best_at.x);
     depth = best_depth;
+  }
+  if (from == k_preview_none) {
+    ivec2 at;
+    if (between(xy, size, at)) {
+      int there = at.y * size.x + at.x;
+      from = nearest_pixel(there);
+      depth = depth_bits(there);
+    }
   }
   vec4 surface = vec4(-1.0, 0.0, 0.0, 0.0), a = preview_texel(vec4(0.0, 0.0, 0.0, -1.0), vec4(0.0)), b = vec4(0.0);
   if (from != k_preview_none) {
