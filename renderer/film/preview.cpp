@@ -213,7 +213,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
     resources_.set("FilteredBefore", *before_to);
     const PreviewFilterPush push{.across = across,
                                  .down = down,
-                                 .step = base << pass,
+                                 // Even and odd cells meet at last.
+                                 .step = pass + 1 == k_filter_passes && base == 2 ? 1 : base << pass,
                                  .orthographic = camera.orthographic,
                                  .history = has_history_,
                                  .right = camera.axes.right,
