@@ -38,7 +38,7 @@ int bench_latency(const BenchLatencyArguments& a) {
   if (a.edits.empty())
     for (const char* name : bench::k_edit_names) o.edits.push_back(bench::edit_of(name));
   std::tie(o.width, o.height) = parse_size(a.size);
-  o.reference_samples = a.reference_samples, o.seconds = a.seconds, o.settle_s = a.settle;
+  o.reference_samples = a.reference_samples, o.seconds = a.seconds, o.settle.seconds = a.settle;
   o.device = a.device, o.references = a.references, o.pictures = a.pictures, o.scenes = a.load;
   for (const std::string& pair : a.set) {
     const size_t at = pair.find('=');

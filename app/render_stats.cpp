@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/error_sum.h"
 #include "base/log.h"
 #include "stats/forecast.h"
 
@@ -14,7 +15,7 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   const film::ImageError error = r.image_error();
   nlohmann::ordered_json j;
   j["of"] = "sum";
-  j["rms"] = film::error_sum(error.rms[0], error.records_rms, error.interpolation_rms);
+  j["rms"] = error_sum(error.rms[0], error.records_rms, error.interpolation_rms);
   j["relative"] = error.relative_sum();
   const std::vector<film::TileError> tiles = r.tile_errors();
   const auto tell_tiles = [](nlohmann::ordered_json& to, const film::TileSpread& spread) {

@@ -15,6 +15,10 @@
 #include "film/io/image_file.h"
 
 namespace lucerna::ui {
+
+using commands::Arguments;
+using commands::Type;
+
 namespace {
 
 constexpr double k_longest_wait = 300;   // seconds
@@ -82,9 +86,12 @@ Runner::Runner(Ui& ui, const std::vector<std::string>& lines, const std::string&
 }
 
 void Runner::add_commands() {
-  using commands::Arguments;
-  using commands::Type;
-  const auto drawn = [this](const Arguments&) { return ui_.wake(2), frames_ >= 2; };
+  add_script_commands();
+  add_mouse_commands();
+  add_key_commands();
+}
+
+void Runner::add_script_commands() {
   auto& registry = ui_.registry;
   registry.add(
       {.name = "quit",
@@ -138,11 +145,19 @@ void Runner::add_commands() {
                 .parameters = {{.name = "file", .type = Type::file, .choices = {".lucerna"}}},
                 .run = [this](const Arguments& a) { run_script(a.text("file")); },
                 .recorded = false});
+}
+
+std::function<bool(const commands::Arguments&)> Runner::drawn() {
+  return [this](const Arguments&) { return ui_.wake(2), frames_ >= 2; };
+}
+
+void Runner::add_mouse_commands() {
+  auto& registry = ui_.registry;
   registry.add({.name = "drop",
                 .help = "Does what dropping the file on the window does.",
                 .parameters = {{.name = "file", .type = Type::file}},
                 .run = [this](const Arguments& a) { ui_.drops.push_back(a.text("file")); },
-                .done = drawn,
+                .done = drawn(),
                 .recorded = false});
   registry.add({.name = "mouse.move",
                 .help = "In a script: moves the pointer.",
@@ -152,7 +167,7 @@ void Runner::add_commands() {
                     [this](const Arguments& a) {
                       ui_.inputs.push_back({a.number("x"), a.number("y")});
                     },
-                .done = drawn,
+                .done = drawn(),
                 .recorded = false});
   for (const bool down : {true, false})
     registry.add(
@@ -161,14 +176,24 @@ void Runner::add_commands() {
          .parameters = {{.name = "button", .type = Type::choice, .choices = k_buttons, .optional = true}},
          .run = [this,
                  down](const Arguments& a) { ui_.inputs.push_back({.button = button_of(a), .down = down}); },
-         .done = drawn,
+         .done = drawn(),
          .recorded = false});
+  registry.add({.name = "mouse.wheel",
+                .help = "In a script: turns the wheel.",
+                .parameters = {{.name = "notches", .type = Type::real, .lo = -100, .hi = 100}},
+                .run = [this](const Arguments& a) { ui_.wheel += a.number("notches"); },
+                .done = drawn(),
+                .recorded = false});
+}
+
+void Runner::add_key_commands() {
+  auto& registry = ui_.registry;
   registry.add({.name = "key",
                 .help = "In a script: presses a key, such as f, f12, tab, ctrl+z.",
                 .parameters = {{.name = "name"}},
                 .check = [](const Arguments& a) { key_of(a.text("name")); },
                 .run = [this](const Arguments& a) { ui_.key_strokes.push_back(key_of(a.text("name"))); },
-                .done = drawn,
+                .done = drawn(),
                 .recorded = false});
   registry.add({.name = "key.hold",
                 .help = "In a script: holds a key down, such as w or ctrl, shift, alt; or lets it go.",
@@ -178,19 +203,13 @@ void Runner::add_commands() {
                     [this](const Arguments& a) {
                       ui_.key_holds.emplace_back(held_key_of(a.text("name")), a.boolean("down"));
                     },
-                .done = drawn,
-                .recorded = false});
-  registry.add({.name = "mouse.wheel",
-                .help = "In a script: turns the wheel.",
-                .parameters = {{.name = "notches", .type = Type::real, .lo = -100, .hi = 100}},
-                .run = [this](const Arguments& a) { ui_.wheel += a.number("notches"); },
-                .done = drawn,
+                .done = drawn(),
                 .recorded = false});
   registry.add({.name = "type",
                 .help = "In a script: types a text.",
                 .parameters = {{.name = "text"}},
                 .run = [this](const Arguments& a) { ui_.keyboard += a.text("text"); },
-                .done = drawn,
+                .done = drawn(),
                 .recorded = false});
 }
 

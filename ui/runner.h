@@ -48,6 +48,11 @@ class Runner {
   bool measured();
   void console(const std::string& line);
   void add_commands();
+  void add_script_commands();  ///< that act on scripts and the program as a whole
+  void add_mouse_commands();   ///< the pointer's doings, files dropped by it too
+  void add_key_commands();
+  /// For commands that are done when two frames have been drawn.
+  std::function<bool(const commands::Arguments&)> drawn();
 
   Ui& ui_;
   std::deque<Step> steps_;

@@ -44,7 +44,6 @@ void Ui::act_line(const std::string& line) {
   if (gesture == 0 && ImGui::GetActiveID() != 0) follow_gesture();
   try {
     run(line, gesture);
-    last_line = line;
   } catch (const Error& error) {
     log::error("{}", error.what());
   }
@@ -95,7 +94,7 @@ void Ui::follow_busy() {
   const uint64_t given = session.commands(), carried_out = snapshot ? snapshot->commands : 0;
   if (busy.command != 0 && carried_out < busy.command) return;
   busy.command = given > carried_out ? given : 0;
-  busy.since = now, busy.text = last_line;
+  busy.since = now, busy.text = sent_line();
 }
 
 void Ui::scene_changed() {

@@ -121,7 +121,6 @@ struct Ui : commands::Workspace {
     double since = 0;
     std::string text;
   } busy;
-  std::string last_line;  ///< done by a control or a script
   /// Seconds that the renderer has been at one thing; 0 while that is not worth telling.
   double busy_seconds() const;
   void follow_busy();
@@ -235,6 +234,10 @@ void draw_picture(Ui& ui, const Area& area);
 void draw_accuracy(Ui& ui, const Area& area);
 void draw_passes(Ui& ui, const Area& area);
 void draw_log(Ui& ui, const Area& area);
+/// What may be opened, where there is no picture; part of draw_picture. Nothing while something goes on.
+void draw_empty_state(Ui& ui, const Area& area);
+/// What goes on, what went wrong and the first steps, over the picture; part of draw_picture.
+void draw_cards(Ui& ui, const Area& area);
 /// Over the picture's lower left; part of draw_picture.
 void draw_legend(Ui& ui, const Area& area);
 /// What inspect.at has found, in a card over the picture; part of draw_picture.

@@ -41,6 +41,180 @@ bool& open_of(Layout& layout, const std::string& panel) {
   return panel == "left" ? layout.left_open : panel == "right" ? layout.right_open : layout.bottom_open;
 }
 
+using commands::Arguments;
+using commands::Parameter;
+using commands::Type;
+
+/// Registers a command: name, help, parameters, what it does, whether scripts record it.
+struct Add {
+  Ui& ui;
+  void operator()(std::string name, std::string help, std::vector<Parameter> parameters,
+                  std::function<void(const Arguments&)> run, bool recorded = true) const {
+    ui.registry.add({.name = std::move(name),
+                     .help = std::move(help),
+                     .parameters = std::move(parameters),
+                     .run =
+                         [&ui = ui, run = std::move(run)](const Arguments& a) {
+                           run(a);
+                           ui.wake(3);
+                         },
+                     .recorded = recorded});
+  }
+};
+
+Parameter on() { return {.name = "on", .type = Type::boolean}; }
+
+/// What the panels show, and how large they are.
+void add_panel_commands(Ui& ui, const Add& add) {
+  const Parameter panel{
+      .name = "panel", .type = Type::choice, .choices = {"left", "right", "bottom"}, .which = true};
+
+  add("window.panels", "Shows or hides all panels.", {on()},
+      [&ui](const Arguments& a) { ui.layout.panels = a.boolean("on"); });
+  add("window.fold", "Folds a panel, or unfolds it.", {panel, {.name = "folded", .type = Type::boolean}},
+      [&ui](const Arguments& a) { open_of(ui.layout, a.text("panel")) = !a.boolean("folded"); });
+  add("window.side", "Says what the panel on the right shows, and unfolds it.",
+      {{.name = "what", .type = Type::choice, .choices = sides()}}, [&ui](const Arguments& a) {
+        ui.side = a.text("what");
+        ui.layout.right_open = true;
+      });
+  add("window.split", "Sets the width of a side panel, or the height of the strip at the bottom.",
+      {panel, {.name = "size", .type = Type::real, .lo = 0, .hi = 10000, .unit = "design pixels"}},
+      [&ui](const Arguments& a) { size_of(ui.layout, a.text("panel")) = a.number("size"); });
+  add("window.log_share", "Sets how much of the strip at the bottom is the log.",
+      {{.name = "share", .type = Type::real, .lo = 0, .hi = 1}},
+      [&ui](const Arguments& a) { ui.layout.log_share = a.number("share"); });
+  add("window.passes_share", "Sets how much of the strip at the bottom is the panel of passes.",
+      {{.name = "share", .type = Type::real, .lo = 0, .hi = 1}},
+      [&ui](const Arguments& a) { ui.layout.passes_share = a.number("share"); });
+  add("window.section", "Opens or closes a section of a panel.",
+      {{.name = "section",
+        .which = true,
+        .names = [&ui](const std::vector<std::string>&) { return section_names(ui); }},
+       {.name = "open", .type = Type::boolean}},
+      [&ui](const Arguments& a) { ui.sections[a.text("section")] = a.boolean("open"); });
+}
+
+void add_accuracy_commands(Ui& ui, const Add& add) {
+  add("accuracy.what_if",
+      "In uniform sampling: asks what this relative error of the picture would cost. In adaptive sampling "
+      "sampling.target_error is the question.",
+      {{.name = "error", .type = Type::real, .lo = 0.0001, .hi = 10}},
+      [&ui](const Arguments& a) { ui.what_if = a.real("error"); });
+  add("accuracy.clear_runs", "Takes the lines of earlier renders out of the plot of accuracy.", {},
+      [&ui](const Arguments&) { ui.runs.clear(); });
+}
+
+/// The window as a whole, and the cards that explain it.
+void add_frame_commands(Ui& ui, const Add& add) {
+  add("window.size", "Resizes the window.",
+      {{.name = "width", .type = Type::integer, .lo = 640, .hi = 16384, .unit = "pixels"},
+       {.name = "height", .type = Type::integer, .lo = 400, .hi = 16384, .unit = "pixels"}},
+      [&ui](const Arguments& a) {
+        ui.size = {static_cast<int>(a.integer("width")), static_cast<int>(a.integer("height"))};
+      });
+  add("window.scale", "Sets the size of text and controls; 0: what the desktop asks for.",
+      {{.name = "scale", .type = Type::real, .lo = 0, .hi = 4}},
+      [&ui](const Arguments& a) { ui.scale = a.number("scale"); });
+  add(
+      "window.keys", "Shows what keys and mouse do.", {}, [&ui](const Arguments&) { ui.help = true; }, false);
+
+  add(
+      "window.welcome", "Shows the first steps.", {}, [&ui](const Arguments&) { ui.welcome = true; }, false);
+}
+
+/// The picture's size, and what is marked or picked in it.
+void add_picture_commands(Ui& ui, const Add& add) {
+  add(
+      "exposure.dropper", "Whether the next click in the picture sets the exposure by what it hits.", {on()},
+      [&ui](const Arguments& a) {
+        ui.dropper = a.boolean("on");
+        if (ui.dropper)
+          ui.notice("Click on something grey: it is then shown as middle grey. Esc gives it up.");
+      },
+      false);
+  add("view.divisor", "Pixels of the window for each pixel of the picture, along a side.",
+      {{.name = "divisor", .type = Type::choice, .choices = {"1", "2", "4"}}},
+      [&ui](const Arguments& a) { ui.picture_divisor = static_cast<int>(a.integer("divisor")); });
+  add("view.size",
+      "Gives the picture a size of its own, such as that of a reference; 0 0: as large as there is room.",
+      {{.name = "width", .type = Type::integer, .lo = 0, .hi = 16384, .unit = "pixels"},
+       {.name = "height", .type = Type::integer, .lo = 0, .hi = 16384, .unit = "pixels"}},
+      [&ui](const Arguments& a) {
+        ui.picture_size.reset();
+        if (a.integer("width") > 0 && a.integer("height") > 0)
+          ui.picture_size.emplace(static_cast<uint32_t>(a.integer("width")),
+                                  static_cast<uint32_t>(a.integer("height")));
+      });
+  add("view.selection", "Marks the selected object in the picture.", {on()},
+      [&ui](const Arguments& a) { ui.brackets = a.boolean("on"); });
+  add("view.lamps", "Marks the lamps in the picture.", {on()},
+      [&ui](const Arguments& a) { ui.light_marks = a.boolean("on"); });
+}
+
+void add_dialog_commands(Ui& ui, const Add& add) {
+  add(
+      "dialog.open", "Asks for a scene to open.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::open); }, false);
+  add(
+      "dialog.save", "Asks where to save the picture.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::save); }, false);
+  add(
+      "dialog.reference", "Asks for a picture to hold this one against.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    if (!solver->file) continue;
+    add(
+        "dialog." + solver->name + "_load", fmt::format("Asks for {} to load.", solver->file->content), {},
+        [&ui, solver](const Arguments&) { ui.start_dialog(Dialog::Purpose::solver_load, solver); }, false);
+    add(
+        "dialog." + solver->name + "_save", fmt::format("Asks where to save {}.", solver->file->content), {},
+        [&ui, solver](const Arguments&) { ui.start_dialog(Dialog::Purpose::solver_save, solver); }, false);
+  }
+  add(
+      "dialog.script", "Asks where to save the session as a script.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::script); }, false);
+  add(
+      "dismiss", "Takes away the dialog, or else the newest message over the picture.", {},
+      [&ui](const Arguments&) {
+        if (ui.dialog.purpose != Dialog::Purpose::none)
+          ui.dialog = {};
+        else if (!ui.errors.empty())
+          ui.errors.pop_back();
+      },
+      false);
+}
+
+void add_log_commands(Ui& ui, const Add& add) {
+  add(
+      "log.copy", "Copies the lines shown to the clipboard.", {},
+      [&ui](const Arguments&) {
+        std::string all;
+        for (const LogLine& line : ui.log) {
+          const auto level = static_cast<size_t>(line.level);
+          if (ui.log_levels[level])
+            all += fmt::format("{:.2f} {} {}\n", line.time, k_levels[level], line.text);
+        }
+        ImGui::SetClipboardText(all.c_str());
+      },
+      false);
+  add(
+      "log.type", "Puts the keyboard into the line under the log.", {},
+      [&ui](const Arguments&) {
+        ui.layout.panels = ui.layout.bottom_open = true;
+        ui.console.focus = true;
+      },
+      false);
+  add(
+      "log.clear", "Empties the log.", {}, [&ui](const Arguments&) { ui.log.clear(); }, false);
+  add("log.show", "Shows or hides the lines of a level.",
+      {{.name = "level", .type = Type::choice, .choices = k_levels, .which = true}, on()},
+      [&ui](const Arguments& a) {
+        const auto level = std::find(k_levels.begin(), k_levels.end(), a.text("level")) - k_levels.begin();
+        ui.log_levels[static_cast<size_t>(level)] = a.boolean("on");
+      });
+}
+
 }  // namespace
 
 std::pair<int, int> key_of(const std::string& name) {
@@ -74,155 +248,13 @@ std::pair<int, int> key_of(const std::string& name) {
 }
 
 void add_window_commands(Ui& ui) {
-  using commands::Arguments;
-  using commands::Parameter;
-  using commands::Type;
-  const auto add = [&](std::string name, std::string help, std::vector<Parameter> parameters,
-                       std::function<void(const Arguments&)> run, bool recorded = true) {
-    ui.registry.add({.name = std::move(name),
-                     .help = std::move(help),
-                     .parameters = std::move(parameters),
-                     .run =
-                         [&ui, run = std::move(run)](const Arguments& a) {
-                           run(a);
-                           ui.wake(3);
-                         },
-                     .recorded = recorded});
-  };
-  const Parameter on{.name = "on", .type = Type::boolean};
-  const Parameter panel{
-      .name = "panel", .type = Type::choice, .choices = {"left", "right", "bottom"}, .which = true};
-
-  add("window.panels", "Shows or hides all panels.", {on},
-      [&ui](const Arguments& a) { ui.layout.panels = a.boolean("on"); });
-  add("window.fold", "Folds a panel, or unfolds it.", {panel, {.name = "folded", .type = Type::boolean}},
-      [&ui](const Arguments& a) { open_of(ui.layout, a.text("panel")) = !a.boolean("folded"); });
-  add("window.side", "Says what the panel on the right shows, and unfolds it.",
-      {{.name = "what", .type = Type::choice, .choices = sides()}}, [&ui](const Arguments& a) {
-        ui.side = a.text("what");
-        ui.layout.right_open = true;
-      });
-  add("window.split", "Sets the width of a side panel, or the height of the strip at the bottom.",
-      {panel, {.name = "size", .type = Type::real, .lo = 0, .hi = 10000, .unit = "design pixels"}},
-      [&ui](const Arguments& a) { size_of(ui.layout, a.text("panel")) = a.number("size"); });
-  add("window.log_share", "Sets how much of the strip at the bottom is the log.",
-      {{.name = "share", .type = Type::real, .lo = 0, .hi = 1}},
-      [&ui](const Arguments& a) { ui.layout.log_share = a.number("share"); });
-  add("window.passes_share", "Sets how much of the strip at the bottom is the panel of passes.",
-      {{.name = "share", .type = Type::real, .lo = 0, .hi = 1}},
-      [&ui](const Arguments& a) { ui.layout.passes_share = a.number("share"); });
-  add("accuracy.what_if",
-      "In uniform sampling: asks what this relative error of the picture would cost. In adaptive sampling "
-      "sampling.target_error is the question.",
-      {{.name = "error", .type = Type::real, .lo = 0.0001, .hi = 10}},
-      [&ui](const Arguments& a) { ui.what_if = a.real("error"); });
-  add("accuracy.clear_runs", "Takes the lines of earlier renders out of the plot of accuracy.", {},
-      [&ui](const Arguments&) { ui.runs.clear(); });
-  add("window.section", "Opens or closes a section of a panel.",
-      {{.name = "section",
-        .which = true,
-        .names = [&ui](const std::vector<std::string>&) { return section_names(ui); }},
-       {.name = "open", .type = Type::boolean}},
-      [&ui](const Arguments& a) { ui.sections[a.text("section")] = a.boolean("open"); });
-  add("window.size", "Resizes the window.",
-      {{.name = "width", .type = Type::integer, .lo = 640, .hi = 16384, .unit = "pixels"},
-       {.name = "height", .type = Type::integer, .lo = 400, .hi = 16384, .unit = "pixels"}},
-      [&ui](const Arguments& a) {
-        ui.size = {static_cast<int>(a.integer("width")), static_cast<int>(a.integer("height"))};
-      });
-  add("window.scale", "Sets the size of text and controls; 0: what the desktop asks for.",
-      {{.name = "scale", .type = Type::real, .lo = 0, .hi = 4}},
-      [&ui](const Arguments& a) { ui.scale = a.number("scale"); });
-  add(
-      "window.keys", "Shows what keys and mouse do.", {}, [&ui](const Arguments&) { ui.help = true; }, false);
-
-  add(
-      "window.welcome", "Shows the first steps.", {}, [&ui](const Arguments&) { ui.welcome = true; }, false);
-  add(
-      "exposure.dropper", "Whether the next click in the picture sets the exposure by what it hits.", {on},
-      [&ui](const Arguments& a) {
-        ui.dropper = a.boolean("on");
-        if (ui.dropper)
-          ui.notice("Click on something grey: it is then shown as middle grey. Esc gives it up.");
-      },
-      false);
-
-  add("view.divisor", "Pixels of the window for each pixel of the picture, along a side.",
-      {{.name = "divisor", .type = Type::choice, .choices = {"1", "2", "4"}}},
-      [&ui](const Arguments& a) { ui.picture_divisor = static_cast<int>(a.integer("divisor")); });
-  add("view.size",
-      "Gives the picture a size of its own, such as that of a reference; 0 0: as large as there is room.",
-      {{.name = "width", .type = Type::integer, .lo = 0, .hi = 16384, .unit = "pixels"},
-       {.name = "height", .type = Type::integer, .lo = 0, .hi = 16384, .unit = "pixels"}},
-      [&ui](const Arguments& a) {
-        ui.picture_size.reset();
-        if (a.integer("width") > 0 && a.integer("height") > 0)
-          ui.picture_size.emplace(static_cast<uint32_t>(a.integer("width")),
-                                  static_cast<uint32_t>(a.integer("height")));
-      });
-  add("view.selection", "Marks the selected object in the picture.", {on},
-      [&ui](const Arguments& a) { ui.brackets = a.boolean("on"); });
-  add("view.lamps", "Marks the lamps in the picture.", {on},
-      [&ui](const Arguments& a) { ui.light_marks = a.boolean("on"); });
-
-  add(
-      "dialog.open", "Asks for a scene to open.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::open); }, false);
-  add(
-      "dialog.save", "Asks where to save the picture.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::save); }, false);
-  add(
-      "dialog.reference", "Asks for a picture to hold this one against.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);
-  for (const solvers::SolverInfo* solver : solvers::registered()) {
-    if (!solver->file) continue;
-    add(
-        "dialog." + solver->name + "_load", fmt::format("Asks for {} to load.", solver->file->content), {},
-        [&ui, solver](const Arguments&) { ui.start_dialog(Dialog::Purpose::solver_load, solver); }, false);
-    add(
-        "dialog." + solver->name + "_save", fmt::format("Asks where to save {}.", solver->file->content), {},
-        [&ui, solver](const Arguments&) { ui.start_dialog(Dialog::Purpose::solver_save, solver); }, false);
-  }
-  add(
-      "dialog.script", "Asks where to save the session as a script.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::script); }, false);
-  add(
-      "dismiss", "Takes away the dialog, or else the newest message over the picture.", {},
-      [&ui](const Arguments&) {
-        if (ui.dialog.purpose != Dialog::Purpose::none)
-          ui.dialog = {};
-        else if (!ui.errors.empty())
-          ui.errors.pop_back();
-      },
-      false);
-
-  add(
-      "log.copy", "Copies the lines shown to the clipboard.", {},
-      [&ui](const Arguments&) {
-        std::string all;
-        for (const LogLine& line : ui.log) {
-          const auto level = static_cast<size_t>(line.level);
-          if (ui.log_levels[level])
-            all += fmt::format("{:.2f} {} {}\n", line.time, k_levels[level], line.text);
-        }
-        ImGui::SetClipboardText(all.c_str());
-      },
-      false);
-  add(
-      "log.type", "Puts the keyboard into the line under the log.", {},
-      [&ui](const Arguments&) {
-        ui.layout.panels = ui.layout.bottom_open = true;
-        ui.console.focus = true;
-      },
-      false);
-  add(
-      "log.clear", "Empties the log.", {}, [&ui](const Arguments&) { ui.log.clear(); }, false);
-  add("log.show", "Shows or hides the lines of a level.",
-      {{.name = "level", .type = Type::choice, .choices = k_levels, .which = true}, on},
-      [&ui](const Arguments& a) {
-        const auto level = std::find(k_levels.begin(), k_levels.end(), a.text("level")) - k_levels.begin();
-        ui.log_levels[static_cast<size_t>(level)] = a.boolean("on");
-      });
+  const Add add{ui};
+  add_panel_commands(ui, add);
+  add_accuracy_commands(ui, add);
+  add_frame_commands(ui, add);
+  add_picture_commands(ui, add);
+  add_dialog_commands(ui, add);
+  add_log_commands(ui, add);
 }
 
 }  // namespace lucerna::ui

@@ -159,15 +159,15 @@ class Latency {
     return all;
   }
 
-  /// Until the picture has settle_samples, with all that is prepared before.
+  /// Until the picture has LatencyOptions::settle.samples, with all that is prepared before.
   void settle(session::Session& s) const {
     const uint64_t posted = s.commands();
     const Timer timer;
-    while (timer.seconds() < o_.settle_s) {
+    while (timer.seconds() < o_.settle.seconds) {
       check();
       const auto now = s.snapshot();
       if (now && now->commands >= posted && now->activity.empty() && now->preparing.empty() &&
-          (now->samples >= o_.settle_samples || now->finished))
+          (now->samples >= o_.settle.samples || now->finished))
         return;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }

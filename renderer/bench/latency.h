@@ -71,9 +71,11 @@ struct LatencyOptions {
   std::vector<Edit> edits;                               ///< in this order, one on top of the other
   uint32_t width = 960, height = 540;
   uint32_t reference_samples = 64;
-  double seconds = 10;          ///< that each edit is watched
-  double settle_s = 120;        ///< that the picture before an edit may take to be complete
-  uint32_t settle_samples = 8;  ///< a pixel, that it then has
+  double seconds = 10;  ///< that each edit is watched
+  struct {
+    double seconds = 120;  ///< that it may take to be complete
+    uint32_t samples = 8;  ///< a pixel, that it then has
+  } settle;                ///< of the picture before an edit
   std::string device;
   std::filesystem::path references;                      ///< folder; pictures that serve are kept
   std::filesystem::path pictures;                        ///< folder for PNGs at k_told_s; empty: none

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <sstream>
 
 #include "plan/settings.h"
@@ -118,6 +117,87 @@ std::string effective(const SettingValues& outer, const SettingValues& inner, co
   return plan::Settings().text(key);
 }
 
+Json parse_json(const std::string& text, const std::string& where) {
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& e) {
+    const size_t end = std::min(e.byte ? e.byte - 1 : 0, text.size());
+    const std::string before = text.substr(0, end);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const size_t start = before.rfind('\n');
+    throw_error(where, "line {}, column {}: not JSON", line,
+                before.size() - (start == std::string::npos ? 0 : start + 1) + 1);
+  }
+}
+
+/// One entry of "settings"; `m` holds those before it.
+Setting read_setting(const Node& node, const Matrix& m) {
+  node.only({"name", "about", "set", "curve", "budget"});
+  Setting s;
+  s.name = read_name(node.at("name"));
+  if (std::any_of(m.settings.begin(), m.settings.end(), [&](const Setting& o) { return o.name == s.name; }))
+    throw_error(node.where() + ".name", "there are two settings '{}'", s.name);
+  if (node.has("about")) s.about = node.at("about").text();
+  if (node.has("set")) s.set = node.at("set").settings();
+  if (node.has("curve")) s.curve = read_curve(node.at("curve"));
+  const bool adaptive = effective(m.set, s.set, "sampling.mode") == "adaptive";
+  s.budget = adaptive ? BudgetKind::errors : BudgetKind::samples;
+  if (node.has("budget")) {
+    const std::string kind = node.at("budget").text();
+    const auto at = std::find(k_budget_names.begin(), k_budget_names.end(), kind);
+    if (at == k_budget_names.end())
+      throw_error(node.where() + ".budget", "'{}': expected samples, errors or seconds", kind);
+    s.budget = BudgetKind(at - k_budget_names.begin());
+  }
+  if (adaptive ? s.budget == BudgetKind::samples : s.budget == BudgetKind::errors)
+    throw_error(node.where() + ".budget", "{} sampling takes {} or seconds",
+                adaptive ? "adaptive" : "uniform", adaptive ? "errors" : "samples");
+  return s;
+}
+
+void read_size(const Node& size, SceneEntry& scene) {
+  unsigned w = 0, h = 0;
+  char rest = 0;
+  const std::string words = size.text();
+  if (words.find('-') != std::string::npos || std::sscanf(words.c_str(), "%ux%u%c", &w, &h, &rest) != 2 ||
+      w < 8 || h < 8 || w > 4096 || h > 4096)
+    throw_error(size.where(), "'{}': expected WIDTHxHEIGHT, each from 8 to 4096, such as 160x120", words);
+  scene.width = w, scene.height = h;
+}
+
+/// One entry of "scenes"; `m` holds those before it and all settings. `budgets` and `reference_samples`:
+/// where it has none of its own.
+SceneEntry read_scene(const Node& node, const Matrix& m, const fs::path& folder,
+                      const std::array<std::vector<double>, 3>& budgets, uint32_t reference_samples) {
+  node.only({"name", "file", "size", "camera", "set", "reference_samples", "budgets"});
+  SceneEntry s;
+  const Node file = node.at("file");
+  const fs::path path = file.text();
+  s.file = (path.is_absolute() ? path : folder / path).lexically_normal();
+  if (!fs::is_regular_file(s.file)) throw_error(file.where(), "there is no file '{}'", s.file.string());
+  s.name =
+      node.has("name") ? read_name(node.at("name")) : read_name({Json(path.stem().string()), file.where()});
+  if (std::any_of(m.scenes.begin(), m.scenes.end(), [&](const SceneEntry& o) { return o.name == s.name; }))
+    throw_error(node.where() + ".name", "there are two scenes '{}'; give one another name", s.name);
+  read_size(node.at("size"), s);
+  if (node.has("camera")) s.camera = node.at("camera").text();
+  if (node.has("set")) {
+    s.set = node.at("set").settings();
+    // It would change what kind of budget a setting takes.
+    if (s.set.contains("sampling.mode"))
+      throw_error(node.where() + ".set", "'sampling.mode' belongs into settings, not into a scene");
+  }
+  s.reference_samples =
+      node.has("reference_samples") ? node.at("reference_samples").count(2, 1 << 20) : reference_samples;
+  s.budgets = budgets;
+  if (node.has("budgets")) read_budgets(node.at("budgets"), s.budgets);
+  for (const Setting& setting : m.settings)
+    if (s.budgets[size_t(setting.budget)].empty())
+      throw_error(node.where(), "no budgets.{} for the setting '{}'; give them here or for all",
+                  k_budget_names[size_t(setting.budget)], setting.name);
+  return s;
+}
+
 }  // namespace
 
 std::string Budget::text() const {
@@ -150,17 +230,7 @@ std::string Matrix::id(const Cell& c) const {
 }
 
 Matrix parse_matrix(const std::string& text, const std::string& where, const fs::path& folder) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& e) {
-    const size_t end = std::min(e.byte ? e.byte - 1 : 0, text.size());
-    const std::string before = text.substr(0, end);
-    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-    const size_t start = before.rfind('\n');
-    throw_error(where, "line {}, column {}: not JSON", line,
-                before.size() - (start == std::string::npos ? 0 : start + 1) + 1);
-  }
+  const Json json = parse_json(text, where);
   const Node top(json, where + ": ");
   if (!json.is_object()) throw_error(where, "expected an object {{...}}, found {}", json.type_name());
   top.only(
@@ -186,68 +256,9 @@ Matrix parse_matrix(const std::string& text, const std::string& where, const fs:
   std::array<std::vector<double>, 3> budgets;
   if (top.has("budgets")) read_budgets(top.at("budgets"), budgets);
 
-  std::set<std::string> names;
-  for (const Node& node : top.at("settings").list()) {
-    node.only({"name", "about", "set", "curve", "budget"});
-    Setting s;
-    s.name = read_name(node.at("name"));
-    if (!names.insert(s.name).second)
-      throw_error(node.where() + ".name", "there are two settings '{}'", s.name);
-    if (node.has("about")) s.about = node.at("about").text();
-    if (node.has("set")) s.set = node.at("set").settings();
-    if (node.has("curve")) s.curve = read_curve(node.at("curve"));
-    const bool adaptive = effective(m.set, s.set, "sampling.mode") == "adaptive";
-    s.budget = adaptive ? BudgetKind::errors : BudgetKind::samples;
-    if (node.has("budget")) {
-      const std::string kind = node.at("budget").text();
-      const auto at = std::find(k_budget_names.begin(), k_budget_names.end(), kind);
-      if (at == k_budget_names.end())
-        throw_error(node.where() + ".budget", "'{}': expected samples, errors or seconds", kind);
-      s.budget = BudgetKind(at - k_budget_names.begin());
-    }
-    if (adaptive ? s.budget == BudgetKind::samples : s.budget == BudgetKind::errors)
-      throw_error(node.where() + ".budget", "{} sampling takes {} or seconds",
-                  adaptive ? "adaptive" : "uniform", adaptive ? "errors" : "samples");
-    m.settings.push_back(std::move(s));
-  }
-
-  names.clear();
-  for (const Node& node : top.at("scenes").list()) {
-    node.only({"name", "file", "size", "camera", "set", "reference_samples", "budgets"});
-    SceneEntry s;
-    const Node file = node.at("file");
-    const fs::path path = file.text();
-    s.file = (path.is_absolute() ? path : folder / path).lexically_normal();
-    if (!fs::is_regular_file(s.file)) throw_error(file.where(), "there is no file '{}'", s.file.string());
-    s.name =
-        node.has("name") ? read_name(node.at("name")) : read_name({Json(path.stem().string()), file.where()});
-    if (!names.insert(s.name).second)
-      throw_error(node.where() + ".name", "there are two scenes '{}'; give one another name", s.name);
-    const Node size = node.at("size");
-    unsigned w = 0, h = 0;
-    char rest = 0;
-    const std::string words = size.text();
-    if (words.find('-') != std::string::npos || std::sscanf(words.c_str(), "%ux%u%c", &w, &h, &rest) != 2 ||
-        w < 8 || h < 8 || w > 4096 || h > 4096)
-      throw_error(size.where(), "'{}': expected WIDTHxHEIGHT, each from 8 to 4096, such as 160x120", words);
-    s.width = w, s.height = h;
-    if (node.has("camera")) s.camera = node.at("camera").text();
-    if (node.has("set")) {
-      s.set = node.at("set").settings();
-      // It would change what kind of budget a setting takes.
-      if (s.set.contains("sampling.mode"))
-        throw_error(node.where() + ".set", "'sampling.mode' belongs into settings, not into a scene");
-    }
-    s.reference_samples =
-        node.has("reference_samples") ? node.at("reference_samples").count(2, 1 << 20) : reference_samples;
-    s.budgets = budgets;
-    if (node.has("budgets")) read_budgets(node.at("budgets"), s.budgets);
-    for (const Setting& setting : m.settings)
-      if (s.budgets[size_t(setting.budget)].empty())
-        throw_error(node.where(), "no budgets.{} for the setting '{}'; give them here or for all",
-                    k_budget_names[size_t(setting.budget)], setting.name);
-    m.scenes.push_back(std::move(s));
-  }
+  for (const Node& node : top.at("settings").list()) m.settings.push_back(read_setting(node, m));
+  for (const Node& node : top.at("scenes").list())
+    m.scenes.push_back(read_scene(node, m, folder, budgets, reference_samples));
   return m;
 }
 

@@ -207,15 +207,15 @@ Json cells_json(const Matrix& m, size_t scene, size_t setting, const Group& grou
     add("true", [](const Result& r) { return r.truth[0]; });
     add("relmse", [](const Result& r) { return r.relmse; });
     add("relmse_all", [](const Result& r) { return r.relmse_all; });
-    add("tiles_median", [](const Result& r) { return r.tiles_median; });
-    add("tiles_decile", [](const Result& r) { return r.tiles_decile; });
-    add("heavy_tiles", [](const Result& r) { return r.heavy_tiles; });
-    add("tiles_over", [](const Result& r) { return r.tiles_over; });
+    add("tiles_median", [](const Result& r) { return r.tiles.median; });
+    add("tiles_decile", [](const Result& r) { return r.tiles.decile; });
+    add("heavy_tiles", [](const Result& r) { return r.tiles.heavy; });
+    add("tiles_over", [](const Result& r) { return r.tiles.over; });
     add("records", [](const Result& r) { return r.records; });
     add("record_rays", [](const Result& r) { return r.record_rays; });
-    add("paths_error", [](const Result& r) { return r.paths_error; });
-    add("records_error", [](const Result& r) { return r.records_error; });
-    add("interpolation_error", [](const Result& r) { return r.interpolation_error; });
+    add("paths_error", [](const Result& r) { return r.parts.paths; });
+    add("records_error", [](const Result& r) { return r.parts.records; });
+    add("interpolation_error", [](const Result& r) { return r.parts.interpolation; });
     for (size_t k = 1; k < stats::k_layers; ++k) {
       Json& layer = cell["components"][stats::k_layer_names[k]];
       layer["true"] = to_json(spread(collect(results, [&](const Result& r) { return r.truth[k]; })));
@@ -449,8 +449,8 @@ std::string make_csv(const Json& report) {
         fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.scene,
                     r.setting, r.budget, r.repeat, r.seed, r.tracer, r.wall_s, r.device_s, r.setup_s, r.rays,
                     r.paths, r.samples, r.mse, r.relmse, r.relmse_all, int(r.in_reference_noise),
-                    r.tiles_median, r.tiles_decile, r.tiles_worst, r.heavy_tiles, r.tiles_over, r.records,
-                    r.record_rays, r.paths_error, r.records_error, r.interpolation_error);
+                    r.tiles.median, r.tiles.decile, r.tiles.worst, r.tiles.heavy, r.tiles.over, r.records,
+                    r.record_rays, r.parts.paths, r.parts.records, r.parts.interpolation);
     for (const Layers* layers : {&r.estimated, &r.truth, &r.component_s})
       for (const double x : *layers) text += fmt::format(",{}", x);
     text +=

@@ -83,11 +83,11 @@ void visit_result(V& v, R& r) {
   v("estimated", r.estimated), v("true", r.truth), v("component_s", r.component_s);
   v("mse", r.mse), v("relmse", r.relmse), v.later("relmse_all", r.relmse_all);
   v("in_reference_noise", r.in_reference_noise);
-  v("tiles_median", r.tiles_median), v("tiles_decile", r.tiles_decile), v("tiles_worst", r.tiles_worst);
-  v("heavy_tiles", r.heavy_tiles), v("tiles_over", r.tiles_over), v("dropped", r.dropped);
+  v("tiles_median", r.tiles.median), v("tiles_decile", r.tiles.decile), v("tiles_worst", r.tiles.worst);
+  v("heavy_tiles", r.tiles.heavy), v("tiles_over", r.tiles.over), v("dropped", r.dropped);
   v.later("records", r.records), v.later("record_rays", r.record_rays);
-  v.later("paths_error", r.paths_error), v.later("records_error", r.records_error);
-  v.later("interpolation_error", r.interpolation_error);
+  v.later("paths_error", r.parts.paths), v.later("records_error", r.parts.records);
+  v.later("interpolation_error", r.parts.interpolation);
 }
 
 template <class V, class F>

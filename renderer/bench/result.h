@@ -46,18 +46,21 @@ struct Result {
   uint64_t rays = 0, paths = 0;
   double samples = 0;
   Layers estimated{}, truth{}, component_s{};
-  /// Of estimated[0] by where it comes from: hypot(paths, records) + interpolation; 0 in files from before
-  /// they were told apart.
-  double paths_error = 0, records_error = 0, interpolation_error = 0;
+  struct {
+    double paths = 0, records = 0, interpolation = 0;
+  } parts;  ///< of estimated[0], by where it comes from (base/error_sum.h); 0 in files from before they were
+            ///< told apart
   double mse = 0;  ///< squared true rms error in luminance, the reference's noise taken off
   /// Relative mean squared error of R, G, B against the reference's halves, without the worst pixels
   /// (film/io/relative_mse.h), and with them; 0: less than nothing, lost in their noise.
   double relmse = 0, relmse_all = 0;
   bool in_reference_noise = false;  ///< truth not to be told from the reference's own noise
-  double tiles_median = 0, tiles_decile = 0, tiles_worst = 0;  ///< estimated relative errors of tiles
-  uint64_t heavy_tiles = 0;                                    ///< whose light comes in rare large amounts
-  uint64_t tiles_over = 0;  ///< adaptive: over the target with all the samples they may have
-  uint64_t dropped = 0;     ///< contributions that were not finite
+  struct {
+    double median = 0, decile = 0, worst = 0;  ///< estimated relative errors
+    uint64_t heavy = 0;                        ///< whose light comes in rare large amounts
+    uint64_t over = 0;  ///< adaptive: over the target with all the samples they may have
+  } tiles;
+  uint64_t dropped = 0;  ///< contributions that were not finite
   /// Records that light was looked up in, in the end, and their rays; 0 without any, and in files
   /// from before they were counted.
   uint64_t records = 0, record_rays = 0;

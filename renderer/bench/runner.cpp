@@ -234,8 +234,8 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
 
   result.wall_s = last.render_s, result.device_s = last.device_s;
   result.rays = last.rays, result.paths = last.paths, result.samples = last.samples;
-  result.paths_error = last.error[0];
-  result.records_error = last.records, result.interpolation_error = last.interpolation;
+  result.parts.paths = last.error[0];
+  result.parts.records = last.records, result.parts.interpolation = last.interpolation;
   result.estimated = told(last), result.truth = last.truth.value_or(Layers{});
   result.component_s = last.component_s;
   const double rms = result.truth[0] * r->reference()->mean_luminance;
@@ -244,9 +244,9 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   result.in_reference_noise = result.truth[0] < 0.7 * reference.noise[0];
   result.relmse = std::max(0.0, relative.trimmed), result.relmse_all = std::max(0.0, relative.all);
   const film::TileSpread tiles = film::tile_spread(r->tile_errors());
-  result.tiles_median = tiles.median, result.tiles_decile = tiles.worst_tenth;
-  result.tiles_worst = tiles.worst, result.heavy_tiles = tiles.heavy_tailed;
-  if (r->adaptive()) result.tiles_over = r->adaptive()->count(schedule::TileState::capped);
+  result.tiles.median = tiles.median, result.tiles.decile = tiles.worst_tenth;
+  result.tiles.worst = tiles.worst, result.tiles.heavy = tiles.heavy_tailed;
+  if (r->adaptive()) result.tiles.over = r->adaptive()->count(schedule::TileState::capped);
   result.dropped = r->stats().dropped;
   result.records = uint32_t(r->figure("records")), result.record_rays = uint64_t(r->figure("rays"));
   result.forecast = make_forecast(r->ledger(), r->adaptive() != nullptr);

@@ -84,80 +84,25 @@ std::string Workspace::place_line(const Viewpoint& v) {
   return line;
 }
 
-void Workspace::add_camera_commands() {
-  const auto move = [this](std::string name, std::string help, std::vector<Parameter> parameters,
+void Workspace::add_motion(std::string name, std::string help, std::vector<Parameter> parameters,
                            std::function<void(Viewpoint&, const Arguments&)> act) {
-    registry.add({.name = std::move(name),
-                  .help = std::move(help),
-                  .parameters = std::move(parameters),
-                  .run =
-                      [this, act = std::move(act)](const Arguments& a) {
-                        needs_view();
-                        Viewpoint moving = *view;
-                        act(moving, a);
-                        view = moving;
-                        moved();
-                      },
-                  .moves = true});
-  };
-  move("camera.orbit", "Turns the eye about what it looks at, or about any point.",
-       {real("right", "counter-clockwise seen from above", "radians"),
-        real("up", "raises the eye", "radians"), optional(vector("about", "a point of the scene", "m"))},
-       [](Viewpoint& v, const Arguments& a) {
-         const vec2 angles(a.number("right"), a.number("up"));
-         if (a.has("about"))
-           orbit_about(v, a.vector("about"), angles);
-         else
-           orbit(v, angles);
-       });
-  move("camera.look", "Turns the view about the eye.",
-       {real("left", "to the left", "radians"), real("up", "upwards", "radians")},
-       [](Viewpoint& v, const Arguments& a) {
-         commands::look(v, {a.number("left"), a.number("up")});
-       });
-  move("camera.pan", "Moves sideways, as a drag across the picture does.",
-       {real("right", "the picture moves to the right", "picture heights"),
-        real("down", "the picture moves down", "picture heights")},
-       [](Viewpoint& v, const Arguments& a) {
-         pan(v, {a.number("right"), a.number("down")}, 1);
-       });
-  move("camera.dolly", "Comes closer by a tenth of the distance a step.",
-       {real("steps", "negative: goes away", "steps", -1000, 1000)},
-       [](Viewpoint& v, const Arguments& a) { dolly(v, a.number("steps")); });
-  move("camera.fly", "Moves along the camera's own axes.",
-       {real("right", "", "m"), real("up", "", "m"), real("forward", "", "m")},
-       [](Viewpoint& v, const Arguments& a) {
-         fly(v, {a.number("right"), a.number("up"), a.number("forward")});
-       });
-  move("camera.place", "Puts the camera at a place, looking at a point that it then orbits about.",
-       {vector("eye", "where it stands", "m"), vector("target", "what it looks at", "m"),
-        vector("up", "what is upwards in the picture", ""), optional(fov()), optional(height())},
-       [](Viewpoint& v, const Arguments& a) {
-         if (!place(v, a.vector("eye"), a.vector("target"), a.vector("up")))
-           throw Error("", "eye and target must differ, and up must not point from one to the other");
-         if (a.has("fov")) set_fov(v.camera, a.real("fov"));
-         if (a.has("height")) set_height(v.camera, a.number("height"));
-       });
-  move("camera.fov", "Sets the field of view of a perspective camera.", {fov()},
-       [](Viewpoint& v, const Arguments& a) { set_fov(v.camera, a.real("fov")); });
-  move("camera.height", "Sets what an orthographic camera sees.", {height()},
-       [](Viewpoint& v, const Arguments& a) { set_height(v.camera, a.number("height")); });
-  move("camera.lens", "Sets the field of view by a focal length, for a frame 36 mm wide.",
-       {real("length", "focal length", "mm", 1, 2000)}, [this](Viewpoint& v, const Arguments& a) {
-         set_fov(v.camera, k_degrees * yfov_from_focal_length(a.number("length"), aspect));
-       });
-  move("camera.frame",
-       "Moves so that the selection, or else the whole scene, fills the picture; not into or behind a wall.",
-       {}, [this](Viewpoint& v, const Arguments&) {
-         probe(true);
-         if (selection.kind != Kind::none)
-           frame_clear(v, selection_bounds(), aspect, look_past_selection());
-         else if (!v.camera.orthographic && enclosed(look(), eye_of(v.camera), v.extent))
-           frame_inside(v, selection_bounds(), aspect, look());
-         else
-           frame(v, selection_bounds(), aspect);
-       });
+  registry.add({.name = std::move(name),
+                .help = std::move(help),
+                .parameters = std::move(parameters),
+                .run =
+                    [this, act = std::move(act)](const Arguments& a) {
+                      needs_view();
+                      Viewpoint moving = *view;
+                      act(moving, a);
+                      view = moving;
+                      moved();
+                    },
+                .moves = true});
+}
 
+void Workspace::add_camera_commands() {
+  add_motion_commands();
+  add_lens_commands();
   registry.add({.name = "camera.speed",
                 .help = "Sets the speed of flight.",
                 .parameters = {real("speed", "", "m/s", 1e-3, 1e4)},
@@ -178,7 +123,74 @@ void Workspace::add_camera_commands() {
                       scene_camera = index;
                     },
                 .moves = true});
+}
 
+void Workspace::add_motion_commands() {
+  add_motion(
+      "camera.orbit", "Turns the eye about what it looks at, or about any point.",
+      {real("right", "counter-clockwise seen from above", "radians"), real("up", "raises the eye", "radians"),
+       optional(vector("about", "a point of the scene", "m"))},
+      [](Viewpoint& v, const Arguments& a) {
+        const vec2 angles(a.number("right"), a.number("up"));
+        if (a.has("about"))
+          orbit_about(v, a.vector("about"), angles);
+        else
+          orbit(v, angles);
+      });
+  add_motion("camera.look", "Turns the view about the eye.",
+             {real("left", "to the left", "radians"), real("up", "upwards", "radians")},
+             [](Viewpoint& v, const Arguments& a) {
+               commands::look(v, {a.number("left"), a.number("up")});
+             });
+  add_motion("camera.pan", "Moves sideways, as a drag across the picture does.",
+             {real("right", "the picture moves to the right", "picture heights"),
+              real("down", "the picture moves down", "picture heights")},
+             [](Viewpoint& v, const Arguments& a) {
+               pan(v, {a.number("right"), a.number("down")}, 1);
+             });
+  add_motion("camera.dolly", "Comes closer by a tenth of the distance a step.",
+             {real("steps", "negative: goes away", "steps", -1000, 1000)},
+             [](Viewpoint& v, const Arguments& a) { dolly(v, a.number("steps")); });
+  add_motion("camera.fly", "Moves along the camera's own axes.",
+             {real("right", "", "m"), real("up", "", "m"), real("forward", "", "m")},
+             [](Viewpoint& v, const Arguments& a) {
+               fly(v, {a.number("right"), a.number("up"), a.number("forward")});
+             });
+  add_motion("camera.place", "Puts the camera at a place, looking at a point that it then orbits about.",
+             {vector("eye", "where it stands", "m"), vector("target", "what it looks at", "m"),
+              vector("up", "what is upwards in the picture", ""), optional(fov()), optional(height())},
+             [](Viewpoint& v, const Arguments& a) {
+               if (!place(v, a.vector("eye"), a.vector("target"), a.vector("up")))
+                 throw Error("", "eye and target must differ, and up must not point from one to the other");
+               if (a.has("fov")) set_fov(v.camera, a.real("fov"));
+               if (a.has("height")) set_height(v.camera, a.number("height"));
+             });
+  add_motion(
+      "camera.frame",
+      "Moves so that the selection, or else the whole scene, fills the picture; not into or behind a wall.",
+      {}, [this](Viewpoint& v, const Arguments&) {
+        probe(true);
+        if (selection.kind != Kind::none)
+          frame_clear(v, selection_bounds(), aspect, look_past_selection());
+        else if (!v.camera.orthographic && enclosed(look(), eye_of(v.camera), v.extent))
+          frame_inside(v, selection_bounds(), aspect, look());
+        else
+          frame(v, selection_bounds(), aspect);
+      });
+}
+
+void Workspace::add_lens_commands() {
+  add_motion("camera.fov", "Sets the field of view of a perspective camera.", {fov()},
+             [](Viewpoint& v, const Arguments& a) { set_fov(v.camera, a.real("fov")); });
+  add_motion("camera.height", "Sets what an orthographic camera sees.", {height()},
+             [](Viewpoint& v, const Arguments& a) { set_height(v.camera, a.number("height")); });
+  add_motion("camera.lens", "Sets the field of view by a focal length, for a frame 36 mm wide.",
+             {real("length", "focal length", "mm", 1, 2000)}, [this](Viewpoint& v, const Arguments& a) {
+               set_fov(v.camera, k_degrees * yfov_from_focal_length(a.number("length"), aspect));
+             });
+}
+
+void Workspace::add_selection_commands() {
   registry.add(
       {.name = "select",
        .help = "Selects a thing of the scene.",

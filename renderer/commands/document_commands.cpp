@@ -113,6 +113,61 @@ void aim(const Arguments& a, scene::Light& light) {
   light.outer_cone = std::max(light.outer_cone, light.inner_cone);
 }
 
+/// What "light.set" may change.
+std::vector<Parameter> light_parameters() {
+  return {
+      {.name = "intensity",
+       .type = Type::real,
+       .help = "of the strongest channel; W/m2 for a sun",
+       .lo = 0,
+       .hi = 1e9,
+       .unit = "W/sr",
+       .optional = true},
+      {.name = "color",
+       .type = Type::vector,
+       .help = "linear; its strongest channel is scaled to 1",
+       .lo = 0,
+       .hi = 1e9,
+       .optional = true},
+      {.name = "on", .type = Type::boolean, .help = "whether it shines", .optional = true},
+      kelvin(),
+      {.name = "power",
+       .type = Type::real,
+       .help = "all that a lamp gives off, in its strongest channel; instead of intensity",
+       .lo = 0,
+       .hi = 1e9,
+       .unit = "W",
+       .optional = true},
+      {.name = "position",
+       .type = Type::vector,
+       .help = "of a lamp",
+       .lo = -1e6,
+       .hi = 1e6,
+       .unit = "m",
+       .optional = true},
+      {.name = "direction",
+       .type = Type::vector,
+       .help = "in which a sun or a spot shines; any length above 0",
+       .lo = -1e6,
+       .hi = 1e6,
+       .optional = true},
+      angle("azimuth", "from where a sun or a spot shines, as a compass: 0 from -Z, 90 from +X", -360, 360),
+      angle("elevation", "the same above the horizon", -90, 90),
+      angle("cone", "of a spot, from its axis to where there is no light", 0.01, 90),
+      angle("inner_cone", "of a spot, from its axis to where its light begins to fade", 0, 90)};
+}
+
+/// Strength, colour and switch as asked for.
+void shine(const Arguments& a, scene::Light& light) {
+  float strength = strength_of(light.intensity);
+  const vec3 tint = tint_asked(a, "color", tint_of(light.intensity));
+  if (a.has("intensity")) strength = a.number("intensity");
+  if (a.has("power")) strength = a.number("power") / std::max(float(scene::solid_angle(light)), 1e-9f);
+  if (a.has("intensity") || a.has("power") || a.has("color") || a.has("kelvin"))
+    light.intensity = strength * tint;
+  if (a.has("on")) light.enabled = a.boolean("on");
+}
+
 }  // namespace
 
 void Workspace::needs_scene() const {
@@ -154,6 +209,7 @@ uint32_t Workspace::material_index(const std::string& which) const {
 void Workspace::add_document_commands() {
   add_setting_commands();
   add_light_commands();
+  add_environment_commands();
   add_material_commands();
   add_shown_commands();
   registry.add({.name = "undo",
@@ -216,76 +272,33 @@ void Workspace::add_light_commands() {
     return names;
   };
 
-  registry.add(
-      {.name = "light.set",
-       .help = "Changes a light of the scene. What is not given stays as it is.",
-       .parameters =
-           {{.name = "light", .help = "its name, or its number from 1", .which = true, .names = light_names},
-            {.name = "intensity",
-             .type = Type::real,
-             .help = "of the strongest channel; W/m2 for a sun",
-             .lo = 0,
-             .hi = 1e9,
-             .unit = "W/sr",
-             .optional = true},
-            {.name = "color",
-             .type = Type::vector,
-             .help = "linear; its strongest channel is scaled to 1",
-             .lo = 0,
-             .hi = 1e9,
-             .optional = true},
-            {.name = "on", .type = Type::boolean, .help = "whether it shines", .optional = true},
-            kelvin(),
-            {.name = "power",
-             .type = Type::real,
-             .help = "all that a lamp gives off, in its strongest channel; instead of intensity",
-             .lo = 0,
-             .hi = 1e9,
-             .unit = "W",
-             .optional = true},
-            {.name = "position",
-             .type = Type::vector,
-             .help = "of a lamp",
-             .lo = -1e6,
-             .hi = 1e6,
-             .unit = "m",
-             .optional = true},
-            {.name = "direction",
-             .type = Type::vector,
-             .help = "in which a sun or a spot shines; any length above 0",
-             .lo = -1e6,
-             .hi = 1e6,
-             .optional = true},
-            angle("azimuth", "from where a sun or a spot shines, as a compass: 0 from -Z, 90 from +X", -360,
-                  360),
-            angle("elevation", "the same above the horizon", -90, 90),
-            angle("cone", "of a spot, from its axis to where there is no light", 0.01, 90),
-            angle("inner_cone", "of a spot, from its axis to where its light begins to fade", 0, 90)},
-       .check =
-           [](const Arguments& a) {
-             exclude(a, "intensity", "power"), exclude(a, "color", "kelvin");
-             exclude(a, "direction", "azimuth"), exclude(a, "direction", "elevation");
-           },
-       .run =
-           [this](const Arguments& a) {
-             const uint32_t index = light_index(a.text("light"));
-             Document::Light& edited = edit().lights[index];
-             scene::Light light = scene->lights[index];
-             edited.put(light);
-             check_kind(a, light);
-             aim(a, light);
-             float strength = strength_of(light.intensity);
-             const vec3 tint = tint_asked(a, "color", tint_of(light.intensity));
-             if (a.has("intensity")) strength = a.number("intensity");
-             if (a.has("power"))
-               strength = a.number("power") / std::max(float(scene::solid_angle(light)), 1e-9f);
-             if (a.has("intensity") || a.has("power") || a.has("color") || a.has("kelvin"))
-               light.intensity = strength * tint;
-             if (a.has("on")) light.enabled = a.boolean("on");
-             edited = Document::of(light);
-           },
-       .undoable = true});
+  std::vector<Parameter> parameters = light_parameters();
+  parameters.insert(
+      parameters.begin(),
+      {.name = "light", .help = "its name, or its number from 1", .which = true, .names = light_names});
+  registry.add({.name = "light.set",
+                .help = "Changes a light of the scene. What is not given stays as it is.",
+                .parameters = std::move(parameters),
+                .check =
+                    [](const Arguments& a) {
+                      exclude(a, "intensity", "power"), exclude(a, "color", "kelvin");
+                      exclude(a, "direction", "azimuth"), exclude(a, "direction", "elevation");
+                    },
+                .run =
+                    [this](const Arguments& a) {
+                      const uint32_t index = light_index(a.text("light"));
+                      Document::Light& edited = edit().lights[index];
+                      scene::Light light = scene->lights[index];
+                      edited.put(light);
+                      check_kind(a, light);
+                      aim(a, light);
+                      shine(a, light);
+                      edited = Document::of(light);
+                    },
+                .undoable = true});
+}
 
+void Workspace::add_environment_commands() {
   registry.add({.name = "environment.set",
                 .help = "Changes the light from infinitely far. What is not given stays as it is.",
                 .parameters = {{.name = "scale",

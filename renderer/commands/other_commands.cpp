@@ -1,4 +1,4 @@
-// Commands on the scene's file, on rendering and on scripts themselves.
+// Commands on the scene's file, on rendering and on scripts themselves; and those that wait.
 #include <algorithm>
 #include <utility>
 
@@ -22,15 +22,14 @@ std::string settings_manual() {
 
 }  // namespace
 
-void Workspace::add_other_commands() {
-  const Parameter limit = time_limit();
-  const auto act = [this](const char* name, const char* help, std::function<void()> run) {
-    registry.add(
-        {.name = name, .help = help, .parameters = {}, .run = [run = std::move(run)](const Arguments&) {
-           run();
-         }});
-  };
+void Workspace::add_plain(const char* name, const char* help, std::function<void()> run) {
+  registry.add(
+      {.name = name, .help = help, .parameters = {}, .run = [run = std::move(run)](const Arguments&) {
+         run();
+       }});
+}
 
+void Workspace::add_scene_commands() {
   registry.add({.name = "scene.open",
                 .help = "Opens a glTF scene. The one shown stays until the new one is ready, or if it fails.",
                 .parameters = {file_named({".gltf", ".glb"})},
@@ -50,26 +49,28 @@ void Workspace::add_other_commands() {
                       if (std::exchange(opening_, false)) forget_open();
                     },
                 .recorded = false});
-  act("render.pause", "Stops taking samples.", [this] {
+}
+
+void Workspace::add_render_commands() {
+  add_plain("render.pause", "Stops taking samples.", [this] {
     record_wait();
     session.set_paused(true);
   });
-  act("render.resume", "Goes on taking samples.", [this] { session.set_paused(false); });
-  act("render.restart", "Throws the samples away and starts the picture anew.",
-      [this] { session.restart(); });
-  act("shaders.reload", "Compiles the shaders again; when that fails the old ones stay.",
-      [this] { session.reload_shaders(); });
+  add_plain("render.resume", "Goes on taking samples.", [this] { session.set_paused(false); });
+  add_plain("render.restart", "Throws the samples away and starts the picture anew.",
+            [this] { session.restart(); });
+  add_plain("shaders.reload", "Compiles the shaders again; when that fails the old ones stay.",
+            [this] { session.reload_shaders(); });
   registry.add({.name = "image.save",
                 .help = "Writes the picture as it is, once every pixel has a sample: all layers as EXR, or "
                         "what is shown as PNG. A script waits for that, and fails when it cannot be.",
-                .parameters = {file_to_write({".exr", ".png"}), limit},
+                .parameters = {file_to_write({".exr", ".png"}), time_limit()},
                 .run =
                     [this](const Arguments& a) {
                       record_wait();
                       saved_ = session.save(a.text("file"));
                     },
                 .done = [this](const Arguments&) { return saved(); }});
-
   registry.add({.name = "reference.load",
                 .help = "Takes a picture for the truth, to hold this one against: an EXR with all layers, of "
                         "the same scene, view and size.",
@@ -78,8 +79,11 @@ void Workspace::add_other_commands() {
                   needs_scene();
                   session.set_reference(a.text("file"));
                 }});
-  act("reference.clear", "Forgets the picture taken for the truth.", [this] { session.clear_reference(); });
+  add_plain("reference.clear", "Forgets the picture taken for the truth.",
+            [this] { session.clear_reference(); });
+}
 
+void Workspace::add_script_commands() {
   registry.add({.name = "script.save",
                 .help =
                     "Writes what was done in this session, as a script that does it again: where a picture "
@@ -107,7 +111,10 @@ void Workspace::add_other_commands() {
        .run =
            [this](const Arguments& a) { log::info("{}", manual(a.has("command") ? a.text("command") : "")); },
        .recorded = false});
+}
 
+void Workspace::add_wait_commands() {
+  const Parameter limit = time_limit();
   registry.add({.name = "wait",
                 .help = "In a script: lets the window run. Saved sessions leave it out.",
                 .parameters = {{.name = "time", .type = Type::real, .lo = 0, .hi = 86400, .unit = "seconds"}},
@@ -138,20 +145,20 @@ void Workspace::add_other_commands() {
            [this](const Arguments&) {
              waited_since_ = now, waited_errors_ = error_count, waited_id_ = snapshot ? snapshot->id : 0;
            },
-       .done =
-           [this](const Arguments& a) {
-             if (snapshot && snapshot->id != waited_id_) waited_id_ = snapshot->id, waited_since_ = now;
-             if (error_count > waited_errors_ && now - waited_since_ > k_standstill)
-               throw Error("", "the picture stands still after an error");
-             if (!snapshot || camera_moved || resizing) return false;
-             if (const solvers::Report* told = waiting(); told && up_to_date())
-               throw Error("", told->to_go_on);
-             // A picture of an earlier camera does not count.
-             if (view && !same_view(snapshot->camera, view->camera)) return false;
-             // Nor does one from before the last edits.
-             if (!up_to_date()) return false;
-             return snapshot->finished || (!snapshot->coarse && snapshot->samples >= a.integer("samples"));
-           }});
+       .done = [this](const Arguments& a) { return has_samples(a.integer("samples")); }});
+}
+
+bool Workspace::has_samples(int64_t samples) {
+  if (snapshot && snapshot->id != waited_id_) waited_id_ = snapshot->id, waited_since_ = now;
+  if (error_count > waited_errors_ && now - waited_since_ > k_standstill)
+    throw Error("", "the picture stands still after an error");
+  if (!snapshot || camera_moved || resizing) return false;
+  if (const solvers::Report* told = waiting(); told && up_to_date()) throw Error("", told->to_go_on);
+  // A picture of an earlier camera does not count.
+  if (view && !same_view(snapshot->camera, view->camera)) return false;
+  // Nor does one from before the last edits.
+  if (!up_to_date()) return false;
+  return snapshot->finished || (!snapshot->coarse && snapshot->samples >= samples);
 }
 
 std::string Workspace::manual(const std::string& topic) const {

@@ -61,10 +61,14 @@ const char* kind_name(Kind kind) {
 Workspace::Workspace(session::Session& s) : session(s) {
   add_document_commands();
   add_camera_commands();
+  add_selection_commands();
   add_interior_commands();
   add_bookmark_commands();
   add_exposure_commands();
-  add_other_commands();
+  add_scene_commands();
+  add_render_commands();
+  add_script_commands();
+  add_wait_commands();
   add_inspect_commands();
   add_solver_commands();
 }
@@ -253,6 +257,14 @@ void Workspace::send(const Document& before, const Document& after) {
 Line Workspace::run(const std::string& text, uint64_t gesture, const std::string& where) {
   const Line line = registry.parse(text, where);
   if (!line.command) return line;
+  const uint64_t before = session.commands();
+  carry_out(line, gesture, where);
+  // The camera is sent a little later.
+  if (session.commands() > before || line.command->moves) sent_line_ = text;
+  return line;
+}
+
+void Workspace::carry_out(const Line& line, uint64_t gesture, const std::string& where) {
   const auto located = [&](auto&& act) {
     try {
       act();
@@ -269,7 +281,7 @@ Line Workspace::run(const std::string& text, uint64_t gesture, const std::string
     located([&] { line.command->run(line.arguments); });
     if (line.command->moves && view_before) note_move(line, gesture, *view_before, camera_before);
     record(line, gesture);
-    return line;
+    return;
   }
   const std::string target = registry.target(line);
   const bool merges = gesture != 0 && !undo_.empty() && undo_.back().gesture == gesture &&
@@ -288,11 +300,10 @@ Line Workspace::run(const std::string& text, uint64_t gesture, const std::string
   else if (after != now_seen)
     undo_.push_back({registry.print(line), target, gesture, now_seen, after});
   else if (!asked)
-    return line;
+    return;
   if (undo_.size() > k_steps) undo_.erase(undo_.begin());
   redo_.clear();
   record(line, gesture);
-  return line;
 }
 
 void Workspace::note_move(const Line& line, uint64_t gesture, const Viewpoint& before, int camera_before) {

@@ -79,6 +79,10 @@ class Workspace {
   /// Errors seen so far, counted by whoever listens to the log.
   uint64_t error_count = 0;
 
+  /// The last line, of a control, a script or the console, that has given the session something to do; ""
+  /// before.
+  const std::string& sent_line() const { return sent_line_; }
+
   /// Carries out a line. Lines of one `gesture` (not 0) on the same target are one step to undo and one line
   /// of the script: the last. Throws Error, at `where`, when it is not understood or cannot be done; then
   /// nothing has changed. Returns the line that was understood.
@@ -202,17 +206,32 @@ class Workspace {
   void add_document_commands();
   void add_setting_commands();
   void add_light_commands();
+  void add_environment_commands();
   void add_material_commands();
   void add_shown_commands();
   void add_camera_commands();
+  void add_motion_commands();
+  void add_lens_commands();
+  /// A command that moves the camera: `act` has the viewpoint that it starts from.
+  void add_motion(std::string name, std::string help, std::vector<Parameter> parameters,
+                  std::function<void(Viewpoint&, const Arguments&)> act);
+  void add_selection_commands();
   void add_interior_commands();
   void add_bookmark_commands();
   void add_exposure_commands();
-  void add_other_commands();
+  void add_scene_commands();
+  void add_render_commands();
+  void add_script_commands();
+  void add_wait_commands();
+  /// A command without parameters.
+  void add_plain(const char* name, const char* help, std::function<void()> run);
+  /// Whether the picture holds so many samples a pixel, or is finished. Throws Error when it will not.
+  bool has_samples(int64_t samples);
   void add_inspect_commands();
   void add_solver_commands();
   void add_file_commands(const solvers::SolverInfo& solver);
   void add_leading_commands(const solvers::SolverInfo& solver);
+  void carry_out(const Line& line, uint64_t gesture, const std::string& where);
   Document& edit();  ///< the document that the running command may change
   void send(const Document& before, const Document& after);
   void record(const Line& line, uint64_t gesture);
@@ -270,6 +289,7 @@ class Workspace {
   std::array<bool, session::k_components> shown_before_{};
   std::optional<Document> working_;
   std::vector<std::string> touched_;  ///< settings that the running command set, changed or not
+  std::string sent_line_;
   std::vector<Step> undo_, redo_;
   std::vector<Recorded> recorded_;
   session::Saved saved_;                        ///< of the last command that writes a file

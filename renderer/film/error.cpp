@@ -20,10 +20,6 @@ double student_90(double degrees) {
   return z + (g1 + (g2 + g3 / n) / n) / n;
 }
 
-double error_sum(double paths, double records, double interpolation) {
-  return std::hypot(paths, records) + interpolation;
-}
-
 RecordsError records_error(std::span<const shared::BlockRecords> blocks) {
   using shared::k_record_lanes;
   double pixels = 0;

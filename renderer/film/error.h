@@ -1,30 +1,23 @@
 #pragma once
 // The error of a picture, of its tiles and of the whole, by where it comes from:
 // - paths: the noise of the samples, from the two independently scrambled halves of the film. More samples
-// take
-//   it away.
+//   take it away.
 // - records: the noise of what the samples read of records, which all of them have in common.
 // - interpolation: what reading between records is off by, for ever; as an absolute value.
 // The last two are known where somebody has told the film of them (Film::record_errors_complete()), and 0
-// where nothing is read. The noises are independent of each other, so that their variances add up;
-// interpolation's part has a sign that nobody knows, and is added to what they come to: sum = hypot(paths,
-// records) + interpolation.
+// where nothing is read. What they come to together: base/error_sum.h.
 //
 // What else a biased solver gets wrong for ever is not in it.
 #include <array>
 #include <span>
 #include <vector>
 
+#include "base/error_sum.h"
 #include "film/film.h"
 
 namespace lucerna::film {
 
-/// Display radiance (after exposure) below which noise is held against this value instead of the pixel's own:
-/// 5 % of it is about one step of an 8-bit sRGB picture, so that black corners do not eat the render.
-inline constexpr float k_luminance_floor = 0.02f;
-
-/// hypot(paths, records) + interpolation.
-double error_sum(double paths, double records, double interpolation);
+using shared::k_luminance_floor;
 
 /// What records make of a mean over some blocks, in luminance; degrees: of freedom of noise^2.
 struct RecordsError {

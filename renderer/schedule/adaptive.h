@@ -9,11 +9,11 @@
 // is not theirs and does not fall: sampling then goes on until the sum is under the target, and where records
 // alone keep it over, until samples add little to that. Pure functions of counts and errors: the same errors
 // give the same schedule, whatever the machine's speed.
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "base/error_sum.h"
 #include "schedule/work.h"
 
 namespace lucerna::schedule {
@@ -31,8 +31,7 @@ struct TileMark {
   uint32_t samples = 0;  ///< a pixel; 0: not known
 };
 
-/// A tile's relative error by where it comes from, as film::RelativeError; the sum is hypot(paths, records) +
-/// interpolation.
+/// A tile's relative error by where it comes from, as film::RelativeError; base/error_sum.h has the sum.
 struct TileErrors {
   float paths = 0, records = 0, interpolation = 0;
 };
@@ -51,7 +50,7 @@ struct Tile {
   TileState state = TileState::waiting;
   TileMark last, earlier;  ///< the newest after which samples have doubled, and the one before
   float goal(float target) const { return paths_goal(target, records, interpolation); }
-  float sum() const { return std::hypot(error, records) + interpolation; }
+  float sum() const { return error_sum(error, records, interpolation); }
   /// Whether the sum is under the target, but for rounding where goal() comes of it.
   bool reached(float target) const {
     return sum() <= (records > 0 || interpolation > 0 ? 1.0001f * target : target);

@@ -2,7 +2,6 @@
 // What the window shows of accuracy: the ledger of the image in progress, its tiles, its passes. Kept on the
 // session's thread, published as a whole.
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error_sum.h"
 #include "shaders/shared/film.h"
 #include "shaders/shared/ramp.h"
 #include "stats/forecast.h"
@@ -23,7 +23,7 @@ class Renderer;
 struct TileStatus {
   float error = -1;                      ///< relative, of the paths; negative: not known
   float records = 0, interpolation = 0;  ///< ... and of what they read of records
-  float sum() const { return error < 0 ? error : std::hypot(error, records) + interpolation; }
+  float sum() const { return error < 0 ? error : error_sum(error, records, interpolation); }
   uint32_t samples = 0;
   uint32_t pixels = 0;
   /// The same with a half to a quarter of the samples, in adaptive sampling; 0: not known.

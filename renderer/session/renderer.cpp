@@ -364,19 +364,4 @@ bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   return true;
 }
 
-void Renderer::render_coarse(const std::function<bool()>& cancel) {
-  if (!engine_) return;
-  clock_.go();
-  const PictureView view = picture_view();
-  transport::Wavefront& wavefront = engine_->wavefront();
-  coarse_->clear(wavefront.stream());
-  wavefront.set_frame(engine_->frame(view, coarse_->width(), coarse_->height()), engine_->plan().enabled());
-  schedule::UniformSchedule schedule(coarse_->blocks(), 1, wavefront.slots());
-  wavefront.uncounted([&] {
-    while (!schedule.done() && wavefront.run(schedule.next(), *coarse_, cancel)) {
-    }
-  });
-  wavefront.set_frame(engine_->frame(view, width_, height_), engine_->plan().enabled());
-}
-
 }  // namespace lucerna::session

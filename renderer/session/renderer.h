@@ -113,15 +113,12 @@ class Renderer {
   /// One work item; cancellable between bounces. False when there was nothing to do or it was cancelled, or
   /// while preparation waits.
   bool step(const std::function<bool()>& cancel = {});
-  /// A quick image of a quarter of the resolution, for display until the film is filled.
-  /// Its paths, rays and time are not in stats().
-  void render_coarse(const std::function<bool()>& cancel = {});
-
-  /// For display, where RendererOptions::interactive: another sample of a draft, if it is time for one. False
-  /// when nothing was drawn.
+  /// For display until the film is filled, where RendererOptions::interactive: another sample of a draft, of
+  /// fewer pixels, if it is time for one; the first comes at once, of a quarter of the resolution. Its paths,
+  /// rays and time are not in stats(). False when nothing was drawn.
   bool draw_draft(const std::function<bool()>& cancel = {});
 
-  /// The person's clock: seconds since this image's first step() or render_coarse(), whatever else was done
+  /// The person's clock: seconds since this image's first step() or draw_draft(), whatever else was done
   /// meanwhile; not between rest() and the next of these, nor after the last.
   double seconds() const { return clock_.seconds(); }
   /// The clock stands still from now on: rendering waits, for a person or for a scene.

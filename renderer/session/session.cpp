@@ -206,49 +206,113 @@ struct Session::Impl {
     }
   }
 
+  /// Null where there is no device to render with, which is told.
+  std::unique_ptr<Renderer> make_renderer();
+  /// The first command of the queue. `lock` is held before and after, not meanwhile.
+  void carry_out_next(Renderer* renderer, std::unique_lock<std::mutex>& lock);
+  /// A draft or, where there is `work`, a piece of the picture; publishes it when it is time.
+  void advance(Renderer& renderer, bool work);
+  void publish_picture(Renderer& renderer, bool numbers);
+  /// What is still to be written, before the thread ends; `lock` is held before and not after.
+  void end(Renderer* renderer, std::unique_lock<std::mutex>& lock);
   void run();
 };
+
+std::unique_ptr<Renderer> Session::Impl::make_renderer() {
+  try {
+    auto renderer = std::make_unique<Renderer>(
+        RendererOptions{options.device, options.validation, options.shaders, {}, true, options.scenes});
+    next.device = renderer->device().info().name;
+    publish();
+    return renderer;
+  } catch (const std::exception& e) {
+    log::error("{}", e.what());
+    publish_activity(std::string("no device: ") + e.what(), -1);
+    return nullptr;
+  }
+}
+
+void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
+  Command command = std::move(queue.front());
+  queue.pop_front();
+  lock.unlock();
+  try {
+    if (!renderer) throw Error("device", "there is none to render with");
+    command.run(*renderer);
+    write_due(*renderer);
+  } catch (const std::exception& e) {
+    log::error("{}", e.what());
+  }
+  command = {};
+  if (renderer) {
+    lock.lock();
+    settings = renderer->settings();
+    scene = renderer->scene();
+    pending = !queue.empty();
+    lock.unlock();
+  }
+  next.activity.clear();
+  next.progress = -1;
+  ++next.commands;
+  dirty = true;
+  lock.lock();
+}
+
+void Session::Impl::advance(Renderer& renderer, bool work) {
+  // What was there before, as it is seen now, does not wait for new light.
+  if (std::exchange(recall_wanted, false) && renderer.remembers()) publish_picture(renderer, false);
+  bool changed = dirty;
+  // A row of edits that come faster than drafts are drawn shows some of them all the same.
+  const auto draft_cancelled = [&] {
+    return quit || (pending && (!draft_given_up || since_given_up.seconds() < k_draft_seconds));
+  };
+  if (!paused && renderer.draw_draft(draft_cancelled)) {
+    draft_given_up = false;
+    // The first one is shown at once; more of them as pictures are.
+    changed = changed || std::exchange(coarse_wanted, false);
+  } else if (pending && coarse_wanted) {
+    if (!std::exchange(draft_given_up, true)) since_given_up.restart();
+  } else if (work && renderer.step([&] { return pending.load() || quit; })) {
+    accuracy.follow(renderer, next.scene_id);
+  }
+  // The last line of the ledger is that of the finished image.
+  if (renderer.done() && !renderer.ledger().entries().empty() &&
+      renderer.ledger().entries().back().paths != renderer.stats().paths)
+    renderer.finish_ledger();
+  if (!filled && renderer.samples() > 0) filled = changed = true;
+  if (changed || since_publish.seconds() > publish_seconds || renderer.done() || renderer.waits())
+    publish_picture(renderer,
+                    renderer.samples() > 0 && (since_numbers.seconds() > numbers_seconds || renderer.done()));
+}
+
+/// `numbers`: with what has to be read back from the film.
+void Session::Impl::publish_picture(Renderer& renderer, bool numbers) {
+  if (numbers) since_numbers.restart();
+  fill_snapshot(renderer, numbers);
+  publish();
+  since_publish.restart();
+  dirty = false;
+}
+
+void Session::Impl::end(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
+  for (Command& command : queue)
+    if (command.saves && renderer) command.run(*renderer);
+  queue.clear();
+  lock.unlock();
+  std::erase_if(saves, [&](const Save& save) {
+    if (save.solver.empty()) write(*renderer, save);
+    return save.solver.empty();
+  });
+  give_up_saves("the program ended");
+}
 
 void Session::Impl::run() {
   // Threads that the device starts inherit this, so that the window is served first.
   setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), k_nice);
-  std::unique_ptr<Renderer> renderer;
-  try {
-    renderer = std::make_unique<Renderer>(
-        RendererOptions{options.device, options.validation, options.shaders, {}, true, options.scenes});
-    next.device = renderer->device().info().name;
-    publish();
-  } catch (const std::exception& e) {
-    log::error("{}", e.what());
-    publish_activity(std::string("no device: ") + e.what(), -1);
-  }
+  const std::unique_ptr<Renderer> renderer = make_renderer();
   std::unique_lock lock(mutex);
   while (!quit) {
-    while (!queue.empty() && !quit) {
-      Command command = std::move(queue.front());
-      queue.pop_front();
-      lock.unlock();
-      try {
-        if (!renderer) throw Error("device", "there is none to render with");
-        command.run(*renderer);
-        write_due(*renderer);
-      } catch (const std::exception& e) {
-        log::error("{}", e.what());
-      }
-      command = {};
-      if (renderer) {
-        lock.lock();
-        settings = renderer->settings();
-        scene = renderer->scene();
-        pending = !queue.empty();
-        lock.unlock();
-      }
-      next.activity.clear();
-      next.progress = -1;
-      ++next.commands;
-      dirty = true;
-      lock.lock();
-    }
+    while (!queue.empty() && !quit) carry_out_next(renderer.get(), lock);
     pending = false;
     const bool work = renderer && works(*renderer);
     if (renderer && !work) renderer->rest();
@@ -257,44 +321,9 @@ void Session::Impl::run() {
       continue;
     }
     lock.unlock();
-    const auto cancelled = [&] { return pending.load() || quit; };
     try {
       if (renderer && renderer->ready()) {
-        // What was there before, as it is seen now, does not wait for new light.
-        if (std::exchange(recall_wanted, false) && renderer->remembers()) {
-          fill_snapshot(*renderer, false);
-          publish();
-          since_publish.restart();
-          dirty = false;
-        }
-        bool changed = dirty;
-        // A row of edits that come faster than drafts are drawn shows some of them all the same.
-        const auto draft_cancelled = [&] {
-          return quit || (pending && (!draft_given_up || since_given_up.seconds() < k_draft_seconds));
-        };
-        if (!paused && renderer->draw_draft(draft_cancelled)) {
-          draft_given_up = false;
-          // The first one is shown at once; more of them as pictures are.
-          changed = changed || std::exchange(coarse_wanted, false);
-        } else if (pending && coarse_wanted) {
-          if (!std::exchange(draft_given_up, true)) since_given_up.restart();
-        } else if (work && renderer->step(cancelled)) {
-          accuracy.follow(*renderer, next.scene_id);
-        }
-        // The last line of the ledger is that of the finished image.
-        if (renderer->done() && !renderer->ledger().entries().empty() &&
-            renderer->ledger().entries().back().paths != renderer->stats().paths)
-          renderer->finish_ledger();
-        if (!filled && renderer->samples() > 0) filled = changed = true;
-        if (changed || since_publish.seconds() > publish_seconds || renderer->done() || renderer->waits()) {
-          const bool numbers =
-              renderer->samples() > 0 && (since_numbers.seconds() > numbers_seconds || renderer->done());
-          if (numbers) since_numbers.restart();
-          fill_snapshot(*renderer, numbers);
-          publish();
-          since_publish.restart();
-          dirty = false;
-        }
+        advance(*renderer, work);
       } else {
         publish();
         dirty = false;
@@ -310,15 +339,7 @@ void Session::Impl::run() {
     if (renderer) write_due(*renderer);
     lock.lock();
   }
-  for (Command& command : queue)
-    if (command.saves && renderer) command.run(*renderer);
-  queue.clear();
-  lock.unlock();
-  std::erase_if(saves, [&](const Save& save) {
-    if (save.solver.empty()) write(*renderer, save);
-    return save.solver.empty();
-  });
-  give_up_saves("the program ended");
+  end(renderer.get(), lock);
 }
 
 Session::Session(const Options& options) : impl_(std::make_unique<Impl>()) {

@@ -2,11 +2,12 @@
 // What a render has cost so far and how good it is: one line each time the work has grown by a quarter or
 // half, so that the whole story of a long render is a few dozen lines, evenly spaced in log time.
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "base/error_sum.h"
 
 namespace lucerna::stats {
 
@@ -38,7 +39,7 @@ struct Entry {
   /// interpolation between these is off by (film/error.h). Samples do not take it away.
   double records = 0, interpolation = 0;
   /// Error of the sum by all three: what is told of the picture.
-  double sum() const { return std::hypot(error[0], records) + interpolation; }
+  double sum() const { return error_sum(error[0], records, interpolation); }
   /// What no samples go below.
   double floor() const { return records + interpolation; }
   /// Error of the tiles, of the sum, each over its own pixels' luminance (film::TileError::relative_sum): of

@@ -29,96 +29,135 @@ float sum_of_rows(uint what, uint first, uint rows) {
   return sum;
 }
 
-void main() {
-  uint lane = gl_LocalInvocationIndex, row = lane % k_block, entry = global_index() / k_block;
-  bool working = entry < push.block_count;
-  WorkBlock block = blocks[working ? entry : 0u];
-  uint across = (push.width + k_block - 1u) / k_block;
-  uvec2 first = k_block * uvec2(block.index % across, block.index / across) + uvec2(0u, row);
-  float y0[k_block], v0[k_block];
+// A row of a block.
+struct Row {
+  float y[k_block], v[k_block];  // of its pixels: luminance and variance, of [0]; 0 where there are no two samples
+  float half_y[2], half_n[2];    // of its halves
 #if LUCERNA_LOOKUP_ERRORS
-  vec2 r0[k_block];
-  vec2 records = vec2(0.0), records_relative = vec2(0.0);
+  vec2 squares[k_block];  // of its pixels, as FilmRecords
+  vec2 records;           // their sum
 #endif
-  float half_y[2], half_n[2];
-  half_y[0] = half_y[1] = half_n[0] = half_n[1] = 0.0;
-  float ys[5], vs[5], fourth = 0.0;
-  for (uint c = 0u; c < 5u; ++c) ys[c] = vs[c] = 0.0;
+#if !LUCERNA_STOPPING_ONLY
+  float ys[5], vs[5], fourth;  // sums over the row, as BlockError
+#endif
+};
+
+// Means of the luminance in the film's two halves, of the sum and by component.
+void read_halves(uint pixel, uint count, out float a[5], out float b[5]) {
+  float even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
+  for (uint c = 0u; c < k_component_count; ++c) {
+    a[1u + c] = b[1u + c] = 0.0;
+    for (uint group = 0u; group < k_group_count; ++group) {
+      FilmPixel p = film_load(lane_of(group, c), pixel, push.width * push.height);
+      a[1u + c] += half_luminance(p.even, even);
+      b[1u + c] += half_luminance(p.odd, odd);
+    }
+  }
+  a[0] = a[1] + a[2] + a[3] + a[4];
+  b[0] = b[1] + b[2] + b[3] + b[4];
+}
+
+// The row that begins at the pixel `first`; an empty one where there is no work.
+Row read_row(bool working, uvec2 first) {
+  Row r;
+  r.half_y[0] = r.half_y[1] = r.half_n[0] = r.half_n[1] = 0.0;
+#if LUCERNA_LOOKUP_ERRORS
+  r.records = vec2(0.0);
+#endif
+#if !LUCERNA_STOPPING_ONLY
+  r.fourth = 0.0;
+  for (uint c = 0u; c < 5u; ++c) r.ys[c] = r.vs[c] = 0.0;
+#endif
   for (uint x = 0u; x < k_block; ++x) {
     bool inside = working && first.x + x < push.width && first.y < push.height;
     uint pixel = inside ? first.y * push.width + first.x + x : 0u;
     uint count = inside ? film_count[pixel] : 0u;
     bool there = count >= 2u;
-    float even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
     float a[5], b[5];
-    for (uint c = 0u; c < k_component_count; ++c) {
-      a[1u + c] = b[1u + c] = 0.0;
-      for (uint group = 0u; group < k_group_count; ++group) {
-        FilmPixel p = film_load(lane_of(group, c), pixel, push.width * push.height);
-        a[1u + c] += half_luminance(p.even, even);
-        b[1u + c] += half_luminance(p.odd, odd);
-      }
-    }
-    a[0] = a[1] + a[2] + a[3] + a[4];
-    b[0] = b[1] + b[2] + b[3] + b[4];
+    read_halves(pixel, count, a, b);
     float difference = 0.5 * (a[0] - b[0]);
-    y0[x] = there ? 0.5 * (a[0] + b[0]) : 0.0;
-    v0[x] = there ? difference * difference : 0.0;
+    r.y[x] = there ? 0.5 * (a[0] + b[0]) : 0.0;
+    r.v[x] = there ? difference * difference : 0.0;
 #if LUCERNA_LOOKUP_ERRORS
-    r0[x] = there && push.records != 0u ? film_records[pixel] : vec2(0.0);
-    records += r0[x];
+    r.squares[x] = there && push.records != 0u ? film_records[pixel] : vec2(0.0);
+    r.records += r.squares[x];
 #endif
-    half_y[x / 4u] += y0[x];
-    half_n[x / 4u] += there ? 1.0 : 0.0;
+    r.half_y[x / 4u] += r.y[x];
+    r.half_n[x / 4u] += there ? 1.0 : 0.0;
 #if !LUCERNA_STOPPING_ONLY
-    ys[0] += y0[x];
-    vs[0] += v0[x];
-    fourth += v0[x] * v0[x];
+    r.ys[0] += r.y[x];
+    r.vs[0] += r.v[x];
+    r.fourth += r.v[x] * r.v[x];
     for (uint c = 1u; c < 5u; ++c) {
       difference = 0.5 * (a[c] - b[c]);
-      ys[c] += there ? 0.5 * (a[c] + b[c]) : 0.0;
-      vs[c] += there ? difference * difference : 0.0;
+      r.ys[c] += there ? 0.5 * (a[c] + b[c]) : 0.0;
+      r.vs[c] += there ? difference * difference : 0.0;
     }
 #endif
   }
+  return r;
+}
+
+// Puts a row where the others of its block see it.
+void share_row(Row r, uint lane) {
   for (uint h = 0u; h < 2u; ++h) {
-    values[h * 64u + lane] = half_y[h];
-    values[(2u + h) * 64u + lane] = half_n[h];
+    values[h * 64u + lane] = r.half_y[h];
+    values[(2u + h) * 64u + lane] = r.half_n[h];
   }
 #if !LUCERNA_STOPPING_ONLY
   for (uint c = 0u; c < 5u; ++c) {
-    values[(4u + c) * 64u + lane] = ys[c];
-    values[(9u + c) * 64u + lane] = vs[c];
+    values[(4u + c) * 64u + lane] = r.ys[c];
+    values[(9u + c) * 64u + lane] = r.vs[c];
   }
-  values[14u * 64u + lane] = fourth;
+  values[14u * 64u + lane] = r.fourth;
 #endif
+}
+
+#if !LUCERNA_STOPPING_ONLY
+// What does not hang on the quadrants, each sum by a row of its own.
+void write_sums(uint block, uint row, uint first_row) {
+  if (row < 5u) block_errors[block].luminance[row] = sum_of_rows(4u + row, first_row, k_block);
+  if (row < 5u) block_errors[block].variance[row] = sum_of_rows(9u + row, first_row, k_block);
+  if (row == 5u) block_errors[block].fourth = sum_of_rows(14u, first_row, k_block);
+  if (row == 6u) block_errors[block].pixels = sum_of_rows(2u, first_row, k_block) + sum_of_rows(3u, first_row, k_block);
+}
+#endif
+
+// Sums over the row of the pixels' relative errors, by half; `mean`: luminance of the halves' quadrants. `records`: of the
+// records' squares, over the square of what the errors are held against.
+void relative_errors(Row r, float mean[2], out float relative[2], out vec2 records) {
+  relative[0] = relative[1] = 0.0;
+  records = vec2(0.0);
+  for (uint x = 0u; x < k_block; ++x) {
+    float scale = max(max(r.y[x], mean[x / 4u]), push.luminance_floor);
+    relative[x / 4u] += 1.2533141 * sqrt(r.v[x]) / scale;  // sqrt(pi/2)
+#if LUCERNA_LOOKUP_ERRORS
+    records += r.squares[x] / (scale * scale);
+#endif
+  }
+}
+
+void main() {
+  uint lane = gl_LocalInvocationIndex, row = lane % k_block, entry = global_index() / k_block;
+  bool working = entry < push.block_count;
+  WorkBlock block = blocks[working ? entry : 0u];
+  uint across = (push.width + k_block - 1u) / k_block;
+  Row r = read_row(working, k_block * uvec2(block.index % across, block.index / across) + uvec2(0u, row));
+  share_row(r, lane);
   barrier();
   // Each row's halves belong to the two quadrants above or below the middle.
-  uint quadrant_row = lane / 4u * 4u;
+  uint first_row = lane - row, quadrant_row = lane / 4u * 4u;
   float mean[2], pixels[2];
   for (uint h = 0u; h < 2u; ++h) {
     pixels[h] = sum_of_rows(2u + h, quadrant_row, 4u);
     mean[h] = sum_of_rows(h, quadrant_row, 4u) / max(pixels[h], 1.0);
   }
 #if !LUCERNA_STOPPING_ONLY
-  if (working) {
-    uint first_row = lane - row;
-    if (row < 5u) block_errors[block.index].luminance[row] = sum_of_rows(4u + row, first_row, k_block);
-    if (row < 5u) block_errors[block.index].variance[row] = sum_of_rows(9u + row, first_row, k_block);
-    if (row == 5u) block_errors[block.index].fourth = sum_of_rows(14u, first_row, k_block);
-    if (row == 6u)
-      block_errors[block.index].pixels = sum_of_rows(2u, first_row, k_block) + sum_of_rows(3u, first_row, k_block);
-  }
+  if (working) write_sums(block.index, row, first_row);
 #endif
   float relative[2];
-  relative[0] = relative[1] = 0.0;
-  for (uint x = 0u; x < k_block; ++x) {
-    float scale = max(max(y0[x], mean[x / 4u]), push.luminance_floor);
-    relative[x / 4u] += 1.2533141 * sqrt(v0[x]) / scale;  // sqrt(pi/2)
-#if LUCERNA_LOOKUP_ERRORS
-    records_relative += r0[x] / (scale * scale);
-#endif
-  }
+  vec2 records_relative;
+  relative_errors(r, mean, relative, records_relative);
   barrier();
   for (uint h = 0u; h < 2u; ++h) values[h * 64u + lane] = relative[h];
   barrier();
@@ -126,15 +165,15 @@ void main() {
   values[2u * 64u + lane] = records_relative.x;
   values[3u * 64u + lane] = records_relative.y;
   barrier();
-  if (working && row == 2u) block_errors[block.index].records_relative = sum_of_rows(2u, lane - row, k_block);
-  if (working && row == 3u) block_errors[block.index].interpolation_relative = sum_of_rows(3u, lane - row, k_block);
+  if (working && row == 2u) block_errors[block.index].records_relative = sum_of_rows(2u, first_row, k_block);
+  if (working && row == 3u) block_errors[block.index].interpolation_relative = sum_of_rows(3u, first_row, k_block);
 #if !LUCERNA_STOPPING_ONLY
   barrier();
-  values[2u * 64u + lane] = records.x;
-  values[3u * 64u + lane] = records.y;
+  values[2u * 64u + lane] = r.records.x;
+  values[3u * 64u + lane] = r.records.y;
   barrier();
-  if (working && row == 6u) block_errors[block.index].records = sum_of_rows(2u, lane - row, k_block);
-  if (working && row == 7u) block_errors[block.index].interpolation = sum_of_rows(3u, lane - row, k_block);
+  if (working && row == 6u) block_errors[block.index].records = sum_of_rows(2u, first_row, k_block);
+  if (working && row == 7u) block_errors[block.index].interpolation = sum_of_rows(3u, first_row, k_block);
 #endif
 #endif
   // Rows 0 and 1 write the upper two quadrants, 4 and 5 the lower.

@@ -7,6 +7,7 @@
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "film/preview.glsl"
+#include "shaders/shared/film.h"
 #include "shaders/shared/tone.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewResolvePush push; };
@@ -23,7 +24,6 @@ const float k_clean = 0.02, k_noisy = 0.08;
 const float k_filter_error = 0.04;
 // Square of a difference, over its variance, up to which it is taken for chance.
 const float k_by_chance = 3.0;
-const float k_floor = 0.02;  // film::k_luminance_floor
 
 shared vec3 group_shares[64];
 
@@ -93,7 +93,7 @@ void main() {
     for (uint c = 0u; c < k_component_count; ++c) {
       vec3 smooth_light = light[c].rgb * inverse * modulation;
       float smooth_luminance = luminance(smooth_light), own_luminance = luminance(own.of[c].rgb);
-      float relative = noise[c] / max(max(smooth_luminance, own_luminance), k_floor);
+      float relative = noise[c] / max(max(smooth_luminance, own_luminance), k_luminance_floor);
       // How far its own samples are not to be shown alone.
       float rough = here.samples > 0.0 ? smoothstep(k_clean, k_noisy, relative) : 1.0;
       float amount = push.filtering != 0u || here.samples <= 0.0 ? rough : 0.0;

@@ -49,8 +49,9 @@ struct BlockError {
 
 /// What records of light that all samples read may be wrong by, in luminance, summed over pixels of a block: not the
 /// samples' noise, and no sample takes it away. Pixels that read one record err together, so that sums over larger regions
-/// are sums of these, taken before they are squared. Every record's error is drawn anew in each of k_record_lanes lanes;
-/// two independent paths a pixel, [0] and [1], carry it there, so that the mean product of their lanes is the square.
+/// are sums of these, taken before they are squared. Every record's error is drawn anew in each of k_record_lanes lanes
+/// (a multiple of 4, at most 32: a bit each of a word); two independent paths a pixel, [0] and [1], carry it there, so that
+/// the mean product of their lanes is the square.
 LUCERNA_CONST uint k_record_lanes = 16u;
 struct BlockRecords {
   float pixels;                            ///< that are summed, of any size
@@ -58,6 +59,10 @@ struct BlockRecords {
   float noise[2 * k_record_lanes];         ///< by path, by lane
   float interpolation_noise[2 * k_record_lanes];  ///< of `interpolation`, by noise of the records
 };
+
+/// Display radiance (after exposure) below which noise is held against this value instead of the pixel's own: 5 % of it is
+/// about one step of an 8-bit sRGB picture, so that black corners do not eat the render.
+LUCERNA_CONST float k_luminance_floor = 0.02f;
 
 struct ErrorPush {
   uint width, height;

@@ -157,7 +157,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
       take_back();
       continue;
     }
-    CHECK(bed.status().relighting == (s.light ? base.size() : 0));
+    CHECK(bed.status().relighting.records == (s.light ? base.size() : 0));
     CHECK(bed.status().records == (s.light ? 0 : base.size()));
     bed.finish();
     CHECK(test::cache(bed.r)->ready());
@@ -170,7 +170,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
     if (!s.light) CHECK(bed.status().rays >= base_rays);
     if (!s.light && !s.coverage) CHECK(bed.status().rays == base_rays);
     if (s.light) CHECK(bed.status().rays >= uint64_t{64} * base.size());
-    CHECK(bed.status().relighting == 0);
+    CHECK(bed.status().relighting.records == 0);
     take_back();
   }
   // Another scene, be it the same again.
@@ -275,7 +275,7 @@ TEST_CASE("a material that shines, mirrors, or is diffuse again brings its light
   second.finish();
   const uint32_t without = second.records().size();
   second.paint(1, {0.2f, 0.5f, 0.8f});
-  CHECK(second.status().relighting == without);
+  CHECK(second.status().relighting.records == without);
   second.finish();
   CHECK(second.records().size() > without);
   // What rays find as the scene's shape is not edited; nothing has changed then.
@@ -316,7 +316,7 @@ TEST_CASE("ellipses that other light makes smaller leave no gaps") {
   // There and back and there again: passes are counted anew each time.
   for (int round = 0; round < 5; ++round) {
     move_lamp(relit, round % 2 ? vec3(1, 2, 1) : vec3(-1.4f, 0.3f, 0.8f));
-    CHECK(relit.status().relighting == records);
+    CHECK(relit.status().relighting.records == records);
     const film::Image picture = relit.finish();
     const irradiance_cache::CachePass& last = relit.status().passes.back();
     INFO("round " << round << ": " << records << " records, then " << relit.records().size() << "; of "
@@ -369,29 +369,26 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
   // Another light in the middle of relighting, and every other piece of work cancelled.
   bed.set_lamp({0, 0, 7});
   for (int i = 0; i < 3; ++i) bed.r.step();
-  CHECK(bed.status().relighting > 0);
+  CHECK(bed.status().relighting.records > 0);
   // What is relit serves and is counted; the picture waits.
-  CHECK(bed.status().records <= bed.status().relighting);
+  CHECK(bed.status().records <= bed.status().relighting.records);
   CHECK(bed.r.samples() == 0);
   bed.set_lamp({9, 2, 1});
   int cancelled = 0;
-  uint64_t published = bed.status().published;
-  uint32_t records = 0, levels = 0;
+  uint32_t records = 0, grown = 0;
   float share = 0;
   for (int i = 0; !test::cache(bed.r)->ready(); ++i) {
     cancelled += !bed.r.step([&] { return i % 2 == 1; });
-    CHECK(bed.status().published >= published);
-    levels += bed.status().published > published;
-    published = bed.status().published;
-    if (bed.status().relighting > 0) {
+    if (bed.status().relighting.records > 0) {
+      grown += bed.status().records > records;
       CHECK(bed.status().records >= records);
       records = bed.status().records;
-      CHECK(bed.status().relit >= share);
-      share = bed.status().relit;
+      CHECK(bed.status().relighting.share >= share);
+      share = bed.status().relighting.share;
     }
   }
   CHECK(cancelled > 2);
-  CHECK(levels > 2);  // progress is seen
+  CHECK(grown > 2);  // progress is seen
   CHECK(share > 0.9f);
   CHECK(identical(expected, bed.finish()));
   CHECK(begins_with(bed.records(), straight.records()));
@@ -400,7 +397,7 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
   bed.set_lamp(vec3(5));
   bed.r.step();
   bed.r.choose_camera("above");
-  CHECK(bed.status().relighting > 0);
+  CHECK(bed.status().relighting.records > 0);
   bed.finish();
   const RawRecords more = bed.records();
   CHECK(same_places(more, straight.records()));
@@ -453,14 +450,14 @@ TEST_CASE("components that are switched off leave records whole, and find them w
   bed.set_lamp({9, 2, 1});
   bed.finish();
   bed.set({{"components.tertiary", "cache"}});
-  CHECK(bed.status().relighting == base.size());
+  CHECK(bed.status().relighting.records == base.size());
   const film::Image relit = bed.finish();
   Bed fresh;
   fresh.set_lamp({9, 2, 1});
   CHECK(identical(relit, fresh.finish()));
   // Tertiary light is path traced behind the records, or theirs is read: gathered otherwise.
   bed.set({{"components.tertiary", "path"}});
-  CHECK(bed.status().relighting == base.size());
+  CHECK(bed.status().relighting.records == base.size());
   bed.finish();
   CHECK(same_places(bed.records(), base));
   // Fewer than there are: there is no room to keep them.

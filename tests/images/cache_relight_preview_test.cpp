@@ -100,7 +100,7 @@ TEST_CASE("after an edit the window shows the light that will be, long before re
   // Twice as bright and elsewhere.
   bed.set_lamp(vec3(14), {-1.2f, 1.5f, 0.6f});
   REQUIRE_FALSE(bed.cache().ready());
-  REQUIRE(bed.cache().status().relit == 0);
+  REQUIRE(bed.cache().status().relighting.share == 0);
   // At once what was there is.
   CHECK(bed.shown() == Approx(before).epsilon(0.02));
   CHECK(bed.r.preview_shares().stale > 0.95);
@@ -108,7 +108,7 @@ TEST_CASE("after an edit the window shows the light that will be, long before re
   CHECK(bed.draw_drafts() >= 3);
   for (int i = 0; i < 12; ++i) bed.r.draw_draft(), bed.r.step();
   const double early = bed.shown();
-  CHECK(bed.cache().status().relit < 1);
+  CHECK(bed.cache().status().relighting.share < 1);
   CHECK(bed.r.preview_shares().stale < 0.4);
   INFO("before " << before << ", early " << early << ", rays of relighting " << rays);
   test::finish(bed.r);

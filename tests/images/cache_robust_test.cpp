@@ -239,7 +239,7 @@ TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing a
   test::finish(r);
   lamp.enabled = true;
   r.set_light(0, lamp);
-  CHECK(test::cache(r)->status().relighting == records);
+  CHECK(test::cache(r)->status().relighting.records == records);
   const film::Image again = test::finish(r);
   for (size_t c = 0; c < 4; ++c)
     for (size_t i = 0; i < lit.samples.size(); ++i)

@@ -9,11 +9,11 @@ namespace lucerna::test {
 inline const Settings k_cached{{"components.secondary", "cache"}, {"components.tertiary", "cache"}};
 
 /// Shows a scene of the test's; when it goes the device must have had nothing to say. `validated`: the layers
-/// take half of the time, which repetitions need not spend.
+/// take half of the time, which repetitions need not spend. `interactive`: as for a window, with drafts.
 struct CacheRenderer {
   session::Renderer r;
-  CacheRenderer(const scene::Scene& scene, uint32_t size, bool validated = true)
-      : r(test::renderer_options(validated)) {
+  CacheRenderer(const scene::Scene& scene, uint32_t size, bool validated = true, bool interactive = false)
+      : r(test::renderer_options(validated, {}, interactive)) {
     r.set_size(size, size);
     r.settings().set("path.batch", "8192");
     r.set_scene(std::make_shared<scene::Scene>(scene));

@@ -15,8 +15,9 @@ using namespace lucerna;
 namespace {
 
 struct Bench {
-  session::Renderer r{test::renderer_options(true)};
-  explicit Bench(const scene::Scene& s) {
+  session::Renderer r;
+  explicit Bench(const scene::Scene& s, bool interactive = false)
+      : r(test::renderer_options(true, {}, interactive)) {
     r.set_size(48, 32);
     r.set_scene(std::make_shared<scene::Scene>(s), {},
                 {{"samples", "4", ""}, {"path.batch", "2048", ""}, {"path.max_depth", "6", ""}});
@@ -137,9 +138,9 @@ TEST_CASE("a hidden background takes away what the eye sees of the sky, and noth
 }
 
 TEST_CASE("the picture is measured as a whole and at a point, coarse at first") {
-  Bench b(test::block_room(true));
+  Bench b(test::block_room(true), true);
   CHECK_THROWS_WITH(b.r.measure(std::nullopt), Catch::Contains("no picture to measure yet"));
-  b.r.render_coarse();
+  REQUIRE(b.r.draw_draft());
   const auto coarse = b.r.measure(std::nullopt);
   b.image();
   const auto whole = b.r.measure(std::nullopt);

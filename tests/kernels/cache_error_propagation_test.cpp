@@ -8,7 +8,7 @@
 
 using namespace lucerna;
 using shared::BlockRecords;
-using shared::k_error_lanes;
+using shared::k_record_lanes;
 
 namespace {
 
@@ -121,8 +121,8 @@ TEST_CASE("a record's error reaches the pixels that read it by the weight that i
   const ErrorSums got = propagate(bed, discs, {notes, notes}, {});
   const double right = share_of_right(0.25), a = 0.5 * (1 - right) * 0.5, b = 0.5 * right * 0.25;
   double variance = 0;
-  for (uint32_t k = 0; k < k_error_lanes; ++k)
-    variance += std::pow(a * sign_of(0, k) + b * sign_of(1, k), 2) / k_error_lanes;
+  for (uint32_t k = 0; k < k_record_lanes; ++k)
+    variance += std::pow(a * sign_of(0, k) + b * sign_of(1, k), 2) / k_record_lanes;
   CHECK(variance == Approx(a * a + b * b).margin(2 * a * b));
   // The pixels of a block are in Morton order: those that read nothing are the lower half of the second
   // block.
@@ -131,11 +131,11 @@ TEST_CASE("a record's error reaches the pixels that read it by the weight that i
       INFO(x << ' ' << y);
       CHECK(got.pixels[y * 16 + x].x == Approx(x >= 8 && y >= 4 ? 0 : variance).epsilon(1e-4));
     }
-  for (uint32_t lane = 0; lane < k_error_lanes; ++lane)
+  for (uint32_t lane = 0; lane < k_record_lanes; ++lane)
     for (uint32_t path = 0; path < 2; ++path) {
       const double each = a * sign_of(0, lane) + b * sign_of(1, lane);
-      CHECK(got.blocks[0].noise[path * k_error_lanes + lane] == Approx(64 * each).epsilon(1e-4));
-      CHECK(got.blocks[1].noise[path * k_error_lanes + lane] == Approx(32 * each).epsilon(1e-4));
+      CHECK(got.blocks[0].noise[path * k_record_lanes + lane] == Approx(64 * each).epsilon(1e-4));
+      CHECK(got.blocks[1].noise[path * k_record_lanes + lane] == Approx(32 * each).epsilon(1e-4));
     }
   CHECK(got.blocks[0].pixels == 64);
   // Pixels that read the same records err together: a tile of 64 is off by as much as one of them.
@@ -143,7 +143,7 @@ TEST_CASE("a record's error reaches the pixels that read it by the weight that i
   CHECK(one.noise == Approx(std::sqrt(variance)).epsilon(1e-4));
   const film::RecordsError both = film::records_error(got.blocks);
   CHECK(both.noise == Approx(0.75 * std::sqrt(variance)).epsilon(1e-4));
-  CHECK(both.degrees == k_error_lanes);
+  CHECK(both.degrees == k_record_lanes);
   // The same bits again.
   const ErrorSums again = propagate(bed, discs, {notes, notes}, {});
   CHECK(std::memcmp(again.blocks.data(), got.blocks.data(), got.blocks.size() * sizeof(BlockRecords)) == 0);
@@ -173,8 +173,8 @@ TEST_CASE("paths' own noise is not taken for the records'") {
   const std::vector<Note> one(128, Note{0, 1}), other(128, Note{8, 1});
   const ErrorSums got = propagate(bed, discs, {one, other}, {});
   double product = 0;
-  for (uint32_t k = 0; k < k_error_lanes; ++k)
-    product += 0.25 * sign_of(0, k) * sign_of(1, k) / k_error_lanes;
+  for (uint32_t k = 0; k < k_record_lanes; ++k)
+    product += 0.25 * sign_of(0, k) * sign_of(1, k) / k_record_lanes;
   CHECK(got.pixels[0].x == Approx(product).margin(1e-6));
   CHECK(std::abs(product) < 0.25);
 }
@@ -185,8 +185,8 @@ TEST_CASE("what records have read counts as what the picture reads") {
   const std::vector<Note> first(128, Note{0, 1}), beyond(128, Note{8, 0.25});
   const ErrorSums got = propagate(bed, discs, {first, first}, {beyond, beyond});
   double variance = 0;
-  for (uint32_t k = 0; k < k_error_lanes; ++k)
-    variance += std::pow(0.5 * sign_of(0, k) + 0.25 * sign_of(1, k), 2) / k_error_lanes;
+  for (uint32_t k = 0; k < k_record_lanes; ++k)
+    variance += std::pow(0.5 * sign_of(0, k) + 0.25 * sign_of(1, k), 2) / k_record_lanes;
   CHECK(got.pixels[0].x == Approx(variance).epsilon(1e-4));
 }
 

@@ -97,7 +97,7 @@ vec2 place_of(uint32_t pixel) { return {float(pixel % k_size) + 0.5f, float(pixe
 }  // namespace
 
 TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen before the first sample") {
-  session::Renderer r(test::renderer_options(false));
+  session::Renderer r(test::renderer_options(false, {}, true));
   CHECK(test::cache_report(r) == nullptr);
   r.set_size(32, 32);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
@@ -116,7 +116,7 @@ TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen befo
   CHECK(report->status.passes.empty());
 
   // While it is being built the coarse film shows where surfaces are.
-  r.render_coarse();
+  REQUIRE(r.draw_draft());
   while (test::cache(r)->status().records == 0) REQUIRE(r.step());
   REQUIRE_FALSE(test::cache(r)->ready());
   REQUIRE(r.samples() == 0);
@@ -130,7 +130,8 @@ TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen befo
       if (!found.solid) continue;
       uint32_t expected = 0;
       const std::vector<Record> placed(all.begin(), all.begin() + test::cache(r)->status().records);
-      for (const float w : weights(placed, found.position, found.normal, r)) expected += w > 0;
+      for (const float w : weights(placed, found.surface.position, found.surface.normal, r))
+        expected += w > 0;
       CHECK(found.count == expected);
       served += found.count > 0;
     }
@@ -156,10 +157,10 @@ TEST_CASE(
           session::pick(*r.scene(), camera, (float(x) + 0.5f) / k_size, (float(y) + 0.5f) / k_size, 1);
       if (!found.solid) continue;
       ++solid;
-      if (hit && length(hit->position - found.position) > 3 * found.size) continue;
-      CHECK(length(found.normal) == Approx(1).margin(1e-4));
+      if (hit && length(hit->position - found.surface.position) > 3 * found.surface.size) continue;
+      CHECK(length(found.surface.normal) == Approx(1).margin(1e-4));
       double sum = 0;
-      const std::vector<float> expected = weights(all, found.position, found.normal, r);
+      const std::vector<float> expected = weights(all, found.surface.position, found.surface.normal, r);
       for (const float w : expected) sum += double(w);
       // At the very border of all that serve rounding decides.
       if (found.count > 0 && sum < 1e-4) continue;
@@ -193,11 +194,12 @@ TEST_CASE(
         CHECK(u.place.position == all[found.under->index].place.position);
         CHECK(u.rays == all[found.under->index].rays);
         CHECK(u.radius == all[found.under->index].radius);
-        const float from = length(u.place.position - found.position);
+        const float from = length(u.place.position - found.surface.position);
         CHECK(from <= u.radius);
         for (const Record& other : all)
-          if (dot(other.place.normal, found.normal) > 0.99f && test::far_of(other, found.position) < 1)
-            CHECK(from <= length(other.place.position - found.position) + 1e-5f);
+          if (dot(other.place.normal, found.surface.normal) > 0.99f &&
+              test::far_of(other, found.surface.position) < 1)
+            CHECK(from <= length(other.place.position - found.surface.position) + 1e-5f);
       }
     }
   CHECK(solid > 80);
@@ -266,8 +268,8 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
         const Inspection found = test::cache_report(r)->inspection;
         REQUIRE(found.solid);
         CHECK(found.asks != shared::k_asks_nothing);
-        CHECK(found.normal == vec3(0, 0, 1));
-        CHECK(found.position.z == Approx(-0.98).margin(1e-5));
+        CHECK(found.surface.normal == vec3(0, 0, 1));
+        CHECK(found.surface.position.z == Approx(-0.98).margin(1e-5));
         CHECK((found.count > 0) == (found.asks == shared::k_asks));
         in_vain += found.asks == shared::k_asks_in_vain, ++asked;
       }
@@ -336,7 +338,7 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
         });
         const bool inside = s.at.x > 2 && s.at.y > 2 && s.at.x < k_size - 2 && s.at.y < k_size - 2;
         const bool off_ring =
-            std::abs(length(middle - found.under->at) - found.under->record.radius / found.size) > 5;
+            std::abs(length(middle - found.under->at) - found.under->record.radius / found.surface.size) > 5;
         if (inside && alone && off_ring && s.weight > 0.02f && length(s.at - here) > 12) centre = s.at;
       }
     }
@@ -358,7 +360,7 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
     for (const auto& s : found.serving) nearest = std::min(nearest, from_line(p, here, s.at));
     return nearest;
   };
-  const float ring = found.under ? 1.5f * found.under->record.radius / found.size : 0;
+  const float ring = found.under ? 1.5f * found.under->record.radius / found.surface.size : 0;
   const std::vector<uint32_t> list = changed(plain, lined);
   CHECK(list.size() > 8);
   for (const uint32_t p : list) {

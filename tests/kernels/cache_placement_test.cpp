@@ -60,7 +60,7 @@ const irradiance_cache::CacheStatus& status(session::Renderer& r) { return test:
 void build_to(session::Renderer& r, BuildStage stage) {
   set(r, "cache.pause", "stage");
   r.restart();
-  r.render_coarse();
+  REQUIRE(r.draw_draft());
   for (work(r); !status(r).last || status(r).last->stage != stage; work(r)) {
     REQUIRE(r.waits());
     r.solver_command("cache", "step");
@@ -275,7 +275,7 @@ TEST_CASE("while building waits what one looks at stays, also seen from elsewher
   scene::Camera moved = camera;
   moved.to_world[3] += vec4(-2, 1.2f, 0, 0);
   r.set_camera(moved);
-  r.render_coarse();
+  REQUIRE(r.draw_draft());
   CHECK(r.waits());
   CHECK(r.step() == false);
   CHECK(test::cache(r)->placement().kept.size() == kept);

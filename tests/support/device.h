@@ -15,12 +15,12 @@ inline std::shared_ptr<gpu::Device> shared_device(bool validation) {
 }
 
 inline session::RendererOptions renderer_options(bool validation = true, const gpu::Defines& defines = {},
-                                                 bool pauses = false) {
+                                                 bool interactive = false) {
   return {.device = "cpu",
           .validation = validation,
           .shaders = {},
           .defines = defines,
-          .interactive = pauses,
+          .interactive = interactive,
           .on = shared_device(validation)};
 }
 

@@ -47,7 +47,7 @@ inline bench::Result fake_result(const bench::Matrix& m, const bench::Cell& cell
   r.component_s[0] = last.device_s;
   for (size_t k = 1; k < r.component_s.size(); ++k) r.component_s[k] = last.device_s / 4;
   r.mse = 0.25 * last.truth[0] * last.truth[0], r.relmse = last.relmse, r.relmse_all = 2 * r.relmse;
-  r.tiles_median = 1.5 * last.truth[0], r.tiles_decile = last.tiles, r.tiles_worst = 4 * last.truth[0];
+  r.tiles.median = 1.5 * last.truth[0], r.tiles.decile = last.tiles, r.tiles.worst = 4 * last.truth[0];
   r.forecast = bench::ForecastResult{.at_s = 0.1 * seconds,
                                      .seconds = {0.8 * seconds, 1.1 * seconds, 1.5 * seconds},
                                      .rays = {0.8e6 * seconds, 1.1e6 * seconds, 1.5e6 * seconds}};

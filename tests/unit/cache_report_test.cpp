@@ -80,7 +80,7 @@ TEST_CASE("the bar's text follows the building") {
   r = make_report(c, settings());
   CHECK((!r.ready && !r.waits && r.state == "building"));
   CHECK(r.preparing == "cache, pass 3: 2810 records");
-  c.status.relighting = 100, c.status.relit = 0.4f;
+  c.status.relighting.records = 100, c.status.relighting.share = 0.4f;
   CHECK(make_report(c, settings()).preparing == "cache: relighting 100 records, 40 %");
   c.status.waits = true, c.status.last = StageDone{.stage = BuildStage::probe};
   r = make_report(c, settings());

@@ -247,7 +247,8 @@ struct Session::Impl {
       p.asked_world = p.asked / 3, p.records = i < 4 ? 2800 >> i : 0, p.rays = 340ull * p.records;
       p.ms = {210, 12, 90, i < 4 ? 1900.0 / (i + 1) : 0, 2, 11};
       status.passes.push_back(p);
-      status.records += p.records, status.rays += p.rays, status.asked = p.asked, status.paths = p.paths;
+      status.records += p.records, status.rays += p.rays, status.probed.asked = p.asked,
+                                                          status.probed.paths = p.paths;
     }
     status.stop = irradiance_cache::StopReason::covered;
     c.placement = irradiance_cache::PlacementShow(settings.choice("overlay.placement"));
@@ -278,8 +279,8 @@ struct Session::Impl {
     if (!looked_at) return c;
     irradiance_cache::Inspection& found = c.inspection;
     found.x = uint32_t(looked_at->x * float(width)), found.y = uint32_t(looked_at->y * float(height));
-    found.solid = true, found.asks = shared::k_asks, found.position = {1, 0, 2}, found.normal = {0, 1, 0},
-    found.size = 0.003f;
+    found.solid = true, found.asks = shared::k_asks, found.surface.position = {1, 0, 2},
+    found.surface.normal = {0, 1, 0}, found.surface.size = 0.003f;
     // A mirror at the left border, a steep normal map at the right.
     if (looked_at->x < 0.05f) found.asks = shared::k_asks_nothing;
     if (looked_at->x > 0.95f) found.asks = shared::k_asks_in_vain;

@@ -54,6 +54,21 @@ TEST_CASE("names of other formats are refused before anything is done") {
         Catch::StartsWith("s: line 1: ") && Catch::Contains("expected a file name that ends in ."));
 }
 
+TEST_CASE("what the renderer is said to be busy with is the last line that gave it something to do") {
+  session::Session session({});
+  const auto busy_after = [&](const std::vector<std::string>& lines) {
+    ui::Ui window(session);
+    window.snapshot = session.snapshot();
+    ui::Runner runner(window, lines, "s", true);
+    runner.advance();
+    window.follow_busy();
+    return window.busy.text;
+  };
+  CHECK(busy_after({"film.ev 1", "image.save slow.exr"}) == "image.save slow.exr");
+  // What is the window's alone, and waiting, is nothing to the renderer.
+  CHECK(busy_after({"film.ev 2", "window.fold left true", "wait 60"}) == "film.ev 2");
+}
+
 TEST_CASE("a script that calls itself is told so") {
   if (test::no_display()) return;
   const test::Folder folder;

@@ -136,8 +136,8 @@ Comparison compare(const FilmImage& a, const FilmImage& b, const std::string& la
       const double weight = 1.0 / static_cast<double>(count);
       square.push_back(e2 * weight), relative_square.push_back(re2 * weight);
       absolute.push_back(e * weight), relative.push_back(re * weight);
-      if (absolute.back() > result.max_absolute)
-        result.max_absolute = absolute.back(), result.max_at = {x, y};
+      if (absolute.back() > result.largest.absolute)
+        result.largest.absolute = absolute.back(), result.largest.at = {x, y};
     }
   }
 
@@ -149,19 +149,19 @@ Comparison compare(const FilmImage& a, const FilmImage& b, const std::string& la
   }
   result.rmse = std::sqrt(mean(square, square.size()));
   result.relmse = mean(relative_square, relative_square.size());
-  result.rmse_trimmed = std::sqrt(trimmed_mean(square, options.trimmed_share));
-  result.relmse_trimmed = trimmed_mean(relative_square, options.trimmed_share);
-  result.p99_absolute = percentile(absolute, 0.99);
-  result.p99_relative = percentile(relative, 0.99);
+  result.trimmed.rmse = std::sqrt(trimmed_mean(square, options.trimmed_share));
+  result.trimmed.relmse = trimmed_mean(relative_square, options.trimmed_share);
+  result.p99.absolute = percentile(absolute, 0.99);
+  result.p99.relative = percentile(relative, 0.99);
 
   std::vector<double> ratios;
   for (size_t i = 0; i < block_a.size(); ++i)
     if (block_b[i] > 0) ratios.push_back(block_a[i] / block_b[i]);
-  result.blocks = ratios.size();
+  result.blocks.count = ratios.size();
   if (!ratios.empty()) {
-    result.block_ratio_p05 = percentile(ratios, 0.05);
-    result.block_ratio_median = percentile(ratios, 0.5);
-    result.block_ratio_p95 = percentile(ratios, 0.95);
+    result.blocks.p05 = percentile(ratios, 0.05);
+    result.blocks.median = percentile(ratios, 0.5);
+    result.blocks.p95 = percentile(ratios, 0.95);
   }
   return result;
 }
@@ -180,16 +180,15 @@ std::string to_json(const Comparison& c) {
   json["mean_ratio"] = numbers(c.mean_ratio);
   json["rmse"] = number(c.rmse);
   json["relmse"] = number(c.relmse);
-  json["rmse_trimmed"] = number(c.rmse_trimmed);
-  json["relmse_trimmed"] = number(c.relmse_trimmed);
-  json["p99_absolute"] = number(c.p99_absolute);
-  json["p99_relative"] = number(c.p99_relative);
-  json["max_absolute"] = number(c.max_absolute);
-  json["max_at"] = c.max_at;
-  json["blocks"] = c.blocks;
-  json["block_ratio"] = {{"p05", number(c.block_ratio_p05)},
-                         {"median", number(c.block_ratio_median)},
-                         {"p95", number(c.block_ratio_p95)}};
+  json["rmse_trimmed"] = number(c.trimmed.rmse);
+  json["relmse_trimmed"] = number(c.trimmed.relmse);
+  json["p99_absolute"] = number(c.p99.absolute);
+  json["p99_relative"] = number(c.p99.relative);
+  json["max_absolute"] = number(c.largest.absolute);
+  json["max_at"] = c.largest.at;
+  json["blocks"] = c.blocks.count;
+  json["block_ratio"] = {
+      {"p05", number(c.blocks.p05)}, {"median", number(c.blocks.median)}, {"p95", number(c.blocks.p95)}};
   return json.dump();
 }
 
@@ -200,13 +199,14 @@ std::string to_text(const Comparison& c) {
   for (size_t i = 0; i < c.channels.size(); ++i)
     text += fmt::format("  mean {:<8} {:.6g} / {:.6g} = {:.5f}\n", c.channels[i], c.mean_a[i], c.mean_b[i],
                         c.mean_ratio[i]);
-  text += fmt::format("  RMSE          {:.6g}   trimmed {:.6g}\n", c.rmse, c.rmse_trimmed);
-  text += fmt::format("  relative MSE  {:.6g}   trimmed {:.6g}\n", c.relmse, c.relmse_trimmed);
-  text += fmt::format("  99 % of pixels differ by at most {:.6g} (relative {:.6g})\n", c.p99_absolute,
-                      c.p99_relative);
-  text += fmt::format("  largest       {:.6g} at {}, {}\n", c.max_absolute, c.max_at[0], c.max_at[1]);
+  text += fmt::format("  RMSE          {:.6g}   trimmed {:.6g}\n", c.rmse, c.trimmed.rmse);
+  text += fmt::format("  relative MSE  {:.6g}   trimmed {:.6g}\n", c.relmse, c.trimmed.relmse);
+  text += fmt::format("  99 % of pixels differ by at most {:.6g} (relative {:.6g})\n", c.p99.absolute,
+                      c.p99.relative);
+  text +=
+      fmt::format("  largest       {:.6g} at {}, {}\n", c.largest.absolute, c.largest.at[0], c.largest.at[1]);
   text += fmt::format("  block ratios  {:.5f} (5 %)  {:.5f} (median)  {:.5f} (95 %)  of {} blocks\n",
-                      c.block_ratio_p05, c.block_ratio_median, c.block_ratio_p95, c.blocks);
+                      c.blocks.p05, c.blocks.median, c.blocks.p95, c.blocks.count);
   return text;
 }
 

@@ -28,15 +28,21 @@ struct Comparison {
       mean_ratio;     ///< mean_a / mean_b per channel; 1 when both are 0, infinite when only b is
   double rmse = 0;    ///< sqrt(mean over pixels of mean_C (a - b)^2)
   double relmse = 0;  ///< mean over pixels of mean_C (a - b)^2 / (b^2 + epsilon)
-  double rmse_trimmed = 0,
-         relmse_trimmed = 0;  ///< the same without the ceil(trimmed_share * pixels) worst pixels of each
-  double p99_absolute = 0;    ///< 99th percentile over pixels of mean_C |a - b|
-  double p99_relative = 0;    ///< 99th percentile over pixels of mean_C |a - b| / sqrt(b^2 + epsilon)
-  double max_absolute = 0;    ///< largest mean_C |a - b|
-  std::array<uint32_t, 2> max_at{0, 0};  ///< its pixel, from the top left
-  uint64_t blocks = 0;                   ///< blocks with light in b (sum over pixels and C above 0)
-  double block_ratio_p05 = 1, block_ratio_median = 1,
-         block_ratio_p95 = 1;  ///< of sum a / sum b over those blocks
+  struct {
+    double rmse = 0, relmse = 0;
+  } trimmed;  ///< the same without the ceil(trimmed_share * pixels) worst pixels of each
+  struct {
+    double absolute = 0;  ///< of mean_C |a - b|
+    double relative = 0;  ///< of mean_C |a - b| / sqrt(b^2 + epsilon)
+  } p99;                  ///< 99th percentiles over pixels
+  struct {
+    double absolute = 0;               ///< mean_C |a - b|
+    std::array<uint32_t, 2> at{0, 0};  ///< its pixel, from the top left
+  } largest;
+  struct {
+    uint64_t count = 0;                   ///< with light in b (sum over pixels and C above 0)
+    double p05 = 1, median = 1, p95 = 1;  ///< of sum a / sum b over those
+  } blocks;
 };
 
 /// Compares one layer (FilmImage::layer; "" is the sum R, G, B). Throws Error, located at the layer or

@@ -36,7 +36,7 @@ void Cache::Impl::clear() {
   places.forget();
   progress.pauses.dropped();
   picture.forget();
-  status = {.bytes = status.bytes, .published = status.published};
+  status = {.bytes = status.bytes};
   progress.stage = Stage::probe;
   progress.probing.begun = progress.probing.camera_moved = false;
   count_anew(true);
@@ -77,7 +77,7 @@ void Cache::Impl::begin_pass(const Work& w) {
   probing.camera_moved = false;
   if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
   status.passes.push_back({.number = status.pass});
-  status.asked = status.paths = 0;
+  status.probed.asked = status.probed.paths = 0;
   places.forget();
   progress.clock.restart();
   probing.begun = true;
@@ -94,11 +94,11 @@ void Cache::Impl::end_stage(BuildStage stage, bool last) {
 void Cache::Impl::end_pass(const Work& w) {
   // The levels' rays have met more than the first's. Records that are relit stay as they are: nobody would
   // fill gaps.
-  if (progress.levels.level() > 0 && status.relighting == 0)
+  if (progress.levels.level() > 0 && status.relighting.records == 0)
     clamp_radii(w, ranges.evaluated(), options.radius.nearest);
   overlay.set_scales(tables.records.figures());
   pass().complete = true;
-  if (status.relighting > 0) return relight_pass();
+  if (status.relighting.records > 0) return relight_pass();
   ranges.complete_pass();
   ++status.pass;
   next_pass();

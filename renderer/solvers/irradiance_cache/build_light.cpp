@@ -54,10 +54,11 @@ bool Cache::Impl::gather(const Work& w) {
   if (done < batch.size()) return false;
   add_time(BuildStep::evaluate, timer.milliseconds());
   queue.advance(done);
-  if (status.relighting > 0 && levels.level() == 0)
-    status.relit = (float(ranges.evaluated()) +
-                    float(ranges.waiting()) * float(queue.done_count()) / float(queue.all().size())) /
-                   float(status.relighting);
+  if (status.relighting.records > 0 && levels.level() == 0)
+    status.relighting.share =
+        (float(ranges.evaluated()) +
+         float(ranges.waiting()) * float(queue.done_count()) / float(queue.all().size())) /
+        float(status.relighting.records);
   add_rays(done, rays);
   return true;
 }
@@ -105,8 +106,7 @@ void Cache::Impl::publish_level(const Work& w) {
   // Radii come from the first level; what the rays of later ones meet clamps them at the end of the pass, and
   // the next one fills the gaps. A cache that reads itself does so from the second level on: the first, of
   // few rays, then is all that is traced without the records of its own pass.
-  ++status.published;
-  if (status.relighting > 0) preview.take(w.stream(), tables, ranges.pass_end());
+  if (status.relighting.records > 0) preview.take(w.stream(), tables, ranges.pass_end());
   if (ranges.waiting() == 0) return;
   // Ellipses are by the light; circles stand.
   const bool anew = ranges.has_new() || radii.by_light();

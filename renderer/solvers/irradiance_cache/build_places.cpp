@@ -71,10 +71,11 @@ bool Cache::Impl::probe(const Work& w) {
 void Cache::Impl::end_probing() {
   PictureProbing& probing = progress.probing;
   const uint32_t looks = probing.schedule.complete();
-  const bool covered = double(status.asked) <= double(options.stop_share) * double(status.paths);
+  const bool covered =
+      double(status.probed.asked) <= double(options.stop_share) * double(status.probed.paths);
   // Few that ask show where gaps are, not how wide they are: each would get a record that serves little else.
   if (!covered && looks < most_looks(status.pass) &&
-      double(status.asked) * looks < double(k_enough_ask) * double(status.paths)) {
+      double(status.probed.asked) * looks < double(k_enough_ask) * double(status.probed.paths)) {
     probing.schedule.set_samples(2 * looks);
     return;
   }
@@ -85,7 +86,7 @@ void Cache::Impl::end_probing() {
                                     double(options.stop_share) * double(picture.screen.sight().points()));
   // Few ask, and may stand side by side: a hole in a wall is seen however small its share of the picture is.
   // Not when light has changed: then there would be a little more with every change.
-  probing.filling = last && probing.asks_beyond && status.asked > 0;
+  probing.filling = last && probing.asks_beyond && status.probed.asked > 0;
   if (last && !probing.filling)
     finish(StopReason::covered);
   else
@@ -154,9 +155,9 @@ void Cache::Impl::collect(const Work& w, const schedule::WorkItem& item) {
   const std::array<uint32_t, 3> by_origin = places.candidates.collect(
       w.stream(), tables.candidates, item.slots(), item.sample_count, !looks_first(), reach(w.view));
   add_time(BuildStep::choose, timer.milliseconds());
-  status.asked += by_origin[0] + by_origin[1] + by_origin[2];
-  status.paths += item.slots();
-  pass().asked = status.asked, pass().paths = status.paths;
+  status.probed.asked += by_origin[0] + by_origin[1] + by_origin[2];
+  status.probed.paths += item.slots();
+  pass().asked = status.probed.asked, pass().paths = status.probed.paths;
   pass().asked_world += by_origin[1] + by_origin[2];
   pass().candidates = places.candidates.size();
   places.changed();

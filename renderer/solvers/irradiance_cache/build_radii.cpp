@@ -18,7 +18,8 @@ constexpr float k_crowds = 2;
 }  // namespace
 
 float Cache::Impl::crowd() const {
-  return options.gather && progress.stage == Stage::measure && status.relighting == 0 ? k_crowds : 0.0f;
+  return options.gather && progress.stage == Stage::measure && status.relighting.records == 0 ? k_crowds
+                                                                                              : 0.0f;
 }
 
 Radii::Wanted Cache::Impl::wanted_radii() const {
@@ -55,7 +56,7 @@ bool Cache::Impl::measure(const Work& w) {
     pool(w);
     set_radii(w, By::light);
   }
-  if (status.relighting > 0) {
+  if (status.relighting.records > 0) {
     queue_until(ranges.pass_end());
     progress.stage = Stage::evaluate;
   } else {
@@ -115,9 +116,7 @@ void Cache::Impl::drop_roomy(const Work& w) {
   }
   if (kept.size() == raw.size()) return;
   raw.keep(kept);
-  const uint64_t published = status.published;
   replace_records(raw);
-  status.published = published + 1;
   build_octree(w.wavefront);
   write_frame();
 }

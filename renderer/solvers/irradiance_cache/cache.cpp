@@ -71,7 +71,7 @@ void Cache::extend() {
   // somebody is looking at it, maybe from all sides.
   if (c.progress.stage != Stage::evaluate && c.progress.stage != Stage::index && !c.status.waits) {
     c.drop_pass();
-    if (c.status.relighting > 0) c.relight_pass();  // they have been waiting in the dark
+    if (c.status.relighting.records > 0) c.relight_pass();  // they have been waiting in the dark
   }
 }
 
@@ -93,7 +93,7 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
   c.write_frame();
   if (!complete) return;
   c.status.pass = status.pass;
-  c.status.asked = status.asked, c.status.paths = status.paths;
+  c.status.probed.asked = status.probed.asked, c.status.probed.paths = status.probed.paths;
   c.finish(status.stop);
 }
 

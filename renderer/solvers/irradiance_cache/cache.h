@@ -78,15 +78,18 @@ const char* words(StopReason reason);
 struct CacheStatus {
   uint32_t pass = 0;  ///< complete since the building began or was extended
   uint32_t records = 0;
-  uint64_t asked = 0, paths = 0;  ///< of the last complete pass: paths that asked, paths
-  uint64_t rays = 0;              ///< of the records' own hemispheres
-  uint64_t bytes = 0;             ///< of device memory
-  double references = 0;          ///< leaves that list a record, on average
-  uint32_t loaded = 0;            ///< of the records, from a file; their rays count too
-  /// Not 0: so many records keep their places and are relit, `records` of them so far.
-  uint32_t relighting = 0;
-  float relit = 0;         ///< share of these that has its first level, those under way included
-  uint64_t published = 0;  ///< levels whose light lookups have been given; never goes back
+  struct {
+    uint64_t asked = 0, paths = 0;  ///< paths that asked, paths
+  } probed;                         ///< of the last complete pass
+  uint64_t rays = 0;                ///< of the records' own hemispheres
+  uint64_t bytes = 0;               ///< of device memory
+  double references = 0;            ///< leaves that list a record, on average
+  uint32_t loaded = 0;              ///< of the records, from a file; their rays count too
+  struct {
+    /// Not 0: so many records keep their places and are relit, CacheStatus::records of them so far.
+    uint32_t records = 0;
+    float share = 0;  ///< of these that has its first level, those under way included
+  } relighting;
   StopReason stop = StopReason::building;
   bool waits = false;             ///< building has come to a pause (Cache::pause)
   std::optional<StageDone> last;  ///< the stage that has ended last, since it was begun

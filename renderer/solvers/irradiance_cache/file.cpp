@@ -122,7 +122,8 @@ void fields(Archive& a, File& f) {
   assign(f.made_with.recursive, recursive);
   a.text(f.made_with.seed);
   a.text(f.view);
-  a.plain(f.status.pass), a.plain(f.status.asked), a.plain(f.status.paths), a.plain(f.status.rays);
+  a.plain(f.status.pass), a.plain(f.status.probed.asked), a.plain(f.status.probed.paths),
+      a.plain(f.status.rays);
   a.plain(f.status.stop);
   a.records(f.records);
 }

@@ -73,8 +73,8 @@ Inspection Inspector::ask(const overlay::Canvas& canvas, const Cache& cache, uin
   found.solid = header->solid != 0;
   if (!found.solid) return found;
   found.asks = header->asks;
-  found.position = header->position, found.normal = header->normal;
-  found.size = header->size, found.depth = header->depth;
+  found.surface.position = header->position, found.surface.normal = header->normal;
+  found.surface.size = header->size, found.surface.depth = header->depth;
   found.count = header->count, found.gathers = header->gathers != 0;
   const uint32_t listed = std::min(found.count, k_inspect_most);
   double sum = 0;
@@ -144,15 +144,15 @@ void Inspector::draw_lines(const overlay::Canvas& canvas, const Cache& cache, co
   for (auto s = found.serving.rbegin(); s != found.serving.rend(); ++s) {  // the heaviest on top
     if (s->weight < k_least_weight || s->depth <= 0) continue;
     const float strength = std::sqrt(s->weight / found.serving.front().weight);
-    list.push_back(
-        {here, s->at, found.depth, s->depth, 0.4f + 1.2f * strength, 0.3f + 0.65f * strength, k_line_ink});
+    list.push_back({here, s->at, found.surface.depth, s->depth, 0.4f + 1.2f * strength,
+                    0.3f + 0.65f * strength, k_line_ink});
     cover(s->at, 4);
     // Its centre: a point.
     list.push_back({s->at, s->at, s->depth, s->depth, 1.5f + strength, 0.5f + 0.5f * strength, k_line_ink});
   }
-  list.push_back({here, here, found.depth, found.depth, 2.0f, 1.0f, vec3(1)});
+  list.push_back({here, here, found.surface.depth, found.surface.depth, 2.0f, 1.0f, vec3(1)});
   if (found.under)
-    cover(found.under->at, 1.5f * found.under->record.radius / std::max(found.size, 1e-20f) + 4);
+    cover(found.under->at, 1.5f * found.under->record.radius / std::max(found.surface.size, 1e-20f) + 4);
 
   const vec2 first = glm::clamp(glm::floor(lo), vec2(0), vec2(width, height));
   const vec2 last = glm::clamp(glm::ceil(hi), vec2(0), vec2(width, height));

@@ -40,12 +40,14 @@ struct Covering {
 
 /// What there is at a pixel.
 struct Inspection {
-  uint32_t x = 0, y = 0;          ///< the pixel
-  bool solid = false;             ///< a surface is seen there; nothing below holds where not
-  uint32_t asks = 0;              ///< shared::k_asks_*
-  vec3 position{0}, normal{0};    ///< world space [m]; where records are asked for and with which normal
-  float size = 0;                 ///< of the pixel there [m]
-  float depth = 0;                ///< along the view axis [m]
+  uint32_t x = 0, y = 0;  ///< the pixel
+  bool solid = false;     ///< a surface is seen there; nothing below holds where not
+  uint32_t asks = 0;      ///< shared::k_asks_*
+  struct {
+    vec3 position{0}, normal{0};  ///< world space [m]; where records are asked for and with which normal
+    float size = 0;               ///< of the pixel there [m]
+    float depth = 0;              ///< along the view axis [m]
+  } surface;
   uint32_t count = 0;             ///< records that serve
   bool gathers = false;           ///< none does: paths gather there themselves, as Record::crowded
   std::vector<Serving> serving;   ///< heaviest first; no more than shared::k_inspect_most

@@ -8,8 +8,6 @@ namespace lucerna::irradiance_cache {
 
 using namespace shared;
 
-static_assert(k_error_lanes == k_record_lanes);
-
 namespace {
 
 constexpr const char* k_stage = "records' error";

@@ -9,9 +9,9 @@
 // add up.
 //
 // Noise: e_k = sigma_k xi_k, with the standard error that record k keeps and xi of mean 0 and variance 1,
-// independent from record to record. In each of k_error_lanes lanes every xi_k is drawn anew as a fixed sign;
-// paths are sent through the picture, every lane is summed over R, and the mean over the lanes of the square
-// of that is Var(delta_R) = sum_k c_k^2 sigma_k^2 (M. Hutchinson's estimator, 1989): the lanes are its
+// independent from record to record. In each of k_record_lanes lanes every xi_k is drawn anew as a fixed
+// sign; paths are sent through the picture, every lane is summed over R, and the mean over the lanes of the
+// square of that is Var(delta_R) = sum_k c_k^2 sigma_k^2 (M. Hutchinson's estimator, 1989): the lanes are its
 // degrees of freedom. Two independent paths a pixel, whose sums are multiplied, keep the paths' own noise out
 // of the square.
 //

@@ -23,7 +23,7 @@ void Cache::Impl::replace_records(const RawRecords& raw) {
 }
 
 void Cache::Impl::relight(const vec3& factor) {
-  if (status.relighting == 0) {
+  if (status.relighting.records == 0) {
     progress.stopped_before = status.stop == StopReason::dark ? StopReason::building : status.stop;
     // A pass that has its first level has places and radii, and is complete when it is relit. Of one before
     // that nothing is left; its places are asked for again.
@@ -38,7 +38,7 @@ void Cache::Impl::relight(const vec3& factor) {
   ranges.lose_light();
   held = gathers;
   status.stop = StopReason::building;
-  status.records = 0, status.relighting = ranges.placed(), status.relit = 0, status.rays = 0;
+  status.records = 0, status.relighting = {.records = ranges.placed()}, status.rays = 0;
   status.passes.clear();
   write_frame();
   relight_pass();
@@ -58,7 +58,7 @@ void Cache::Impl::relight_pass() {
     progress.stage = radii.by_light() ? Stage::measure : Stage::evaluate;
     return;
   }
-  status.relighting = 0;
+  status.relighting.records = 0;
   preview.end();
   if (progress.stopped_before == StopReason::building) return next_pass();
   if (!radii.by_light()) return finish(progress.stopped_before);
@@ -106,15 +106,14 @@ solvers::Spoils Cache::adopt(transport::Wavefront& wavefront, const Cache& other
   c.tables.records.restore(o.tables.records.raw(count));
   c.ranges.restore(o.ranges.complete_ends());
   c.held = o.held;
-  const uint64_t bytes = c.status.bytes, published = c.status.published;
+  const uint64_t bytes = c.status.bytes;
   c.status = o.status;
-  c.status.bytes = bytes, c.status.published = published + 1;
-  c.status.records = count, c.status.relighting = 0;
+  c.status.bytes = bytes, c.status.records = count, c.status.relighting.records = 0;
   if (!c.status.passes.empty() && !c.status.passes.back().complete) c.status.passes.pop_back();
   if (count > 0) c.build_octree(wavefront);
   c.overlay.set_scales(c.tables.records.figures());
   c.write_frame();
-  const bool relit = o.status.relighting > 0;  // and some are not yet
+  const bool relit = o.status.relighting.records > 0;  // and some are not yet
   const StopReason stop = relit ? o.progress.stopped_before : o.status.stop;
   if (stop != StopReason::building) c.finish(stop);
   solvers::Spoils lacks;

@@ -29,8 +29,9 @@ std::string preparing(const CacheReport& r) {
   const CacheStatus& s = r.status;
   if (s.stop != StopReason::building) return "";
   if (s.waits && s.last) return fmt::format("cache waits: {}", stage_words(*s.last));
-  if (s.relighting > 0)
-    return fmt::format("cache: relighting {} records, {:.0f} %", s.relighting, 100 * s.relit);
+  if (s.relighting.records > 0)
+    return fmt::format("cache: relighting {} records, {:.0f} %", s.relighting.records,
+                       100 * s.relighting.share);
   return fmt::format("cache, pass {}: {} records", s.pass + 1, r.placed);
 }
 
@@ -463,10 +464,14 @@ solvers::Report make_report(const CacheReport& told, const OptionValues& setting
     if (found.under) add_fields(*report.card, found.under->index, found.under->record);
     add_weights(*report.card, found, building);
   }
-  report.figures = {{"records", s.records},     {"room", told.room},
-                    {"rays", double(s.rays)},   {"pass", s.pass},
-                    {"bytes", double(s.bytes)}, {"stage", s.last ? double(s.last->stage) : -1},
-                    {"asked", double(s.asked)}, {"paths", double(s.paths)}};
+  report.figures = {{"records", s.records},
+                    {"room", told.room},
+                    {"rays", double(s.rays)},
+                    {"pass", s.pass},
+                    {"bytes", double(s.bytes)},
+                    {"stage", s.last ? double(s.last->stage) : -1},
+                    {"asked", double(s.probed.asked)},
+                    {"paths", double(s.probed.paths)}};
   if (told.overlap) {
     report.figures.emplace_back("overlap", told.overlap->mean);
     report.figures.emplace_back("overlap_most", told.overlap->most);

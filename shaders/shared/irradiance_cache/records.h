@@ -7,6 +7,7 @@
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
 #define LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
 #include "shaders/shared/compat.h"
+#include "shaders/shared/film.h"
 #include "shaders/shared/irradiance_cache/discontinuity.h"
 LUCERNA_SHARED_BEGIN
 
@@ -115,13 +116,10 @@ LUCERNA_CONST uint k_probe_errors_beyond = 7u;
 //   lobe, over pi
 LUCERNA_CONST uint k_note_medium = 32u;
 
-/// Signs by which every record's error is propagated into the picture (picture_error.h); a multiple of 4, at
-/// most 32.
-LUCERNA_CONST uint k_error_lanes = 16u;
 /// leave_one_out.comp leaves for every record, over the luminance of its irradiance: what it is off by where
 /// it ends, by what the others around say of it beyond what it says itself; 0, 0, 0; the same of their errors
 /// in every lane.
-LUCERNA_CONST uint k_residual_texels = 1u + k_error_lanes / 4u;
+LUCERNA_CONST uint k_residual_texels = 1u + k_record_lanes / 4u;
 
 struct PropagatePush {
   uint width, height;  ///< of the picture, in pixels of the film

@@ -1,0 +1,15 @@
+#pragma once
+// What a relative error comes to by where it comes from.
+#include <cmath>
+
+namespace lucerna {
+
+/// hypot(paths, records) + interpolation: the noise of the paths and that of the records which they read are
+/// independent of each other, so that their variances add up; what interpolation between records is off by
+/// has a sign that nobody knows, and is added to what they come to. All 0 or more.
+template <class Real>
+Real error_sum(Real paths, Real records, Real interpolation) {
+  return std::hypot(paths, records) + interpolation;
+}
+
+}  // namespace lucerna

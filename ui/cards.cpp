@@ -1,0 +1,177 @@
+// What lies over the picture and says something: what goes on, what went wrong, what to do first.
+#include <fmt/format.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/figures.h"
+#include "state.h"
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+/// A sentence in the middle below, that goes by itself.
+void draw_note(Ui& ui, const Area& area) {
+  if (ui.note.text.empty()) return;
+  // Above what else is told below.
+  const bool beside = (ui.snapshot && !ui.snapshot->activity.empty()) || ui.busy_seconds() > 0;
+  const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24)), h = px(32);
+  const ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)), area.hi.y - h - px(beside ? 76.0f : 16.0f));
+  const ImVec2 hi(lo.x + w, lo.y + h);
+  ImDrawList* list = card(lo, hi);
+  draw_text(list, lo, hi, elided(ui.note.text, w - px(24)), colour::text, Align::centre);
+}
+
+/// What to do first: three sentences, in the middle of the picture until they are put away.
+void welcome_card(Ui& ui, const Area& area) {
+  if (!ui.welcome) return;
+  static const char* sentences[] = {
+      "Drop a glTF scene on the window or press Ctrl+O; drag with the left button to orbit about what the "
+      "pointer is on, with the right one to look about, and turn the wheel to come closer.",
+      "W A S D fly and H walks along the floor, F frames what you have clicked on, Space pauses, and Ctrl+Z "
+      "takes back whatever you did.",
+      "On the left you choose how each part of the light is computed, on the right you change lamps, sky and "
+      "materials; F1 shows all keys."};
+  ImFont* font = theme().fonts.regular;
+  const float w = std::min(px(520), area.width() - px(32)), pad = px(20), room = w - 2 * pad;
+  float h = pad + px(28) + px(40) + pad;
+  for (const char* text : sentences) h += font->CalcTextSizeA(font->FontSize, 1e9f, room, text).y + px(10);
+  h = std::min(h, area.height() - px(16));
+  const ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)),
+                  std::floor(0.5f * (area.lo.y + area.hi.y - h)));
+  ImGui::SetCursorScreenPos(lo);
+  ImGui::BeginChild("##welcome", {w, h}, false, ImGuiWindowFlags_NoScrollbar);
+  ImDrawList* list = card(lo, {lo.x + w, lo.y + h}, 0.97f);
+  float y = lo.y + pad;
+  draw_text(list, {lo.x + pad, y}, {lo.x + w - pad, y + px(20)}, "First steps", colour::text, Align::left,
+            theme().fonts.strong);
+  y += px(28);
+  for (const char* text : sentences) {
+    list->AddText(font, font->FontSize, {lo.x + pad, y}, colour::text, text, nullptr, room);
+    y += font->CalcTextSizeA(font->FontSize, 1e9f, room, text).y + px(10);
+  }
+  ImGui::SetCursorScreenPos({lo.x + w - pad - px(96), lo.y + h - pad - px(24)});
+  if (button("##begin", "Begin", true, px(96))) ui.welcome = false;
+  tooltip("Puts this away for good; Help > First steps shows it again. Esc.");
+  ImGui::EndChild();
+}
+
+/// What has kept the renderer for more than half a second, and for how long, at the lower right.
+void busy_card(Ui& ui, const Area& area) {
+  const double seconds = ui.busy_seconds();
+  if (seconds <= 0 || (ui.snapshot && !ui.snapshot->activity.empty())) return;
+  const float w = std::min(px(320), area.width() - px(24)), h = px(44);
+  // At the right: legends lie at the left.
+  const ImVec2 lo(area.hi.x - w - px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
+  ImDrawList* list = card(lo, hi);
+  const std::string time = seconds_text(seconds);
+  draw_text(list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)}, time, colour::text_dim,
+            Align::right);
+  draw_text(
+      list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)},
+      elided(ui.busy.text.empty() ? "Working" : "Working: " + ui.busy.text, w - px(36) - text_width(time)),
+      colour::text);
+  // How far it is nobody knows; that it goes on is seen.
+  const float lo_x = lo.x + px(12), room = hi.x - px(12) - lo_x, part = 0.25f;
+  const float at = static_cast<float>(0.5 - 0.5 * std::cos(2 * seconds)) * (1 - part);
+  list->AddRectFilled({lo_x, hi.y - px(9)}, {lo_x + room, hi.y - px(6)}, colour::field, px(1));
+  list->AddRectFilled({lo_x + at * room, hi.y - px(9)}, {lo_x + (at + part) * room, hi.y - px(6)},
+                      colour::accent, px(1));
+}
+
+/// What is going on, at the lower left, with a way out.
+void activity_card(Ui& ui, const Area& area) {
+  if (!ui.snapshot || ui.snapshot->activity.empty()) return;
+  const bool cancels = ui.loading();
+  const float w = std::min(px(360), area.width() - px(24)), h = px(cancels ? 60.0f : 36.0f);
+  const bool empty = ui.snapshot->rgba.empty();
+  const ImVec2 lo(empty ? std::floor(0.5f * (area.lo.x + area.hi.x - w)) : area.lo.x + px(12),
+                  empty ? std::floor(area.lo.y + 0.42f * area.height()) : area.hi.y - h - px(12));
+  const ImVec2 hi(lo.x + w, lo.y + h);
+  ImDrawList* list = card(lo, hi);
+  const float text_right = hi.x - px(cancels ? 96.0f : 12.0f);
+  draw_text(list, {lo.x + px(12), lo.y}, {text_right, lo.y + px(cancels ? 44.0f : 36.0f)},
+            elided(ui.snapshot->activity, text_right - lo.x - px(12)), colour::text);
+  if (!cancels) return;
+  ImGui::SetCursorScreenPos({hi.x - px(84), lo.y + px(10)});
+  if (button("##cancel", "Cancel", false, px(72))) ui.act("scene.cancel");
+  tooltip("Gives up the load; the scene shown stays. Esc.");
+  const float track_lo = lo.x + px(12), track_hi = hi.x - px(12), y = hi.y - px(14);
+  list->AddRectFilled({track_lo, y}, {track_hi, y + px(3)}, colour::field, px(1));
+  list->AddRectFilled(
+      {track_lo, y},
+      {track_lo + (track_hi - track_lo) * std::clamp(ui.snapshot->progress, 0.0f, 1.0f), y + px(3)},
+      colour::accent, px(1));
+}
+
+/// The newest error, over the upper edge of the picture until it is taken away.
+void error_strip(Ui& ui, const Area& area) {
+  if (ui.errors.empty()) return;
+  const std::string message = ui.errors.back();
+  ImFont* font = theme().fonts.regular;
+  const float pad = px(12), count_width = ui.errors.size() > 1 ? px(44) : 0;
+  const float room = std::max(px(80), area.width() - 3 * pad - px(28) - count_width);
+  const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9f, room, message.c_str());
+  const float height = std::min(size.y + px(16), area.height() * 0.6f);
+  const ImVec2 lo = area.lo, hi(area.hi.x, area.lo.y + height);
+  ImGui::SetCursorScreenPos(lo);
+  ImGui::BeginChild("##errors", {hi.x - lo.x, hi.y - lo.y}, false, ImGuiWindowFlags_NoScrollbar);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->AddRectFilled(lo, hi, colour::error_field);
+  list->AddRectFilled(lo, {lo.x + px(3), hi.y}, colour::error);
+  list->AddText(font, font->FontSize, {lo.x + pad, lo.y + px(8)}, colour::text, message.c_str(), nullptr,
+                room);
+  if (ui.errors.size() > 1)
+    draw_text(list, {hi.x - px(36) - count_width, lo.y}, {hi.x - px(40), lo.y + px(34)},
+              fmt::format("1 of {}", ui.errors.size()), colour::text_dim, Align::right, theme().fonts.small);
+  ImGui::SetCursorScreenPos({hi.x - px(32), lo.y + px(6)});
+  if (sign_button("##dismiss", Sign::close, true, colour::text)) ui.act("dismiss");
+  tooltip("Takes the message away; it stays in the log. Esc.");
+  ImGui::EndChild();
+}
+
+}  // namespace
+
+void draw_empty_state(Ui& ui, const Area& area) {
+  if (ui.snapshot && !ui.snapshot->activity.empty()) return;
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const float x = 0.5f * (area.lo.x + area.hi.x), y = std::floor(area.lo.y + 0.42f * area.height());
+  draw_text(list, {area.lo.x, y - px(16)}, {area.hi.x, y + px(16)}, "Drop a scene here", colour::text,
+            Align::centre, theme().fonts.large);
+  draw_text(list, {area.lo.x, y + px(20)}, {area.hi.x, y + px(40)}, "glTF 2.0, as .gltf or .glb",
+            colour::text_dim, Align::centre);
+  const float w = px(104);
+  ImGui::SetCursorScreenPos({std::floor(x - 0.5f * w), y + px(56)});
+  if (button("##open", "Open\xE2\x80\xA6", false, w)) ui.act("dialog.open");
+  tooltip("Opens a scene by its path. Ctrl+O.");
+  if (ui.recent.empty()) return;
+  float line = y + px(112);
+  const float width = std::min(px(420), area.width() - px(48));
+  draw_text(list, {area.lo.x, line - px(20)}, {area.hi.x, line}, "Recent", colour::text_faint, Align::centre,
+            theme().fonts.small);
+  const std::vector<std::string> files(
+      ui.recent.begin(),
+      ui.recent.begin() + std::min<std::ptrdiff_t>(5, static_cast<std::ptrdiff_t>(ui.recent.size())));
+  for (size_t i = 0; i < files.size() && line + px(24) < area.hi.y; ++i, line += px(24)) {
+    ImGui::PushID(static_cast<int>(i));
+    const ImVec2 lo(std::floor(x - 0.5f * width), line), hi(lo.x + width, line + px(24));
+    ImGui::SetCursorScreenPos(lo);
+    if (ImGui::InvisibleButton("##recent", {width, px(24)})) ui.act("scene.open", files[i]);
+    if (ImGui::IsItemHovered()) list->AddRectFilled(lo, hi, colour::field, px(3));
+    draw_text(list, lo, hi, elided(files[i], width - px(16), nullptr, true),
+              ImGui::IsItemHovered() ? colour::text : colour::text_dim, Align::centre);
+    ImGui::PopID();
+  }
+}
+
+void draw_cards(Ui& ui, const Area& area) {
+  activity_card(ui, area);
+  busy_card(ui, area);
+  draw_note(ui, area);
+  error_strip(ui, area);
+  welcome_card(ui, area);
+}
+
+}  // namespace lucerna::ui
