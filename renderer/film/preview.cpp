@@ -138,11 +138,17 @@ const Preview::Pixels& Preview::history(gpu::Stream& stream, const PreviewCamera
   return moved_;
 }
 
-void Preview::show(gpu::Stream& stream, const Film& film, const Pixels& seen, const PreviewRecallPush& push) {
+void Preview::show(gpu::Stream& stream, const Film& film, const Pixels& seen, PreviewRecallPush push) {
   resources_.set("history_texels", seen.light);
   resources_.set("history_surfaces", seen.surfaces);
   resources_.set("Picture", film.picture());
-  stream.dispatch(recall_, resources_, push, groups(pixels()));
+  constexpr uint32_t k_step = k_preview_first_step;
+  const uint32_t cells = ((width_ + k_step - 1) / k_step) * ((height_ + k_step - 1) / k_step);
+  for (push.pass = 0; push.pass < 3; ++push.pass) {
+    resources_.set("cell_texels", before_[(push.pass + 1) % 2]);
+    resources_.set("Cells", before_[push.pass % 2]);
+    stream.dispatch(recall_, resources_, push, groups(push.pass < 2 ? cells : pixels()));
+  }
   stream.run();
   stream.take_times();
 }
@@ -154,7 +160,7 @@ void Preview::warm(gpu::Stream& stream, const Film& film) {
 
 void Preview::recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera) {
   show(stream, film, history(stream, camera),
-       {width_, height_, shown_components(view), view.curve, history_scale(view)});
+       {width_, height_, 0, shown_components(view), view.curve, history_scale(view)});
 }
 
 void Preview::take(gpu::Stream& stream, const Film& film, float exposure, const PreviewCamera& camera) {

@@ -70,7 +70,7 @@ class Preview {
   void make_room(uint32_t width, uint32_t height, const Film* draft);
   void pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure, const Pixels* guide);
   void move(gpu::Stream& stream, shared::PreviewReprojectPush push);
-  void show(gpu::Stream& stream, const Film& film, const Pixels& seen, const shared::PreviewRecallPush& push);
+  void show(gpu::Stream& stream, const Film& film, const Pixels& seen, shared::PreviewRecallPush push);
   const Pixels& history(gpu::Stream& stream, const PreviewCamera& now);
   vec3 history_scale(const View& view) const { return history_scale_ * (view.exposure / history_exposure_); }
   uint32_t pixels() const { return width_ * height_; }

@@ -1,5 +1,5 @@
 // What was shown before, as the camera sees it now, is the picture until there is new light. What has come into view takes
-// the light of what is next to it, rather of what is behind.
+// the light of what is next to it, rather of what is behind: that is found for cells of k_preview_first_step pixels.
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "film/preview.glsl"
@@ -7,9 +7,11 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewRecallPush push; };
 uniform samplerBuffer history_texels, history_surfaces;
+uniform samplerBuffer cell_texels;  // of a cell: light, depth (0: not known)
+layout(scalar) writeonly buffer Cells { vec4 cells[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
 
-const int k_reach = 256;   // pixels
+const int k_reach = 64;    // cells
 const float k_sky = 10.0;  // depth that the background is taken for [m], so that it does not outweigh a wall that is next
 
 // Of what was shown: about where its surface is; 0: it is not known, nor its light.
@@ -26,27 +28,69 @@ vec3 shown_at(int pixel) {
   return sum;
 }
 
+// The cell's mean, of pixels that are known.
+vec4 cell_mean(ivec2 cell) {
+  vec4 sum = vec4(0.0);
+  float known = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    ivec2 at = min(int(k_preview_first_step) * cell + int(k_preview_first_step / 2u) * ivec2(k & 1, k >> 1),
+                   ivec2(push.width, push.height) - 1);
+    int pixel = at.y * int(push.width) + at.x;
+    float depth = depth_at(pixel);
+    if (depth <= 0.0) continue;
+    sum += vec4(shown_at(pixel), depth);
+    known += 1.0;
+  }
+  return sum / max(known, 1.0);
+}
+
+// What is known in eight directions, in steps that double: all of a picture may have to be looked for.
+vec4 cell_around(ivec2 cell, ivec2 size) {
+  vec4 sum = vec4(0.0);
+  float weights = 0.0;
+  for (int k = 0; k < 9; ++k) {
+    ivec2 way = ivec2(k % 3, k / 3) - 1;
+    for (int far = k == 4 ? 2 * k_reach : 1; far <= k_reach; far *= 2) {
+      ivec2 at = cell + far * way;
+      if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) break;
+      vec4 there = texelFetch(cell_texels, at.y * size.x + at.x);
+      if (there.w <= 0.0) continue;
+      float weight = square(square(there.w)) / float(far);
+      sum += weight * there;
+      weights += weight;
+      break;
+    }
+  }
+  return sum / max(weights, 1e-20);
+}
+
 void main() {
-  uint pixel = global_index();
-  if (pixel >= push.width * push.height) return;
-  ivec2 xy = ivec2(pixel % push.width, pixel / push.width), size = ivec2(push.width, push.height);
-  vec3 here = shown_at(int(pixel));
-  if (depth_at(int(pixel)) <= 0.0) {
+  uint index = global_index();
+  ivec2 size = (ivec2(push.width, push.height) + int(k_preview_first_step) - 1) / int(k_preview_first_step);
+  if (push.pass < 2u) {
+    if (index >= uint(size.x * size.y)) return;
+    ivec2 cell = ivec2(int(index) % size.x, int(index) / size.x);
+    vec4 here = push.pass == 0u ? cell_mean(cell) : texelFetch(cell_texels, int(index));
+    if (push.pass == 1u && here.w <= 0.0) here = cell_around(cell, size);
+    cells[index] = here;
+    return;
+  }
+  if (index >= push.width * push.height) return;
+  vec3 here;
+  if (depth_at(int(index)) > 0.0) {
+    here = shown_at(int(index));
+  } else {
+    vec2 p = (vec2(index % push.width, index / push.width) + 0.5) / float(k_preview_first_step) - 0.5;
+    ivec2 base = ivec2(floor(p));
+    vec2 f = p - vec2(base);
     vec4 sum = vec4(0.0);
-    for (int k = 0; k < 9; ++k) {
-      ivec2 way = ivec2(k % 3, k / 3) - 1;
-      // Steps that double: all of a picture may have to be looked for.
-      for (int far = k == 4 ? 2 * k_reach : 1; far <= k_reach; far *= 2) {
-        ivec2 at = xy + far * way;
-        if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) break;
-        int there = at.y * size.x + at.x;
-        float depth = depth_at(there);
-        if (depth <= 0.0) continue;
-        sum += square(square(depth)) / float(far) * vec4(shown_at(there), 1.0);
-        break;
-      }
+    for (int k = 0; k < 4; ++k) {
+      ivec2 corner = ivec2(k & 1, k >> 1), at = clamp(base + corner, ivec2(0), size - 1);
+      vec4 there = texelFetch(cell_texels, at.y * size.x + at.x);
+      vec2 g = mix(1.0 - f, f, vec2(corner));
+      sum += (there.w > 0.0 ? g.x * g.y + 1e-4 : 0.0) * vec4(there.rgb, 1.0);
     }
     here = sum.rgb / max(sum.w, 1e-20);
   }
-  picture[pixel] = picture_packed(tone_map(here * push.history_scale, push.curve));
+  picture[index] = picture_packed(tone_map(here * push.history_scale, push.curve));
 }

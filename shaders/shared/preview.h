@@ -53,6 +53,7 @@ struct PreviewReprojectPush {
 
 struct PreviewRecallPush {
   uint width, height;
+  uint pass;             ///< 0: cells, 1: those that are not known, 2: the picture
   uint show;             ///< bit i: component i is part of what is shown
   uint curve;
   vec3 history_scale;    ///< of what was shown before
