@@ -1,5 +1,7 @@
 #pragma once
 // What overlays are drawn on: a picture, with what its film knows of the surfaces that it shows.
+#include <functional>
+
 #include "film/film.h"
 #include "transport/wavefront.h"
 
@@ -11,6 +13,9 @@ struct Canvas {
   transport::Wavefront& wavefront;
   const film::Film& film;
   const film::Film& coarse;
+  /// Asked by what takes long: true when the picture is out of date already. What is drawn may then be left
+  /// out.
+  std::function<bool()> cancel = {};
 
   uint32_t width() const { return film.width(); }
   uint32_t height() const { return film.height(); }

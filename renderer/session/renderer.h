@@ -132,10 +132,11 @@ class Renderer {
 
   /// Tone-mapped picture with the settings' view, or a heat map on view().heat's scale; tiles over it where
   /// overlay.tiles is on.
-  std::vector<uint8_t> picture(bool with_coarse);
+  /// `cancel` is asked while solvers draw over it: true when it is out of date already.
+  std::vector<uint8_t> picture(bool with_coarse, const std::function<bool()>& cancel = {});
   /// The same as the window shows it while it is made (Display), with the setting preview.filter; where there
   /// is no such thing, picture(with_coarse).
-  std::vector<uint8_t> shown_picture(bool with_coarse);
+  std::vector<uint8_t> shown_picture(bool with_coarse, const std::function<bool()>& cancel = {});
   /// Whether shown_picture() has something to show before there is any new light: what was there before.
   bool remembers() const;
   /// Of the picture that shown_picture() has made last.
@@ -158,7 +159,7 @@ class Renderer {
   solvers::Solver* solver(std::string_view name) { return engine_ ? engine_->find(name) : nullptr; }
   /// Calls f with each, the picture that it can draw over, and the picture as it is told of it.
   using Visit = std::function<void(solvers::Solver&, const overlay::Canvas&, const solvers::Picture&)>;
-  void visit_solvers(const Visit& f);
+  void visit_solvers(const Visit& f, const std::function<bool()>& cancel = {});
   /// Some light is looked up.
   bool looks_up() const { return engine_ && !engine_->solvers().empty(); }
   /// Something is to be prepared before the next sample.
@@ -229,7 +230,7 @@ class Renderer {
   void restart(const scene::Changes& changes, const vec3& factor = vec3(1));
   PictureView picture_view() const { return {automaton_, settings_, world_, camera_, width_, height_}; }
   /// What the film has developed, with what solvers draw over it.
-  std::vector<uint8_t> finished_picture();
+  std::vector<uint8_t> finished_picture(const std::function<bool()>& cancel);
   void mark_tiles(const film::View& view);
   bool previewed(const film::View& view) const;  ///< whether the window shows a preview of it
   film::HeatScale heat_scale(uint32_t layer) const;

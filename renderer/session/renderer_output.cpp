@@ -48,10 +48,10 @@ void Renderer::mark_tiles(const film::View& v) {
   film_->mark_tiles(marks);
 }
 
-std::vector<uint8_t> Renderer::finished_picture() {
-  visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
-    solver.draw(canvas, picture);
-  });
+std::vector<uint8_t> Renderer::finished_picture(const std::function<bool()>& cancel) {
+  visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas,
+                   const solvers::Picture& picture) { solver.draw(canvas, picture); },
+                cancel);
   return film_->read_picture();
 }
 
@@ -64,11 +64,11 @@ bool Renderer::previewed(const film::View& v) const {
 
 bool Renderer::remembers() const { return engine_ && film_ && previewed(view()) && display_->remembers(); }
 
-std::vector<uint8_t> Renderer::shown_picture(bool with_coarse) {
+std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::function<bool()>& cancel) {
   const film::View v = view();
   if (!previewed(v)) {
     if (display_) display_->plain(*engine_, picture_view(), v);
-    return picture(with_coarse);
+    return picture(with_coarse, cancel);
   }
   mark_tiles(v);
   try {
@@ -77,18 +77,18 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse) {
     // The picture itself does not need it.
     log::warning("{}; the window shows the samples as they are", e.what());
     settings_.set("preview.filter", "off");
-    return picture(with_coarse);
+    return picture(with_coarse, cancel);
   }
   engine_->developer().draw_tiles(engine_->wavefront().stream(), *film_, v);
-  return finished_picture();
+  return finished_picture(cancel);
 }
 
-std::vector<uint8_t> Renderer::picture(bool with_coarse) {
+std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<bool()>& cancel) {
   const film::View v = view();
   mark_tiles(v);
   engine_->developer().tone_map(engine_->wavefront().stream(), *film_, v,
                                 with_coarse ? coarse_.get() : nullptr);
-  return finished_picture();
+  return finished_picture(cancel);
 }
 
 film::Brightness Renderer::measure(std::optional<vec2> at) const {

@@ -5,9 +5,9 @@
 
 namespace lucerna::session {
 
-void Renderer::visit_solvers(const Visit& f) {
+void Renderer::visit_solvers(const Visit& f, const std::function<bool()>& cancel) {
   if (!engine_ || !film_) return;
-  const overlay::Canvas canvas{engine_->wavefront(), *film_, *coarse_};
+  const overlay::Canvas canvas{engine_->wavefront(), *film_, *coarse_, cancel};
   const PictureView view = picture_view();
   for (const auto& solver : engine_->solvers())
     engine_->with(*solver, view, [&](const solvers::Picture& picture) { f(*solver, canvas, picture); });

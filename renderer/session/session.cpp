@@ -155,7 +155,7 @@ struct Session::Impl {
     next.width = r.film().width();
     next.height = r.film().height();
     const Timer shown;
-    next.rgba = r.shown_picture(!filled);
+    next.rgba = r.shown_picture(!filled, [&] { return pending.load() || quit; });
     publish_seconds = std::max(k_publish_seconds, 4 * shown.seconds());
     next.stale = r.preview_shares().stale, next.filtered = r.preview_shares().filtered;
     const film::View view = r.view();

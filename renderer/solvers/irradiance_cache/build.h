@@ -90,7 +90,9 @@ struct Cache::Impl {
   /// One piece of looking at the picture's points; false when it was cancelled.
   bool see(transport::Wavefront& wavefront, const CacheView& view, const std::function<bool()>& cancel);
   /// ... or all of them, for somebody who watches.
-  void see_all(transport::Wavefront& wavefront, const CacheView& view);
+  /// False when it was cancelled.
+  bool see_all(transport::Wavefront& wavefront, const CacheView& view,
+               const std::function<bool()>& cancel = {});
 
   Radii::Bind binding() const {
     return [this](gpu::Resources& to) { tables.bind(to); };

@@ -115,11 +115,15 @@ bool Cache::Impl::see(transport::Wavefront& wavefront, const CacheView& view,
   return complete;
 }
 
-void Cache::Impl::see_all(transport::Wavefront& wavefront, const CacheView& view) {
-  if (picture.screen.seen()) return;
-  wavefront.uncounted([&] {
-    while (!picture.screen.seen()) see(wavefront, view, {});
-  });
+bool Cache::Impl::see_all(transport::Wavefront& wavefront, const CacheView& view,
+                          const std::function<bool()>& cancel) {
+  bool complete = true;
+  if (!picture.screen.seen())
+    wavefront.uncounted([&] {
+      while (complete && !picture.screen.seen())
+        complete = !(cancel && cancel()) && see(wavefront, view, cancel);
+    });
+  return complete;
 }
 
 bool Cache::Impl::look(const Work& w, bool& cancelled) {

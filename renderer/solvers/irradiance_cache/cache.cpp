@@ -148,9 +148,9 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
   return true;
 }
 
-void Cache::look_at_picture(transport::Wavefront& wavefront, const CacheView& view) {
-  Impl& c = *impl_;
-  if (ready()) c.see_all(wavefront, view);
+bool Cache::look_at_picture(transport::Wavefront& wavefront, const CacheView& view,
+                            const std::function<bool()>& cancel) {
+  return !ready() || impl_->see_all(wavefront, view, cancel);
 }
 
 bool Cache::estimate_errors(transport::Wavefront& wavefront, film::Film& film, const CacheView& view,
@@ -173,16 +173,16 @@ SightGrid Cache::bind_sight(gpu::Resources& to) const {
   return grid;
 }
 
-void Cache::draw_discontinuity(transport::Wavefront& wavefront, const film::Film& film, const CacheView& view,
-                               Discontinuity::Of of, uint32_t level) {
+void Cache::draw_discontinuity(const overlay::Canvas& canvas, const CacheView& view, Discontinuity::Of of,
+                               uint32_t level) {
   Impl& c = *impl_;
-  c.see_all(wavefront, view);
-  gpu::Stream& stream = wavefront.stream();
+  if (!c.see_all(canvas.wavefront, view, canvas.cancel)) return;
+  gpu::Stream& stream = canvas.stream();
   c.picture.screen.look_up(stream, c.binding());
   DiscontinuityOptions options = c.options.screen;
   if (options.irradiance_weight <= 0) options.irradiance_weight = DiscontinuityOptions{}.irradiance_weight;
   c.picture.screen.measure(stream, of, options, c.dark());
-  c.picture.screen.draw(stream, film.picture(), level);
+  c.picture.screen.draw(stream, canvas.film.picture(), level);
   stream.run();
   stream.take_times();
 }

@@ -186,7 +186,9 @@ class Cache {
   bool recursive() const;  ///< their tertiary light is looked up in other records, not path traced
   /// Looks through the centre of every pixel, for bind_sight(), unless that has been done: while the cache is
   /// being built its own passes do. The wavefront's frame is the view's.
-  void look_at_picture(transport::Wavefront& wavefront, const CacheView& view);
+  /// False when it was cancelled.
+  bool look_at_picture(transport::Wavefront& wavefront, const CacheView& view,
+                       const std::function<bool()>& cancel = {});
   /// Goes on estimating, for the film, what the picture's records make it wrong by (picture_error.h), a piece
   /// at a time, until Film::record_errors_complete(). Only when ready(); the wavefront's frame is the view's.
   /// `anew`: the picture is begun. False when it was cancelled: it will be done again.
@@ -209,9 +211,9 @@ class Cache {
   void draw(const overlay::Canvas& canvas, const Overlay& overlay);
   /// Lays over the film's picture what of it the screen-space stage sees: the discontinuity of the geometry,
   /// or of the irradiance that the present records give, at a level of its pyramid. The wavefront's frame is
-  /// the view's. The stream is run.
-  void draw_discontinuity(transport::Wavefront& wavefront, const film::Film& film, const CacheView& view,
-                          Discontinuity::Of of, uint32_t level);
+  /// the view's. The stream is run. Nothing where the canvas says that the picture is out of date.
+  void draw_discontinuity(const overlay::Canvas& canvas, const CacheView& view, Discontinuity::Of of,
+                          uint32_t level);
 
  private:
   struct Impl;

@@ -25,7 +25,7 @@ void CacheSolver::draw(const Canvas& canvas, const Picture& picture) {
   const OptionValues& settings = picture.task.settings;
   const CacheView seen = view(picture);
   if (const auto of = uint32_t(settings.choice("overlay.discontinuity")); of > 0)
-    cache_.draw_discontinuity(canvas.wavefront, canvas.film, seen, Discontinuity::Of(of - 1),
+    cache_.draw_discontinuity(canvas, seen, Discontinuity::Of(of - 1),
                               uint32_t(settings.integer("overlay.discontinuity_level")));
   const auto placement = PlacementShow(settings.choice("overlay.placement"));
   if (placement != PlacementShow::off) {
@@ -35,7 +35,7 @@ void CacheSolver::draw(const Canvas& canvas, const Picture& picture) {
   }
   const auto color = uint32_t(settings.choice("overlay.records_by"));
   const bool overlap = settings.boolean("overlay.overlap");
-  if (overlap || looked_at_) cache_.look_at_picture(canvas.wavefront, seen);
+  if ((overlap || looked_at_) && !cache_.look_at_picture(canvas.wavefront, seen, canvas.cancel)) return;
   cache_.draw(canvas, {.discs = settings.boolean("overlay.records"), .overlap = overlap, .color = color});
   inspection_ = {};
   if (settings.boolean("overlay.normals")) inspector().draw_normals(canvas, cache_, color);
