@@ -47,17 +47,19 @@ void Preview::forget() {
   moved_camera_.reset();
 }
 
-void Preview::keep(const vec3& scale, bool repainted) {
+void Preview::keep(const vec3& scale, bool repainted, bool same_light) {
   if (shown_) {
     std::swap(now_, history_);
     history_camera_ = camera_, history_exposure_ = exposure_;
     history_scale_ = vec3(1);
+    same_light_ = true;
     moved_camera_.reset();
     has_history_ = true;
     shown_ = false;
   }
   history_scale_ *= scale;
   repainted_ = repainted_ || repainted;
+  same_light_ = same_light_ && same_light;
 }
 
 uint64_t Preview::bytes() const {
@@ -247,7 +249,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                    .repainted = repainted_,
                                    .history_scale = history_scale(view),
                                    .step = step,
-                                   .sampled = sampled != Sampled::none};
+                                   .sampled = sampled != Sampled::none,
+                                   .same_light = same_light_};
   stream.dispatch(resolve_, resources_, resolve, groups(pixels()));
   stream.run();
   stream.take_times();

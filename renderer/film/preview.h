@@ -40,8 +40,9 @@ class Preview {
   /// Nothing has been shown yet.
   void forget();
   /// The picture begins anew: what was shown last is what was there before. Its light is to be multiplied by
-  /// `scale`, where an edit is known to do that to all light; `repainted`: surfaces may have other colours.
-  void keep(const vec3& scale = vec3(1), bool repainted = false);
+  /// `scale`, where an edit is known to do that to all light; `repainted`: surfaces may have other colours;
+  /// `same_light`: no more than the camera has changed.
+  void keep(const vec3& scale = vec3(1), bool repainted = false, bool same_light = false);
   /// Film -> its picture, of the layers that show light (View::layer up to shared::k_layer_primary + 3).
   /// `draft`: a film of the same view with pixels of whole pixels, or null; `filtered`: noise is filtered,
   /// not only where there are no samples. Films must fit(). Throws Error when memory is short. The stream is
@@ -89,6 +90,7 @@ class Preview {
   vec3 history_scale_{1};
   bool shown_ = false;  ///< `now_` is what was developed last, of light that `history_` knows nothing of
   bool has_history_ = false;
+  bool same_light_ = true;  ///< as `history_` has it; but what is seen of it can hang on the direction
   bool repainted_ = false;  ///< of the surfaces that come from before
 };
 

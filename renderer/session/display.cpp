@@ -25,7 +25,8 @@ void Display::restart(const scene::Changes& changes, const vec3& scale) {
     preview_.forget();
   else
     preview_.keep(scale,
-                  is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders));
+                  is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders),
+                  changes.edits == scene::Changes(scene::Change::camera).edits && changes.settings.empty());
   plan_.restart();
   draft_serves_ = true;
 }

@@ -18,12 +18,14 @@ layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
 layout(scalar) writeonly buffer Shares { PreviewShares shares[]; };
 
+// Squares of a difference, over its variance, up to which it is taken for chance: noise of few paths has far outliers, and
+// where no light has changed nearly all of what is different is one.
+const float k_by_chance = 3.0, k_by_chance_same = 16.0;
+const float k_least_noise = 0.5;  // of a sample, relative, in light that has not changed
 // Relative noise of a pixel up to which it is shown as it is, and from which on it is filtered.
 const float k_clean = 0.02, k_noisy = 0.08;
 // Of filtered light, what the filter may be off by.
 const float k_filter_error = 0.04;
-// Square of a difference, over its variance, up to which it is taken for chance.
-const float k_by_chance = 3.0;
 
 shared vec3 group_shares[64];
 
@@ -88,6 +90,7 @@ void main() {
     // For cameras that come after this one.
     if (here.depth < 0.0 && nearest_depth >= 0.0) surface = vec4(k_preview_about - nearest_depth, 0.0, 0.0, 0.0);
     packed_surfaces[pixel] = surface;
+    float by_chance = push.same_light != 0u ? k_by_chance_same : k_by_chance;
     vec4 result[k_component_count];
     vec3 color = vec3(0.0);
     for (uint c = 0u; c < k_component_count; ++c) {
@@ -101,9 +104,11 @@ void main() {
       float error = mix(noise[c], luminance(modulation) * max(light[c].w, 0.0) * inverse + k_filter_error * smooth_luminance, amount);
       vec3 before = has_old ? old.of[c].rgb * push.history_scale : vec3(0.0);
       float u = has_old ? square(old.of[c].w) : 0.0, v = square(error) + 1e-8;
+      // Paths that have brought nothing yet seem to be without noise: what was there says how much may come.
+      if (push.same_light != 0u) v = max(v, square(k_least_noise * luminance(before)) / max(here.samples, 1.0));
       float difference = luminance(modulation) * before_smooth[c] * inverse - smooth_luminance;
       // What noise alone brings now and then is no change: it would show as specks.
-      float change = max(square(difference) - k_by_chance * (u + v), 0.0);
+      float change = max(square(difference) - by_chance * (u + v), 0.0);
       float keep = has_old ? rough * v / (v + u + change) : 0.0;
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;
       if (nothing) keep = has_old ? 1.0 : 0.0;

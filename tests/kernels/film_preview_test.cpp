@@ -330,7 +330,8 @@ TEST_CASE("what was there before can be shown at once, as the camera sees it now
       INFO(x << ", " << y);
       if (x >= 5 && x < 44)  // the far wall, four pixels to the right
         REQUIRE(shown[y * 64 + x] == Approx(0.5f * wall(x - 4, y).light.x).margin(0.004));
-      else if (x < 45)  // what has come into view between the walls, and at the border: rather like the far one
+      else if (x <
+               45)  // what has come into view between the walls, and at the border: rather like the far one
         REQUIRE(shown[y * 64 + x] == Approx(0.15f).margin(0.1));
       else if (x >= 50)
         REQUIRE(shown[y * 64 + x] == Approx(0.4f).margin(0.004));
@@ -357,4 +358,27 @@ TEST_CASE("of what the camera comes close to nothing is left out between the pix
         REQUIRE(shown[y * 64 + x] == Approx(wall(uint32_t(u), uint32_t(v))).margin(0.01));
       REQUIRE(shown[y * 64 + x] > 0.19f);
     }
+}
+
+TEST_CASE("where only the camera has moved outliers of the noise are no change of the light") {
+  double error[2], stale[2];
+  for (const bool same : {false, true}) {
+    Stage stage(96, 64);
+    stage.sample(stage.film, 16, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.4f)}; });
+    stage.show();
+    stage.preview.keep(vec3(1), false, same);
+    stage.film.clear(stage.stream);
+    std::mt19937 random(8);
+    stage.sample(stage.film, 2,
+                 [&](uint32_t, uint32_t) { return Sample{.light = vec3(random() % 40 == 0 ? 16.0f : 0)}; });
+    stale[same] = stage.show().stale;
+    error[same] = rms(
+        stage.shown(), [](uint32_t, uint32_t) { return 0.4f; }, stage.width);
+    // But light that is another one comes through in the end, as what mirrors shows from elsewhere.
+    stage.sample(stage.film, 64, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.8f)}; });
+    CHECK(stage.show().stale < 0.05);
+  }
+  INFO("error " << error[0] << ", where the light is the same " << error[1]);
+  CHECK(error[1] < 0.7 * error[0]);
+  CHECK(stale[1] > stale[0]);
 }
