@@ -4,6 +4,7 @@
 #define LUCERNA_PHOTONS_VERTEX_HOOK
 #include "transport/vertex_hook.glsl"
 #include "photons/photon.glsl"
+#include "photons/area.glsl"
 
 uniform samplerBuffer photon_texels;
 uniform usamplerBuffer photon_table;  // two entries a texel
@@ -72,6 +73,8 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
     }
   }
   vec3 weight = v.path.throughput * float(step);
+  // Only where there is something to correct.
+  if (max3(found_1 + found_2 + found_3) > 0.0) weight /= photon_area(x, v.surface.normal_g, radius);
   for (uint component = 0u; component < k_component_count; ++component) {
     vec3 light = ((components >> 4 & 15u) == component ? found_1 : vec3(0.0)) +
                  ((components >> 8 & 15u) == component ? found_2 : vec3(0.0)) +

@@ -22,6 +22,11 @@ std::vector<OptionInfo> option_rows() {
                   "Photons: how slowly the radius shrinks from round to round: grain falls with its power, "
                   "blur with that of the rest to 1; 1: it does not shrink.",
                   "Shrinking"),
+      boolean_option(
+          "photons.borders", "true",
+          "Photons: divides by the surface that there is around a place instead of by a whole disc, "
+          "so that borders and creases are not darker than they are.",
+          "Correct borders"),
       without_restart(
           choice_option("overlay.photons", "off", {"off", "flux", "bounce"}, "",
                         "Shows the photons of the last round where they lie: flux in the colour of "

@@ -46,10 +46,11 @@ Report make_report(const PhotonReport& r) {
   map.items.push_back(
       ValueRow{"Memory", megabytes_text(double(r.bytes) / 1e6), "Of photons and what finds them."});
   report.sections.push_back(std::move(map));
-  report.sections.push_back({.title = "Settings",
-                             .note = "",
-                             .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"},
-                                       OptionRow{"photons.floor"}, OptionRow{"photons.alpha"}}});
+  report.sections.push_back(
+      {.title = "Settings",
+       .note = "",
+       .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"}, OptionRow{"photons.floor"},
+                 OptionRow{"photons.alpha"}, OptionRow{"photons.borders"}}});
   report.sections.push_back(
       {.title = "Over the picture", .note = "", .items = {OptionRow{"overlay.photons"}}});
   if (r.view == shared::k_photons_by_bounce) {

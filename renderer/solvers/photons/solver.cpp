@@ -57,9 +57,15 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       parts_(parts_of(task)),
       sends_(parts_ != 0),
       map_(device, compiler, *task.scene_defines, task.automaton),
-      view_(device, compiler) {}
+      view_(device, compiler),
+      surfaces_(device) {}
 
 const solvers::SolverInfo& PhotonSolver::info() const { return photons::info(); }
+
+void PhotonSolver::bind(gpu::Resources& resources) const {
+  map_.bind(resources);
+  surfaces_.bind(resources);
+}
 
 bool PhotonSolver::serves(const Task& task) const {
   return routes_of(task).component == routes_.component && parts_of(task) == parts_;
@@ -71,7 +77,7 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
         transport::LightSource(device_, picture.flat, picture.flat.scene_centre, picture.flat.scene_radius);
     lit_ = true;
   }
-  if (spoils.places) map_.clear();
+  if (spoils.places) map_.clear(), surfaces_.spoil();
   map_.restart();
   fresh_ = true;
   rounds_ = paths_ = photons_ = escaped_ = dark_ = 0;
@@ -100,6 +106,7 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
   f.eye = frame.camera_origin;
   f.slope = frame.orthographic ? 0 : std::min(radius, k_photon_most_slope);
   f.base = frame.orthographic ? radius : 0;
+  f.surface_nodes = s.boolean("photons.borders") ? surfaces_.nodes() : 0;
   f.least = k_least_radius * picture.flat.scene_radius;
   f.most = k_most_radius * picture.flat.scene_radius;
   // Paths that another solver's lookup has left alone find photons as all others do.
@@ -119,6 +126,11 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
 
 bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture& picture, uint32_t sample,
                                  const Cancel& cancel) {
+  if (fresh_ && picture.task.settings.boolean("photons.borders") && !surfaces_.serves(picture.flat)) {
+    surfaces_.make(device_, picture.flat);
+    wavefront.rebind_lookup();
+    return true;
+  }
   const Round round = round_of(picture, sample);
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;  // not yet complete
@@ -140,7 +152,7 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.sends = sends_;
   r.rounds = rounds_, r.paths = paths_, r.photons = photons_, r.escaped = escaped_, r.dark = dark_;
   r.last = map_.figures();
-  r.bytes = map_.bytes() + lights_.bytes();
+  r.bytes = map_.bytes() + lights_.bytes() + surfaces_.bytes();
   const double shrunk =
       s.real("photons.radius") * radius_ratio(rounds_ > 0 ? last_sample_ : 0, s.real("photons.alpha"));
   r.radius_pixels = std::max(shrunk, s.real("photons.floor"));

@@ -3,6 +3,7 @@
 #include "solvers/photons/photon_map.h"
 #include "solvers/photons/points_view.h"
 #include "solvers/photons/report.h"
+#include "solvers/photons/surface_index.h"
 #include "solvers/solver.h"
 
 namespace lucerna::photons {
@@ -16,7 +17,7 @@ class PhotonSolver final : public solvers::Solver {
 
   const solvers::SolverInfo& info() const override;
   std::string hook() const override { return sends_ ? "photons/vertex_hook.glsl" : ""; }
-  void bind(gpu::Resources& resources) const override { map_.bind(resources); }
+  void bind(gpu::Resources& resources) const override;
   bool serves(const solvers::Task& task) const override;
 
   void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
@@ -43,6 +44,7 @@ class PhotonSolver final : public solvers::Solver {
   bool sends_;      ///< photons; else there is nothing that they could bring
   PhotonMap map_;
   PointsView view_;
+  SurfaceIndex surfaces_;
   transport::LightSource lights_;
   bool lit_ = false;          ///< lights_ are the scene's
   uint32_t last_sample_ = 0;  ///< whose round is complete, in this picture

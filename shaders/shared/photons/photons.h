@@ -32,6 +32,10 @@ LUCERNA_CONST float k_photon_most_slope = 0.25f;  ///< of the radius over the di
 LUCERNA_CONST uint k_photon_most_candidates = 4096u;
 LUCERNA_CONST float k_photon_slab = 0.25f;  ///< half the thickness of what a photon's disc counts for, in radii
 LUCERNA_CONST float k_photon_normals = 0.9f;  ///< least cosine between the normals of photon and place
+// How much surface there is around a place (photons/area.glsl).
+LUCERNA_CONST uint k_photon_most_visits = 2048u;        ///< nodes that a lookup meets; beyond it is taken for whole
+LUCERNA_CONST float k_photon_least_area = 1.0f / 64.0f; ///< of the whole disc
+LUCERNA_CONST float k_photon_turned_slab = 0.125f;      ///< of the slab, for what is wound the other way round
 
 /// What lookups read besides the photons.
 struct PhotonFrame {
@@ -42,7 +46,8 @@ struct PhotonFrame {
   uint count;       ///< photons; 0: none
   uint mask;        ///< entries of the table, less 1
   uint round;
-  uint pad0, pad1;
+  uint surface_nodes;  ///< of the index of surfaces; 0: borders are not corrected
+  uint pad0;
   uint component[k_automaton_states];  ///< by state of the eye path: four bits a part, the component that it brings light to
 };
 LUCERNA_CONST uint k_photon_no_component = 15u;
