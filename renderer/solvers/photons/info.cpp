@@ -23,6 +23,11 @@ std::vector<OptionInfo> option_rows() {
                   "blur with that of the rest to 1; 1: it does not shrink.",
                   "Shrinking"),
       boolean_option(
+          "photons.aim", "true",
+          "Photons: aims light paths at what mirrors or refracts smoothly, by what a pilot finds that "
+          "each pair of lamp and caster brings to the picture.",
+          "Aim at casters"),
+      boolean_option(
           "photons.borders", "true",
           "Photons: divides by the surface that there is around a place instead of by a whole disc, "
           "so that borders and creases are not darker than they are.",

@@ -9,6 +9,9 @@ using namespace shared;
 
 namespace {
 
+/// Of strata over the paths of a round (lib/emission.glsl).
+uint32_t stratum_step(uint32_t paths) { return uint32_t((uint64_t{1} << 32) / paths); }
+
 constexpr uint32_t k_first_capacity = 65536;                           // photons
 constexpr uint32_t k_least_entries = 1024, k_most_entries = 1u << 22;  // of the table
 constexpr uint32_t k_entries_a_photon = 4;
@@ -22,6 +25,8 @@ gpu::Buffer texels(gpu::Device& device, const char* name, uint64_t bytes) {
 PhotonMap::PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
                      const paths::Automaton& automaton)
     : device_(device),
+      compiler_(compiler),
+      scene_defines_(scene_defines),
       automaton_(paths::reverse(automaton)),
       emit_(device, compiler, "photons/emit.comp", scene_defines),
       trace_(device, compiler, "photons/trace.comp", scene_defines),
@@ -31,7 +36,8 @@ PhotonMap::PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const g
       counts_(device, {.name = "photon counts", .bytes = 4 * k_photon_counts, .memory = gpu::Memory::host}),
       map_(texels(device, "photons", sizeof(Photon))),
       table_(texels(device, "table of photons", 8 * k_least_entries)),
-      block_(device, {.name = "photon lookups", .bytes = sizeof(PhotonFrame)}) {
+      block_(device, {.name = "photon lookups", .bytes = sizeof(PhotonFrame)}),
+      importance_(device, {.name = "importance", .bytes = 4 * k_photon_importance_entries}) {
   clear();
 }
 
@@ -39,6 +45,38 @@ void PhotonMap::bind(gpu::Resources& resources) const {
   resources.set("photon_texels", map_);
   resources.set("photon_table", table_);
   resources.set("PhotonBlock", block_);
+  resources.set("PhotonImportance", importance_);
+}
+
+void PhotonMap::note_importance(transport::Wavefront& wavefront, const PhotonFrame& lookup) {
+  lookup_ = lookup;
+  lookup_.count = 0, lookup_.mask = 0, lookup_.importance_mask = k_photon_importance_entries - 1;
+  write_lookup();
+  wavefront.stream().fill(importance_, 0);
+  wavefront.account_stages();
+  complete_ = tracing_ = false;
+}
+
+std::vector<double> PhotonMap::worth(transport::Wavefront& wavefront, const transport::LightSource& lights) {
+  std::vector<double> worth(lights.strata(), 0.0);
+  const uint32_t count = complete_ ? lookup_.count : 0;
+  if (count == 0) return worth;
+  if (!worth_) worth_ = gpu::Kernel(device_, compiler_, "photons/worth.comp", scene_defines_);
+  gpu::make_room(
+      device_, worths_,
+      {.name = "worths of photons", .bytes = count * sizeof(PhotonWorth), .memory = gpu::Memory::host});
+  gpu::Resources r;
+  wavefront.bind_paths(r);
+  bind(r);
+  lights.bind(r);
+  r.set("photon_sorted", *sorted_);
+  r.set("PhotonWorths", worths_);
+  wavefront.stream().dispatch(worth_, r, PhotonWorthPush{count, stratum_step(figures_.paths)},
+                              gpu::groups_for(count, 64), "photon map");
+  wavefront.account_stages();
+  const auto* found = static_cast<const PhotonWorth*>(worths_.mapped());
+  for (uint32_t i = 0; i < count; ++i) worth[found[i].stratum] += double(found[i].worth);
+  return worth;
 }
 
 void PhotonMap::clear() {
@@ -54,7 +92,7 @@ void PhotonMap::write_lookup() { block_.write(&lookup_, sizeof lookup_); }
 
 uint64_t PhotonMap::bytes() const {
   uint64_t sum = 0;
-  for (const gpu::Buffer* b : {&list_, &ids_, &entries_, &scratch_, &map_, &table_})
+  for (const gpu::Buffer* b : {&list_, &ids_, &entries_, &scratch_, &map_, &table_, &importance_})
     sum += *b ? b->bytes() : 0;
   return sum;
 }
@@ -113,7 +151,8 @@ bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::Li
     bind(emitting);
     transport::PathEnds ends;
     ends.begin = [&] {
-      const PhotonEmitPush push{count, traced_, round.number, 1 / float(round.paths)};
+      const PhotonEmitPush push{count, traced_, round.number, 1 / float(round.paths),
+                                stratum_step(round.paths)};
       stream.dispatch(emit_, emitting, push, gpu::groups_for(count, 64), "photon emission");
     };
     ends.vertex = &trace_;
@@ -192,6 +231,7 @@ void PhotonMap::build(transport::Wavefront& wavefront, const Round& round) {
     stream.dispatch(keys_, r, push, groups, "photon map");
     const gpu::Buffer& sorted = radix_sort_.encode(stream, entries_, scratch_, {.most = stored_},
                                                    32 + uint32_t(std::bit_width(entries - 1)), "photon map");
+    sorted_ = &sorted;
     r.set("photon_sorted", sorted);
     stream.dispatch(arrange_, r, push, groups, "photon map");
   }

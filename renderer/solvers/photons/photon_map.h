@@ -52,6 +52,12 @@ class PhotonMap {
   /// will be done again. Throws Error: more photons than the device can hold.
   bool trace(transport::Wavefront& wavefront, const transport::LightSource& lights, const Round& round,
              const shared::Frame& picture, uint32_t enabled, const std::function<bool()>& cancel);
+  /// From now on lookups find nothing, but note how much of the picture hangs on them, from nothing on; until
+  /// a round is complete. `lookup`: by whose radii.
+  void note_importance(transport::Wavefront& wavefront, const shared::PhotonFrame& lookup);
+  /// What the photons of the complete round bring to the picture, by stratum of their emission, by the
+  /// importance that was noted last.
+  std::vector<double> worth(transport::Wavefront& wavefront, const transport::LightSource& lights);
   /// The round that lookups read; false: none.
   bool complete() const { return complete_; }
   uint32_t round() const { return figures_.round; }
@@ -71,10 +77,13 @@ class PhotonMap {
   void write_lookup();
 
   gpu::Device& device_;
+  gpu::ShaderCompiler& compiler_;
+  gpu::Defines scene_defines_;
   paths::LightAutomaton automaton_;
-  gpu::Kernel emit_, trace_, keys_, arrange_;
+  gpu::Kernel emit_, trace_, keys_, arrange_, worth_;
   sort::RadixSort radix_sort_;
-  gpu::Buffer counts_, list_, ids_, entries_, scratch_, map_, table_, block_;
+  gpu::Buffer counts_, list_, ids_, entries_, scratch_, map_, table_, block_, importance_, worths_;
+  const gpu::Buffer* sorted_ = nullptr;  ///< of the complete round
   shared::PhotonFrame lookup_{};
   RoundFigures figures_, next_;  ///< of the last complete round, of the one under way
   bool tracing_ = false, complete_ = false;

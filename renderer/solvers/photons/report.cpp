@@ -13,6 +13,8 @@ using namespace solvers;
 Report make_report(const PhotonReport& r) {
   Report report;
   report.solver = info().name;
+  report.ready = r.ready;
+  if (!r.ready) report.preparing = "photons: looking for what bundles light";
   report.state = r.rounds == 0 ? "beginning" : fmt::format("round {}", r.last.round + 1);
   PanelSection map{.title = "Photons", .note = "", .items = {}};
   if (r.lights_power <= 0)
@@ -50,7 +52,7 @@ Report make_report(const PhotonReport& r) {
       {.title = "Settings",
        .note = "",
        .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"}, OptionRow{"photons.floor"},
-                 OptionRow{"photons.alpha"}, OptionRow{"photons.borders"}}});
+                 OptionRow{"photons.alpha"}, OptionRow{"photons.borders"}, OptionRow{"photons.aim"}}});
   report.sections.push_back(
       {.title = "Over the picture", .note = "", .items = {OptionRow{"overlay.photons"}}});
   if (r.view == shared::k_photons_by_bounce) {
@@ -62,6 +64,7 @@ Report make_report(const PhotonReport& r) {
   report.figures = {{"rounds", double(r.rounds)},       {"light paths", double(r.paths)},
                     {"photons", double(r.photons)},     {"last photons", double(r.last.photons)},
                     {"escaped", double(r.escaped)},     {"dark", double(r.dark)},
+                    {"casters", double(r.casters)},     {"unaimed", r.unaimed},
                     {"radius pixels", r.radius_pixels}, {"bytes", double(r.bytes)}};
   return report;
 }

@@ -13,6 +13,9 @@ struct PhotonReport {
   double radius_pixels = 0;
   bool at_floor = false;
   bool limited = false;  ///< held to less than what was asked for
+  uint32_t casters = 0;
+  double unaimed = 1;  ///< share of the paths
+  bool ready = true;   ///< the pilot is done
   uint64_t bytes = 0;
   uint32_t view = 0;  ///< overlay.photons
 };

@@ -14,7 +14,6 @@ using solvers::Picture, solvers::Task, solvers::Cancel;
 
 namespace {
 
-constexpr uint32_t k_caustic_part = 3;
 constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where their number is left to us
 /// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
 /// are very wide.
@@ -32,12 +31,6 @@ uint32_t parts_of(const Task& task) {
   return routes_of(task).parts & (focuses ? ~0u : ~(1u << k_caustic_part));
 }
 
-solvers::Routing routing(const Task& task) {
-  paths::LookupRoutes routes = routes_of(task);
-  if (parts_of(task) == 0) routes.component.clear(), routes.parts = 0;
-  return {.lookups = routes, .fallback = 0, .gather = {}};
-}
-
 std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
                                       const Task& task) {
   return std::make_unique<PhotonSolver>(device, compiler, task);
@@ -46,9 +39,18 @@ std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& 
 }  // namespace
 
 const solvers::SolverType& type() {
-  static const solvers::SolverType all{
-      .info = photons::info(), .routing = routing, .make = make, .least_slots = 0, .sun_threshold = nullptr};
+  static const solvers::SolverType all{.info = photons::info(),
+                                       .routing = PhotonSolver::routing_of,
+                                       .make = make,
+                                       .least_slots = 0,
+                                       .sun_threshold = nullptr};
   return all;
+}
+
+solvers::Routing PhotonSolver::routing_of(const Task& task) {
+  paths::LookupRoutes routes = routes_of(task);
+  if (parts_of(task) == 0) routes.component.clear(), routes.parts = 0;
+  return {.lookups = routes, .fallback = 0, .gather = {}};
 }
 
 PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const Task& task)
@@ -80,6 +82,7 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   if (spoils.places) map_.clear(), surfaces_.spoil();
   map_.restart();
   fresh_ = true;
+  begin_aim(picture, spoils);
   rounds_ = paths_ = photons_ = escaped_ = dark_ = 0;
 }
 
@@ -97,18 +100,22 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
   round.parts = parts_;
   round.account = uint32_t(std::countr_zero(std::max(1u, picture.task.own)));
 
-  PhotonFrame& f = round.lookup;
-  const Frame& frame = picture.frame;
   const double shrunk = s.real("photons.radius") * radius_ratio(sample, s.real("photons.alpha"));
+  round.lookup = lookup_of(picture, picture.frame, std::max(shrunk, s.real("photons.floor")));
+  return round;
+}
+
+PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, double radius_pixels) const {
+  PhotonFrame f{};
   const auto pixel =
       float(2 * glm::length(frame.camera_right) / float(frame.width));  // at 1 m, or everywhere
-  const float radius = pixel * float(std::max(shrunk, s.real("photons.floor")));
+  const float radius = pixel * float(radius_pixels);
   f.eye = frame.camera_origin;
   f.slope = frame.orthographic ? 0 : std::min(radius, k_photon_most_slope);
   f.base = frame.orthographic ? radius : 0;
-  f.surface_nodes = s.boolean("photons.borders") ? surfaces_.nodes() : 0;
   f.least = k_least_radius * picture.flat.scene_radius;
   f.most = k_most_radius * picture.flat.scene_radius;
+  f.surface_nodes = picture.task.settings.boolean("photons.borders") ? surfaces_.nodes() : 0;
   // Paths that another solver's lookup has left alone find photons as all others do.
   for (uint32_t state = 0; state < k_automaton_states; ++state) {
     const uint32_t of_eye = state % k_gather_state;
@@ -121,7 +128,7 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
     }
     f.component[state] = packed;
   }
-  return round;
+  return f;
 }
 
 bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture& picture, uint32_t sample,
@@ -152,6 +159,9 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.sends = sends_;
   r.rounds = rounds_, r.paths = paths_, r.photons = photons_, r.escaped = escaped_, r.dark = dark_;
   r.last = map_.figures();
+  r.casters = uint32_t(casters_.size());
+  r.unaimed = lights_.shares().empty() ? 1 : lights_.shares()[0];
+  r.ready = ready();
   r.bytes = map_.bytes() + lights_.bytes() + surfaces_.bytes();
   const double shrunk =
       s.real("photons.radius") * radius_ratio(rounds_ > 0 ? last_sample_ : 0, s.real("photons.alpha"));
@@ -177,6 +187,8 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas&, const Pi
           {"photons", r.photons},
           {"escaped", r.escaped},
           {"dark", r.dark},
+          {"casters", r.casters},
+          {"unaimed", r.unaimed},
           {"last_round_photons", r.last.photons},
           {"radius_pixels", r.radius_pixels},
           {"bytes", r.bytes}};

@@ -1,5 +1,6 @@
 #pragma once
 // Photons as the renderer sees them: stochastic progressive photon mapping, a round for every sample.
+#include "schedule/uniform.h"
 #include "solvers/photons/photon_map.h"
 #include "solvers/photons/points_view.h"
 #include "solvers/photons/report.h"
@@ -9,6 +10,8 @@
 namespace lucerna::photons {
 
 const solvers::SolverType& type();
+
+inline constexpr uint32_t k_caustic_part = 3;  ///< of light (paths::k_part_count)
 
 class PhotonSolver final : public solvers::Solver {
  public:
@@ -21,6 +24,10 @@ class PhotonSolver final : public solvers::Solver {
   bool serves(const solvers::Task& task) const override;
 
   void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
+  /// Whether it is known which casters light paths are aimed at, and with which shares.
+  bool ready() const override { return !aims_ || aimed_; }
+  bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
+               const solvers::Cancel& cancel) override;
   bool in_rounds() const override { return sends_; }
   bool round_ready(uint32_t sample) const override;
   bool prepare_round(transport::Wavefront& wavefront, const solvers::Picture& picture, uint32_t sample,
@@ -33,10 +40,14 @@ class PhotonSolver final : public solvers::Solver {
   std::map<std::string, double> figures() const override;
 
   const PhotonMap& map() const { return map_; }
+  static solvers::Routing routing_of(const solvers::Task& task);
 
  private:
   PhotonReport state(const solvers::Picture& picture) const;
   Round round_of(const solvers::Picture& picture, uint32_t sample) const;
+  void begin_aim(const solvers::Picture& picture, solvers::Spoils spoils);
+  shared::PhotonFrame lookup_of(const solvers::Picture& picture, const shared::Frame& frame,
+                                double radius_pixels) const;
 
   gpu::Device& device_;
   paths::LookupRoutes routes_;
@@ -46,6 +57,18 @@ class PhotonSolver final : public solvers::Solver {
   PointsView view_;
   SurfaceIndex surfaces_;
   transport::LightSource lights_;
+
+  // Aimed emission (aim.cpp): casters are found, then a few paths from the eye note where lookups take place,
+  // then a few from the lights tell which pairs of light and caster bring something there.
+  enum class AimStep { casters, importance, worth };
+  bool aims_ = false;   ///< there may be casters, and there is light that they bundle
+  bool aimed_ = false;  ///< the shares are those of this picture
+  AimStep aim_step_ = AimStep::casters;
+  std::vector<Box> casters_;
+  std::vector<double> worth_;  ///< by stratum, of the pilot
+  std::optional<schedule::UniformSchedule> eye_schedule_;
+  shared::Frame aimed_for_{};
+
   bool lit_ = false;          ///< lights_ are the scene's
   uint32_t last_sample_ = 0;  ///< whose round is complete, in this picture
   bool fresh_ = true;         ///< no round of this picture is

@@ -46,8 +46,8 @@ struct PhotonFrame {
   uint count;       ///< photons; 0: none
   uint mask;        ///< entries of the table, less 1
   uint round;
-  uint surface_nodes;  ///< of the index of surfaces; 0: borders are not corrected
-  uint pad0;
+  uint surface_nodes;    ///< of the index of surfaces; 0: borders are not corrected
+  uint importance_mask;  ///< entries of the table of importance, less 1; 0: lookups note none
   uint component[k_automaton_states];  ///< by state of the eye path: four bits a part, the component that it brings light to
 };
 LUCERNA_CONST uint k_photon_no_component = 15u;
@@ -58,6 +58,11 @@ struct PhotonEmitPush {
   uint first;      ///< number of the first of them in the round
   uint round;
   float share;     ///< 1 / paths of the round
+  uint step;       ///< 2^32 / paths of the round
+};
+struct PhotonWorthPush {
+  uint count;      ///< photons
+  uint step;
 };
 struct PhotonListPush {
   uint count;      ///< photons
@@ -66,6 +71,18 @@ struct PhotonListPush {
 LUCERNA_CONST uint k_photon_id_events = 8u;          ///< bits
 LUCERNA_CONST uint k_photon_most_events = 255u;      ///< after which a light path ends
 LUCERNA_CONST uint k_photon_most_paths = 1u << 24;   ///< of a round
+
+// Importance: where lookups of eye paths take place, and how much of the picture hangs on them. A table of sums by cell, in
+// which lookups lie by the rules of photons.
+LUCERNA_CONST uint k_photon_importance_entries = 1u << 18;
+LUCERNA_CONST float k_photon_importance_scale = 256.0f;  ///< of a path that carries everything
+LUCERNA_CONST uint k_photon_most_importance = 4096u;     ///< of one lookup
+
+/// What a photon of the pilot brings to the picture, up to a factor, and which stratum of emission it comes from.
+struct PhotonWorth {
+  uint stratum;
+  float worth;
+};
 
 // PhotonCounts, uint each.
 LUCERNA_CONST uint k_photons_stored = 0u;    ///< so far, or wanted to be
