@@ -17,6 +17,7 @@
 #include "shaders/shared/irradiance_cache/records.h"
 #include "shaders/shared/octree.h"
 #include "shaders/shared/overlay.h"
+#include "shaders/shared/photons/inspect.h"
 #include "shaders/shared/photons/photons.h"
 #include "shaders/shared/preview.h"
 #include "shaders/shared/ramp.h"
@@ -73,6 +74,12 @@ std::vector<SharedStruct> structs() {
       SHARED("photons/photons.h", Photon, position, direction, flux, bits),
       SHARED("photons/photons.h", PhotonFrame, eye, slope, base, least, most, count, mask, round,
              surface_nodes, importance_mask, component),
+      SHARED("photons/inspect.h", PhotonDensityPush, width, height, of),
+      SHARED("photons/inspect.h", PhotonHeatPush, width, height, lo, hi),
+      SHARED("photons/inspect.h", PhotonInspectPush, width, height, pixel),
+      SHARED("photons/inspect.h", PhotonInspectHeader, position, radius, normal, area, irradiance, density,
+             solid, count, pad0, pad1),
+      SHARED("photons/inspect.h", PhotonInspected, position, brings, direction, bits, flux, pad0),
       SHARED("photons/photons.h", PhotonWorth, stratum, worth),
       SHARED("photons/photons.h", PhotonEmitPush, count, first, round, share, step),
       SHARED("photons/photons.h", PhotonWorthPush, count, step),

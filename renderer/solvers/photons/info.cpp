@@ -33,6 +33,12 @@ std::vector<OptionInfo> option_rows() {
           "so that borders and creases are not darker than they are.",
           "Correct borders"),
       without_restart(
+          choice_option("overlay.photon_density", "off", {"off", "photons", "irradiance"}, "",
+                        "Shows over the picture how dense the photons of the last round lie, or what they "
+                        "bring: a heat map on "
+                        "surfaces, and under the pointer the disc within which photons count, with those.",
+                        "Show density")),
+      without_restart(
           choice_option("overlay.photons", "off", {"off", "flux", "bounce"}, "",
                         "Shows the photons of the last round where they lie: flux in the colour of "
                         "their light, bounce by the number of surfaces before.",
@@ -86,7 +92,9 @@ const SolverInfo& info() {
       .finds_points = true,
       .options = option_rows(),
       .changes = change_rows(),
-      .views = {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'}},
+      .views =
+          {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'},
+           {.option = "overlay.photon_density", .label = "Density", .shortcut = 'M', .asks_pointer = true}},
       .against_noise = {"photons.per_round"},
       .against_bias = {"photons.radius"},
   };

@@ -1,5 +1,6 @@
 #pragma once
 // What photons tell a person.
+#include "solvers/photons/inspector.h"
 #include "solvers/photons/photon_map.h"
 #include "solvers/report.h"
 
@@ -18,6 +19,9 @@ struct PhotonReport {
   bool ready = true;   ///< the pilot is done
   uint64_t bytes = 0;
   uint32_t view = 0;  ///< overlay.photons
+  DensityScale density;
+  std::optional<vec2> looked_at;
+  std::optional<Inspected> inspected;
 };
 
 solvers::Report make_report(const PhotonReport& r);

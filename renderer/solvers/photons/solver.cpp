@@ -60,6 +60,7 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       sends_(parts_ != 0),
       map_(device, compiler, *task.scene_defines, task.automaton),
       view_(device, compiler),
+      inspector_(device, compiler),
       surfaces_(device) {}
 
 const solvers::SolverInfo& PhotonSolver::info() const { return photons::info(); }
@@ -149,7 +150,19 @@ bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture&
 }
 
 void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
-  view_.draw(canvas, map_, uint32_t(picture.task.settings.choice("overlay.photons")));
+  const OptionValues& settings = picture.task.settings;
+  density_ = {}, inspected_.reset();
+  if (!sends_) return;
+  const auto read = [this](gpu::Resources& r) { bind(r); };
+  const auto of = uint32_t(settings.choice("overlay.photon_density"));
+  if (of > 0) density_ = inspector_.draw_density(canvas, read, of);
+  view_.draw(canvas, map_, uint32_t(settings.choice("overlay.photons")));
+  if (!looked_at_ || of == 0) return;
+  const auto at = [](float place, uint32_t pixels) {
+    return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
+  };
+  inspected_ =
+      inspector_.inspect(canvas, read, at(looked_at_->x, canvas.width()), at(looked_at_->y, canvas.height()));
 }
 
 PhotonReport PhotonSolver::state(const Picture& picture) const {
@@ -162,6 +175,8 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.casters = uint32_t(casters_.size());
   r.unaimed = lights_.shares().empty() ? 1 : lights_.shares()[0];
   r.ready = ready();
+  r.density = density_;
+  r.looked_at = looked_at_, r.inspected = inspected_;
   r.bytes = map_.bytes() + lights_.bytes() + surfaces_.bytes();
   const double shrunk =
       s.real("photons.radius") * radius_ratio(rounds_ > 0 ? last_sample_ : 0, s.real("photons.alpha"));

@@ -1,6 +1,7 @@
 #pragma once
 // Photons as the renderer sees them: stochastic progressive photon mapping, a round for every sample.
 #include "schedule/uniform.h"
+#include "solvers/photons/inspector.h"
 #include "solvers/photons/photon_map.h"
 #include "solvers/photons/points_view.h"
 #include "solvers/photons/report.h"
@@ -33,6 +34,7 @@ class PhotonSolver final : public solvers::Solver {
   bool prepare_round(transport::Wavefront& wavefront, const solvers::Picture& picture, uint32_t sample,
                      const solvers::Cancel& cancel) override;
 
+  void look_at(std::optional<vec2> place) override { looked_at_ = place; }
   void draw(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
   std::shared_ptr<const solvers::Report> report(const overlay::Canvas& canvas,
                                                 const solvers::Picture& picture, bool sampled) override;
@@ -40,6 +42,8 @@ class PhotonSolver final : public solvers::Solver {
   std::map<std::string, double> figures() const override;
 
   const PhotonMap& map() const { return map_; }
+  const PhotonInspector& inspector() const { return inspector_; }
+  const std::optional<Inspected>& inspected() const { return inspected_; }
   static solvers::Routing routing_of(const solvers::Task& task);
 
  private:
@@ -55,6 +59,10 @@ class PhotonSolver final : public solvers::Solver {
   bool sends_;      ///< photons; else there is nothing that they could bring
   PhotonMap map_;
   PointsView view_;
+  PhotonInspector inspector_;
+  std::optional<vec2> looked_at_;
+  std::optional<Inspected> inspected_;
+  DensityScale density_;  ///< that is drawn
   SurfaceIndex surfaces_;
   transport::LightSource lights_;
 
