@@ -14,7 +14,7 @@ void main() {
   if (pixel >= push.width * push.height) return;
   Seen seen = seen_at(pixel, push.width, push.height);
   Around around = photons_around(seen.position, seen.normal, seen.solid);
-  float value = push.of == k_density_of_photons ? around.density : luminance(around.irradiance);
+  float value = push.of == k_density_of_photons ? around.density : push.of == k_photons_in_disc ? around.count : luminance(around.irradiance);
   densities[pixel] = seen.solid ? value : k_density_none;
   if (value > 0.0) atomicMax(density_most, floatBitsToUint(value));
 }

@@ -76,6 +76,24 @@ TEST_CASE("the density of photons is that which the round has left, and their ir
   CHECK(s.report()->legends.empty());
 }
 
+TEST_CASE("how fast photons are sent, stored, sorted and gathered is told") {
+  Shown s;
+  const auto own = s.r.solver_statistics().at("photons");
+  const auto& rates = own.at("per_second");
+  for (const char* what : {"emitted", "stored", "sorted", "looked_up", "gathered"}) CHECK(rates.at(what) > 0);
+  // So many lie in a disc as its area says.
+  const auto& at = s.photons->map();
+  // The radius grows with the distance from the eye, 0.9 m above the floor's middle.
+  const double up = std::tan(0.4), right = 1.2 * up;
+  const double radius = double(at.lookup().slope) * 0.9 * std::sqrt(1 + (up * up + right * right) / 3);
+  const double expected = double(at.figures().photons) / 4 * double(k_pi) * radius * radius;
+  CHECK(double(rates.at("gathered_a_lookup")) == Approx(expected).epsilon(0.1));
+  CHECK(double(rates.at("gathered")) == Approx(double(rates.at("looked_up")) * expected).epsilon(0.1));
+  // The same in the panel, and their seconds for benches.
+  CHECK(s.r.figure("seconds of light paths") > 0);
+  CHECK(s.r.figure("seconds of sorting photons") > 0);
+}
+
 TEST_CASE("under the pointer are the disc and its photons, with what each brings") {
   Shown s;
   test::set(s.r, {{"overlay.photon_density", "irradiance"}});

@@ -75,6 +75,27 @@ std::vector<ChangeRow> change_rows() {
   };
 }
 
+/// Light that is bundled, alone: against a path-traced reference, for path tracing as long as for photons.
+/// The report extrapolates the time to an error by 1/t where path tracing does not reach it.
+constexpr const char* k_caustics_matrix = R"({
+  "name": "caustics",
+  "repeats": 3,
+  "warmup": 1,
+  "reference": {"samples": 32768},
+  "set": {"components.primary": "off", "components.secondary": "off", "components.tertiary": "off"},
+  "budgets": {"seconds": [1, 4, 16]},
+  "scenes": [
+    {"file": "glass/glass.gltf", "size": "96x96"},
+    {"file": "ring/ring.gltf", "size": "112x63"}
+  ],
+  "settings": [
+    {"name": "path", "about": "path tracing", "set": {"components.caustic": "path"}, "budget": "seconds"},
+    {"name": "photons", "about": "photons, aimed", "set": {"components.caustic": "photons"}, "budget": "seconds"},
+    {"name": "unaimed", "about": "photons, not aimed", "budget": "seconds",
+     "set": {"components.caustic": "photons", "photons.aim": false}}
+  ]
+})";
+
 }  // namespace
 
 const SolverInfo& info() {
@@ -95,6 +116,8 @@ const SolverInfo& info() {
       .views =
           {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'},
            {.option = "overlay.photon_density", .label = "Density", .shortcut = 'M', .asks_pointer = true}},
+      .benches = {{"caustics", "bundled light alone: path tracing against photons, on glass and ring",
+                   k_caustics_matrix}},
       .against_noise = {"photons.per_round"},
       .against_bias = {"photons.radius"},
   };

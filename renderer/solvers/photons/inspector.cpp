@@ -38,25 +38,30 @@ const gpu::Kernel& PhotonInspector::ready(gpu::Kernel& kernel, const char* file)
   return kernel;
 }
 
-DensityScale PhotonInspector::draw_density(const overlay::Canvas& canvas,
-                                           const std::function<void(gpu::Resources&)>& bind, uint32_t of) {
+void PhotonInspector::look_up(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind,
+                              uint32_t of) {
   gpu::make_room(device_, densities_, {.name = "densities of photons", .bytes = canvas.pixels() * 4});
   canvas.bind(resources_);
   bind(resources_);
   resources_.set("PhotonDensities", densities_);
   resources_.set("PhotonDensityMost", most_);
-  const uint32_t groups = gpu::groups_for(canvas.pixels(), 64);
   canvas.stream().fill(most_, 0);
   canvas.stream().dispatch(ready(density_, "photons/density.comp"), resources_,
-                           PhotonDensityPush{canvas.width(), canvas.height(), of}, groups);
+                           PhotonDensityPush{canvas.width(), canvas.height(), of},
+                           gpu::groups_for(canvas.pixels(), 64));
   canvas.finish();
+}
+
+DensityScale PhotonInspector::draw_density(const overlay::Canvas& canvas,
+                                           const std::function<void(gpu::Resources&)>& bind, uint32_t of) {
+  look_up(canvas, bind, of);
   const auto most = std::bit_cast<float>(*static_cast<const uint32_t*>(most_.mapped()));
   DensityScale scale{.of = of};
   if (most > 0) scale.hi = rounded_up(most), scale.lo = k_decades * scale.hi;
   canvas.stream().dispatch(
       ready(heat_, "photons/heat.comp"), resources_,
       PhotonHeatPush{canvas.width(), canvas.height(), most > 0 ? scale.lo : 1.0f, most > 0 ? scale.hi : 2.0f},
-      groups);
+      gpu::groups_for(canvas.pixels(), 64));
   canvas.finish();
   return scale;
 }

@@ -27,7 +27,9 @@ class PhotonInspector {
   /// Over the film's picture. `of`: shared::k_density_of_*. `bind`: what the hook reads.
   DensityScale draw_density(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind,
                             uint32_t of);
-  /// Densities of the picture drawn last, by pixel; shared::k_density_none where nothing is seen. For tests.
+  /// Looks all of it up and keeps it: shared::k_density_of_*, or k_photons_in_disc.
+  void look_up(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind, uint32_t of);
+  /// What was looked up last, by pixel; shared::k_density_none where nothing is seen. For tests.
   std::vector<float> densities() const;
   /// Nothing where no surface is seen. Draws the disc and its photons.
   std::optional<Inspected> inspect(const overlay::Canvas& canvas,

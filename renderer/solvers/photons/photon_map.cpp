@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/timer.h"
+
 namespace lucerna::photons {
 
 using namespace shared;
@@ -117,6 +119,7 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
     const uint32_t count = std::min(wavefront.slots(), round.paths - traced_);
     wavefront.set_frame(light_frame(round, picture), 1);
     const auto back = [&] { wavefront.set_frame(picture, enabled); };
+    const Timer timer;
     try {
       if (!trace_batch(wavefront, lights, round, count, cancel)) {
         back();
@@ -127,6 +130,7 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
       throw;
     }
     back();
+    next_.trace_s += timer.seconds();
     traced_ += count;
     if (traced_ < round.paths) return true;
   }
@@ -199,6 +203,7 @@ void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
 }
 
 void PhotonMap::build(transport::Wavefront& wavefront, const Round& round) {
+  const Timer timer;
   gpu::Stream& stream = wavefront.stream();
   lookup_ = round.lookup;
   lookup_.count = stored_;
@@ -237,6 +242,7 @@ void PhotonMap::build(transport::Wavefront& wavefront, const Round& round) {
   }
   wavefront.account_stages();
   if (moved) wavefront.rebind_lookup();
+  next_.build_s = timer.seconds();
   figures_ = next_;
   figures_.photons = stored_, figures_.entries = entries;
   tracing_ = false;

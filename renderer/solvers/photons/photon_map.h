@@ -27,10 +27,11 @@ struct Round {
 /// Of the last complete round.
 struct RoundFigures {
   uint32_t round = 0, paths = 0, photons = 0;
-  uint32_t escaped = 0;  ///< paths that left the scene
-  uint32_t dark = 0;     ///< paths that began where their light has no light
-  uint32_t entries = 0;  ///< of the table
-  uint32_t grown = 0;    ///< batches traced again because there was no room, so far
+  uint32_t escaped = 0;             ///< paths that left the scene
+  uint32_t dark = 0;                ///< paths that began where their light has no light
+  uint32_t entries = 0;             ///< of the table
+  uint32_t grown = 0;               ///< batches traced again because there was no room, so far
+  double trace_s = 0, build_s = 0;  ///< wall time of its tracing, and of putting it in order
 };
 
 class PhotonMap {

@@ -32,7 +32,7 @@ Card make_card(const Inspected& found) {
   for (size_t i = 0; i < std::min<size_t>(found.photons.size(), 5); ++i) {
     const PhotonInspected& p = found.photons[i];
     const uint32_t events = p.bits >> k_photon_events_shift;
-    add(Card::Weight{fmt::format("after {} surface{}", events, events == 1 ? "" : "s"),
+    add(Card::Weight{fmt::format("{} bounce{}", events, events == 1 ? "" : "s"),
                      float(double(p.brings) / sum), most},
         Card::Room::much);
   }
@@ -101,7 +101,7 @@ Report make_report(const PhotonReport& r) {
                               .ticks = {},
                               .range = Legend::Range{.lo = r.density.lo, .hi = r.density.hi},
                               .marks = {}});
-  if (r.density.of > 0) report.looked_at = r.looked_at;
+  report.looked_at = r.looked_at;
   if (r.inspected) report.card = make_card(*r.inspected);
   report.figures = {
       {"rounds", double(r.rounds)},           {"light paths", double(r.paths)},

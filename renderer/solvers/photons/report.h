@@ -18,7 +18,8 @@ struct PhotonReport {
   double unaimed = 1;  ///< share of the paths
   bool ready = true;   ///< the pilot is done
   uint64_t bytes = 0;
-  uint32_t view = 0;  ///< overlay.photons
+  double emitted_per_s = 0, stored_per_s = 0, sorted_per_s = 0;  ///< 0: not yet known
+  uint32_t view = 0;                                             ///< overlay.photons
   DensityScale density;
   std::optional<vec2> looked_at;
   std::optional<Inspected> inspected;

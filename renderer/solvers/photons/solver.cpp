@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/timer.h"
 #include "solvers/photons/info.h"
 #include "solvers/photons/radius.h"
 
@@ -85,6 +86,7 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   fresh_ = true;
   begin_aim(picture, spoils);
   rounds_ = paths_ = photons_ = escaped_ = dark_ = 0;
+  trace_s_ = build_s_ = 0;
 }
 
 bool PhotonSolver::round_ready(uint32_t sample) const {
@@ -146,6 +148,7 @@ bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture&
   fresh_ = false, last_sample_ = sample;
   ++rounds_, paths_ += lights_.power() > 0 ? f.paths : 0, photons_ += f.photons;
   escaped_ += f.escaped, dark_ += f.dark;
+  trace_s_ += f.trace_s, build_s_ += f.build_s;
   return true;
 }
 
@@ -157,7 +160,7 @@ void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
   const auto of = uint32_t(settings.choice("overlay.photon_density"));
   if (of > 0) density_ = inspector_.draw_density(canvas, read, of);
   view_.draw(canvas, map_, uint32_t(settings.choice("overlay.photons")));
-  if (!looked_at_ || of == 0) return;
+  if (!looked_at_) return;
   const auto at = [](float place, uint32_t pixels) {
     return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
   };
@@ -175,6 +178,9 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.casters = uint32_t(casters_.size());
   r.unaimed = lights_.shares().empty() ? 1 : lights_.shares()[0];
   r.ready = ready();
+  const auto rate = [](uint64_t n, double seconds) { return seconds > 0 ? double(n) / seconds : 0; };
+  r.emitted_per_s = rate(paths_, trace_s_), r.stored_per_s = rate(photons_, trace_s_);
+  r.sorted_per_s = rate(photons_, build_s_);
   r.density = density_;
   r.looked_at = looked_at_, r.inspected = inspected_;
   r.bytes = map_.bytes() + lights_.bytes() + surfaces_.bytes();
@@ -195,9 +201,30 @@ std::shared_ptr<const solvers::Report> PhotonSolver::report(const overlay::Canva
   return std::make_shared<const solvers::Report>(make_report(state(picture)));
 }
 
-nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas&, const Picture& picture) {
+void PhotonSolver::look_up_picture(const overlay::Canvas& canvas, const Picture&) {
+  if (sends_)
+    inspector_.look_up(
+        canvas, [this](gpu::Resources& r) { bind(r); }, k_density_of_photons);
+}
+
+nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, const Picture& picture) {
   const PhotonReport r = state(picture);
-  return {{"rounds", r.rounds},
+  nlohmann::ordered_json rates;
+  if (map_.complete()) {
+    const auto read = [this](gpu::Resources& resources) { bind(resources); };
+    inspector_.look_up(canvas, read, k_photons_in_disc);  // kernels compile when they first run
+    const Timer timer;
+    inspector_.look_up(canvas, read, k_photons_in_disc);
+    const double seconds = timer.seconds();
+    double lookups = 0, gathered = 0;
+    for (const float n : inspector_.densities())
+      if (n >= 0) ++lookups, gathered += double(n);
+    rates = {{"emitted", r.emitted_per_s},     {"stored", r.stored_per_s},
+             {"sorted", r.sorted_per_s},       {"looked_up", lookups / seconds},
+             {"gathered", gathered / seconds}, {"gathered_a_lookup", lookups > 0 ? gathered / lookups : 0}};
+  }
+  return {{"per_second", rates},
+          {"rounds", r.rounds},
           {"paths", r.paths},
           {"photons", r.photons},
           {"escaped", r.escaped},
@@ -210,7 +237,11 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas&, const Pi
 }
 
 std::map<std::string, double> PhotonSolver::figures() const {
-  return {{"photon rounds", double(rounds_)}, {"light paths", double(paths_)}, {"photons", double(photons_)}};
+  return {{"photon rounds", double(rounds_)},
+          {"light paths", double(paths_)},
+          {"photons", double(photons_)},
+          {"seconds of light paths", trace_s_},
+          {"seconds of sorting photons", build_s_}};
 }
 
 }  // namespace lucerna::photons

@@ -39,6 +39,7 @@ class PhotonSolver final : public solvers::Solver {
   std::shared_ptr<const solvers::Report> report(const overlay::Canvas& canvas,
                                                 const solvers::Picture& picture, bool sampled) override;
   nlohmann::ordered_json statistics(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
+  void look_up_picture(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
   std::map<std::string, double> figures() const override;
 
   const PhotonMap& map() const { return map_; }
@@ -81,6 +82,7 @@ class PhotonSolver final : public solvers::Solver {
   uint32_t last_sample_ = 0;  ///< whose round is complete, in this picture
   bool fresh_ = true;         ///< no round of this picture is
   uint64_t rounds_ = 0, paths_ = 0, photons_ = 0, escaped_ = 0, dark_ = 0;  ///< of this picture
+  double trace_s_ = 0, build_s_ = 0;
 };
 
 }  // namespace lucerna::photons
