@@ -82,14 +82,15 @@ constexpr const char* k_caustics_matrix = R"({
   "repeats": 3,
   "warmup": 1,
   "reference": {"samples": 32768},
-  "set": {"components.primary": "off", "components.secondary": "off", "components.tertiary": "off"},
+  "set": {"components.primary": "off", "components.secondary": "off", "components.tertiary": "off",
+          "components.caustic": "path"},
   "budgets": {"seconds": [1, 4, 16]},
   "scenes": [
     {"file": "glass/glass.gltf", "size": "96x96"},
     {"file": "ring/ring.gltf", "size": "112x63"}
   ],
   "settings": [
-    {"name": "path", "about": "path tracing", "set": {"components.caustic": "path"}, "budget": "seconds"},
+    {"name": "plain", "about": "path tracing", "budget": "seconds"},
     {"name": "photons", "about": "photons, aimed", "set": {"components.caustic": "photons"}, "budget": "seconds"},
     {"name": "unaimed", "about": "photons, not aimed", "budget": "seconds",
      "set": {"components.caustic": "photons", "photons.aim": false}}
