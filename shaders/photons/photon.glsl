@@ -37,4 +37,9 @@ uint photon_entry_of(ivec3 cell, int level, uint mask) {
   return (hash << k_photon_entry_bits | low) & mask;
 }
 uint photon_entry(ivec3 cell, int level) { return photon_entry_of(cell, level, photons.mask); }
+
+// By whose radii importance was noted.
+float importance_radius(vec3 x) {
+  return clamp(photons.importance_base + photons.importance_slope * distance(x, photons.importance_eye), photons.least, photons.most);
+}
 #endif

@@ -33,7 +33,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   bool looks = components != 0xffffu && photons.count > 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0;
   if (photons.importance_mask != 0u && components != 0xffffu) {
     float carried = luminance(v.path.throughput * (v.bsdf.diffuse + v.bsdf.transmitted));
-    int level = photon_level(radius);
+    int level = photon_level(importance_radius(x));
     if (carried > 0.0)
       atomicAdd(photon_importance[photon_entry_of(ivec3(floor(x * photon_inverse_cell(level))), level, photons.importance_mask)],
                 uint(clamp(k_photon_importance_scale * carried, 1.0, float(k_photon_most_importance))));

@@ -33,7 +33,10 @@ struct Shown {
   Shown() {
     r.set_size(48, 40);
     r.set_scene(std::make_shared<scene::Scene>(turned_sun()));
-    test::set(r, {{"components.caustic", "photons"}, {"photons.per_round", "200000"}, {"samples", "2"}});
+    test::set(r, {{"components.caustic", "photons"},
+                  {"photons.per_round", "200000"},
+                  {"photons.importons", "false"},
+                  {"samples", "2"}});
     test::finish(r);
     photons = &dynamic_cast<photons::PhotonSolver&>(*r.solver("photons"));
   }

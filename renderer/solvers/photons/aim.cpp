@@ -65,23 +65,26 @@ std::vector<double> aim_shares(std::span<const double> worth, bool caustics_alon
 void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   const bool caustics = (parts_ >> k_caustic_part & 1u) != 0;
   const bool aims = sends_ && caustics && lights_.power() > 0 && picture.task.settings.boolean("photons.aim");
-  const bool stale = spoils.any() || aims != aims_ || !same_view(picture.frame, aimed_for_);
-  aims_ = aims;
+  const bool spares = sends_ && lights_.power() > 0 && picture.task.settings.boolean("photons.importons");
+  const bool stale =
+      spoils.any() || aims != aims_ || spares != spares_ || !same_view(picture.frame, aimed_for_);
+  aims_ = aims, spares_ = spares;
   if (!stale) return;
   aimed_ = false;
   aim_step_ = AimStep::casters;
   aimed_for_ = picture.frame;
   worth_.clear(), casters_.clear();
   lights_.aim(device_, picture.flat, {}, 1);
+  map_.store_by_importance(false);
 }
 
 bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
   if (ready()) return true;
   const Frame frame = small_frame(picture);
   if (aim_step_ == AimStep::casters) {
-    casters_ = transport::find_casters(picture.flat);
+    if (aims_) casters_ = transport::find_casters(picture.flat);
     lights_.aim(device_, picture.flat, casters_, 0.5);
-    aimed_ = casters_.empty();
+    aimed_ = casters_.empty() && !spares_;
     if (aimed_) return true;
     eye_schedule_.emplace((frame.width + 7) / 8 * ((frame.height + 7) / 8), 1, wavefront.slots());
     map_.note_importance(wavefront, lookup_of(picture, frame, k_pilot_radius));
@@ -97,7 +100,11 @@ bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& pictu
     const bool complete = wavefront.probe(eye_schedule_->next(), cancel);
     wavefront.set_frame(picture.frame, picture.task.enabled);
     if (!complete) eye_schedule_ = before;
-    if (eye_schedule_->done()) aim_step_ = AimStep::worth;
+    if (!eye_schedule_->done()) return complete;
+    map_.clear();
+    map_.store_by_importance(spares_);
+    aim_step_ = AimStep::worth;
+    aimed_ = casters_.empty();
     return complete;
   }
   Round round = round_of(picture, k_pilot_round);

@@ -28,6 +28,11 @@ std::vector<OptionInfo> option_rows() {
           "each pair of lamp and caster brings to the picture.",
           "Aim at casters"),
       boolean_option(
+          "photons.importons", "true",
+          "Photons: stores them where paths from the eye look, by a short pilot; elsewhere one in four, for "
+          "all.",
+          "Only where looked at"),
+      boolean_option(
           "photons.borders", "true",
           "Photons: divides by the surface that there is around a place instead of by a whole disc, "
           "so that borders and creases are not darker than they are.",

@@ -53,6 +53,8 @@ void PhotonMap::bind(gpu::Resources& resources) const {
 void PhotonMap::note_importance(transport::Wavefront& wavefront, const PhotonFrame& lookup) {
   lookup_ = lookup;
   lookup_.count = 0, lookup_.mask = 0, lookup_.importance_mask = k_photon_importance_entries - 1;
+  noted_ = lookup;
+  noted_.importance_counts = 0;
   write_lookup();
   wavefront.stream().fill(importance_, 0);
   wavefront.account_stages();
@@ -90,7 +92,19 @@ void PhotonMap::clear() {
   complete_ = tracing_ = false;
 }
 
-void PhotonMap::write_lookup() { block_.write(&lookup_, sizeof lookup_); }
+void PhotonMap::write_lookup() {
+  PhotonFrame all = lookup_;
+  all.importance_eye = noted_.eye, all.importance_slope = noted_.slope, all.importance_base = noted_.base;
+  all.importance_counts = noted_.importance_counts;
+  // Where there has been no round, of what photons are stored by.
+  if (all.most <= all.least) all.least = noted_.least, all.most = noted_.most;
+  block_.write(&all, sizeof all);
+}
+
+void PhotonMap::store_by_importance(bool on) {
+  noted_.importance_counts = on ? 1 : 0;
+  write_lookup();
+}
 
 uint64_t PhotonMap::bytes() const {
   uint64_t sum = 0;
@@ -167,6 +181,7 @@ bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::Li
     if (counts[k_photons_stored] <= capacity_) {
       stored_ = counts[k_photons_stored];
       next_.escaped += counts[k_photons_escaped], next_.dark += counts[k_photons_dark];
+      next_.spared += counts[k_photons_spared];
       return true;
     }
     grow(wavefront, counts[k_photons_stored]);

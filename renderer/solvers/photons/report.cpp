@@ -45,7 +45,7 @@ Report make_report(const PhotonReport& r) {
   Report report;
   report.solver = info().name;
   report.ready = r.ready;
-  if (!r.ready) report.preparing = "photons: looking for what bundles light";
+  if (!r.ready) report.preparing = "photons: where they are looked for, and what bundles light";
   report.state = r.rounds == 0 ? "beginning" : fmt::format("round {}", r.last.round + 1);
   PanelSection map{.title = "Photons", .note = "", .items = {}};
   if (r.lights_power <= 0)
@@ -63,6 +63,9 @@ Report make_report(const PhotonReport& r) {
   map.items.push_back(ValueRow{
       "Stored a path", r.paths > 0 ? real_text(double(r.photons) / double(r.paths), 2) : "\xE2\x80\x93",
       "Photons that a path leaves, on average over the picture's rounds."});
+  if (r.spared > 0)
+    map.items.push_back(ValueRow{"Left out", share_text(double(r.spared), double(r.spared + r.photons)),
+                                 "Of the photons: where nobody looks, of which a few are kept for all."});
   map.items.push_back(ValueRow{"Left the scene", share_text(double(r.escaped), double(r.paths)),
                                "Of the paths: that met nothing any more."});
   if (r.dark > 0)
@@ -83,7 +86,8 @@ Report make_report(const PhotonReport& r) {
       {.title = "Settings",
        .note = "",
        .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"}, OptionRow{"photons.floor"},
-                 OptionRow{"photons.alpha"}, OptionRow{"photons.borders"}, OptionRow{"photons.aim"}}});
+                 OptionRow{"photons.alpha"}, OptionRow{"photons.borders"}, OptionRow{"photons.aim"},
+                 OptionRow{"photons.importons"}}});
   report.sections.push_back({.title = "Over the picture",
                              .note = "",
                              .items = {OptionRow{"overlay.photons"}, OptionRow{"overlay.photon_density"}}});
@@ -103,13 +107,19 @@ Report make_report(const PhotonReport& r) {
                               .marks = {}});
   report.looked_at = r.looked_at;
   if (r.inspected) report.card = make_card(*r.inspected);
-  report.figures = {
-      {"rounds", double(r.rounds)},           {"light paths", double(r.paths)},
-      {"photons", double(r.photons)},         {"last photons", double(r.last.photons)},
-      {"escaped", double(r.escaped)},         {"dark", double(r.dark)},
-      {"density most", double(r.density.hi)}, {"inspected", r.inspected ? double(r.inspected->at.count) : 0},
-      {"casters", double(r.casters)},         {"unaimed", r.unaimed},
-      {"radius pixels", r.radius_pixels},     {"bytes", double(r.bytes)}};
+  report.figures = {{"rounds", double(r.rounds)},
+                    {"light paths", double(r.paths)},
+                    {"photons", double(r.photons)},
+                    {"last photons", double(r.last.photons)},
+                    {"escaped", double(r.escaped)},
+                    {"dark", double(r.dark)},
+                    {"spared", double(r.spared)},
+                    {"density most", double(r.density.hi)},
+                    {"inspected", r.inspected ? double(r.inspected->at.count) : 0},
+                    {"casters", double(r.casters)},
+                    {"unaimed", r.unaimed},
+                    {"radius pixels", r.radius_pixels},
+                    {"bytes", double(r.bytes)}};
   return report;
 }
 

@@ -9,7 +9,8 @@ namespace lucerna::photons {
 struct PhotonReport {
   double lights_power = 0;  ///< luminance of all lights' flux [W]
   bool sends = true;        ///< photons: else there are only caustics to bring, and nothing focuses light
-  uint64_t rounds = 0, paths = 0, photons = 0, escaped = 0, dark = 0;  ///< of the picture
+  uint64_t rounds = 0, paths = 0, photons = 0, escaped = 0, dark = 0,
+           spared = 0;  ///< of the picture
   RoundFigures last;
   double radius_pixels = 0;
   bool at_floor = false;

@@ -87,6 +87,7 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   begin_aim(picture, spoils);
   rounds_ = paths_ = photons_ = escaped_ = dark_ = 0;
   trace_s_ = build_s_ = 0;
+  spared_ = 0;
 }
 
 bool PhotonSolver::round_ready(uint32_t sample) const {
@@ -148,7 +149,7 @@ bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture&
   fresh_ = false, last_sample_ = sample;
   ++rounds_, paths_ += lights_.power() > 0 ? f.paths : 0, photons_ += f.photons;
   escaped_ += f.escaped, dark_ += f.dark;
-  trace_s_ += f.trace_s, build_s_ += f.build_s;
+  trace_s_ += f.trace_s, build_s_ += f.build_s, spared_ += f.spared;
   return true;
 }
 
@@ -175,6 +176,7 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.sends = sends_;
   r.rounds = rounds_, r.paths = paths_, r.photons = photons_, r.escaped = escaped_, r.dark = dark_;
   r.last = map_.figures();
+  r.spared = spared_;
   r.casters = uint32_t(casters_.size());
   r.unaimed = lights_.shares().empty() ? 1 : lights_.shares()[0];
   r.ready = ready();
@@ -229,6 +231,7 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, c
           {"photons", r.photons},
           {"escaped", r.escaped},
           {"dark", r.dark},
+          {"spared", r.spared},
           {"casters", r.casters},
           {"unaimed", r.unaimed},
           {"last_round_photons", r.last.photons},

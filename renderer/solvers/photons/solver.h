@@ -25,8 +25,9 @@ class PhotonSolver final : public solvers::Solver {
   bool serves(const solvers::Task& task) const override;
 
   void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
-  /// Whether it is known which casters light paths are aimed at, and with which shares.
-  bool ready() const override { return !aims_ || aimed_; }
+  /// Whether it is known where lookups take place, which casters light paths are aimed at, and with which
+  /// shares.
+  bool ready() const override { return (!aims_ && !spares_) || aimed_; }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
   bool in_rounds() const override { return sends_; }
@@ -70,8 +71,9 @@ class PhotonSolver final : public solvers::Solver {
   // Aimed emission (aim.cpp): casters are found, then a few paths from the eye note where lookups take place,
   // then a few from the lights tell which pairs of light and caster bring something there.
   enum class AimStep { casters, importance, worth };
-  bool aims_ = false;   ///< there may be casters, and there is light that they bundle
-  bool aimed_ = false;  ///< the shares are those of this picture
+  bool aims_ = false;    ///< there may be casters, and there is light that they bundle
+  bool spares_ = false;  ///< photons that nobody looks at
+  bool aimed_ = false;   ///< importance and shares are those of this picture
   AimStep aim_step_ = AimStep::casters;
   std::vector<Box> casters_;
   std::vector<double> worth_;  ///< by stratum, of the pilot
@@ -82,6 +84,7 @@ class PhotonSolver final : public solvers::Solver {
   uint32_t last_sample_ = 0;  ///< whose round is complete, in this picture
   bool fresh_ = true;         ///< no round of this picture is
   uint64_t rounds_ = 0, paths_ = 0, photons_ = 0, escaped_ = 0, dark_ = 0;  ///< of this picture
+  uint64_t spared_ = 0;
   double trace_s_ = 0, build_s_ = 0;
 };
 

@@ -48,6 +48,10 @@ struct PhotonFrame {
   uint round;
   uint surface_nodes;    ///< of the index of surfaces; 0: borders are not corrected
   uint importance_mask;  ///< entries of the table of importance, less 1; 0: lookups note none
+  // By whose radii importance was noted, and whether photons are stored by it.
+  vec3 importance_eye;
+  float importance_slope, importance_base;
+  uint importance_counts;  ///< 0: all photons are stored
   uint component[k_automaton_states];  ///< by state of the eye path: four bits a part, the component that it brings light to
 };
 LUCERNA_CONST uint k_photon_no_component = 15u;
@@ -77,6 +81,9 @@ LUCERNA_CONST uint k_photon_most_paths = 1u << 24;   ///< of a round
 LUCERNA_CONST uint k_photon_importance_entries = 1u << 18;
 LUCERNA_CONST float k_photon_importance_scale = 256.0f;  ///< of a path that carries everything
 LUCERNA_CONST uint k_photon_most_importance = 4096u;     ///< of one lookup
+/// Of photons where no lookup has been noted so many are stored, each for several: whatever the table misses costs noise,
+/// never light.
+LUCERNA_CONST float k_photon_unseen_share = 0.25f;
 
 /// What a photon of the pilot brings to the picture, up to a factor, and which stratum of emission it comes from.
 struct PhotonWorth {
@@ -89,7 +96,8 @@ LUCERNA_CONST uint k_photons_stored = 0u;    ///< so far, or wanted to be
 LUCERNA_CONST uint k_photons_capacity = 1u;  ///< for which there is room
 LUCERNA_CONST uint k_photons_escaped = 2u;   ///< paths that left the scene
 LUCERNA_CONST uint k_photons_dark = 3u;      ///< paths that began where a light has none
-LUCERNA_CONST uint k_photon_counts = 4u;
+LUCERNA_CONST uint k_photons_spared = 4u;    ///< photons left out because nobody looks where they lie
+LUCERNA_CONST uint k_photon_counts = 5u;
 
 /// Which photons are drawn, and how.
 struct PhotonPointsPush {
