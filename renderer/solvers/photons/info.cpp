@@ -13,10 +13,10 @@ std::vector<OptionInfo> option_rows() {
                      "picture; 0: as many as the picture has pixels, at least 16384.",
                      "Paths a round"),
       real_option(
-          "photons.radius", "3", 0.1, 1000, "pixels",
+          "photons.radius", "1.5", 0.1, 1000, "pixels",
           "Photons: radius of the first round, as the camera sees it. Less: less blur, and more grain.",
           "First radius"),
-      real_option("photons.floor", "0.75", 0, 1000, "pixels",
+      real_option("photons.floor", "0.5", 0, 1000, "pixels",
                   "Photons: least radius, from which on it shrinks no further.", "Least radius"),
       real_option("photons.alpha", "0.6667", 0.01, 1, "",
                   "Photons: how slowly the radius shrinks from round to round: grain falls with its power, "
@@ -86,13 +86,13 @@ constexpr const char* k_caustics_matrix = R"({
   "name": "caustics",
   "repeats": 3,
   "warmup": 1,
-  "reference": {"samples": 32768},
+  "reference": {"samples": 16384},
   "set": {"components.primary": "off", "components.secondary": "off", "components.tertiary": "off",
           "components.caustic": "path"},
-  "budgets": {"seconds": [1, 4, 16]},
+  "budgets": {"seconds": [4, 16, 60]},
   "scenes": [
-    {"file": "glass/glass.gltf", "size": "96x96"},
-    {"file": "ring/ring.gltf", "size": "112x63"}
+    {"file": "glass/glass.gltf", "size": "160x160"},
+    {"file": "ring/ring.gltf", "size": "192x108"}
   ],
   "settings": [
     {"name": "plain", "about": "path tracing", "budget": "seconds"},
@@ -122,7 +122,8 @@ const SolverInfo& info() {
       .views =
           {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'},
            {.option = "overlay.photon_density", .label = "Density", .shortcut = 'M', .asks_pointer = true}},
-      .benches = {{"caustics", "bundled light alone: path tracing against photons, on glass and ring",
+      .benches = {{"caustics",
+                   "bundled light alone: path tracing against photons, on glass and ring; an hour and a half",
                    k_caustics_matrix}},
       .against_noise = {"photons.per_round"},
       .against_bias = {"photons.radius"},
