@@ -1,28 +1,51 @@
 #pragma once
 // Where paths from lights begin: each light in proportion to its power, with its own distribution over places
 // and directions (shaders/lib/emission.glsl). For photons, and for whatever else is traced from lights.
+//
+// A share of the paths may be aimed at casters (casters.h): strata are the pairs of a group of lights and a
+// caster, besides stratum 0, which is not aimed. Whatever the shares, what paths bring on average stays the
+// same; stratum 0 must have one.
+#include <span>
+#include <vector>
+
 #include "gpu/kernel.h"
 #include "shaders/shared/emission.h"
 #include "upload/flatten.h"
 
 namespace lucerna::transport {
 
+/// A light alone where it is a lamp, the sun or the sky; emissive triangles that lie together.
+struct LightGroups {
+  std::vector<std::vector<uint32_t>> members;  ///< entries of the light table, behind it the sky's
+};
+/// At most `most` (>= 1), of lights that shine: where there are more, those of the end share one.
+LightGroups group_lights(const upload::FlatScene& flat, std::span<const double> power, uint32_t most);
+
 class LightSource {
  public:
   LightSource() = default;
-  /// Throws Error: no memory.
+  /// Throws Error: no memory. Nothing is aimed.
   LightSource(gpu::Device& device, const upload::FlatLights& lights, const vec3& scene_centre,
               float scene_radius);
-  /// emission_alias, EmissionBlock. What lights are is bound with the scene.
+  /// Paths are aimed at these boxes, in equal shares but for `unaimed` of stratum 0 (0 < unaimed <= 1). None,
+  /// or no light: nothing is aimed. Throws Error: no memory.
+  void aim(gpu::Device& device, const upload::FlatScene& flat, std::span<const Box> casters, double unaimed);
+  /// The strata's shares, or what is in proportion to them; that of stratum 0 above 0.
+  void share_out(std::span<const double> shares);
+  /// 1 + groups * casters; 1 where nothing is aimed.
+  uint32_t strata() const { return 1 + table_.groups * table_.casters; }
+  std::span<const double> shares() const { return shares_; }
+  /// emission_*, EmissionBlock. What lights are is bound with the scene.
   void bind(gpu::Resources& resources) const;
   /// Luminance of the flux of all lights [W]; 0: there is nothing to begin.
   double power() const { return power_; }
   const shared::EmissionTable& table() const { return table_; }
-  uint64_t bytes() const { return alias_ ? alias_.bytes() : 0; }
+  uint64_t bytes() const;
 
  private:
   shared::EmissionTable table_{};
-  gpu::Buffer alias_, block_;
+  std::vector<double> powers_, shares_;
+  gpu::Buffer alias_, block_, strata_, boxes_, groups_, members_;
   double power_ = 0;
 };
 

@@ -2,25 +2,38 @@
 // the light's own emission, so that paths carry equal flux wherever the light has no texture. Densities: of places per area
 // (on the disk that covers the scene for what comes from afar; 1 of a point), of directions per solid angle (1 of a
 // directional light). flux = radiance cos / (pmf pdf_place pdf_direction), or what stands for the radiance of a point.
+//
+// Where there are casters (lib/aim.glsl) a share of the paths is aimed at them, and the density is that of all ways together
+// in which a path could have come about (the balance heuristic of E. Veach and L. Guibas, "Optimally Combining Sampling
+// Techniques for Monte Carlo Rendering", 1995, for one sample):
+//   share_0 pmf pdf_place pdf_direction + sum over casters  share_c pmf_in_group pdf_place pdf_towards_c
+// in the same measure. No share, and no box, changes what paths bring on average.
 #ifndef LUCERNA_LIB_EMISSION
 #define LUCERNA_LIB_EMISSION
 #include "lib/variants.glsl"
 #include "shaders/shared/emission.h"
 #include "lib/surface.glsl"
 #include "lib/lights.glsl"
+#include "lib/aim.glsl"
 
 layout(scalar) readonly buffer EmissionBlock { EmissionTable emission; };
 #if LUCERNA_LIGHTS
 uniform samplerBuffer emission_alias;
+uniform samplerBuffer emission_strata;
+uniform samplerBuffer emission_boxes;
+uniform samplerBuffer emission_groups;
+uniform samplerBuffer emission_members;
 #endif
 
 struct Emission {
   vec3 origin;
   vec3 direction;      // unit
   vec3 flux;           // [W] that a path alone would carry; 0: nothing is emitted there
-  float pmf;           // of the light
+  float pmf;           // of the light; this and the next two as if nothing were aimed
   float pdf_place, pdf_direction;
   uint light;          // entry of emission_alias
+  uint stratum;        // in which it was drawn
+  float unaimed;       // share of its density that is not aimed, 0..1
 };
 
 // Random numbers of light path `index` of a round. All paths of a round share the sequences, so that each of their decisions
@@ -42,6 +55,13 @@ vec3 emission_disk(vec3 direction, vec2 u) {
   make_basis(direction, t, b);
   vec2 d = sample_disk(u);
   return emission.centre + emission.radius * (d.x * t + d.y * b - direction);
+}
+
+// The same where the path is to pass through a box.
+vec3 emission_from_afar(vec3 direction, vec2 u, bool aims, Box box) {
+  vec3 through = aim_sample_afar(box, direction, u);
+  vec3 aimed = through - direction * (dot(through - emission.centre, direction) + emission.radius);
+  return aims ? aimed : emission_disk(direction, u);
 }
 
 #if LUCERNA_LIGHTS
@@ -80,10 +100,68 @@ vec3 emission_surface(uint primitive, vec3 p, vec3 n, float size, vec3 plain) {
 }
 #endif
 
-// choice: which light, and a coin; u_place, u_direction, detail: 64 bits (environment).
-Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 detail) {
+Box emission_box(uint caster) {
+  return Box(texelFetch(emission_boxes, int(2u * caster)).xyz, texelFetch(emission_boxes, int(2u * caster + 1u)).xyz);
+}
+
+// Chooses a light of a group, as alias_choose().
+uint emission_choose_in(uint group, uvec2 bits) {
+  uvec2 header = floatBitsToUint(texelFetch(emission_groups, int(group)).xy);
+  uint i, fraction, more, lost, carry;
+  umulExtended(bits.x, header.y, i, fraction);
+  umulExtended(bits.y, header.y, more, lost);
+  fraction = uaddCarry(fraction, more, carry);
+  i += carry;
+  vec4 member = texelFetch(emission_members, int(header.x + i));
+  i = float(fraction >> 8) * (1.0 / 16777216.0) < member.x ? i : floatBitsToUint(member.y);
+  return floatBitsToUint(texelFetch(emission_groups, int(emission.groups + emission.count + header.x + i)).x);
+}
+
+// Which stratum path `random` is drawn in, of a round of which `step` is 2^32 / paths: strata are intervals of 0 ... 2^32, and
+// paths lie evenly over these from somewhere on. So each stratum has its share of paths to the last one, and they follow
+// upon each other, as points do that are even together.
+uint emission_stratum(Sampler random, uint step) {
+  uint at = random.index * step + hash_combine(random.key, 0x5bd1e995u);
+  uint low = 0u, high = emission.groups * emission.casters;
+  while (low < high) {
+    uint middle = (low + high + 1u) >> 1;
+    bool below = floatBitsToUint(texelFetch(emission_strata, int(middle)).x) > at;
+    high = below ? middle - 1u : high;
+    low = below ? low : middle;
+  }
+  return low;
+}
+float emission_share(uint stratum) { return texelFetch(emission_strata, int(stratum)).y; }
+
+// The density of the path over that which it has in its light's own distribution: share_0 + ..., see above. `place` is where a
+// local light emits from; what comes from afar goes through it in direction e.direction.
+float emission_density(Emission e, bool afar, vec3 place) {
+  uvec2 member = floatBitsToUint(texelFetch(emission_groups, int(emission.groups + e.light)).xy);
+  uint first = floatBitsToUint(texelFetch(emission_groups, int(member.x)).x);
+  float within = texelFetch(emission_members, int(first + member.y)).z, aimed = 0.0;
+  for (uint c = 0u; c < emission.casters; ++c) {
+    uint stratum = 1u + member.x * emission.casters + c;
+    float share = emission_share(stratum);
+    float density = afar ? aim_pdf_afar(emission_box(c), place, e.direction, stratum == e.stratum)
+                         : aim_pdf(emission_box(c), place, e.direction, e.pdf_direction, stratum == e.stratum);
+    aimed += share * density;
+  }
+  float own = afar ? e.pdf_place : e.pdf_direction;
+  return emission_share(0u) + aimed * within / max(e.pmf * own, 1e-37);
+}
+
+// choice: which light, and a coin; u_place, u_direction, detail: 64 bits (environment). `stratum`: emission_stratum().
+Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 detail, uint stratum) {
   Emission e;
+  e.stratum = stratum;
   e.light = alias_choose(emission_alias, emission.count, uvec2(choice.x, hash_mix(choice.x)), e.pmf);
+  Box box = Box(vec3(0.0), vec3(0.0));
+  if (stratum > 0u) {
+    uint group = (stratum - 1u) / emission.casters;
+    box = emission_box((stratum - 1u) - group * emission.casters);
+    e.light = emission_choose_in(group, uvec2(choice.x, hash_mix(choice.x)));
+    e.pmf = texelFetch(emission_alias, int(e.light)).z;
+  }
   float coin = float(choice.y >> 8) * (1.0 / 16777216.0);
   bool sky = e.light == emission.sky;
   int at = int((sky ? 0u : e.light) * k_light_texels);
@@ -98,14 +176,21 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   e.pdf_direction = 0.25 * k_inv_pi;
   vec3 emitted = b.xyz;   // over all densities but the selection's
   float spread = 4.0 * k_pi;
+  // Aimed: towards the caster, unless the light lies within its box.
+  vec3 aimed_direction = e.direction;
+  bool aims = stratum > 0u && kind != k_light_triangle && aim_sample(box, a.xyz, u_direction, aimed_direction);
+  vec3 place = a.xyz;
+  if (kind == k_light_point) e.direction = aims ? aimed_direction : e.direction;
   if (kind == k_light_spot) {
     e.direction = emission_spot(c.xyz, b.w, c.w, u_direction, coin, spread);
+    e.direction = aims ? aimed_direction : e.direction;
     float fade = clamp((dot(e.direction, c.xyz) - c.w) / max(b.w - c.w, 1e-4), 0.0, 1.0);
     e.pdf_direction = fade * fade / spread;
   }
+  bool afar = kind == k_light_directional || kind == k_light_environment;
   if (kind == k_light_directional) {
     e.direction = c.xyz;
-    e.origin = emission_disk(e.direction, u_place);
+    e.origin = emission_from_afar(e.direction, u_place, stratum > 0u, box);
     e.pdf_place = 1.0 / disk;
     e.pdf_direction = 1.0;
     spread = disk;
@@ -133,6 +218,11 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     e.pdf_direction = local.z * k_inv_pi;
     Surface there;
     there.position = m.x * p0 + m.y * p1 + (1.0 - m.x - m.y) * p2;
+    place = there.position;
+    if (stratum > 0u && aim_sample(box, place, u_direction, aimed_direction)) {
+      e.direction = aimed_direction;
+      e.pdf_direction = max(0.0, dot(e.direction, n)) * k_inv_pi;
+    }
     there.normal_g = n;
     there.offset = error_gamma(8.0) * (abs(p0) + abs(p1) + abs(p2)) + vec3(error_gamma(16.0) * max(max3(abs(p1 - p0)), max3(abs(p2 - p0))));
     e.origin = offset_origin(there, e.direction);
@@ -156,13 +246,30 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     e.pdf_direction /= max(frame.environment_light_pmf, 1e-30);
 #endif
     e.direction = -towards;
-    e.origin = emission_disk(e.direction, u_place);
+    e.origin = emission_from_afar(e.direction, u_place, stratum > 0u, box);
     e.pdf_place = 1.0 / disk;
     spread = e.pdf_direction > 0.0 ? disk / e.pdf_direction : 0.0;
   }
 #endif
   e.flux = emitted * (spread / max(e.pmf, 1e-30));
+  e.unaimed = 1.0;
+  if (emission.casters > 0u) {
+    float density = max(emission_density(e, afar, afar ? e.origin : place), 1e-30);
+    // What is aimed past the scene's disk is no light that anybody else would send.
+    vec3 off = e.origin - emission.centre;
+    vec3 across = off - dot(off, e.direction) * e.direction;
+    bool sent = e.pdf_direction > 0.0 && (!afar || dot(across, across) <= emission.radius * emission.radius);
+    e.flux = sent ? e.flux / density : vec3(0.0);
+    e.unaimed = emission_share(0u) / density;
+  }
   return e;
+}
+
+// The beginning of path `random`; `step`: emission_stratum().
+Emission sample_emission(Sampler random, uint step) {
+  return sample_emission(sample_vertex_bits(random, 0u, k_pad_light_choice), sample_vertex(random, 0u, k_pad_light_uv),
+                         sample_vertex(random, 0u, k_pad_direction), sample_vertex_bits(random, 0u, k_pad_light_detail),
+                         emission_stratum(random, step));
 }
 #endif
 #endif

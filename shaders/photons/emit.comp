@@ -18,8 +18,7 @@ void main() {
   vec3 flux = vec3(0.0);
 #if LUCERNA_LIGHTS
   Sampler random = make_light_sampler(index, push.round, frame.seed);
-  Emission e = sample_emission(sample_vertex_bits(random, 0u, k_pad_light_choice), sample_vertex(random, 0u, k_pad_light_uv),
-                               sample_vertex(random, 0u, k_pad_direction), sample_vertex_bits(random, 0u, k_pad_light_detail));
+  Emission e = sample_emission(random, push.step);
   flux = e.flux * push.share;
   bool finite = is_finite(flux);
   if (!finite) atomicAdd(counters[k_counter_dropped], 1u);

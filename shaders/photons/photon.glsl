@@ -29,11 +29,17 @@ int photon_level(float radius) { return int(ceil(2.0 * log2(2.0 * k_photon_slack
 // 2^(-level / 2).
 float photon_inverse_cell(int level) { return ldexp((level & 1) != 0 ? 0.70710678 : 1.0, -(level >> 1)); }
 
-// Entry of the table for a cell.
-uint photon_entry(ivec3 cell, int level) {
+// Entry for a cell of a table with so many entries, less 1.
+uint photon_entry_of(ivec3 cell, int level, uint mask) {
   uvec3 above = uvec3(cell >> 1);
   uint hash = hash_combine(hash_combine(hash_combine(uint(level >> 2), above.x), above.y), above.z);
   uint low = uint(cell.x & 1) | uint(cell.y & 1) << 1 | uint(cell.z & 1) << 2 | uint(level & 3) << 3;
-  return (hash << k_photon_entry_bits | low) & photons.mask;
+  return (hash << k_photon_entry_bits | low) & mask;
+}
+uint photon_entry(ivec3 cell, int level) { return photon_entry_of(cell, level, photons.mask); }
+
+// By whose radii importance was noted.
+float importance_radius(vec3 x) {
+  return clamp(photons.importance_base + photons.importance_slope * distance(x, photons.importance_eye), photons.least, photons.most);
 }
 #endif

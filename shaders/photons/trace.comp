@@ -2,7 +2,7 @@
 #include "shaders/shared/photons/photons.h"
 #include "transport/light_vertex.glsl"
 #include "lib/emission.glsl"
-#include "photons/photon.glsl"
+#include "photons/importance.glsl"
 
 layout(scalar) writeonly buffer PhotonList { Photon photon_list[]; };  // in the order in which they come ...
 layout(scalar) writeonly buffer PhotonIds { uint photon_ids[]; };      // ... and the one in which they will be
@@ -29,11 +29,18 @@ void main() {
     atomicAdd(counters[k_counter_dropped], 1u);
     wanted = false;
   }
+  // Importons (I. Peter and G. Pietrek, "Importance Driven Construction of Photon Maps", 1998), as roulette.
+  float share = 1.0;
+  if (wanted && photons.importance_counts != 0u && importance_around(v.surface.position) == 0u) share = k_photon_unseen_share;
+  if (wanted && sample_vertex(random, depth, k_pad_light_uv).x >= share) {
+    atomicAdd(photon_counts[k_photons_spared], 1u);
+    wanted = false;
+  }
   if (wanted) {
     Photon p;
     p.position = v.surface.position;
     p.direction = photon_pack_direction(-ray.direction);
-    p.flux = v.arriving;
+    p.flux = v.arriving / share;
     p.bits = facet_pack(v.surface.normal_g) | part << k_photon_part_shift | (depth - 1u) << k_photon_events_shift;
     uint at = atomicAdd(photon_counts[k_photons_stored], 1u);
     if (at < photon_counts[k_photons_capacity]) {

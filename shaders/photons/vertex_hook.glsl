@@ -4,9 +4,12 @@
 #define LUCERNA_PHOTONS_VERTEX_HOOK
 #include "transport/vertex_hook.glsl"
 #include "photons/photon.glsl"
+#include "photons/area.glsl"
 
 uniform samplerBuffer photon_texels;
 uniform usamplerBuffer photon_table;  // two entries a texel
+
+layout(scalar) buffer PhotonImportance { uint photon_importance[]; };
 
 struct photons_Vertex { uint none; };
 
@@ -28,6 +31,13 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   vec3 x = v.surface.position;
   float radius = photon_radius(x);
   bool looks = components != 0xffffu && photons.count > 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0;
+  if (photons.importance_mask != 0u && components != 0xffffu) {
+    float carried = luminance(v.path.throughput * (v.bsdf.diffuse + v.bsdf.transmitted));
+    int level = photon_level(importance_radius(x));
+    if (carried > 0.0)
+      atomicAdd(photon_importance[photon_entry_of(ivec3(floor(x * photon_inverse_cell(level))), level, photons.importance_mask)],
+                uint(clamp(k_photon_importance_scale * carried, 1.0, float(k_photon_most_importance))));
+  }
   // Photons that reach x have a radius between these, because it changes slowly.
   int lowest = photon_level(radius / (1.0 + photons.slope) * (2.0 - k_photon_slack));
   int highest = photon_level(radius / (1.0 - photons.slope) * k_photon_slack);
@@ -72,6 +82,8 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
     }
   }
   vec3 weight = v.path.throughput * float(step);
+  // Only where there is something to correct.
+  if (max3(found_1 + found_2 + found_3) > 0.0) weight /= photon_area(x, v.surface.normal_g, radius);
   for (uint component = 0u; component < k_component_count; ++component) {
     vec3 light = ((components >> 4 & 15u) == component ? found_1 : vec3(0.0)) +
                  ((components >> 8 & 15u) == component ? found_2 : vec3(0.0)) +

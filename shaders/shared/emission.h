@@ -11,9 +11,19 @@ struct EmissionTable {
   uint count;    ///< entries of emission_alias: the lights of scene_lights, and the sky where that is none of them
   uint sky;      ///< which entry that is; k_no_sky_entry: none
   float sun_pmf; ///< of the sun in light_alias, where the sky is apart
-  float pad0;
+  uint casters;  ///< boxes that paths are aimed at; 0: none is
+  uint groups;   ///< of lights
+  uint pad0;
 };
 LUCERNA_CONST uint k_no_sky_entry = 0xffffffffu;
+
+// Aimed emission. A stratum is 0, which is not aimed, or 1 + group of lights * casters + caster. emission_strata: a texel
+// each (bits of where its interval of 0 ... 2^32 begins, its share of all). emission_boxes: two texels a caster, low and high corner. emission_groups, in
+// this order: a texel a group (bits first, bits count of its members), a texel an entry of emission_alias (bits group,
+// bits member), a texel a member (bits entry). emission_members: an alias table a group, by power, of entries that count from its
+// first member.
+LUCERNA_CONST uint k_most_casters = 32u;
+LUCERNA_CONST uint k_most_strata = 4096u;
 
 LUCERNA_SHARED_END
 #endif

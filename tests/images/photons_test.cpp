@@ -361,7 +361,7 @@ TEST_CASE("photons are drawn over the picture, and told of") {
   CHECK(reports[0]->solver == "photons");
   CHECK(reports[0]->figure("rounds") == 2);
   CHECK(reports[0]->figure("photons") > 1000);
-  CHECK(reports[0]->figure("radius pixels") == Approx(3 * std::sqrt((1 + 0.6667) / 2)));
+  CHECK(reports[0]->figure("radius pixels") == Approx(1.5 * std::sqrt((1 + 0.6667) / 2)));
   CHECK(reports[0]->legends.size() == 1);
   CHECK(r.solver_statistics().at("photons").at("rounds") == 2);
   CHECK(r.samples() == 2);

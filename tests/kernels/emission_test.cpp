@@ -25,7 +25,7 @@ struct Beginning {
   float pdf_place;
   vec3 flux;
   float pdf_direction;
-  uint32_t light;
+  uint32_t light, stratum;
 };
 
 gpu::Device& device() {
@@ -38,10 +38,17 @@ struct Emitted {
   transport::LightSource source;
   std::vector<Beginning> paths;
 
-  explicit Emitted(const scene::Scene& scene, uint32_t count = 1 << 16, float sun_threshold = 0)
+  explicit Emitted(const scene::Scene& scene, uint32_t count = 1 << 16, float sun_threshold = 0,
+                   const std::vector<Box>& casters = {}, const std::vector<double>& shares = {})
       : flat(upload::flatten(scene, sun_threshold)),
         source(device(), flat, flat.scene_centre, flat.scene_radius) {
     static gpu::ShaderCompiler compiler;
+    if (!casters.empty()) source.aim(device(), flat, casters, 0.3);
+    if (!shares.empty()) {
+      std::vector<double> all;
+      for (uint32_t i = 0; i < source.strata(); ++i) all.push_back(shares[i % shares.size()]);
+      source.share_out(all);
+    }
     const upload::DeviceScene on_device(device(), flat, {});
     shared::Frame frame{};
     frame.seed = 3;
@@ -335,4 +342,121 @@ TEST_CASE("where nothing shines nothing is sent") {
   const transport::LightSource none(device(), flat, flat.scene_centre, flat.scene_radius);
   CHECK(none.power() == 0);
   CHECK(none.table().count == 0);
+}
+
+namespace {
+
+/// Whether the path's first line enters a box, and where from.
+bool enters(const Beginning& b, const Box& box) {
+  const glm::dvec3 o(b.origin), d(b.direction);
+  double near = 0, far = 1e30;
+  for (int k = 0; k < 3; ++k) {
+    const double t0 = (double(box.lo[k]) - o[k]) / d[k], t1 = (double(box.hi[k]) - o[k]) / d[k];
+    near = std::max(near, std::min(t0, t1)), far = std::min(far, std::max(t0, t1));
+  }
+  return near <= far;
+}
+
+/// What paths bring in all and through each box, and two moments of where they go.
+std::vector<test::Mean> brought(const Emitted& e, const std::vector<Box>& boxes) {
+  std::vector<test::Mean> means(3 + boxes.size());
+  for (const Beginning& b : e.paths) {
+    const auto flux = double(luminance(b.flux));
+    means[0].add(flux);
+    means[1].add(flux * (1 + double(b.direction.x)));
+    means[2].add(flux * double(glm::dot(b.origin, b.origin)));
+    for (size_t k = 0; k < boxes.size(); ++k) means[3 + k].add(enters(b, boxes[k]) ? flux : 0);
+  }
+  return means;
+}
+
+const std::vector<Box> k_boxes{{vec3(-0.3f, 0.5f, -0.2f), vec3(0.1f, 0.8f, 0.3f)},
+                               {vec3(0.4f, 0.1f, -0.8f), vec3(0.9f, 0.1001f, -0.4f)},
+                               {vec3(-0.2f, 2.5f, -0.6f), vec3(0.6f, 3.2f, 0.3f)}};  // around the lamp
+const std::vector<double> k_uneven{0.2, 0.01, 0.5, 0.1, 0.002, 0.3, 0.04};
+
+scene::Scene sky_scene() {
+  scene::Scene s = floor();
+  scene::Image image;
+  image.name = "sky", image.width = 8, image.height = 4;
+  for (int i = 0; i < 32; ++i) {
+    const float value = i == 10 ? 60.f : 0.2f + 0.1f * float(i % 5);
+    image.floats.insert(image.floats.end(), {value, value, value, 1});
+  }
+  s.images = {image};
+  s.environment.image = 0;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("aimed paths bring on average what others bring, whatever their shares, of every kind of light") {
+  std::vector<std::pair<std::string, scene::Scene>> scenes;
+  for (const auto kind : {scene::LightKind::point, scene::LightKind::spot, scene::LightKind::directional}) {
+    scene::Scene s = floor();
+    s.lights = {lamp(kind, {3, 2, 1})};
+    s.lights[0].inner_cone = 0.2f, s.lights[0].outer_cone = 0.5f;
+    scenes.emplace_back("lamp " + std::to_string(int(kind)), s);
+  }
+  for (const bool both : {false, true}) {
+    scene::Scene s = floor();
+    s.materials[0].emission = {5, 3, 2}, s.materials[0].double_sided = both;
+    scenes.emplace_back(both ? "panel of two sides" : "panel", s);
+  }
+  scenes.emplace_back("sky", sky_scene());
+  scene::Scene several = sky_scene();
+  several.materials[0].emission = {5, 3, 2};
+  several.lights = {lamp(scene::LightKind::point, {3, 2, 1}), lamp(scene::LightKind::directional, {5, 5, 5}),
+                    lamp(scene::LightKind::point, {3e-5f, 2e-5f, 1e-5f})};
+  scenes.emplace_back("several", several);
+  for (const auto& [name, s] : scenes)
+    for (const float threshold : {0.f, 20.f}) {
+      if (threshold > 0 && s.environment.image == scene::k_none) continue;
+      const Emitted plain(s, 1 << 17, threshold), aimed(s, 1 << 17, threshold, k_boxes, k_uneven);
+      REQUIRE(aimed.source.strata() == 1 + 3 * aimed.source.table().groups);
+      const std::vector<test::Mean> a = brought(plain, k_boxes), b = brought(aimed, k_boxes);
+      // Points are stratified, so that both err by less than independent ones; 5 sigma of 50 comparisons.
+      for (size_t i = 0; i < a.size(); ++i) {
+        INFO(name << ", threshold " << threshold << ", moment " << i << ": " << b[i].value() << " +- "
+                  << b[i].error() << " of " << a[i].value() << " +- " << a[i].error());
+        CHECK(std::abs(a[i].value() - b[i].value()) <=
+              5 * std::hypot(a[i].error(), b[i].error()) + 1e-4 * std::abs(a[i].value()));
+      }
+      CHECK(b[0].value() > 0);
+      // Each stratum has its share of the paths, to the last one.
+      std::vector<double> drawn(aimed.source.strata(), 0.0);
+      for (const Beginning& path : aimed.paths) drawn[path.stratum] += 1;
+      for (size_t i = 0; i < drawn.size(); ++i)
+        CHECK(std::abs(drawn[i] - aimed.source.shares()[i] * double(aimed.paths.size())) < 1.5);
+    }
+}
+
+TEST_CASE("what is aimed arrives") {
+  scene::Scene s = sky_scene();
+  s.materials[0].emission = {5, 3, 2};
+  s.lights = {lamp(scene::LightKind::point, {3, 2, 1}), lamp(scene::LightKind::directional, {5, 5, 5})};
+  // Far away and small, besides the others.
+  std::vector<Box> boxes{k_boxes[0], k_boxes[1]};
+  boxes.push_back({vec3(0.6f, 0.2f, 0.5f), vec3(0.60005f, 0.20005f, 0.50005f)});
+  const Emitted e(s, 1 << 16, 0, boxes);
+  size_t missed = 0, aimed = 0;
+  for (const Beginning& b : e.paths) {
+    if (b.stratum == 0 || luminance(b.flux) <= 0) continue;
+    Box box = boxes[(b.stratum - 1) % boxes.size()];
+    box.lo -= vec3(3e-6f), box.hi += vec3(3e-6f);  // of rounding
+    const bool inside =
+        glm::all(glm::greaterThan(b.origin, box.lo)) && glm::all(glm::lessThan(b.origin, box.hi));
+    ++aimed, missed += !inside && !enters(b, box);
+  }
+  CHECK(double(aimed) > 0.4 * double(e.paths.size()));
+  CHECK(missed == 0);
+  // Through the small one alone comes what its size says: of the sun, irradiance times what it covers.
+  std::vector<test::Mean> means = brought(e, {boxes.back()});
+  const double sun = [&] {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) sum += double(std::abs(s.lights[1].direction[k])) * 0.00005 * 0.00005;
+    return sum * double(luminance(vec3(5, 5, 5)));
+  }();
+  CHECK(means[3].value() > sun);
+  CHECK(means[3].error() < 0.1 * means[3].value());
 }

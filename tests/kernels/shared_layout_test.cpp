@@ -17,6 +17,7 @@
 #include "shaders/shared/irradiance_cache/records.h"
 #include "shaders/shared/octree.h"
 #include "shaders/shared/overlay.h"
+#include "shaders/shared/photons/inspect.h"
 #include "shaders/shared/photons/photons.h"
 #include "shaders/shared/preview.h"
 #include "shaders/shared/ramp.h"
@@ -69,11 +70,20 @@ std::vector<SharedStruct> structs() {
       SHARED("irradiance_cache/placement_view.h", PlacedPoint, position, bits, normal, radius),
       SHARED("irradiance_cache/placement_view.h", PlacementPush, count, rings, dot, tried_dot, by_cluster),
       SHARED("sight.h", SightGrid, across, stride),
-      SHARED("emission.h", EmissionTable, centre, radius, count, sky, sun_pmf, pad0),
+      SHARED("emission.h", EmissionTable, centre, radius, count, sky, sun_pmf, casters, groups, pad0),
       SHARED("photons/photons.h", Photon, position, direction, flux, bits),
-      SHARED("photons/photons.h", PhotonFrame, eye, slope, base, least, most, count, mask, round, pad0, pad1,
-             component),
-      SHARED("photons/photons.h", PhotonEmitPush, count, first, round, share),
+      SHARED("photons/photons.h", PhotonFrame, eye, slope, base, least, most, count, mask, round,
+             surface_nodes, importance_mask, importance_eye, importance_slope, importance_base,
+             importance_counts, component),
+      SHARED("photons/inspect.h", PhotonDensityPush, width, height, of),
+      SHARED("photons/inspect.h", PhotonHeatPush, width, height, lo, hi),
+      SHARED("photons/inspect.h", PhotonInspectPush, width, height, pixel),
+      SHARED("photons/inspect.h", PhotonInspectHeader, position, radius, normal, area, irradiance, density,
+             solid, count, pad0, pad1),
+      SHARED("photons/inspect.h", PhotonInspected, position, brings, direction, bits, flux, pad0),
+      SHARED("photons/photons.h", PhotonWorth, stratum, worth),
+      SHARED("photons/photons.h", PhotonEmitPush, count, first, round, share, step),
+      SHARED("photons/photons.h", PhotonWorthPush, count, step),
       SHARED("photons/photons.h", PhotonListPush, count),
       SHARED("photons/photons.h", PhotonPointsPush, count, step, by, pad0),
       SHARED("sight.h", SeePush, first, count, across, down, stride),

@@ -13,15 +13,36 @@ std::vector<OptionInfo> option_rows() {
                      "picture; 0: as many as the picture has pixels, at least 16384.",
                      "Paths a round"),
       real_option(
-          "photons.radius", "3", 0.1, 1000, "pixels",
+          "photons.radius", "1.5", 0.1, 1000, "pixels",
           "Photons: radius of the first round, as the camera sees it. Less: less blur, and more grain.",
           "First radius"),
-      real_option("photons.floor", "0.75", 0, 1000, "pixels",
+      real_option("photons.floor", "0.5", 0, 1000, "pixels",
                   "Photons: least radius, from which on it shrinks no further.", "Least radius"),
       real_option("photons.alpha", "0.6667", 0.01, 1, "",
                   "Photons: how slowly the radius shrinks from round to round: grain falls with its power, "
                   "blur with that of the rest to 1; 1: it does not shrink.",
                   "Shrinking"),
+      boolean_option(
+          "photons.aim", "true",
+          "Photons: aims light paths at what mirrors or refracts smoothly, by what a pilot finds that "
+          "each pair of lamp and caster brings to the picture.",
+          "Aim at casters"),
+      boolean_option(
+          "photons.importons", "true",
+          "Photons: stores them where paths from the eye look, by a short pilot; elsewhere one in four, for "
+          "all.",
+          "Only where looked at"),
+      boolean_option(
+          "photons.borders", "true",
+          "Photons: divides by the surface that there is around a place instead of by a whole disc, "
+          "so that borders and creases are not darker than they are.",
+          "Correct borders"),
+      without_restart(
+          choice_option("overlay.photon_density", "off", {"off", "photons", "irradiance"}, "",
+                        "Shows over the picture how dense the photons of the last round lie, or what they "
+                        "bring: a heat map on "
+                        "surfaces, and under the pointer the disc within which photons count, with those.",
+                        "Show density")),
       without_restart(
           choice_option("overlay.photons", "off", {"off", "flux", "bounce"}, "",
                         "Shows the photons of the last round where they lie: flux in the colour of "
@@ -59,6 +80,28 @@ std::vector<ChangeRow> change_rows() {
   };
 }
 
+/// Light that is bundled, alone: against a path-traced reference, for path tracing as long as for photons.
+/// The report extrapolates the time to an error by 1/t where path tracing does not reach it.
+constexpr const char* k_caustics_matrix = R"({
+  "name": "caustics",
+  "repeats": 3,
+  "warmup": 1,
+  "reference": {"samples": 16384},
+  "set": {"components.primary": "off", "components.secondary": "off", "components.tertiary": "off",
+          "components.caustic": "path"},
+  "budgets": {"seconds": [4, 16, 60]},
+  "scenes": [
+    {"file": "glass/glass.gltf", "size": "160x160"},
+    {"file": "ring/ring.gltf", "size": "192x108"}
+  ],
+  "settings": [
+    {"name": "plain", "about": "path tracing", "budget": "seconds"},
+    {"name": "photons", "about": "photons, aimed", "set": {"components.caustic": "photons"}, "budget": "seconds"},
+    {"name": "unaimed", "about": "photons, not aimed", "budget": "seconds",
+     "set": {"components.caustic": "photons", "photons.aim": false}}
+  ]
+})";
+
 }  // namespace
 
 const SolverInfo& info() {
@@ -76,7 +119,12 @@ const SolverInfo& info() {
       .finds_points = true,
       .options = option_rows(),
       .changes = change_rows(),
-      .views = {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'}},
+      .views =
+          {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'},
+           {.option = "overlay.photon_density", .label = "Density", .shortcut = 'M', .asks_pointer = true}},
+      .benches = {{"caustics",
+                   "bundled light alone: path tracing against photons, on glass and ring; an hour and a half",
+                   k_caustics_matrix}},
       .against_noise = {"photons.per_round"},
       .against_bias = {"photons.radius"},
   };

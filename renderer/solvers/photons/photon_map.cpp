@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/timer.h"
+
 namespace lucerna::photons {
 
 using namespace shared;
 
 namespace {
+
+/// Of strata over the paths of a round (lib/emission.glsl).
+uint32_t stratum_step(uint32_t paths) { return uint32_t((uint64_t{1} << 32) / paths); }
 
 constexpr uint32_t k_first_capacity = 65536;                           // photons
 constexpr uint32_t k_least_entries = 1024, k_most_entries = 1u << 22;  // of the table
@@ -22,6 +27,8 @@ gpu::Buffer texels(gpu::Device& device, const char* name, uint64_t bytes) {
 PhotonMap::PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
                      const paths::Automaton& automaton)
     : device_(device),
+      compiler_(compiler),
+      scene_defines_(scene_defines),
       automaton_(paths::reverse(automaton)),
       emit_(device, compiler, "photons/emit.comp", scene_defines),
       trace_(device, compiler, "photons/trace.comp", scene_defines),
@@ -31,7 +38,8 @@ PhotonMap::PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const g
       counts_(device, {.name = "photon counts", .bytes = 4 * k_photon_counts, .memory = gpu::Memory::host}),
       map_(texels(device, "photons", sizeof(Photon))),
       table_(texels(device, "table of photons", 8 * k_least_entries)),
-      block_(device, {.name = "photon lookups", .bytes = sizeof(PhotonFrame)}) {
+      block_(device, {.name = "photon lookups", .bytes = sizeof(PhotonFrame)}),
+      importance_(device, {.name = "importance", .bytes = 4 * k_photon_importance_entries}) {
   clear();
 }
 
@@ -39,6 +47,40 @@ void PhotonMap::bind(gpu::Resources& resources) const {
   resources.set("photon_texels", map_);
   resources.set("photon_table", table_);
   resources.set("PhotonBlock", block_);
+  resources.set("PhotonImportance", importance_);
+}
+
+void PhotonMap::note_importance(transport::Wavefront& wavefront, const PhotonFrame& lookup) {
+  lookup_ = lookup;
+  lookup_.count = 0, lookup_.mask = 0, lookup_.importance_mask = k_photon_importance_entries - 1;
+  noted_ = lookup;
+  noted_.importance_counts = 0;
+  write_lookup();
+  wavefront.stream().fill(importance_, 0);
+  wavefront.account_stages();
+  complete_ = tracing_ = false;
+}
+
+std::vector<double> PhotonMap::worth(transport::Wavefront& wavefront, const transport::LightSource& lights) {
+  std::vector<double> worth(lights.strata(), 0.0);
+  const uint32_t count = complete_ ? lookup_.count : 0;
+  if (count == 0) return worth;
+  if (!worth_) worth_ = gpu::Kernel(device_, compiler_, "photons/worth.comp", scene_defines_);
+  gpu::make_room(
+      device_, worths_,
+      {.name = "worths of photons", .bytes = count * sizeof(PhotonWorth), .memory = gpu::Memory::host});
+  gpu::Resources r;
+  wavefront.bind_paths(r);
+  bind(r);
+  lights.bind(r);
+  r.set("photon_sorted", *sorted_);
+  r.set("PhotonWorths", worths_);
+  wavefront.stream().dispatch(worth_, r, PhotonWorthPush{count, stratum_step(figures_.paths)},
+                              gpu::groups_for(count, 64), "photon map");
+  wavefront.account_stages();
+  const auto* found = static_cast<const PhotonWorth*>(worths_.mapped());
+  for (uint32_t i = 0; i < count; ++i) worth[found[i].stratum] += double(found[i].worth);
+  return worth;
 }
 
 void PhotonMap::clear() {
@@ -50,11 +92,23 @@ void PhotonMap::clear() {
   complete_ = tracing_ = false;
 }
 
-void PhotonMap::write_lookup() { block_.write(&lookup_, sizeof lookup_); }
+void PhotonMap::write_lookup() {
+  PhotonFrame all = lookup_;
+  all.importance_eye = noted_.eye, all.importance_slope = noted_.slope, all.importance_base = noted_.base;
+  all.importance_counts = noted_.importance_counts;
+  // Where there has been no round, of what photons are stored by.
+  if (all.most <= all.least) all.least = noted_.least, all.most = noted_.most;
+  block_.write(&all, sizeof all);
+}
+
+void PhotonMap::store_by_importance(bool on) {
+  noted_.importance_counts = on ? 1 : 0;
+  write_lookup();
+}
 
 uint64_t PhotonMap::bytes() const {
   uint64_t sum = 0;
-  for (const gpu::Buffer* b : {&list_, &ids_, &entries_, &scratch_, &map_, &table_})
+  for (const gpu::Buffer* b : {&list_, &ids_, &entries_, &scratch_, &map_, &table_, &importance_})
     sum += *b ? b->bytes() : 0;
   return sum;
 }
@@ -79,6 +133,7 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
     const uint32_t count = std::min(wavefront.slots(), round.paths - traced_);
     wavefront.set_frame(light_frame(round, picture), 1);
     const auto back = [&] { wavefront.set_frame(picture, enabled); };
+    const Timer timer;
     try {
       if (!trace_batch(wavefront, lights, round, count, cancel)) {
         back();
@@ -89,6 +144,7 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
       throw;
     }
     back();
+    next_.trace_s += timer.seconds();
     traced_ += count;
     if (traced_ < round.paths) return true;
   }
@@ -113,7 +169,8 @@ bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::Li
     bind(emitting);
     transport::PathEnds ends;
     ends.begin = [&] {
-      const PhotonEmitPush push{count, traced_, round.number, 1 / float(round.paths)};
+      const PhotonEmitPush push{count, traced_, round.number, 1 / float(round.paths),
+                                stratum_step(round.paths)};
       stream.dispatch(emit_, emitting, push, gpu::groups_for(count, 64), "photon emission");
     };
     ends.vertex = &trace_;
@@ -124,6 +181,7 @@ bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::Li
     if (counts[k_photons_stored] <= capacity_) {
       stored_ = counts[k_photons_stored];
       next_.escaped += counts[k_photons_escaped], next_.dark += counts[k_photons_dark];
+      next_.spared += counts[k_photons_spared];
       return true;
     }
     grow(wavefront, counts[k_photons_stored]);
@@ -160,6 +218,7 @@ void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
 }
 
 void PhotonMap::build(transport::Wavefront& wavefront, const Round& round) {
+  const Timer timer;
   gpu::Stream& stream = wavefront.stream();
   lookup_ = round.lookup;
   lookup_.count = stored_;
@@ -192,11 +251,13 @@ void PhotonMap::build(transport::Wavefront& wavefront, const Round& round) {
     stream.dispatch(keys_, r, push, groups, "photon map");
     const gpu::Buffer& sorted = radix_sort_.encode(stream, entries_, scratch_, {.most = stored_},
                                                    32 + uint32_t(std::bit_width(entries - 1)), "photon map");
+    sorted_ = &sorted;
     r.set("photon_sorted", sorted);
     stream.dispatch(arrange_, r, push, groups, "photon map");
   }
   wavefront.account_stages();
   if (moved) wavefront.rebind_lookup();
+  next_.build_s = timer.seconds();
   figures_ = next_;
   figures_.photons = stored_, figures_.entries = entries;
   tracing_ = false;

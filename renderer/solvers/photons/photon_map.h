@@ -27,10 +27,12 @@ struct Round {
 /// Of the last complete round.
 struct RoundFigures {
   uint32_t round = 0, paths = 0, photons = 0;
-  uint32_t escaped = 0;  ///< paths that left the scene
-  uint32_t dark = 0;     ///< paths that began where their light has no light
-  uint32_t entries = 0;  ///< of the table
-  uint32_t grown = 0;    ///< batches traced again because there was no room, so far
+  uint32_t escaped = 0;             ///< paths that left the scene
+  uint32_t dark = 0;                ///< paths that began where their light has no light
+  uint32_t entries = 0;             ///< of the table
+  uint32_t spared = 0;              ///< photons that nobody would have looked at
+  uint32_t grown = 0;               ///< batches traced again because there was no room, so far
+  double trace_s = 0, build_s = 0;  ///< wall time of its tracing, and of putting it in order
 };
 
 class PhotonMap {
@@ -52,6 +54,14 @@ class PhotonMap {
   /// will be done again. Throws Error: more photons than the device can hold.
   bool trace(transport::Wavefront& wavefront, const transport::LightSource& lights, const Round& round,
              const shared::Frame& picture, uint32_t enabled, const std::function<bool()>& cancel);
+  /// From now on lookups find nothing, but note how much of the picture hangs on them, from nothing on; until
+  /// a round is complete. `lookup`: by whose radii.
+  void note_importance(transport::Wavefront& wavefront, const shared::PhotonFrame& lookup);
+  /// Whether photons are stored by the importance that was noted last: where nobody looks, one in so many.
+  void store_by_importance(bool on);
+  /// What the photons of the complete round bring to the picture, by stratum of their emission, by the
+  /// importance that was noted last.
+  std::vector<double> worth(transport::Wavefront& wavefront, const transport::LightSource& lights);
   /// The round that lookups read; false: none.
   bool complete() const { return complete_; }
   uint32_t round() const { return figures_.round; }
@@ -71,12 +81,15 @@ class PhotonMap {
   void write_lookup();
 
   gpu::Device& device_;
+  gpu::ShaderCompiler& compiler_;
+  gpu::Defines scene_defines_;
   paths::LightAutomaton automaton_;
-  gpu::Kernel emit_, trace_, keys_, arrange_;
+  gpu::Kernel emit_, trace_, keys_, arrange_, worth_;
   sort::RadixSort radix_sort_;
-  gpu::Buffer counts_, list_, ids_, entries_, scratch_, map_, table_, block_;
-  shared::PhotonFrame lookup_{};
-  RoundFigures figures_, next_;  ///< of the last complete round, of the one under way
+  gpu::Buffer counts_, list_, ids_, entries_, scratch_, map_, table_, block_, importance_, worths_;
+  const gpu::Buffer* sorted_ = nullptr;     ///< of the complete round
+  shared::PhotonFrame lookup_{}, noted_{};  ///< noted_: by whose radii importance is noted
+  RoundFigures figures_, next_;             ///< of the last complete round, of the one under way
   bool tracing_ = false, complete_ = false;
   uint32_t traced_ = 0, stored_ = 0;  ///< paths and photons of the round under way
   uint32_t capacity_ = 0;

@@ -9,10 +9,43 @@
 namespace lucerna::photons {
 
 using namespace solvers;
+using namespace shared;
+
+namespace {
+
+/// What lies under the pointer.
+Card make_card(const Inspected& found) {
+  const PhotonInspectHeader& at = found.at;
+  Card card;
+  const auto add = [&](auto line, Card::Room room = Card::Room::any) { card.lines.push_back({line, room}); };
+  const auto row = [&](const char* name, std::string value) { add(Card::Row{name, std::move(value)}); };
+  add(Card::Title{count_text(double(at.count)) + (at.count == 1 ? " photon" : " photons"),
+                  fmt::format("{} mm", real_text(1e3 * double(at.radius), 2))});
+  row("Density", fmt::format("{} a m\u00b2", count_text(double(at.density))));
+  row("Irradiance", real_text(double(luminance(at.irradiance)), 3));
+  if (at.area < 0.999f) row("Surface in the disc", share_text(double(at.area), 1));
+  if (found.photons.empty()) return card;
+  double sum = 0;
+  for (const PhotonInspected& p : found.photons) sum += double(p.brings);
+  add(Card::Rule{}, Card::Room::much);
+  const float most = float(double(found.photons[0].brings) / sum);
+  for (size_t i = 0; i < std::min<size_t>(found.photons.size(), 5); ++i) {
+    const PhotonInspected& p = found.photons[i];
+    const uint32_t events = p.bits >> k_photon_events_shift;
+    add(Card::Weight{fmt::format("{} bounce{}", events, events == 1 ? "" : "s"),
+                     float(double(p.brings) / sum), most},
+        Card::Room::much);
+  }
+  return card;
+}
+
+}  // namespace
 
 Report make_report(const PhotonReport& r) {
   Report report;
   report.solver = info().name;
+  report.ready = r.ready;
+  if (!r.ready) report.preparing = "photons: where they are looked for, and what bundles light";
   report.state = r.rounds == 0 ? "beginning" : fmt::format("round {}", r.last.round + 1);
   PanelSection map{.title = "Photons", .note = "", .items = {}};
   if (r.lights_power <= 0)
@@ -30,6 +63,9 @@ Report make_report(const PhotonReport& r) {
   map.items.push_back(ValueRow{
       "Stored a path", r.paths > 0 ? real_text(double(r.photons) / double(r.paths), 2) : "\xE2\x80\x93",
       "Photons that a path leaves, on average over the picture's rounds."});
+  if (r.spared > 0)
+    map.items.push_back(ValueRow{"Left out", share_text(double(r.spared), double(r.spared + r.photons)),
+                                 "Of the photons: where nobody looks, of which a few are kept for all."});
   map.items.push_back(ValueRow{"Left the scene", share_text(double(r.escaped), double(r.paths)),
                                "Of the paths: that met nothing any more."});
   if (r.dark > 0)
@@ -46,22 +82,44 @@ Report make_report(const PhotonReport& r) {
   map.items.push_back(
       ValueRow{"Memory", megabytes_text(double(r.bytes) / 1e6), "Of photons and what finds them."});
   report.sections.push_back(std::move(map));
-  report.sections.push_back({.title = "Settings",
-                             .note = "",
-                             .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"},
-                                       OptionRow{"photons.floor"}, OptionRow{"photons.alpha"}}});
   report.sections.push_back(
-      {.title = "Over the picture", .note = "", .items = {OptionRow{"overlay.photons"}}});
+      {.title = "Settings",
+       .note = "",
+       .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"}, OptionRow{"photons.floor"},
+                 OptionRow{"photons.alpha"}, OptionRow{"photons.borders"}, OptionRow{"photons.aim"},
+                 OptionRow{"photons.importons"}}});
+  report.sections.push_back({.title = "Over the picture",
+                             .note = "",
+                             .items = {OptionRow{"overlay.photons"}, OptionRow{"overlay.photon_density"}}});
   if (r.view == shared::k_photons_by_bounce) {
     Legend legend{.title = "surfaces before", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (uint32_t bounce = 0; bounce < 6; ++bounce)
       legend.marks.push_back({shared::ramp_hue(bounce), fmt::format("{}{}", bounce, bounce == 5 ? "+" : "")});
     report.legends.push_back(std::move(legend));
   }
-  report.figures = {{"rounds", double(r.rounds)},       {"light paths", double(r.paths)},
-                    {"photons", double(r.photons)},     {"last photons", double(r.last.photons)},
-                    {"escaped", double(r.escaped)},     {"dark", double(r.dark)},
-                    {"radius pixels", r.radius_pixels}, {"bytes", double(r.bytes)}};
+  if (r.density.of > 0 && r.density.hi > 0)
+    report.legends.push_back({.title = r.density.of == k_density_of_photons
+                                           ? "photons a m\u00b2, last round"
+                                           : "irradiance of the last round's photons",
+                              .ramp = k_ramp_magma,
+                              .ticks = {},
+                              .range = Legend::Range{.lo = r.density.lo, .hi = r.density.hi},
+                              .marks = {}});
+  report.looked_at = r.looked_at;
+  if (r.inspected) report.card = make_card(*r.inspected);
+  report.figures = {{"rounds", double(r.rounds)},
+                    {"light paths", double(r.paths)},
+                    {"photons", double(r.photons)},
+                    {"last photons", double(r.last.photons)},
+                    {"escaped", double(r.escaped)},
+                    {"dark", double(r.dark)},
+                    {"spared", double(r.spared)},
+                    {"density most", double(r.density.hi)},
+                    {"inspected", r.inspected ? double(r.inspected->at.count) : 0},
+                    {"casters", double(r.casters)},
+                    {"unaimed", r.unaimed},
+                    {"radius pixels", r.radius_pixels},
+                    {"bytes", double(r.bytes)}};
   return report;
 }
 

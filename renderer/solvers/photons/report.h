@@ -1,5 +1,6 @@
 #pragma once
 // What photons tell a person.
+#include "solvers/photons/inspector.h"
 #include "solvers/photons/photon_map.h"
 #include "solvers/report.h"
 
@@ -8,13 +9,21 @@ namespace lucerna::photons {
 struct PhotonReport {
   double lights_power = 0;  ///< luminance of all lights' flux [W]
   bool sends = true;        ///< photons: else there are only caustics to bring, and nothing focuses light
-  uint64_t rounds = 0, paths = 0, photons = 0, escaped = 0, dark = 0;  ///< of the picture
+  uint64_t rounds = 0, paths = 0, photons = 0, escaped = 0, dark = 0,
+           spared = 0;  ///< of the picture
   RoundFigures last;
   double radius_pixels = 0;
   bool at_floor = false;
   bool limited = false;  ///< held to less than what was asked for
+  uint32_t casters = 0;
+  double unaimed = 1;  ///< share of the paths
+  bool ready = true;   ///< the pilot is done
   uint64_t bytes = 0;
-  uint32_t view = 0;  ///< overlay.photons
+  double emitted_per_s = 0, stored_per_s = 0, sorted_per_s = 0;  ///< 0: not yet known
+  uint32_t view = 0;                                             ///< overlay.photons
+  DensityScale density;
+  std::optional<vec2> looked_at;
+  std::optional<Inspected> inspected;
 };
 
 solvers::Report make_report(const PhotonReport& r);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/timer.h"
 #include "solvers/photons/info.h"
 #include "solvers/photons/radius.h"
 
@@ -14,7 +15,6 @@ using solvers::Picture, solvers::Task, solvers::Cancel;
 
 namespace {
 
-constexpr uint32_t k_caustic_part = 3;
 constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where their number is left to us
 /// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
 /// are very wide.
@@ -32,12 +32,6 @@ uint32_t parts_of(const Task& task) {
   return routes_of(task).parts & (focuses ? ~0u : ~(1u << k_caustic_part));
 }
 
-solvers::Routing routing(const Task& task) {
-  paths::LookupRoutes routes = routes_of(task);
-  if (parts_of(task) == 0) routes.component.clear(), routes.parts = 0;
-  return {.lookups = routes, .fallback = 0, .gather = {}};
-}
-
 std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
                                       const Task& task) {
   return std::make_unique<PhotonSolver>(device, compiler, task);
@@ -46,9 +40,18 @@ std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& 
 }  // namespace
 
 const solvers::SolverType& type() {
-  static const solvers::SolverType all{
-      .info = photons::info(), .routing = routing, .make = make, .least_slots = 0, .sun_threshold = nullptr};
+  static const solvers::SolverType all{.info = photons::info(),
+                                       .routing = PhotonSolver::routing_of,
+                                       .make = make,
+                                       .least_slots = 0,
+                                       .sun_threshold = nullptr};
   return all;
+}
+
+solvers::Routing PhotonSolver::routing_of(const Task& task) {
+  paths::LookupRoutes routes = routes_of(task);
+  if (parts_of(task) == 0) routes.component.clear(), routes.parts = 0;
+  return {.lookups = routes, .fallback = 0, .gather = {}};
 }
 
 PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const Task& task)
@@ -57,9 +60,16 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       parts_(parts_of(task)),
       sends_(parts_ != 0),
       map_(device, compiler, *task.scene_defines, task.automaton),
-      view_(device, compiler) {}
+      view_(device, compiler),
+      inspector_(device, compiler),
+      surfaces_(device) {}
 
 const solvers::SolverInfo& PhotonSolver::info() const { return photons::info(); }
+
+void PhotonSolver::bind(gpu::Resources& resources) const {
+  map_.bind(resources);
+  surfaces_.bind(resources);
+}
 
 bool PhotonSolver::serves(const Task& task) const {
   return routes_of(task).component == routes_.component && parts_of(task) == parts_;
@@ -71,10 +81,13 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
         transport::LightSource(device_, picture.flat, picture.flat.scene_centre, picture.flat.scene_radius);
     lit_ = true;
   }
-  if (spoils.places) map_.clear();
+  if (spoils.places) map_.clear(), surfaces_.spoil();
   map_.restart();
   fresh_ = true;
+  begin_aim(picture, spoils);
   rounds_ = paths_ = photons_ = escaped_ = dark_ = 0;
+  trace_s_ = build_s_ = 0;
+  spared_ = 0;
 }
 
 bool PhotonSolver::round_ready(uint32_t sample) const {
@@ -91,17 +104,22 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
   round.parts = parts_;
   round.account = uint32_t(std::countr_zero(std::max(1u, picture.task.own)));
 
-  PhotonFrame& f = round.lookup;
-  const Frame& frame = picture.frame;
   const double shrunk = s.real("photons.radius") * radius_ratio(sample, s.real("photons.alpha"));
+  round.lookup = lookup_of(picture, picture.frame, std::max(shrunk, s.real("photons.floor")));
+  return round;
+}
+
+PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, double radius_pixels) const {
+  PhotonFrame f{};
   const auto pixel =
       float(2 * glm::length(frame.camera_right) / float(frame.width));  // at 1 m, or everywhere
-  const float radius = pixel * float(std::max(shrunk, s.real("photons.floor")));
+  const float radius = pixel * float(radius_pixels);
   f.eye = frame.camera_origin;
   f.slope = frame.orthographic ? 0 : std::min(radius, k_photon_most_slope);
   f.base = frame.orthographic ? radius : 0;
   f.least = k_least_radius * picture.flat.scene_radius;
   f.most = k_most_radius * picture.flat.scene_radius;
+  f.surface_nodes = picture.task.settings.boolean("photons.borders") ? surfaces_.nodes() : 0;
   // Paths that another solver's lookup has left alone find photons as all others do.
   for (uint32_t state = 0; state < k_automaton_states; ++state) {
     const uint32_t of_eye = state % k_gather_state;
@@ -114,11 +132,16 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
     }
     f.component[state] = packed;
   }
-  return round;
+  return f;
 }
 
 bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture& picture, uint32_t sample,
                                  const Cancel& cancel) {
+  if (fresh_ && picture.task.settings.boolean("photons.borders") && !surfaces_.serves(picture.flat)) {
+    surfaces_.make(device_, picture.flat);
+    wavefront.rebind_lookup();
+    return true;
+  }
   const Round round = round_of(picture, sample);
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;  // not yet complete
@@ -126,11 +149,24 @@ bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture&
   fresh_ = false, last_sample_ = sample;
   ++rounds_, paths_ += lights_.power() > 0 ? f.paths : 0, photons_ += f.photons;
   escaped_ += f.escaped, dark_ += f.dark;
+  trace_s_ += f.trace_s, build_s_ += f.build_s, spared_ += f.spared;
   return true;
 }
 
 void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
-  view_.draw(canvas, map_, uint32_t(picture.task.settings.choice("overlay.photons")));
+  const OptionValues& settings = picture.task.settings;
+  density_ = {}, inspected_.reset();
+  if (!sends_) return;
+  const auto read = [this](gpu::Resources& r) { bind(r); };
+  const auto of = uint32_t(settings.choice("overlay.photon_density"));
+  if (of > 0) density_ = inspector_.draw_density(canvas, read, of);
+  view_.draw(canvas, map_, uint32_t(settings.choice("overlay.photons")));
+  if (!looked_at_) return;
+  const auto at = [](float place, uint32_t pixels) {
+    return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
+  };
+  inspected_ =
+      inspector_.inspect(canvas, read, at(looked_at_->x, canvas.width()), at(looked_at_->y, canvas.height()));
 }
 
 PhotonReport PhotonSolver::state(const Picture& picture) const {
@@ -140,7 +176,16 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.sends = sends_;
   r.rounds = rounds_, r.paths = paths_, r.photons = photons_, r.escaped = escaped_, r.dark = dark_;
   r.last = map_.figures();
-  r.bytes = map_.bytes() + lights_.bytes();
+  r.spared = spared_;
+  r.casters = uint32_t(casters_.size());
+  r.unaimed = lights_.shares().empty() ? 1 : lights_.shares()[0];
+  r.ready = ready();
+  const auto rate = [](uint64_t n, double seconds) { return seconds > 0 ? double(n) / seconds : 0; };
+  r.emitted_per_s = rate(paths_, trace_s_), r.stored_per_s = rate(photons_, trace_s_);
+  r.sorted_per_s = rate(photons_, build_s_);
+  r.density = density_;
+  r.looked_at = looked_at_, r.inspected = inspected_;
+  r.bytes = map_.bytes() + lights_.bytes() + surfaces_.bytes();
   const double shrunk =
       s.real("photons.radius") * radius_ratio(rounds_ > 0 ? last_sample_ : 0, s.real("photons.alpha"));
   r.radius_pixels = std::max(shrunk, s.real("photons.floor"));
@@ -158,20 +203,48 @@ std::shared_ptr<const solvers::Report> PhotonSolver::report(const overlay::Canva
   return std::make_shared<const solvers::Report>(make_report(state(picture)));
 }
 
-nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas&, const Picture& picture) {
+void PhotonSolver::look_up_picture(const overlay::Canvas& canvas, const Picture&) {
+  if (sends_)
+    inspector_.look_up(
+        canvas, [this](gpu::Resources& r) { bind(r); }, k_density_of_photons);
+}
+
+nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, const Picture& picture) {
   const PhotonReport r = state(picture);
-  return {{"rounds", r.rounds},
+  nlohmann::ordered_json rates;
+  if (map_.complete()) {
+    const auto read = [this](gpu::Resources& resources) { bind(resources); };
+    inspector_.look_up(canvas, read, k_photons_in_disc);  // kernels compile when they first run
+    const Timer timer;
+    inspector_.look_up(canvas, read, k_photons_in_disc);
+    const double seconds = timer.seconds();
+    double lookups = 0, gathered = 0;
+    for (const float n : inspector_.densities())
+      if (n >= 0) ++lookups, gathered += double(n);
+    rates = {{"emitted", r.emitted_per_s},     {"stored", r.stored_per_s},
+             {"sorted", r.sorted_per_s},       {"looked_up", lookups / seconds},
+             {"gathered", gathered / seconds}, {"gathered_a_lookup", lookups > 0 ? gathered / lookups : 0}};
+  }
+  return {{"per_second", rates},
+          {"rounds", r.rounds},
           {"paths", r.paths},
           {"photons", r.photons},
           {"escaped", r.escaped},
           {"dark", r.dark},
+          {"spared", r.spared},
+          {"casters", r.casters},
+          {"unaimed", r.unaimed},
           {"last_round_photons", r.last.photons},
           {"radius_pixels", r.radius_pixels},
           {"bytes", r.bytes}};
 }
 
 std::map<std::string, double> PhotonSolver::figures() const {
-  return {{"photon rounds", double(rounds_)}, {"light paths", double(paths_)}, {"photons", double(photons_)}};
+  return {{"photon rounds", double(rounds_)},
+          {"light paths", double(paths_)},
+          {"photons", double(photons_)},
+          {"seconds of light paths", trace_s_},
+          {"seconds of sorting photons", build_s_}};
 }
 
 }  // namespace lucerna::photons

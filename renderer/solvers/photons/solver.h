@@ -1,13 +1,18 @@
 #pragma once
 // Photons as the renderer sees them: stochastic progressive photon mapping, a round for every sample.
+#include "schedule/uniform.h"
+#include "solvers/photons/inspector.h"
 #include "solvers/photons/photon_map.h"
 #include "solvers/photons/points_view.h"
 #include "solvers/photons/report.h"
+#include "solvers/photons/surface_index.h"
 #include "solvers/solver.h"
 
 namespace lucerna::photons {
 
 const solvers::SolverType& type();
+
+inline constexpr uint32_t k_caustic_part = 3;  ///< of light (paths::k_part_count)
 
 class PhotonSolver final : public solvers::Solver {
  public:
@@ -16,26 +21,39 @@ class PhotonSolver final : public solvers::Solver {
 
   const solvers::SolverInfo& info() const override;
   std::string hook() const override { return sends_ ? "photons/vertex_hook.glsl" : ""; }
-  void bind(gpu::Resources& resources) const override { map_.bind(resources); }
+  void bind(gpu::Resources& resources) const override;
   bool serves(const solvers::Task& task) const override;
 
   void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
+  /// Whether it is known where lookups take place, which casters light paths are aimed at, and with which
+  /// shares.
+  bool ready() const override { return (!aims_ && !spares_) || aimed_; }
+  bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
+               const solvers::Cancel& cancel) override;
   bool in_rounds() const override { return sends_; }
   bool round_ready(uint32_t sample) const override;
   bool prepare_round(transport::Wavefront& wavefront, const solvers::Picture& picture, uint32_t sample,
                      const solvers::Cancel& cancel) override;
 
+  void look_at(std::optional<vec2> place) override { looked_at_ = place; }
   void draw(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
   std::shared_ptr<const solvers::Report> report(const overlay::Canvas& canvas,
                                                 const solvers::Picture& picture, bool sampled) override;
   nlohmann::ordered_json statistics(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
+  void look_up_picture(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
   std::map<std::string, double> figures() const override;
 
   const PhotonMap& map() const { return map_; }
+  const PhotonInspector& inspector() const { return inspector_; }
+  const std::optional<Inspected>& inspected() const { return inspected_; }
+  static solvers::Routing routing_of(const solvers::Task& task);
 
  private:
   PhotonReport state(const solvers::Picture& picture) const;
   Round round_of(const solvers::Picture& picture, uint32_t sample) const;
+  void begin_aim(const solvers::Picture& picture, solvers::Spoils spoils);
+  shared::PhotonFrame lookup_of(const solvers::Picture& picture, const shared::Frame& frame,
+                                double radius_pixels) const;
 
   gpu::Device& device_;
   paths::LookupRoutes routes_;
@@ -43,11 +61,31 @@ class PhotonSolver final : public solvers::Solver {
   bool sends_;      ///< photons; else there is nothing that they could bring
   PhotonMap map_;
   PointsView view_;
+  PhotonInspector inspector_;
+  std::optional<vec2> looked_at_;
+  std::optional<Inspected> inspected_;
+  DensityScale density_;  ///< that is drawn
+  SurfaceIndex surfaces_;
   transport::LightSource lights_;
+
+  // Aimed emission (aim.cpp): casters are found, then a few paths from the eye note where lookups take place,
+  // then a few from the lights tell which pairs of light and caster bring something there.
+  enum class AimStep { casters, importance, worth };
+  bool aims_ = false;    ///< there may be casters, and there is light that they bundle
+  bool spares_ = false;  ///< photons that nobody looks at
+  bool aimed_ = false;   ///< importance and shares are those of this picture
+  AimStep aim_step_ = AimStep::casters;
+  std::vector<Box> casters_;
+  std::vector<double> worth_;  ///< by stratum, of the pilot
+  std::optional<schedule::UniformSchedule> eye_schedule_;
+  shared::Frame aimed_for_{};
+
   bool lit_ = false;          ///< lights_ are the scene's
   uint32_t last_sample_ = 0;  ///< whose round is complete, in this picture
   bool fresh_ = true;         ///< no round of this picture is
   uint64_t rounds_ = 0, paths_ = 0, photons_ = 0, escaped_ = 0, dark_ = 0;  ///< of this picture
+  uint64_t spared_ = 0;
+  double trace_s_ = 0, build_s_ = 0;
 };
 
 }  // namespace lucerna::photons

@@ -32,6 +32,10 @@ LUCERNA_CONST float k_photon_most_slope = 0.25f;  ///< of the radius over the di
 LUCERNA_CONST uint k_photon_most_candidates = 4096u;
 LUCERNA_CONST float k_photon_slab = 0.25f;  ///< half the thickness of what a photon's disc counts for, in radii
 LUCERNA_CONST float k_photon_normals = 0.9f;  ///< least cosine between the normals of photon and place
+// How much surface there is around a place (photons/area.glsl).
+LUCERNA_CONST uint k_photon_most_visits = 2048u;        ///< nodes that a lookup meets; beyond it is taken for whole
+LUCERNA_CONST float k_photon_least_area = 1.0f / 64.0f; ///< of the whole disc
+LUCERNA_CONST float k_photon_turned_slab = 0.125f;      ///< of the slab, for what is wound the other way round
 
 /// What lookups read besides the photons.
 struct PhotonFrame {
@@ -42,7 +46,12 @@ struct PhotonFrame {
   uint count;       ///< photons; 0: none
   uint mask;        ///< entries of the table, less 1
   uint round;
-  uint pad0, pad1;
+  uint surface_nodes;    ///< of the index of surfaces; 0: borders are not corrected
+  uint importance_mask;  ///< entries of the table of importance, less 1; 0: lookups note none
+  // By whose radii importance was noted, and whether photons are stored by it.
+  vec3 importance_eye;
+  float importance_slope, importance_base;
+  uint importance_counts;  ///< 0: all photons are stored
   uint component[k_automaton_states];  ///< by state of the eye path: four bits a part, the component that it brings light to
 };
 LUCERNA_CONST uint k_photon_no_component = 15u;
@@ -53,6 +62,11 @@ struct PhotonEmitPush {
   uint first;      ///< number of the first of them in the round
   uint round;
   float share;     ///< 1 / paths of the round
+  uint step;       ///< 2^32 / paths of the round
+};
+struct PhotonWorthPush {
+  uint count;      ///< photons
+  uint step;
 };
 struct PhotonListPush {
   uint count;      ///< photons
@@ -62,12 +76,28 @@ LUCERNA_CONST uint k_photon_id_events = 8u;          ///< bits
 LUCERNA_CONST uint k_photon_most_events = 255u;      ///< after which a light path ends
 LUCERNA_CONST uint k_photon_most_paths = 1u << 24;   ///< of a round
 
+// Importance: where lookups of eye paths take place, and how much of the picture hangs on them. A table of sums by cell, in
+// which lookups lie by the rules of photons.
+LUCERNA_CONST uint k_photon_importance_entries = 1u << 18;
+LUCERNA_CONST float k_photon_importance_scale = 256.0f;  ///< of a path that carries everything
+LUCERNA_CONST uint k_photon_most_importance = 4096u;     ///< of one lookup
+/// Of photons where no lookup has been noted so many are stored, each for several: whatever the table misses costs noise,
+/// never light.
+LUCERNA_CONST float k_photon_unseen_share = 0.25f;
+
+/// What a photon of the pilot brings to the picture, up to a factor, and which stratum of emission it comes from.
+struct PhotonWorth {
+  uint stratum;
+  float worth;
+};
+
 // PhotonCounts, uint each.
 LUCERNA_CONST uint k_photons_stored = 0u;    ///< so far, or wanted to be
 LUCERNA_CONST uint k_photons_capacity = 1u;  ///< for which there is room
 LUCERNA_CONST uint k_photons_escaped = 2u;   ///< paths that left the scene
 LUCERNA_CONST uint k_photons_dark = 3u;      ///< paths that began where a light has none
-LUCERNA_CONST uint k_photon_counts = 4u;
+LUCERNA_CONST uint k_photons_spared = 4u;    ///< photons left out because nobody looks where they lie
+LUCERNA_CONST uint k_photon_counts = 5u;
 
 /// Which photons are drawn, and how.
 struct PhotonPointsPush {

@@ -16,7 +16,7 @@ struct Beginning {
   float pdf_place;
   vec3 flux;
   float pdf_direction;
-  uint light;
+  uint light, stratum;
 };
 layout(scalar) writeonly buffer Beginnings { Beginning beginnings[]; };
 
@@ -24,7 +24,6 @@ void main() {
   uint i = global_index();
   if (i >= push.count) return;
   Sampler random = make_light_sampler(i, push.round, frame.seed);
-  Emission e = sample_emission(sample_vertex_bits(random, 0u, k_pad_light_choice), sample_vertex(random, 0u, k_pad_light_uv),
-                               sample_vertex(random, 0u, k_pad_direction), sample_vertex_bits(random, 0u, k_pad_light_detail));
-  beginnings[i] = Beginning(e.origin, e.pmf, e.direction, e.pdf_place, e.flux, e.pdf_direction, e.light);
+  Emission e = sample_emission(random, uint(4294967296.0 / float(push.count)));
+  beginnings[i] = Beginning(e.origin, e.pmf, e.direction, e.pdf_place, e.flux, e.pdf_direction, e.light, e.stratum);
 }

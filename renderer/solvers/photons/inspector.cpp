@@ -1,0 +1,126 @@
+#include "solvers/photons/inspector.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace lucerna::photons {
+
+using namespace shared;
+
+namespace {
+
+constexpr float k_decades = 1e-3f;  // of the scale, from its end down
+constexpr vec3 k_disc_ink{1.0f, 0.86f, 0.45f};
+
+/// The next of 1, 2, 5, 10 ...
+float rounded_up(float value) {
+  const float ten = std::pow(10.0f, std::floor(std::log10(value)));
+  for (const float step : {1.0f, 2.0f, 5.0f})
+    if (value <= step * ten) return step * ten;
+  return 10 * ten;
+}
+
+}  // namespace
+
+PhotonInspector::PhotonInspector(gpu::Device& device, gpu::ShaderCompiler& compiler)
+    : device_(device),
+      compiler_(compiler),
+      most_(device, {.name = "greatest density", .bytes = 4, .memory = gpu::Memory::host}),
+      inspection_(device,
+                  {.name = "inspected photons",
+                   .bytes = sizeof(PhotonInspectHeader) + k_photons_inspected * sizeof(PhotonInspected),
+                   .memory = gpu::Memory::host}),
+      painter_(device, compiler) {}
+
+const gpu::Kernel& PhotonInspector::ready(gpu::Kernel& kernel, const char* file) {
+  if (!kernel) kernel = gpu::Kernel(device_, compiler_, file);
+  return kernel;
+}
+
+void PhotonInspector::look_up(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind,
+                              uint32_t of) {
+  gpu::make_room(device_, densities_, {.name = "densities of photons", .bytes = canvas.pixels() * 4});
+  canvas.bind(resources_);
+  bind(resources_);
+  resources_.set("PhotonDensities", densities_);
+  resources_.set("PhotonDensityMost", most_);
+  canvas.stream().fill(most_, 0);
+  canvas.stream().dispatch(ready(density_, "photons/density.comp"), resources_,
+                           PhotonDensityPush{canvas.width(), canvas.height(), of},
+                           gpu::groups_for(canvas.pixels(), 64));
+  canvas.finish();
+}
+
+DensityScale PhotonInspector::draw_density(const overlay::Canvas& canvas,
+                                           const std::function<void(gpu::Resources&)>& bind, uint32_t of) {
+  look_up(canvas, bind, of);
+  const auto most = std::bit_cast<float>(*static_cast<const uint32_t*>(most_.mapped()));
+  DensityScale scale{.of = of};
+  if (most > 0) scale.hi = rounded_up(most), scale.lo = k_decades * scale.hi;
+  canvas.stream().dispatch(
+      ready(heat_, "photons/heat.comp"), resources_,
+      PhotonHeatPush{canvas.width(), canvas.height(), most > 0 ? scale.lo : 1.0f, most > 0 ? scale.hi : 2.0f},
+      gpu::groups_for(canvas.pixels(), 64));
+  canvas.finish();
+  return scale;
+}
+
+std::vector<float> PhotonInspector::densities() const { return densities_.read_all<float>(); }
+
+std::optional<Inspected> PhotonInspector::inspect(const overlay::Canvas& canvas,
+                                                  const std::function<void(gpu::Resources&)>& bind,
+                                                  uint32_t x, uint32_t y) {
+  canvas.bind(resources_);
+  bind(resources_);
+  resources_.set("PhotonInspection", inspection_);
+  canvas.stream().dispatch(ready(inspect_, "photons/inspect.comp"), resources_,
+                           PhotonInspectPush{canvas.width(), canvas.height(), y * canvas.width() + x}, 1);
+  canvas.finish();
+  const auto* header = static_cast<const PhotonInspectHeader*>(inspection_.mapped());
+  if (header->solid == 0) return std::nullopt;
+  Inspected found{.at = *header, .photons = {}};
+  const auto* first = reinterpret_cast<const PhotonInspected*>(header + 1);
+  found.photons.assign(first, first + std::min(header->count, k_photons_inspected));
+  std::stable_sort(found.photons.begin(), found.photons.end(),
+                   [](const PhotonInspected& a, const PhotonInspected& b) { return a.brings > b.brings; });
+  draw_disc(canvas, found);
+  return found;
+}
+
+void PhotonInspector::draw_disc(const overlay::Canvas& canvas, const Inspected& found) {
+  const OverlayDisc disc{.position = found.at.position,
+                         .radius = found.at.radius,
+                         .normal = found.at.normal,
+                         .half_width = 0.8f,
+                         .color = k_disc_ink,
+                         .alpha = 1,
+                         .edge_width = 0.8f,
+                         .strength = 1,
+                         .rank = k_rank_most};
+  std::vector<OverlayPoint> points;
+  std::vector<OverlaySegment> segments;
+  const float most = found.photons.empty() ? 1 : std::max(1e-37f, found.photons[0].brings);
+  for (const PhotonInspected& p : found.photons) {
+    const vec3 light = glm::sqrt(p.flux / std::max(1e-37f, std::max({p.flux.x, p.flux.y, p.flux.z})));
+    const float share = std::sqrt(p.brings / most);
+    points.push_back({.position = p.position,
+                      .half_width = 0.8f + 1.6f * share,
+                      .color = light,
+                      .alpha = 1,
+                      .edge_width = 0.8f,
+                      .rank = k_rank_most});
+    segments.push_back({.from = p.position,
+                        .to = p.position + found.at.radius * (0.3f + 1.2f * share) * p.direction,
+                        .half_width = 0.5f,
+                        .edge_width = 0,
+                        .color = light,
+                        .alpha = 0.6f,
+                        .strength = 1,
+                        .slack = found.at.radius,
+                        .rank = k_rank_least});
+  }
+  painter_.draw(canvas, points, segments, {&disc, 1});
+}
+
+}  // namespace lucerna::photons

@@ -1,0 +1,50 @@
+#pragma once
+// The photons of the last round as a person looks at them: how dense they lie over the picture, and those
+// that count at one pixel.
+#include <optional>
+
+#include "overlay/painter.h"
+#include "shaders/shared/photons/inspect.h"
+#include "solvers/photons/photon_map.h"
+
+namespace lucerna::photons {
+
+/// What a heat map shows, up to which value.
+struct DensityScale {
+  uint32_t of = 0;       ///< shared::k_density_of_*; 0: nothing is shown
+  float lo = 0, hi = 0;  ///< logarithmic; hi 0: there are no photons
+};
+
+struct Inspected {
+  shared::PhotonInspectHeader at;
+  std::vector<shared::PhotonInspected> photons;  ///< those that bring most first
+};
+
+class PhotonInspector {
+ public:
+  /// Kernels are compiled when they are first called for. Both must outlive it.
+  PhotonInspector(gpu::Device& device, gpu::ShaderCompiler& compiler);
+  /// Over the film's picture. `of`: shared::k_density_of_*. `bind`: what the hook reads.
+  DensityScale draw_density(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind,
+                            uint32_t of);
+  /// Looks all of it up and keeps it: shared::k_density_of_*, or k_photons_in_disc.
+  void look_up(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind, uint32_t of);
+  /// What was looked up last, by pixel; shared::k_density_none where nothing is seen. For tests.
+  std::vector<float> densities() const;
+  /// Nothing where no surface is seen. Draws the disc and its photons.
+  std::optional<Inspected> inspect(const overlay::Canvas& canvas,
+                                   const std::function<void(gpu::Resources&)>& bind, uint32_t x, uint32_t y);
+
+ private:
+  const gpu::Kernel& ready(gpu::Kernel& kernel, const char* file);
+  void draw_disc(const overlay::Canvas& canvas, const Inspected& found);
+
+  gpu::Device& device_;
+  gpu::ShaderCompiler& compiler_;
+  gpu::Kernel density_, heat_, inspect_;
+  gpu::Buffer densities_, most_, inspection_;
+  gpu::Resources resources_;
+  overlay::Painter painter_;
+};
+
+}  // namespace lucerna::photons

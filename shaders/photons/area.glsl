@@ -1,0 +1,88 @@
+// How much surface there is around a place, as the kernel of the photons there weighs it: 1 within a surface, less along its
+// borders and creases. Photons that count at x lie on what counts here (k_photon_normals, k_photon_slab), so that even light
+// divided by this is even up to the border (H. Hey and W. Purgathofer, "Advanced Radiance Estimation for Photon Map Global
+// Illumination", 2002, with Epanechnikov's kernel in place of a constant one).
+//
+// Over a polygon in a plane at distance c from x the kernel's integral is one over the angle as seen from the foot of x,
+//   sum over edges  integral G(min(rho(phi), R)) dphi,  R^2 = r^2 - c^2,  G(rho) = integral_0^rho K(t) t dt
+//                                                     = 2 / (pi r^4) (R^2 rho^2 / 2 - rho^4 / 4),
+// which along a straight edge at distance h, rho^2 = h^2 + t^2 and dphi = h dt / rho^2, is a polynomial in t within the disc,
+// and G(R) times an angle without.
+#ifndef LUCERNA_PHOTONS_AREA
+#define LUCERNA_PHOTONS_AREA
+#include "photons/photon.glsl"
+
+uniform samplerBuffer photon_surface_nodes;
+uniform samplerBuffer photon_surface_triangles;
+
+// Angle from t0 to t1 on a line at distance h.
+float photon_angle(float h, float t0, float t1) {
+  float along = h * h + t0 * t1, across = h * (t1 - t0);
+  return across == 0.0 && along == 0.0 ? 0.0 : atan(across, along);
+}
+
+// The edge from a to b, from the foot of x; n: the plane's normal, big2: R^2. Times pi r^4 / 2.
+float photon_edge(vec3 a, vec3 b, vec3 n, float big2) {
+  vec3 e = b - a;
+  float l = length(e);
+  if (l <= 0.0) return 0.0;
+  e /= l;
+  float t0 = dot(a, e), t1 = dot(b, e), h = dot(n, cross(a, e)), h2 = h * h;
+  float w = sqrt(max(0.0, big2 - h2)), u0 = clamp(t0, -w, w), u1 = clamp(t1, -w, w);
+  float within = h * ((0.5 * big2 - 0.25 * h2) * (u1 - u0) - (u1 * u1 * u1 - u0 * u0 * u0) / 12.0);
+  return within + 0.25 * big2 * big2 * (photon_angle(h, t0, u0) + photon_angle(h, u1, t1));
+}
+
+// The part of a triangle, its vertices seen from x, that lies within `slab` of the plane through x with that normal.
+float photon_triangle(vec3 p0, vec3 p1, vec3 p2, vec3 normal, float slab, float r2) {
+  vec3 n = cross(p1 - p0, p2 - p0);
+  n = normalize(n / max(max3(abs(n)), 1e-37));
+  float agree = dot(n, normal);
+  // What faces the other way counts only where it is this surface, wound the other way round; not as the far side of a plate.
+  bool turned = agree < 0.0;
+  slab *= turned ? k_photon_turned_slab : 1.0;
+  vec3 foot = dot(n, p0) * n;
+  float big2 = r2 - dot(foot, foot);
+  if (abs(agree) <= k_photon_normals || big2 <= 0.0) return 0.0;
+  float sum = 0.0;
+  vec3 top_up = vec3(0.0), top_down = vec3(0.0), low_up = vec3(0.0), low_down = vec3(0.0);
+  bool crosses_top = false, crosses_low = false;
+  for (uint k = 0u; k < 3u; ++k) {
+    vec3 a = p0, b = p1;
+    p0 = p1, p1 = p2, p2 = a;
+    float za = dot(a, normal), zb = dot(b, normal), d = zb - za;
+    float inverse = d != 0.0 ? 1.0 / d : 0.0, s_top = (slab - za) * inverse, s_low = (-slab - za) * inverse;
+    vec3 at_top = mix(a, b, s_top), at_low = mix(a, b, s_low);
+    bool up = d > 0.0, top = (za > slab) != (zb > slab), low = (za < -slab) != (zb < -slab);
+    top_up = top && up ? at_top : top_up, top_down = top && !up ? at_top : top_down;
+    low_up = low && up ? at_low : low_up, low_down = low && !up ? at_low : low_down;
+    crosses_top = crosses_top || top, crosses_low = crosses_low || low;
+    if ((za > slab && zb > slab) || (za < -slab && zb < -slab)) continue;
+    vec3 from = za > slab ? at_top : za < -slab ? at_low : a, to = zb > slab ? at_top : zb < -slab ? at_low : b;
+    sum += photon_edge(from - foot, to - foot, n, big2);
+  }
+  // Along the slab's faces, from where the outline leaves it to where it comes back.
+  if (crosses_top) sum += photon_edge(top_up - foot, top_down - foot, n, big2);
+  if (crosses_low) sum += photon_edge(low_down - foot, low_up - foot, n, big2);
+  return abs(sum);
+}
+
+// At x on a surface with that normal; 1 as well where very many triangles lie around. Surfaces that lie on each other are
+// counted twice, so that it is then rather too large than too small: light is never made more than it is.
+float photon_area(vec3 x, vec3 normal, float radius) {
+  float r2 = radius * radius, sum = 0.0;
+  uint node = 0u, nodes = photons.surface_nodes, visits = 0u;
+  for (; node < nodes && visits < k_photon_most_visits; ++visits) {
+    vec4 a = texelFetch(photon_surface_nodes, int(2u * node)), b = texelFetch(photon_surface_nodes, int(2u * node + 1u));
+    vec3 away = max(max(a.xyz - x, x - b.xyz), vec3(0.0));
+    bool meets = dot(away, away) < r2;
+    uint leaf = floatBitsToUint(b.w), first = leaf >> 3, count = meets ? leaf & 7u : 0u;
+    for (uint i = first; i < first + count; ++i)
+      sum += photon_triangle(texelFetch(photon_surface_triangles, int(3u * i)).xyz - x, texelFetch(photon_surface_triangles, int(3u * i + 1u)).xyz - x,
+                             texelFetch(photon_surface_triangles, int(3u * i + 2u)).xyz - x, normal, k_photon_slab * radius, r2);
+    node = meets ? node + 1u : floatBitsToUint(a.w);
+  }
+  float area = 2.0 * k_inv_pi * sum / (r2 * r2);
+  return node < nodes || nodes == 0u ? 1.0 : clamp(area, k_photon_least_area, 1.0);
+}
+#endif

@@ -1,0 +1,184 @@
+// links: session
+// Light paths that are aimed at what mirrors and refracts: they find casters that others never meet, and
+// change no mean.
+#include <catch2/catch.hpp>
+
+#include "support/render.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+
+namespace {
+
+const test::Settings k_aimed{{"components.caustic", "photons"},
+                             {"components.secondary", "off"},
+                             {"components.tertiary", "off"},
+                             {"photons.per_round", "20000"}};
+
+test::Settings unaimed(test::Settings settings) {
+  settings["photons.aim"] = "false";
+  return settings;
+}
+
+struct Rendered {
+  film::Image image;
+  double casters = 0, unaimed = 1, photons = 0;
+};
+Rendered render(const scene::Scene& scene, const test::Settings& settings, uint32_t samples, uint32_t size) {
+  session::Renderer r(test::renderer_options(samples <= test::k_validated_samples));
+  r.set_size(size, size);
+  r.set_scene(std::make_shared<scene::Scene>(scene));
+  test::Settings all = settings;
+  all["samples"] = std::to_string(samples);
+  test::set(r, all);
+  Rendered out;
+  out.image = test::finish(r);
+  CHECK(r.device().validation_messages() == 0);
+  CHECK(r.stats().dropped == 0);
+  for (const auto& report : r.reports())
+    if (report->solver == "photons")
+      out.casters = report->figure("casters"), out.unaimed = report->figure("unaimed"),
+      out.photons = report->figure("photons");
+  return out;
+}
+
+/// Mean of the caustics' luminance, with its standard error from the two halves of rounds: the mean of either
+/// is one of many independent rounds.
+test::Mean mean_of(const film::Image& image) {
+  test::Mean m;
+  double odd = 0;
+  const auto n = double(image.samples.size());
+  for (size_t i = 0; i < image.samples.size(); ++i) {
+    m.value += double(luminance(image.components[3][i])) / n;
+    odd += double(luminance(image.odd_half[3][i])) / n;
+  }
+  m.noise = std::abs(m.value - odd);
+  return m;
+}
+
+/// A sun along +x that a square mirror turns straight down onto a floor that is lit by nothing else, a
+/// kilometre wide; `lamps` more that send no light there but have most of the power.
+scene::Scene far_and_small(float mirror, uint32_t lamps) {
+  scene::Scene s;
+  s.name = "far and small";
+  s.materials = {test::diffuse(vec3(0.5f)), {}};
+  s.materials[1].metallic = 1, s.materials[1].roughness = 0, s.materials[1].base_color = vec4(1);
+  s.materials[1].double_sided = true;
+  test::add_quad(s, {-500, 0, 500}, {1000, 0, 0}, {0, 0, -1000}, 0);
+  test::add_quad(s, {-mirror / 2, 0.01f + mirror, -mirror / 2}, {mirror, -mirror, 0}, {0, 0, mirror}, 1);
+  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = vec3(3)}};
+  s.lights[0].direction = {1, 0, 0};
+  for (uint32_t i = 0; i < lamps; ++i)
+    s.lights.push_back(
+        {.name = "lamp", .intensity = vec3(100), .position = {-400.0f + 16 * float(i), 3, 200}});
+  s.cameras = {test::looking_down({mirror, 5 * mirror, 0}, 0.8f)};
+  s.cameras[0].to_world[3] = vec4(0, 4 * mirror, 3 * mirror, 1);
+  const vec3 back = glm::normalize(vec3(0, 4, 3)), right(1, 0, 0), up = glm::cross(back, right);
+  s.cameras[0].to_world[0] = vec4(right, 0), s.cameras[0].to_world[1] = vec4(up, 0),
+  s.cameras[0].to_world[2] = vec4(back, 0);
+  s.environment.given = true;
+  return s;
+}
+
+/// Balls of glass in a room, before a lamp that shines on it from outside.
+scene::Scene ball_room() {
+  scene::Scene s;
+  s.name = "ball room";
+  s.materials = {test::diffuse({0.7f, 0.6f, 0.5f}), test::diffuse(vec3(0), vec3(40)), {}, {}};
+  s.materials[2].metallic = 0, s.materials[2].roughness = 0, s.materials[2].transmission = 1;
+  s.materials[2].thickness = 1;
+  s.materials[3].metallic = 1, s.materials[3].roughness = 0.2f;
+  test::add_box(s, {-2, 0, -2}, {2, 2.5f, 2});
+  test::add_quad(s, {-0.3f, 2.45f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, 1);
+  test::add_ball(s, {0.6f, 0.4f, 0}, 0.35f, 2);
+  test::add_ball(s, {-0.8f, 0.3f, 0.2f}, 0.25f, 3);
+  s.lights = {{.name = "lamp", .intensity = vec3(3), .position = {-1.5f, 1.5f, 1}}};
+  scene::Camera front;
+  front.yfov = 1.1f, front.to_world[3] = vec4(0, 1.2f, 1.95f, 1);
+  s.cameras = {front};
+  s.environment.given = true;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("aim changes no mean") {
+  const scene::Scene room = ball_room();
+  const Rendered aimed = render(room, k_aimed, 64, 40), plain = render(room, unaimed(k_aimed), 64, 40);
+  CHECK(aimed.casters == 2);
+  CHECK(aimed.unaimed < 0.7);
+  CHECK(plain.casters == 0);
+  CHECK(aimed.photons > 2 * plain.photons);
+  const test::Mean a = mean_of(aimed.image), b = mean_of(plain.image);
+  INFO(a.value << " +- " << a.noise << ", without aim " << b.value << " +- " << b.noise);
+  CHECK(std::abs(a.value - b.value) < 0.01 * b.value + 3 * std::hypot(a.noise, b.noise));
+  // With all other light besides.
+  test::Settings all = k_aimed;
+  all["components.secondary"] = all["components.tertiary"] = "photons";
+  const film::Image with = render(room, all, 32, 40).image,
+                    without = render(room, unaimed(all), 32, 40).image;
+  for (const size_t c : {1u, 2u})
+    CHECK(test::mean(with.components[c]) == Approx(test::mean(without.components[c])).epsilon(0.01));
+}
+
+TEST_CASE("a caster of five millimetres in a scene of a kilometre under a sun and fifty lamps is found") {
+  const scene::Scene s = far_and_small(0.005f, 50);
+  const Rendered aimed = render(s, k_aimed, 32, 32);
+  CHECK(aimed.casters == 1);
+  // Where the mirror's beam falls, below it, light is irradiance times albedo over pi.
+  const double radiance = 3 * 0.5 / double(k_pi);
+  double most = 0, sum = 0;
+  for (uint32_t y = 0; y < 32; ++y)
+    for (uint32_t x = 0; x < 32; ++x) {
+      const auto l = double(luminance(aimed.image.components[3][y * 32 + x]));
+      most = std::max(most, l), sum += l;
+    }
+  CHECK(sum > 0);
+  CHECK(most == Approx(radiance).epsilon(0.15));
+  const Rendered plain = render(s, unaimed(k_aimed), 4, 32);
+  CHECK(plain.photons == 0);
+}
+
+TEST_CASE("of lamps of one and a million the weak one's caustic is there, as bright as alone") {
+  // The strong one's light is bundled as well, but out of sight.
+  scene::Scene s = far_and_small(0.1f, 0);
+  test::add_quad(s, {300, 1, 300}, {10, -10, 0}, {0, 0, 10}, 1);
+  s.lights[0].kind = scene::LightKind::spot;
+  s.lights[0].position = {-2, 0.06f, 0}, s.lights[0].intensity = vec3(1);
+  s.lights[0].inner_cone = 0.1f, s.lights[0].outer_cone = 0.2f;
+  const Rendered alone = render(s, k_aimed, 32, 32);
+  s.lights.push_back({.name = "strong", .intensity = vec3(1e6f), .position = {295, 3, 305}});
+  const Rendered both = render(s, k_aimed, 32, 32);
+  CHECK(both.casters == 2);
+  const test::Mean a = mean_of(alone.image), b = mean_of(both.image);
+  INFO(b.value << " +- " << b.noise << ", alone " << a.value << " +- " << a.noise);
+  CHECK(a.value > 5e-4);
+  CHECK(b.value == Approx(a.value).epsilon(0.03));
+  CHECK(both.photons > 1000);
+}
+
+TEST_CASE("where nothing bundles light smoothly no path is aimed") {
+  scene::Scene s = test::block_room();
+  s.materials[0].specular = 1, s.materials[0].roughness = 0.4f;  // varnish
+  const Rendered r = render(s, k_aimed, 4, 32);
+  CHECK(r.casters == 0);
+  CHECK(r.unaimed == 1);
+  CHECK(r.photons > 0);
+}
+
+TEST_CASE("the pilot depends on neither batches nor what was rendered before") {
+  const scene::Scene room = ball_room();
+  const film::Image once = render(room, k_aimed, 4, 40).image;
+  test::Settings small = k_aimed;
+  small["path.batch"] = "1024";
+  CHECK(test::identical(once, render(room, small, 4, 40).image));
+  session::Renderer r(test::renderer_options());
+  r.set_size(24, 24);
+  r.set_scene(std::make_shared<scene::Scene>(room));
+  test::Settings settings = k_aimed;
+  settings["samples"] = "4";
+  test::set(r, settings);
+  test::finish(r);
+  r.set_size(40, 40);
+  CHECK(test::identical(once, test::finish(r)));
+}

@@ -1,0 +1,133 @@
+// links: session
+// Photons as a person looks at them: density and irradiance as heat maps with their scale, and the disc under
+// the pointer with its photons.
+#include <catch2/catch.hpp>
+
+#include "solvers/photons/solver.h"
+#include "support/render.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+
+namespace {
+
+/// A sun along +x that a mirror turns straight down onto a floor, as wide as the mirror's beam.
+scene::Scene turned_sun() {
+  scene::Scene s;
+  s.name = "turned sun";
+  s.materials = {test::diffuse({0.8f, 0.5f, 0.2f}), {}};
+  s.materials[1].metallic = 1, s.materials[1].roughness = 0, s.materials[1].base_color = vec4(1);
+  s.materials[1].double_sided = true;
+  test::add_quad(s, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0);
+  test::add_quad(s, {-1, 3, -1}, {2, -2, 0}, {0, 0, 2}, 1);
+  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = {3, 4, 5}}};
+  s.lights[0].direction = {1, 0, 0};
+  s.cameras = {test::looking_down({0, 0.9f, 0}, 0.8f)};
+  s.environment.given = true;
+  return s;
+}
+
+struct Shown {
+  session::Renderer r{test::renderer_options()};
+  photons::PhotonSolver* photons = nullptr;
+  Shown() {
+    r.set_size(48, 40);
+    r.set_scene(std::make_shared<scene::Scene>(turned_sun()));
+    test::set(r, {{"components.caustic", "photons"},
+                  {"photons.per_round", "200000"},
+                  {"photons.importons", "false"},
+                  {"samples", "2"}});
+    test::finish(r);
+    photons = &dynamic_cast<photons::PhotonSolver&>(*r.solver("photons"));
+  }
+  ~Shown() { CHECK(r.device().validation_messages() == 0); }
+  std::shared_ptr<const solvers::Report> report() {
+    for (const auto& report : r.reports())
+      if (report->solver == "photons") return report;
+    return nullptr;
+  }
+};
+
+double mean(const std::vector<float>& values) {
+  double sum = 0;
+  for (const float v : values) sum += double(v);
+  return sum / double(values.size());
+}
+
+}  // namespace
+
+TEST_CASE("the density of photons is that which the round has left, and their irradiance the sun's") {
+  Shown s;
+  const std::vector<uint8_t> plain = s.r.picture(false);
+  test::set(s.r, {{"overlay.photon_density", "photons"}});
+  const std::vector<uint8_t> shown = s.r.picture(false);
+  CHECK(plain != shown);
+  // All photons of the round lie evenly on the floor of four square metres.
+  const double density = double(s.photons->map().figures().photons) / 4;
+  CHECK(mean(s.photons->inspector().densities()) == Approx(density).epsilon(0.03));
+  auto report = s.report();
+  REQUIRE(report->legends.size() == 1);
+  REQUIRE(report->legends[0].range);
+  CHECK(double(report->legends[0].range->hi) > density);
+  CHECK(report->legends[0].range->lo < report->legends[0].range->hi);
+  test::set(s.r, {{"overlay.photon_density", "irradiance"}});
+  CHECK(s.r.picture(false) != plain);
+  CHECK(mean(s.photons->inspector().densities()) == Approx(double(luminance(vec3(3, 4, 5)))).epsilon(0.03));
+  CHECK(s.report()->legends[0].title.find("irradiance") != std::string::npos);
+  test::set(s.r, {{"overlay.photon_density", "off"}});
+  CHECK(s.r.picture(false) == plain);
+  CHECK(s.report()->legends.empty());
+}
+
+TEST_CASE("how fast photons are sent, stored, sorted and gathered is told") {
+  Shown s;
+  const auto own = s.r.solver_statistics().at("photons");
+  const auto& rates = own.at("per_second");
+  for (const char* what : {"emitted", "stored", "sorted", "looked_up", "gathered"}) CHECK(rates.at(what) > 0);
+  // So many lie in a disc as its area says.
+  const auto& at = s.photons->map();
+  // The radius grows with the distance from the eye, 0.9 m above the floor's middle.
+  const double up = std::tan(0.4), right = 1.2 * up;
+  const double radius = double(at.lookup().slope) * 0.9 * std::sqrt(1 + (up * up + right * right) / 3);
+  const double expected = double(at.figures().photons) / 4 * double(k_pi) * radius * radius;
+  CHECK(double(rates.at("gathered_a_lookup")) == Approx(expected).epsilon(0.1));
+  CHECK(double(rates.at("gathered")) == Approx(double(rates.at("looked_up")) * expected).epsilon(0.1));
+  // The same in the panel, and their seconds for benches.
+  CHECK(s.r.figure("seconds of light paths") > 0);
+  CHECK(s.r.figure("seconds of sorting photons") > 0);
+}
+
+TEST_CASE("under the pointer are the disc and its photons, with what each brings") {
+  Shown s;
+  test::set(s.r, {{"overlay.photon_density", "irradiance"}});
+  const std::vector<uint8_t> without = s.r.picture(false);
+  CHECK(!s.report()->card);
+  s.photons->look_at(vec2(0.5f, 0.5f));
+  CHECK(s.r.picture(false) != without);
+  REQUIRE(s.photons->inspected());
+  const photons::Inspected& found = *s.photons->inspected();
+  CHECK(glm::length(found.at.position) < 0.05f);
+  CHECK(found.at.normal.y > 0.999f);
+  CHECK(found.at.area == Approx(1));
+  CHECK(found.photons.size() == std::min(found.at.count, shared::k_photons_inspected));
+  // So many lie in the disc as its area says.
+  const double expected =
+      double(s.photons->map().figures().photons) / 4 * double(k_pi * found.at.radius * found.at.radius);
+  CHECK(double(found.at.count) == Approx(expected).epsilon(0.2));
+  double sum = 0;
+  for (const shared::PhotonInspected& p : found.photons) {
+    sum += double(p.brings);
+    CHECK(glm::distance(p.position, found.at.position) < found.at.radius * 1.01f);
+    CHECK(p.direction.y == Approx(1).margin(1e-3));  // from above
+    CHECK((p.bits >> shared::k_photon_events_shift) == 1);
+  }
+  if (found.at.count <= shared::k_photons_inspected)
+    CHECK(sum == Approx(double(luminance(found.at.irradiance))).epsilon(1e-3));
+  const auto report = s.report();
+  REQUIRE(report->card);
+  CHECK(report->looked_at);
+  CHECK(report->card->lines.size() > 5);
+  // Beside the scene there is nothing to tell of; and no photons are no reason to fail.
+  s.photons->look_at(std::nullopt);
+  CHECK(s.r.picture(false) == without);
+}

@@ -1,0 +1,95 @@
+// links: photons
+// What light paths are aimed at, and with which shares.
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <set>
+
+#include "solvers/photons/aim.h"
+#include "support/rooms.h"
+#include "transport/casters.h"
+#include "transport/light_source.h"
+
+using namespace lucerna;
+
+TEST_CASE("things that lie apart are clusters of their own, and one thing is one") {
+  std::vector<Box> things;
+  for (int i = 0; i < 300; ++i) {
+    const vec3 at(i % 3 * 10, i / 3 % 10 * 0.1f, i / 30 * 0.1f);
+    things.push_back({at, at + vec3(0.1f)});
+  }
+  const std::vector<uint32_t> of = transport::cluster(things, 8);
+  for (size_t i = 0; i < things.size(); ++i) CHECK(of[i] == of[i % 3]);
+  CHECK(std::set<uint32_t>(of.begin(), of.end()).size() == 3);
+  const std::vector<uint32_t> two = transport::cluster(things, 2);
+  CHECK(std::set<uint32_t>(two.begin(), two.end()) == std::set<uint32_t>{0, 1});
+  CHECK(transport::cluster({}, 8).empty());
+  // In one place: nothing to cut.
+  const std::vector<Box> same(100, Box{vec3(0), vec3(1)});
+  for (const uint32_t c : transport::cluster(same, 8)) CHECK(c == 0);
+}
+
+TEST_CASE("metals and solid glass cast, smooth ones; walls, panes and varnish do not") {
+  scene::Scene s;
+  s.materials.assign(7, test::diffuse(vec3(0.5f)));
+  s.materials[1].metallic = 1, s.materials[1].roughness = 0.1f;
+  s.materials[2].metallic = 1, s.materials[2].roughness = 0.9f;
+  s.materials[3].transmission = 1, s.materials[3].thickness = 1, s.materials[3].roughness = 0;
+  s.materials[4].transmission = 1, s.materials[4].roughness = 0;  // a pane
+  s.materials[5].specular = 1, s.materials[5].roughness = 0;      // varnish
+  s.materials[6] = s.materials[1];
+  for (uint32_t m = 0; m < 7; ++m) test::add_ball(s, {float(m), 0, 0}, 0.3f, m, 4);
+  const upload::FlatScene flat = upload::flatten(s);
+  CHECK(transport::casting_materials(flat) ==
+        std::vector<bool>{false, true, false, true, false, false, true});
+  const std::vector<Box> found = transport::find_casters(flat);
+  REQUIRE(found.size() == 3);
+  for (const Box& b : found) {
+    const vec3 size = b.size(), centre = b.centre();
+    CHECK(glm::length(centre - vec3(std::round(centre.x), 0, 0)) < 1e-3f);
+    CHECK(size.x > 0.6f);
+    CHECK(size.x < 0.61f);
+  }
+}
+
+TEST_CASE("lamps are groups of their own, triangles lie together, and many lamps share one") {
+  scene::Scene s;
+  s.materials = {test::diffuse(vec3(0.5f), vec3(1))};
+  test::add_quad(s, {0, 0, 0}, {1, 0, 0}, {0, 0, -1});
+  test::add_quad(s, {10, 0, 0}, {1, 0, 0}, {0, 0, -1});
+  for (int i = 0; i < 5; ++i)
+    s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {float(i), 1, 0}});
+  s.lights[2].enabled = false;
+  const upload::FlatScene flat = upload::flatten(s);
+  std::vector<double> power = flat.light_power;
+  const auto sizes = [&](uint32_t most) {
+    std::vector<size_t> n;
+    std::set<uint32_t> every;
+    for (const auto& members : transport::group_lights(flat, power, most).members) {
+      n.push_back(members.size());
+      every.insert(members.begin(), members.end());
+    }
+    CHECK(every.size() == 8);  // each light that shines is in one
+    return n;
+  };
+  CHECK(sizes(64) == std::vector<size_t>{2, 2, 1, 1, 1, 1});
+  const std::vector<size_t> three = sizes(3);
+  CHECK(std::accumulate(three.begin(), three.end(), size_t{0}) == 8);
+  CHECK(three.size() <= 3);
+  CHECK(sizes(1) == std::vector<size_t>{8});
+}
+
+TEST_CASE("shares follow the root of what a pair has brought, and leave none out") {
+  const std::vector<double> worth{1, 1e12, 4, 0, 1};
+  const std::vector<double> s = photons::aim_shares(worth, true);
+  CHECK(std::accumulate(s.begin(), s.end(), 0.0) == Approx(1));
+  CHECK(s[0] == Approx(1.0 / 7));
+  CHECK(s[1] > s[2]);
+  CHECK(s[2] > s[3]);
+  CHECK(s[4] > 0.1 * (1 - s[0]) / 1.5);  // the floor of what has been found
+  CHECK(s[3] > 0.02 * (1 - s[0]));       // ... and of what has not
+  CHECK(photons::aim_shares(worth, false)[0] == Approx(0.5));
+  const std::vector<double> nothing = photons::aim_shares(std::vector<double>{5, 0, 0}, true);
+  CHECK(nothing[0] == Approx(0.9));
+  CHECK(nothing[1] == Approx(0.05));
+  CHECK(photons::aim_shares(std::vector<double>{0}, true) == std::vector<double>{1});
+}
