@@ -64,6 +64,7 @@ Workspace::Workspace(session::Session& s) : session(s) {
   add_interior_commands();
   add_bookmark_commands();
   add_exposure_commands();
+  add_mix_commands();
   add_other_commands();
   add_inspect_commands();
   add_solver_commands();

@@ -23,12 +23,12 @@ std::string trimmed(const std::string& text) {
 
 bool shines(const Environment& e) { return e.scale > 0 && (e.image != k_none || luminance(e.radiance) > 0); }
 
-bool is_light(const Material& m) { return m.unlit || m.emission != vec3(0); }
-
 /// Collects the groups in the order in which they come.
 class Grouping {
  public:
-  Grouping(const Scene& scene, const std::vector<LightGroupRule>& rules) : scene_(scene), rules_(rules) {}
+  Grouping(const Scene& scene, const std::vector<LightGroupRule>& rules,
+           std::optional<bool> sun = std::nullopt)
+      : scene_(scene), rules_(rules), sun_known_(sun) {}
 
   LightGroups make() {
     group_environment();
@@ -88,7 +88,7 @@ class Grouping {
     if (!shines(scene_.environment)) return;
     out_.sky = place(by_rule({"sky"}), "", "sky", "sky");
     group(out_.sky).sky = true;
-    out_.has_sun = has_sun(scene_);
+    out_.has_sun = sun_known_ ? *sun_known_ : has_sun(scene_);
     out_.sun = out_.has_sun ? place(by_rule({"sun"}), "", "sun", "sun") : out_.sky;
     if (out_.has_sun) group(out_.sun).sun = true;
   }
@@ -119,12 +119,15 @@ class Grouping {
 
   const Scene& scene_;
   const std::vector<LightGroupRule>& rules_;
+  std::optional<bool> sun_known_;
   std::map<std::string, uint8_t> known_;
   std::vector<std::string> joined_;
   LightGroups out_;
 };
 
 }  // namespace
+
+bool is_light(const Material& m) { return m.unlit || m.emission != vec3(0); }
 
 size_t LightGroups::find(const std::string& name) const {
   const auto at = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.name == name; });
@@ -191,29 +194,37 @@ LightGroups group_lights(const Scene& scene, const std::vector<LightGroupRule>& 
   return Grouping(scene, rules).make();
 }
 
-bool has_sun(const Scene& scene) {
-  if (scene.environment.image == k_none) return false;
-  const Image& image = scene.images[scene.environment.image];
-  const auto y = [&](size_t i) {
-    double sum = 0;
-    constexpr double weights[3] = {0.2126, 0.7152, 0.0722};
-    for (int k = 0; k < 3; ++k) {
-      const float c = image.floats[4 * i + size_t(k)];
-      if (std::isfinite(c) && c > 0) sum += weights[k] * double{c};
-    }
-    return sum;
+LightGroups group_lights(const Scene& scene, const std::vector<LightGroupRule>& rules, const Scene& earlier,
+                         const LightGroups& known) {
+  const auto texels = [](const Scene& s) {
+    return s.environment.image == k_none ? nullptr : s.images[s.environment.image].floats.data();
   };
-  double sum = 0, brightest = 0;
-  for (uint32_t row = 0; row < image.height; ++row) {
-    const double band = 2 * std::sin(std::numbers::pi * (row + 0.5) / image.height) *
-                        std::sin(0.5 * std::numbers::pi / image.height);
-    for (uint32_t column = 0; column < image.width; ++column) {
-      const double value = y(size_t{row} * image.width + column);
-      sum += value * band;
-      brightest = std::max(brightest, value);
-    }
+  const bool same = texels(scene) == texels(earlier) && shines(earlier.environment);
+  return Grouping(scene, rules, same ? std::optional(known.has_sun) : std::nullopt).make();
+}
+
+std::vector<uint8_t> sun_texels(const Scene& scene, float threshold) {
+  if (scene.environment.image == k_none) return {};
+  const Image& image = scene.images[scene.environment.image];
+  std::vector<double> y(size_t{image.width} * image.height);
+  double sum = 0;
+  for (size_t i = 0; i < y.size(); ++i) {
+    vec3 c(image.floats[4 * i], image.floats[4 * i + 1], image.floats[4 * i + 2]);
+    for (int k = 0; k < 3; ++k) c[k] = std::isfinite(c[k]) ? std::max(c[k], 0.f) : 0.f;
+    y[i] = luminance(c);
+    // The part of the sphere that a texel covers, times width / 2 pi.
+    const double row = double(i / image.width), h = image.height;
+    sum += y[i] * 2 * std::sin(std::numbers::pi * (row + 0.5) / h) * std::sin(0.5 * std::numbers::pi / h);
   }
-  return brightest > double{k_sun_threshold} * sum / (2.0 * image.width);
+  const double mean = sum / (2.0 * image.width);
+  std::vector<uint8_t> sun(y.size());
+  for (size_t i = 0; i < y.size(); ++i) sun[i] = y[i] > double{threshold} * mean;
+  return sun;
+}
+
+bool has_sun(const Scene& scene) {
+  const std::vector<uint8_t> sun = sun_texels(scene, k_sun_threshold);
+  return std::find(sun.begin(), sun.end(), uint8_t(1)) != sun.end();
 }
 
 }  // namespace lucerna::scene

@@ -21,6 +21,8 @@ const std::array<const char*, k_components> k_component_names = paths::k_compone
 namespace {
 constexpr double k_publish_seconds = 0.1;  // between pictures while the image refines
 constexpr double k_draft_seconds = 0.25;   // between drafts, while edits come one after the other
+// Without another mix, after which the last one is taken up in full.
+constexpr double k_mix_pause_seconds = 0.2;
 constexpr double k_numbers_seconds = 0.5;  // between read-backs of the film for shares
 constexpr int k_nice = 10;                 // rendering yields to the window's thread
 }  // namespace
@@ -164,6 +166,7 @@ struct Session::Impl {
     next.samples = r.samples();
     next.max_samples = r.max_samples();
     next.coarse = !filled;
+    next.lights_together = r.relight().why_not;
     next.paused = paused;
     next.finished = r.done();
     next.preparing.clear();
@@ -246,9 +249,15 @@ void Session::Impl::run() {
       lock.lock();
     }
     pending = false;
-    const bool work = renderer && works(*renderer);
+    // A drag at a group's slider: what it shows comes first, the film's sums and more samples when it pauses.
+    const bool mixing = renderer && renderer->mix_pending();
+    if (mixing && !dirty && wake.wait_for(lock, std::chrono::duration<double>(k_mix_pause_seconds), [&] {
+          return quit || !queue.empty();
+        }))
+      continue;
+    const bool work = renderer && works(*renderer) && !(mixing && dirty);
     if (renderer && !work) renderer->rest();
-    if (!work && !dirty) {
+    if (!work && !dirty && !mixing) {
       wake.wait(lock, [&] { return quit || !queue.empty(); });
       continue;
     }
@@ -256,6 +265,7 @@ void Session::Impl::run() {
     const auto cancelled = [&] { return pending.load() || quit; };
     try {
       if (renderer && renderer->ready()) {
+        if (mixing && !dirty) renderer->settle_mix(), dirty = true;
         bool changed = dirty;
         // A row of edits that come faster than drafts are drawn shows some of them all the same.
         const auto draft_cancelled = [&] {
@@ -274,7 +284,8 @@ void Session::Impl::run() {
           renderer->finish_ledger();
         if (!filled && renderer->samples() > 0) filled = changed = true;
         if (changed || since_publish.seconds() > publish_seconds || renderer->done() || renderer->waits()) {
-          const bool numbers = since_numbers.seconds() > k_numbers_seconds || renderer->done();
+          const bool numbers =
+              !renderer->mix_pending() && (since_numbers.seconds() > k_numbers_seconds || renderer->done());
           if (numbers) since_numbers.restart();
           fill_snapshot(*renderer, numbers);
           publish();
@@ -446,6 +457,7 @@ std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at) {
   auto result = promise->get_future().share();
   impl_->post([at, promise](Renderer& r) {
     try {
+      r.settle_mix();
       promise->set_value(r.measure(at));
     } catch (...) {
       promise->set_exception(std::current_exception());
