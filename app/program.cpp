@@ -68,7 +68,7 @@ class Program {
   double scene_memory_ = double(scene::k_scene_bytes) / k_gib;
 
   CLI::App *render_ = nullptr, *info_ = nullptr, *devices_ = nullptr, *compare_ = nullptr, *bench_ = nullptr,
-           *rays_ = nullptr, *sort_ = nullptr, *lookup_ = nullptr, *interpolation_ = nullptr,
+           *rays_ = nullptr, *sort_ = nullptr, *lookup_ = nullptr, *interpolation_ = nullptr, *mix_ = nullptr,
            *latency_ = nullptr;
   RenderArguments r;
   std::string info_scene_;
@@ -77,6 +77,7 @@ class Program {
   BenchArguments bm;
   BenchRaysArguments b;
   BenchSortArguments bs;
+  BenchMixArguments bx;
   BenchLookupArguments bl;
   BenchInterpolationArguments bi;
   BenchLatencyArguments bt;
@@ -257,6 +258,19 @@ void Program::add_small_benches() {
                              "EXR of the same picture, converged: tells errors too");
   measured(interpolation_, bi, 1);
   add_scene_options(interpolation_);
+  mix_ = bench_->add_subcommand(
+      "mix", "how soon another mix of a scene's groups of lights is seen, and what keeping them apart costs");
+  mix_->add_option("SCENE", bx.scene, "glTF scene")->required();
+  mix_->add_option("--width", bx.width, "of the picture")
+      ->check(CLI::Range(16u, 4096u))
+      ->capture_default_str();
+  mix_->add_option("--height", bx.height, "its height")->check(CLI::Range(16u, 4096u))->capture_default_str();
+  mix_->add_option("--samples", bx.samples, "samples a pixel")
+      ->check(CLI::Range(1u, 1u << 20))
+      ->capture_default_str();
+  mix_->add_option("--set", bx.set, "KEY=VALUE, as of render")->allow_extra_args(false);
+  measured(mix_, bx, 1);
+  add_scene_options(mix_);
 }
 
 void Program::add_bench_latency() {
@@ -304,9 +318,9 @@ int Program::run(int argc, char** argv) {
   }
   if (verbose_) log::set_console_level(log::Level::info);
   scenes_.most_bytes = uint64_t(scene_memory_ * k_gib);
-  r.scenes = b.scenes = bi.scenes = bm.scenes = bt.load = scenes_;
+  r.scenes = b.scenes = bi.scenes = bx.scenes = bm.scenes = bt.load = scenes_;
   for (std::string* device :
-       {&r.device, &b.device, &bs.device, &bl.device, &bi.device, &bm.device, &bt.device})
+       {&r.device, &b.device, &bs.device, &bl.device, &bi.device, &bx.device, &bm.device, &bt.device})
     if (device->empty()) *device = device_;
   if (*render_) return render(r);
   if (*info_) return info(info_scene_, info_json_, scenes_);
@@ -316,6 +330,7 @@ int Program::run(int argc, char** argv) {
   if (*sort_) return bench_sort(bs);
   if (*lookup_) return bench_lookup(bl);
   if (*interpolation_) return bench_interpolation(bi);
+  if (*mix_) return bench_mix(bx);
   if (*latency_) return bench_latency(bt);
   if (*bench_) {
     for (int i = 0; i < argc; ++i) bm.command += std::string(i ? " " : "") + (i ? argv[i] : "lucerna");

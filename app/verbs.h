@@ -69,6 +69,16 @@ struct BenchInterpolationArguments {
 };
 int bench_interpolation(const BenchInterpolationArguments& arguments);
 
+struct BenchMixArguments {
+  std::string device, scene;
+  uint32_t width = 960, height = 540, samples = 16;
+  std::vector<std::string> set;
+  int repeats = 5;
+  std::string json;  ///< file to write the figures to; empty: none
+  scene::LoadOptions scenes;
+};
+int bench_mix(const BenchMixArguments& arguments);
+
 struct BenchLatencyArguments {
   std::vector<std::string> scenes;          ///< files, or names of the program's own
   std::vector<std::string> solvers, edits;  ///< empty: all

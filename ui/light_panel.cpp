@@ -223,6 +223,14 @@ void draw_light_panel(Ui& ui, const Area& area) {
     end_padded();
     gap(4);
   }
+  if (ui.scene && panel_section(ui, "Light mix", false, ui.setting("relight.mix").empty() ? "" : "mixed")) {
+    begin_padded();
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
+    draw_mix(ui);
+    ImGui::PopStyleVar();
+    end_padded();
+    gap(10);
+  }
   if (panel_section(ui, "Render", true)) {
     begin_padded();
     for (const OptionInfo& option : plan::options())

@@ -225,6 +225,7 @@ struct Ui : commands::Workspace {
 // The parts, each in a file of its own; called once a frame in this order. Coordinates are window pixels.
 void draw_menu_bar(Ui& ui, const Area& area);
 void draw_light_panel(Ui& ui, const Area& area);
+void draw_mix(Ui& ui);  ///< the light mix, into a section of that panel
 /// The titles of what the right panel may show; returns what is left of its area below them.
 Area draw_side_tabs(Ui& ui, const Area& area);
 void draw_scene_panel(Ui& ui, const Area& area);

@@ -65,6 +65,7 @@ Workspace::Workspace(session::Session& s) : session(s) {
   add_interior_commands();
   add_bookmark_commands();
   add_exposure_commands();
+  add_mix_commands();
   add_scene_commands();
   add_render_commands();
   add_script_commands();

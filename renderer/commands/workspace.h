@@ -13,6 +13,7 @@
 #include "commands/camera_control.h"
 #include "commands/interior.h"
 #include "commands/registry.h"
+#include "scene/light_mix.h"
 #include "session/pick.h"
 #include "session/session.h"
 #include "solvers/info.h"
@@ -109,6 +110,11 @@ class Workspace {
   /// The image that lights in place of the scene's own environment; "" for none.
   const std::string& environment_file() const { return environment_file_; }
   int solo() const { return solo_; }
+
+  /// The scene's groups of lights, by the setting relight.groups; of no scene none.
+  const scene::LightGroups& light_groups();
+  scene::LightMix light_mix() const;      ///< the setting relight.mix; where that is no good, none
+  scene::MixPresets mix_presets() const;  ///< relight.presets likewise
 
   bool can_undo() const { return !undo_.empty(); }
   bool can_redo() const { return !redo_.empty(); }
@@ -219,6 +225,7 @@ class Workspace {
   void add_interior_commands();
   void add_bookmark_commands();
   void add_exposure_commands();
+  void add_mix_commands();
   void add_scene_commands();
   void add_render_commands();
   void add_script_commands();
@@ -251,6 +258,12 @@ class Workspace {
   void needs_lookup() const;
   uint32_t light_index(const std::string& which) const;
   uint32_t material_index(const std::string& which) const;
+  /// Throws Error, listing the names, when there is no such group, or preset.
+  std::string group_named(const std::string& which);
+  const scene::LightMix& preset_named(const scene::MixPresets& presets, const std::string& name) const;
+  /// Says which groups of the preset the scene does not have.
+  void warn_of_groups(const std::string& preset, const scene::LightMix& mix);
+  void apply_mix();
   int camera_index(const std::string& which) const;
   Selection selection_of(const std::string& kind, const std::string& which) const;
   void moved();
@@ -282,9 +295,12 @@ class Workspace {
     uint64_t scene;
   };
   std::optional<Measuring> measuring_;
-  std::string measure_failure_;  ///< of the last that was asked for
-  uint64_t exposure_due_ = 0;    ///< scene that waits for its exposure to be found; 0: none
-  bool exposure_given_ = false;  ///< film.ev was set since a scene was asked for
+  std::string measure_failure_;                    ///< of the last that was asked for
+  uint64_t exposure_due_ = 0;                      ///< scene that waits for its exposure to be found; 0: none
+  bool exposure_given_ = false;                    ///< film.ev was set since a scene was asked for
+  std::shared_ptr<const scene::Scene> groups_of_;  ///< that groups_ are of, by these rules
+  std::string groups_by_;
+  scene::LightGroups groups_;
   int solo_ = -1;
   std::array<bool, session::k_components> shown_before_{};
   std::optional<Document> working_;

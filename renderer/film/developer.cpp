@@ -12,6 +12,7 @@ Developer::Developer(gpu::Device& device, gpu::ShaderCompiler& compiler)
     : tonemap_(device, compiler, "film/tonemap.comp"),
       heat_(device, compiler, "film/heat.comp"),
       tiles_(device, compiler, "film/tiles.comp"),
+      mix_(device, compiler, "film/mix.comp"),
       no_coarse_(device, {.name = "no coarse picture", .bytes = 16, .memory = gpu::Memory::host}) {}
 
 void Developer::develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {
@@ -40,6 +41,14 @@ void Developer::tone_map(gpu::Stream& stream, const Film& film, const View& view
   if (coarse) develop(stream, *coarse, view, nullptr);
   develop(stream, film, view, coarse);
   draw_tiles(stream, film, view);
+}
+
+void Developer::mix(gpu::Stream& stream, const Film& film, const View& view) {
+  film.bind(resources_);
+  const MixPush push{film.width(), film.height(), film.groups(), view.curve, view.exposure};
+  stream.dispatch(mix_, resources_, push, groups(film));
+  stream.run();
+  stream.take_times();
 }
 
 void Developer::draw_tiles(gpu::Stream& stream, const Film& film, const View& view) {

@@ -13,13 +13,16 @@ class Developer {
   /// Film -> its picture. `coarse` fills pixels without samples, if given (it is tone-mapped first). Runs the
   /// stream; what it takes is nobody's stage.
   void tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse = nullptr);
+  /// The film's picture of all components as its groups of lights are mixed (Film::set_mix), in short
+  /// (Film::quick). Runs the stream.
+  void mix(gpu::Stream& stream, const Film& film, const View& view);
   /// Draws over the film's picture the state of its tiles, where the view has any. Runs the stream.
   void draw_tiles(gpu::Stream& stream, const Film& film, const View& view);
 
  private:
   void develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse);
 
-  gpu::Kernel tonemap_, heat_, tiles_;
+  gpu::Kernel tonemap_, heat_, tiles_, mix_;
   gpu::Buffer no_coarse_;
   gpu::Resources resources_;
 };

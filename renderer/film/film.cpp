@@ -7,16 +7,21 @@ namespace lucerna::film {
 
 namespace {
 
-// Of a pixel and component: two halves for every light group.
-constexpr uint64_t k_sum_bytes = shared::k_group_count * 2 * sizeof(shared::FilmHalf);
-// Of a pixel: the sums of the components, albedo and normal, counts, vertices and the picture.
-constexpr uint64_t k_pixel_bytes = k_components * k_sum_bytes + 2 * 16 + 3 * 4;
+// Of a pixel and component: two halves.
+constexpr uint64_t k_sum_bytes = 2 * sizeof(shared::FilmHalf);
+// Of a pixel besides its sums: albedo and normal, counts, vertices and the picture.
+constexpr uint64_t k_pixel_bytes = 2 * 16 + 3 * 4;
 // Beside the film: the coarse picture, and paths in flight at their fewest.
 constexpr uint64_t k_coarse_pixels = shared::k_coarse_step * shared::k_coarse_step, k_paths_bytes = 48 << 20;
 
 }  // namespace
 
-void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height) {
+uint64_t sum_bytes(uint32_t groups) {
+  constexpr uint64_t k_all = k_components * k_sum_bytes;
+  return groups > 1 ? k_all + groups * (k_all + sizeof(shared::GroupLight)) : k_all;
+}
+
+void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups) {
   const gpu::Limits& limits = device.limits;
   const uint64_t pixels = uint64_t(width) * height;
   if (pixels == 0) throw Error("size", "a picture needs at least one pixel");
@@ -24,24 +29,44 @@ void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height) 
     throw_error("size", "{}x{}: no side may be longer than {} pixels", width, height, k_max_side);
   // Texels of a pixel and component; four bytes a pixel in the storage buffers.
   const uint64_t memory = device.memory_bytes - std::min(device.memory_bytes, k_paths_bytes);
+  const uint64_t coarse = (k_pixel_bytes + sum_bytes(1)) / k_coarse_pixels;
   const uint64_t largest =
       std::min({limits.max_texel_elements / (k_sum_bytes / 16), limits.max_storage_buffer / 4,
-                memory / (k_pixel_bytes + k_pixel_bytes / k_coarse_pixels)});
+                memory / (k_pixel_bytes + sum_bytes(groups) + coarse)});
   if (pixels > largest)
-    throw_error("size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{})", width,
-                height, pixels, largest, uint32_t(std::sqrt(largest * 16.0 / 9)),
-                uint32_t(std::sqrt(largest * 9.0 / 16)));
+    throw_error(
+        "size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{}){}", width, height,
+        pixels, largest, uint32_t(std::sqrt(largest * 16.0 / 9)), uint32_t(std::sqrt(largest * 9.0 / 16)),
+        groups > 1 ? fmt::format(" with {} groups of lights apart; more with relight.enabled=off", groups)
+                   : std::string());
 }
 
-Film::Film(gpu::Device& device, uint32_t width, uint32_t height)
+Film::Sums Film::make_sums() const {
+  constexpr const char* names[k_components] = {"film primary", "film secondary", "film tertiary",
+                                               "film caustic"};
+  Sums sums;
+  for (size_t c = 0; c < k_components; ++c)
+    sums[c] = gpu::Buffer(
+        device_, {.name = names[c], .bytes = uint64_t{width_} * height_ * k_sum_bytes, .texel = true});
+  return sums;
+}
+
+Film::Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups)
     : width_(width), height_(height), device_(device) {
   const gpu::Limits& limits = device.info().limits;
   const uint64_t pixels = uint64_t(width) * height;
-  check_size(device.info(), width, height);
+  check_size(device.info(), width, height, groups);
   fits_storage_buffers_ = pixels * k_sum_bytes <= limits.max_storage_buffer;
-  const char* names[k_components] = {"film primary", "film secondary", "film tertiary", "film caustic"};
-  for (int c = 0; c < k_components; ++c)
-    sums_[c] = gpu::Buffer(device, {.name = names[c], .bytes = pixels * k_sum_bytes, .texel = true});
+  sums_ = make_sums();
+  for (uint32_t g = 0; groups > 1 && g < groups; ++g) group_sums_.push_back(make_sums());
+  light_mix_ = gpu::Buffer(
+      device,
+      {.name = "light mix", .bytes = shared::k_most_groups * sizeof(vec4), .memory = gpu::Memory::host});
+  set_mix({});
+  // Two groups to a texel.
+  const uint64_t light = groups > 1 ? pixels * ((groups + 1) / 2) * 2 * sizeof(shared::GroupLight) : 16;
+  quick_ = light <= limits.max_storage_buffer;
+  group_light_ = gpu::Buffer(device, {.name = "light by group", .bytes = quick_ ? light : 16, .texel = true});
   albedo_ = gpu::Buffer(device, {.name = "film albedo", .bytes = pixels * 16, .texel = true});
   normal_ = gpu::Buffer(device, {.name = "film normals", .bytes = pixels * 16, .texel = true});
   count_ = gpu::Buffer(device, {.name = "film counts", .bytes = pixels * 4});
@@ -77,6 +102,8 @@ std::span<const shared::BlockError> Film::errors() const {
 
 void Film::clear(gpu::Stream& stream) {
   for (gpu::Buffer& b : sums_) stream.fill(b, 0);
+  for (Sums& sums : group_sums_)
+    for (gpu::Buffer& b : sums) stream.fill(b, 0);
   stream.fill(albedo_, 0);
   stream.fill(normal_, 0);
   stream.fill(count_, 0);
@@ -106,6 +133,29 @@ void Film::bind(gpu::Resources& r) const {
   r.set("BlockErrors", errors_);
   r.set("FilmRecords", records_);
   r.set("BlockRecordSums", block_records_);
+  r.set("LightMix", light_mix_);
+  r.set("GroupLights", group_light_);
+  r.set("group_lights", group_light_);
+}
+
+void Film::bind_group(gpu::Resources& r, uint32_t group) const {
+  constexpr const char* names[k_components][2] = {{"group_primary", "GroupPrimary"},
+                                                  {"group_secondary", "GroupSecondary"},
+                                                  {"group_tertiary", "GroupTertiary"},
+                                                  {"group_caustic", "GroupCaustic"}};
+  for (size_t c = 0; c < k_components; ++c) {
+    const gpu::Buffer& sums = group_sums_.at(group)[c];
+    r.set(names[c][0], sums);
+    r.set(names[c][0] + std::string("_out"), sums);
+    r.set(names[c][1], sums);
+  }
+}
+
+void Film::set_mix(std::span<const vec3> weights) {
+  std::array<vec4, shared::k_most_groups> all;
+  all.fill(vec4(1));
+  for (size_t g = 0; g < std::min(weights.size(), all.size()); ++g) all[g] = vec4(weights[g], 1);
+  light_mix_.write(std::span<const vec4>(all));
 }
 
 void Film::bind_coarse(gpu::Resources& r) const {
@@ -116,6 +166,36 @@ void Film::bind_coarse(gpu::Resources& r) const {
 
 void Film::mark_tiles(std::span<const shared::TileMark> marks) { tile_marks_.write(marks); }
 
+namespace {
+
+/// Means of all samples and of the odd ones, `halves` two a pixel.
+void take_means(const std::vector<shared::FilmHalf>& halves, const std::vector<uint32_t>& samples,
+                std::vector<vec3>& all, std::vector<vec3>* odd_half) {
+  const auto total = [&](size_t k) { return glm::dvec3(halves[k].sum) + glm::dvec3(halves[k].compensation); };
+  all.resize(samples.size());
+  if (odd_half) odd_half->resize(samples.size());
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const double n = std::max(1u, samples[i]), odd = std::max(1u, samples[i] / 2);
+    all[i] = vec3((total(2 * i) + total(2 * i + 1)) / n);
+    if (odd_half) (*odd_half)[i] = vec3(total(2 * i + 1) / odd);
+  }
+}
+
+}  // namespace
+
+std::array<std::vector<vec3>, k_components> Film::read_group(uint32_t group) const {
+  const size_t n = size_t{width_} * height_;
+  std::vector<uint32_t> samples(n);
+  count_.read(samples.data(), n * 4);
+  std::array<std::vector<vec3>, k_components> means;
+  std::vector<shared::FilmHalf> halves(2 * n);
+  for (size_t c = 0; c < k_components; ++c) {
+    group_sums_.at(group)[c].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
+    take_means(halves, samples, means[c], nullptr);
+  }
+  return means;
+}
+
 Image Film::read() const {
   Image image;
   image.width = width_;
@@ -123,22 +203,10 @@ Image Film::read() const {
   const size_t n = size_t(width_) * height_;
   image.samples.resize(n);
   count_.read(image.samples.data(), n * 4);
-  std::vector<shared::FilmHalf> halves(2 * n * shared::k_group_count);
+  std::vector<shared::FilmHalf> halves(2 * n);
   for (int c = 0; c < k_components; ++c) {
     sums_[c].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
-    image.components[c].resize(n);
-    image.odd_half[c].resize(n);
-    for (size_t i = 0; i < n; ++i) {
-      const auto total = [&](size_t k) {
-        glm::dvec3 sum(0);
-        for (; k < halves.size(); k += 2 * n)  // group by group
-          sum += glm::dvec3(halves[k].sum) + glm::dvec3(halves[k].compensation);
-        return sum;
-      };
-      const double samples = std::max(1u, image.samples[i]), odd = std::max(1u, image.samples[i] / 2);
-      image.components[c][i] = vec3((total(2 * i) + total(2 * i + 1)) / samples);
-      image.odd_half[c][i] = vec3(total(2 * i + 1) / odd);
-    }
+    take_means(halves, image.samples, image.components[c], &image.odd_half[c]);
   }
   std::vector<vec4> plane(n);
   albedo_.read(plane.data(), n * 16);

@@ -1,6 +1,7 @@
 #pragma once
 // The film: component sums in two independently scrambled halves, features, sample counts, in device memory;
 // and its tone-mapped picture. Layout: shaders/shared/film.h.
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -51,12 +52,24 @@ inline constexpr uint32_t k_max_side = 32768;
 /// Throws Error, naming the largest size that fits, unless a picture of that size can be held: no side beyond
 /// k_max_side, no plane beyond what one binding of the device sees, and all of it in the device's memory, as
 /// far as that is free of other things.
-void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height);
+/// `groups`: of lights, that are kept apart.
+void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups = 1);
+/// Bytes that a pixel's sums take: 192 for the picture, and 200 for each group of lights where there are more
+/// than one.
+uint64_t sum_bytes(uint32_t groups);
 
 class Film {
  public:
-  /// Throws Error as check_size, or when memory is short.
-  Film(gpu::Device& device, uint32_t width, uint32_t height);
+  /// `groups`: of lights (shaders/shared/lanes.h), 1 to shared::k_most_groups, whose sums are kept apart; the
+  /// picture is then their sum, as they are mixed. Throws Error as check_size, or when memory is short.
+  Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups = 1);
+  uint32_t groups() const { return std::max<uint32_t>(1, uint32_t(group_sums_.size())); }
+  /// What each group's light is multiplied by, 1 where nothing is said (and for all of a new film). The
+  /// picture's sums take it up with transport::Wavefront::mix(), and with the next samples of their pixels.
+  void set_mix(std::span<const vec3> weights);
+  /// Where groups are kept apart and the device can bind it: each group's light in short, by which another
+  /// mix can be shown at once (Developer::mix).
+  bool quick() const { return group_sums_.size() > 1 && quick_; }
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
   /// Blocks of 8x8 pixels, in raster order.
@@ -68,6 +81,8 @@ class Film {
   bool fits_storage_buffers() const { return fits_storage_buffers_; }
   void clear(gpu::Stream& stream);
   void bind(gpu::Resources& resources) const;
+  /// A group's own sums, where they are kept apart.
+  void bind_group(gpu::Resources& resources, uint32_t group) const;
   /// What it knows of surfaces, under the names coarse_albedo, coarse_normal and CoarseCount.
   void bind_coarse(gpu::Resources& resources) const;
   /// One for each block, in raster order, as the last estimates left them (all 0 where there was none).
@@ -81,6 +96,8 @@ class Film {
   /// Empty while nothing is known.
   std::span<const shared::BlockRecords> records() const;
   Image read() const;
+  /// Of a group of lights, where they are kept apart: mean radiance of each component, not mixed.
+  std::array<std::vector<vec3>, k_components> read_group(uint32_t group) const;
   /// Mean radiance of each component over the picture's sampled pixels.
   static std::array<vec3, k_components> means(const Image& image);
   /// What the overlay of tiles shows: one mark a tile, in raster order; at most one a block.
@@ -91,7 +108,12 @@ class Film {
  private:
   uint32_t width_, height_;
   bool fits_storage_buffers_ = true;
-  std::array<gpu::Buffer, k_components> sums_;
+  using Sums = std::array<gpu::Buffer, k_components>;
+  Sums make_sums() const;
+  Sums sums_;
+  std::vector<Sums> group_sums_;  // none where there is one group: they are the picture's
+  gpu::Buffer light_mix_, group_light_;
+  bool quick_ = false;
   gpu::Buffer albedo_, normal_, count_, vertices_, picture_, errors_, tile_marks_;
   gpu::Device& device_;
   gpu::Buffer records_, block_records_;  // small where there are none

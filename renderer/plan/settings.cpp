@@ -69,6 +69,33 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
                      "Paths in flight"));
 }
 
+void add_relight_options(std::vector<OptionInfo>& list) {
+  list.push_back(
+      choice_option("relight.enabled", "off", {"off", "on", "auto"}, "",
+                    "Whether light is kept apart by groups of lights, so that a mix of them costs no ray. It "
+                    "takes 200 bytes a "
+                    "pixel for each group, and time. auto: in the window, where all components are path "
+                    "traced and an eighth of the "
+                    "device's memory is enough. Where it is not kept apart, a mix lights the scene anew.",
+                    "Light by groups"));
+  list.push_back(text_option(
+      "relight.groups",
+      "Which lights go together, beside what the scene says: PATTERN=GROUP; PATTERN=GROUP. Patterns (* and "
+      "?) "
+      "are of names of lamps, materials and nodes, and of sky and sun; the last that fits counts."));
+  list.push_back(without_restart(text_option("relight.mix",
+                                             "How strong and of which tint each group of lights is: GROUP: "
+                                             "ev=NUMBER color=R,G,B mute solo; GROUP: ...")));
+  list.push_back(without_restart(text_option(
+      "relight.presets", "Mixes with names: NAME = MIX | NAME = MIX, each as relight.mix has it.")));
+  list.push_back(
+      without_restart(boolean_option("relight.layers", "false",
+                                     "EXR files hold a layer for every group of lights and component, "
+                                     "light.GROUP.COMPONENT, as they are mixed: "
+                                     "together they are the picture. Where light is kept apart by groups.",
+                                     "Layers by group")));
+}
+
 void add_display_options(std::vector<OptionInfo>& list) {
   list.push_back(choice_option(
       "tracer", "auto", {"auto", "compute-bvh", "host"}, "",
@@ -114,6 +141,7 @@ std::vector<OptionInfo> make_options() {
   add_sampling_options(list);
   for (const solvers::SolverInfo* solver : solvers::registered())
     list.insert(list.end(), solver->options.begin(), solver->options.end());
+  add_relight_options(list);
   add_display_options(list);
   return list;
 }

@@ -62,7 +62,7 @@ uint64_t geometry(const Scene& scene) {
   }
   Hash hash;
   for (const Instance& instance : scene.instances) {
-    const auto& [name, mesh, to_world, flipped] = instance;
+    const auto& [name, mesh, to_world, flipped, group] = instance;
     add_all(hash, mesh < meshes.size() ? meshes[mesh] : 0, to_world, flipped);
   }
   return hash.low();
@@ -76,7 +76,7 @@ uint64_t materials(const Scene& scene, Images& images) {
                  double_sided, unlit, ior, specular, specular_texture, specular_color, specular_color_texture,
                  transmission, transmission_texture, thickness, attenuation_color, attenuation_distance,
                  diffuse_transmission, diffuse_transmission_texture, diffuse_transmission_color,
-                 diffuse_transmission_color_texture] = m;
+                 diffuse_transmission_color_texture, group] = m;
     add_all(hash, base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
             double_sided, unlit, ior, specular, specular_color, transmission, thickness, attenuation_color,
             attenuation_distance, diffuse_transmission, diffuse_transmission_color);
@@ -92,7 +92,7 @@ uint64_t materials(const Scene& scene, Images& images) {
 uint64_t lights(const Scene& scene) {
   Hash hash;
   for (const Light& light : scene.lights) {
-    const auto& [name, kind, intensity, position, direction, inner_cone, outer_cone, enabled] = light;
+    const auto& [name, kind, intensity, position, direction, inner_cone, outer_cone, enabled, group] = light;
     hash.add_value(enabled);
     if (enabled) add_all(hash, kind, intensity, position, direction, inner_cone, outer_cone);
   }

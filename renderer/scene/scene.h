@@ -76,6 +76,7 @@ struct Material {
   TextureUse diffuse_transmission_texture;  ///< a
   vec3 diffuse_transmission_color{1};
   TextureUse diffuse_transmission_color_texture;  ///< rgb
+  std::string group;  ///< of lights, if it emits: extras.light_group; "": not said (light_groups.h)
 };
 
 /// Triangles of one material in object space. Streams are either empty or one entry a vertex.
@@ -103,6 +104,7 @@ struct Instance {
   Id mesh = k_none;
   mat4 to_world{1};
   bool flipped = false;
+  std::string group{};  ///< of lights, of what of it emits: the node's extras.light_group; "": not said
 };
 
 /// Looks down its -Z, +Y up. Perspective: yfov in radians, of the picture's height. Orthographic: half
@@ -127,6 +129,7 @@ struct Light {
   vec3 direction{0, 0, -1};                         ///< unit; into the scene
   float inner_cone = 0, outer_cone = 0.785398163f;  ///< radians from the axis; spot only
   bool enabled = true;
+  std::string group{};  ///< of lights: extras.light_group of its node, or its own; "": not said
 };
 
 /// Light from infinitely far: constant radiance, or a latitude-longitude image:

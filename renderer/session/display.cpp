@@ -54,6 +54,11 @@ void Display::light_changed() {
   plan_.light_changed();
 }
 
+void Display::mixed() {
+  preview_.forget();
+  plan_.light_changed();
+}
+
 void Display::prepared() {
   preview_.keep();
   draft_serves_ = false;
@@ -73,6 +78,7 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
   transport::Wavefront& wavefront = engine.wavefront();
   const uint32_t before = fine ? plan_.fine_samples() : plan_.coarse_samples();
   if (before == 0) film.clear(wavefront.stream());
+  film.set_mix(view.mix);
   wavefront.set_frame(engine.frame(view, film.width(), film.height()), engine.plan().enabled());
   schedule::UniformSchedule schedule(film.blocks(), 1, wavefront.slots());
   bool complete = true;

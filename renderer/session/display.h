@@ -24,6 +24,8 @@ class Display {
   /// What was looked up so far is not the light any more that will be: drafts begin anew, and what they have
   /// shown stays until the new is better.
   void light_changed();
+  /// Groups of lights are mixed otherwise: what has been shown is not what is to be seen.
+  void mixed();
   /// Samples of the picture itself come from now on.
   void prepared();
 

@@ -18,6 +18,7 @@ struct PictureView {
   const World& world;
   const scene::Camera& camera;
   uint32_t width = 0, height = 0;
+  std::vector<vec3> mix = {};  ///< of groups of lights, where they are kept apart (film::Film::set_mix)
 };
 
 /// What a solver of the plan is to do. All but the numbers must outlive it.

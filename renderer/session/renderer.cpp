@@ -63,19 +63,60 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   rest();
   // Everything that can fail happens before the old scene is given up.
   const plan::Plan plan = plan::make_plan(settings);
-  World world = make_world(*device_, std::move(scene), settings.text("tracer"),
-                           wanted_sun_threshold(automaton_, plan, settings), progress);
+  Relight relight = make_relight(plan, settings, scene, width_, height_);
+  World world = make_world(*device_, std::move(scene), relight.lit, settings.text("tracer"),
+                           wanted_apart(plan, settings, relight), progress);
   report_progress(progress, 0.9f, "compiling kernels");
   std::unique_ptr<Engine> engine = make_engine(world, plan, settings, changes);
-  Films films = film_ ? Films{} : make_films(width_, height_);
+  const uint32_t groups = world.flat.effects.light_groups;
+  Films films = film_ && film_->groups() == groups ? Films{} : make_films(width_, height_, groups);
   if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
   if (options_.interactive && !display_) display_ = std::make_unique<Display>(*device_, *compiler_);
   engine_ = std::move(engine);
   world_ = std::move(world);
   settings_ = std::move(settings);
   camera_ = std::move(camera);
+  take(std::move(relight));
   heed_settings();
   restart(changes);
+}
+
+Relight Renderer::make_relight(const plan::Plan& plan, const plan::Settings& settings,
+                               std::shared_ptr<const scene::Scene> scene, uint32_t width,
+                               uint32_t height) const {
+  return session::make_relight(plan, settings, std::move(scene), options_.interactive,
+                               uint64_t{width} * height, device_->info().memory_bytes, relight_);
+}
+
+upload::LightsApart Renderer::wanted_apart(const plan::Plan& plan, const plan::Settings& settings,
+                                           const Relight& relight) const {
+  float threshold = wanted_sun_threshold(automaton_, plan, settings);
+  if (relight.apart && relight.groups->has_sun) threshold = scene::k_sun_threshold;
+  return {threshold, relight.apart ? relight.groups : nullptr};
+}
+
+void Renderer::take(Relight relight) {
+  for (const std::string& message : relight.messages)
+    if (std::find(relight_.messages.begin(), relight_.messages.end(), message) == relight_.messages.end())
+      log::warning("{}", message);
+  relight_ = std::move(relight);
+}
+
+void Renderer::remix() {
+  film_->set_mix(relight_.weights), coarse_->set_mix(relight_.weights);
+  if (display_) display_->mixed();
+  mix_pending_ = true;
+  if (!options_.interactive) settle_mix();
+}
+
+void Renderer::settle_mix() {
+  if (!std::exchange(mix_pending_, false) || stats().paths == 0) return;
+  engine_->wavefront().uncounted([&] { engine_->wavefront().mix(*film_); });
+  // What was told of errors was told of another picture.
+  ledger_.clear();
+  if (samples() == 0) return;
+  if (adaptive()) change_schedule();
+  note_progress(true);
 }
 
 std::unique_ptr<Engine> Renderer::make_engine(const World& world, const plan::Plan& plan,
@@ -97,9 +138,9 @@ void Renderer::reload_shaders() {
 
 uint32_t Renderer::enabled_components() const { return engine_ ? engine_->plan().enabled() : 0; }
 
-Renderer::Films Renderer::make_films(uint32_t width, uint32_t height) const {
+Renderer::Films Renderer::make_films(uint32_t width, uint32_t height, uint32_t groups) const {
   Films films;
-  films.picture = std::make_unique<film::Film>(*device_, width, height);
+  films.picture = std::make_unique<film::Film>(*device_, width, height, groups);
   films.coarse = std::make_unique<film::Film>(*device_, std::max(1u, width / shared::k_coarse_step),
                                               std::max(1u, height / shared::k_coarse_step));
   return films;
@@ -110,9 +151,11 @@ void Renderer::restart(const scene::Changes& changes, const vec3& factor) {
   engine_->begin(picture_view(), changes, factor);
   transport::Wavefront& wavefront = engine_->wavefront();
   if (display_ && samples() > 0) display_->take(wavefront.stream(), *film_);
+  film_->set_mix(relight_.weights), coarse_->set_mix(relight_.weights);
   film_->clear(wavefront.stream());
   coarse_->clear(wavefront.stream());
   wavefront.reset_stats();
+  mix_pending_ = false;
   start_schedule();
   if (display_) display_->restart(changes, factor);
   draft_preparing_ = false;
@@ -167,6 +210,7 @@ float Renderer::luminance_floor() const {
 uint32_t Renderer::tile_side() const { return uint32_t(std::stoul(settings_.text("sampling.tile"))); }
 
 film::ImageError Renderer::image_error() {
+  settle_mix();
   transport::Wavefront& wavefront = engine_->wavefront();
   engine_->estimator().estimate(wavefront.stream(), *film_, luminance_floor());
   wavefront.account_stages();
@@ -199,7 +243,20 @@ void Renderer::apply_settings() {
   for (const auto& [key, value] : settings_.all())
     if (applied_[key] != value) changes.settings.insert(key);
   const auto changed = [&](const char* key) { return changes.settings.contains(key); };
-  bool again = false, retarget = false;
+  if (relight_.apart && changes.settings == std::set<std::string>{"relight.mix"}) {
+    try {
+      Relight other = relight_;
+      session::remix(other, settings_.text("relight.mix"));
+      take(std::move(other));
+    } catch (...) {
+      settings_.set("relight.mix", applied_["relight.mix"]);
+      throw;
+    }
+    remix();
+    applied_ = settings_.all();
+    return;
+  }
+  bool again = false, retarget = false, remixed = false;
   for (const std::string& key : changes.settings) {
     // What these say, the schedule in progress can take up.
     const bool goal = key == "sampling.target_error" || key == "sampling.min_samples" ||
@@ -218,6 +275,7 @@ void Renderer::apply_settings() {
       return;
     }
     again |= apply_plan(changes);
+    remixed = relight_.apart && changed("relight.mix");
     camera_ = camera;
   } catch (...) {
     for (const std::string& key : changes.settings) settings_.set(key, applied_[key]);
@@ -229,16 +287,26 @@ void Renderer::apply_settings() {
     change_schedule();
   else if (retarget && !again && adaptive())
     sampling_.adaptive()->retarget(adaptive_options());
-  if (again) restart(changes);
+  if (again)
+    restart(changes);
+  else if (remixed)
+    remix();
   applied_ = settings_.all();
 }
 
-bool Renderer::apply_plan(const scene::Changes& changes) {
+bool Renderer::apply_plan(scene::Changes& changes) {
   const plan::Plan plan = plan::make_plan(settings_);
+  Relight relight = make_relight(plan, settings_, world_.scene, width_, height_);
+  const upload::LightsApart apart = wanted_apart(plan, settings_, relight);
+  // Where light is not kept apart another mix is another light of all lamps.
+  const bool relit = relight.baked != relight_.baked;
+  if (relit)
+    for (const scene::Change c : {scene::Change::lamp, scene::Change::environment, scene::Change::colour})
+      changes.edits.insert(c);
+  if (!relit) relight.lit = world_.lit;
   std::optional<WorldEdit> edit;
-  if (const float threshold = wanted_sun_threshold(automaton_, plan, settings_);
-      threshold != world_.flat.sun_threshold)
-    edit.emplace(*device_, world_, threshold);
+  if (relit || apart != upload::lights_apart(world_.flat))
+    edit.emplace(*device_, world_, world_.scene, relight.lit, apart, relit);
   const auto changed = [&](const char* key) { return changes.settings.contains(key); };
   bool anew = !engine_->serves(plan, settings_, world_) || changed("sampling.coherent") ||
               changed("film.background") ||
@@ -246,20 +314,40 @@ bool Renderer::apply_plan(const scene::Changes& changes) {
   for (const std::string& key : changes.settings)
     if (const solvers::SolverInfo* owner = solvers::owner_of(key); owner && engine_->find(owner->name))
       anew |= plan::find_option(key)->restarts;
+  const uint32_t groups = world_.flat.effects.light_groups;
+  Films films = film_->groups() == groups ? Films{} : make_films(width_, height_, groups);
   if (anew)
     engine_ = make_engine(world_, plan, settings_, changes);
   else
     engine_->set_plan(plan);
+  if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
   if (edit) edit->keep();
   if (edit && !anew) engine_->wavefront().rebind(*world_.device);
-  return anew;
+  take(std::move(relight));
+  return anew || relit;
 }
 
 void Renderer::set_size(uint32_t width, uint32_t height) {
   if (width == width_ && height == height_ && film_) return;
   film::check_size(device_->info(), width, height);
   if (engine_) {
-    Films films = make_films(width, height);
+    // Larger pictures may leave no memory for light by groups.
+    Relight relight = make_relight(engine_->plan(), settings_, world_.scene, width, height);
+    const upload::LightsApart apart = wanted_apart(engine_->plan(), settings_, relight);
+    std::optional<WorldEdit> edit;
+    const bool relit = relight.baked != relight_.baked;
+    if (!relit) relight.lit = world_.lit;
+    if (relit || apart != upload::lights_apart(world_.flat))
+      edit.emplace(*device_, world_, world_.scene, relight.lit, apart, relit);
+    Films films = make_films(width, height, world_.flat.effects.light_groups);
+    if (edit && !engine_->serves(engine_->plan(), settings_, world_)) {
+      engine_ = make_engine(world_, engine_->plan(), settings_, scene::Change::size);
+      heed_settings();
+    } else if (edit) {
+      engine_->wavefront().rebind(*world_.device);
+    }
+    if (edit) edit->keep();
+    take(std::move(relight));
     film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
   }
   width_ = width, height_ = height;
@@ -274,6 +362,7 @@ void Renderer::set_camera(const scene::Camera& camera) {
 void Renderer::choose_camera(const std::string& name) { set_camera(scene::find_camera(*world_.scene, name)); }
 
 bool Renderer::step(const std::function<bool()>& cancel) {
+  if (engine_) settle_mix();
   if (!engine_ || done()) return false;
   clock_.go();
   const Timer timer;

@@ -24,6 +24,7 @@
 #include "scene/scene.h"
 #include "session/display.h"
 #include "session/engine.h"
+#include "session/relight.h"
 #include "session/sampling.h"
 #include "session/world.h"
 #include "stats/ledger.h"
@@ -85,6 +86,12 @@ class Renderer {
   /// Throws Error when there is no such material, or when textures or what a surface lets through (alpha
   /// mode, transmission, thickness) would be others: these are the scene's shape, as rays find it.
   void set_material(uint32_t index, const scene::Material& material);
+  /// The scene's groups of lights, and what the settings make of them.
+  const Relight& relight() const { return relight_; }
+  /// In the window another mix is shown at once, and the film's own sums follow with the next step(), or with
+  /// this.
+  bool mix_pending() const { return mix_pending_; }
+  void settle_mix();
   void reload_shaders();
   /// Begins the image anew, and what it looks up.
   void restart() { restart(scene::Change::restart); }
@@ -142,7 +149,7 @@ class Renderer {
   /// Of the picture that shown_picture() has made last.
   film::PreviewShares preview_shares() const { return display_ ? display_->shares() : film::PreviewShares{}; }
   film::View view() const;
-  film::Image image() const { return film_->read(); }
+  film::Image image() const { return film_->read(); }  ///< without a mix that is pending
   /// The picture's brightness, or that at a point (0..1 to the right and down): of the coarse image while
   /// there is no other. Throws Error when there is none at all.
   film::Brightness measure(std::optional<vec2> at) const;
@@ -215,7 +222,17 @@ class Renderer {
   struct Films {
     std::unique_ptr<film::Film> picture, coarse;
   };
-  Films make_films(uint32_t width, uint32_t height) const;
+  Films make_films(uint32_t width, uint32_t height, uint32_t groups) const;
+  /// Of a scene in a picture of that size.
+  Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
+                       std::shared_ptr<const scene::Scene> scene, uint32_t width, uint32_t height) const;
+  /// How lights are to be told apart.
+  upload::LightsApart wanted_apart(const plan::Plan& plan, const plan::Settings& settings,
+                                   const Relight& relight) const;
+  /// Takes it up, and tells what is new of its messages.
+  void take(Relight relight);
+  /// The film's picture follows another mix.
+  void remix();
   /// Makes the scene the one that is rendered. On failure throws Error and everything stays as it was.
   void install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings, scene::Camera camera,
                const Progress& progress, const scene::Changes& changes);
@@ -225,10 +242,12 @@ class Renderer {
                                       const plan::Settings& settings, const scene::Changes& changes) const;
   /// The scene with other lights, environment or factors of materials. Kernels are made for what it calls for
   /// now. On failure throws Error and everything stays as it was.
-  void edit(std::shared_ptr<const scene::Scene> edited, scene::Change change, bool factors);
+  void edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& change, bool factors);
   /// `factor`: of all light, where an edit is known to do no more than that (scene::light_factor).
   void restart(const scene::Changes& changes, const vec3& factor = vec3(1));
-  PictureView picture_view() const { return {automaton_, settings_, world_, camera_, width_, height_}; }
+  PictureView picture_view() const {
+    return {automaton_, settings_, world_, camera_, width_, height_, relight_.weights};
+  }
   /// What the film has developed, with what solvers draw over it.
   std::vector<uint8_t> finished_picture(const std::function<bool()>& cancel);
   void mark_tiles(const film::View& view);
@@ -246,7 +265,7 @@ class Renderer {
                                    const char* nothing, const char* no_scene);
   /// Takes up the plan that the settings make, with new kernels and solvers where it takes any: then true. On
   /// failure throws Error and everything stays.
-  bool apply_plan(const scene::Changes& changes);
+  bool apply_plan(scene::Changes& changes);
   void heed_settings();  ///< tells the solvers
   bool render_item(const std::function<bool()>& cancel);
   /// Where the item cannot be traced yet: a piece of the round that it reads, and whether that was done.
@@ -261,6 +280,8 @@ class Renderer {
   plan::Settings settings_;
   std::map<std::string, std::string> applied_;  ///< settings that the picture is made with
   World world_;
+  Relight relight_;
+  bool mix_pending_ = false;
   std::shared_ptr<const scene::Scene> loaded_;  ///< as set_scene() was given it
   std::unique_ptr<Engine> engine_;              ///< null before the first scene; goes before the world
   std::unique_ptr<film::Film> film_, coarse_;

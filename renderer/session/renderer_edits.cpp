@@ -74,17 +74,24 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
   edit(edited, colour ? scene::Change::colour : scene::Change::material, true);
 }
 
-void Renderer::edit(std::shared_ptr<const scene::Scene> edited, scene::Change change, bool factors) {
-  const vec3 factor = factors ? vec3(1) : scene::light_factor(*world_.scene, *edited).value_or(vec3(1));
-  WorldEdit trial(*device_, world_, std::move(edited), factors);
+void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& changes, bool factors) {
+  Relight relight = make_relight(engine_->plan(), settings_, edited, width_, height_);
+  const vec3 factor = factors ? vec3(1) : scene::light_factor(*world_.lit, *relight.lit).value_or(vec3(1));
+  WorldEdit trial(*device_, world_, std::move(edited), relight.lit,
+                  wanted_apart(engine_->plan(), settings_, relight),
+                  factors || relight.baked != relight_.baked);
   const bool anew = !engine_->serves(engine_->plan(), settings_, world_);
-  if (anew) engine_ = make_engine(world_, engine_->plan(), settings_, change);
+  const uint32_t groups = world_.flat.effects.light_groups;
+  Films films = film_->groups() == groups ? Films{} : make_films(width_, height_, groups);
+  if (anew) engine_ = make_engine(world_, engine_->plan(), settings_, changes);
   trial.keep();
+  if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
+  take(std::move(relight));
   if (anew)
     heed_settings();
   else
     engine_->wavefront().rebind(*world_.device);
-  restart(change, factor);
+  restart(changes, factor);
 }
 
 }  // namespace lucerna::session

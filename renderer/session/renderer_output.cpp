@@ -66,6 +66,12 @@ bool Renderer::remembers() const { return engine_ && film_ && previewed(view()) 
 
 std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::function<bool()>& cancel) {
   const film::View v = view();
+  if (mix_pending_ && samples() > 0 && film_->quick() && v.layer == shared::k_layer_beauty &&
+      v.show == (1u << paths::k_component_count) - 1 && v.tiles == 0) {
+    engine_->developer().mix(engine_->wavefront().stream(), *film_, v);
+    return finished_picture(cancel);
+  }
+  settle_mix();
   if (!previewed(v)) {
     if (display_) display_->plain(*engine_, picture_view(), v);
     return picture(with_coarse, cancel);
@@ -84,6 +90,7 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
 }
 
 std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<bool()>& cancel) {
+  settle_mix();
   const film::View v = view();
   mark_tiles(v);
   engine_->developer().tone_map(engine_->wavefront().stream(), *film_, v,
@@ -104,7 +111,35 @@ film::Brightness Renderer::measure(std::optional<vec2> at) const {
             : film::measure_picture(sum, image.width, image.height);
 }
 
+namespace {
+
+/// Layers of groups of lights by component, as they are mixed: light.GROUP.COMPONENT. 16-bit floats but where
+/// values are beyond these. What the group has nothing of is left out.
+void add_group_layers(film::FilmImage& out, const film::Film& film, const Relight& relight) {
+  constexpr float k_largest_half = 65504;
+  for (uint32_t g = 0; g < film.groups(); ++g) {
+    const auto means = film.read_group(g);
+    for (size_t c = 0; c < means.size(); ++c) {
+      if (std::all_of(means[c].begin(), means[c].end(), [](const vec3& v) { return v == vec3(0); })) continue;
+      // A dot would part the layer's name.
+      std::string name = relight.groups->groups[g].name;
+      std::replace(name.begin(), name.end(), '.', '_');
+      for (int k = 0; k < 3; ++k) {
+        std::vector<float> channel(means[c].size());
+        for (size_t i = 0; i < channel.size(); ++i) channel[i] = relight.weights[g][k] * means[c][i][k];
+        const std::string full = fmt::format("light.{}.{}.{}", name, paths::k_component_names[c], "RGB"[k]);
+        const float largest = *std::max_element(channel.begin(), channel.end());
+        if (largest <= k_largest_half) out.halves.insert(full);
+        out.channels.emplace_back(full, std::move(channel));
+      }
+    }
+  }
+}
+
+}  // namespace
+
 film::FilmImage Renderer::film_image() {
+  settle_mix();
   const film::Image image = film_->read();
   film::FilmImage out;
   out.width = image.width;
@@ -123,6 +158,7 @@ film::FilmImage Renderer::film_image() {
   add("", "RGB", sum);
   for (int c = 0; c < film::k_components; ++c)
     add(std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
+  if (settings_.boolean("relight.layers") && relight_.apart) add_group_layers(out, *film_, relight_);
   add("albedo.", "RGB", image.albedo);
   add("N.", "XYZ", image.normal);
   out.channels.emplace_back("Z", image.depth);

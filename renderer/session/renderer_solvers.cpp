@@ -55,7 +55,7 @@ void Renderer::look_up_picture() {
 }
 
 solvers::Provenance Renderer::provenance() const {
-  const scene::LightHash hash = scene::light_hash(*world_.scene);
+  const scene::LightHash hash = scene::light_hash(*world_.lit);
   return {.scene = world_.scene->name,
           .hashes = {{"geometry", hash.geometry},
                      {"materials", hash.materials},

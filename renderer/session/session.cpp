@@ -21,6 +21,8 @@ const std::array<const char*, k_components> k_component_names = paths::k_compone
 namespace {
 constexpr double k_publish_seconds = 0.1;  // between pictures while the image refines
 constexpr double k_draft_seconds = 0.5;    // without a draft at most, while edits come one after the other
+// Without another mix, after which the last one is taken up in full.
+constexpr double k_mix_pause_seconds = 0.2;
 constexpr double k_numbers_seconds = 0.5;  // between read-backs of the film for shares
 constexpr int k_nice = 10;                 // rendering yields to the window's thread
 }  // namespace
@@ -166,6 +168,7 @@ struct Session::Impl {
     next.samples = r.samples();
     next.max_samples = r.max_samples();
     next.coarse = !filled;
+    next.lights_together = r.relight().why_not;
     next.paused = paused;
     next.finished = r.done();
     next.preparing.clear();
@@ -281,8 +284,8 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
     renderer.finish_ledger();
   if (!filled && renderer.samples() > 0) filled = changed = true;
   if (changed || since_publish.seconds() > publish_seconds || renderer.done() || renderer.waits())
-    publish_picture(renderer,
-                    renderer.samples() > 0 && (since_numbers.seconds() > numbers_seconds || renderer.done()));
+    publish_picture(renderer, renderer.samples() > 0 && !renderer.mix_pending() &&
+                                  (since_numbers.seconds() > numbers_seconds || renderer.done()));
 }
 
 /// `numbers`: with what has to be read back from the film.
@@ -314,15 +317,22 @@ void Session::Impl::run() {
   while (!quit) {
     while (!queue.empty() && !quit) carry_out_next(renderer.get(), lock);
     pending = false;
-    const bool work = renderer && works(*renderer);
+    // A drag at a group's slider: what it shows comes first, the film's sums and more samples when it pauses.
+    const bool mixing = renderer && renderer->mix_pending();
+    if (mixing && !dirty && wake.wait_for(lock, std::chrono::duration<double>(k_mix_pause_seconds), [&] {
+          return quit || !queue.empty();
+        }))
+      continue;
+    const bool work = renderer && works(*renderer) && !(mixing && dirty);
     if (renderer && !work) renderer->rest();
-    if (!work && !dirty) {
+    if (!work && !dirty && !mixing) {
       wake.wait(lock, [&] { return quit || !queue.empty(); });
       continue;
     }
     lock.unlock();
     try {
       if (renderer && renderer->ready()) {
+        if (mixing && !dirty) renderer->settle_mix(), dirty = true;
         advance(*renderer, work);
       } else {
         publish();
@@ -481,6 +491,7 @@ std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at) {
   auto result = promise->get_future().share();
   impl_->post([at, promise](Renderer& r) {
     try {
+      r.settle_mix();
       promise->set_value(r.measure(at));
     } catch (...) {
       promise->set_exception(std::current_exception());

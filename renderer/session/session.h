@@ -59,6 +59,9 @@ struct Snapshot {
   bool coarse = false;             ///< some of the picture still is the coarse first image
   /// Of what is shown, by luminance, 0..1: light from before the last edit; filtered light of the present.
   double stale = 0, filtered = 0;
+  /// Why the light of groups of lights is not kept apart, so that a mix of them lights the picture anew; ""
+  /// where it is.
+  std::string lights_together;
   bool paused = false, finished = false;
   /// "" or what is made before the first sample (solvers::Report::preparing).
   std::string preparing;

@@ -16,12 +16,14 @@ transport::HostTrace World::trace() const {
                                bool coherent) { tracer->trace(query, rays, hits, queue, count, coherent); };
 }
 
-World make_world(gpu::Device& device, std::shared_ptr<const scene::Scene> scene, const std::string& tracer,
-                 float sun_threshold, const Progress& progress) {
+World make_world(gpu::Device& device, std::shared_ptr<const scene::Scene> scene,
+                 std::shared_ptr<const scene::Scene> lit, const std::string& tracer,
+                 const upload::LightsApart& apart, const Progress& progress) {
   World world;
   world.scene = std::move(scene);
+  world.lit = std::move(lit);
   report_progress(progress, 0, "flattening the scene");
-  world.flat = upload::flatten(*world.scene, sun_threshold);
+  world.flat = upload::flatten(*world.lit, apart);
   report_progress(progress, 0.2f, "building the BVH");
   const bvh::Triangles triangles{world.flat.positions, world.flat.non_opaque};
   bvh::BvhData tree;
@@ -38,22 +40,16 @@ World make_world(gpu::Device& device, std::shared_ptr<const scene::Scene> scene,
 }
 
 WorldEdit::WorldEdit(gpu::Device& device, World& world, std::shared_ptr<const scene::Scene> edited,
-                     bool factors)
+                     std::shared_ptr<const scene::Scene> lit, const upload::LightsApart& apart, bool factors)
     : world_(world),
       scene_(world.scene),
+      lit_(world.lit),
       effects_(world.flat.effects),
-      sun_threshold_(world.flat.sun_threshold) {
+      apart_(upload::lights_apart(world.flat)) {
   world_.scene = std::move(edited);
+  world_.lit = std::move(lit);
+  upload::set_lights_apart(world_.flat, apart);
   try_out(device, factors);
-}
-
-WorldEdit::WorldEdit(gpu::Device& device, World& world, float sun_threshold)
-    : world_(world),
-      scene_(world.scene),
-      effects_(world.flat.effects),
-      sun_threshold_(world.flat.sun_threshold) {
-  world_.flat.sun_threshold = sun_threshold;
-  try_out(device, false);
 }
 
 WorldEdit::~WorldEdit() {
@@ -64,10 +60,10 @@ void WorldEdit::try_out(gpu::Device& device, bool factors) {
   try {
     if (factors) materials_ = world_.flat;
     materials_out_ = factors;
-    if (factors) upload::flatten_factors(*world_.scene, world_.flat);
+    if (factors) upload::flatten_factors(*world_.lit, world_.flat);
     lights_ = std::move(static_cast<upload::FlatLights&>(world_.flat));
     lights_out_ = true;
-    upload::flatten_lights(*world_.scene, world_.flat);
+    upload::flatten_lights(*world_.lit, world_.flat);
     upload::MaterialBuffers materials;
     if (factors) materials = upload::MaterialBuffers(device, world_.flat);
     upload::LightBuffers lights(device, world_.flat);
@@ -86,8 +82,9 @@ void WorldEdit::put_back() noexcept {
   if (lights_out_) static_cast<upload::FlatLights&>(world_.flat) = std::move(lights_);
   if (materials_out_) static_cast<upload::FlatMaterials&>(world_.flat) = std::move(materials_);
   world_.flat.effects = effects_;
-  world_.flat.sun_threshold = sun_threshold_;
+  upload::set_lights_apart(world_.flat, apart_);
   world_.scene = scene_;
+  world_.lit = lit_;
 }
 
 }  // namespace lucerna::session

@@ -16,6 +16,9 @@ using Progress = std::function<bool(float, const std::string&)>;
 
 struct World {
   std::shared_ptr<const scene::Scene> scene;
+  /// What is traced: the scene, or, where its light is not kept apart by groups, with lights as they are
+  /// mixed.
+  std::shared_ptr<const scene::Scene> lit;
   upload::FlatScene flat;
   std::unique_ptr<upload::DeviceScene> device;
   std::unique_ptr<bvh::HostTracer> host;  ///< null: kernels trace
@@ -24,8 +27,9 @@ struct World {
 };
 
 /// `tracer`: the setting. Throws Error: too large, no memory, cancelled.
-World make_world(gpu::Device& device, std::shared_ptr<const scene::Scene> scene, const std::string& tracer,
-                 float sun_threshold, const Progress& progress);
+World make_world(gpu::Device& device, std::shared_ptr<const scene::Scene> scene,
+                 std::shared_ptr<const scene::Scene> lit, const std::string& tracer,
+                 const upload::LightsApart& apart, const Progress& progress);
 
 /// Tells how far it is; throws Error "cancelled" when that is the answer.
 void report_progress(const Progress& progress, float fraction, const std::string& what);
@@ -34,10 +38,9 @@ void report_progress(const Progress& progress, float fraction, const std::string
 /// tried: unless keep() is called the world is put back as it was.
 class WorldEdit {
  public:
-  /// Throws Error: no memory; the world is then as before.
-  WorldEdit(gpu::Device& device, World& world, std::shared_ptr<const scene::Scene> edited, bool factors);
-  /// The same for another threshold of the sun (upload::FlatScene::sun_threshold).
-  WorldEdit(gpu::Device& device, World& world, float sun_threshold);
+  /// `factors`: those of materials differ. Throws Error: no memory; the world is then as before.
+  WorldEdit(gpu::Device& device, World& world, std::shared_ptr<const scene::Scene> edited,
+            std::shared_ptr<const scene::Scene> lit, const upload::LightsApart& apart, bool factors);
   ~WorldEdit();
   WorldEdit(const WorldEdit&) = delete;
   WorldEdit& operator=(const WorldEdit&) = delete;
@@ -48,11 +51,11 @@ class WorldEdit {
   void put_back() noexcept;
 
   World& world_;
-  std::shared_ptr<const scene::Scene> scene_;
+  std::shared_ptr<const scene::Scene> scene_, lit_;
   upload::FlatLights lights_;
   upload::FlatMaterials materials_;
   upload::Effects effects_;
-  float sun_threshold_;
+  upload::LightsApart apart_;
   upload::LightBuffers light_buffers_;
   upload::MaterialBuffers material_buffers_;
   bool lights_out_ = false, materials_out_ = false, kept_ = false;

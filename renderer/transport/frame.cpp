@@ -32,6 +32,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.max_depth = options.max_depth;
   f.roulette_depth = options.roulette_depth;
   f.scene_radius = flat.scene_radius;
+  if (flat.groups) f.sky_group = flat.groups->sky, f.sun_group = flat.groups->sun;
   const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);
   const std::vector<uint32_t> table = paths::pack(automaton, options.enabled, options.routes, met);
   assert(table.size() < shared::k_gather_state);

@@ -13,6 +13,7 @@ struct Wavefront::Impl {
   HostTrace host_trace;
   uint32_t slots;
   bool transparent = false;
+  uint32_t groups = 1;  // of lights, that are kept apart
   uint32_t enabled = 15;
   uint8_t first_account = 0;
   double compile_seconds = 0;
@@ -20,14 +21,15 @@ struct Wavefront::Impl {
   gpu::Buffer frame, blocks, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states,
       counters;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
-  gpu::Kernel camera, shade, shadow, film_add, film_add_images, trace_closest, trace_any, trace_non_opaque;
+  gpu::Kernel camera, shade, shadow, film_add, film_add_images, lanes_add, lanes_add_images, trace_closest,
+      trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
   std::function<void(gpu::Resources&)> bind_lookup;
   TransportStats stats;
 
-  Impl(gpu::Device& d, uint32_t n, HostTrace trace)
-      : device(d), stream(d), host_trace(std::move(trace)), slots(n) {
+  Impl(gpu::Device& d, uint32_t n, uint32_t light_groups, HostTrace trace)
+      : device(d), stream(d), host_trace(std::move(trace)), slots(n), groups(light_groups) {
     const gpu::Memory queue_memory = host_trace ? gpu::Memory::host : gpu::Memory::device;
     const auto make = [&](const char* name, uint64_t bytes, gpu::Memory memory) {
       return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
@@ -40,7 +42,7 @@ struct Wavefront::Impl {
     rays = texels("rays", uint64_t(n) * sizeof(Ray), queue_memory);
     hits = texels("hits", uint64_t(n) * sizeof(Hit), queue_memory);
     paths = texels("path states", uint64_t(n) * sizeof(PathState), gpu::Memory::device);
-    radiance = texels("path radiance", uint64_t(n) * 16 * k_lane_count, gpu::Memory::device);
+    radiance = texels("path radiance", uint64_t(n) * 16 * k_component_count * groups, gpu::Memory::device);
     features = texels("path features", uint64_t(n) * 32, gpu::Memory::device);
     shadow_rays = texels("shadow rays", uint64_t(n) * sizeof(Ray), queue_memory);
     shadow_hits = texels("shadow hits", uint64_t(n) * sizeof(Hit), queue_memory);
@@ -93,6 +95,9 @@ struct Wavefront::Impl {
     film_resources = main[0];
   }
 
+  /// Records what adds the paths of the last item to the film, or, where `samples` is 0, makes its picture.
+  void add(film::Film& film, uint32_t pixels, uint32_t samples);
+
   /// From `begin` until no path is alive. False when cancelled.
   bool trace_paths(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel);
 
@@ -129,7 +134,7 @@ struct Wavefront::Impl {
              const gpu::Buffer& r, const gpu::Buffer& h, const gpu::Buffer* queue, uint32_t count,
              const char* name, const uint32_t* closest, const uint32_t* shadows) {
     if (!host_trace) {
-      stream.dispatch(kernel, resources, TracePush{count, queue ? 1u : 0u}, groups(count), name);
+      stream.dispatch(kernel, resources, TracePush{count, queue ? 1u : 0u}, workgroups(count), name);
       return;
     }
     run_and_account(closest, shadows);
@@ -140,13 +145,13 @@ struct Wavefront::Impl {
     account(name, timer.milliseconds(), is_shadow ? shadows : closest, true);
   }
 
-  static uint32_t groups(uint32_t count) { return (count + 63) / 64; }
+  static uint32_t workgroups(uint32_t count) { return (count + 63) / 64; }
 };
 
 Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
                      uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines,
                      std::function<void(gpu::Resources&)> bind_lookup)
-    : impl_(std::make_unique<Impl>(device, slots, std::move(host_trace))) {
+    : impl_(std::make_unique<Impl>(device, slots, scene.effects().light_groups, std::move(host_trace))) {
   Impl& w = *impl_;
   const Timer timer;
   gpu::Defines defines = scene.defines();
@@ -160,6 +165,11 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   gpu::Defines images = adding;
   images["LUCERNA_FILM_IMAGES"] = "1";
   w.film_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
+  if (w.groups > 1) {
+    adding["LUCERNA_FILM_LANES"] = images["LUCERNA_FILM_LANES"] = "1";
+    w.lanes_add = gpu::Kernel(device, compiler, "film/add.comp", adding);
+    w.lanes_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
+  }
   w.bind_lookup = std::move(bind_lookup);
   w.bind(scene);
   if (!w.host_trace) {
@@ -207,12 +217,31 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
   if (item.slots() == 0 || w.enabled == 0) return true;
   if (!probe(item, cancel)) return false;
   w.stats.paths += item.slots();
-  film.bind(w.film_resources);
-  const FilmPush add{film.width(), film.height(), pixels, item.sample_count};
-  w.stream.dispatch(film.fits_storage_buffers() ? w.film_add : w.film_add_images, w.film_resources, add,
-                    Impl::groups(pixels), "film");
+  w.add(film, pixels, item.sample_count);
   w.run_and_account(nullptr, nullptr);
   return true;
+}
+
+void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
+  film.bind(film_resources);
+  const bool fits = film.fits_storage_buffers();
+  FilmPush push{film.width(), film.height(), pixels, samples, 0, film.quick()};
+  if (film.groups() == 1) {
+    stream.dispatch(fits ? film_add : film_add_images, film_resources, push, workgroups(pixels), "film");
+    return;
+  }
+  if (film.groups() != groups)
+    throw_error("transport", "a film of {} groups of lights, paths of {}", film.groups(), groups);
+  for (push.group = 0; push.group < groups; ++push.group) {
+    film.bind_group(film_resources, push.group);
+    stream.dispatch(fits ? lanes_add : lanes_add_images, film_resources, push, workgroups(pixels), "film");
+  }
+}
+
+void Wavefront::mix(film::Film& film) {
+  if (film.groups() == 1) return;
+  impl_->add(film, 64 * film.blocks(), 0);
+  impl_->run_and_account(nullptr, nullptr);
 }
 
 bool Wavefront::probe(const schedule::WorkItem& item, const std::function<bool()>& cancel) {
@@ -222,7 +251,7 @@ bool Wavefront::probe(const schedule::WorkItem& item, const std::function<bool()
   if (count > w.slots) throw_error("transport", "work item of {} paths, room for {}", count, w.slots);
   w.blocks.write(std::span<const WorkBlock>(item.blocks));
   const TransportPush push{count, 0, static_cast<uint32_t>(item.blocks.size()) * 64, 0};
-  const auto begin = [&] { w.stream.dispatch(w.camera, w.main[0], push, Impl::groups(count), "camera"); };
+  const auto begin = [&] { w.stream.dispatch(w.camera, w.main[0], push, Impl::workgroups(count), "camera"); };
   return w.trace_paths(count, {.begin = begin, .first_hits = {}, .end = {}}, cancel);
 }
 
@@ -268,7 +297,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       push.count = shadow_count;
       push.use_queue = 1;
       push.round = 0;
-      w.stream.dispatch(w.shadow, table, push, Impl::groups(shadow_count), "shadow light");
+      w.stream.dispatch(w.shadow, table, push, Impl::workgroups(shadow_count), "shadow light");
       if (w.transparent) {
         uint32_t side = 1;
         for (;; side ^= 1) {
@@ -282,7 +311,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
           w.stats.rays += going;
           push.count = going;
           push.round = 1;
-          w.stream.dispatch(w.shadow, w.shade_shadow[side], push, Impl::groups(going), "shadow light");
+          w.stream.dispatch(w.shadow, w.shade_shadow[side], push, Impl::workgroups(going), "shadow light");
         }
       }
     }
@@ -300,9 +329,9 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       push.count = active;
       push.use_queue = first ? 0 : 1;
       if (ends.vertex)
-        w.stream.dispatch(*ends.vertex, own[parity], push, Impl::groups(active), ends.vertex_stage);
+        w.stream.dispatch(*ends.vertex, own[parity], push, Impl::workgroups(active), ends.vertex_stage);
       else
-        w.stream.dispatch(w.shade, w.main[parity], push, Impl::groups(active), "shade");
+        w.stream.dispatch(w.shade, w.main[parity], push, Impl::workgroups(active), "shade");
     } else {
       w.stream.fill(w.counters, 0, 0, 12);
     }

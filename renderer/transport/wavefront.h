@@ -74,9 +74,13 @@ class Wavefront {
   /// Calls `bind_lookup` again: after its buffers have changed.
   void rebind_lookup();
   uint32_t slots() const;
-  /// Traces the item and adds it to the film. `cancel` is asked between bounces; a cancelled item leaves the
-  /// film as it was and returns false.
+  /// Traces the item and adds it to the film, group by group of lights where the scene's are kept apart and
+  /// the film does so too, else mixed as the film says. `cancel` is asked between bounces; a cancelled item
+  /// leaves the film as it was and returns false.
   bool run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
+  /// Makes the film's picture anew of its groups of lights, as they are mixed (film::Film::set_mix), where it
+  /// keeps them apart. Traces nothing.
+  void mix(film::Film& film);
   /// The same without a film: for what kernels note on the way.
   bool probe(const schedule::WorkItem& item, const std::function<bool()>& cancel = {});
   /// Traces `count` <= slots() paths between ends of the caller's; cancellable as above, `end` is then not

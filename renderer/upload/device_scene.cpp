@@ -30,12 +30,19 @@ gpu::Buffer upload_environment(gpu::Device& device, const FlatLights& flat) {
   return buffer;
 }
 
+/// With room at the end, so that their bytes make texels.
+std::vector<uint8_t> whole_texels(std::vector<uint8_t> bytes) {
+  bytes.resize((bytes.size() + 15) / 16 * 16);
+  return bytes;
+}
+
 }  // namespace
 
 LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat)
     : lights(upload(device, "lights", flat.lights)),
       alias(upload(device, "light table", flat.light_alias)),
       pmf(upload(device, "light probabilities", flat.primitive_light_pmf, false)),
+      groups(upload(device, "groups of lights", whole_texels(flat.emissive_groups))),
       environment_texels(upload_environment(device, flat)),
       environment_alias(upload(device, "environment table", flat.environment_alias)),
       sun_cells(upload(device, "sun table", flat.sun_cells)),
@@ -90,6 +97,7 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("scene_lights", lights_.lights);
   r.set("light_alias", lights_.alias);
   r.set("PrimitiveLightPmf", lights_.pmf);
+  r.set("emissive_groups", lights_.groups);
   r.set("environment_texels", lights_.environment_texels);
   r.set("environment_alias", lights_.environment_alias);
   r.set("sun_cells", lights_.sun_cells);
@@ -109,6 +117,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_ENVIRONMENT_MAP", e.environment_map);
   set("LUCERNA_SKY_APART", e.sky_apart);
   set("LUCERNA_SUN", e.sun);
+  d["LUCERNA_LIGHT_GROUPS"] = std::to_string(e.light_groups);
   set("LUCERNA_SPECULAR", e.specular);
   set("LUCERNA_SOLID_GLASS", e.solid_glass);
   set("LUCERNA_THIN_GLASS", e.thin_glass);

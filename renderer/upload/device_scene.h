@@ -13,7 +13,7 @@ struct LightBuffers {
   LightBuffers() = default;
   LightBuffers(gpu::Device& device, const FlatLights& flat);
   explicit operator bool() const { return bool(lights); }
-  gpu::Buffer lights, alias, pmf, environment_texels, environment_alias, sun_cells, sun_density;
+  gpu::Buffer lights, alias, pmf, groups, environment_texels, environment_alias, sun_cells, sun_density;
 };
 
 /// Materials on the device, with the albedo tables of their glasses.

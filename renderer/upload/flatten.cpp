@@ -172,14 +172,25 @@ void flatten_textures(const scene::Scene& scene, FlatScene& flat) {
 
 }  // namespace
 
-FlatScene flatten(const scene::Scene& scene, float sun_threshold) {
+LightsApart lights_apart(const FlatScene& flat) { return {flat.sun_threshold, flat.groups}; }
+
+void set_lights_apart(FlatScene& flat, const LightsApart& apart) {
+  flat.sun_threshold = apart.sun_threshold;
+  flat.groups = apart.groups;
+}
+
+FlatScene flatten(const scene::Scene& scene, const LightsApart& apart) {
   FlatScene flat;
   flatten_geometry(scene, flat);
   flatten_factors(scene, flat);
   flatten_textures(scene, flat);
-  flat.sun_threshold = sun_threshold;
+  set_lights_apart(flat, apart);
   flatten_lights(scene, flat);
   return flat;
+}
+
+FlatScene flatten(const scene::Scene& scene, float sun_threshold) {
+  return flatten(scene, LightsApart{.sun_threshold = sun_threshold, .groups = {}});
 }
 
 }  // namespace lucerna::upload

@@ -2,9 +2,11 @@
 // Scene -> arrays as the device wants them (shaders/shared/scene.h): pure host code, no device, so that it is
 // testable and can be written to a file for the stand-alone ray bench.
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "scene/light_groups.h"
 #include "scene/scene.h"
 #include "shaders/shared/scene.h"
 
@@ -17,6 +19,7 @@ struct Effects {
        normal_maps = false, vertex_extra = false, tex_base = false, tex_metallic_roughness = false,
        tex_emission = false, tex_specular = false, tex_transmission = false, tex_diffuse_transmission = false;
   bool sky_apart = false, sun = false;  ///< FlatScene::sun_threshold; texels that are brighter
+  uint32_t light_groups = 1;            ///< that are kept apart (FlatScene::groups)
   bool uv_transforms = false;           ///< a use of a texture that is scaled, turned or shifted
   bool tex_nearest = false;             ///< a texture that is not filtered
   bool tex_wraps = false;               ///< a texture that does not repeat
@@ -59,6 +62,7 @@ struct LightDistribution {
 /// What lights emit and from where: flatten_emission().
 struct Emission {
   std::vector<vec4> lights;                                ///< the light table
+  std::vector<uint8_t> emissive_groups;                    ///< by primitive; empty: they are not kept apart
   std::vector<vec3> environment_texels;                    ///< radiance, without the factor
   uint32_t environment_width = 0, environment_height = 0;  ///< 0: it is dark
   vec3 environment_radiance{0};                            ///< factor of the texels
@@ -85,12 +89,26 @@ struct FlatScene : FlatLights, FlatMaterials {
   /// Above 0: the environment is two emitters (shared/scene.h), its sun the texels of more than so many times
   /// its mean luminance.
   float sun_threshold = 0;
+  std::shared_ptr<const scene::LightGroups> groups;  ///< whose light is kept apart; null: no groups are
   vec3 scene_centre{0};
   float scene_radius = 1;  ///< of a sphere around that which holds all surfaces
   Effects effects;
 };
 
+/// How lights are told apart: FlatScene's fields of these names.
+struct LightsApart {
+  float sun_threshold = 0;
+  std::shared_ptr<const scene::LightGroups> groups;
+  bool operator==(const LightsApart& o) const {
+    return sun_threshold == o.sun_threshold &&
+           (groups == o.groups || (groups && o.groups && *groups == *o.groups));
+  }
+};
+LightsApart lights_apart(const FlatScene& flat);
+void set_lights_apart(FlatScene& flat, const LightsApart& apart);
+
 /// Everything. Throws Error when the scene exceeds what indices or texture arrays can hold.
+FlatScene flatten(const scene::Scene& scene, const LightsApart& apart);
 FlatScene flatten(const scene::Scene& scene, float sun_threshold = 0);
 /// Materials without their textures only (after an edit that leaves textures, alpha mode and transmission as
 /// they were); flatten_lights() then, if emission has changed. `flat` must come from the same scene.

@@ -34,6 +34,27 @@ LightTexels lamp_texels(const scene::Light& l, uint32_t kind) {
           vec4(l.direction, std::cos(l.outer_cone)), vec4(0)};
 }
 
+/// Of a table's entry; `surfaces` by primitive.
+uint32_t group_of(const FlatScene& flat, const LightEntry& entry, const std::vector<uint8_t>& surfaces) {
+  if (entry.kind == k_light_triangle) return surfaces[entry.index];
+  // Where the sky is apart the entry is the sun's.
+  if (entry.kind == k_light_environment) return flat.effects.sky_apart ? flat.groups->sun : flat.groups->sky;
+  return entry.index == scene::k_none ? 0 : flat.groups->lamps[entry.index];
+}
+
+/// Groups of the primitives, 0 where nothing emits.
+std::vector<uint8_t> surface_groups(const scene::Scene& scene, const FlatScene& flat) {
+  std::vector<uint8_t> groups;
+  groups.reserve(flat.triangles.size());
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    const auto& primitives = scene.meshes[scene.instances[i].mesh].primitives;
+    const std::vector<uint8_t>& of = flat.groups->surfaces[i];
+    for (size_t p = 0; p < primitives.size(); ++p)
+      groups.insert(groups.end(), primitives[p].triangles.size(), of.empty() ? uint8_t(0) : of[p]);
+  }
+  return groups;
+}
+
 LightTexels texels_of(const scene::Scene& scene, const FlatScene& flat, const LightEntry& entry) {
   if (entry.kind == k_light_triangle) return triangle_texels(scene, flat, entry.index);
   const vec4 only_kind(vec3(0), as_float(entry.kind));
@@ -49,9 +70,13 @@ LightTexels texels_of(const scene::Scene& scene, const FlatScene& flat, const Li
 
 void flatten_emission(const scene::Scene& scene, FlatScene& flat) {
   Emission e;
+  if (flat.effects.light_groups > 1) e.emissive_groups = surface_groups(scene, flat);
   e.lights.reserve(flat.entries.size() * k_light_texels);
   for (const LightEntry& entry : flat.entries) {
-    const LightTexels texels = texels_of(scene, flat, entry);
+    LightTexels texels = texels_of(scene, flat, entry);
+    if (flat.effects.light_groups > 1)
+      texels[3].w = as_float(std::bit_cast<uint32_t>(texels[3].w) | group_of(flat, entry, e.emissive_groups)
+                                                                        << k_light_group_shift);
     e.lights.insert(e.lights.end(), texels.begin(), texels.end());
   }
   e.environment_rotation = scene.environment.rotation * k_pi / 180;

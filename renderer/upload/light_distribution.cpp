@@ -258,6 +258,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   flat.effects.environment_map = lit;
   flat.effects.sky_apart = sun_apart;
   flat.effects.sun = has_sun;
+  flat.effects.light_groups = flat.groups ? uint32_t(flat.groups->groups.size()) : 1;
   static_cast<LightDistribution&>(flat) = std::move(d);
 }
 

@@ -14,6 +14,11 @@ uniform samplerBuffer feature_texels;
 #include "shaders/shared/transport.h"
 uniform samplerBuffer path_texels;
 layout(scalar) buffer FilmVertices { uint film_vertices[]; };
+uint vertices_of(uint slot) {
+  // PathState.bits: the events that led on and the surfaces passed since; the last vertex is not among them.
+  uint bits = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 1u))).z;
+  return 1u + (bits >> 8 & 0xffffu) + (bits >> 24);
+}
 #endif
 
 void add(inout FilmHalf h, vec3 x) {
@@ -24,16 +29,51 @@ void add(inout FilmHalf h, vec3 x) {
   h.sum = t;
 }
 
+#if LUCERNA_FILM_LANES
+layout(scalar) writeonly buffer GroupLights { GroupLight group_lights_out[]; };
+
+// Adds a half of a group's sums, as the group is mixed.
+void add_mixed(inout FilmHalf h, FilmHalf of_group, vec3 weight) {
+  add(h, weight * of_group.sum);
+  add(h, weight * of_group.compensation);
+}
+#endif
+
+// What sample `slot` brings of a component.
+vec3 brought_of(uint slot, uint component) {
+#if LUCERNA_FILM_LANES
+  return texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(push.group, component)))).rgb;
+#elif LUCERNA_LIGHT_GROUPS > 1
+  vec3 sum = vec3(0.0);
+  for (uint group = 0u; group < k_group_count; ++group)
+    sum += light_mix[group].rgb * texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(group, component)))).rgb;
+  return sum;
+#else
+  return texelFetch(radiance_texels, int(radiance_texel(slot, component))).rgb;
+#endif
+}
+
 void main() {
   uint index = global_index();
   if (index >= push.pixel_count) return;
+#if LUCERNA_FILM_LANES
+  WorkBlock block = WorkBlock(index / 64u, 0u);
+  if (push.sample_count > 0u) block = blocks[index / 64u];
+#else
   WorkBlock block = blocks[index / 64u];
+#endif
   uvec2 xy = block_pixel(block.index, index % 64u, push.width);
   if (xy.x >= push.width || xy.y >= push.height) return;
   uint pixel = xy.y * push.width + xy.x;
-  uint pixels = push.width * push.height;
-  FilmPixel sums[k_lane_count];
-  for (uint lane = 0u; lane < k_lane_count; ++lane) sums[lane] = film_load(lane, pixel, pixels);
+  FilmPixel sums[k_component_count];
+#if LUCERNA_FILM_LANES
+  sums[0] = LUCERNA_FILM_LOAD(group_primary, pixel);
+  sums[1] = LUCERNA_FILM_LOAD(group_secondary, pixel);
+  sums[2] = LUCERNA_FILM_LOAD(group_tertiary, pixel);
+  sums[3] = LUCERNA_FILM_LOAD(group_caustic, pixel);
+#else
+  for (uint c = 0u; c < k_component_count; ++c) sums[c] = film_load(c, pixel);
+#endif
   vec4 albedo = texelFetch(film_albedo, int(pixel)), normal = texelFetch(film_normal, int(pixel));
 #if LUCERNA_VERTEX_COUNT
   uint vertices = 0u;
@@ -41,29 +81,66 @@ void main() {
   for (uint i = 0u; i < push.sample_count; ++i) {
     uint slot = index + i * push.pixel_count;
     bool even = ((block.first_sample + i) & 1u) == 0u;
-    for (uint lane = 0u; lane < k_lane_count; ++lane) {
-      vec3 brought = texelFetch(radiance_texels, int(radiance_texel(slot, lane))).rgb;
+    for (uint c = 0u; c < k_component_count; ++c) {
+      vec3 brought = brought_of(slot, c);
       if (even) {
-        add(sums[lane].even, brought);
+        add(sums[c].even, brought);
       } else {
-        add(sums[lane].odd, brought);
+        add(sums[c].odd, brought);
       }
     }
+#if !LUCERNA_FILM_LANES
     albedo += texelFetch(feature_texels, int(2u * slot));
     normal += texelFetch(feature_texels, int(2u * slot + 1u));
 #if LUCERNA_VERTEX_COUNT
-    // PathState.bits: the events that led on and the surfaces passed since; the last vertex is not among them.
-    uint bits = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 1u))).z;
-    vertices += 1u + (bits >> 8 & 0xffffu) + (bits >> 24);
+    vertices += vertices_of(slot);
+#endif
 #endif
   }
-  for (uint group = 0u; group < k_group_count; ++group) {
-    uint first = lane_of(group, 0u), place = film_place(first, pixel, pixels);
-    LUCERNA_FILM_STORE(film_primary_out, place, sums[first])
-    LUCERNA_FILM_STORE(film_secondary_out, place, sums[first + 1u])
-    LUCERNA_FILM_STORE(film_tertiary_out, place, sums[first + 2u])
-    LUCERNA_FILM_STORE(film_caustic_out, place, sums[first + 3u])
+#if LUCERNA_FILM_LANES
+  // What all groups have in common comes with the first.
+  uint first_samples = push.group == 0u ? push.sample_count : 0u;
+  for (uint i = 0u; i < first_samples; ++i) {
+    uint slot = index + i * push.pixel_count;
+    albedo += texelFetch(feature_texels, int(2u * slot));
+    normal += texelFetch(feature_texels, int(2u * slot + 1u));
+#if LUCERNA_VERTEX_COUNT
+    vertices += vertices_of(slot);
+#endif
   }
+  // Where nothing was added nothing is written; a loop, because a branch saves no work on lavapipe.
+  for (uint once = 0u; once < min(push.sample_count, 1u); ++once) {
+    LUCERNA_FILM_STORE(group_primary_out, pixel, sums[0])
+    LUCERNA_FILM_STORE(group_secondary_out, pixel, sums[1])
+    LUCERNA_FILM_STORE(group_tertiary_out, pixel, sums[2])
+    LUCERNA_FILM_STORE(group_caustic_out, pixel, sums[3])
+    vec3 all = vec3(0.0);
+    for (uint c = 0u; c < k_component_count; ++c) all += sums[c].even.sum + sums[c].odd.sum;
+    // The first group's dispatch has counted the samples for the others.
+    uint count = film_count[pixel] + (push.group == 0u ? push.sample_count : 0u);
+    vec3 short_light = min(all / float(max(count, 1u)), vec3(65504.0));
+    if (push.quick != 0u)
+      group_lights_out[(push.group / 2u * push.width * push.height + pixel) * 2u + push.group % 2u] =
+          GroupLight(packHalf2x16(short_light.rg), packHalf2x16(vec2(short_light.b, 0.0)));
+  }
+  // The picture is the sum of the groups in their order, whenever that is taken.
+  FilmPixel none = FilmPixel(FilmHalf(vec3(0.0), vec3(0.0)), FilmHalf(vec3(0.0), vec3(0.0)));
+  vec3 weight = light_mix[push.group].rgb;
+  for (uint c = 0u; c < k_component_count; ++c) {
+    FilmPixel of_group = sums[c];
+    sums[c] = none;
+    if (push.group > 0u) sums[c] = film_load(c, pixel);
+    add_mixed(sums[c].even, of_group.even, weight);
+    add_mixed(sums[c].odd, of_group.odd, weight);
+  }
+#endif
+  LUCERNA_FILM_STORE(film_primary_out, pixel, sums[0])
+  LUCERNA_FILM_STORE(film_secondary_out, pixel, sums[1])
+  LUCERNA_FILM_STORE(film_tertiary_out, pixel, sums[2])
+  LUCERNA_FILM_STORE(film_caustic_out, pixel, sums[3])
+#if LUCERNA_FILM_LANES
+  if (first_samples == 0u) return;
+#endif
   LUCERNA_FILM_WRITE(film_albedo_out, int(pixel), albedo);
   LUCERNA_FILM_WRITE(film_normal_out, int(pixel), normal);
   film_count[pixel] += push.sample_count;

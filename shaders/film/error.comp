@@ -46,12 +46,9 @@ struct Row {
 void read_halves(uint pixel, uint count, out float a[5], out float b[5]) {
   float even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
   for (uint c = 0u; c < k_component_count; ++c) {
-    a[1u + c] = b[1u + c] = 0.0;
-    for (uint group = 0u; group < k_group_count; ++group) {
-      FilmPixel p = film_load(lane_of(group, c), pixel, push.width * push.height);
-      a[1u + c] += half_luminance(p.even, even);
-      b[1u + c] += half_luminance(p.odd, odd);
-    }
+    FilmPixel p = film_load(c, pixel);
+    a[1u + c] = half_luminance(p.even, even);
+    b[1u + c] = half_luminance(p.odd, odd);
   }
   a[0] = a[1] + a[2] + a[3] + a[4];
   b[0] = b[1] + b[2] + b[3] + b[4];

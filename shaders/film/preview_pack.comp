@@ -15,12 +15,8 @@ void main() {
   float n = float(max(count, 1u)), even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
   vec4 light[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) {
-    vec3 a = vec3(0.0), b = vec3(0.0);
-    for (uint group = 0u; group < k_group_count; ++group) {
-      FilmPixel p = film_load(lane_of(group, c), pixel, push.width * push.height);
-      a += p.even.sum + p.even.compensation;
-      b += p.odd.sum + p.odd.compensation;
-    }
+    FilmPixel p = film_load(c, pixel);
+    vec3 a = p.even.sum + p.even.compensation, b = p.odd.sum + p.odd.compensation;
     float noise = count < 2u ? -1.0 : 0.5 * abs(luminance(a) / even - luminance(b) / odd);
     light[c] = push.exposure * vec4((a + b) / n, noise);
     if (count < 2u) light[c].w = -1.0;

@@ -10,11 +10,8 @@ layout(scalar) buffer Picture { uint picture[]; };
 layout(scalar) readonly buffer Coarse { uint coarse[]; };
 
 vec3 component_mean(uint c, uint pixel, float n) {
-  vec3 sum = vec3(0.0);
-  for (uint group = 0u; group < k_group_count; ++group) {
-    FilmPixel p = film_load(lane_of(group, c), pixel, push.width * push.height);
-    sum += (p.even.sum + p.odd.sum) + (p.even.compensation + p.odd.compensation);
-  }
+  FilmPixel p = film_load(c, pixel);
+  vec3 sum = (p.even.sum + p.odd.sum) + (p.even.compensation + p.odd.compensation);
   return sum / n;
 }
 

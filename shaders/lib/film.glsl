@@ -2,7 +2,8 @@
 // of Neumaier's variant of Kahan's summation, so that a million samples of mixed magnitude add up without drift.
 //
 // It lies in texel buffers, of which the largest hold 16 times what a storage buffer may on lavapipe. A pixel's two halves
-// are three texels. In one dispatch a pixel is read before it is written, by one invocation. It is written as a storage
+// are three texels. Where light is kept apart by groups (LUCERNA_LIGHT_GROUPS) each group has such sums of its own, and the
+// picture's follow from them. In one dispatch a pixel is read before it is written, by one invocation. It is written as a storage
 // buffer where it fits into one, which is several times as fast on lavapipe, else through images (LUCERNA_FILM_IMAGES).
 #ifndef LUCERNA_LIB_FILM
 #define LUCERNA_LIB_FILM
@@ -27,6 +28,22 @@ layout(scalar) writeonly buffer FilmAlbedo { vec4 film_albedo_out[]; };
 layout(scalar) writeonly buffer FilmNormal { vec4 film_normal_out[]; };
 #define LUCERNA_FILM_WRITE(buffer, texel, value) buffer[texel] = value
 #endif
+#if LUCERNA_LIGHT_GROUPS > 1
+// Of every group of lights, what its light is multiplied by in the picture.
+layout(scalar) readonly buffer LightMix { vec4 light_mix[]; };
+#endif
+#if LUCERNA_FILM_LANES
+// The sums of one group of lights, like those above. These then are the picture's, of all groups as they are mixed.
+uniform samplerBuffer group_primary, group_secondary, group_tertiary, group_caustic;
+#if LUCERNA_FILM_IMAGES
+layout(rgba32f) uniform writeonly imageBuffer group_primary_out, group_secondary_out, group_tertiary_out, group_caustic_out;
+#else
+layout(scalar) writeonly buffer GroupPrimary { vec4 group_primary_out[]; };
+layout(scalar) writeonly buffer GroupSecondary { vec4 group_secondary_out[]; };
+layout(scalar) writeonly buffer GroupTertiary { vec4 group_tertiary_out[]; };
+layout(scalar) writeonly buffer GroupCaustic { vec4 group_caustic_out[]; };
+#endif
+#endif
 layout(scalar) buffer FilmCount { uint film_count[]; };  // samples
 
 struct FilmPixel {
@@ -44,13 +61,11 @@ FilmPixel film_pixel(vec4 a, vec4 b, vec4 c) {
   LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)) + 1, vec4((value).even.compensation.yz, (value).odd.sum.xy));  \
   LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)) + 2, vec4((value).odd.sum.z, (value).odd.compensation));
 
-// A lane's sums at a pixel: in the buffer of its component, group by group.
-uint film_place(uint lane, uint pixel, uint pixels) { return lane / k_component_count * pixels + pixel; }
-FilmPixel film_load(uint lane, uint pixel, uint pixels) {
-  uint component = lane % k_component_count, place = film_place(lane, pixel, pixels);
-  if (component == 0u) return LUCERNA_FILM_LOAD(film_primary, place);
-  if (component == 1u) return LUCERNA_FILM_LOAD(film_secondary, place);
-  if (component == 2u) return LUCERNA_FILM_LOAD(film_tertiary, place);
-  return LUCERNA_FILM_LOAD(film_caustic, place);
+// A component's sums at a pixel.
+FilmPixel film_load(uint component, uint pixel) {
+  if (component == 0u) return LUCERNA_FILM_LOAD(film_primary, pixel);
+  if (component == 1u) return LUCERNA_FILM_LOAD(film_secondary, pixel);
+  if (component == 2u) return LUCERNA_FILM_LOAD(film_tertiary, pixel);
+  return LUCERNA_FILM_LOAD(film_caustic, pixel);
 }
 #endif

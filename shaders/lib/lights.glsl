@@ -18,6 +18,14 @@ uniform samplerBuffer environment_texels;
 uniform samplerBuffer environment_alias;
 #endif
 
+#if LUCERNA_LIGHT_GROUPS > 1 && (LUCERNA_EMISSIVE || LUCERNA_UNLIT)
+uniform samplerBuffer emissive_groups;  // a byte a primitive
+uint emissive_group(uint primitive) {
+  uvec4 words = floatBitsToUint(texelFetch(emissive_groups, int(primitive >> 4)));
+  return words[primitive >> 2 & 3u] >> 8u * (primitive & 3u) & 0xffu;
+}
+#endif
+
 struct LightSample {
   vec3 direction;    // unit, towards the light
   float distance;    // metres; infinite for directional lights and the environment
@@ -30,6 +38,7 @@ struct LightSample {
   vec3 normal;       // of the triangle, unit, on our side
   vec3 offset;       // error bound of target, as Surface::offset
   bool sky;          // of the sky, where that is apart
+  uint group;        // of lights
 };
 
 // `bits`: 64 uniform random bits, the higher ones first. They choose the entry, and what is left of them within it flips its
@@ -141,6 +150,7 @@ LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail, float
   s.offset = vec3(0.0);
   s.delta = true;
   s.sky = false;
+  s.group = 0u;
   float pmf;
   uint light = alias_choose(light_alias, frame.light_count, uvec2(choice, hash_mix(choice)), pmf);
 #if LUCERNA_SKY_APART
@@ -154,8 +164,12 @@ LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail, float
   int at = int(light * k_light_texels);
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
   uint kind = floatBitsToUint(a.w);
+#if LUCERNA_LIGHT_GROUPS > 1
+  s.group = floatBitsToUint(texelFetch(scene_lights, at + 3).w) >> k_light_group_shift;
+#endif
 #if LUCERNA_SKY_APART
   if (s.sky) kind = k_light_environment;
+  if (s.sky) s.group = frame.sky_group;
 #endif
   // Point and spot: irradiance I/d^2; a spot falls off smoothly between its cones (glTF's recommended curve).
   vec3 to = a.xyz - position;

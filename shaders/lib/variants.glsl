@@ -19,6 +19,9 @@
 #ifndef LUCERNA_SUN
 #define LUCERNA_SUN 0
 #endif
+#ifndef LUCERNA_LIGHT_GROUPS
+#define LUCERNA_LIGHT_GROUPS 0
+#endif
 #ifndef LUCERNA_SPECULAR
 #define LUCERNA_SPECULAR 0
 #endif
@@ -94,6 +97,9 @@
 // The film's kernels.
 #ifndef LUCERNA_FILM_IMAGES
 #define LUCERNA_FILM_IMAGES 0
+#endif
+#ifndef LUCERNA_FILM_LANES
+#define LUCERNA_FILM_LANES 0
 #endif
 #ifndef LUCERNA_VERTEX_COUNT
 #define LUCERNA_VERTEX_COUNT 0

@@ -23,7 +23,9 @@ LUCERNA_CONST uint k_coarse_step = 4u;  ///< pixels of the film along the side o
 struct FilmPush {
   uint width, height;
   uint pixel_count;      ///< slots a sample: 64 for each block of the item
-  uint sample_count;     ///< samples a pixel
+  uint sample_count;     ///< samples a pixel; 0: only what the picture makes of the groups of lights, of all blocks
+  uint group;            ///< of lights, where the film keeps them apart
+  uint quick;            ///< not 0: GroupLights has room for all
 };
 
 /// What is known of the noise in one block, from the two halves of the film. A pixel's halves have the means A and B, which
@@ -69,6 +71,19 @@ struct ErrorPush {
   uint block_count;
   float luminance_floor;  ///< noise in pixels darker than this is held against this
   uint records;           ///< not 0: FilmRecords is known
+};
+
+/// Mean radiance of one group of lights at a pixel, all components: halves (r, g), (b, 0). In pairs of groups, a texel
+/// each, pair by pair: group 2 p + q at ((p * pixels + pixel) * 2 + q).
+struct GroupLight {
+  uint rg, b;
+};
+
+struct MixPush {
+  uint width, height;
+  uint groups;           ///< of lights
+  uint curve;            ///< ToneCurve
+  float exposure;
 };
 
 LUCERNA_CONST uint k_layer_beauty = 0u;   ///< sum of the shown components

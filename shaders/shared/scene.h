@@ -60,10 +60,12 @@ LUCERNA_CONST uint k_light_texels = 4u;
 // texel 0:  vertex 0, bits kind                     position (point, spot), bits kind
 // texel 1:  vertex 1, area [m^2]                    intensity rgb, cos of the inner cone
 // texel 2:  vertex 2, bits primitive                direction (spot, directional; unit, into the scene), cos of the outer cone
-// texel 3:  radiance rgb without textures, bits:    0
-//           k_light_both_sides, k_light_flipped
+// texel 3:  radiance rgb without textures, bits:    0, bits likewise
+//           k_light_both_sides, k_light_flipped,
+//           group of lights << k_light_group_shift
 LUCERNA_CONST uint k_light_both_sides = 1u;       ///< the back side emits as well
 LUCERNA_CONST uint k_light_flipped = 2u;          ///< the front is the clockwise side
+LUCERNA_CONST uint k_light_group_shift = 8u;
 LUCERNA_CONST uint k_light_triangle = 0u;
 LUCERNA_CONST uint k_light_point = 1u;
 LUCERNA_CONST uint k_light_spot = 2u;
@@ -102,6 +104,7 @@ struct Frame {
   uint max_depth;
   uint roulette_depth;
   float scene_radius;
+  uint sky_group, sun_group;  ///< of lights, where they are kept apart: of the environment, and of its sun
   uint automaton[32];         ///< paths::pack; k_automaton_states
 };
 

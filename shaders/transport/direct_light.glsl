@@ -33,14 +33,20 @@ uint sky_bits(Bsdf bsdf, bool sky_known, uint event) {
 #endif
 }
 
-// What a path that leaves the scene brings.
-vec3 environment_met(PathState path, vec3 direction) {
+// What a path that leaves the scene brings; where groups of lights are kept apart, without the sun's part.
+vec3 environment_met(PathState path, vec3 direction, out vec3 sun) {
+  sun = vec3(0.0);
 #if LUCERNA_SKY_APART
   Environment e = environment_radiance(direction);
   float sky_share = sky_share_before(path);
   vec3 light = (path.bits & k_path_sky_known) != 0u ? vec3(0.0) : e.sky * met_weight(path, e.pdf_sky * sky_share);
 #if LUCERNA_SUN
-  light += (path.bits & k_path_sky_only) != 0u ? vec3(0.0) : e.sun * met_weight(path, e.pdf_sun * (1.0 - sky_share));
+  vec3 of_sun = (path.bits & k_path_sky_only) != 0u ? vec3(0.0) : e.sun * met_weight(path, e.pdf_sun * (1.0 - sky_share));
+#if LUCERNA_LIGHT_GROUPS > 1
+  sun = path.throughput * of_sun;
+#else
+  light += of_sun;
+#endif
 #endif
   return path.throughput * light;
 #else
@@ -108,7 +114,7 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   ShadowState shadow;
   shadow.diffuse = component_d < k_component_count ? arrives * f.diffuse : vec3(0.0);
   shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
-  shadow.lanes = lane_of(0u, component_d) | lane_of(0u, component_g) << 8;
+  shadow.lanes = lane_of(l.group, component_d) | lane_of(l.group, component_g) << 8;
   shadow.pad0 = 0u;
 #if LUCERNA_SKY_APART
   if (l.sky && sky_known) shadow.diffuse = vec3(0.0);

@@ -89,22 +89,34 @@ void main() {
   uint state = path_automaton(path), depth = path_depth(path);
   Sampler random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
 
-  vec3 gain = vec3(0.0);  // what the path meets here, all of one lane
+  vec3 gain = vec3(0.0);  // what the path meets here, all of one lane ...
+  uint group = 0u;
+  vec3 sun = vec3(0.0);  // ... but for an environment's sun, where that is of another group
   VertexOut found;
   for (uint lane = 0u; lane < k_lane_count; ++lane) found.radiance[lane] = vec3(0.0);
   found.sky_known = false;
   found.samples_lights = true;
   if (hit.prim == k_no_hit) {
-    gain = environment_met(path, ray.direction);
+    gain = environment_met(path, ray.direction, sun);
 #if LUCERNA_HIDDEN_BACKGROUND
     // Straight from the eye; what mirrors and glass show of it stays, and all that it lights.
-    if (depth == 0u && automaton_no_diffuse(state)) gain = vec3(0.0);
+    if (depth == 0u && automaton_no_diffuse(state)) gain = sun = vec3(0.0);
+#endif
+#if LUCERNA_LIGHT_GROUPS > 1
+    group = frame.sky_group;
+    if (frame.sun_group == group) {
+      gain += sun;
+      sun = vec3(0.0);
+    }
 #endif
   }
   if (hit.prim != k_no_hit) {
     Surface surface = make_surface(ray, hit);
 #if LUCERNA_VOLUMES
     if (path.medium != 0u) path.throughput *= exp(-material_absorption(path.medium - 1u) * hit.t);
+#endif
+#if LUCERNA_LIGHT_GROUPS > 1 && (LUCERNA_EMISSIVE || LUCERNA_UNLIT)
+    group = emissive_group(hit.prim);
 #endif
     float travelled = path.travelled + hit.t;
     bool go_on = false;   // a next ray is to be traced
@@ -161,7 +173,11 @@ void main() {
     }
     if (go_on) continue_path(slot, path, offset_origin(surface, direction), direction);
   }
-  uint met = lane_of(0u, automaton_component(state));
+  uint met = lane_of(group, automaton_component(state));
+#if LUCERNA_LIGHT_GROUPS > 1 && LUCERNA_SUN
+  if (hit.prim == k_no_hit && frame.sun_group != frame.sky_group)
+    add_radiance(slot, lane_of(frame.sun_group, automaton_component(state)), sun);
+#endif
 #if LUCERNA_VERTEX_HOOKS
   for (uint lane = 0u; lane < k_lane_count; ++lane)
     add_radiance(slot, lane, found.radiance[lane] + (met == lane ? gain : vec3(0.0)));

@@ -60,6 +60,7 @@ gpu::Defines values() {
 std::string full(const std::string& variant) {
   if (variant == "LUCERNA_BUCKETS") return "6";
   if (variant == "LUCERNA_COHERENT") return "4";
+  if (variant == "LUCERNA_LIGHT_GROUPS") return "8";
   if (variant == "LUCERNA_NEIGHBOURS") return "27";
   return "1";
 }

@@ -59,7 +59,7 @@ TEST_CASE("a million samples of mixed magnitude: each half's sum is right to flo
       }
     radiance.write(std::span<const vec4>(values));
     block.write(std::span<const shared::WorkBlock>({shared::WorkBlock{0, batch * k_batch}}));
-    stream.dispatch(add, resources, shared::FilmPush{8, 8, 64, k_batch}, 1);
+    stream.dispatch(add, resources, shared::FilmPush{8, 8, 64, k_batch, 0, 0}, 1);
     stream.run();
   }
   naive_error = std::abs(naive - naive_truth) / naive_truth;

@@ -65,7 +65,7 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
   resources.set("WorkBlocks", work);
   resources.set("radiance_texels", radiance);
   resources.set("feature_texels", features);
-  const shared::FilmPush added{k_width, k_height, 64 * blocks, k_samples};
+  const shared::FilmPush added{k_width, k_height, 64 * blocks, k_samples, 0, 0};
   stream.dispatch(add, resources, added, blocks);
   // The last block of the list is left out: its figures stay as they were.
   stream.dispatch(error, resources, shared::ErrorPush{k_width, k_height, blocks - 1, k_floor},
@@ -301,7 +301,8 @@ TEST_CASE(
     stream.run();
     return std::vector<BlockError>(film.errors().begin(), film.errors().end());
   };
-  stream.dispatch(add, resources, shared::FilmPush{k_width, k_height, 64 * k_blocks, k_samples}, k_blocks);
+  stream.dispatch(add, resources, shared::FilmPush{k_width, k_height, 64 * k_blocks, k_samples, 0, 0},
+                  k_blocks);
   const std::vector<BlockError> without = run(plain, 0), unknown = run(error, 0), full = run(error, 1);
   CHECK(std::memcmp(without.data(), unknown.data(), without.size() * sizeof(BlockError)) == 0);
   const film::Image image = film.read();
@@ -332,7 +333,8 @@ TEST_CASE(
   }
   // What stops a tile says the same of the records.
   film.clear(stream);
-  stream.dispatch(add, resources, shared::FilmPush{k_width, k_height, 64 * k_blocks, k_samples}, k_blocks);
+  stream.dispatch(add, resources, shared::FilmPush{k_width, k_height, 64 * k_blocks, k_samples, 0, 0},
+                  k_blocks);
   const std::vector<BlockError> alone = run(stopping, 1);
   for (uint32_t b = 0; b < k_blocks; ++b) {
     CHECK(alone[b].records_relative == full[b].records_relative);

@@ -74,7 +74,7 @@ struct Stage {
     resources.set("radiance_texels", radiance);
     resources.set("feature_texels", surfaces);
     const auto n = uint32_t(list.size());
-    stream.dispatch(add, resources, shared::FilmPush{to.width(), to.height(), 64 * n, samples}, n);
+    stream.dispatch(add, resources, shared::FilmPush{to.width(), to.height(), 64 * n, samples, 0, 0}, n);
     stream.run();
   }
   film::PreviewShares show(const Film* draft = nullptr, bool filtered = true) {

@@ -579,3 +579,77 @@ TEST_CASE("a dropped image lights the scene until it is undone, unless it cannot
   CHECK_THAT(b.failure("environment.load /no/such/sky.hdr"), Contains("/no/such/sky.hdr: no such file"));
   std::filesystem::remove(file), std::filesystem::remove(broken);
 }
+
+TEST_CASE("a light mix is set, kept, blended, undone and written into the lights") {
+  Bench b;
+  b.open();
+  REQUIRE(b.work.light_groups().groups.size() == 4);
+  const std::string reading = b.work.scene->lights[2].name;
+  CHECK(b.work.light_groups().groups[3].name == reading);
+  b.run("mix.set \"Brass lamp\" ev=1.5 kelvin=2700");
+  CHECK(b.work.light_mix().at("Brass lamp").ev == 1.5f);
+  CHECK(b.work.light_mix().at("Brass lamp").color == blackbody_color(2700));
+  b.run("mix.set sky mute=true");
+  b.run("mix.set \"Brass lamp\" color=1,0.5,0");
+  CHECK(b.work.setting("relight.mix") == "Brass lamp: ev=1.5 color=1,0.5,0; sky: mute");
+  b.run("mix.preset.save evening");
+  b.run("mix.reset");
+  CHECK(b.work.setting("relight.mix").empty());
+  b.run("mix.set Sun factor=0");
+  CHECK(b.work.light_mix().at("Sun").mute);
+  b.run("mix.set Sun factor=4");
+  CHECK(b.work.light_mix().at("Sun") == scene::GroupMix{.ev = 2});
+  b.run("mix.preset.save morning");
+  b.run("mix.preset.blend evening morning 0");
+  CHECK(b.work.setting("relight.mix") == "Brass lamp: ev=1.5 color=1,0.5,0; sky: mute");
+  b.run("mix.preset.blend evening morning 0.5");
+  const std::vector<vec3> half = scene::mix_weights(b.work.light_mix(), b.work.light_groups());
+  CHECK(half[0].x == Approx(0.5));  // the sky
+  CHECK(half[1].x == Approx(2.5));
+  REQUIRE(b.settled());
+  CHECK(b.session.settings().text("relight.mix") == b.work.setting("relight.mix"));
+
+  // Steps of a drag are one.
+  const std::string before = b.work.setting("relight.mix");
+  for (const char* ev : {"1", "2", "3"}) b.run(std::string("mix.set Sun ev=") + ev, 7);
+  CHECK(b.work.light_mix().at("Sun").ev == 3);
+  b.run("undo");
+  CHECK(b.work.setting("relight.mix") == before);
+
+  // What cannot be done is said, and changes nothing.
+  CHECK_THAT(b.failure("mix.set Moon ev=1"), Contains("'Moon'") && Contains("sky, Sun, Brass lamp"));
+  CHECK_THAT(b.failure("mix.set sky kelvin=0"), Contains("kelvin"));
+  CHECK_THAT(b.failure("mix.set sky ev=1 factor=2"), Contains("exclude"));
+  CHECK_THAT(b.failure("mix.preset.load noon"), Contains("'noon'") && Contains("evening, morning"));
+  CHECK_THAT(b.failure("mix.group a=b c"), Contains("?"));
+  CHECK(b.work.setting("relight.mix") == before);
+  b.run("mix.preset.delete morning");
+  CHECK(b.work.mix_presets().size() == 1);
+  // A preset of another scene: what is here of it is taken up.
+  b.run("set relight.presets \"other = Chandelier: mute; Sun: ev=-1\"");
+  b.run("mix.preset.load other");
+  CHECK(scene::mix_weights(b.work.light_mix(), b.work.light_groups())[1] == vec3(0.5f));
+
+  // Into the lights: a lamp that is mute is off, an environment takes no colour.
+  b.run("set relight.mix \"Sun: ev=1 color=1,0.5,1; Brass lamp: mute; sky: color=1,0.5,0.5\"");
+  const Document unmixed = b.work.document();
+  b.run("mix.apply");
+  CHECK(b.work.light(0).intensity == unmixed.lights[0].intensity * vec3(2, 1, 2));
+  CHECK_FALSE(b.work.light(1).enabled);
+  CHECK(b.work.light(1).intensity == unmixed.lights[1].intensity);
+  CHECK(b.work.light(2).intensity == unmixed.lights[2].intensity);
+  CHECK(b.work.environment_scale() == unmixed.environment_scale);
+  CHECK(b.work.setting("relight.mix") == "sky: color=1,0.5,0.5");
+  REQUIRE(b.settled());
+  b.run("undo");
+  CHECK(b.work.document() == unmixed);
+  b.run("set relight.mix \"sky: ev=-2\"");
+  b.run("mix.apply");
+  CHECK(b.work.environment_scale() == 0.25f * unmixed.environment_scale);
+  CHECK(b.work.setting("relight.mix").empty());
+
+  b.run("mix.group *lamp* lamps");
+  CHECK(b.work.light_groups().groups.size() == 3);
+  CHECK(b.work.light_groups().groups[2].name == "lamps");
+  CHECK(b.work.light_groups().groups[2].lamps == 2);
+}

@@ -215,6 +215,10 @@ void write_exr(const fs::path& file, const FilmImage& image) {
       throw_error(where, "channel name '{}' is empty or repeated", name);
     spec.channelnames.push_back(name);
   }
+  if (!image.halves.empty())
+    for (const auto& [name, values] : image.channels)
+      spec.channelformats.push_back(image.halves.contains(name) ? OIIO::TypeDesc::HALF
+                                                                : OIIO::TypeDesc::FLOAT);
   // OpenImageIO guesses alpha and depth by name; here they are what the name says and nothing is multiplied.
   spec.alpha_channel = spec.z_channel = -1;
   spec.attribute("compression", "zip");

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/io/load.h"
+#include "scene/light_groups.h"
 
 namespace lucerna::scene {
 namespace {
@@ -79,6 +80,41 @@ Json describe_lights(const Scene& scene) {
   return list;
 }
 
+/// By the scene's own rules; of rules that are no good nothing is said here.
+LightGroups groups_of(const Scene& scene) {
+  for (const auto& [key, value] : scene.settings)
+    if (key == "relight.groups") try {
+        return group_lights(scene, parse_group_rules(value));
+      } catch (const Error&) {
+        break;
+      }
+  return group_lights(scene);
+}
+
+Json describe_groups(const LightGroups& groups) {
+  Json list = Json::array();
+  for (const LightGroup& group : groups.groups) {
+    Json item{{"name", group.name}, {"lamps", group.lamps}, {"surfaces", group.surfaces}};
+    if (group.sky) item["sky"] = true;
+    if (group.sun) item["sun"] = true;
+    list.push_back(item);
+  }
+  return list;
+}
+
+/// "sky, 3 lamps".
+std::string members(const Json& group) {
+  std::vector<std::string> parts;
+  if (group.contains("sky")) parts.emplace_back("sky");
+  if (group.contains("sun")) parts.emplace_back("sun");
+  const auto count = [&](const char* key, const char* what) {
+    const auto n = group[key].get<uint32_t>();
+    if (n > 0) parts.push_back(fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"));
+  };
+  count("lamps", "lamp"), count("surfaces", "surface");
+  return parts.empty() ? "nothing" : fmt::format("{}", fmt::join(parts, ", "));
+}
+
 Json describe_cameras(const Scene& scene) {
   Json list = Json::array();
   for (const Camera& camera : scene.cameras) {
@@ -136,6 +172,8 @@ nlohmann::ordered_json describe(const Scene& scene) {
                                {"wrap", {wrap_name(texture.wrap_u), wrap_name(texture.wrap_v)}},
                                {"nearest", texture.nearest}});
   out["lights"] = describe_lights(scene);
+  const LightGroups groups = groups_of(scene);
+  out["light_groups"] = describe_groups(groups);
   out["cameras"] = describe_cameras(scene);
   const Environment& e = scene.environment;
   if (e.image != k_none)
@@ -158,6 +196,7 @@ nlohmann::ordered_json describe(const Scene& scene) {
   out["settings"] = Json::object();
   for (const auto& [key, value] : scene.settings) out["settings"][key] = value;
   out["warnings"] = scene.warnings;
+  for (const std::string& message : groups.messages) out["warnings"].push_back(message);
   return out;
 }
 
@@ -189,6 +228,8 @@ std::string describe_text(const Scene& scene) {
   line("lights       {}", d["lights"].size());
   for (const Json& light : d["lights"])
     line("  {}: {}, {}", name(light), kind(light), triple(light["intensity"]));
+  line("light groups {}", d["light_groups"].size());
+  for (const Json& group : d["light_groups"]) line("  {}: {}", name(group), members(group));
   line("cameras      {}", d["cameras"].size());
   for (const Json& camera : d["cameras"]) line("  {}: {}", name(camera), kind(camera));
   const Environment& e = scene.environment;
@@ -202,7 +243,7 @@ std::string describe_text(const Scene& scene) {
        scene.extensions.empty() ? "none" : fmt::format("{}", fmt::join(scene.extensions, ", ")));
   if (!scene.unknown_extensions.empty()) line("unknown      {}", fmt::join(scene.unknown_extensions, ", "));
   for (const auto& [key, value] : scene.settings) line("setting      {} = {}", key, value);
-  for (const std::string& warning : scene.warnings) line("warning      {}", warning);
+  for (const Json& warning : d["warnings"]) line("warning      {}", warning.get<std::string>());
   return text;
 }
 

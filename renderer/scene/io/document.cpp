@@ -4,7 +4,10 @@
 #include <cstring>
 #include <fstream>
 
+#include "scene/light_groups.h"
+
 namespace lucerna::scene {
+
 namespace {
 
 constexpr uint32_t k_glb_magic = 0x46546c67, k_chunk_json = 0x4e4f534a, k_chunk_bin = 0x004e4942;
@@ -301,6 +304,17 @@ void open_document(Document& document, const std::filesystem::path& path) {
   document.progress(0.1f, "buffers");
   read_buffers(document, container);
   make_model(document);
+}
+
+std::string light_group(const Item& item) {
+  const auto extras = item.find("extras");
+  if (!extras || !extras->json().is_object()) return "";
+  const auto group = extras->find("light_group");
+  if (!group) return "";
+  const auto& json = group->json();
+  if (json.is_number_integer()) return group_name(json.dump());
+  if (!json.is_string()) group->fail("expected the name of a group of lights");
+  return group_name(json.get<std::string>());
 }
 
 }  // namespace lucerna::scene

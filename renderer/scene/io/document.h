@@ -112,6 +112,9 @@ void open_document(Document& document, const std::filesystem::path& path);
 /// every index is in range, every view inside its buffer, every accessor inside its view, the node graph a
 /// forest.
 void check_structure(const Document& document);
+/// extras.light_group of a node, material or lamp, a text or a whole number, as light_groups.h has names; ""
+/// where there is none. Throws a located Error when it is something else.
+std::string light_group(const Item& item);
 /// Whether an extension is honoured (load.h lists them).
 bool is_known_extension(const std::string& name);
 

@@ -146,6 +146,7 @@ Id MaterialLoader::material(int index) {
     const Item item = document_.root().at("materials").at(static_cast<size_t>(index));
     material.name = item.text("name", "");
     if (material.name.empty()) material.name = fmt::format("material {}", index);
+    material.group = light_group(item);
     read(item, material, needs);
   }
   scene_.materials.push_back(std::move(material));

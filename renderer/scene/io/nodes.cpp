@@ -71,9 +71,9 @@ class Walker {
           roots.push_back(nodes->at(i).index(document_.model.nodes.size(), "nodes"));
       return roots;
     }
-    std::vector<uint8_t> is_child(document_.model.nodes.size(), 0);
+    std::vector<bool> is_child(document_.model.nodes.size());
     for (const tinygltf::Node& node : document_.model.nodes)
-      for (int child : node.children) is_child[static_cast<size_t>(child)] = 1;
+      for (int child : node.children) is_child[static_cast<size_t>(child)] = true;
     for (uint32_t i = 0; i < is_child.size(); ++i)
       if (!is_child[i]) roots.push_back(i);
     return roots;
@@ -127,19 +127,23 @@ class Walker {
     const bool holds = node.mesh >= 0 || node.camera >= 0 || light;
     if (holds && singular(world)) item.fail("the node's matrix in the world is singular or not finite");
     const std::string name = node.name.empty() ? fmt::format("node {}", index) : node.name;
+    const std::string group = light_group(item);
     if (node.mesh >= 0) {
+      const size_t before = scene_.instances.size();
       const auto instancing = extensions ? extensions->find("EXT_mesh_gpu_instancing") : std::nullopt;
       if (instancing)
         add_instances(*instancing, name, static_cast<Id>(node.mesh), world);
       else
         add_instance(name, static_cast<Id>(node.mesh), world);
+      for (size_t i = before; !group.empty() && i < scene_.instances.size(); ++i)
+        scene_.instances[i].group = group;
     }
     if (node.camera >= 0) add_camera(name, static_cast<size_t>(node.camera), world);
-    if (light) add_light(*light, name, world);
+    if (light) add_light(*light, name, world, group);
   }
 
   void add_instance(const std::string& name, Id mesh, const dmat4& world) {
-    scene_.instances.push_back({name, mesh, mat4(world), glm::determinant(dmat3(world)) < 0});
+    scene_.instances.push_back({name, mesh, mat4(world), glm::determinant(dmat3(world)) < 0, {}});
   }
 
   void add_instances(const Item& extension, const std::string& name, Id mesh, const dmat4& world) {
@@ -210,7 +214,8 @@ class Walker {
     scene_.cameras.push_back(camera);
   }
 
-  void add_light(const Item& reference, const std::string& node, const dmat4& world) {
+  void add_light(const Item& reference, const std::string& node, const dmat4& world,
+                 const std::string& group) {
     const auto extensions = root_.find("extensions");
     const auto punctual = extensions ? extensions->find("KHR_lights_punctual") : std::nullopt;
     const auto lights = punctual ? punctual->find("lights") : std::nullopt;
@@ -219,6 +224,7 @@ class Walker {
     Light light;
     light.name = item.text("name", node);
     if (light.name.empty()) light.name = node;
+    light.group = group.empty() ? light_group(item) : group;
     const std::string& type = item.at("type").text();
     if (type == "point") {
       light.kind = LightKind::point;

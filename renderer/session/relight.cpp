@@ -1,0 +1,80 @@
+#include "session/relight.h"
+
+#include "film/film.h"
+#include "solvers/solver.h"
+
+namespace lucerna::session {
+namespace {
+
+/// Of the device's memory, what sums by group may take where nobody has asked for them.
+constexpr uint64_t k_share = 8;
+
+/// Why light is not kept apart whatever its groups are; "" where it may be.
+std::string obstacle(const plan::Plan& plan, const plan::Settings& settings, bool interactive) {
+  const std::string& enabled = settings.text("relight.enabled");
+  if (enabled == "off") return "relight.enabled is off";
+  if (enabled == "auto" && !interactive) return "relight.enabled is auto, which is off in batch renders";
+  for (const solvers::SolverInfo* info : plan.at_work())
+    if (solvers::type_of(*info).make)
+      return fmt::format("'{}' computes light that is not kept apart by groups", info->title);
+  return "";
+}
+
+/// ... because of these.
+std::string obstacle(const plan::Settings& settings, const scene::LightGroups& groups, uint64_t pixels,
+                     uint64_t memory) {
+  if (groups.groups.size() < 2) return "all lights are of one group";
+  const uint64_t bytes = pixels * film::sum_bytes(uint32_t(groups.groups.size()));
+  if (settings.text("relight.enabled") == "auto" && bytes > memory / k_share)
+    return fmt::format("{} groups would take {} MiB; relight.enabled=on takes them", groups.groups.size(),
+                       bytes >> 20);
+  return "";
+}
+
+std::string unknown_group(const std::string& name, const scene::LightGroups& groups) {
+  std::vector<std::string> names;
+  for (const scene::LightGroup& group : groups.groups) names.push_back(group.name);
+  return fmt::format("relight.mix: the scene has no group of lights '{}'; there are: {}", name,
+                     fmt::join(names, ", "));
+}
+
+}  // namespace
+
+Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
+                     std::shared_ptr<const scene::Scene> scene, bool interactive, uint64_t pixels,
+                     uint64_t memory, const Relight& before) {
+  Relight r;
+  const std::string& rules_text = settings.text("relight.groups");
+  const std::vector<scene::LightGroupRule> rules = scene::parse_group_rules(rules_text);
+  const scene::LightMix mix = scene::parse_mix(settings.text("relight.mix"));
+  scene::parse_presets(settings.text("relight.presets"));
+  r.lit = scene;
+  r.why_not = obstacle(plan, settings, interactive);
+  if (!r.why_not.empty() && mix.empty()) return r;
+  r.scene = scene;
+  r.groups = std::make_shared<const scene::LightGroups>(
+      before.groups ? scene::group_lights(*scene, rules, *before.scene, *before.groups)
+                    : scene::group_lights(*scene, rules));
+  r.messages = r.groups->messages;
+  for (const std::string& name : scene::unknown_groups(mix, *r.groups))
+    r.messages.push_back(unknown_group(name, *r.groups));
+  if (r.why_not.empty()) r.why_not = obstacle(settings, *r.groups, pixels, memory);
+  r.apart = r.why_not.empty();
+  if (r.apart) {
+    r.weights = scene::mix_weights(mix, *r.groups);
+  } else if (!scene::is_neutral(mix, *r.groups)) {
+    r.lit = std::make_shared<const scene::Scene>(scene::mixed_scene(*scene, *r.groups, mix, &r.messages));
+    r.baked = rules_text + "\n" + scene::mix_text(mix);
+  }
+  return r;
+}
+
+void remix(Relight& relight, const std::string& text) {
+  const scene::LightMix mix = scene::parse_mix(text);
+  relight.messages = relight.groups->messages;
+  for (const std::string& name : scene::unknown_groups(mix, *relight.groups))
+    relight.messages.push_back(unknown_group(name, *relight.groups));
+  relight.weights = scene::mix_weights(mix, *relight.groups);
+}
+
+}  // namespace lucerna::session

@@ -1,0 +1,165 @@
+// The light mix: every group of lights with its strength, colour, mute and solo, and mixes with names.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/blackbody.h"
+#include "base/color.h"
+#include "state.h"
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+std::string members(const scene::LightGroup& group) {
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  const auto count = [&](uint32_t n, const char* what) {
+    if (n > 0) add(fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"));
+  };
+  if (group.sky) add("the environment's sky");
+  if (group.sun) add("the environment's sun");
+  count(group.lamps, "lamp"), count(group.surfaces, "surface");
+  return text.empty() ? "no light" : text;
+}
+
+void group_row(Ui& ui, const scene::LightGroup& group, const scene::GroupMix& mix, bool silent) {
+  const float width = ImGui::CalcItemWidth();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const vec3 tint = tint_of(mix.color);
+  list->AddRectFilled({at.x, at.y + px(6)}, {at.x + px(10), at.y + px(16)},
+                      colour::with_alpha(display_colour(tint), silent ? 0.3f : 1.0f), px(2));
+  list->AddRect({at.x, at.y + px(6)}, {at.x + px(10), at.y + px(16)}, colour::grey(80), px(2));
+  ImGui::InvisibleButton("##name", {std::max(1.0f, width - px(52)), px(22)});
+  tooltip(fmt::format("{}: {}.", group.name, members(group)));
+  draw_text(list, {at.x + px(18), at.y}, {at.x + width - px(52), at.y + px(22)},
+            elided(group.name, width - px(70)), silent ? colour::text_faint : colour::text);
+  ImGui::SetCursorScreenPos({at.x + width - px(48), at.y});
+  if (sign_button("##mute", Sign::power, !mix.mute)) ui.act("mix.set", group.name, named("mute", !mix.mute));
+  tooltip(mix.mute ? "Takes the group's light back in." : "Takes the group's light out of the picture.");
+  ImGui::SetCursorScreenPos({at.x + width - px(22), at.y});
+  if (sign_button("##solo", Sign::solo, mix.solo, colour::accent))
+    ui.act("mix.set", group.name, named("solo", !mix.solo));
+  tooltip(mix.solo ? "Back to all groups." : "Shows the light of this group without the others.");
+  ImGui::SetCursorScreenPos({at.x, at.y + px(24)});
+  float ev = mix.ev;
+  ImGui::BeginDisabled(mix.mute);
+  if (slider("##ev", fmt::format("\xC3\x97 {:.3g}", std::exp2(mix.ev)), ev,
+             {.lo = -8,
+              .hi = 8,
+              .decimals = 2,
+              .unit = "EV",
+              .sign = true,
+              .travel = 0.5f,
+              .typed_lo = -scene::k_most_ev,
+              .typed_hi = scene::k_most_ev}))
+    ui.act("mix.set", group.name, named("ev", ev));
+  tooltip("Strength of the group in the picture: a factor of 2 to this power.");
+  vec3 picked = tint;
+  const float half = std::floor(0.5f * (width - px(6)));
+  ImGui::PushItemWidth(half);
+  const float line = ImGui::GetCursorScreenPos().y;
+  if (colour_field("##tint", "Tint", picked) && strength_of(picked) > 0)
+    ui.act("mix.set", group.name, named("color", tint_of(picked)));
+  ImGui::PopItemWidth();
+  tooltip("Multiplies the colour of the group's lights. Press to choose another; white leaves it.");
+  const NearestKelvin nearest = nearest_kelvin(tint);
+  float kelvin = nearest.kelvin;
+  ImGui::SetCursorScreenPos({at.x + half + px(6), line});
+  if (slider("##kelvin", "", kelvin,
+             {.lo = k_coolest_kelvin,
+              .hi = k_hottest_kelvin,
+              .log = true,
+              .decimals = 0,
+              .unit = "K",
+              .bar = nearest.off < 0.02f,
+              .step = 10,
+              .travel = 0.5f},
+             width - half - px(6)))
+    ui.act("mix.set", group.name, named("kelvin", kelvin));
+  tooltip("Tints by the colour of a black body of that temperature; 6500 K is nearly white.");
+  ImGui::EndDisabled();
+  ImGui::SetCursorScreenPos({at.x, ImGui::GetCursorScreenPos().y});
+}
+
+/// Mixes with names, and a slider between two of them.
+void preset_rows(Ui& ui) {
+  const scene::MixPresets presets = ui.mix_presets();
+  std::vector<std::string> names;
+  for (const auto& [name, mix] : presets) names.push_back(name);
+  const float width = ImGui::CalcItemWidth();
+  std::string forgotten;
+  int row = 0;
+  for (const auto& [name, mix] : presets) {
+    ImGui::PushID(row++);
+    const bool chosen = scene::mix_text(mix) == scene::mix_text(ui.light_mix());
+    if (button("##preset", elided(name, width - px(52)), chosen, width - px(28)))
+      ui.act("mix.preset.load", name);
+    tooltip(fmt::format("{}: takes this mix up.", name));
+    ImGui::SameLine(0, px(6));
+    if (sign_button("##forget", Sign::close, false)) forgotten = name;
+    tooltip("Forgets this preset.");
+    ImGui::PopID();
+  }
+  if (!forgotten.empty()) ui.act("mix.preset.delete", forgotten);
+  if (names.size() >= 2) {
+    static int from = 0, to = 1;
+    static float amount = 0;
+    from = std::min(from, static_cast<int>(names.size()) - 1),
+    to = std::min(to, static_cast<int>(names.size()) - 1);
+    const float half = std::floor(0.5f * (width - px(6)));
+    bool moved = choice("##from", "", names, from, half);
+    tooltip("The mix at the slider's left end.");
+    ImGui::SameLine(0, px(6));
+    moved = choice("##to", "", names, to, width - half - px(6)) || moved;
+    tooltip("The mix at its right end.");
+    moved = slider("##blend", "Between", amount, {.lo = 0, .hi = 1, .decimals = 2}) || moved;
+    tooltip("A mix between the two, linearly in light.");
+    if (moved)
+      ui.act("mix.preset.blend", names[static_cast<size_t>(from)], names[static_cast<size_t>(to)], amount);
+  }
+  const float half = std::floor(0.5f * (width - px(6)));
+  if (button("##save", "Keep as preset", false, half)) {
+    std::string name;
+    for (int n = 1; name.empty() || presets.contains(name); ++n) name = fmt::format("mix {}", n);
+    ui.act("mix.preset.save", name);
+  }
+  tooltip("Keeps this mix under a name of its own; mix.preset.save NAME in the console chooses the name.");
+  ImGui::SameLine(0, px(6));
+  if (button("##reset", "Reset", false, width - half - px(6))) ui.act("mix.reset");
+  tooltip("All groups as the scene has them.");
+  if (button("##apply", "Write into the lights", false, width)) ui.act("mix.apply");
+  tooltip("Makes the mix the lights' own strength and colour. The picture starts again; undo takes it back.");
+}
+
+}  // namespace
+
+void draw_mix(Ui& ui) {
+  const scene::LightGroups& groups = ui.light_groups();
+  const scene::LightMix mix = ui.light_mix();
+  const std::vector<vec3> weights = scene::mix_weights(mix, groups);
+  const bool keeps = ui.setting("relight.enabled") != "off";
+  if (button("##apart", "Keep apart", keeps, ImGui::CalcItemWidth()))
+    ui.act("set", "relight.enabled", keeps ? "off" : "on");
+  tooltip(
+      "The picture keeps its light apart by groups, so that a mix costs no ray: 200 bytes a pixel for each, "
+      "and some "
+      "time. Where components are cached or come from photons it cannot. The picture starts again.");
+  const std::string why = ui.snapshot ? ui.snapshot->lights_together : "";
+  if (!why.empty()) {
+    label("A change lights the picture anew", colour::text_faint, nullptr, ImGui::CalcItemWidth());
+    tooltip("Light is not kept apart by groups: " + why + ".");
+  }
+  for (size_t g = 0; g < groups.groups.size(); ++g) {
+    const auto found = mix.find(groups.groups[g].name);
+    ImGui::PushID(static_cast<int>(g));
+    group_row(ui, groups.groups[g], found == mix.end() ? scene::GroupMix() : found->second,
+              weights[g] == vec3(0));
+    ImGui::PopID();
+    gap(6);
+  }
+  preset_rows(ui);
+}
+
+}  // namespace lucerna::ui
