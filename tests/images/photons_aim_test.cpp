@@ -181,4 +181,9 @@ TEST_CASE("the pilot depends on neither batches nor what was rendered before") {
   test::finish(r);
   r.set_size(40, 40);
   CHECK(test::identical(once, test::finish(r)));
+  // Without aim in between.
+  test::set(r, {{"photons.aim", "false"}});
+  CHECK_FALSE(test::identical(once, test::finish(r)));
+  test::set(r, {{"photons.aim", "true"}});
+  CHECK(test::identical(once, test::finish(r)));
 }

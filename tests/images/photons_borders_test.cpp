@@ -96,7 +96,9 @@ TEST_CASE("even light on a floor is even up to its border, and on what is narrow
   scene::Scene strip = sun_from_above();
   const float width = 2 * 0.9f * std::tan(0.4f) / 48;
   test::add_quad(strip, {-width, 0, 0.4f}, {2 * width, 0, 0}, {0, 0, -0.8f}, 0);
-  const auto on_strip = [](const vec2& at, float pixel) { return std::abs(at.x) < pixel && std::abs(at.y) < 0.3f; };
+  const auto on_strip = [](const vec2& at, float pixel) {
+    return std::abs(at.x) < pixel && std::abs(at.y) < 0.3f;
+  };
   CHECK(brightness(strip, {}, 16, on_strip) == Approx(1).epsilon(0.03));
 }
 

@@ -2,6 +2,7 @@
 // Photons as a person looks at them: density and irradiance as heat maps with their scale, and the disc under
 // the pointer with its photons.
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "solvers/photons/solver.h"
 #include "support/render.h"
@@ -92,7 +93,14 @@ TEST_CASE("how fast photons are sent, stored, sorted and gathered is told") {
   const double expected = double(at.figures().photons) / 4 * double(k_pi) * radius * radius;
   CHECK(double(rates.at("gathered_a_lookup")) == Approx(expected).epsilon(0.1));
   CHECK(double(rates.at("gathered")) == Approx(double(rates.at("looked_up")) * expected).epsilon(0.1));
-  // The same in the panel, and their seconds for benches.
+  // The same in the panel, with what is aimed, and their seconds for benches.
+  const std::shared_ptr<const solvers::Report> report = s.report();
+  REQUIRE(!report->sections.empty());
+  std::set<std::string> rows;
+  for (const solvers::PanelItem& item : report->sections[0].items)
+    if (const auto* row = std::get_if<solvers::ValueRow>(&item)) rows.insert(row->name);
+  for (const char* name : {"Casters", "Aimed", "Sent", "Stored", "Sorted", "Memory"})
+    CHECK(rows.count(name) == 1);
   CHECK(s.r.figure("seconds of light paths") > 0);
   CHECK(s.r.figure("seconds of sorting photons") > 0);
 }

@@ -69,11 +69,13 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   const bool stale =
       spoils.any() || aims != aims_ || spares != spares_ || !same_view(picture.frame, aimed_for_);
   aims_ = aims, spares_ = spares;
+  // Whoever only looks from elsewhere finds the same casters.
+  if (spoils.light || spoils.places || !aims) casters_.clear(), casters_known_ = false;
   if (!stale) return;
   aimed_ = false;
   aim_step_ = AimStep::casters;
   aimed_for_ = picture.frame;
-  worth_.clear(), casters_.clear();
+  worth_.clear();
   lights_.aim(device_, picture.flat, {}, 1);
   map_.store_by_importance(false);
 }
@@ -82,7 +84,7 @@ bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& pictu
   if (ready()) return true;
   const Frame frame = small_frame(picture);
   if (aim_step_ == AimStep::casters) {
-    if (aims_) casters_ = transport::find_casters(picture.flat);
+    if (aims_ && !casters_known_) casters_ = transport::find_casters(picture.flat), casters_known_ = true;
     lights_.aim(device_, picture.flat, casters_, 0.5);
     aimed_ = casters_.empty() && !spares_;
     if (aimed_) return true;

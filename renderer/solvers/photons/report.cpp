@@ -79,6 +79,19 @@ Report make_report(const PhotonReport& r) {
         Paragraph{"The radius asked for is wider than photons may be seen, and is held to a quarter of "
                   "their distance.",
                   Tone::warning});
+  if (r.casters > 0) {
+    map.items.push_back(
+        ValueRow{"Casters", count_text(double(r.casters)),
+                 "Clusters of surfaces that mirror or refract smoothly, at which paths are aimed."});
+    map.items.push_back(ValueRow{"Aimed", share_text(1 - r.unaimed, 1),
+                                 "Of the paths, at casters; as many as a pilot has found to be of use."});
+  }
+  const auto rate = [&](const char* name, double n, const char* help) {
+    if (n > 0) map.items.push_back(ValueRow{name, count_text(n) + " / s", help});
+  };
+  rate("Sent", r.emitted_per_s, "Paths from lights a second of the time in which they are traced.");
+  rate("Stored", r.stored_per_s, "Photons a second of that time.");
+  rate("Sorted", r.sorted_per_s, "Photons a second of the time in which a round is put in order.");
   map.items.push_back(
       ValueRow{"Memory", megabytes_text(double(r.bytes) / 1e6), "Of photons and what finds them."});
   report.sections.push_back(std::move(map));

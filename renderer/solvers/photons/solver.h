@@ -76,6 +76,7 @@ class PhotonSolver final : public solvers::Solver {
   bool aimed_ = false;   ///< importance and shares are those of this picture
   AimStep aim_step_ = AimStep::casters;
   std::vector<Box> casters_;
+  bool casters_known_ = false;
   std::vector<double> worth_;  ///< by stratum, of the pilot
   std::optional<schedule::UniformSchedule> eye_schedule_;
   shared::Frame aimed_for_{};
