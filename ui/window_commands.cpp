@@ -21,7 +21,7 @@ std::vector<std::string> sides() {
 }
 
 std::vector<std::string> section_names(const Ui& ui) {
-  std::vector<std::string> names{"Light",       "Render",    "Camera",  "Lights",
+  std::vector<std::string> names{"Light",       "Light mix", "Render",  "Camera", "Lights",
                                  "Environment", "Materials", "Objects", "Options"};
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
