@@ -29,6 +29,7 @@ std::vector<ChangeRow> change_rows() {
       {"show.", k_spoils_nothing, "how it is shown"},
       {"preview.", k_spoils_nothing, "how it is shown"},
       {"overlay.", k_spoils_nothing, "how it is shown"},
+      {"relight.", k_spoils_nothing, "where records hold light another mix comes as an edit of the lamps"},
       {"about", k_spoils_nothing, "words"},
       {"camera", k_spoils_coverage, "records lie on surfaces, whoever looks"},
       {"tracer", k_spoils_nothing, "all tracers find the same surfaces"},
