@@ -236,16 +236,16 @@ void Workspace::add_mix_commands() {
                                one_of("group", "name of the group, which may be new", group_names)},
                 .check =
                     [](const Arguments& a) {
-                      if (a.text("light").find_first_of(";=") != std::string::npos)
-                        throw Error("", "light: write ? for the characters ; and =");
                       if (scene::group_name(a.text("group")).empty())
                         throw Error("", "group: a name is needed");
                     },
                 .run =
                     [this](const Arguments& a) {
+                      // Rules part at these characters; ? stands for any.
+                      std::string light = a.text("light");
+                      for (char& c : light) c = c == ';' || c == '=' ? '?' : c;
                       std::string& rules = edit().settings["relight.groups"];
-                      rules += (rules.empty() ? "" : "; ") + a.text("light") + "=" +
-                               scene::group_name(a.text("group"));
+                      rules += (rules.empty() ? "" : "; ") + light + "=" + scene::group_name(a.text("group"));
                     },
                 .undoable = true});
   registry.add({.name = "mix.preset.save",
