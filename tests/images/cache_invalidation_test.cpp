@@ -107,6 +107,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
       {"show.", {{"show.primary", "false"}}},
       {"preview.", {{"preview.filter", "off"}}},
       {"overlay.", {{"overlay.records", "true"}, {"overlay.overlap", "true"}}},
+      {"relight.", {{"relight.enabled", "on"}, {"relight.layers", "true"}}},
       {"about", {{"about", "nothing"}}},
       {"camera", {{"camera", "above"}}},
       {"tracer", {{"tracer", "host"}}},
