@@ -24,12 +24,6 @@ double cpu_seconds() {
   return seconds(use.ru_utime) + seconds(use.ru_stime);
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t n = values.size();
-  return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-}
-
 std::unique_ptr<session::Renderer> load(const BenchMixArguments& a, const char* enabled) {
   auto r = std::make_unique<session::Renderer>(session::RendererOptions{.device = a.device,
                                                                         .validation = false,
@@ -84,7 +78,7 @@ int bench_mix(const BenchMixArguments& a) {
   const Timing settled = take_turns({{drag, [&] { r.settle_mix(); }}}, a.repeats)[0];
   if (r.stats().rays != rays) throw_error(a.scene, "a mix has traced rays");
 
-  const double one = median(cpu[0]), many = median(cpu[1]);
+  const double one = timing_of(cpu[0]).median, many = timing_of(cpu[1]).median;
   std::printf(
       "%s", fmt::format("{}, {}x{}, {} samples, {} groups of lights, on {}\n"
                         "  a picture     {:.2f} s of CPU with one group, {:.2f} s with {}: {:+.1f} %\n"

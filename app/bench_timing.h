@@ -14,6 +14,14 @@ struct Timing {
   double median = 0, low = 0, high = 0;
 };
 
+/// Of at least one value.
+inline Timing timing_of(std::vector<double> seconds) {
+  std::sort(seconds.begin(), seconds.end());
+  const size_t n = seconds.size();
+  return {n % 2 ? seconds[n / 2] : 0.5 * (seconds[n / 2 - 1] + seconds[n / 2]), seconds.front(),
+          seconds.back()};
+}
+
 /// Something that can be timed: `before` is not counted.
 struct Timed {
   std::function<void()> before, run;
@@ -31,11 +39,7 @@ inline std::vector<Timing> take_turns(const std::vector<Timed>& candidates, int 
       if (round > 0) seconds[i].push_back(timer.seconds());
     }
   std::vector<Timing> timings;
-  for (auto& s : seconds) {
-    std::sort(s.begin(), s.end());
-    const size_t n = s.size();
-    timings.push_back({n % 2 ? s[n / 2] : 0.5 * (s[n / 2 - 1] + s[n / 2]), s.front(), s.back()});
-  }
+  for (auto& s : seconds) timings.push_back(timing_of(std::move(s)));
   return timings;
 }
 

@@ -226,6 +226,19 @@ void Program::add_small_benches() {
     verb->add_option("--json", a.json, "file to write the figures to");
     verb->add_option("--device", a.device, "as above");
   };
+  const auto of_scene = [](CLI::App* verb, auto& a) {
+    verb->add_option("SCENE", a.scene, "glTF scene")->required();
+    verb->add_option("--width", a.width, "of the picture")
+        ->check(CLI::Range(16u, 4096u))
+        ->capture_default_str();
+    verb->add_option("--height", a.height, "its height")
+        ->check(CLI::Range(16u, 4096u))
+        ->capture_default_str();
+    verb->add_option("--samples", a.samples, "samples a pixel")
+        ->check(CLI::Range(1u, 1u << 20))
+        ->capture_default_str();
+    verb->add_option("--set", a.set, "KEY=VALUE, as of render")->allow_extra_args(false);
+  };
   sort_ = bench_->add_subcommand(
       "sort", "elements a second of prefix sum and radix sort on the device, and of the C++ library's");
   sort_->add_option("--sizes", bs.sizes, "elements to sort")->check(CLI::Range(1u, 1u << 22));
@@ -243,32 +256,14 @@ void Program::add_small_benches() {
       bench_->add_subcommand("interpolation",
                              "lookups a second in what solvers have prepared for a scene, by the ways of "
                              "looking up that they offer");
-  interpolation_->add_option("SCENE", bi.scene, "glTF scene")->required();
-  interpolation_->add_option("--width", bi.width, "of the picture")
-      ->check(CLI::Range(16u, 4096u))
-      ->capture_default_str();
-  interpolation_->add_option("--height", bi.height, "its height")
-      ->check(CLI::Range(16u, 4096u))
-      ->capture_default_str();
-  interpolation_->add_option("--samples", bi.samples, "samples a pixel")
-      ->check(CLI::Range(1u, 1u << 20))
-      ->capture_default_str();
-  interpolation_->add_option("--set", bi.set, "KEY=VALUE, as of render")->allow_extra_args(false);
+  of_scene(interpolation_, bi);
   interpolation_->add_option("--reference", bi.reference,
                              "EXR of the same picture, converged: tells errors too");
   measured(interpolation_, bi, 1);
   add_scene_options(interpolation_);
   mix_ = bench_->add_subcommand(
       "mix", "how soon another mix of a scene's groups of lights is seen, and what keeping them apart costs");
-  mix_->add_option("SCENE", bx.scene, "glTF scene")->required();
-  mix_->add_option("--width", bx.width, "of the picture")
-      ->check(CLI::Range(16u, 4096u))
-      ->capture_default_str();
-  mix_->add_option("--height", bx.height, "its height")->check(CLI::Range(16u, 4096u))->capture_default_str();
-  mix_->add_option("--samples", bx.samples, "samples a pixel")
-      ->check(CLI::Range(1u, 1u << 20))
-      ->capture_default_str();
-  mix_->add_option("--set", bx.set, "KEY=VALUE, as of render")->allow_extra_args(false);
+  of_scene(mix_, bx);
   measured(mix_, bx, 1);
   add_scene_options(mix_);
 }

@@ -10,7 +10,6 @@ using namespace shared;
 namespace {
 
 constexpr uint32_t k_filter_passes = 4;
-constexpr uint32_t k_none = 0xffffffff;  // k_preview_none of film/preview.glsl
 constexpr uint64_t k_light_bytes = 16 * k_preview_texels;
 
 uint32_t groups(uint64_t items) { return gpu::groups_for(items, 64); }
@@ -120,8 +119,8 @@ void Preview::move(gpu::Stream& stream, PreviewReprojectPush push) {
   resources_.set("nearest_pixels", nearest_);
   resources_.set("Packed", moved_.light);
   resources_.set("PackedSurfaces", moved_.surfaces);
-  stream.fill(depths_, k_none);
-  stream.fill(nearest_, k_none);
+  stream.fill(depths_, k_preview_none);
+  stream.fill(nearest_, k_preview_none);
   for (push.pass = 0; push.pass < 2; ++push.pass)
     stream.dispatch(scatter_, resources_, push, groups(pixels()));
   stream.dispatch(gather_, resources_, push, groups(pixels()));

@@ -10,16 +10,10 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace lucerna::scene {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const char* blanks = " \t\r\n";
-  const size_t first = text.find_first_not_of(blanks);
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
 
 bool shines(const Environment& e) { return e.scale > 0 && (e.image != k_none || luminance(e.radiance) > 0); }
 
@@ -136,10 +130,8 @@ size_t LightGroups::find(const std::string& name) const {
 
 std::vector<LightGroupRule> parse_group_rules(const std::string& text) {
   std::vector<LightGroupRule> rules;
-  for (size_t at = 0; at <= text.size();) {
-    const size_t end = std::min(text.find(';', at), text.size());
-    const std::string part = trimmed(text.substr(at, end - at));
-    at = end + 1;
+  for (const std::string& each : split(text, ';')) {
+    const std::string part = trimmed(each);
     if (part.empty()) continue;
     const size_t equals = part.rfind('=');
     const std::string pattern = equals == std::string::npos ? "" : trimmed(part.substr(0, equals));

@@ -9,21 +9,10 @@
 #include "base/blackbody.h"
 #include "base/color.h"
 #include "base/error.h"
+#include "base/text.h"
 
 namespace lucerna::scene {
 namespace {
-
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == at)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
-}
-
-bool blank(const std::string& text) { return text.find_first_not_of(" \t\r\n") == std::string::npos; }
 
 float number(const std::string& text, float lo, float hi, const std::string& where, const std::string& part) {
   float value = 0;
@@ -71,7 +60,7 @@ bool anything_solo(const LightMix& mix) {
 LightMix parse_mix(const std::string& text, const std::string& where) {
   LightMix mix;
   for (const std::string& part : split(text, ';')) {
-    if (blank(part)) continue;
+    if (trimmed(part).empty()) continue;
     const size_t colon = part.find(':');
     const std::string name = colon == std::string::npos ? "" : group_name(part.substr(0, colon));
     if (name.empty())
@@ -149,7 +138,7 @@ LightMix blend(const LightMix& a, const LightMix& b, float t, const LightGroups&
 MixPresets parse_presets(const std::string& text, const std::string& where) {
   MixPresets presets;
   for (const std::string& part : split(text, '|')) {
-    if (blank(part)) continue;
+    if (trimmed(part).empty()) continue;
     const size_t equals = part.find('=');
     const std::string name = equals == std::string::npos ? "" : group_name(part.substr(0, equals));
     if (name.empty() || part.find(':') < equals)

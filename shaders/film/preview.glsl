@@ -5,8 +5,6 @@
 #include "shaders/shared/lanes.h"
 #include "shaders/shared/preview.h"
 
-const uint k_preview_none = 0xffffffffu;  // no pixel
-
 // By component: rgb, standard error of the luminance.
 struct PreviewLight {
   vec4 of[k_component_count];

@@ -2,11 +2,9 @@
 #ifndef LUCERNA_PHOTONS_AROUND
 #define LUCERNA_PHOTONS_AROUND
 #include "photons/photon.glsl"
+#include "photons/lookup.glsl"
 #include "photons/area.glsl"
 #include "shaders/shared/photons/inspect.h"
-
-uniform samplerBuffer photon_texels;
-uniform usamplerBuffer photon_table;
 
 struct Around {
   float count, area, density;
@@ -19,15 +17,12 @@ Around photons_around(vec3 x, vec3 normal, bool looks) {
   Around sum = Around(0.0, 1.0, 0.0, vec3(0.0));
   float radius = photon_radius(x);
   looks = looks && photons.count > 0u;
-  int lowest = photon_level(radius / (1.0 + photons.slope) * (2.0 - k_photon_slack));
-  int highest = photon_level(radius / (1.0 - photons.slope) * k_photon_slack);
+  int lowest = photon_lowest_level(radius), highest = photon_highest_level(radius);
   uint met = 0u;
   for (int level = lowest; looks && level <= highest; ++level) {
     ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
     for (uint k = 0u; k < k_photon_near_cells; ++k) {
-      uint entry = photon_entry(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level);
-      uvec4 two = texelFetch(photon_table, int(entry >> 1));
-      uvec2 range = (entry & 1u) != 0u ? two.zw : two.xy;
+      uvec2 range = photon_range(photon_entry(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level));
       for (uint at = range.x; at < range.y && met < k_photon_most_candidates; ++at, ++met) {
         vec4 a = texelFetch(photon_texels, int(k_photon_texels * at));
         vec3 away = a.xyz - x;
@@ -37,7 +32,7 @@ Around photons_around(vec3 x, vec3 normal, bool looks) {
         vec3 wi = photon_direction(floatBitsToUint(a.w)), front = facet_unpack(floatBitsToUint(b.w) & k_photon_facet);
         vec3 side = dot(wi, front) > 0.0 ? front : -front;
         if (dot(side, normal) <= k_density_normals || abs(dot(away, front)) >= k_photon_slab * r) continue;
-        float kernel = 2.0 * k_inv_pi * (1.0 - d2 / (r * r)) / (r * r);
+        float kernel = photon_kernel(d2, r);
         sum.count += 1.0;
         sum.density += kernel;
         sum.irradiance += kernel * b.rgb;

@@ -4,19 +4,13 @@
 #define LUCERNA_PHOTONS_VERTEX_HOOK
 #include "transport/vertex_hook.glsl"
 #include "photons/photon.glsl"
+#include "photons/lookup.glsl"
 #include "photons/area.glsl"
 
-uniform samplerBuffer photon_texels;
-uniform usamplerBuffer photon_table;  // two entries a texel
 
 layout(scalar) buffer PhotonImportance { uint photon_importance[]; };
 
 struct photons_Vertex { uint none; };
-
-uvec2 photon_range(uint entry) {
-  uvec4 two = texelFetch(photon_table, int(entry >> 1));
-  return (entry & 1u) != 0u ? two.zw : two.xy;
-}
 
 // f_D |cos| over the geometric cosine: flux arrives on the surface that is there, and paths weigh it by the shading normal.
 vec3 photon_reflected(VertexIn v, vec3 wi_world, bool reflected) {
@@ -38,9 +32,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
       atomicAdd(photon_importance[photon_entry_of(ivec3(floor(x * photon_inverse_cell(level))), level, photons.importance_mask)],
                 uint(clamp(k_photon_importance_scale * carried, 1.0, float(k_photon_most_importance))));
   }
-  // Photons that reach x have a radius between these, because it changes slowly.
-  int lowest = photon_level(radius / (1.0 + photons.slope) * (2.0 - k_photon_slack));
-  int highest = photon_level(radius / (1.0 - photons.slope) * k_photon_slack);
+  int lowest = photon_lowest_level(radius), highest = photon_highest_level(radius);
   uint candidates = 0u;
   for (int level = lowest; looks && level <= highest; ++level) {
     ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
@@ -72,7 +64,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         vec3 side = dot(wi, front) > 0.0 ? front : -front;
         float agree = reflected ? dot(side, v.side) : dot(front, v.surface.normal_g);
         bool counts = agree > k_photon_normals && abs(dot(away, v.surface.normal_g)) < k_photon_slab * r;
-        float kernel = counts ? 2.0 * k_inv_pi * (1.0 - d2 / (r * r)) / (r * r) : 0.0;
+        float kernel = counts ? photon_kernel(d2, r) : 0.0;
         vec3 light = photon_reflected(v, wi, reflected) * b.rgb * kernel;
         found_1 += part == 1u ? light : vec3(0.0);
         found_2 += part == 2u ? light : vec3(0.0);

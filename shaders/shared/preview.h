@@ -10,6 +10,7 @@
 LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_preview_texels = 2u;
+LUCERNA_CONST uint k_preview_none = 0xffffffffu;  ///< no pixel
 LUCERNA_CONST float k_preview_about = -2.0f;
 LUCERNA_CONST uint k_preview_step = 2u;  ///< pixels along the side of a cell of the grid that is filtered
 LUCERNA_CONST uint k_preview_first_step = 4u;  ///< ... while there is a draft of a quarter of the resolution alone

@@ -1,0 +1,21 @@
+// Where the photons around a place lie in the map, and what each counts.
+#ifndef LUCERNA_PHOTONS_LOOKUP
+#define LUCERNA_PHOTONS_LOOKUP
+#include "photons/photon.glsl"
+
+uniform samplerBuffer photon_texels;
+uniform usamplerBuffer photon_table;  // two entries a texel
+
+// The photons of a table's entry: first, and one past the last.
+uvec2 photon_range(uint entry) {
+  uvec4 two = texelFetch(photon_table, int(entry >> 1));
+  return (entry & 1u) != 0u ? two.zw : two.xy;
+}
+
+// Photons that reach a place of that radius lie in cells of these levels, because the radius changes slowly.
+int photon_lowest_level(float radius) { return photon_level(radius / (1.0 + photons.slope) * (2.0 - k_photon_slack)); }
+int photon_highest_level(float radius) { return photon_level(radius / (1.0 - photons.slope) * k_photon_slack); }
+
+// Epanechnikov's, over the disc of radius r, at the square of a distance below r [1/m^2].
+float photon_kernel(float d2, float r) { return 2.0 * k_inv_pi * (1.0 - d2 / (r * r)) / (r * r); }
+#endif
