@@ -13,7 +13,7 @@ using solvers::SolverInfo;
 bool Workspace::uses(const SolverInfo& solver) const {
   for (size_t c = 0; c < solver.serves.size(); ++c)
     if (solver.serves[c] &&
-        setting(std::string("components.") + session::k_component_names[c]) == solver.name)
+        solvers::chooses(setting(std::string("components.") + session::k_component_names[c]), solver.name))
       return true;
   return false;
 }

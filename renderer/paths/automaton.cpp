@@ -21,6 +21,10 @@ const std::array<const char*, k_component_count> k_component_expressions{
 
 namespace {
 
+/// The two halves of the last component: what the camera sees straight, and what it sees by mirrors and
+/// glass.
+constexpr std::array<const char*, 2> k_caustic_halves{"ED[SG]+L", "E[SG]+D[SG]+L"};
+
 constexpr std::string_view k_letters = "EDGSL";
 constexpr std::string_view k_scatter_letters = "DGS";
 
@@ -252,7 +256,14 @@ Automaton compile(const std::vector<std::string>& expressions) {
 }
 
 Automaton compile_components() {
-  const Automaton automaton = compile({k_component_expressions.begin(), k_component_expressions.end()});
+  std::vector<std::string> expressions(k_component_expressions.begin(), k_component_expressions.end() - 1);
+  expressions.insert(expressions.end(), k_caustic_halves.begin(), k_caustic_halves.end());
+  Automaton automaton = compile(expressions);
+  for (Automaton::State& s : automaton.states) {
+    if (s.accept == k_component_count) s.accept = k_component_count - 1;
+    constexpr uint8_t k_last = 1u << k_component_count;
+    if (s.reachable & k_last) s.reachable = uint8_t((s.reachable & ~k_last) | k_last >> 1);
+  }
   // Complete when every state accepts: every state is entered by some word E[DGS]*.
   std::vector<std::string> word(automaton.states.size());
   word[0] = "E";
@@ -374,13 +385,28 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const L
       for (Event e : {Event::glossy, Event::specular})
         changed |= mirrors.insert(automaton.after(s, e)).second;
   }
+  // What light brings that is met in a state, or in one that it leads to.
+  std::vector<uint32_t> here(automaton.states.size(), 0);
+  for (size_t i = 0; i < here.size(); ++i) {
+    const uint8_t accept = automaton.states[i].accept;
+    const bool replaced = i < routes.replaced.size() && routes.replaced[i] != 0;
+    if (accept != k_no_component && !replaced) here[i] = enabled & 1u << accept;
+  }
+  std::vector<uint32_t> further = here;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (size_t i = 0; i < further.size(); ++i) {
+      uint32_t all = further[i];
+      for (const uint8_t next : automaton.states[i].next) all |= further[next];
+      changed |= all != further[i];
+      further[i] = all;
+    }
+  }
   for (size_t i = 0; i < automaton.states.size(); ++i) {
     const auto& s = automaton.states[i];
-    const bool on = s.accept != k_no_component && (enabled >> s.accept & 1u);
-    const uint32_t component = on ? s.accept : k_component_count;
-    uint32_t reachable = met ? s.reachable : 0;
-    for (const uint8_t next : s.next) reachable |= automaton.states[next].reachable;
-    const uint32_t left = (reachable & enabled) | looked_up[i];
+    const uint32_t component = here[i] != 0 ? s.accept : k_component_count;
+    uint32_t left = (met ? further[i] : 0) | looked_up[i];
+    for (const uint8_t next : s.next) left |= further[next];
     packed.push_back(s.next[0] | s.next[1] << 8 | s.next[2] << 16 | component << 24 | (left ? 1u << 27 : 0u) |
                      (mirrors.count(static_cast<uint8_t>(i)) ? 1u << 28 : 0u) |
                      (left ? static_cast<uint32_t>(std::countr_zero(left)) : 0u) << 29);

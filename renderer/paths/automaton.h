@@ -46,7 +46,8 @@ struct Automaton {
 Automaton compile(const std::vector<std::string>& expressions);
 
 /// The automaton of the four components. Also checks that every word E[DGS]*L belongs to one of them; throws
-/// Error naming a word that is lost.
+/// Error naming a word that is lost. Caustics on what the camera sees straight and those that it sees in
+/// mirrors or through glass are told apart by state, for light tracing brings the first alone.
 Automaton compile_components();
 
 /// True when the word belongs to the expression: a direct backtracking matcher that shares no code with
@@ -58,6 +59,7 @@ bool matches(const std::string& expression, std::string_view word);
 /// ([SG]*DL), over more, or over mirrors and glass alone ([SG]+L). Their numbers are those of the components
 /// that they belong to after ED.
 inline constexpr int k_part_count = 4;
+inline constexpr uint32_t k_caustic_part = 3;  ///< over mirrors and glass alone
 
 /// Where a lookup of such parts (of a record, of photons) takes the place of tracing on from a diffuse lobe.
 struct LookupRoutes {
@@ -66,6 +68,9 @@ struct LookupRoutes {
   std::vector<std::array<uint8_t, k_part_count>> component;
   uint32_t parts = 0;   ///< bit p: some state reads part p
   uint32_t traced = 0;  ///< components that paths still bring, beside the lookups (bit i)
+  /// By state, where not empty: nonzero where what paths from the eye would bring in it comes another way, by
+  /// paths from the lights that end at the camera.
+  std::vector<uint8_t> replaced;
 };
 
 /// The automaton as it is uploaded: packed[state] bits 0-7 next on D, 8-15 next on G, 16-23 next on S, 24-26

@@ -57,7 +57,7 @@ std::vector<uint32_t> pack(const LightAutomaton& automaton, uint32_t parts, uint
   return packed;
 }
 
-LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own) {
+LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own, uint32_t straight) {
   own &= enabled;
   const auto within = [](uint8_t component, uint32_t set) {
     return component != k_no_component && (set >> component & 1u) != 0;
@@ -83,6 +83,7 @@ LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_
     uint32_t looked = before;
     for (uint32_t p = 1; p < k_part_count; ++p) {
       if (!within(brings[p], own & ~before) || (p == 2 && passed_on)) continue;
+      if (state == 0 && p == k_caustic_part && within(brings[p], straight)) continue;
       routes.component[state][p] = brings[p];
       routes.parts |= 1u << p;
       looked |= 1u << brings[p];
@@ -94,6 +95,20 @@ LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_
       if (fresh) open.emplace_back(next, done);
     }
   }
+  return routes;
+}
+
+LookupRoutes camera_routes(const Automaton& automaton, uint32_t enabled, uint32_t own) {
+  LookupRoutes routes;
+  routes.traced = enabled;
+  routes.component.assign(automaton.states.size(),
+                          {k_no_component, k_no_component, k_no_component, k_no_component});
+  routes.replaced.assign(automaton.states.size(), 0);
+  const uint8_t lit = automaton.after(automaton.after(0, Event::diffuse), Event::specular);
+  const uint8_t component = automaton.states[lit].accept;
+  if (component == k_no_component || (enabled & own & 1u << component) == 0) return routes;
+  routes.replaced[lit] = 1;
+  routes.parts = 1u << k_caustic_part;
   return routes;
 }
 

@@ -36,6 +36,12 @@ std::vector<uint32_t> pack(const LightAutomaton& automaton, uint32_t parts, uint
 /// the first diffuse vertex, and tertiary light with them; but where secondary light is somebody else's,
 /// which goes on from there, tertiary light is looked up at the vertex that this leads to (final gathering).
 /// A path that has been looked up goes on for the components that are traced. `traced`: enabled but not own.
-LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own);
+/// `straight`: of own, the components of which light tracing brings what camera_routes() says.
+LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own, uint32_t straight = 0);
+
+/// Where paths from the lights are joined straight to the camera (light tracing): nothing is looked up, and
+/// of the `own` components paths from the eye no longer bring what light has done that has met mirrors and
+/// glass alone (part 3) and falls on what the camera sees straight. All else they go on to bring.
+LookupRoutes camera_routes(const Automaton& automaton, uint32_t enabled, uint32_t own);
 
 }  // namespace lucerna::paths

@@ -13,6 +13,8 @@ namespace {
 /// Lookups of several solvers in one table: in a state each part is brought by one of them.
 void merge(paths::LookupRoutes& into, const paths::LookupRoutes& more) {
   into.traced &= more.traced;
+  into.replaced.resize(std::max(into.replaced.size(), more.replaced.size()), 0);
+  for (size_t state = 0; state < more.replaced.size(); ++state) into.replaced[state] |= more.replaced[state];
   into.parts |= more.parts;
   if (into.component.empty()) into.component = more.component;
   for (size_t state = 0; state < more.component.size(); ++state)
@@ -49,10 +51,15 @@ void claim(std::array<const solvers::SolverInfo*, paths::k_component_count>& by,
 solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
                       const solvers::SolverInfo& solver, const plan::Settings& settings,
                       const upload::Effects& effects) {
+  uint32_t looked_up = 0;
+  for (const solvers::SolverInfo* other : plan.at_work())
+    if (other != &solver && other->looked_up) looked_up |= plan.components_of(*other);
   return {.automaton = automaton,
           .settings = settings,
           .enabled = plan.enabled(),
           .own = plan.components_of(solver),
+          .straight = plan.rests_of(solver),
+          .looked_up = looked_up,
           .effects = effects};
 }
 
@@ -136,8 +143,9 @@ solvers::Solver* Engine::find(std::string_view name) const {
 }
 
 solvers::Solver* Engine::unready() const {
-  for (const auto& solver : solvers_)
-    if (!solver->ready()) return solver.get();
+  // Those behind first: what they prepare may be read while those before them prepare (photons by records).
+  for (auto solver = solvers_.rbegin(); solver != solvers_.rend(); ++solver)
+    if (!(*solver)->ready()) return solver->get();
   return nullptr;
 }
 
@@ -171,7 +179,7 @@ solvers::Routing Engine::routing(const plan::Settings& settings, const upload::E
     const auto routing_of = solvers::type_of(*info).routing;
     if (!routing_of) continue;
     const solvers::Routing own = routing_of(task_of(automaton_, plan_, *info, settings, effects));
-    claim(by, *info, brought(own.lookups));
+    claim(by, *info, brought(own.lookups) & ~own.through);
     merge(all.lookups, own.lookups);
     all.fallback |= own.fallback;
     if (own.fallback == 0) always |= brought(own.lookups);

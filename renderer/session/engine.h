@@ -53,7 +53,7 @@ class Engine {
   const std::vector<std::unique_ptr<solvers::Solver>>& solvers() const { return solvers_; }
   /// Null: that one is not at work.
   solvers::Solver* find(std::string_view name) const;
-  /// The first that is not ready; null: all are.
+  /// The next that is not ready; null: all are.
   solvers::Solver* unready() const;
   /// Some solver makes what paths read anew for each sample.
   bool in_rounds() const;

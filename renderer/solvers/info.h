@@ -94,6 +94,9 @@ struct SolverInfo {
   bool unbiased = false;
   /// Whether its light is looked up at a diffuse vertex (paths::lookup_routes), not traced on from there.
   bool looked_up = false;
+  /// Whether it brings no more of a component than what the camera sees straight, without mirrors and glass
+  /// between: the rest is path traced, or looked up by another solver (components.X = NAME+OTHER).
+  bool straight_only = false;
   /// Whether it finds light of points and directions behind what refracts or mirrors it, which paths from the
   /// eye cannot aim at.
   bool finds_points = false;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "solvers/irradiance_cache/solver.h"
+#include "solvers/light_tracing/solver.h"
 #include "solvers/path_tracing/info.h"
 #include "solvers/photons/solver.h"
 
@@ -12,7 +13,8 @@ namespace {
 const SolverType k_path_tracing{.info = path_tracing::info()};
 
 struct Registry {
-  std::vector<const SolverType*> types{&k_path_tracing, &irradiance_cache::type(), &photons::type()};
+  std::vector<const SolverType*> types{&k_path_tracing, &irradiance_cache::type(), &photons::type(),
+                                       &light_tracing::type()};
   std::vector<const SolverInfo*> infos;  ///< empty until somebody has asked for them
 };
 
@@ -46,6 +48,12 @@ const SolverInfo* find(std::string_view name) {
   for (const SolverInfo* solver : registered())
     if (solver->name == name) return solver;
   return nullptr;
+}
+
+bool chooses(std::string_view choice, std::string_view solver) {
+  const size_t plus = choice.find('+');
+  return choice.substr(0, plus) == solver ||
+         (plus != std::string_view::npos && choice.substr(plus + 1) == solver);
 }
 
 const SolverInfo* owner_of(std::string_view key) {

@@ -19,6 +19,8 @@ void add(const SolverType& solver);
 const SolverType& type_of(const SolverInfo& solver);
 /// Null when there is none of that name.
 const SolverInfo* find(std::string_view name);
+/// Whether a component's choice names that solver, alone or joined to another by '+'.
+bool chooses(std::string_view choice, std::string_view solver);
 /// Whose option that is; null: nobody's alone.
 const SolverInfo* owner_of(std::string_view key);
 /// What a setting that changes spoils of a solver's work. Another solver's settings spoil nothing.

@@ -31,6 +31,8 @@ struct Task {
   const OptionValues& settings;
   uint32_t enabled = 0;     ///< components that anybody computes
   uint32_t own = 0;         ///< of these, this solver
+  uint32_t straight = 0;    ///< of own: what the camera sees straight of it another one brings
+  uint32_t looked_up = 0;   ///< by others, wherever paths go
   upload::Effects effects;  ///< what the scene calls for
   const gpu::Defines* scene_defines =
       nullptr;  ///< of kernels that know its surfaces and lights; when it is made
@@ -43,6 +45,8 @@ struct Routing {
   uint32_t fallback = 0;
   /// What is looked up later, by paths that have passed a lookup on purpose.
   paths::LookupRoutes gather;
+  /// Components (bits) whose light these lookups bring by way of another solver's: it is that one's still.
+  uint32_t through = 0;
 };
 
 /// The picture that is being made. Valid during a call.

@@ -35,7 +35,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   if (flat.groups) f.sky_group = flat.groups->sky, f.sun_group = flat.groups->sun;
   const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);
   const std::vector<uint32_t> table = paths::pack(automaton, options.enabled, options.routes, met);
-  assert(table.size() < shared::k_gather_state);
+  assert(table.size() <= shared::k_gather_state);
   std::copy(table.begin(), table.end(), f.automaton);
   if (options.fallback != 0) {
     const auto put = [&](uint32_t at, uint32_t enabled, const paths::LookupRoutes& routes) {
@@ -43,9 +43,11 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
       for (size_t i = 0; i < all.size(); ++i) f.automaton[at + i] = all[i] + (at | at << 8 | at << 16);
     };
     // Whoever passes a lookup has to bring the light of the next vertex himself, of whatever component.
-    put(shared::k_gather_state, options.fallback, options.gather);
-    put(shared::k_fallback_state, options.fallback, {});
-    put(shared::k_known_state, options.fallback, {});
+    paths::LookupRoutes gather = options.gather, nothing;
+    gather.replaced = nothing.replaced = options.routes.replaced;
+    put(shared::k_gather_state, options.fallback, gather);
+    put(shared::k_fallback_state, options.fallback, nothing);
+    put(shared::k_known_state, options.fallback, nothing);
     // What has been looked up behind ED is all that comes after: what is left is to meet the light that was
     // sampled.
     constexpr uint32_t k_next = 0xffffff, k_live = 1u << 27, k_none = paths::k_component_count << 24;

@@ -83,9 +83,10 @@ void LightSource::aim(gpu::Device& device, const upload::FlatScene& flat, std::s
                       double unaimed) {
   table_.casters = table_.groups = 0;
   shares_ = {1};
+  members_of_groups_.clear();
   if (power_ > 0 && !casters.empty()) {
     const auto n = uint32_t(casters.size());
-    const LightGroups groups = group_lights(flat, powers_, shared::k_most_strata / n);
+    LightGroups groups = group_lights(flat, powers_, shared::k_most_strata / n);
     std::vector<vec4> headers, by_entry(powers_.size(), vec4(0)), by_member, tables;
     for (uint32_t g = 0; g < groups.members.size(); ++g) {
       const std::vector<uint32_t>& members = groups.members[g];
@@ -111,6 +112,7 @@ void LightSource::aim(gpu::Device& device, const upload::FlatScene& flat, std::s
     members_ = texels(device, "lights of groups", tables);
     strata_ = texels(device, "shares of strata", std::vector<vec4>(strata()));
     share_out(std::vector<double>(shares_));
+    members_of_groups_ = std::move(groups.members);
   }
   block_.write(&table_, sizeof table_);
 }

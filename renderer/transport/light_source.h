@@ -35,6 +35,8 @@ class LightSource {
   /// 1 + groups * casters; 1 where nothing is aimed.
   uint32_t strata() const { return 1 + table_.groups * table_.casters; }
   std::span<const double> shares() const { return shares_; }
+  /// Entries of the light table by group, the sky's behind the last; none where nothing is aimed.
+  std::span<const std::vector<uint32_t>> groups() const { return members_of_groups_; }
   /// emission_*, EmissionBlock. What lights are is bound with the scene.
   void bind(gpu::Resources& resources) const;
   /// Luminance of the flux of all lights [W]; 0: there is nothing to begin.
@@ -45,6 +47,7 @@ class LightSource {
  private:
   shared::EmissionTable table_{};
   std::vector<double> powers_, shares_;
+  std::vector<std::vector<uint32_t>> members_of_groups_;
   gpu::Buffer alias_, block_, strata_, boxes_, groups_, members_;
   double power_ = 0;
 };

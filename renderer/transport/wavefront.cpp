@@ -275,6 +275,13 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
     own[k] = w.main[k];
     if (ends.bind_vertex) ends.bind_vertex(own[k]);
   }
+  std::array<gpu::Resources, 2> of_arrival;
+  for (size_t k = 0; ends.arrival && k < of_arrival.size(); ++k) {
+    of_arrival[k] = w.shade_shadow[k];
+    if (ends.bind_vertex) ends.bind_vertex(of_arrival[k]);
+  }
+  const std::array<gpu::Resources, 2>& arriving = ends.arrival ? of_arrival : w.shade_shadow;
+  const gpu::Kernel& shadow = ends.arrival ? *ends.arrival : w.shadow;
   w.stream.fill(w.counters, 0);
   ends.begin();
   const uint32_t* counters = static_cast<const uint32_t*>(w.counters.mapped());
@@ -289,7 +296,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
     }
     // Shadow rays of the vertices before, then the next vertices.
     if (shadow_count > 0) {
-      const gpu::Resources& table = w.shade_shadow[0];
+      const gpu::Resources& table = arriving[0];
       w.trace(bvh::Query::any_opaque, w.trace_any, table, w.shadow_rays, w.shadow_hits, &w.shadow_queues[0],
               shadow_count, "shadow trace", closest, shadows);
       w.stats.shadow_rays += shadow_count;
@@ -297,7 +304,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       push.count = shadow_count;
       push.use_queue = 1;
       push.round = 0;
-      w.stream.dispatch(w.shadow, table, push, Impl::workgroups(shadow_count), "shadow light");
+      w.stream.dispatch(shadow, table, push, Impl::workgroups(shadow_count), "shadow light");
       if (w.transparent) {
         uint32_t side = 1;
         for (;; side ^= 1) {
@@ -305,13 +312,13 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
           const uint32_t going = counters[k_counter_shadow_next];
           w.stream.fill(w.counters, 0, 4 * k_counter_shadow_next, 4);
           if (going == 0) break;
-          w.trace(bvh::Query::closest_non_opaque, w.trace_non_opaque, w.shade_shadow[side], w.shadow_rays,
+          w.trace(bvh::Query::closest_non_opaque, w.trace_non_opaque, arriving[side], w.shadow_rays,
                   w.shadow_hits, &w.shadow_queues[side], going, "shadow trace", closest, shadows);
           w.stats.shadow_rays += going;
           w.stats.rays += going;
           push.count = going;
           push.round = 1;
-          w.stream.dispatch(w.shadow, w.shade_shadow[side], push, Impl::workgroups(going), "shadow light");
+          w.stream.dispatch(shadow, arriving[side], push, Impl::workgroups(going), "shadow light");
         }
       }
     }

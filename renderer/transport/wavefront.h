@@ -55,6 +55,9 @@ struct PathEnds {
   const gpu::Kernel* vertex = nullptr;
   std::string vertex_stage = {};
   std::function<void(gpu::Resources&)> bind_vertex = {};  ///< what it reads besides the paths
+  /// What is done with what the shadow rays of these vertices bring, in place of adding it to the paths'
+  /// radiance: transport/shadow.comp, compiled otherwise. Reads what `bind_vertex` sets. Null: shadow.comp.
+  const gpu::Kernel* arrival = nullptr;
 };
 
 class Wavefront {

@@ -111,6 +111,17 @@
 #define LUCERNA_STOPPING_ONLY 0
 #endif
 
+// Light tracing: what the camera's paths begin with, and where light goes that is joined to it.
+#ifndef LUCERNA_SPLATS
+#define LUCERNA_SPLATS 0
+#endif
+#ifndef LUCERNA_SPLATS_SUMMED
+#define LUCERNA_SPLATS_SUMMED 0
+#endif
+#ifndef LUCERNA_SPLATS_WEIGHED
+#define LUCERNA_SPLATS_WEIGHED 0
+#endif
+
 // The tracer (lib/bvh.glsl).
 #ifndef LUCERNA_QUERY
 #define LUCERNA_QUERY 0

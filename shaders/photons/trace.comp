@@ -7,6 +7,7 @@
 layout(scalar) writeonly buffer PhotonList { Photon photon_list[]; };  // in the order in which they come ...
 layout(scalar) writeonly buffer PhotonIds { uint photon_ids[]; };      // ... and the one in which they will be
 layout(scalar) buffer PhotonCounts { uint photon_counts[]; };
+layout(scalar) buffer LightPathCounts { uint light_path_counts[]; };
 
 void main() {
   uint index = global_index();
@@ -17,7 +18,7 @@ void main() {
   PathState path = load_path(slot);
   if (path.pixel == 0xffffffffu) return;
   if (hit.prim == k_no_hit) {
-    atomicAdd(photon_counts[k_photons_escaped], 1u);
+    atomicAdd(light_path_counts[k_light_paths_escaped], 1u);
     return;
   }
   uint state = path_automaton(path), depth = path_depth(path);
@@ -45,8 +46,8 @@ void main() {
     uint at = atomicAdd(photon_counts[k_photons_stored], 1u);
     if (at < photon_counts[k_photons_capacity]) {
       photon_list[at] = p;
-      photon_ids[at] = path.pixel << k_photon_id_events | (depth & k_photon_most_events);
+      photon_ids[at] = path.pixel << k_photon_id_events | (depth & k_most_light_events);
     }
   }
-  light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_photon_most_events - 1u), random);
+  light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events - 1u), random);
 }

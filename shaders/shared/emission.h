@@ -25,5 +25,21 @@ LUCERNA_CONST uint k_no_sky_entry = 0xffffffffu;
 LUCERNA_CONST uint k_most_casters = 32u;
 LUCERNA_CONST uint k_most_strata = 4096u;
 
+/// Of a batch of light paths. `count` is the first word of all, as wavefront.glsl has it.
+struct EmitPush {
+  uint count;      ///< paths of this batch
+  uint first;      ///< number of the first of them in the round
+  uint round;
+  float share;     ///< 1 / paths of the round
+  uint step;       ///< 2^32 / paths of the round
+};
+LUCERNA_CONST uint k_most_light_events = 255u;      ///< after which a light path ends
+LUCERNA_CONST uint k_most_light_paths = 1u << 24;   ///< of a round
+
+// LightPathCounts, uint each.
+LUCERNA_CONST uint k_light_paths_dark = 0u;     ///< began where a light has none
+LUCERNA_CONST uint k_light_paths_escaped = 1u;  ///< left the scene
+LUCERNA_CONST uint k_light_path_counts = 2u;
+
 LUCERNA_SHARED_END
 #endif

@@ -81,6 +81,16 @@ struct OverlayLine {
   vec3 color;  ///< encoded, 0..1
 };
 
+/// Which light paths are drawn.
+struct LightPathsView {
+  uint step;     ///< 2^32 / paths
+  uint light;    ///< entry of emission_alias whose paths alone are drawn; k_all_lights
+  float radius;  ///< of the scene [m]
+  uint pad0;
+};
+LUCERNA_CONST uint k_all_lights = 0xffffffffu;
+LUCERNA_CONST uint k_drawn_events = 8u;  ///< of a path, straight on through panes with them
+
 LUCERNA_SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(lucerna::shared::OverlayPoint) == 40 && sizeof(lucerna::shared::OverlaySegment) == 60 &&

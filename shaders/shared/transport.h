@@ -13,7 +13,8 @@ LUCERNA_CONST uint k_fallback_state = 16u;
 /// ... and from here on of those that have then looked up: they may still meet the light that the vertex behind them has
 /// sampled, and all that comes after has been looked up.
 LUCERNA_CONST uint k_known_state = 24u;
-LUCERNA_CONST uint k_dead_state = 31u;  ///< in which nothing can be brought any more
+/// In which nothing can be brought any more: in place of the eye's own among those, which no path is in that has looked up.
+LUCERNA_CONST uint k_dead_state = 24u;
 LUCERNA_CONST uint k_automaton_states = 32u;
 
 // Of a path since its last scattering event, where records hold the sky's light (LUCERNA_SKY_APART):

@@ -9,8 +9,16 @@ struct WideSum {
   uint low, high;
 };
 
+/// high * 2^64 + middle * 2^32 + low.
+struct LongSum {
+  uint low, middle, high;
+};
+
 #ifdef __cplusplus
 inline uint64_t value(const WideSum& sum) { return uint64_t{sum.high} << 32 | sum.low; }
+inline double value(const LongSum& sum) {
+  return (double(sum.high) * 4294967296.0 + double(sum.middle)) * 4294967296.0 + double(sum.low);
+}
 #endif
 
 LUCERNA_SHARED_END

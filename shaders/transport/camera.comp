@@ -3,6 +3,11 @@
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
 #include "lib/blocks.glsl"
+#if LUCERNA_SPLATS
+#include "shaders/shared/splat.h"
+layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
+uniform samplerBuffer splat_picture;
+#endif
 
 void main() {
   uint slot = global_index();
@@ -14,7 +19,8 @@ void main() {
   uint pixel = xy.y * frame.width + xy.x;
   uint sample_index = block.first_sample + slot / push.pixel_count;
   Sampler s = make_sampler(pixel, frame.width, sample_index, frame.seed);
-  vec2 ndc = (vec2(xy) + sample_2d(s, k_pad_pixel)) / vec2(frame.width, frame.height) * 2.0 - 1.0;
+  vec2 place = (vec2(xy) + sample_2d(s, k_pad_pixel)) / vec2(frame.width, frame.height);
+  vec2 ndc = place * 2.0 - 1.0;
   vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;
   Ray ray;
   ray.origin = frame.camera_origin + (frame.orthographic != 0u ? shift : vec3(0.0));
@@ -35,6 +41,16 @@ void main() {
   p.pad0 = 0.0;
   paths[slot] = p;
   for (uint lane = 0u; lane < k_lane_count; ++lane) radiance[radiance_texel(slot, lane)].rgb = vec3(0.0);
+#if LUCERNA_SPLATS
+  // What paths from lights have brought to the pixel, whatever this path meets. In a draft of fewer pixels: to the one that the
+  // path goes through.
+  if (inside && splat_frame.width > 0u) {
+    uvec2 size = uvec2(splat_frame.width, splat_frame.height);
+    bool same = size == uvec2(frame.width, frame.height);
+    uvec2 at = same ? xy : min(uvec2(place * vec2(size)), size - 1u);
+    radiance[radiance_texel(slot, lane_of(0u, splat_frame.component))].rgb = texelFetch(splat_picture, int(at.y * size.x + at.x)).rgb;
+  }
+#endif
   features[2u * slot] = vec4(0.0);
   features[2u * slot + 1u] = vec4(0.0);
 }

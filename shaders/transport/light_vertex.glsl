@@ -8,13 +8,14 @@
 #include "lib/surface.glsl"
 
 struct LightVertex {
-  bool met;        // there is a surface, and it is there for this path (alpha)
+  float coverage;  // how much of the surface is there (alpha); light falls on that, whether or not this path stays
   Surface surface;
   Bsdf bsdf;       // as seen from where the light comes
   mat3 to_world;
   vec3 wo;         // whence the light comes, local
   vec3 arriving;   // flux
-  bool lit;        // scatters
+  bool lit;        // reflects or transmits light at all
+  bool stays;      // ... and this path's is scattered
   bool passed;     // the path goes straight on
 };
 
@@ -33,25 +34,27 @@ LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random)
 #endif
   v.arriving = path.throughput;
   v.passed = false;
+  v.coverage = 1.0;
 #if LUCERNA_TRANSPARENT
   Sampler random_null = null_sampler(random, path.nulls);
   vec2 u_null = sample_vertex(random_null, path_depth(path), k_pad_lobe);
 #endif
 #if LUCERNA_ALPHA
-  v.passed = u_null.x >= surface_coverage(v.surface);
+  v.coverage = surface_coverage(v.surface);
+  v.passed = u_null.x >= v.coverage;
 #endif
-  v.met = !v.passed;
   vec3 wo_world = -ray.direction;
   v.to_world = shading_frame(v.surface, wo_world);
   v.wo = wo_world * v.to_world;   // transposed
   v.bsdf = make_bsdf(v.surface.parameters, v.wo.z);
-  v.lit = v.met;
+  v.lit = v.coverage > 0.0;
 #if LUCERNA_UNLIT
   v.lit = v.lit && (v.surface.flags & k_flag_unlit) == 0u;
 #endif
+  v.stays = v.lit && !v.passed;
 #if LUCERNA_THIN_GLASS
   float p_straight = bsdf_straight_probability(v.bsdf, v.wo.z);
-  if (v.lit && u_null.y < p_straight) {
+  if (v.stays && u_null.y < p_straight) {
     v.passed = true;
     // What the path carries on; the surface's other lobes are lit by what it has brought.
     path.throughput *= bsdf_straight(v.bsdf, v.wo.z) / p_straight;
@@ -70,7 +73,7 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     go_on = max3(path.throughput) > 0.0;
     path.travelled = travelled;
     ++path.nulls;
-  } else if (v.lit) {
+  } else if (v.stays) {
     bool ends = depth > most_events;
     if (ends) atomicAdd(counters[k_counter_depth], 1u);
     vec2 u = sample_vertex(random, depth, k_pad_direction);

@@ -2,6 +2,9 @@
 // them one by one (LUCERNA_TRANSPARENT): the queue of those still on their way is traced again.
 #include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
+#if LUCERNA_SPLATS_SUMMED
+#include "transport/splat.glsl"
+#endif
 #if LUCERNA_TRANSPARENT
 #include "lib/surface.glsl"
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
@@ -52,10 +55,14 @@ void main() {
   }
   blocked = false;
 #endif
+#if LUCERNA_SPLATS_SUMMED
+  if (!blocked) add_splat(slot, s);
+#else
   if (!blocked) {
     uint diffuse = s.lanes & 0xffu, glossy = (s.lanes >> 8) & 0xffu;
     bool same = diffuse == glossy;
     add_radiance(slot, diffuse, s.diffuse + (same ? s.glossy : vec3(0.0)));
     add_radiance(slot, same ? k_lane_count : glossy, s.glossy);
   }
+#endif
 }

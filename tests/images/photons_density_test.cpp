@@ -139,3 +139,51 @@ TEST_CASE("under the pointer are the disc and its photons, with what each brings
   s.photons->look_at(std::nullopt);
   CHECK(s.r.picture(false) == without);
 }
+
+TEST_CASE("importance is shown where lookups take place, and is even where these are") {
+  Shown s;
+  const std::vector<uint8_t> plain = s.r.picture(false);
+  // Without importons nobody has noted any.
+  test::set(s.r, {{"overlay.photon_density", "importance"}});
+  s.r.picture(false);
+  test::set(s.r, {{"photons.importons", "true"}});
+  test::finish(s.r);
+  CHECK(s.r.picture(false) != plain);
+  // A camera that looks straight down sees a plane in even steps, so that as many lookups lie in each cell,
+  // but for what the pilot's chance does.
+  const std::vector<float> found = s.photons->inspector().densities();
+  const double middle = mean(found);
+  CHECK(middle > 0);
+  double squares = 0;
+  for (const float v : found) squares += std::pow(double(v) / middle - 1, 2);
+  CHECK(std::sqrt(squares / double(found.size())) < 0.5);
+  CHECK(s.report()->legends[0].title.find("hangs") != std::string::npos);
+}
+
+TEST_CASE("light paths and what they are aimed at are drawn, and change nothing") {
+  Shown s;
+  const std::vector<uint8_t> plain = s.r.picture(false);
+  const uint64_t rays = s.r.stats().rays;
+  test::set(s.r, {{"overlay.photon_paths", "true"}});
+  const std::vector<uint8_t> paths = s.r.picture(false);
+  CHECK(paths != plain);
+  CHECK(s.r.picture(false) == paths);  // it stands still
+  test::set(s.r, {{"overlay.photon_paths_of", "1"}});
+  CHECK(s.r.picture(false) != plain);
+  test::set(s.r, {{"overlay.photon_paths_of", "2"}});  // there is none
+  CHECK(s.r.picture(false) == plain);
+  test::set(s.r, {{"overlay.photon_paths", "false"}, {"overlay.photon_aim", "true"}});
+  CHECK(s.r.picture(false) != plain);
+  CHECK(s.report()->legends.size() == 1);
+  size_t rows = 0;
+  for (const solvers::PanelItem& item : s.report()->sections[0].items)
+    if (const auto* table = std::get_if<solvers::Table>(&item)) {
+      rows = table->rows.size();
+      CHECK(table->rows[0].cells[1] == "lamp 1");
+    }
+  CHECK(rows == 1);
+  test::set(s.r, {{"overlay.photon_aim", "false"}});
+  CHECK(s.r.picture(false) == plain);
+  CHECK(s.r.stats().rays == rays);
+  CHECK(s.r.samples() == 2);
+}

@@ -207,15 +207,40 @@ TEST_CASE("photons at the first surface and records at the second make the pictu
   check_choice({{"components.secondary", "photons"}, {"components.tertiary", "cache"}});
 }
 
-TEST_CASE("light that records and photons would both bring is refused") {
+TEST_CASE("records whose rays end in photons make the picture of path tracing") {
+  check_choice({{"components.secondary", "cache"}, {"components.tertiary", "photons"}});
+}
+TEST_CASE("records whose rays end in photons beside caustics of photons make the picture of path tracing") {
+  check_choice({{"components.secondary", "cache"},
+                {"components.tertiary", "photons"},
+                {"components.caustic", "photons"}});
+}
+
+TEST_CASE("records whose rays end in photons follow lamp and camera, and trace no tail") {
+  scene::Scene room = glass_room();
+  const test::Settings settings{{"components.secondary", "cache"}, {"components.tertiary", "photons"}};
   session::Renderer r(test::renderer_options());
-  r.set_size(16, 16);
-  r.set_scene(std::make_shared<scene::Scene>(glass_room()));
-  CHECK_THROWS_WITH(
-      test::set(r, {{"components.secondary", "cache"}, {"components.tertiary", "photons"}}),
-      Catch::Contains("components.tertiary: light of the words") && Catch::Contains("counted twice"));
-  CHECK(r.settings().text("components.tertiary") == "path");
-  CHECK(r.step());
+  r.set_size(24, 24);
+  r.set_scene(std::make_shared<scene::Scene>(room));
+  test::set(r, with(settings, {{"samples", "4"}}));
+  const film::Image first = test::finish(r);
+  const auto tertiary = [](const film::Image& image) { return test::mean(image.components[2]); };
+  // A lamp of twice the light, as a scene of its own and as an edit of this one.
+  room.materials[1].emission *= 2.0f;
+  r.set_scene(std::make_shared<scene::Scene>(room));
+  const film::Image bright = test::finish(r);
+  CHECK(tertiary(bright) == Approx(2 * tertiary(first)).epsilon(0.1));
+  const test::Result fresh =
+      test::render({.width = 24, .height = 24, .samples = 4, .settings = settings}, &room);
+  CHECK(tertiary(bright) == Approx(tertiary(fresh.image)).epsilon(0.1));
+  scene::Camera camera = room.cameras[0];
+  camera.to_world[3] = vec4(0.5f, 1.4f, 1.9f, 1);
+  r.set_camera(camera);
+  CHECK(tertiary(test::finish(r)) > 0);
+  // Twice the same is the same to the bit.
+  CHECK(test::identical(
+      fresh.image,
+      test::render({.width = 24, .height = 24, .samples = 4, .settings = settings}, &room).image));
 }
 
 TEST_CASE("solvers that photons do not touch make the same picture to the bit") {

@@ -25,6 +25,7 @@
 #include "shaders/shared/scene.h"
 #include "shaders/shared/sight.h"
 #include "shaders/shared/sort.h"
+#include "shaders/shared/splat.h"
 #include "shaders/shared/trace.h"
 #include "shaders/shared/transport.h"
 #include "shaders/shared/wide_sum.h"
@@ -64,6 +65,11 @@ std::vector<SharedStruct> structs() {
       SHARED("irradiance_cache/inspect.h", OverlapPush, width, height, grid),
       SHARED("irradiance_cache/inspect.h", OverlapCounts, pixels, gathered, most, records, listed),
       SHARED("wide_sum.h", WideSum, low, high),
+      SHARED("wide_sum.h", LongSum, low, middle, high),
+      SHARED("splat.h", SplatSum, red, green, blue),
+      SHARED("splat.h", SplatFrame, width, height, component, unit),
+      SHARED("splat.h", SplatPush, count),
+      SHARED("overlay.h", LightPathsView, step, light, radius, pad0),
       SHARED("irradiance_cache/inspect.h", CacheLinesPush, width, height, left, top, across, down, lines,
              ring),
       SHARED("irradiance_cache/inspect.h", CacheNormalsPush, width, height, records, color, lo, hi),
@@ -82,7 +88,7 @@ std::vector<SharedStruct> structs() {
              solid, count, pad0, pad1),
       SHARED("photons/inspect.h", PhotonInspected, position, brings, direction, bits, flux, pad0),
       SHARED("photons/photons.h", PhotonWorth, stratum, worth),
-      SHARED("photons/photons.h", PhotonEmitPush, count, first, round, share, step),
+      SHARED("emission.h", EmitPush, count, first, round, share, step),
       SHARED("photons/photons.h", PhotonWorthPush, count, step),
       SHARED("photons/photons.h", PhotonListPush, count),
       SHARED("photons/photons.h", PhotonPointsPush, count, step, by, pad0),

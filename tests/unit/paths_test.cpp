@@ -58,7 +58,7 @@ TEST_CASE("the automaton agrees with a brute-force classifier on all words up to
 
 TEST_CASE("the component automaton is small and knows what is still reachable") {
   const Automaton automaton = compile_components();
-  CHECK(automaton.states.size() == 5);
+  CHECK(automaton.states.size() == 8);  // as many as a path has room for
   CHECK(automaton.states[0].reachable == 0b1111);
   const uint8_t d = automaton.after(0, Event::diffuse), dg = automaton.after(d, Event::glossy),
                 dd = automaton.after(d, Event::diffuse), ddd = automaton.after(dd, Event::diffuse);
@@ -81,7 +81,7 @@ TEST_CASE("packing switches components off without moving states") {
     CHECK((all[i] >> 27 & 1) == 1);
     CHECK((none[i] >> 24 & 7) == k_component_count);
     CHECK((none[i] >> 27 & 1) == 0);
-    CHECK((all[i] >> 28 & 1) == (i == 0));
+    CHECK((all[i] >> 28 & 1) == (i == 0 || i == automaton.after(0, Event::specular)));
   }
   const uint8_t ddd =
       automaton.after(automaton.after(automaton.after(0, Event::diffuse), Event::diffuse), Event::diffuse);
@@ -347,4 +347,54 @@ TEST_CASE("a path goes on through a lookup for what another lookup brings furthe
   const auto packed = paths::pack(a, 0, routes);
   CHECK((packed[d] >> 27 & 1u) == 1);
   CHECK((packed[a.after(d, paths::Event::diffuse)] >> 27 & 1u) == 0);
+}
+
+TEST_CASE("what light tracing brings paths no longer do, and each word comes once, whoever brings the rest") {
+  const paths::Automaton a = paths::compile_components();
+  const paths::LightAutomaton light = paths::reverse(a);
+  const paths::LookupRoutes camera = paths::camera_routes(a, 15, 0b1000);
+  CHECK(camera.parts == 0b1000);
+  CHECK(camera.traced == 15);
+  CHECK(paths::camera_routes(a, 0b0111, 0b1000).parts == 0);
+  CHECK(paths::camera_routes(a, 15, 0b0111).parts == 0);
+  const char* letters = "DGS";
+  for (const bool photons : {false, true}) {
+    paths::LookupRoutes routes = photons ? paths::photon_routes(a, 15, 0b1000, 0b1000)
+                                         : paths::LookupRoutes{.component = {}, .traced = 15};
+    if (photons) {
+      CHECK(routes.component[0][3] == paths::k_no_component);
+      CHECK(routes.component[state_after(a, "S")][3] == 3);
+    }
+    routes.replaced = camera.replaced;
+    const std::vector<uint32_t> packed = paths::pack(a, routes.traced, routes);
+    for (int length = 0; length <= 5; ++length)
+      for (int number = 0, all = int(std::pow(3, length)); number < all; ++number) {
+        std::string events;
+        for (int k = 0, rest = number; k < length; ++k, rest /= 3) events += letters[rest % 3];
+        INFO("E" << events << "L, photons " << photons);
+        const uint8_t component = a.classify("E" + events + "L");
+        const bool straight = length > 1 && events[0] == 'D' && events.find('D', 1) == std::string::npos;
+        int times = straight;
+        uint8_t eye = 0;
+        bool live = true;
+        for (size_t k = 0; k < events.size(); ++k) {
+          if (photons && events[k] == 'D') {
+            uint8_t from_light = 0;
+            for (size_t j = events.size(); j-- > k + 1;)
+              from_light = light.after(from_light, paths::Event(std::string(letters).find(events[j])));
+            times += routes.component[eye][light.states[from_light].part] == component;
+          }
+          eye = a.after(eye, paths::Event(std::string(letters).find(events[k])));
+          live = live && (packed[eye] >> 27 & 1u) != 0;
+        }
+        const bool traced = (packed[eye] >> 24 & 7u) == component;
+        CHECK((!traced || live));
+        CHECK(times + traced == 1);
+      }
+  }
+  // Alone: paths end where they could only go on for what is brought.
+  const paths::LookupRoutes alone = paths::camera_routes(a, 0b1000, 0b1000);
+  const std::vector<uint32_t> packed = paths::pack(a, alone.traced, alone);
+  CHECK((packed[state_after(a, "D")] >> 27 & 1u) == 0);
+  CHECK((packed[state_after(a, "SD")] >> 27 & 1u) == 1);
 }

@@ -46,7 +46,7 @@ TEST_CASE("every component has one solver of the registry, or none") {
     REQUIRE(option != nullptr);
     size_t served = 0;
     for (const solvers::SolverInfo* info : solvers::registered()) served += info->serves[c];
-    CHECK(option->choices.size() == served + 1);
+    CHECK(option->choices.size() == served + 1 + (c == 3));  // light+photons
     CHECK(option->choices.back() == "off");
   }
 }
@@ -71,6 +71,11 @@ TEST_CASE("lamps behind solid glass are warned about, and nothing else is") {
   plan::Settings photons;  // find it
   photons.set("components.caustic", "photons");
   CHECK(plan::unreachable_light(plan::make_plan(photons), s).empty());
+  photons.set("components.caustic", "light+photons");
+  CHECK(plan::unreachable_light(plan::make_plan(photons), s).empty());
+  photons.set("components.caustic", "light");  // but for mirror images of it
+  REQUIRE(plan::unreachable_light(plan::make_plan(photons), s).size() == 1);
+  CHECK(plan::unreachable_light(plan::make_plan(photons), s)[0].find("light+photons") != std::string::npos);
   for (scene::Light& l : s.lights) l.enabled = false;
   CHECK(plan::unreachable_light(p, s).empty());
 }
@@ -106,4 +111,26 @@ TEST_CASE("a scene without light gets a studio and says so; a scene with any kee
   scene::Scene unlit = one_triangle();
   unlit.materials[0].unlit = true;
   CHECK_FALSE(scene::add_default_light(unlit));
+}
+
+TEST_CASE("two solvers joined by a plus share a component, and both are at work") {
+  plan::Settings settings;
+  settings.set("components.caustic", "light+photons");
+  const plan::Plan both = plan::make_plan(settings);
+  const solvers::SolverInfo &light = *solvers::find("light"), &photons = *solvers::find("photons");
+  CHECK(both.components_of(light) == 0b1000);
+  CHECK(both.components_of(photons) == 0b1000);
+  CHECK(both.rests_of(light) == 0);
+  CHECK(both.rests_of(photons) == 0b1000);
+  CHECK(both.at_work().size() == 3);
+  CHECK_FALSE(both.bias(3).has_value());  // that of photons
+  settings.set("components.caustic", "light");
+  CHECK(plan::make_plan(settings).bias(3) == 0.0);
+  CHECK_THROWS_WITH(settings.set("components.caustic", "photons+light"), Catch::Contains("light+photons"));
+  CHECK_THROWS(settings.set("components.secondary", "light"));
+  CHECK(solvers::chooses("light+photons", "light"));
+  CHECK(solvers::chooses("light+photons", "photons"));
+  CHECK(solvers::chooses("light", "light"));
+  CHECK_FALSE(solvers::chooses("light+photons", "path"));
+  CHECK_FALSE(solvers::chooses("path", "light"));
 }

@@ -15,7 +15,9 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
                   const CacheRoutes& routes, const CacheOptions& o)
     : options(o),
       tables(device, compiler, slots, routes, o),
-      gathers{.parts = routes.records.parts, .recursive = tables.records_look_up()},
+      gathers{.parts = routes.records.parts,
+              .recursive = tables.records_look_up(),
+              .elsewhere = routes.elsewhere},
       radii(device, compiler, options.radius, o.most_records, defines(routes.records, o.radius.metric)),
       evaluator(device, compiler, slots),
       places(device, compiler),

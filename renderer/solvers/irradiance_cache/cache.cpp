@@ -122,6 +122,7 @@ const Records& Cache::records() const { return impl_->tables.records; }
 const std::vector<float>& Cache::importance() const { return impl_->picture.importance; }
 uint32_t Cache::parts() const { return impl_->gathers.parts; }
 bool Cache::recursive() const { return impl_->gathers.recursive; }
+bool Cache::elsewhere() const { return impl_->gathers.elsewhere; }
 
 bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
                  const std::function<bool()>& cancel) {

@@ -113,6 +113,8 @@ struct CacheRoutes {
   /// The rays of records, and the parts that they gather (paths::record_routes; without any lookup they are
   /// path traced); those that gather (paths::gather_routes).
   paths::LookupRoutes records, records_gather;
+  /// The rays of records bring tertiary light by the lookups of another solver.
+  bool elsewhere = false;
 };
 
 class Cache {
@@ -184,6 +186,7 @@ class Cache {
   const std::vector<float>& importance() const;
   uint32_t parts() const;  ///< that its records hold (bits); the others are 0
   bool recursive() const;  ///< their tertiary light is looked up in other records, not path traced
+  bool elsewhere() const;  ///< ... or by another solver
   /// Looks through the centre of every pixel, for bind_sight(), unless that has been done: while the cache is
   /// being built its own passes do. The wavefront's frame is the view's.
   /// False when it was cancelled.

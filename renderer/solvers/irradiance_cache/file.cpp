@@ -117,9 +117,11 @@ void fields(Archive& a, File& f) {
   a.map(f.made_with.hashes, [&](auto& value) { a.plain(value); });
   a.map(f.made_with.settings, [&](auto& value) { a.text(value); });
   a.plain(f.made_with.parts);
-  uint8_t recursive = f.made_with.recursive;
-  a.plain(recursive);
-  assign(f.made_with.recursive, recursive);
+  // 1: looked up in other records, 2: by another solver.
+  uint8_t tertiary = f.made_with.elsewhere ? 2 : f.made_with.recursive ? 1 : 0;
+  a.plain(tertiary);
+  assign(f.made_with.recursive, tertiary == 1);
+  assign(f.made_with.elsewhere, tertiary == 2);
   a.text(f.made_with.seed);
   a.text(f.view);
   a.plain(f.status.pass), a.plain(f.status.probed.asked), a.plain(f.status.probed.paths),
@@ -239,12 +241,13 @@ void check_fits(const CacheFile& cache, const MadeWith& wanted, uint32_t room, c
   if (const uint32_t missing = wanted.parts & ~made.parts)
     throw_error(where, "its records hold {} light; the components that are looked up need {} light too",
                 part_names(made.parts), part_names(missing));
-  const auto gathered = [](bool recursive) { return recursive ? "cache" : "path"; };
-  if ((wanted.parts & 1u << k_part_tertiary) != 0 && made.recursive != wanted.recursive)
+  const auto by = [](const MadeWith& m) { return m.elsewhere ? "photons" : m.recursive ? "cache" : "path"; };
+  const std::string_view made_by = by(made), wanted_by = by(wanted);
+  if ((wanted.parts & 1u << k_part_tertiary) != 0 && made_by != wanted_by)
     throw_error(where,
                 "the tertiary light of its records was gathered by '{}', here it is by '{}'; set "
                 "components.tertiary {}",
-                gathered(made.recursive), gathered(wanted.recursive), gathered(made.recursive));
+                made_by, wanted_by, made_by);
   if (cache.records.size() > room)
     throw_error(where, "holds {} records and there is room for {}; set cache.max_records to {} or more",
                 cache.records.size(), room, cache.records.size());

@@ -29,6 +29,7 @@ struct MadeWith {
   uint32_t parts = 0;                           ///< bit p: the records hold part p
   /// Their tertiary light was looked up in other records, not path traced.
   bool recursive = false;
+  bool elsewhere = false;  ///< ... or another solver looked it up
   /// Decides which of the equally good caches it is: kept, not compared.
   std::string seed;
 };

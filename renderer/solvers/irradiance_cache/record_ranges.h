@@ -65,6 +65,7 @@ class RecordRanges {
 struct RecordLight {
   uint32_t parts = 0;      ///< in bits; the others are 0
   bool recursive = false;  ///< tertiary light was looked up in other records, not path traced
+  bool elsewhere = false;  ///< ... or another solver looked it up
 };
 
 }  // namespace lucerna::irradiance_cache

@@ -119,7 +119,8 @@ solvers::Spoils Cache::adopt(transport::Wavefront& wavefront, const Cache& other
   solvers::Spoils lacks;
   const uint32_t tertiary = 1u << k_part_tertiary;
   lacks.light = relit || (c.gathers.parts & ~c.held.parts) != 0 ||
-                (c.gathers.recursive != c.held.recursive && (c.gathers.parts & tertiary) != 0);
+                ((c.gathers.recursive != c.held.recursive || c.gathers.elsewhere != c.held.elsewhere) &&
+                 (c.gathers.parts & tertiary) != 0);
   // Paths that gather ask for no records.
   for (size_t s = 0; s < k_gather_state; ++s)
     lacks.coverage |= c.tables.picture_routes[s] != k_no_routes && o.tables.picture_routes[s] == k_no_routes;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/log.h"
+#include "paths/light_paths.h"
 #include "solvers/irradiance_cache/info.h"
 
 namespace lucerna::irradiance_cache {
@@ -40,19 +41,39 @@ paths::LookupRoutes routes_of_records(const Task& task) {
                               task.effects.specular || task.effects.solid_glass || task.effects.thin_glass);
 }
 
+/// Tertiary light behind a cached secondary component is another solver's, which looks it up: then it does so
+/// for the rays of records as well.
+bool elsewhere(const Task& task) {
+  constexpr uint32_t k_tertiary = 1u << 2;
+  return (task.looked_up & task.enabled & ~task.own & picture_routes(task).parts & k_tertiary) != 0;
+}
+
+/// What paths bring of what the rays of records gather; lookups are others' where `elsewhere`.
+paths::LookupRoutes routes_of_rays(const Task& task) {
+  constexpr uint32_t k_tertiary = 1u << 2;
+  paths::LookupRoutes records = routes_of_records(task);
+  if (!elsewhere(task)) return records;
+  // Behind ED the components are the parts, so that the rays are those of a picture of them.
+  paths::LookupRoutes rays = paths::photon_routes(task.automaton, records.parts, k_tertiary);
+  rays.parts = records.parts;
+  return rays;
+}
+
 CacheRoutes all_routes(const Task& task) {
   const paths::LookupRoutes records = routes_of_records(task);
   return {.picture = picture_routes(task),
           .picture_gather = paths::gather_routes(task.automaton, task.enabled, records),
           .records = records,
-          .records_gather = paths::gather_routes(task.automaton, records.parts, records)};
+          .records_gather = paths::gather_routes(task.automaton, records.parts, records),
+          .elsewhere = elsewhere(task)};
 }
 
 solvers::Routing routing(const Task& task) {
   CacheRoutes routes = all_routes(task);
   return {.lookups = std::move(routes.picture),
           .fallback = task.enabled,
-          .gather = std::move(routes.picture_gather)};
+          .gather = std::move(routes.picture_gather),
+          .through = routes.elsewhere ? 1u << 2 : 0};
 }
 
 /// Texels brighter than this times the sky's mean are a sun, where records hold the sky's light.
@@ -84,6 +105,7 @@ CacheSolver::CacheSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, uin
       compiler_(compiler),
       picture_routes_(picture_routes(task)),
       record_routes_(routes_of_records(task)),
+      ray_routes_(routes_of_rays(task)),
       metric_(Metric(task.settings.choice("cache.metric"))),
       cache_(device, compiler, slots, all_routes(task), read_options(task.settings)) {}
 
@@ -93,7 +115,8 @@ gpu::Defines CacheSolver::defines() const { return Cache::defines(record_routes_
 
 bool CacheSolver::serves(const Task& task) const {
   return picture_routes(task).component == picture_routes_.component &&
-         routes_of_records(task).component == record_routes_.component;
+         routes_of_records(task).component == record_routes_.component &&
+         routes_of_rays(task).component == ray_routes_.component;
 }
 
 CacheView CacheSolver::view(const Picture& picture) const {
@@ -102,10 +125,10 @@ CacheView CacheSolver::view(const Picture& picture) const {
   view.paths_enabled = picture.task.enabled;
   // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
   view.records_frame = picture.frame_for(
-      {.lookups = record_routes_,
+      {.lookups = ray_routes_,
        .fallback = record_routes_.parts,
        .gather = paths::gather_routes(picture.task.automaton, record_routes_.parts, record_routes_)},
-      record_routes_.traced);
+      ray_routes_.traced);
   view.records_enabled = record_routes_.parts;
   view.width = picture.width, view.height = picture.height;
   view.scene_radius = picture.flat.scene_radius;

@@ -71,7 +71,8 @@ class CacheSolver final : public solvers::Solver {
 
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
-  paths::LookupRoutes picture_routes_, record_routes_;  ///< of the picture's paths, of the rays of records
+  /// Of the picture's paths; of the rays of records, in records; of these, whoever looks up.
+  paths::LookupRoutes picture_routes_, record_routes_, ray_routes_;
   Metric metric_;
   Cache cache_;
   /// What of an adopted cache does not serve here; of a new one all.

@@ -23,7 +23,7 @@ MadeWith what_made(const Cache& cache, const OptionValues& settings, const solve
   for (const char* key : {"path.max_depth", "path.roulette_depth"})
     made_with.settings[key] = settings.text(key);
   made_with.parts = cache.parts();
-  made_with.recursive = cache.recursive();
+  made_with.recursive = cache.recursive(), made_with.elsewhere = cache.elsewhere();
   made_with.seed = settings.text("seed");
   return made_with;
 }

@@ -1,23 +1,20 @@
-#include "solvers/photons/aim.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "solvers/photons/solver.h"
+#include "transport/aim.h"
 #include "transport/casters.h"
 
 namespace lucerna::photons {
 
 using namespace shared;
+using paths::k_caustic_part;
 using solvers::Cancel, solvers::Picture;
 
 namespace {
 
-constexpr double k_floor = 0.1, k_found_floor = 0.3;
-constexpr double k_least_unaimed = 1.0 / 7, k_least_unaimed_of_all = 0.5, k_most_unaimed = 0.9;
-constexpr uint32_t k_eye_paths = 1u << 14, k_light_paths = 1u << 14, k_paths_a_stratum = 8;
-constexpr uint32_t k_pilot_round = 0xffffffffu;  // of no sample
-constexpr double k_pilot_radius = 3;             // of its own pixels, which are wide
+constexpr uint32_t k_eye_paths = 1u << 14;
+constexpr double k_pilot_radius = 3;  // of its own pixels, which are wide
 
 /// The frame of the pilot's eye paths: the same view with fewer pixels.
 Frame small_frame(const Picture& picture) {
@@ -29,45 +26,14 @@ Frame small_frame(const Picture& picture) {
   return frame;
 }
 
-bool same_view(const Frame& a, const Frame& b) {
-  return a.camera_origin == b.camera_origin && a.camera_right == b.camera_right &&
-         a.camera_up == b.camera_up && a.camera_forward == b.camera_forward &&
-         a.orthographic == b.orthographic && a.width == b.width && a.height == b.height && a.seed == b.seed;
-}
-
 }  // namespace
-
-std::vector<double> aim_shares(std::span<const double> worth, bool caustics_alone) {
-  std::vector<double> shares(worth.size(), 0.0);
-  const size_t pairs = worth.size() - 1;
-  double roots = 0;
-  size_t found = 0;
-  for (size_t i = 1; i < worth.size(); ++i) roots += std::sqrt(worth[i]), found += worth[i] > 0 ? 1 : 0;
-  const double unaimed_root = std::sqrt(worth[0]);
-  const double wanted = roots > 0 ? unaimed_root / (unaimed_root + roots) : 1;
-  const double unaimed =
-      pairs == 0
-          ? 1
-          : std::clamp(wanted, caustics_alone ? k_least_unaimed : k_least_unaimed_of_all, k_most_unaimed);
-  shares[0] = unaimed;
-  double sum = 0;
-  for (size_t i = 1; i < worth.size(); ++i) {
-    shares[i] = k_floor / double(pairs);
-    if (worth[i] > 0)
-      shares[i] +=
-          k_found_floor / double(found) + (1 - k_floor - k_found_floor) * std::sqrt(worth[i]) / roots;
-    sum += shares[i];
-  }
-  for (size_t i = 1; i < worth.size(); ++i) shares[i] *= (1 - unaimed) / sum;
-  return shares;
-}
 
 void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   const bool caustics = (parts_ >> k_caustic_part & 1u) != 0;
   const bool aims = sends_ && caustics && lights_.power() > 0 && picture.task.settings.boolean("photons.aim");
   const bool spares = sends_ && lights_.power() > 0 && picture.task.settings.boolean("photons.importons");
   const bool stale =
-      spoils.any() || aims != aims_ || spares != spares_ || !same_view(picture.frame, aimed_for_);
+      spoils.any() || aims != aims_ || spares != spares_ || !transport::same_view(picture.frame, aimed_for_);
   aims_ = aims, spares_ = spares;
   // Whoever only looks from elsewhere finds the same casters.
   if (spoils.light || spoils.places || !aims) casters_.clear(), casters_known_ = false;
@@ -75,15 +41,17 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   aimed_ = false;
   aim_step_ = AimStep::casters;
   aimed_for_ = picture.frame;
-  worth_.clear();
+  worth_.clear(), pairs_.clear();
   lights_.aim(device_, picture.flat, {}, 1);
   map_.store_by_importance(false);
 }
 
 bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
   if (ready()) return true;
+  if (pilot_done()) return feed(wavefront, picture, cancel);
   const Frame frame = small_frame(picture);
   if (aim_step_ == AimStep::casters) {
+    if (feeds_) wavefront.rebind_lookup();  // what eye paths note is the rounds'
     if (aims_ && !casters_known_) casters_ = transport::find_casters(picture.flat), casters_known_ = true;
     lights_.aim(device_, picture.flat, casters_, 0.5);
     aimed_ = casters_.empty() && !spares_;
@@ -109,13 +77,14 @@ bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& pictu
     aimed_ = casters_.empty();
     return complete;
   }
-  Round round = round_of(picture, k_pilot_round);
+  Round round = round_of(picture, transport::k_pilot_round);
   round.lookup = lookup_of(picture, frame, k_pilot_radius);
-  round.paths = std::max(k_light_paths, k_paths_a_stratum * lights_.strata());
+  round.paths = std::max(transport::k_pilot_paths, transport::k_pilot_paths_a_stratum * lights_.strata());
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;
   worth_ = map_.worth(wavefront, lights_);
-  lights_.share_out(aim_shares(worth_, parts_ == 1u << k_caustic_part));
+  lights_.share_out(transport::aim_shares(worth_, parts_ == 1u << k_caustic_part));
+  pairs_ = overlay::aimed_pairs(picture.flat, lights_);
   map_.clear();
   aimed_ = true;
   return true;

@@ -38,11 +38,26 @@ std::vector<OptionInfo> option_rows() {
           "so that borders and creases are not darker than they are.",
           "Correct borders"),
       without_restart(
-          choice_option("overlay.photon_density", "off", {"off", "photons", "irradiance"}, "",
+          choice_option("overlay.photon_density", "off", {"off", "photons", "irradiance", "importance"}, "",
                         "Shows over the picture how dense the photons of the last round lie, or what they "
                         "bring: a heat map on "
-                        "surfaces, and under the pointer the disc within which photons count, with those.",
+                        "surfaces, and under the pointer the disc within which photons count, with those. "
+                        "importance: how much of the picture hangs on photons there, by the pilot that "
+                        "decides which are stored.",
                         "Show density")),
+      without_restart(boolean_option(
+          "overlay.photon_paths", "false",
+          "Shows paths from the lights as they are traced: faint up to the first surface, then in the colour "
+          "of their light.",
+          "Show light paths")),
+      without_restart(integer_option(
+          "overlay.photon_paths_of", 0, 0, 65535, "",
+          "Of the lamp of this number alone, in the scene's order; 0: of all lights.", "Paths of lamp")),
+      without_restart(boolean_option("overlay.photon_aim", "false",
+                                     "Shows what light paths are aimed at: a box around each caster, and "
+                                     "lines from lights to casters, by "
+                                     "the share of the paths.",
+                                     "Show aim")),
       without_restart(
           choice_option("overlay.photons", "off", {"off", "flux", "bounce"}, "",
                         "Shows the photons of the last round where they lie: flux in the colour of "
@@ -98,7 +113,10 @@ constexpr const char* k_caustics_matrix = R"({
     {"name": "plain", "about": "path tracing", "budget": "seconds"},
     {"name": "photons", "about": "photons, aimed", "set": {"components.caustic": "photons"}, "budget": "seconds"},
     {"name": "unaimed", "about": "photons, not aimed", "budget": "seconds",
-     "set": {"components.caustic": "photons", "photons.aim": false}}
+     "set": {"components.caustic": "photons", "photons.aim": false}},
+    {"name": "light", "about": "light tracing", "set": {"components.caustic": "light"}, "budget": "seconds"},
+    {"name": "both", "about": "light tracing, photons for mirror images", "budget": "seconds",
+     "set": {"components.caustic": "light+photons"}}
   ]
 })";
 
@@ -121,9 +139,12 @@ const SolverInfo& info() {
       .changes = change_rows(),
       .views =
           {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'},
-           {.option = "overlay.photon_density", .label = "Density", .shortcut = 'M', .asks_pointer = true}},
+           {.option = "overlay.photon_density", .label = "Density", .shortcut = 'M', .asks_pointer = true},
+           {.option = "overlay.photon_paths", .label = "Paths"},
+           {.option = "overlay.photon_aim", .label = "Aim"}},
       .benches = {{"caustics",
-                   "bundled light alone: path tracing against photons, on glass and ring; an hour and a half",
+                   "bundled light alone: path tracing against photons and light tracing, on glass and ring; "
+                   "two hours",
                    k_caustics_matrix}},
       .against_noise = {"photons.per_round"},
       .against_bias = {"photons.radius"},

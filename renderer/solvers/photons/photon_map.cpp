@@ -11,9 +11,6 @@ using namespace shared;
 
 namespace {
 
-/// Of strata over the paths of a round (lib/emission.glsl).
-uint32_t stratum_step(uint32_t paths) { return uint32_t((uint64_t{1} << 32) / paths); }
-
 constexpr uint32_t k_first_capacity = 65536;                           // photons
 constexpr uint32_t k_least_entries = 1024, k_most_entries = 1u << 22;  // of the table
 constexpr uint32_t k_entries_a_photon = 4;
@@ -29,8 +26,7 @@ PhotonMap::PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const g
     : device_(device),
       compiler_(compiler),
       scene_defines_(scene_defines),
-      automaton_(paths::reverse(automaton)),
-      emit_(device, compiler, "photons/emit.comp", scene_defines),
+      emitter_(device, compiler, scene_defines, automaton),
       trace_(device, compiler, "photons/trace.comp", scene_defines),
       keys_(device, compiler, "photons/keys.comp"),
       arrange_(device, compiler, "photons/arrange.comp"),
@@ -75,7 +71,8 @@ std::vector<double> PhotonMap::worth(transport::Wavefront& wavefront, const tran
   lights.bind(r);
   r.set("photon_sorted", *sorted_);
   r.set("PhotonWorths", worths_);
-  wavefront.stream().dispatch(worth_, r, PhotonWorthPush{count, stratum_step(figures_.paths)},
+  wavefront.stream().dispatch(worth_, r,
+                              PhotonWorthPush{count, transport::LightEmitter::stratum_step(figures_.paths)},
                               gpu::groups_for(count, 64), "photon map");
   wavefront.account_stages();
   const auto* found = static_cast<const PhotonWorth*>(worths_.mapped());
@@ -113,14 +110,6 @@ uint64_t PhotonMap::bytes() const {
   return sum;
 }
 
-Frame PhotonMap::light_frame(const Round& round, const Frame& picture) const {
-  Frame frame = picture;
-  const std::vector<uint32_t> states = paths::pack(automaton_, round.parts, round.account);
-  std::fill(std::begin(frame.automaton), std::end(frame.automaton), uint32_t{paths::k_component_count} << 24);
-  std::copy(states.begin(), states.end(), frame.automaton);
-  return frame;
-}
-
 bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSource& lights,
                       const Round& round, const Frame& picture, uint32_t enabled,
                       const std::function<bool()>& cancel) {
@@ -131,19 +120,8 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
   }
   if (lights.power() > 0 && traced_ < round.paths) {
     const uint32_t count = std::min(wavefront.slots(), round.paths - traced_);
-    wavefront.set_frame(light_frame(round, picture), 1);
-    const auto back = [&] { wavefront.set_frame(picture, enabled); };
     const Timer timer;
-    try {
-      if (!trace_batch(wavefront, lights, round, count, cancel)) {
-        back();
-        return false;
-      }
-    } catch (...) {
-      back();
-      throw;
-    }
-    back();
+    if (!trace_batch(wavefront, lights, round, count, picture, enabled, cancel)) return false;
     next_.trace_s += timer.seconds();
     traced_ += count;
     if (traced_ < round.paths) return true;
@@ -153,34 +131,21 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
 }
 
 bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
-                            const Round& round, uint32_t count, const std::function<bool()>& cancel) {
-  gpu::Stream& stream = wavefront.stream();
+                            const Round& round, uint32_t count, const Frame& picture, uint32_t enabled,
+                            const std::function<bool()>& cancel) {
   if (!list_) grow(wavefront, k_first_capacity);
-  const auto bind = [&](gpu::Resources& r) {
-    lights.bind(r);
-    bind_list(r);
-  };
+  const transport::LightVertexWork work{
+      .vertex = &trace_, .stage = "photon vertex", .bind = [&](gpu::Resources& r) { bind_list(r); }};
   for (;;) {
     uint32_t counts[k_photon_counts] = {};
     counts[k_photons_stored] = stored_, counts[k_photons_capacity] = capacity_;
     counts_.write(counts, sizeof counts);
-    gpu::Resources emitting;
-    wavefront.bind_paths(emitting);
-    bind(emitting);
-    transport::PathEnds ends;
-    ends.begin = [&] {
-      const PhotonEmitPush push{count, traced_, round.number, 1 / float(round.paths),
-                                stratum_step(round.paths)};
-      stream.dispatch(emit_, emitting, push, gpu::groups_for(count, 64), "photon emission");
-    };
-    ends.vertex = &trace_;
-    ends.vertex_stage = "photon vertex";
-    ends.bind_vertex = bind;
-    if (!wavefront.run(count, ends, cancel)) return false;
+    if (!emitter_.trace(wavefront, lights, round, traced_, count, work, picture, enabled, cancel))
+      return false;
     counts_.read(counts, sizeof counts);
     if (counts[k_photons_stored] <= capacity_) {
       stored_ = counts[k_photons_stored];
-      next_.escaped += counts[k_photons_escaped], next_.dark += counts[k_photons_dark];
+      next_.escaped += emitter_.escaped(), next_.dark += emitter_.dark();
       next_.spared += counts[k_photons_spared];
       return true;
     }

@@ -7,20 +7,14 @@
 // their paths' numbers.
 #include <functional>
 
-#include "paths/light_paths.h"
 #include "shaders/shared/photons/photons.h"
 #include "sort/radix_sort.h"
-#include "transport/light_source.h"
-#include "transport/wavefront.h"
+#include "transport/light_emitter.h"
 
 namespace lucerna::photons {
 
-/// What a round is to be.
-struct Round {
-  uint32_t number = 0;
-  uint32_t paths = 0;            ///< from lights
-  uint32_t parts = 0;            ///< of light that are stored (bits, paths::k_part_count)
-  uint32_t account = 0;          ///< component that their time is accounted to
+/// What a round is to be; `parts`: of light that are stored.
+struct Round : transport::LightRound {
   shared::PhotonFrame lookup{};  ///< as lookups are to read it; count, mask and round are filled in
 };
 
@@ -72,9 +66,9 @@ class PhotonMap {
   uint64_t bytes() const;
 
  private:
-  shared::Frame light_frame(const Round& round, const shared::Frame& picture) const;
   bool trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights, const Round& round,
-                   uint32_t count, const std::function<bool()>& cancel);
+                   uint32_t count, const shared::Frame& picture, uint32_t enabled,
+                   const std::function<bool()>& cancel);
   void bind_list(gpu::Resources& resources) const;  ///< what stores photons
   void grow(transport::Wavefront& wavefront, uint32_t needed);
   void build(transport::Wavefront& wavefront, const Round& round);
@@ -83,8 +77,8 @@ class PhotonMap {
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
   gpu::Defines scene_defines_;
-  paths::LightAutomaton automaton_;
-  gpu::Kernel emit_, trace_, keys_, arrange_, worth_;
+  transport::LightEmitter emitter_;
+  gpu::Kernel trace_, keys_, arrange_, worth_;
   sort::RadixSort radix_sort_;
   gpu::Buffer counts_, list_, ids_, entries_, scratch_, map_, table_, block_, importance_, worths_;
   const gpu::Buffer* sorted_ = nullptr;     ///< of the complete round

@@ -86,6 +86,7 @@ Report make_report(const PhotonReport& r) {
     map.items.push_back(ValueRow{"Aimed", share_text(1 - r.unaimed, 1),
                                  "Of the paths, at casters; as many as a pilot has found to be of use."});
   }
+  if (const Table table = overlay::aim_table(r.aimed); !table.rows.empty()) map.items.push_back(table);
   const auto rate = [&](const char* name, double n, const char* help) {
     if (n > 0) map.items.push_back(ValueRow{name, count_text(n) + " / s", help});
   };
@@ -101,9 +102,13 @@ Report make_report(const PhotonReport& r) {
        .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"}, OptionRow{"photons.floor"},
                  OptionRow{"photons.alpha"}, OptionRow{"photons.borders"}, OptionRow{"photons.aim"},
                  OptionRow{"photons.importons"}}});
-  report.sections.push_back({.title = "Over the picture",
-                             .note = "",
-                             .items = {OptionRow{"overlay.photons"}, OptionRow{"overlay.photon_density"}}});
+  report.sections.push_back(
+      {.title = "Over the picture",
+       .note = "",
+       .items = {OptionRow{"overlay.photons"}, OptionRow{"overlay.photon_density"},
+                 OptionRow{"overlay.photon_paths"}, OptionRow{"overlay.photon_paths_of"},
+                 OptionRow{"overlay.photon_aim"}}});
+  if (r.aim_shown && !r.aimed.empty()) report.legends.push_back(overlay::aim_legend());
   if (r.view == shared::k_photons_by_bounce) {
     Legend legend{.title = "surfaces before", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (uint32_t bounce = 0; bounce < 6; ++bounce)
@@ -111,8 +116,9 @@ Report make_report(const PhotonReport& r) {
     report.legends.push_back(std::move(legend));
   }
   if (r.density.of > 0 && r.density.hi > 0)
-    report.legends.push_back({.title = r.density.of == k_density_of_photons
-                                           ? "photons a m\u00b2, last round"
+    report.legends.push_back({.title = r.density.of == k_density_of_photons ? "photons a m\u00b2, last round"
+                                       : r.density.of == k_density_of_importance
+                                           ? "what hangs on photons there"
                                            : "irradiance of the last round's photons",
                               .ramp = k_ramp_magma,
                               .ticks = {},

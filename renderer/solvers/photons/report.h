@@ -1,5 +1,6 @@
 #pragma once
 // What photons tell a person.
+#include "overlay/light_paths.h"
 #include "solvers/photons/inspector.h"
 #include "solvers/photons/photon_map.h"
 #include "solvers/report.h"
@@ -16,8 +17,10 @@ struct PhotonReport {
   bool at_floor = false;
   bool limited = false;  ///< held to less than what was asked for
   uint32_t casters = 0;
-  double unaimed = 1;  ///< share of the paths
-  bool ready = true;   ///< the pilot is done
+  double unaimed = 1;                     ///< share of the paths
+  bool ready = true;                      ///< the pilot is done
+  std::vector<overlay::AimedPair> aimed;  ///< greatest share first
+  bool aim_shown = false;
   uint64_t bytes = 0;
   double emitted_per_s = 0, stored_per_s = 0, sorted_per_s = 0;  ///< 0: not yet known
   uint32_t view = 0;                                             ///< overlay.photons

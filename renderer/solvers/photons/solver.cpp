@@ -11,6 +11,7 @@
 namespace lucerna::photons {
 
 using namespace shared;
+using paths::k_caustic_part;
 using solvers::Picture, solvers::Task, solvers::Cancel;
 
 namespace {
@@ -18,10 +19,14 @@ namespace {
 constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where their number is left to us
 /// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
 /// are very wide.
+// Of photons that records' rays read: many serve one lookup, for what errs there is seen by all records
+// around.
+constexpr uint32_t k_standing_paths = 1u << 18, k_standing_round = 0xfffffffdu;
+constexpr double k_standing_radius = 8;  // pixels, at the first picture that they are made for
 constexpr float k_least_radius = 1e-6f, k_most_radius = 0.25f;
 
 paths::LookupRoutes routes_of(const Task& task) {
-  return paths::photon_routes(task.automaton, task.enabled, task.own);
+  return paths::photon_routes(task.automaton, task.enabled, task.own, task.straight);
 }
 
 /// Parts of light that are looked up and that there are: of caustics only where something scatters otherwise
@@ -30,6 +35,12 @@ uint32_t parts_of(const Task& task) {
   const upload::Effects& e = task.effects;
   const bool focuses = e.specular || e.solid_glass || e.thin_glass;
   return routes_of(task).parts & (focuses ? ~0u : ~(1u << k_caustic_part));
+}
+
+/// Secondary light is looked up by somebody who prepares it by rays of his own, and tertiary light is ours.
+bool feeds(const Task& task) {
+  constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2;
+  return (task.own & k_tertiary) != 0 && (task.looked_up & k_secondary) != 0;
 }
 
 std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
@@ -56,23 +67,28 @@ solvers::Routing PhotonSolver::routing_of(const Task& task) {
 
 PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const Task& task)
     : device_(device),
+      compiler_(compiler),
+      scene_defines_(*task.scene_defines),
       routes_(routes_of(task)),
       parts_(parts_of(task)),
       sends_(parts_ != 0),
       map_(device, compiler, *task.scene_defines, task.automaton),
+      feeds_(sends_ && feeds(task)),
       view_(device, compiler),
+      paths_view_(device, compiler, *task.scene_defines, task.automaton),
       inspector_(device, compiler),
       surfaces_(device) {}
 
 const solvers::SolverInfo& PhotonSolver::info() const { return photons::info(); }
 
 void PhotonSolver::bind(gpu::Resources& resources) const {
-  map_.bind(resources);
+  (feeding_ ? *standing_ : map_).bind(resources);
   surfaces_.bind(resources);
 }
 
 bool PhotonSolver::serves(const Task& task) const {
-  return routes_of(task).component == routes_.component && parts_of(task) == parts_;
+  return routes_of(task).component == routes_.component && parts_of(task) == parts_ &&
+         (sends_ && feeds(task)) == feeds_;
 }
 
 void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
@@ -82,6 +98,9 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
     lit_ = true;
   }
   if (spoils.places) map_.clear(), surfaces_.spoil();
+  if (standing_ && spoils.any()) standing_->clear();
+  if (feeds_ && !standing_) standing_.emplace(device_, compiler_, scene_defines_, picture.task.automaton);
+  feeding_ = fed_ = false;
   map_.restart();
   fresh_ = true;
   begin_aim(picture, spoils);
@@ -135,12 +154,33 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
   return f;
 }
 
+bool PhotonSolver::feed(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
+  if (picture.task.settings.boolean("photons.borders") && !surfaces_.serves(picture.flat)) {
+    surfaces_.make(device_, picture.flat);
+    wavefront.rebind_lookup();
+    return true;
+  }
+  if (!standing_->complete()) {
+    Round round = round_of(picture, k_standing_round);
+    round.paths = std::max(k_standing_paths, round.paths);
+    round.lookup = lookup_of(picture, picture.frame, k_standing_radius);
+    return standing_->trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel);
+  }
+  feeding_ = true;
+  wavefront.rebind_lookup();
+  return true;
+}
+
 bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture& picture, uint32_t sample,
                                  const Cancel& cancel) {
   if (fresh_ && picture.task.settings.boolean("photons.borders") && !surfaces_.serves(picture.flat)) {
     surfaces_.make(device_, picture.flat);
     wavefront.rebind_lookup();
     return true;
+  }
+  if (feeding_) {
+    feeding_ = false, fed_ = true;
+    wavefront.rebind_lookup();
   }
   const Round round = round_of(picture, sample);
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
@@ -161,6 +201,12 @@ void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
   const auto of = uint32_t(settings.choice("overlay.photon_density"));
   if (of > 0) density_ = inspector_.draw_density(canvas, read, of);
   view_.draw(canvas, map_, uint32_t(settings.choice("overlay.photons")));
+  if (settings.boolean("overlay.photon_paths"))
+    paths_view_.draw(canvas, picture.flat, lights_, round_of(picture, 0),
+                     uint32_t(settings.integer("overlay.photon_paths_of")), picture.frame,
+                     picture.task.enabled);
+  if (settings.boolean("overlay.photon_aim") && !casters_.empty())
+    paths_view_.draw_aim(canvas, picture.flat, lights_, casters_);
   if (!looked_at_) return;
   const auto at = [](float place, uint32_t pixels) {
     return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
@@ -185,7 +231,7 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.sorted_per_s = rate(photons_, build_s_);
   r.density = density_;
   r.looked_at = looked_at_, r.inspected = inspected_;
-  r.bytes = map_.bytes() + lights_.bytes() + surfaces_.bytes();
+  r.bytes = map_.bytes() + lights_.bytes() + surfaces_.bytes() + (standing_ ? standing_->bytes() : 0);
   const double shrunk =
       s.real("photons.radius") * radius_ratio(rounds_ > 0 ? last_sample_ : 0, s.real("photons.alpha"));
   r.radius_pixels = std::max(shrunk, s.real("photons.floor"));
@@ -195,6 +241,8 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
                   ? r.radius_pixels * pixel > double(k_most_radius * picture.flat.scene_radius)
                   : r.radius_pixels * pixel > double{k_photon_most_slope};
   r.view = uint32_t(s.choice("overlay.photons"));
+  r.aim_shown = s.boolean("overlay.photon_aim");
+  r.aimed = pairs_;
   return r;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // Photons as the renderer sees them: stochastic progressive photon mapping, a round for every sample.
+#include "overlay/light_paths.h"
 #include "schedule/uniform.h"
 #include "solvers/photons/inspector.h"
 #include "solvers/photons/photon_map.h"
@@ -11,8 +12,6 @@
 namespace lucerna::photons {
 
 const solvers::SolverType& type();
-
-inline constexpr uint32_t k_caustic_part = 3;  ///< of light (paths::k_part_count)
 
 class PhotonSolver final : public solvers::Solver {
  public:
@@ -26,8 +25,8 @@ class PhotonSolver final : public solvers::Solver {
 
   void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
   /// Whether it is known where lookups take place, which casters light paths are aimed at, and with which
-  /// shares.
-  bool ready() const override { return (!aims_ && !spares_) || aimed_; }
+  /// shares; and, where records' rays read photons, whether there are some for them.
+  bool ready() const override { return pilot_done() && (!feeds_ || feeding_ || fed_); }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
   bool in_rounds() const override { return sends_; }
@@ -49,6 +48,9 @@ class PhotonSolver final : public solvers::Solver {
   static solvers::Routing routing_of(const solvers::Task& task);
 
  private:
+  bool pilot_done() const { return (!aims_ && !spares_) || aimed_; }
+  /// One piece of making, or binding, what records' rays read. False when it was cancelled.
+  bool feed(transport::Wavefront& wavefront, const solvers::Picture& picture, const solvers::Cancel& cancel);
   PhotonReport state(const solvers::Picture& picture) const;
   Round round_of(const solvers::Picture& picture, uint32_t sample) const;
   void begin_aim(const solvers::Picture& picture, solvers::Spoils spoils);
@@ -56,11 +58,21 @@ class PhotonSolver final : public solvers::Solver {
                                 double radius_pixels) const;
 
   gpu::Device& device_;
+  gpu::ShaderCompiler& compiler_;
+  gpu::Defines scene_defines_;
   paths::LookupRoutes routes_;
   uint32_t parts_;  ///< of light that the scene has: without caustics where nothing focuses
   bool sends_;      ///< photons; else there is nothing that they could bring
   PhotonMap map_;
+  // Records that are made before there is any round read photons as well, where secondary light is theirs and
+  // tertiary light ours: photons of their own, everywhere and within a wider radius, as long as light and
+  // surfaces stay the same.
+  bool feeds_;                         ///< there is somebody who reads these
+  std::optional<PhotonMap> standing_;  ///< made when it is called for
+  bool feeding_ = false;               ///< lookups read these
+  bool fed_ = false;                   ///< ... and have done so in this picture, which is in its rounds
   PointsView view_;
+  overlay::LightPathsPainter paths_view_;
   PhotonInspector inspector_;
   std::optional<vec2> looked_at_;
   std::optional<Inspected> inspected_;
@@ -79,6 +91,7 @@ class PhotonSolver final : public solvers::Solver {
   bool casters_known_ = false;
   std::vector<double> worth_;  ///< by stratum, of the pilot
   std::optional<schedule::UniformSchedule> eye_schedule_;
+  std::vector<overlay::AimedPair> pairs_;  ///< with their shares
   shared::Frame aimed_for_{};
 
   bool lit_ = false;          ///< lights_ are the scene's

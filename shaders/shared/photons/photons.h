@@ -56,14 +56,6 @@ struct PhotonFrame {
 };
 LUCERNA_CONST uint k_photon_no_component = 15u;
 
-/// `count` is the first word of all, as wavefront.glsl has it.
-struct PhotonEmitPush {
-  uint count;      ///< paths of this batch
-  uint first;      ///< number of the first of them in the round
-  uint round;
-  float share;     ///< 1 / paths of the round
-  uint step;       ///< 2^32 / paths of the round
-};
 struct PhotonWorthPush {
   uint count;      ///< photons
   uint step;
@@ -72,9 +64,7 @@ struct PhotonListPush {
   uint count;      ///< photons
 };
 /// Number of a photon in its round, whatever the order in which photons are stored: of its path, then of its events.
-LUCERNA_CONST uint k_photon_id_events = 8u;          ///< bits
-LUCERNA_CONST uint k_photon_most_events = 255u;      ///< after which a light path ends
-LUCERNA_CONST uint k_photon_most_paths = 1u << 24;   ///< of a round
+LUCERNA_CONST uint k_photon_id_events = 8u;          ///< bits, of k_most_light_events
 
 // Importance: where lookups of eye paths take place, and how much of the picture hangs on them. A table of sums by cell, in
 // which lookups lie by the rules of photons.
@@ -94,10 +84,8 @@ struct PhotonWorth {
 // PhotonCounts, uint each.
 LUCERNA_CONST uint k_photons_stored = 0u;    ///< so far, or wanted to be
 LUCERNA_CONST uint k_photons_capacity = 1u;  ///< for which there is room
-LUCERNA_CONST uint k_photons_escaped = 2u;   ///< paths that left the scene
-LUCERNA_CONST uint k_photons_dark = 3u;      ///< paths that began where a light has none
-LUCERNA_CONST uint k_photons_spared = 4u;    ///< photons left out because nobody looks where they lie
-LUCERNA_CONST uint k_photon_counts = 5u;
+LUCERNA_CONST uint k_photons_spared = 2u;    ///< photons left out because nobody looks where they lie
+LUCERNA_CONST uint k_photon_counts = 3u;
 
 /// Which photons are drawn, and how.
 struct PhotonPointsPush {

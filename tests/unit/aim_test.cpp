@@ -1,11 +1,11 @@
-// links: photons
+// links: transport
 // What light paths are aimed at, and with which shares.
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <set>
 
-#include "solvers/photons/aim.h"
 #include "support/rooms.h"
+#include "transport/aim.h"
 #include "transport/casters.h"
 #include "transport/light_source.h"
 
@@ -80,16 +80,16 @@ TEST_CASE("lamps are groups of their own, triangles lie together, and many lamps
 
 TEST_CASE("shares follow the root of what a pair has brought, and leave none out") {
   const std::vector<double> worth{1, 1e12, 4, 0, 1};
-  const std::vector<double> s = photons::aim_shares(worth, true);
+  const std::vector<double> s = transport::aim_shares(worth, true);
   CHECK(std::accumulate(s.begin(), s.end(), 0.0) == Approx(1));
   CHECK(s[0] == Approx(1.0 / 7));
   CHECK(s[1] > s[2]);
   CHECK(s[2] > s[3]);
   CHECK(s[4] > 0.1 * (1 - s[0]) / 1.5);  // the floor of what has been found
   CHECK(s[3] > 0.02 * (1 - s[0]));       // ... and of what has not
-  CHECK(photons::aim_shares(worth, false)[0] == Approx(0.5));
-  const std::vector<double> nothing = photons::aim_shares(std::vector<double>{5, 0, 0}, true);
+  CHECK(transport::aim_shares(worth, false)[0] == Approx(0.5));
+  const std::vector<double> nothing = transport::aim_shares(std::vector<double>{5, 0, 0}, true);
   CHECK(nothing[0] == Approx(0.9));
   CHECK(nothing[1] == Approx(0.05));
-  CHECK(photons::aim_shares(std::vector<double>{0}, true) == std::vector<double>{1});
+  CHECK(transport::aim_shares(std::vector<double>{0}, true) == std::vector<double>{1});
 }

@@ -1,10 +1,10 @@
 // Source `light`: light paths of a batch, one a slot.
-#define LUCERNA_PUSH PhotonEmitPush
-#include "shaders/shared/photons/photons.h"
+#define LUCERNA_PUSH EmitPush
+#include "shaders/shared/emission.h"
 #include "lib/wavefront.glsl"
 #include "lib/emission.glsl"
 
-layout(scalar) buffer PhotonCounts { uint photon_counts[]; };
+layout(scalar) buffer LightPathCounts { uint light_path_counts[]; };
 
 void main() {
   uint slot = global_index();
@@ -23,7 +23,7 @@ void main() {
   bool finite = is_finite(flux);
   if (!finite) atomicAdd(counters[k_counter_dropped], 1u);
   bool lit = finite && max3(flux) > 0.0;
-  if (!lit) atomicAdd(photon_counts[k_photons_dark], 1u);
+  if (!lit) atomicAdd(light_path_counts[k_light_paths_dark], 1u);
   ray.origin = e.origin;
   ray.direction = e.direction;
   ray.tmax = lit ? k_infinity : -1.0;

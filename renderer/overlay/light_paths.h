@@ -1,0 +1,52 @@
+#pragma once
+// Paths from lights as they are traced and aimed: segments from vertex to vertex, and what they are aimed at.
+// For solvers that send some.
+#include <optional>
+
+#include "overlay/painter.h"
+#include "solvers/report.h"
+#include "transport/light_emitter.h"
+
+namespace lucerna::overlay {
+
+/// A group of lights and a caster, and which share of the paths is sent from one to the other.
+struct AimedPair {
+  std::string light;  ///< in words: "lamp 3", "sun", "sky", "shining surfaces"
+  uint32_t caster = 0;
+  double share = 0;
+  std::optional<vec3> from;   ///< where the light is, if it is anywhere
+  std::optional<vec3> along;  ///< unit, from a light that is far away
+};
+/// Greatest first; empty where nothing is aimed.
+std::vector<AimedPair> aimed_pairs(const upload::FlatScene& flat, const transport::LightSource& lights);
+
+/// The greatest of them for a panel, and what the colours of draw_aim() say.
+solvers::Table aim_table(std::span<const AimedPair> pairs);
+solvers::Legend aim_legend();
+
+class LightPathsPainter {
+ public:
+  /// Kernels are compiled when they are first called for. All must outlive it.
+  LightPathsPainter(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
+                    const paths::Automaton& automaton);
+  /// `round`: which parts of light are followed; its number and paths are the view's own, so that it stands
+  /// still. `lamp`: of which alone paths are drawn, from 1 on in the scene's order of lamps; 0: of all
+  /// lights. Returns how many paths were sent.
+  uint32_t draw(const Canvas& canvas, const upload::FlatScene& flat, const transport::LightSource& lights,
+                transport::LightRound round, uint32_t lamp, const shared::Frame& picture, uint32_t enabled);
+  /// Boxes of casters, by the share of paths that is aimed at each, and lines from lights.
+  void draw_aim(const Canvas& canvas, const upload::FlatScene& flat, const transport::LightSource& lights,
+                std::span<const Box> casters);
+
+ private:
+  gpu::Device& device_;
+  gpu::ShaderCompiler& compiler_;
+  gpu::Defines scene_defines_;
+  const paths::Automaton& automaton_;
+  std::optional<transport::LightEmitter> emitter_;
+  gpu::Kernel vertex_;
+  gpu::Buffer segments_, block_;
+  Painter painter_;
+};
+
+}  // namespace lucerna::overlay

@@ -1,0 +1,66 @@
+#pragma once
+// Light tracing as the renderer sees it: a round of paths from the lights for every sample, joined to the
+// camera.
+#include "overlay/light_paths.h"
+#include "solvers/light_tracing/report.h"
+#include "solvers/light_tracing/splats.h"
+#include "solvers/solver.h"
+
+namespace lucerna::light_tracing {
+
+const solvers::SolverType& type();
+
+class LightTracingSolver final : public solvers::Solver {
+ public:
+  /// Throws Error as Splats.
+  LightTracingSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const solvers::Task& task);
+
+  const solvers::SolverInfo& info() const override;
+  gpu::Defines defines() const override;
+  void bind(gpu::Resources& resources) const override;
+  bool serves(const solvers::Task& task) const override;
+
+  void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
+  /// Whether it is known which casters light paths are aimed at, and with which shares.
+  bool ready() const override { return !aims_ || aimed_; }
+  bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
+               const solvers::Cancel& cancel) override;
+  bool in_rounds() const override { return sends_; }
+  bool round_ready(uint32_t sample) const override;
+  bool prepare_round(transport::Wavefront& wavefront, const solvers::Picture& picture, uint32_t sample,
+                     const solvers::Cancel& cancel) override;
+
+  void draw(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
+  std::shared_ptr<const solvers::Report> report(const overlay::Canvas& canvas,
+                                                const solvers::Picture& picture, bool sampled) override;
+  nlohmann::ordered_json statistics(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
+  std::map<std::string, double> figures() const override;
+
+  static solvers::Routing routing_of(const solvers::Task& task);
+
+ private:
+  transport::LightRound round_of(const solvers::Picture& picture, uint32_t sample) const;
+  LightTracingReport state(const solvers::Picture& picture) const;
+
+  gpu::Device& device_;
+  paths::LookupRoutes routes_;
+  bool sends_;  ///< there may be light that is bundled
+  Splats splats_;
+  overlay::LightPathsPainter paths_view_;
+  transport::LightSource lights_;
+  bool lit_ = false;    ///< lights_ are the scene's
+  bool begun_ = false;  ///< splats_ are of this picture
+
+  bool aims_ = false;   ///< there may be casters
+  bool aimed_ = false;  ///< shares are those of this picture
+  std::vector<Box> casters_;
+  bool casters_known_ = false, casters_set_ = false;  ///< set: in lights_, in equal shares
+  std::vector<overlay::AimedPair> pairs_;  ///< with their shares
+  shared::Frame aimed_for_{};
+
+  uint32_t last_sample_ = 0;  ///< whose round is complete, in this picture
+  uint64_t rounds_ = 0, paths_ = 0, joined_ = 0, escaped_ = 0, dark_ = 0;  ///< of this picture
+  double trace_s_ = 0;
+};
+
+}  // namespace lucerna::light_tracing

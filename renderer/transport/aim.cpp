@@ -1,0 +1,46 @@
+#include "transport/aim.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::transport {
+
+namespace {
+
+constexpr double k_floor = 0.1, k_found_floor = 0.3;
+constexpr double k_least_unaimed = 1.0 / 7, k_least_unaimed_of_all = 0.5, k_most_unaimed = 0.9;
+
+}  // namespace
+
+std::vector<double> aim_shares(std::span<const double> worth, bool caustics_alone) {
+  std::vector<double> shares(worth.size(), 0.0);
+  const size_t pairs = worth.size() - 1;
+  double roots = 0;
+  size_t found = 0;
+  for (size_t i = 1; i < worth.size(); ++i) roots += std::sqrt(worth[i]), found += worth[i] > 0 ? 1 : 0;
+  const double unaimed_root = std::sqrt(worth[0]);
+  const double wanted = roots > 0 ? unaimed_root / (unaimed_root + roots) : 1;
+  const double unaimed =
+      pairs == 0
+          ? 1
+          : std::clamp(wanted, caustics_alone ? k_least_unaimed : k_least_unaimed_of_all, k_most_unaimed);
+  shares[0] = unaimed;
+  double sum = 0;
+  for (size_t i = 1; i < worth.size(); ++i) {
+    shares[i] = k_floor / double(pairs);
+    if (worth[i] > 0)
+      shares[i] +=
+          k_found_floor / double(found) + (1 - k_floor - k_found_floor) * std::sqrt(worth[i]) / roots;
+    sum += shares[i];
+  }
+  for (size_t i = 1; i < worth.size(); ++i) shares[i] *= (1 - unaimed) / sum;
+  return shares;
+}
+
+bool same_view(const shared::Frame& a, const shared::Frame& b) {
+  return a.camera_origin == b.camera_origin && a.camera_right == b.camera_right &&
+         a.camera_up == b.camera_up && a.camera_forward == b.camera_forward &&
+         a.orthographic == b.orthographic && a.width == b.width && a.height == b.height && a.seed == b.seed;
+}
+
+}  // namespace lucerna::transport

@@ -1,0 +1,106 @@
+// One vertex of every live light path: joined to the camera where it has met mirrors and glass alone and falls on a diffuse
+// surface, as a shadow ray that brings its light to the pixel through which the surface is seen; and how the path goes on.
+//
+// A pixel is the mean of radiance over its area on the plane at distance 1 before the eye. A light path that carries flux F to
+// x stands for irradiance F / dA there, so that the pixel gets
+//   F f_D(wi, we) |wi.ns| / |wi.ng| * |we.ng| d / (z^3 A),
+// d: distance to the eye, z: the part of it along the view, A: the pixel's area; for dA |we.ng| / d^2 is a solid angle of
+// cos^3 times an area of that plane. With parallel rays it is |we.ng| / A, A the area of the pixel itself.
+#include "shaders/shared/emission.h"
+#include "transport/light_vertex.glsl"
+#include "shaders/shared/splat.h"
+#include "lib/emission.glsl"
+#if LUCERNA_SPLATS_WEIGHED
+layout(scalar) readonly buffer LightRoundBlock { EmitPush light_round; };
+#endif
+
+layout(scalar) buffer LightPathCounts { uint light_path_counts[]; };
+layout(scalar) buffer SplatCounts { uint splat_counts[]; };
+layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
+
+struct Seen {
+  vec3 towards;     // the eye, unit
+  float distance;
+  uint pixel;
+  float per_cosine; // d / (z^3 A), or 1 / A
+  bool inside;      // the picture
+};
+
+Seen camera_sees(vec3 x) {
+  vec3 off = x - frame.camera_origin;
+  float z = dot(off, frame.camera_forward), d = length(off);
+  bool parallel = frame.orthographic != 0u;
+  float right2 = dot(frame.camera_right, frame.camera_right), up2 = dot(frame.camera_up, frame.camera_up);
+  float scale = parallel ? 1.0 : 1.0 / max(z, 1e-30);
+  vec2 ndc = vec2(dot(off, frame.camera_right) / right2, -dot(off, frame.camera_up) / up2) * scale;
+  vec2 at = floor((ndc * 0.5 + 0.5) * vec2(frame.width, frame.height));
+  float area = 4.0 * sqrt(right2 * up2) / (float(frame.width) * float(frame.height));
+  Seen s;
+  s.inside = z > 0.0 && at.x >= 0.0 && at.y >= 0.0 && at.x < float(frame.width) && at.y < float(frame.height);
+  s.pixel = s.inside ? uint(at.y) * frame.width + uint(at.x) : 0u;
+  s.towards = parallel ? -frame.camera_forward : -off / max(d, 1e-30);
+  s.distance = parallel ? z : d;
+  s.per_cosine = (parallel ? 1.0 : d / (z * z * z)) / area;
+  return s;
+}
+
+// f_D |wi.ns| / |wi.ng| towards the eye, wi: whence the light comes.
+vec3 reflected_to_eye(Surface surface, vec3 towards, vec3 wi_world) {
+  surface.front = dot(surface.normal_g, towards) > 0.0;
+  surface.parameters.inside = surface.parameters.solid && !surface.front;
+  mat3 to_world = shading_frame(surface, towards);
+  vec3 wi = wi_world * to_world;
+  vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
+  bool reflected = dot(wi_world, side) > 0.0;
+  vec3 f = bsdf_diffuse(make_bsdf(surface.parameters, dot(to_world[2], towards)), wi);
+  return reflected == (wi.z > 0.0) ? f / max(abs(dot(wi_world, surface.normal_g)), 1e-4) : vec3(0.0);
+}
+
+void main() {
+  uint index = global_index();
+  if (index >= push.count) return;
+  uint slot = push.use_queue != 0u ? queue[index] : index;
+  Ray ray = load_ray(slot);
+  Hit hit = load_hit(slot);
+  PathState path = load_path(slot);
+  if (path.pixel == 0xffffffffu) return;
+  if (hit.prim == k_no_hit) {
+    atomicAdd(light_path_counts[k_light_paths_escaped], 1u);
+    return;
+  }
+  uint state = path_automaton(path), depth = path_depth(path);
+  Sampler random = make_light_sampler(path.pixel, path.sample_index, frame.seed);
+  LightVertex v = light_vertex(path, ray, hit, random);
+  bool diffuse = max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
+  // Events of the word that this makes, the surface's own with them, are as many as a path from the eye may have.
+  bool wanted = v.lit && diffuse && automaton_component(state) < k_component_count && depth <= frame.max_depth;
+  Seen seen = camera_sees(v.surface.position);
+  wanted = wanted && seen.inside;
+  // Of a surface that is there in part so much is seen.
+  vec3 light = v.coverage * v.arriving * reflected_to_eye(v.surface, seen.towards, -ray.direction) *
+               (abs(dot(seen.towards, v.surface.normal_g)) * seen.per_cosine);
+  bool finite = is_finite(light);
+  if (wanted && !finite) atomicAdd(counters[k_counter_dropped], 1u);
+  if (wanted && finite && max3(light) > 0.0) {
+    atomicAdd(splat_counts[k_splats_joined], 1u);
+    vec3 origin = offset_origin(v.surface, seen.towards);
+    shadow_rays[slot].origin = origin;
+    shadow_rays[slot].tmax = max(0.0, seen.distance - dot(origin - v.surface.position, seen.towards));
+    shadow_rays[slot].direction = seen.towards;
+    shadow_rays[slot].slot = slot;
+    shadow_states[slot].lanes = seen.pixel;
+    shadow_states[slot].glossy = vec3(0.0);
+    uint stratum = 0u;
+#if LUCERNA_SPLATS_WEIGHED && LUCERNA_LIGHTS
+    // What is not aimed has brought by itself only what no aimed path would have brought as well.
+    Emission e = sample_emission(random, light_round.step);
+    stratum = e.stratum;
+    light *= stratum == 0u ? e.unaimed : 1.0;
+#endif
+    shadow_states[slot].pad0 = stratum;
+    shadow_states[slot].diffuse = light;
+    shadow_queue[atomicAdd(counters[k_counter_shadow], 1u)] = slot;
+    atomicAdd(counters[k_counter_shadow_rays + automaton_account(state)], 1u);
+  }
+  light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events - 1u), random);
+}

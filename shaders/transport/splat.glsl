@@ -1,0 +1,37 @@
+// Where a light path's light goes that is joined straight to the camera: into the sums of a pixel (shared/splat.h). In place of
+// adding what shadow rays bring to a path's radiance (LUCERNA_SPLATS_SUMMED in shadow.comp).
+#ifndef LUCERNA_TRANSPORT_SPLAT
+#define LUCERNA_TRANSPORT_SPLAT
+#include "lib/wavefront.glsl"
+#include "lib/sampler.glsl"
+#include "lib/wide_sum.glsl"
+#include "shaders/shared/splat.h"
+
+layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
+layout(scalar) buffer SplatSums { SplatSum splat_sums[]; };
+#if LUCERNA_SPLATS_WEIGHED
+layout(scalar) buffer SplatWorths { LongSum splat_worths[]; };  // by stratum of emission
+#endif
+
+// `state`: lanes the pixel, pad0 the stratum, where that is asked for. Rounded up or down at random, so that no dim light is
+// lost: by numbers of the path's, so that it is the same every time.
+void add_splat(uint slot, ShadowState state) {
+  vec3 units = state.diffuse / splat_frame.unit;
+  bool fits = is_finite(units) && max3(units) < k_most_splat;
+  if (!fits) atomicAdd(counters[k_counter_dropped], 1u);
+  units = fits ? units : vec3(0.0);
+  PathState path = load_path(slot);
+  uint key = hash_combine(hash_combine(path.pixel, path.sample_index), state.lanes);
+  vec3 coin = vec3(uvec3(key, hash_mix(key), hash_mix(key ^ 0x68bc21ebu)) >> 8u) * (1.0 / 16777216.0);
+  units += coin;
+#if LUCERNA_SPLATS_WEIGHED
+  uvec2 worth = two_words(min(luminance(units), k_most_splat));
+  ADD_TO_LONG_SUM(splat_worths[state.pad0], worth.x, worth.y);
+#else
+  uvec2 red = two_words(units.r), green = two_words(units.g), blue = two_words(units.b);
+  ADD_TO_LONG_SUM(splat_sums[state.lanes].red, red.x, red.y);
+  ADD_TO_LONG_SUM(splat_sums[state.lanes].green, green.x, green.y);
+  ADD_TO_LONG_SUM(splat_sums[state.lanes].blue, blue.x, blue.y);
+#endif
+}
+#endif
