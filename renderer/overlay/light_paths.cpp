@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/figures.h"
 #include "shaders/shared/ramp.h"
 
 namespace lucerna::overlay {
@@ -16,10 +15,6 @@ constexpr uint32_t k_paths = 512, k_paths_for_one = 8192;  // where one lamp's a
 constexpr uint32_t k_round = 0xfffffffeu;                  // of no sample, and not the pilot's
 constexpr float k_least_share = 1e-3f;                     // of the ramp's scale
 constexpr size_t k_most_lines = 256;
-
-vec3 share_ink(double share) {
-  return ramp_color(k_ramp_viridis, std::lerp(0.15f, 1.0f, ramp_position(float(share), k_least_share, 1, 1)));
-}
 
 /// Where an entry of the light table is, or whence it shines.
 void place(const upload::FlatScene& flat, uint32_t entry, AimedPair& pair) {
@@ -44,6 +39,10 @@ void place(const upload::FlatScene& flat, uint32_t entry, AimedPair& pair) {
 }
 
 }  // namespace
+
+vec3 aim_ink(double share) {
+  return ramp_color(k_ramp_viridis, std::lerp(0.15f, 1.0f, ramp_position(float(share), k_least_share, 1, 1)));
+}
 
 std::vector<AimedPair> aimed_pairs(const upload::FlatScene& flat, const transport::LightSource& lights) {
   std::vector<AimedPair> pairs;
@@ -77,31 +76,6 @@ std::vector<AimedPair> aimed_pairs(const upload::FlatScene& flat, const transpor
   std::stable_sort(pairs.begin(), pairs.end(),
                    [](const AimedPair& a, const AimedPair& b) { return a.share > b.share; });
   return pairs;
-}
-
-solvers::Table aim_table(std::span<const AimedPair> pairs) {
-  constexpr size_t k_rows = 6;
-  solvers::Table table{
-      .columns = {"", "aimed from", "at caster", "share"}, .droppable = std::nullopt, .rows = {}};
-  for (size_t i = 0; i < std::min(pairs.size(), k_rows); ++i)
-    table.rows.push_back(
-        {.cells = {"", pairs[i].light, fmt::format("{}", pairs[i].caster + 1), share_text(pairs[i].share, 1)},
-         .bar = float(pairs[i].share / std::max(1e-9, pairs[0].share)),
-         .ink = share_ink(pairs[i].share),
-         .help = "Of all light paths, those that are aimed from this light at this cluster of "
-                 "surfaces that mirror or refract smoothly."});
-  return table;
-}
-
-solvers::Legend aim_legend() {
-  solvers::Legend legend{.title = "share of the paths that is aimed there",
-                         .ramp = std::nullopt,
-                         .ticks = {},
-                         .range = {},
-                         .marks = {}};
-  for (const double share : {0.001, 0.01, 0.1, 1.0})
-    legend.marks.push_back({share_ink(share), share_text(share, 1)});
-  return legend;
 }
 
 LightPathsPainter::LightPathsPainter(gpu::Device& device, gpu::ShaderCompiler& compiler,
@@ -177,15 +151,15 @@ void LightPathsPainter::draw_aim(const Canvas& canvas, const upload::FlatScene& 
       from[u] = to[u] = (edge & 1u) != 0 ? casters[c].hi[u] : casters[c].lo[u];
       from[v] = to[v] = (edge & 2u) != 0 ? casters[c].hi[v] : casters[c].lo[v];
       to[axis] = casters[c].hi[axis];
-      line(from, to, share_ink(by_caster[c]), 0.9f, 1, k_rank_most);
+      line(from, to, aim_ink(by_caster[c]), 0.9f, 1, k_rank_most);
     }
   for (size_t i = 0; i < std::min(pairs.size(), k_most_lines); ++i) {
     const AimedPair& pair = pairs[i];
     const vec3 to = casters[pair.caster].centre();
     const float alpha = std::clamp(0.2f + 0.8f * float(std::sqrt(pair.share)), 0.0f, 1.0f);
-    if (pair.from) line(*pair.from, to, share_ink(pair.share), 0.5f, alpha, k_rank_least);
+    if (pair.from) line(*pair.from, to, aim_ink(pair.share), 0.5f, alpha, k_rank_least);
     if (pair.along)
-      line(to - 2 * flat.scene_radius * *pair.along, to, share_ink(pair.share), 0.5f, alpha, k_rank_least);
+      line(to - 2 * flat.scene_radius * *pair.along, to, aim_ink(pair.share), 0.5f, alpha, k_rank_least);
   }
   painter_.draw(canvas, {}, segments, {}, {.dimmed = true});
 }

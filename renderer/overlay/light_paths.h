@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "overlay/painter.h"
-#include "solvers/report.h"
 #include "transport/light_emitter.h"
 
 namespace lucerna::overlay {
@@ -20,9 +19,8 @@ struct AimedPair {
 /// Greatest first; empty where nothing is aimed.
 std::vector<AimedPair> aimed_pairs(const upload::FlatScene& flat, const transport::LightSource& lights);
 
-/// The greatest of them for a panel, and what the colours of draw_aim() say.
-solvers::Table aim_table(std::span<const AimedPair> pairs);
-solvers::Legend aim_legend();
+/// Encoded, of a share of the paths: what draw_aim() draws it in.
+vec3 aim_ink(double share);
 
 class LightPathsPainter {
  public:

@@ -148,6 +148,7 @@ TEST_CASE("importance is shown where lookups take place, and is even where these
   s.r.picture(false);
   test::set(s.r, {{"photons.importons", "true"}});
   test::finish(s.r);
+  s.photons = &dynamic_cast<photons::PhotonSolver&>(*s.r.solver("photons"));  // which is another one now
   CHECK(s.r.picture(false) != plain);
   // A camera that looks straight down sees a plane in even steps, so that as many lookups lie in each cell,
   // but for what the pilot's chance does.
@@ -176,7 +177,8 @@ TEST_CASE("light paths and what they are aimed at are drawn, and change nothing"
   CHECK(s.r.picture(false) != plain);
   CHECK(s.report()->legends.size() == 1);
   size_t rows = 0;
-  for (const solvers::PanelItem& item : s.report()->sections[0].items)
+  const std::shared_ptr<const solvers::Report> report = s.report();
+  for (const solvers::PanelItem& item : report->sections[0].items)
     if (const auto* table = std::get_if<solvers::Table>(&item)) {
       rows = table->rows.size();
       CHECK(table->rows[0].cells[1] == "lamp 1");

@@ -45,6 +45,7 @@ bool Cache::Impl::gather(const Work& w) {
                                           .azimuths = 4 * elevations,
                                           .rays_before = levels.rays_before(),
                                           .parts = gathers.parts,
+                                          .elsewhere = gathers.elsewhere,
                                           .seed = options.seed,
                                           .near = radii.by_light() && levels.in_first_round(),
                                           .guides = options.gather && levels.level() == 0},

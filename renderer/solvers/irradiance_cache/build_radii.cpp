@@ -41,6 +41,7 @@ bool Cache::Impl::measure(const Work& w) {
                             {.elevations = Evaluator::k_distance_elevations,
                              .azimuths = Evaluator::k_distance_rays / Evaluator::k_distance_elevations,
                              .parts = gathers.parts,
+                             .elsewhere = gathers.elsewhere,
                              .seed = options.seed},
                             w.cancel)
           : evaluator.measure(w.wavefront, tables.records, batch, options.seed, w.cancel);

@@ -16,7 +16,7 @@ RecordPush push_of(const paths::Automaton& automaton, const EvaluateOptions& o) 
           .azimuths = o.azimuths,
           .rays_before = o.rays_before,
           .parts = o.parts,
-          .state = automaton.after(0, paths::Event::diffuse),
+          .state = automaton.after(0, paths::Event::diffuse) + (o.elsewhere ? k_fallback_state : 0),
           .seed = o.seed};
 }
 

@@ -20,6 +20,9 @@ struct EvaluateOptions {
       0;  ///< that these records have had in earlier levels; their result then weighs by its rays
   uint32_t parts =
       0b1110;  ///< bit p: shared::k_part_* p is gathered; they must be enabled in the wavefront's frame
+  /// Their tertiary light is another solver's lookups': rays go in the states of paths that lookups have left
+  /// alone, where that one brings it.
+  bool elsewhere = false;
   uint32_t seed = 1;
   /// Says, too, how wide ellipses by the records' pilots may be for what these rays have met: of a first
   /// level.

@@ -86,7 +86,7 @@ bool Cache::preview(transport::Wavefront& wavefront, const paths::Automaton& aut
   Impl& c = *impl_;
   wavefront.set_frame(view.records_frame, view.records_enabled);
   // Another seed than the one that relighting goes by: the picture does not see its rays before it does.
-  const bool complete = c.preview.step(wavefront, automaton, c.tables, c.evaluator, c.gathers.parts,
+  const bool complete = c.preview.step(wavefront, automaton, c.tables, c.evaluator, c.gathers,
                                        c.options.seed ^ 0x5bd1e995u, cancel);
   wavefront.set_frame(view.paths_frame, view.paths_enabled);
   return complete;

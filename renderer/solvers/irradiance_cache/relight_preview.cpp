@@ -60,8 +60,8 @@ void RelightPreview::make_ready(gpu::Stream& stream) {
 }
 
 bool RelightPreview::step(transport::Wavefront& wavefront, const paths::Automaton& automaton,
-                          const LookupTables& tables, Evaluator& evaluator, uint32_t parts, uint32_t seed,
-                          const std::function<bool()>& cancel) {
+                          const LookupTables& tables, Evaluator& evaluator, const RecordLight& light,
+                          uint32_t seed, const std::function<bool()>& cancel) {
   if (complete()) return true;
   const uint32_t elevations = k_rounds[round_], cells = 4 * elevations * elevations;
   const std::span<const uint32_t> batch = queue_.next(std::max(1u, wavefront.slots() / cells));
@@ -70,7 +70,8 @@ bool RelightPreview::step(transport::Wavefront& wavefront, const paths::Automato
                                          {.elevations = elevations,
                                           .azimuths = 4 * elevations,
                                           .rays_before = rays_,
-                                          .parts = parts,
+                                          .parts = light.parts,
+                                          .elsewhere = light.elsewhere,
                                           .seed = seed},
                                          cancel);
   look_up(wavefront, tables, tables.picture_routes, false);
@@ -80,7 +81,7 @@ bool RelightPreview::step(transport::Wavefront& wavefront, const paths::Automato
   queue_.rewind();
   rays_ += cells;
   ++round_;
-  mix(wavefront.stream(), parts);
+  mix(wavefront.stream(), light.parts);
   ++published_;
   return true;
 }

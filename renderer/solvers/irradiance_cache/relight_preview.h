@@ -12,6 +12,7 @@
 #include "solvers/irradiance_cache/evaluate.h"
 #include "solvers/irradiance_cache/lookup_tables.h"
 #include "solvers/irradiance_cache/ray_levels.h"
+#include "solvers/irradiance_cache/record_ranges.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -33,9 +34,10 @@ class RelightPreview {
   uint64_t published() const { return published_; }
 
   /// Rays of the next records, as many as there are slots. The wavefront's frame is that of the records,
-  /// which gather `parts`. False when it was cancelled.
+  /// which gather that light. False when it was cancelled.
   bool step(transport::Wavefront& wavefront, const paths::Automaton& automaton, const LookupTables& tables,
-            Evaluator& evaluator, uint32_t parts, uint32_t seed, const std::function<bool()>& cancel);
+            Evaluator& evaluator, const RecordLight& light, uint32_t seed,
+            const std::function<bool()>& cancel);
   /// The first `count` records of the tables have their light: it is shown.
   void take(gpu::Stream& stream, const LookupTables& tables, uint32_t count);
   /// Lookups of the wavefront's paths read this from now on, where `routes` say, or no longer. The tables'

@@ -1,6 +1,7 @@
 #include "solvers/light_tracing/report.h"
 
 #include "base/figures.h"
+#include "solvers/aim_report.h"
 #include "solvers/light_tracing/info.h"
 
 namespace lucerna::light_tracing {
@@ -43,7 +44,7 @@ Report make_report(const LightTracingReport& r) {
     items.push_back(ValueRow{"Aimed", share_text(1 - r.unaimed, 1),
                              "Of the paths, at casters; as many as a pilot has found to be of use."});
   }
-  if (const Table table = overlay::aim_table(r.aimed); !table.rows.empty()) items.push_back(table);
+  if (const Table table = aim_table(r.aimed); !table.rows.empty()) items.push_back(table);
   if (r.sent_per_s > 0)
     items.push_back(ValueRow{"Sent", count_text(r.sent_per_s) + " / s",
                              "Paths from lights a second of the time in which they are traced."});
@@ -56,7 +57,7 @@ Report make_report(const LightTracingReport& r) {
                              .note = "",
                              .items = {OptionRow{"overlay.light_paths"}, OptionRow{"overlay.light_paths_of"},
                                        OptionRow{"overlay.light_aim"}}});
-  if (r.aim_shown && !r.aimed.empty()) report.legends.push_back(overlay::aim_legend());
+  if (r.aim_shown && !r.aimed.empty()) report.legends.push_back(aim_legend());
   report.figures = {
       {"rounds", double(r.rounds)},   {"light paths", double(r.paths)},  {"joined", double(r.joined)},
       {"escaped", double(r.escaped)}, {"dark", double(r.dark)},          {"casters", double(r.casters)},

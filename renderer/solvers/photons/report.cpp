@@ -4,6 +4,7 @@
 
 #include "base/figures.h"
 #include "shaders/shared/ramp.h"
+#include "solvers/aim_report.h"
 #include "solvers/photons/info.h"
 
 namespace lucerna::photons {
@@ -86,7 +87,7 @@ Report make_report(const PhotonReport& r) {
     map.items.push_back(ValueRow{"Aimed", share_text(1 - r.unaimed, 1),
                                  "Of the paths, at casters; as many as a pilot has found to be of use."});
   }
-  if (const Table table = overlay::aim_table(r.aimed); !table.rows.empty()) map.items.push_back(table);
+  if (const Table table = aim_table(r.aimed); !table.rows.empty()) map.items.push_back(table);
   const auto rate = [&](const char* name, double n, const char* help) {
     if (n > 0) map.items.push_back(ValueRow{name, count_text(n) + " / s", help});
   };
@@ -108,7 +109,7 @@ Report make_report(const PhotonReport& r) {
        .items = {OptionRow{"overlay.photons"}, OptionRow{"overlay.photon_density"},
                  OptionRow{"overlay.photon_paths"}, OptionRow{"overlay.photon_paths_of"},
                  OptionRow{"overlay.photon_aim"}}});
-  if (r.aim_shown && !r.aimed.empty()) report.legends.push_back(overlay::aim_legend());
+  if (r.aim_shown && !r.aimed.empty()) report.legends.push_back(aim_legend());
   if (r.view == shared::k_photons_by_bounce) {
     Legend legend{.title = "surfaces before", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (uint32_t bounce = 0; bounce < 6; ++bounce)

@@ -37,10 +37,11 @@ uint32_t parts_of(const Task& task) {
   return routes_of(task).parts & (focuses ? ~0u : ~(1u << k_caustic_part));
 }
 
+constexpr uint8_t k_secondary = 1, k_tertiary = 2;  // components
+
 /// Secondary light is looked up by somebody who prepares it by rays of his own, and tertiary light is ours.
 bool feeds(const Task& task) {
-  constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2;
-  return (task.own & k_tertiary) != 0 && (task.looked_up & k_secondary) != 0;
+  return (task.own >> k_tertiary & 1u) != 0 && (task.looked_up >> k_secondary & 1u) != 0;
 }
 
 std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
@@ -146,7 +147,10 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
     if (state >= k_known_state || of_eye >= routes_.component.size()) continue;
     uint32_t packed = 0;
     for (uint32_t p = 0; p < paths::k_part_count; ++p) {
-      const uint8_t c = routes_.component[of_eye][p];
+      uint8_t c = routes_.component[of_eye][p];
+      // Records bring tertiary light to paths that they serve: photons to the records' rays and to paths that
+      // these leave alone, both in other states.
+      if (feeds_ && state < k_gather_state && c == k_tertiary) c = paths::k_no_component;
       packed |= (c == paths::k_no_component ? k_photon_no_component : uint32_t{c}) << 4 * p;
     }
     f.component[state] = packed;

@@ -1,0 +1,33 @@
+#include "solvers/aim_report.h"
+
+#include <algorithm>
+
+#include "base/figures.h"
+
+namespace lucerna::solvers {
+
+Table aim_table(std::span<const overlay::AimedPair> pairs) {
+  constexpr size_t k_rows = 6;
+  Table table{.columns = {"", "aimed from", "at caster", "share"}, .droppable = std::nullopt, .rows = {}};
+  for (size_t i = 0; i < std::min(pairs.size(), k_rows); ++i)
+    table.rows.push_back(
+        {.cells = {"", pairs[i].light, fmt::format("{}", pairs[i].caster + 1), share_text(pairs[i].share, 1)},
+         .bar = float(pairs[i].share / std::max(1e-9, pairs[0].share)),
+         .ink = overlay::aim_ink(pairs[i].share),
+         .help = "Of all light paths, those that are aimed from this light at this cluster of "
+                 "surfaces that mirror or refract smoothly."});
+  return table;
+}
+
+Legend aim_legend() {
+  Legend legend{.title = "share of the paths that is aimed there",
+                .ramp = std::nullopt,
+                .ticks = {},
+                .range = {},
+                .marks = {}};
+  for (const double share : {0.001, 0.01, 0.1, 1.0})
+    legend.marks.push_back({overlay::aim_ink(share), share_text(share, 1)});
+  return legend;
+}
+
+}  // namespace lucerna::solvers
