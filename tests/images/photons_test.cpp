@@ -216,7 +216,7 @@ TEST_CASE("records whose rays end in photons beside caustics of photons make the
                 {"components.caustic", "photons"}});
 }
 
-TEST_CASE("records whose rays end in photons follow lamp and camera, and trace no tail") {
+TEST_CASE("records whose rays end in photons follow the lamp") {
   scene::Scene room = glass_room();
   const test::Settings settings{{"components.secondary", "cache"}, {"components.tertiary", "photons"}};
   session::Renderer r(test::renderer_options());
@@ -233,10 +233,6 @@ TEST_CASE("records whose rays end in photons follow lamp and camera, and trace n
   const test::Result fresh =
       test::render({.width = 24, .height = 24, .samples = 4, .settings = settings}, &room);
   CHECK(tertiary(bright) == Approx(tertiary(fresh.image)).epsilon(0.1));
-  scene::Camera camera = room.cameras[0];
-  camera.to_world[3] = vec4(0.5f, 1.4f, 1.9f, 1);
-  r.set_camera(camera);
-  CHECK(tertiary(test::finish(r)) > 0);
   // Twice the same is the same to the bit.
   CHECK(test::identical(
       fresh.image,

@@ -19,10 +19,11 @@ namespace {
 constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where their number is left to us
 /// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
 /// are very wide.
-// Of photons that records' rays read: many serve one lookup, for what errs there is seen by all records
-// around.
+// Of photons that records' rays read: about so many serve one lookup, for what errs there is seen by all
+// records around; within one radius, whoever looks, as for one photon a path on a cube that fits into the
+// scene's sphere.
 constexpr uint32_t k_standing_paths = 1u << 18, k_standing_round = 0xfffffffdu;
-constexpr double k_standing_radius = 8;  // pixels, at the first picture that they are made for
+constexpr float k_standing_photons = 30;
 constexpr float k_least_radius = 1e-6f, k_most_radius = 0.25f;
 
 paths::LookupRoutes routes_of(const Task& task) {
@@ -167,7 +168,10 @@ bool PhotonSolver::feed(transport::Wavefront& wavefront, const Picture& picture,
   if (!standing_->complete()) {
     Round round = round_of(picture, k_standing_round);
     round.paths = std::max(k_standing_paths, round.paths);
-    round.lookup = lookup_of(picture, picture.frame, k_standing_radius);
+    round.lookup = lookup_of(picture, picture.frame, 1);
+    round.lookup.slope = 0;
+    round.lookup.base =
+        picture.flat.scene_radius * std::sqrt(8 * k_standing_photons / (k_pi * float(round.paths)));
     return standing_->trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel);
   }
   feeding_ = true;
