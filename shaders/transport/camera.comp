@@ -35,6 +35,9 @@ void main() {
   p.pad0 = 0.0;
   paths[slot] = p;
   for (uint lane = 0u; lane < k_lane_count; ++lane) radiance[radiance_texel(slot, lane)].rgb = vec3(0.0);
+#if LUCERNA_LOOKUP_BIAS
+  radiance[radiance_texel(slot, 0u)].a = 0.0;
+#endif
   features[2u * slot] = vec4(0.0);
   features[2u * slot + 1u] = vec4(0.0);
 }

@@ -125,8 +125,7 @@ const SolverInfo& info() {
       .benches = {{"caustics",
                    "bundled light alone: path tracing against photons, on glass and ring; an hour and a half",
                    k_caustics_matrix}},
-      .against_noise = {"photons.per_round"},
-      .against_bias = {"photons.radius"},
+      .against_bias = {"photons.radius", "photons.floor"},
   };
   return all;
 }
