@@ -159,11 +159,17 @@ double run(session::Renderer& r, const RenderArguments& a, std::map<std::string,
 /// What helps where it is solvers' work that keeps the error up.
 std::string advice(const session::Renderer& r) {
   std::string text;
-  for (const solvers::SolverInfo* solver : solvers::registered())
-    if (r.solver(solver->name))
-      text += fmt::format("{}other settings of {} do: {} against its noise, {} against its bias",
-                          text.empty() ? "" : "; ", solver->title, fmt::join(solver->against_noise, ", "),
-                          fmt::join(solver->against_bias, ", "));
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    if (!r.solver(solver->name)) continue;
+    std::vector<std::string> what;
+    if (!solver->against_noise.empty())
+      what.push_back(fmt::format("{} against its noise", fmt::join(solver->against_noise, ", ")));
+    if (!solver->against_bias.empty())
+      what.push_back(fmt::format("{} against its bias", fmt::join(solver->against_bias, ", ")));
+    if (!what.empty())
+      text += fmt::format("{}other settings of {} do: {}", text.empty() ? "" : "; ", solver->title,
+                          fmt::join(what, ", "));
+  }
   return text;
 }
 

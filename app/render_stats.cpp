@@ -9,8 +9,8 @@
 namespace lucerna::app {
 namespace {
 
-/// Noise of the picture, estimated from its halves (film/error.h); beside it the bias, where the solver can
-/// tell.
+/// Noise of the picture, estimated from its halves (film/error.h), and what is told of its lookups' bias;
+/// of each component the bias where it is known to be none.
 nlohmann::ordered_json make_error(session::Renderer& r) {
   const film::ImageError error = r.image_error();
   nlohmann::ordered_json j;
@@ -32,10 +32,10 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
     tell_tiles(j[name], film::tile_spread(tiles, of));
   };
   part("paths", error.rms[0], error.relative(0), &film::TileError::relative);
-  if (r.looks_up() && !r.film().record_errors_complete()) j["records"] = j["interpolation"] = nullptr;
-  if (r.film().record_errors_complete()) {
+  if (r.looks_up() && !r.lookup_errors_known()) j["records"] = j["bias"] = nullptr;
+  if (r.looks_up() && r.lookup_errors_known()) {
     part("records", error.records_rms, error.relative_records(), &film::TileError::relative_records);
-    part("interpolation", error.interpolation_rms, error.relative_interpolation(),
+    part("bias", error.interpolation_rms, error.relative_interpolation(),
          &film::TileError::relative_interpolation);
   }
   for (int c = 0; c < paths::k_component_count; ++c) {
@@ -71,7 +71,7 @@ std::vector<uint32_t> unreached(const schedule::AdaptiveSchedule& s) {
   return list;
 }
 
-/// Of these, those that records keep over it: more samples would not help.
+/// Of these, those that what they look up keeps over it: more samples would hardly help.
 size_t limited(const schedule::AdaptiveSchedule& s) {
   return size_t(std::count_if(s.tiles().begin(), s.tiles().end(),
                               [&](const schedule::Tile& t) { return t.limited(s.options().target_error); }));
@@ -85,7 +85,7 @@ nlohmann::ordered_json make_tiles(const schedule::AdaptiveSchedule& s) {
   j["count"] = s.tiles().size();
   j["done"] = s.count(TileState::done);
   j["capped"] = s.count(TileState::capped);
-  j["limited_by_records"] = limited(s);
+  j["limited_by_lookups"] = limited(s);
   j["unfinished"] = s.count(TileState::active) + s.count(TileState::waiting);
   j["least_samples"] = s.least_samples();
   j["most_samples"] = s.most_samples();
@@ -97,7 +97,7 @@ nlohmann::ordered_json make_tiles(const schedule::AdaptiveSchedule& s) {
                               {"error", tile.sum()},
                               {"paths", tile.error},
                               {"records", tile.records},
-                              {"interpolation", tile.interpolation},
+                              {"bias", tile.interpolation},
                               {"samples", tile.samples}});
   }
   return j;
@@ -114,7 +114,7 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
       j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
     }
     if (e.told)
-      j["error_records"] = e.records, j["error_interpolation"] = e.interpolation, j["error_told"] = e.sum(),
+      j["error_records"] = e.records, j["error_bias"] = e.interpolation, j["error_told"] = e.sum(),
       j["tile_median"] = e.tile_median, j["tile_worst_decile"] = e.tile_worst_tenth,
       j["error_degrees"] = e.degrees;
     if (e.truth)
@@ -126,13 +126,13 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
 }
 
 /// Seconds that smaller errors take or took, as [low, middle, high]; in uniform sampling. Empty before there
-/// is enough to tell by. Errors that records keep the picture over, whatever the samples, are listed.
+/// is enough to tell by. Errors that lookups keep the picture over, whatever the samples, are listed.
 nlohmann::ordered_json make_forecast(const stats::Ledger& ledger) {
   auto j = nlohmann::ordered_json::object();
   for (const double target : {0.05, 0.02, 0.01, 0.005}) {
     if (const auto band = stats::seconds_to(ledger, target))
       j["seconds_to"][fmt::format("{}", target)] = {band->low, band->middle, band->high};
-    if (stats::paths_target(ledger, target) <= 0) j["limited_by_records"].push_back(target);
+    if (stats::paths_target(ledger, target) <= 0) j["limited_by_lookups"].push_back(target);
   }
   if (const stats::Outlook outlook(ledger); outlook.known()) j["exponent"] = outlook.exponent();
   return j;
@@ -144,21 +144,21 @@ void report_unreached(const schedule::AdaptiveSchedule& s, const std::string& ad
   const std::vector<uint32_t> list = unreached(s);
   if (list.empty()) return;
   const schedule::Tile& worst = s.tiles()[list.front()];
-  const size_t by_records = limited(s);
-  if (by_records > 0)
+  const size_t by_lookups = limited(s);
+  if (by_lookups > 0)
     log::warning(
-        "{} of {} tiles stay over the error of {} because of the records that they read; the worst is off by "
-        "{:.3f}, the paths by {:.3f} of that, at x {} y {}. More samples do not help; {}",
-        by_records, s.tiles().size(), s.options().target_error, worst.sum(), worst.error,
+        "{} of {} tiles stay over the error of {} because of the light that they look up; the worst is off "
+        "by {:.3f}, the paths by {:.3f} of that, at x {} y {}. More samples hardly help; {}",
+        by_lookups, s.tiles().size(), s.options().target_error, worst.sum(), worst.error,
         list.front() % s.tiles_across() * s.options().tile,
         list.front() / s.tiles_across() * s.options().tile, advice);
-  if (by_records == list.size()) return;
+  if (by_lookups == list.size()) return;
   log::warning(
       "{} of {} tiles are over the error of {}: {} with all of {} samples, {} not finished; the worst, "
       "{:.3f}, "
       "at x {} y {}. More samples: --set sampling.max_samples=N",
-      list.size() - by_records, s.tiles().size(), s.options().target_error,
-      s.count(schedule::TileState::capped) - by_records, s.options().max_samples,
+      list.size() - by_lookups, s.tiles().size(), s.options().target_error,
+      s.count(schedule::TileState::capped) - by_lookups, s.options().max_samples,
       list.size() - s.count(schedule::TileState::capped), worst.sum(),
       list.front() % s.tiles_across() * s.options().tile, list.front() / s.tiles_across() * s.options().tile);
 }

@@ -197,11 +197,11 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   const auto& lines = a.ledger.entries();
   for (size_t k = 0; k < stats::k_layers; ++k)
     look(error_points(plot, a, k),
-         k == 0 ? std::string(reads_records(lines.back()) ? "error of the mean (estimated)"
-                                                          : "noise of the mean (estimated)")
+         k == 0 ? std::string(looks_up(lines.back()) ? "error of the mean (estimated)"
+                                                     : "noise of the mean (estimated)")
                 : fmt::format("{}, noise over the picture's mean (estimated)", stats::k_layer_names[k]),
          layer_ink(k), nullptr, k);
-  const char* const what = reads_records(lines.back()) ? "error" : "noise";
+  const char* const what = looks_up(lines.back()) ? "error" : "noise";
   look(tile_points(plot, a, &stats::Entry::tile_median),
        fmt::format("{} of the median tile (estimated)", what), k_noise_ink[1]);
   look(tile_points(plot, a, &stats::Entry::tile_worst_tenth),
@@ -209,7 +209,8 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   look(line_points(plot, a, [&](size_t i) { return lines[i].truth ? (*lines[i].truth)[0] : 0.0; }),
        "sum, true error against " + a.reference, k_sum);
   if (a.adaptive) look(line_points(plot, a, [&](size_t i) { return a.hardest[i]; }), "hardest tile", k_sum);
-  look(floor_points(plot, a), "records and interpolation, of the mean: what no samples go below",
+  look(floor_points(plot, a),
+       "noise of records and bias of lookups, of the mean: what more samples do not go below",
        colour::text_dim);
   for (const Run& run : ui.runs.earlier())
     look(error_points(plot, *run.accuracy, 0), "earlier render, noise (estimated)", colour::text_dim, &run);
@@ -235,11 +236,13 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
       {fmt::format("{}: {}", name, percent_text(plot.y.value(near->y))), colour::text},
       {run_figures(told, line), colour::text_dim}};
   const stats::Entry& then = told.ledger.entries()[line];
-  if (best.layer == size_t{0} && reads_records(then))
-    rows.emplace_back(fmt::format("Paths {}, records {} (in quadrature), interpolation {} (added)",
-                                  percent_text(then.error[0]), percent_text(then.records),
-                                  percent_text(then.interpolation)),
-                      colour::text_dim);
+  if (best.layer == size_t{0} && looks_up(then))
+    rows.emplace_back(
+        fmt::format("Paths {}{}, bias of lookups {} (added)", percent_text(then.error[0]),
+                    then.records > 0 ? fmt::format(", records {} (in quadrature)", percent_text(then.records))
+                                     : std::string(),
+                    percent_text(then.interpolation)),
+        colour::text_dim);
   else if (best.layer)
     rows.emplace_back(bias_text(a, *best.layer), colour::text_dim);
   if (best.run) {
@@ -264,7 +267,7 @@ void noise_row(const Accuracy& a, const ImVec2& lo, float right) {
     return all;
   };
   // Noise of the samples is all there is, or a part.
-  const std::string head = reads_records(line) ? "Error" : "Noise";
+  const std::string head = looks_up(line) ? "Error" : "Noise";
   const float head_width = text_width(head, font) + px(6), space = px(10);
   const auto width = [&](const std::vector<std::string>& all) {
     float sum = head_width - space;
@@ -303,7 +306,7 @@ void line_names(const Ui& ui, const Accuracy& a, const ImVec2& lo, float right) 
   put("mean", k_noise_ink[0], 8);
   put("median tile", k_noise_ink[1], 8);
   put("worst tenth", k_noise_ink[2], 8);
-  if (reads_records(a.ledger.entries().back())) put("- - records", colour::text_dim, 8);
+  if (looks_up(a.ledger.entries().back())) put("- - lookups", colour::text_dim, 8);
   if (a.adaptive) put("- - hardest tile", colour::text_dim, 8);
   if (!a.reference.empty())
     put(a.reference_applies ? "\xC2\xB7 \xC2\xB7 \xC2\xB7 true error" : "reference of another view",

@@ -14,7 +14,7 @@ using session::Accuracy;
 
 namespace {
 
-/// Tiles that are given up because of what samples read of records, not for want of samples.
+/// Tiles that are given up because of what samples look up, not for want of samples.
 uint32_t limited_tiles(const Accuracy& a) {
   return static_cast<uint32_t>(
       std::count_if(a.tiles.begin(), a.tiles.end(), [&](const session::TileStatus& t) {
@@ -53,23 +53,25 @@ std::vector<ErrorFigure> error_figures(const stats::Entry& line) {
       {"of the worst tenth of the tiles", "worst tenth", line.tile_worst_tenth,
        "A tenth of the tiles are at least this far off, each held against its own pixels' brightness: the "
        "dark and difficult parts of the picture."}};
-  if (!reads_records(line)) return figures;
+  if (!looks_up(line)) return figures;
   figures.push_back({"of the mean by the paths", "paths", line.error[0],
                      "Noise of the samples, a part of what the mean is off by. More samples take it away."});
+  if (line.records > 0)
+    figures.push_back(
+        {"of the mean by the records", "records", line.records,
+         "Noise of the records that the samples read, a part of what the mean is off by. More samples "
+         "do not take it away; more rays a record do" +
+             advice(&solvers::SolverInfo::against_noise) + "."});
   figures.push_back(
-      {"of the mean by the records", "records", line.records,
-       "Noise of the records that the samples read, a part of what the mean is off by. More samples "
-       "do not take it away; more rays a record do" +
-           advice(&solvers::SolverInfo::against_noise) + "."});
-  figures.push_back(
-      {"of the mean by interpolation", "interpolation", line.interpolation,
-       "By how much light that is interpolated between records is off, a part of what the mean is "
-       "off by. More samples do not take it away; more records do" +
+      {"of the mean by the bias of lookups", "bias", line.interpolation,
+       "By how much light is off in the mean that is interpolated between records or blurred over the discs "
+       "of photons, a part of what the picture's mean is off by. More samples do not take it away, or slowly "
+       "as the discs shrink; more records and smaller discs do" +
            advice(&solvers::SolverInfo::against_bias) + "."});
   return figures;
 }
 
-bool reads_records(const stats::Entry& line) { return line.records > 0 || line.interpolation > 0; }
+bool looks_up(const stats::Entry& line) { return line.records > 0 || line.interpolation > 0; }
 
 PlotRange plot_range(const Accuracy& a, const std::deque<Run>& earlier, double target,
                      const std::optional<stats::Band>& forecast, double seconds) {
@@ -110,18 +112,18 @@ std::vector<std::string> target_texts(const Accuracy& a, double target,
     const uint32_t over = a.count(shared::k_tile_capped);
     if (over == 0) return {fmt::format("{} after {}", all, about_text(seconds)), all};
     if (limited_tiles(a) > over / 2)
-      return {fmt::format("{} of {} tiles stay over {}: the records are the limit, more samples do not help",
+      return {fmt::format("{} of {} tiles stay over {}: lookups are the limit, more samples hardly help",
                           over, a.tiles.size(), goal),
-              fmt::format("{} tiles stay over {}: the records are the limit", over, goal),
+              fmt::format("{} tiles stay over {}: lookups are the limit", over, goal),
               fmt::format("{} tiles stay over {}", over, goal), goal};
     return {fmt::format("{} of {} tiles stay over {}, with all of {:.0f} samples", over, a.tiles.size(), goal,
                         a.max_samples),
             fmt::format("{} tiles stay over {}", over, goal), goal};
   }
   if (!a.adaptive && stats::paths_target(a.ledger, target) <= 0)
-    return {fmt::format("{} will not be reached: the records are the limit ({}), more samples do not help",
-                        goal, short_percent(a.ledger.entries().back().floor())),
-            fmt::format("{}: the records are the limit", goal), goal};
+    return {fmt::format("{} will not be reached: lookups are the limit ({}), more samples hardly help", goal,
+                        short_percent(a.ledger.entries().back().floor())),
+            fmt::format("{}: lookups are the limit", goal), goal};
   if (!forecast) return {all + ": too early to tell", all};
   if (forecast->high <= seconds * (1 + 1e-9))
     return {fmt::format("{} was reached after {}", all, about_text(forecast->middle)), all};

@@ -22,10 +22,11 @@ struct ErrorFigure {
   std::string help;
 };
 /// Of the ledger's line: of the mean, of the median tile, of the worst tenth of the tiles; and where samples
-/// read records, what of the mean's comes from the paths, the records and interpolation.
+/// look light up, what of the mean's comes from the paths, from the noise of records if there are any, and
+/// from the lookups' bias.
 std::vector<ErrorFigure> error_figures(const stats::Entry& line);
 /// Whether that is so: else the error is the paths' noise.
-bool reads_records(const stats::Entry& line);
+bool looks_up(const stats::Entry& line);
 
 /// A range that holds the run's lines, its earlier ones, the target with room below it, and the forecast as
 /// far as it does not squeeze what is known into a corner (300 times the time so far).

@@ -41,6 +41,12 @@ RecordsError records_error(std::span<const shared::BlockRecords> blocks) {
           k_record_lanes};
 }
 
+double blur_error(std::span<const shared::BlockError> blocks) {
+  double pixels = 0, even = 0, odd = 0;
+  for (const shared::BlockError& b : blocks) pixels += b.pixels, even += b.bias[0], odd += b.bias[1];
+  return pixels > 0 ? std::sqrt(std::max(even * odd, 0.0)) / pixels : 0;
+}
+
 double TileError::half_width_90() const {
   if (!(records.noise > 0)) return student_90(degrees) * standard_error + records.interpolation;
   const double by_paths = standard_error * standard_error, by_records = records.noise * records.noise;
@@ -94,9 +100,11 @@ TileError tile_error(std::span<const shared::BlockError> blocks,
     tile.luminance += b.luminance[0];
     variance += b.variance[0];
     fourth += b.fourth;
+    tile.difference += b.difference;
   }
   if (tile.pixels == 0) return tile;
   tile.luminance /= tile.pixels;
+  tile.difference /= tile.pixels;
   tile.standard_error = std::sqrt(variance) / tile.pixels;
   tile.degrees = fourth > 0 ? 3 * variance * variance / fourth : tile.pixels;
   Quadrants quadrants;
@@ -107,6 +115,7 @@ TileError tile_error(std::span<const shared::BlockError> blocks,
   }
   tile.relative = quadrants.relative();
   tile.records = records_error(records);
+  tile.records.interpolation = std::hypot(tile.records.interpolation, blur_error(blocks));
   tile.relative_records = quadratic_mean(by_records, tile.pixels);
   tile.relative_interpolation = quadratic_mean(by_interpolation, tile.pixels);
   return tile;
@@ -126,7 +135,35 @@ std::vector<TileError> tile_errors(const Film& film, uint32_t side) {
         }
       tiles.push_back(tile_error(blocks, records));
     }
+  if (film.lookup_bias_known()) count_shared_noise(tiles, (film.blocks_across() + step - 1) / step);
   return tiles;
+}
+
+void count_shared_noise(std::span<TileError> tiles, uint32_t across) {
+  constexpr int k_rings = 2;
+  const auto shared = [](const TileError& t) {
+    const double apart = t.variance / (t.pixels * t.pixels);
+    return t.difference * t.difference / apart;
+  };
+  const int width = static_cast<int>(across), height = across ? static_cast<int>(tiles.size() / across) : 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      double sum = 0, squares = 0, count = 0;
+      for (int v = std::max(0, y - k_rings); v <= std::min(height - 1, y + k_rings); ++v)
+        for (int u = std::max(0, x - k_rings); u <= std::min(width - 1, x + k_rings); ++u) {
+          const TileError& n = tiles[static_cast<size_t>(v) * across + static_cast<size_t>(u)];
+          if (!(n.variance > 0)) continue;
+          const double one = shared(n);
+          sum += one, squares += one * one, ++count;
+        }
+      TileError& tile = tiles[static_cast<size_t>(y) * across + static_cast<size_t>(x)];
+      if (!(tile.variance > 0) || !(sum > 0)) continue;
+      const double factor = std::max(1.0, sum / count);
+      tile.standard_error *= std::sqrt(factor);
+      // So many pixels share what they read that there are fewer to tell the noise by; and the factor has
+      // noise itself, of squares with one degree of freedom each.
+      tile.degrees = std::max(1.0, 1 / (factor / tile.degrees + squares / (3 * sum * sum)));
+    }
 }
 
 void mark_heavy_tails(std::span<TileError> tiles, uint32_t across, double luminance_floor) {

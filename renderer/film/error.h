@@ -3,9 +3,11 @@
 // - paths: the noise of the samples, from the two independently scrambled halves of the film. More samples
 //   take it away.
 // - records: the noise of what the samples read of records, which all of them have in common.
-// - interpolation: what reading between records is off by, for ever; as an absolute value.
-// The last two are known where somebody has told the film of them (Film::record_errors_complete()), and 0
-// where nothing is read. What they come to together: base/error_sum.h.
+// - interpolation: what looking light up where it is not stored is off by in the mean, as an absolute value:
+//   between records for ever, by the blur of photons as long as their discs are wide. A person is told of it
+//   as the bias of lookups.
+// The last two are known where somebody has told the film of them (Film::record_errors_complete(),
+// lookup_bias_known()), and 0 where nothing is looked up. What they come to together: base/error_sum.h.
 //
 // What else a biased solver gets wrong for ever is not in it.
 #include <array>
@@ -19,18 +21,23 @@ namespace lucerna::film {
 
 using shared::k_luminance_floor;
 
-/// What records make of a mean over some blocks, in luminance; degrees: of freedom of noise^2.
+/// What lookups make of a mean over some blocks, in luminance; degrees: of freedom of noise^2.
 struct RecordsError {
   double noise = 0, interpolation = 0, degrees = 0;
 };
 RecordsError records_error(std::span<const shared::BlockRecords> blocks);
+/// What blur makes of a mean over some blocks, in luminance and as an absolute value. The halves of the film
+/// tell it independently of each other, so that the root of their product, 0 where they do not agree in sign,
+/// is free of their noise in the mean of its square.
+double blur_error(std::span<const shared::BlockError> blocks);
 
 /// Of a tile: some blocks that lie together.
 struct TileError {
   double pixels = 0;     ///< with samples in both halves
   double luminance = 0;  ///< mean
-  double standard_error =
-      0;  ///< of that mean by the paths; pixels are independent, so their variances add up
+  /// Of that mean by the paths: pixels are independent, so their variances add up; but see
+  /// count_shared_noise().
+  double standard_error = 0;
   /// Degrees of freedom of standard_error^2 by Satterthwaite: (sum v)^2 / (sum v^2 / 3), for v has one degree
   /// of freedom and so E[v^2] = 3 sigma^4. All pixels alike: their number; one that dwarfs the rest: 3.
   double degrees = 0;
@@ -41,6 +48,7 @@ struct TileError {
   /// so that it can be trusted from one pass to the next.
   double relative = 0;
   double variance = 0, fourth = 0;  ///< sums of v and v^2, from which the two above come
+  double difference = 0;            ///< of `luminance` in the film's two halves, half of it
   RecordsError records;             ///< of the mean: pixels that read the same records err together
   /// Quadratic means over the pixels of what records make of each, against what `relative` is held against.
   double relative_records = 0, relative_interpolation = 0;
@@ -53,7 +61,8 @@ struct TileError {
   /// by Student's t, with their degrees of freedom by Satterthwaite, and interpolation's part.
   double half_width_90() const;
 };
-/// `records`: of the same blocks, or none.
+/// `records`: of the same blocks, or none. RecordsError::interpolation is that of records and the blur, whose
+/// signs have nothing to do with each other, in quadrature.
 TileError tile_error(std::span<const shared::BlockError> blocks,
                      std::span<const shared::BlockRecords> records = {});
 
@@ -63,7 +72,16 @@ struct RelativeError {
 };
 RelativeError relative_error(const Film& film, std::span<const uint32_t> blocks);
 
-/// The tiles of a film, `side` pixels (8 or 16) along each side, in raster order, from film.errors().
+/// For tiles, `across` in a row, whose pixels have noise in common: photons of a round are read by all pixels
+/// that they lie near, so that a tile's mean is noisier than its pixels' variances come to, by how many
+/// pixels share what they read. That is told by the square of TileError::difference, in the mean the mean's
+/// variance whatever pixels have in common, over TileError::variance as a mean's; averaged over the tile and
+/// the two rings of tiles around it, and not taken for less than 1. standard_error is widened by its root,
+/// and `degrees` are those of such an estimate.
+void count_shared_noise(std::span<TileError> tiles, uint32_t across);
+
+/// The tiles of a film, `side` pixels (8 or 16) along each side, in raster order, from film.errors(); with
+/// count_shared_noise() where photons are read (film.lookup_bias_known()).
 std::vector<TileError> tile_errors(const Film& film, uint32_t side);
 
 /// Marks the tiles, `across` in a row, whose light comes in rare large amounts (caustics, fireflies): where

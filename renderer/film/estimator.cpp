@@ -29,7 +29,12 @@ void ErrorEstimator::record(gpu::Stream& stream, const gpu::Kernel& kernel, std:
   film.bind(resources_);
   resources_.set("WorkBlocks", blocks_);
   const auto count = static_cast<uint32_t>(blocks.size());
-  const ErrorPush push{film.width(), film.height(), count, luminance_floor, film.record_errors_complete()};
+  const ErrorPush push{film.width(),
+                       film.height(),
+                       count,
+                       luminance_floor,
+                       film.record_errors_complete(),
+                       film.lookup_bias_known()};
   stream.dispatch(kernel, resources_, push, gpu::groups_for(count, 8), stage);
 }
 

@@ -9,7 +9,7 @@ namespace lucerna::film {
 class ErrorEstimator {
  public:
   /// `lookup_errors`: light may be looked up, so that pixels may know what that is wrong by
-  /// (Film::complete_record_errors). Compiles its kernels; throws Error, located.
+  /// (Film::complete_record_errors, lookup_bias_known). Compiles its kernels; throws Error, located.
   ErrorEstimator(gpu::Device& device, gpu::ShaderCompiler& compiler, bool lookup_errors);
 
   /// Of all blocks. Pixels darker than `luminance_floor` are held against that.

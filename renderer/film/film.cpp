@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lucerna::film {
 
@@ -80,6 +81,7 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups
       {.name = "tile marks", .bytes = blocks() * sizeof(shared::TileMark), .memory = gpu::Memory::host});
   records_ = gpu::Buffer(device, {.name = "no records", .bytes = 0});
   block_records_ = gpu::Buffer(device, {.name = "no records", .bytes = 0});
+  for (gpu::Buffer& b : lookup_bias_) b = gpu::Buffer(device, {.name = "no bias of lookups", .bytes = 0});
 }
 
 void Film::make_room_for_record_errors() {
@@ -89,6 +91,28 @@ void Film::make_room_for_record_errors() {
                  {.name = "records' errors of blocks",
                   .bytes = blocks() * sizeof(shared::BlockRecords),
                   .memory = gpu::Memory::host});
+}
+
+void Film::make_room_for_lookup_bias(gpu::Stream& stream) {
+  if (std::exchange(lookup_bias_known_, true)) return;
+  for (gpu::Buffer& b : lookup_bias_) {
+    gpu::make_room(device_, b, {.name = "bias of lookups", .bytes = uint64_t{width_} * height_ * 4});
+    stream.fill(b, 0);
+  }
+}
+
+std::array<std::vector<float>, 2> Film::read_lookup_bias() const {
+  std::array<std::vector<float>, 2> means;
+  if (!lookup_bias_known_) return means;
+  const size_t n = size_t{width_} * height_;
+  std::vector<uint32_t> samples(n);
+  count_.read(samples.data(), n * 4);
+  for (uint32_t half = 0; half < 2; ++half) {
+    means[half].resize(n);
+    lookup_bias_[half].read(means[half].data(), n * 4);
+    for (size_t i = 0; i < n; ++i) means[half][i] /= float(std::max(1u, (samples[i] + 1 - half) / 2));
+  }
+  return means;
 }
 
 std::span<const shared::BlockRecords> Film::records() const {
@@ -110,7 +134,7 @@ void Film::clear(gpu::Stream& stream) {
   stream.fill(vertices_, 0);
   stream.fill(errors_, 0);
   stream.run();
-  record_errors_complete_ = false;
+  record_errors_complete_ = lookup_bias_known_ = false;
 }
 
 void Film::bind(gpu::Resources& r) const {
@@ -133,6 +157,8 @@ void Film::bind(gpu::Resources& r) const {
   r.set("BlockErrors", errors_);
   r.set("FilmRecords", records_);
   r.set("BlockRecordSums", block_records_);
+  r.set("FilmBiasEven", lookup_bias_[0]);
+  r.set("FilmBiasOdd", lookup_bias_[1]);
   r.set("LightMix", light_mix_);
   r.set("GroupLights", group_light_);
   r.set("group_lights", group_light_);

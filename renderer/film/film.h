@@ -95,6 +95,13 @@ class Film {
   bool record_errors_complete() const { return record_errors_complete_; }
   /// Empty while nothing is known.
   std::span<const shared::BlockRecords> records() const;
+  /// What lookups blur, which their paths bring with their light (LUCERNA_LOOKUP_BIAS): room for its sums,
+  /// empty after a clear(), as FilmBiasEven and FilmBiasOdd, 8 bytes a pixel. From then on it is known.
+  void make_room_for_lookup_bias(gpu::Stream& stream);
+  bool lookup_bias_known() const { return lookup_bias_known_; }
+  /// Means over the even and over the odd samples: by what luminance is told to be too large. Empty while
+  /// nothing is known.
+  std::array<std::vector<float>, 2> read_lookup_bias() const;
   Image read() const;
   /// Of a group of lights, where they are kept apart: mean radiance of each component, not mixed.
   std::array<std::vector<vec3>, k_components> read_group(uint32_t group) const;
@@ -118,6 +125,8 @@ class Film {
   gpu::Device& device_;
   gpu::Buffer records_, block_records_;  // small where there are none
   bool record_errors_complete_ = false;
+  std::array<gpu::Buffer, 2> lookup_bias_;  // likewise
+  bool lookup_bias_known_ = false;
 };
 
 }  // namespace lucerna::film

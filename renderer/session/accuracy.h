@@ -22,7 +22,7 @@ class Renderer;
 
 struct TileStatus {
   float error = -1;                      ///< relative, of the paths; negative: not known
-  float records = 0, interpolation = 0;  ///< ... and of what they read of records
+  float records = 0, interpolation = 0;  ///< ... and of what they look up
   float sum() const { return error < 0 ? error : error_sum(error, records, interpolation); }
   uint32_t samples = 0;
   uint32_t pixels = 0;

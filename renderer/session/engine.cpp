@@ -160,6 +160,12 @@ solvers::Solver* Engine::unready_for(uint32_t sample) const {
   return nullptr;
 }
 
+solvers::Solver* Engine::owing_errors(const film::Film& film) const {
+  for (const auto& solver : solvers_)
+    if (solver->owes_errors(film)) return solver.get();
+  return nullptr;
+}
+
 bool Engine::waits() const {
   const solvers::Solver* next = unready();
   return next && next->waits();

@@ -59,6 +59,9 @@ class Engine {
   bool in_rounds() const;
   /// The first whose round for that sample is not ready; null: all are.
   solvers::Solver* unready_for(uint32_t sample) const;
+  /// The first that owes the film errors of lookups (Solver::owes_errors); null: all that is told of them is
+  /// known.
+  solvers::Solver* owing_errors(const film::Film& film) const;
   bool waits() const;
   /// Some solver has more to do for display (Solver::previews).
   bool previews() const;

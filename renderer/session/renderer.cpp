@@ -217,6 +217,10 @@ film::ImageError Renderer::image_error() {
   return film::image_error(film_->errors());
 }
 
+bool Renderer::lookup_errors_known() const {
+  return engine_ && samples() >= 2 && !engine_->owing_errors(*film_);
+}
+
 std::optional<double> Renderer::bias(size_t component) const {
   // Light that is looked up for a component besides its solver's, straight from the sky.
   if (!engine_ || engine_->looked_up_besides(component)) return std::nullopt;
@@ -387,11 +391,11 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
       return next->prepare(wavefront, picture, cancel);
     });
   // As soon as every pixel has a sample, so that the picture does not wait, and before errors are told.
-  if (!engine_->solvers().empty() && samples() > 0 && !film_->record_errors_complete()) {
-    const bool anew = std::exchange(errors_restart_, restarts_) != restarts_;
-    solvers::Solver& solver = *engine_->solvers().front();
-    return engine_->with(solver, view, [&](const solvers::Picture& picture) {
-      return solver.estimate_errors(wavefront, *film_, picture, anew, cancel);
+  if (solvers::Solver* solver = samples() > 0 ? engine_->owing_errors(*film_) : nullptr) {
+    const bool anew = errors_restart_ != restarts_ || errors_of_ != solver;
+    errors_restart_ = restarts_, errors_of_ = solver;
+    return engine_->with(*solver, view, [&](const solvers::Picture& picture) {
+      return solver->estimate_errors(wavefront, *film_, picture, anew, cancel);
     });
   }
   if (schedule::AdaptiveSchedule* adaptive = sampling_.adaptive()) {

@@ -114,6 +114,8 @@ class Renderer {
   /// found it.
   std::vector<film::TileError> tile_errors() const;
   uint32_t tile_side() const;  ///< sampling.tile: pixels
+  /// Whether these errors hold all that is told of what lookups may be wrong by (film::RecordsError).
+  bool lookup_errors_known() const;
   /// What these errors, which are of the noise, do not tell: plan::Plan::bias of the settings in force;
   /// nothing before the first scene.
   std::optional<double> bias(size_t component) const;
@@ -291,7 +293,8 @@ class Renderer {
   uint32_t width_ = 1280, height_ = 720;
   Sampling sampling_;
   uint64_t restarts_ = 0;
-  uint64_t errors_restart_ = ~0ull;  ///< the image of which lookups' errors are being estimated
+  uint64_t errors_restart_ = ~0ull;  ///< the image of which lookups' errors are being estimated ...
+  const solvers::Solver* errors_of_ = nullptr;  ///< ... and whose
   std::optional<vec2> looked_at_;
 
   // What is told of it.

@@ -6,8 +6,8 @@
 // What calls these: session/renderer.h, in this order. A solver is made for a task with its kernels' needs
 // known; adopt() may hand it what the one before it had; begin() starts a picture, and says what of the
 // present work has been spoiled; prepare() is called until ready(); then paths are traced, each sample of the
-// picture behind prepare_round() where a solver works in rounds, and estimate_errors() says what they read
-// may be wrong by. Everything runs on one thread.
+// picture behind prepare_round() where a solver works in rounds, and what they read may be wrong by is told
+// by estimate_errors(), or comes with their light. Everything runs on one thread.
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -78,7 +78,8 @@ class Solver {
 
   // What kernels need that read it.
 
-  /// #defines for the wavefront's kernels.
+  /// #defines for the wavefront's kernels. LUCERNA_LOOKUP_BIAS: the hook says by what the light that it
+  /// brings is off (VertexOut::bias), and the film sums that up.
   virtual gpu::Defines defines() const { return {}; }
   /// GLSL file that is called at every vertex (shaders/transport/vertex_hook.glsl), "" for none: relative to
   /// shaders/, or absolute.
@@ -142,13 +143,16 @@ class Solver {
 
   /// Preparation is long, and all kernels that it needs have run.
   virtual bool warm() const { return ready(); }
-  /// Goes on telling the film what the picture's lookups may be wrong by, a piece at a time, until
-  /// Film::record_errors_complete(). Only when ready(). `anew`: the picture has begun. False when it was
-  /// cancelled.
+  /// What the picture's lookups may be wrong by is told by work of its own, and the film does not know all
+  /// of it: estimate_errors() goes on telling it, a piece at a time. Only when ready(). `anew`: the picture
+  /// has begun. False when it was cancelled.
+  virtual bool owes_errors(const film::Film& film) const {
+    (void)film;
+    return false;
+  }
   virtual bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,
                                bool anew, const Cancel& cancel) {
-    (void)wavefront, (void)picture, (void)anew, (void)cancel;
-    film.complete_record_errors();
+    (void)wavefront, (void)film, (void)picture, (void)anew, (void)cancel;
     return true;
   }
 

@@ -18,7 +18,7 @@ std::string Ledger::csv() const {
   for (const char* what : {"error", "truth", "device_s"})
     for (const char* layer : k_layer_names) text += fmt::format(",{}_{}", what, layer);
   text +=
-      ",error_records,error_interpolation,error_told,error_median_tile,error_worst_tenth_of_tiles,forecast_"
+      ",error_records,error_bias,error_told,error_median_tile,error_worst_tenth_of_tiles,forecast_"
       "rays_low,forecast_rays,forecast_rays_high\n";
   for (const Entry& e : entries_) {
     text += fmt::format("{},{},{},{},{},{},{},{}", e.wall_s, e.render_s, e.device_s, e.prepared_s, e.paths,

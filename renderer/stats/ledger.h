@@ -36,11 +36,12 @@ struct Entry {
   std::array<double, k_layers> error{};
   double degrees = 0;  ///< of freedom of error[0]^2 (film::ImageError)
   /// What of the sum's error is not the paths', as `error`: the noise of records that they read, and what
-  /// interpolation between these is off by (film/error.h). Samples do not take it away.
+  /// lookups are off by in the mean (film/error.h). Samples do not take it away, or, where it is the blur of
+  /// photons, slowly as their discs shrink.
   double records = 0, interpolation = 0;
   /// Error of the sum by all three: what is told of the picture.
   double sum() const { return error_sum(error[0], records, interpolation); }
-  /// What no samples go below.
+  /// What more samples do not go below, as things are.
   double floor() const { return records + interpolation; }
   /// Error of the tiles, of the sum, each over its own pixels' luminance (film::TileError::relative_sum): of
   /// the median tile, and what a tenth of the tiles are over.

@@ -14,6 +14,7 @@ struct Wavefront::Impl {
   uint32_t slots;
   bool transparent = false;
   uint32_t groups = 1;  // of lights, that are kept apart
+  bool tells_bias = false;
   uint32_t enabled = 15;
   uint8_t first_account = 0;
   double compile_seconds = 0;
@@ -156,6 +157,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   const Timer timer;
   gpu::Defines defines = scene.defines();
   for (const auto& [name, value] : extra_defines) defines[name] = value;
+  w.tells_bias = defines.contains("LUCERNA_LOOKUP_BIAS");
   w.camera = gpu::Kernel(device, compiler, "transport/camera.comp", defines);
   w.shade = gpu::Kernel(device, compiler, "transport/shade.comp", defines);
   w.shadow = gpu::Kernel(device, compiler, "transport/shadow.comp", defines);
@@ -223,6 +225,7 @@ bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std:
 }
 
 void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
+  if (tells_bias) film.make_room_for_lookup_bias(stream);
   film.bind(film_resources);
   const bool fits = film.fits_storage_buffers();
   FilmPush push{film.width(), film.height(), pixels, samples, 0, film.quick()};

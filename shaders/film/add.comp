@@ -21,6 +21,12 @@ uint vertices_of(uint slot) {
 }
 #endif
 
+#if LUCERNA_LOOKUP_BIAS
+// Of the even and of the odd samples. Where something is looked up light is not kept apart by groups.
+layout(scalar) buffer FilmBiasEven { float film_bias_even[]; };
+layout(scalar) buffer FilmBiasOdd { float film_bias_odd[]; };
+#endif
+
 void add(inout FilmHalf h, vec3 x) {
   precise vec3 t = h.sum + x;
   precise vec3 lost_small = (h.sum - t) + x;   // |sum| >= |x|
@@ -78,6 +84,9 @@ void main() {
 #if LUCERNA_VERTEX_COUNT
   uint vertices = 0u;
 #endif
+#if LUCERNA_LOOKUP_BIAS
+  float bias_even = film_bias_even[pixel], bias_odd = film_bias_odd[pixel];
+#endif
   for (uint i = 0u; i < push.sample_count; ++i) {
     uint slot = index + i * push.pixel_count;
     bool even = ((block.first_sample + i) & 1u) == 0u;
@@ -89,6 +98,11 @@ void main() {
         add(sums[c].odd, brought);
       }
     }
+#if LUCERNA_LOOKUP_BIAS
+    float bias = texelFetch(radiance_texels, int(radiance_texel(slot, 0u))).a;
+    bias_even += even ? bias : 0.0;
+    bias_odd += even ? 0.0 : bias;
+#endif
 #if !LUCERNA_FILM_LANES
     albedo += texelFetch(feature_texels, int(2u * slot));
     normal += texelFetch(feature_texels, int(2u * slot + 1u));
@@ -146,5 +160,9 @@ void main() {
   film_count[pixel] += push.sample_count;
 #if LUCERNA_VERTEX_COUNT
   film_vertices[pixel] += vertices;
+#endif
+#if LUCERNA_LOOKUP_BIAS
+  film_bias_even[pixel] = bias_even;
+  film_bias_odd[pixel] = bias_odd;
 #endif
 }

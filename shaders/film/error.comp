@@ -10,15 +10,18 @@ layout(push_constant, scalar) uniform Push { ErrorPush push; };
 layout(scalar) writeonly buffer BlockErrors { BlockError block_errors[]; };
 #if LUCERNA_LOOKUP_ERRORS
 layout(scalar) readonly buffer FilmRecords { vec2 film_records[]; };  // squares: noise of records, of interpolation
+// What lookups blur, with its sign: sums over the even and over the odd samples.
+layout(scalar) readonly buffer FilmBiasEven { float film_bias_even[]; };
+layout(scalar) readonly buffer FilmBiasOdd { float film_bias_odd[]; };
 #endif
 
 #if LUCERNA_STOPPING_ONLY
 const uint k_sums = 4u;
 #else
-const uint k_sums = 4u + 11u;
+const uint k_sums = 4u + 12u;
 #endif
 // Of a row, by what is summed. First its two halves of four pixels: luminance, and how many are there; then luminance
-// [0..4], variance [0..4], fourth. All of a kind lie together, so that neighbouring invocations write side by side.
+// [0..4], variance [0..4], fourth, difference. All of a kind lie together, so that neighbouring invocations write side by side.
 shared float values[k_sums * 64u];
 
 float half_luminance(FilmHalf h, float n) { return luminance(h.sum + h.compensation) / n; }
@@ -36,9 +39,10 @@ struct Row {
 #if LUCERNA_LOOKUP_ERRORS
   vec2 squares[k_block];  // of its pixels, as FilmRecords
   vec2 records;           // their sum
+  vec2 bias;              // sums over the row, of the even and of the odd samples' mean
 #endif
 #if !LUCERNA_STOPPING_ONLY
-  float ys[5], vs[5], fourth;  // sums over the row, as BlockError
+  float ys[5], vs[5], fourth, total_difference;  // sums over the row, as BlockError
 #endif
 };
 
@@ -59,10 +63,10 @@ Row read_row(bool working, uvec2 first) {
   Row r;
   r.half_y[0] = r.half_y[1] = r.half_n[0] = r.half_n[1] = 0.0;
 #if LUCERNA_LOOKUP_ERRORS
-  r.records = vec2(0.0);
+  r.records = r.bias = vec2(0.0);
 #endif
 #if !LUCERNA_STOPPING_ONLY
-  r.fourth = 0.0;
+  r.fourth = r.total_difference = 0.0;
   for (uint c = 0u; c < 5u; ++c) r.ys[c] = r.vs[c] = 0.0;
 #endif
   for (uint x = 0u; x < k_block; ++x) {
@@ -77,6 +81,11 @@ Row read_row(bool working, uvec2 first) {
     r.v[x] = there ? difference * difference : 0.0;
 #if LUCERNA_LOOKUP_ERRORS
     r.squares[x] = there && push.records != 0u ? film_records[pixel] : vec2(0.0);
+    // The halves are independent: in the mean the product of theirs is the square, without the noise of either.
+    vec2 bias = vec2(0.0);
+    if (there && push.bias != 0u) bias = vec2(film_bias_even[pixel], film_bias_odd[pixel]) / vec2((count + 1u) / 2u, count / 2u);
+    r.squares[x].y += bias.x * bias.y;
+    r.bias += bias;
     r.records += r.squares[x];
 #endif
     r.half_y[x / 4u] += r.y[x];
@@ -85,6 +94,7 @@ Row read_row(bool working, uvec2 first) {
     r.ys[0] += r.y[x];
     r.vs[0] += r.v[x];
     r.fourth += r.v[x] * r.v[x];
+    r.total_difference += there ? difference : 0.0;
     for (uint c = 1u; c < 5u; ++c) {
       difference = 0.5 * (a[c] - b[c]);
       r.ys[c] += there ? 0.5 * (a[c] + b[c]) : 0.0;
@@ -107,6 +117,7 @@ void share_row(Row r, uint lane) {
     values[(9u + c) * 64u + lane] = r.vs[c];
   }
   values[14u * 64u + lane] = r.fourth;
+  values[15u * 64u + lane] = r.total_difference;
 #endif
 }
 
@@ -117,11 +128,12 @@ void write_sums(uint block, uint row, uint first_row) {
   if (row < 5u) block_errors[block].variance[row] = sum_of_rows(9u + row, first_row, k_block);
   if (row == 5u) block_errors[block].fourth = sum_of_rows(14u, first_row, k_block);
   if (row == 6u) block_errors[block].pixels = sum_of_rows(2u, first_row, k_block) + sum_of_rows(3u, first_row, k_block);
+  if (row == 7u) block_errors[block].difference = sum_of_rows(15u, first_row, k_block);
 }
 #endif
 
 // Sums over the row of the pixels' relative errors, by half; `mean`: luminance of the halves' quadrants. `records`: of the
-// records' squares, over the square of what the errors are held against.
+// lookups' squares, over the square of what the errors are held against.
 void relative_errors(Row r, float mean[2], out float relative[2], out vec2 records) {
   relative[0] = relative[1] = 0.0;
   records = vec2(0.0);
@@ -168,7 +180,10 @@ void main() {
   barrier();
   values[2u * 64u + lane] = r.records.x;
   values[3u * 64u + lane] = r.records.y;
+  values[4u * 64u + lane] = r.bias.x;
+  values[5u * 64u + lane] = r.bias.y;
   barrier();
+  if (working && row < 2u) block_errors[block.index].bias[row] = sum_of_rows(4u + row, first_row, k_block);
   if (working && row == 6u) block_errors[block.index].records = sum_of_rows(2u, first_row, k_block);
   if (working && row == 7u) block_errors[block.index].interpolation = sum_of_rows(3u, first_row, k_block);
 #endif

@@ -81,6 +81,9 @@
 #endif
 
 // What the settings ask for, and what tests do.
+#ifndef LUCERNA_LOOKUP_BIAS
+#define LUCERNA_LOOKUP_BIAS 0
+#endif
 #ifndef LUCERNA_CACHE_ELLIPSES
 #define LUCERNA_CACHE_ELLIPSES 0
 #endif

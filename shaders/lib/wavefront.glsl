@@ -24,7 +24,7 @@ layout(scalar) buffer Counters { uint counters[]; };
 uniform samplerBuffer ray_texels;           // Rays, 2 texels a slot
 uniform samplerBuffer hit_texels;           // Hits, 1
 uniform samplerBuffer path_texels;          // Paths, 3
-uniform samplerBuffer radiance_texels;      // Radiance, k_lane_count (rgb)
+uniform samplerBuffer radiance_texels;      // Radiance, k_lane_count (rgb; of the first a: the bias of lookups)
 uniform samplerBuffer shadow_ray_texels;    // ShadowRays, 2
 uniform samplerBuffer shadow_state_texels;  // ShadowStates, 2
 layout(scalar) writeonly buffer Rays { Ray rays[]; };
@@ -82,5 +82,13 @@ void add_radiance(uint slot, uint lane, vec3 value) {
   }
   if (wanted && !finite) atomicAdd(counters[k_counter_dropped], 1u);
 }
+
+#if LUCERNA_LOOKUP_BIAS
+// VertexOut.bias; at most once a slot and dispatch. What is not finite is left out, and the light that it is of is refused.
+void add_lookup_bias(uint slot, float value) {
+  int at = int(radiance_texel(slot, 0u));
+  if (value != 0.0 && is_finite(vec3(value))) radiance[at].a = texelFetch(radiance_texels, at).a + value;
+}
+#endif
 
 #endif

@@ -7,7 +7,7 @@
 //   sum over edges  integral G(min(rho(phi), R)) dphi,  R^2 = r^2 - c^2,  G(rho) = integral_0^rho K(t) t dt
 //                                                     = 2 / (pi r^4) (R^2 rho^2 / 2 - rho^4 / 4),
 // which along a straight edge at distance h, rho^2 = h^2 + t^2 and dphi = h dt / rho^2, is a polynomial in t within the disc,
-// and G(R) times an angle without.
+// and G(R) times an angle without. A kernel that is flat over the disc, 1 / (pi r^2), has G(rho) = rho^2 / (2 pi r^2).
 #ifndef LUCERNA_PHOTONS_AREA
 #define LUCERNA_PHOTONS_AREA
 #include "photons/photon.glsl"
@@ -21,20 +21,22 @@ float photon_angle(float h, float t0, float t1) {
   return across == 0.0 && along == 0.0 ? 0.0 : atan(across, along);
 }
 
-// The edge from a to b, from the foot of x; n: the plane's normal, big2: R^2. Times pi r^4 / 2.
-float photon_edge(vec3 a, vec3 b, vec3 n, float big2) {
+// The edge from a to b, from the foot of x; n: the plane's normal, big2: R^2. By Epanechnikov's kernel, times pi r^4 / 2, and by
+// the flat one, times pi r^2.
+vec2 photon_edge(vec3 a, vec3 b, vec3 n, float big2) {
   vec3 e = b - a;
   float l = length(e);
-  if (l <= 0.0) return 0.0;
+  if (l <= 0.0) return vec2(0.0);
   e /= l;
   float t0 = dot(a, e), t1 = dot(b, e), h = dot(n, cross(a, e)), h2 = h * h;
   float w = sqrt(max(0.0, big2 - h2)), u0 = clamp(t0, -w, w), u1 = clamp(t1, -w, w);
   float within = h * ((0.5 * big2 - 0.25 * h2) * (u1 - u0) - (u1 * u1 * u1 - u0 * u0 * u0) / 12.0);
-  return within + 0.25 * big2 * big2 * (photon_angle(h, t0, u0) + photon_angle(h, u1, t1));
+  float angle = photon_angle(h, t0, u0) + photon_angle(h, u1, t1);
+  return vec2(within + 0.25 * big2 * big2 * angle, 0.5 * (h * (u1 - u0) + big2 * angle));
 }
 
 // The part of a triangle, its vertices seen from x, that lies within `slab` of the plane through x with that normal.
-float photon_triangle(vec3 p0, vec3 p1, vec3 p2, vec3 normal, float slab, float r2) {
+vec2 photon_triangle(vec3 p0, vec3 p1, vec3 p2, vec3 normal, float slab, float r2) {
   vec3 n = cross(p1 - p0, p2 - p0);
   n = normalize(n / max(max3(abs(n)), 1e-37));
   float agree = dot(n, normal);
@@ -43,8 +45,8 @@ float photon_triangle(vec3 p0, vec3 p1, vec3 p2, vec3 normal, float slab, float 
   slab *= turned ? k_photon_turned_slab : 1.0;
   vec3 foot = dot(n, p0) * n;
   float big2 = r2 - dot(foot, foot);
-  if (abs(agree) <= k_photon_normals || big2 <= 0.0) return 0.0;
-  float sum = 0.0;
+  if (abs(agree) <= k_photon_normals || big2 <= 0.0) return vec2(0.0);
+  vec2 sum = vec2(0.0);
   vec3 top_up = vec3(0.0), top_down = vec3(0.0), low_up = vec3(0.0), low_down = vec3(0.0);
   bool crosses_top = false, crosses_low = false;
   for (uint k = 0u; k < 3u; ++k) {
@@ -67,10 +69,12 @@ float photon_triangle(vec3 p0, vec3 p1, vec3 p2, vec3 normal, float slab, float 
   return abs(sum);
 }
 
-// At x on a surface with that normal; 1 as well where very many triangles lie around. Surfaces that lie on each other are
-// counted twice, so that it is then rather too large than too small: light is never made more than it is.
-float photon_area(vec3 x, vec3 normal, float radius) {
-  float r2 = radius * radius, sum = 0.0;
+// At x on a surface with that normal, by Epanechnikov's kernel and by the flat one; 1 as well where very many triangles lie
+// around. Surfaces that lie on each other are counted twice, so that it is then rather too large than too small: light is never
+// made more than it is.
+vec2 photon_areas(vec3 x, vec3 normal, float radius) {
+  float r2 = radius * radius;
+  vec2 sum = vec2(0.0);
   uint node = 0u, nodes = photons.surface_nodes, visits = 0u;
   for (; node < nodes && visits < k_photon_most_visits; ++visits) {
     vec4 a = texelFetch(photon_surface_nodes, int(2u * node)), b = texelFetch(photon_surface_nodes, int(2u * node + 1u));
@@ -82,7 +86,9 @@ float photon_area(vec3 x, vec3 normal, float radius) {
                              texelFetch(photon_surface_triangles, int(3u * i + 2u)).xyz - x, normal, k_photon_slab * radius, r2);
     node = meets ? node + 1u : floatBitsToUint(a.w);
   }
-  float area = 2.0 * k_inv_pi * sum / (r2 * r2);
-  return node < nodes || nodes == 0u ? 1.0 : clamp(area, k_photon_least_area, 1.0);
+  vec2 area = k_inv_pi * sum / vec2(0.5 * r2 * r2, r2);
+  return node < nodes || nodes == 0u ? vec2(1.0) : clamp(area, k_photon_least_area, 1.0);
 }
+// By Epanechnikov's kernel alone.
+float photon_area(vec3 x, vec3 normal, float radius) { return photon_areas(x, normal, radius).x; }
 #endif

@@ -18,4 +18,6 @@ int photon_highest_level(float radius) { return photon_level(radius / (1.0 - pho
 
 // Epanechnikov's, over the disc of radius r, at the square of a distance below r [1/m^2].
 float photon_kernel(float d2, float r) { return 2.0 * k_inv_pi * (1.0 - d2 / (r * r)) / (r * r); }
+// The one that is the same all over the disc.
+float photon_flat_kernel(float r) { return k_inv_pi / (r * r); }
 #endif

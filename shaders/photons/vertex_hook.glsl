@@ -1,5 +1,9 @@
 // What photons bring to a vertex of an eye path: a density estimate (H. W. Jensen 1996) with discs of given radius and
 // Epanechnikov's kernel, of the diffuse lobe alone; what arrives by its other lobes is traced on.
+//
+// Where light bends, E(x + d) = E + d.grad E + d.H d / 2 + ..., a kernel of second moment m = integral K d^2 adds m tr H / 4 to it:
+// m = r^2 / 3 for Epanechnikov's, r^2 / 2 for the flat one. So twice what the flat one finds more is what Epanechnikov's is off
+// by. Of all functions of the photons in the disc that tell tr H this has the least variance, that of the estimate itself.
 #ifndef LUCERNA_PHOTONS_VERTEX_HOOK
 #define LUCERNA_PHOTONS_VERTEX_HOOK
 #include "transport/vertex_hook.glsl"
@@ -46,6 +50,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   step = max(step, 1u);
   uint skip = step > 1u ? hash_combine(hash_combine(v.path.pixel, v.path.sample_index), v.depth) % step : 0u;
   vec3 found_1 = vec3(0.0), found_2 = vec3(0.0), found_3 = vec3(0.0);  // by part
+  vec3 found_flat = vec3(0.0);  // of all parts that are brought, by the flat kernel
   for (int level = lowest; looks && level <= highest; ++level) {
     ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
     for (uint k = 0u; k < k_photon_near_cells; ++k) {
@@ -64,8 +69,9 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         vec3 side = dot(wi, front) > 0.0 ? front : -front;
         float agree = reflected ? dot(side, v.side) : dot(front, v.surface.normal_g);
         bool counts = agree > k_photon_normals && abs(dot(away, v.surface.normal_g)) < k_photon_slab * r;
-        float kernel = counts ? photon_kernel(d2, r) : 0.0;
-        vec3 light = photon_reflected(v, wi, reflected) * b.rgb * kernel;
+        vec3 flux = counts ? photon_reflected(v, wi, reflected) * b.rgb : vec3(0.0), light = flux * photon_kernel(d2, r);
+        bool brought = part > 0u && (components >> 4u * part & 15u) < k_component_count;
+        found_flat += brought ? flux * photon_flat_kernel(r) : vec3(0.0);
         found_1 += part == 1u ? light : vec3(0.0);
         found_2 += part == 2u ? light : vec3(0.0);
         found_3 += part == 3u ? light : vec3(0.0);
@@ -74,13 +80,17 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
     }
   }
   vec3 weight = v.path.throughput * float(step);
+  vec2 areas = vec2(1.0);
   // Only where there is something to correct.
-  if (max3(found_1 + found_2 + found_3) > 0.0) weight /= photon_area(x, v.surface.normal_g, radius);
+  if (max3(found_1 + found_2 + found_3) > 0.0) areas = photon_areas(x, v.surface.normal_g, radius);
+  o.bias += 2.0 * luminance(weight * found_flat) / areas.y;
+  weight /= areas.x;
   for (uint component = 0u; component < k_component_count; ++component) {
     vec3 light = ((components >> 4 & 15u) == component ? found_1 : vec3(0.0)) +
                  ((components >> 8 & 15u) == component ? found_2 : vec3(0.0)) +
                  ((components >> 12 & 15u) == component ? found_3 : vec3(0.0));
     o.radiance[lane_of(0u, component)] += weight * light;
+    o.bias -= 2.0 * luminance(weight * light);
   }
   return photons_Vertex(0u);
 }

@@ -37,16 +37,18 @@ struct BlockError {
   float luminance[5];     ///< sum of Y
   float variance[5];      ///< sum of v
   float fourth;           ///< sum of v^2, of [0]: how unevenly the noise is spread
+  float difference;       ///< sum of (A - B) / 2, of [0]
   // Relative error r = sqrt(pi/2) |A - B| / 2 over max(Y of the pixel, Y of its quadrant, floor), of [0], for the four
   // quadrants of 4x4 pixels. Its mean is the relative standard error where noise is Gaussian; for any noise r stays below
   // 1.26 (|A - B| / 2 is at most the pixel's own Y), so that no firefly can outweigh its neighbours.
   float relative[4];      ///< sum of r
   float quadrant_pixels[4];
-  // Of what the pixels read of records, where that is known, else 0 (BlockRecords; FilmRecords): sums of the squares of
-  // their noise and of what interpolation is off by, which may be below 0 by chance; and of these over the square of what
-  // r is held against.
+  // Of what the pixels look up, where that is known, else 0: sums of the squares of the records' noise and of what lookups
+  // are off by in the mean, by interpolation (BlockRecords; FilmRecords) and by blur (FilmBiasEven, FilmBiasOdd), which may
+  // be below 0 by chance; and of these over the square of what r is held against.
   float records, interpolation;
   float records_relative, interpolation_relative;
+  float bias[2];          ///< blur alone, with its sign: sum of the even samples' mean, of the odd ones'
 };
 
 /// What records of light that all samples read may be wrong by, in luminance, summed over pixels of a block: not the
@@ -71,6 +73,7 @@ struct ErrorPush {
   uint block_count;
   float luminance_floor;  ///< noise in pixels darker than this is held against this
   uint records;           ///< not 0: FilmRecords is known
+  uint bias;              ///< not 0: FilmBiasEven and FilmBiasOdd are
 };
 
 /// Mean radiance of one group of lights at a pixel, all components: halves (r, g), (b, 0). In pairs of groups, a texel

@@ -51,6 +51,9 @@ void main() {
     radiance[radiance_texel(slot, lane_of(0u, splat_frame.component))].rgb = texelFetch(splat_picture, int(at.y * size.x + at.x)).rgb;
   }
 #endif
+#if LUCERNA_LOOKUP_BIAS
+  radiance[radiance_texel(slot, 0u)].a = 0.0;
+#endif
   features[2u * slot] = vec4(0.0);
   features[2u * slot + 1u] = vec4(0.0);
 }

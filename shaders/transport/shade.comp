@@ -94,6 +94,7 @@ void main() {
   vec3 sun = vec3(0.0);  // ... but for an environment's sun, where that is of another group
   VertexOut found;
   for (uint lane = 0u; lane < k_lane_count; ++lane) found.radiance[lane] = vec3(0.0);
+  found.bias = 0.0;
   found.sky_known = false;
   found.samples_lights = true;
   if (hit.prim == k_no_hit) {
@@ -181,6 +182,9 @@ void main() {
 #if LUCERNA_VERTEX_HOOKS
   for (uint lane = 0u; lane < k_lane_count; ++lane)
     add_radiance(slot, lane, found.radiance[lane] + (met == lane ? gain : vec3(0.0)));
+#if LUCERNA_LOOKUP_BIAS
+  add_lookup_bias(slot, found.bias);
+#endif
 #else
   add_radiance(slot, met, gain);
 #endif

@@ -32,6 +32,7 @@ struct VertexIn {
 
 struct VertexOut {
   vec3 radiance[k_lane_count];  // what is brought here, times the path's throughput, by lane
+  float bias;       // by what the luminance of that is told to be too large, in the mean (LUCERNA_LOOKUP_BIAS; else not heeded)
   bool sky_known;   // in it is what the sky sends straight to the diffuse lobe
   bool samples_lights;
 };

@@ -189,6 +189,37 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   CHECK(many > 0.3 * few);
 }
 
+TEST_CASE("--stats and --ledger tell noise and bias of light that is looked up apart") {
+  const fs::path f = folder();
+  const auto stats = [&](const std::string& arguments) {
+    const Run r = run("render " + scene("glass") + " --size 40x30 --quiet --stats " +
+                      (f / "b.json").string() + " --ledger " + (f / "b.csv").string() + " " + arguments);
+    INFO(r.out);
+    CHECK(r.status == 0);
+    std::ifstream file(f / "b.json");
+    return nlohmann::json::parse(file);
+  };
+  const auto j = stats("--samples 6 --set components.caustic=photons --set photons.radius=6");
+  const auto& error = j["error"];
+  CHECK(error["records"]["relative"] == 0);
+  CHECK(error["bias"]["relative"] > 0.01);
+  CHECK(error["bias"]["tile_worst"] > error["bias"]["tile_median"]);
+  CHECK(error["relative"].get<double>() ==
+        Approx(error["paths"]["relative"].get<double>() + error["bias"]["relative"].get<double>()));
+  CHECK(error["components"]["caustic"]["bias"].is_null());
+  CHECK(error["components"]["primary"]["bias"] == 0);
+  CHECK(j["ledger"].back()["error_bias"] == error["bias"]["relative"]);
+  CHECK(j["ledger"].back()["error_records"] == 0);
+  CHECK(j["forecast"].contains("limited_by_lookups"));
+  std::ifstream table(f / "b.csv");
+  std::string head;
+  std::getline(table, head);
+  CHECK(head.find(",error_records,error_bias,error_told,") != std::string::npos);
+  // With one sample there are no two halves, and nothing is known; paths have no bias to be told of.
+  CHECK(stats("--set components.caustic=photons --samples 1")["error"]["bias"].is_null());
+  CHECK_FALSE(stats("--samples 6 --set components.caustic=path")["error"].contains("bias"));
+}
+
 TEST_CASE("--reference: the ledger tells the true error, and it is the estimated one") {
   const fs::path f = folder();
   const std::string reference = (f / "reference.exr").string(), out = (f / "r.exr").string();

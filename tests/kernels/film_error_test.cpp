@@ -80,7 +80,7 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
       CHECK(got.pixels == 0);
       continue;
     }
-    double pixels = 0, luminance[5] = {}, variance[5] = {}, fourth = 0, quadrant_y[4] = {},
+    double pixels = 0, luminance[5] = {}, variance[5] = {}, fourth = 0, difference = 0, quadrant_y[4] = {},
            quadrant_n[4] = {};
     for (const bool second : {false, true}) {
       double relative[4] = {};
@@ -98,6 +98,7 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
         if (!second) {
           ++pixels, ++quadrant_n[q];
           luminance[0] += y0, variance[0] += v0, fourth += v0 * v0, quadrant_y[q] += y0;
+          difference += (a0 - b0) / 2;
         } else {
           const double scale = std::max({y0, quadrant_y[q] / quadrant_n[q], double{k_floor}});
           relative[q] += std::sqrt(1.5707963267948966 * v0) / scale;
@@ -110,6 +111,7 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
         CHECK(close(got.variance[k], variance[k]));
       }
       CHECK(close(got.fourth, fourth));
+      CHECK(got.difference == Approx(difference).margin(2e-6 * luminance[0]));
       for (int q = 0; q < 4; ++q) {
         CHECK(got.quadrant_pixels[q] == quadrant_n[q]);
         CHECK(close(got.relative[q], relative[q]));
@@ -340,6 +342,147 @@ TEST_CASE(
     CHECK(alone[b].records_relative == full[b].records_relative);
     CHECK(alone[b].interpolation_relative == full[b].interpolation_relative);
     CHECK(alone[b].records == 0);
+  }
+}
+
+TEST_CASE(
+    "the bias of lookups: summed by halves beside their light, and squared without the noise of either "
+    "half") {
+  gpu::Device device({"cpu", true});
+  gpu::ShaderCompiler compiler;
+  gpu::Stream stream(device);
+  constexpr uint32_t k_width = 12, k_height = 8, k_blocks = 2, k_pixels = k_width * k_height;
+  constexpr float k_floor = 0.05f;
+  film::Film film(device, k_width, k_height);
+  film.clear(stream);
+  CHECK_FALSE(film.lookup_bias_known());
+  const gpu::Kernel add(device, compiler, "film/add.comp", {{"LUCERNA_LOOKUP_BIAS", "1"}}),
+      error(device, compiler, "film/error.comp", {{"LUCERNA_LOOKUP_ERRORS", "1"}}),
+      stopping(device, compiler, "film/error.comp",
+               {{"LUCERNA_LOOKUP_ERRORS", "1"}, {"LUCERNA_STOPPING_ONLY", "1"}});
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal;
+  gpu::Buffer radiance(device, {.name = "radiance", .bytes = k_blocks * 64 * 2 * 4 * 16, .texel = true});
+  gpu::Buffer features(device, {.name = "features", .bytes = k_blocks * 64 * 2 * 32, .texel = true});
+  gpu::Buffer work(device, {.name = "work blocks", .bytes = k_blocks * sizeof(shared::WorkBlock)});
+  stream.fill(features, 0);
+  std::array<std::vector<double>, 2> mean{std::vector<double>(k_pixels), std::vector<double>(k_pixels)};
+  gpu::Resources resources;
+  // Three samples, in two batches: two even ones and an odd one. What is told is of the first lane alone.
+  for (const uint32_t first : {0u, 2u}) {
+    const uint32_t samples = first == 0 ? 2 : 1;
+    std::vector<vec4> values(k_blocks * 64 * samples * 4);
+    for (uint32_t s = 0; s < samples; ++s)
+      for (uint32_t b = 0; b < k_blocks; ++b)
+        for (uint32_t code = 0; code < 64; ++code) {
+          const uint32_t x = b * 8 + compact(code), y = compact(code >> 1);
+          const float bias = 0.02f + 0.05f * normal(random);
+          for (uint32_t c = 0; c < 4; ++c)
+            values[((size_t{s} * k_blocks + b) * 64 + code) * 4 + c] = vec4(vec3(0.1f), c == 0 ? bias : 7);
+          if (x < k_width) mean[(first + s) % 2][y * k_width + x] += double(bias) / ((first + s) % 2 ? 1 : 2);
+        }
+    radiance.write(std::span<const vec4>(values));
+    const std::vector<shared::WorkBlock> list{{0, first}, {1, first}};
+    work.write(std::span<const shared::WorkBlock>(list));
+    film.make_room_for_lookup_bias(stream);
+    film.bind(resources);
+    resources.set("WorkBlocks", work);
+    resources.set("radiance_texels", radiance);
+    resources.set("feature_texels", features);
+    stream.dispatch(add, resources, shared::FilmPush{k_width, k_height, 64 * k_blocks, samples, 0, 0},
+                    k_blocks);
+    stream.run();
+  }
+  REQUIRE(film.lookup_bias_known());
+  const auto told = film.read_lookup_bias();
+  for (int half = 0; half < 2; ++half)
+    for (size_t i = 0; i < k_pixels; ++i)
+      CHECK(double(told[half][i]) == Approx(mean[half][i]).epsilon(1e-5).margin(1e-7));
+  const auto run = [&](const gpu::Kernel& kernel, uint32_t known) {
+    const std::vector<shared::WorkBlock> list{{0, 0}, {1, 0}};
+    work.write(std::span<const shared::WorkBlock>(list));
+    stream.dispatch(kernel, resources, shared::ErrorPush{k_width, k_height, k_blocks, k_floor, 0, known}, 1);
+    stream.run();
+    return std::vector<BlockError>(film.errors().begin(), film.errors().end());
+  };
+  for (const BlockError& e : run(error, 0)) {
+    CHECK(e.interpolation == 0);
+    CHECK(e.interpolation_relative == 0);
+    CHECK(e.bias[0] == 0);
+    CHECK(e.bias[1] == 0);
+  }
+  const std::vector<BlockError> full = run(error, 1);
+  const double scale = 0.4;  // all pixels alike
+  for (uint32_t b = 0; b < k_blocks; ++b) {
+    double square = 0, even = 0, odd = 0;
+    for (uint32_t i = 0; i < k_pixels; ++i)
+      if (i % k_width / 8 == b) square += mean[0][i] * mean[1][i], even += mean[0][i], odd += mean[1][i];
+    CHECK(full[b].interpolation == Approx(square).epsilon(1e-4));
+    CHECK(full[b].interpolation_relative == Approx(square / (scale * scale)).epsilon(1e-4));
+    CHECK(full[b].bias[0] == Approx(even).epsilon(1e-5));
+    CHECK(full[b].bias[1] == Approx(odd).epsilon(1e-5));
+    CHECK(full[b].records == 0);
+    const film::TileError tile = film::tile_error({&full[b], 1});
+    CHECK(tile.records.interpolation == Approx(std::sqrt(std::max(0.0, even * odd)) / full[b].pixels));
+    CHECK(tile.half_width_90() ==
+          Approx(film::student_90(tile.degrees) * tile.standard_error + tile.records.interpolation));
+  }
+  const std::vector<BlockError> alone = run(stopping, 1);
+  for (uint32_t b = 0; b < k_blocks; ++b)
+    CHECK(alone[b].interpolation_relative == full[b].interpolation_relative);
+  // Halves that do not agree in sign have told noise.
+  BlockError noise{};
+  noise.pixels = 64, noise.bias[0] = 3, noise.bias[1] = -2;
+  CHECK(film::blur_error({&noise, 1}) == 0);
+  // Another picture begins with nothing.
+  film.clear(stream);
+  CHECK_FALSE(film.lookup_bias_known());
+  film.make_room_for_lookup_bias(stream);
+  stream.run();
+  for (const auto& half : film.read_lookup_bias())
+    for (const float value : half) CHECK(value == 0);
+  CHECK(device.validation_messages() == 0);
+}
+
+TEST_CASE("where pixels share their noise a tile's interval holds the truth as often as where they do not") {
+  // Pixels of a tile in groups that are off by the same, of Gaussian noise; tiles are of unlike brightness.
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal;
+  constexpr uint32_t k_across = 12, k_pixels = 64;
+  for (const uint32_t group : {1u, 8u}) {
+    size_t naive = 0, held = 0, all = 0;
+    double widened = 0;
+    for (int picture = 0; picture < 20; ++picture) {
+      std::vector<film::TileError> tiles, alone;
+      for (uint32_t t = 0; t < k_across * k_across; ++t) {
+        const double sigma = std::exp(normal(random));
+        BlockError b{};
+        b.pixels = k_pixels;
+        for (uint32_t i = 0; i < k_pixels; i += group) {
+          const double even = sigma * normal(random), odd = sigma * normal(random), half = (even - odd) / 2;
+          const auto n = double(group);
+          b.luminance[0] += float(n * (even + odd) / 2), b.difference += float(n * half);
+          b.variance[0] += float(n * half * half), b.fourth += float(n * std::pow(half, 4));
+        }
+        tiles.push_back(film::tile_error({&b, 1}));
+      }
+      alone = tiles;
+      film::count_shared_noise(tiles, k_across);
+      for (size_t t = 0; t < tiles.size(); ++t) {
+        ++all;
+        naive += std::abs(tiles[t].luminance) <= alone[t].half_width_90();  // the truth is 0
+        held += std::abs(tiles[t].luminance) <= tiles[t].half_width_90();
+        widened += std::pow(tiles[t].standard_error / alone[t].standard_error, 2);
+      }
+    }
+    INFO("groups of " << group << ": " << double(held) / double(all) << " held, "
+                      << double(naive) / double(all) << " without");
+    CHECK(double(held) > 0.87 * double(all));
+    CHECK(double(held) < 0.95 * double(all));
+    // Not less than 1, so that where nothing is shared it is a little more.
+    CHECK(widened / double(all) > 0.9 * group);
+    CHECK(widened / double(all) < 1.2 * group);
+    if (group > 1) CHECK(double(naive) < 0.6 * double(all));
   }
 }
 

@@ -189,7 +189,7 @@ TEST_CASE("noise has three names: of the mean, of the median tile, of the worst 
 }
 
 TEST_CASE(
-    "where samples read records the error has three more names, and what they keep from is not promised") {
+    "where samples read records the error has three more names, and what they keep it over is not promised") {
   session::Accuracy a = uniform(100);
   stats::Ledger ledger;
   for (stats::Entry e : a.ledger.entries()) {
@@ -205,17 +205,33 @@ TEST_CASE(
   CHECK(figures[3].value == last.error[0]);
   CHECK(figures[4].short_name == "records");
   CHECK(figures[4].value == 0.02);
-  CHECK(figures[5].short_name == "interpolation");
+  CHECK(figures[5].short_name == "bias");
   CHECK(figures[5].value == 0.01);
   CHECK(present(a)->error == figures[0].value);
   CHECK_FALSE(session::seconds_to(a, 0.02));
   CHECK(target_texts(a, 0.02, {}, last.wall_s).at(0) ==
-        "2 % will not be reached: the records are the limit (3 %), more samples do not help");
+        "2 % will not be reached: lookups are the limit (3 %), more samples hardly help");
   session::Accuracy tiles = adaptive(0.05);
   tiles.finished = true;
   tiles.tiles[3].state = shared::k_tile_capped, tiles.tiles[3].records = 0.1f;
   CHECK(target_texts(tiles, 0.05, {}, 10).at(0) ==
-        "1 of 4 tiles stay over 5 %: the records are the limit, more samples do not help");
+        "1 of 4 tiles stay over 5 %: lookups are the limit, more samples hardly help");
+}
+
+TEST_CASE("where samples read photons alone no records are named beside their bias") {
+  session::Accuracy a = uniform(100);
+  stats::Entry last = a.ledger.entries().back();
+  CHECK_FALSE(looks_up(last));
+  CHECK(error_figures(last).size() == 3);
+  last.interpolation = 0.01;
+  CHECK(looks_up(last));
+  const auto figures = error_figures(last);
+  REQUIRE(figures.size() == 5);
+  CHECK(figures[0].value == Approx(last.error[0] + 0.01));
+  CHECK(figures[3].short_name == "paths");
+  CHECK(figures[4].short_name == "bias");
+  CHECK(figures[4].value == 0.01);
+  CHECK(figures[4].help.find("photons.radius") != std::string::npos);
 }
 
 TEST_CASE("adaptive sampling: the forecast is of the rays that the tiles still need") {

@@ -41,6 +41,7 @@ class CacheSolver final : public solvers::Solver {
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
   bool warm() const override { return ready() || cache_.status().pass >= 2; }
+  bool owes_errors(const film::Film& film) const override { return !film.record_errors_complete(); }
   bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const solvers::Picture& picture,
                        bool anew, const solvers::Cancel& cancel) override;
 

@@ -146,8 +146,7 @@ const SolverInfo& info() {
                    "bundled light alone: path tracing against photons and light tracing, on glass and ring; "
                    "two hours",
                    k_caustics_matrix}},
-      .against_noise = {"photons.per_round"},
-      .against_bias = {"photons.radius"},
+      .against_bias = {"photons.radius", "photons.floor"},
   };
   return all;
 }

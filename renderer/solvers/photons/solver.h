@@ -19,6 +19,9 @@ class PhotonSolver final : public solvers::Solver {
   PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const solvers::Task& task);
 
   const solvers::SolverInfo& info() const override;
+  gpu::Defines defines() const override {
+    return sends_ ? gpu::Defines{{"LUCERNA_LOOKUP_BIAS", "1"}} : gpu::Defines{};
+  }
   std::string hook() const override { return sends_ ? "photons/vertex_hook.glsl" : ""; }
   void bind(gpu::Resources& resources) const override;
   bool serves(const solvers::Task& task) const override;

@@ -11,10 +11,10 @@ struct Place {
   vec3 normal;
 };
 layout(scalar) readonly buffer Places { Place places[]; };
-layout(scalar) writeonly buffer Areas { float areas[]; };
+layout(scalar) writeonly buffer Areas { vec2 areas[]; };
 
 void main() {
   uint i = global_index();
   if (i >= push.count) return;
-  areas[i] = photon_area(places[i].position, places[i].normal, places[i].radius);
+  areas[i] = photon_areas(places[i].position, places[i].normal, places[i].radius);
 }

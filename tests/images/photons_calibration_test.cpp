@@ -1,0 +1,145 @@
+// links: session
+// Is what is told of the error of a picture of photons its true error? Pictures of many seeds, each with
+// rounds of its own, are held against a long reference: a tile's interval of 90 %, of noise and blur
+// together, must hold the truth in 85 of 100 tiles at least.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "film/error.h"
+#include "support/render.h"
+
+using namespace lucerna;
+
+namespace {
+
+struct Shot {
+  film::ImageError error;
+  std::vector<film::TileError> tiles;
+  std::vector<float> luminance;
+};
+
+Shot shot_of(session::Renderer& renderer) {
+  test::finish(renderer);
+  Shot shot{renderer.image_error(), renderer.tile_errors(), {}};
+  const film::Image image = renderer.image();
+  for (size_t i = 0; i < image.samples.size(); ++i)
+    shot.luminance.push_back(luminance(test::sum_at(image, i)));
+  return shot;
+}
+
+struct Case {
+  const char* scene;
+  uint32_t width, height;
+  test::Settings of_photons, of_reference;  // what differs
+  uint32_t rounds, shots;
+};
+
+struct Figures {
+  size_t asked = 0, by_noise = 0, by_sum = 0, heavy = 0;
+  double told_noise = 0, told_bias = 0, told = 0, truth = 0;
+};
+
+void count(Figures& f, const Shot& shot, const Shot& reference) {
+  const double mean = reference.error.luminance[0], own = std::pow(reference.error.rms[0], 2);
+  double squares = 0;
+  for (size_t i = 0; i < shot.luminance.size(); ++i)
+    squares += std::pow(double{shot.luminance[i]} - double{reference.luminance[i]}, 2);
+  f.truth += std::sqrt(std::max(0.0, squares / double(shot.luminance.size()) - own)) / mean;
+  f.told += shot.error.relative_sum();
+  f.told_noise += shot.error.relative(0), f.told_bias += shot.error.relative_interpolation();
+  for (size_t t = 0; t < shot.tiles.size(); ++t) {
+    film::TileError a = shot.tiles[t];
+    const film::TileError& r = reference.tiles[t];
+    // Where no light of the kind arrives there is nothing to tell.
+    if (r.luminance < 1e-3 * mean) continue;
+    if (a.heavy_tailed) {
+      ++f.heavy;
+      continue;
+    }
+    // The reference is noisy too.
+    const double vr = r.standard_error * r.standard_error, va = a.standard_error * a.standard_error;
+    a.degrees = (va + vr) * (va + vr) / (va * va / a.degrees + vr * vr / r.degrees);
+    a.standard_error = std::sqrt(va + vr);
+    const double off = std::abs(a.luminance - r.luminance);
+    ++f.asked;
+    f.by_sum += off <= a.half_width_90();
+    a.records.interpolation = 0;
+    f.by_noise += off <= a.half_width_90();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the error told of a picture of photons is the true one") {
+  // All scenes, or one by its name: minutes. Without, the one that is soonest done. A radius in place of all.
+  const char* const wanted = std::getenv("LUCERNA_CALIBRATION");
+  const char* const at = std::getenv("LUCERNA_CALIBRATION_RADIUS");
+  const std::string only = wanted ? wanted : "cornell";
+  const std::vector<std::string> radii =
+      at ? std::vector<std::string>{at} : std::vector<std::string>{"1.5", "3", "6"};
+  // Diffuse light is path traced, for paths are soon done with it; caustics of a small lamp are not, so that
+  // photons of many rounds with a small radius are what those with a large one are held against.
+  const test::Settings caustic{{"components.caustic", "photons"}};
+  const test::Settings diffuse{{"components.secondary", "photons"}, {"components.tertiary", "photons"}};
+  const test::Settings fine{{"components.caustic", "photons"},
+                            {"photons.radius", "0.4"},
+                            {"photons.floor", "0.25"},
+                            {"photons.per_round", "200000"},
+                            {"samples", "384"}};
+  for (const Case& c :
+       {Case{"cornell",
+             48,
+             48,
+             diffuse,
+             {{"components.secondary", "path"}, {"components.tertiary", "path"}, {"samples", "2048"}},
+             16,
+             4},
+        Case{"glass", 64, 64, caustic, {{"components.caustic", "path"}, {"samples", "16384"}}, 16, 4},
+        Case{"ring", 80, 45, caustic, fine, 16, 4}}) {
+    if (only != "all" && only != c.scene) continue;
+    session::Renderer renderer(test::renderer_options(false));
+    renderer.set_size(c.width, c.height);
+    renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + c.scene + "/" + c.scene + ".gltf");
+    // What does not come by photons would hide their part under its noise.
+    test::Settings settings{{"sampling.tile", "8"},
+                            {"sampling.mode", "uniform"},
+                            {"components.primary", "off"},
+                            {"components.secondary", "off"},
+                            {"components.tertiary", "off"},
+                            {"components.caustic", "off"},
+                            {"seed", "4096"}};
+    test::Settings reference_settings = settings;
+    for (const auto& [key, value] : c.of_reference) reference_settings[key] = value;
+    test::set(renderer, reference_settings);
+    const Shot reference = shot_of(renderer);
+    for (const std::string& radius : radii) {
+      for (const auto& [key, value] : c.of_photons) settings[key] = value;
+      settings["samples"] = std::to_string(c.rounds);
+      settings["photons.radius"] = radius, settings["photons.floor"] = "0.5";
+      settings["photons.per_round"] = "0";
+      Figures f;
+      for (uint32_t s = 0; s < c.shots; ++s) {
+        settings["seed"] = std::to_string(s + 1);
+        test::set(renderer, settings);
+        count(f, shot_of(renderer), reference);
+      }
+      const double share = 100 / double(std::max<size_t>(1, f.asked)), n = c.shots;
+      std::printf(
+          "%-8s radius %-3s covered: noise %.1f %%, with bias %.1f %% of %zu tiles (%zu heavy-tailed); rms "
+          "told "
+          "%.4f (noise %.4f, bias %.4f), true %.4f\n",
+          c.scene, radius.c_str(), share * double(f.by_noise), share * double(f.by_sum), f.asked, f.heavy,
+          f.told / n, f.told_noise / n, f.told_bias / n, f.truth / n);
+      std::fflush(stdout);
+      INFO(c.scene << " radius " << radius);
+      // 85 %, and two standard errors of as many independent tiles.
+      const double tiles = double(f.asked), chance = 2 * std::sqrt(0.9 * 0.1 * tiles);
+      CHECK(double(f.by_sum) > 0.85 * tiles - chance);
+      CHECK(f.by_noise < f.by_sum);
+      CHECK(f.told > 0.8 * f.truth);
+      CHECK(f.told < 1.6 * f.truth);
+    }
+  }
+}
