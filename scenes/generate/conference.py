@@ -1,9 +1,9 @@
 """A meeting hall in the evening (`conference`): twenty spots in a coffered ceiling, carafes and glasses on a long table.
 
-x to the right, y up; the table runs along z, a picture hangs on the wall at z = -7, windows are to the right, an acoustic wall
-of oak slats to the left. Every coffer has one spot: the ten in the middle are turned to the table's axis, the ten
-outside to the walls. Spots are points, so what they send through solid glass and water onto the table is found by no path
-from the eye. Radiance is in cd/m^2 throughout, spots in candela.
+x to the right, y up; the table runs along z, a picture hangs on the wall at z = -7, windows are to the right, an acoustic
+wall of oak slats to the left. Every coffer has one spot: ten are turned to the table's axis, seven to the walls, three to
+the carafes. Spots are points, so what they send through solid glass and water onto the table is found by no path from the
+eye. Radiance is in cd/m^2 throughout, spots in candela.
 """
 import os
 
@@ -23,8 +23,8 @@ COFFER_TOP, MOUTH = 3.585, 3.46            # its ceiling; the lower edge of its 
 TABLE = (0.86, 3.30)                       # half width and half length
 TOP = 0.74                                 # the table's height
 SILL, HEAD, WINDOW = 0.84, 2.86, 1.10      # windows' lower and upper edge, half length
-WARM = (1.0, 0.83, 0.64)                   # the lamps' colour
-NEAR = 0.62                                # z of the carafes that camera `table` looks at
+WARM = (1.0, 0.89, 0.76)                   # the lamps' colour
+GROUPS = (-1.66, 0.62, 2.28)               # z of the carafes; camera `table` looks at those in the middle
 
 
 # ---- what is painted -----------------------------------------------------------------------------------------------
@@ -90,8 +90,8 @@ def evening(width=256):
 def materials(s):
     def matt(name, *c, double=False):
         s.material(name, c, lambert=True, double=double)
-    oak = veneer((0.50, 0.345, 0.195), (0.335, 0.205, 0.105), 101, (0.8, 1.6)).save(s.folder, "oak", normal=False)
-    walnut = veneer((0.078, 0.045, 0.028), (0.030, 0.017, 0.011), 121, (0.8, 1.6), 0.35)
+    oak = veneer((0.50, 0.365, 0.235), (0.335, 0.22, 0.13), 101, (0.8, 1.6)).save(s.folder, "oak", normal=False)
+    walnut = veneer((0.082, 0.054, 0.038), (0.031, 0.020, 0.015), 121, (0.8, 1.6), 0.35)
     walnut = walnut.save(s.folder, "walnut", normal=False)
     s.material("oak", (1, 1, 1), lambert=True, maps=oak, metres=(0.8, 1.6))
     s.material("polished walnut", (1, 1, 1), rough=0.20, maps=walnut, metres=(0.8, 1.6))
@@ -144,20 +144,19 @@ def coffer(s):
 
 
 def lamps(s):
-    """The twenty spots, each at the mouth of its cylinder. Over the table those to the left lead and those to the right are
-    dimmed: what is thrown by glass then stands out from what shines on the table beside it."""
-    n = 0
-    for z in ROWS:
-        for x in (-1, 1):
-            n += 1
-            at = np.array([x, MOUTH - 0.004, z])
-            s.spot(f"table lamp {n}", at, np.array([0.25 * x, TOP, z]) - at, WARM, 3400 if x < 0 else 1100, 14, 38)
-    n = 0
-    for z in ROWS:
-        for x in (-1, 1):
-            n += 1
-            at = np.array([3.0 * x, MOUTH - 0.004, z])
-            s.spot(f"wall lamp {n}", at, np.array([4.0 * x, 0.9, z]) - at, WARM, 1300, 10, 34)
+    """The twenty spots, each at the mouth of its cylinder: ten for the table, seven for the walls; three, narrow and strong,
+    come in low from the right and throw what shines through carafes and glasses across the table."""
+    def lamp(kind, n, x, z, target, candela, inner, outer):
+        at = np.array([x, MOUTH - 0.004, z])
+        s.spot(f"{kind} lamp {n}", at, np.array(target) - at, WARM, candela, inner, outer)
+    for n, (x, z) in enumerate([(x, z) for z in ROWS for x in (-1, 1)]):
+        lamp("table", n + 1, x, z, (0.25 * x, TOP, z), 1100, 14, 38)
+    accents = dict(zip(ROWS[1:4], GROUPS))
+    walls = [(x, z) for z in ROWS for x in (-3, 3) if x < 0 or z not in accents]
+    for n, (x, z) in enumerate(walls):
+        lamp("wall", n + 1, x, z, (4 / 3 * x, 0.9, z), 1300, 10, 34)
+    for n, (z, group) in enumerate(accents.items()):
+        lamp("accent", n + 1, 3, z, (0.0, TOP, group), 15000, 4, 13)
 
 
 def acoustic_wall(s):
@@ -364,12 +363,11 @@ def drinks(s):
     for name, parts in (("carafe", glassware.carafe(0.112)), ("low carafe", glassware.carafe(0.058)),
                         ("glass", glassware.tumbler()), ("full glass", glassware.tumbler(0.058))):
         s.mesh(name, parts)
-    # the lamps at z = 0 stand behind those that are looked at, and throw their light towards the eye
-    groups = ((NEAR, (("carafe", -0.14, -0.05, 10), ("low carafe", 0.09, -0.21, 31), ("full glass", 0.15, 0.05, 5),
-                      ("glass", 0.01, 0.15, 20), ("glass", -0.27, 0.13, 50))),
-              (2.28, (("carafe", 0.05, 0.04, 15), ("glass", -0.10, -0.08, 5))),
-              (-1.66, (("low carafe", 0.07, -0.10, 40), ("carafe", -0.10, 0.06, 3), ("full glass", 0.09, 0.12, 22))))
-    for z, things in groups:
+    groups = ((("low carafe", 0.07, -0.10, 40), ("carafe", -0.10, 0.06, 3), ("full glass", 0.09, 0.12, 22)),
+              (("carafe", 0.02, -0.16, 10), ("low carafe", 0.20, -0.02, 31), ("full glass", -0.02, 0.08, 5),
+               ("glass", 0.14, 0.15, 20), ("glass", -0.20, -0.02, 50)),
+              (("carafe", 0.05, 0.04, 15), ("glass", -0.10, -0.08, 5)))
+    for z, things in zip(GROUPS, groups):
         for name, x, dz, yaw in things:
             s.place(name, (x, TOP, z + dz), yaw)
 
@@ -384,11 +382,11 @@ def main():
     lamps(s)
     hdr(os.path.join(s.folder, "sky.hdr"), evening())
     s.camera("main", (-0.72, 1.56, 6.10), (0.08, 1.56, -7.0), yfov=47.0)
-    s.camera("table", (0.40, 1.13, NEAR + 1.02), (-0.03, 0.795, NEAR), yfov=32.0)
+    s.camera("table", (0.34, 1.25, GROUPS[1] + 1.00), (-0.03, 0.785, GROUPS[1] - 0.03), yfov=31.0)
     s.write("A meeting hall in the evening under twenty spot lights in a coffered ceiling, with carafes, glasses and water "
             "on a long dark table: what the spots, which are points, send through solid glass is a caustic that photons alone find "
             "(camera table: close to it).",
-            {"film.ev": -6.6, "components.caustic": "photons", "environment": {"file": "sky.hdr", "scale": 22}})
+            {"film.ev": -6.2, "components.caustic": "photons", "environment": {"file": "sky.hdr", "scale": 22}})
 
 
 if __name__ == "__main__":
