@@ -154,7 +154,7 @@ def lamps(s):
     accents = dict(zip(ROWS[1:4], GROUPS))
     walls = [(x, z) for z in ROWS for x in (-3, 3) if x < 0 or z not in accents]
     for n, (x, z) in enumerate(walls):
-        lamp("wall", n + 1, x, z, (4 / 3 * x, 0.9, z), 1300, 10, 34)
+        lamp("wall", n + 1, x, z, (4 / 3 * x, 0.9, z), 2600, 10, 34)
     for n, (z, group) in enumerate(accents.items()):
         lamp("accent", n + 1, 3, z, (0.0, TOP, group), 15000, 4, 13)
 
@@ -382,7 +382,7 @@ def main():
     lamps(s)
     hdr(os.path.join(s.folder, "sky.hdr"), evening())
     s.camera("main", (-0.72, 1.56, 6.10), (0.08, 1.56, -7.0), yfov=47.0)
-    s.camera("table", (0.34, 1.25, GROUPS[1] + 1.00), (-0.03, 0.785, GROUPS[1] - 0.03), yfov=31.0)
+    s.camera("table", (0.30, 1.22, GROUPS[1] + 1.02), (-0.025, 0.80, GROUPS[1] - 0.02), yfov=26.0)
     s.write("A meeting hall in the evening under twenty spot lights in a coffered ceiling, with carafes, glasses and water "
             "on a long dark table: what the spots, which are points, send through solid glass is a caustic that photons alone find "
             "(camera table: close to it).",
