@@ -318,6 +318,18 @@ class Scene:
                            "extensions": {"KHR_lights_punctual": {"light": len(self.lights) - 1}}})
         self.used.add("KHR_lights_punctual")
 
+    def spot(self, name, at, direction, color, candela, inner, outer):
+        """A lamp at `at` shining along `direction`: color * candela along its axis, and as much up to `inner` degrees from it,
+        none from `outer` degrees on."""
+        self.lights.append({"name": name, "type": "spot", "color": _numbers(color, 4), "intensity": candela,
+                            "spot": {"innerConeAngle": round(float(np.radians(inner)), 7),
+                                     "outerConeAngle": round(float(np.radians(outer)), 7)}})
+        at, d = np.asarray(at, float), np.asarray(direction, float)
+        m = self.look(at, at + d, (0, 1, 0) if abs(d[1]) < 0.999 * np.linalg.norm(d) else (0, 0, 1))
+        self.nodes.append({"name": name, "matrix": _numbers(m.T, 7),
+                           "extensions": {"KHR_lights_punctual": {"light": len(self.lights) - 1}}})
+        self.used.add("KHR_lights_punctual")
+
     # ---- output ----------------------------------------------------------------------------------------------------
     def write(self, about, settings=None):
         doc = {"asset": {"version": "2.0", "generator": "lucerna scenes/generate"}}

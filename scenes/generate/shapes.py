@@ -195,6 +195,15 @@ def facing(mesh, centre=None):
     return Mesh(mesh.p, mesh.n, mesh.uv, t)
 
 
+def deformed(mesh, f, step=1e-5):
+    """The mesh under a smooth map of space, f of (n, 3) positions; normals follow the map's derivative, by central
+    differences over `step` metres."""
+    j = np.stack([(f(mesh.p + step * e) - f(mesh.p - step * e)) / (2 * step) for e in np.eye(3)], 2)
+    n = np.linalg.solve(np.swapaxes(j, 1, 2), mesh.n[:, :, None])[:, :, 0]
+    n *= np.sign(np.linalg.det(j))[:, None]
+    return facing(Mesh(f(mesh.p), n / np.linalg.norm(n, axis=1, keepdims=True), mesh.uv, mesh.t))
+
+
 def chamfer(lo, hi, edge):
     """Axis-aligned box whose edges are cut back by `edge` metres; the faces' normals run on over the cut, so that edges
     look rounded. 44 triangles, uv in metres."""
