@@ -382,7 +382,7 @@ def main():
     lamps(s)
     hdr(os.path.join(s.folder, "sky.hdr"), evening())
     s.camera("main", (-0.72, 1.56, 6.10), (0.08, 1.56, -7.0), yfov=47.0)
-    s.camera("table", (0.30, 1.22, GROUPS[1] + 1.02), (-0.025, 0.80, GROUPS[1] - 0.02), yfov=26.0)
+    s.camera("table", (0.30, 1.22, GROUPS[1] + 1.02), (-0.03, 0.825, GROUPS[1] - 0.04), yfov=27.0)
     s.write("A meeting hall in the evening under twenty spot lights in a coffered ceiling, with carafes, glasses and water "
             "on a long dark table: what the spots, which are points, send through solid glass is a caustic that photons alone find "
             "(camera table: close to it).",
