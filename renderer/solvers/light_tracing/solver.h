@@ -55,7 +55,7 @@ class LightTracingSolver final : public solvers::Solver {
   bool aimed_ = false;  ///< shares are those of this picture
   std::vector<Box> casters_;
   bool casters_known_ = false, casters_set_ = false;  ///< set: in lights_, in equal shares
-  std::vector<overlay::AimedPair> pairs_;  ///< with their shares
+  std::vector<overlay::AimedPair> pairs_;             ///< with their shares
   shared::Frame aimed_for_{};
 
   uint32_t last_sample_ = 0;  ///< whose round is complete, in this picture
