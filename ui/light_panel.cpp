@@ -58,9 +58,13 @@ void component_row(Ui& ui, int c, float width) {
   const OptionInfo* option = plan::find_option(key);
   float solver_width = px(76);
   if (option) {
+    // Two names joined are long: they take the place of the time.
+    const std::string& chosen_name = ui.setting(key);
+    const float beside = chosen_name.find('+') == std::string::npos ? px(154) : px(102);
     for (const std::string& solver : option->choices)
-      solver_width = std::max(solver_width, text_width(solver) + px(36));
-    solver_width = std::min(solver_width, std::max(px(76), width - px(154)));
+      if (solver == chosen_name || solver.find('+') == std::string::npos)
+        solver_width = std::max(solver_width, text_width(solver) + px(36));
+    solver_width = std::min(solver_width, std::max(px(76), width - beside));
     int chosen = static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.setting(key)) -
                                   option->choices.begin());
     if (choice("##solver", "", option->choices, chosen, solver_width))

@@ -51,15 +51,19 @@ void claim(std::array<const solvers::SolverInfo*, paths::k_component_count>& by,
 solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
                       const solvers::SolverInfo& solver, const plan::Settings& settings,
                       const upload::Effects& effects) {
-  uint32_t looked_up = 0;
-  for (const solvers::SolverInfo* other : plan.at_work())
-    if (other != &solver && other->looked_up) looked_up |= plan.components_of(*other);
+  uint32_t lent = 0, borrowing = 0;
+  for (const solvers::SolverInfo* other : plan.at_work()) {
+    if (other == &solver) continue;
+    if (other->lends) lent |= plan.components_of(*other);
+    if (other->borrows) borrowing |= plan.components_of(*other);
+  }
   return {.automaton = automaton,
           .settings = settings,
           .enabled = plan.enabled(),
           .own = plan.components_of(solver),
           .straight = plan.rests_of(solver),
-          .looked_up = looked_up,
+          .lent = lent,
+          .borrowing = borrowing,
           .effects = effects};
 }
 

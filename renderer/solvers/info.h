@@ -100,6 +100,9 @@ struct SolverInfo {
   /// Whether it finds light of points and directions behind what refracts or mirrors it, which paths from the
   /// eye cannot aim at.
   bool finds_points = false;
+  /// Whether rays that another solver traces to prepare its own light may end in lookups of this one's; and
+  /// whether this one's do, where it computes secondary light and the other one tertiary light.
+  bool lends = false, borrows = false;
   std::vector<OptionInfo> options{};
   std::vector<ChangeRow> changes{};
   std::vector<ViewInfo> views{};

@@ -32,7 +32,8 @@ struct Task {
   uint32_t enabled = 0;     ///< components that anybody computes
   uint32_t own = 0;         ///< of these, this solver
   uint32_t straight = 0;    ///< of own: what the camera sees straight of it another one brings
-  uint32_t looked_up = 0;   ///< by others, wherever paths go
+  uint32_t lent = 0;        ///< that others compute who lend their lookups (SolverInfo::lends)
+  uint32_t borrowing = 0;   ///< that others compute who borrow those
   upload::Effects effects;  ///< what the scene calls for
   const gpu::Defines* scene_defines =
       nullptr;  ///< of kernels that know its surfaces and lights; when it is made

@@ -20,7 +20,7 @@ TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, 
       "wait_scene\nwait_samples 2\nrender.pause\nwindow.section \"Steps of building\" false\nscreenshot " +
       file("scene.png") +
       // The tab, then the button in the empty panel.
-      "\nmouse.move 1293 48\nmouse.down\nmouse.up\nwait 0.2\nscreenshot " + file("empty.png") +
+      "\nmouse.move 1257 48\nmouse.down\nmouse.up\nwait 0.2\nscreenshot " + file("empty.png") +
       "\nmouse.move 1290 154\nmouse.down\nmouse.up\nwait 0.3\nmouse.move 640 800\nwait 0.3\nscreenshot " +
       file("cache.png") + "\nscript.save " + file("session.lucerna") + "\nkey k\nwait 0.2\nscreenshot " +
       file("back.png") + "\nquit\n");
@@ -34,8 +34,8 @@ TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, 
   // The line over the title of what is shown.
   for (const auto& [picture, left] :
        {std::pair{&scene, true}, {&empty, false}, {&cache, false}, {&back, true}}) {
-    CHECK((test::near_colour(*picture, 1150, 32, 1240, 36, k_accent) > 70) == left);
-    CHECK((test::near_colour(*picture, 1252, 32, 1334, 36, k_accent) > 70) == !left);
+    CHECK((test::near_colour(*picture, 1150, 32, 1218, 36, k_accent) > 70) == left);
+    CHECK((test::near_colour(*picture, 1224, 32, 1292, 36, k_accent) > 70) == !left);
   }
   // Numbers, bars of the overlap, inks of the passes; none of them in the empty panel.
   const vec3 unserved(191, 31, 41), first_pass(255, 154, 99);

@@ -91,7 +91,7 @@ TEST_CASE("at the console a script that fails stops, and the window stays") {
   const std::string a = (folder.path / "a.lucerna").string(), end = (folder.path / "end.png").string();
   std::ofstream(a) << "select light 99\nfilm.ev 3\n";
   const auto outcome = test::window("wait_scene\nkey ctrl+l\nwait 0.3\ntype \"script.run " + a +
-                                    "\"\nkey enter\nwait 0.5\nscreenshot " + end + "\nquit 0\n");
+                                    "\"\nkey enter\nwait 3\nscreenshot " + end + "\nquit 0\n");
   INFO(outcome.output);
   CHECK(outcome.status == 0);
   CHECK_THAT(outcome.output, Catch::Contains("there is no light 99"));

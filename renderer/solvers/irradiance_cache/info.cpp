@@ -61,6 +61,7 @@ const solvers::SolverInfo& info() {
           "quick on large surfaces, with an error that more samples do not take away.",
       .serves = {false, true, true, false},
       .looked_up = true,
+      .borrows = true,
       .options = option_rows(),
       .changes = change_rows(),
       .views =

@@ -45,7 +45,7 @@ paths::LookupRoutes routes_of_records(const Task& task) {
 /// for the rays of records as well.
 bool elsewhere(const Task& task) {
   constexpr uint32_t k_tertiary = 1u << 2;
-  return (task.looked_up & task.enabled & ~task.own & picture_routes(task).parts & k_tertiary) != 0;
+  return (task.lent & task.enabled & ~task.own & picture_routes(task).parts & k_tertiary) != 0;
 }
 
 /// What paths bring of what the rays of records gather; lookups are others' where `elsewhere`.

@@ -66,7 +66,7 @@ std::vector<ChangeRow> change_rows() {
 const SolverInfo& info() {
   static const SolverInfo all{
       .name = "light",
-      .label = "Light tracing",
+      .label = "Light",
       .title = "light tracing",
       .help =
           "Light tracing: paths from the lights are joined to the camera where they leave mirrors and glass "

@@ -135,6 +135,7 @@ const SolverInfo& info() {
       .serves = {false, true, true, true},
       .looked_up = true,
       .finds_points = true,
+      .lends = true,
       .options = option_rows(),
       .changes = change_rows(),
       .views =

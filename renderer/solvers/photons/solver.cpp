@@ -42,7 +42,7 @@ constexpr uint8_t k_secondary = 1, k_tertiary = 2;  // components
 
 /// Secondary light is looked up by somebody who prepares it by rays of his own, and tertiary light is ours.
 bool feeds(const Task& task) {
-  return (task.own >> k_tertiary & 1u) != 0 && (task.looked_up >> k_secondary & 1u) != 0;
+  return (task.own >> k_tertiary & 1u) != 0 && (task.borrowing >> k_secondary & 1u) != 0;
 }
 
 std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
