@@ -6,6 +6,8 @@
 
 namespace lucerna::solvers {
 
+namespace {
+
 Table aim_table(std::span<const overlay::AimedPair> pairs) {
   constexpr size_t k_rows = 6;
   Table table{.columns = {"", "aimed from", "at caster", "share"}, .droppable = std::nullopt, .rows = {}};
@@ -17,6 +19,19 @@ Table aim_table(std::span<const overlay::AimedPair> pairs) {
          .help = "Of all light paths, those that are aimed from this light at this cluster of "
                  "surfaces that mirror or refract smoothly."});
   return table;
+}
+
+}  // namespace
+
+void add_aim_rows(std::vector<PanelItem>& items, uint32_t casters, double unaimed,
+                  std::span<const overlay::AimedPair> pairs) {
+  if (casters == 0) return;
+  items.push_back(
+      ValueRow{"Casters", count_text(double(casters)),
+               "Clusters of surfaces that mirror or refract smoothly, at which paths are aimed."});
+  items.push_back(ValueRow{"Aimed", share_text(1 - unaimed, 1),
+                           "Of the paths, at casters; as many as a pilot has found to be of use."});
+  if (!pairs.empty()) items.push_back(aim_table(pairs));
 }
 
 Legend aim_legend() {

@@ -5,8 +5,10 @@
 
 namespace lucerna::solvers {
 
-/// The greatest shares, for a panel; no rows where nothing is aimed.
-Table aim_table(std::span<const overlay::AimedPair> pairs);
+/// How many casters there are, which share of the paths is aimed, and the greatest shares; nothing where
+/// there is no caster.
+void add_aim_rows(std::vector<PanelItem>& items, uint32_t casters, double unaimed,
+                  std::span<const overlay::AimedPair> pairs);
 /// What the colours of LightPathsPainter::draw_aim() say.
 Legend aim_legend();
 

@@ -191,6 +191,14 @@ mat3 shading_frame(Surface s, vec3 wo) {
   return mat3(t, b, n);
 }
 
+// What a diffuse lobe makes of flux that arrives on the surface that is there from wi, while paths from the eye weigh it by the
+// shading normal: f_D |wi.n_s| / |wi.n_g|. `to_world`: the shading frame on the viewer's side; `reflected`: wi is on that side.
+vec3 diffuse_of_flux(Bsdf bsdf, mat3 to_world, vec3 normal_g, vec3 wi_world, bool reflected) {
+  vec3 wi = wi_world * to_world;
+  vec3 f = bsdf_diffuse(bsdf, wi);
+  return reflected == (wi.z > 0.0) ? f / max(abs(dot(wi_world, normal_g)), 1e-4) : vec3(0.0);
+}
+
 // Origin for a ray that leaves along `direction`: moved off the surface, on that side, by the error bound.
 vec3 offset_origin(Surface s, vec3 direction) {
   vec3 n = dot(direction, s.normal_g) < 0.0 ? -s.normal_g : s.normal_g;

@@ -49,11 +49,9 @@ vec3 reflected_to_eye(Surface surface, vec3 towards, vec3 wi_world) {
   surface.front = dot(surface.normal_g, towards) > 0.0;
   surface.parameters.inside = surface.parameters.solid && !surface.front;
   mat3 to_world = shading_frame(surface, towards);
-  vec3 wi = wi_world * to_world;
   vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
-  bool reflected = dot(wi_world, side) > 0.0;
-  vec3 f = bsdf_diffuse(make_bsdf(surface.parameters, dot(to_world[2], towards)), wi);
-  return reflected == (wi.z > 0.0) ? f / max(abs(dot(wi_world, surface.normal_g)), 1e-4) : vec3(0.0);
+  Bsdf bsdf = make_bsdf(surface.parameters, dot(to_world[2], towards));
+  return diffuse_of_flux(bsdf, to_world, surface.normal_g, wi_world, dot(wi_world, side) > 0.0);
 }
 
 void main() {

@@ -14,10 +14,15 @@ void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
   Seen seen = seen_at(pixel, push.width, push.height);
-  Around around = photons_around(seen.position, seen.normal, seen.solid);
-  float near = importance_radius(seen.position);
-  float importance = seen.solid && push.of == k_density_of_importance ? float(importance_around(seen.position)) / (near * near) : 0.0;
-  float value = push.of == k_density_of_importance ? importance : push.of == k_density_of_photons ? around.density : push.of == k_photons_in_disc ? around.count : luminance(around.irradiance);
-  densities[pixel] = seen.solid ? value : k_density_none;
+  float value = 0.0;
+  if (push.of == k_density_of_importance) {
+    float radius = importance_radius(seen.position);
+    value = float(importance_around(seen.position)) / (radius * radius);
+  } else {
+    Around around = photons_around(seen.position, seen.normal, seen.solid);
+    value = push.of == k_density_of_photons ? around.density : push.of == k_photons_in_disc ? around.count : luminance(around.irradiance);
+  }
+  value = seen.solid ? value : k_density_none;
+  densities[pixel] = value;
   if (value > 0.0) atomicMax(density_most, floatBitsToUint(value));
 }

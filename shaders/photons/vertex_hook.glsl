@@ -16,14 +16,6 @@ layout(scalar) buffer PhotonImportance { uint photon_importance[]; };
 
 struct photons_Vertex { uint none; };
 
-// f_D |cos| over the geometric cosine: flux arrives on the surface that is there, and paths weigh it by the shading normal.
-vec3 photon_reflected(VertexIn v, vec3 wi_world, bool reflected) {
-  vec3 wi = wi_world * v.to_world;
-  vec3 f = bsdf_diffuse(v.bsdf, wi);
-  bool sides_agree = reflected == (wi.z > 0.0);
-  return sides_agree ? f / max(abs(dot(wi_world, v.surface.normal_g)), 1e-4) : vec3(0.0);
-}
-
 photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   uint components = photons.component[v.state];
   vec3 x = v.surface.position;
@@ -69,7 +61,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         vec3 side = dot(wi, front) > 0.0 ? front : -front;
         float agree = reflected ? dot(side, v.side) : dot(front, v.surface.normal_g);
         bool counts = agree > k_photon_normals && abs(dot(away, v.surface.normal_g)) < k_photon_slab * r;
-        vec3 flux = counts ? photon_reflected(v, wi, reflected) * b.rgb : vec3(0.0), light = flux * photon_kernel(d2, r);
+        vec3 flux = counts ? diffuse_of_flux(v.bsdf, v.to_world, v.surface.normal_g, wi, reflected) * b.rgb : vec3(0.0), light = flux * photon_kernel(d2, r);
         bool brought = part > 0u && (components >> 4u * part & 15u) < k_component_count;
         found_flat += brought ? flux * photon_flat_kernel(r) : vec3(0.0);
         found_1 += part == 1u ? light : vec3(0.0);

@@ -7,27 +7,13 @@
 #include <cstdio>
 #include <cstring>
 
-#include "film/error.h"
-#include "support/render.h"
+#include "support/calibration.h"
 
 using namespace lucerna;
 
 namespace {
 
-struct Shot {
-  film::ImageError error;
-  std::vector<film::TileError> tiles;
-  std::vector<float> luminance;
-};
-
-Shot shot_of(session::Renderer& renderer) {
-  test::finish(renderer);
-  Shot shot{renderer.image_error(), renderer.tile_errors()};
-  const film::Image image = renderer.image();
-  for (size_t i = 0; i < image.samples.size(); ++i)
-    shot.luminance.push_back(luminance(test::sum_at(image, i)));
-  return shot;
-}
+using test::Shot, test::shot_of;
 
 struct Case {
   const char* scene;
@@ -73,10 +59,7 @@ Figures measure(const Case& c) {
       film::TileError a = shot.tiles[t];
       const film::TileError& r = reference.tiles[t];
       if (a.heavy_tailed) continue;
-      // The reference is noisy too.
-      const double vr = r.standard_error * r.standard_error, va = a.standard_error * a.standard_error;
-      a.degrees = (va + vr) * (va + vr) / (va * va / a.degrees + vr * vr / r.degrees);
-      a.standard_error = std::sqrt(va + vr);
+      a = test::with_noise_of(a, r);
       const double off = std::abs(a.luminance - r.luminance);
       ++f.asked;
       f.by_paths += off <= film::student_90(a.degrees) * a.standard_error;

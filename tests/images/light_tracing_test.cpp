@@ -4,36 +4,17 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "support/render.h"
-#include "support/rooms.h"
+#include "support/caustics.h"
 
 using namespace lucerna;
 
+using test::mean_of, test::MeanOf, test::turned_sun, test::with;
+
 namespace {
 
+constexpr int k_caustic = 3;
+
 const test::Settings k_light{{"components.caustic", "light"}};
-
-test::Settings with(test::Settings settings, const test::Settings& more) {
-  for (const auto& [key, value] : more) settings[key] = value;
-  return settings;
-}
-
-/// A sun along +x that a mirror turns straight down onto a floor.
-scene::Scene turned_sun() {
-  scene::Scene s;
-  s.name = "turned sun";
-  s.materials = {test::diffuse({0.8f, 0.5f, 0.2f}), {}};
-  s.materials[1].metallic = 1, s.materials[1].roughness = 0;
-  s.materials[1].base_color = vec4(0.9f, 0.8f, 0.7f, 1);
-  test::add_quad(s, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0);
-  test::add_quad(s, {-1, 3, -1}, {2, -2, 0}, {0, 0, 2}, 1);
-  s.materials[1].double_sided = true;
-  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = {3, 4, 5}}};
-  s.lights[0].direction = {1, 0, 0};
-  s.cameras = {test::looking_down({0, 0.9f, 0}, 0.8f)};
-  s.environment.given = true;
-  return s;
-}
 
 /// A room with a shining panel, a ball of glass, a mirror on the wall that shows the ball's caustic, a pane
 /// before a part of the floor and a mat that is there by half.
@@ -65,25 +46,6 @@ scene::Scene glass_room() {
   return s;
 }
 
-struct MeanOf {
-  glm::dvec3 value{0}, noise{0};
-};
-/// Of the caustics over some pixels; the noise from the two halves, which hold rounds of their own.
-MeanOf mean_of(const film::Image& image, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1) {
-  MeanOf m;
-  glm::dvec3 odd(0), squares(0);
-  const double n = double(x1 - x0) * (y1 - y0);
-  for (uint32_t y = y0; y < y1; ++y)
-    for (uint32_t x = x0; x < x1; ++x) {
-      const size_t i = size_t{y} * image.width + x;
-      const glm::dvec3 all(image.components[3][i]), half(image.odd_half[3][i]);
-      m.value += all / n, odd += half / n, squares += (all - half) * (all - half);
-    }
-  m.noise = glm::max(glm::abs(m.value - odd), glm::sqrt(squares) / n);
-  return m;
-}
-MeanOf mean_of(const film::Image& image) { return mean_of(image, 0, 0, image.width, image.height); }
-
 }  // namespace
 
 TEST_CASE("a beam of even light on a plane is seen with the radiance that it has there") {
@@ -96,10 +58,10 @@ TEST_CASE("a beam of even light on a plane is seen with the radiance that it has
     // Blocks of the picture's corner and centre alike.
     for (uint32_t block = 0; block < 16; ++block) {
       const uint32_t x = block % 4 * 8, y = block / 4 * 8;
-      const MeanOf m = mean_of(r.image, x, y, x + 8, y + 8);
+      const MeanOf m = mean_of(r.image, k_caustic, x, y, x + 8, y + 8);
       for (int c = 0; c < 3; ++c) CHECK(m.value[c] == Approx(double(radiance[c])).epsilon(0.04));
     }
-    const MeanOf all = mean_of(r.image);
+    const MeanOf all = mean_of(r.image, k_caustic);
     for (int c = 0; c < 3; ++c) CHECK(all.value[c] == Approx(double(radiance[c])).epsilon(0.006));
     CHECK(r.stats.dropped == 0);
   }
@@ -133,10 +95,10 @@ TEST_CASE("light that is refracted into water has there the radiance of what com
   s.environment.given = true;
   const test::Settings settings = with(k_light, {{"light.per_round", "100000"}});
   const double through = 1 - std::pow(0.33 / 2.33, 2);
-  const MeanOf flat = mean_of(test::render(s, settings, 8, 32).image);
+  const MeanOf flat = mean_of(test::render(s, settings, 8, 32).image, k_caustic);
   const vec3 leaning = glm::normalize(vec3(0.5f, 0.8f, -0.3f));
   s.meshes[0].primitives[0].normals.assign(4, leaning);
-  const MeanOf leant = mean_of(test::render(s, settings, 8, 32).image);
+  const MeanOf leant = mean_of(test::render(s, settings, 8, 32).image, k_caustic);
   for (int c = 0; c < 3; ++c) {
     const double radiance =
         double(s.materials[0].base_color[c] * s.lights[0].intensity[c]) * through / double(k_pi);
@@ -151,17 +113,17 @@ TEST_CASE("of a surface that is there in part, and through one, as much is seen 
   s.materials[0].alpha_mode = scene::AlphaMode::blend, s.materials[0].base_color.w = 1.0f / 3;
   const double floor = 0.5 * 4 * 0.8 / double(k_pi) / 3;
   const test::Settings settings = with(k_light, {{"light.per_round", "100000"}});
-  CHECK(mean_of(test::render(s, settings, 8, 16).image).value.y == Approx(floor).epsilon(0.01));
+  CHECK(mean_of(test::render(s, settings, 8, 16).image, k_caustic).value.y == Approx(floor).epsilon(0.01));
   // The same by photons, which lie on all of it, seen by a third.
   const test::Settings photons{{"components.caustic", "photons"}, {"photons.per_round", "100000"}};
-  CHECK(mean_of(test::render(s, photons, 32, 16).image).value.y == Approx(floor).epsilon(0.03));
+  CHECK(mean_of(test::render(s, photons, 32, 16).image, k_caustic).value.y == Approx(floor).epsilon(0.03));
   scene::Scene veiled = s;
   veiled.materials.push_back(test::diffuse(vec3(0)));
   veiled.materials[2].alpha_mode = scene::AlphaMode::blend, veiled.materials[2].base_color.w = 0.25f;
   veiled.materials[2].double_sided = true;
   test::add_quad(veiled, {-0.6f, 0.8f, 0.6f}, {1.2f, 0, 0}, {0, 0, -1.2f}, 2);
   // The beam passes it as well.
-  CHECK(mean_of(test::render(veiled, settings, 8, 16).image).value.y ==
+  CHECK(mean_of(test::render(veiled, settings, 8, 16).image, k_caustic).value.y ==
         Approx(floor * 0.75 * 0.75).epsilon(0.01));
 }
 
@@ -196,10 +158,12 @@ void check_against_paths(const film::Image& image, double allowed) {
   double squares = 0;
   for (uint32_t block = 0; block < 25; ++block) {
     const uint32_t x = block % 5 * 8, y = block / 5 * 8;
-    squares += std::pow(z_of(mean_of(image, x, y, x + 8, y + 8), mean_of(truth, x, y, x + 8, y + 8), 64), 2);
+    squares += std::pow(z_of(mean_of(image, k_caustic, x, y, x + 8, y + 8),
+                             mean_of(truth, k_caustic, x, y, x + 8, y + 8), 64),
+                        2);
   }
   CHECK(squares / 25 < 2);
-  z_of(mean_of(image), mean_of(truth), 1600);
+  z_of(mean_of(image, k_caustic), mean_of(truth, k_caustic), 1600);
 }
 
 }  // namespace
@@ -255,7 +219,8 @@ TEST_CASE("aim changes no mean of light tracing") {
                                                     {"components.tertiary", "off"}})},
                         &room);
   };
-  const MeanOf aimed = mean_of(render("true").image), plain = mean_of(render("false").image);
+  const MeanOf aimed = mean_of(render("true").image, k_caustic),
+               plain = mean_of(render("false").image, k_caustic);
   CHECK(std::abs(aimed.value.y - plain.value.y) < 4 * std::hypot(aimed.noise.y, plain.noise.y));
 }
 

@@ -5,35 +5,18 @@
 #include <set>
 
 #include "solvers/photons/solver.h"
-#include "support/render.h"
-#include "support/rooms.h"
+#include "support/caustics.h"
 
 using namespace lucerna;
 
 namespace {
-
-/// A sun along +x that a mirror turns straight down onto a floor, as wide as the mirror's beam.
-scene::Scene turned_sun() {
-  scene::Scene s;
-  s.name = "turned sun";
-  s.materials = {test::diffuse({0.8f, 0.5f, 0.2f}), {}};
-  s.materials[1].metallic = 1, s.materials[1].roughness = 0, s.materials[1].base_color = vec4(1);
-  s.materials[1].double_sided = true;
-  test::add_quad(s, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0);
-  test::add_quad(s, {-1, 3, -1}, {2, -2, 0}, {0, 0, 2}, 1);
-  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = {3, 4, 5}}};
-  s.lights[0].direction = {1, 0, 0};
-  s.cameras = {test::looking_down({0, 0.9f, 0}, 0.8f)};
-  s.environment.given = true;
-  return s;
-}
 
 struct Shown {
   session::Renderer r{test::renderer_options()};
   photons::PhotonSolver* photons = nullptr;
   Shown() {
     r.set_size(48, 40);
-    r.set_scene(std::make_shared<scene::Scene>(turned_sun()));
+    r.set_scene(std::make_shared<scene::Scene>(test::turned_sun(vec3(1))));
     test::set(r, {{"components.caustic", "photons"},
                   {"photons.per_round", "200000"},
                   {"photons.importons", "false"},

@@ -5,21 +5,17 @@
 #include <cmath>
 
 #include "solvers/registry.h"
-#include "support/render.h"
-#include "support/rooms.h"
+#include "support/caustics.h"
 
 using namespace lucerna;
+
+using test::mean_of, test::MeanOf, test::turned_sun, test::with;
 
 namespace {
 
 const test::Settings k_all{{"components.secondary", "photons"},
                            {"components.tertiary", "photons"},
                            {"components.caustic", "photons"}};
-
-test::Settings with(test::Settings settings, const test::Settings& more) {
-  for (const auto& [key, value] : more) settings[key] = value;
-  return settings;
-}
 
 /// The inside of a box that shines, all of one albedo and without gloss.
 scene::Scene closed_room(const vec3& albedo) {
@@ -28,23 +24,6 @@ scene::Scene closed_room(const vec3& albedo) {
   s.materials = {test::diffuse(albedo, vec3(1))};
   test::add_box(s, vec3(-1), vec3(1));
   s.cameras = {test::looking_down({0, 0.5f, 0}, 1)};
-  return s;
-}
-
-/// A sun along +x that a mirror turns straight down onto a floor.
-scene::Scene turned_sun() {
-  scene::Scene s;
-  s.name = "turned sun";
-  s.materials = {test::diffuse({0.8f, 0.5f, 0.2f}), {}};
-  s.materials[1].metallic = 1, s.materials[1].roughness = 0;
-  s.materials[1].base_color = vec4(0.9f, 0.8f, 0.7f, 1);
-  test::add_quad(s, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0);
-  test::add_quad(s, {-1, 3, -1}, {2, -2, 0}, {0, 0, 2}, 1);
-  s.materials[1].double_sided = true;
-  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = {3, 4, 5}}};
-  s.lights[0].direction = {1, 0, 0};
-  s.cameras = {test::looking_down({0, 0.9f, 0}, 0.8f)};
-  s.environment.given = true;
   return s;
 }
 
@@ -68,24 +47,6 @@ scene::Scene glass_room(float lamp = 0.5f) {
   return s;
 }
 
-struct MeanOf {
-  glm::dvec3 value{0}, noise{0};
-};
-/// Of a component over the whole picture; the noise from the two halves, which for photons hold rounds of
-/// their own, so that what neighbouring pixels share is seen in the difference of the halves' means.
-MeanOf picture_mean(const film::Image& image, int component) {
-  MeanOf m;
-  glm::dvec3 odd(0), squares(0);
-  const auto n = double(image.samples.size());
-  for (size_t i = 0; i < image.samples.size(); ++i) {
-    const glm::dvec3 all(image.components[size_t(component)][i]), half(image.odd_half[size_t(component)][i]);
-    m.value += all / n, odd += half / n;
-    squares += (all - half) * (all - half);
-  }
-  m.noise = glm::max(glm::abs(m.value - odd), glm::sqrt(squares) / n);
-  return m;
-}
-
 }  // namespace
 
 TEST_CASE("a beam of even light on a plane has the irradiance that it brings there") {
@@ -98,7 +59,7 @@ TEST_CASE("a beam of even light on a plane has the irradiance that it brings the
       sum += glm::dvec3(r.image.components[3][size_t(block / 4 * 8 + k / 8) * 32 + block % 4 * 8 + k % 8]);
     for (int c = 0; c < 3; ++c) CHECK(sum[c] / 64 == Approx(radiance[c]).epsilon(0.05));
   }
-  const MeanOf all = picture_mean(r.image, 3);
+  const MeanOf all = mean_of(r.image, 3);
   for (int c = 0; c < 3; ++c) CHECK(all.value[c] == Approx(radiance[c]).epsilon(0.01));
   // Paths from the eye never meet it.
   const test::Result path = test::render(turned_sun(), {}, 16, 32);
@@ -120,11 +81,11 @@ TEST_CASE("light that is refracted into water has there the irradiance that come
   s.environment.given = true;
   const test::Settings settings{{"components.caustic", "photons"}, {"photons.per_round", "100000"}};
   const double through = 1 - std::pow(0.33 / 2.33, 2);
-  const MeanOf flat = picture_mean(test::render(s, settings, 8, 32).image, 3);
+  const MeanOf flat = mean_of(test::render(s, settings, 8, 32).image, 3);
   // Shading normals that lean are those that paths weigh light by.
   const vec3 leaning = glm::normalize(vec3(0.5f, 0.8f, -0.3f));
   s.meshes[0].primitives[0].normals.assign(4, leaning);
-  const MeanOf leant = picture_mean(test::render(s, settings, 8, 32).image, 3);
+  const MeanOf leant = mean_of(test::render(s, settings, 8, 32).image, 3);
   for (int c = 0; c < 3; ++c) {
     const double radiance =
         double(s.materials[0].base_color[c] * s.lights[0].intensity[c]) * through / double(k_pi);
@@ -139,7 +100,7 @@ TEST_CASE("flux is conserved in a closed room of one albedo") {
     test::Settings settings = k_all;
     if (final_gather) settings["components.secondary"] = "path";
     const test::Result r = test::render(closed_room(albedo), settings, 32, 32);
-    const MeanOf secondary = picture_mean(r.image, 1), tertiary = picture_mean(r.image, 2);
+    const MeanOf secondary = mean_of(r.image, 1), tertiary = mean_of(r.image, 2);
     for (int c = 0; c < 3; ++c) {
       INFO("channel " << c << ", final gather " << final_gather);
       const double a = double(albedo[c]);
@@ -175,7 +136,7 @@ void check_choice(const test::Settings& choice) {
   for (int c = 0; c < 4; ++c) {
     const std::string name = std::string("components.") + paths::k_component_names[size_t(c)];
     const bool own = choice.contains(name);
-    const MeanOf truth = picture_mean(path.image, c), here = picture_mean(r.image, c);
+    const MeanOf truth = mean_of(path.image, c), here = mean_of(r.image, c);
     REQUIRE(truth.value.y > 1e-3);
     INFO(name << ": " << here.value.y << " +- " << here.noise.y << ", path " << truth.value.y << " +- "
               << truth.noise.y);

@@ -37,14 +37,7 @@ Report make_report(const LightTracingReport& r) {
       items.push_back(ValueRow{"Dark", share_text(double(r.dark) / double(r.paths), 1),
                                "Of the paths: begun where their light has none, in its texture or map."});
   }
-  if (r.casters > 0) {
-    items.push_back(
-        ValueRow{"Casters", count_text(double(r.casters)),
-                 "Clusters of surfaces that mirror or refract smoothly, at which paths are aimed."});
-    items.push_back(ValueRow{"Aimed", share_text(1 - r.unaimed, 1),
-                             "Of the paths, at casters; as many as a pilot has found to be of use."});
-  }
-  if (const Table table = aim_table(r.aimed); !table.rows.empty()) items.push_back(table);
+  add_aim_rows(items, r.casters, r.unaimed, r.aimed);
   if (r.sent_per_s > 0)
     items.push_back(ValueRow{"Sent", count_text(r.sent_per_s) + " / s",
                              "Paths from lights a second of the time in which they are traced."});

@@ -80,14 +80,7 @@ Report make_report(const PhotonReport& r) {
         Paragraph{"The radius asked for is wider than photons may be seen, and is held to a quarter of "
                   "their distance.",
                   Tone::warning});
-  if (r.casters > 0) {
-    map.items.push_back(
-        ValueRow{"Casters", count_text(double(r.casters)),
-                 "Clusters of surfaces that mirror or refract smoothly, at which paths are aimed."});
-    map.items.push_back(ValueRow{"Aimed", share_text(1 - r.unaimed, 1),
-                                 "Of the paths, at casters; as many as a pilot has found to be of use."});
-  }
-  if (const Table table = aim_table(r.aimed); !table.rows.empty()) map.items.push_back(table);
+  add_aim_rows(map.items, r.casters, r.unaimed, r.aimed);
   const auto rate = [&](const char* name, double n, const char* help) {
     if (n > 0) map.items.push_back(ValueRow{name, count_text(n) + " / s", help});
   };

@@ -17,13 +17,13 @@ using solvers::Picture, solvers::Task, solvers::Cancel;
 namespace {
 
 constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where their number is left to us
-/// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
-/// are very wide.
 // Of photons that records' rays read: about so many serve one lookup, for what errs there is seen by all
 // records around; within one radius, whoever looks, as for one photon a path on a cube that fits into the
 // scene's sphere.
 constexpr uint32_t k_standing_paths = 1u << 18, k_standing_round = 0xfffffffdu;
 constexpr float k_standing_photons = 30;
+/// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
+/// are very wide.
 constexpr float k_least_radius = 1e-6f, k_most_radius = 0.25f;
 
 paths::LookupRoutes routes_of(const Task& task) {
