@@ -13,8 +13,6 @@
 namespace lucerna::commands {
 namespace {
 
-/// How long an edit is shown although the session says otherwise; then the session was right (it refused it).
-constexpr double k_patience = 2.0;
 constexpr size_t k_steps = 500;  // that can be undone
 const std::string k_script_head =
     "# What was done in a session of Lucerna; lucerna --script FILE does it again.\n";
@@ -90,33 +88,22 @@ void Workspace::refresh(double time) {
 }
 
 void Workspace::drop_taken() {
-  // While a scene is being loaded edits wait in the session's queue, however long.
-  const bool patient = loading();
-  const auto over = [&](double since) { return !patient && now - since > k_patience; };
-  std::erase_if(pending_, [&](const auto& entry) {
-    return known_.text(entry.first) == entry.second.value || over(entry.second.since);
-  });
+  // The scene and the settings were taken after the snapshot: they hold what it counts.
+  const auto over = [&](uint64_t sent) { return snapshot && snapshot->commands >= sent; };
+  std::erase_if(pending_, [&](const auto& entry) { return over(entry.second.sent); });
   std::erase_if(pending_lights_, [&](const auto& entry) {
-    const auto& [index, edit] = entry;
-    if (!scene || index >= scene->lights.size() || over(edit.since)) return true;
-    return Document::of(scene->lights[index]) == edit.value;
+    return !scene || entry.first >= scene->lights.size() || over(entry.second.sent);
   });
   std::erase_if(pending_materials_, [&](const auto& entry) {
-    const auto& [index, edit] = entry;
-    return !scene || index >= scene->materials.size() || over(edit.since) ||
-           Document::of(scene->materials[index]) == edit.value;
+    return !scene || entry.first >= scene->materials.size() || over(entry.second.sent);
   });
   // A file that could not be read lights nothing.
-  if (environment_sent_ != 0 && snapshot && snapshot->commands >= environment_sent_) {
+  if (environment_sent_ != 0 && over(environment_sent_)) {
     environment_sent_ = 0;
     if (scene && !environment_file_.empty() && scene->environment.file != environment_file_)
       environment_file_.clear();
   }
-  if (pending_environment_) {
-    const bool taken = scene && scene->environment.scale == pending_environment_->scale &&
-                       scene->environment.rotation == pending_environment_->rotation;
-    if (!scene || taken || over(pending_environment_->since)) pending_environment_.reset();
-  }
+  if (pending_environment_ && (!scene || over(pending_environment_->sent))) pending_environment_.reset();
 }
 
 void Workspace::follow_scene() {
@@ -221,14 +208,15 @@ void Workspace::send(const Document& before, const Document& after) {
     // While a scene is being loaded nobody knows what its settings will be: what was asked for is sent.
     const bool asked = loading() && std::find(touched_.begin(), touched_.end(), key) != touched_.end();
     if (!asked && old != before.settings.end() && old->second == value) continue;
-    pending_[key] = {value, now};
     session.set(key, value);
+    pending_[key] = {value, session.commands()};
   }
   if (scene)
     for (uint32_t i = 0; i < std::min(after.lights.size(), scene->lights.size()); ++i) {
       if (i < before.lights.size() && before.lights[i] == after.lights[i]) continue;
-      pending_lights_[i] = {after.lights[i], now};
+      pending_lights_[i] = {after.lights[i], 0};
       session.set_light(i, light(i));
+      pending_lights_[i].sent = session.commands();
     }
   if (scene)
     for (uint32_t i = 0; i < std::min(after.materials.size(), scene->materials.size()); ++i) {
@@ -238,8 +226,9 @@ void Workspace::send(const Document& before, const Document& after) {
       else
         dark_[i] = after.materials[i].emission;
       if (i < before.materials.size() && seen(before.materials[i]) == seen(after.materials[i])) continue;
-      pending_materials_[i] = {seen(after.materials[i]), now};
+      pending_materials_[i] = {seen(after.materials[i]), 0};
       session.set_material(i, material(i));
+      pending_materials_[i].sent = session.commands();
     }
   if (before.environment_file != after.environment_file) {
     environment_file_ = after.environment_file;
@@ -248,8 +237,9 @@ void Workspace::send(const Document& before, const Document& after) {
   }
   if (before.environment_scale != after.environment_scale ||
       before.environment_rotation != after.environment_rotation) {
-    pending_environment_ = PendingEnvironment{after.environment_scale, after.environment_rotation, now};
     session.set_environment(after.environment_scale, after.environment_rotation);
+    pending_environment_ =
+        PendingEnvironment{after.environment_scale, after.environment_rotation, session.commands()};
   }
   solo_ = after.solo;
   shown_before_ = after.shown_before;

@@ -192,21 +192,23 @@ class Workspace {
     uint64_t gesture = 0;
     session::Saved saved = {};  ///< that it was to write a file, and how that has ended
   };
+  // Edits that the session has been told and that its snapshots do not hold yet: what is asked for is shown.
+  // `sent` is the number of the command (Session::commands); it is over when a snapshot counts it.
   struct Pending {
     std::string value;
-    double since;
+    uint64_t sent;
   };
   struct PendingLight {
     Document::Light value;
-    double since;
+    uint64_t sent;
   };
   struct PendingMaterial {
     Document::Material value;
-    double since;
+    uint64_t sent;
   };
   struct PendingEnvironment {
     float scale, rotation;
-    double since;
+    uint64_t sent;
   };
 
   void add_document_commands();

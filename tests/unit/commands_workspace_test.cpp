@@ -122,6 +122,24 @@ TEST_CASE("edits are seen at once, reach the session, and are undone and done ag
   CHECK_FALSE(b.work.can_redo());
 }
 
+TEST_CASE("an edit is shown until the session has carried it out, however busy that is") {
+  Bench b;
+  b.open();
+  session::fake::busy_ms = 100;
+  b.run("film.ev 1.5");
+  b.run("light.set 1 on=false");
+  b.work.refresh(b.timer.seconds() + 1000);
+  CHECK(b.session.settings().real("film.ev") == 0);  // it is on its way
+  CHECK(b.work.setting_real("film.ev") == 1.5);
+  CHECK_FALSE(b.work.light(0).enabled);
+  session::fake::busy_ms = 0;
+  REQUIRE(b.settled());
+  CHECK(b.work.setting_real("film.ev") == 1.5);
+  // Then what the session holds is shown, whoever has set it.
+  b.session.set("film.ev", "0.25");
+  REQUIRE(b.until([&] { return b.work.setting_real("film.ev") == 0.25; }));
+}
+
 TEST_CASE("materials are edited like lights, and keep what is not given") {
   Bench b;
   b.open();

@@ -26,6 +26,9 @@ namespace fake {
 /// What one more solver tells, of a test that brings one; it is given the settings and where somebody looks.
 inline std::function<std::optional<solvers::Report>(const plan::Settings&, std::optional<vec2>)> more;
 
+/// How long each command takes.
+inline std::atomic<int> busy_ms{0};
+
 inline scene::Scene make_scene(const std::filesystem::path& file) {
   scene::Scene scene;
   scene.name = file.stem().string();
@@ -336,6 +339,7 @@ struct Session::Impl {
         if (!commands.empty()) command = std::move(commands.front()), commands.pop_front();
       }
       if (command) {
+        if (const int ms = fake::busy_ms) std::this_thread::sleep_for(std::chrono::milliseconds(ms));
         command();
         ++done;
         publish();
