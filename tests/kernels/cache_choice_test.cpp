@@ -216,11 +216,11 @@ TEST_CASE("candidates are collected in the order of their slots, those seen stra
   Bench bench;
   std::vector<vec4> slots(2 * 200, vec4(0));
   std::mt19937 random(3);
-  uint32_t by_origin[3] = {};
+  uint32_t by_origin[4][3] = {}, in_all[3] = {};
   for (uint32_t i = 0; i < 200; ++i) {
     if (random() % 2) continue;
     const uint32_t origin = random() % 3;
-    ++by_origin[origin];
+    ++by_origin[i / 64][origin], ++in_all[origin];
     slots[2 * i] = vec4(float(i), 0, 0, 1 + float(origin));
     slots[2 * i + 1] = vec4(0, 1, 0, std::bit_cast<float>(i));
   }
@@ -233,9 +233,11 @@ TEST_CASE("candidates are collected in the order of their slots, those seen stra
     bench.placement.clear();
     for (int twice = 0; twice < 2; ++twice) {
       const auto asked = bench.placement.collect(bench.stream, buffer, 200, 1, screen_too, reach);
-      for (int k = 0; k < 3; ++k) CHECK(asked[size_t(k)] == by_origin[k]);
+      REQUIRE(asked.size() == 4);
+      for (uint32_t k = 0; k < 3; ++k)
+        for (uint32_t block = 0; block < 4; ++block) CHECK(asked[block][k] == by_origin[block][k]);
     }
-    const uint32_t each = by_origin[1] + by_origin[2] + (screen_too ? by_origin[0] : 0);
+    const uint32_t each = in_all[1] + in_all[2] + (screen_too ? in_all[0] : 0);
     REQUIRE(bench.placement.size() == 2 * each);
     CHECK(bench.placement.choice().candidates.size() == 2 * each);
     CHECK(bench.placement.choice().cluster.empty());

@@ -80,6 +80,9 @@ void Cache::Impl::begin_pass(const Work& w) {
   if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
   status.passes.push_back({.number = status.pass});
   status.probed.asked = status.probed.paths = 0;
+  probing.blocks.begin((w.view.width + 7) / 8, (w.view.height + 7) / 8, status.pass);
+  probing.schedule = {uint32_t(probing.blocks.list().size()), 1, w.wavefront.slots()};
+  probing.asked = {}, probing.paths = 0;
   places.forget();
   progress.clock.restart();
   probing.begun = true;

@@ -129,7 +129,8 @@ struct Cache::Impl {
   bool look(const Work& work, bool& cancelled);
   bool looks_first() const;  ///< what the camera sees straight asks by dithering alone in this pass
   ReachOptions reach(const CacheView& view) const;
-  void collect(const Work& work, const schedule::WorkItem& item);
+  /// What the paths of these blocks ask for, the first of which is there in the list of those looked at.
+  void collect(const Work& work, const schedule::WorkItem& item, uint32_t first);
   /// All paths of this pass have asked: is it the last?
   void end_probing();
   /// Those that crowded as the camera saw them, and no longer do, are dropped, and asked for anew.

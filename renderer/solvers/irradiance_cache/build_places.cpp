@@ -43,7 +43,6 @@ uint32_t most_looks(uint32_t pass) {
 bool Cache::Impl::probe(const Work& w) {
   PictureProbing& probing = progress.probing;
   if (!probing.begun) {
-    probing.schedule = {((w.view.width + 7) / 8) * ((w.view.height + 7) / 8), 1, w.wavefront.slots()};
     begin_pass(w);
   }
   bool cancelled = false;
@@ -51,7 +50,9 @@ bool Cache::Impl::probe(const Work& w) {
   const schedule::UniformSchedule before = probing.schedule;
   schedule::WorkItem item = probing.schedule.next();
   // Each pass looks along paths of its own.
-  for (WorkBlock& b : item.blocks) b.first_sample += probing.paths_before;
+  const uint32_t first = item.blocks.empty() ? 0 : item.blocks.front().index;
+  for (WorkBlock& b : item.blocks)
+    b = {probing.blocks.list()[b.index], b.first_sample + probing.paths_before};
   write_frame(gathers.recursive && probing.asks_beyond && status.pass < k_deep_passes ? k_probe_beyond
                                                                                       : k_probe_lookups);
   StageTimer timer(w.wavefront);
@@ -63,7 +64,7 @@ bool Cache::Impl::probe(const Work& w) {
     return false;
   }
   add_time(BuildStep::probe, timer.milliseconds());
-  collect(w, item);
+  collect(w, item, first);
   if (probing.schedule.done()) end_probing();
   return true;
 }
@@ -81,6 +82,7 @@ void Cache::Impl::end_probing() {
   }
   probing.paths_before += looks;
   probing.begun = false;
+  probing.blocks.end();
   const bool last = covered && (status.pass >= k_refining_passes ||
                                 double(pass().screen) <=
                                     double(options.stop_share) * double(picture.screen.sight().points()));
@@ -154,15 +156,24 @@ bool Cache::Impl::look(const Work& w, bool& cancelled) {
   return false;
 }
 
-void Cache::Impl::collect(const Work& w, const schedule::WorkItem& item) {
+void Cache::Impl::collect(const Work& w, const schedule::WorkItem& item, uint32_t first) {
+  PictureProbing& probing = progress.probing;
   StageTimer timer(w.wavefront);
-  const std::array<uint32_t, 3> by_origin = places.candidates.collect(
+  const std::vector<std::array<uint32_t, 3>> asked = places.candidates.collect(
       w.stream(), tables.candidates, item.slots(), item.sample_count, !looks_first(), reach(w.view));
   add_time(BuildStep::choose, timer.milliseconds());
-  status.probed.asked += by_origin[0] + by_origin[1] + by_origin[2];
-  status.probed.paths += item.slots();
+  for (uint32_t i = 0; i < item.blocks.size(); ++i) {
+    const double stands_for = probing.blocks.stands_for(first + i);
+    for (size_t origin = 0; origin < 3; ++origin) probing.asked[origin] += stands_for * asked[i][origin];
+    probing.paths += stands_for * 64 * item.sample_count;
+    // Where the cache reads itself is anywhere, not there.
+    if (asked[i][k_origin_screen] + asked[i][k_origin_world] > 0) probing.blocks.note(item.blocks[i].index);
+  }
+  const auto& by_origin = probing.asked;
+  status.probed.asked = uint64_t(std::llround(by_origin[0] + by_origin[1] + by_origin[2]));
+  status.probed.paths = uint64_t(std::llround(probing.paths));
   pass().asked = status.probed.asked, pass().paths = status.probed.paths;
-  pass().asked_world += by_origin[1] + by_origin[2];
+  pass().asked_world = uint64_t(std::llround(by_origin[1] + by_origin[2]));
   pass().candidates = places.candidates.size();
   places.changed();
 }

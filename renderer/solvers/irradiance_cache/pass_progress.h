@@ -1,21 +1,27 @@
 #pragma once
 // How far building has come: what of the picture has been asked, and how long stages have taken. No device:
 // pure state.
+#include <array>
 #include <cstdint>
 #include <optional>
 
 #include "schedule/uniform.h"
 #include "solvers/irradiance_cache/build_log.h"
+#include "solvers/irradiance_cache/probed_blocks.h"
 
 namespace lucerna::irradiance_cache {
 
 /// How the picture is looked at, in this pass and in those before.
 struct PictureProbing {
-  schedule::UniformSchedule schedule;  ///< of the paths of this pass; it holds only while `begun`
-  bool begun = false;                  ///< probing, in this pass
-  bool screen_done = false;            ///< the screen-space stage, in this pass
-  bool camera_moved = false;           ///< since the last pass began
-  uint32_t paths_before = 0;           ///< a pixel, of the passes before: each looks along paths of its own
+  ProbedBlocks blocks;                 ///< of the picture, that this pass looks along
+  schedule::UniformSchedule schedule;  ///< of paths along these; it holds only while `begun`
+  /// Paths of this pass that asked for a record, by shared::k_origin_*, and paths: of the whole picture.
+  std::array<double, 3> asked{};
+  double paths = 0;
+  bool begun = false;         ///< probing, in this pass
+  bool screen_done = false;   ///< the screen-space stage, in this pass
+  bool camera_moved = false;  ///< since the last pass began
+  uint32_t paths_before = 0;  ///< a pixel, of the passes before: each looks along paths of its own
   /// Paths ask beyond the picture's lookups too in the first passes, where the cache reads itself.
   bool asks_beyond = true;
   /// This pass is the last: few ask, but these may stand side by side.

@@ -36,7 +36,7 @@ class PictureError {
  public:
   /// Pixels of the film that have one of the pixels that are traced, at most so many; of larger pictures one
   /// stands for several.
-  static constexpr uint32_t k_most_pixels = 1u << 18;
+  static constexpr uint32_t k_most_pixels = 240'000;
 
   /// `defines`: Cache::defines().
   PictureError(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& defines);

@@ -18,7 +18,7 @@ namespace lucerna::irradiance_cache {
 
 class PictureReads {
  public:
-  static constexpr uint32_t k_most_pixels = 1u << 20;
+  static constexpr uint32_t k_most_pixels = 1u << 17;
 
   /// Room for `capacity` records. `defines`: Cache::defines().
   PictureReads(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t capacity,

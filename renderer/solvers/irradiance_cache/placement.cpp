@@ -121,7 +121,7 @@ struct Candidates {
 struct Collector {
   gpu::Device& device;
   gpu::Kernel asks, from_paths, from_screen;
-  gpu::Buffer asked;          // by origin
+  gpu::Buffer asked;          // of each block, by origin
   gpu::Buffer taken, before;  // a slot, or a point of the picture
   gpu::Resources resources;
 
@@ -129,8 +129,7 @@ struct Collector {
       : device(d),
         asks(kernel_of(d, compiler, "asks")),
         from_paths(kernel_of(d, compiler, "collect", {{"LUCERNA_FROM_SCREEN", "0"}})),
-        from_screen(kernel_of(d, compiler, "collect", {{"LUCERNA_FROM_SCREEN", "1"}})),
-        asked(small_buffer(d, "candidates asked", 16)) {}
+        from_screen(kernel_of(d, compiler, "collect", {{"LUCERNA_FROM_SCREEN", "1"}})) {}
 
   static CollectPush push_of(const ReachOptions& r, uint32_t count) {
     CollectPush push{};
@@ -338,13 +337,18 @@ uint64_t Placement::bytes() const {
   return sum;
 }
 
-std::array<uint32_t, 3> Placement::collect(gpu::Stream& stream, const gpu::Buffer& candidates, uint32_t slots,
-                                           uint32_t samples, bool screen_too, const ReachOptions& reach) {
+std::vector<std::array<uint32_t, 3>> Placement::collect(gpu::Stream& stream, const gpu::Buffer& candidates,
+                                                        uint32_t slots, uint32_t samples, bool screen_too,
+                                                        const ReachOptions& reach) {
   Collector& c = impl_->collector;
   if (slots == 0) return {};
   CollectPush push = Collector::push_of(reach, slots);
   push.samples = samples;
   push.screen_too = screen_too;
+  std::vector<std::array<uint32_t, 3>> asked((slots + 64 * samples - 1) / (64 * samples));
+  gpu::make_room(
+      c.device, c.asked,
+      {.name = "candidates asked", .bytes = asked.size() * sizeof asked[0], .memory = gpu::Memory::host});
   gpu::make_texel_room(c.device, c.taken, "slots that ask", uint64_t{slots} * 4);
   c.resources.set("candidate_texels", candidates);
   c.resources.set("Taken", c.taken);
@@ -352,8 +356,8 @@ std::array<uint32_t, 3> Placement::collect(gpu::Stream& stream, const gpu::Buffe
   stream.fill(c.asked, 0);
   stream.dispatch(c.asks, c.resources, push, gpu::groups_for(slots, 64), k_stage);
   c.append(stream, impl_->sums, impl_->candidates, c.from_paths, c.taken, push);
-  const auto* asked = static_cast<const uint32_t*>(c.asked.mapped());
-  return {asked[0], asked[1], asked[2]};
+  c.asked.read(asked.data(), asked.size() * sizeof asked[0]);
+  return asked;
 }
 
 uint32_t Placement::collect(gpu::Stream& stream, const Screen& screen, const ReachOptions& reach) {

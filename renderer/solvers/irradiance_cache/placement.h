@@ -56,10 +56,11 @@ class Placement {
   /// Adds the candidates that paths have left in the first `slots` slots of `candidates`
   /// (shared::k_candidate_texels), block by block of 64 pixels with their `samples` paths each, so that the
   /// order does not depend on how many blocks are looked along at once; those that the camera sees straight
-  /// only with `screen_too`. Returns how many slots hold one, by shared::k_origin_*, those that were left out
-  /// too. The stream is run. Throws Error when there is no memory for them.
-  std::array<uint32_t, 3> collect(gpu::Stream& stream, const gpu::Buffer& candidates, uint32_t slots,
-                                  uint32_t samples, bool screen_too, const ReachOptions& reach);
+  /// only with `screen_too`. Returns of each block how many slots hold one, by shared::k_origin_*, those that
+  /// were left out too. The stream is run. Throws Error when there is no memory for them.
+  std::vector<std::array<uint32_t, 3>> collect(gpu::Stream& stream, const gpu::Buffer& candidates,
+                                               uint32_t slots, uint32_t samples, bool screen_too,
+                                               const ReachOptions& reach);
   /// Adds the points that are taken, in raster order; returns how many.
   uint32_t collect(gpu::Stream& stream, const Screen& screen, const ReachOptions& reach);
   /// For tests: adds these, whose reach is set.
