@@ -61,6 +61,13 @@ void Preview::keep(const vec3& scale, bool repainted, bool same_light) {
   same_light_ = same_light_ && same_light;
 }
 
+void Preview::better() {
+  // What was shown is mostly what was there before, where that holds still, and else of poorer light.
+  const bool same_light = has_history_ && same_light_;
+  keep();
+  same_light_ = same_light;
+}
+
 uint64_t Preview::bytes() const {
   uint64_t sum = 0;
   for (const gpu::Buffer* b :

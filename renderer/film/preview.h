@@ -41,8 +41,11 @@ class Preview {
   void forget();
   /// The picture begins anew: what was shown last is what was there before. Its light is to be multiplied by
   /// `scale`, where an edit is known to do that to all light; `repainted`: surfaces may have other colours;
-  /// `same_light`: no more than the camera has changed.
+  /// `same_light`: light has not changed, no more than the camera or how light is computed.
   void keep(const vec3& scale = vec3(1), bool repainted = false, bool same_light = false);
+  /// The picture begins anew with better light than it had so far. Of what was there before nothing has
+  /// changed.
+  void better();
   /// Film -> its picture, of the layers that show light (View::layer up to shared::k_layer_primary + 3).
   /// `draft`: a film of the same view with pixels of whole pixels, or null; `filtered`: noise is filtered,
   /// not only where there are no samples. Films must fit(). Throws Error when memory is short. The stream is
@@ -90,7 +93,8 @@ class Preview {
   vec3 history_scale_{1};
   bool shown_ = false;  ///< `now_` is what was developed last, of light that `history_` knows nothing of
   bool has_history_ = false;
-  bool same_light_ = true;  ///< as `history_` has it; but what is seen of it can hang on the direction
+  /// Light is as `history_` has it; but what is seen of it can hang on the direction.
+  bool same_light_ = true;
   bool repainted_ = false;  ///< of the surfaces that come from before
 };
 

@@ -19,14 +19,14 @@ film::PreviewCamera camera_of(const shared::Frame& f) {
 
 }  // namespace
 
-void Display::restart(const scene::Changes& changes, const vec3& scale) {
+void Display::restart(const scene::Changes& changes, const vec3& scale, bool same_light) {
   const auto is = [&](scene::Change c) { return changes.edits.contains(c); };
   if (is(scene::Change::shape) || is(scene::Change::size))
     preview_.forget();
   else
     preview_.keep(scale,
                   is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders),
-                  changes.edits == scene::Changes(scene::Change::camera).edits && changes.settings.empty());
+                  same_light);
   plan_.restart();
   draft_serves_ = true;
 }
@@ -50,7 +50,7 @@ void Display::warm(gpu::Stream& stream, const film::Film& film) {
 }
 
 void Display::light_changed() {
-  preview_.keep();
+  preview_.better();
   plan_.light_changed();
 }
 
@@ -60,7 +60,7 @@ void Display::mixed() {
 }
 
 void Display::prepared() {
-  preview_.keep();
+  preview_.better();
   draft_serves_ = false;
 }
 

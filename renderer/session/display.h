@@ -16,8 +16,8 @@ class Display {
   Display(gpu::Device& device, gpu::ShaderCompiler& compiler) : device_(device), preview_(device, compiler) {}
 
   /// The picture begins anew, of other light or as seen from elsewhere. `scale`: what an edit is known to
-  /// multiply all light by.
-  void restart(const scene::Changes& changes, const vec3& scale = vec3(1));
+  /// multiply all light by. `same_light`: it changes none of it, only how it is computed or seen.
+  void restart(const scene::Changes& changes, const vec3& scale, bool same_light);
   /// Before that, and before the film is cleared of which every pixel has samples: it is what has been shown,
   /// where plain() has been told so.
   void take(gpu::Stream& stream, const film::Film& film);

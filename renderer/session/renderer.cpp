@@ -1,5 +1,6 @@
 #include "session/renderer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -157,7 +158,7 @@ void Renderer::restart(const scene::Changes& changes, const vec3& factor) {
   wavefront.reset_stats();
   mix_pending_ = false;
   start_schedule();
-  if (display_) display_->restart(changes, factor);
+  if (display_) display_->restart(changes, factor, keeps_light(changes));
   draft_preparing_ = false;
   ++restarts_;
   ledger_.clear();
@@ -165,6 +166,20 @@ void Renderer::restart(const scene::Changes& changes, const vec3& factor) {
   render_s_ = prepared_s_ = 0;
   prepared_ = {};
   applied_ = settings_.all();
+}
+
+bool Renderer::keeps_light(const scene::Changes& changes) const {
+  const auto begins = [](const std::string& key, const char* with) { return key.rfind(with, 0) == 0; };
+  const auto kept = [&](const std::string& key) {
+    const auto before = applied_.find(key);
+    if (begins(key, "components."))
+      return before != applied_.end() && before->second != "off" && settings_.text(key) != "off";
+    return solvers::owner_of(key) || begins(key, "sampling.") || key == "samples" || key == "seed" ||
+           key == "tracer" || key == "path.batch";
+  };
+  return std::all_of(changes.edits.begin(), changes.edits.end(),
+                     [](scene::Change edit) { return edit == scene::Change::camera; }) &&
+         std::all_of(changes.settings.begin(), changes.settings.end(), kept);
 }
 
 void Renderer::start_schedule() {

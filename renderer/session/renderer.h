@@ -256,6 +256,8 @@ class Renderer {
   bool previewed(const film::View& view) const;  ///< whether the window shows a preview of it
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
+  /// The picture's light is as before, however it is computed and wherever it is seen from.
+  bool keeps_light(const scene::Changes& changes) const;
   void start_schedule();
   /// Another way of sampling goes on with the samples there are.
   void change_schedule();

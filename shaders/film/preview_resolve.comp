@@ -105,11 +105,16 @@ void main() {
       vec3 before = has_old ? old.of[c].rgb * push.history_scale : vec3(0.0);
       float u = has_old ? square(old.of[c].w) : 0.0, v = square(error) + 1e-8;
       // Paths that have brought nothing yet seem to be without noise: what was there says how much may come.
-      if (push.same_light != 0u) v = max(v, square(k_least_noise * luminance(before)) / max(here.samples, 1.0));
+      float unsure = rough;
+      if (push.same_light != 0u) {
+        float n = max(here.samples, 1.0), least = k_least_noise * luminance(before);
+        v = max(v, square(least) / n);
+        unsure = max(rough, smoothstep(k_clean, k_noisy, least / (n * max(max(smooth_luminance, own_luminance), k_luminance_floor))));
+      }
       float difference = luminance(modulation) * before_smooth[c] * inverse - smooth_luminance;
       // What noise alone brings now and then is no change: it would show as specks.
       float change = max(square(difference) - by_chance * (u + v), 0.0);
-      float keep = has_old ? rough * v / (v + u + change) : 0.0;
+      float keep = has_old ? unsure * v / (v + u + change) : 0.0;
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;
       if (nothing) keep = has_old ? 1.0 : 0.0;
       now = mix(now, before, keep);

@@ -70,7 +70,7 @@ struct PreviewResolvePush {
   vec3 history_scale;    ///< of what was shown before
   uint step;             ///< pixels along the side of a cell of the grid
   uint sampled;          ///< 0: the film has no sample yet
-  uint same_light;       ///< not 0: no light has changed since, only the camera
+  uint same_light;       ///< not 0: no light has changed since, only the camera or how it is computed
 };
 
 /// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered.

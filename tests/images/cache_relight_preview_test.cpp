@@ -118,6 +118,30 @@ TEST_CASE("after an edit the window shows the light that will be, long before re
   CHECK(early == Approx(finally).epsilon(0.06));
 }
 
+TEST_CASE("another solver's light begins as what the one before it has shown") {
+  Bed bed(true, "hessian");
+  const double before = bed.shown();
+  for (const auto& [key, value] : Settings{{"components.secondary", "path"},
+                                           {"components.tertiary", "path"},
+                                           {"cache.error", "0.3"},
+                                           {"components.secondary", "cache"},
+                                           {"seed", "7"}}) {
+    INFO(key << " " << value);
+    test::set(bed.r, {{key, value}});
+    CHECK(bed.r.samples() == 0);
+    for (int i = 0; i < 3; ++i) {
+      bed.r.draw_draft();
+      CHECK(bed.shown() == Approx(before).epsilon(0.05));
+      CHECK(bed.r.preview_shares().stale > 0.5);
+    }
+  }
+  // But a component less is another light.
+  test::set(bed.r, {{"components.tertiary", "off"}});
+  for (int i = 0; i < 40 && bed.r.samples() == 0; ++i) bed.r.draw_draft(), bed.r.step();
+  test::finish(bed.r);
+  CHECK(bed.shown() < 0.9 * before);
+}
+
 TEST_CASE("batch rendering has neither drafts nor light for them") {
   Bed batch(false, "hessian");
   batch.set_lamp(vec3(1), vec3(0, 1, 0));

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <random>
 
 #include "film/developer.h"
@@ -381,4 +382,30 @@ TEST_CASE("where only the camera has moved outliers of the noise are no change o
   INFO("error " << error[0] << ", where the light is the same " << error[1]);
   CHECK(error[1] < 0.7 * error[0]);
   CHECK(stale[1] > stale[0]);
+}
+
+TEST_CASE(
+    "where only the way in which light is computed changes what was there stays, however often it gets "
+    "better") {
+  for (const bool same : {true, false}) {
+    Stage stage(96, 64);
+    stage.sample(stage.film, 64, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.4f)}; });
+    stage.show();
+    stage.preview.keep(vec3(1), false, same);
+    std::mt19937 random(8);
+    double mean = 1;
+    for (int better = 0; better < 3; ++better) {
+      stage.film.clear(stage.stream);
+      // Paths of which few bring what all should.
+      stage.sample(stage.film, 1,
+                   [&](uint32_t, uint32_t) { return Sample{.light = vec3(random() % 40 == 0 ? 16.0f : 0)}; });
+      stage.show();
+      stage.preview.better();
+      const std::vector<float> shown = stage.shown();
+      mean = std::accumulate(shown.begin(), shown.end(), 0.0) / double(shown.size());
+      INFO("better " << better << " times, mean " << mean);
+      if (same) CHECK(mean == Approx(0.4).epsilon(0.05));
+    }
+    if (!same) CHECK(mean < 0.3);
+  }
 }
