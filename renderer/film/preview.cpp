@@ -73,7 +73,7 @@ uint64_t Preview::bytes() const {
   for (const gpu::Buffer* b :
        {&now_.light, &now_.surfaces, &history_.light, &history_.surfaces, &moved_.light, &moved_.surfaces,
         &draft_.light, &draft_.surfaces, &grid_, &grid_surfaces_, &filtered_, &before_[0], &before_[1],
-        &noise_, &shares_, &depths_, &nearest_})
+        &lost_[0], &lost_[1], &noise_, &shares_, &depths_, &nearest_})
     if (*b) sum += b->bytes();
   return sum;
 }
@@ -98,6 +98,7 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
   make(filtered_, "preview filtered", cells * k_light_bytes);
   make(grid_surfaces_, "preview grid surfaces", cells * 16);
   for (gpu::Buffer& b : before_) make(b, "preview before", cells * 16);
+  for (gpu::Buffer& b : lost_) make(b, "preview lost", cells * 16);
   make(noise_, "preview noise", cells * 16);
   gpu::make_room(device_, shares_,
                  {.name = "preview shares",
@@ -217,7 +218,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
       .step = step,
       .sampled = sampled != Sampled::none};
   stream.dispatch(halve_, resources_, halve, groups(cells));
-  const gpu::Buffer *from = &grid_, *to = &filtered_, *before = &before_[0], *before_to = &before_[1];
+  const gpu::Buffer *from = &grid_, *to = &filtered_, *before = &before_[0], *before_to = &before_[1],
+                    *lost = &lost_[0], *lost_to = &lost_[1];
   // Cells that show one pixel of a draft tell nothing of its noise.
   const uint32_t base = draft && 3 * draft->width() < 2 * across ? 2 : 1;
   for (uint32_t pass = 0; pass < k_filter_passes; ++pass) {
@@ -225,6 +227,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
     resources_.set("Filtered", *to);
     resources_.set("before_texels", *before);
     resources_.set("FilteredBefore", *before_to);
+    resources_.set("lost_texels", *lost);
+    resources_.set("FilteredLost", *lost_to);
     const PreviewFilterPush push{.across = across,
                                  .down = down,
                                  // Even and odd cells meet at last.
@@ -237,9 +241,11 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
     stream.dispatch(pass == 0 ? first_filter_ : filter_, resources_, push, groups(cells));
     std::swap(from, to);
     std::swap(before, before_to);
+    std::swap(lost, lost_to);
   }
   resources_.set("filtered_texels", *from);
   resources_.set("before_texels", *before);
+  resources_.set("lost_texels", *lost);
   resources_.set("Packed", now_.light);
   resources_.set("PackedSurfaces", now_.surfaces);
   resources_.set("Picture", film.picture());

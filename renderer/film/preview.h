@@ -85,7 +85,7 @@ class Preview {
   Pixels now_, draft_;
   Pixels history_;  ///< what was shown before, as it was seen then
   Pixels moved_;    ///< ... as it is seen now, where that is from elsewhere
-  gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], noise_, shares_, depths_, nearest_;
+  gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], lost_[2], noise_, shares_, depths_, nearest_;
   gpu::Resources resources_;
   PreviewCamera camera_, history_camera_;
   std::optional<PreviewCamera> moved_camera_;  ///< of `moved_`

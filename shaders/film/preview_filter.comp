@@ -2,6 +2,10 @@
 // whether they are of one surface, and by whether their light differs by more than its noise (Schied et al. 2017). The first
 // pass weighs by surfaces alone and finds the noise, from the halves of the samples where there are two, else from how much
 // neighbours differ.
+//
+// The few cells that hold most of what single paths bring count for less in the first pass, or they would show as specks. Of
+// indirect light what is so lost is spread more widely, over what is of one surface, and given back by the preview's picture:
+// rooms would seem darker than they are as long as samples are few.
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"
 #ifndef LUCERNA_PREVIEW_FIRST
@@ -9,10 +13,18 @@
 #endif
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewFilterPush push; };
-uniform samplerBuffer grid_texels, grid_surfaces, before_texels;
+uniform samplerBuffer grid_texels, grid_surfaces, before_texels, lost_texels;
 layout(scalar) writeonly buffer FilteredBefore { vec4 filtered_before[]; };  // the same way, so that both can be compared
 layout(scalar) writeonly buffer Filtered { vec4 filtered[]; };
+layout(scalar) writeonly buffer FilteredLost { vec4 filtered_lost[]; };  // luminance, by component
 layout(scalar) writeonly buffer GridNoise { vec4 grid_noise[]; };  // standard error of a cell, by component
+
+// Luminance of a cell, in units of white, up to which it is given back.
+const float k_most_lost = 32.0;
+// Per sample of a cell: how soon one that is alone is taken at its word.
+const float k_alone_until = 0.05;
+// Light from lamps and bundled light have bright parts with sharp borders: what is spread of them would glow there.
+const vec4 k_gives_back = vec4(0.0, 1.0, 1.0, 0.0);
 
 vec3 ray_at(vec2 cell) {
   vec2 p = vec2(2.0, -2.0) * (cell + 0.5) / vec2(push.across, push.down) + vec2(-1.0, 1.0);
@@ -38,10 +50,13 @@ void main() {
                     (2.0 * length(push.right) / float(push.across) * float(push.step)) + 1e-3 * max(here.depth, 0.0) + 1e-6;
   vec3 sum[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) sum[c] = vec3(0.0);
-  vec4 weights = vec4(0.0), variance = vec4(0.0), before = vec4(0.0);
+  vec4 weights = vec4(0.0), variance = vec4(0.0), before = vec4(0.0), lost = vec4(0.0);
+  float plain_sum = 0.0;
 #if LUCERNA_PREVIEW_FIRST
   vec4 mean = vec4(0.0), square_mean = vec4(0.0), known = vec4(0.0), any_mean = vec4(0.0), any_square = vec4(0.0);
-  float alike_sum = 0.0, alike_square = 0.0, known_sum = 0.0, any_sum = 0.0;
+  vec4 around[k_component_count];  // on whatever surfaces, and weights
+  for (uint c = 0u; c < k_component_count; ++c) around[c] = vec4(0.0);
+  float alike_square = 0.0, others = 0.0, known_sum = 0.0, any_sum = 0.0;
 #endif
   for (int k = 0; k < 9; ++k) {
     ivec2 at = xy + int(push.step) * (ivec2(k % 3, k / 3) - 1);
@@ -54,12 +69,18 @@ void main() {
     // What knows of no samples takes whatever there is, rather than nothing.
     if (here.samples <= 0.0) alike = max(alike, 1e-4);
     vec4 y = luminances(l), noise = vec4(l.of[0].w, l.of[1].w, l.of[2].w, l.of[3].w);
-    vec4 w = vec4(kernel * alike);
+    float plain = kernel * alike;
+    vec4 w = vec4(plain);
+    plain_sum += plain;
 #if LUCERNA_PREVIEW_FIRST
     // Few cells hold most of what single paths bring: shown bright, they count for less.
     w /= 1.0 + max(y - 1.0, vec4(0.0));
-    float plain = kernel * alike;
-    alike_sum += plain;
+    lost += plain * min(y, vec4(k_most_lost));
+    if (k != 4 && (s.depth > 0.0) == (here.depth > 0.0)) {
+      others += plain;
+      vec4 bounded = vec4(kernel) / (1.0 + max(y - 1.0, vec4(0.0)));
+      for (uint c = 0u; c < k_component_count; ++c) around[c] += bounded[c] * vec4(l.of[c].rgb, 1.0);
+    }
     alike_square += plain * plain;
     any_sum += kernel;
     any_mean += kernel * y;
@@ -68,6 +89,7 @@ void main() {
     square_mean += plain * y * y;
     if (l.of[0].w >= 0.0) known += plain * noise * noise, known_sum += plain;
 #else
+    lost += plain * texelFetch(lost_texels, there);
     // Of both: where no path has found light yet, its absence seems certain.
     vec4 chance = 3.0 * max(max(own_noise, noise), vec4(0.0)) + 0.02 * own_luminance + 1e-4;
     w *= exp2(-min(abs(y - own_luminance) / chance, vec4(40.0)));
@@ -80,18 +102,31 @@ void main() {
   vec4 inverse = vec4(1.0) / max(weights, vec4(1e-20));
   vec4 error = sqrt(variance) * inverse;
 #if LUCERNA_PREVIEW_FIRST
-  mean /= max(alike_sum, 1e-20);
+  mean /= max(plain_sum, 1e-20);
   // Where few are alike, their differences tell little: all around then stand for them.
   any_mean /= max(any_sum, 1e-20);
   vec4 any = max(any_square / max(any_sum, 1e-20) - any_mean * any_mean, vec4(0.0));
-  vec4 alike = max(square_mean / max(alike_sum, 1e-20) - mean * mean, vec4(0.0));
-  vec4 spread = mix(any, alike, clamp(alike_sum / max(any_sum, 1e-20) * 2.0 - 1.0, 0.0, 1.0)) * (9.0 / 8.0);
-  vec4 of_cell = known_sum > 0.5 * alike_sum ? known / max(known_sum, 1e-20) : spread;
+  vec4 alike = max(square_mean / max(plain_sum, 1e-20) - mean * mean, vec4(0.0));
+  vec4 spread = mix(any, alike, clamp(plain_sum / max(any_sum, 1e-20) * 2.0 - 1.0, 0.0, 1.0)) * (9.0 / 8.0);
+  vec4 of_cell = known_sum > 0.5 * plain_sum ? known / max(known_sum, 1e-20) : spread;
   grid_noise[cell] = sqrt(of_cell);
-  error = sqrt(of_cell * alike_square) / max(alike_sum, 1e-20);
+  // A cell that is alone on its surface has nobody to tell it more than its few paths do. Those around, on other surfaces,
+  // are better than that.
+  float alone = (1.0 - smoothstep(0.05, 0.2, others / max(any_sum - 4.0, 1e-20))) / (1.0 + k_alone_until * here.samples);
+  of_cell = mix(of_cell, max(of_cell, any), alone);
+  error = sqrt(of_cell * alike_square) / max(plain_sum, 1e-20);
 #endif
+  lost /= max(plain_sum, 1e-20);
   vec4 result[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) result[c] = vec4(sum[c] * inverse[c], error[c]);
+#if LUCERNA_PREVIEW_FIRST
+  for (uint c = 0u; c < k_component_count; ++c)
+    if (around[c].w > 0.0) result[c].rgb = mix(result[c].rgb, around[c].rgb / around[c].w, alone);
+#endif
+#if LUCERNA_PREVIEW_FIRST
+  lost = k_gives_back * max(lost - vec4(luminance(result[0].rgb), luminance(result[1].rgb), luminance(result[2].rgb), luminance(result[3].rgb)), vec4(0.0));
+#endif
+  filtered_lost[cell] = lost;
   if (push.history != 0u) filtered_before[cell] = before * inverse;
   filtered[2u * cell] = preview_texel(result[0], result[1]);
   filtered[2u * cell + 1u] = preview_texel(result[2], result[3]);

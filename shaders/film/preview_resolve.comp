@@ -12,7 +12,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewResolvePush push; };
 uniform samplerBuffer packed_texels, surface_texels, history_texels, history_surfaces;
-uniform samplerBuffer filtered_texels, grid_surfaces, noise_texels, before_texels;
+uniform samplerBuffer filtered_texels, grid_surfaces, noise_texels, before_texels, lost_texels;
 layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
@@ -26,6 +26,11 @@ const float k_least_noise = 0.5;  // of a sample, relative, in light that has no
 const float k_clean = 0.02, k_noisy = 0.08;
 // Of filtered light, what the filter may be off by.
 const float k_filter_error = 0.04;
+
+// A pixel that is of no cell's surface is filtered until it has so many samples, less and less up to so many.
+const float k_alone_until = 16.0, k_not_alone_from = 96.0;
+// How much filtered light may get of what the filter has lost: in units of white, and of itself.
+const float k_most_back = 1.0, k_most_back_relative = 3.0;
 
 shared vec3 group_shares[64];
 
@@ -49,9 +54,9 @@ void main() {
     // The grid's four nearest cells, those of another surface left out.
     vec4 light[k_component_count];
     for (uint c = 0u; c < k_component_count; ++c) light[c] = vec4(0.0);
-    vec4 noise = vec4(0.0), before_smooth = vec4(0.0);
+    vec4 noise = vec4(0.0), before_smooth = vec4(0.0), lost = vec4(0.0);
     vec3 modulation = vec3(0.0);
-    float weights = 0.0, nearest_weight = 0.0, nearest_depth = -1.0;
+    float weights = 0.0, akin = 0.0, nearest_weight = 0.0, nearest_depth = -1.0;
     for (int k = 0; k < 4; ++k) {
       ivec2 corner = ivec2(k & 1, k >> 1);
       ivec2 at = clamp(base + corner, ivec2(0), ivec2(push.across, push.down) - 1);
@@ -62,11 +67,15 @@ void main() {
       if (here.depth >= 0.0 && s.depth >= 0.0) {
         bool alike = here.depth > 0.0 && s.depth > 0.0 ? abs(here.depth - s.depth) < 0.1 * here.depth && dot(here.normal, s.normal) > 0.7
                                                        : here.depth == s.depth;
+        akin += alike ? w : 0.0;
         w *= alike ? 1.0 : 1e-4;
+      } else {
+        akin = 1.0;
       }
       PreviewLight l = preview_unpack(texelFetch(filtered_texels, 2 * cell), texelFetch(filtered_texels, 2 * cell + 1));
       float there = (l.of[0].w + l.of[1].w + l.of[2].w + l.of[3].w) >= 0.0 && s.samples > 0.0 ? w : 1e-6 * w;
       for (uint c = 0u; c < k_component_count; ++c) light[c] += there * l.of[c];
+      lost += there * texelFetch(lost_texels, cell);
       if (push.history != 0u) before_smooth += there * texelFetch(before_texels, cell);
       if (push.sampled != 0u) noise += there * texelFetch(noise_texels, cell) * sqrt(max(s.samples, 1e-3));  // of one sample
       modulation += there * preview_modulation(s);
@@ -80,6 +89,8 @@ void main() {
       modulation *= inverse;
     }
     noise *= inverse * luminance(modulation) * inversesqrt(max(here.samples, 1.0));
+    // What cells know of noise is not this pixel's then, and two paths that found nothing are not certain.
+    float alone = akin > 0.02 ? 0.0 : 1.0 - smoothstep(k_alone_until, k_not_alone_from, here.samples);
     PreviewLight old;
     for (uint c = 0u; c < k_component_count; ++c) old.of[c] = vec4(0.0);
     bool has_old = false;
@@ -94,11 +105,15 @@ void main() {
     vec4 result[k_component_count];
     vec3 color = vec3(0.0);
     for (uint c = 0u; c < k_component_count; ++c) {
-      vec3 smooth_light = light[c].rgb * inverse * modulation;
+      float plain = luminance(light[c].rgb) * inverse, back = min(lost[c] * inverse, k_most_back + k_most_back_relative * plain);
+      vec3 colour = plain > 1e-4 ? light[c].rgb * (inverse / plain) : vec3(1.0);
+      vec3 smooth_light = (plain + back) * colour * modulation;
       float smooth_luminance = luminance(smooth_light), own_luminance = luminance(own.of[c].rgb);
+      // Where light was lost nearby, paths that found none are not certain.
+      noise[c] = max(noise[c], luminance(modulation) * back);
       float relative = noise[c] / max(max(smooth_luminance, own_luminance), k_luminance_floor);
       // How far its own samples are not to be shown alone.
-      float rough = here.samples > 0.0 ? smoothstep(k_clean, k_noisy, relative) : 1.0;
+      float rough = here.samples > 0.0 ? max(smoothstep(k_clean, k_noisy, relative), alone) : 1.0;
       float amount = push.filtering != 0u || here.samples <= 0.0 ? rough : 0.0;
       vec3 now = mix(own.of[c].rgb, smooth_light, amount);
       float error = mix(noise[c], luminance(modulation) * max(light[c].w, 0.0) * inverse + k_filter_error * smooth_luminance, amount);

@@ -93,6 +93,10 @@ struct Stage {
   }
 };
 
+double mean_of(const std::vector<float>& shown) {
+  return std::accumulate(shown.begin(), shown.end(), 0.0) / double(shown.size());
+}
+
 double rms(const std::vector<float>& shown, const std::function<float(uint32_t, uint32_t)>& truth,
            uint32_t width) {
   double sum = 0;
@@ -385,27 +389,59 @@ TEST_CASE("where only the camera has moved outliers of the noise are no change o
 }
 
 TEST_CASE(
-    "where only the way in which light is computed changes what was there stays, however often it gets "
-    "better") {
+    "where the way in which light is computed changes what was there stays, however often it gets better") {
   for (const bool same : {true, false}) {
     Stage stage(96, 64);
     stage.sample(stage.film, 64, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.4f)}; });
     stage.show();
     stage.preview.keep(vec3(1), false, same);
-    std::mt19937 random(8);
     double mean = 1;
     for (int better = 0; better < 3; ++better) {
       stage.film.clear(stage.stream);
-      // Paths of which few bring what all should.
-      stage.sample(stage.film, 1,
-                   [&](uint32_t, uint32_t) { return Sample{.light = vec3(random() % 40 == 0 ? 16.0f : 0)}; });
+      // A path each, of which none has brought anything yet.
+      stage.sample(stage.film, 1, [&](uint32_t, uint32_t) { return Sample{.light = vec3(0)}; });
       stage.show();
       stage.preview.better();
-      const std::vector<float> shown = stage.shown();
-      mean = std::accumulate(shown.begin(), shown.end(), 0.0) / double(shown.size());
+      mean = mean_of(stage.shown());
       INFO("better " << better << " times, mean " << mean);
       if (same) CHECK(mean == Approx(0.4).epsilon(0.05));
     }
     if (!same) CHECK(mean < 0.3);
+  }
+}
+
+TEST_CASE("few bright paths do not make the picture darker than they are on average, nor show as specks") {
+  Stage stage(96, 64);
+  std::mt19937 random(8);
+  double truth = 0;
+  stage.sample(stage.film, 1, [&](uint32_t, uint32_t) {
+    const float light = random() % 40 == 0 ? 16.0f : 0;
+    truth += double(light) / (96 * 64);
+    return Sample{.light = vec3(light)};
+  });
+  stage.show();
+  const std::vector<float> shown = stage.shown();
+  const double mean = mean_of(shown);
+  INFO("true " << truth << ", shown " << mean);
+  CHECK(mean == Approx(truth).epsilon(0.1));
+  CHECK(*std::max_element(shown.begin(), shown.end()) < 3 * mean);
+}
+
+TEST_CASE("a pixel that is alone on its surface is not shown by its two paths") {
+  // A post of a pixel's width, before a wall.
+  Stage stage(96, 64);
+  std::mt19937 random(8);
+  const auto post = [](uint32_t x) { return x == 41; };
+  stage.sample(stage.film, 2, [&](uint32_t x, uint32_t) {
+    const bool found = random() % 4 == 0;
+    return post(x) ? Sample{.light = vec3(found ? 1.6f : 0), .normal = {1, 0, 0}, .depth = 2}
+                   : Sample{.light = vec3(found ? 1.6f : 0)};
+  });
+  stage.show();
+  const std::vector<float> shown = stage.shown();
+  for (uint32_t y = 0; y < 64; ++y) {
+    INFO("row " << y);
+    CHECK(shown[y * 96 + 41] > 0.1f);
+    CHECK(shown[y * 96 + 41] < 1.0f);
   }
 }
