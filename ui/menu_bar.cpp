@@ -213,7 +213,8 @@ void view_menu(Ui& ui) {
   divide();
   if (entry("Selection", nullptr, "Marks the selected object in the picture.", ui.brackets))
     ui.act("view.selection", !ui.brackets);
-  if (entry("Lamps", "L", "Marks the lamps in the picture; a click on a mark selects the lamp.",
+  if (entry("Lamps", "L",
+            "Marks the lamps in the picture; a click on a mark selects the lamp, a drag moves it.",
             ui.light_marks))
     ui.act("view.lamps", !ui.light_marks);
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");

@@ -9,6 +9,7 @@
 #include "accuracy_plot.h"
 #include "base/log.h"
 #include "commands/workspace.h"
+#include "lamp_handles.h"
 #include "layout.h"
 #include "solvers/info.h"
 
@@ -95,8 +96,9 @@ struct Ui : commands::Workspace {
   void place_by_wheel(const Viewpoint& view);
   /// What a drag in the picture began on.
   struct {
-    std::optional<vec3> point;  ///< of the scene
-    float azimuth = 0;          ///< of what is turned by it, degrees
+    std::optional<vec3> point;       ///< of the scene
+    float azimuth = 0;               ///< of what is turned by it, degrees
+    std::optional<LampHandle> lamp;  ///< as it was then
   } drag;
   /// The next click in the picture sets the exposure by what it hits.
   bool dropper = false;

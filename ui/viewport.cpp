@@ -9,6 +9,7 @@
 
 #include "base/figures.h"
 #include "commands/light_edit.h"
+#include "lamp_handles.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -88,37 +89,6 @@ bool dragging() {
   return false;
 }
 
-/// A point of the scene in the picture; false behind the eye.
-bool project(const scene::Camera& camera, const Area& shown, const vec3& point, ImVec2& at) {
-  const vec3 d = point - commands::eye_of(camera);
-  const float depth = glm::dot(d, commands::forward_of(camera));
-  if (!camera.orthographic && depth <= 1e-6f) return false;
-  const float half = camera.orthographic ? camera.ymag : depth * std::tan(0.5f * camera.yfov);
-  const float scale = 0.5f * shown.height() / half;
-  at = {0.5f * (shown.lo.x + shown.hi.x) + scale * glm::dot(d, commands::right_of(camera)),
-        0.5f * (shown.lo.y + shown.hi.y) - scale * glm::dot(d, commands::up_of(camera))};
-  return true;
-}
-
-struct Mark {
-  size_t light;
-  ImVec2 at;
-};
-
-/// Where lamps stand in the picture on the screen. Suns have no place.
-std::vector<Mark> marks(const Ui& ui, const Area& shown) {
-  std::vector<Mark> list;
-  if (!ui.scene || !ui.snapshot) return list;
-  for (size_t i = 0; i < ui.scene->lights.size(); ++i) {
-    const scene::Light& light = ui.scene->lights[i];
-    ImVec2 at;
-    if (light.kind != scene::LightKind::directional &&
-        project(ui.snapshot->camera, shown, light.position, at))
-      list.push_back({i, at});
-  }
-  return list;
-}
-
 /// The corners of the box around the selected object, as brackets: enough to find it, not so much as to hide
 /// it.
 void draw_brackets(const Ui& ui, const Area& shown) {
@@ -151,20 +121,6 @@ void draw_brackets(const Ui& ui, const Area& shown) {
       list->AddLine(p, q, IM_COL32(0, 0, 0, 120), px(3));
       list->AddLine(p, q, colour::accent, std::max(1.0f, px(1)));
     }
-  list->PopClipRect();
-}
-
-void draw_marks(const Ui& ui, const Area& shown) {
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  list->PushClipRect(shown.lo, shown.hi, true);
-  for (const Mark& mark : marks(ui, shown)) {
-    const bool chosen = ui.selection == Selection{Kind::light, static_cast<uint32_t>(mark.light)};
-    const float r = px(5);
-    list->AddCircleFilled(mark.at, r + px(1.5f), IM_COL32(0, 0, 0, 110), 20);
-    list->AddCircle(mark.at, r, chosen ? colour::accent : colour::text, 20, px(1.5f));
-    if (ui.light(static_cast<uint32_t>(mark.light)).enabled)
-      list->AddCircleFilled(mark.at, px(2), chosen ? colour::accent : colour::text, 12);
-  }
   list->PopClipRect();
 }
 
@@ -208,6 +164,9 @@ void turn_sky(Ui& ui, float pixels, float width) {
 /// What a drag begins on.
 void begin_drag(Ui& ui, const Area& shown) {
   ui.drag.point = under_pointer(ui, shown);
+  ui.drag.lamp.reset();
+  if (!ui.dropper && !ImGui::GetIO().KeyCtrl && ImGui::GetIO().MouseDown[0])
+    ui.drag.lamp = lamp_handle_at(ui, shown, ImGui::GetIO().MousePos);
   ui.drag.azimuth = ui.environment_rotation();
   if (const auto sun = first_sun(ui); sun && !has_environment_image(ui))
     ui.drag.azimuth = commands::bearing_of(ui.light(*sun).direction).azimuth;
@@ -286,7 +245,11 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
     // Half a turn across the height of the picture.
     const vec2 angles = -drag * (k_pi / height);
     Viewpoint view = *ui.view;
-    if (io.MouseDown[0] && io.KeyCtrl) {
+    if (io.MouseDown[0] && ui.drag.lamp) {
+      if (ui.selection != Selection{Kind::light, ui.drag.lamp->light})
+        ui.act("select", "light", ui.drag.lamp->light + 1);
+      drag_lamp(ui, shown);
+    } else if (io.MouseDown[0] && io.KeyCtrl) {
       turn_sky(ui, io.MousePos.x - io.MouseClickedPos[0].x, ui.picture.width());
     } else if (io.MouseDown[1] || (flying && io.MouseDown[0])) {
       commands::look(view, 0.5f * angles);
@@ -320,10 +283,8 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
 /// sets the exposure.
 void click(Ui& ui, const Area& shown) {
   const ImVec2 at = ImGui::GetIO().MousePos;
-  if (ui.light_marks && !ui.dropper)
-    for (const Mark& mark : marks(ui, shown))
-      if (std::hypot(mark.at.x - at.x, mark.at.y - at.y) <= px(9))
-        return ui.act("select", "light", mark.light + 1);
+  if (!ui.dropper)
+    if (const auto lamp = lamp_handle_at(ui, shown, at)) return ui.act("select", "light", lamp->light + 1);
   const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
   const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
   if (x < 0 || x > 1 || y < 0 || y > 1) return;
@@ -427,6 +388,7 @@ void draw_picture(Ui& ui, const Area& area) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   const bool shown = ui.has_picture() && ui.texture != 0;
   Area frame = area;  // of the picture itself
+  std::optional<LampHandle> hot;
   if (shown) {
     // One picture pixel on one window pixel; while the sizes differ the picture stands in the middle, scaled
     // down if it must be.
@@ -442,7 +404,11 @@ void draw_picture(Ui& ui, const Area& area) {
     list->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(ui.texture)), lo,
                    {lo.x + w, lo.y + h});
     frame = {lo, {lo.x + w, lo.y + h}};
-    if (ui.light_marks) draw_marks(ui, frame);
+    if (ImGui::IsMouseDown(0))
+      hot = ui.drag.lamp;
+    else if (ui.picture_hovered && !ui.dropper)
+      hot = lamp_handle_at(ui, frame, ImGui::GetIO().MousePos);
+    draw_lamp_handles(ui, frame, hot);
     if (ui.brackets) draw_brackets(ui, frame);
   }
   if (!shown) draw_empty_state(ui, area);
@@ -460,7 +426,12 @@ void draw_picture(Ui& ui, const Area& area) {
     ui.picture_hovered = ImGui::IsItemHovered();
     active = ImGui::IsItemActive();
     if (ImGui::IsItemActivated()) begin_drag(ui, frame);
-    if (ui.dropper && ui.picture_hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if (hot && ui.picture_hovered && !active)
+      tooltip(hot->part == LampHandle::Part::aim
+                  ? std::string("What the spot is aimed at: drag it over the surfaces.")
+                  : fmt::format("{}. Drag to move it along the picture, with Shift up and down.",
+                                ui.scene->lights[hot->light].name));
+    if ((ui.dropper || hot) && ui.picture_hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (ui.picture_hovered && ImGui::IsMouseReleased(0) && ImGui::IsItemDeactivated() &&
         ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))
       click(ui, frame);

@@ -1,6 +1,9 @@
 #include "commands/light_edit.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "commands/camera_control.h"
 
 namespace lucerna::commands {
 
@@ -18,6 +21,18 @@ vec3 direction_from(const Bearing& bearing) {
   const double a = double{bearing.azimuth} * double{k_pi} / 180,
                e = double{bearing.elevation} * double{k_pi} / 180;
   return -vec3(std::cos(e) * std::sin(a), std::sin(e), -std::cos(e) * std::cos(a));
+}
+
+vec3 dragged(const scene::Camera& camera, const vec3& from, const vec2& pixels, float picture_height,
+             bool upright) {
+  const float depth = glm::dot(from - eye_of(camera), forward_of(camera));
+  const float half = camera.orthographic ? camera.ymag : std::max(depth, 0.0f) * std::tan(0.5f * camera.yfov);
+  const vec2 metres = pixels * (2 * half / std::max(picture_height, 1.0f));
+  const vec3 up = up_of(camera);
+  if (!upright) return from + metres.x * right_of(camera) - metres.y * up;
+  // Seen from above or below the pointer's way says little of the height: then as if from 12 degrees off.
+  constexpr float k_least = 0.2f;
+  return from - vec3(0, metres.y / std::max(std::abs(up.y), k_least) * (up.y < 0 ? -1.0f : 1.0f), 0);
 }
 
 }  // namespace lucerna::commands

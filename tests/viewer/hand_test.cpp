@@ -71,6 +71,25 @@ TEST_CASE("a drag with Ctrl turns the sky, one step to undo") {
   CHECK(lines[1] == "undo");
 }
 
+TEST_CASE("a lamp's mark is dragged along the picture, with Shift up and down, one step each") {
+  if (test::no_display()) return;
+  // The lamps stand at 0,2,0: in the middle of the picture.
+  const std::string view = "camera.place 0,2,6 0,2,0 0,1,0\nselect light 2\nwait 0.5\n";
+  const auto lines = session_of(view + drag(712, 372, 20, -10) + "key.hold shift on\n" +
+                                drag(792, 332, 15, -10) + "key.hold shift off\nkey ctrl+z\n");
+  INFO(fmt::format("{}", fmt::join(lines, "\n")));
+  REQUIRE(lines.size() == 5);
+  CHECK_THAT(lines[2], Catch::StartsWith("light.set 2 position="));
+  const vec3 along = vector_in(lines[2].substr(lines[2].find('=') + 1), 0),
+             up = vector_in(lines[3].substr(lines[3].find('=') + 1), 0);
+  CHECK(along.x > 0.2f);
+  CHECK(along.y > 2.1f);
+  CHECK(along.z == Approx(0).margin(1e-4));
+  CHECK(up.x == Approx(along.x).margin(1e-4));
+  CHECK(up.y > along.y + 0.1f);
+  CHECK(lines[4] == "undo");
+}
+
 TEST_CASE("a click on a grey sets the exposure, and the wheel is one step") {
   if (test::no_display()) return;
   const auto lines = session_of(

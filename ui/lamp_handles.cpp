@@ -1,0 +1,129 @@
+#include "lamp_handles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "commands/light_edit.h"
+#include "session/pick.h"
+#include "state.h"
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+constexpr float k_reach = 9;  // design pixels from its middle in which a handle is meant
+
+/// How far the axis of a spot is drawn where it meets nothing, of the scene's radius.
+constexpr float k_aim_of_extent = 0.25f;
+
+LampHandle aim_of(Ui& ui, uint32_t index, const scene::Light& light) {
+  LampHandle aim{.light = index, .part = LampHandle::Part::aim, .point = light.position, .at = {}};
+  float far = k_aim_of_extent * ui.view->extent;
+  if (const session::Probe* rays = ui.probe())
+    if (const auto hit = rays->nearest(light.position, light.direction)) far = hit->distance;
+  aim.point += far * light.direction;
+  return aim;
+}
+
+}  // namespace
+
+bool project(const scene::Camera& camera, const Area& shown, const vec3& point, ImVec2& at) {
+  const vec3 d = point - commands::eye_of(camera);
+  const float depth = glm::dot(d, commands::forward_of(camera));
+  if (!camera.orthographic && depth <= 1e-6f) return false;
+  const float half = camera.orthographic ? camera.ymag : depth * std::tan(0.5f * camera.yfov);
+  const float scale = 0.5f * shown.height() / half;
+  at = {0.5f * (shown.lo.x + shown.hi.x) + scale * glm::dot(d, commands::right_of(camera)),
+        0.5f * (shown.lo.y + shown.hi.y) - scale * glm::dot(d, commands::up_of(camera))};
+  return true;
+}
+
+std::vector<LampHandle> lamp_handles(Ui& ui, const Area& shown) {
+  std::vector<LampHandle> list;
+  if (!ui.scene || !ui.snapshot || !ui.view) return list;
+  const auto add = [&](LampHandle handle) {
+    if (project(ui.snapshot->camera, shown, handle.point, handle.at)) list.push_back(handle);
+  };
+  for (uint32_t i = 0; i < ui.scene->lights.size(); ++i) {
+    const bool selected = ui.selection == Selection{Kind::light, i};
+    const scene::Light light = ui.light(i);
+    if ((!ui.light_marks && !selected) || light.kind == scene::LightKind::directional) continue;
+    if (selected && light.kind == scene::LightKind::spot) add(aim_of(ui, i, light));
+    add({.light = i, .part = LampHandle::Part::place, .point = light.position, .at = {}});
+  }
+  return list;
+}
+
+std::optional<LampHandle> lamp_handle_at(Ui& ui, const Area& shown, const ImVec2& at) {
+  std::optional<LampHandle> nearest;
+  float least = px(k_reach);
+  for (const LampHandle& handle : lamp_handles(ui, shown)) {
+    const float away = std::hypot(handle.at.x - at.x, handle.at.y - at.y);
+    if (away <= least) least = away, nearest = handle;
+  }
+  return nearest;
+}
+
+void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle>& hot) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  list->PushClipRect(shown.lo, shown.hi, true);
+  const auto is_hot = [&](const LampHandle& h) {
+    return hot && hot->light == h.light && hot->part == h.part;
+  };
+  std::optional<ImVec2> aim;
+  for (const LampHandle& handle : lamp_handles(ui, shown)) {
+    const bool chosen = ui.selection == Selection{Kind::light, handle.light};
+    const ImU32 ink = chosen || is_hot(handle) ? colour::accent : colour::text;
+    const float r = px(is_hot(handle) ? 6.5f : 5);
+    if (handle.part == LampHandle::Part::aim) {
+      aim = handle.at;  // its lamp comes next
+      list->AddCircleFilled(handle.at, r, IM_COL32(0, 0, 0, 110), 20);
+      list->AddCircle(handle.at, 0.7f * r, ink, 20, px(1.5f));
+      for (const float way : {-1.0f, 1.0f}) {
+        list->AddLine({handle.at.x + way * r, handle.at.y}, {handle.at.x + 1.8f * way * r, handle.at.y}, ink,
+                      px(1.5f));
+        list->AddLine({handle.at.x, handle.at.y + way * r}, {handle.at.x, handle.at.y + 1.8f * way * r}, ink,
+                      px(1.5f));
+      }
+      continue;
+    }
+    if (aim) {
+      list->AddLine(handle.at, *aim, IM_COL32(0, 0, 0, 120), px(3));
+      list->AddLine(handle.at, *aim, colour::accent, std::max(1.0f, px(1)));
+      aim.reset();
+    }
+    list->AddCircleFilled(handle.at, r + px(1.5f), IM_COL32(0, 0, 0, 110), 20);
+    list->AddCircle(handle.at, r, ink, 20, px(1.5f));
+    if (ui.light(handle.light).enabled) list->AddCircleFilled(handle.at, px(2), ink, 12);
+  }
+  list->PopClipRect();
+}
+
+void drag_lamp(Ui& ui, const Area& shown) {
+  const LampHandle& handle = *ui.drag.lamp;
+  if (!ui.scene || !ui.view || handle.light >= ui.scene->lights.size()) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  if (handle.part == LampHandle::Part::aim) {
+    const vec2 at((io.MousePos.x - shown.lo.x) / std::max(1.0f, shown.width()),
+                  (io.MousePos.y - shown.lo.y) / std::max(1.0f, shown.height()));
+    const session::Probe* rays = ui.probe();
+    if (!rays) return;
+    const session::PickRay ray = session::pick_ray(ui.view->camera, at.x, at.y, ui.aspect);
+    const auto hit = rays->nearest(ray.origin, ray.direction);
+    const vec3 from = ui.light(handle.light).position;
+    // Where nothing is, in the distance in which it was.
+    const vec3 to =
+        hit ? hit->position : ray.origin + glm::distance(ray.origin, handle.point) * ray.direction;
+    if (glm::distance(from, to) > 1e-4f * ui.view->extent)
+      ui.act("light.set", handle.light + 1, named("direction", to - from));
+    return;
+  }
+  const vec2 pixels(io.MousePos.x - io.MouseClickedPos[0].x, io.MousePos.y - io.MouseClickedPos[0].y);
+  ui.act("light.set", handle.light + 1,
+         named("position",
+               commands::dragged(ui.view->camera, handle.point, pixels, shown.height(), io.KeyShift)));
+}
+
+}  // namespace lucerna::ui
