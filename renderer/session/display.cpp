@@ -28,7 +28,6 @@ void Display::restart(const scene::Changes& changes, const vec3& scale, bool sam
                   is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders),
                   same_light);
   plan_.restart();
-  draft_serves_ = true;
 }
 
 void Display::take(gpu::Stream& stream, const film::Film& film) {
@@ -57,11 +56,6 @@ void Display::light_changed() {
 void Display::mixed() {
   preview_.forget();
   plan_.light_changed();
-}
-
-void Display::prepared() {
-  preview_.better();
-  draft_serves_ = false;
 }
 
 bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
@@ -122,7 +116,7 @@ void Display::develop(Engine& engine, const PictureView& view, const film::Film&
   developed_ = true;
   const bool fine = plan_.fine_samples() > 0;
   const film::Film* draft = fine ? fine_.get() : plan_.coarse_samples() > 0 ? &coarse : nullptr;
-  if (!draft_serves_ || samples >= k_draft_until) draft = nullptr;
+  if (samples >= k_draft_until) draft = nullptr;
   const film::Sampled sampled = samples > 0 ? film::Sampled::all
                                 : begun     ? film::Sampled::some
                                             : film::Sampled::none;

@@ -21,13 +21,11 @@ class Display {
   /// Before that, and before the film is cleared of which every pixel has samples: it is what has been shown,
   /// where plain() has been told so.
   void take(gpu::Stream& stream, const film::Film& film);
-  /// What was looked up so far is not the light any more that will be: drafts begin anew, and what they have
-  /// shown stays until the new is better.
+  /// What was looked up so far is not the light any more that will be, or that comes from now on: drafts
+  /// begin anew, and what they have shown stays until the new is better.
   void light_changed();
   /// Groups of lights are mixed otherwise: what has been shown is not what is to be seen.
   void mixed();
-  /// Samples of the picture itself come from now on.
-  void prepared();
 
   DraftPlan& plan() { return plan_; }
   /// Another sample of a draft, or a piece of light for it. `coarse`: the film of a quarter of the
@@ -56,7 +54,6 @@ class Display {
   film::Preview preview_;
   std::unique_ptr<film::Film> fine_;  ///< of half the resolution; made when it is called for
   DraftPlan plan_;
-  bool draft_serves_ = true;  ///< it shows the light that the picture's samples bring
   film::PreviewShares shares_;
   bool developed_ = false, warm_ = false;
   /// How the picture was shown that is not a preview.

@@ -462,7 +462,7 @@ std::optional<bool> Renderer::prepare_round(const schedule::WorkItem& item,
 bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   if (!engine_ || !display_) return false;
   const bool prepares = preparing();
-  if (std::exchange(draft_preparing_, prepares) && !prepares) display_->prepared();
+  if (std::exchange(draft_preparing_, prepares) && !prepares) display_->light_changed();
   const DraftPlan::Next what = display_->plan().next(prepares, samples() > 0, engine_->previews());
   if (what == DraftPlan::Next::nothing) return false;
   clock_.go();
