@@ -45,7 +45,7 @@ void Developer::tone_map(gpu::Stream& stream, const Film& film, const View& view
 
 void Developer::mix(gpu::Stream& stream, const Film& film, const View& view) {
   film.bind(resources_);
-  const MixPush push{film.width(), film.height(), film.groups(), view.curve, view.exposure};
+  const MixPush push{film.width(), film.height(), film.groups(), view.curve, view.exposure, film.in_short()};
   stream.dispatch(mix_, resources_, push, groups(film));
   stream.run();
   stream.take_times();

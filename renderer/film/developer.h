@@ -13,8 +13,8 @@ class Developer {
   /// Film -> its picture. `coarse` fills pixels without samples, if given (it is tone-mapped first). Runs the
   /// stream; what it takes is nobody's stage.
   void tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse = nullptr);
-  /// The film's picture of all components as its groups of lights are mixed (Film::set_mix), in short
-  /// (Film::quick). Runs the stream.
+  /// The film's picture of all components as its groups of lights are mixed (Film::set_mix), of what it
+  /// keeps to show that at once (Film::quick). Runs the stream.
   void mix(gpu::Stream& stream, const Film& film, const View& view);
   /// Draws over the film's picture the state of its tiles, where the view has any. Runs the stream.
   void draw_tiles(gpu::Stream& stream, const Film& film, const View& view);

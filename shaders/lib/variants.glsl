@@ -22,6 +22,9 @@
 #ifndef LUCERNA_LIGHT_GROUPS
 #define LUCERNA_LIGHT_GROUPS 0
 #endif
+#ifndef LUCERNA_GROUP_SUMS
+#define LUCERNA_GROUP_SUMS 0
+#endif
 #ifndef LUCERNA_SPECULAR
 #define LUCERNA_SPECULAR 0
 #endif
