@@ -68,7 +68,7 @@ std::string mix_of(const std::vector<std::string>& groups, int step) {
 /// Seconds from a command to the picture that shows it, in a session as the window has it, one group after
 /// the other. `pause` before each: none, as while a slider is dragged; or long enough that the session is at
 /// work on samples again, as when a drag begins.
-Timing drag(session::Session& s, const std::vector<std::string>& groups, int count, double pause) {
+Timing drag_session(session::Session& s, const std::vector<std::string>& groups, int count, double pause) {
   std::vector<double> seconds;
   for (int step = 0; step < count; ++step) {
     std::this_thread::sleep_for(std::chrono::duration<double>(pause));
@@ -136,11 +136,14 @@ int bench_mix(const BenchMixArguments& a) {
     r.apply_settings();
     r.shown_picture(false);
   };
+  const double cpu_before = cpu_seconds();
   const Timing shown = take_turns({{{}, drag}}, 4 * a.repeats)[0];
+  const double shown_cpu = (cpu_seconds() - cpu_before) / (4 * a.repeats + 1);
   const Timing settled = take_turns({{drag, [&] { r.settle_mix(); }}}, a.repeats)[0];
   if (r.stats().rays != rays) throw_error(a.scene, "a mix has traced rays");
   const std::unique_ptr<session::Session> s = start_session(a);
-  const Timing begun = drag(*s, names, 2 * a.repeats, 0.5), dragged = drag(*s, names, 8 * a.repeats, 0);
+  const Timing begun = drag_session(*s, names, 2 * a.repeats, 0.5),
+               dragged = drag_session(*s, names, 8 * a.repeats, 0);
 
   const double one = timing_of(cpu[0]).median, many = timing_of(cpu[1]).median;
   std::printf(
@@ -148,16 +151,16 @@ int bench_mix(const BenchMixArguments& a) {
       fmt::format("{}, {}x{}, {} samples, {} groups of lights, on {}\n"
                   "  a picture     {:.2f} s of CPU with one group, {:.2f} s with {}: {:+.1f} %\n"
                   "  its stages    {} ms\n"
-                  "  another mix   {:.1f} ms until it is seen ({:.1f} to {:.1f}), no ray\n"
+                  "  another mix   {:.1f} ms until it is seen ({:.1f} to {:.1f}), {:.1f} ms of CPU, no ray\n"
                   "  in the window {:.1f} ms when a drag begins ({:.1f} to {:.1f}), {:.1f} ms while it goes "
                   "on ({:.1f} to {:.1f})\n"
                   "  its noise is known {:.0f} ms later ({:.0f} to {:.0f})\n"
                   "  {} bytes a pixel\n",
                   a.scene, a.width, a.height, a.samples, groups, r.device().info().name, one, many, groups,
                   100 * (many / one - 1), stages, 1e3 * shown.median, 1e3 * shown.low, 1e3 * shown.high,
-                  1e3 * begun.median, 1e3 * begun.low, 1e3 * begun.high, 1e3 * dragged.median,
-                  1e3 * dragged.low, 1e3 * dragged.high, 1e3 * settled.median, 1e3 * settled.low,
-                  1e3 * settled.high, film::sum_bytes(groups, r.film().groups_kept()))
+                  1e3 * shown_cpu, 1e3 * begun.median, 1e3 * begun.low, 1e3 * begun.high,
+                  1e3 * dragged.median, 1e3 * dragged.low, 1e3 * dragged.high, 1e3 * settled.median,
+                  1e3 * settled.low, 1e3 * settled.high, film::sum_bytes(groups, r.film().groups_kept()))
           .c_str());
   if (!a.json.empty()) {
     const auto times = [](const Timing& t) {
@@ -173,6 +176,7 @@ int bench_mix(const BenchMixArguments& a) {
                             {"cpu_s_one_group", cpu[0]},
                             {"cpu_s", cpu[1]},
                             {"shown_s", times(shown)},
+                            {"shown_cpu_s", shown_cpu},
                             {"drag_begins_s", times(begun)},
                             {"drag_s", times(dragged)},
                             {"settled_s", times(settled)}}

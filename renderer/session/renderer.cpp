@@ -389,7 +389,10 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   const bool progress = render_item(cancel);
   render_s_ += timer.seconds();
   if (display_) display_->plan().worked(timer.seconds());
-  if (display_ && samples() > 0) display_->warm(engine_->wavefront().stream(), *film_);
+  if (display_ && samples() > 0) {
+    display_->warm(engine_->wavefront().stream(), *film_);
+    engine_->developer().prepare_mix(engine_->wavefront().stream(), *film_, view());
+  }
   if (prepares)
     prepared_s_ = clock_.seconds(), prepared_ = stats();
   else if (progress)

@@ -5,8 +5,8 @@
 // exact sum's, however small samples are beside it, where rounding to the nearest would lose all of those below half of the last
 // bit (M. Csuros 2010 counts so). Of N samples alike a rounding's variance is at most a quarter of the last bit's square, and at
 // most that bit times the sample; as the bit is at most 2^-17 of the sum, its relative standard deviation is at most
-// sqrt(N / 12) / 2^17 (7e-5 at a thousand samples), and at most 2^-9, 0.2 %, at any number. The numbers are a hash of pixel,
-// sample and group: what is added, however it is cut into batches and whichever thread does it, gives the same bits.
+// sqrt(N / 12) / 2^17 (7e-5 at a thousand samples), and at most 2^-9, 0.2 %, at any number. The numbers are a hash of pixel
+// and sample: what is added, however it is cut into batches and whichever thread does it, gives the same bits.
 #include "lib/variants.glsl"
 #include "lib/film.glsl"
 #include "lib/blocks.glsl"
@@ -20,17 +20,12 @@ layout(rgba32f) uniform writeonly imageBuffer group_sums_out;
 layout(scalar) writeonly buffer GroupSumTexels { uvec4 group_sums_out[]; };
 #endif
 
-// Three numbers by hashing three (M. Jarzynski and M. Olano 2020, pcg3d).
-uvec3 hash3(uvec3 v) {
-  v = v * 1664525u + 1013904223u;
-  v.x += v.y * v.z;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  v ^= v >> 16u;
-  v.x += v.y * v.z;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  return v;
+uint hash(uint x) {  // lowbias32, C. Wellons
+  x ^= x >> 16u;
+  x *= 0x7feb352du;
+  x ^= x >> 15u;
+  x *= 0x846ca68bu;
+  return x ^ x >> 16u;
 }
 
 // s + x, rounded by u in [0, 1).
@@ -60,7 +55,10 @@ void main() {
     for (uint i = 0u; i < push.sample_count; ++i) {
       uint number = block.first_sample + i;
       vec3 light = texelFetch(radiance_texels, int(radiance_texel(index + i * push.pixel_count, k_component_count + group))).rgb;
-      vec3 u = vec3(hash3(uvec3(pixel, number, group)) >> 8u) * (1.0 / 16777216.0);
+      // One number for all sums of a sample, each time turned by the golden ratio: every one is rounded without bias, and what
+      // they err by is not of one sign.
+      uvec3 turned = hash(pixel ^ hash(number + 0x68bc21ebu)) + (3u * group + uvec3(0u, 1u, 2u)) * 0x9e3779b9u;
+      vec3 u = vec3(turned >> 8u) * (1.0 / 16777216.0);
       bool even = (number & 1u) == 0u;
       uvec2 half_sum = even ? sums.xy : sums.zw;
       GroupSum s = group_sum_plus(GroupSum(half_sum.x, half_sum.y), light, u);
