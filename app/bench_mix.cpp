@@ -1,15 +1,19 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "app/bench_timing.h"
 #include "app/verbs.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "session/renderer.h"
+#include "session/session.h"
 
 namespace lucerna::app {
 namespace {
@@ -24,7 +28,7 @@ double cpu_seconds() {
   return seconds(use.ru_utime) + seconds(use.ru_stime);
 }
 
-std::unique_ptr<session::Renderer> load(const BenchMixArguments& a, const char* enabled) {
+std::unique_ptr<session::Renderer> load(const BenchMixArguments& a, const std::string& enabled) {
   auto r = std::make_unique<session::Renderer>(session::RendererOptions{.device = a.device,
                                                                         .validation = false,
                                                                         .shaders = {},
@@ -42,6 +46,61 @@ std::unique_ptr<session::Renderer> load(const BenchMixArguments& a, const char* 
   return r;
 }
 
+/// Milliseconds of each stage in two pictures, those that differ by most first: "film 10 -> 12".
+std::string stages_text(const transport::TransportStats& before, const transport::TransportStats& after) {
+  std::vector<std::pair<double, std::string>> lines;
+  for (const transport::StageSum& s : after.stages) {
+    double ms = 0;
+    for (const transport::StageSum& old : before.stages)
+      if (old.name == s.name) ms = old.ms;
+    lines.emplace_back(ms - s.ms, fmt::format("{} {:.0f} -> {:.0f}", s.name, ms, s.ms));
+  }
+  std::sort(lines.begin(), lines.end());
+  std::string text;
+  for (const auto& [more, line] : lines) text += (text.empty() ? "" : ", ") + line;
+  return text;
+}
+
+std::string mix_of(const std::vector<std::string>& groups, int step) {
+  return fmt::format("{}: ev={}", groups[size_t(step) % groups.size()], 0.1 * double(step + 1));
+}
+
+/// Seconds from a command to the picture that shows it, in a session as the window has it, one group after
+/// the other. `pause` before each: none, as while a slider is dragged; or long enough that the session is at
+/// work on samples again, as when a drag begins.
+Timing drag_session(session::Session& s, const std::vector<std::string>& groups, int count, double pause) {
+  std::vector<double> seconds;
+  for (int step = 0; step < count; ++step) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(pause));
+    const Timer timer;
+    s.set("relight.mix", mix_of(groups, step));
+    while (s.snapshot()->commands < s.commands()) std::this_thread::sleep_for(std::chrono::microseconds(100));
+    seconds.push_back(timer.seconds());
+  }
+  return timing_of(seconds);
+}
+
+/// A session at work on a picture of the scene, with samples in all pixels.
+std::unique_ptr<session::Session> start_session(const BenchMixArguments& a) {
+  auto s = std::make_unique<session::Session>(
+      session::Options{.device = a.device, .validation = false, .shaders = {}, .scenes = a.scenes});
+  s->set_size(a.width, a.height);
+  s->load(a.scene);
+  for (const std::string& text : a.set) {
+    const auto [key, value] = split_change(text, "--set");
+    s->set(key, value);
+  }
+  s->set("samples", "1000000");
+  s->set("relight.enabled", a.keep);
+  const auto begun = [&] {
+    const auto now = s->snapshot();
+    return now && now->commands >= s->commands() && (!s->scene() || now->samples > 0);
+  };
+  while (!begun()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  if (!s->scene()) throw_error(a.scene, "it was not loaded");
+  return s;
+}
+
 void finish(session::Renderer& r) {
   while (r.step()) {
   }
@@ -50,7 +109,7 @@ void finish(session::Renderer& r) {
 }  // namespace
 
 int bench_mix(const BenchMixArguments& a) {
-  const auto apart = load(a, "on"), together = load(a, "off");
+  const auto apart = load(a, a.keep), together = load(a, "off");
   if (!apart->relight().apart)
     throw_error(a.scene, "its light cannot be kept apart: {}", apart->relight().why_not);
   const uint32_t groups = apart->film().groups();
@@ -64,31 +123,45 @@ int bench_mix(const BenchMixArguments& a) {
       finish(r);
       if (round > 0) cpu[k].push_back(cpu_seconds() - before);
     }
-  // A drag at the sliders, one group after the other; then the film's sums follow.
+  const std::string stages = stages_text(together->stats(), apart->stats());
+  // A drag at the sliders, one group after the other; then what else is made of the mix: sums by
+  // component, and the estimate of the noise.
   session::Renderer& r = *apart;
   const uint64_t rays = r.stats().rays;
+  std::vector<std::string> names;
+  for (const scene::LightGroup& group : r.relight().groups->groups) names.push_back(group.name);
   int step = 0;
   const auto drag = [&] {
-    const std::string& group = r.relight().groups->groups[size_t(step) % groups].name;
-    r.settings().set("relight.mix", fmt::format("{}: ev={}", group, 0.1 * double(++step)));
+    r.settings().set("relight.mix", mix_of(names, step++));
     r.apply_settings();
     r.shown_picture(false);
   };
+  const double cpu_before = cpu_seconds();
   const Timing shown = take_turns({{{}, drag}}, 4 * a.repeats)[0];
+  const double shown_cpu = (cpu_seconds() - cpu_before) / (4 * a.repeats + 1);
   const Timing settled = take_turns({{drag, [&] { r.settle_mix(); }}}, a.repeats)[0];
   if (r.stats().rays != rays) throw_error(a.scene, "a mix has traced rays");
+  const std::unique_ptr<session::Session> s = start_session(a);
+  const Timing begun = drag_session(*s, names, 2 * a.repeats, 0.5),
+               dragged = drag_session(*s, names, 8 * a.repeats, 0);
 
   const double one = timing_of(cpu[0]).median, many = timing_of(cpu[1]).median;
   std::printf(
-      "%s", fmt::format("{}, {}x{}, {} samples, {} groups of lights, on {}\n"
-                        "  a picture     {:.2f} s of CPU with one group, {:.2f} s with {}: {:+.1f} %\n"
-                        "  another mix   {:.1f} ms until it is seen ({:.1f} to {:.1f}), no ray\n"
-                        "  the film's sums follow in {:.0f} ms ({:.0f} to {:.0f})\n"
-                        "  {} bytes a pixel\n",
-                        a.scene, a.width, a.height, a.samples, groups, r.device().info().name, one, many,
-                        groups, 100 * (many / one - 1), 1e3 * shown.median, 1e3 * shown.low, 1e3 * shown.high,
-                        1e3 * settled.median, 1e3 * settled.low, 1e3 * settled.high, film::sum_bytes(groups))
-                .c_str());
+      "%s",
+      fmt::format("{}, {}x{}, {} samples, {} groups of lights, on {}\n"
+                  "  a picture     {:.2f} s of CPU with one group, {:.2f} s with {}: {:+.1f} %\n"
+                  "  its stages    {} ms\n"
+                  "  another mix   {:.1f} ms until it is seen ({:.1f} to {:.1f}), {:.1f} ms of CPU, no ray\n"
+                  "  in the window {:.1f} ms when a drag begins ({:.1f} to {:.1f}), {:.1f} ms while it goes "
+                  "on ({:.1f} to {:.1f})\n"
+                  "  its noise is known {:.0f} ms later ({:.0f} to {:.0f})\n"
+                  "  {} bytes a pixel\n",
+                  a.scene, a.width, a.height, a.samples, groups, r.device().info().name, one, many, groups,
+                  100 * (many / one - 1), stages, 1e3 * shown.median, 1e3 * shown.low, 1e3 * shown.high,
+                  1e3 * shown_cpu, 1e3 * begun.median, 1e3 * begun.low, 1e3 * begun.high,
+                  1e3 * dragged.median, 1e3 * dragged.low, 1e3 * dragged.high, 1e3 * settled.median,
+                  1e3 * settled.low, 1e3 * settled.high, film::sum_bytes(groups, r.film().groups_kept()))
+          .c_str());
   if (!a.json.empty()) {
     const auto times = [](const Timing& t) {
       return Json{{"median", t.median}, {"low", t.low}, {"high", t.high}};
@@ -98,10 +171,14 @@ int bench_mix(const BenchMixArguments& a) {
                             {"height", a.height},
                             {"samples", a.samples},
                             {"groups", groups},
-                            {"bytes_a_pixel", film::sum_bytes(groups)},
+                            {"keep", a.keep},
+                            {"bytes_a_pixel", film::sum_bytes(groups, r.film().groups_kept())},
                             {"cpu_s_one_group", cpu[0]},
                             {"cpu_s", cpu[1]},
                             {"shown_s", times(shown)},
+                            {"shown_cpu_s", shown_cpu},
+                            {"drag_begins_s", times(begun)},
+                            {"drag_s", times(dragged)},
                             {"settled_s", times(settled)}}
                                .dump(2) +
                            "\n");

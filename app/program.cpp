@@ -265,6 +265,9 @@ void Program::add_small_benches() {
       "mix", "how soon another mix of a scene's groups of lights is seen, and what keeping them apart costs");
   of_scene(mix_, bx);
   measured(mix_, bx, 1);
+  mix_->add_option("--keep", bx.keep, "how groups are kept apart, as relight.enabled: compact or on")
+      ->check(CLI::IsMember({"compact", "on"}))
+      ->capture_default_str();
   add_scene_options(mix_);
 }
 

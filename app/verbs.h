@@ -73,6 +73,7 @@ struct BenchMixArguments {
   std::string device, scene;
   uint32_t width = 960, height = 540, samples = 16;
   std::vector<std::string> set;
+  std::string keep = "compact";  ///< relight.enabled: compact or on
   int repeats = 5;
   std::string json;  ///< file to write the figures to; empty: none
   scene::LoadOptions scenes;

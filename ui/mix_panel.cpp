@@ -139,13 +139,20 @@ void draw_mix(Ui& ui) {
   const scene::LightGroups& groups = ui.light_groups();
   const scene::LightMix mix = ui.light_mix();
   const std::vector<vec3> weights = scene::mix_weights(mix, groups);
-  const bool keeps = ui.setting("relight.enabled") != "off";
-  if (button("##apart", "Keep apart", keeps, ImGui::CalcItemWidth()))
-    ui.act("set", "relight.enabled", keeps ? "off" : "on");
+  const std::string how = ui.setting("relight.enabled");
+  const bool keeps = how != "off", by_component = how == "on";
+  const float half = std::floor(0.5f * (ImGui::CalcItemWidth() - px(6)));
+  if (button("##apart", "Keep apart", keeps, half)) ui.act("set", "relight.enabled", keeps ? "off" : "auto");
   tooltip(
-      "The picture keeps its light apart by groups, so that a mix costs no ray: 200 bytes a pixel for each, "
-      "and some "
-      "time. Where components are cached or come from photons it cannot. The picture starts again.");
+      "The picture keeps its light apart by groups, so that a mix costs no ray: 16 bytes a pixel for each. "
+      "Where components are cached or come from photons it cannot. The picture starts again.");
+  ImGui::SameLine(0, px(6));
+  if (button("##components", "By component", by_component, half))
+    ui.act("set", "relight.enabled", by_component ? "auto" : "on");
+  tooltip(
+      "Keeps each group's light by component, too: 200 bytes a pixel for each group, and more time. Without "
+      "it "
+      "the picture of a mix is right, and its components are estimates. The picture starts again.");
   const std::string why = ui.snapshot ? ui.snapshot->lights_together : "";
   if (!why.empty()) {
     label("A change lights the picture anew", colour::text_faint, nullptr, ImGui::CalcItemWidth());

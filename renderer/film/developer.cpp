@@ -9,10 +9,11 @@ uint32_t groups(const Film& film) { return gpu::groups_for(uint64_t{film.width()
 }  // namespace
 
 Developer::Developer(gpu::Device& device, gpu::ShaderCompiler& compiler)
-    : tonemap_(device, compiler, "film/tonemap.comp"),
+    : device_(device),
+      compiler_(compiler),
+      tonemap_(device, compiler, "film/tonemap.comp"),
       heat_(device, compiler, "film/heat.comp"),
       tiles_(device, compiler, "film/tiles.comp"),
-      mix_(device, compiler, "film/mix.comp"),
       no_coarse_(device, {.name = "no coarse picture", .bytes = 16, .memory = gpu::Memory::host}) {}
 
 void Developer::develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {
@@ -43,10 +44,27 @@ void Developer::tone_map(gpu::Stream& stream, const Film& film, const View& view
   draw_tiles(stream, film, view);
 }
 
+gpu::Kernel& Developer::mix_kernel(const Film& film, const View& view) {
+  const auto [at, made] = mixes_.try_emplace({film.in_short(), view.curve});
+  if (made || !at->second)
+    at->second = gpu::Kernel(device_, compiler_, "film/mix.comp",
+                             {{"LUCERNA_GROUP_SUMS", film.in_short() ? "1" : "0"},
+                              {"LUCERNA_TONE_CURVE", std::to_string(view.curve)}});
+  return at->second;
+}
+
+void Developer::prepare_mix(gpu::Stream& stream, const Film& film, const View& view) {
+  if (!film.quick() || mixes_.contains({film.in_short(), view.curve})) return;
+  film.bind(resources_);
+  stream.dispatch(mix_kernel(film, view), resources_, MixPush{}, 1);
+  stream.run();
+  stream.take_times();
+}
+
 void Developer::mix(gpu::Stream& stream, const Film& film, const View& view) {
   film.bind(resources_);
-  const MixPush push{film.width(), film.height(), film.groups(), view.curve, view.exposure};
-  stream.dispatch(mix_, resources_, push, groups(film));
+  const MixPush push{film.width(), film.height(), film.groups(), view.curve, view.exposure, film.in_short()};
+  stream.dispatch(mix_kernel(film, view), resources_, push, groups(film));
   stream.run();
   stream.take_times();
 }

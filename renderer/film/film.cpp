@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "shaders/shared/group_sums.h"
+
 namespace lucerna::film {
 
 namespace {
@@ -17,12 +19,15 @@ constexpr uint64_t k_coarse_pixels = shared::k_coarse_step * shared::k_coarse_st
 
 }  // namespace
 
-uint64_t sum_bytes(uint32_t groups) {
+uint64_t sum_bytes(uint32_t groups, GroupsKept kept) {
   constexpr uint64_t k_all = k_components * k_sum_bytes;
-  return groups > 1 ? k_all + groups * (k_all + sizeof(shared::GroupLight)) : k_all;
+  if (groups <= 1) return k_all;
+  return k_all + groups * (kept == GroupsKept::in_short ? sizeof(shared::GroupSums)
+                                                        : k_all + sizeof(shared::GroupLight));
 }
 
-void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups) {
+void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups,
+                GroupsKept kept) {
   const gpu::Limits& limits = device.limits;
   const uint64_t pixels = uint64_t(width) * height;
   if (pixels == 0) throw Error("size", "a picture needs at least one pixel");
@@ -31,9 +36,10 @@ void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, 
   // Texels of a pixel and component; four bytes a pixel in the storage buffers.
   const uint64_t memory = device.memory_bytes - std::min(device.memory_bytes, k_paths_bytes);
   const uint64_t coarse = (k_pixel_bytes + sum_bytes(1)) / k_coarse_pixels;
-  const uint64_t largest =
-      std::min({limits.max_texel_elements / (k_sum_bytes / 16), limits.max_storage_buffer / 4,
-                memory / (k_pixel_bytes + sum_bytes(groups) + coarse)});
+  const uint64_t texels =
+      std::max<uint64_t>(k_sum_bytes / 16, groups > 1 && kept == GroupsKept::in_short ? groups : 0);
+  const uint64_t largest = std::min({limits.max_texel_elements / texels, limits.max_storage_buffer / 4,
+                                     memory / (k_pixel_bytes + sum_bytes(groups, kept) + coarse)});
   if (pixels > largest)
     throw_error(
         "size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{}){}", width, height,
@@ -52,22 +58,25 @@ Film::Sums Film::make_sums() const {
   return sums;
 }
 
-Film::Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups)
-    : width_(width), height_(height), device_(device) {
+Film::Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups, GroupsKept kept)
+    : width_(width), height_(height), groups_(std::max(1u, groups)), kept_(kept), device_(device) {
   const gpu::Limits& limits = device.info().limits;
   const uint64_t pixels = uint64_t(width) * height;
-  check_size(device.info(), width, height, groups);
-  fits_storage_buffers_ = pixels * k_sum_bytes <= limits.max_storage_buffer;
+  check_size(device.info(), width, height, groups, kept);
+  const uint64_t short_sums = in_short() ? pixels * groups * sizeof(shared::GroupSums) : 0;
+  fits_storage_buffers_ = std::max(pixels * k_sum_bytes, short_sums) <= limits.max_storage_buffer;
   sums_ = make_sums();
-  for (uint32_t g = 0; groups > 1 && g < groups; ++g) group_sums_.push_back(make_sums());
+  for (uint32_t g = 0; groups > 1 && !in_short() && g < groups; ++g) group_sums_.push_back(make_sums());
+  group_short_ = gpu::Buffer(device, {.name = "sums by group", .bytes = short_sums, .texel = true});
   light_mix_ = gpu::Buffer(
       device,
-      {.name = "light mix", .bytes = shared::k_most_groups * sizeof(vec4), .memory = gpu::Memory::host});
+      {.name = "light mix", .bytes = sizeof(shared::GroupMix), .memory = gpu::Memory::host, .texel = true});
   set_mix({});
   // Two groups to a texel.
-  const uint64_t light = groups > 1 ? pixels * ((groups + 1) / 2) * 2 * sizeof(shared::GroupLight) : 16;
+  const uint64_t light =
+      group_sums_.empty() ? 0 : pixels * ((groups + 1) / 2) * 2 * sizeof(shared::GroupLight);
   quick_ = light <= limits.max_storage_buffer;
-  group_light_ = gpu::Buffer(device, {.name = "light by group", .bytes = quick_ ? light : 16, .texel = true});
+  group_light_ = gpu::Buffer(device, {.name = "light by group", .bytes = quick_ ? light : 0, .texel = true});
   albedo_ = gpu::Buffer(device, {.name = "film albedo", .bytes = pixels * 16, .texel = true});
   normal_ = gpu::Buffer(device, {.name = "film normals", .bytes = pixels * 16, .texel = true});
   count_ = gpu::Buffer(device, {.name = "film counts", .bytes = pixels * 4});
@@ -128,6 +137,7 @@ void Film::clear(gpu::Stream& stream) {
   for (gpu::Buffer& b : sums_) stream.fill(b, 0);
   for (Sums& sums : group_sums_)
     for (gpu::Buffer& b : sums) stream.fill(b, 0);
+  if (in_short()) stream.fill(group_short_, 0);
   stream.fill(albedo_, 0);
   stream.fill(normal_, 0);
   stream.fill(count_, 0);
@@ -159,9 +169,12 @@ void Film::bind(gpu::Resources& r) const {
   r.set("BlockRecordSums", block_records_);
   r.set("FilmBiasEven", lookup_bias_[0]);
   r.set("FilmBiasOdd", lookup_bias_[1]);
-  r.set("LightMix", light_mix_);
+  r.set("light_mix", light_mix_);
   r.set("GroupLights", group_light_);
   r.set("group_lights", group_light_);
+  r.set("group_sums", group_short_);
+  r.set("group_sums_out", group_short_);
+  r.set("GroupSumTexels", group_short_);
 }
 
 void Film::bind_group(gpu::Resources& r, uint32_t group) const {
@@ -178,10 +191,13 @@ void Film::bind_group(gpu::Resources& r, uint32_t group) const {
 }
 
 void Film::set_mix(std::span<const vec3> weights) {
-  std::array<vec4, shared::k_most_groups> all;
-  all.fill(vec4(1));
-  for (size_t g = 0; g < std::min(weights.size(), all.size()); ++g) all[g] = vec4(weights[g], 1);
-  light_mix_.write(std::span<const vec4>(all));
+  mix_ = {.groups = 0, .pixels = width_ * height_, .pad0 = 0, .pad1 = 0, .weight = {}};
+  for (vec4& w : mix_.weight) w = vec4(1);
+  for (size_t g = 0; g < std::min<size_t>(weights.size(), shared::k_most_groups); ++g) {
+    mix_.weight[g] = vec4(weights[g], 1);
+    if (in_short() && weights[g] != vec3(1)) mix_.groups = groups_;
+  }
+  light_mix_.write(&mix_, sizeof mix_);
 }
 
 void Film::bind_coarse(gpu::Resources& r) const {
@@ -194,10 +210,13 @@ void Film::mark_tiles(std::span<const shared::TileMark> marks) { tile_marks_.wri
 
 namespace {
 
-/// Means of all samples and of the odd ones, `halves` two a pixel.
-void take_means(const std::vector<shared::FilmHalf>& halves, const std::vector<uint32_t>& samples,
-                std::vector<vec3>& all, std::vector<vec3>* odd_half) {
-  const auto total = [&](size_t k) { return glm::dvec3(halves[k].sum) + glm::dvec3(halves[k].compensation); };
+/// Means of all samples and of the odd ones, `halves` two a pixel, each times its ratio; none: 1.
+void take_means(const std::vector<shared::FilmHalf>& halves, const std::vector<vec3>& ratios,
+                const std::vector<uint32_t>& samples, std::vector<vec3>& all, std::vector<vec3>* odd_half) {
+  const auto total = [&](size_t k) {
+    const glm::dvec3 sum = glm::dvec3(halves[k].sum) + glm::dvec3(halves[k].compensation);
+    return ratios.empty() ? sum : sum * glm::dvec3(ratios[k]);
+  };
   all.resize(samples.size());
   if (odd_half) odd_half->resize(samples.size());
   for (size_t i = 0; i < samples.size(); ++i) {
@@ -217,9 +236,48 @@ std::array<std::vector<vec3>, k_components> Film::read_group(uint32_t group) con
   std::vector<shared::FilmHalf> halves(2 * n);
   for (size_t c = 0; c < k_components; ++c) {
     group_sums_.at(group)[c].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
-    take_means(halves, samples, means[c], nullptr);
+    take_means(halves, {}, samples, means[c], nullptr);
   }
   return means;
+}
+
+std::vector<shared::GroupSums> Film::read_group_sums() const {
+  std::vector<shared::GroupSums> sums(in_short() ? size_t{groups_} * width_ * height_ : 0);
+  if (!sums.empty()) group_short_.read(sums.data(), sums.size() * sizeof(shared::GroupSums));
+  return sums;
+}
+
+std::vector<vec3> Film::read_group_sum(uint32_t group) const {
+  const size_t n = size_t{width_} * height_;
+  std::vector<uint32_t> samples(n);
+  count_.read(samples.data(), n * 4);
+  const std::vector<shared::GroupSums> sums = read_group_sums();
+  std::vector<vec3> means(n);
+  for (size_t i = 0; i < n; ++i) {
+    const shared::GroupSums& s = sums.at(group * n + i);
+    means[i] =
+        (shared::group_sum_value(s.even) + shared::group_sum_value(s.odd)) / float(std::max(1u, samples[i]));
+  }
+  return means;
+}
+
+std::vector<vec3> Film::mix_ratios() const {
+  if (mix_.groups == 0) return {};
+  const size_t n = size_t{width_} * height_;
+  const std::vector<shared::GroupSums> sums = read_group_sums();
+  std::vector<vec3> ratios(2 * n);
+  for (size_t i = 0; i < n; ++i) {
+    vec3 all[2] = {}, mixed[2] = {};
+    for (uint32_t g = 0; g < groups_; ++g) {
+      const shared::GroupSums& s = sums[g * n + i];
+      const vec3 w = vec3(mix_.weight[g]),
+                 light[2] = {shared::group_sum_value(s.even), shared::group_sum_value(s.odd)};
+      for (int half = 0; half < 2; ++half) all[half] += light[half], mixed[half] += w * light[half];
+    }
+    for (size_t half = 0; half < 2; ++half)
+      ratios[2 * i + half] = shared::group_ratio(mixed[half], all[half]);
+  }
+  return ratios;
 }
 
 Image Film::read() const {
@@ -230,9 +288,10 @@ Image Film::read() const {
   image.samples.resize(n);
   count_.read(image.samples.data(), n * 4);
   std::vector<shared::FilmHalf> halves(2 * n);
+  const std::vector<vec3> ratios = mix_ratios();
   for (int c = 0; c < k_components; ++c) {
     sums_[c].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
-    take_means(halves, image.samples, image.components[c], &image.odd_half[c]);
+    take_means(halves, ratios, image.samples, image.components[c], &image.odd_half[c]);
   }
   std::vector<vec4> plane(n);
   albedo_.read(plane.data(), n * 16);

@@ -46,6 +46,18 @@ struct View {
   uint32_t tiles = 0;
 };
 
+/// How light is kept apart by groups of lights.
+enum class GroupsKept {
+  /// Each group has sums by component like the picture's: any mix is what rendering anew would be.
+  by_component,
+  /// Each group has sums of all components together, rounded to 18 bits without bias
+  /// (shaders/film/add_groups.comp), and the picture has its own, by component, of the light as it is. A mix
+  /// multiplies these by what it makes of the groups' sums, pixel by pixel and half by half: the picture and
+  /// its noise are those of the mix, but it is shared out to the components as if all groups were alike in
+  /// them.
+  in_short
+};
+
 /// The largest width or height of a picture.
 inline constexpr uint32_t k_max_side = 32768;
 
@@ -53,23 +65,29 @@ inline constexpr uint32_t k_max_side = 32768;
 /// k_max_side, no plane beyond what one binding of the device sees, and all of it in the device's memory, as
 /// far as that is free of other things.
 /// `groups`: of lights, that are kept apart.
-void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups = 1);
-/// Bytes that a pixel's sums take: 192 for the picture, and 200 for each group of lights where there are more
-/// than one.
-uint64_t sum_bytes(uint32_t groups);
+void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups = 1,
+                GroupsKept kept = GroupsKept::by_component);
+/// Bytes that a pixel's sums take: 192 for the picture, and where there is more than one group of lights 200
+/// (by component) or 16 (in short) for each.
+uint64_t sum_bytes(uint32_t groups, GroupsKept kept = GroupsKept::by_component);
 
 class Film {
  public:
   /// `groups`: of lights (shaders/shared/lanes.h), 1 to shared::k_most_groups, whose sums are kept apart; the
   /// picture is then their sum, as they are mixed. Throws Error as check_size, or when memory is short.
-  Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups = 1);
-  uint32_t groups() const { return std::max<uint32_t>(1, uint32_t(group_sums_.size())); }
-  /// What each group's light is multiplied by, 1 where nothing is said (and for all of a new film). The
-  /// picture's sums take it up with transport::Wavefront::mix(), and with the next samples of their pixels.
+  Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups = 1,
+       GroupsKept kept = GroupsKept::by_component);
+  uint32_t groups() const { return groups_; }
+  GroupsKept groups_kept() const { return kept_; }
+  /// Whether it keeps more than one group, all components of one together.
+  bool in_short() const { return groups_ > 1 && kept_ == GroupsKept::in_short; }
+  /// What each group's light is multiplied by, 1 where nothing is said (and for all of a new film). Where
+  /// groups are kept by component the picture's sums take it up with transport::Wavefront::mix(), and with
+  /// the next samples of their pixels; in short, at once.
   void set_mix(std::span<const vec3> weights);
-  /// Where groups are kept apart and the device can bind it: each group's light in short, by which another
-  /// mix can be shown at once (Developer::mix).
-  bool quick() const { return group_sums_.size() > 1 && quick_; }
+  /// Where groups are kept apart and the device can bind it: each group's light of all components, by which
+  /// another mix can be shown at once (Developer::mix).
+  bool quick() const { return groups_ > 1 && quick_; }
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
   /// Blocks of 8x8 pixels, in raster order.
@@ -81,7 +99,7 @@ class Film {
   bool fits_storage_buffers() const { return fits_storage_buffers_; }
   void clear(gpu::Stream& stream);
   void bind(gpu::Resources& resources) const;
-  /// A group's own sums, where they are kept apart.
+  /// A group's own sums, where they are kept apart by component.
   void bind_group(gpu::Resources& resources, uint32_t group) const;
   /// What it knows of surfaces, under the names coarse_albedo, coarse_normal and CoarseCount.
   void bind_coarse(gpu::Resources& resources) const;
@@ -103,8 +121,10 @@ class Film {
   /// nothing is known.
   std::array<std::vector<float>, 2> read_lookup_bias() const;
   Image read() const;
-  /// Of a group of lights, where they are kept apart: mean radiance of each component, not mixed.
+  /// Of a group of lights, where they are kept apart by component: mean radiance of each, not mixed.
   std::array<std::vector<vec3>, k_components> read_group(uint32_t group) const;
+  /// Likewise, where they are kept in short: mean radiance of all components together.
+  std::vector<vec3> read_group_sum(uint32_t group) const;
   /// Mean radiance of each component over the picture's sampled pixels.
   static std::array<vec3, k_components> means(const Image& image);
   /// What the overlay of tiles shows: one mark a tile, in raster order; at most one a block.
@@ -113,13 +133,20 @@ class Film {
   std::vector<uint8_t> read_picture() const;
 
  private:
-  uint32_t width_, height_;
+  std::vector<shared::GroupSums> read_group_sums() const;
+  /// What a pixel's even and odd half are multiplied by as the groups are mixed; empty: nothing.
+  std::vector<vec3> mix_ratios() const;
+
+  uint32_t width_, height_, groups_;
+  GroupsKept kept_;
   bool fits_storage_buffers_ = true;
   using Sums = std::array<gpu::Buffer, k_components>;
   Sums make_sums() const;
   Sums sums_;
-  std::vector<Sums> group_sums_;  // none where there is one group: they are the picture's
+  std::vector<Sums> group_sums_;  // by component; none where there is one group: they are the picture's
+  gpu::Buffer group_short_;       // GroupSums, where groups are kept in short
   gpu::Buffer light_mix_, group_light_;
+  shared::GroupMix mix_{};  // what light_mix_ holds
   bool quick_ = false;
   gpu::Buffer albedo_, normal_, count_, vertices_, picture_, errors_, tile_marks_;
   gpu::Device& device_;

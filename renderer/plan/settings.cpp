@@ -76,14 +76,16 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
 }
 
 void add_relight_options(std::vector<OptionInfo>& list) {
-  list.push_back(
-      choice_option("relight.enabled", "off", {"off", "on", "auto"}, "",
-                    "Whether light is kept apart by groups of lights, so that a mix of them costs no ray. It "
-                    "takes 200 bytes a "
-                    "pixel for each group, and time. auto: in the window, where all components are path "
-                    "traced and an eighth of the "
-                    "device's memory is enough. Where it is not kept apart, a mix lights the scene anew.",
-                    "Light by groups"));
+  list.push_back(choice_option(
+      "relight.enabled", "auto", {"off", "on", "compact", "auto"}, "",
+      "Whether light is kept apart by groups of lights, so that a mix of them costs no ray. "
+      "compact: 16 bytes a pixel for each group; the picture of a mix and its noise are right, "
+      "but it is shared out to the components as if each group had its light in all of them "
+      "alike. on: by component, 200 bytes a pixel for each group, and more time. auto: compact "
+      "in the window, where all components are path traced and an eighth of the device's memory "
+      "is enough; off in batch renders. Where light is not kept apart, a mix lights the scene "
+      "anew.",
+      "Light by groups"));
   list.push_back(text_option(
       "relight.groups",
       "Which lights go together, beside what the scene says: PATTERN=GROUP; PATTERN=GROUP. Patterns (* and "
@@ -97,8 +99,9 @@ void add_relight_options(std::vector<OptionInfo>& list) {
   list.push_back(
       without_restart(boolean_option("relight.layers", "false",
                                      "EXR files hold a layer for every group of lights and component, "
-                                     "light.GROUP.COMPONENT, as they are mixed: "
-                                     "together they are the picture. Where light is kept apart by groups.",
+                                     "light.GROUP.COMPONENT, as they are mixed: together they are the "
+                                     "picture. Where relight.enabled is compact: for every group, "
+                                     "light.GROUP.",
                                      "Layers by group")));
 }
 

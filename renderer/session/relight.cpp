@@ -1,6 +1,5 @@
 #include "session/relight.h"
 
-#include "film/film.h"
 #include "solvers/solver.h"
 
 namespace lucerna::session {
@@ -24,10 +23,10 @@ std::string obstacle(const plan::Plan& plan, const plan::Settings& settings, boo
 std::string obstacle(const plan::Settings& settings, const scene::LightGroups& groups, uint64_t pixels,
                      uint64_t memory) {
   if (groups.groups.size() < 2) return "all lights are of one group";
-  const uint64_t bytes = pixels * film::sum_bytes(uint32_t(groups.groups.size()));
+  const uint64_t bytes = pixels * film::sum_bytes(uint32_t(groups.groups.size()), film::GroupsKept::in_short);
   if (settings.text("relight.enabled") == "auto" && bytes > memory / k_share)
-    return fmt::format("{} groups would take {} MiB; relight.enabled=on takes them", groups.groups.size(),
-                       bytes >> 20);
+    return fmt::format("{} groups would take {} MiB; relight.enabled=compact takes them",
+                       groups.groups.size(), bytes >> 20);
   return "";
 }
 
@@ -60,6 +59,7 @@ Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
     r.messages.push_back(unknown_group(name, *r.groups));
   if (r.why_not.empty()) r.why_not = obstacle(settings, *r.groups, pixels, memory);
   r.apart = r.why_not.empty();
+  if (settings.text("relight.enabled") == "on") r.kept = film::GroupsKept::by_component;
   if (r.apart) {
     r.weights = scene::mix_weights(mix, *r.groups);
   } else if (!scene::is_neutral(mix, *r.groups)) {

@@ -69,8 +69,8 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
                            wanted_apart(plan, settings, relight), progress);
   report_progress(progress, 0.9f, "compiling kernels");
   std::unique_ptr<Engine> engine = make_engine(world, plan, settings, changes);
-  const uint32_t groups = world.flat.effects.light_groups;
-  Films films = film_ && film_->groups() == groups ? Films{} : make_films(width_, height_, groups);
+  Films films =
+      film_ && keeps(*film_, world.flat.effects) ? Films{} : make_films(width_, height_, world.flat.effects);
   if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
   if (options_.interactive && !display_) display_ = std::make_unique<Display>(*device_, *compiler_);
   engine_ = std::move(engine);
@@ -93,7 +93,8 @@ upload::LightsApart Renderer::wanted_apart(const plan::Plan& plan, const plan::S
                                            const Relight& relight) const {
   float threshold = wanted_sun_threshold(automaton_, plan, settings);
   if (relight.apart && relight.groups->has_sun) threshold = scene::k_sun_threshold;
-  return {threshold, relight.apart ? relight.groups : nullptr};
+  return {threshold, relight.apart ? relight.groups : nullptr,
+          !relight.apart || relight.kept == film::GroupsKept::by_component};
 }
 
 void Renderer::take(Relight relight) {
@@ -139,9 +140,23 @@ void Renderer::reload_shaders() {
 
 uint32_t Renderer::enabled_components() const { return engine_ ? engine_->plan().enabled() : 0; }
 
-Renderer::Films Renderer::make_films(uint32_t width, uint32_t height, uint32_t groups) const {
+namespace {
+
+film::GroupsKept kept_of(const upload::Effects& effects) {
+  return effects.group_components ? film::GroupsKept::by_component : film::GroupsKept::in_short;
+}
+
+}  // namespace
+
+bool Renderer::keeps(const film::Film& film, const upload::Effects& effects) {
+  return film.groups() == effects.light_groups &&
+         (film.groups() == 1 || film.groups_kept() == kept_of(effects));
+}
+
+Renderer::Films Renderer::make_films(uint32_t width, uint32_t height, const upload::Effects& effects) const {
   Films films;
-  films.picture = std::make_unique<film::Film>(*device_, width, height, groups);
+  films.picture =
+      std::make_unique<film::Film>(*device_, width, height, effects.light_groups, kept_of(effects));
   films.coarse = std::make_unique<film::Film>(*device_, std::max(1u, width / shared::k_coarse_step),
                                               std::max(1u, height / shared::k_coarse_step));
   return films;
@@ -333,8 +348,8 @@ bool Renderer::apply_plan(scene::Changes& changes) {
   for (const std::string& key : changes.settings)
     if (const solvers::SolverInfo* owner = solvers::owner_of(key); owner && engine_->find(owner->name))
       anew |= plan::find_option(key)->restarts;
-  const uint32_t groups = world_.flat.effects.light_groups;
-  Films films = film_->groups() == groups ? Films{} : make_films(width_, height_, groups);
+  Films films =
+      keeps(*film_, world_.flat.effects) ? Films{} : make_films(width_, height_, world_.flat.effects);
   if (anew)
     engine_ = make_engine(world_, plan, settings_, changes);
   else
@@ -358,7 +373,7 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
     if (!relit) relight.lit = world_.lit;
     if (relit || apart != upload::lights_apart(world_.flat))
       edit.emplace(*device_, world_, world_.scene, relight.lit, apart, relit);
-    Films films = make_films(width, height, world_.flat.effects.light_groups);
+    Films films = make_films(width, height, world_.flat.effects);
     if (edit && !engine_->serves(engine_->plan(), settings_, world_)) {
       engine_ = make_engine(world_, engine_->plan(), settings_, scene::Change::size);
       heed_settings();
@@ -389,7 +404,10 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   const bool progress = render_item(cancel);
   render_s_ += timer.seconds();
   if (display_) display_->plan().worked(timer.seconds());
-  if (display_ && samples() > 0) display_->warm(engine_->wavefront().stream(), *film_);
+  if (display_ && samples() > 0) {
+    display_->warm(engine_->wavefront().stream(), *film_);
+    engine_->developer().prepare_mix(engine_->wavefront().stream(), *film_, view());
+  }
   if (prepares)
     prepared_s_ = clock_.seconds(), prepared_ = stats();
   else if (progress)

@@ -224,7 +224,9 @@ class Renderer {
   struct Films {
     std::unique_ptr<film::Film> picture, coarse;
   };
-  Films make_films(uint32_t width, uint32_t height, uint32_t groups) const;
+  Films make_films(uint32_t width, uint32_t height, const upload::Effects& effects) const;
+  /// Whether a film keeps groups of lights apart as paths do that are traced for these.
+  static bool keeps(const film::Film& film, const upload::Effects& effects);
   /// Of a scene in a picture of that size.
   Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
                        std::shared_ptr<const scene::Scene> scene, uint32_t width, uint32_t height) const;

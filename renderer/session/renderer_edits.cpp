@@ -81,8 +81,8 @@ void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Cha
                   wanted_apart(engine_->plan(), settings_, relight),
                   factors || relight.baked != relight_.baked);
   const bool anew = !engine_->serves(engine_->plan(), settings_, world_);
-  const uint32_t groups = world_.flat.effects.light_groups;
-  Films films = film_->groups() == groups ? Films{} : make_films(width_, height_, groups);
+  Films films =
+      keeps(*film_, world_.flat.effects) ? Films{} : make_films(width_, height_, world_.flat.effects);
   if (anew) engine_ = make_engine(world_, engine_->plan(), settings_, changes);
   trial.keep();
   if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);

@@ -113,26 +113,35 @@ film::Brightness Renderer::measure(std::optional<vec2> at) const {
 
 namespace {
 
-/// Layers of groups of lights by component, as they are mixed: light.GROUP.COMPONENT. 16-bit floats but where
-/// values are beyond these. What the group has nothing of is left out.
-void add_group_layers(film::FilmImage& out, const film::Film& film, const Relight& relight) {
+/// A layer of light of one group, as it is mixed: of 16-bit floats but where values are beyond these. What
+/// the group has nothing of is left out.
+void add_light_layer(film::FilmImage& out, const std::string& name, const std::vector<vec3>& mean,
+                     const vec3& weight) {
   constexpr float k_largest_half = 65504;
+  if (std::all_of(mean.begin(), mean.end(), [](const vec3& v) { return v == vec3(0); })) return;
+  for (int k = 0; k < 3; ++k) {
+    std::vector<float> channel(mean.size());
+    for (size_t i = 0; i < channel.size(); ++i) channel[i] = weight[k] * mean[i][k];
+    const std::string full = fmt::format("{}.{}", name, "RGB"[k]);
+    const float largest = *std::max_element(channel.begin(), channel.end());
+    if (largest <= k_largest_half) out.halves.insert(full);
+    out.channels.emplace_back(full, std::move(channel));
+  }
+}
+
+/// Layers of groups of lights: light.GROUP.COMPONENT, or light.GROUP where all components are kept together.
+void add_group_layers(film::FilmImage& out, const film::Film& film, const Relight& relight) {
   for (uint32_t g = 0; g < film.groups(); ++g) {
-    const auto means = film.read_group(g);
-    for (size_t c = 0; c < means.size(); ++c) {
-      if (std::all_of(means[c].begin(), means[c].end(), [](const vec3& v) { return v == vec3(0); })) continue;
-      // A dot would part the layer's name.
-      std::string name = relight.groups->groups[g].name;
-      std::replace(name.begin(), name.end(), '.', '_');
-      for (int k = 0; k < 3; ++k) {
-        std::vector<float> channel(means[c].size());
-        for (size_t i = 0; i < channel.size(); ++i) channel[i] = relight.weights[g][k] * means[c][i][k];
-        const std::string full = fmt::format("light.{}.{}.{}", name, paths::k_component_names[c], "RGB"[k]);
-        const float largest = *std::max_element(channel.begin(), channel.end());
-        if (largest <= k_largest_half) out.halves.insert(full);
-        out.channels.emplace_back(full, std::move(channel));
-      }
+    // A dot would part the layer's name.
+    std::string name = "light." + relight.groups->groups[g].name;
+    std::replace(name.begin() + 6, name.end(), '.', '_');
+    if (film.in_short()) {
+      add_light_layer(out, name, film.read_group_sum(g), relight.weights[g]);
+      continue;
     }
+    const auto means = film.read_group(g);
+    for (size_t c = 0; c < means.size(); ++c)
+      add_light_layer(out, name + "." + paths::k_component_names[c], means[c], relight.weights[g]);
   }
 }
 

@@ -13,7 +13,8 @@ struct Wavefront::Impl {
   HostTrace host_trace;
   uint32_t slots;
   bool transparent = false;
-  uint32_t groups = 1;  // of lights, that are kept apart
+  uint32_t groups = 1;    // of lights, that are kept apart
+  bool in_short = false;  // ... all components of one together
   bool tells_bias = false;
   uint32_t enabled = 15;
   uint8_t first_account = 0;
@@ -22,15 +23,20 @@ struct Wavefront::Impl {
   gpu::Buffer frame, blocks, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states,
       counters;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
-  gpu::Kernel camera, shade, shadow, film_add, film_add_images, lanes_add, lanes_add_images, trace_closest,
-      trace_any, trace_non_opaque;
+  gpu::Kernel camera, shade, shadow, film_add, film_add_images, lanes_add, lanes_add_images, groups_add,
+      groups_add_images, trace_closest, trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
   std::function<void(gpu::Resources&)> bind_lookup;
   TransportStats stats;
 
-  Impl(gpu::Device& d, uint32_t n, uint32_t light_groups, HostTrace trace)
-      : device(d), stream(d), host_trace(std::move(trace)), slots(n), groups(light_groups) {
+  Impl(gpu::Device& d, uint32_t n, const upload::Effects& effects, HostTrace trace)
+      : device(d),
+        stream(d),
+        host_trace(std::move(trace)),
+        slots(n),
+        groups(effects.light_groups),
+        in_short(effects.light_groups > 1 && !effects.group_components) {
     const gpu::Memory queue_memory = host_trace ? gpu::Memory::host : gpu::Memory::device;
     const auto make = [&](const char* name, uint64_t bytes, gpu::Memory memory) {
       return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
@@ -43,7 +49,8 @@ struct Wavefront::Impl {
     rays = texels("rays", uint64_t(n) * sizeof(Ray), queue_memory);
     hits = texels("hits", uint64_t(n) * sizeof(Hit), queue_memory);
     paths = texels("path states", uint64_t(n) * sizeof(PathState), gpu::Memory::device);
-    radiance = texels("path radiance", uint64_t(n) * 16 * k_component_count * groups, gpu::Memory::device);
+    const uint64_t lanes = in_short ? k_component_count + groups : k_component_count * groups;
+    radiance = texels("path radiance", uint64_t(n) * 16 * lanes, gpu::Memory::device);
     features = texels("path features", uint64_t(n) * 32, gpu::Memory::device);
     shadow_rays = texels("shadow rays", uint64_t(n) * sizeof(Ray), queue_memory);
     shadow_hits = texels("shadow hits", uint64_t(n) * sizeof(Hit), queue_memory);
@@ -152,7 +159,7 @@ struct Wavefront::Impl {
 Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
                      uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines,
                      std::function<void(gpu::Resources&)> bind_lookup)
-    : impl_(std::make_unique<Impl>(device, slots, scene.effects().light_groups, std::move(host_trace))) {
+    : impl_(std::make_unique<Impl>(device, slots, scene.effects(), std::move(host_trace))) {
   Impl& w = *impl_;
   const Timer timer;
   gpu::Defines defines = scene.defines();
@@ -167,7 +174,10 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   gpu::Defines images = adding;
   images["LUCERNA_FILM_IMAGES"] = "1";
   w.film_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
-  if (w.groups > 1) {
+  if (w.in_short) {
+    w.groups_add = gpu::Kernel(device, compiler, "film/add_groups.comp", adding);
+    w.groups_add_images = gpu::Kernel(device, compiler, "film/add_groups.comp", images);
+  } else if (w.groups > 1) {
     adding["LUCERNA_FILM_LANES"] = images["LUCERNA_FILM_LANES"] = "1";
     w.lanes_add = gpu::Kernel(device, compiler, "film/add.comp", adding);
     w.lanes_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
@@ -230,11 +240,20 @@ void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
   const bool fits = film.fits_storage_buffers();
   FilmPush push{film.width(), film.height(), pixels, samples, 0, film.quick()};
   if (film.groups() == 1) {
+    if (in_short) push.group = groups;
     stream.dispatch(fits ? film_add : film_add_images, film_resources, push, workgroups(pixels), "film");
     return;
   }
   if (film.groups() != groups)
     throw_error("transport", "a film of {} groups of lights, paths of {}", film.groups(), groups);
+  if (film.in_short() != in_short)
+    throw_error("transport", "a film and paths that keep groups of lights in different ways");
+  if (in_short) {
+    // The picture's sums are of the light as it is; readers mix them.
+    stream.dispatch(fits ? film_add : film_add_images, film_resources, push, workgroups(pixels), "film");
+    stream.dispatch(fits ? groups_add : groups_add_images, film_resources, push, workgroups(pixels), "film");
+    return;
+  }
   for (push.group = 0; push.group < groups; ++push.group) {
     film.bind_group(film_resources, push.group);
     stream.dispatch(fits ? lanes_add : lanes_add_images, film_resources, push, workgroups(pixels), "film");
@@ -242,7 +261,7 @@ void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
 }
 
 void Wavefront::mix(film::Film& film) {
-  if (film.groups() == 1) return;
+  if (film.groups() == 1 || film.in_short()) return;
   impl_->add(film, 64 * film.blocks(), 0);
   impl_->run_and_account(nullptr, nullptr);
 }

@@ -82,7 +82,7 @@ class Wavefront {
   /// leaves the film as it was and returns false.
   bool run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
   /// Makes the film's picture anew of its groups of lights, as they are mixed (film::Film::set_mix), where it
-  /// keeps them apart. Traces nothing.
+  /// keeps them apart by component. Traces nothing.
   void mix(film::Film& film);
   /// The same without a film: for what kernels note on the way.
   bool probe(const schedule::WorkItem& item, const std::function<bool()>& cancel = {});

@@ -172,11 +172,14 @@ void flatten_textures(const scene::Scene& scene, FlatScene& flat) {
 
 }  // namespace
 
-LightsApart lights_apart(const FlatScene& flat) { return {flat.sun_threshold, flat.groups}; }
+LightsApart lights_apart(const FlatScene& flat) {
+  return {flat.sun_threshold, flat.groups, flat.group_components};
+}
 
 void set_lights_apart(FlatScene& flat, const LightsApart& apart) {
   flat.sun_threshold = apart.sun_threshold;
   flat.groups = apart.groups;
+  flat.group_components = apart.group_components;
 }
 
 FlatScene flatten(const scene::Scene& scene, const LightsApart& apart) {

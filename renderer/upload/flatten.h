@@ -20,6 +20,7 @@ struct Effects {
        tex_emission = false, tex_specular = false, tex_transmission = false, tex_diffuse_transmission = false;
   bool sky_apart = false, sun = false;  ///< FlatScene::sun_threshold; texels that are brighter
   uint32_t light_groups = 1;            ///< that are kept apart (FlatScene::groups)
+  bool group_components = true;         ///< ... by component, too
   bool uv_transforms = false;           ///< a use of a texture that is scaled, turned or shifted
   bool tex_nearest = false;             ///< a texture that is not filtered
   bool tex_wraps = false;               ///< a texture that does not repeat
@@ -90,6 +91,7 @@ struct FlatScene : FlatLights, FlatMaterials {
   /// its mean luminance.
   float sun_threshold = 0;
   std::shared_ptr<const scene::LightGroups> groups;  ///< whose light is kept apart; null: no groups are
+  bool group_components = true;  ///< by component, too; else all light of a group in one (film::GroupsKept)
   vec3 scene_centre{0};
   float scene_radius = 1;  ///< of a sphere around that which holds all surfaces
   Effects effects;
@@ -99,8 +101,9 @@ struct FlatScene : FlatLights, FlatMaterials {
 struct LightsApart {
   float sun_threshold = 0;
   std::shared_ptr<const scene::LightGroups> groups;
+  bool group_components = true;
   bool operator==(const LightsApart& o) const {
-    return sun_threshold == o.sun_threshold &&
+    return sun_threshold == o.sun_threshold && group_components == o.group_components &&
            (groups == o.groups || (groups && o.groups && *groups == *o.groups));
   }
 };

@@ -259,6 +259,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   flat.effects.sky_apart = sun_apart;
   flat.effects.sun = has_sun;
   flat.effects.light_groups = flat.groups ? uint32_t(flat.groups->groups.size()) : 1;
+  flat.effects.group_components = flat.group_components;
   static_cast<LightDistribution&>(flat) = std::move(d);
 }
 

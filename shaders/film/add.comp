@@ -49,10 +49,19 @@ void add_mixed(inout FilmHalf h, FilmHalf of_group, vec3 weight) {
 vec3 brought_of(uint slot, uint component) {
 #if LUCERNA_FILM_LANES
   return texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(push.group, component)))).rgb;
+#elif LUCERNA_GROUP_SUMS
+  // In a draft, what the groups' light comes to as they are mixed is shared out to the components as they have it.
+  vec3 all = vec3(0.0), mixed = vec3(0.0);
+  for (uint group = 0u; group < push.group; ++group) {
+    vec3 of_group = texelFetch(radiance_texels, int(radiance_texel(slot, k_component_count + group))).rgb;
+    all += of_group;
+    mixed += light_weight(group) * of_group;
+  }
+  return group_ratio(mixed, all) * texelFetch(radiance_texels, int(radiance_texel(slot, component))).rgb;
 #elif LUCERNA_LIGHT_GROUPS > 1
   vec3 sum = vec3(0.0);
   for (uint group = 0u; group < k_group_count; ++group)
-    sum += light_mix[group].rgb * texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(group, component)))).rgb;
+    sum += light_weight(group) * texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(group, component)))).rgb;
   return sum;
 #else
   return texelFetch(radiance_texels, int(radiance_texel(slot, component))).rgb;
@@ -139,7 +148,7 @@ void main() {
   }
   // The picture is the sum of the groups in their order, whenever that is taken.
   FilmPixel none = FilmPixel(FilmHalf(vec3(0.0), vec3(0.0)), FilmHalf(vec3(0.0), vec3(0.0)));
-  vec3 weight = light_mix[push.group].rgb;
+  vec3 weight = light_weight(push.group);
   for (uint c = 0u; c < k_component_count; ++c) {
     FilmPixel of_group = sums[c];
     sums[c] = none;

@@ -49,8 +49,9 @@ struct Row {
 // Means of the luminance in the film's two halves, of the sum and by component.
 void read_halves(uint pixel, uint count, out float a[5], out float b[5]) {
   float even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
+  FilmRatio ratio = film_ratio(pixel);
   for (uint c = 0u; c < k_component_count; ++c) {
-    FilmPixel p = film_load(c, pixel);
+    FilmPixel p = film_load(c, pixel, ratio);
     a[1u + c] = half_luminance(p.even, even);
     b[1u + c] = half_luminance(p.odd, odd);
   }

@@ -1,25 +1,44 @@
-// Groups of lights in short, as they are mixed -> picture: for the moment in which a mix is changed, until the sums of the
-// film have followed.
+// Groups of lights as they are mixed -> picture, of all components: for the moment in which a mix is changed. What the film
+// keeps for it (LUCERNA_GROUP_SUMS: its sums in short) and the tone curve (LUCERNA_TONE_CURVE) are compiled in: lavapipe
+// computes every side of a branch, and a loop that is to run not at all once.
+#include "lib/variants.glsl"
+#include "film/mix.glsl"
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "shaders/shared/film.h"
 #include "shaders/shared/tone.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { MixPush push; };
-layout(scalar) readonly buffer LightMix { vec4 light_mix[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
+
+#if LUCERNA_GROUP_SUMS
+layout(scalar) readonly buffer FilmCount { uint film_count[]; };
+
+vec3 mixed_light(uint pixel, uint pixels) {
+  vec3 color = vec3(0.0);
+  for (uint group = 0u; group < push.groups; ++group) {
+    uvec4 sums = texelFetch(group_sums, int(group * pixels + pixel));
+    color += light_weight(group) * (group_sum_value(GroupSum(sums.x, sums.y)) + group_sum_value(GroupSum(sums.z, sums.w)));
+  }
+  return color / float(max(film_count[pixel], 1u));
+}
+#else
 uniform samplerBuffer group_lights;
 
 vec3 light_of(uint rg, uint b) { return vec3(unpackHalf2x16(rg), unpackHalf2x16(b).x); }
+vec3 mixed_light(uint pixel, uint pixels) {
+  vec3 color = vec3(0.0);
+  for (uint pair = 0u; pair < (push.groups + 1u) / 2u; ++pair) {
+    uvec4 two = floatBitsToUint(texelFetch(group_lights, int(pair * pixels + pixel)));
+    color += light_weight(2u * pair) * light_of(two.x, two.y);
+    if (2u * pair + 1u < push.groups) color += light_weight(2u * pair + 1u) * light_of(two.z, two.w);
+  }
+  return color;
+}
+#endif
 
 void main() {
   uint pixel = global_index(), pixels = push.width * push.height;
   if (pixel >= pixels) return;
-  vec3 color = vec3(0.0);
-  for (uint pair = 0u; pair < (push.groups + 1u) / 2u; ++pair) {
-    uvec4 two = floatBitsToUint(texelFetch(group_lights, int(pair * pixels + pixel)));
-    color += light_mix[2u * pair].rgb * light_of(two.x, two.y);
-    if (2u * pair + 1u < push.groups) color += light_mix[2u * pair + 1u].rgb * light_of(two.z, two.w);
-  }
-  picture[pixel] = picture_packed(tone_map(color * push.exposure, push.curve));
+  picture[pixel] = picture_packed(tone_map(mixed_light(pixel, pixels) * push.exposure, LUCERNA_TONE_CURVE));
 }

@@ -14,8 +14,9 @@ void main() {
   uint count = film_count[pixel];
   float n = float(max(count, 1u)), even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
   vec4 light[k_component_count];
+  FilmRatio ratio = film_ratio(pixel);
   for (uint c = 0u; c < k_component_count; ++c) {
-    FilmPixel p = film_load(c, pixel);
+    FilmPixel p = film_load(c, pixel, ratio);
     vec3 a = p.even.sum + p.even.compensation, b = p.odd.sum + p.odd.compensation;
     float noise = count < 2u ? -1.0 : 0.5 * abs(luminance(a) / even - luminance(b) / odd);
     light[c] = push.exposure * vec4((a + b) / n, noise);

@@ -9,8 +9,8 @@ layout(push_constant, scalar) uniform Push { TonePush push; };
 layout(scalar) buffer Picture { uint picture[]; };
 layout(scalar) readonly buffer Coarse { uint coarse[]; };
 
-vec3 component_mean(uint c, uint pixel, float n) {
-  FilmPixel p = film_load(c, pixel);
+vec3 component_mean(uint c, uint pixel, FilmRatio ratio, float n) {
+  FilmPixel p = film_load(c, pixel, ratio);
   vec3 sum = (p.even.sum + p.odd.sum) + (p.even.compensation + p.odd.compensation);
   return sum / n;
 }
@@ -21,9 +21,10 @@ void main() {
   uint count = film_count[pixel];
   float n = float(max(count, 1u));
   vec3 color = vec3(0.0);
+  FilmRatio ratio = film_ratio(pixel);
   for (uint c = 0u; c < k_component_count; ++c) {
     bool shown = push.layer == k_layer_beauty ? (push.show >> c & 1u) != 0u : push.layer == k_layer_primary + c;
-    if (shown) color += component_mean(c, pixel, n);
+    if (shown) color += component_mean(c, pixel, ratio, n);
   }
   vec4 albedo = texelFetch(film_albedo, int(pixel)), normal = texelFetch(film_normal, int(pixel));
   float hits = max(albedo.w, 1.0);

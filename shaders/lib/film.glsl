@@ -3,7 +3,8 @@
 //
 // It lies in texel buffers, of which the largest hold 16 times what a storage buffer may on lavapipe. A pixel's two halves
 // are three texels. Where light is kept apart by groups (LUCERNA_LIGHT_GROUPS) each group has such sums of its own, and the
-// picture's follow from them. In one dispatch a pixel is read before it is written, by one invocation. It is written as a storage
+// picture's follow from them; or it has sums in short of all components (LUCERNA_GROUP_SUMS), by which those of the components
+// are weighed where they are read, half by half. In one dispatch a pixel is read before it is written, by one invocation. It is written as a storage
 // buffer where it fits into one, which is several times as fast on lavapipe, else through images (LUCERNA_FILM_IMAGES).
 #ifndef LUCERNA_LIB_FILM
 #define LUCERNA_LIB_FILM
@@ -28,10 +29,7 @@ layout(scalar) writeonly buffer FilmAlbedo { vec4 film_albedo_out[]; };
 layout(scalar) writeonly buffer FilmNormal { vec4 film_normal_out[]; };
 #define LUCERNA_FILM_WRITE(buffer, texel, value) buffer[texel] = value
 #endif
-#if LUCERNA_LIGHT_GROUPS > 1
-// Of every group of lights, what its light is multiplied by in the picture.
-layout(scalar) readonly buffer LightMix { vec4 light_mix[]; };
-#endif
+#include "film/mix.glsl"
 #if LUCERNA_FILM_LANES
 // The sums of one group of lights, like those above. These then are the picture's, of all groups as they are mixed.
 uniform samplerBuffer group_primary, group_secondary, group_tertiary, group_caustic;
@@ -61,11 +59,37 @@ FilmPixel film_pixel(vec4 a, vec4 b, vec4 c) {
   LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)) + 1, vec4((value).even.compensation.yz, (value).odd.sum.xy));  \
   LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)) + 2, vec4((value).odd.sum.z, (value).odd.compensation));
 
-// A component's sums at a pixel.
+// A component's sums at a pixel, as samples have brought them.
 FilmPixel film_load(uint component, uint pixel) {
   if (component == 0u) return LUCERNA_FILM_LOAD(film_primary, pixel);
   if (component == 1u) return LUCERNA_FILM_LOAD(film_secondary, pixel);
   if (component == 2u) return LUCERNA_FILM_LOAD(film_tertiary, pixel);
   return LUCERNA_FILM_LOAD(film_caustic, pixel);
+}
+
+// What the halves of a pixel's components are multiplied by so that they are of the mix that is shown: 1 where their groups
+// are not kept in short, and where each is taken as it is.
+struct FilmRatio {
+  vec3 even, odd;
+};
+FilmRatio film_ratio(uint pixel) {
+  vec3 even = vec3(0.0), odd = vec3(0.0), even_mixed = vec3(0.0), odd_mixed = vec3(0.0);
+  uvec2 groups_pixels = light_mix_size();
+  for (uint group = 0u; group < groups_pixels.x; ++group) {
+    uvec4 sums = texelFetch(group_sums, int(group * groups_pixels.y + pixel));
+    vec3 a = group_sum_value(GroupSum(sums.x, sums.y)), b = group_sum_value(GroupSum(sums.z, sums.w)), w = light_weight(group);
+    even += a;
+    odd += b;
+    even_mixed += w * a;
+    odd_mixed += w * b;
+  }
+  return FilmRatio(group_ratio(even_mixed, even), group_ratio(odd_mixed, odd));
+}
+
+FilmHalf film_mixed(FilmHalf h, vec3 ratio) { return FilmHalf(ratio * h.sum, ratio * h.compensation); }
+// A component's sums at a pixel, as its groups of lights are mixed.
+FilmPixel film_load(uint component, uint pixel, FilmRatio ratio) {
+  FilmPixel p = film_load(component, pixel);
+  return FilmPixel(film_mixed(p.even, ratio.even), film_mixed(p.odd, ratio.odd));
 }
 #endif

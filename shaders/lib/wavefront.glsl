@@ -73,15 +73,63 @@ void store_path(uint slot, PathState p) {
 #endif
 }
 
-// At most once a lane, slot and dispatch (see above). What is not finite is refused and counted.
-void add_radiance(uint slot, uint lane, vec3 value) {
-  bool wanted = lane < k_lane_count, finite = is_finite(value);
-  if (wanted && finite && any(notEqual(value, vec3(0.0)))) {
+// To a texel of the path's radiance. At most once a texel and dispatch (see above).
+void add_to_radiance(uint slot, uint lane, bool wanted, vec3 value) {
+  if (wanted && any(notEqual(value, vec3(0.0)))) {
     int at = int(radiance_texel(slot, lane));
     radiance[at].rgb = texelFetch(radiance_texels, at).rgb + value;
   }
-  if (wanted && !finite) atomicAdd(counters[k_counter_dropped], 1u);
 }
+
+// Whether a lane's light is to be added. What is not finite is refused and counted.
+bool radiance_wanted(uint lane, vec3 value) {
+  bool wanted = lane < k_no_lane, finite = is_finite(value);
+  if (wanted && !finite) atomicAdd(counters[k_counter_dropped], 1u);
+  return wanted && finite;
+}
+
+#if LUCERNA_GROUP_SUMS
+// Light of two lanes of one group, which may be the same. At most once a slot and dispatch, like the next.
+void add_radiance_of_group(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) {
+  bool same = lane_a == lane_b;
+  vec3 both = a + b;
+  a = same ? both : a;
+  b = same ? vec3(0.0) : b;
+  bool wanted_a = radiance_wanted(lane_a, a), wanted_b = radiance_wanted(lane_b, b);
+  vec3 of_group = (wanted_a ? a : vec3(0.0)) + (wanted_b ? b : vec3(0.0));
+  uint group = (wanted_a ? lane_a : lane_b) / k_component_count;
+  add_to_radiance(slot, lane_a % k_component_count, wanted_a, a);
+  add_to_radiance(slot, lane_b % k_component_count, wanted_b, b);
+  add_to_radiance(slot, k_component_count + group, wanted_a || wanted_b, of_group);
+}
+// ... of two groups and one component.
+void add_radiance_of_component(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) {
+  bool wanted_a = radiance_wanted(lane_a, a), wanted_b = radiance_wanted(lane_b, b);
+  vec3 of_component = (wanted_a ? a : vec3(0.0)) + (wanted_b ? b : vec3(0.0));
+  add_to_radiance(slot, (wanted_a ? lane_a : lane_b) % k_component_count, wanted_a || wanted_b, of_component);
+  add_to_radiance(slot, k_component_count + lane_a / k_component_count, wanted_a, a);
+  add_to_radiance(slot, k_component_count + lane_b / k_component_count, wanted_b, b);
+}
+void add_radiance(uint slot, uint lane, vec3 value) {
+  bool wanted = radiance_wanted(lane, value);
+  add_to_radiance(slot, lane % k_component_count, wanted, value);
+  add_to_radiance(slot, k_component_count + lane / k_component_count, wanted, value);
+}
+#else
+// At most once a lane, slot and dispatch.
+void add_radiance(uint slot, uint lane, vec3 value) { add_to_radiance(slot, lane, radiance_wanted(lane, value), value); }
+// Light of two lanes of one group, which may be the same.
+void add_radiance_of_group(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) {
+  bool same = lane_a == lane_b;
+  add_radiance(slot, lane_a, a + (same ? b : vec3(0.0)));
+  add_radiance(slot, same ? k_no_lane : lane_b, b);
+}
+// ... of two groups and one component.
+void add_radiance_of_component(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) {
+  add_radiance(slot, lane_a, a);
+  add_radiance(slot, lane_b, b);
+}
+#endif
 
 #if LUCERNA_LOOKUP_BIAS
 // VertexOut.bias; at most once a slot and dispatch. What is not finite is left out, and the light that it is of is refused.

@@ -2,6 +2,7 @@
 #ifndef LUCERNA_SHARED_FILM_H
 #define LUCERNA_SHARED_FILM_H
 #include "shaders/shared/compat.h"
+#include "shaders/shared/lanes.h"
 LUCERNA_SHARED_BEGIN
 
 /// Sum of half of a pixel's samples of one component: the value is sum + compensation. Radiance.
@@ -24,7 +25,7 @@ struct FilmPush {
   uint width, height;
   uint pixel_count;      ///< slots a sample: 64 for each block of the item
   uint sample_count;     ///< samples a pixel; 0: only what the picture makes of the groups of lights, of all blocks
-  uint group;            ///< of lights, where the film keeps them apart
+  uint group;            ///< of lights, where the film keeps them apart by component; else how many are to be mixed at once
   uint quick;            ///< not 0: GroupLights has room for all
 };
 
@@ -76,6 +77,24 @@ struct ErrorPush {
   uint bias;              ///< not 0: FilmBiasEven and FilmBiasOdd are
 };
 
+/// Radiance of one group of lights, summed over half of a pixel's samples, all components together: three mantissas of 18
+/// bits with one exponent (shaders/shared/group_sums.h). All bits 0 is no light.
+struct GroupSum {
+  uint low, high;
+};
+/// A group's sums at a pixel where groups are kept in short: a texel, at group * pixels + pixel.
+struct GroupSums {
+  GroupSum even, odd;
+};
+
+/// How groups of lights are mixed where a film is read: a texel, and one for each weight.
+struct GroupMix {
+  uint groups;  ///< whose sums (GroupSums) the components are to be weighed by; 0: the components are as they are mixed
+  uint pixels;  ///< of the film
+  uint pad0, pad1;
+  vec4 weight[k_most_groups];  ///< what each group's light is multiplied by
+};
+
 /// Mean radiance of one group of lights at a pixel, all components: halves (r, g), (b, 0). In pairs of groups, a texel
 /// each, pair by pair: group 2 p + q at ((p * pixels + pixel) * 2 + q).
 struct GroupLight {
@@ -87,6 +106,7 @@ struct MixPush {
   uint groups;           ///< of lights
   uint curve;            ///< ToneCurve
   float exposure;
+  uint sums;             ///< not 0: of GroupSums, else of GroupLight
 };
 
 LUCERNA_CONST uint k_layer_beauty = 0u;   ///< sum of the shown components

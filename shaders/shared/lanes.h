@@ -2,11 +2,16 @@
 //
 // The automaton gives the component of a path, the light that it meets its group. How many groups there are is compiled in
 // (LUCERNA_LIGHT_GROUPS; less than 2: they are not kept apart): more of them make the path's radiance and the film wider.
+// Where groups are kept in short (LUCERNA_GROUP_SUMS), all components of one together, light is summed twice: by component,
+// whatever its group, and by group, whatever its component.
 #ifndef LUCERNA_SHARED_LANES_H
 #define LUCERNA_SHARED_LANES_H
 #include "shaders/shared/compat.h"
 #ifndef LUCERNA_LIGHT_GROUPS
 #define LUCERNA_LIGHT_GROUPS 0
+#endif
+#ifndef LUCERNA_GROUP_SUMS
+#define LUCERNA_GROUP_SUMS 0
 #endif
 LUCERNA_SHARED_BEGIN
 
@@ -15,14 +20,20 @@ LUCERNA_CONST uint k_most_groups = 16u;
 
 #ifndef __cplusplus
 const uint k_group_count = LUCERNA_LIGHT_GROUPS > 1 ? LUCERNA_LIGHT_GROUPS : 1;
-const uint k_lane_count = k_group_count * k_component_count;
+const uint k_no_lane = k_group_count * k_component_count;  // where light is summed nowhere
+#if LUCERNA_GROUP_SUMS
+const uint k_lane_count = k_component_count + k_group_count;
+#else
+const uint k_lane_count = k_no_lane;
+#endif
 
-// k_lane_count where there is no such component: it is summed nowhere.
+// k_no_lane where there is no such component.
 uint lane_of(uint group, uint component) {
-  return component < k_component_count ? group * k_component_count + component : k_lane_count;
+  return component < k_component_count ? group * k_component_count + component : k_no_lane;
 }
 
-// Of a path slot's radiance, in radiance_texels.
+// Of a path slot's radiance, in radiance_texels: of a lane, or where groups are kept in short of a component or of
+// k_component_count + group.
 uint radiance_texel(uint slot, uint lane) { return slot * k_lane_count + lane; }
 #endif
 

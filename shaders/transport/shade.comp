@@ -174,17 +174,18 @@ void main() {
     }
     if (go_on) continue_path(slot, path, offset_origin(surface, direction), direction);
   }
-  uint met = lane_of(group, automaton_component(state));
+  uint met = lane_of(group, automaton_component(state)), met_sun = k_no_lane;
 #if LUCERNA_LIGHT_GROUPS > 1 && LUCERNA_SUN
-  if (hit.prim == k_no_hit && frame.sun_group != frame.sky_group)
-    add_radiance(slot, lane_of(frame.sun_group, automaton_component(state)), sun);
+  if (hit.prim == k_no_hit && frame.sun_group != frame.sky_group) met_sun = lane_of(frame.sun_group, automaton_component(state));
 #endif
 #if LUCERNA_VERTEX_HOOKS
   for (uint lane = 0u; lane < k_lane_count; ++lane)
-    add_radiance(slot, lane, found.radiance[lane] + (met == lane ? gain : vec3(0.0)));
+    add_radiance(slot, lane, found.radiance[lane] + (met == lane ? gain : vec3(0.0)) + (met_sun == lane ? sun : vec3(0.0)));
 #if LUCERNA_LOOKUP_BIAS
   add_lookup_bias(slot, found.bias);
 #endif
+#elif LUCERNA_LIGHT_GROUPS > 1 && LUCERNA_SUN
+  add_radiance_of_component(slot, met, gain, met_sun, sun);
 #else
   add_radiance(slot, met, gain);
 #endif

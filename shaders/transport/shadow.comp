@@ -59,10 +59,7 @@ void main() {
   if (!blocked) add_splat(slot, s);
 #else
   if (!blocked) {
-    uint diffuse = s.lanes & 0xffu, glossy = (s.lanes >> 8) & 0xffu;
-    bool same = diffuse == glossy;
-    add_radiance(slot, diffuse, s.diffuse + (same ? s.glossy : vec3(0.0)));
-    add_radiance(slot, same ? k_lane_count : glossy, s.glossy);
+    add_radiance_of_group(slot, s.lanes & 0xffu, s.diffuse, (s.lanes >> 8) & 0xffu, s.glossy);
   }
 #endif
 }

@@ -1,0 +1,12 @@
+// How groups of lights are mixed (GroupMix). Texels, which lavapipe reads much faster than words of a storage buffer.
+#ifndef LUCERNA_FILM_MIX
+#define LUCERNA_FILM_MIX
+#include "shaders/shared/group_sums.h"
+
+uniform samplerBuffer light_mix;
+uniform usamplerBuffer group_sums;  // GroupSums, where groups of lights are kept in short
+
+// GroupMix.groups and pixels.
+uvec2 light_mix_size() { return floatBitsToUint(texelFetch(light_mix, 0)).xy; }
+vec3 light_weight(uint group) { return texelFetch(light_mix, int(1u + group)).rgb; }
+#endif

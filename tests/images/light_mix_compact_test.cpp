@@ -1,0 +1,244 @@
+// links: session
+// Light kept apart by groups in short (relight.enabled=compact), against the same light kept by component and
+// against rendering anew: as it is to the bit the picture without groups, under any mix within 0.02 % of the
+// exact one in light and in noise, whatever was mixed before, and with no ray traced.
+#include <catch2/catch.hpp>
+
+#include "film/io/image_file.h"
+#include "images/light_mix_support.h"
+#include "support/folder.h"
+
+using namespace lucerna;
+using namespace lucerna::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const Settings k_compact = {{"relight.enabled", "compact"}};
+
+Settings compact(Settings more) {
+  more.insert(k_compact.begin(), k_compact.end());
+  return more;
+}
+
+const char* const k_mixes[] = {
+    "sky: mute",
+    "lamp: solo",
+    "block: solo",
+    "lamp: factor=10000",
+    "lamp: solo factor=10000",
+    "sky: solo factor=0.0001",
+    "lamp: factor=0.0001; sun: factor=0.0001",
+    "lamp: mute; sun: mute; sky: mute",
+    "sky: color=1,0.2,0.1; sun: kelvin=2500; lamp: kelvin=9000 ev=1.3; block: color=0.3,0.1,1"};
+
+std::vector<vec3> all_components(const film::Image& image, bool odd) {
+  std::vector<vec3> sum(image.samples.size(), vec3(0));
+  for (const auto& component : odd ? image.odd_half : image.components)
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
+  return sum;
+}
+
+/// The largest difference of two pictures of all components over the pixel's brightest channel.
+double worst_share(const std::vector<vec3>& a, const std::vector<vec3>& b) {
+  double worst = 0;
+  for (size_t i = 0; i < a.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const double scale = std::max({double{b[i].x}, double{b[i].y}, double{b[i].z}, 1e-20});
+      worst = std::max(worst, std::abs(double{a[i][k]} - double{b[i][k]}) / scale);
+    }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("as it is, light kept in short is to the bit the picture without groups, noise included") {
+  const scene::Scene even = block_room(true);  // no sun, which would be a light of its own
+  Bench apart(even, k_compact), together(even, {{"relight.enabled", "off"}});
+  const film::Image a = apart.image(), b = together.image();
+  CHECK(apart.r.relight().apart);
+  CHECK(apart.r.film().in_short());
+  CHECK(apart.r.film().groups() > 1);
+  CHECK(identical(a, b));
+  CHECK(apart.r.image_error().rms == together.r.image_error().rms);
+  CHECK(apart.r.stats().rays == together.r.stats().rays);
+  CHECK(apart.r.device().validation_messages() == 0);
+  // With a sun: other samples of the same light.
+  Bench with_sun(room(), k_compact), without(room(), {{"relight.enabled", "off"}});
+  const film::Image c = with_sun.image();
+  CHECK(worst_z(c, without.image()) < 5.5);
+}
+
+TEST_CASE(
+    "a mix of light kept in short is that of light kept by component within 0.02 %, and so is its noise") {
+  constexpr double k_share = 2e-4;
+  Bench exact(room(), {}, 64), in_short(room(), k_compact, 64);
+  exact.image(), in_short.image();
+  CHECK_FALSE(exact.r.film().in_short());
+  CHECK(in_short.r.film().in_short());
+  double most = 0;
+  for (const char* text : k_mixes) {
+    INFO(text);
+    exact.mix(text), in_short.mix(text);
+    const film::Image a = in_short.r.image(), b = exact.r.image();
+    const double off = worst_share(all_components(a, false), all_components(b, false)),
+                 odd_off = worst_share(all_components(a, true), all_components(b, true));
+    CHECK(off < k_share);
+    CHECK(odd_off < k_share);
+    most = std::max(most, off);
+    // What is told of the noise of the picture, and of its brightness.
+    const film::ImageError told = in_short.r.image_error(), right = exact.r.image_error();
+    CHECK(told.rms[0] == Approx(right.rms[0]).epsilon(1e-3));
+    CHECK(told.luminance[0] == Approx(right.luminance[0]).epsilon(k_share));
+    // Components are estimates, and never more than the picture: they are its shares.
+    double sum = 0;
+    for (size_t c = 1; c < told.luminance.size(); ++c) sum += told.luminance[c];
+    CHECK(sum == Approx(told.luminance[0]).epsilon(1e-4));
+  }
+  CHECK(most > 0);  // or nothing was in short
+}
+
+TEST_CASE("light kept in short and mixed equals rendering anew, by statistics") {
+  const scene::Scene s = room();
+  Bench b(s, compact({{"seed", "1"}}), 64);
+  b.image();
+  for (const char* text : {"sky: mute", "lamp: solo factor=10000", k_mixes[8]}) {
+    INFO(text);
+    b.mix(text);
+    const scene::LightMix mix = scene::parse_mix(text);
+    Bench anew(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}}, 64);
+    // All components as one: in the place of the first.
+    film::Image mixed = b.r.image(), other = anew.image();
+    for (film::Image* image : {&mixed, &other}) {
+      image->components[0] = all_components(*image, false), image->odd_half[0] = all_components(*image, true);
+      for (size_t c = 1; c < film::k_components; ++c)
+        image->components[c].assign(image->samples.size(), vec3(0)),
+            image->odd_half[c] = image->components[c];
+    }
+    CHECK(worst_z(mixed, other) < 5.5);
+  }
+}
+
+TEST_CASE("a mix of light kept in short traces no ray and does not depend on what was mixed before") {
+  Bench b(room(), k_compact);
+  const film::Image neutral = b.image();
+  const uint64_t rays = b.r.stats().rays, restarts = b.r.restarts();
+  b.mix("lamp: ev=2; sky: mute");
+  const film::Image mixed = b.r.image();
+  CHECK_FALSE(identical(mixed, neutral));
+  for (const char* text : {"lamp: ev=-7.3 color=0.1,0.7,0.3", "block: solo", "spot: mute; sun: ev=5"})
+    b.mix(text);
+  b.mix("lamp: ev=2; sky: mute");
+  CHECK(identical(b.r.image(), mixed));
+  b.mix("");
+  CHECK(identical(b.r.image(), neutral));
+  CHECK(b.r.stats().rays == rays);
+  CHECK(b.r.restarts() == restarts);
+  CHECK(b.r.done());
+  CHECK(b.r.device().validation_messages() == 0);
+  Bench early(room(), compact({{"relight.mix", "lamp: ev=2; sky: mute"}}));
+  CHECK(identical(early.image(), mixed));
+  Bench between(room(), compact({{"path.batch", "2048"}}));  // and in other batches
+  for (int i = 0; i < 3; ++i) between.r.step();
+  between.mix("lamp: ev=2; sky: mute");
+  CHECK(identical(between.image(), mixed));
+  // Without any light nothing is left.
+  b.mix("sky: mute; sun: mute; lamp: mute; spot: mute; block: mute");
+  for (const auto& component : b.r.image().components)
+    CHECK(std::all_of(component.begin(), component.end(), [](const vec3& v) { return v == vec3(0); }));
+}
+
+TEST_CASE("the picture that is shown at once after a mix is the one that is developed afterwards") {
+  session::RendererOptions options = renderer_options(true);
+  options.interactive = true;
+  session::Renderer r(options);
+  r.set_size(48, 32);
+  // auto: the window keeps light in short.
+  r.set_scene(std::make_shared<scene::Scene>(room()), {},
+              {{"samples", "16", ""}, {"path.max_depth", "8", ""}});
+  while (r.step()) {
+  }
+  REQUIRE(r.film().in_short());
+  REQUIRE(r.film().quick());
+  r.settings().set("relight.mix", "lamp: ev=1 color=1,0.4,0.2; sun: mute");
+  const std::vector<uint8_t> before = r.shown_picture(false);
+  r.apply_settings();
+  const std::vector<uint8_t> at_once = r.shown_picture(false);
+  r.settle_mix();
+  const std::vector<uint8_t> settled = r.shown_picture(false);
+  REQUIRE(at_once.size() == settled.size());
+  CHECK(at_once != before);
+  int worst = 0;
+  for (size_t i = 0; i < settled.size(); ++i)
+    worst = std::max(worst, std::abs(int{at_once[i]} - int{settled[i]}));
+  CHECK(worst <= 1);
+  CHECK(r.stats().dropped == 0);
+}
+
+TEST_CASE("drafts of light kept in short are mixed like the picture") {
+  const scene::Scene s = room();
+  const std::vector<vec3> weights = scene::mix_weights(
+      scene::parse_mix("lamp: ev=1 color=1,0.4,0.2; sun: mute; sky: ev=-3"), groups_of_room());
+  const film::Image a = trace(s, s, weights, 4, film::GroupsKept::in_short, true),
+                    b = trace(s, s, weights, 4, film::GroupsKept::by_component, true);
+  CHECK(worst_share(all_components(a, false), all_components(b, false)) < 1e-5);
+  const film::Image neutral = trace(s, s, std::vector<vec3>(5, vec3(1)), 4, film::GroupsKept::in_short, true);
+  CHECK(worst_share(all_components(a, false), all_components(neutral, false)) > 0.1);
+}
+
+TEST_CASE("layers by group sum up to the picture within 0.2 %") {
+  const Folder folder;
+  Bench b(room(), compact({{"relight.layers", "true"},
+                           {"relight.mix", "lamp: ev=1.3 color=1,0.8,0.3; sun: ev=-2; sky: mute"}}));
+  b.image();
+  b.r.save(folder / "a.exr");
+  const film::FilmImage file = film::read_exr(folder / "a.exr");
+  for (int k = 0; k < 3; ++k) {
+    const char channel = "RGB"[k];
+    const std::vector<float>& picture = *file.find(std::string(1, channel));
+    std::vector<double> sum(picture.size());
+    for (const char* group : {"sky", "sun", "lamp", "spot", "block"}) {
+      const std::vector<float>* layer = file.find(fmt::format("light.{}.{}", group, channel));
+      REQUIRE(layer);
+      for (size_t i = 0; i < sum.size(); ++i) sum[i] += double{(*layer)[i]};
+    }
+    double worst = 0;
+    for (size_t i = 0; i < sum.size(); ++i)
+      worst = std::max(worst, std::abs(sum[i] - double{picture[i]}) / std::max(1e-3, double{picture[i]}));
+    CHECK(worst < 0.002);
+    CHECK(worst > 0);
+  }
+}
+
+TEST_CASE("what is kept by groups takes 16 bytes a pixel for each, 128 for eight") {
+  CHECK(film::sum_bytes(8, film::GroupsKept::in_short) - film::sum_bytes(1) == 128);
+  CHECK(film::sum_bytes(1, film::GroupsKept::in_short) == film::sum_bytes(1));
+}
+
+TEST_CASE(
+    "the window keeps light in short unless told otherwise, batch renders keep none; each can be changed") {
+  for (const bool interactive : {false, true}) {
+    session::RendererOptions options = renderer_options(true);
+    options.interactive = interactive;
+    session::Renderer r(options);
+    r.set_size(16, 16);
+    r.set_scene(std::make_shared<scene::Scene>(room()), {}, {{"samples", "2", ""}});
+    CHECK(r.film().in_short() == interactive);
+    CHECK(r.relight().apart == interactive);
+    finish(r);
+    for (const char* how : {"on", "compact", "off", "auto"}) {
+      INFO(how);
+      const uint64_t restarts = r.restarts();
+      const bool apart = r.relight().apart, in_short = r.film().in_short();
+      set(r, {{"relight.enabled", how}});
+      const bool wants = how == std::string("on") || how == std::string("compact") ||
+                         (how == std::string("auto") && interactive);
+      CHECK(r.relight().apart == wants);
+      CHECK((r.film().groups() > 1) == wants);
+      CHECK(r.film().in_short() == (wants && how != std::string("on")));
+      if (apart != wants || in_short != r.film().in_short()) CHECK(r.restarts() > restarts);
+      CHECK(finish(r).samples[0] == 2);
+    }
+    CHECK(r.device().validation_messages() == 0);
+  }
+}

@@ -1,0 +1,179 @@
+// links: film
+// Sums by group of lights in short, through the real kernel: right in the mean however small samples are
+// beside the sum, as noisy as is said, over the whole range of floats, and to the bit the same however
+// samples are cut into batches.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+
+#include "film/film.h"
+#include "shaders/shared/group_sums.h"
+
+using namespace lucerna;
+
+namespace {
+
+constexpr uint32_t k_groups = 2, k_side = 64, k_pixels = k_side * k_side, k_blocks = k_pixels / 64;
+constexpr uint32_t k_lanes = 4 + k_groups;
+
+/// What sample `s` brings of a group, to every pixel alike: pixels then differ by rounding alone.
+using Brings = std::function<vec3(uint32_t group, uint32_t s)>;
+
+/// A film, and the kernel that adds to it.
+struct Bench {
+  gpu::Device device{{"cpu", true}};
+  gpu::ShaderCompiler compiler;
+  gpu::Stream stream{device};
+  film::Film film{device, k_side, k_side, k_groups, film::GroupsKept::in_short};
+  gpu::Kernel add;
+  gpu::Buffer block, radiance;
+  gpu::Resources resources;
+
+  explicit Bench(bool images = false)
+      : add(device, compiler, "film/add_groups.comp",
+            {{"LUCERNA_LIGHT_GROUPS", std::to_string(k_groups)},
+             {"LUCERNA_GROUP_SUMS", "1"},
+             {"LUCERNA_FILM_IMAGES", images ? "1" : "0"}}),
+        block(device, {.name = "work blocks", .bytes = k_blocks * sizeof(shared::WorkBlock)}) {
+    film.clear(stream);
+    film.bind(resources);
+    resources.set("WorkBlocks", block);
+  }
+  ~Bench() { CHECK(device.validation_messages() == 0); }
+
+  /// Samples `first` to `first + count`, in batches of so many.
+  void samples(uint32_t first, uint32_t count, uint32_t batch, const Brings& brings) {
+    radiance = gpu::Buffer(
+        device,
+        {.name = "radiance", .bytes = uint64_t{k_pixels} * batch * k_lanes * sizeof(vec4), .texel = true});
+    resources.set("radiance_texels", radiance);
+    std::vector<vec4> values(size_t{k_pixels} * batch * k_lanes, vec4(7));  // components: not its affair
+    std::vector<shared::WorkBlock> blocks(k_blocks);
+    for (uint32_t done = 0; done < count; done += batch) {
+      const uint32_t n = std::min(batch, count - done);
+      for (uint32_t i = 0; i < n; ++i)
+        for (uint32_t g = 0; g < k_groups; ++g) {
+          const vec4 value(brings(g, first + done + i), 0);
+          for (uint32_t p = 0; p < k_pixels; ++p)
+            values[(size_t{i} * k_pixels + p) * k_lanes + 4 + g] = value;
+        }
+      radiance.write(std::span<const vec4>(values));
+      for (uint32_t b = 0; b < k_blocks; ++b) blocks[b] = {b, first + done};
+      block.write(std::span<const shared::WorkBlock>(blocks));
+      stream.dispatch(add, resources, shared::FilmPush{k_side, k_side, k_pixels, n, 0, 0}, k_blocks);
+      stream.run();
+    }
+  }
+
+  /// Of a group, by pixel: the sums of even and odd samples. Nobody has counted samples, so that a mean is a
+  /// sum.
+  std::vector<vec3> sums(uint32_t group) const { return film.read_group_sum(group); }
+};
+
+struct Moments {
+  double mean = 0, deviation = 0;
+};
+
+Moments moments(const std::vector<vec3>& values, int channel) {
+  double sum = 0, squares = 0;
+  for (const vec3& v : values) sum += double{v[channel]}, squares += double{v[channel]} * double{v[channel]};
+  const double n = double(values.size()), mean = sum / n;
+  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean))};
+}
+
+/// Halves rounded apart, each of half of the samples, are together no noisier than all of them in one.
+double told_deviation(double samples) { return std::min(std::sqrt(samples / 12) / 131072, 1.0 / 512); }
+
+}  // namespace
+
+TEST_CASE(
+    "small samples beside a large sum are not lost: the mean over pixels is right to 5 standard errors") {
+  // An eighth of the sum's last bit: rounding to the nearest would lose every one of them.
+  constexpr uint32_t k_small = 4000;
+  const float small = 0x1p-20f;
+  Bench b;
+  const Brings brings = [&](uint32_t group, uint32_t s) {
+    return (s < 2 ? 1.0f : small) * vec3(1, 0.5f, 0) * (group == 0 ? 1.0f : 0x1p-9f);
+  };
+  b.samples(0, 2 + k_small, 64, brings);
+  for (uint32_t g = 0; g < k_groups; ++g)
+    for (int k = 0; k < 3; ++k) {
+      double exact = 0;
+      for (uint32_t s = 0; s < 2 + k_small; ++s) exact += double{brings(g, s)[k]};
+      const Moments m = moments(b.sums(g), k);
+      INFO("group " << g << " channel " << k);
+      CHECK(std::abs(m.mean - exact) <= 5 * m.deviation / std::sqrt(double{k_pixels}));
+      CHECK((m.deviation > 0) == (k < 2));
+    }
+}
+
+TEST_CASE("sums of many samples are right in the mean, and no noisier than is said") {
+  // Samples of uneven size, the group's mean in all channels; what differs between pixels is rounding.
+  const Brings brings = [](uint32_t group, uint32_t s) {
+    const float x = float((s * 2654435761u) >> 8) * 0x1p-24f;
+    return (group == 0 ? 3.7f : 1e-6f) * vec3(x, 0.3f, 0.9f * x * x);
+  };
+  Bench b;
+  double exact[k_groups][3] = {};
+  uint32_t done = 0;
+  for (const uint32_t samples : {16u, 256u, 4096u}) {
+    b.samples(done, samples - done, std::min(samples, 64u), brings);
+    for (; done < samples; ++done)
+      for (uint32_t g = 0; g < k_groups; ++g)
+        for (int k = 0; k < 3; ++k) exact[g][k] += double{brings(g, done)[k]};
+    for (uint32_t g = 0; g < k_groups; ++g)
+      for (int k = 0; k < 3; ++k) {
+        const Moments m = moments(b.sums(g), k);
+        INFO(samples << " samples, group " << g << ", channel " << k << ": " << m.deviation / exact[g][k]);
+        CHECK(std::abs(m.mean - exact[g][k]) <= 5 * m.deviation / std::sqrt(double{k_pixels}));
+        // The bit is the largest channel's.
+        const double largest = std::max({exact[g][0], exact[g][1], exact[g][2]});
+        CHECK(m.deviation <= 1.1 * told_deviation(samples) * largest);
+        CHECK(m.deviation > 0);
+      }
+  }
+}
+
+TEST_CASE("sums are the same to the bit however samples are cut into batches and written") {
+  const Brings brings = [](uint32_t group, uint32_t s) {
+    return std::exp2(float(s * 37 % 23) - 11.0f) * vec3(0.3f, 1 + 0.1f * float(group), float(s % 3));
+  };
+  std::vector<vec3> first[k_groups];
+  for (const uint32_t batch : {37u, 1u, 8u, 37u}) {
+    Bench b(batch == 8);  // through images
+    b.samples(5, 37, batch, brings);
+    for (uint32_t g = 0; g < k_groups; ++g) {
+      const std::vector<vec3> sums = b.sums(g);
+      if (first[g].empty()) first[g] = sums;
+      CHECK(sums == first[g]);
+      CHECK(std::any_of(sums.begin(), sums.end(), [&](const vec3& v) { return v != sums[0]; }));
+    }
+  }
+}
+
+TEST_CASE("sums reach from 1e-32 to 1e36, and hold one sample to their last bit") {
+  for (const float scale : {1e-32f, 1e-20f, 1.0f, 1e20f, 1e36f}) {
+    INFO(scale);
+    Bench b;
+    b.samples(0, 1, 1,
+              [&](uint32_t group, uint32_t) { return group == 0 ? scale * vec3(1, 0.25f, 0) : vec3(0); });
+    for (const vec3& v : b.sums(0)) {
+      CHECK(std::abs(v.x - scale) <= scale * 0x1p-17f);
+      CHECK(std::abs(v.y - 0.25f * scale) <= scale * 0x1p-17f);
+      CHECK(v.z == 0);
+    }
+    for (const vec3& v : b.sums(1)) CHECK(v == vec3(0));
+    // A large one after it, and one that is smaller by far: the large one's share is right.
+    b.samples(1, 2, 1, [&](uint32_t group, uint32_t s) {
+      return group == 0 ? vec3(0) : s == 1 ? vec3(scale) : vec3(1e-12f * scale);
+    });
+    const Moments m = moments(b.sums(1), 0);
+    CHECK(std::abs(m.mean - double{scale}) <= double{scale} * 0x1p-17);
+  }
+}
+
+TEST_CASE("a channel that is nothing beside the others goes with them in a mix") {
+  CHECK(shared::group_ratio(vec3(2, 0, 0), vec3(1, 0, 4)) == vec3(2, 0.4f, 0));
+  CHECK(shared::group_ratio(vec3(0), vec3(0)) == vec3(1));
+  CHECK(shared::group_ratio(vec3(0), vec3(3, 2, 0)) == vec3(0));
+}
