@@ -1,9 +1,10 @@
 """A meeting hall in the evening (`conference`): twenty spots in a coffered ceiling, carafes and glasses on a long table.
 
 x to the right, y up; the table runs along z, a picture hangs on the wall at z = -7, windows are to the right, an acoustic
-wall of oak slats to the left. Every coffer has one spot: ten are turned to the table's axis, seven to the walls, three to
-the carafes. Spots are points, so what they send through solid glass and water onto the table is found by no path from the
-eye. Radiance is in cd/m^2 throughout, spots in candela.
+wall of oak slats to the left. Every coffer has a light ceiling of fabric, brighter over the table, and one spot: eight are
+turned to the table's axis, two to the picture, seven to the walls, three to the carafes. Spots are points, so what they send
+through solid glass and water onto the table is found by no path from the eye. Radiance is in cd/m^2 throughout, spots in
+candela.
 """
 import os
 
@@ -24,6 +25,7 @@ TABLE = (0.86, 3.30)                       # half width and half length
 TOP = 0.74                                 # the table's height
 SILL, HEAD, WINDOW = 0.84, 2.86, 1.10      # windows' lower and upper edge, half length
 WARM = (1.0, 0.89, 0.76)                   # the lamps' colour
+SOFT, FILL = (1.0, 0.93, 0.84), {"middle": 58, "outer": 20}   # colour and luminance of the coffers' light ceilings
 GROUPS = (-1.66, 0.62, 2.28)               # z of the carafes; camera `table` looks at those in the middle
 
 
@@ -50,7 +52,7 @@ def carpet(n=1024):
     along, across = textures.noise((n, n), 201, 0.6, 8, 200, (9.0, 1.0)), textures.noise((n, n), 202, 0.6, 8, 200, (1.0, 9.0))
     rib = np.cos(2 * np.pi * np.where(turned, y, x) / 8.0)
     shade = 1 + 0.075 * tone + 0.10 * rib + 0.05 * np.where(turned, across, along)
-    return textures.Surface(textures.rgb(0.155, 0.150, 0.148) * shade[..., None], np.zeros((n, n)), (2.0, 2.0))
+    return textures.Surface(textures.rgb(0.235, 0.226, 0.220) * shade[..., None], np.zeros((n, n)), (2.0, 2.0))
 
 
 def painting(n=1024):
@@ -91,7 +93,7 @@ def materials(s):
     def matt(name, *c, double=False):
         s.material(name, c, lambert=True, double=double)
     oak = veneer((0.50, 0.365, 0.235), (0.335, 0.22, 0.13), 101, (0.8, 1.6)).save(s.folder, "oak", normal=False)
-    walnut = veneer((0.082, 0.054, 0.038), (0.031, 0.020, 0.015), 121, (0.8, 1.6), 0.35)
+    walnut = veneer((0.140, 0.089, 0.058), (0.060, 0.038, 0.026), 121, (0.8, 1.6), 0.35)
     walnut = walnut.save(s.folder, "walnut", normal=False)
     s.material("oak", (1, 1, 1), lambert=True, maps=oak, metres=(0.8, 1.6))
     s.material("polished walnut", (1, 1, 1), rough=0.20, maps=walnut, metres=(0.8, 1.6))
@@ -100,7 +102,7 @@ def materials(s):
     s.material("painting", (1, 1, 1), lambert=True, maps=painting().save(s.folder, "painting", normal=False))
     matt("plaster", 0.74, 0.725, 0.69)
     matt("felt", 0.030, 0.029, 0.028)
-    matt("wool", 0.050, 0.115, 0.135)
+    matt("wool", 0.085, 0.175, 0.200)
     matt("linen", 0.50, 0.445, 0.36, double=True)
     matt("paper", 0.70, 0.69, 0.655)
     matt("leaf", 0.075, 0.17, 0.045, double=True)
@@ -111,7 +113,9 @@ def materials(s):
     s.material("ceramic", (0.58, 0.56, 0.52), rough=0.30)
     s.material("pencil", (0.30, 0.045, 0.030), rough=0.4)
     s.material("pane", (1, 1, 1), glass=0, ior=1.5, thin=True)
-    s.material("lamp face", (0.5, 0.5, 0.5), lambert=True, emit=WARM, strength=6000)
+    s.material("lamp face", (0.5, 0.5, 0.5), lambert=True, emit=WARM, strength=2500)
+    for kind, luminance in FILL.items():
+        s.material(f"{kind} light ceiling", (0.70, 0.69, 0.67), lambert=True, emit=SOFT, strength=luminance)
     glassware.materials(s)
 
 
@@ -139,17 +143,26 @@ def coffer(s):
         translate(0, COFFER_TOP - MOUTH, 0))
     face = disk(0.0504, 24, up=False).moved(translate(0, 0.042, 0))
     at = translate(0, MOUTH, 0)
-    s.mesh("coffer", [(wood, "oak"), (join([housing, rose]).moved(at), "lamp housing"),
-                      (face.moved(at), "lamp face")])
+    for kind in FILL:
+        s.mesh(f"{kind} coffer", [(wood, "oak"), (join([housing, rose]).moved(at), "lamp housing"),
+                                  (face.moved(at), "lamp face"), (light_ceiling(), f"{kind} light ceiling")])
+
+
+def light_ceiling():
+    """White fabric, lit from behind, stretched over the coffer's ceiling but for a border of oak; the lamp hangs through it."""
+    a, b, y = COFFER[0] - 0.10, COFFER[1] - 0.10, COFFER_TOP - 0.010
+    return quad((-a, y, -b), (a, y, -b), (a, y, b), (-a, y, b))
 
 
 def lamps(s):
-    """The twenty spots, each at the mouth of its cylinder: ten for the table, seven for the walls; three, narrow and strong,
-    come in low from the right and throw what shines through carafes and glasses across the table."""
+    """The twenty spots, each at the mouth of its cylinder: two for the picture, eight for the table, seven for the walls;
+    three, narrow and strong, come in low from the right and throw what shines through carafes and glasses across the table."""
     def lamp(kind, n, x, z, target, candela, inner, outer):
         at = np.array([x, MOUTH - 0.004, z])
         s.spot(f"{kind} lamp {n}", at, np.array(target) - at, WARM, candela, inner, outer)
-    for n, (x, z) in enumerate([(x, z) for z in ROWS for x in (-1, 1)]):
+    for n, x in enumerate((-1, 1)):
+        lamp("picture", n + 1, x, ROWS[0], (0.5 * x, 1.80, -DEPTH / 2), 1500, 12, 30)
+    for n, (x, z) in enumerate([(x, z) for z in ROWS[1:] for x in (-1, 1)]):
         lamp("table", n + 1, x, z, (0.25 * x, TOP, z), 1100, 14, 38)
     accents = dict(zip(ROWS[1:4], GROUPS))
     walls = [(x, z) for z in ROWS for x in (-3, 3) if x < 0 or z not in accents]
@@ -256,7 +269,7 @@ def architecture(s):
     coffer(s)
     for x in COLUMNS:
         for z in ROWS:
-            s.place("coffer", (x, 0, z))
+            s.place("middle coffer" if abs(x) < 2 else "outer coffer", (x, 0, z))
     s.mesh("skirting", [(rooms.skirting(WIDTH, DEPTH, 0.09, 0.014), "bronze")])
     s.place("skirting")
     leaf, knobs = rooms.door(0.95, 2.20)
@@ -386,7 +399,7 @@ def main():
     s.write("A meeting hall in the evening under twenty spot lights in a coffered ceiling, with carafes, glasses and water "
             "on a long dark table: what the spots, which are points, send through solid glass is a caustic that photons alone find "
             "(camera table: close to it).",
-            {"film.ev": -6.2, "components.caustic": "photons", "environment": {"file": "sky.hdr", "scale": 22}})
+            {"film.ev": -4.9, "components.caustic": "photons", "environment": {"file": "sky.hdr", "scale": 45}})
 
 
 if __name__ == "__main__":
