@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -7,13 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "app/bench_progress.h"
 #include "app/interrupt.h"
 #include "app/verbs.h"
 #include "base/file.h"
 #include "base/log.h"
 #include "base/timer.h"
 #include "bench/compare_reports.h"
-#include "bench/html.h"
 #include "bench/machine.h"
 #include "bench/page.h"
 #include "bench/report.h"
@@ -25,34 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-/// One line that is written over on a terminal; elsewhere a line a render.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(2)) {}
-  void show(const bench::Status& s) {
-    if (quiet_ || (!terminal_ && s.step == step_)) return;
-    step_ = s.step;
-    const std::string left = s.left_s ? ", about " + bench::seconds_text(*s.left_s) + " left" : "";
-    if (terminal_)
-      std::fprintf(stderr, "\r\033[K%zu of %zu  %s  %3.0f %%%s", s.step, s.steps, s.what.c_str(),
-                   100 * s.fraction, left.c_str());
-    else
-      std::fprintf(stderr, "%zu of %zu  %s%s\n", s.step, s.steps, s.what.c_str(), left.c_str());
-    std::fflush(stderr);
-  }
-  void message(const std::string& line) {
-    clear();
-    std::fprintf(stderr, "lucerna: %s\n", line.c_str());
-  }
-  void clear() const {
-    if (terminal_ && !quiet_ && step_ > 0) std::fprintf(stderr, "\r\033[K");
-  }
-
- private:
-  bool quiet_, terminal_;
-  size_t step_ = 0;
-};
 
 class Listening {
  public:

@@ -57,6 +57,7 @@ class Program {
   void add_bench_rays();
   void add_small_benches();
   void add_bench_latency();
+  void add_bench_photons();
   void add_scene_options(CLI::App* verb);
   int view();
 
@@ -69,7 +70,7 @@ class Program {
 
   CLI::App *render_ = nullptr, *info_ = nullptr, *devices_ = nullptr, *compare_ = nullptr, *bench_ = nullptr,
            *rays_ = nullptr, *sort_ = nullptr, *lookup_ = nullptr, *interpolation_ = nullptr, *mix_ = nullptr,
-           *latency_ = nullptr;
+           *latency_ = nullptr, *photons_ = nullptr;
   RenderArguments r;
   std::string info_scene_;
   bool info_json_ = false, devices_json_ = false;
@@ -81,6 +82,7 @@ class Program {
   BenchLookupArguments bl;
   BenchInterpolationArguments bi;
   BenchLatencyArguments bt;
+  BenchPhotonsArguments bp;
 };
 
 Program::Program() {
@@ -93,6 +95,7 @@ Program::Program() {
   add_bench_rays();
   add_small_benches();
   add_bench_latency();
+  add_bench_photons();
   app_.require_subcommand(0, 1);
 }
 
@@ -304,11 +307,56 @@ void Program::add_bench_latency() {
   add_scene_options(latency_);
 }
 
+void Program::add_bench_photons() {
+  photons_ = bench_->add_subcommand(
+      "photons",
+      "how photons' errors fall over rounds and radii, and what rounds cost; ten minutes (--photons is the "
+      "same)");
+  bench::PhotonBenchOptions& o = bp.options;
+  photons_
+      ->add_option("--parts", o.parts,
+                   "some of slopes (of noise and bias), rounds (their cost by light paths), lamps (by their "
+                   "number), free (where nothing bundles light) [all]")
+      ->delimiter(',')
+      ->check(CLI::IsMember(
+          std::vector<std::string>(bench::k_photon_parts.begin(), bench::k_photon_parts.end())));
+  photons_->add_option("--report", bp.report, "folder to write to and to go on in; new, empty or a bench's")
+      ->capture_default_str();
+  photons_->add_option("--side", o.side, "pixels of the square pictures that slopes are measured in")
+      ->check(CLI::Range(8u, 1024u))
+      ->capture_default_str();
+  photons_->add_option("--seeds", o.seeds, "renders of each, with other seeds")
+      ->check(CLI::Range(3u, 64u))
+      ->capture_default_str();
+  photons_->add_option("--rounds", o.rounds, "rounds of each")
+      ->check(CLI::Range(8u, 65536u))
+      ->capture_default_str();
+  photons_
+      ->add_option("--reference-samples", o.reference_samples,
+                   "samples a pixel of each of the truths, of which every render has its own")
+      ->check(CLI::Range(1u, 1u << 20))
+      ->capture_default_str();
+  photons_->add_option("--paths", o.paths, "light paths of a round [1e4 to 1e7]")
+      ->delimiter(',')
+      ->check(CLI::Range(1u, 1u << 24));
+  photons_->add_option("--lamps", o.lamps, "numbers of lamps [1,10,100,1000]")
+      ->delimiter(',')
+      ->check(CLI::Range(1u, 100000u));
+  photons_->add_option("--repeats", o.repeats, "rounds that are timed")
+      ->check(CLI::Range(1u, 1000u))
+      ->capture_default_str();
+  photons_->add_option("--pairs", o.pairs, "renders with and without photons where they have nothing to do")
+      ->check(CLI::Range(1u, 1000u))
+      ->capture_default_str();
+  photons_->add_flag("--quiet", bp.quiet, "no progress");
+  photons_->add_option("--device", o.device, "as above");
+}
+
 int Program::run(int argc, char** argv) {
-  // It is asked for like a built-in matrix, too.
-  std::string latency = "latency";
-  if (argc > 2 && argv[1] == std::string("bench") && argv[2] == std::string("--latency"))
-    argv[2] = latency.data();
+  // They are asked for like built-in matrices, too.
+  std::string latency = "latency", photons = "photons";
+  for (std::string* name : {&latency, &photons})
+    if (argc > 2 && argv[1] == std::string("bench") && argv[2] == "--" + *name) argv[2] = name->data();
   try {
     app_.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -317,8 +365,8 @@ int Program::run(int argc, char** argv) {
   if (verbose_) log::set_console_level(log::Level::info);
   scenes_.most_bytes = uint64_t(scene_memory_ * k_gib);
   r.scenes = b.scenes = bi.scenes = bx.scenes = bm.scenes = bt.load = scenes_;
-  for (std::string* device :
-       {&r.device, &b.device, &bs.device, &bl.device, &bi.device, &bx.device, &bm.device, &bt.device})
+  for (std::string* device : {&r.device, &b.device, &bs.device, &bl.device, &bi.device, &bx.device,
+                              &bm.device, &bt.device, &bp.options.device})
     if (device->empty()) *device = device_;
   if (*render_) return render(r);
   if (*info_) return info(info_scene_, info_json_, scenes_);
@@ -330,8 +378,17 @@ int Program::run(int argc, char** argv) {
   if (*interpolation_) return bench_interpolation(bi);
   if (*mix_) return bench_mix(bx);
   if (*latency_) return bench_latency(bt);
+  const auto typed = [&] {
+    std::string line;
+    for (int i = 0; i < argc; ++i) line += std::string(i ? " " : "") + (i ? argv[i] : "lucerna");
+    return line;
+  };
+  if (*photons_) {
+    bp.command = typed();
+    return bench_photons(bp);
+  }
   if (*bench_) {
-    for (int i = 0; i < argc; ++i) bm.command += std::string(i ? " " : "") + (i ? argv[i] : "lucerna");
+    bm.command = typed();
     return bench_matrix(bm);
   }
   return view();

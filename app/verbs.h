@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/photons.h"
 #include "scene/io/load.h"
 
 namespace lucerna::app {
@@ -91,6 +92,14 @@ struct BenchLatencyArguments {
   scene::LoadOptions load;
 };
 int bench_latency(const BenchLatencyArguments& arguments);
+
+struct BenchPhotonsArguments {
+  bench::PhotonBenchOptions options;
+  std::string report = "photons-report";
+  bool quiet = false;
+  std::string command;  ///< as typed, for the report
+};
+int bench_photons(const BenchPhotonsArguments& arguments);
 
 struct BenchArguments {
   std::string matrix;                 ///< file; or

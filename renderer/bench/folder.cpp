@@ -46,13 +46,15 @@ void check_writable(const fs::path& folder) {
 
 }  // namespace
 
-Folder::Folder(const fs::path& path, const Matrix& matrix, const Json& identity) : path_(path) {
+ReportFolder::ReportFolder(const fs::path& path, const Json& matrix, const Json& identity,
+                           std::initializer_list<const char*> parts)
+    : path_(path) {
   const std::string where = path.string();
   std::error_code code;
   if (fs::exists(path, code) && !fs::is_directory(path, code))
     throw_error(where, "is a file; --report expects a folder");
   const bool existed = fs::is_directory(path, code);
-  const Json claim{{"format", 1}, {"matrix", to_json(matrix)}, {"identity", identity}};
+  const Json claim{{"format", 1}, {"matrix", matrix}, {"identity", identity}};
   const fs::path claim_file = path / k_claim;
   if (existed && fs::exists(claim_file, code)) {
     check_claim(where, read_file(claim_file), claim);
@@ -65,7 +67,7 @@ Folder::Folder(const fs::path& path, const Matrix& matrix, const Json& identity)
   if (!existed) fs::create_directories(path, code);
   if (code) throw_error(where, "the folder cannot be made: {}", code.message());
   check_writable(path);
-  for (const char* part : {"cells", "pictures"}) {
+  for (const char* part : parts) {
     fs::create_directories(path / part, code);
     if (code) throw_error((path / part).string(), "the folder cannot be made: {}", code.message());
   }
@@ -77,9 +79,12 @@ Folder::Folder(const fs::path& path, const Matrix& matrix, const Json& identity)
   }
 }
 
-Folder::~Folder() {
+ReportFolder::~ReportFolder() {
   if (lock_ >= 0) close(lock_);
 }
+
+Folder::Folder(const fs::path& path, const Matrix& matrix, const Json& identity)
+    : ReportFolder(path, to_json(matrix), identity, {"cells", "pictures"}) {}
 
 std::map<std::string, Result> Folder::load(const Matrix& matrix,
                                            const std::map<std::string, std::string>& scene_hashes,

@@ -4,6 +4,7 @@
 // interruption leaves whole files only; half ones from elsewhere are recognised and measured again.
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,18 +18,35 @@ namespace lucerna::bench {
 /// One line for a person.
 using Message = std::function<void(const std::string&)>;
 
-class Folder {
+/// A folder that one bench has to itself.
+class ReportFolder {
  public:
-  /// Makes the folder or goes on with one that holds the same matrix, measured by the same version on the
-  /// same device (`identity`: any JSON object; its keys are named when they differ). Throws Error, located at
+  /// Makes the folder, with folders `parts` in it, or goes on with one that holds the same measurement
+  /// (`matrix`: any JSON object that says what is measured, but for its "name"), by the same version on the
+  /// same device (`identity`: likewise; its keys are named when they differ). Throws Error, located at
   /// the folder, and leaves everything as it was: when it cannot be written, is another bench's, holds files
   /// that no bench made, or another bench is at work in it.
-  Folder(const std::filesystem::path& path, const Matrix& matrix, const nlohmann::ordered_json& identity);
-  ~Folder();
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
+  ReportFolder(const std::filesystem::path& path, const nlohmann::ordered_json& matrix,
+               const nlohmann::ordered_json& identity, std::initializer_list<const char*> parts);
+  ~ReportFolder();
+  ReportFolder(const ReportFolder&) = delete;
+  ReportFolder& operator=(const ReportFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+
+ protected:
+  std::filesystem::path path_;
+
+ private:
+  int lock_ = -1;
+};
+
+/// Of a matrix.
+class Folder : public ReportFolder {
+ public:
+  /// Throws Error as ReportFolder.
+  Folder(const std::filesystem::path& path, const Matrix& matrix, const nlohmann::ordered_json& identity);
+
   std::filesystem::path pictures() const { return path_ / "pictures"; }
 
   /// Results of the matrix that are there, by Matrix::id(). Those that cannot be read, belong to another cell
@@ -37,10 +55,6 @@ class Folder {
                                      const std::map<std::string, std::string>& scene_hashes,
                                      const Message& message) const;
   void save(const std::string& id, const Result& result) const;
-
- private:
-  std::filesystem::path path_;
-  int lock_ = -1;
 };
 
 }  // namespace lucerna::bench

@@ -27,7 +27,17 @@ void widen(double& lo, double& hi, double factor, double margin) {
 std::string short_number(double x) { return fmt::format("{:.6g}", x); }
 
 const char* across_text(Across across) {
-  return across == Across::records ? "records that light is looked up in" : "seconds of rendering";
+  switch (across) {
+    case Across::records:
+      return "records that light is looked up in";
+    case Across::rounds:
+      return "rounds of photons";
+    case Across::radius:
+      return "radius in pixels";
+    case Across::seconds:
+      break;
+  }
+  return "seconds of rendering";
 }
 
 /// Thousands of records as "5 k": the whole number would not fit between two ticks.

@@ -1,5 +1,6 @@
 #pragma once
-// Error against time or against the number of records that light is looked up in, on log axes, as inline SVG.
+// Error against time, records that light is looked up in, rounds or radii of photons, on log axes, as inline
+// SVG.
 #include <string>
 #include <vector>
 
@@ -8,12 +9,12 @@
 namespace lucerna::bench {
 
 /// What the error is plotted against.
-enum class Across { seconds, records };
+enum class Across { seconds, records, rounds, radius };
 
 struct PlotLine {
   std::string name, colour;
   struct Point {
-    double across = 0;  ///< seconds or records, above 0
+    double across = 0;  ///< above 0
     Spread error;
   };
   std::vector<Point> points;  ///< median as a line, low and high as a band; from left to right
