@@ -156,6 +156,25 @@ double run(session::Renderer& r, const RenderArguments& a, std::map<std::string,
   return wall;
 }
 
+/// A picture of which time was up before it had a sample everywhere is black there, or in whole. Throws Error
+/// where nothing is to be seen.
+void check_time(const session::Renderer& r, const RenderArguments& a) {
+  if (!a.seconds || !makes_picture(a) || r.samples() > 0) return;
+  const double share = double(r.stats().paths) / (double(r.film().width()) * double(r.film().height()));
+  if (share > 0)
+    return log::warning("--time: after {:g} s {:.0f} % of the picture has a sample; the rest is black",
+                        *a.seconds, 100 * share);
+  std::vector<std::string> at_work;
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    if (const solvers::Solver* found = r.solver(solver->name); found && !found->ready())
+      at_work.push_back(solver->title);
+  throw_error(
+      "--time",
+      "'{:g}': no pixel has a sample after so many seconds{}; nothing is written. Ask for more time, or "
+      "for less to prepare",
+      *a.seconds, at_work.empty() ? "" : fmt::format(": {} was still at work", fmt::join(at_work, ", ")));
+}
+
 /// What helps where it is solvers' work that keeps the error up.
 std::string advice(const session::Renderer& r) {
   std::string text;
@@ -211,6 +230,7 @@ int render(const RenderArguments& a) {
   const bool interrupted = interrupt.signal() != 0;
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
+  if (!interrupted) check_time(r, a);
   if (makes_picture(a) && r.adaptive() && !interrupted) report_unreached(*r.adaptive(), advice(r));
   if (makes_picture(a)) find_exposure(r, changes);
   for (const std::string& file : a.outputs) r.save(file);

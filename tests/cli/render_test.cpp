@@ -136,6 +136,16 @@ TEST_CASE("wrong arguments are refused with their place") {
   CHECK_FALSE(fs::exists("/tmp/lucerna-never.exr"));
 }
 
+TEST_CASE("--time that is up before there is a picture is told, and leaves no black one") {
+  const fs::path f = folder() / "early.png";
+  refused("render " + scene("hall") +
+              " --size 256x256 --quiet --time 0.01 --set components.secondary=cache --set "
+              "components.tertiary=cache -o " +
+              f.string(),
+          "no pixel has a sample after so many seconds: the irradiance cache was still at work");
+  CHECK_FALSE(fs::exists(f));
+}
+
 TEST_CASE("--error: samples go where the noise is, and what was not reached is told") {
   const fs::path f = folder();
   const auto stats = [&](const std::string& arguments) {
