@@ -13,9 +13,14 @@ std::string obstacle(const plan::Plan& plan, const plan::Settings& settings, boo
   const std::string& enabled = settings.text("relight.enabled");
   if (enabled == "off") return "relight.enabled is off";
   if (enabled == "auto" && !interactive) return "relight.enabled is auto, which is off in batch renders";
-  for (const solvers::SolverInfo* info : plan.at_work())
-    if (solvers::type_of(*info).make)
-      return fmt::format("'{}' computes light that is not kept apart by groups", info->title);
+  for (const solvers::SolverInfo* info : plan.at_work()) {
+    if (!solvers::type_of(*info).make) continue;
+    if (!info->by_groups)
+      return fmt::format("{} computes light that is not kept apart by groups", info->title);
+    if (enabled == "on")
+      return fmt::format("{} keeps groups apart in short alone; relight.enabled=compact does so",
+                         info->title);
+  }
   return "";
 }
 

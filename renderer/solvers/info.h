@@ -103,6 +103,8 @@ struct SolverInfo {
   /// Whether rays that another solver traces to prepare its own light may end in lookups of this one's; and
   /// whether this one's do, where it computes secondary light and the other one tertiary light.
   bool lends = false, borrows = false;
+  /// Whether its light comes by groups of lights where films keep them in short (film::GroupsKept::in_short).
+  bool by_groups = false;
   std::vector<OptionInfo> options{};
   std::vector<ChangeRow> changes{};
   std::vector<ViewInfo> views{};

@@ -11,6 +11,9 @@
 #include "irradiance_cache/ellipse.glsl"
 #include "irradiance_cache/least_radius.glsl"
 #include "shaders/shared/facet.h"
+#if LUCERNA_GROUP_SUMS
+#include "irradiance_cache/groups.glsl"
+#endif
 
 uniform samplerBuffer record_texels;
 uniform samplerBuffer irradiance_texels;
@@ -26,6 +29,9 @@ struct Cached {
   vec3 part[k_part_count];
   float weight;  // 0: no record serves here
   uint guide;    // the nearest that says that paths gather themselves here; k_no_guide: none does
+#if LUCERNA_GROUP_SUMS
+  vec3 group[k_group_count];  // of all parts but k_part_direct, by group of lights
+#endif
 };
 
 // How near the nearest records are in whose discs a point lies: of those that hold light, of those that crowd. Where one that
@@ -97,6 +103,9 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
   found.weight = 0.0;
   found.guide = k_no_guide;
+#if LUCERNA_GROUP_SUMS
+  for (uint g = 0u; g < k_group_count; ++g) found.group[g] = vec3(0.0);
+#endif
   Nearest nearest = nothing_near();
   OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
@@ -125,6 +134,7 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
     make_basis(facing.xyz, tangent, bitangent);
     vec3 turn = cross(facing.xyz, shading), away = x - place.xyz;
     vec2 r = vec2(dot(turn, tangent), dot(turn, bitangent)), t = vec2(dot(away, tangent), dot(away, bitangent));
+    vec3 light = vec3(0.0);  // weighted, of all groups
     for (uint p = 0u; p < k_part_count; ++p) {
       if ((uint(LUCERNA_CACHE_PARTS) >> p & 1u) == 0u) continue;
       int from = int((record * k_part_count + p) * k_part_texels);
@@ -132,12 +142,23 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks) {
       vec4 c = texelFetch(irradiance_texels, from + 2), d = texelFetch(irradiance_texels, from + 3);
       // Not below 0; and no further up than down, because a limit on one side would make light of noisy gradients.
       vec3 change = r.x * vec3(a.a, b.xy) + r.y * vec3(b.zw, c.x) + t.x * c.yzw + t.y * d.xyz;
-      found.part[p] += weight > 0.0 ? weight * (a.rgb + clamp(change, -a.rgb, a.rgb)) : vec3(0.0);
+      vec3 part = weight > 0.0 ? weight * (a.rgb + clamp(change, -a.rgb, a.rgb)) : vec3(0.0);
+      found.part[p] += part;
+      if (p != k_part_direct) light += part;
     }
+#if LUCERNA_GROUP_SUMS
+    for (uint t = 0u; t < k_group_texels; ++t) {
+      uvec4 shares = texelFetch(record_group_texels, int(record * k_group_texels + t));
+      for (uint g = 4u * t; g < min(4u * t + 4u, k_group_count); ++g) found.group[g] += light * share_unpack(shares[g % 4u]);
+    }
+#endif
     found.weight += weight;
   }
   found.weight = paths_gather(nearest) ? 0.0 : found.weight;
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = found.weight > 0.0 ? found.part[p] / found.weight : vec3(0.0);
+#if LUCERNA_GROUP_SUMS
+  for (uint g = 0u; g < k_group_count; ++g) found.group[g] = found.weight > 0.0 ? found.group[g] / found.weight : vec3(0.0);
+#endif
   return found;
 }
 #endif

@@ -6,6 +6,9 @@
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/guide.glsl"
 #include "irradiance_cache/error_propagation.glsl"
+#if LUCERNA_GROUP_SUMS
+#include "shaders/shared/group_sums.h"
+#endif
 
 struct cache_Vertex {
   bool looks;             // records are asked for
@@ -43,6 +46,10 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   x.smooth_side = dot(v.surface.normal_v, v.side) < 0.0 ? -v.surface.normal_v : v.surface.normal_v;
   vec3 cached[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) cached[c] = vec3(0.0);
+#if LUCERNA_GROUP_SUMS
+  vec3 by_group[k_group_count];
+  for (uint g = 0u; g < k_group_count; ++g) by_group[g] = vec3(0.0);
+#endif
   for (int facing = 0; facing < k_cache_sides; ++facing) {
     vec3 albedo = v.path.throughput * (facing == 0 ? v.bsdf.diffuse_albedo : v.bsdf.transmitted_albedo) * k_inv_pi;
     bool asks = x.looks && max3(albedo) > 0.0;
@@ -70,8 +77,26 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     for (uint p = 0u; p < k_part_count; ++p)
       for (uint c = 0u; c < k_component_count; ++c)
         if (found.weight > 0.0 && ((routes >> (4u * p)) & 15u) == c) cached[c] += albedo * found.part[p];
+#if LUCERNA_GROUP_SUMS
+    // Groups have the same share in those parts that are read here as in all.
+    vec3 all = vec3(0.0), read = vec3(0.0), sky = vec3(0.0);
+    for (uint p = 0u; p < k_part_count; ++p) {
+      vec3 part = found.weight > 0.0 && ((routes >> (4u * p)) & 15u) < k_component_count ? albedo * found.part[p] : vec3(0.0);
+      if (p == k_part_direct) {
+        sky = part;
+      } else {
+        read += part;
+        all += albedo * found.part[p];
+      }
+    }
+    vec3 share = albedo * group_ratio(read, all);
+    for (uint g = 0u; g < k_group_count; ++g) by_group[g] += share * found.group[g] + (g == frame.sky_group ? sky : vec3(0.0));
+#endif
   }
   for (uint c = 0u; c < k_component_count; ++c) o.radiance[lane_of(0u, c)] += x.alone ? vec3(0.0) : cached[c];
+#if LUCERNA_GROUP_SUMS
+  for (uint g = 0u; g < k_group_count; ++g) o.radiance[k_component_count + g] += x.alone ? vec3(0.0) : by_group[g];
+#endif
   o.sky_known = o.sky_known || (x.looks && !x.alone && (routes & 15u) < k_component_count);  // part 0: k_part_direct
   o.samples_lights = o.samples_lights && cache.probing == k_probe_none;
   return x;

@@ -110,6 +110,20 @@ void add_radiance_of_component(uint slot, uint lane_a, vec3 a, uint lane_b, vec3
   add_to_radiance(slot, k_component_count + lane_a / k_component_count, wanted_a, a);
   add_to_radiance(slot, k_component_count + lane_b / k_component_count, wanted_b, b);
 }
+// ... of two lanes, and what is given by component and by group.
+void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec3 found[k_lane_count]) {
+  bool wanted_a = radiance_wanted(lane_a, a), wanted_b = radiance_wanted(lane_b, b);
+  for (uint texel = 0u; texel < k_lane_count; ++texel) {
+    bool by_group = texel >= k_component_count;
+    uint at = by_group ? texel - k_component_count : texel;
+    vec3 value = found[texel];
+    if (wanted_a && (by_group ? lane_a / k_component_count : lane_a % k_component_count) == at) value += a;
+    if (wanted_b && (by_group ? lane_b / k_component_count : lane_b % k_component_count) == at) value += b;
+    bool finite = is_finite(value);
+    if (!finite) atomicAdd(counters[k_counter_dropped], 1u);
+    add_to_radiance(slot, texel, finite, value);
+  }
+}
 void add_radiance(uint slot, uint lane, vec3 value) {
   bool wanted = radiance_wanted(lane, value);
   add_to_radiance(slot, lane % k_component_count, wanted, value);

@@ -179,8 +179,12 @@ void main() {
   if (hit.prim == k_no_hit && frame.sun_group != frame.sky_group) met_sun = lane_of(frame.sun_group, automaton_component(state));
 #endif
 #if LUCERNA_VERTEX_HOOKS
+#if LUCERNA_GROUP_SUMS
+  add_radiance_found(slot, met, gain, met_sun, sun, found.radiance);
+#else
   for (uint lane = 0u; lane < k_lane_count; ++lane)
     add_radiance(slot, lane, found.radiance[lane] + (met == lane ? gain : vec3(0.0)) + (met_sun == lane ? sun : vec3(0.0)));
+#endif
 #if LUCERNA_LOOKUP_BIAS
   add_lookup_bias(slot, found.bias);
 #endif

@@ -31,7 +31,9 @@ struct VertexIn {
 };
 
 struct VertexOut {
-  vec3 radiance[k_lane_count];  // what is brought here, times the path's throughput, by lane
+  // What is brought here, times the path's throughput, by lane; where groups of lights are kept in short by component, and
+  // once more by group from k_component_count on.
+  vec3 radiance[k_lane_count];
   float bias;       // by what the luminance of that is told to be too large, in the mean (LUCERNA_LOOKUP_BIAS; else not heeded)
   bool sky_known;   // in it is what the sky sends straight to the diffuse lobe
   bool samples_lights;

@@ -50,7 +50,7 @@ inline bool begins_with(const irradiance_cache::RawRecords& all, const irradianc
          begins_with(all.spheres, some.spheres);
 }
 inline bool identical(const irradiance_cache::RawRecords& a, const irradiance_cache::RawRecords& b) {
-  return begins_with(a, b) && begins_with(b, a);
+  return begins_with(a, b) && begins_with(b, a) && a.groups == b.groups;
 }
 /// Those of `all` that hold light: where the camera comes nearer others may go.
 inline irradiance_cache::RawRecords lit(irradiance_cache::RawRecords all) {

@@ -46,6 +46,10 @@ CacheFile some_cache(uint32_t records) {
   fill(c.records.places, size_t{records} * shared::k_record_texels);
   fill(c.records.lights, size_t{records} * shared::k_part_count * shared::k_part_texels);
   fill(c.records.spheres, records);
+  // Some keep shares of groups of lights, two texels a record.
+  c.grouping = records % 2 == 1 ? 0x123456789abcdefull : 0;
+  for (uint32_t i = 0; records % 2 == 1 && i < 2 * records; ++i)
+    c.records.groups.emplace_back(i, ~i, 0x80000000u, 7 * i);
   if (records > 0) {
     c.records.places[1].w = k_infinity;
     c.records.lights[0].x = -0.0f;
@@ -90,6 +94,8 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
     CHECK(d.status.probed.paths == c.status.probed.paths);
     CHECK(d.status.rays == c.status.rays);
     CHECK(d.status.stop == c.status.stop);
+    CHECK(d.grouping == c.grouping);
+    CHECK(d.records.groups.size() == (records % 2 == 1 ? 2 * records : 0));
     CHECK(d.records.size() == records);
     CHECK(test::identical(d.records, c.records));
     CHECK(encode(d) == encode(c));
@@ -100,7 +106,7 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
 
 TEST_CASE("the format is what its header says, byte for byte") {
   const std::string bytes = encode(some_cache(2));
-  const std::string head("LUCCACHE\2\0\0\0\3\0\0\0", 16);
+  const std::string head("LUCCACHE\3\0\0\0\3\0\0\0", 16);
   CHECK(bytes.substr(0, 16) == head);
   const auto number = [&](size_t at, int size) {
     uint64_t value = 0;
@@ -111,7 +117,7 @@ TEST_CASE("the format is what its header says, byte for byte") {
   CHECK(number(20, 8) == bytes.size());
   CHECK(number(28, 4) == 5);
   CHECK(bytes.substr(32, 5) == "1.2.3");
-  CHECK(number(bytes.size() - 8 - 2 * k_stored_bytes - 4, 4) == 2);
+  CHECK(number(bytes.size() - 8 - 2 * k_stored_bytes - 8, 4) == 2);
 }
 
 TEST_CASE("a file that is cut short is refused at every length") {
@@ -140,7 +146,7 @@ TEST_CASE("a file with one byte changed is refused, wherever it is and however")
     }
   std::string other = bytes;
   other[8] = 1;
-  CHECK(refusal(other) == "a.cache: an irradiance cache in version 1 of its format; expected version 2");
+  CHECK(refusal(other) == "a.cache: an irradiance cache in version 1 of its format; expected version 3");
   other = bytes, other[12] = 9;
   CHECK_THAT(refusal(other), Contains("its records are laid out otherwise: layout 9 of 368 bytes each, "
                                       "expected layout 3 of 368"));

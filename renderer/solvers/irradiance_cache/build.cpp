@@ -19,12 +19,12 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
               .recursive = tables.records_look_up(),
               .elsewhere = routes.elsewhere},
       radii(device, compiler, options.radius, o.most_records, defines(routes.records, o.radius.metric)),
-      evaluator(device, compiler, slots),
+      evaluator(device, compiler, slots, o.groups),
       places(device, compiler),
       picture(device, compiler, o.most_records, defines(routes.records, o.radius.metric)),
       overlay(device, compiler, defines(routes.records, o.radius.metric)),
       progress{.probing = {}, .queue = {}, .levels = RayLevels(o.rays), .clock = {}, .pauses = {}},
-      preview(device, compiler) {
+      preview(device, compiler, o.groups) {
   count_bytes();
 }
 

@@ -66,6 +66,8 @@ struct CacheOptions {
   /// vertex later.
   bool gather = false;
   uint32_t most_records = 0, most_passes = 0;
+  /// Groups of lights whose shares records keep, for films that keep them in short; less than 2: none.
+  uint32_t groups = 1;
   float stop_share = 0;  ///< building ends when no more of the paths than this ask for records
   uint32_t seed = 0;
   DiscontinuityOptions screen;

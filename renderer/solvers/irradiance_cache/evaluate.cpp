@@ -25,7 +25,9 @@ RecordPush push_of(const paths::Automaton& automaton, const EvaluateOptions& o) 
 struct Evaluator::Impl {
   gpu::Device& device;
   gpu::ShaderCompiler& compiler;
-  gpu::Kernel record, gather, distances, hessian, near, guide;
+  gpu::Defines defines;  ///< of kernels that read or write what paths bring
+  uint32_t groups = 1;
+  gpu::Kernel record, gather, gather_groups, distances, hessian, near, guide;
   gpu::Buffer first_hits, list;
   gpu::Resources resources;
 
@@ -50,9 +52,12 @@ struct Evaluator::Impl {
           .first_hits = {},
           .end =
               [&] {
-                const uint32_t groups = gpu::groups_for(push.records, 64);
                 for (const gpu::Kernel* kernel : kernels)
-                  if (kernel) stream.dispatch(*kernel, resources, push, groups, "records");
+                  if (kernel)
+                    stream.dispatch(
+                        *kernel, resources, push,
+                        gpu::groups_for(push.records * (kernel == &gather_groups ? (groups + 3) / 4 : 1), 64),
+                        "records");
               },
           .hits_only = hits_only};
       if (!hits_only)
@@ -64,10 +69,15 @@ struct Evaluator::Impl {
   }
 };
 
-Evaluator::Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots)
-    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {
-  impl_->record = gpu::Kernel(device, compiler, "irradiance_cache/record.comp");
-  impl_->gather = gpu::Kernel(device, compiler, "irradiance_cache/gather.comp");
+Evaluator::Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, uint32_t groups)
+    : impl_(new Impl{device, compiler, {}, groups, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {
+  if (groups > 1)
+    impl_->defines = {{"LUCERNA_LIGHT_GROUPS", std::to_string(groups)}, {"LUCERNA_GROUP_SUMS", "1"}};
+  impl_->record = gpu::Kernel(device, compiler, "irradiance_cache/record.comp", impl_->defines);
+  impl_->gather = gpu::Kernel(device, compiler, "irradiance_cache/gather.comp", impl_->defines);
+  if (groups > 1)
+    impl_->gather_groups =
+        gpu::Kernel(device, compiler, "irradiance_cache/gather_groups.comp", impl_->defines);
   impl_->distances = gpu::Kernel(device, compiler, "irradiance_cache/distances.comp");
   impl_->first_hits = gpu::Buffer(
       device, {.name = "first hits of records", .bytes = uint64_t{slots} * sizeof(Hit), .texel = true});
@@ -85,10 +95,12 @@ size_t Evaluator::evaluate(transport::Wavefront& wavefront, const paths::Automat
   if (cells == 0 || cells > most)
     throw_error("irradiance cache", "{} x {} rays a record; there is room for 1 to {} paths", o.elevations,
                 o.azimuths, most);
-  if (o.near && !e.near) e.near = gpu::Kernel(e.device, e.compiler, "irradiance_cache/near.comp");
-  if (o.guides && !e.guide) e.guide = gpu::Kernel(e.device, e.compiler, "irradiance_cache/guide.comp");
-  return e.gather_by({&e.gather, o.near ? &e.near : nullptr, o.guides ? &e.guide : nullptr}, false, wavefront,
-                     records, list, push_of(automaton, o), cancel);
+  if (o.near && !e.near) e.near = gpu::Kernel(e.device, e.compiler, "irradiance_cache/near.comp", e.defines);
+  if (o.guides && !e.guide)
+    e.guide = gpu::Kernel(e.device, e.compiler, "irradiance_cache/guide.comp", e.defines);
+  return e.gather_by({e.groups > 1 ? &e.gather_groups : nullptr, &e.gather, o.near ? &e.near : nullptr,
+                      o.guides ? &e.guide : nullptr},
+                     false, wavefront, records, list, push_of(automaton, o), cancel);
 }
 
 size_t Evaluator::measure(transport::Wavefront& wavefront, Records& records, std::span<const uint32_t> list,
@@ -105,7 +117,7 @@ size_t Evaluator::pilot(transport::Wavefront& wavefront, const paths::Automaton&
                         std::span<const uint32_t> list, const EvaluateOptions& o,
                         const std::function<bool()>& cancel) {
   Impl& e = *impl_;
-  if (!e.hessian) e.hessian = gpu::Kernel(e.device, e.compiler, "irradiance_cache/hessian.comp");
+  if (!e.hessian) e.hessian = gpu::Kernel(e.device, e.compiler, "irradiance_cache/hessian.comp", e.defines);
   RecordPush push = push_of(automaton, o);
   push.pilot = 1;
   return e.gather_by({&e.distances, &e.hessian}, false, wavefront, records, list, push, cancel);

@@ -37,8 +37,9 @@ class Evaluator {
   /// Of a record at once: lavapipe ends all loops of an invocation after 65535 iterations in all, without a
   /// word, and gather.comp takes up to 12 a ray.
   static constexpr uint32_t k_most_rays = 4096;
-  /// `slots`: of the wavefronts that it will be used with.
-  Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots);
+  /// `slots`: of the wavefronts that it will be used with. `groups`: of lights, that their paths keep in
+  /// short and the records it will be used with keep (Records).
+  Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, uint32_t groups = 1);
   ~Evaluator();
   /// Evaluates the listed records (indices), a batch of the wavefront's slots at a time; `cancel` is asked
   /// between bounces. Returns how many of the list are done: they, and only they, are changed. The

@@ -45,8 +45,10 @@ class Writer {
   }
   void records(const RawRecords& r) {
     plain(r.size());
+    plain(uint32_t(r.size() > 0 ? r.groups.size() / r.size() : 0));
     for (const auto* list : {&r.places, &r.lights, &r.spheres})
       raw(list->data(), list->size() * sizeof(vec4));
+    raw(r.groups.data(), r.groups.size() * sizeof(uvec4));
   }
   std::string& bytes() { return bytes_; }
 
@@ -86,15 +88,18 @@ class Reader {
     }
   }
   void records(RawRecords& r) {
-    uint32_t count = 0;
-    plain(count);
-    if (bytes_.size() != uint64_t{count} * k_bytes_a_record)
+    uint32_t count = 0, shares = 0;
+    plain(count), plain(shares);
+    const uint64_t expected = count * (k_bytes_a_record + uint64_t{shares} * sizeof(uvec4));
+    if (shares > k_most_groups / 4 || bytes_.size() != expected)
       throw_error(where_, "damaged: {} bytes stand where its {} records should have {}", bytes_.size(), count,
-                  uint64_t{count} * k_bytes_a_record);
+                  expected);
     r.places.resize(size_t{count} * k_record_texels);
     r.lights.resize(size_t{count} * k_part_count * k_part_texels);
     r.spheres.resize(count);
+    r.groups.resize(size_t{count} * shares);
     for (auto* list : {&r.places, &r.lights, &r.spheres}) raw(list->data(), list->size() * sizeof(vec4));
+    raw(r.groups.data(), r.groups.size() * sizeof(uvec4));
   }
 
  private:
@@ -127,6 +132,7 @@ void fields(Archive& a, File& f) {
   a.plain(f.status.pass), a.plain(f.status.probed.asked), a.plain(f.status.probed.paths),
       a.plain(f.status.rays);
   a.plain(f.status.stop);
+  a.plain(f.grouping);
   a.records(f.records);
 }
 

@@ -7,7 +7,8 @@
 //   u32, u64     bytes of a record, bytes of the whole file
 //   entries      program's version, what the records were made with, view, status; texts as u32 length and
 //                bytes, lists as u32 count
-//   u32, texels  the records: RawRecords, list by list
+//   2 x u32      records, and texels of each one's shares of groups of lights: 0 where none are kept
+//   texels       the records: RawRecords, list by list
 //   u64          checksum of all before, Hash::low()
 //
 // Whoever changes the meaning of a record's texels changes k_record_layout beside them.
@@ -19,7 +20,7 @@
 
 namespace lucerna::irradiance_cache {
 
-inline constexpr uint32_t k_cache_file_version = 2;
+inline constexpr uint32_t k_cache_file_version = 3;
 
 /// What decides the light that records hold.
 struct MadeWith {
@@ -40,6 +41,9 @@ struct CacheFile {
   /// What the picture saw when the cache was complete for it, as a text that only that view gives.
   std::string view;
   CacheStatus status;  ///< pass, asked, paths, rays, stop
+  /// Tells which light was of which group, where records keep their shares; 0: they do not. Records of other
+  /// groups fit, and their light is then gathered anew.
+  uint64_t grouping = 0;
   RawRecords records;
 };
 

@@ -39,7 +39,7 @@ bool looks_up(uint32_t routes) { return routes != k_no_routes; }
 
 LookupTables::LookupTables(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
                            const CacheRoutes& routes, const CacheOptions& o)
-    : records(device, o.most_records),
+    : records(device, o.most_records, o.groups),
       octree(device, compiler, octree_options(o.most_records)),
       frame(device, {.name = "cache frame", .bytes = sizeof(CacheFrame)}),
       candidates(device, {.name = "cache candidates",
@@ -110,8 +110,6 @@ RouteTable LookupTables::routes_beyond_picture() const {
   return table;
 }
 
-uint64_t LookupTables::bytes() const {
-  return uint64_t{records.capacity()} * k_record_bytes + candidates.bytes() + octree.bytes();
-}
+uint64_t LookupTables::bytes() const { return records.bytes() + candidates.bytes() + octree.bytes(); }
 
 }  // namespace lucerna::irradiance_cache

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <utility>
 
 #include "base/error.h"
 #include "gpu/kernel.h"
@@ -59,13 +60,16 @@ bool RawRecords::crowded(uint32_t record) const {
 
 void RawRecords::keep(std::span<const uint32_t> kept) {
   constexpr size_t k_lights = size_t{k_part_count} * k_part_texels;
+  const size_t shares = size() > 0 ? groups.size() / size() : 0;
   for (size_t to = 0; to < kept.size(); ++to) {
     const size_t from = kept[to];
     assert(from >= to);
     std::copy_n(&places[from * k_record_texels], k_record_texels, &places[to * k_record_texels]);
     std::copy_n(&lights[from * k_lights], k_lights, &lights[to * k_lights]);
     spheres[to] = spheres[from];
+    std::copy_n(groups.begin() + ptrdiff_t(from * shares), shares, groups.begin() + ptrdiff_t(to * shares));
   }
+  groups.resize(kept.size() * shares);
   places.resize(kept.size() * k_record_texels), lights.resize(kept.size() * k_lights);
   spheres.resize(kept.size());
 }
@@ -75,7 +79,8 @@ uint32_t Records::most_records(const gpu::Device& device) {
       std::min<uint64_t>(device.info().limits.max_storage_buffer / k_light_bytes, 1u << 24));
 }
 
-Records::Records(gpu::Device& device, uint32_t capacity) : capacity_(capacity) {
+Records::Records(gpu::Device& device, uint32_t capacity, uint32_t groups)
+    : capacity_(capacity), groups_(std::max(groups, 1u)) {
   if (capacity > most_records(device))
     throw_error("irradiance cache", "room for {} records asked; this device can bind {}", capacity,
                 most_records(device));
@@ -85,6 +90,11 @@ Records::Records(gpu::Device& device, uint32_t capacity) : capacity_(capacity) {
   read_ = gpu::Buffer(device,
                       {.name = "cache irradiance as read", .bytes = capacity * k_light_bytes, .texel = true});
   spheres_ = gpu::Buffer(device, {.name = "cache spheres", .bytes = capacity * sizeof(vec4), .texel = true});
+  if (groups_ < 2) return;
+  const auto words = [&](const char* name) {
+    return gpu::Buffer(device, {.name = name, .bytes = capacity * group_bytes(), .texel = true});
+  };
+  shares_ = words("cache shares of groups"), shares_read_ = words("cache shares of groups as read");
 }
 
 uint32_t Records::append(std::span<const Place> places, uint32_t pass) {
@@ -104,6 +114,8 @@ uint32_t Records::append(std::span<const Place> places, uint32_t pass) {
   records_.write(texels.data(), texels.size() * sizeof(vec4), size_ * k_place_bytes);
   const std::vector<vec4> dark(size_t{fitting} * k_part_count * k_part_texels, vec4(0));
   irradiance_.write(dark.data(), dark.size() * sizeof(vec4), size_ * k_light_bytes);
+  const std::vector<uint8_t> none(fitting * group_bytes(), 0);
+  if (!none.empty()) shares_.write(none.data(), none.size(), size_ * group_bytes());
   size_ += fitting;
   return fitting;
 }
@@ -130,11 +142,13 @@ Record Records::read(uint32_t index) const {
 RawRecords Records::raw(uint32_t count) const {
   assert(count <= size_);
   RawRecords raw{std::vector<vec4>(size_t{count} * k_record_texels),
-                 std::vector<vec4>(size_t{count} * k_part_count * k_part_texels), std::vector<vec4>(count)};
+                 std::vector<vec4>(size_t{count} * k_part_count * k_part_texels), std::vector<vec4>(count),
+                 std::vector<uvec4>(count * group_bytes() / sizeof(uvec4))};
   if (count == 0) return raw;
   records_.read(raw.places.data(), count * k_place_bytes);
   irradiance_.read(raw.lights.data(), count * k_light_bytes);
   spheres_.read(raw.spheres.data(), count * sizeof(vec4));
+  if (!raw.groups.empty()) shares_.read(raw.groups.data(), count * group_bytes());
   return raw;
 }
 
@@ -147,6 +161,10 @@ void Records::restore(const RawRecords& raw) {
   irradiance_.write(std::span(raw.lights));
   read_.write(std::span(raw.lights));
   spheres_.write(std::span(raw.spheres));
+  if (groups_ < 2) return;
+  std::vector<uvec4> shares(size_ * group_bytes() / sizeof(uvec4), uvec4(0));
+  if (raw.groups.size() == shares.size()) shares = raw.groups;
+  shares_.write(std::span(std::as_const(shares))), shares_read_.write(std::span(std::as_const(shares)));
 }
 
 std::vector<Records::Figures> Records::figures() const {
@@ -213,7 +231,9 @@ void Records::keep(uint32_t first, std::span<const uint32_t> kept) {
 }
 
 void Records::publish(gpu::Stream& stream) const {
-  if (size_ > 0) stream.copy(irradiance_, read_, size_ * k_light_bytes);
+  if (size_ == 0) return;
+  stream.copy(irradiance_, read_, size_ * k_light_bytes);
+  if (groups_ > 1) stream.copy(shares_, shares_read_, size_ * group_bytes());
 }
 
 void Records::bind(gpu::Resources& resources, Use use) const {
@@ -222,6 +242,9 @@ void Records::bind(gpu::Resources& resources, Use use) const {
   resources.set("irradiance_texels", use == Use::gather ? irradiance_ : read_);
   resources.set("Irradiance", irradiance_);
   resources.set("Spheres", spheres_);
+  if (groups_ < 2) return;
+  resources.set("record_group_texels", shares(use));
+  resources.set("RecordGroups", shares_);
 }
 
 }  // namespace lucerna::irradiance_cache

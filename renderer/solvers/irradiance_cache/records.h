@@ -51,6 +51,9 @@ struct RawRecords {
   std::vector<vec4> places;   ///< record_texels
   std::vector<vec4> lights;   ///< irradiance_texels
   std::vector<vec4> spheres;  ///< (position, radius)
+  /// record_group_texels (shaders/irradiance_cache/groups.glsl); empty where groups of lights are not kept
+  /// apart.
+  std::vector<uvec4> groups;
   uint32_t size() const { return static_cast<uint32_t>(spheres.size()); }
   bool crowded(uint32_t record) const;  ///< as Record::crowded
   /// Drops the others; indices in rising order.
@@ -59,12 +62,16 @@ struct RawRecords {
 
 class Records {
  public:
-  /// Room for `capacity` records of shared::k_record_bytes. Throws Error when that exceeds what the device
-  /// can bind (most_records()) or its memory.
-  Records(gpu::Device& device, uint32_t capacity);
+  /// Room for `capacity` records of shared::k_record_bytes. `groups`: of lights, whose shares in the light
+  /// are kept; less than 2: they are not. Throws Error when that exceeds what the device can bind
+  /// (most_records()) or its memory.
+  Records(gpu::Device& device, uint32_t capacity, uint32_t groups = 1);
   /// The most that one buffer of this device holds.
   static uint32_t most_records(const gpu::Device& device);
   uint32_t capacity() const { return capacity_; }
+  uint32_t groups() const { return groups_; }
+  /// Of device memory, as lookups read the light and as it is gathered.
+  uint64_t bytes() const { return capacity_ * (shared::k_record_bytes + 2 * group_bytes()); }
   uint32_t size() const { return size_; }
   /// Adds records without light and validity; returns how many found room. `pass`: at most k_record_pass.
   uint32_t append(std::span<const Place> places, uint32_t pass = 0);
@@ -81,7 +88,8 @@ class Records {
   std::vector<Record> read() const;
   Record read(uint32_t index) const;
   /// The first `count`, for files; and back, in place of all there are. At most capacity(), the lists of one
-  /// number of records (assertions).
+  /// number of records (assertions). Without shares of groups, or of another number, those are 0: their light
+  /// is of none.
   RawRecords raw(uint32_t count) const;
   void restore(const RawRecords& raw);
   /// What the overlay colours by, of every record.
@@ -108,11 +116,14 @@ class Records {
   void publish(gpu::Stream& stream) const;
   /// Their light as these read it.
   const gpu::Buffer& light(Use use) const { return use == Use::gather ? irradiance_ : read_; }
+  /// Shares of groups in it; no buffer where none are kept.
+  const gpu::Buffer& shares(Use use) const { return use == Use::gather ? shares_ : shares_read_; }
+  uint64_t group_bytes() const { return groups_ < 2 ? 0 : (groups_ + 3) / 4 * sizeof(uvec4); }  ///< a record
 
  private:
   std::vector<vec4> texels(uint32_t which) const;  ///< one of k_record_texels, of every record
-  uint32_t capacity_ = 0, size_ = 0;
-  gpu::Buffer records_, irradiance_, read_, spheres_;
+  uint32_t capacity_ = 0, size_ = 0, groups_ = 1;
+  gpu::Buffer records_, irradiance_, read_, spheres_, shares_, shares_read_;
 };
 
 }  // namespace lucerna::irradiance_cache

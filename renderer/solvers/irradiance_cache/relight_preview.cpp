@@ -14,16 +14,22 @@ constexpr uint64_t k_light_bytes = uint64_t{k_part_count} * k_part_texels * 16;
 }  // namespace
 
 void RelightPreview::make_room(uint32_t count) {
-  if (!kernel_) kernel_ = gpu::Kernel(device_, compiler_, "irradiance_cache/relight_preview.comp");
+  gpu::Defines defines;
+  if (groups_ > 1) defines = {{"LUCERNA_LIGHT_GROUPS", std::to_string(groups_)}, {"LUCERNA_GROUP_SUMS", "1"}};
+  if (!kernel_) kernel_ = gpu::Kernel(device_, compiler_, "irradiance_cache/relight_preview.comp", defines);
   if (!frame_)
     frame_ = gpu::Buffer(device_, {.name = "cache frame of a preview", .bytes = sizeof(CacheFrame)});
   if (records_ && records_->capacity() >= count) return;
   const uint32_t room = std::min(count + count / 4 + 64, Records::most_records(device_));
   records_.reset(), octree_.reset();
-  records_ = std::make_unique<Records>(device_, room);
+  records_ = std::make_unique<Records>(device_, room, groups_);
   octree_ = std::make_unique<lookup::Octree>(device_, compiler_, LookupTables::octree_options(room));
   old_ =
       gpu::Buffer(device_, {.name = "cache irradiance before", .bytes = room * k_light_bytes, .texel = true});
+  if (groups_ > 1)
+    old_shares_ = gpu::Buffer(
+        device_,
+        {.name = "cache shares of groups before", .bytes = room * records_->group_bytes(), .texel = true});
 }
 
 void RelightPreview::begin(const LookupTables& tables, uint32_t count, const vec3& factor) {
@@ -52,11 +58,17 @@ void RelightPreview::make_ready(gpu::Stream& stream) {
     octree_->build(stream, records_->spheres(), {.most = count_}, &discs);
   }
   if (!std::exchange(begun_, false)) return;
-  stream.copy(records_->light(Records::Use::look_up), old_, count_ * k_light_bytes);
+  keep_as_old(stream, *records_, Records::Use::look_up, count_);
   mix(stream, ~0u);
-  stream.copy(records_->light(Records::Use::look_up), old_, count_ * k_light_bytes);
+  keep_as_old(stream, *records_, Records::Use::look_up, count_);
   stream.run();
   factor_ = vec3(1);
+}
+
+void RelightPreview::keep_as_old(gpu::Stream& stream, const Records& records, Records::Use use,
+                                 uint32_t count) {
+  stream.copy(records.light(use), old_, count * k_light_bytes);
+  if (groups_ > 1) stream.copy(records.shares(use), old_shares_, count * records.group_bytes());
 }
 
 bool RelightPreview::step(transport::Wavefront& wavefront, const paths::Automaton& automaton,
@@ -89,6 +101,10 @@ bool RelightPreview::step(transport::Wavefront& wavefront, const paths::Automato
 void RelightPreview::mix(gpu::Stream& stream, uint32_t parts) {
   records_->bind(resources_, Records::Use::gather);
   resources_.set("old_texels", old_);
+  if (groups_ > 1) {
+    resources_.set("old_group_texels", old_shares_);
+    resources_.set("ShownGroups", records_->shares(Records::Use::look_up));
+  }
   resources_.set("Shown", records_->light(Records::Use::look_up));
   stream.dispatch(kernel_, resources_, RelightPreviewPush{factor_, count_, parts, rays_},
                   gpu::groups_for(count_, 64));
@@ -98,11 +114,15 @@ void RelightPreview::mix(gpu::Stream& stream, uint32_t parts) {
 
 void RelightPreview::take(gpu::Stream& stream, const LookupTables& tables, uint32_t count) {
   if (!active()) return;
-  const uint64_t bytes = std::min(count, count_) * k_light_bytes;
-  if (bytes == 0) return;
+  count = std::min(count, count_);
+  if (count == 0) return;
   make_ready(stream);
-  stream.copy(tables.records.light(Records::Use::gather), records_->light(Records::Use::look_up), bytes);
-  stream.copy(tables.records.light(Records::Use::gather), old_, bytes);
+  constexpr auto k_gathered = Records::Use::gather, k_shown = Records::Use::look_up;
+  stream.copy(tables.records.light(k_gathered), records_->light(k_shown), count * k_light_bytes);
+  if (groups_ > 1)
+    stream.copy(tables.records.shares(k_gathered), records_->shares(k_shown),
+                count * records_->group_bytes());
+  keep_as_old(stream, tables.records, k_gathered, count);
   stream.run();
 }
 
@@ -124,7 +144,8 @@ void RelightPreview::bind(gpu::Resources& to) const {
 }
 
 uint64_t RelightPreview::bytes() const {
-  return records_ ? uint64_t{records_->capacity()} * k_record_bytes + octree_->bytes() + old_.bytes() : 0;
+  if (!records_) return 0;
+  return records_->bytes() + octree_->bytes() + old_.bytes() + (groups_ > 1 ? old_shares_.bytes() : 0);
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -18,7 +18,9 @@ namespace lucerna::irradiance_cache {
 
 class RelightPreview {
  public:
-  RelightPreview(gpu::Device& device, gpu::ShaderCompiler& compiler) : device_(device), compiler_(compiler) {}
+  /// `groups`: of lights, as Records.
+  RelightPreview(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t groups)
+      : device_(device), compiler_(compiler), groups_(groups) {}
 
   /// Makes what so many records need, ahead of time. Throws Error when memory is short.
   void make_room(uint32_t count);
@@ -54,15 +56,18 @@ class RelightPreview {
   static constexpr std::array<uint32_t, 3> k_rounds{1, 2, 4};
   /// What begin() has left to the device.
   void make_ready(gpu::Stream& stream);
+  /// What these hold becomes what was before.
+  void keep_as_old(gpu::Stream& stream, const Records& records, Records::Use use, uint32_t count);
   /// What is shown: of the rays so far and what was before.
   void mix(gpu::Stream& stream, uint32_t parts);
 
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
+  uint32_t groups_;
   std::unique_ptr<Records> records_;  ///< with the rays' light, and as lookups read it what is shown
   std::unique_ptr<lookup::Octree> octree_;
   gpu::Kernel kernel_;
-  gpu::Buffer old_, frame_;
+  gpu::Buffer old_, old_shares_, frame_;
   gpu::Resources resources_;
   RecordQueue queue_;
   vec3 factor_{1};  ///< of the light before, since it was begun

@@ -11,7 +11,9 @@ namespace {
 
 using solvers::Picture, solvers::Task, solvers::Cancel;
 
-CacheOptions read_options(const OptionValues& s) {
+CacheOptions read_options(const Task& task) {
+  const OptionValues& s = task.settings;
+  const bool in_short = task.effects.light_groups > 1 && !task.effects.group_components;
   return {.radius = {.metric = Metric(s.choice("cache.metric")),
                      .error = float(s.real("cache.error")),
                      .nearest = float(s.real("cache.nearest")),
@@ -24,6 +26,7 @@ CacheOptions read_options(const OptionValues& s) {
           .gather = s.boolean("cache.gather"),
           .most_records = uint32_t(s.integer("cache.max_records")),
           .most_passes = uint32_t(s.integer("cache.passes")),
+          .groups = in_short ? task.effects.light_groups : 1,
           .stop_share = float(s.real("cache.stop")),
           .seed = uint32_t(s.integer("seed")),
           .screen = {.density = float(s.real("cache.candidates")),
@@ -107,7 +110,7 @@ CacheSolver::CacheSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, uin
       record_routes_(routes_of_records(task)),
       ray_routes_(routes_of_rays(task)),
       metric_(Metric(task.settings.choice("cache.metric"))),
-      cache_(device, compiler, slots, all_routes(task), read_options(task.settings)) {}
+      cache_(device, compiler, slots, all_routes(task), read_options(task)) {}
 
 const solvers::SolverInfo& CacheSolver::info() const { return irradiance_cache::info(); }
 

@@ -16,9 +16,7 @@ LUCERNA_CONST uint k_part_secondary = 1u;  ///< [SG]*DL
 LUCERNA_CONST uint k_part_tertiary = 2u;   ///< the rest
 LUCERNA_CONST uint k_part_caustic = 3u;    ///< [SG]+L
 LUCERNA_CONST uint k_part_count = 4u;
-// A light group would be further parts: the automaton's accepting states split by the group of the light that
-// is met, as they are by component, k_part_count of them for each group. A group's strength is then a factor
-// by part in lookup.glsl, and changing it spoils no record (solvers/irradiance_cache/info.cpp).
+// What share each group of lights has in them stands apart (irradiance_cache/groups.glsl).
 
 /// Files keep the texels below as they are: another number for another meaning of them.
 LUCERNA_CONST uint k_record_layout = 3u;

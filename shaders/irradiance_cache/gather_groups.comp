@@ -1,0 +1,50 @@
+// What share each group of lights has in what the paths of a batch of records brought (groups.glsl): an invocation for each
+// record and four groups, before gather.comp takes that up, while the irradiance is still that of the levels before.
+#define LUCERNA_PUSH RecordPush
+#include "shaders/shared/irradiance_cache/records.h"
+#include "lib/wavefront.glsl"
+#include "irradiance_cache/hemisphere.glsl"
+#include "irradiance_cache/groups.glsl"
+
+uniform samplerBuffer irradiance_texels;
+layout(scalar) writeonly buffer RecordGroups { uvec4 record_groups[]; };
+
+vec3 brought(uint slot, uint texel) { return texelFetch(radiance_texels, int(radiance_texel(slot, texel))).rgb; }
+bool wanted(uint part) { return (push.parts >> part & 1u) != 0u; }
+
+void main() {
+  uint index = global_index();
+  if (index >= push.records * k_group_texels) return;
+  uint entry = index % push.records, first = index / push.records * 4u;
+  uint record = record_list[push.first + entry];
+  uint m = push.elevations, n = push.azimuths;
+  vec3 all = vec3(0.0), of_group[4];
+  for (uint i = 0u; i < 4u; ++i) of_group[i] = vec3(0.0);
+  for (uint cell = 0u; cell < m * n; ++cell) {
+    uint slot = cell_slot(cell % m, cell / m, entry);
+    for (uint p = k_part_direct + 1u; p < k_part_count; ++p)
+      if (wanted(p)) all += brought(slot, p);
+    // The sky's group has what comes straight from the sky as well.
+    vec3 straight = wanted(k_part_direct) ? brought(slot, k_part_direct) : vec3(0.0);
+    for (uint i = 0u; i < 4u; ++i) {
+      uint group = first + i;
+      vec3 light = group < k_group_count ? brought(slot, k_component_count + group) : vec3(0.0);
+      of_group[i] += group == frame.sky_group ? max(light - straight, vec3(0.0)) : light;
+    }
+  }
+  // Earlier levels weigh by their rays.
+  float cells = float(m * n), now = cells / (float(push.rays_before) + cells);
+  vec3 before = vec3(0.0);
+  uvec4 shares = uvec4(0u);
+  if (push.rays_before > 0u) {
+    for (uint p = k_part_direct + 1u; p < k_part_count; ++p)
+      before += (1.0 - now) * texelFetch(irradiance_texels, int((record * k_part_count + p) * k_part_texels)).rgb;
+    shares = texelFetch(record_group_texels, int(record * k_group_texels + first / 4u));
+  }
+  vec3 irradiance = now * k_pi / cells * all + before;
+  for (uint i = 0u; i < 4u; ++i) {
+    vec3 light = now * k_pi / cells * of_group[i] + share_unpack(shares[i]) * before;
+    shares[i] = share_pack(mix(vec3(0.0), light / irradiance, greaterThan(irradiance, vec3(0.0))));
+  }
+  record_groups[record * k_group_texels + first / 4u] = shares;
+}

@@ -1,0 +1,141 @@
+// links: session
+// Light of records by groups of lights (relight.enabled=compact): the picture as it is, to the bit that
+// without groups; a mix of it as if the records had been made in that light, within what records are off by;
+// whatever is done to records on the way.
+#include <catch2/catch.hpp>
+
+#include "images/light_mix_support.h"
+#include "support/folder.h"
+#include "support/records.h"
+
+using namespace lucerna;
+using namespace lucerna::test;
+
+namespace {
+
+/// Radii by distances alone: records then lie where they do in any light.
+Settings cached(Settings more = {}) {
+  const Settings all{{"components.secondary", "cache"}, {"components.tertiary", "cache"},
+                     {"cache.metric", "split-sphere"},  {"cache.noise", "1"},
+                     {"relight.enabled", "compact"},    {"path.batch", "8192"}};
+  more.insert(all.begin(), all.end());
+  return more;
+}
+
+std::vector<vec3> light(const film::Image& image) {
+  std::vector<vec3> sum(image.samples.size(), vec3(0));
+  for (const auto& component : image.components)
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
+  return sum;
+}
+
+/// By how much 8x8 blocks of two pictures differ, over the second's mean: the root of the mean square, and
+/// the whole.
+struct Off {
+  double blocks = 0, mean = 0;
+};
+Off off(const film::Image& a, const film::Image& b) {
+  const std::vector<vec3> p = light(a), q = light(b);
+  double squares = 0, sum = 0, all = 0;
+  size_t count = 0;
+  for (uint32_t v = 0; v < b.height; v += 8)
+    for (uint32_t u = 0; u < b.width; u += 8, ++count) {
+      double d = 0, y = 0;
+      for (uint32_t i = 0; i < 64; ++i) {
+        const size_t at = (v + i / 8) * b.width + u + i % 8;
+        d += luminance(p[at]) - luminance(q[at]), y += luminance(q[at]);
+      }
+      squares += d * d, sum += d, all += y;
+    }
+  return {std::sqrt(squares / double(count)) / (all / double(count)), sum / all};
+}
+
+const irradiance_cache::Records& records(const session::Renderer& r) { return test::cache(r)->records(); }
+
+}  // namespace
+
+TEST_CASE(
+    "records that keep groups of lights apart hold the light, and make the picture, of those that do not") {
+  const scene::Scene even = block_room(true);  // no sun, which would be a light of its own
+  Bench apart(even, cached()), together(even, cached({{"relight.enabled", "off"}}));
+  const film::Image a = apart.image(), b = together.image();
+  CHECK(apart.r.relight().apart);
+  CHECK(apart.r.film().in_short());
+  CHECK(identical(a, b));
+  CHECK(apart.r.stats().rays == together.r.stats().rays);
+  const uint32_t count = records(apart.r).size();
+  REQUIRE(count > 50);
+  CHECK(count == records(together.r).size());
+  CHECK(records(together.r).raw(count).groups.empty());
+  CHECK(records(apart.r).raw(count).groups.size() == count);
+  CHECK(apart.r.device().validation_messages() == 0);
+}
+
+TEST_CASE("a mix of records' light is the mix of path traced light, within what records are off by") {
+  // Of the same samples, so that direct light is the same.
+  Bench b(room(), cached({{"cache.rays", "1024"}}), 256),
+      traced(room(), {{"relight.enabled", "compact"}}, 256);
+  b.image(), traced.image();
+  const uint64_t rays = b.r.stats().rays;
+  const auto both = [&](const char* text) {
+    b.mix(text), traced.mix(text);
+    return off(b.r.image(), traced.r.image());
+  };
+  const Off as_it_is = both("");
+  CHECK(as_it_is.blocks < 0.03);
+  for (const char* text :
+       {"sky: mute", "lamp: solo factor=10000", "block: solo", "sun: solo", "sky: solo factor=0.0001",
+        "spot: solo color=0.1,1,0.2", "sky: color=1,0.2,0.1; lamp: kelvin=9000 ev=1.3"}) {
+    const Off o = both(text);
+    INFO(text << ": " << o.blocks << " of blocks, " << o.mean << " of the mean");
+    // A group that brings a hundredth of the light has few of the records' rays.
+    CHECK(o.blocks < 0.1);
+    CHECK(std::abs(o.mean) < 0.02);
+  }
+  CHECK(b.r.stats().rays == rays);
+}
+
+TEST_CASE("records' groups follow the settings, and other light") {
+  const scene::Scene s = room();
+  const char* const mix = "spot: ev=3; sky: mute";
+  const auto fresh = [&](const scene::Scene& of, Settings more) {
+    more["relight.mix"] = mix;
+    return Bench(of, cached(std::move(more))).image();
+  };
+  Bench b(s, cached({{"relight.enabled", "off"}}));
+  b.image();
+  // Kept apart from now on: records stay where they are and gather anew.
+  set(b.r, {{"relight.enabled", "compact"}, {"relight.mix", mix}});
+  CHECK(identical(b.image(), fresh(s, {})));
+  // Groups change places; their names, and how many there are, stay.
+  const Settings regrouped{{"relight.groups", "spot=block; block=spot"}};
+  set(b.r, regrouped);
+  const film::Image other = b.image();
+  CHECK(identical(other, fresh(s, regrouped)));
+  // A lamp moves.
+  scene::Scene moved = s;
+  moved.lights[0].position.x += 0.5f;
+  b.r.set_light(0, moved.lights[0]);
+  CHECK(identical(b.image(), fresh(moved, regrouped)));
+  CHECK(b.r.device().validation_messages() == 0);
+}
+
+TEST_CASE("a saved cache keeps groups of lights, and is lit anew where there are others") {
+  const Folder folder;
+  const scene::Scene s = room();
+  Bench b(s, cached({{"relight.mix", "spot: ev=3; sky: mute"}}));
+  const film::Image image = b.image();
+  b.r.solver_save("cache", folder / "a.cache");
+  const uint64_t gathered = test::cache(b.r)->status().rays;
+  for (const char* groups : {"", "spot=block; block=spot"}) {
+    INFO(groups);
+    Bench other(s, cached({{"relight.mix", "spot: ev=3; sky: mute"}, {"relight.groups", groups}}));
+    other.r.solver_load("cache", folder / "a.cache");
+    const film::Image again = other.image();
+    if (*groups == 0) CHECK(identical(again, image));
+    // Loaded ones count too; those that are relit have their rays anew.
+    CHECK(test::cache(other.r)->status().rays == gathered);
+    CHECK(test::cache(other.r)->status().records == test::cache(b.r)->status().records);
+    if (*groups != 0) CHECK(off(again, image).blocks > 0.02);  // the block is brighter, not the spot
+  }
+}
