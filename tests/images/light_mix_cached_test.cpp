@@ -73,7 +73,7 @@ TEST_CASE(
 
 TEST_CASE("a mix of records' light is the mix of path traced light, within what records are off by") {
   // Of the same samples, so that direct light is the same.
-  Bench b(room(), cached({{"cache.rays", "1024"}}), 256),
+  Bench b(room(), cached({{"cache.rays", "256"}, {"cache.max_rays", "1024"}, {"cache.noise", "0.02"}}), 256),
       traced(room(), {{"relight.enabled", "compact"}}, 256);
   b.image(), traced.image();
   const uint64_t rays = b.r.stats().rays;
