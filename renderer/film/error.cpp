@@ -20,6 +20,16 @@ double student_90(double degrees) {
   return z + (g1 + (g2 + g3 / n) / n) / n;
 }
 
+shared::BlockRecords mixed_records(const shared::BlockRecords& records, const shared::BlockError& block) {
+  shared::BlockRecords r = records;
+  if (!(block.unmixed > 0)) return r;
+  const float mixed = block.luminance[0] / block.unmixed;
+  for (float* values : {r.interpolation, r.noise, r.interpolation_noise})
+    for (size_t k = 0; k < (values == r.interpolation ? 2 : 2 * shared::k_record_lanes); ++k)
+      values[k] *= mixed;
+  return r;
+}
+
 RecordsError records_error(std::span<const shared::BlockRecords> blocks) {
   using shared::k_record_lanes;
   double pixels = 0;
@@ -130,8 +140,10 @@ std::vector<TileError> tile_errors(const Film& film, uint32_t side) {
       std::vector<shared::BlockRecords> records;
       for (uint32_t v = y; v < std::min(y + step, film.blocks_down()); ++v)
         for (uint32_t u = x; u < std::min(x + step, film.blocks_across()); ++u) {
-          blocks.push_back(film.errors()[v * film.blocks_across() + u]);
-          if (film.record_errors_complete()) records.push_back(film.records()[v * film.blocks_across() + u]);
+          const uint32_t b = v * film.blocks_across() + u;
+          blocks.push_back(film.errors()[b]);
+          if (film.record_errors_complete())
+            records.push_back(mixed_records(film.records()[b], film.errors()[b]));
         }
       tiles.push_back(tile_error(blocks, records));
     }

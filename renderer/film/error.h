@@ -26,6 +26,9 @@ struct RecordsError {
   double noise = 0, interpolation = 0, degrees = 0;
 };
 RecordsError records_error(std::span<const shared::BlockRecords> blocks);
+/// Of a block, as its light is mixed: in proportion to its luminance, as if records erred in the light of
+/// every group alike.
+shared::BlockRecords mixed_records(const shared::BlockRecords& records, const shared::BlockError& block);
 /// What blur makes of a mean over some blocks, in luminance and as an absolute value. The halves of the film
 /// tell it independently of each other, so that the root of their product, 0 where they do not agree in sign,
 /// is free of their noise in the mean of its square.

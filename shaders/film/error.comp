@@ -40,21 +40,28 @@ struct Row {
   vec2 squares[k_block];  // of its pixels, as FilmRecords
   vec2 records;           // their sum
   vec2 bias;              // sums over the row, of the even and of the odd samples' mean
+  float unmixed;          // sum over the row: luminance as samples have brought it
 #endif
 #if !LUCERNA_STOPPING_ONLY
   float ys[5], vs[5], fourth, total_difference;  // sums over the row, as BlockError
 #endif
 };
 
-// Means of the luminance in the film's two halves, of the sum and by component.
-void read_halves(uint pixel, uint count, out float a[5], out float b[5]) {
+// Means of the luminance in the film's two halves, of the sum and by component; `unmixed`: twice the luminance as samples
+// have brought it.
+void read_halves(uint pixel, uint count, out float a[5], out float b[5], out float unmixed) {
   float even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
   FilmRatio ratio = film_ratio(pixel);
+  vec2 halves = vec2(0.0);
   for (uint c = 0u; c < k_component_count; ++c) {
-    FilmPixel p = film_load(c, pixel, ratio);
-    a[1u + c] = half_luminance(p.even, even);
-    b[1u + c] = half_luminance(p.odd, odd);
+    FilmPixel p = film_load(c, pixel);
+    a[1u + c] = half_luminance(film_mixed(p.even, ratio.even), even);
+    b[1u + c] = half_luminance(film_mixed(p.odd, ratio.odd), odd);
+#if LUCERNA_LOOKUP_ERRORS
+    halves += vec2(half_luminance(p.even, even), half_luminance(p.odd, odd));
+#endif
   }
+  unmixed = halves.x + halves.y;
   a[0] = a[1] + a[2] + a[3] + a[4];
   b[0] = b[1] + b[2] + b[3] + b[4];
 }
@@ -65,6 +72,7 @@ Row read_row(bool working, uvec2 first) {
   r.half_y[0] = r.half_y[1] = r.half_n[0] = r.half_n[1] = 0.0;
 #if LUCERNA_LOOKUP_ERRORS
   r.records = r.bias = vec2(0.0);
+  r.unmixed = 0.0;
 #endif
 #if !LUCERNA_STOPPING_ONLY
   r.fourth = r.total_difference = 0.0;
@@ -75,13 +83,16 @@ Row read_row(bool working, uvec2 first) {
     uint pixel = inside ? first.y * push.width + first.x + x : 0u;
     uint count = inside ? film_count[pixel] : 0u;
     bool there = count >= 2u;
-    float a[5], b[5];
-    read_halves(pixel, count, a, b);
+    float a[5], b[5], unmixed;
+    read_halves(pixel, count, a, b, unmixed);
     float difference = 0.5 * (a[0] - b[0]);
     r.y[x] = there ? 0.5 * (a[0] + b[0]) : 0.0;
     r.v[x] = there ? difference * difference : 0.0;
 #if LUCERNA_LOOKUP_ERRORS
-    r.squares[x] = there && push.records != 0u ? film_records[pixel] : vec2(0.0);
+    // Records err in proportion to their light, in that of each group alike.
+    float mixed = unmixed > 0.0 ? (a[0] + b[0]) / unmixed : 1.0;
+    r.squares[x] = there && push.records != 0u ? square(mixed) * film_records[pixel] : vec2(0.0);
+    r.unmixed += there ? 0.5 * unmixed : 0.0;
     // The halves are independent: in the mean the product of theirs is the square, without the noise of either.
     vec2 bias = vec2(0.0);
     if (there && push.bias != 0u) bias = vec2(film_bias_even[pixel], film_bias_odd[pixel]) / vec2((count + 1u) / 2u, count / 2u);
@@ -183,8 +194,10 @@ void main() {
   values[3u * 64u + lane] = r.records.y;
   values[4u * 64u + lane] = r.bias.x;
   values[5u * 64u + lane] = r.bias.y;
+  values[6u * 64u + lane] = r.unmixed;
   barrier();
   if (working && row < 2u) block_errors[block.index].bias[row] = sum_of_rows(4u + row, first_row, k_block);
+  if (working && row == 5u) block_errors[block.index].unmixed = sum_of_rows(6u, first_row, k_block);
   if (working && row == 6u) block_errors[block.index].records = sum_of_rows(2u, first_row, k_block);
   if (working && row == 7u) block_errors[block.index].interpolation = sum_of_rows(3u, first_row, k_block);
 #endif

@@ -50,6 +50,9 @@ struct BlockError {
   float records, interpolation;
   float records_relative, interpolation_relative;
   float bias[2];          ///< blur alone, with its sign: sum of the even samples' mean, of the odd ones'
+  /// Where what pixels look up is known: the luminance of the light as it is (BlockRecords is of that), [0], as `luminance`
+  /// sums up what is made of it by the mix of groups of lights.
+  float unmixed;
 };
 
 /// What records of light that all samples read may be wrong by, in luminance, summed over pixels of a block: not the

@@ -139,3 +139,24 @@ TEST_CASE("a saved cache keeps groups of lights, and is lit anew where there are
     if (*groups != 0) CHECK(off(again, image).blocks > 0.02);  // the block is brighter, not the spot
   }
 }
+
+TEST_CASE("what is told of records' errors is of the light as it is mixed") {
+  const scene::Scene s = room();
+  Bench b(s, cached(), 16);
+  b.image();
+  const film::ImageError as_it_is = b.r.image_error();
+  REQUIRE(as_it_is.records_rms > 0);
+  // All light by the same factor: all errors, and blocks' sums of them, by the same, too.
+  const std::vector<film::TileError> before = b.r.tile_errors();
+  b.mix("sky: ev=2; sun: ev=2; lamp: ev=2; spot: ev=2; block: ev=2");
+  const film::ImageError brighter = b.r.image_error();
+  CHECK(brighter.luminance[0] == Approx(4 * as_it_is.luminance[0]).epsilon(1e-3));
+  CHECK(brighter.records_rms == Approx(4 * as_it_is.records_rms).epsilon(1e-3));
+  CHECK(brighter.relative_records() == Approx(as_it_is.relative_records()).epsilon(1e-3));
+  const std::vector<film::TileError> after = b.r.tile_errors();
+  for (size_t t = 0; t < before.size(); ++t)
+    CHECK(after[t].records.noise == Approx(4 * before[t].records.noise).epsilon(1e-3));
+  // Without the lights there is nothing to err in.
+  b.mix("sky: mute; sun: mute; lamp: mute; spot: mute; block: mute");
+  CHECK(b.r.image_error().records_rms == 0);
+}
