@@ -307,7 +307,10 @@ TEST_CASE(
                   k_blocks);
   std::vector<BlockError> without = run(plain, 0), unknown = run(error, 0), full = run(error, 1);
   // Light that no groups are mixed of is as it is.
-  for (BlockError& e : unknown) CHECK(e.unmixed == e.luminance[0]), e.unmixed = 0;
+  for (BlockError& e : unknown) {
+    CHECK(e.unmixed == e.luminance[0]);
+    e.unmixed = 0;
+  }
   for (BlockError& e : without) e.unmixed = 0;
   CHECK(std::memcmp(without.data(), unknown.data(), without.size() * sizeof(BlockError)) == 0);
   const film::Image image = film.read();

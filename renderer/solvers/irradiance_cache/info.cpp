@@ -29,7 +29,6 @@ std::vector<ChangeRow> change_rows() {
       {"show.", k_spoils_nothing, "how it is shown"},
       {"preview.", k_spoils_nothing, "how it is shown"},
       {"overlay.", k_spoils_nothing, "how it is shown"},
-      {"relight.groups", k_spoils_light, "which light is of which group"},
       {"relight.", k_spoils_nothing, "where records hold light another mix comes as an edit of the lamps"},
       {"about", k_spoils_nothing, "words"},
       {"camera", k_spoils_coverage, "records lie on surfaces, whoever looks"},

@@ -118,9 +118,7 @@ solvers::Spoils Cache::adopt(transport::Wavefront& wavefront, const Cache& other
   if (stop != StopReason::building) c.finish(stop);
   solvers::Spoils lacks;
   const uint32_t tertiary = 1u << k_part_tertiary;
-  lacks.light = relit ||
-                (c.tables.records.groups() > 1 && c.tables.records.groups() != o.tables.records.groups()) ||
-                (c.gathers.parts & ~c.held.parts) != 0 ||
+  lacks.light = relit || (c.gathers.parts & ~c.held.parts) != 0 ||
                 ((c.gathers.recursive != c.held.recursive || c.gathers.elsewhere != c.held.elsewhere) &&
                  (c.gathers.parts & tertiary) != 0);
   // Paths that gather ask for no records.

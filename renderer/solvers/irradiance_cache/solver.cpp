@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/hash.h"
 #include "base/log.h"
 #include "paths/light_paths.h"
 #include "solvers/irradiance_cache/info.h"
@@ -103,6 +104,20 @@ const solvers::SolverType& type() {
   return all;
 }
 
+uint64_t light_grouping(const upload::FlatScene& flat) {
+  if (flat.effects.light_groups < 2 || flat.effects.group_components) return 0;
+  const scene::LightGroups& g = *flat.groups;
+  std::vector<uint8_t> of{uint8_t(g.groups.size()), g.sky, g.sun};
+  of.insert(of.end(), g.lamps.begin(), g.lamps.end());
+  for (const std::vector<uint8_t>& instance : g.surfaces) {
+    of.push_back(uint8_t(instance.size()));
+    of.insert(of.end(), instance.begin(), instance.end());
+  }
+  Hash hash;
+  hash.add_bytes(of.data(), of.size());
+  return std::max<uint64_t>(hash.low(), 1);
+}
+
 CacheSolver::CacheSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const Task& task)
     : device_(device),
       compiler_(compiler),
@@ -140,11 +155,16 @@ CacheView CacheSolver::view(const Picture& picture) const {
 }
 
 void CacheSolver::adopt(transport::Wavefront& wavefront, const solvers::Solver& before) {
-  lacks_ = cache_.adopt(wavefront, dynamic_cast<const CacheSolver&>(before).cache_);
+  const auto& other = dynamic_cast<const CacheSolver&>(before);
+  lacks_ = cache_.adopt(wavefront, other.cache_);
+  grouping_ = other.grouping_;
 }
 
 void CacheSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   spoils |= std::exchange(lacks_, solvers::k_spoils_nothing);
+  // Other lights may be of other groups, or the same.
+  const uint64_t before = std::exchange(grouping_, light_grouping(picture.flat));
+  if (cache_.records().groups() > 1) spoils.light |= before != grouping_;
   overlap_.reset();
   cache_.look_from(view(picture));
   if (spoils.places) {

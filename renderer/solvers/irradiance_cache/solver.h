@@ -13,6 +13,10 @@ namespace lucerna::irradiance_cache {
 
 const solvers::SolverType& type();
 
+/// Tells which light is of which group, where groups are kept in short and so records keep their shares; 0:
+/// they are not.
+uint64_t light_grouping(const upload::FlatScene& flat);
+
 class CacheSolver final : public solvers::Solver {
  public:
   /// Throws Error as Cache.
@@ -78,6 +82,7 @@ class CacheSolver final : public solvers::Solver {
   Cache cache_;
   /// What of an adopted cache does not serve here; of a new one all.
   solvers::Spoils lacks_ = solvers::k_spoils_all;
+  uint64_t grouping_ = 0;                          ///< light_grouping() of what records hold
   std::unique_ptr<Inspector> inspector_;           ///< made when it is called for
   std::unique_ptr<PlacementView> placement_view_;  ///< the same
   std::optional<vec2> looked_at_;

@@ -1,7 +1,6 @@
 // The cache kept as a file: what it was made of, and what must agree with that.
 #include <set>
 
-#include "base/hash.h"
 #include "base/log.h"
 #include "solvers/irradiance_cache/file.h"
 #include "solvers/irradiance_cache/info.h"
@@ -39,21 +38,6 @@ std::string view_text(const OptionValues& settings, const solvers::Provenance& p
   return text;
 }
 
-/// CacheFile::grouping.
-uint64_t grouping(const upload::FlatScene& flat) {
-  if (flat.effects.light_groups < 2 || flat.effects.group_components) return 0;
-  const scene::LightGroups& g = *flat.groups;
-  std::vector<uint8_t> of{uint8_t(g.groups.size()), g.sky, g.sun};
-  of.insert(of.end(), g.lamps.begin(), g.lamps.end());
-  for (const std::vector<uint8_t>& instance : g.surfaces) {
-    of.push_back(uint8_t(instance.size()));
-    of.insert(of.end(), instance.begin(), instance.end());
-  }
-  Hash hash;
-  hash.add_bytes(of.data(), of.size());
-  return std::max<uint64_t>(hash.low(), 1);
-}
-
 }  // namespace
 
 void CacheSolver::save(const std::string& file, const solvers::Picture& picture,
@@ -69,7 +53,7 @@ void CacheSolver::save(const std::string& file, const solvers::Picture& picture,
                      .made_with = what_made(cache_, settings, provenance),
                      .view = view_text(settings, provenance),
                      .status = status,
-                     .grouping = grouping(picture.flat),
+                     .grouping = light_grouping(picture.flat),
                      .records = cache_.records().raw(status.records)});
 }
 
@@ -84,14 +68,15 @@ void CacheSolver::load(const std::string& file, transport::Wavefront& wavefront,
   const bool complete =
       saved.view == view_text(settings, provenance) && (!full || saved.records.size() == room);
   const uint32_t count = saved.records.size();
-  // Places serve whatever groups there are; their light is then gathered anew by these.
-  lacks_.light = cache_.records().groups() > 1 && saved.grouping != grouping(picture.flat);
+  // Places serve whatever groups there are; where these are others begin() has their light gathered anew.
+  grouping_ = saved.grouping;
+  const bool anew = cache_.records().groups() > 1 && grouping_ != light_grouping(picture.flat);
   cache_.restore(wavefront, std::move(saved.records), saved.status, complete);
   log::info(
       "{}: {} records{}{}", file, count,
-      lacks_.light ? "; their light is gathered anew by groups of lights"
-      : complete   ? ", complete for this view"
-                   : "; what this view is missing is added",
+      anew       ? "; their light is gathered anew by groups of lights"
+      : complete ? ", complete for this view"
+                 : "; what this view is missing is added",
       saved.made_with.seed == settings.text("seed") ? "" : " (made with seed " + saved.made_with.seed + ")");
 }
 
