@@ -14,7 +14,7 @@ void main() {
   vec4 place = texelFetch(surface_texels, int(point * k_surface_texels));
   vec3 normal = texelFetch(surface_texels, int(point * k_surface_texels + 1u)).xyz;
   bool solid = place.w >= 0.0;
-  Cached found = cache_lookup(place.xyz, normal, normal, 0u, solid);
+  Cached found = cache_lookup(place.xyz, normal, normal, 0u, solid, 0.0);
   float light = 0.0, nearest = k_infinity, weights = 0.0, variance = 0.0;
   for (uint p = 0u; p < k_part_count; ++p) light += luminance(found.part[p]);
   OctreeRange range = cache_range(place.xyz, solid && found.weight > 0.0);

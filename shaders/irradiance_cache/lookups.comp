@@ -11,7 +11,7 @@ void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
   Asking a = asking_at(pixel, push.width, push.grid, seen_at(pixel, push.width, push.height));
-  Cached found = cache_lookup(a.position, a.normal, a.normal, 0u, a.answerable);
+  Cached found = cache_lookup(a.position, a.normal, a.normal, 0u, a.answerable, 0.0);
   float light = 0.0;
   for (uint p = 0u; p < k_part_count; ++p) light += luminance(found.part[p]);
   looked_up[pixel] = light;

@@ -24,6 +24,10 @@ struct cache_Vertex {
 bool cache_propagates() { return cache.probing == k_probe_errors || cache.probing == k_probe_errors_beyond; }
 // Beyond the lookup, where what records' rays read is noted.
 bool cache_next_read(uint state) { return cache.probing == k_probe_next && state >= k_fallback_state; }
+// Of a sequence apart from those by which directions and lights are chosen.
+float record_lot(VertexIn v) {
+  return to_unit(uvec2(hash_mix(sample_vertex_bits(v.random, v.depth, k_pad_light_choice).x))).x;
+}
 bool cache_coin(VertexIn v) { return (sample_vertex_bits(v.random, v.depth, k_pad_light_choice).x & 1u) != 0u; }
 
 // What lies behind this vertex's diffuse lobe: from the records, or where there are none by going on in the states that leave
@@ -48,7 +52,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   for (uint c = 0u; c < k_component_count; ++c) cached[c] = vec3(0.0);
 #if LUCERNA_GROUP_SUMS
   vec3 by_group[k_group_count];
-  for (uint g = 0u; g < k_group_count; ++g) by_group[g] = vec3(0.0);
+  [[unroll]] for (uint g = 0u; g < k_group_count; ++g) by_group[g] = vec3(0.0);
 #endif
   for (int facing = 0; facing < k_cache_sides; ++facing) {
     vec3 albedo = v.path.throughput * (facing == 0 ? v.bsdf.diffuse_albedo : v.bsdf.transmitted_albedo) * k_inv_pi;
@@ -59,7 +63,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     medium = facing == 0 || !v.surface.parameters.solid ? v.path.medium : v.surface.front ? v.surface.material + 1u : 0u;
 #endif
     float sign = facing == 0 ? 1.0 : -1.0;
-    Cached found = cache_lookup(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], medium, asks);
+    Cached found = cache_lookup(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], medium, asks, record_lot(v));
     bool missing = asks && found.weight <= 0.0;
     // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
     bool notes = ((missing && found.guide == k_no_guide) || (asks && notes_all)) && cache.probing != k_probe_none && !cache_propagates() &&
@@ -90,12 +94,12 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
       }
     }
     vec3 share = albedo * group_ratio(read, all);
-    for (uint g = 0u; g < k_group_count; ++g) by_group[g] += share * found.group[g] + (g == frame.sky_group ? sky : vec3(0.0));
+    [[unroll]] for (uint g = 0u; g < k_group_count; ++g) by_group[g] += share * found.group[g] + (g == frame.sky_group ? sky : vec3(0.0));
 #endif
   }
   for (uint c = 0u; c < k_component_count; ++c) o.radiance[lane_of(0u, c)] += x.alone ? vec3(0.0) : cached[c];
 #if LUCERNA_GROUP_SUMS
-  for (uint g = 0u; g < k_group_count; ++g) o.radiance[k_component_count + g] += x.alone ? vec3(0.0) : by_group[g];
+  [[unroll]] for (uint g = 0u; g < k_group_count; ++g) o.by_group[g] += x.alone ? vec3(0.0) : by_group[g];
 #endif
   o.sky_known = o.sky_known || (x.looks && !x.alone && (routes & 15u) < k_component_count);  // part 0: k_part_direct
   o.samples_lights = o.samples_lights && cache.probing == k_probe_none;

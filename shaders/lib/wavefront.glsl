@@ -110,19 +110,32 @@ void add_radiance_of_component(uint slot, uint lane_a, vec3 a, uint lane_b, vec3
   add_to_radiance(slot, k_component_count + lane_a / k_component_count, wanted_a, a);
   add_to_radiance(slot, k_component_count + lane_b / k_component_count, wanted_b, b);
 }
-// ... of two lanes, and what is given by component and by group.
-void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec3 found[k_lane_count]) {
+// ... of two lanes, and what is found by component and by group.
+void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec3 found[k_component_count],
+                        vec3 found_by_group[k_group_count]) {
   bool wanted_a = radiance_wanted(lane_a, a), wanted_b = radiance_wanted(lane_b, b);
-  for (uint texel = 0u; texel < k_lane_count; ++texel) {
-    bool by_group = texel >= k_component_count;
-    uint at = by_group ? texel - k_component_count : texel;
-    vec3 value = found[texel];
-    if (wanted_a && (by_group ? lane_a / k_component_count : lane_a % k_component_count) == at) value += a;
-    if (wanted_b && (by_group ? lane_b / k_component_count : lane_b % k_component_count) == at) value += b;
+  a = wanted_a ? a : vec3(0.0);
+  b = wanted_b ? b : vec3(0.0);
+  for (uint c = 0u; c < k_component_count; ++c) {
+    vec3 value = found[c] + (lane_a % k_component_count == c ? a : vec3(0.0)) + (lane_b % k_component_count == c ? b : vec3(0.0));
     bool finite = is_finite(value);
     if (!finite) atomicAdd(counters[k_counter_dropped], 1u);
-    add_to_radiance(slot, texel, finite, value);
+    add_to_radiance(slot, c, finite, value);
   }
+  uint group_a = lane_a / k_component_count, group_b = lane_b / k_component_count;
+  vec3 all = vec3(0.0);
+  [[unroll]] for (uint g = 0u; g < k_group_count; ++g) all += abs(found_by_group[g]);
+  bool any_found = any(notEqual(all, vec3(0.0)));
+  // A loop, because a branch saves no work on lavapipe, and few vertices look anything up.
+  for (uint once = 0u; once < (any_found ? 1u : 0u); ++once) {
+    [[unroll]] for (uint g = 0u; g < k_group_count; ++g) {
+      vec3 value = found_by_group[g] + (group_a == g ? a : vec3(0.0)) + (group_b == g ? b : vec3(0.0));
+      add_to_radiance(slot, k_component_count + g, is_finite(value), value);
+    }
+  }
+  bool same = group_a == group_b;
+  add_to_radiance(slot, k_component_count + group_a, (wanted_a || (same && wanted_b)) && !any_found, a + (same ? b : vec3(0.0)));
+  add_to_radiance(slot, k_component_count + group_b, wanted_b && !same && !any_found, b);
 }
 void add_radiance(uint slot, uint lane, vec3 value) {
   bool wanted = radiance_wanted(lane, value);

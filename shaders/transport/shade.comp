@@ -93,7 +93,10 @@ void main() {
   uint group = 0u;
   vec3 sun = vec3(0.0);  // ... but for an environment's sun, where that is of another group
   VertexOut found;
-  for (uint lane = 0u; lane < k_lane_count; ++lane) found.radiance[lane] = vec3(0.0);
+  for (uint lane = 0u; lane < found.radiance.length(); ++lane) found.radiance[lane] = vec3(0.0);
+#if LUCERNA_GROUP_SUMS
+  [[unroll]] for (uint g = 0u; g < k_group_count; ++g) found.by_group[g] = vec3(0.0);
+#endif
   found.bias = 0.0;
   found.sky_known = false;
   found.samples_lights = true;
@@ -180,7 +183,7 @@ void main() {
 #endif
 #if LUCERNA_VERTEX_HOOKS
 #if LUCERNA_GROUP_SUMS
-  add_radiance_found(slot, met, gain, met_sun, sun, found.radiance);
+  add_radiance_found(slot, met, gain, met_sun, sun, found.radiance, found.by_group);
 #else
   for (uint lane = 0u; lane < k_lane_count; ++lane)
     add_radiance(slot, lane, found.radiance[lane] + (met == lane ? gain : vec3(0.0)) + (met_sun == lane ? sun : vec3(0.0)));

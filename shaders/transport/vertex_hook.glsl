@@ -31,9 +31,14 @@ struct VertexIn {
 };
 
 struct VertexOut {
-  // What is brought here, times the path's throughput, by lane; where groups of lights are kept in short by component, and
-  // once more by group from k_component_count on.
+  // What is brought here, times the path's throughput: by lane, or where groups of lights are kept in short by component,
+  // and once more by group.
+#if LUCERNA_GROUP_SUMS
+  vec3 radiance[k_component_count];
+  vec3 by_group[k_group_count];
+#else
   vec3 radiance[k_lane_count];
+#endif
   float bias;       // by what the luminance of that is told to be too large, in the mean (LUCERNA_LOOKUP_BIAS; else not heeded)
   bool sky_known;   // in it is what the sky sends straight to the diffuse lobe
   bool samples_lights;
