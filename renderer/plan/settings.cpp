@@ -82,7 +82,7 @@ void add_relight_options(std::vector<OptionInfo>& list) {
       "compact: 16 bytes a pixel for each group; the picture of a mix and its noise are right, "
       "but it is shared out to the components as if each group had its light in all of them "
       "alike. on: by component, 200 bytes a pixel for each group, and more time. auto: compact "
-      "in the window, where components are path traced or cached and an eighth of the device's memory "
+      "in the window, where no component is by light tracing and an eighth of the device's memory "
       "is enough; off in batch renders. Where light is not kept apart, a mix lights the scene "
       "anew.",
       "Light by groups"));

@@ -22,7 +22,7 @@ uint vertices_of(uint slot) {
 #endif
 
 #if LUCERNA_LOOKUP_BIAS
-// Of the even and of the odd samples. Where something is looked up light is not kept apart by groups.
+// Of the even and of the odd samples, of the light as it is.
 layout(scalar) buffer FilmBiasEven { float film_bias_even[]; };
 layout(scalar) buffer FilmBiasOdd { float film_bias_odd[]; };
 #endif

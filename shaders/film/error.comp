@@ -89,13 +89,14 @@ Row read_row(bool working, uvec2 first) {
     r.y[x] = there ? 0.5 * (a[0] + b[0]) : 0.0;
     r.v[x] = there ? difference * difference : 0.0;
 #if LUCERNA_LOOKUP_ERRORS
-    // Records err in proportion to their light, in that of each group alike.
+    // Lookups err in proportion to their light, in that of each group alike.
     float mixed = unmixed > 0.0 ? (a[0] + b[0]) / unmixed : 1.0;
     r.squares[x] = there && push.records != 0u ? square(mixed) * film_records[pixel] : vec2(0.0);
     r.unmixed += there ? 0.5 * unmixed : 0.0;
     // The halves are independent: in the mean the product of theirs is the square, without the noise of either.
     vec2 bias = vec2(0.0);
     if (there && push.bias != 0u) bias = vec2(film_bias_even[pixel], film_bias_odd[pixel]) / vec2((count + 1u) / 2u, count / 2u);
+    bias *= mixed;
     r.squares[x].y += bias.x * bias.y;
     r.bias += bias;
     r.records += r.squares[x];

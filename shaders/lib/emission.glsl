@@ -34,6 +34,7 @@ struct Emission {
   uint light;          // entry of emission_alias
   uint stratum;        // in which it was drawn
   float unaimed;       // share of its density that is not aimed, 0..1
+  uint group;          // of lights, where they are kept apart
 };
 
 // Random numbers of light path `index` of a round. All paths of a round share the sequences, so that each of their decisions
@@ -166,6 +167,10 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   bool sky = e.light == emission.sky;
   int at = int((sky ? 0u : e.light) * k_light_texels);
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
+  e.group = 0u;
+#if LUCERNA_LIGHT_GROUPS > 1
+  e.group = sky ? frame.sky_group : floatBitsToUint(texelFetch(scene_lights, at + 3).w) >> k_light_group_shift;
+#endif
   uint kind = sky ? k_light_environment : floatBitsToUint(a.w);
   float disk = k_pi * emission.radius * emission.radius;
   // Point: evenly over the sphere.

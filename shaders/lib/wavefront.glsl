@@ -47,7 +47,7 @@ Hit load_hit(uint slot) {
 PathState load_path(uint slot) {
   vec4 a = texelFetch(path_texels, int(3u * slot)), c = texelFetch(path_texels, int(3u * slot + 2u));
   uvec4 b = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 1u)));
-  return PathState(a.xyz, a.w, b.x, b.y, b.z, b.w, c.x, c.y, floatBitsToUint(c.z), c.w);
+  return PathState(a.xyz, a.w, b.x, b.y, b.z, b.w, c.x, c.y, floatBitsToUint(c.z), floatBitsToUint(c.w));
 }
 ShadowState load_shadow_state(uint slot) {
   vec4 a = texelFetch(shadow_state_texels, int(2u * slot)), b = texelFetch(shadow_state_texels, int(2u * slot + 1u));

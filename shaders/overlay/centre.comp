@@ -27,7 +27,7 @@ void main() {
   p.travelled = 0.0;
   p.eta_scale = 1.0;
   p.nulls = 0u;
-  p.pad0 = 0.0;
+  p.light_group = 0u;
   paths[slot] = p;
   for (uint lane = 0u; lane < k_lane_count; ++lane) radiance[radiance_texel(slot, lane)].rgb = vec3(0.0);
 }

@@ -17,7 +17,7 @@ void main() {
   if (index >= push.count) return;
   uint photon = index * push.step;
   vec4 a = texelFetch(photon_texels, int(k_photon_texels * photon)), b = texelFetch(photon_texels, int(k_photon_texels * photon + 1u));
-  uint events = floatBitsToUint(b.w) >> k_photon_events_shift;
+  uint events = floatBitsToUint(b.w) >> k_photon_events_shift & k_photon_most_events;
   vec3 light = sqrt(b.rgb / max(max(b.r, max(b.g, b.b)), 1e-37));  // encoded
   OverlayPoint p;
   p.position = a.xyz;

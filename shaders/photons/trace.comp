@@ -42,7 +42,8 @@ void main() {
     p.position = v.surface.position;
     p.direction = photon_pack_direction(-ray.direction);
     p.flux = v.arriving / share;
-    p.bits = facet_pack(v.surface.normal_g) | part << k_photon_part_shift | (depth - 1u) << k_photon_events_shift;
+    p.bits = facet_pack(v.surface.normal_g) | part << k_photon_part_shift |
+             min(depth - 1u, k_photon_most_events) << k_photon_events_shift | path.light_group << k_photon_group_shift;
     uint at = atomicAdd(photon_counts[k_photons_stored], 1u);
     if (at < photon_counts[k_photons_capacity]) {
       photon_list[at] = p;

@@ -42,6 +42,10 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   step = max(step, 1u);
   uint skip = step > 1u ? hash_combine(hash_combine(v.path.pixel, v.path.sample_index), v.depth) % step : 0u;
   vec3 found_1 = vec3(0.0), found_2 = vec3(0.0), found_3 = vec3(0.0);  // by part
+#if LUCERNA_GROUP_SUMS
+  vec3 by_group[k_group_count];  // of all that is brought, by group of lights
+  [[unroll]] for (uint g = 0u; g < k_group_count; ++g) by_group[g] = vec3(0.0);
+#endif
   vec3 found_flat = vec3(0.0);  // of all parts that are brought, by the flat kernel
   for (int level = lowest; looks && level <= highest; ++level) {
     ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
@@ -67,6 +71,10 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         found_1 += part == 1u ? light : vec3(0.0);
         found_2 += part == 2u ? light : vec3(0.0);
         found_3 += part == 3u ? light : vec3(0.0);
+#if LUCERNA_GROUP_SUMS
+        uint group = brought ? bits >> k_photon_group_shift : k_group_count;
+        [[unroll]] for (uint g = 0u; g < k_group_count; ++g) by_group[g] += group == g ? light : vec3(0.0);
+#endif
       }
       skip = at >= range.y ? at - range.y : skip;
     }
@@ -84,6 +92,9 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
     o.radiance[lane_of(0u, component)] += weight * light;
     o.bias -= 2.0 * luminance(weight * light);
   }
+#if LUCERNA_GROUP_SUMS
+  [[unroll]] for (uint g = 0u; g < k_group_count; ++g) o.by_group[g] += weight * by_group[g];
+#endif
   return photons_Vertex(0u);
 }
 vec3 photons_cosine(VertexIn v, inout photons_Vertex x, vec2 u, vec3 cosine) { return cosine; }

@@ -34,7 +34,7 @@ struct PathState {
   float travelled;     ///< metres since the last scattering event, over null events
   float eta_scale;     ///< product of (eta_i/eta_t)^2 that refraction has put into the throughput
   uint nulls;          ///< null events since the last scattering event
-  float pad0;
+  uint light_group;    ///< of a path from a light: the group that this is of, where groups are kept apart
 };
 
 /// What a shadow ray brings if it arrives: the diffuse and the glossy lobe's shares go to lanes of their own.

@@ -16,10 +16,12 @@ void main() {
   ray.tmax = -1.0;
   ray.slot = slot;
   vec3 flux = vec3(0.0);
+  uint group = 0u;
 #if LUCERNA_LIGHTS
   Sampler random = make_light_sampler(index, push.round, frame.seed);
   Emission e = sample_emission(random, push.step);
   flux = e.flux * push.share;
+  group = e.group;
   bool finite = is_finite(flux);
   if (!finite) atomicAdd(counters[k_counter_dropped], 1u);
   bool lit = finite && max3(flux) > 0.0;
@@ -40,6 +42,6 @@ void main() {
   p.travelled = 0.0;
   p.eta_scale = 1.0;
   p.nulls = 0u;
-  p.pad0 = 0.0;
+  p.light_group = group;
   paths[slot] = p;
 }

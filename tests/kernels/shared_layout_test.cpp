@@ -103,7 +103,7 @@ std::vector<SharedStruct> structs() {
       SHARED("film.h", FilmHalf, sum, compensation),
       SHARED("film.h", WorkBlock, index, first_sample),
       SHARED("film.h", BlockError, pixels, luminance, variance, fourth, difference, relative, quadrant_pixels,
-             records, interpolation, records_relative, interpolation_relative, bias),
+             records, interpolation, records_relative, interpolation_relative, bias, unmixed),
       SHARED("film.h", BlockRecords, pixels, interpolation, noise, interpolation_noise),
       SHARED("film.h", ErrorPush, width, height, block_count, luminance_floor, records, bias),
       SHARED("film.h", FilmPush, width, height, pixel_count, sample_count, group, quick),
@@ -170,7 +170,7 @@ std::vector<SharedStruct> structs() {
              crowd, scale, normal_stride, normal_at, thickness),
       SHARED("trace.h", TracePush, count, use_queue),
       SHARED("transport.h", PathState, throughput, pdf, pixel, sample_index, bits, medium, travelled,
-             eta_scale, nulls, pad0),
+             eta_scale, nulls, light_group),
       SHARED("transport.h", ShadowState, diffuse, lanes, glossy, pad0),
       SHARED("transport.h", TransportPush, count, use_queue, pixel_count, round),
   };

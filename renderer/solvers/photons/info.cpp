@@ -136,6 +136,7 @@ const SolverInfo& info() {
       .looked_up = true,
       .finds_points = true,
       .lends = true,
+      .by_groups = true,
       .options = option_rows(),
       .changes = change_rows(),
       .views =

@@ -32,8 +32,9 @@ Card make_card(const Inspected& found) {
   const float most = float(double(found.photons[0].brings) / sum);
   for (size_t i = 0; i < std::min<size_t>(found.photons.size(), 5); ++i) {
     const PhotonInspected& p = found.photons[i];
-    const uint32_t events = p.bits >> k_photon_events_shift;
-    add(Card::Weight{fmt::format("{} bounce{}", events, events == 1 ? "" : "s"),
+    const uint32_t events = p.bits >> k_photon_events_shift & k_photon_most_events;
+    add(Card::Weight{fmt::format("{}{} bounce{}", events, events == k_photon_most_events ? " or more" : "",
+                                 events == 1 ? "" : "s"),
                      float(double(p.brings) / sum), most},
         Card::Room::much);
   }

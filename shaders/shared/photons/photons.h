@@ -15,7 +15,9 @@ struct Photon {
 LUCERNA_CONST uint k_photon_texels = 2u;
 LUCERNA_CONST uint k_photon_facet = 0x3fffffu;
 LUCERNA_CONST uint k_photon_part_shift = 22u;    ///< 2 bits: by which events it came (paths::k_part_count)
-LUCERNA_CONST uint k_photon_events_shift = 24u;  ///< 8 bits: scattering events since its light, at most 255
+LUCERNA_CONST uint k_photon_events_shift = 24u;  ///< 4 bits: scattering events since its light, 15 and more are 15
+LUCERNA_CONST uint k_photon_most_events = 15u;
+LUCERNA_CONST uint k_photon_group_shift = 28u;   ///< 4 bits: the group of its light, where groups are kept apart
 
 // Photons are found by cells. The radius within which one counts is a function of the place where it lies, so that the places
 // that it counts for are known without asking the others. Cells come in levels, each sqrt(2) times as wide as the one before;

@@ -1,0 +1,82 @@
+// links: session
+// Light of photons by groups of lights (relight.enabled=compact): as it is to the bit the picture without
+// groups; a mix of it as if photons had come from lamps of that strength, within noise; and of records whose
+// rays end in photons.
+#include <catch2/catch.hpp>
+
+#include "images/light_mix_support.h"
+
+using namespace lucerna;
+using namespace lucerna::test;
+
+namespace {
+
+Settings photons(Settings more = {}) {
+  const Settings all{{"components.secondary", "photons"},
+                     {"components.tertiary", "photons"},
+                     {"components.caustic", "photons"},
+                     {"relight.enabled", "compact"},
+                     {"path.batch", "8192"}};
+  more.insert(all.begin(), all.end());
+  return more;
+}
+
+/// All components in the place of the first.
+film::Image together(film::Image image) {
+  for (int c = 1; c < film::k_components; ++c)
+    for (size_t i = 0; i < image.samples.size(); ++i) {
+      image.components[0][i] += image.components[size_t(c)][i], image.components[size_t(c)][i] = vec3(0);
+      image.odd_half[0][i] += image.odd_half[size_t(c)][i], image.odd_half[size_t(c)][i] = vec3(0);
+    }
+  return image;
+}
+
+}  // namespace
+
+TEST_CASE("photons that know their lights' groups make the picture of those that do not") {
+  const scene::Scene even = block_room(true);  // no sun, which would be a light of its own
+  Bench apart(even, photons(), 4), whole(even, photons({{"relight.enabled", "off"}}), 4);
+  const film::Image a = apart.image(), b = whole.image();
+  CHECK(apart.r.relight().apart);
+  CHECK(apart.r.film().in_short());
+  CHECK(identical(a, b));
+  CHECK(apart.r.image_error().interpolation_rms == whole.r.image_error().interpolation_rms);
+  CHECK(apart.r.device().validation_messages() == 0);
+}
+
+TEST_CASE("a mix of photons' light is that of photons from lamps of that strength, by statistics") {
+  const scene::Scene s = room();
+  // One radius, so that samples are alike and their halves tell the noise.
+  const Settings how{{"photons.radius", "6"}, {"photons.floor", "6"}};
+  Settings other = how;
+  other["seed"] = "2", other["relight.enabled"] = "off";
+  Bench b(s, photons(how), 32);
+  b.image();
+  const uint64_t rays = b.r.stats().rays;
+  for (const char* text : {"lamp: solo color=0.1,1,0.2 factor=10000",
+                           "sky: color=1,0.2,0.1; sun: mute; lamp: kelvin=9000 ev=1.3"}) {
+    INFO(text);
+    b.mix(text);
+    Bench anew(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), photons(other), 32);
+    // Radii are in pixels, so that both blur alike. 24 blocks, 2 pictures: 5 errors of some 64 degrees of
+    // freedom come by chance in one of 5000 such tests; light of a wrong group is off by tens.
+    CHECK(worst_z(together(b.r.image()), together(anew.image())) < 5);
+  }
+  CHECK(b.r.stats().rays == rays);
+}
+
+TEST_CASE("records whose rays end in photons keep their groups") {
+  const scene::Scene s = room();
+  const Settings how{{"components.secondary", "cache"}, {"cache.metric", "split-sphere"}, {"samples", "32"}};
+  Bench b(s, photons(how), 32), traced(s, {{"relight.enabled", "compact"}}, 256);
+  b.image(), traced.image();
+  for (const char* text : {"", "sky: mute", "lamp: solo", "block: solo"}) {
+    INFO(text);
+    b.mix(text), traced.mix(text);
+    double sum = 0, all = 0;
+    const film::Image p = together(b.r.image()), q = together(traced.r.image());
+    for (size_t i = 0; i < p.samples.size(); ++i)
+      sum += luminance(p.components[0][i]), all += luminance(q.components[0][i]);
+    CHECK(sum / all == Approx(1).margin(0.03));
+  }
+}
