@@ -49,7 +49,7 @@ void add_mixed(inout FilmHalf h, FilmHalf of_group, vec3 weight) {
 vec3 brought_of(uint slot, uint component) {
 #if LUCERNA_FILM_LANES
   return texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(push.group, component)))).rgb;
-#elif LUCERNA_GROUP_SUMS
+#elif LUCERNA_GROUP_SUMS && !LUCERNA_FILM_UNMIXED
   // In a draft, what the groups' light comes to as they are mixed is shared out to the components as they have it.
   vec3 all = vec3(0.0), mixed = vec3(0.0);
   for (uint group = 0u; group < push.group; ++group) {
@@ -58,7 +58,7 @@ vec3 brought_of(uint slot, uint component) {
     mixed += light_weight(group) * of_group;
   }
   return group_ratio(mixed, all) * texelFetch(radiance_texels, int(radiance_texel(slot, component))).rgb;
-#elif LUCERNA_LIGHT_GROUPS > 1
+#elif LUCERNA_LIGHT_GROUPS > 1 && !LUCERNA_GROUP_SUMS
   vec3 sum = vec3(0.0);
   for (uint group = 0u; group < k_group_count; ++group)
     sum += light_weight(group) * texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(group, component)))).rgb;
