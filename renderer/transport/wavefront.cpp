@@ -243,7 +243,6 @@ void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
   const bool fits = film.fits_storage_buffers();
   FilmPush push{film.width(), film.height(), pixels, samples, 0, film.quick()};
   if (film.groups() == 1) {
-    if (in_short) push.group = groups;
     stream.dispatch(fits ? film_add : film_add_images, film_resources, push, workgroups(pixels), "film");
     return;
   }
@@ -253,8 +252,9 @@ void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
     throw_error("transport", "a film and paths that keep groups of lights in different ways");
   if (in_short) {
     // The picture's sums are of the light as it is; readers mix them.
-    stream.dispatch(fits ? unmixed_add : unmixed_add_images, film_resources, push, workgroups(pixels), "film");
-    stream.dispatch(fits ? groups_add : groups_add_images, film_resources, push, workgroups(pixels), "film groups");
+    stream.dispatch(fits ? unmixed_add : unmixed_add_images, film_resources, push, workgroups(pixels),
+                    "film");
+    stream.dispatch(fits ? groups_add : groups_add_images, film_resources, push, workgroups(pixels), "film");
     return;
   }
   for (push.group = 0; push.group < groups; ++push.group) {

@@ -10,6 +10,7 @@
 #include "lib/variants.glsl"
 #include "lib/film.glsl"
 #include "lib/blocks.glsl"
+#include "lib/hash.glsl"
 #include "lib/invocation.glsl"
 #include "lib/radiance.glsl"
 layout(local_size_x = 64) in;
@@ -19,14 +20,6 @@ layout(rgba32f) uniform writeonly imageBuffer group_sums_out;
 #else
 layout(scalar) writeonly buffer GroupSumTexels { uvec4 group_sums_out[]; };
 #endif
-
-uint hash(uint x) {  // lowbias32, C. Wellons
-  x ^= x >> 16u;
-  x *= 0x7feb352du;
-  x ^= x >> 15u;
-  x *= 0x846ca68bu;
-  return x ^ x >> 16u;
-}
 
 // s + x, rounded by u in [0, 1).
 GroupSum group_sum_plus(GroupSum s, vec3 x, vec3 u) {
@@ -62,7 +55,7 @@ void main() {
       vec3 light = group_light(slot, group);
       // One number for all sums of a sample, each time turned by the golden ratio: every one is rounded without bias, and what
       // they err by is not of one sign.
-      uvec3 turned = hash(pixel ^ hash(number + 0x68bc21ebu)) + (3u * group + uvec3(0u, 1u, 2u)) * 0x9e3779b9u;
+      uvec3 turned = hash_mix(pixel ^ hash_mix(number + 0x68bc21ebu)) + (3u * group + uvec3(0u, 1u, 2u)) * 0x9e3779b9u;
       vec3 u = vec3(turned >> 8u) * (1.0 / 16777216.0);
       bool even = (number & 1u) == 0u, adds = (groups_lit(slot) >> group & 1u) != 0u;
       uvec2 half_sum = even ? sums.xy : sums.zw;

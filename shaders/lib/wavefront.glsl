@@ -102,17 +102,21 @@ bool radiance_wanted(uint lane, vec3 value) {
 void add_to_group(uint slot, uint group, vec3 value) {
   if (any(notEqual(value, vec3(0.0)))) {
     uint lit = groups_lit(slot), bit = 1u << group;
-    radiance[radiance_texel(slot, k_component_count + group)].rgb = value + ((lit & bit) != 0u ? group_light(slot, group) : vec3(0.0));
+    radiance[radiance_texel(slot, k_component_count + group)].rgb =
+        value + ((lit & bit) != 0u ? group_light(slot, group) : vec3(0.0));
     radiance[radiance_texel(slot, 0u)].a = uintBitsToFloat(lit | bit);
   }
 }
-// ... of two, or of one where b is zero.
+// ... of two that are not the same, or of one where b is zero.
 void add_to_groups(uint slot, uint group_a, vec3 a, uint group_b, vec3 b) {
-  uint lit = groups_lit(slot), bit_a = any(notEqual(a, vec3(0.0))) ? 1u << group_a : 0u, bit_b = any(notEqual(b, vec3(0.0))) ? 1u << group_b : 0u;
+  uint lit = groups_lit(slot);
+  uint bit_a = any(notEqual(a, vec3(0.0))) ? 1u << group_a : 0u, bit_b = any(notEqual(b, vec3(0.0))) ? 1u << group_b : 0u;
   if (bit_a != 0u)
-    radiance[radiance_texel(slot, k_component_count + group_a)].rgb = a + ((lit & bit_a) != 0u ? group_light(slot, group_a) : vec3(0.0));
+    radiance[radiance_texel(slot, k_component_count + group_a)].rgb =
+        a + ((lit & bit_a) != 0u ? group_light(slot, group_a) : vec3(0.0));
   if (bit_b != 0u)
-    radiance[radiance_texel(slot, k_component_count + group_b)].rgb = b + ((lit & bit_b) != 0u ? group_light(slot, group_b) : vec3(0.0));
+    radiance[radiance_texel(slot, k_component_count + group_b)].rgb =
+        b + ((lit & bit_b) != 0u ? group_light(slot, group_b) : vec3(0.0));
   if ((bit_a | bit_b) != 0u) radiance[radiance_texel(slot, 0u)].a = uintBitsToFloat(lit | bit_a | bit_b);
 }
 // Light of two lanes of one group, which may be the same. At most once a slot and dispatch, like the next.
