@@ -63,7 +63,7 @@ void Developer::prepare_mix(gpu::Stream& stream, const Film& film, const View& v
 
 void Developer::mix(gpu::Stream& stream, const Film& film, const View& view) {
   film.bind(resources_);
-  const MixPush push{film.width(), film.height(), film.groups(), view.curve, view.exposure, film.in_short()};
+  const MixPush push{film.width(), film.height(), film.groups(), view.exposure};
   stream.dispatch(mix_kernel(film, view), resources_, push, groups(film));
   stream.run();
   stream.take_times();

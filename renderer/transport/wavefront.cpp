@@ -24,7 +24,7 @@ struct Wavefront::Impl {
       counters;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
   gpu::Kernel camera, shade, shadow, film_add, film_add_images, lanes_add, lanes_add_images, groups_add,
-      groups_add_images, trace_closest, trace_any, trace_non_opaque;
+      groups_add_images, unmixed_add, unmixed_add_images, trace_closest, trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
   std::function<void(gpu::Resources&)> bind_lookup;
@@ -177,6 +177,9 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   if (w.in_short) {
     w.groups_add = gpu::Kernel(device, compiler, "film/add_groups.comp", adding);
     w.groups_add_images = gpu::Kernel(device, compiler, "film/add_groups.comp", images);
+    adding["LUCERNA_FILM_UNMIXED"] = images["LUCERNA_FILM_UNMIXED"] = "1";
+    w.unmixed_add = gpu::Kernel(device, compiler, "film/add.comp", adding);
+    w.unmixed_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
   } else if (w.groups > 1) {
     adding["LUCERNA_FILM_LANES"] = images["LUCERNA_FILM_LANES"] = "1";
     w.lanes_add = gpu::Kernel(device, compiler, "film/add.comp", adding);
@@ -240,7 +243,6 @@ void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
   const bool fits = film.fits_storage_buffers();
   FilmPush push{film.width(), film.height(), pixels, samples, 0, film.quick()};
   if (film.groups() == 1) {
-    if (in_short) push.group = groups;
     stream.dispatch(fits ? film_add : film_add_images, film_resources, push, workgroups(pixels), "film");
     return;
   }
@@ -250,7 +252,8 @@ void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
     throw_error("transport", "a film and paths that keep groups of lights in different ways");
   if (in_short) {
     // The picture's sums are of the light as it is; readers mix them.
-    stream.dispatch(fits ? film_add : film_add_images, film_resources, push, workgroups(pixels), "film");
+    stream.dispatch(fits ? unmixed_add : unmixed_add_images, film_resources, push, workgroups(pixels),
+                    "film");
     stream.dispatch(fits ? groups_add : groups_add_images, film_resources, push, workgroups(pixels), "film");
     return;
   }

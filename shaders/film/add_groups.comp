@@ -10,23 +10,16 @@
 #include "lib/variants.glsl"
 #include "lib/film.glsl"
 #include "lib/blocks.glsl"
+#include "lib/hash.glsl"
 #include "lib/invocation.glsl"
+#include "lib/radiance.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { FilmPush push; };
-uniform samplerBuffer radiance_texels;
 #if LUCERNA_FILM_IMAGES
 layout(rgba32f) uniform writeonly imageBuffer group_sums_out;
 #else
 layout(scalar) writeonly buffer GroupSumTexels { uvec4 group_sums_out[]; };
 #endif
-
-uint hash(uint x) {  // lowbias32, C. Wellons
-  x ^= x >> 16u;
-  x *= 0x7feb352du;
-  x ^= x >> 15u;
-  x *= 0x846ca68bu;
-  return x ^ x >> 16u;
-}
 
 // s + x, rounded by u in [0, 1).
 GroupSum group_sum_plus(GroupSum s, vec3 x, vec3 u) {
@@ -49,21 +42,27 @@ void main() {
   uvec2 xy = block_pixel(block.index, index % 64u, push.width);
   if (xy.x >= push.width || xy.y >= push.height) return;
   uint pixel = xy.y * push.width + xy.x;
-  for (uint group = 0u; group < k_group_count; ++group) {
+  // Of the groups only those of which some sample has light; each pixel its own, so that few passes serve all.
+  uint lit = 0u, i = 0u;
+  do lit |= groups_lit(index + i * push.pixel_count); while (++i < push.sample_count);
+  for (; lit != 0u; lit &= lit - 1u) {
+    uint group = uint(findLSB(lit));
     int at = int(group * push.width * push.height + pixel);
     uvec4 sums = texelFetch(group_sums, at);
-    for (uint i = 0u; i < push.sample_count; ++i) {
-      uint number = block.first_sample + i;
-      vec3 light = texelFetch(radiance_texels, int(radiance_texel(index + i * push.pixel_count, k_component_count + group))).rgb;
+    i = 0u;
+    do {
+      uint slot = index + i * push.pixel_count, number = block.first_sample + i;
+      vec3 light = group_light(slot, group);
       // One number for all sums of a sample, each time turned by the golden ratio: every one is rounded without bias, and what
       // they err by is not of one sign.
-      uvec3 turned = hash(pixel ^ hash(number + 0x68bc21ebu)) + (3u * group + uvec3(0u, 1u, 2u)) * 0x9e3779b9u;
+      uvec3 turned = hash_mix(pixel ^ hash_mix(number + 0x68bc21ebu)) + (3u * group + uvec3(0u, 1u, 2u)) * 0x9e3779b9u;
       vec3 u = vec3(turned >> 8u) * (1.0 / 16777216.0);
-      bool even = (number & 1u) == 0u;
+      bool even = (number & 1u) == 0u, adds = (groups_lit(slot) >> group & 1u) != 0u;
       uvec2 half_sum = even ? sums.xy : sums.zw;
       GroupSum s = group_sum_plus(GroupSum(half_sum.x, half_sum.y), light, u);
-      sums = even ? uvec4(s.low, s.high, sums.zw) : uvec4(sums.xy, s.low, s.high);
-    }
+      half_sum = adds ? uvec2(s.low, s.high) : half_sum;
+      sums = even ? uvec4(half_sum, sums.zw) : uvec4(sums.xy, half_sum);
+    } while (++i < push.sample_count);
 #if LUCERNA_FILM_IMAGES
     imageStore(group_sums_out, at, uintBitsToFloat(sums));
 #else

@@ -19,11 +19,22 @@ PreviewLight preview_unpack(vec4 a, vec4 b) {
   l.of[3] = vec4(unpackHalf2x16(y.z), unpackHalf2x16(y.w));
   return l;
 }
+// Two texels a pixel or cell.
+PreviewLight preview_light(samplerBuffer texels, int at) {
+  return preview_unpack(texelFetch(texels, 2 * at), texelFetch(texels, 2 * at + 1));
+}
+vec4 preview_luminances(PreviewLight l) {
+  return vec4(luminance(l.of[0].rgb), luminance(l.of[1].rgb), luminance(l.of[2].rgb), luminance(l.of[3].rgb));
+}
+vec4 preview_errors(PreviewLight l) { return vec4(l.of[0].w, l.of[1].w, l.of[2].w, l.of[3].w); }
 uvec2 preview_pack(vec4 c) {
   vec4 v = min(c, vec4(60000.0));
   return uvec2(packHalf2x16(v.xy), packHalf2x16(v.zw));
 }
 vec4 preview_texel(vec4 c, vec4 d) { return uintBitsToFloat(uvec4(preview_pack(c), preview_pack(d))); }
+#define LUCERNA_PREVIEW_STORE(buffer, at, light)                   \
+  buffer[2u * (at)] = preview_texel((light).of[0], (light).of[1]); \
+  buffer[2u * (at) + 1u] = preview_texel((light).of[2], (light).of[3]);
 
 // Normals on an octahedron (Cigolle et al. 2014).
 uint preview_normal(vec3 n) {

@@ -33,17 +33,14 @@ vec3 ray_at(vec2 cell) {
 vec3 point_at(vec3 ray, float depth) {
   return push.orthographic != 0u ? ray + depth * push.forward : depth * (ray + push.forward);
 }
-vec4 luminances(PreviewLight l) {
-  return vec4(luminance(l.of[0].rgb), luminance(l.of[1].rgb), luminance(l.of[2].rgb), luminance(l.of[3].rgb));
-}
 
 void main() {
   uint cell = global_index();
   if (cell >= push.across * push.down) return;
   ivec2 xy = ivec2(cell % push.across, cell / push.across);
   PreviewSurface here = preview_surface(texelFetch(grid_surfaces, int(cell)));
-  PreviewLight own = preview_unpack(texelFetch(grid_texels, int(2u * cell)), texelFetch(grid_texels, int(2u * cell) + 1));
-  vec4 own_luminance = luminances(own), own_noise = vec4(own.of[0].w, own.of[1].w, own.of[2].w, own.of[3].w);
+  PreviewLight own = preview_light(grid_texels, int(cell));
+  vec4 own_luminance = preview_luminances(own), own_noise = preview_errors(own);
   vec3 ray = ray_at(vec2(xy)), point = point_at(ray, max(here.depth, 0.0));
   // A cell's width there, and a little more for surfaces that are not plane.
   float scale = (push.orthographic != 0u ? 1.0 : max(here.depth, 0.0)) *
@@ -63,12 +60,12 @@ void main() {
     bool inside = all(greaterThanEqual(at, ivec2(0))) && at.x < int(push.across) && at.y < int(push.down);
     int there = inside ? at.y * int(push.across) + at.x : int(cell);
     PreviewSurface s = preview_surface(texelFetch(grid_surfaces, there));
-    PreviewLight l = preview_unpack(texelFetch(grid_texels, 2 * there), texelFetch(grid_texels, 2 * there + 1));
+    PreviewLight l = preview_light(grid_texels, there);
     float kernel = (k == 4 ? 4.0 : (k & 1) == 1 ? 2.0 : 1.0) * (inside ? 1.0 : 0.0) * min(s.samples, 1.0);
     float alike = preview_alike(here, s, point_at(ray_at(vec2(at)), max(s.depth, 0.0)) - point, scale);
     // What knows of no samples takes whatever there is, rather than nothing.
     if (here.samples <= 0.0) alike = max(alike, 1e-4);
-    vec4 y = luminances(l), noise = vec4(l.of[0].w, l.of[1].w, l.of[2].w, l.of[3].w);
+    vec4 y = preview_luminances(l), noise = preview_errors(l);
     float plain = kernel * alike;
     vec4 w = vec4(plain);
     plain_sum += plain;
@@ -117,17 +114,16 @@ void main() {
   error = sqrt(of_cell * alike_square) / max(plain_sum, 1e-20);
 #endif
   lost /= max(plain_sum, 1e-20);
-  vec4 result[k_component_count];
-  for (uint c = 0u; c < k_component_count; ++c) result[c] = vec4(sum[c] * inverse[c], error[c]);
+  PreviewLight result;
+  for (uint c = 0u; c < k_component_count; ++c) result.of[c] = vec4(sum[c] * inverse[c], error[c]);
 #if LUCERNA_PREVIEW_FIRST
   for (uint c = 0u; c < k_component_count; ++c)
-    if (around[c].w > 0.0) result[c].rgb = mix(result[c].rgb, around[c].rgb / around[c].w, alone);
+    if (around[c].w > 0.0) result.of[c].rgb = mix(result.of[c].rgb, around[c].rgb / around[c].w, alone);
 #endif
 #if LUCERNA_PREVIEW_FIRST
-  lost = k_gives_back * max(lost - vec4(luminance(result[0].rgb), luminance(result[1].rgb), luminance(result[2].rgb), luminance(result[3].rgb)), vec4(0.0));
+  lost = k_gives_back * max(lost - preview_luminances(result), vec4(0.0));
 #endif
   filtered_lost[cell] = lost;
   if (push.history != 0u) filtered_before[cell] = before * inverse;
-  filtered[2u * cell] = preview_texel(result[0], result[1]);
-  filtered[2u * cell + 1u] = preview_texel(result[2], result[3]);
+  LUCERNA_PREVIEW_STORE(filtered, cell, result)
 }

@@ -63,7 +63,7 @@ void main() {
       add(texelFetch(packed_texels, 2 * pixel), texelFetch(packed_texels, 2 * pixel + 1), s, s.samples);
     if (push.history == 0u) continue;
     PreviewSurface was = preview_surface(texelFetch(history_surfaces, pixel));
-    PreviewLight l = preview_unpack(texelFetch(history_texels, 2 * pixel), texelFetch(history_texels, 2 * pixel + 1));
+    PreviewLight l = preview_light(history_texels, pixel);
     if (preview_lit(l, was) && (alike || s.depth <= 0.0)) {
       vec3 m = push.history_scale / (was.depth >= 0.0 ? preview_modulation(was) : preview_modulation(here));
       before += vec4(luminance(m * l.of[0].rgb), luminance(m * l.of[1].rgb), luminance(m * l.of[2].rgb), luminance(m * l.of[3].rgb));
@@ -77,8 +77,7 @@ void main() {
   }
   vec4 now = vec4(luminance(total.of[0].rgb), luminance(total.of[1].rgb), luminance(total.of[2].rgb), luminance(total.of[3].rgb));
   grid_before[cell] = before_known > 0.0 ? before / before_known : now;
-  grid[2u * cell] = preview_texel(total.of[0], total.of[1]);
-  grid[2u * cell + 1u] = preview_texel(total.of[2], total.of[3]);
+  LUCERNA_PREVIEW_STORE(grid, cell, total)
   here.samples = weights;
   grid_surfaces[cell] = preview_texel(here);
 }

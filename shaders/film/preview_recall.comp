@@ -22,7 +22,7 @@ float depth_at(int pixel) {
   return depth > 0.0 ? depth : k_sky;
 }
 vec3 shown_at(int pixel) {
-  PreviewLight l = preview_unpack(texelFetch(history_texels, 2 * pixel), texelFetch(history_texels, 2 * pixel + 1));
+  PreviewLight l = preview_light(history_texels, pixel);
   vec3 sum = vec3(0.0);
   for (uint c = 0u; c < k_component_count; ++c) sum += l.of[c].rgb * float(push.show >> c & 1u);
   return sum;

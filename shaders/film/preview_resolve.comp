@@ -43,7 +43,7 @@ void main() {
     for (uint c = 0u; c < k_component_count; ++c) own.of[c] = vec4(0.0, 0.0, 0.0, -1.0);
     if (push.sampled != 0u) {
       surface = texelFetch(surface_texels, int(pixel));
-      own = preview_unpack(texelFetch(packed_texels, int(2u * pixel)), texelFetch(packed_texels, int(2u * pixel) + 1));
+      own = preview_light(packed_texels, int(pixel));
     } else if (push.history != 0u) {
       surface = vec4(texelFetch(history_surfaces, int(pixel)).xyz, 0.0);
     }
@@ -72,7 +72,7 @@ void main() {
       } else {
         akin = 1.0;
       }
-      PreviewLight l = preview_unpack(texelFetch(filtered_texels, 2 * cell), texelFetch(filtered_texels, 2 * cell + 1));
+      PreviewLight l = preview_light(filtered_texels, cell);
       float there = (l.of[0].w + l.of[1].w + l.of[2].w + l.of[3].w) >= 0.0 && s.samples > 0.0 ? w : 1e-6 * w;
       for (uint c = 0u; c < k_component_count; ++c) light[c] += there * l.of[c];
       lost += there * texelFetch(lost_texels, cell);
@@ -95,14 +95,14 @@ void main() {
     for (uint c = 0u; c < k_component_count; ++c) old.of[c] = vec4(0.0);
     bool has_old = false;
     if (push.history != 0u) {
-      old = preview_unpack(texelFetch(history_texels, int(2u * pixel)), texelFetch(history_texels, int(2u * pixel) + 1));
+      old = preview_light(history_texels, int(pixel));
       has_old = preview_lit(old, preview_surface(texelFetch(history_surfaces, int(pixel))));
     }
     // For cameras that come after this one.
     if (here.depth < 0.0 && nearest_depth >= 0.0) surface = vec4(k_preview_about - nearest_depth, 0.0, 0.0, 0.0);
     packed_surfaces[pixel] = surface;
     float by_chance = push.same_light != 0u ? k_by_chance_same : k_by_chance;
-    vec4 result[k_component_count];
+    PreviewLight result;
     vec3 color = vec3(0.0);
     for (uint c = 0u; c < k_component_count; ++c) {
       float plain = luminance(light[c].rgb) * inverse, back = min(lost[c] * inverse, k_most_back + k_most_back_relative * plain);
@@ -134,13 +134,12 @@ void main() {
       if (nothing) keep = has_old ? 1.0 : 0.0;
       now = mix(now, before, keep);
       float left = sqrt(square((1.0 - keep) * error) + keep * keep * (u + change));
-      result[c] = vec4(now, nothing && !has_old ? -1.0 : left);
+      result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);
       if ((push.show >> c & 1u) != 0u) color += now;
       float shown = luminance(now) * float(push.show >> c & 1u);
       told += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
     }
-    packed[2u * pixel] = preview_texel(result[0], result[1]);
-    packed[2u * pixel + 1u] = preview_texel(result[2], result[3]);
+    LUCERNA_PREVIEW_STORE(packed, pixel, result)
     picture[pixel] = picture_packed(tone_map(color, push.curve));
   }
   group_shares[lane] = min(told, vec3(4.0));

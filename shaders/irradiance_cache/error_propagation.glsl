@@ -3,6 +3,7 @@
 #ifndef LUCERNA_IRRADIANCE_CACHE_ERROR_PROPAGATION
 #define LUCERNA_IRRADIANCE_CACHE_ERROR_PROPAGATION
 #include "shaders/shared/irradiance_cache/records.h"
+#include "lib/hash.glsl"
 #include "lib/math.glsl"
 
 // A colour, of any size, in eight bits a channel of its greatest and eight for that one's power of 2.
@@ -17,12 +18,9 @@ vec3 throughput_unpack(uint bits) {
 }
 
 // +1 or -1 for each of four lanes, 4 group on, as likely and independent of those of other records and lanes: bits of the
-// record's number, mixed (C. Wellons, "Prospecting for hash functions", 2018: lowbias32).
+// record's number, mixed.
 vec4 record_signs(uint record, uint group) {
-  uint x = record + 0x9e3779b9u;
-  x = (x ^ x >> 16) * 0x7feb352du;
-  x = (x ^ x >> 15) * 0x846ca68bu;
-  x = (x ^ x >> 16) >> (4u * group);
+  uint x = hash_mix(record + 0x9e3779b9u) >> (4u * group);
   return 1.0 - 2.0 * vec4(uvec4(x, x >> 1, x >> 2, x >> 3) & 1u);
 }
 #endif

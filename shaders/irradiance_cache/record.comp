@@ -42,5 +42,5 @@ void main() {
   p.nulls = 0u;
   p.light_group = 0u;
   paths[slot] = p;
-  for (uint lane = 0u; lane < k_lane_count; ++lane) radiance[radiance_texel(slot, lane)].rgb = vec3(0.0);
+  clear_radiance(slot);
 }

@@ -5,6 +5,7 @@
 #ifndef LUCERNA_LIB_SAMPLER
 #define LUCERNA_LIB_SAMPLER
 #include "lib/variants.glsl"
+#include "lib/hash.glsl"
 
 // Pads: 0 pixel, 1 lens, then k_pads_per_vertex for every scattering event.
 const uint k_pad_pixel = 0u;
@@ -33,12 +34,6 @@ struct Sampler {
 };
 const uint k_shared_bits = 4u;
 
-uint hash_mix(uint x) {  // lowbias32, C. Wellons
-  x ^= x >> 16; x *= 0x7feb352du;
-  x ^= x >> 15; x *= 0x846ca68bu;
-  x ^= x >> 16;
-  return x;
-}
 uint hash_combine(uint seed, uint v) { return hash_mix(seed ^ (v * 0x9e3779b9u + 0x7f4a7c15u + (seed << 6) + (seed >> 2))); }
 
 // `pixel`: y * width + x.

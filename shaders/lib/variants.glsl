@@ -107,6 +107,9 @@
 #ifndef LUCERNA_FILM_LANES
 #define LUCERNA_FILM_LANES 0
 #endif
+#ifndef LUCERNA_FILM_UNMIXED  // of groups in short: nothing is made of their mix here
+#define LUCERNA_FILM_UNMIXED 0
+#endif
 #ifndef LUCERNA_VERTEX_COUNT
 #define LUCERNA_VERTEX_COUNT 0
 #endif

@@ -9,6 +9,7 @@
 #include "lib/variants.glsl"
 #include "lib/frame.glsl"
 #include "lib/invocation.glsl"
+#include "lib/radiance.glsl"
 
 layout(local_size_x = 64) in;
 // Kernels that begin or end paths define LUCERNA_PUSH first, as the name of a structure of their own.
@@ -24,7 +25,6 @@ layout(scalar) buffer Counters { uint counters[]; };
 uniform samplerBuffer ray_texels;           // Rays, 2 texels a slot
 uniform samplerBuffer hit_texels;           // Hits, 1
 uniform samplerBuffer path_texels;          // Paths, 3
-uniform samplerBuffer radiance_texels;      // Radiance, k_lane_count (rgb; of the first a: the bias of lookups)
 uniform samplerBuffer shadow_ray_texels;    // ShadowRays, 2
 uniform samplerBuffer shadow_state_texels;  // ShadowStates, 2
 layout(scalar) writeonly buffer Rays { Ray rays[]; };
@@ -73,6 +73,15 @@ void store_path(uint slot, PathState p) {
 #endif
 }
 
+// Zero light, of no group.
+void clear_radiance(uint slot) {
+#if LUCERNA_GROUP_SUMS
+  for (uint c = 0u; c < k_component_count; ++c) radiance[radiance_texel(slot, c)] = vec4(0.0);
+#else
+  for (uint lane = 0u; lane < k_lane_count; ++lane) radiance[radiance_texel(slot, lane)].rgb = vec3(0.0);
+#endif
+}
+
 // To a texel of the path's radiance. At most once a texel and dispatch (see above).
 void add_to_radiance(uint slot, uint lane, bool wanted, vec3 value) {
   if (wanted && any(notEqual(value, vec3(0.0)))) {
@@ -89,6 +98,27 @@ bool radiance_wanted(uint lane, vec3 value) {
 }
 
 #if LUCERNA_GROUP_SUMS
+// To the light of a group. At most once a slot and dispatch, like the next.
+void add_to_group(uint slot, uint group, vec3 value) {
+  if (any(notEqual(value, vec3(0.0)))) {
+    uint lit = groups_lit(slot), bit = 1u << group;
+    radiance[radiance_texel(slot, k_component_count + group)].rgb =
+        value + ((lit & bit) != 0u ? group_light(slot, group) : vec3(0.0));
+    radiance[radiance_texel(slot, 0u)].a = uintBitsToFloat(lit | bit);
+  }
+}
+// ... of two that are not the same, or of one where b is zero.
+void add_to_groups(uint slot, uint group_a, vec3 a, uint group_b, vec3 b) {
+  uint lit = groups_lit(slot);
+  uint bit_a = any(notEqual(a, vec3(0.0))) ? 1u << group_a : 0u, bit_b = any(notEqual(b, vec3(0.0))) ? 1u << group_b : 0u;
+  if (bit_a != 0u)
+    radiance[radiance_texel(slot, k_component_count + group_a)].rgb =
+        a + ((lit & bit_a) != 0u ? group_light(slot, group_a) : vec3(0.0));
+  if (bit_b != 0u)
+    radiance[radiance_texel(slot, k_component_count + group_b)].rgb =
+        b + ((lit & bit_b) != 0u ? group_light(slot, group_b) : vec3(0.0));
+  if ((bit_a | bit_b) != 0u) radiance[radiance_texel(slot, 0u)].a = uintBitsToFloat(lit | bit_a | bit_b);
+}
 // Light of two lanes of one group, which may be the same. At most once a slot and dispatch, like the next.
 void add_radiance_of_group(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) {
   bool same = lane_a == lane_b;
@@ -97,18 +127,17 @@ void add_radiance_of_group(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) 
   b = same ? vec3(0.0) : b;
   bool wanted_a = radiance_wanted(lane_a, a), wanted_b = radiance_wanted(lane_b, b);
   vec3 of_group = (wanted_a ? a : vec3(0.0)) + (wanted_b ? b : vec3(0.0));
-  uint group = (wanted_a ? lane_a : lane_b) / k_component_count;
   add_to_radiance(slot, lane_a % k_component_count, wanted_a, a);
   add_to_radiance(slot, lane_b % k_component_count, wanted_b, b);
-  add_to_radiance(slot, k_component_count + group, wanted_a || wanted_b, of_group);
+  add_to_group(slot, (wanted_a ? lane_a : lane_b) / k_component_count, of_group);
 }
 // ... of two groups and one component.
 void add_radiance_of_component(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) {
   bool wanted_a = radiance_wanted(lane_a, a), wanted_b = radiance_wanted(lane_b, b);
-  vec3 of_component = (wanted_a ? a : vec3(0.0)) + (wanted_b ? b : vec3(0.0));
-  add_to_radiance(slot, (wanted_a ? lane_a : lane_b) % k_component_count, wanted_a || wanted_b, of_component);
-  add_to_radiance(slot, k_component_count + lane_a / k_component_count, wanted_a, a);
-  add_to_radiance(slot, k_component_count + lane_b / k_component_count, wanted_b, b);
+  a = wanted_a ? a : vec3(0.0);
+  b = wanted_b ? b : vec3(0.0);
+  add_to_radiance(slot, (wanted_a ? lane_a : lane_b) % k_component_count, wanted_a || wanted_b, a + b);
+  add_to_groups(slot, lane_a / k_component_count, a, lane_b / k_component_count, b);
 }
 // ... of two lanes, and what is found by component and by group.
 void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec3 found[k_component_count],
@@ -140,7 +169,7 @@ void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec
 void add_radiance(uint slot, uint lane, vec3 value) {
   bool wanted = radiance_wanted(lane, value);
   add_to_radiance(slot, lane % k_component_count, wanted, value);
-  add_to_radiance(slot, k_component_count + lane / k_component_count, wanted, value);
+  add_to_group(slot, lane / k_component_count, wanted ? value : vec3(0.0));
 }
 #else
 // At most once a lane, slot and dispatch.

@@ -24,8 +24,9 @@ LUCERNA_CONST uint k_coarse_step = 4u;  ///< pixels of the film along the side o
 struct FilmPush {
   uint width, height;
   uint pixel_count;      ///< slots a sample: 64 for each block of the item
-  uint sample_count;     ///< samples a pixel; 0: only what the picture makes of the groups of lights, of all blocks
-  uint group;            ///< of lights, where the film keeps them apart by component; else how many are to be mixed at once
+  uint sample_count;     ///< samples a pixel; 0, where the film keeps groups of lights apart by component: only what the
+                         ///< picture makes of them, of all blocks
+  uint group;            ///< of lights, where the film keeps them apart by component
   uint quick;            ///< not 0: GroupLights has room for all
 };
 
@@ -107,9 +108,7 @@ struct GroupLight {
 struct MixPush {
   uint width, height;
   uint groups;           ///< of lights
-  uint curve;            ///< ToneCurve
   float exposure;
-  uint sums;             ///< not 0: of GroupSums, else of GroupLight
 };
 
 LUCERNA_CONST uint k_layer_beauty = 0u;   ///< sum of the shown components

@@ -40,7 +40,7 @@ void main() {
   p.nulls = 0u;
   p.light_group = 0u;
   paths[slot] = p;
-  for (uint lane = 0u; lane < k_lane_count; ++lane) radiance[radiance_texel(slot, lane)].rgb = vec3(0.0);
+  clear_radiance(slot);
 #if LUCERNA_SPLATS
   // What paths from lights have brought to the pixel, whatever this path meets. In a draft of fewer pixels: to the one that the
   // path goes through.

@@ -175,6 +175,34 @@ TEST_CASE("the picture that is shown at once after a mix is the one that is deve
   CHECK(r.stats().dropped == 0);
 }
 
+TEST_CASE("light of the sun and of the sky are told apart where light is kept in short") {
+  scene::Scene s = room();
+  s.lights.clear();  // nothing else shines
+  s.materials[1].emission = vec3(0);
+  const auto sum = [](const film::Image& image) {
+    double all = 0;
+    for (const vec3& v : all_components(image, false)) all += double{luminance(v)};
+    return all / double(image.samples.size());
+  };
+  Bench in_short(s, compact({}), 64), exact(s, {}, 64);
+  in_short.image(), exact.image();
+  REQUIRE(in_short.r.film().in_short());
+  double share[2], whole = sum(in_short.r.image());
+  for (const int k : {0, 1}) {
+    const char* text = k == 0 ? "sky: solo" : "sun: solo";
+    INFO(text);
+    in_short.mix(text), exact.mix(text);
+    share[k] = sum(in_short.r.image());
+    CHECK(share[k] == Approx(sum(exact.r.image())).epsilon(1e-4));
+    CHECK(share[k] > 0.02 * whole);  // or it would not be told if one had the other's
+  }
+  CHECK(share[0] + share[1] == Approx(whole).epsilon(1e-4));
+  CHECK(std::abs(share[0] - share[1]) > 0.02 * whole);
+  // A mix of one leaves the other as it is.
+  in_short.mix("sun: factor=3");
+  CHECK(sum(in_short.r.image()) == Approx(share[0] + 3 * share[1]).epsilon(1e-4));
+}
+
 TEST_CASE("drafts of light kept in short are mixed like the picture") {
   const scene::Scene s = room();
   const std::vector<vec3> weights = scene::mix_weights(

@@ -47,21 +47,33 @@ struct Bench {
         device,
         {.name = "radiance", .bytes = uint64_t{k_pixels} * batch * k_lanes * sizeof(vec4), .texel = true});
     resources.set("radiance_texels", radiance);
-    std::vector<vec4> values(size_t{k_pixels} * batch * k_lanes, vec4(7));  // components: not its affair
+    // Components are not its affair, nor are groups that a path has no light of: of those nothing is written.
+    std::vector<vec4> values(size_t{k_pixels} * batch * k_lanes, vec4(7));
     std::vector<shared::WorkBlock> blocks(k_blocks);
     for (uint32_t done = 0; done < count; done += batch) {
       const uint32_t n = std::min(batch, count - done);
-      for (uint32_t i = 0; i < n; ++i)
-        for (uint32_t g = 0; g < k_groups; ++g) {
-          const vec4 value(brings(g, first + done + i), 0);
-          for (uint32_t p = 0; p < k_pixels; ++p)
-            values[(size_t{i} * k_pixels + p) * k_lanes + 4 + g] = value;
-        }
+      for (uint32_t i = 0; i < n; ++i) write_sample(values, i, first + done + i, brings);
       radiance.write(std::span<const vec4>(values));
       for (uint32_t b = 0; b < k_blocks; ++b) blocks[b] = {b, first + done};
       block.write(std::span<const shared::WorkBlock>(blocks));
       stream.dispatch(add, resources, shared::FilmPush{k_side, k_side, k_pixels, n, 0, 0}, k_blocks);
       stream.run();
+    }
+  }
+
+  /// What path `i` of every pixel has brought, as transport/shade.comp leaves it: groups with light have a
+  /// bit.
+  static void write_sample(std::vector<vec4>& values, uint32_t i, uint32_t sample, const Brings& brings) {
+    uint32_t lit = 0;
+    vec3 light[k_groups];
+    for (uint32_t g = 0; g < k_groups; ++g) {
+      light[g] = brings(g, sample);
+      if (light[g] != vec3(0)) lit |= 1u << g;
+    }
+    for (uint32_t p = 0; p < k_pixels; ++p) {
+      vec4* path = &values[(size_t{i} * k_pixels + p) * k_lanes];
+      path[0].w = glm::uintBitsToFloat(lit);
+      for (uint32_t g = 0; g < k_groups; ++g) path[4 + g] = lit >> g & 1u ? vec4(light[g], 0) : vec4(7);
     }
   }
 
