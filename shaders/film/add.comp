@@ -115,7 +115,7 @@ void main() {
       }
     }
 #if LUCERNA_LOOKUP_BIAS
-    float bias = texelFetch(radiance_texels, int(radiance_texel(slot, 0u))).a;
+    float bias = texelFetch(radiance_texels, int(radiance_texel(slot, 1u))).a;
     bias_even += even ? bias : 0.0;
     bias_odd += even ? 0.0 : bias;
 #endif

@@ -155,16 +155,22 @@ void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec
   vec3 all = vec3(0.0);
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) all += abs(found_by_group[g]);
   bool any_found = any(notEqual(all, vec3(0.0)));
+  uint lit = groups_lit(slot), bits = 0u;
   // A loop, because a branch saves no work on lavapipe, and few vertices look anything up.
   for (uint once = 0u; once < (any_found ? 1u : 0u); ++once) {
     [[unroll]] for (uint g = 0u; g < k_group_count; ++g) {
       vec3 value = found_by_group[g] + (group_a == g ? a : vec3(0.0)) + (group_b == g ? b : vec3(0.0));
-      add_to_radiance(slot, k_component_count + g, is_finite(value), value);
+      if (is_finite(value) && any(notEqual(value, vec3(0.0)))) {
+        radiance[radiance_texel(slot, k_component_count + g)].rgb = value + ((lit >> g & 1u) != 0u ? group_light(slot, g) : vec3(0.0));
+        bits |= 1u << g;
+      }
     }
+    radiance[radiance_texel(slot, 0u)].a = uintBitsToFloat(lit | bits);
   }
   bool same = group_a == group_b;
-  add_to_radiance(slot, k_component_count + group_a, (wanted_a || (same && wanted_b)) && !any_found, a + (same ? b : vec3(0.0)));
-  add_to_radiance(slot, k_component_count + group_b, wanted_b && !same && !any_found, b);
+  a = any_found ? vec3(0.0) : a + (same ? b : vec3(0.0));
+  b = any_found || same ? vec3(0.0) : b;
+  add_to_groups(slot, group_a, a, group_b, b);
 }
 void add_radiance(uint slot, uint lane, vec3 value) {
   bool wanted = radiance_wanted(lane, value);
@@ -190,7 +196,7 @@ void add_radiance_of_component(uint slot, uint lane_a, vec3 a, uint lane_b, vec3
 #if LUCERNA_LOOKUP_BIAS
 // VertexOut.bias; at most once a slot and dispatch. What is not finite is left out, and the light that it is of is refused.
 void add_lookup_bias(uint slot, float value) {
-  int at = int(radiance_texel(slot, 0u));
+  int at = int(radiance_texel(slot, 1u));
   if (value != 0.0 && is_finite(vec3(value))) radiance[at].a = texelFetch(radiance_texels, at).a + value;
 }
 #endif

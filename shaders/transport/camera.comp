@@ -52,7 +52,7 @@ void main() {
   }
 #endif
 #if LUCERNA_LOOKUP_BIAS
-  radiance[radiance_texel(slot, 0u)].a = 0.0;
+  radiance[radiance_texel(slot, 1u)].a = 0.0;
 #endif
   features[2u * slot] = vec4(0.0);
   features[2u * slot + 1u] = vec4(0.0);
