@@ -207,6 +207,27 @@ std::vector<float> triangle_densities(const FlatScene& flat, const LightDistribu
   return densities;
 }
 
+/// A table of the lamps alone, for scenes with as many as make it worth to choose among them
+/// (shaders/lib/lights.glsl). Lamps that are off count, so that switching them compiles no kernels.
+void choose_lamps(const scene::Scene& scene, const std::vector<double>& weights, FlatScene& flat,
+                  LightDistribution& d) {
+  constexpr size_t k_least = 3, k_many = 6;
+  const size_t lamps = scene.lights.size();
+  flat.effects.lamp_candidates = lamps < k_least ? 0 : lamps < k_many ? 4 : 8;
+  const auto is_lamp = [](const LightEntry& e) {
+    return e.kind != k_light_triangle && e.kind != k_light_environment && e.index != scene::k_none;
+  };
+  std::vector<double> of_lamps;
+  for (size_t i = 0; i < d.entries.size(); ++i) {
+    if (!is_lamp(d.entries[i])) continue;
+    if (of_lamps.empty()) d.first_lamp = uint32_t(i);
+    of_lamps.push_back(weights[i]);
+  }
+  if (flat.effects.lamp_candidates == 0 || of_lamps.empty()) return;
+  d.lamp_alias = build_alias_table(of_lamps);
+  d.lamp_pmf = float(sum_of(of_lamps) / sum_of(weights));
+}
+
 }  // namespace
 
 void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
@@ -250,6 +271,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   }
   d.light_alias = build_alias_table(choice.weights);
   if (!d.light_alias.empty()) d.entries = std::move(choice.entries), d.light_power = std::move(choice.fluxes);
+  choose_lamps(scene, choice.weights, flat, d);
   if (has_sun)
     for (vec4& four : d.sun_density) four *= d.light_alias.back().z;
   if (emissive) d.primitive_light_pmf = triangle_densities(flat, d);

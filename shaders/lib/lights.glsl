@@ -1,5 +1,11 @@
 // Light sampling: one light by its probability mass (alias method, Walker 1977; Vose 1991), then a point on it.
 // Densities are per solid angle at the shaded point, selection included.
+//
+// Of many lamps few light a place, and power does not tell which. Where a lamp is chosen it is drawn again from several
+// candidates, by what each would send to the place were nothing between (resampled importance sampling, J. Talbot, D. Cline and
+// P. Egbert 2005): with candidates x_i of density p and q what they send, x_i is taken in proportion to q(x_i) / p(x_i), and
+// stands for the density q(x) M / sum q(x_i) / p(x_i). The estimate is right whatever q is, as long as it is above 0 where
+// light arrives; that candidates are evenly apart in the table instead of independent does not change its mean.
 #ifndef LUCERNA_LIB_LIGHTS
 #define LUCERNA_LIB_LIGHTS
 #include "lib/variants.glsl"
@@ -30,7 +36,7 @@ struct LightSample {
   vec3 direction;    // unit, towards the light
   float distance;    // metres; infinite for directional lights and the environment
   vec3 radiance;     // of point and directional lights: irradiance on a facing plane; of triangles: without textures
-  float pdf;         // per solid angle with selection; of delta lights: the selection's probability
+  float pdf;         // per solid angle with selection; of delta lights: the selection's probability, or what stands for that
   bool delta;
   uint primitive;    // emissive triangle, or k_no_hit
   vec2 uv;           // barycentrics there
@@ -43,17 +49,18 @@ struct LightSample {
 
 // `bits`: 64 uniform random bits, the higher ones first. They choose the entry, and what is left of them within it flips its
 // coin: 32 bits would leave a table of 10^7 entries 8 of them, and what many coins round away is a sun's.
-uint alias_choose(samplerBuffer table, uint count, uvec2 bits, out float pmf) {
+uint alias_choose(samplerBuffer table, uint begin, uint count, uvec2 bits, out float pmf) {
   uint i, fraction, more, lost, carry;
   umulExtended(bits.x, count, i, fraction);
   umulExtended(bits.y, count, more, lost);
   fraction = uaddCarry(fraction, more, carry);
   i += carry;
-  vec4 e = texelFetch(table, int(i));
+  vec4 e = texelFetch(table, int(begin + i));
   bool first = float(fraction >> 8) * (1.0 / 16777216.0) < e.x;
   pmf = first ? e.z : e.w;
   return first ? i : floatBitsToUint(e.y);
 }
+uint alias_choose(samplerBuffer table, uint count, uvec2 bits, out float pmf) { return alias_choose(table, 0u, count, bits, pmf); }
 
 #if LUCERNA_ENVIRONMENT_MAP
 // u = 0.5 + atan2(z, x) / 2pi, v = acos(y) / pi from the top; the map turned counter-clockwise seen from above, which
@@ -139,9 +146,50 @@ float emissive_pdf(uint primitive, float distance2, float cos_light) {
 #endif
 
 #if LUCERNA_LIGHTS
+// What a lamp would send to a place if nothing were between, by luminance, onto a surface with that normal: a little even from
+// behind, where surfaces may let light through.
+float lamp_sends(uint lamp, vec3 position, vec3 normal) {
+  int at = int(lamp * k_light_texels);
+  vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
+  uint kind = floatBitsToUint(a.w);
+  vec3 to = a.xyz - position;
+  float d2 = max(dot(to, to), 1e-20);
+  bool directional = kind == k_light_directional;
+  vec3 direction = directional ? -c.xyz : to * inversesqrt(d2);
+  float fade = clamp((dot(-direction, c.xyz) - c.w) / max(b.w - c.w, 1e-4), 0.0, 1.0);
+  float fall = directional ? 1.0 : (kind == k_light_spot ? fade * fade : 1.0) / d2;
+  return luminance(b.xyz) * fall * max(dot(direction, normal), 0.05);
+}
+
+// In place of a light that is a lamp, a lamp from candidates evenly apart in the table of lamps, beginning at `choice`; u: in
+// [0, 1). pmf: the light's probability, or what stands for it.
+uint draw_lamp(uint light, vec3 position, vec3 normal, uint choice, float u, inout float pmf) {
+  const uint candidates = uint(LUCERNA_LAMP_CANDIDATES);
+  bool is_lamp = light - frame.first_lamp < frame.lamp_count;
+  uint drawn = light;
+  float total = 0.0, sends_drawn = 0.0;
+  for (uint k = 0u; k < (is_lamp ? candidates : 0u); ++k) {
+    uint bits = choice + k * (0xffffffffu / max(candidates, 1u));
+    float p;
+    uint lamp = frame.first_lamp + alias_choose(light_alias, frame.light_count, frame.lamp_count, uvec2(bits, hash_mix(bits)), p);
+    float sends = lamp_sends(lamp, position, normal), weight = sends / max(p, 1e-30);
+    // One number serves all draws: what is left of it within its part is even again.
+    float before = total, at = u * (total + weight);
+    total += weight;
+    bool taken = weight > 0.0 && at < weight;
+    u = taken ? at / weight : before > 0.0 ? min((at - weight) / before, 1.0) : u;
+    // Where none sends anything it is one of these that does not: another one might.
+    drawn = taken || total <= 0.0 ? lamp : drawn;
+    sends_drawn = taken ? sends : sends_drawn;
+  }
+  pmf = total > 0.0 ? frame.lamp_pmf * sends_drawn * float(candidates) / total : pmf;
+  return drawn;
+}
+
 // Chooses by `choice` (32 bits), places by u; detail: 64 further bits (environment). Where the sky is apart its
-// probability is sky_share, and the other lights share what is left. Needs lib/surface.glsl before it.
-LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail, float sky_share) {
+// probability is sky_share, and the other lights share what is left. `normal`: of the surface, unit, on the side that is seen.
+// Needs lib/surface.glsl before it.
+LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 detail, float sky_share) {
   LightSample s;
   s.primitive = k_no_hit;
   s.uv = vec2(0.0);
@@ -153,6 +201,10 @@ LightSample sample_light(vec3 position, uint choice, vec2 u, uvec2 detail, float
   s.group = 0u;
   float pmf;
   uint light = alias_choose(light_alias, frame.light_count, uvec2(choice, hash_mix(choice)), pmf);
+#if LUCERNA_LAMP_CANDIDATES
+  // By numbers that lamps have no other use for, so that these are as even.
+  light = draw_lamp(light, position, normal, detail.x, u.x, pmf);
+#endif
 #if LUCERNA_SKY_APART
   uint sky_end = uint(sky_share * 4294967040.0);
   s.sky = detail.y < sky_end || sky_share >= 1.0;

@@ -19,6 +19,9 @@
 #ifndef LUCERNA_SUN
 #define LUCERNA_SUN 0
 #endif
+#ifndef LUCERNA_LAMP_CANDIDATES
+#define LUCERNA_LAMP_CANDIDATES 0
+#endif
 #ifndef LUCERNA_LIGHT_GROUPS
 #define LUCERNA_LIGHT_GROUPS 0
 #endif

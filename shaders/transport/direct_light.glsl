@@ -95,7 +95,7 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
 #if LUCERNA_SKY_APART
   sky_share = sky_unasked(bsdf, sky_known) ? 0.0 : frame.environment_light_pmf;
 #endif
-  LightSample l = sample_light(surface.position, sample_vertex_bits(random, depth, k_pad_light_choice).x,
+  LightSample l = sample_light(surface.position, to_world[2], sample_vertex_bits(random, depth, k_pad_light_choice).x,
                                sample_vertex(random, depth, k_pad_light_uv),
                                sample_vertex_bits(random, depth, k_pad_light_detail), sky_share);
   vec3 wi = l.direction * to_world;

@@ -169,9 +169,11 @@ TEST_CASE("lamps: intensity over distance squared, a spot's cone, the sun's irra
   lamp.intensity = {5, 4, 3};
   scene.lights.push_back(lamp);
   Lights lights(scene);
+  Jury jury;
   for (const float x : {-1.f, -1.7f, -2.1f, -6.f}) {
     const vec3 position(x, 0, 0);
-    double shares[3] = {0, 0, 0}, pmfs[3] = {0, 0, 0};
+    Mean inverse[3];  // density of what each is chosen by: its mean is 1 where it sends light
+    bool sends[3] = {false, false, false};
     const auto draws = lights.draw(position, 1 << 14, 1);
     size_t bad = 0;
     for (const Draw& d : draws) {
@@ -191,14 +193,70 @@ TEST_CASE("lamps: intensity over distance squared, a spot's cone, the sun's irra
       bad += glm::length(d.direction - direction) > 1e-5f ||
              glm::length(d.radiance - radiance) > 1e-4f * glm::length(radiance) + 1e-7f || d.delta != 1 ||
              d.primitive != shared::k_no_hit;
-      shares[kind] += 1, pmfs[kind] = d.pdf;
+      sends[kind] |= luminance(radiance) > 0;
+      for (int k = 0; k < 3; ++k) inverse[k].add(k == kind ? 1 / d.pdf : 0);
     }
     INFO("x " << x);
     CHECK(bad == 0);
-    CHECK(pmfs[0] + pmfs[1] + pmfs[2] == Approx(1).epsilon(1e-5));
-    for (double& p : pmfs) p *= 1 << 14;
-    CHECK(chi_square({shares[0], shares[1], shares[2]}, {pmfs[0], pmfs[1], pmfs[2]}).p > 1e-5);
+    for (int k = 0; k < 3; ++k)
+      if (sends[k]) jury.add(fmt::format("lamp {} at x {}: {}", k, x, inverse[k].value()), mean_tail(inverse[k], 1, 1e-5));
   }
+  CHECK(jury.size() >= 10);
+  CHECK(jury.verdict() == "");
+}
+
+TEST_CASE("of many lamps those are sampled that light a place: the mean is right, with a small part of the noise") {
+  // Spots of four powers in a ceiling, each with a cone of its own; two points, one below the floor, and a panel.
+  scene::Scene scene;
+  for (int i = 0; i < 20; ++i) {
+    scene::Light spot;
+    spot.kind = scene::LightKind::spot, spot.direction = {0, -1, 0};
+    spot.inner_cone = 0.2f, spot.outer_cone = 0.35f + 0.02f * float(i);
+    spot.position = {2 * float(i % 5), 3, 2 * float(i / 5)};
+    spot.intensity = vec3(float(1 << 2 * (i % 4)));
+    scene.lights.push_back(spot);
+  }
+  for (const float y : {2.f, -1.f}) {
+    scene::Light point;
+    point.intensity = {3, 3, 3}, point.position = {3, y, 3};
+    scene.lights.push_back(point);
+  }
+  add_triangle(scene, {0, 4, 0}, {1, 4, 0}, {0, 4, 1}, vec3(2));
+  Lights lights(scene);
+  CHECK(lights.flat.effects.lamp_candidates == 8);
+  CHECK(lights.flat.lamp_alias.size() == 22);
+  Jury jury;
+  double variance = 0, by_power = 0;
+  for (const vec3& position : {vec3(0, 0, 0), vec3(3.1f, 0, 2.2f), vec3(6, 1, 6), vec3(9.5f, 0, 0.5f)}) {
+    double right = 0, second = 0, power = 0;
+    std::vector<double> of_lamp(scene.lights.size());
+    for (const auto& e : lights.flat.entries)
+      power += lights.flat.light_power[size_t(&e - lights.flat.entries.data())];
+    for (size_t k = 0; k < scene.lights.size(); ++k) {
+      const scene::Light& l = scene.lights[k];
+      const vec3 to = l.position - position, direction = glm::normalize(to);
+      const float inner = std::cos(l.inner_cone), outer = std::cos(l.outer_cone);
+      const float fade = l.kind == scene::LightKind::point
+                             ? 1
+                             : std::clamp((glm::dot(-direction, l.direction) - outer) / (inner - outer), 0.f, 1.f);
+      of_lamp[k] = double(l.intensity.x * fade * fade / glm::dot(to, to) * std::max(direction.y, 0.f));
+      right += of_lamp[k];
+    }
+    // As if the lamps were chosen by the table alone.
+    for (size_t i = 0; i < lights.flat.entries.size(); ++i) {
+      const upload::LightEntry& e = lights.flat.entries[i];
+      if (e.kind != shared::k_light_triangle) second += of_lamp[e.index] * of_lamp[e.index] / double(lights.flat.light_alias[i].z);
+    }
+    Mean mean;
+    for (const Draw& d : lights.draw(position, 1 << 16, 3))
+      mean.add(d.delta == 1 && d.pdf > 0 ? double(d.radiance.x * std::max(d.direction.y, 0.f) / d.pdf) : 0);
+    REQUIRE(right > 0);
+    jury.add(fmt::format("{} where {} is right", mean.value(), right), mean_tail(mean, right, 1e-5 * right));
+    variance += mean.error() * mean.error() * (1 << 16) / (right * right), by_power += second / (right * right) - 1;
+  }
+  CHECK(jury.verdict() == "");
+  INFO(variance << " by what they send, " << by_power << " by power");
+  CHECK(variance < 0.2 * by_power);
 }
 
 TEST_CASE(

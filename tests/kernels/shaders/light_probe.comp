@@ -46,7 +46,7 @@ void main() {
   if (i >= push.count) return;
 #if TEST_ASK == 0
   vec2 u = vec2(uvec2(bits(i, 1u), bits(i, 2u)) >> 8) * (1.0 / 16777216.0);
-  LightSample s = sample_light(push.position, bits(i, 0u), u, uvec2(bits(i, 3u), bits(i, 4u)), frame.environment_light_pmf);
+  LightSample s = sample_light(push.position, vec3(0.0, 1.0, 0.0), bits(i, 0u), u, uvec2(bits(i, 3u), bits(i, 4u)), frame.environment_light_pmf);
   Draw d;
   d.direction = s.direction;
   d.distance = s.distance;
