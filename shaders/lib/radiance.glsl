@@ -6,11 +6,9 @@
 
 uniform samplerBuffer radiance_texels;  // Radiance, k_lane_count (rgb; of the first a: the bias of lookups, or groups_lit)
 
-#if LUCERNA_GROUP_SUMS
-// Of which groups a path has light: a bit each. The others' texels are not written.
+// Where groups are kept in short (LUCERNA_GROUP_SUMS): of which a path has light, a bit each. The others' texels are not written.
 uint groups_lit(uint slot) { return floatBitsToUint(texelFetch(radiance_texels, int(radiance_texel(slot, 0u))).a); }
 vec3 group_light(uint slot, uint group) {
   return texelFetch(radiance_texels, int(radiance_texel(slot, k_component_count + group))).rgb;
 }
-#endif
 #endif
