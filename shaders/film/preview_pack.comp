@@ -13,17 +13,16 @@ void main() {
   if (pixel >= push.width * push.height) return;
   uint count = film_count[pixel];
   float n = float(max(count, 1u)), even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
-  vec4 light[k_component_count];
+  PreviewLight light;
   FilmRatio ratio = film_ratio(pixel);
   for (uint c = 0u; c < k_component_count; ++c) {
     FilmPixel p = film_load(c, pixel, ratio);
     vec3 a = p.even.sum + p.even.compensation, b = p.odd.sum + p.odd.compensation;
     float noise = count < 2u ? -1.0 : 0.5 * abs(luminance(a) / even - luminance(b) / odd);
-    light[c] = push.exposure * vec4((a + b) / n, noise);
-    if (count < 2u) light[c].w = -1.0;
+    light.of[c] = push.exposure * vec4((a + b) / n, noise);
+    if (count < 2u) light.of[c].w = -1.0;
   }
-  packed[2u * pixel] = preview_texel(light[0], light[1]);
-  packed[2u * pixel + 1u] = preview_texel(light[2], light[3]);
+  LUCERNA_PREVIEW_STORE(packed, pixel, light)
   vec4 albedo = texelFetch(film_albedo, int(pixel)), normal = texelFetch(film_normal, int(pixel));
   PreviewSurface s;
   s.depth = albedo.w > 0.0 ? normal.w / albedo.w : 0.0;

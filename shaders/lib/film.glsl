@@ -75,7 +75,7 @@ struct FilmRatio {
 FilmRatio film_ratio(uint pixel) {
   vec3 even = vec3(0.0), odd = vec3(0.0), even_mixed = vec3(0.0), odd_mixed = vec3(0.0);
   uvec2 groups_pixels = light_mix_size();
-  // lavapipe runs the loop once even where it is to run not at all: of one texel for all pixels then.
+  // lavapipe runs the loop once even where it is to run not at all: then all pixels read one texel.
   for (uint group = 0u; group < groups_pixels.x; ++group) {
     uvec4 sums = texelFetch(group_sums, int(groups_pixels.x > 0u ? group * groups_pixels.y + pixel : 0u));
     vec3 a = group_sum_value(GroupSum(sums.x, sums.y)), b = group_sum_value(GroupSum(sums.z, sums.w)), w = light_weight(group);

@@ -6,7 +6,7 @@
 
 uniform samplerBuffer radiance_texels;  // Radiance, k_lane_count (rgb; a: of the first groups_lit(), of the second the bias of lookups)
 
-// Where groups are kept in short: of which groups a path has light: a bit each. The others' texels are not written.
+// Where groups are kept in short (LUCERNA_GROUP_SUMS): of which a path has light, a bit each. The others' texels are not written.
 uint groups_lit(uint slot) { return floatBitsToUint(texelFetch(radiance_texels, int(radiance_texel(slot, 0u))).a); }
 vec3 group_light(uint slot, uint group) {
   return texelFetch(radiance_texels, int(radiance_texel(slot, k_component_count + group))).rgb;
