@@ -39,7 +39,15 @@ struct Result {
   std::array<bool, 4> bias_known{};
 };
 
+/// As many paths at once as small pictures have work for, and as many records as they may need. With the
+/// defaults every renderer that is made fills (MALLOC_PERTURB_) half a gigabyte for records and a fifth for
+/// paths, which takes longer than the picture; and pictures depend on neither.
+inline constexpr const char *k_batch = "32768", *k_room = "20000";
+
 inline void set(session::Renderer& renderer, const Settings& settings) {
+  if (const plan::Settings defaults;
+      renderer.settings().text("cache.max_records") == defaults.text("cache.max_records"))
+    renderer.settings().set("cache.max_records", k_room);
   for (const auto& [key, value] : settings) renderer.settings().set(key, value);
   renderer.apply_settings();
 }
@@ -54,6 +62,7 @@ inline film::Image finish(session::Renderer& renderer) {
 inline Result render(const Render& r, const scene::Scene* made = nullptr) {
   session::Renderer renderer(
       test::renderer_options(r.validated && r.samples <= k_validated_samples, r.defines));
+  renderer.settings().set("path.batch", k_batch);
   for (const char* key : {"tracer", "path.batch"})
     if (const auto at = r.settings.find(key); at != r.settings.end())
       renderer.settings().set(key, at->second);
