@@ -95,7 +95,8 @@ TEST_CASE("the estimated error is the true one") {
   const char* more = std::getenv("LUCERNA_CALIBRATION");
   const uint32_t k = more ? uint32_t(std::atoi(more)) : 1;
   // Its noise is in both figures as what it is (taken off the one, added to the other's interval): of what a
-  // picture of 64 samples is off by it makes a sixteenth, so that the tiles of different seeds hardly share it.
+  // picture of 64 samples is off by it makes a sixteenth, so that the tiles of different seeds hardly share
+  // it.
   constexpr uint32_t k_reference = 1024;
   for (const Case& c :
        {Case{"cornell", 48, 48, {{64, 8}, {256, 4}}}, Case{"glass", 48, 48, {{64, 8}, {256, 8}}},
