@@ -211,9 +211,9 @@ TEST_CASE("aim changes no mean of light tracing") {
   const auto render = [&](const char* aim) {
     return test::render({.width = k_side,
                          .height = k_side,
-                         .samples = 18,
+                         .samples = 64,
                          .settings = with(k_light, {{"light.aim", aim},
-                                                    {"light.per_round", "16000"},
+                                                    {"light.per_round", "4000"},
                                                     {"components.primary", "off"},
                                                     {"components.secondary", "off"},
                                                     {"components.tertiary", "off"}})},
