@@ -30,7 +30,7 @@ Figures measure(const Case& c) {
   renderer.set_size(c.width, c.height);
   renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + c.scene + "/" + c.scene + ".gltf");
   test::Settings settings;
-  settings["sampling.tile"] = "8";
+  settings["sampling.tile"] = "8", settings["cache.max_records"] = test::k_room;
   settings["components.secondary"] = settings["components.tertiary"] = "path";
   // What is not cached would hide the records' part under its noise, which has a calibration of its own.
   settings["components.primary"] = settings["components.caustic"] = "off";
@@ -106,6 +106,7 @@ void make_small(session::Renderer& renderer, const test::Settings& more) {
   renderer.set_size(40, 32);
   renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   test::Settings settings{{"samples", "4"},
+                          {"cache.max_records", test::k_room},
                           {"components.primary", "off"},
                           {"components.caustic", "off"},
                           {"components.secondary", "cache"},

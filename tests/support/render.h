@@ -45,9 +45,6 @@ struct Result {
 inline constexpr const char *k_batch = "32768", *k_room = "20000";
 
 inline void set(session::Renderer& renderer, const Settings& settings) {
-  if (const plan::Settings defaults;
-      renderer.settings().text("cache.max_records") == defaults.text("cache.max_records"))
-    renderer.settings().set("cache.max_records", k_room);
   for (const auto& [key, value] : settings) renderer.settings().set(key, value);
   renderer.apply_settings();
 }
@@ -73,6 +70,7 @@ inline Result render(const Render& r, const scene::Scene* made = nullptr) {
     renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + r.scene + "/" + r.scene + ".gltf");
   Settings settings = r.settings;
   settings["samples"] = std::to_string(r.samples);
+  settings.try_emplace("cache.max_records", k_room);
   set(renderer, settings);
   if (!r.camera.empty()) renderer.choose_camera(r.camera);
   Result result;
