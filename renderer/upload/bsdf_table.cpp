@@ -1,6 +1,8 @@
 #include "upload/bsdf_table.h"
 
 #include <cmath>
+#include <deque>
+#include <mutex>
 
 #include "shaders/shared/bsdf_table.h"
 
@@ -147,17 +149,46 @@ void append_glass(const vec4* points, std::vector<vec4>& out) {
     out.push_back(vec4(points[j * k_table_mu].y, points[(j + 1) * k_table_mu].y, 0, 0));
 }
 
+/// Both sides of a surface of glass, as build_bsdf_tables() lays them out.
+std::vector<vec4> glass_tables(float ior) {
+  std::vector<vec4> tables, points(k_points);
+  for (const double eta : {double(ior), 1.0 / ior}) {
+    glass_table(points.data(), eta);
+    append_glass(points.data(), tables);
+  }
+  return tables;
+}
+
+/// The same, kept for scenes to come: a tenth of a second each, and most glass is the same.
+std::vector<vec4> kept_glass_tables(float ior) {
+  constexpr size_t k_kept = 64;
+  static std::mutex mutex;
+  static std::deque<std::pair<float, std::vector<vec4>>> kept;
+  const std::lock_guard lock(mutex);
+  for (const auto& [of, tables] : kept)
+    if (of == ior) return tables;
+  if (kept.size() == k_kept) kept.pop_front();
+  return kept.emplace_back(ior, glass_tables(ior)).second;
+}
+
+const std::vector<vec4>& kept_schlick_tables() {
+  static const std::vector<vec4> tables = [] {
+    std::vector<vec4> made, points(k_points);
+    schlick_table(points.data());
+    append_schlick(points.data(), made);
+    return made;
+  }();
+  return tables;
+}
+
 }  // namespace
 
 std::vector<vec4> build_bsdf_tables(std::span<const float> glass_iors) {
-  std::vector<vec4> tables, points(k_points);
-  schlick_table(points.data());
-  append_schlick(points.data(), tables);
-  for (const float ior : glass_iors)
-    for (const double eta : {double(ior), 1.0 / ior}) {
-      glass_table(points.data(), eta);
-      append_glass(points.data(), tables);
-    }
+  std::vector<vec4> tables = kept_schlick_tables();
+  for (const float ior : glass_iors) {
+    const std::vector<vec4> glass = kept_glass_tables(ior);
+    tables.insert(tables.end(), glass.begin(), glass.end());
+  }
   return tables;
 }
 

@@ -30,7 +30,7 @@ Figures measure(const Case& c) {
   renderer.set_size(c.width, c.height);
   renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + c.scene + "/" + c.scene + ".gltf");
   test::Settings settings;
-  settings["sampling.tile"] = "8";
+  settings["sampling.tile"] = "8", settings["cache.max_records"] = test::k_room;
   settings["components.secondary"] = settings["components.tertiary"] = "path";
   // What is not cached would hide the records' part under its noise, which has a calibration of its own.
   settings["components.primary"] = settings["components.caustic"] = "off";
@@ -77,7 +77,7 @@ TEST_CASE("the error told of a cached picture is the true one") {
   // All scenes, or one by its name: minutes. Without, the one that is soonest done.
   const char* const wanted = std::getenv("LUCERNA_CALIBRATION");
   const std::string only = wanted ? wanted : "cornell";
-  for (const Case& c : {Case{"cornell", 48, 48, 32, 6, 4096}, Case{"teapot", 48, 40, 32, 6, 4096},
+  for (const Case& c : {Case{"cornell", 48, 48, 32, 6, 1024}, Case{"teapot", 48, 40, 32, 6, 4096},
                         Case{"studio", 64, 32, 32, 6, 4096}, Case{"sun-patch", 48, 40, 32, 6, 8192},
                         Case{"hall", 48, 32, 32, 6, 4096}, Case{"ajar", 48, 32, 32, 6, 16384}}) {
     if (only != "all" && only != c.scene) continue;
@@ -106,6 +106,7 @@ void make_small(session::Renderer& renderer, const test::Settings& more) {
   renderer.set_size(40, 32);
   renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   test::Settings settings{{"samples", "4"},
+                          {"cache.max_records", test::k_room},
                           {"components.primary", "off"},
                           {"components.caustic", "off"},
                           {"components.secondary", "cache"},

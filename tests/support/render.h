@@ -39,6 +39,11 @@ struct Result {
   std::array<bool, 4> bias_known{};
 };
 
+/// As many paths at once as small pictures have work for, and as many records as they may need. With the
+/// defaults every renderer that is made fills (MALLOC_PERTURB_) half a gigabyte for records and a fifth for
+/// paths, which takes longer than the picture; and pictures depend on neither.
+inline constexpr const char *k_batch = "32768", *k_room = "20000";
+
 inline void set(session::Renderer& renderer, const Settings& settings) {
   for (const auto& [key, value] : settings) renderer.settings().set(key, value);
   renderer.apply_settings();
@@ -54,6 +59,7 @@ inline film::Image finish(session::Renderer& renderer) {
 inline Result render(const Render& r, const scene::Scene* made = nullptr) {
   session::Renderer renderer(
       test::renderer_options(r.validated && r.samples <= k_validated_samples, r.defines));
+  renderer.settings().set("path.batch", k_batch);
   for (const char* key : {"tracer", "path.batch"})
     if (const auto at = r.settings.find(key); at != r.settings.end())
       renderer.settings().set(key, at->second);
@@ -64,6 +70,7 @@ inline Result render(const Render& r, const scene::Scene* made = nullptr) {
     renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + r.scene + "/" + r.scene + ".gltf");
   Settings settings = r.settings;
   settings["samples"] = std::to_string(r.samples);
+  settings.try_emplace("cache.max_records", k_room);
   set(renderer, settings);
   if (!r.camera.empty()) renderer.choose_camera(r.camera);
   Result result;

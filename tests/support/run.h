@@ -41,6 +41,8 @@ class Running {
     if (pid_ == 0) {
       dup2(ends[1], 1), dup2(ends[1], 2);
       close(ends[0]), close(ends[1]);
+      // Tests that are started in the background or by nohup have these ignored, and so would the program.
+      for (const int ignored : {SIGINT, SIGHUP, SIGPIPE}) signal(ignored, SIG_DFL);
       execl("/bin/sh", "sh", "-c", (std::string("exec ") + LUCERNA_BINARY + " " + arguments).c_str(),
             nullptr);
       _exit(127);
