@@ -384,7 +384,7 @@ TEST_CASE(
           const uint32_t x = b * 8 + compact(code), y = compact(code >> 1);
           const float bias = 0.02f + 0.05f * normal(random);
           for (uint32_t c = 0; c < 4; ++c)
-            values[((size_t{s} * k_blocks + b) * 64 + code) * 4 + c] = vec4(vec3(0.1f), c == 0 ? bias : 7);
+            values[((size_t{s} * k_blocks + b) * 64 + code) * 4 + c] = vec4(vec3(0.1f), c == 1 ? bias : 7);
           if (x < k_width) mean[(first + s) % 2][y * k_width + x] += double(bias) / ((first + s) % 2 ? 1 : 2);
         }
     radiance.write(std::span<const vec4>(values));
