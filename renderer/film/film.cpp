@@ -191,7 +191,8 @@ void Film::bind_group(gpu::Resources& r, uint32_t group) const {
 }
 
 void Film::set_mix(std::span<const vec3> weights) {
-  mix_ = {.groups = 0, .pixels = width_ * height_, .pad0 = 0, .pad1 = 0, .weight = {}};
+  mix_ = {.groups = 0, .pixels = width_ * height_, .pad0 = 0, .pad1 = 0, .whole = vec4(1), .weight = {}};
+  if (weights.size() == 1) mix_.whole = vec4(weights[0], 1);
   for (vec4& w : mix_.weight) w = vec4(1);
   for (size_t g = 0; g < std::min<size_t>(weights.size(), shared::k_most_groups); ++g) {
     mix_.weight[g] = vec4(weights[g], 1);
@@ -262,8 +263,9 @@ std::vector<vec3> Film::read_group_sum(uint32_t group) const {
 }
 
 std::vector<vec3> Film::mix_ratios() const {
-  if (mix_.groups == 0) return {};
   const size_t n = size_t{width_} * height_;
+  const vec3 whole(mix_.whole);
+  if (mix_.groups == 0) return whole == vec3(1) ? std::vector<vec3>{} : std::vector<vec3>(2 * n, whole);
   const std::vector<shared::GroupSums> sums = read_group_sums();
   std::vector<vec3> ratios(2 * n);
   for (size_t i = 0; i < n; ++i) {

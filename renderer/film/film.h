@@ -81,7 +81,8 @@ class Film {
   GroupsKept groups_kept() const { return kept_; }
   /// Whether it keeps more than one group, all components of one together.
   bool in_short() const { return groups_ > 1 && kept_ == GroupsKept::in_short; }
-  /// What each group's light is multiplied by, 1 where nothing is said (and for all of a new film). Where
+  /// What each group's light is multiplied by, 1 where nothing is said (and for all of a new film): of a film
+  /// of one group, which may have been drawn for more, the one weight there is. Where
   /// groups are kept by component the picture's sums take it up with transport::Wavefront::mix(), and with
   /// the next samples of their pixels; in short, at once.
   void set_mix(std::span<const vec3> weights);

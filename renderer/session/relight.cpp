@@ -8,26 +8,30 @@ namespace {
 /// Of the device's memory, what sums by group may take where nobody has asked for them.
 constexpr uint64_t k_share = 8;
 
-/// Why light is not kept apart whatever its groups are; "" where it may be.
-std::string obstacle(const plan::Plan& plan, const plan::Settings& settings, bool interactive) {
+/// Why light is not kept apart whatever it is; "" where it may be.
+std::string obstacle(const plan::Settings& settings, bool interactive) {
   const std::string& enabled = settings.text("relight.enabled");
   if (enabled == "off") return "relight.enabled is off";
   if (enabled == "auto" && !interactive) return "relight.enabled is auto, which is off in batch renders";
+  return "";
+}
+
+/// ... because of who computes it, where there are several groups.
+std::string obstacle(const plan::Plan& plan, const plan::Settings& settings) {
   for (const solvers::SolverInfo* info : plan.at_work()) {
     if (!solvers::type_of(*info).make) continue;
     if (!info->by_groups)
       return fmt::format("{} computes light that is not kept apart by groups", info->title);
-    if (enabled == "on")
+    if (settings.text("relight.enabled") == "on")
       return fmt::format("{} keeps groups apart in short alone; relight.enabled=compact does so",
                          info->title);
   }
   return "";
 }
 
-/// ... because of these.
+/// ... because of how many there are.
 std::string obstacle(const plan::Settings& settings, const scene::LightGroups& groups, uint64_t pixels,
                      uint64_t memory) {
-  if (groups.groups.size() < 2) return "all lights are of one group";
   const uint64_t bytes = pixels * film::sum_bytes(uint32_t(groups.groups.size()), film::GroupsKept::in_short);
   if (settings.text("relight.enabled") == "auto" && bytes > memory / k_share)
     return fmt::format("{} groups would take {} MiB; relight.enabled=compact takes them",
@@ -53,7 +57,7 @@ Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
   const scene::LightMix mix = scene::parse_mix(settings.text("relight.mix"));
   scene::parse_presets(settings.text("relight.presets"));
   r.lit = scene;
-  r.why_not = obstacle(plan, settings, interactive);
+  r.why_not = obstacle(settings, interactive);
   if (!r.why_not.empty() && mix.empty()) return r;
   r.scene = scene;
   r.groups = std::make_shared<const scene::LightGroups>(
@@ -62,7 +66,10 @@ Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
   r.messages = r.groups->messages;
   for (const std::string& name : scene::unknown_groups(mix, *r.groups))
     r.messages.push_back(unknown_group(name, *r.groups));
-  if (r.why_not.empty()) r.why_not = obstacle(settings, *r.groups, pixels, memory);
+  // Light of one group is what it is times the group's strength.
+  const bool one = r.groups->groups.size() == 1;
+  if (r.why_not.empty() && !one) r.why_not = obstacle(plan, settings);
+  if (r.why_not.empty() && !one) r.why_not = obstacle(settings, *r.groups, pixels, memory);
   r.apart = r.why_not.empty();
   if (settings.text("relight.enabled") == "on") r.kept = film::GroupsKept::by_component;
   if (r.apart) {

@@ -92,9 +92,11 @@ Relight Renderer::make_relight(const plan::Plan& plan, const plan::Settings& set
 upload::LightsApart Renderer::wanted_apart(const plan::Plan& plan, const plan::Settings& settings,
                                            const Relight& relight) const {
   float threshold = wanted_sun_threshold(automaton_, plan, settings);
-  if (relight.apart && relight.groups->has_sun) threshold = scene::k_sun_threshold;
-  return {threshold, relight.apart ? relight.groups : nullptr,
-          !relight.apart || relight.kept == film::GroupsKept::by_component};
+  // Of one group the film's own sums are all there is to keep.
+  const bool several = relight.apart && relight.groups->groups.size() > 1;
+  if (several && relight.groups->has_sun) threshold = scene::k_sun_threshold;
+  return {threshold, several ? relight.groups : nullptr,
+          !several || relight.kept == film::GroupsKept::by_component};
 }
 
 void Renderer::take(Relight relight) {

@@ -130,7 +130,9 @@ void add_light_layer(film::FilmImage& out, const std::string& name, const std::v
 }
 
 /// Layers of groups of lights: light.GROUP.COMPONENT, or light.GROUP where all components are kept together.
+/// Of one group the picture is the layer.
 void add_group_layers(film::FilmImage& out, const film::Film& film, const Relight& relight) {
+  if (film.groups() == 1) return;
   for (uint32_t g = 0; g < film.groups(); ++g) {
     // A dot would part the layer's name.
     std::string name = "light." + relight.groups->groups[g].name;

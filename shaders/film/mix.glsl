@@ -8,5 +8,6 @@ uniform usamplerBuffer group_sums;  // GroupSums, where groups of lights are kep
 
 // GroupMix.groups and pixels.
 uvec2 light_mix_size() { return floatBitsToUint(texelFetch(light_mix, 0)).xy; }
-vec3 light_weight(uint group) { return texelFetch(light_mix, int(1u + group)).rgb; }
+vec3 light_mix_whole() { return texelFetch(light_mix, 1).rgb; }
+vec3 light_weight(uint group) { return texelFetch(light_mix, int(2u + group)).rgb; }
 #endif

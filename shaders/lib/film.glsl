@@ -84,7 +84,9 @@ FilmRatio film_ratio(uint pixel) {
     even_mixed += w * a;
     odd_mixed += w * b;
   }
-  return FilmRatio(group_ratio(even_mixed, even), group_ratio(odd_mixed, odd));
+  vec3 whole = light_mix_whole();
+  bool of_groups = groups_pixels.x > 0u;
+  return FilmRatio(of_groups ? group_ratio(even_mixed, even) : whole, of_groups ? group_ratio(odd_mixed, odd) : whole);
 }
 
 FilmHalf film_mixed(FilmHalf h, vec3 ratio) { return FilmHalf(ratio * h.sum, ratio * h.compensation); }

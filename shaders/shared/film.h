@@ -91,11 +91,12 @@ struct GroupSums {
   GroupSum even, odd;
 };
 
-/// How groups of lights are mixed where a film is read: a texel, and one for each weight.
+/// How groups of lights are mixed where a film is read: two texels, and one for each weight.
 struct GroupMix {
-  uint groups;  ///< whose sums (GroupSums) the components are to be weighed by; 0: the components are as they are mixed
+  uint groups;  ///< whose sums (GroupSums) the components are to be weighed by; 0: they are to be by `whole`
   uint pixels;  ///< of the film
   uint pad0, pad1;
+  vec4 whole;   ///< of a film of one group of lights: what its light is multiplied by; else 1
   vec4 weight[k_most_groups];  ///< what each group's light is multiplied by
 };
 

@@ -75,10 +75,44 @@ TEST_CASE("one group of lights costs nothing and changes no bit") {
   const scene::Scene s = room();
   Bench off(s, {{"relight.enabled", "off"}}), one(s, {{"relight.groups", "*=all"}});
   CHECK(one.r.relight().groups->groups.size() == 1);
-  CHECK_FALSE(one.r.relight().apart);
-  CHECK_THAT(one.r.relight().why_not, Contains("one group"));
-  CHECK(identical(off.image(), one.image()));
+  CHECK(one.r.relight().apart);
+  const film::Image image = one.image();
+  CHECK(identical(off.image(), image));
   CHECK(one.r.film().groups() == 1);
+}
+
+TEST_CASE("light of one group is mixed without a ray, whoever computes it") {
+  scene::Scene s = room();
+  const char* const text = "all: ev=1 color=1,0.5,0.25";
+  for (const Settings& how :
+       {Settings{}, Settings{{"components.secondary", "cache"}, {"components.tertiary", "cache"}},
+        Settings{{"components.caustic", "light"}}, Settings{{"components.secondary", "photons"}}}) {
+    Settings all = how;
+    all["relight.groups"] = "*=all";
+    Bench b(s, all, 4);
+    const film::Image before = b.image();
+    const double noise = b.r.image_error().relative(0);
+    const uint64_t rays = b.r.stats().rays, restarts = b.r.restarts();
+    b.mix(text);
+    const film::Image after = b.r.image();
+    size_t off = 0;
+    for (int c = 0; c < film::k_components; ++c)
+      for (size_t i = 0; i < before.samples.size(); ++i)
+        off += after.components[c][i] != vec3(2, 1, 0.5f) * before.components[c][i] ||
+               after.odd_half[c][i] != vec3(2, 1, 0.5f) * before.odd_half[c][i];
+    CHECK(off == 0);
+    CHECK(b.r.image_error().luminance[0] > 0);
+    CHECK(b.r.stats().rays == rays);
+    CHECK(b.r.restarts() == restarts);
+    b.mix("all: ev=3");
+    CHECK(b.r.image_error().relative(0) == Approx(noise).epsilon(1e-4));
+    // Also where it is there from the first sample on.
+    all["relight.mix"] = text;
+    CHECK(identical(Bench(s, all, 4).image(), after));
+    b.mix("all: mute");
+    for (const auto& component : b.r.image().components)
+      CHECK(std::all_of(component.begin(), component.end(), [](const vec3& v) { return v == vec3(0); }));
+  }
 }
 
 TEST_CASE("a mix traces no ray, restarts nothing, and does not depend on what was mixed before") {

@@ -110,7 +110,7 @@ std::vector<SharedStruct> structs() {
       SHARED("film.h", GroupLight, rg, b),
       SHARED("film.h", GroupSum, low, high),
       SHARED("film.h", GroupSums, even, odd),
-      SHARED("film.h", GroupMix, groups, pixels, pad0, pad1, weight),
+      SHARED("film.h", GroupMix, groups, pixels, pad0, pad1, whole, weight),
       SHARED("film.h", MixPush, width, height, groups, exposure),
       SHARED("film.h", TonePush, width, height, layer, show, curve, exposure, scale, coarse_width,
              coarse_height, use_coarse_film),
