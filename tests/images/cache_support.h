@@ -16,7 +16,7 @@ struct CacheRenderer {
       : r(test::renderer_options(validated, {}, interactive)) {
     r.set_size(size, size);
     r.settings().set("path.batch", "8192");
-    r.set_scene(std::make_shared<scene::Scene>(scene));
+    r.set_scene(std::make_shared<scene::Scene>(scene), {}, {{"cache.max_records", k_room, ""}});
   }
   ~CacheRenderer() { CHECK(r.device().validation_messages() == 0); }
   void set(const Settings& settings) { test::set(r, settings); }
