@@ -199,14 +199,18 @@ TEST_CASE("lamps: intensity over distance squared, a spot's cone, the sun's irra
     INFO("x " << x);
     CHECK(bad == 0);
     for (int k = 0; k < 3; ++k)
-      if (sends[k]) jury.add(fmt::format("lamp {} at x {}: {}", k, x, inverse[k].value()), mean_tail(inverse[k], 1, 1e-5));
+      if (sends[k])
+        jury.add(fmt::format("lamp {} at x {}: {}", k, x, inverse[k].value()),
+                 mean_tail(inverse[k], 1, 1e-5));
   }
   CHECK(jury.size() >= 10);
   CHECK(jury.verdict() == "");
 }
 
-TEST_CASE("of many lamps those are sampled that light a place: the mean is right, with a small part of the noise") {
-  // Spots of four powers in a ceiling, each with a cone of its own; two points, one below the floor, and a panel.
+TEST_CASE(
+    "of many lamps those are sampled that light a place: the mean is right, with a small part of the noise") {
+  // Spots of four powers in a ceiling, each with a cone of its own; two points, one below the floor, and a
+  // panel.
   scene::Scene scene;
   for (int i = 0; i < 20; ++i) {
     scene::Light spot;
@@ -236,23 +240,26 @@ TEST_CASE("of many lamps those are sampled that light a place: the mean is right
       const scene::Light& l = scene.lights[k];
       const vec3 to = l.position - position, direction = glm::normalize(to);
       const float inner = std::cos(l.inner_cone), outer = std::cos(l.outer_cone);
-      const float fade = l.kind == scene::LightKind::point
-                             ? 1
-                             : std::clamp((glm::dot(-direction, l.direction) - outer) / (inner - outer), 0.f, 1.f);
+      const float fade =
+          l.kind == scene::LightKind::point
+              ? 1
+              : std::clamp((glm::dot(-direction, l.direction) - outer) / (inner - outer), 0.f, 1.f);
       of_lamp[k] = double(l.intensity.x * fade * fade / glm::dot(to, to) * std::max(direction.y, 0.f));
       right += of_lamp[k];
     }
     // As if the lamps were chosen by the table alone.
     for (size_t i = 0; i < lights.flat.entries.size(); ++i) {
       const upload::LightEntry& e = lights.flat.entries[i];
-      if (e.kind != shared::k_light_triangle) second += of_lamp[e.index] * of_lamp[e.index] / double(lights.flat.light_alias[i].z);
+      if (e.kind != shared::k_light_triangle)
+        second += of_lamp[e.index] * of_lamp[e.index] / double(lights.flat.light_alias[i].z);
     }
     Mean mean;
     for (const Draw& d : lights.draw(position, 1 << 16, 3))
       mean.add(d.delta == 1 && d.pdf > 0 ? double(d.radiance.x * std::max(d.direction.y, 0.f) / d.pdf) : 0);
     REQUIRE(right > 0);
     jury.add(fmt::format("{} where {} is right", mean.value(), right), mean_tail(mean, right, 1e-5 * right));
-    variance += mean.error() * mean.error() * (1 << 16) / (right * right), by_power += second / (right * right) - 1;
+    variance += mean.error() * mean.error() * (1 << 16) / (right * right),
+        by_power += second / (right * right) - 1;
   }
   CHECK(jury.verdict() == "");
   INFO(variance << " by what they send, " << by_power << " by power");

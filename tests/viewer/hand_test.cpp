@@ -107,13 +107,15 @@ TEST_CASE("H walks, W leads along the floor, Ctrl+B keeps the view") {
   const auto lines = session_of(
       "camera.place 2,1,-3 2,1,-2 0,1,0\nwait 0.5\nmouse.move 700 300\nkey h\n"
       "key.hold w on\nwait 0.4\nkey.hold w off\nwait 0.5\nkey ctrl+b\n");
-  REQUIRE(lines.size() == 4);
+  // On a busy machine a frame may be so late that the way is kept in two steps.
+  REQUIRE(lines.size() >= 4);
   CHECK(lines[1] == "camera.walking true");
-  const vec3 eye = vector_in(lines[2], 1);
+  for (size_t i = 2; i + 1 < lines.size(); ++i) CHECK_THAT(lines[i], Catch::StartsWith("camera.place "));
+  const vec3 eye = vector_in(lines[lines.size() - 2], 1);
   CHECK(eye.z > -2.95f);
   CHECK(eye.y == Approx(3 * (eye.z + 4) / 8 + 1.65f).margin(0.01));
   CHECK(eye.x == Approx(2).margin(1e-3));
-  CHECK(lines[3] == "camera.bookmark");
+  CHECK(lines.back() == "camera.bookmark");
 }
 
 TEST_CASE("a dropped image lights the scene; the first steps are shown when asked for") {
