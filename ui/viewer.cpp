@@ -185,7 +185,9 @@ class Viewer {
     window_.end_frame();
     if (!ui_.shot.file.empty()) {
       ui_.wake(2);
-      if (ui_.shot.settle-- <= 0) screenshot(std::exchange(ui_.shot.file, {}));
+      // What was asked for before is in the picture, unless a scene is still being loaded.
+      const bool waits = ui_.snapshot && ui_.snapshot->activity.empty() && !ui_.up_to_date();
+      if (!waits && ui_.shot.settle-- <= 0) screenshot(std::exchange(ui_.shot.file, {}));
     }
     window_.present();
     const double now = ui_.time();

@@ -376,8 +376,12 @@ def main():
     s.write("The face of the program: late-morning sun through oculi on worn stone, its bounce in the shade under the "
             "gallery, cloth that glows through, cool sky light, small caustics of a brass bowl and a glass lamp. Also "
             "the size of a real job: instances, textures, normal maps, an environment, a sun and lamps.",
-            {"film.ev": 0.15, "film.tone_curve": "neutral", "environment": env})
+            {"film.ev": 0.15, "film.tone_curve": "neutral", "relight.presets": PRESETS, "environment": env})
 
+
+# Mixes of the scene's light (the panel LIGHT MIX).
+PRESETS = ("day = | evening = sun: mute; sky: ev=-1.8 color=0.5,0.65,1.2; opal: ev=4 color=1,0.85,0.62; flame: ev=3 | "
+           "morning = sun: ev=-0.4 color=1,0.55,0.28; sky: ev=-0.6 color=0.85,0.92,1.1")
 
 if __name__ == "__main__":
     main()
