@@ -189,3 +189,20 @@ TEST_CASE("a channel that is nothing beside the others goes with them in a mix")
   CHECK(shared::group_ratio(vec3(0), vec3(0)) == vec3(1));
   CHECK(shared::group_ratio(vec3(0), vec3(3, 2, 0)) == vec3(0));
 }
+
+TEST_CASE("samples that have no light of a group add nothing to it, whatever memory holds there") {
+  Bench bench;
+  // Whole numbers, which are kept exactly; each group has light in some samples of a batch and none in
+  // others.
+  const auto brings = [](uint32_t group, uint32_t sample) {
+    return sample % (2 + group) == 0 ? vec3(1, 2, float(1 + group)) : vec3(0);
+  };
+  bench.samples(0, 12, 6, brings);
+  for (uint32_t g = 0; g < k_groups; ++g) {
+    vec3 right(0);
+    for (uint32_t s = 0; s < 12; ++s) right += brings(g, s);
+    const std::vector<vec3> sums = bench.sums(g);
+    INFO("group " << g);
+    CHECK(std::all_of(sums.begin(), sums.end(), [&](const vec3& v) { return v == right; }));
+  }
+}
