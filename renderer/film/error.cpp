@@ -24,9 +24,9 @@ shared::BlockRecords mixed_records(const shared::BlockRecords& records, const sh
   shared::BlockRecords r = records;
   if (!(block.unmixed > 0)) return r;
   const float mixed = block.luminance[0] / block.unmixed;
-  for (float* values : {r.interpolation, r.noise, r.interpolation_noise})
-    for (size_t k = 0; k < (values == r.interpolation ? 2 : 2 * shared::k_record_lanes); ++k)
-      values[k] *= mixed;
+  for (float& value : r.interpolation) value *= mixed;
+  for (float& value : r.noise) value *= mixed;
+  for (float& value : r.interpolation_noise) value *= mixed;
   return r;
 }
 

@@ -355,6 +355,11 @@ def furnish(s):
                             (2.75, -15.0, 70, 1.0), (-2.75, -15.0, 200, 1.0)))
 
 
+# Mixes of the scene's light (the panel LIGHT MIX).
+PRESETS = ("day = | evening = sun: mute; sky: ev=-1.8 color=0.5,0.65,1.2; opal: ev=4 color=1,0.85,0.62; flame: ev=3 | "
+           "morning = sun: ev=-0.4 color=1,0.55,0.28; sky: ev=-0.6 color=0.85,0.92,1.1")
+
+
 def main():
     s = Scene("atrium")
     materials(s)
@@ -378,10 +383,6 @@ def main():
             "the size of a real job: instances, textures, normal maps, an environment, a sun and lamps.",
             {"film.ev": 0.15, "film.tone_curve": "neutral", "relight.presets": PRESETS, "environment": env})
 
-
-# Mixes of the scene's light (the panel LIGHT MIX).
-PRESETS = ("day = | evening = sun: mute; sky: ev=-1.8 color=0.5,0.65,1.2; opal: ev=4 color=1,0.85,0.62; flame: ev=3 | "
-           "morning = sun: ev=-0.4 color=1,0.55,0.28; sky: ev=-0.6 color=0.85,0.92,1.1")
 
 if __name__ == "__main__":
     main()

@@ -13,6 +13,7 @@
 #include "shaders/shared/facet.h"
 #if LUCERNA_GROUP_SUMS
 #include "irradiance_cache/groups.glsl"
+#include "lib/reservoir.glsl"
 #endif
 
 uniform samplerBuffer record_texels;
@@ -93,18 +94,15 @@ bool cache_can_serve(vec3 n, vec3 shading) { return 1.0 - dot(n, shading) <= cac
 // One record for all that serve a point, whose groups' shares are read: on lavapipe reading those of all took a third of the
 // time of shading. A record is drawn with the probability of its luminance among all, and stands for that of all.
 struct RecordLot {
-  float u;      // in [0, 1), independent of what has been drawn
-  float total;  // luminance of those that have come, weighted
+  Reservoir drawing;  // by luminance, weighted
   uint record;
   vec3 light;   // the record's, of the luminance of all: weighted
 };
 RecordLot draw_record(RecordLot lot, uint record, vec3 light) {
-  float y = luminance(light), total = lot.total + y, at = lot.u * total;
-  bool drawn = y > 0.0 && at < y;
-  lot.u = y > 0.0 ? (drawn ? at / y : (at - y) / max(lot.total, 1e-30)) : lot.u;
+  float y = luminance(light), before = lot.drawing.total;
+  bool drawn = reservoir_draw(lot.drawing, y);
   lot.record = drawn ? record : lot.record;
-  lot.light = drawn ? light * (total / y) : y > 0.0 ? lot.light * (total / max(lot.total, 1e-30)) : lot.light;
-  lot.total = total;
+  lot.light = drawn ? light * (lot.drawing.total / y) : y > 0.0 ? lot.light * (lot.drawing.total / max(before, 1e-30)) : lot.light;
   return lot;
 }
 #endif
@@ -125,7 +123,7 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks, float 
   found.weight = 0.0;
   found.guide = k_no_guide;
 #if LUCERNA_GROUP_SUMS
-  RecordLot lot = RecordLot(u, 0.0, 0u, vec3(0.0));
+  RecordLot lot = RecordLot(Reservoir(u, 0.0), 0u, vec3(0.0));
 #endif
   Nearest nearest = nothing_near();
   OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));

@@ -169,7 +169,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
   e.group = 0u;
 #if LUCERNA_LIGHT_GROUPS > 1
-  e.group = sky ? frame.sky_group : floatBitsToUint(texelFetch(scene_lights, at + 3).w) >> k_light_group_shift;
+  e.group = group_of_light(at, sky);
 #endif
   uint kind = sky ? k_light_environment : floatBitsToUint(a.w);
   float disk = k_pi * emission.radius * emission.radius;
@@ -189,8 +189,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   if (kind == k_light_spot) {
     e.direction = emission_spot(c.xyz, b.w, c.w, u_direction, coin, spread);
     e.direction = aims ? aimed_direction : e.direction;
-    float fade = clamp((dot(e.direction, c.xyz) - c.w) / max(b.w - c.w, 1e-4), 0.0, 1.0);
-    e.pdf_direction = fade * fade / spread;
+    e.pdf_direction = spot_share(dot(e.direction, c.xyz), b.w, c.w) / spread;
   }
   bool afar = kind == k_light_directional || kind == k_light_environment;
   if (kind == k_light_directional) {

@@ -10,6 +10,7 @@
 #define LUCERNA_LIB_LIGHTS
 #include "lib/variants.glsl"
 #include "lib/frame.glsl"
+#include "lib/reservoir.glsl"
 #include "lib/sampler.glsl"
 
 #if LUCERNA_LIGHTS
@@ -146,6 +147,19 @@ float emissive_pdf(uint primitive, float distance2, float cos_light) {
 #endif
 
 #if LUCERNA_LIGHTS
+// Of a spot's intensity, towards a direction at that cosine to its axis: glTF's recommended falloff between the cones.
+float spot_share(float cosine, float cos_inner, float cos_outer) {
+  float fade = clamp((cosine - cos_outer) / max(cos_inner - cos_outer, 1e-4), 0.0, 1.0);
+  return fade * fade;
+}
+
+#if LUCERNA_LIGHT_GROUPS > 1
+// The group of the light whose texels begin at `at`, or of the sky.
+uint group_of_light(int at, bool sky) {
+  return sky ? frame.sky_group : floatBitsToUint(texelFetch(scene_lights, at + 3).w) >> k_light_group_shift;
+}
+#endif
+
 // What a lamp would send to a place if nothing were between, by luminance, onto a surface with that normal: a little even from
 // behind, where surfaces may let light through.
 float lamp_sends(uint lamp, vec3 position, vec3 normal) {
@@ -156,8 +170,7 @@ float lamp_sends(uint lamp, vec3 position, vec3 normal) {
   float d2 = max(dot(to, to), 1e-20);
   bool directional = kind == k_light_directional;
   vec3 direction = directional ? -c.xyz : to * inversesqrt(d2);
-  float fade = clamp((dot(-direction, c.xyz) - c.w) / max(b.w - c.w, 1e-4), 0.0, 1.0);
-  float fall = directional ? 1.0 : (kind == k_light_spot ? fade * fade : 1.0) / d2;
+  float fall = directional ? 1.0 : (kind == k_light_spot ? spot_share(dot(-direction, c.xyz), b.w, c.w) : 1.0) / d2;
   return luminance(b.xyz) * fall * max(dot(direction, normal), 0.05);
 }
 
@@ -167,22 +180,19 @@ uint draw_lamp(uint light, vec3 position, vec3 normal, uint choice, float u, ino
   const uint candidates = uint(LUCERNA_LAMP_CANDIDATES);
   bool is_lamp = light - frame.first_lamp < frame.lamp_count;
   uint drawn = light;
-  float total = 0.0, sends_drawn = 0.0;
+  float sends_drawn = 0.0;
+  Reservoir drawing = Reservoir(u, 0.0);
   for (uint k = 0u; k < (is_lamp ? candidates : 0u); ++k) {
     uint bits = choice + k * (0xffffffffu / max(candidates, 1u));
     float p;
     uint lamp = frame.first_lamp + alias_choose(light_alias, frame.light_count, frame.lamp_count, uvec2(bits, hash_mix(bits)), p);
-    float sends = lamp_sends(lamp, position, normal), weight = sends / max(p, 1e-30);
-    // One number serves all draws: what is left of it within its part is even again.
-    float before = total, at = u * (total + weight);
-    total += weight;
-    bool taken = weight > 0.0 && at < weight;
-    u = taken ? at / weight : before > 0.0 ? min((at - weight) / before, 1.0) : u;
+    float sends = lamp_sends(lamp, position, normal);
+    bool taken = reservoir_draw(drawing, sends / max(p, 1e-30));
     // Where none sends anything it is one of these that does not: another one might.
-    drawn = taken || total <= 0.0 ? lamp : drawn;
+    drawn = taken || drawing.total <= 0.0 ? lamp : drawn;
     sends_drawn = taken ? sends : sends_drawn;
   }
-  pmf = total > 0.0 ? frame.lamp_pmf * sends_drawn * float(candidates) / total : pmf;
+  pmf = drawing.total > 0.0 ? frame.lamp_pmf * sends_drawn * float(candidates) / drawing.total : pmf;
   return drawn;
 }
 
@@ -217,20 +227,17 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
   uint kind = floatBitsToUint(a.w);
 #if LUCERNA_LIGHT_GROUPS > 1
-  s.group = floatBitsToUint(texelFetch(scene_lights, at + 3).w) >> k_light_group_shift;
+  s.group = group_of_light(at, s.sky);
 #endif
 #if LUCERNA_SKY_APART
   if (s.sky) kind = k_light_environment;
-  if (s.sky) s.group = frame.sky_group;
 #endif
-  // Point and spot: irradiance I/d^2; a spot falls off smoothly between its cones (glTF's recommended curve).
+  // Point and spot: irradiance I/d^2.
   vec3 to = a.xyz - position;
   float d2 = max(dot(to, to), 1e-20);
   s.distance = sqrt(d2);
   s.direction = to / s.distance;
-  float cos_axis = dot(-s.direction, c.xyz);
-  float fade = clamp((cos_axis - c.w) / max(b.w - c.w, 1e-4), 0.0, 1.0);
-  s.radiance = b.xyz / d2 * (kind == k_light_spot ? fade * fade : 1.0);
+  s.radiance = b.xyz / d2 * (kind == k_light_spot ? spot_share(dot(-s.direction, c.xyz), b.w, c.w) : 1.0);
   s.pdf = pmf;
   if (kind == k_light_directional) {
     s.direction = -c.xyz;

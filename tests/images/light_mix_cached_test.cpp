@@ -22,20 +22,13 @@ Settings cached(Settings more = {}) {
   return more;
 }
 
-std::vector<vec3> light(const film::Image& image) {
-  std::vector<vec3> sum(image.samples.size(), vec3(0));
-  for (const auto& component : image.components)
-    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
-  return sum;
-}
-
 /// By how much 8x8 blocks of two pictures differ, over the second's mean: the root of the mean square, and
 /// the whole.
 struct Off {
   double blocks = 0, mean = 0;
 };
 Off off(const film::Image& a, const film::Image& b) {
-  const std::vector<vec3> p = light(a), q = light(b);
+  const std::vector<vec3> p = all_components(a), q = all_components(b);
   double squares = 0, sum = 0, all = 0;
   size_t count = 0;
   for (uint32_t v = 0; v < b.height; v += 8)

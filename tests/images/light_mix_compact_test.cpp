@@ -32,21 +32,6 @@ const char* const k_mixes[] = {
     "lamp: mute; sun: mute; sky: mute",
     "sky: color=1,0.2,0.1; sun: kelvin=2500; lamp: kelvin=9000 ev=1.3; block: color=0.3,0.1,1"};
 
-std::vector<vec3> all_components(const film::Image& image, bool odd) {
-  std::vector<vec3> sum(image.samples.size(), vec3(0));
-  for (const auto& component : odd ? image.odd_half : image.components)
-    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
-  return sum;
-}
-
-/// All components as one, in the place of the first.
-film::Image as_one_component(film::Image image) {
-  image.components[0] = all_components(image, false), image.odd_half[0] = all_components(image, true);
-  for (size_t c = 1; c < film::k_components; ++c)
-    image.components[c].assign(image.samples.size(), vec3(0)), image.odd_half[c] = image.components[c];
-  return image;
-}
-
 /// The largest difference of two pictures of all components over the pixel's brightest channel.
 double worst_share(const std::vector<vec3>& a, const std::vector<vec3>& b) {
   double worst = 0;

@@ -21,16 +21,6 @@ Settings photons(Settings more = {}) {
   return more;
 }
 
-/// All components in the place of the first.
-film::Image together(film::Image image) {
-  for (int c = 1; c < film::k_components; ++c)
-    for (size_t i = 0; i < image.samples.size(); ++i) {
-      image.components[0][i] += image.components[size_t(c)][i], image.components[size_t(c)][i] = vec3(0);
-      image.odd_half[0][i] += image.odd_half[size_t(c)][i], image.odd_half[size_t(c)][i] = vec3(0);
-    }
-  return image;
-}
-
 }  // namespace
 
 TEST_CASE("photons that know their lights' groups make the picture of those that do not") {
@@ -60,7 +50,7 @@ TEST_CASE("a mix of photons' light is that of photons from lamps of that strengt
     Bench anew(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), photons(other), 32);
     // Radii are in pixels, so that both blur alike. 24 blocks, 2 pictures: 5 errors of some 64 degrees of
     // freedom come by chance in one of 5000 such tests; light of a wrong group is off by tens.
-    CHECK(worst_z(together(b.r.image()), together(anew.image())) < 5);
+    CHECK(worst_z(as_one_component(b.r.image()), as_one_component(anew.image())) < 5);
   }
   CHECK(b.r.stats().rays == rays);
 }
@@ -74,7 +64,7 @@ TEST_CASE("records whose rays end in photons keep their groups") {
     INFO(text);
     b.mix(text), traced.mix(text);
     double sum = 0, all = 0;
-    const film::Image p = together(b.r.image()), q = together(traced.r.image());
+    const film::Image p = as_one_component(b.r.image()), q = as_one_component(traced.r.image());
     for (size_t i = 0; i < p.samples.size(); ++i)
       sum += luminance(p.components[0][i]), all += luminance(q.components[0][i]);
     CHECK(sum / all == Approx(1).margin(0.03));

@@ -89,6 +89,23 @@ struct Bench {
   void mix(const std::string& text) { set(r, {{"relight.mix", text}}); }
 };
 
+/// Light of all components, or of their odd halves.
+inline std::vector<vec3> all_components(const film::Image& image, bool odd = false) {
+  std::vector<vec3> sum(image.samples.size(), vec3(0));
+  for (const auto& component : odd ? image.odd_half : image.components)
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
+  return sum;
+}
+/// All components as one: in the place of the first.
+inline film::Image as_one_component(film::Image image) {
+  image.components[0] = all_components(image), image.odd_half[0] = all_components(image, true);
+  for (size_t c = 1; c < film::k_components; ++c) {
+    image.components[c].assign(image.samples.size(), vec3(0));
+    image.odd_half[c] = image.components[c];
+  }
+  return image;
+}
+
 /// The largest difference over the largest value.
 inline double difference(const film::Image& a, const film::Image& b) {
   double most = 0, scale = 0;

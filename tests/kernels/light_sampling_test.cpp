@@ -232,10 +232,8 @@ TEST_CASE(
   Jury jury;
   double variance = 0, by_power = 0;
   for (const vec3& position : {vec3(0, 0, 0), vec3(3.1f, 0, 2.2f), vec3(6, 1, 6), vec3(9.5f, 0, 0.5f)}) {
-    double right = 0, second = 0, power = 0;
+    double right = 0, second = 0;
     std::vector<double> of_lamp(scene.lights.size());
-    for (const auto& e : lights.flat.entries)
-      power += lights.flat.light_power[size_t(&e - lights.flat.entries.data())];
     for (size_t k = 0; k < scene.lights.size(); ++k) {
       const scene::Light& l = scene.lights[k];
       const vec3 to = l.position - position, direction = glm::normalize(to);

@@ -26,7 +26,6 @@ struct Evaluator::Impl {
   gpu::Device& device;
   gpu::ShaderCompiler& compiler;
   gpu::Defines defines;  ///< of kernels that read or write what paths bring
-  uint32_t groups = 1;
   gpu::Kernel record, gather, gather_groups, distances, hessian, near, guide;
   gpu::Buffer first_hits, list;
   gpu::Resources resources;
@@ -56,7 +55,10 @@ struct Evaluator::Impl {
                   if (kernel)
                     stream.dispatch(
                         *kernel, resources, push,
-                        gpu::groups_for(push.records * (kernel == &gather_groups ? (groups + 3) / 4 : 1), 64),
+                        gpu::groups_for(push.records * (kernel == &gather_groups
+                                                            ? uint32_t(records.group_bytes() / sizeof(uvec4))
+                                                            : 1),
+                                        64),
                         "records");
               },
           .hits_only = hits_only};
@@ -70,9 +72,8 @@ struct Evaluator::Impl {
 };
 
 Evaluator::Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, uint32_t groups)
-    : impl_(new Impl{device, compiler, {}, groups, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {
-  if (groups > 1)
-    impl_->defines = {{"LUCERNA_LIGHT_GROUPS", std::to_string(groups)}, {"LUCERNA_GROUP_SUMS", "1"}};
+    : impl_(new Impl{device, compiler, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}}) {
+  impl_->defines = group_defines(groups);
   impl_->record = gpu::Kernel(device, compiler, "irradiance_cache/record.comp", impl_->defines);
   impl_->gather = gpu::Kernel(device, compiler, "irradiance_cache/gather.comp", impl_->defines);
   if (groups > 1)
@@ -98,7 +99,7 @@ size_t Evaluator::evaluate(transport::Wavefront& wavefront, const paths::Automat
   if (o.near && !e.near) e.near = gpu::Kernel(e.device, e.compiler, "irradiance_cache/near.comp", e.defines);
   if (o.guides && !e.guide)
     e.guide = gpu::Kernel(e.device, e.compiler, "irradiance_cache/guide.comp", e.defines);
-  return e.gather_by({e.groups > 1 ? &e.gather_groups : nullptr, &e.gather, o.near ? &e.near : nullptr,
+  return e.gather_by({e.gather_groups ? &e.gather_groups : nullptr, &e.gather, o.near ? &e.near : nullptr,
                       o.guides ? &e.guide : nullptr},
                      false, wavefront, records, list, push_of(automaton, o), cancel);
 }

@@ -60,6 +60,12 @@ struct RawRecords {
   void keep(std::span<const uint32_t> kept);
 };
 
+/// #defines of kernels that read or write the light of paths and records where these keep so many groups.
+inline gpu::Defines group_defines(uint32_t groups) {
+  if (groups < 2) return {};
+  return {{"LUCERNA_LIGHT_GROUPS", std::to_string(groups)}, {"LUCERNA_GROUP_SUMS", "1"}};
+}
+
 class Records {
  public:
   /// Room for `capacity` records of shared::k_record_bytes. `groups`: of lights, whose shares in the light

@@ -14,9 +14,9 @@ constexpr uint64_t k_light_bytes = uint64_t{k_part_count} * k_part_texels * 16;
 }  // namespace
 
 void RelightPreview::make_room(uint32_t count) {
-  gpu::Defines defines;
-  if (groups_ > 1) defines = {{"LUCERNA_LIGHT_GROUPS", std::to_string(groups_)}, {"LUCERNA_GROUP_SUMS", "1"}};
-  if (!kernel_) kernel_ = gpu::Kernel(device_, compiler_, "irradiance_cache/relight_preview.comp", defines);
+  if (!kernel_)
+    kernel_ =
+        gpu::Kernel(device_, compiler_, "irradiance_cache/relight_preview.comp", group_defines(groups_));
   if (!frame_)
     frame_ = gpu::Buffer(device_, {.name = "cache frame of a preview", .bytes = sizeof(CacheFrame)});
   if (records_ && records_->capacity() >= count) return;
