@@ -85,9 +85,10 @@ class Program {
   BenchPhotonsArguments bp;
 };
 
+constexpr const char* k_device_help = "device: index, part of a name, cpu or gpu (also LUCERNA_DEVICE)";
+
 Program::Program() {
   app_.set_version_flag("--version", LUCERNA_VERSION);
-  app_.footer(settings_help());
   add_viewer();
   add_render();
   add_small_verbs();
@@ -97,11 +98,15 @@ Program::Program() {
   add_bench_latency();
   add_bench_photons();
   app_.require_subcommand(0, 1);
+  // Footers come last: verbs that are added take over what stands under the one that they are added to.
+  app_.footer(settings_help());
+  render_->footer(settings_help());
+  bench_->footer(bench::k_matrix_help);
 }
 
 void Program::add_viewer() {
   app_.add_option("SCENE", scene_, "glTF scene (.gltf or .glb) to open in the viewer");
-  app_.add_option("--device", device_, "device: index, part of a name, cpu or gpu (also LUCERNA_DEVICE)");
+  app_.add_option("--device", device_, k_device_help);
   app_.add_option("--set", set_, "viewer: KEY=VALUE; see below")->allow_extra_args(false);
   app_.add_option("--script", script_,
                   "viewer: file with commands, one a line; 'help' under the log lists them. Its end ends the "
@@ -140,7 +145,7 @@ void Program::add_render() {
   render_->add_option("--seed", r.seed, "seed of all random decisions")
       ->check(CLI::Range(int64_t(0), int64_t(4294967295)));
   render_->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
-  render_->add_option("--device", r.device, "as above");
+  render_->add_option("--device", r.device, k_device_help);
   render_->add_option("--ledger", r.ledger, "time, rays and error as they went on, as CSV");
   render_->add_option("--reference", r.reference,
                       "EXR of the same picture, converged: ledger and figures then tell the true error");
@@ -155,7 +160,6 @@ void Program::add_render() {
   render_->add_option("--stats", r.stats, "write figures of the run as JSON");
   render_->add_flag("--quiet", r.quiet, "no progress line");
   add_scene_options(render_);
-  render_->footer(settings_help());
 }
 
 void Program::add_small_verbs() {
@@ -188,13 +192,12 @@ void Program::add_bench() {
                      "folder of the reference pictures [references in the report folder]");
   bench_->add_option("--repeats", bm.repeats, "renders of each cell, instead of the matrix's")
       ->check(CLI::Range(1, 100));
-  bench_->add_option("--device", bm.device, "as above");
+  bench_->add_option("--device", bm.device, k_device_help);
   bench_->add_flag("--quiet", bm.quiet, "no progress");
   bench_->add_option("--compare", bm.compare, "OLD NEW: ratios of two reports (folders or report.json)")
       ->expected(2);
   bench_->add_option("--page", bm.page, "make report.html of a report folder again, measuring nothing");
   add_scene_options(bench_);
-  bench_->footer(bench::k_matrix_help);
 }
 
 void Program::add_bench_rays() {
@@ -216,7 +219,7 @@ void Program::add_bench_rays() {
       ->capture_default_str();
   rays_->add_option("--seed", b.seed, "seed of the rays")->capture_default_str();
   rays_->add_option("--flat", b.flat, "write the flattened scene for lucerna-raybench");
-  rays_->add_option("--device", b.device, "as above");
+  rays_->add_option("--device", b.device, k_device_help);
   rays_->add_flag("--json", b.json, "as JSON");
   add_scene_options(rays_);
 }
@@ -227,7 +230,7 @@ void Program::add_small_benches() {
         ->check(CLI::Range(least_repeats, 1000))
         ->capture_default_str();
     verb->add_option("--json", a.json, "file to write the figures to");
-    verb->add_option("--device", a.device, "as above");
+    verb->add_option("--device", a.device, k_device_help);
   };
   const auto of_scene = [](CLI::App* verb, auto& a) {
     verb->add_option("SCENE", a.scene, "glTF scene")->required();
@@ -303,7 +306,7 @@ void Program::add_bench_latency() {
   latency_->add_option("--pictures", bt.pictures, "folder for what was shown at 0.3, 1, 3 and 10 s");
   latency_->add_option("--set", bt.set, "KEY=VALUE, as of the viewer")->allow_extra_args(false);
   latency_->add_option("--json", bt.json, "file to write the figures to");
-  latency_->add_option("--device", bt.device, "as above");
+  latency_->add_option("--device", bt.device, k_device_help);
   add_scene_options(latency_);
 }
 
@@ -349,7 +352,7 @@ void Program::add_bench_photons() {
       ->check(CLI::Range(1u, 1000u))
       ->capture_default_str();
   photons_->add_flag("--quiet", bp.quiet, "no progress");
-  photons_->add_option("--device", o.device, "as above");
+  photons_->add_option("--device", o.device, k_device_help);
 }
 
 int Program::run(int argc, char** argv) {

@@ -239,7 +239,7 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
       {"Ctrl + left drag", "turn the environment, or else the sun"},
       {"Click", "select the object, its material with a second click"},
       {"F", "frame the selection, or the scene"},
-      {"L", "mark the lamps, to click on them and to drag them"},
+      {"L", "mark lamps and surfaces that emit, to click on them; lamps are dragged"},
       {"Drag on a lamp's mark",
        "move it along the picture; with Shift up and down; a spot's aim over surfaces"},
       {"T", "show the tiles at work"},

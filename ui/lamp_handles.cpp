@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "commands/light_edit.h"
+#include "emitters.h"
 #include "session/pick.h"
 #include "state.h"
 #include "widgets.h"
@@ -53,6 +54,9 @@ std::vector<LampHandle> lamp_handles(Ui& ui, const Area& shown) {
     if (selected && light.kind == scene::LightKind::spot) add(aim_of(ui, i, light));
     add({.light = i, .part = LampHandle::Part::place, .point = light.position, .at = {}});
   }
+  if (ui.light_marks)
+    for (const EmittingSurface& surface : emitting_surfaces(ui))
+      add({.light = surface.material, .part = LampHandle::Part::surface, .point = surface.middle, .at = {}});
   return list;
 }
 
@@ -74,9 +78,19 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
   };
   std::optional<ImVec2> aim;
   for (const LampHandle& handle : lamp_handles(ui, shown)) {
-    const bool chosen = ui.selection == Selection{Kind::light, handle.light};
+    const bool surface = handle.part == LampHandle::Part::surface;
+    const bool chosen = ui.selection == Selection{surface ? Kind::material : Kind::light, handle.light};
     const ImU32 ink = chosen || is_hot(handle) ? colour::accent : colour::text;
     const float r = px(is_hot(handle) ? 6.5f : 5);
+    if (surface) {
+      const auto square = [&](float half, auto&& draw) {
+        draw(ImVec2(handle.at.x - half, handle.at.y - half), ImVec2(handle.at.x + half, handle.at.y + half));
+      };
+      square(r + px(1.5f), [&](auto lo, auto hi) { list->AddRectFilled(lo, hi, IM_COL32(0, 0, 0, 110)); });
+      square(r, [&](auto lo, auto hi) { list->AddRect(lo, hi, ink, 0, 0, px(1.5f)); });
+      if (ui.emits(handle.light)) square(px(2), [&](auto lo, auto hi) { list->AddRectFilled(lo, hi, ink); });
+      continue;
+    }
     if (handle.part == LampHandle::Part::aim) {
       aim = handle.at;  // its lamp comes next
       list->AddCircleFilled(handle.at, r, IM_COL32(0, 0, 0, 110), 20);

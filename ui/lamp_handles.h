@@ -1,5 +1,6 @@
 #pragma once
-// Lamps in the picture: marks by which they are selected and dragged, and what spots are aimed at.
+// Lights in the picture: marks by which they are selected, lamps by which they are dragged, and what spots
+// are aimed at.
 #include <optional>
 #include <vector>
 
@@ -12,10 +13,11 @@ struct Ui;
 
 struct LampHandle {
   enum class Part {
-    place,  ///< where the lamp is
-    aim     ///< what the axis of a selected spot meets
+    place,   ///< where the lamp is
+    aim,     ///< what the axis of a selected spot meets
+    surface  ///< the middle of a surface that emits; it is selected alone, not dragged
   };
-  uint32_t light = 0;
+  uint32_t light = 0;  ///< the lamp's number, or the surface's material
   Part part = Part::place;
   vec3 point{0};  ///< in the scene
   ImVec2 at;      ///< on the screen
@@ -24,7 +26,8 @@ struct LampHandle {
 /// A point of the scene in the picture, which is shown there; false behind the eye.
 bool project(const scene::Camera& camera, const Area& shown, const vec3& point, ImVec2& at);
 
-/// Those that are shown: of all lamps where they are marked, of the selected one always. Suns have no place.
+/// Those that are shown: of all lights where they are marked, of the selected lamp always. Suns have no
+/// place.
 std::vector<LampHandle> lamp_handles(Ui& ui, const Area& shown);
 /// The nearest to a point of the screen, close enough to be meant.
 std::optional<LampHandle> lamp_handle_at(Ui& ui, const Area& shown, const ImVec2& at);

@@ -213,8 +213,9 @@ void view_menu(Ui& ui) {
   divide();
   if (entry("Selection", nullptr, "Marks the selected object in the picture.", ui.brackets))
     ui.act("view.selection", !ui.brackets);
-  if (entry("Lamps", "L",
-            "Marks the lamps in the picture; a click on a mark selects the lamp, a drag moves it.",
+  if (entry("Lights", "L",
+            "Marks lamps and surfaces that emit in the picture; a click on a mark selects what it is, a drag "
+            "moves a lamp.",
             ui.light_marks))
     ui.act("view.lamps", !ui.light_marks);
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");

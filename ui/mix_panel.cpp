@@ -145,7 +145,7 @@ void draw_mix(Ui& ui) {
   if (button("##apart", "Keep apart", keeps, half)) ui.act("set", "relight.enabled", keeps ? "off" : "auto");
   tooltip(
       "The picture keeps its light apart by groups, so that a mix costs no ray: 16 bytes a pixel for each. "
-      "Where light tracing brings caustics it cannot. The picture starts again.");
+      "The picture starts again.");
   ImGui::SameLine(0, px(6));
   if (button("##components", "By component", by_component, half))
     ui.act("set", "relight.enabled", by_component ? "auto" : "on");

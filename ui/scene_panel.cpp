@@ -7,6 +7,7 @@
 #include "base/blackbody.h"
 #include "base/color.h"
 #include "commands/light_edit.h"
+#include "emitters.h"
 #include "scene/lamp.h"
 #include "state.h"
 #include "widgets.h"
@@ -241,28 +242,6 @@ void emission_slider(Ui& ui, uint32_t index) {
     ui.act("material.set", index + 1, named("strength", shown));
   ImGui::EndDisabled();
   tooltip("Radiance that the surface emits, of its strongest channel; a texture goes on multiplying it.");
-}
-
-/// Materials that some surface is made of.
-std::vector<bool> used_materials(const scene::Scene& scene) {
-  std::vector<bool> used(scene.materials.size());
-  for (const scene::Instance& instance : scene.instances)
-    if (instance.mesh < scene.meshes.size())
-      for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives) used[p.material] = true;
-  return used;
-}
-
-/// Indices of the materials that emit, or would if they were not switched off.
-const std::vector<uint32_t>& emitters(const Ui& ui) {
-  static uint64_t of = 0;
-  static std::vector<bool> used;
-  static std::vector<uint32_t> list;
-  if (of != ui.view_scene || used.size() != ui.scene->materials.size())
-    used = used_materials(*ui.scene), of = ui.view_scene;
-  list.clear();
-  for (uint32_t i = 0; i < used.size(); ++i)
-    if (used[i] && strength_of(ui.emission(i)) > 0 && !ui.scene->materials[i].unlit) list.push_back(i);
-  return list;
 }
 
 void light_rows(Ui& ui, bool reveal) {

@@ -143,7 +143,7 @@ struct Ui : commands::Workspace {
   int picture_divisor = 1;  ///< window pixels per picture pixel
   /// Pixels of the picture; none: as many as the window has room for.
   std::optional<std::pair<uint32_t, uint32_t>> picture_size;
-  bool light_marks = false;  ///< lamps are marked in the picture
+  bool light_marks = false;  ///< lights are marked in the picture
   bool brackets = true;      ///< the selected object is marked in the picture
   Area picture;              ///< where the picture may be
   bool picture_hovered = false;

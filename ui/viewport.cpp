@@ -167,6 +167,7 @@ void begin_drag(Ui& ui, const Area& shown) {
   ui.drag.lamp.reset();
   if (!ui.dropper && !ImGui::GetIO().KeyCtrl && ImGui::GetIO().MouseDown[0])
     ui.drag.lamp = lamp_handle_at(ui, shown, ImGui::GetIO().MousePos);
+  if (ui.drag.lamp && ui.drag.lamp->part == LampHandle::Part::surface) ui.drag.lamp.reset();
   ui.drag.azimuth = ui.environment_rotation();
   if (const auto sun = first_sun(ui); sun && !has_environment_image(ui))
     ui.drag.azimuth = commands::bearing_of(ui.light(*sun).direction).azimuth;
@@ -284,7 +285,9 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
 void click(Ui& ui, const Area& shown) {
   const ImVec2 at = ImGui::GetIO().MousePos;
   if (!ui.dropper)
-    if (const auto lamp = lamp_handle_at(ui, shown, at)) return ui.act("select", "light", lamp->light + 1);
+    if (const auto lamp = lamp_handle_at(ui, shown, at))
+      return ui.act("select", lamp->part == LampHandle::Part::surface ? "material" : "light",
+                    lamp->light + 1);
   const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
   const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
   if (x < 0 || x > 1 || y < 0 || y > 1) return;
@@ -294,6 +297,20 @@ void click(Ui& ui, const Area& shown) {
   } else {
     ui.act("pick", x, y);
   }
+}
+
+std::string help_of(Ui& ui, const LampHandle& handle) {
+  switch (handle.part) {
+    case LampHandle::Part::aim:
+      return "What the spot is aimed at: drag it over the surfaces.";
+    case LampHandle::Part::surface:
+      return fmt::format("{}. A surface that emits: a click selects its material, to be edited under Lights.",
+                         ui.material(handle.light).name);
+    case LampHandle::Part::place:
+      break;
+  }
+  return fmt::format("{}. Drag to move it along the picture, with Shift up and down.",
+                     ui.scene->lights[handle.light].name);
 }
 
 constexpr double k_rest = 0.15;  // seconds
@@ -426,11 +443,7 @@ void draw_picture(Ui& ui, const Area& area) {
     ui.picture_hovered = ImGui::IsItemHovered();
     active = ImGui::IsItemActive();
     if (ImGui::IsItemActivated()) begin_drag(ui, frame);
-    if (hot && ui.picture_hovered && !active)
-      tooltip(hot->part == LampHandle::Part::aim
-                  ? std::string("What the spot is aimed at: drag it over the surfaces.")
-                  : fmt::format("{}. Drag to move it along the picture, with Shift up and down.",
-                                ui.scene->lights[hot->light].name));
+    if (hot && ui.picture_hovered && !active) tooltip(help_of(ui, *hot));
     if ((ui.dropper || hot) && ui.picture_hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (ui.picture_hovered && ImGui::IsMouseReleased(0) && ImGui::IsItemDeactivated() &&
         ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))

@@ -148,7 +148,7 @@ void add_picture_commands(Ui& ui, const Add& add) {
       });
   add("view.selection", "Marks the selected object in the picture.", {on()},
       [&ui](const Arguments& a) { ui.brackets = a.boolean("on"); });
-  add("view.lamps", "Marks the lamps in the picture.", {on()},
+  add("view.lamps", "Marks lamps and surfaces that emit in the picture.", {on()},
       [&ui](const Arguments& a) { ui.light_marks = a.boolean("on"); });
 }
 

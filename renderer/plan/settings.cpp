@@ -76,16 +76,16 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
 }
 
 void add_relight_options(std::vector<OptionInfo>& list) {
-  list.push_back(choice_option(
-      "relight.enabled", "auto", {"off", "on", "compact", "auto"}, "",
-      "Whether light is kept apart by groups of lights, so that a mix of them costs no ray. "
-      "compact: 16 bytes a pixel for each group; the picture of a mix and its noise are right, "
-      "but it is shared out to the components as if each group had its light in all of them "
-      "alike. on: by component, 200 bytes a pixel for each group, and more time. auto: compact "
-      "in the window, where no component is by light tracing and an eighth of the device's memory "
-      "is enough; off in batch renders. Where light is not kept apart, a mix lights the scene "
-      "anew.",
-      "Light by groups"));
+  list.push_back(
+      choice_option("relight.enabled", "auto", {"off", "on", "compact", "auto"}, "",
+                    "Whether light is kept apart by groups of lights, so that a mix of them costs no ray. "
+                    "compact: 16 bytes a pixel for each group; the picture of a mix and its noise are right, "
+                    "but it is shared out to the components as if each group had its light in all of them "
+                    "alike. on: by component, 200 bytes a pixel for each group, and more time. auto: compact "
+                    "in the window, where every solver at work can and an eighth of the device's memory "
+                    "is enough; off in batch renders. Where light is not kept apart, a mix lights the scene "
+                    "anew.",
+                    "Light by groups"));
   list.push_back(text_option(
       "relight.groups",
       "Which lights go together, beside what the scene says: PATTERN=GROUP; PATTERN=GROUP. Patterns (* and "

@@ -285,7 +285,7 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
   if (!filled && renderer.samples() > 0) filled = changed = true;
   if (changed || since_publish.seconds() > publish_seconds || renderer.done() || renderer.waits())
     publish_picture(renderer, renderer.samples() > 0 && !renderer.mix_pending() &&
-                                  (since_numbers.seconds() > numbers_seconds || renderer.done()));
+                                  (since_numbers.seconds() > numbers_seconds || renderer.done() || paused));
 }
 
 /// `numbers`: with what has to be read back from the film.

@@ -36,7 +36,7 @@ struct Wavefront::Impl {
         host_trace(std::move(trace)),
         slots(n),
         groups(effects.light_groups),
-        in_short(effects.light_groups > 1 && !effects.group_components) {
+        in_short(effects.groups_in_short()) {
     const gpu::Memory queue_memory = host_trace ? gpu::Memory::host : gpu::Memory::device;
     const auto make = [&](const char* name, uint64_t bytes, gpu::Memory memory) {
       return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});

@@ -124,7 +124,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_SUN", e.sun);
   d["LUCERNA_LAMP_CANDIDATES"] = std::to_string(e.lamp_candidates);
   d["LUCERNA_LIGHT_GROUPS"] = std::to_string(e.light_groups);
-  set("LUCERNA_GROUP_SUMS", e.light_groups > 1 && !e.group_components);
+  set("LUCERNA_GROUP_SUMS", e.groups_in_short());
   set("LUCERNA_SPECULAR", e.specular);
   set("LUCERNA_SOLID_GLASS", e.solid_glass);
   set("LUCERNA_THIN_GLASS", e.thin_glass);

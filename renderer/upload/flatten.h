@@ -28,6 +28,8 @@ struct Effects {
   bool tex_wraps = false;               ///< a texture that does not repeat
   std::array<uint32_t, shared::k_texture_uses> texture_buckets{};  ///< by use: bit b: bucket b may be read
   bool transparent() const { return alpha || thin_glass; }
+  /// Groups of lights are kept apart, all components of one together (film::GroupsKept::in_short).
+  bool groups_in_short() const { return light_groups > 1 && !group_components; }
 };
 
 /// A texture array: pages of one size and format that hold textures of all sizes (upload/textures.h).

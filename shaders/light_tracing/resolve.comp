@@ -1,10 +1,15 @@
-// A round's picture of its sums, which begin again at nothing.
+// A round's picture of its sums, which begin again at nothing. Alpha: as bits, the groups of lights that they are of, four for
+// each colour.
+#include "lib/variants.glsl"
 #include "lib/invocation.glsl"
 #include "shaders/shared/splat.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { SplatPush push; };
 layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
 layout(scalar) buffer SplatSums { SplatSum splat_sums[]; };
+#if LUCERNA_GROUP_SUMS
+layout(scalar) buffer SplatOwnerList { SplatOwners splat_owners[]; };
+#endif
 layout(scalar) writeonly buffer SplatPicture { vec4 splat_pixels[]; };
 layout(scalar) buffer SplatCounts { uint splat_counts[]; };
 
@@ -15,9 +20,19 @@ void main() {
   if (pixel >= push.count) return;
   SplatSum sum = splat_sums[pixel];
   vec3 light = vec3(in_units(sum.red), in_units(sum.green), in_units(sum.blue)) * splat_frame.unit;
-  splat_pixels[pixel] = vec4(light, 0.0);
   bool lit = light.r + light.g + light.b > 0.0;
+  uint groups = 0u;
+#if LUCERNA_GROUP_SUMS
+  SplatOwners owners = splat_owners[pixel];
+  const uint k_group = (1u << k_splat_owner_bits) - 1u;
+  groups = (owners.red & k_group) | (owners.green & k_group) << k_splat_owner_bits |
+           (owners.blue & k_group) << 2u * k_splat_owner_bits;
+#endif
+  splat_pixels[pixel] = vec4(light, uintBitsToFloat(lit ? groups : 0u));
   if (!lit) return;
+#if LUCERNA_GROUP_SUMS
+  splat_owners[pixel] = SplatOwners(0xffffffffu, 0xffffffffu, 0xffffffffu);
+#endif
   atomicAdd(splat_counts[k_splats_pixels], 1u);
   LongSum none = LongSum(0u, 0u, 0u);
   splat_sums[pixel] = SplatSum(none, none, none);

@@ -10,6 +10,16 @@ struct SplatSum {
   LongSum red, green, blue;
 };
 
+/// Whose light a pixel's is, by colour, where groups of lights are kept in short (LUCERNA_GROUP_SUMS): that of one path, drawn
+/// with the probability of its share of the sum, so that each group's light is expected right. Of n paths, each with an
+/// exponential number of a rate that is its light, the least is path i's with the probability of its share (P. Efraimidis and
+/// P. Spirakis, "Weighted Random Sampling with a Reservoir", 2006): a minimum, which does not depend on the order. The bits of a
+/// float not below 0 are ordered as it is; the last four of them are the group.
+struct SplatOwners {
+  uint red, green, blue;
+};
+LUCERNA_CONST uint k_splat_owner_bits = 4u;  ///< k_most_groups
+
 /// What kernels know of the round's picture.
 struct SplatFrame {
   uint width, height;  ///< of the picture that is complete, which camera.comp reads; 0: none

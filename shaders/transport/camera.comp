@@ -48,7 +48,22 @@ void main() {
     uvec2 size = uvec2(splat_frame.width, splat_frame.height);
     bool same = size == uvec2(frame.width, frame.height);
     uvec2 at = same ? xy : min(uvec2(place * vec2(size)), size - 1u);
-    radiance[radiance_texel(slot, lane_of(0u, splat_frame.component))].rgb = texelFetch(splat_picture, int(at.y * size.x + at.x)).rgb;
+    vec4 brought = texelFetch(splat_picture, int(at.y * size.x + at.x));
+    radiance[radiance_texel(slot, lane_of(0u, splat_frame.component))].rgb = brought.rgb;
+#if LUCERNA_GROUP_SUMS
+    // Each colour's light is that of its group. Where two are of one group its texel is written twice alike.
+    uvec3 groups = uvec3(floatBitsToUint(brought.a)) >> (k_splat_owner_bits * uvec3(0u, 1u, 2u)) &
+                   ((1u << k_splat_owner_bits) - 1u);
+    uint lit = 0u;
+    for (int c = 0; c < 3; ++c) {
+      if (brought[c] > 0.0) {
+        vec3 of_group = mix(vec3(0.0), brought.rgb, equal(groups, uvec3(groups[c])));
+        radiance[radiance_texel(slot, k_component_count + groups[c])].rgb = of_group;
+        lit |= 1u << groups[c];
+      }
+    }
+    radiance[radiance_texel(slot, 0u)].a = uintBitsToFloat(lit);
+#endif
   }
 #endif
 #if LUCERNA_LOOKUP_BIAS

@@ -9,8 +9,19 @@
 
 layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
 layout(scalar) buffer SplatSums { SplatSum splat_sums[]; };
+#if LUCERNA_GROUP_SUMS
+layout(scalar) buffer SplatOwnerList { SplatOwners splat_owners[]; };
+#endif
 #if LUCERNA_SPLATS_WEIGHED
 layout(scalar) buffer SplatWorths { LongSum splat_worths[]; };  // by stratum of emission
+#endif
+
+#if LUCERNA_GROUP_SUMS
+// `exponential`: a number of rate 1, not below 0.
+uint splat_owner(float exponential, float light, uint group) {
+  uint bits = light > 0.0 ? floatBitsToUint(exponential / light) : 0xffffffffu;
+  return bits >> k_splat_owner_bits << k_splat_owner_bits | group;
+}
 #endif
 
 // `state`: lanes the pixel, pad0 the stratum, where that is asked for. Rounded up or down at random, so that no dim light is
@@ -23,6 +34,13 @@ void add_splat(uint slot, ShadowState state) {
   PathState path = load_path(slot);
   uint key = hash_combine(hash_combine(path.pixel, path.sample_index), state.lanes);
   vec3 coin = vec3(uvec3(key, hash_mix(key), hash_mix(key ^ 0x68bc21ebu)) >> 8u) * (1.0 / 16777216.0);
+#if LUCERNA_GROUP_SUMS && !LUCERNA_SPLATS_WEIGHED
+  // One number for all colours: they are then mostly of one path.
+  float exponential = -log((float(hash_mix(key ^ 0x02e5be93u) >> 8u) + 0.5) * (1.0 / 16777216.0));
+  atomicMin(splat_owners[state.lanes].red, splat_owner(exponential, units.r, path.light_group));
+  atomicMin(splat_owners[state.lanes].green, splat_owner(exponential, units.g, path.light_group));
+  atomicMin(splat_owners[state.lanes].blue, splat_owner(exponential, units.b, path.light_group));
+#endif
   units += coin;
 #if LUCERNA_SPLATS_WEIGHED
   uvec2 worth = two_words(min(luminance(units), k_most_splat));

@@ -14,7 +14,6 @@ using solvers::Picture, solvers::Task, solvers::Cancel;
 
 CacheOptions read_options(const Task& task) {
   const OptionValues& s = task.settings;
-  const bool in_short = task.effects.light_groups > 1 && !task.effects.group_components;
   return {.radius = {.metric = Metric(s.choice("cache.metric")),
                      .error = float(s.real("cache.error")),
                      .nearest = float(s.real("cache.nearest")),
@@ -27,7 +26,7 @@ CacheOptions read_options(const Task& task) {
           .gather = s.boolean("cache.gather"),
           .most_records = uint32_t(s.integer("cache.max_records")),
           .most_passes = uint32_t(s.integer("cache.passes")),
-          .groups = in_short ? task.effects.light_groups : 1,
+          .groups = task.effects.groups_in_short() ? task.effects.light_groups : 1,
           .stop_share = float(s.real("cache.stop")),
           .seed = uint32_t(s.integer("seed")),
           .screen = {.density = float(s.real("cache.candidates")),
@@ -105,7 +104,7 @@ const solvers::SolverType& type() {
 }
 
 uint64_t light_grouping(const upload::FlatScene& flat) {
-  if (flat.effects.light_groups < 2 || flat.effects.group_components) return 0;
+  if (!flat.effects.groups_in_short()) return 0;
   const scene::LightGroups& g = *flat.groups;
   std::vector<uint8_t> of{uint8_t(g.groups.size()), g.sky, g.sun};
   of.insert(of.end(), g.lamps.begin(), g.lamps.end());

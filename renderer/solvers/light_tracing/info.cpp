@@ -76,6 +76,7 @@ const SolverInfo& info() {
       .unbiased = true,
       .straight_only = true,
       .finds_points = true,
+      .by_groups = true,
       .options = option_rows(),
       .changes = change_rows(),
       .views = {{.option = "overlay.light_paths", .label = "Paths"},

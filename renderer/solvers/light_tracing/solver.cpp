@@ -60,7 +60,7 @@ LightTracingSolver::LightTracingSolver(gpu::Device& device, gpu::ShaderCompiler&
     : device_(device),
       routes_(routing_of(task).lookups),
       sends_(routes_.parts != 0),
-      splats_(device, compiler, *task.scene_defines, task.automaton),
+      splats_(device, compiler, *task.scene_defines, task.automaton, task.effects.groups_in_short()),
       paths_view_(device, compiler, *task.scene_defines, task.automaton) {}
 
 const solvers::SolverInfo& LightTracingSolver::info() const { return light_tracing::info(); }

@@ -9,12 +9,13 @@ namespace lucerna::light_tracing {
 using namespace shared;
 
 Splats::Splats(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
-               const paths::Automaton& automaton)
+               const paths::Automaton& automaton, bool groups)
     : device_(device),
       compiler_(compiler),
       scene_defines_(scene_defines),
+      groups_(groups),
       emitter_(device, compiler, scene_defines, automaton),
-      resolve_(device, compiler, "light_tracing/resolve.comp"),
+      resolve_(device, compiler, "light_tracing/resolve.comp", {{"LUCERNA_GROUP_SUMS", groups ? "1" : "0"}}),
       counts_(device, {.name = "splat counts", .bytes = 4 * k_splat_counts, .memory = gpu::Memory::host}),
       block_(device, {.name = "splats", .bytes = sizeof(SplatFrame)}),
       round_(device, {.name = "round of light paths", .bytes = sizeof(EmitPush)}),
@@ -49,12 +50,19 @@ void Splats::begin(transport::Wavefront& wavefront, uint32_t width, uint32_t hei
   if (width != frame_.width || height != frame_.height || !sums_) {
     gpu::Buffer sums(device_, {.name = "sums of splats", .bytes = pixels * sizeof(SplatSum)});
     gpu::Buffer picture(device_, {.name = "picture of splats", .bytes = 16 * pixels, .texel = true});
-    sums_ = std::move(sums), picture_ = std::move(picture);
+    gpu::Buffer owners;
+    if (groups_) owners = {device_, {.name = "groups of splats", .bytes = pixels * sizeof(SplatOwners)}};
+    sums_ = std::move(sums), picture_ = std::move(picture), owners_ = std::move(owners);
     wavefront.rebind_lookup();
   }
   frame_ = {width, height, component, unit};
   write_frame(false);
+  clear(wavefront);
+}
+
+void Splats::clear(transport::Wavefront& wavefront) {
   wavefront.stream().fill(sums_, 0);
+  if (groups_) wavefront.stream().fill(owners_, ~0u);
   wavefront.account_stages();
 }
 
@@ -78,6 +86,7 @@ Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::Lig
                                               bind(r);
                                               r.set("SplatCounts", counts_);
                                               r.set("SplatSums", sums_);
+                                              if (groups_) r.set("SplatOwnerList", owners_);
                                               r.set("LightRoundBlock", round_);
                                               if (worths_) r.set("SplatWorths", worths_);
                                             },
@@ -86,8 +95,7 @@ Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::Lig
   if (!emitter_.trace(wavefront, lights, round, traced_, count, work, picture, enabled, cancel)) {
     // Part of its light has arrived.
     tracing_ = false;
-    wavefront.stream().fill(sums_, 0);
-    wavefront.account_stages();
+    clear(wavefront);
     return Went::cancelled;
   }
   counts_.read(counts, sizeof counts);
@@ -116,6 +124,7 @@ bool Splats::trace(transport::Wavefront& wavefront, const transport::LightSource
   bind(r);
   r.set("SplatCounts", counts_);
   r.set("SplatSums", sums_);
+  if (groups_) r.set("SplatOwnerList", owners_);
   r.set("SplatPicture", picture_);
   wavefront.stream().dispatch(resolve_, r, SplatPush{pixels}, gpu::groups_for(pixels, 64), "splats");
   wavefront.account_stages();
@@ -152,7 +161,7 @@ std::optional<std::vector<double>> Splats::weigh(transport::Wavefront& wavefront
 
 uint64_t Splats::bytes() const {
   uint64_t sum = picture_.bytes();
-  for (const gpu::Buffer* b : {&sums_, &worths_}) sum += *b ? b->bytes() : 0;
+  for (const gpu::Buffer* b : {&sums_, &owners_, &worths_}) sum += *b ? b->bytes() : 0;
   return sum;
 }
 

@@ -19,10 +19,11 @@ struct RoundFigures {
 
 class Splats {
  public:
-  /// `scene_defines`: of the kernels that know the scene. Throws Error: a kernel does not compile (located),
+  /// `scene_defines`: of the kernels that know the scene. `groups`: that of lights are kept in short, so that
+  /// it is drawn whose a pixel's light is (SplatOwners). Throws Error: a kernel does not compile (located),
   /// no memory.
   Splats(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
-         const paths::Automaton& automaton);
+         const paths::Automaton& automaton, bool groups);
 
   /// SplatBlock, splat_picture: as they are until a picture of another size begins.
   void bind(gpu::Resources& resources) const;
@@ -60,14 +61,17 @@ class Splats {
              const transport::LightRound& round, const Kernels& kernels, const shared::Frame& picture,
              uint32_t enabled, const std::function<bool()>& cancel);
   void write_frame(bool shown);
+  void clear(transport::Wavefront& wavefront);
 
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
   gpu::Defines scene_defines_;
+  bool groups_;
   transport::LightEmitter emitter_;
   Kernels summed_, weighed_;  ///< weighed_: when it is first called for
   gpu::Kernel resolve_;
   gpu::Buffer counts_, block_, round_, sums_, picture_, worths_;
+  gpu::Buffer owners_;  ///< of groups_
   shared::SplatFrame frame_{};
   RoundFigures figures_, next_;
   bool tracing_ = false, complete_ = false;

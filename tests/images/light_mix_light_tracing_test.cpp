@@ -1,0 +1,60 @@
+// links: session
+// Light that is traced from lights to the camera, by groups of lights (relight.enabled=compact): the picture
+// as it is to the bit that without groups; a mix of it as if the paths had come from lamps of that strength.
+#include <catch2/catch.hpp>
+
+#include "images/light_mix_support.h"
+
+using namespace lucerna;
+using namespace lucerna::test;
+
+namespace {
+
+/// Caustic light alone, so that nothing else hides whose it is.
+Settings traced(Settings more = {}) {
+  const Settings all{{"components.primary", "off"},  {"components.secondary", "off"},
+                     {"components.tertiary", "off"}, {"components.caustic", "light"},
+                     {"relight.enabled", "compact"}, {"path.batch", "8192"}};
+  more.insert(all.begin(), all.end());
+  return more;
+}
+
+/// Without a sun, which would be a light of its own where groups are kept apart.
+scene::Scene even_room() {
+  scene::Scene s = block_room(true);
+  scene::Material metal;
+  metal.metallic = 1, metal.roughness = 0.4f;
+  s.materials.push_back(metal);
+  add_ball(s, {1, 0.5f, 0.7f}, 0.5f, uint32_t(s.materials.size() - 1), 12);
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("splats that know their lights' groups make the picture of those that do not") {
+  const scene::Scene s = even_room();
+  Bench apart(s, traced(), 4), whole(s, traced({{"relight.enabled", "off"}}), 4);
+  const film::Image a = apart.image(), b = whole.image();
+  CHECK(apart.r.relight().apart);
+  CHECK(apart.r.film().in_short());
+  CHECK(mean(a.components[3]) > 0);
+  CHECK(identical(a, b));
+  CHECK(apart.r.device().validation_messages() == 0);
+}
+
+TEST_CASE("a mix of splats is that of light traced from lamps of that strength, by statistics") {
+  const scene::Scene s = room();
+  Settings other;
+  other["seed"] = "2", other["relight.enabled"] = "off";
+  Bench b(s, traced(), 64);
+  b.image();
+  const uint64_t rays = b.r.stats().rays;
+  for (const char* text : {"lamp: solo color=0.1,1,0.2 factor=10000", "spot: mute; block: mute",
+                           "sky: color=1,0.2,0.1; sun: mute; lamp: kelvin=9000 ev=1.3"}) {
+    INFO(text);
+    b.mix(text);
+    Bench anew(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), traced(other), 64);
+    CHECK(worst_z(b.r.image(), anew.image()) < 5.5);
+  }
+  CHECK(b.r.stats().rays == rays);
+}
