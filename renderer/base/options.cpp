@@ -71,6 +71,11 @@ OptionInfo without_restart(OptionInfo option) {
   return option;
 }
 
+OptionInfo of_same_light(OptionInfo option) {
+  option.same_light = true;
+  return option;
+}
+
 std::string describe_values(const OptionInfo& o) {
   switch (o.type) {
     case OptionType::choice:

@@ -24,6 +24,9 @@ struct OptionInfo {
   std::string help;                  ///< one sentence
   std::string label;                 ///< beside its control in the window; "": made from the key
   bool restarts = true;  ///< a change makes the image start afresh (false: its display, or it goes on)
+  /// The light stays the same, another way or amount of computing it: until the new picture is better the old
+  /// one may be shown.
+  bool same_light = false;
 };
 
 // Rows, in short.
@@ -37,6 +40,8 @@ OptionInfo choice_option(const char* key, const char* fallback, std::vector<std:
 OptionInfo text_option(const char* key, const char* help);
 /// The same option, a change of which lets the image go on.
 OptionInfo without_restart(OptionInfo option);
+/// The same option, of how light is computed (same_light).
+OptionInfo of_same_light(OptionInfo option);
 
 /// What values an option takes, for people: "path|off", "true|false", "1 to 64 vertices"; "" for a text.
 std::string describe_values(const OptionInfo& option);

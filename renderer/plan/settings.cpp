@@ -33,7 +33,9 @@ OptionInfo component_option(int c) {
   return choice_option(key.c_str(), fallback.c_str(), std::move(choices), "", help.c_str());
 }
 
+/// How many samples, where, and how they are traced.
 void add_sampling_options(std::vector<OptionInfo>& list) {
+  const size_t first = list.size();
   list.push_back(integer_option(
       "samples", 256, 1, 1 << 20, "samples",
       "Samples a pixel at which the image is finished, where sampling.mode is uniform.", "Samples"));
@@ -64,8 +66,6 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
   list.push_back(integer_option("seed", 0, 0, 4294967295.0, "",
                                 "Seed of every random decision; the same seed gives the same image.",
                                 "Seed"));
-  list.push_back(integer_option("path.max_depth", 64, 1, 1024, "vertices",
-                                "Scattering events after which a path ends.", "Longest path"));
   list.push_back(integer_option("path.roulette_depth", 4, 1, 1024, "vertices",
                                 "Vertex from which Russian roulette may end a path.", "Roulette from"));
   list.push_back(
@@ -73,6 +73,9 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
                      "Paths in flight at once; sets the memory of the path state. Never fewer than "
                      "4096 where light is cached.",
                      "Paths in flight"));
+  for (size_t i = first; i < list.size(); ++i) list[i] = of_same_light(std::move(list[i]));
+  list.push_back(integer_option("path.max_depth", 64, 1, 1024, "vertices",
+                                "Scattering events after which a path ends.", "Longest path"));
 }
 
 void add_relight_options(std::vector<OptionInfo>& list) {
@@ -106,9 +109,9 @@ void add_relight_options(std::vector<OptionInfo>& list) {
 }
 
 void add_display_options(std::vector<OptionInfo>& list) {
-  list.push_back(choice_option(
+  list.push_back(of_same_light(choice_option(
       "tracer", "auto", {"auto", "compute-bvh", "host"}, "",
-      "Who traces rays: auto takes host (Embree) on CPU devices and compute-bvh elsewhere.", "Tracer"));
+      "Who traces rays: auto takes host (Embree) on CPU devices and compute-bvh elsewhere.", "Tracer")));
   list.push_back(text_option("camera", "Name of the scene camera to start with."));
   list.push_back(without_restart(
       real_option("film.ev", "0", -20, 20, "EV", "Exposure: the picture is multiplied by 2 to this power.")));
@@ -149,7 +152,7 @@ std::vector<OptionInfo> make_options() {
   for (int c = 0; c < paths::k_component_count; ++c) list.push_back(component_option(c));
   add_sampling_options(list);
   for (const solvers::SolverInfo* solver : solvers::registered())
-    list.insert(list.end(), solver->options.begin(), solver->options.end());
+    for (const OptionInfo& option : solver->options) list.push_back(of_same_light(option));
   add_relight_options(list);
   add_display_options(list);
   return list;

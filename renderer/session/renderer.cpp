@@ -186,13 +186,12 @@ void Renderer::restart(const scene::Changes& changes, const vec3& factor) {
 }
 
 bool Renderer::keeps_light(const scene::Changes& changes) const {
-  const auto begins = [](const std::string& key, const char* with) { return key.rfind(with, 0) == 0; };
   const auto kept = [&](const std::string& key) {
     const auto before = applied_.find(key);
-    if (begins(key, "components."))
+    if (key.rfind("components.", 0) == 0)
       return before != applied_.end() && before->second != "off" && settings_.text(key) != "off";
-    return solvers::owner_of(key) || begins(key, "sampling.") || key == "samples" || key == "seed" ||
-           key == "tracer" || key == "path.batch";
+    const OptionInfo* option = plan::find_option(key);
+    return option && option->same_light;
   };
   return std::all_of(changes.edits.begin(), changes.edits.end(),
                      [](scene::Change edit) { return edit == scene::Change::camera; }) &&

@@ -315,4 +315,8 @@ TEST_CASE("devices and info speak") {
   CHECK(run("info " + scene("glass")).out.find("triangles") != std::string::npos);
   CHECK(run("--help").status == 0);
   CHECK(run("--help").out.find("components.primary") != std::string::npos);
+  CHECK(run("render --help").out.find("components.primary") != std::string::npos);
+  // What takes no settings does not list them.
+  CHECK(run("info --help").out.find("components.primary") == std::string::npos);
+  CHECK(run("bench latency --help").out.find("matrix file") == std::string::npos);
 }
