@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,6 +11,7 @@
 #include "app/verbs.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/timer.h"
 #include "session/renderer.h"
 #include "session/session.h"
 
@@ -19,14 +19,6 @@ namespace lucerna::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// CPU seconds that this process has used, user and system.
-double cpu_seconds() {
-  rusage use{};
-  getrusage(RUSAGE_SELF, &use);
-  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  return seconds(use.ru_utime) + seconds(use.ru_stime);
-}
 
 std::unique_ptr<session::Renderer> load(const BenchMixArguments& a, const std::string& enabled) {
   auto r = std::make_unique<session::Renderer>(session::RendererOptions{.device = a.device,

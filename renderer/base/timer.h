@@ -32,4 +32,7 @@ class Stopwatch {
   Timer since_;
 };
 
+/// CPU seconds that this process has used, of all its threads, user and system.
+double cpu_seconds();
+
 }  // namespace lucerna

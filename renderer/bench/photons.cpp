@@ -1,6 +1,5 @@
 #include "bench/photons.h"
 
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <bit>
@@ -34,14 +33,6 @@ constexpr uint32_t k_lamp_paths = 65536, k_lamp_side = 128, k_rounds_side = 128,
                    k_free_samples = 12;
 
 struct Interrupted {};
-
-/// CPU seconds that this process has used, user and system.
-double cpu_seconds() {
-  rusage use{};
-  getrusage(RUSAGE_SELF, &use);
-  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  return seconds(use.ru_utime) + seconds(use.ru_stime);
-}
 
 double median(std::vector<double> v) {
   std::sort(v.begin(), v.end());

@@ -1,0 +1,164 @@
+// links: commands
+// Where one looks from and what one looks at, by commands: the camera, kept views, walking, exposure,
+// selection, a component alone.
+#include "unit/workspace_bench.h"
+
+using namespace lucerna;
+using namespace lucerna::commands;
+using namespace lucerna::test;
+using Catch::Contains;
+
+TEST_CASE("solo shows one component, moves to another and comes back") {
+  WorkspaceBench b;
+  b.open();
+  b.run("view.show caustic off");
+  const Document before = b.work.document();
+  b.run("view.solo secondary");
+  CHECK(b.work.setting_on("show.secondary"));
+  CHECK_FALSE(b.work.setting_on("show.primary"));
+  b.run("view.solo primary");
+  CHECK(b.work.setting_on("show.primary"));
+  CHECK_FALSE(b.work.setting_on("show.secondary"));
+  b.run("view.solo none");
+  CHECK_FALSE(b.work.setting_on("show.caustic"));
+  CHECK(b.work.setting_on("show.tertiary"));
+  b.run("undo"), b.run("undo");
+  CHECK(b.work.solo() == 1);
+  b.run("undo");
+  CHECK(b.work.document() == before);
+}
+
+TEST_CASE("a click selects the object, then its material, then nothing") {
+  WorkspaceBench b;
+  b.open();
+  b.work.aspect = 2;
+  b.run("camera.place 3,1.5,20 1,0.5,-1.5 0,1,0");  // the triangle's middle in the middle
+  b.run("pick 0.5 0.5");
+  CHECK(b.work.selection == Selection{Kind::instance, 0});
+  CHECK(b.work.selection_name() == "column 0");
+  b.run("pick 0.5 0.5");
+  CHECK(b.work.selection == Selection{Kind::material, 0});
+  b.run("pick 0.02 0.02");
+  CHECK(b.work.selection == Selection{});
+  const auto script = b.work.script();
+  CHECK(script.back() == "select.none");
+  CHECK(script[script.size() - 2] == "select material 1");
+}
+
+TEST_CASE("moves of the camera are undone, a drag as one step, among all other steps") {
+  WorkspaceBench b;
+  b.open();
+  const Viewpoint start = *b.work.view;
+  REQUIRE(b.work.scene_camera == 0);
+  for (int i = 0; i < 20; ++i) {
+    Viewpoint v = *b.work.view;
+    orbit(v, {0.02f, 0.01f});
+    b.run(Workspace::place_line(v), 5);
+  }
+  const Viewpoint dragged = *b.work.view;
+  b.run("film.ev 1");
+  b.run("camera.select Detail");
+  b.run("camera.fov 20");
+  b.run("camera.speed 3");  // no move
+  b.run("undo"), b.run("undo");
+  CHECK(same_view(b.work.view->camera, dragged.camera));
+  CHECK(b.work.setting_real("film.ev") == 1);
+  b.run("undo");
+  CHECK(b.work.setting_real("film.ev") == 0);
+  CHECK(same_view(b.work.view->camera, dragged.camera));
+  CHECK_THAT(b.work.undo_text(), Catch::StartsWith("camera.place "));
+  b.run("undo");
+  CHECK(same_view(b.work.view->camera, start.camera));
+  CHECK(b.work.scene_camera == 0);
+  CHECK_FALSE(b.work.can_undo());
+  b.work.send_camera();
+  REQUIRE(b.until([&] { return b.work.snapshot && same_view(b.work.snapshot->camera, start.camera); }));
+  for (int i = 0; i < 4; ++i) b.run("redo");
+  CHECK(b.work.scene_camera == -1);
+  CHECK(b.work.view->camera.yfov == Approx(20 * k_pi / 180));
+  CHECK(b.work.setting_real("film.ev") == 1);
+  b.run("undo");
+  CHECK(b.work.scene_camera == 2);
+  b.run("camera.select Detail");  // moves nothing
+  CHECK(b.work.can_redo());
+}
+
+TEST_CASE("views are kept by name, for their scene") {
+  WorkspaceBench b;
+  b.open();
+  const Viewpoint start = *b.work.view;
+  b.run("camera.bookmark");
+  b.run("camera.orbit 0.4 0.1");
+  b.run("camera.fov 30");
+  const Viewpoint other = *b.work.view;
+  b.run("camera.bookmark \"From the stage\"");
+  b.run("camera.go \"View 1\"");
+  CHECK(glm::length(eye_of(b.work.view->camera) - eye_of(start.camera)) < 1e-4f);
+  CHECK(b.work.view->camera.yfov == Approx(start.camera.yfov));
+  b.run("camera.go \"From the stage\"");
+  CHECK(glm::length(forward_of(b.work.view->camera) - forward_of(other.camera)) < 1e-5f);
+  CHECK(b.work.view->camera.yfov == Approx(30 * k_pi / 180));
+  // A script of the session needs no bookmark that it has not made.
+  CHECK_THAT(b.work.script().back(), Catch::StartsWith("camera.place "));
+  CHECK(b.work.bookmarks_here().size() == 2);
+  CHECK_THAT(b.failure("camera.go \"From the sage\""), Contains("did you mean 'From the stage'?"));
+  CHECK_THAT(b.failure("camera.go nowhere"), Contains("there are From the stage, View 1"));
+  CHECK_THAT(b.failure("camera.forget nowhere"), Contains("there is no bookmark 'nowhere'"));
+  CHECK_THAT(b.failure("camera.bookmark \" \""), Contains("name: it is empty"));
+  CHECK_THAT(b.failure("camera.bookmark " + std::string(65, 'x')),
+             Contains("65 bytes are too long; at most 64"));
+  b.run("camera.forget \"View 1\"");
+  CHECK(b.work.bookmarks_here().size() == 1);
+  b.open("other.gltf");
+  CHECK_THAT(b.failure("camera.go \"From the stage\""), Contains("this scene has no bookmarks"));
+  b.open();
+  CHECK(b.work.bookmarks_here().size() == 1);
+}
+
+TEST_CASE("walking by commands keeps to the floor") {
+  WorkspaceBench b;
+  b.open();
+  CHECK_THAT(b.failure("camera.walking on"), Contains("there is no floor below the camera"));
+  CHECK_FALSE(b.work.walking);
+  // The fake's one triangle is a ramp: it rises by 3 m on 8 m towards +z.
+  b.run("camera.place 2,1,-3 2,1,-2 0,1,0");
+  b.run("camera.walking on");
+  CHECK(b.work.walking);
+  CHECK(eye_of(b.work.view->camera).y == Approx(0.375 + 1.65).margin(1e-3));
+  b.run("camera.walk 0 2");
+  CHECK(eye_of(b.work.view->camera).z == Approx(-1).margin(1e-3));
+  CHECK(eye_of(b.work.view->camera).y == Approx(1.125 + 1.65).margin(1e-3));
+  b.run("camera.eye_height 1.2");
+  CHECK(eye_of(b.work.view->camera).y == Approx(1.125 + 1.2).margin(1e-3));
+  b.run("undo"), b.run("undo"), b.run("undo");
+  CHECK(eye_of(b.work.view->camera) == vec3(2, 1, -3));
+  CHECK_THAT(b.failure("camera.walk nan 1"), Contains("expected a number"));
+}
+
+TEST_CASE("the exposure is found by command, at a point, and at load where that is wanted") {
+  WorkspaceBench b;
+  b.open();
+  CHECK(b.work.setting_real("film.ev") == 0);  // nobody at a window, nobody has asked
+  b.run("exposure.find");
+  CHECK(b.work.setting_real("film.ev") == 2.5);
+  CHECK(b.work.script().back() == "set film.ev 2.5");
+  b.run("exposure.at 0.5 0.5");
+  CHECK(b.work.setting_real("film.ev") == 1);
+  b.run("undo"), b.run("undo");
+  CHECK(b.work.setting_real("film.ev") == 0);
+  const Line black = b.work.run("exposure.at 0.01 0.5");
+  REQUIRE(b.until([&] { return !b.work.measuring(); }));
+  CHECK_THROWS_WITH(black.command->done(black.arguments), Contains("it is black there"));
+  CHECK(b.errors == 1);
+  CHECK_THAT(b.failure("exposure.at 2 0"), Contains("from 0 to 1"));
+
+  b.run("set film.exposure_at_load always");
+  REQUIRE(b.settled());
+  b.open("other.gltf");
+  REQUIRE(b.until([&] { return b.work.setting_real("film.ev") == 2.5; }));
+  CHECK(b.work.undo_text() == "set film.ev 2.5");
+  b.run("scene.open third.gltf");
+  b.run("set film.ev -1");  // somebody's own
+  b.run("wait_scene");
+  CHECK_FALSE(b.until([&] { return b.work.setting_real("film.ev") != -1; }, 0.5));
+}
