@@ -90,6 +90,21 @@ TEST_CASE("a lamp's mark is dragged along the picture, with Shift up and down, o
   CHECK(lines[4] == "undo");
 }
 
+TEST_CASE("a surface that emits has a mark, by which its material is selected and nothing is moved") {
+  if (test::no_display()) return;
+  // The triangle's middle is in the middle of the picture.
+  const std::string view =
+      k_start + std::string("material.set 1 strength=2\nview.lamps true\nwait 0.5\nmouse.move 712 372\n");
+  const auto clicked = session_of(view + "mouse.down\nmouse.up\n");
+  INFO(fmt::format("{}", fmt::join(clicked, "\n")));
+  REQUIRE(!clicked.empty());
+  CHECK(clicked.back() == "select material 1");
+  // A drag from there turns the camera, as everywhere.
+  const auto dragged = session_of(view + drag(712, 372, 25, 6));
+  REQUIRE(!dragged.empty());
+  CHECK_THAT(dragged.back(), Catch::StartsWith("camera.place "));
+}
+
 TEST_CASE("a click on a grey sets the exposure, and the wheel is one step") {
   if (test::no_display()) return;
   const auto lines = session_of(
