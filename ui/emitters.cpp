@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/lamp.h"
 #include "state.h"
 
 namespace lucerna::ui {
