@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scene/lamp.h"
+#include "base/color.h"
 #include "state.h"
 
 namespace lucerna::ui {

@@ -82,7 +82,7 @@ TEST_CASE("a drag is one step; another drag, another control or no drag is anoth
 }
 
 TEST_CASE("the steps of a drag give what its last step alone gives") {
-  Bench dragged, at_once;
+  WorkspaceBench dragged, at_once;
   dragged.open(), at_once.open();
   for (int i = 0; i < 200; ++i)
     dragged.run(line("light.set", 1, named("intensity", 0.137f * static_cast<float>(i + 1))), 3);
