@@ -164,6 +164,13 @@ uint group_of_light(int at, bool sky) {
 #endif
 
 #if LUCERNA_LIGHT_CANDIDATES
+// Solid angle of a triangle, its vertices seen from the place (A. van Oosterom and J. Strackee 1983); n: its normal.
+float triangle_solid_angle(vec3 p0, vec3 p1, vec3 p2) {
+  vec3 a = p0 * inversesqrt(max(dot(p0, p0), 1e-30)), b = p1 * inversesqrt(max(dot(p1, p1), 1e-30)),
+       c = p2 * inversesqrt(max(dot(p2, p2), 1e-30));
+  return 2.0 * atan(abs(dot(a, cross(b, c))), 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
+}
+
 // What a lamp or a triangle would send to a place if nothing were between, over its probability, onto a surface with that
 // normal: a little even from behind, where surfaces may let light through. What of the light's strength is in its probability
 // cancels out, so that geometry is left: irradiance over flux.
@@ -181,18 +188,14 @@ float sends_of_its_flux(uint light, vec3 position, vec3 normal) {
   if (directional) sends = max(dot(direction, normal), 0.05) / (k_pi * frame.scene_radius * frame.scene_radius * frame.distant_scale);
 #if LUCERNA_EMISSIVE
   if (kind == k_light_triangle) {
+    vec3 p0 = to, p1 = b.xyz - position, p2 = c.xyz - position;
     uint sides = floatBitsToUint(texelFetch(scene_lights, at + 3).w);
     bool both = (sides & k_light_both_sides) != 0u;
-    vec3 p0 = to, p1 = b.xyz - position, p2 = c.xyz - position;
-    vec3 i = inversesqrt(max(vec3(d2, dot(p1, p1), dot(p2, p2)), vec3(1e-20)));
-    p0 *= i.x, p1 *= i.y, p2 *= i.z;
-    // By its edges, or nothing would be left of small triangles far away. Above 0 behind it.
-    float volume = dot(p0, cross(b.xyz - a.xyz, c.xyz - a.xyz)) * i.y * i.z;
-    bool front = (volume < 0.0) != ((sides & k_light_flipped) != 0u);
-    // Solid angle (A. van Oosterom and J. Strackee 1983), and the mean cosine of its vertices, none below the horizon.
-    float solid_angle = 2.0 * atan(abs(volume), 1.0 + dot(p0, p1) + dot(p1, p2) + dot(p2, p0));
-    float cosine = (max(dot(p0, normal), 0.0) + max(dot(p1, normal), 0.0) + max(dot(p2, normal), 0.0)) / 3.0;
-    sends = front || both ? solid_angle * max(cosine, 0.05) / (k_pi * b.w * (both ? 2.0 : 1.0)) : 0.0;
+    bool front = (dot(cross(p1 - p0, p2 - p0), p0) < 0.0) != ((sides & k_light_flipped) != 0u);
+    // The mean cosine of its vertices, none below the horizon.
+    float cosine = (max(dot(p0, normal), 0.0) * inversesqrt(d2) + max(dot(p1, normal), 0.0) * inversesqrt(max(dot(p1, p1), 1e-30)) +
+                    max(dot(p2, normal), 0.0) * inversesqrt(max(dot(p2, p2), 1e-30))) / 3.0;
+    sends = front || both ? triangle_solid_angle(p0, p1, p2) * max(cosine, 0.05) / (k_pi * b.w * (both ? 2.0 : 1.0)) : 0.0;
   }
 #endif
   return sends;
