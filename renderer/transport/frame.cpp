@@ -29,8 +29,8 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.environment_rotation = flat.environment_rotation;
   f.environment_light_pmf = flat.environment_light_pmf;
   f.light_count = uint32_t(flat.lights.size() / shared::k_light_texels);
-  f.placed_count = uint32_t(flat.placed_alias.size());
-  f.placed_pmf = flat.placed_pmf, f.distant_scale = flat.distant_scale;
+  f.first_lamp = flat.first_lamp, f.lamp_count = uint32_t(flat.lamp_alias.size());
+  f.lamp_pmf = flat.lamp_pmf;
   f.max_depth = options.max_depth;
   f.roulette_depth = options.roulette_depth;
   f.scene_radius = flat.scene_radius;

@@ -45,7 +45,7 @@ std::vector<uint8_t> whole_texels(std::vector<uint8_t> bytes) {
 
 LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat)
     : lights(upload(device, "lights", flat.lights)),
-      alias(upload(device, "light table", joined(flat.light_alias, flat.placed_alias))),
+      alias(upload(device, "light table", joined(flat.light_alias, flat.lamp_alias))),
       pmf(upload(device, "light probabilities", flat.primitive_light_pmf, false)),
       groups(upload(device, "groups of lights", whole_texels(flat.emissive_groups))),
       environment_texels(upload_environment(device, flat)),
@@ -122,7 +122,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_ENVIRONMENT_MAP", e.environment_map);
   set("LUCERNA_SKY_APART", e.sky_apart);
   set("LUCERNA_SUN", e.sun);
-  d["LUCERNA_LIGHT_CANDIDATES"] = std::to_string(e.light_candidates);
+  d["LUCERNA_LAMP_CANDIDATES"] = std::to_string(e.lamp_candidates);
   d["LUCERNA_LIGHT_GROUPS"] = std::to_string(e.light_groups);
   set("LUCERNA_GROUP_SUMS", e.groups_in_short());
   set("LUCERNA_SPECULAR", e.specular);

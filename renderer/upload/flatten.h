@@ -18,9 +18,8 @@ struct Effects {
        thin_glass = false, diffuse_transmission = false, volumes = false, unlit = false, alpha = false,
        normal_maps = false, vertex_extra = false, tex_base = false, tex_metallic_roughness = false,
        tex_emission = false, tex_specular = false, tex_transmission = false, tex_diffuse_transmission = false;
-  /// Lamps and emissive triangles that a light sample is drawn from by what each sends there, besides its
-  /// power; 0: there are few.
-  uint32_t light_candidates = 0;
+  /// Lamps that a light sample is drawn from by what each sends there, besides its power; 0: there are few.
+  uint32_t lamp_candidates = 0;
   bool sky_apart = false, sun = false;  ///< FlatScene::sun_threshold; texels that are brighter
   uint32_t light_groups = 1;            ///< that are kept apart (FlatScene::groups)
   bool group_components = true;         ///< ... by component, too
@@ -54,11 +53,9 @@ struct LightDistribution {
   std::vector<LightEntry> entries;         ///< of the light table; emissive triangles first
   std::vector<vec4> light_alias;           ///< of these
   std::vector<float> primitive_light_pmf;  ///< pmf / area [1/m^2]
-  /// Of the triangles and lamps among the entries, which come first, by the same weights.
-  std::vector<vec4> placed_alias;
-  float placed_pmf = 0;  ///< that one of these is chosen at all
-  /// What a directional lamp's weight is over its flux, of that of triangles and other lamps.
-  float distant_scale = 1;
+  std::vector<vec4> lamp_alias;  ///< of the lamps among the entries, which lie together, by the same weights
+  uint32_t first_lamp = 0;       ///< of the entries
+  float lamp_pmf = 0;            ///< that a lamp is chosen at all
   float environment_light_pmf = 0;
   std::vector<vec4> environment_alias;
   /// By texel, of its directions [1/sr]; the sign bit: it is one of the sun's.

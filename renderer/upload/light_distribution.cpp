@@ -186,19 +186,17 @@ void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
 }
 
 /// The environment and the sun count with the whole scene's cross-section, of which an interior receives
-/// little: neither they nor the lamps get less than a share of the samples. Returns by how much more the
-/// weights of distant lights are raised than those of the others.
-double balance(Choice& choice, double& environment, double& sun) {
+/// little: neither they nor the lamps get less than a share of the samples.
+void balance(Choice& choice, double& environment, double& sun) {
   const auto is_distant = [&](size_t i) { return choice.entries[i].kind == k_light_directional; };
   double local = 0, distant = environment + sun;
   for (size_t i = 0; i < choice.weights.size(); ++i) (is_distant(i) ? distant : local) += choice.weights[i];
-  if (!(local > 0 && distant > 0)) return 1;
+  if (!(local > 0 && distant > 0)) return;
   const double share = std::clamp(distant / (local + distant), 0.25, 0.75);
   for (size_t i = 0; i < choice.weights.size(); ++i)
     choice.weights[i] *= is_distant(i) ? share / distant : (1 - share) / local;
   environment *= share / distant;
   sun *= share / distant;
-  return share / distant * local / (1 - share);
 }
 
 /// Densities of emissive triangles' points, by primitive. Triangles are the table's first entries.
@@ -209,32 +207,25 @@ std::vector<float> triangle_densities(const FlatScene& flat, const LightDistribu
   return densities;
 }
 
-/// Lamps, and surfaces that emit. Lamps that are off count, so that switching them compiles no kernels.
-size_t count_emitters(const scene::Scene& scene) {
-  size_t count = scene.lights.size();
-  for (const scene::Instance& instance : scene.instances)
-    for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives) {
-      const scene::Material& m = scene.materials[p.material];
-      count += !m.unlit && luminance(m.emission) > 0;
-    }
-  return count;
-}
-
-/// A table of triangles and lamps alone, for scenes with as many emitters as make it worth to choose among
-/// them (shaders/lib/lights.glsl).
-void choose_placed(const scene::Scene& scene, const std::vector<double>& weights, FlatScene& flat,
-                   LightDistribution& d) {
+/// A table of the lamps alone, for scenes with as many as make it worth to choose among them
+/// (shaders/lib/lights.glsl). Lamps that are off count, so that switching them compiles no kernels.
+void choose_lamps(const scene::Scene& scene, const std::vector<double>& weights, FlatScene& flat,
+                  LightDistribution& d) {
   constexpr size_t k_least = 3, k_many = 6;
-  const size_t emitters = count_emitters(scene);
-  flat.effects.light_candidates = emitters < k_least ? 0 : emitters < k_many ? 4 : 8;
-  size_t count = 0;
-  while (count < d.entries.size() && d.entries[count].kind != k_light_environment &&
-         (d.entries[count].kind == k_light_triangle || d.entries[count].index != scene::k_none))
-    ++count;
-  if (flat.effects.light_candidates == 0 || count == 0) return;
-  const std::vector<double> placed(weights.begin(), weights.begin() + std::ptrdiff_t(count));
-  d.placed_alias = build_alias_table(placed);
-  d.placed_pmf = float(sum_of(placed) / sum_of(weights));
+  const size_t lamps = scene.lights.size();
+  flat.effects.lamp_candidates = lamps < k_least ? 0 : lamps < k_many ? 4 : 8;
+  const auto is_lamp = [](const LightEntry& e) {
+    return e.kind != k_light_triangle && e.kind != k_light_environment && e.index != scene::k_none;
+  };
+  std::vector<double> of_lamps;
+  for (size_t i = 0; i < d.entries.size(); ++i) {
+    if (!is_lamp(d.entries[i])) continue;
+    if (of_lamps.empty()) d.first_lamp = uint32_t(i);
+    of_lamps.push_back(weights[i]);
+  }
+  if (flat.effects.lamp_candidates == 0 || of_lamps.empty()) return;
+  d.lamp_alias = build_alias_table(of_lamps);
+  d.lamp_pmf = float(sum_of(of_lamps) / sum_of(weights));
 }
 
 }  // namespace
@@ -263,7 +254,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   }
   const bool has_sun = sun > 0;
   const double sky_power = environment, sun_power = sun;
-  d.distant_scale = float(balance(choice, environment, sun));
+  balance(choice, environment, sun);
   if (sun_apart) {
     const double all = environment + sun + sum_of(choice.weights);
     if (all > 0) d.environment_light_pmf = float(environment / all);
@@ -280,7 +271,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   }
   d.light_alias = build_alias_table(choice.weights);
   if (!d.light_alias.empty()) d.entries = std::move(choice.entries), d.light_power = std::move(choice.fluxes);
-  choose_placed(scene, choice.weights, flat, d);
+  choose_lamps(scene, choice.weights, flat, d);
   if (has_sun)
     for (vec4& four : d.sun_density) four *= d.light_alias.back().z;
   if (emissive) d.primitive_light_pmf = triangle_densities(flat, d);

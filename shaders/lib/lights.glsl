@@ -1,13 +1,11 @@
 // Light sampling: one light by its probability mass (alias method, Walker 1977; Vose 1991), then a point on it.
 // Densities are per solid angle at the shaded point, selection included.
 //
-// Of many lamps and emissive triangles few light a place, and power does not tell which. Where one of them is chosen it is drawn
-// again from several candidates, by what each would send to the place were nothing between (resampled importance sampling,
-// J. Talbot, D. Cline and P. Egbert 2005): with candidates x_i of probability p and q what they send, x_i is taken in proportion
-// to q(x_i) / p(x_i), and stands for the probability q(x) M / sum q(x_i) / p(x_i). The estimate is right whatever q is, as long
-// as it is above 0 where light arrives; that candidates are evenly apart in the table instead of independent does not change its
-// mean. Light samples are weighed against what paths meet (E. Veach 1997) by the probability without candidates, which is
-// known for both; any weights are right that both have alike.
+// Of many lamps few light a place, and power does not tell which. Where a lamp is chosen it is drawn again from several
+// candidates, by what each would send to the place were nothing between (resampled importance sampling, J. Talbot, D. Cline and
+// P. Egbert 2005): with candidates x_i of density p and q what they send, x_i is taken in proportion to q(x_i) / p(x_i), and
+// stands for the density q(x) M / sum q(x_i) / p(x_i). The estimate is right whatever q is, as long as it is above 0 where
+// light arrives; that candidates are evenly apart in the table instead of independent does not change its mean.
 #ifndef LUCERNA_LIB_LIGHTS
 #define LUCERNA_LIB_LIGHTS
 #include "lib/variants.glsl"
@@ -40,7 +38,6 @@ struct LightSample {
   float distance;    // metres; infinite for directional lights and the environment
   vec3 radiance;     // of point and directional lights: irradiance on a facing plane; of triangles: without textures
   float pdf;         // per solid angle with selection; of delta lights: the selection's probability, or what stands for that
-  float mis_pdf;     // the same, by which it is weighed against what paths meet (emissive_pdf, environment_radiance)
   bool delta;
   uint primitive;    // emissive triangle, or k_no_hit
   vec2 uv;           // barycentrics there
@@ -163,71 +160,41 @@ uint group_of_light(int at, bool sky) {
 }
 #endif
 
-#if LUCERNA_LIGHT_CANDIDATES
-// Solid angle of a triangle, its vertices seen from the place (A. van Oosterom and J. Strackee 1983); n: its normal.
-float triangle_solid_angle(vec3 p0, vec3 p1, vec3 p2) {
-  vec3 a = p0 * inversesqrt(max(dot(p0, p0), 1e-30)), b = p1 * inversesqrt(max(dot(p1, p1), 1e-30)),
-       c = p2 * inversesqrt(max(dot(p2, p2), 1e-30));
-  return 2.0 * atan(abs(dot(a, cross(b, c))), 1.0 + dot(a, b) + dot(b, c) + dot(c, a));
-}
-
-// What a lamp or a triangle would send to a place if nothing were between, over its probability, onto a surface with that
-// normal: a little even from behind, where surfaces may let light through. What of the light's strength is in its probability
-// cancels out, so that geometry is left: irradiance over flux.
-float sends_of_its_flux(uint light, vec3 position, vec3 normal) {
-  int at = int(light * k_light_texels);
+// What a lamp would send to a place if nothing were between, by luminance, onto a surface with that normal: a little even from
+// behind, where surfaces may let light through.
+float lamp_sends(uint lamp, vec3 position, vec3 normal) {
+  int at = int(lamp * k_light_texels);
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
   uint kind = floatBitsToUint(a.w);
   vec3 to = a.xyz - position;
   float d2 = max(dot(to, to), 1e-20);
-  bool directional = kind == k_light_directional, spot = kind == k_light_spot;
+  bool directional = kind == k_light_directional;
   vec3 direction = directional ? -c.xyz : to * inversesqrt(d2);
-  float falls = (spot ? spot_share(dot(-direction, c.xyz), b.w, c.w) : 1.0) / d2;
-  float sent_into = spot ? 2.0 * k_pi * (1.0 - 0.5 * (b.w + c.w)) : 4.0 * k_pi;
-  float sends = falls / sent_into * max(dot(direction, normal), 0.05);
-  if (directional) sends = max(dot(direction, normal), 0.05) / (k_pi * frame.scene_radius * frame.scene_radius * frame.distant_scale);
-#if LUCERNA_EMISSIVE
-  if (kind == k_light_triangle) {
-    vec3 p0 = to, p1 = b.xyz - position, p2 = c.xyz - position;
-    uint sides = floatBitsToUint(texelFetch(scene_lights, at + 3).w);
-    bool both = (sides & k_light_both_sides) != 0u;
-    bool front = (dot(cross(p1 - p0, p2 - p0), p0) < 0.0) != ((sides & k_light_flipped) != 0u);
-    // The mean cosine of its vertices, none below the horizon.
-    float cosine = (max(dot(p0, normal), 0.0) * inversesqrt(d2) + max(dot(p1, normal), 0.0) * inversesqrt(max(dot(p1, p1), 1e-30)) +
-                    max(dot(p2, normal), 0.0) * inversesqrt(max(dot(p2, p2), 1e-30))) / 3.0;
-    sends = front || both ? triangle_solid_angle(p0, p1, p2) * max(cosine, 0.05) / (k_pi * b.w * (both ? 2.0 : 1.0)) : 0.0;
-  }
-#endif
-  return sends;
+  float fall = directional ? 1.0 : (kind == k_light_spot ? spot_share(dot(-direction, c.xyz), b.w, c.w) : 1.0) / d2;
+  return luminance(b.xyz) * fall * max(dot(direction, normal), 0.05);
 }
 
-// In place of a light that is a lamp or triangle, one from candidates evenly apart in the table of these, beginning at `choice`;
-// u: in [0, 1), afterwards as even as before. pmf: the light's probability without candidates; resampled: what stands for it.
-uint draw_light(uint light, vec3 position, vec3 normal, uint choice, inout float u, inout float pmf, out float resampled) {
-  const uint candidates = uint(LUCERNA_LIGHT_CANDIDATES);
-  bool placed = light < frame.placed_count;
+// In place of a light that is a lamp, a lamp from candidates evenly apart in the table of lamps, beginning at `choice`; u: in
+// [0, 1). pmf: the light's probability, or what stands for it.
+uint draw_lamp(uint light, vec3 position, vec3 normal, uint choice, float u, inout float pmf) {
+  const uint candidates = uint(LUCERNA_LAMP_CANDIDATES);
+  bool is_lamp = light - frame.first_lamp < frame.lamp_count;
   uint drawn = light;
-  float pmf_drawn = pmf, sends_drawn = 0.0;
+  float sends_drawn = 0.0;
   Reservoir drawing = Reservoir(u, 0.0);
-  for (uint k = 0u; k < (placed ? candidates : 0u); ++k) {
+  for (uint k = 0u; k < (is_lamp ? candidates : 0u); ++k) {
     uint bits = choice + k * (0xffffffffu / max(candidates, 1u));
     float p;
-    uint candidate = alias_choose(light_alias, frame.light_count, frame.placed_count, uvec2(bits, hash_mix(bits)), p);
-    float sends = sends_of_its_flux(candidate, position, normal);
-    bool taken = reservoir_draw(drawing, sends);
+    uint lamp = frame.first_lamp + alias_choose(light_alias, frame.light_count, frame.lamp_count, uvec2(bits, hash_mix(bits)), p);
+    float sends = lamp_sends(lamp, position, normal);
+    bool taken = reservoir_draw(drawing, sends / max(p, 1e-30));
     // Where none sends anything it is one of these that does not: another one might.
-    bool first = taken || drawing.total <= 0.0;
-    drawn = first ? candidate : drawn;
-    pmf_drawn = first ? frame.placed_pmf * p : pmf_drawn;
+    drawn = taken || drawing.total <= 0.0 ? lamp : drawn;
     sends_drawn = taken ? sends : sends_drawn;
   }
-  bool any = drawing.total > 0.0;
-  pmf = pmf_drawn;
-  resampled = any ? pmf * sends_drawn * float(candidates) / drawing.total : pmf;
-  u = any ? min(drawing.u, 0.99999994) : u;
+  pmf = drawing.total > 0.0 ? frame.lamp_pmf * sends_drawn * float(candidates) / drawing.total : pmf;
   return drawn;
 }
-#endif
 
 // Chooses by `choice` (32 bits), places by u; detail: 64 further bits (environment). Where the sky is apart its
 // probability is sky_share, and the other lights share what is left. `normal`: of the surface, unit, on the side that is seen.
@@ -244,10 +211,9 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   s.group = 0u;
   float pmf;
   uint light = alias_choose(light_alias, frame.light_count, uvec2(choice, hash_mix(choice)), pmf);
-  float resampled = pmf;
-#if LUCERNA_LIGHT_CANDIDATES
-  // By numbers that lamps and triangles have no other use for, so that these are as even.
-  light = draw_light(light, position, normal, detail.x, u.x, pmf, resampled);
+#if LUCERNA_LAMP_CANDIDATES
+  // By numbers that lamps have no other use for, so that these are as even.
+  light = draw_lamp(light, position, normal, detail.x, u.x, pmf);
 #endif
 #if LUCERNA_SKY_APART
   uint sky_end = uint(sky_share * 4294967040.0);
@@ -255,7 +221,7 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   // What is left of the number is even again.
   float rest = s.sky ? float(detail.y) / float(sky_end) : float(detail.y - sky_end) / float(0xffffffffu - sky_end);
   detail.y = uint(min(rest, 1.0) * 4294967040.0);
-  pmf *= 1.0 - sky_share, resampled *= 1.0 - sky_share;
+  pmf *= 1.0 - sky_share;
 #endif
   int at = int(light * k_light_texels);
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
@@ -272,8 +238,7 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   s.distance = sqrt(d2);
   s.direction = to / s.distance;
   s.radiance = b.xyz / d2 * (kind == k_light_spot ? spot_share(dot(-s.direction, c.xyz), b.w, c.w) : 1.0);
-  s.pdf = resampled;
-  s.mis_pdf = pmf;
+  s.pdf = pmf;
   if (kind == k_light_directional) {
     s.direction = -c.xyz;
     s.distance = k_infinity;
@@ -297,9 +262,7 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
     s.normal = dot(n, s.direction) > 0.0 ? -n : n;
     s.target = p;
     s.offset = error_gamma(8.0) * (abs(p0) + abs(p1) + abs(p2)) + vec3(error_gamma(16.0) * max(max3(abs(p1 - p0)), max3(abs(p2 - p0))));
-    float of_point = d2 / max(abs(dot(n, s.direction)) * b.w, 1e-30);
-    s.pdf = resampled * of_point;
-    s.mis_pdf = pmf * of_point;
+    s.pdf = pmf * d2 / max(abs(dot(n, s.direction)) * b.w, 1e-30);
     s.delta = false;
     s.primitive = floatBitsToUint(c.w);
     vec4 emission = texelFetch(scene_lights, at + 3);
@@ -323,7 +286,6 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
     s.direction = environment_in_cell(alias_choose(environment_alias, cells, detail, texel_pmf), u);
     s.radiance = environment_radiance(s.direction, s.pdf);
 #endif
-    s.mis_pdf = s.pdf;
   }
 #endif
   return s;

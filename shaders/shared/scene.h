@@ -73,7 +73,7 @@ LUCERNA_CONST uint k_light_directional = 3u;
 LUCERNA_CONST uint k_light_environment = 4u;
 
 // light_alias: one texel a light: (threshold, bits alias, pmf of this light, pmf of the alias). Behind it the same of the
-// triangles and lamps alone, which are the first lights.
+// lamps alone, numbered from Frame::first_lamp.
 // environment_texels: one a texel: (radiance rgb, density of the directions through it as environment_alias chooses
 // them, per solid angle). environment_alias: like light_alias.
 //
@@ -99,9 +99,8 @@ struct Frame {
   uint seed;
   vec3 environment_radiance;  ///< factor of the environment map
   uint light_count;
-  uint placed_count;  ///< of the lights, those that are drawn again (LUCERNA_LIGHT_CANDIDATES): triangles and lamps
-  float placed_pmf;   ///< probability that the light sampler chooses one of them
-  float distant_scale;  ///< weight over flux of a directional lamp, of that of the others
+  uint first_lamp, lamp_count;  ///< lamps among the lights that are drawn again (LUCERNA_LAMP_CANDIDATES)
+  float lamp_pmf;               ///< probability that the light sampler chooses one of them
   uint environment_width, environment_height;  ///< 0: there is none
   float environment_rotation; ///< radians
   float environment_light_pmf;///< probability that the light sampler chooses the environment, or the sky (0: not sampled)

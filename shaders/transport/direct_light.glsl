@@ -105,7 +105,7 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
 #if LUCERNA_LIGHT_SURFACE
   if (l.primitive != k_no_hit) l.radiance = light_radiance(l);
 #endif
-  float weight = l.delta ? 1.0 : mis_weight(l.mis_pdf, f.pdf);
+  float weight = l.delta ? 1.0 : mis_weight(l.pdf, f.pdf);
   vec3 arrives = path.throughput * l.radiance * (weight / max(l.pdf, 1e-37));
 #if LUCERNA_VOLUMES
   uint medium = reflected ? path.medium : surface.parameters.solid ? (surface.front ? surface.material + 1u : 0u) : path.medium;

@@ -41,8 +41,8 @@ class Lights {
       : Lights(upload::flatten(scene, sun_threshold)) {}
   explicit Lights(upload::FlatScene flattened) : flat(std::move(flattened)), scene_(device(), flat, {}) {
     frame.light_count = static_cast<uint32_t>(flat.lights.size() / shared::k_light_texels);
-    frame.placed_count = static_cast<uint32_t>(flat.placed_alias.size());
-    frame.placed_pmf = flat.placed_pmf, frame.distant_scale = flat.distant_scale;
+    frame.first_lamp = flat.first_lamp, frame.lamp_count = static_cast<uint32_t>(flat.lamp_alias.size());
+    frame.lamp_pmf = flat.lamp_pmf;
     frame.environment_radiance = flat.environment_radiance;
     frame.environment_width = flat.environment_width;
     frame.environment_height = flat.environment_height;

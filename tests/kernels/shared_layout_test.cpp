@@ -153,7 +153,7 @@ std::vector<SharedStruct> structs() {
       SHARED("ray.h", Ray, origin, tmax, direction, slot),
       SHARED("ray.h", Hit, t, prim, u, v),
       SHARED("scene.h", Frame, camera_origin, width, camera_right, height, camera_up, orthographic,
-             camera_forward, seed, environment_radiance, light_count, placed_count, placed_pmf, distant_scale,
+             camera_forward, seed, environment_radiance, light_count, first_lamp, lamp_count, lamp_pmf,
              environment_width, environment_height, environment_rotation, environment_light_pmf, max_depth,
              roulette_depth, scene_radius, sky_group, sun_group, automaton),
       SHARED("ramp.h", TileMark, position, bits),
