@@ -66,6 +66,7 @@ std::vector<SharedStruct> structs() {
       SHARED("irradiance_cache/inspect.h", OverlapCounts, pixels, gathered, most, records, listed),
       SHARED("wide_sum.h", WideSum, low, high),
       SHARED("wide_sum.h", LongSum, low, middle, high),
+      SHARED("splat.h", SplatOwners, red, green, blue),
       SHARED("splat.h", SplatSum, red, green, blue),
       SHARED("splat.h", SplatFrame, width, height, component, unit),
       SHARED("splat.h", SplatPush, count),
