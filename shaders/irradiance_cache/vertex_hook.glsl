@@ -119,12 +119,12 @@ void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b)
     b.weight *= b.pdf / (b.pdf + v.bsdf.p_diffuse * k_inv_pi * b.wi.z * (guide_density(x.guide, direction) - 1.0));
 }
 
-// In states that pass this lookup over, or all, or that have done with them.
+// Behind the vertex: in states that have passed this lookup over, or all, or that have done with them.
 uint cache_state(VertexIn v, cache_Vertex x, BsdfSample b, uint state) {
   bool passes_all = (x.alone && !x.gathers) || cache.probing == k_probe_beyond || cache.probing == k_probe_next ||
                     (cache.probing == k_probe_errors_beyond && !x.alone);
   uint from = passes_all ? k_fallback_state : x.alone ? k_gather_state : k_known_state;
-  bool another = x.looks && b.event == k_event_diffuse && state < k_fallback_state && (x.alone || passes_all || state >= k_gather_state);
+  bool another = x.looks && b.event == k_event_diffuse && v.state < k_fallback_state && (x.alone || passes_all || v.state >= k_gather_state);
   return another ? state % k_gather_state + from : state;
 }
 

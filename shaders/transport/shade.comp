@@ -35,7 +35,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, inout
   direction = normalize(v.to_world * b.wi);
   hooks_weigh(v, hooks, direction, b);
   bool sides_agree = (dot(direction, v.side) > 0.0) == !b.transmitted;
-  uint next = automaton_after(hooks_state(v, hooks, b, v.state), b.event);
+  uint next = hooks_state(v, hooks, b, automaton_after(v.state, b.event));
   vec3 throughput = path.throughput * b.weight;
   bool finite = is_finite(throughput);
   bool go_on = sides_agree && (!finite || max3(throughput) > 0.0) && automaton_live(next);

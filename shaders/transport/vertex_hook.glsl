@@ -7,7 +7,7 @@
 //   void X_weigh(VertexIn v, X_Vertex x, vec3 direction, inout BsdfSample b)
 //       the weight of the sampled direction, where X_cosine has changed its density
 //   uint X_state(VertexIn v, X_Vertex x, BsdfSample b, uint state)
-//       state of the automaton in which the path leaves the vertex (before the event), in place of `state`
+//       state of the automaton behind the vertex, in place of `state`
 //   void X_leave(VertexIn v, inout X_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on)
 //       may end the path, or change what it carries, after everything else has been decided but roulette
 //   void X_end(VertexIn v, X_Vertex x)               writes what it notes of the vertex
