@@ -88,6 +88,36 @@ TEST_CASE("where all of a picture is gathered by paths it is path tracing's, wit
   }
 }
 
+// What such a path looks up where it arrives is the light of further vertices; that of lights at this one it
+// has to sample and to meet. Of a sky that is mostly met.
+TEST_CASE("where paths gather and then read records they bring the sky's light too") {
+  const scene::Scene room = test::block_room(true);
+  std::vector<film::Image> cached, traced;
+  test::CacheRenderer by_cache(room, k_size, false), by_paths(room, k_size, false);
+  by_cache.set(test::k_cached);
+  // Along edges, which is half of the picture, but not where their rays arrive.
+  by_cache.set({{"cache.min_radius", "2"}, {"cache.rays", "256"}, {"cache.error", "0.15"}});
+  for (int seed = 1; seed <= 8; ++seed) {
+    by_cache.set({{"seed", std::to_string(seed)}, {"samples", "16"}});
+    by_paths.set({{"seed", std::to_string(100 + seed)}, {"samples", "32"}});
+    cached.push_back(by_cache.finish());
+    traced.push_back(by_paths.finish());
+  }
+  const irradiance_cache::RawRecords records = by_cache.records();
+  INFO(crowded(records) << " of " << records.size() << " records crowd");
+  CHECK(crowded(records) > records.size() / 4);
+  CHECK(crowded(records) < records.size() * 3 / 4);
+  for (const int c : {1, 2}) {
+    const Light a = light(cached, c), b = light(traced, c);
+    INFO("component " << c << ": " << a.mean << " +- " << a.error << ", path tracing " << b.mean << " +- "
+                      << b.error);
+    // 4.2 standard errors, and what interpolation is off by.
+    CHECK(std::abs(a.mean - b.mean) < 4.2 * std::hypot(a.error, b.error) + 0.01 * b.mean);
+    CHECK(a.error < 0.01 * a.mean);
+    CHECK(b.error < 0.01 * b.mean);
+  }
+}
+
 TEST_CASE("paths that gather find light that comes from little of the hemisphere") {
   // A lamp twelve centimetres above the floor: what the ceiling has of the floor comes mostly from a spot in
   // it.
