@@ -161,7 +161,9 @@ struct Wavefront::Impl {
     const std::span<const Ray> all_rays{static_cast<const Ray*>(r.mapped()), slots};
     const std::span<Hit> all_hits{static_cast<Hit*>(h.mapped()), slots};
     bool cancelled = false;
-    for (uint32_t first = 0; first < count && !cancelled; first += k_host_piece) {
+    for (uint32_t first = 0; first < count; first += k_host_piece) {
+      cancelled = first > 0 && cancel && cancel();
+      if (cancelled) break;
       const uint32_t piece = std::min(k_host_piece, count - first);
       // Without a queue rays lie in the slots one after the other.
       if (queue)
@@ -169,7 +171,6 @@ struct Wavefront::Impl {
                    false);
       else
         host_trace(query, all_rays.subspan(first), all_hits.subspan(first), nullptr, piece, true);
-      cancelled = cancel && cancel();
     }
     const bool is_shadow = std::string_view(name).substr(0, 6) == "shadow";
     account(name, timer.milliseconds(), is_shadow ? shadows : closest, true);

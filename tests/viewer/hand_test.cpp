@@ -92,9 +92,10 @@ TEST_CASE("a lamp's mark is dragged along the picture, with Shift up and down, o
 
 TEST_CASE("a surface that emits has a mark, by which its material is selected and nothing is moved") {
   if (test::no_display()) return;
-  // The triangle's middle is in the middle of the picture.
+  // The mark is in the middle of the picture.
   const std::string view =
-      k_start + std::string("material.set 1 strength=2\nview.lamps true\nwait 0.5\nmouse.move 712 372\n");
+      "camera.place 3,1.5,20 1,1,-1.333333 0,1,0\nmaterial.set 1 strength=2\nview.lamps true\nwait 0.5\n"
+      "mouse.move 712 372\n";
   const auto clicked = session_of(view + "mouse.down\nmouse.up\n");
   INFO(fmt::format("{}", fmt::join(clicked, "\n")));
   REQUIRE(!clicked.empty());
