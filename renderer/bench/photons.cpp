@@ -1,6 +1,5 @@
 #include "bench/photons.h"
 
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
