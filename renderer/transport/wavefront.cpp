@@ -1,20 +1,11 @@
 #include "transport/wavefront.h"
 
-#include <algorithm>
-
 #include "base/timer.h"
 #include "shaders/shared/trace.h"
 
 namespace lucerna::transport {
 
 using namespace shared;
-
-namespace {
-
-/// Rays that the host's tracer traces before it asks whether to go on: some 15 ms on two cores.
-constexpr uint32_t k_host_piece = 16384;
-
-}  // namespace
 
 struct Wavefront::Impl {
   gpu::Device& device;
@@ -147,34 +138,19 @@ struct Wavefront::Impl {
     }
   }
 
-  /// False when it was cancelled, which the host's tracer can be now and then; nothing is recorded then.
-  bool trace(bvh::Query query, const gpu::Kernel& kernel, const gpu::Resources& resources,
+  void trace(bvh::Query query, const gpu::Kernel& kernel, const gpu::Resources& resources,
              const gpu::Buffer& r, const gpu::Buffer& h, const gpu::Buffer* queue, uint32_t count,
-             const char* name, const uint32_t* closest, const uint32_t* shadows,
-             const std::function<bool()>& cancel) {
+             const char* name, const uint32_t* closest, const uint32_t* shadows) {
     if (!host_trace) {
       stream.dispatch(kernel, resources, TracePush{count, queue ? 1u : 0u}, workgroups(count), name);
-      return true;
+      return;
     }
     run_and_account(closest, shadows);
     const Timer timer;
-    const std::span<const Ray> all_rays{static_cast<const Ray*>(r.mapped()), slots};
-    const std::span<Hit> all_hits{static_cast<Hit*>(h.mapped()), slots};
-    bool cancelled = false;
-    for (uint32_t first = 0; first < count; first += k_host_piece) {
-      cancelled = first > 0 && cancel && cancel();
-      if (cancelled) break;
-      const uint32_t piece = std::min(k_host_piece, count - first);
-      // Without a queue rays lie in the slots one after the other.
-      if (queue)
-        host_trace(query, all_rays, all_hits, static_cast<const uint32_t*>(queue->mapped()) + first, piece,
-                   false);
-      else
-        host_trace(query, all_rays.subspan(first), all_hits.subspan(first), nullptr, piece, true);
-    }
+    host_trace(query, {static_cast<const Ray*>(r.mapped()), slots}, {static_cast<Hit*>(h.mapped()), slots},
+               queue ? static_cast<const uint32_t*>(queue->mapped()) : nullptr, count, !queue);
     const bool is_shadow = std::string_view(name).substr(0, 6) == "shadow";
     account(name, timer.milliseconds(), is_shadow ? shadows : closest, true);
-    return !cancelled;
   }
 
   static uint32_t workgroups(uint32_t count) { return (count + 63) / 64; }
@@ -346,9 +322,8 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
     // Shadow rays of the vertices before, then the next vertices.
     if (shadow_count > 0) {
       const gpu::Resources& table = arriving[0];
-      if (!w.trace(bvh::Query::any_opaque, w.trace_any, table, w.shadow_rays, w.shadow_hits,
-                   &w.shadow_queues[0], shadow_count, "shadow trace", closest, shadows, cancel))
-        return false;
+      w.trace(bvh::Query::any_opaque, w.trace_any, table, w.shadow_rays, w.shadow_hits, &w.shadow_queues[0],
+              shadow_count, "shadow trace", closest, shadows);
       w.stats.shadow_rays += shadow_count;
       w.stats.rays += shadow_count;
       push.count = shadow_count;
@@ -362,10 +337,8 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
           const uint32_t going = counters[k_counter_shadow_next];
           w.stream.fill(w.counters, 0, 4 * k_counter_shadow_next, 4);
           if (going == 0) break;
-          if (!w.trace(bvh::Query::closest_non_opaque, w.trace_non_opaque, arriving[side], w.shadow_rays,
-                       w.shadow_hits, &w.shadow_queues[side], going, "shadow trace", closest, shadows,
-                       cancel))
-            return false;
+          w.trace(bvh::Query::closest_non_opaque, w.trace_non_opaque, arriving[side], w.shadow_rays,
+                  w.shadow_hits, &w.shadow_queues[side], going, "shadow trace", closest, shadows);
           w.stats.shadow_rays += going;
           w.stats.rays += going;
           push.count = going;
@@ -375,9 +348,8 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       }
     }
     if (active > 0) {
-      if (!w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
-                   first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows, cancel))
-        return false;
+      w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
+              first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
       w.stats.rays += active;
       if (first && ends.first_hits) ends.first_hits();
       if (ends.hits_only) {

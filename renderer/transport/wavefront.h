@@ -78,8 +78,8 @@ class Wavefront {
   void rebind_lookup();
   uint32_t slots() const;
   /// Traces the item and adds it to the film, group by group of lights where the scene's are kept apart and
-  /// the film does so too, else mixed as the film says. `cancel` is asked between bounces, and by the
-  /// host's tracer within them; a cancelled item leaves the film as it was and returns false.
+  /// the film does so too, else mixed as the film says. `cancel` is asked between bounces; a cancelled item
+  /// leaves the film as it was and returns false.
   bool run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
   /// Makes the film's picture anew of its groups of lights, as they are mixed (film::Film::set_mix), where it
   /// keeps them apart by component. Traces nothing.
