@@ -283,7 +283,7 @@ void Program::add_bench_latency() {
   latency_->add_option("SCENES", bt.scenes, "glTF scenes, or names of folders in scenes/")->required();
   latency_
       ->add_option("--edits", bt.edits,
-                   "some of load, strength, move (the brightest lamp), sky (turned), material, camera, "
+                   "some of load, strength, move (of the brightest lamp), sky (turned), material, camera, "
                    "solver (switched); each on top of those before")
       ->delimiter(',');
   latency_->add_option("--solvers", bt.solvers, "of secondary and tertiary light [path,cache]")
@@ -303,7 +303,7 @@ void Program::add_bench_latency() {
       ->capture_default_str();
   latency_->add_option("--references", bt.references, "folder that keeps the reference pictures")
       ->capture_default_str();
-  latency_->add_option("--pictures", bt.pictures, "folder for what was shown at 0.3, 1, 3 and 10 s");
+  latency_->add_option("--pictures", bt.pictures, "folder for what was shown at 0.3, 1, 3, 10 and 30 s");
   latency_->add_option("--set", bt.set, "KEY=VALUE, as of the viewer")->allow_extra_args(false);
   latency_->add_option("--json", bt.json, "file to write the figures to");
   latency_->add_option("--device", bt.device, k_device_help);

@@ -54,8 +54,9 @@ std::optional<uint32_t> brightest_lamp(const Scene& s) {
   return best;
 }
 
-/// Of opaque diffuse materials without textures, the one with the largest surface.
-std::optional<uint32_t> largest_plain_material(const Scene& s) {
+/// Of the materials that weigh more than 0, each times its surface, the one that weighs most.
+template <class Weight>
+std::optional<uint32_t> heaviest_material(const Scene& s, const Weight& weight) {
   std::vector<double> area(s.materials.size(), 0);
   for (const scene::Instance& i : s.instances)
     for (const scene::Primitive& p : s.meshes[i.mesh].primitives)
@@ -65,13 +66,25 @@ std::optional<uint32_t> largest_plain_material(const Scene& s) {
         area[p.material] += 0.5 * length(cross(v[1] - v[0], v[2] - v[0]));
       }
   std::optional<uint32_t> best;
-  for (uint32_t m = 0; m < area.size(); ++m) {
-    const scene::Material& x = s.materials[m];
+  double most = 0;
+  for (uint32_t m = 0; m < area.size(); ++m)
+    if (const double w = area[m] * weight(s.materials[m]); w > most) best = m, most = w;
+  return best;
+}
+
+/// Of opaque diffuse materials without textures, the one with the largest surface.
+std::optional<uint32_t> largest_plain_material(const Scene& s) {
+  return heaviest_material(s, [](const scene::Material& x) {
     const bool plain = !x.base_color_texture && x.metallic < 1 && x.transmission == 0 && !x.unlit &&
                        luminance(vec3(x.base_color)) > 0 && luminance(x.emission) == 0;
-    if (plain && area[m] > 0 && (!best || area[m] > area[*best])) best = m;
-  }
-  return best;
+    return plain ? 1.0 : 0.0;
+  });
+}
+
+/// The one that sends most light.
+std::optional<uint32_t> brightest_emitter(const Scene& s) {
+  return heaviest_material(
+      s, [](const scene::Material& x) { return x.unlit ? 0.0 : double(luminance(x.emission)); });
 }
 
 /// The change that an edit makes of a scene; nothing where it has none to be made.
@@ -85,7 +98,14 @@ std::optional<Change> change_of(Edit edit, const Scene& s, const scene::Camera& 
                          camera.to_world * glm::rotate(mat4(1), glm::radians(12.0f), vec3(0, 1, 0));
   } else if (edit == Edit::strength || edit == Edit::move) {
     const std::optional<uint32_t> lamp = brightest_lamp(s);
-    if (!lamp) return std::nullopt;
+    if (!lamp) {
+      const std::optional<uint32_t> emitter = brightest_emitter(s);
+      if (!emitter || edit == Edit::move) return std::nullopt;
+      scene::Material dimmed = s.materials[*emitter];
+      dimmed.emission *= 1 / 3.0f;
+      c.material = {*emitter, dimmed};
+      return c;
+    }
     scene::Light light = s.lights[*lamp];
     if (edit == Edit::strength)
       light.intensity *= 1 / 3.0f;

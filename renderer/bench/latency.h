@@ -17,8 +17,9 @@ namespace lucerna::bench {
 
 enum class Edit {
   load,      ///< the scene is loaded; the clock runs from when that is done
-  strength,  ///< the brightest lamp to a third; without lamps nothing is measured (move likewise)
-  move,      ///< ... a tenth of the scene's radius aside; one without a place turns by 25 degrees
+  strength,  ///< the brightest lamp to a third; without lamps so the emissive material that sends most light
+  move,      ///< that lamp a tenth of the scene's radius aside; one without a place turns by 25 degrees;
+             ///< without lamps nothing is measured
   sky,       ///< the environment turns by 90 degrees; without an image nothing is measured
   material,  ///< the material of the largest surface without a texture becomes red
   camera,    ///< turns by 12 degrees and steps aside by 2 % of the scene's radius
@@ -51,7 +52,7 @@ struct Moment {
 /// Relative error below which a picture is usable.
 inline constexpr double k_usable = 0.15;
 /// Seconds after the edit of which errors are told.
-inline constexpr std::array<double, 4> k_told_s = {0.3, 1, 3, 10};
+inline constexpr std::array<double, 5> k_told_s = {0.3, 1, 3, 10, 30};
 
 struct LatencyResult {
   std::string scene, solver, edit;

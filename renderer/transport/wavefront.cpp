@@ -1,5 +1,7 @@
 #include "transport/wavefront.h"
 
+#include <algorithm>
+
 #include "base/timer.h"
 #include "shaders/shared/trace.h"
 
@@ -21,7 +23,7 @@ struct Wavefront::Impl {
   double compile_seconds = 0;
 
   gpu::Buffer frame, blocks, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states,
-      counters;
+      counters, branching, branching_queue;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
   gpu::Kernel camera, shade, shadow, film_add, film_add_images, lanes_add, lanes_add_images, groups_add,
       groups_add_images, unmixed_add, unmixed_add_images, trace_closest, trace_any, trace_non_opaque;
@@ -56,6 +58,9 @@ struct Wavefront::Impl {
     shadow_hits = texels("shadow hits", uint64_t(n) * sizeof(Hit), queue_memory);
     shadow_states = texels("shadow states", uint64_t(n) * sizeof(ShadowState), gpu::Memory::device);
     counters = make("counters", 4 * k_counter_slots, gpu::Memory::host);
+    branching = texels("branching vertices", uint64_t(n) * (sizeof(Ray) + sizeof(Hit) + sizeof(PathState)),
+                       gpu::Memory::device);
+    branching_queue = make("branching queue", uint64_t(n) * 4, gpu::Memory::device);
     for (auto& q : queues) q = make("queue", uint64_t(n) * 4, queue_memory);
     for (auto& q : shadow_queues) q = make("shadow queue", uint64_t(n) * 4, queue_memory);
   }
@@ -88,6 +93,9 @@ struct Wavefront::Impl {
       main[k].set("Rays", rays);
       main[k].set("Hits", hits);
       main[k].set("hit_texels", hits);
+      main[k].set("branching_texels", branching);
+      main[k].set("Branching", branching);
+      main[k].set("BranchingQueue", branching_queue);
       main[k].set("Queue", queues[k]);
       main[k].set("NextQueue", queues[1 - k]);
       main[k].set("ShadowQueue", shadow_queues[0]);
@@ -310,8 +318,8 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
   w.stream.fill(w.counters, 0);
   ends.begin();
   const uint32_t* counters = static_cast<const uint32_t*>(w.counters.mapped());
-  uint32_t active = count, parity = 0, shadow_count = 0;
-  bool first = true;
+  uint32_t active = count, parity = 0, shadow_count = 0, branch = 0;
+  bool first = true, branching = false;  // vertices are known, and another branch is to leave them
   // A path may pass any number of transparent surfaces; each costs it a factor, and roulette bounds the
   // events.
   for (; active > 0 || shadow_count > 0; parity ^= 1) {
@@ -348,9 +356,11 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       }
     }
     if (active > 0) {
-      w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
-              first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
-      w.stats.rays += active;
+      if (!branching) {
+        w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
+                first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
+        w.stats.rays += active;
+      }
       if (first && ends.first_hits) ends.first_hits();
       if (ends.hits_only) {
         w.run_and_account(closest, shadows);
@@ -360,6 +370,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       w.stream.fill(w.counters, 0, 4 * k_counter_rays, 32);
       push.count = active;
       push.use_queue = first ? 0 : 1;
+      push.round = branching ? branch : 0;
       if (ends.vertex)
         w.stream.dispatch(*ends.vertex, own[parity], push, Impl::workgroups(active), ends.vertex_stage);
       else
@@ -374,7 +385,16 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       closest[c] = counters[k_counter_rays + c];
       shadows[c] = counters[k_counter_shadow_rays + c];
     }
-    first = false;
+    first = false, branching = false;
+    if (const uint32_t again = counters[k_counter_branching]; active == 0 && shadow_count == 0 && again > 0) {
+      ++branch;
+      branching = true;
+      active = again;
+      std::copy_n(counters + k_counter_branching_rays, k_component_count, closest);
+      w.stream.copy(w.branching_queue, w.queues[1 - parity], uint64_t{again} * 4);
+      w.stream.fill(w.counters, 0, 4 * k_counter_branching, 4);
+      w.stream.fill(w.counters, 0, 4 * k_counter_branching_rays, 4 * k_component_count);
+    }
   }
   w.stats.dropped += counters[k_counter_dropped];
   w.stats.roulette += counters[k_counter_roulette];

@@ -3,9 +3,9 @@
 // pass weighs by surfaces alone and finds the noise, from the halves of the samples where there are two, else from how much
 // neighbours differ.
 //
-// The few cells that hold most of what single paths bring count for less in the first pass, or they would show as specks. Of
-// indirect light what is so lost is spread more widely, over what is of one surface, and given back by the preview's picture:
-// rooms would seem darker than they are as long as samples are few.
+// The few cells that hold most of what single paths bring count for less in the first pass, or they would show as specks. What
+// is so lost is spread more widely, over what is of one surface, and given back by the preview's picture: rooms would seem
+// darker than they are as long as samples are few.
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"
 #ifndef LUCERNA_PREVIEW_FIRST
@@ -23,8 +23,10 @@ layout(scalar) writeonly buffer GridNoise { vec4 grid_noise[]; };  // standard e
 const float k_most_lost = 32.0;
 // Per sample of a cell: how soon one that is alone is taken at its word.
 const float k_alone_until = 0.05;
-// Light from lamps and bundled light have bright parts with sharp borders: what is spread of them would glow there.
+// Light from lamps and bundled light have bright parts with sharp borders, which would glow if what is lost there were spread.
+// Of them it is given back as far as the halves of the samples do not agree about it.
 const vec4 k_gives_back = vec4(0.0, 1.0, 1.0, 0.0);
+const float k_agree = 0.3, k_disagree = 0.8;  // standard error over light
 
 vec3 ray_at(vec2 cell) {
   vec2 p = vec2(2.0, -2.0) * (cell + 0.5) / vec2(push.across, push.down) + vec2(-1.0, 1.0);
@@ -54,6 +56,7 @@ void main() {
   vec4 around[k_component_count];  // on whatever surfaces, and weights
   for (uint c = 0u; c < k_component_count; ++c) around[c] = vec4(0.0);
   float alike_square = 0.0, others = 0.0, known_sum = 0.0, any_sum = 0.0;
+  vec4 bright = vec4(0.0), by_chance = vec4(0.0);
 #endif
   for (int k = 0; k < 9; ++k) {
     ivec2 at = xy + int(push.step) * (ivec2(k % 3, k / 3) - 1);
@@ -73,6 +76,9 @@ void main() {
     // Few cells hold most of what single paths bring: shown bright, they count for less.
     w /= 1.0 + max(y - 1.0, vec4(0.0));
     lost += plain * min(y, vec4(k_most_lost));
+    vec4 above = plain * max(y - 1.0, vec4(0.0));
+    bright += above;
+    by_chance += above * smoothstep(vec4(k_agree), vec4(k_disagree), noise / max(y, vec4(1e-4)));
     if (k != 4 && (s.depth > 0.0) == (here.depth > 0.0)) {
       others += plain;
       vec4 bounded = vec4(kernel) / (1.0 + max(y - 1.0, vec4(0.0)));
@@ -121,7 +127,8 @@ void main() {
     if (around[c].w > 0.0) result.of[c].rgb = mix(result.of[c].rgb, around[c].rgb / around[c].w, alone);
 #endif
 #if LUCERNA_PREVIEW_FIRST
-  lost = k_gives_back * max(lost - preview_luminances(result), vec4(0.0));
+  vec4 back = max(k_gives_back, by_chance / max(bright, vec4(1e-20)));
+  lost = back * max(lost - preview_luminances(result), vec4(0.0));
 #endif
   filtered_lost[cell] = lost;
   if (push.history != 0u) filtered_before[cell] = before * inverse;

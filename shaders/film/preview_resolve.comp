@@ -27,12 +27,38 @@ const float k_clean = 0.02, k_noisy = 0.08;
 // Of filtered light, what the filter may be off by.
 const float k_filter_error = 0.04;
 
+// Of the nearest cells' weight, what has to be of a pixel's surface. Else cells so far around are asked.
+const float k_alone = 0.02;
+const int k_wide = 3;
 // A pixel that is of no cell's surface is filtered until it has so many samples, less and less up to so many.
 const float k_alone_until = 16.0, k_not_alone_from = 96.0;
 // How much filtered light may get of what the filter has lost: in units of white, and of itself.
 const float k_most_back = 1.0, k_most_back_relative = 3.0;
 
 shared vec3 group_shares[64];
+
+// Sums over the cells that tell of the pixel, by weight.
+vec4 light[k_component_count];
+vec4 noise = vec4(0.0), before_smooth = vec4(0.0), lost = vec4(0.0);
+vec3 modulation = vec3(0.0);
+float weights = 0.0, nearest_weight = 0.0, nearest_depth = -1.0;
+
+void add_cell(int cell, PreviewSurface s, float w) {
+  PreviewLight l = preview_light(filtered_texels, cell);
+  float there = (l.of[0].w + l.of[1].w + l.of[2].w + l.of[3].w) >= 0.0 && s.samples > 0.0 ? w : 1e-6 * w;
+  for (uint c = 0u; c < k_component_count; ++c) light[c] += there * l.of[c];
+  lost += there * texelFetch(lost_texels, cell);
+  if (push.history != 0u) before_smooth += there * texelFetch(before_texels, cell);
+  if (push.sampled != 0u) noise += there * texelFetch(noise_texels, cell) * sqrt(max(s.samples, 1e-3));  // of one sample
+  modulation += there * preview_modulation(s);
+  weights += there;
+  if (s.samples > 0.0 && s.depth >= 0.0 && there > nearest_weight) nearest_weight = there, nearest_depth = s.depth;
+}
+
+bool same_surface(PreviewSurface here, PreviewSurface s) {
+  return here.depth > 0.0 && s.depth > 0.0 ? abs(here.depth - s.depth) < 0.1 * here.depth && dot(here.normal, s.normal) > 0.7
+                                           : here.depth == s.depth;
+}
 
 void main() {
   uint pixel = global_index(), lane = gl_LocalInvocationIndex;
@@ -52,11 +78,8 @@ void main() {
     ivec2 base = ivec2(floor(p));
     vec2 f = p - vec2(base);
     // The grid's four nearest cells, those of another surface left out.
-    vec4 light[k_component_count];
     for (uint c = 0u; c < k_component_count; ++c) light[c] = vec4(0.0);
-    vec4 noise = vec4(0.0), before_smooth = vec4(0.0), lost = vec4(0.0);
-    vec3 modulation = vec3(0.0);
-    float weights = 0.0, akin = 0.0, nearest_weight = 0.0, nearest_depth = -1.0;
+    float akin = 0.0;
     for (int k = 0; k < 4; ++k) {
       ivec2 corner = ivec2(k & 1, k >> 1);
       ivec2 at = clamp(base + corner, ivec2(0), ivec2(push.across, push.down) - 1);
@@ -65,23 +88,24 @@ void main() {
       vec2 g = mix(1.0 - f, f, vec2(corner));
       float w = g.x * g.y + 1e-3;
       if (here.depth >= 0.0 && s.depth >= 0.0) {
-        bool alike = here.depth > 0.0 && s.depth > 0.0 ? abs(here.depth - s.depth) < 0.1 * here.depth && dot(here.normal, s.normal) > 0.7
-                                                       : here.depth == s.depth;
+        bool alike = same_surface(here, s);
         akin += alike ? w : 0.0;
         w *= alike ? 1.0 : 1e-4;
       } else {
         akin = 1.0;
       }
-      PreviewLight l = preview_light(filtered_texels, cell);
-      float there = (l.of[0].w + l.of[1].w + l.of[2].w + l.of[3].w) >= 0.0 && s.samples > 0.0 ? w : 1e-6 * w;
-      for (uint c = 0u; c < k_component_count; ++c) light[c] += there * l.of[c];
-      lost += there * texelFetch(lost_texels, cell);
-      if (push.history != 0u) before_smooth += there * texelFetch(before_texels, cell);
-      if (push.sampled != 0u) noise += there * texelFetch(noise_texels, cell) * sqrt(max(s.samples, 1e-3));  // of one sample
-      modulation += there * preview_modulation(s);
-      weights += there;
-      if (s.samples > 0.0 && s.depth >= 0.0 && there > nearest_weight) nearest_weight = there, nearest_depth = s.depth;
+      add_cell(cell, s, w);
     }
+    // A narrow surface has few cells of its own, which the next pixel of it may be beside.
+    for (int k = 0; akin <= k_alone && k < 2 * k_wide * 2 * k_wide; ++k) {
+      ivec2 at = base + ivec2(k % (2 * k_wide), k / (2 * k_wide)) - (k_wide - 1);
+      if (any(lessThan(at, ivec2(0))) || at.x >= int(push.across) || at.y >= int(push.down)) continue;
+      int cell = at.y * int(push.across) + at.x;
+      PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
+      vec2 away = vec2(at) - p;
+      if (s.depth >= 0.0 && same_surface(here, s)) add_cell(cell, s, exp2(-dot(away, away)));
+    }
+    if (akin <= k_alone && weights > k_alone) akin = 1.0;
     float inverse = 1.0 / max(weights, 1e-20);
     if (here.depth >= 0.0 && (push.repainted == 0u || here.samples > 0.0)) {
       modulation = preview_modulation(here);
@@ -90,7 +114,7 @@ void main() {
     }
     noise *= inverse * luminance(modulation) * inversesqrt(max(here.samples, 1.0));
     // What cells know of noise is not this pixel's then, and two paths that found nothing are not certain.
-    float alone = akin > 0.02 ? 0.0 : 1.0 - smoothstep(k_alone_until, k_not_alone_from, here.samples);
+    float alone = akin > k_alone ? 0.0 : 1.0 - smoothstep(k_alone_until, k_not_alone_from, here.samples);
     PreviewLight old;
     for (uint c = 0u; c < k_component_count; ++c) old.of[c] = vec4(0.0);
     bool has_old = false;

@@ -103,6 +103,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
 #endif
   o.sky_known = o.sky_known || (x.looks && !x.alone && (routes & 15u) < k_component_count);  // part 0: k_part_direct
   o.samples_lights = o.samples_lights && cache.probing == k_probe_none;
+  if (x.alone && x.gathers && v.state < k_gather_state) o.branches = max(o.branches, cache.branches);
   return x;
 }
 

@@ -51,6 +51,11 @@ Sampler make_sampler(uint pixel, uint width, uint sample_index, uint seed) {
   return s;
 }
 
+// Number of a branch's sample: of the same half, and those of all samples go on in one sequence.
+uint branch_sample(uint sample_index, uint branches, uint branch) {
+  return ((sample_index >> 1) * branches + branch) << 1 | (sample_index & 1u);
+}
+
 // Laine-Karras style permutation of reversed bits: an Owen scramble (Burley's improved constants are his; these are
 // the ones of N. Vegdahl, "Building a Better LK Hash", 2021).
 uint owen_scramble_reversed(uint x, uint seed) {

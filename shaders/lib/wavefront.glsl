@@ -44,10 +44,13 @@ Hit load_hit(uint slot) {
   return Hit(h.x, floatBitsToUint(h.y), h.z, h.w);
 }
 
-PathState load_path(uint slot) {
-  vec4 a = texelFetch(path_texels, int(3u * slot)), c = texelFetch(path_texels, int(3u * slot + 2u));
-  uvec4 b = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 1u)));
+PathState path_from(vec4 a, vec4 bits, vec4 c) {
+  uvec4 b = floatBitsToUint(bits);
   return PathState(a.xyz, a.w, b.x, b.y, b.z, b.w, c.x, c.y, floatBitsToUint(c.z), floatBitsToUint(c.w));
+}
+PathState load_path(uint slot) {
+  int at = int(3u * slot);
+  return path_from(texelFetch(path_texels, at), texelFetch(path_texels, at + 1), texelFetch(path_texels, at + 2));
 }
 ShadowState load_shadow_state(uint slot) {
   vec4 a = texelFetch(shadow_state_texels, int(2u * slot)), b = texelFetch(shadow_state_texels, int(2u * slot + 1u));

@@ -17,7 +17,7 @@ layout(scalar) buffer PhotonImportance { uint photon_importance[]; };
 struct photons_Vertex { uint none; };
 
 photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
-  uint components = photons.component[v.state];
+  uint components = v.again ? 0xffffu : photons.component[v.state];
   vec3 x = v.surface.position;
   float radius = photon_radius(x);
   bool looks = components != 0xffffu && photons.count > 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0;

@@ -21,6 +21,7 @@ LUCERNA_CONST uint k_automaton_states = 32u;
 LUCERNA_CONST uint k_path_sky_only = 1u << 5;     ///< a record's first ray: of all lights it sees the sky alone
 LUCERNA_CONST uint k_path_sky_unasked = 1u << 6;  ///< light samples at the last vertex were of other lights only
 LUCERNA_CONST uint k_path_sky_known = 1u << 7;    ///< what the ray would bring of the sky has been looked up
+LUCERNA_CONST uint k_path_branched = 1u << 31;    ///< a vertex of it is followed by several branches; no other will be
 LUCERNA_CONST uint k_path_state_mask = 0x1fu;
 
 /// One path: `throughput` already divided by all probabilities.
@@ -29,7 +30,7 @@ struct PathState {
   float pdf;           ///< of the last scattered direction, mixture of all lobes, per solid angle; 0: delta or camera
   uint pixel;          ///< index into the film (y * width + x)
   uint sample_index;   ///< of the pixel
-  uint bits;           ///< 0-4 automaton state, 5-7 k_path_*, 8-31 scattering events so far
+  uint bits;           ///< 0-4 automaton state, 5-7 and 31 k_path_*, 8-30 scattering events so far
   uint medium;         ///< material whose volume the ray is in, plus 1; 0: none
   float travelled;     ///< metres since the last scattering event, over null events
   float eta_scale;     ///< product of (eta_i/eta_t)^2 that refraction has put into the throughput
@@ -54,13 +55,16 @@ LUCERNA_CONST uint k_counter_rays = 4u;        ///< [4]: rays of the next queue 
 LUCERNA_CONST uint k_counter_shadow_rays = 8u; ///< [4]: shadow rays likewise
 LUCERNA_CONST uint k_counter_roulette = 12u;   ///< paths ended by roulette
 LUCERNA_CONST uint k_counter_depth = 13u;      ///< paths ended by the maximum depth
-LUCERNA_CONST uint k_counter_slots = 16u;
+LUCERNA_CONST uint k_counter_branching = 14u;   ///< vertices that another branch is to leave
+LUCERNA_CONST uint k_counter_branching_rays = 16u;  ///< [4]: those by the component that the branch is accounted to
+LUCERNA_CONST uint k_counter_slots = 20u;
 
 struct TransportPush {
   uint count;          ///< entries of the queue, or slots
   uint use_queue;      ///< 0: slot = index
   uint pixel_count;    ///< camera source: slots a sample, 64 for each block of the item
-  uint round;          ///< shadow light: 0 for the rays just traced, 1 for those on their way behind a surface
+  uint round;          ///< shadow light: 0 for the rays just traced, 1 for those on their way behind a surface;
+                       ///< shading: number of the branch that is to leave the vertices, 0: the first, or the only one
 };
 
 LUCERNA_SHARED_END

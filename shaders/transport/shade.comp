@@ -1,6 +1,10 @@
 // One vertex of every live path: emission with its MIS weight, direct light by next-event estimation, what solvers look up
 // there, scattering, roulette. What can arrive later (the light sample) is queued as a shadow ray; the path goes on in the
 // next queue.
+//
+// Where a hook asks for it the diffuse lobe of a vertex is followed several times, one branch after the other once the one
+// before has ended (J. Arvo and D. Kirk, "Particle Transport and Image Synthesis", 1990): light that comes by it is the mean of
+// theirs. What else is done at the vertex, the first branch does alone.
 #include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
@@ -8,6 +12,32 @@
 #include "lib/lights.glsl"
 #include "transport/vertex_hooks.glsl"
 #include "transport/direct_light.glsl"
+
+#if LUCERNA_VERTEX_HOOKS
+// Vertices that are followed again, as they were met: of a ray 2 texels, of the hit 1, of the path 3.
+const uint k_branching_texels = 6u;
+uniform samplerBuffer branching_texels;
+layout(scalar) writeonly buffer Branching { vec4 branching[]; };
+layout(scalar) writeonly buffer BranchingQueue { uint branching_queue[]; };
+
+void keep_vertex(uint slot) {
+  int ray = int(2u * slot), path = int(3u * slot);
+  uint at = k_branching_texels * slot;
+  branching[at] = texelFetch(ray_texels, ray);
+  branching[at + 1u] = texelFetch(ray_texels, ray + 1);
+  branching[at + 2u] = texelFetch(hit_texels, int(slot));
+  branching[at + 3u] = texelFetch(path_texels, path);
+  branching[at + 4u] = texelFetch(path_texels, path + 1);
+  branching[at + 5u] = texelFetch(path_texels, path + 2);
+}
+void load_vertex(uint slot, out Ray ray, out Hit hit, out PathState path) {
+  int at = int(k_branching_texels * slot);
+  vec4 h = texelFetch(branching_texels, at + 2);
+  ray = ray_from(texelFetch(branching_texels, at), texelFetch(branching_texels, at + 1));
+  hit = Hit(h.x, floatBitsToUint(h.y), h.z, h.w);
+  path = path_from(texelFetch(branching_texels, at + 3), texelFetch(branching_texels, at + 4), texelFetch(branching_texels, at + 5));
+}
+#endif
 
 // What the camera sees first.
 void write_features(uint slot, Surface surface) {
@@ -27,8 +57,9 @@ vec3 emission_met(PathState path, Surface surface, uint primitive, float travell
   return vec3(0.0);
 }
 
-// Samples a lobe and a direction and makes the path what it is behind the vertex; whether it goes on.
-bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, inout PathState path, out vec3 direction) {
+// Samples a lobe and a direction and makes the path what it is behind the vertex; whether it goes on. `branches`: of which
+// this is one.
+bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint branches, inout PathState path, out vec3 direction) {
   vec2 u = sample_vertex(v.random, v.depth, k_pad_direction);
   vec3 cosine = hooks_cosine(v, hooks, u, sample_cosine(u));
   BsdfSample b = bsdf_sample(v.bsdf, wo, u, cosine, sample_vertex(v.random, v.depth, k_pad_lobe));
@@ -48,6 +79,11 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, inout
 #endif
   hooks_leave(v, hooks, Leaving(b, finite), throughput, go_on);
   path.eta_scale *= b.eta2;
+#if LUCERNA_VERTEX_HOOKS
+  bool one_of_many = branches > 1u && b.event == k_event_diffuse;
+  if (one_of_many) throughput /= float(branches), path.eta_scale /= float(branches);
+  go_on = go_on && (one_of_many || push.round == 0u);
+#endif
   // Roulette on what the path carries without the radiance scale of refraction.
   if (v.depth + 1u >= frame.roulette_depth) {
     float q = clamp(max3(throughput) / path.eta_scale, 0.0, 1.0);
@@ -60,7 +96,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, inout
   }
   path.throughput = throughput;
   path.pdf = b.pdf;
-  path.bits = next | sky | (v.depth + 1u) << 8;
+  path.bits = next | sky | (v.depth + 1u) << 8 | (path.bits & k_path_branched);
   path.travelled = 0.0;
   path.nulls = 0u;
 #if LUCERNA_VOLUMES
@@ -70,10 +106,13 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, inout
 }
 
 // Puts the path's next ray into the queue.
-void continue_path(uint slot, PathState path, vec3 origin, vec3 direction) {
+void continue_path(uint slot, PathState path, uint branches, vec3 origin, vec3 direction) {
   rays[slot].origin = origin;
   rays[slot].direction = direction;
   store_path(slot, path);
+#if LUCERNA_VERTEX_HOOKS
+  if (branches > 1u) paths[slot].sample_index = path.sample_index, paths[slot].eta_scale = path.eta_scale;
+#endif
   next_queue[atomicAdd(counters[k_counter_next], 1u)] = slot;
   atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);
 }
@@ -82,9 +121,22 @@ void main() {
   uint index = global_index();
   if (index >= push.count) return;
   uint slot = push.use_queue != 0u ? queue[index] : index;
-  Ray ray = load_ray(slot);
-  Hit hit = load_hit(slot);
-  PathState path = load_path(slot);
+  Ray ray;
+  Hit hit;
+  PathState path;
+#if LUCERNA_VERTEX_HOOKS
+  bool again = push.round > 0u;  // the first branch has met the vertex
+#else
+  const bool again = false;
+#endif
+  if (!again) {
+    ray = load_ray(slot);
+    hit = load_hit(slot);
+    path = load_path(slot);
+  }
+#if LUCERNA_VERTEX_HOOKS
+  if (again) load_vertex(slot, ray, hit, path);
+#endif
   if (path.pixel == 0xffffffffu) return;
   uint state = path_automaton(path), depth = path_depth(path);
   Sampler random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
@@ -100,6 +152,7 @@ void main() {
   found.bias = 0.0;
   found.sky_known = false;
   found.samples_lights = true;
+  found.branches = 1u;
   if (hit.prim == k_no_hit) {
     gain = environment_met(path, ray.direction, sun);
 #if LUCERNA_HIDDEN_BACKGROUND
@@ -132,11 +185,11 @@ void main() {
     vec2 u_null = sample_vertex(random_null, depth, k_pad_lobe);
 #endif
 #if LUCERNA_ALPHA
-    passed = u_null.x >= surface_coverage(surface);
+    passed = !again && u_null.x >= surface_coverage(surface);
 #endif
 
     if (!passed) {
-      if (depth == 0u) write_features(slot, surface);
+      if (depth == 0u && !again) write_features(slot, surface);
       gain = emission_met(path, surface, hit.prim, travelled, ray.direction);
       vec3 wo_world = -ray.direction;
       mat3 to_world = shading_frame(surface, wo_world);
@@ -144,12 +197,12 @@ void main() {
       Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
 #if LUCERNA_THIN_GLASS
       float p_straight = bsdf_straight_probability(bsdf, wo.z);
-      passed = u_null.y < p_straight;
+      passed = !again && u_null.y < p_straight;
       if (passed) random = random_null;  // the vertex behind has the numbers of this depth
 #endif
       // What passes is no event and not counted; the surface's other lobes are lit all the same.
       bool ends = depth >= frame.max_depth;
-      if (ends && !passed) atomicAdd(counters[k_counter_depth], 1u);
+      if (ends && !passed && !again) atomicAdd(counters[k_counter_depth], 1u);
 #if LUCERNA_UNLIT
       if ((surface.flags & k_flag_unlit) != 0u) {
         if (automaton_no_diffuse(state)) gain = path.throughput * surface.base.rgb;
@@ -158,12 +211,27 @@ void main() {
 #endif
       if (!ends) {
         vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
-        VertexIn v = VertexIn(slot, path, state, depth, surface, bsdf, to_world, side, random);
+        VertexIn v = VertexIn(slot, path, state, depth, surface, bsdf, to_world, side, random, again);
         VertexHooks hooks = hooks_read(v, found);
 #if LUCERNA_LIGHTS
-        sample_direct_light(slot, path, surface, bsdf, wo, to_world, random, found.sky_known, found.samples_lights);
+        if (!again) sample_direct_light(slot, path, surface, bsdf, wo, to_world, random, found.sky_known, found.samples_lights);
 #endif
-        if (!passed) go_on = scatter(v, hooks, wo, found.sky_known, path, direction);
+#if LUCERNA_VERTEX_HOOKS
+        if (passed || (path.bits & k_path_branched) != 0u) found.branches = 1u;
+        if (found.branches > 1u) {
+          if (!again) keep_vertex(slot);
+          path.sample_index = branch_sample(path.sample_index, found.branches, push.round);
+          path.bits |= k_path_branched;
+          v.random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
+        }
+#endif
+        if (!passed) go_on = scatter(v, hooks, wo, found.sky_known, found.branches, path, direction);
+#if LUCERNA_VERTEX_HOOKS
+        if (push.round + 1u < found.branches) {
+          branching_queue[atomicAdd(counters[k_counter_branching], 1u)] = slot;
+          atomicAdd(counters[k_counter_branching_rays + automaton_account(path_automaton(path))], 1u);
+        }
+#endif
         hooks_end(v, hooks);
       }
 #if LUCERNA_THIN_GLASS
@@ -175,8 +243,9 @@ void main() {
       path.travelled = travelled;
       ++path.nulls;
     }
-    if (go_on) continue_path(slot, path, offset_origin(surface, direction), direction);
+    if (go_on) continue_path(slot, path, found.branches, offset_origin(surface, direction), direction);
   }
+  if (again) return;
   uint met = lane_of(group, automaton_component(state)), met_sun = k_no_lane;
 #if LUCERNA_LIGHT_GROUPS > 1 && LUCERNA_SUN
   if (hit.prim == k_no_hit && frame.sun_group != frame.sky_group) met_sun = lane_of(frame.sun_group, automaton_component(state));

@@ -28,6 +28,7 @@ struct VertexIn {
   mat3 to_world;    // shading frame
   vec3 side;        // geometric normal on the side that the path comes from
   Sampler random;   // of this vertex
+  bool again;       // another branch leaves it: all that the vertex itself brings has been brought, what X_read adds is not heeded
 };
 
 struct VertexOut {
@@ -42,6 +43,7 @@ struct VertexOut {
   float bias;       // by what the luminance of that is told to be too large, in the mean (LUCERNA_LOOKUP_BIAS; else not heeded)
   bool sky_known;   // in it is what the sky sends straight to the diffuse lobe
   bool samples_lights;
+  uint branches;    // by how many the diffuse lobe is followed on
 };
 
 struct Leaving {

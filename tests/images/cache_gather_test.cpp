@@ -115,6 +115,26 @@ TEST_CASE("where paths gather and then read records they bring the sky's light t
   for (const int c : {1, 2}) check_alike(seeds, c, 0.01, 0.01);
 }
 
+// What else is seen at such a vertex, gloss, direct light and what alpha lets through, is counted once. Eight
+// branches take most of the noise away that does not come of where in a pixel paths fall.
+TEST_CASE("a sample that gathers by several paths is the same picture with less noise") {
+  scene::Scene room = test::block_room(true);
+  room.materials[0].specular = 1, room.materials[0].roughness = 0.4f;
+  room.materials[1].alpha_mode = scene::AlphaMode::blend, room.materials[1].base_color.w = 0.6f;
+  const auto with = [&](const char* branches) {
+    Settings settings = k_all_gathered;
+    settings["cache.branches"] = branches;
+    return seeds_of(room, settings, "64");
+  };
+  const Seeds one = with("1"), many = with("8");
+  for (const int c : {0, 1, 2}) check_alike(one, c, 0, 0.03);
+  for (const int c : {0, 1, 2}) check_alike(many, c, 0, 0.03);
+  const double ratio = light(many.cached, 1).noise / light(one.cached, 1).noise;
+  INFO("noise of secondary light " << light(one.cached, 1).noise << ", by eight branches " << ratio
+                                   << " of that");
+  CHECK(ratio < 0.6);
+}
+
 TEST_CASE("paths that gather find light that comes from little of the hemisphere") {
   // A lamp twelve centimetres above the floor: what the ceiling has of the floor comes mostly from a spot in
   // it.

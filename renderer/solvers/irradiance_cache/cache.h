@@ -65,6 +65,7 @@ struct CacheOptions {
   /// Where something is nearer than twice the least radius paths gather themselves and end in records one
   /// vertex later.
   bool gather = false;
+  uint32_t branches = 1;  ///< by how many paths a sample of the picture does so
   uint32_t most_records = 0, most_passes = 0;
   /// Groups of lights whose shares records keep, for films that keep them in short; less than 2: none.
   uint32_t groups = 1;

@@ -44,6 +44,7 @@ std::vector<ChangeRow> change_rows() {
       {"cache.passes", k_spoils_coverage, "when building ends"},
       {"cache.stop", k_spoils_coverage, "when building ends"},
       {"cache.max_records", k_spoils_coverage, "room; all, where there are more records than that"},
+      {"cache.branches", k_spoils_nothing, "of the picture alone"},
       {"cache.pause", k_spoils_nothing, "where building waits to be looked at"},
       {"cache.", k_spoils_all, "where records lie and how far they serve: radii, metric, placement"},
   };

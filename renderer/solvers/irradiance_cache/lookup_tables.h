@@ -40,6 +40,7 @@ struct LookupTables {
   gpu::Buffer candidates;  ///< one a slot: where paths note that they found no record, or what they met
   RouteTable picture_routes, record_routes;  ///< where the picture's paths look up, and the records' rays
   LeastRadius least;
+  uint32_t branches;  ///< of the picture's paths where they gather
 
   LookupTables(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheRoutes& routes,
                const CacheOptions& options);

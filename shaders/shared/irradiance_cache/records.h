@@ -145,6 +145,7 @@ struct CacheFrame {
   float least_most;         ///< ... at most [m]
   uint parallel;
   vec3 eye;
+  uint branches;  ///< of a path of the picture that gathers
 };
 
 /// One level of evaluation of `records` records: entries `first` on of record_list, elevations x azimuths
