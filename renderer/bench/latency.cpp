@@ -133,17 +133,24 @@ struct Shown {
   std::shared_ptr<const session::Snapshot> snapshot;
 };
 
-std::vector<float> developed(const film::FilmImage& image, float exposure) {
-  const size_t n = size_t{image.width} * image.height;
-  std::vector<float> all(n);
-  const std::vector<size_t> rgb = image.layer("rgb");
+/// A reference picture in the luminance that is shown, and half of what its two halves differ by.
+struct Reference {
+  std::vector<float> mean, half_difference;
+};
+
+Reference developed(const film::FilmImage& one, const film::FilmImage& other, float exposure) {
+  const size_t n = size_t{one.width} * one.height;
+  const std::vector<size_t> of_one = one.layer("rgb"), of_other = other.layer("rgb");
+  const auto shown = [&](const vec3& color) { return luminance(clamp(color * exposure, vec3(0), vec3(1))); };
+  Reference r;
   for (size_t i = 0; i < n; ++i) {
-    vec3 color(0);
+    vec3 a, b;
     for (size_t k = 0; k < 3; ++k)
-      color[int(k)] = std::clamp(image.channels[rgb[k]].second[i] * exposure, 0.0f, 1.0f);
-    all[i] = luminance(color);
+      a[int(k)] = one.channels[of_one[k]].second[i], b[int(k)] = other.channels[of_other[k]].second[i];
+    r.mean.push_back(shown(0.5f * (a + b)));
+    r.half_difference.push_back(0.5f * (shown(a) - shown(b)));
   }
-  return all;
+  return r;
 }
 
 class Latency {
@@ -243,12 +250,13 @@ class Latency {
   void report(const fs::path& file, const std::string& solver, Edit edit, const std::vector<Shown>& shown,
               session::Session& s, double loading) {
     s.set_paused(true);
-    const std::vector<float>& reference = reference_of(file, float(std::exp2(s.settings().real("film.ev"))));
+    const Reference& reference = reference_of(file, float(std::exp2(s.settings().real("film.ev"))));
     std::vector<Moment> moments;
     for (const Shown& at : shown) {
       Moment m{at.seconds - loading, {1, 1}};
-      if (at.snapshot && at.snapshot->rgba.size() == reference.size() * 4)
-        m.distance = picture_distance(shown_luminance(at.snapshot->rgba), reference, o_.width);
+      if (at.snapshot && at.snapshot->rgba.size() == reference.mean.size() * 4)
+        m.distance = picture_distance(shown_luminance(at.snapshot->rgba), reference.mean, o_.width,
+                                      reference.half_difference);
       moments.push_back(m);
     }
     LatencyResult result = latency_of(moments, shown.back().seconds - loading);
@@ -270,17 +278,25 @@ class Latency {
     s.set_paused(false);
   }
 
-  /// As it is shown. Rendered where no earlier run has left it.
-  const std::vector<float>& reference_of(const fs::path& file, float exposure) {
-    const std::string key = fmt::format("{} {} {}x{} {} {}", LUCERNA_VERSION, scene_hash(file), o_.width,
-                                        o_.height, done_edits_, o_.reference_samples);
-    const fs::path kept = o_.references / fmt::format("{}{}-{}x{}-{}.exr", file.stem().string(), done_edits_,
-                                                      o_.width, o_.height, o_.reference_samples);
-    if (const auto known = references_.find(key); known != references_.end()) return known->second;
+  /// As it is shown.
+  const Reference& reference_of(const fs::path& file, float exposure) {
+    const std::string key = fmt::format("{}{}", file.string(), done_edits_);
+    const auto known = references_.find(key);
+    if (known != references_.end()) return known->second;
+    return references_[key] = developed(half_reference(file, 1), half_reference(file, 2), exposure);
+  }
+
+  /// Of half of the samples. Rendered where no earlier run has left it.
+  film::FilmImage half_reference(const fs::path& file, int half) {
+    const uint32_t samples = std::max(1u, o_.reference_samples / 2);
+    const std::string key = fmt::format("{} {} {}x{} {} {} {}", LUCERNA_VERSION, scene_hash(file), o_.width,
+                                        o_.height, done_edits_, samples, half);
+    const fs::path kept = o_.references / fmt::format("{}{}-{}x{}-{}-{}.exr", file.stem().string(),
+                                                      done_edits_, o_.width, o_.height, samples, half);
     if (fs::exists(kept)) try {
-        const film::FilmImage image = film::read_exr(kept);
+        film::FilmImage image = film::read_exr(kept);
         if (const auto of = image.metadata.find("bench.key"); of != image.metadata.end() && of->second == key)
-          return references_[key] = developed(image, exposure);
+          return image;
       } catch (const Error& e) {
         message_(e.what());
       }
@@ -292,8 +308,8 @@ class Latency {
            {{"components.secondary", "path", "bench"},
             {"components.tertiary", "path", "bench"},
             {"sampling.mode", "uniform", "bench"},
-            {"samples", std::to_string(o_.reference_samples), "bench"},
-            {"seed", "900001", "bench"}});
+            {"samples", std::to_string(samples), "bench"},
+            {"seed", std::to_string(900000 + half), "bench"}});
     for (const Change& change : changes_) change.apply(r);
     while (!r.done()) {
       check();
@@ -302,7 +318,7 @@ class Latency {
     film::FilmImage image = r.film_image();
     image.metadata["bench.key"] = key;
     film::write_exr(kept, image);
-    return references_[key] = developed(image, exposure);
+    return image;
   }
 
   const LatencyOptions& o_;
@@ -311,7 +327,7 @@ class Latency {
   const std::function<bool()>& interrupted_;
   std::vector<Change> changes_;  // made so far
   std::string done_edits_;       // their names
-  std::map<std::string, std::vector<float>> references_;
+  std::map<std::string, Reference> references_;
   std::vector<LatencyResult> results_;
 };
 
@@ -343,16 +359,28 @@ Edit edit_of(const std::string& name) {
 }
 
 PictureDistance picture_distance(std::span<const float> shown, std::span<const float> reference,
-                                 uint32_t width) {
-  const std::vector<float> a = mean_3x3(shown, width), b = mean_3x3(reference, width);
+                                 uint32_t width, std::span<const float> half_difference) {
+  constexpr size_t k_tile = 16;
+  struct Tile {
+    double error = 0, square = 0, noise = 0;
+  };
+  const std::vector<float> a = mean_3x3(shown, width), b = mean_3x3(reference, width),
+                           half = mean_3x3(half_difference, width);
   PictureDistance d;
   size_t lit = 0, black = 0;
+  const size_t across = (width + k_tile - 1) / k_tile;
+  std::vector<Tile> tiles(across * ((a.size() / width + k_tile - 1) / k_tile));
   for (size_t i = 0; i < a.size(); ++i) {
-    d.error += std::abs(a[i] - b[i]) / std::max(b[i], k_dark);
+    const double off = std::abs(a[i] - b[i]) / std::max(b[i], k_dark),
+                 noise = half.empty() ? 0.0 : double(half[i] / std::max(b[i], k_dark));
+    Tile& t = tiles[i / width / k_tile * across + i % width / k_tile];
+    t.error += off, t.square += off * off, t.noise += noise * noise;
     if (b[i] < k_dark) continue;
     ++lit;
     black += a[i] < 0.05f * b[i];
   }
+  for (const Tile& t : tiles)
+    if (t.square > 0) d.error += t.error * std::sqrt(std::max(0.0, 1 - t.noise / t.square));
   d.error /= double(std::max<size_t>(1, a.size()));
   d.black = double(black) / double(std::max<size_t>(1, lit));
   return d;

@@ -33,13 +33,15 @@ Edit edit_of(const std::string& name);
 /// Of pictures, in the linear luminance that is shown: 0 black, 1 white. Both of one size, row by row.
 struct PictureDistance {
   /// Mean over the pixels of the difference over the reference, after a mean over 3x3 pixels of both; pixels
-  /// darker than k_dark are held against k_dark.
+  /// darker than k_dark are held against k_dark. In tiles of 16x16 pixels, what the reference's own noise has
+  /// in its mean square is taken off.
   double error = 0;
   double black = 0;  ///< share of the pixels with light in the reference that show none, 3x3 likewise
 };
 inline constexpr float k_dark = 0.02f;
+/// `half_difference`: of two independent halves of the reference, whose mean it is; empty: it has no noise.
 PictureDistance picture_distance(std::span<const float> shown, std::span<const float> reference,
-                                 uint32_t width);
+                                 uint32_t width, std::span<const float> half_difference = {});
 /// Luminance that a published picture with the linear tone curve shows.
 std::vector<float> shown_luminance(std::span<const uint8_t> rgba);
 

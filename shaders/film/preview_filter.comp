@@ -56,7 +56,7 @@ void main() {
   vec4 around[k_component_count];  // on whatever surfaces, and weights
   for (uint c = 0u; c < k_component_count; ++c) around[c] = vec4(0.0);
   float alike_square = 0.0, others = 0.0, known_sum = 0.0, any_sum = 0.0;
-  vec4 bright = vec4(0.0), by_chance = vec4(0.0);
+  vec4 bright = vec4(0.0), by_chance = vec4(0.0), brightest = vec4(0.0), next_bright = vec4(0.0);
 #endif
   for (int k = 0; k < 9; ++k) {
     ivec2 at = xy + int(push.step) * (ivec2(k % 3, k / 3) - 1);
@@ -74,14 +74,19 @@ void main() {
     plain_sum += plain;
 #if LUCERNA_PREVIEW_FIRST
     // Few cells hold most of what single paths bring: shown bright, they count for less.
-    w /= 1.0 + max(y - 1.0, vec4(0.0));
-    lost += plain * min(y, vec4(k_most_lost));
-    vec4 above = plain * max(y - 1.0, vec4(0.0));
+    float white = 1.0 / luminance(preview_modulation(s));
+    vec4 damped = 1.0 + max(y / white - 1.0, vec4(0.0));
+    w /= damped;
+    lost += plain * min(y, vec4(k_most_lost * white));
+    vec4 above = plain * (damped - 1.0) * white;
     bright += above;
     by_chance += above * smoothstep(vec4(k_agree), vec4(k_disagree), noise / max(y, vec4(1e-4)));
+    vec4 alike_above = alike * min(kernel, 1.0) * (damped - 1.0);
+    next_bright = max(next_bright, min(alike_above, brightest));
+    brightest = max(brightest, alike_above);
     if (k != 4 && (s.depth > 0.0) == (here.depth > 0.0)) {
       others += plain;
-      vec4 bounded = vec4(kernel) / (1.0 + max(y - 1.0, vec4(0.0)));
+      vec4 bounded = kernel / damped;
       for (uint c = 0u; c < k_component_count; ++c) around[c] += bounded[c] * vec4(l.of[c].rgb, 1.0);
     }
     alike_square += plain * plain;
@@ -127,7 +132,10 @@ void main() {
     if (around[c].w > 0.0) result.of[c].rgb = mix(result.of[c].rgb, around[c].rgb / around[c].w, alone);
 #endif
 #if LUCERNA_PREVIEW_FIRST
-  vec4 back = max(k_gives_back, by_chance / max(bright, vec4(1e-20)));
+  vec4 chance = by_chance / max(bright, vec4(1e-20));
+  // While there are no halves: one that is bright alone.
+  if (own.of[0].w < 0.0) chance = 1.0 - smoothstep(vec4(k_agree), vec4(k_disagree), next_bright / max(brightest, vec4(1e-20)));
+  vec4 back = max(k_gives_back, chance);
   lost = back * max(lost - preview_luminances(result), vec4(0.0));
 #endif
   filtered_lost[cell] = lost;
