@@ -141,14 +141,19 @@ struct Reference {
 Reference developed(const film::FilmImage& one, const film::FilmImage& other, float exposure) {
   const size_t n = size_t{one.width} * one.height;
   const std::vector<size_t> of_one = one.layer("rgb"), of_other = other.layer("rgb");
-  const auto shown = [&](const vec3& color) { return luminance(clamp(color * exposure, vec3(0), vec3(1))); };
   Reference r;
   for (size_t i = 0; i < n; ++i) {
-    vec3 a, b;
-    for (size_t k = 0; k < 3; ++k)
-      a[int(k)] = one.channels[of_one[k]].second[i], b[int(k)] = other.channels[of_other[k]].second[i];
-    r.mean.push_back(shown(0.5f * (a + b)));
-    r.half_difference.push_back(0.5f * (shown(a) - shown(b)));
+    vec3 mean(0), half(0);
+    for (int k = 0; k < 3; ++k) {
+      const float a = exposure * one.channels[of_one[size_t(k)]].second[i],
+                  b = exposure * other.channels[of_other[size_t(k)]].second[i];
+      // Where one half alone is brighter than white it is noise: cut off it would be missing in the mean.
+      const bool white = a > 1 && b > 1;
+      mean[k] = white ? 1 : 0.5f * (a + b);
+      half[k] = white ? 0 : 0.5f * (a - b);
+    }
+    r.mean.push_back(luminance(mean));
+    r.half_difference.push_back(luminance(half));
   }
   return r;
 }

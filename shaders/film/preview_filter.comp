@@ -46,7 +46,7 @@ void main() {
   vec3 ray = ray_at(vec2(xy)), point = point_at(ray, max(here.depth, 0.0));
   // A cell's width there, and a little more for surfaces that are not plane.
   float scale = (push.orthographic != 0u ? 1.0 : max(here.depth, 0.0)) *
-                    (2.0 * length(push.right) / float(push.across) * float(push.step)) + 1e-3 * max(here.depth, 0.0) + 1e-6;
+                    (2.0 * length(push.right) / float(push.across) * float(push.step)) * 0.3 + 5e-4 * max(here.depth, 0.0) + 1e-6;
   vec3 sum[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) sum[c] = vec3(0.0);
   vec4 weights = vec4(0.0), variance = vec4(0.0), before = vec4(0.0), lost = vec4(0.0);
