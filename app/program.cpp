@@ -298,7 +298,8 @@ void Program::add_bench_latency() {
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   latency_
-      ->add_option("--reference-samples", bt.reference_samples, "samples a pixel of the reference pictures, in two halves that tell their noise")
+      ->add_option("--reference-samples", bt.reference_samples,
+                   "samples a pixel of the reference pictures, in two halves that tell their noise")
       ->check(CLI::Range(1u, 1u << 20))
       ->capture_default_str();
   latency_->add_option("--references", bt.references, "folder that keeps the reference pictures")
