@@ -126,7 +126,7 @@ TEST_CASE(
   const film::Image image = test::finish(one);
   int asked = 0, refused = 0;
   while (!other.done())
-    if (!other.step([&] { return ++asked % 37 == 0; })) REQUIRE(++refused < 10000);
+    if (!other.step([&] { return ++asked % 149 == 0; })) REQUIRE(++refused < 10000);
   CHECK(refused > 0);
   CHECK(test::identical(image, other.image()));
   REQUIRE(one.film().record_errors_complete());

@@ -18,8 +18,11 @@ namespace {
 
 constexpr uint32_t k_size = 32;
 
-const Settings k_both{
-    {"components.secondary", "cache"}, {"components.tertiary", "cache"}, {"cache.max_records", "20000"}};
+/// One branch, so that rays tell where records serve.
+const Settings k_both{{"components.secondary", "cache"},
+                      {"components.tertiary", "cache"},
+                      {"cache.max_records", "20000"},
+                      {"cache.branches", "1"}};
 /// Radii as wide as they may be, so that only what limits them keeps records from reaching where they must
 /// not.
 const Settings k_wide{{"components.secondary", "cache"},

@@ -127,7 +127,7 @@ std::vector<SharedStruct> structs() {
       SHARED("preview.h", PreviewShares, all, stale, filtered),
       SHARED("irradiance_cache/records.h", RelightPreviewPush, factor, count, parts, rays),
       SHARED("irradiance_cache/records.h", CacheFrame, routes, record_count, normal_tolerance, off_plane,
-             probing, off_plane_least, least_of_distance, least_most, parallel, eye),
+             probing, off_plane_least, least_of_distance, least_most, parallel, eye, branches),
       SHARED("irradiance_cache/records.h", RecordPush, first, records, elevations, azimuths, rays_before,
              parts, state, seed, pilot),
       SHARED("irradiance_cache/records.h", RadiusPush, first, count, error, most, near, crowd),
