@@ -42,7 +42,7 @@ bool Preview::fits(const gpu::Limits& limits, uint32_t width, uint32_t height) {
 }
 
 void Preview::forget() {
-  shown_ = has_history_ = repainted_ = false;
+  shown_ = has_history_ = repainted_ = recoloured_ = false;
   moved_camera_.reset();
 }
 
@@ -54,10 +54,11 @@ void Preview::keep(const vec3& scale, bool repainted, bool same_light) {
     same_light_ = true;
     moved_camera_.reset();
     has_history_ = true;
-    shown_ = false;
+    shown_ = recoloured_ = false;
   }
   history_scale_ *= scale;
   repainted_ = repainted_ || repainted;
+  recoloured_ = recoloured_ || repainted;
   same_light_ = same_light_ && same_light;
 }
 
@@ -262,7 +263,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                    .history_scale = history_scale(view),
                                    .step = step,
                                    .sampled = sampled != Sampled::none,
-                                   .same_light = same_light_};
+                                   .same_light = same_light_,
+                                   .recoloured = recoloured_};
   stream.dispatch(resolve_, resources_, resolve, groups(pixels()));
   stream.run();
   stream.take_times();

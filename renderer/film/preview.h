@@ -95,7 +95,8 @@ class Preview {
   bool has_history_ = false;
   /// Light is as `history_` has it; but what is seen of it can hang on the direction.
   bool same_light_ = true;
-  bool repainted_ = false;  ///< of the surfaces that come from before
+  bool repainted_ = false;   ///< of the surfaces that come from before
+  bool recoloured_ = false;  ///< `history_` was shown with other colours of surfaces
 };
 
 }  // namespace lucerna::film

@@ -56,7 +56,7 @@ void main() {
   vec4 around[k_component_count];  // on whatever surfaces, and weights
   for (uint c = 0u; c < k_component_count; ++c) around[c] = vec4(0.0);
   float alike_square = 0.0, others = 0.0, known_sum = 0.0, any_sum = 0.0;
-  vec4 bright = vec4(0.0), by_chance = vec4(0.0), brightest = vec4(0.0), next_bright = vec4(0.0);
+  vec4 bright = vec4(0.0), by_chance = vec4(0.0), brightest = vec4(0.0), next_bright = vec4(0.0), certain = vec4(0.0);
 #endif
   for (int k = 0; k < 9; ++k) {
     ivec2 at = xy + int(push.step) * (ivec2(k % 3, k / 3) - 1);
@@ -80,8 +80,10 @@ void main() {
     lost += plain * min(y, vec4(k_most_lost * white));
     vec4 above = plain * (damped - 1.0) * white;
     bright += above;
-    by_chance += above * smoothstep(vec4(k_agree), vec4(k_disagree), noise / max(y, vec4(1e-4)));
+    vec4 disagree = smoothstep(vec4(k_agree), vec4(k_disagree), noise / max(y, vec4(1e-4)));
     vec4 alike_above = alike * min(kernel, 1.0) * (damped - 1.0);
+    by_chance += above * disagree;
+    certain = max(certain, alike_above * (1.0 - disagree));
     next_bright = max(next_bright, min(alike_above, brightest));
     brightest = max(brightest, alike_above);
     if (k != 4 && (s.depth > 0.0) == (here.depth > 0.0)) {
@@ -132,8 +134,10 @@ void main() {
     if (around[c].w > 0.0) result.of[c].rgb = mix(result.of[c].rgb, around[c].rgb / around[c].w, alone);
 #endif
 #if LUCERNA_PREVIEW_FIRST
-  vec4 chance = by_chance / max(bright, vec4(1e-20));
-  // While there are no halves: one that is bright alone.
+  // Beside what is bright for certain it is a border: halves differ there by where in a pixel samples lie. While there are no
+  // halves: one that is bright alone.
+  vec4 chance = by_chance / max(bright, vec4(1e-20)) *
+                (1.0 - smoothstep(vec4(k_agree), vec4(k_disagree), certain / max(brightest, vec4(1e-20))));
   if (own.of[0].w < 0.0) chance = 1.0 - smoothstep(vec4(k_agree), vec4(k_disagree), next_bright / max(brightest, vec4(1e-20)));
   vec4 back = max(k_gives_back, chance);
   lost = back * max(lost - preview_luminances(result), vec4(0.0));

@@ -120,7 +120,11 @@ void main() {
     bool has_old = false;
     if (push.history != 0u) {
       old = preview_light(history_texels, int(pixel));
-      has_old = preview_lit(old, preview_surface(texelFetch(history_surfaces, int(pixel))));
+      PreviewSurface was = preview_surface(texelFetch(history_surfaces, int(pixel)));
+      has_old = preview_lit(old, was);
+      // A surface of another colour shows the light that fell on it by that.
+      vec3 repaint = push.recoloured != 0u && was.depth > 0.0 ? min(modulation / preview_modulation(was), vec3(8.0)) : vec3(1.0);
+      for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= vec4(repaint, luminance(repaint));
     }
     // For cameras that come after this one.
     if (here.depth < 0.0 && nearest_depth >= 0.0) surface = vec4(k_preview_about - nearest_depth, 0.0, 0.0, 0.0);

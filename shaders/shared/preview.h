@@ -71,6 +71,7 @@ struct PreviewResolvePush {
   uint step;             ///< pixels along the side of a cell of the grid
   uint sampled;          ///< 0: the film has no sample yet
   uint same_light;       ///< not 0: no light has changed since, only the camera or how it is computed
+  uint recoloured;       ///< not 0: surfaces had other colours when what was shown before was shown
 };
 
 /// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered.

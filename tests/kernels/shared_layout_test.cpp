@@ -123,7 +123,7 @@ std::vector<SharedStruct> structs() {
       SHARED("preview.h", PreviewReprojectPush, width, height, pass, orthographic, before, now),
       SHARED("preview.h", PreviewRecallPush, width, height, pass, show, curve, history_scale),
       SHARED("preview.h", PreviewResolvePush, width, height, across, down, show, curve, filtering, history,
-             repainted, history_scale, step, sampled, same_light),
+             repainted, history_scale, step, sampled, same_light, recoloured),
       SHARED("preview.h", PreviewShares, all, stale, filtered),
       SHARED("irradiance_cache/records.h", RelightPreviewPush, factor, count, parts, rays),
       SHARED("irradiance_cache/records.h", CacheFrame, routes, record_count, normal_tolerance, off_plane,

@@ -36,10 +36,9 @@ std::vector<OptionInfo> radius_rows() {
           "tell where light comes from. Paths gather it from there and end in records one vertex later: "
           "grain that more samples take away, instead of specks that stay."),
       integer_option(
-          "cache.branches", 8, 1, 64, "paths",
+          "cache.branches", 4, 1, 64, "paths",
           "Irradiance cache: paths by which each sample of the picture gathers where it does "
-          "(cache.gather): more of them cost little elsewhere, and take the grain along edges away "
-          "sooner.",
+          "(cache.gather). More: less grain along edges, and more time a sample where there are many.",
           "Paths along edges"),
       real_option(
           "cache.thinning", "0.6", 0, 1, "of the radius",
