@@ -39,10 +39,8 @@ Ray load_ray(uint slot) { return ray_from(texelFetch(ray_texels, int(2u * slot))
 Ray load_shadow_ray(uint slot) {
   return ray_from(texelFetch(shadow_ray_texels, int(2u * slot)), texelFetch(shadow_ray_texels, int(2u * slot + 1u)));
 }
-Hit load_hit(uint slot) {
-  vec4 h = texelFetch(hit_texels, int(slot));
-  return Hit(h.x, floatBitsToUint(h.y), h.z, h.w);
-}
+Hit hit_from(vec4 h) { return Hit(h.x, floatBitsToUint(h.y), h.z, h.w); }
+Hit load_hit(uint slot) { return hit_from(texelFetch(hit_texels, int(slot))); }
 
 PathState path_from(vec4 a, vec4 bits, vec4 c) {
   uvec4 b = floatBitsToUint(bits);

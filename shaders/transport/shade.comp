@@ -32,9 +32,8 @@ void keep_vertex(uint slot) {
 }
 void load_vertex(uint slot, out Ray ray, out Hit hit, out PathState path) {
   int at = int(k_branching_texels * slot);
-  vec4 h = texelFetch(branching_texels, at + 2);
   ray = ray_from(texelFetch(branching_texels, at), texelFetch(branching_texels, at + 1));
-  hit = Hit(h.x, floatBitsToUint(h.y), h.z, h.w);
+  hit = hit_from(texelFetch(branching_texels, at + 2));
   path = path_from(texelFetch(branching_texels, at + 3), texelFetch(branching_texels, at + 4), texelFetch(branching_texels, at + 5));
 }
 #endif
@@ -126,17 +125,17 @@ void main() {
   PathState path;
 #if LUCERNA_VERTEX_HOOKS
   bool again = push.round > 0u;  // the first branch has met the vertex
+  if (again)
+    load_vertex(slot, ray, hit, path);
+  else
 #else
   const bool again = false;
 #endif
-  if (!again) {
+  {
     ray = load_ray(slot);
     hit = load_hit(slot);
     path = load_path(slot);
   }
-#if LUCERNA_VERTEX_HOOKS
-  if (again) load_vertex(slot, ray, hit, path);
-#endif
   if (path.pixel == 0xffffffffu) return;
   uint state = path_automaton(path), depth = path_depth(path);
   Sampler random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
@@ -190,7 +189,7 @@ void main() {
 
     if (!passed) {
       if (depth == 0u && !again) write_features(slot, surface);
-      gain = emission_met(path, surface, hit.prim, travelled, ray.direction);
+      if (!again) gain = emission_met(path, surface, hit.prim, travelled, ray.direction);
       vec3 wo_world = -ray.direction;
       mat3 to_world = shading_frame(surface, wo_world);
       vec3 wo = wo_world * to_world;   // transposed

@@ -105,7 +105,11 @@ struct Cache::Impl {
   void write_frame(uint32_t probing, const RouteTable& routes) {
     tables.write_frame(ranges.evaluated(), probing, routes);
   }
-  void write_frame(uint32_t probing = shared::k_probe_none) { write_frame(probing, tables.picture_routes); }
+  /// ... of the picture's paths.
+  void write_frame(uint32_t probing = shared::k_probe_none) {
+    tables.write_frame(ranges.evaluated(), probing, tables.picture_routes,
+                       probing == shared::k_probe_none ? options.branches : 1);
+  }
   /// Of the records that are evaluated, as dark_luminance().
   float dark() const;
 

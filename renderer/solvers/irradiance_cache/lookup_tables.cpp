@@ -45,8 +45,7 @@ LookupTables::LookupTables(gpu::Device& device, gpu::ShaderCompiler& compiler, u
       candidates(device, {.name = "cache candidates",
                           .bytes = uint64_t{slots} * 16 * k_candidate_texels,
                           .memory = gpu::Memory::host,
-                          .texel = true}),
-      branches(o.branches) {
+                          .texel = true}) {
   const paths::LookupRoutes none;
   picture_routes = packed(routes.picture, o.gather ? routes.picture_gather : none);
   record_routes = packed(routes.records, o.gather ? routes.records_gather : none);
@@ -89,12 +88,14 @@ CacheFrame LookupTables::frame_for(uint32_t count, uint32_t probing, const Route
   f.least_of_distance = least.of_distance, f.least_most = least.most;
   f.eye = least.eye, f.parallel = least.parallel;
   f.probing = probing;
-  f.branches = probing == k_probe_none && routes == picture_routes ? branches : 1;
+  f.branches = 1;
   return f;
 }
 
-void LookupTables::write_frame(uint32_t count, uint32_t probing, const RouteTable& routes) {
-  const CacheFrame f = frame_for(count, probing, routes);
+void LookupTables::write_frame(uint32_t count, uint32_t probing, const RouteTable& routes,
+                               uint32_t branches) {
+  CacheFrame f = frame_for(count, probing, routes);
+  f.branches = branches;
   frame.write(&f, sizeof f);
 }
 

@@ -40,7 +40,6 @@ struct LookupTables {
   gpu::Buffer candidates;  ///< one a slot: where paths note that they found no record, or what they met
   RouteTable picture_routes, record_routes;  ///< where the picture's paths look up, and the records' rays
   LeastRadius least;
-  uint32_t branches;  ///< of the picture's paths where they gather
 
   LookupTables(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheRoutes& routes,
                const CacheOptions& options);
@@ -48,8 +47,9 @@ struct LookupTables {
   /// Over the first `count` records. Returns how many leaves list one of them, on average.
   double build_octree(transport::Wavefront& wavefront, uint32_t count);
   /// What paths know of the cache from here on: `count` records are evaluated; paths are to note what
-  /// `probing` says (shared::k_probe_*) and look up where `routes` says.
-  void write_frame(uint32_t count, uint32_t probing, const RouteTable& routes);
+  /// `probing` says (shared::k_probe_*), look up where `routes` says, and go on by so many branches where
+  /// they gather.
+  void write_frame(uint32_t count, uint32_t probing, const RouteTable& routes, uint32_t branches = 1);
   shared::CacheFrame frame_for(uint32_t count, uint32_t probing, const RouteTable& routes) const;
   /// Of an octree over so many records, and the records as it lists them.
   static lookup::OctreeOptions octree_options(uint32_t records);

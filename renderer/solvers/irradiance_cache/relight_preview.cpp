@@ -131,8 +131,7 @@ void RelightPreview::look_up(transport::Wavefront& wavefront, const LookupTables
   looked_up_ = on && active();
   if (looked_up_) {
     make_ready(wavefront.stream());
-    CacheFrame frame = tables.frame_for(count_, k_probe_none, routes);
-    frame.branches = 1;
+    const CacheFrame frame = tables.frame_for(count_, k_probe_none, routes);
     frame_.write(&frame, sizeof frame);
   }
   wavefront.rebind_lookup();
