@@ -14,6 +14,9 @@ constexpr uint64_t k_light_bytes = 16 * k_preview_texels;
 
 uint32_t groups(uint64_t items) { return gpu::groups_for(items, 64); }
 
+/// Along a side of so many cells.
+uint32_t change_blocks(uint32_t cells) { return gpu::groups_for(cells, k_preview_change_step); }
+
 /// Components that a view shows.
 uint32_t shown_components(const View& view) {
   return view.layer == k_layer_beauty ? view.show : 1u << (view.layer - k_layer_primary);
@@ -30,6 +33,7 @@ Preview::Preview(gpu::Device& device, gpu::ShaderCompiler& compiler)
     : device_(device),
       pack_(device, compiler, "film/preview_pack.comp"),
       halve_(device, compiler, "film/preview_halve.comp"),
+      change_(device, compiler, "film/preview_change.comp"),
       first_filter_(device, compiler, "film/preview_filter.comp", {{"LUCERNA_PREVIEW_FIRST", "1"}}),
       filter_(device, compiler, "film/preview_filter.comp"),
       scatter_(device, compiler, "film/preview_scatter.comp"),
@@ -42,39 +46,56 @@ bool Preview::fits(const gpu::Limits& limits, uint32_t width, uint32_t height) {
 }
 
 void Preview::forget() {
-  shown_ = has_history_ = repainted_ = recoloured_ = false;
+  shown_ = history_.known = history_.recoloured = repainted_ = false;
   moved_camera_.reset();
 }
 
 void Preview::keep(const vec3& scale, bool repainted, bool same_light) {
   if (shown_) {
-    std::swap(now_, history_);
-    history_camera_ = camera_, history_exposure_ = exposure_;
-    history_scale_ = vec3(1);
-    same_light_ = true;
+    std::swap(now_, history_.pixels);
+    history_.known = true;
+    history_.camera = camera_, history_.exposure = exposure_;
+    history_.scale = vec3(1);
+    history_.same_light = true, history_.recoloured = false;
     moved_camera_.reset();
-    has_history_ = true;
-    shown_ = recoloured_ = false;
+    shown_ = false;
   }
-  history_scale_ *= scale;
-  repainted_ = repainted_ || repainted;
-  recoloured_ = recoloured_ || repainted;
-  same_light_ = same_light_ && same_light;
+  history_.scale *= scale;
+  history_.recoloured |= repainted;
+  history_.same_light &= same_light;
+  repainted_ |= repainted;
 }
 
 void Preview::better() {
   // What was shown is mostly what was there before, where that holds still, and else of poorer light.
-  const bool same_light = has_history_ && same_light_;
+  const bool same_light = history_.known && history_.same_light;
   keep();
-  same_light_ = same_light;
+  history_.same_light = same_light;
 }
 
 uint64_t Preview::bytes() const {
   uint64_t sum = 0;
-  for (const gpu::Buffer* b :
-       {&now_.light, &now_.surfaces, &history_.light, &history_.surfaces, &moved_.light, &moved_.surfaces,
-        &draft_.light, &draft_.surfaces, &grid_, &grid_surfaces_, &filtered_, &before_[0], &before_[1],
-        &lost_[0], &lost_[1], &noise_, &shares_, &depths_, &nearest_})
+  for (const gpu::Buffer* b : {&now_.light,
+                               &now_.surfaces,
+                               &history_.pixels.light,
+                               &history_.pixels.surfaces,
+                               &moved_.light,
+                               &moved_.surfaces,
+                               &draft_.light,
+                               &draft_.surfaces,
+                               &grid_,
+                               &grid_surfaces_,
+                               &filtered_,
+                               &before_[0],
+                               &before_[1],
+                               &lost_[0],
+                               &lost_[1],
+                               &noise_,
+                               &changes_,
+                               &ratios_,
+                               &shares_,
+                               &depths_,
+                               &nearest_})
     if (*b) sum += b->bytes();
   return sum;
 }
@@ -91,7 +112,7 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
   if (width != width_ || height != height_) forget();
   width_ = width, height_ = height;
   const uint64_t n = pixels(), cells = uint64_t{(width + 1) / 2} * ((height + 1) / 2);
-  make_pixels(now_), make_pixels(history_);
+  make_pixels(now_), make_pixels(history_.pixels);
   const uint64_t drafted = draft ? uint64_t{draft->width()} * draft->height() : 1;
   make(draft_.light, "preview draft", drafted * k_light_bytes);
   make(draft_.surfaces, "preview draft surfaces", drafted * 16);
@@ -101,6 +122,9 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
   for (gpu::Buffer& b : before_) make(b, "preview before", cells * 16);
   for (gpu::Buffer& b : lost_) make(b, "preview lost", cells * 16);
   make(noise_, "preview noise", cells * 16);
+  const uint64_t blocks = uint64_t{change_blocks((width + 1) / 2)} * change_blocks((height + 1) / 2);
+  make(changes_, "preview changes", 4 * blocks * 16);
+  make(ratios_, "preview ratios", blocks * 16);
   gpu::make_room(device_, shares_,
                  {.name = "preview shares",
                   .bytes = groups(n) * sizeof(shared::PreviewShares),
@@ -111,7 +135,7 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
 void Preview::pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure,
                    const Pixels* guide) {
   film.bind(resources_);
-  resources_.set("history_surfaces", (guide ? *guide : history_).surfaces);
+  resources_.set("history_surfaces", (guide ? *guide : history_.pixels).surfaces);
   resources_.set("Packed", to.light);
   resources_.set("PackedSurfaces", to.surfaces);
   stream.dispatch(pack_, resources_, PreviewPackPush{film.width(), film.height(), exposure, guide != nullptr},
@@ -120,8 +144,8 @@ void Preview::pack(gpu::Stream& stream, const Film& film, const Pixels& to, floa
 
 void Preview::move(gpu::Stream& stream, PreviewReprojectPush push) {
   make_pixels(moved_);
-  resources_.set("from_texels", history_.light);
-  resources_.set("from_surfaces", history_.surfaces);
+  resources_.set("from_texels", history_.pixels.light);
+  resources_.set("from_surfaces", history_.pixels.surfaces);
   resources_.set("NearestDepth", depths_);
   resources_.set("NearestPixel", nearest_);
   resources_.set("nearest_depths", depths_);
@@ -138,11 +162,11 @@ void Preview::move(gpu::Stream& stream, PreviewReprojectPush push) {
 /// What was shown before, as it is seen now. It is always taken from the picture that was shown then, and not
 /// from what the last camera saw of that, so that nothing is lost on the way.
 const Preview::Pixels& Preview::history(gpu::Stream& stream, const PreviewCamera& now) {
-  if (!has_history_ || history_camera_ == now) return history_;
+  if (!history_.known || history_.camera == now) return history_.pixels;
   if (moved_camera_ == now) return moved_;
   move(stream, PreviewReprojectPush{width_, height_, 0,
-                                    uint32_t(history_camera_.orthographic) | now.orthographic << 1,
-                                    history_camera_.axes, now.axes});
+                                    uint32_t(history_.camera.orthographic) | now.orthographic << 1,
+                                    history_.camera.axes, now.axes});
   stream.run();
   moved_camera_ = now;
   return moved_;
@@ -170,7 +194,7 @@ void Preview::warm(gpu::Stream& stream, const Film& film) {
 
 void Preview::recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera) {
   show(stream, film, history(stream, camera),
-       {width_, height_, 0, shown_components(view), view.curve, history_scale(view)});
+       {width_, height_, 0, shown_components(view), view.curve, history_.scale_for(view)});
 }
 
 void Preview::take(gpu::Stream& stream, const Film& film, float exposure, const PreviewCamera& camera) {
@@ -190,7 +214,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   const uint32_t step = wide ? k_preview_first_step : k_preview_step;
   const uint32_t across = (width_ + step - 1) / step, down = (height_ + step - 1) / step,
                  cells = across * down;
-  if (sampled != Sampled::none) pack(stream, film, now_, view.exposure, has_history_ ? &seen : nullptr);
+  if (sampled != Sampled::none) pack(stream, film, now_, view.exposure, history_.known ? &seen : nullptr);
   if (draft) pack(stream, *draft, draft_, view.exposure, nullptr);
 
   resources_.set("packed_texels", now_.light);
@@ -212,13 +236,27 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
       .down = down,
       .draft_width = draft ? draft->width() : 0,
       .draft_height = draft ? draft->height() : 0,
-      .history = has_history_,
+      .history = history_.known,
       .repainted = repainted_,
-      .history_scale = history_scale(view),
+      .history_scale = history_.scale_for(view),
       .draft_share = draft ? float(draft->width()) * float(draft->height()) / float(cells) : 0,
       .step = step,
       .sampled = sampled != Sampled::none};
   stream.dispatch(halve_, resources_, halve, groups(cells));
+  // Other light on the same places: how much other?
+  const bool changed = history_.known && !history_.same_light;
+  const uvec2 blocks = changed ? uvec2(change_blocks(across), change_blocks(down)) : uvec2(0);
+  resources_.set("change_texels", ratios_);
+  if (changed) {
+    resources_.set("grid_texels", grid_);
+    resources_.set("before_texels", before_[0]);
+    resources_.set("Sums", changes_);
+    resources_.set("Ratios", ratios_);
+    PreviewChangePush push{across, down, blocks.x, blocks.y, 0};
+    stream.dispatch(change_, resources_, push, blocks.x * blocks.y);
+    push.all = 1;
+    stream.dispatch(change_, resources_, push, 1);
+  }
   const gpu::Buffer *from = &grid_, *to = &filtered_, *before = &before_[0], *before_to = &before_[1],
                     *lost = &lost_[0], *lost_to = &lost_[1];
   // Cells that show one pixel of a draft tell nothing of its noise.
@@ -235,7 +273,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                  // Even and odd cells meet at last.
                                  .step = pass + 1 == k_filter_passes && base == 2 ? 1 : base << pass,
                                  .orthographic = camera.orthographic,
-                                 .history = has_history_,
+                                 .history = history_.known,
                                  .right = camera.axes.right,
                                  .up = camera.axes.up,
                                  .forward = camera.axes.forward};
@@ -258,13 +296,15 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                    .show = shown_components(view),
                                    .curve = view.curve,
                                    .filtering = filtered,
-                                   .history = has_history_,
+                                   .history = history_.known,
                                    .repainted = repainted_,
-                                   .history_scale = history_scale(view),
+                                   .history_scale = history_.scale_for(view),
                                    .step = step,
                                    .sampled = sampled != Sampled::none,
-                                   .same_light = same_light_,
-                                   .recoloured = recoloured_};
+                                   .same_light = history_.same_light,
+                                   .recoloured = history_.recoloured,
+                                   .blocks_across = blocks.x,
+                                   .blocks_down = blocks.y};
   stream.dispatch(resolve_, resources_, resolve, groups(pixels()));
   stream.run();
   stream.take_times();

@@ -53,7 +53,7 @@ class Preview {
   PreviewShares develop(gpu::Stream& stream, const Film& film, const Film* draft, const View& view,
                         const PreviewCamera& camera, bool filtered, Sampled sampled = Sampled::some);
   /// Whether anything is known from before the picture began anew.
-  bool has_history() const { return has_history_; }
+  bool has_history() const { return history_.known; }
   /// Has the device compile what recall() needs, which takes it long, so that the first one does not wait for
   /// it. After develop() or take(). The stream is run.
   void warm(gpu::Stream& stream, const Film& film);
@@ -70,33 +70,41 @@ class Preview {
   struct Pixels {
     gpu::Buffer light, surfaces;
   };
+  /// What was shown before, as it was seen then.
+  struct History {
+    Pixels pixels;
+    bool known = false;
+    PreviewCamera camera;
+    float exposure = 1;
+    vec3 scale{1};  ///< of its light, as far as edits since are known to do that
+    /// Light is as it was; but what is seen of it can hang on the direction.
+    bool same_light = true;
+    bool recoloured = false;  ///< surfaces had other colours
+    vec3 scale_for(const View& view) const { return scale * (view.exposure / exposure); }
+  };
   void make_pixels(Pixels& to);
   void make_room(uint32_t width, uint32_t height, const Film* draft);
   void pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure, const Pixels* guide);
   void move(gpu::Stream& stream, shared::PreviewReprojectPush push);
   void show(gpu::Stream& stream, const Film& film, const Pixels& seen, shared::PreviewRecallPush push);
   const Pixels& history(gpu::Stream& stream, const PreviewCamera& now);
-  vec3 history_scale(const View& view) const { return history_scale_ * (view.exposure / history_exposure_); }
   uint32_t pixels() const { return width_ * height_; }
 
   gpu::Device& device_;
-  gpu::Kernel pack_, halve_, first_filter_, filter_, scatter_, gather_, recall_, resolve_;
+  gpu::Kernel pack_, halve_, change_, first_filter_, filter_, scatter_, gather_, recall_, resolve_;
   uint32_t width_ = 0, height_ = 0;
   Pixels now_, draft_;
-  Pixels history_;  ///< what was shown before, as it was seen then
-  Pixels moved_;    ///< ... as it is seen now, where that is from elsewhere
-  gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], lost_[2], noise_, shares_, depths_, nearest_;
+  History history_;
+  Pixels moved_;  ///< the history's as they are seen now, where that is from elsewhere
+  gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], lost_[2], noise_, changes_, ratios_, shares_,
+      depths_, nearest_;
   gpu::Resources resources_;
-  PreviewCamera camera_, history_camera_;
+  PreviewCamera camera_;
   std::optional<PreviewCamera> moved_camera_;  ///< of `moved_`
-  float exposure_ = 1, history_exposure_ = 1;
-  vec3 history_scale_{1};
+  float exposure_ = 1;
   bool shown_ = false;  ///< `now_` is what was developed last, of light that `history_` knows nothing of
-  bool has_history_ = false;
-  /// Light is as `history_` has it; but what is seen of it can hang on the direction.
-  bool same_light_ = true;
-  bool repainted_ = false;   ///< of the surfaces that come from before
-  bool recoloured_ = false;  ///< `history_` was shown with other colours of surfaces
+  bool repainted_ =
+      false;  ///< surfaces that have no samples yet may have other colours than any that is known
 };
 
 }  // namespace lucerna::film

@@ -73,7 +73,9 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
   const uint32_t before = fine ? plan_.fine_samples() : plan_.coarse_samples();
   if (before == 0) film.clear(wavefront.stream());
   film.set_mix(view.mix);
-  wavefront.set_frame(engine.frame(view, film.width(), film.height()), engine.plan().enabled());
+  shared::Frame frame = engine.frame(view, film.width(), film.height());
+  frame.most_branches = 1;  // the first samples say more than better ones
+  wavefront.set_frame(frame, engine.plan().enabled());
   schedule::UniformSchedule schedule(film.blocks(), 1, wavefront.slots());
   bool complete = true;
   for (const auto& solver : engine.solvers()) solver->look_up_preview(wavefront, true);

@@ -129,7 +129,8 @@ void Engine::adopt(const Engine& before, const scene::Changes& changes) {
       solver->adopt(*wavefront_, *old);
 }
 
-void Engine::begin(const PictureView& picture, const scene::Changes& changes, const vec3& light_factor) {
+void Engine::begin(const PictureView& picture, const scene::Changes& changes,
+                   const std::optional<vec3>& light_factor) {
   // What is switched off changes without new kernels.
   routing_ = routing(picture.settings, picture.world.flat.effects);
   for (const auto& solver : solvers_)

@@ -1,6 +1,7 @@
 #pragma once
 // The wavefront's kernels with the solvers of a plan, made for one world.
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "film/developer.h"
@@ -44,7 +45,8 @@ class Engine {
   void adopt(const Engine& before, const scene::Changes& changes);
   /// The picture begins anew: sets the wavefront's frame, and tells the solvers.
   /// `light_factor`: solvers::Picture::light_factor.
-  void begin(const PictureView& picture, const scene::Changes& changes, const vec3& light_factor = vec3(1));
+  void begin(const PictureView& picture, const scene::Changes& changes,
+             const std::optional<vec3>& light_factor = {});
 
   film::Developer& developer() { return *developer_; }
   film::ErrorEstimator& estimator() { return *estimator_; }

@@ -164,7 +164,7 @@ Renderer::Films Renderer::make_films(uint32_t width, uint32_t height, const uplo
   return films;
 }
 
-void Renderer::restart(const scene::Changes& changes, const vec3& factor) {
+void Renderer::restart(const scene::Changes& changes, const std::optional<vec3>& factor) {
   if (!engine_ || !film_) return;
   engine_->begin(picture_view(), changes, factor);
   transport::Wavefront& wavefront = engine_->wavefront();
@@ -175,7 +175,7 @@ void Renderer::restart(const scene::Changes& changes, const vec3& factor) {
   wavefront.reset_stats();
   mix_pending_ = false;
   start_schedule();
-  if (display_) display_->restart(changes, factor, keeps_light(changes));
+  if (display_) display_->restart(changes, factor.value_or(vec3(1)), factor || keeps_light(changes));
   draft_preparing_ = false;
   ++restarts_;
   ledger_.clear();

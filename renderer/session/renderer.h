@@ -126,6 +126,8 @@ class Renderer {
   /// fewer pixels, if it is time for one; the first comes at once, of a quarter of the resolution. Its paths,
   /// rays and time are not in stats(). False when nothing was drawn.
   bool draw_draft(const std::function<bool()>& cancel = {});
+  /// Whether there is a draft of the light as it is known now; it begins anew when that gets better.
+  bool has_draft() const { return display_ && display_->plan().coarse_samples() > 0; }
 
   /// The person's clock: seconds since this image's first step() or draw_draft(), whatever else was done
   /// meanwhile; not between rest() and the next of these, nor after the last.
@@ -248,7 +250,7 @@ class Renderer {
   /// now. On failure throws Error and everything stays as it was.
   void edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& change, bool factors);
   /// `factor`: of all light, where an edit is known to do no more than that (scene::light_factor).
-  void restart(const scene::Changes& changes, const vec3& factor = vec3(1));
+  void restart(const scene::Changes& changes, const std::optional<vec3>& factor = {});
   PictureView picture_view() const {
     return {automaton_, settings_, world_, camera_, width_, height_, relight_.weights};
   }

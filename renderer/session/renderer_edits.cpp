@@ -76,7 +76,8 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
 
 void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& changes, bool factors) {
   Relight relight = make_relight(engine_->plan(), settings_, edited, width_, height_);
-  const vec3 factor = factors ? vec3(1) : scene::light_factor(*world_.lit, *relight.lit).value_or(vec3(1));
+  std::optional<vec3> factor;
+  if (!factors) factor = scene::light_factor(*world_.lit, *relight.lit);
   WorldEdit trial(*device_, world_, std::move(edited), relight.lit,
                   wanted_apart(engine_->plan(), settings_, relight),
                   factors || relight.baked != relight_.baked);

@@ -50,8 +50,8 @@ struct Session::Impl {
   Snapshot next;
   AccuracyKeeper accuracy;
   Timer since_publish, since_numbers, since_given_up;
-  bool paused = false, dirty = true, coarse_wanted = false, recall_wanted = false, draft_given_up = false,
-       size_known = false;
+  bool paused = false, dirty = true, coarse_wanted = false, better_wanted = false, recall_wanted = false,
+       draft_given_up = false, size_known = false;
   bool filled = false;
   double publish_seconds = k_publish_seconds;  // showing takes no more than a fifth of the time
   double numbers_seconds = k_numbers_seconds;  // and read-backs no more than a twentieth
@@ -149,7 +149,7 @@ struct Session::Impl {
   }
 
   void restarted() {
-    coarse_wanted = recall_wanted = dirty = true;
+    coarse_wanted = better_wanted = recall_wanted = dirty = true;
     filled = false;
   }
 
@@ -271,8 +271,12 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
   };
   if (!paused && renderer.draw_draft(draft_cancelled)) {
     draft_given_up = false;
-    // The first one is shown at once; more of them as pictures are.
-    changed = changed || std::exchange(coarse_wanted, false);
+    // The first one is shown at once, and the first of light that has got better; more of them as pictures
+    // are.
+    if (renderer.has_draft())
+      changed = changed || std::exchange(coarse_wanted, false);
+    else
+      coarse_wanted = coarse_wanted || std::exchange(better_wanted, false);
   } else if (pending && coarse_wanted) {
     if (!std::exchange(draft_given_up, true)) since_given_up.restart();
   } else if (work && renderer.step([&] { return pending.load() || quit; })) {

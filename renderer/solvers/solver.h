@@ -57,8 +57,8 @@ struct Picture {
   const scene::Camera& camera;
   uint32_t width = 0, height = 0;
   shared::Frame frame;  ///< of its paths
-  /// To begin(): what all light is known to be multiplied by since the last one; for display.
-  vec3 light_factor{1};
+  /// To begin(): what all light is multiplied by since the last one, where that is known; for display.
+  std::optional<vec3> light_factor;
   /// A frame for paths of the solver's own, from the same camera: with these routes and `enabled` components.
   shared::Frame frame_for(const Routing& routing, uint32_t enabled) const;
 };

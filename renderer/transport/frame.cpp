@@ -33,6 +33,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.lamp_pmf = flat.lamp_pmf;
   f.max_depth = options.max_depth;
   f.roulette_depth = options.roulette_depth;
+  f.most_branches = ~0u;
   f.scene_radius = flat.scene_radius;
   if (flat.groups) f.sky_group = flat.groups->sky, f.sun_group = flat.groups->sun;
   const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);

@@ -3,7 +3,8 @@
 //
 // With new light N of variance v and older light O of variance u the difference d = N - O tells of a change: its square is
 // on average v + u + change^2. The mix w O + (1 - w) N errs least with w = v / (v + u + change^2). Both are filtered for the
-// difference, so that detail which the filter takes away is no change.
+// difference, so that detail which the filter takes away is no change. Before, what was there is scaled by what the samples
+// of many pixels around say of the change (film/preview_change.comp).
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "film/preview.glsl"
@@ -12,7 +13,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewResolvePush push; };
 uniform samplerBuffer packed_texels, surface_texels, history_texels, history_surfaces;
-uniform samplerBuffer filtered_texels, grid_surfaces, noise_texels, before_texels, lost_texels;
+uniform samplerBuffer filtered_texels, grid_surfaces, noise_texels, before_texels, lost_texels, change_texels;
 layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
@@ -58,6 +59,18 @@ void add_cell(int cell, PreviewSurface s, float w) {
 bool same_surface(PreviewSurface here, PreviewSurface s) {
   return here.depth > 0.0 && s.depth > 0.0 ? abs(here.depth - s.depth) < 0.1 * here.depth && dot(here.normal, s.normal) > 0.7
                                            : here.depth == s.depth;
+}
+
+// By component, between the middles of blocks.
+vec4 light_change(vec2 cell) {
+  if (push.blocks_across == 0u) return vec4(1.0);
+  vec2 p = (cell + 0.5) / float(k_preview_change_step) - 0.5;
+  ivec2 last = ivec2(push.blocks_across, push.blocks_down) - 1;
+  ivec2 lo = clamp(ivec2(floor(p)), ivec2(0), last), hi = min(lo + 1, last);
+  vec2 f = clamp(p - vec2(lo), 0.0, 1.0);
+  int row = int(push.blocks_across);
+  return mix(mix(texelFetch(change_texels, lo.y * row + lo.x), texelFetch(change_texels, lo.y * row + hi.x), f.x),
+             mix(texelFetch(change_texels, hi.y * row + lo.x), texelFetch(change_texels, hi.y * row + hi.x), f.x), f.y);
 }
 
 void main() {
@@ -124,7 +137,9 @@ void main() {
       has_old = preview_lit(old, was);
       // A surface of another colour shows the light that fell on it by that.
       vec3 repaint = push.recoloured != 0u && was.depth > 0.0 ? min(modulation / preview_modulation(was), vec3(8.0)) : vec3(1.0);
-      for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= vec4(repaint, luminance(repaint));
+      vec4 change = light_change(p);
+      before_smooth *= change;
+      for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= change[c] * vec4(repaint, luminance(repaint));
     }
     // For cameras that come after this one.
     if (here.depth < 0.0 && nearest_depth >= 0.0) surface = vec4(k_preview_about - nearest_depth, 0.0, 0.0, 0.0);

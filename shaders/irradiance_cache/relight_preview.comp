@@ -1,13 +1,14 @@
 // The light of records while they are relit, for display: that of the rays so far, mixed with that of before as far as the
 // new does not contradict it. With v the variance of the new, u of the old and d their difference, whose square is on
-// average v + u + change^2, the mix that errs least keeps v / (v + u + change^2) of the old.
+// average v + u + change^2, the mix that errs least keeps v / (v + u + change^2) of the old. The old is scaled first, by
+// what records around have of the new light and of the old: few rays of many say what few rays of one do not.
 #include "lib/variants.glsl"
-#include "lib/math.glsl"
+#include "irradiance_cache/light_change.glsl"
 #include "lib/invocation.glsl"
-#include "shaders/shared/irradiance_cache/records.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { RelightPreviewPush push; };
-uniform samplerBuffer record_texels, irradiance_texels, old_texels;
+uniform samplerBuffer record_texels, irradiance_texels, old_texels, light_sums_texels;
+uniform usamplerBuffer place_of_record;
 layout(scalar) writeonly buffer Shown { vec4 shown[]; };
 #if LUCERNA_GROUP_SUMS
 #include "irradiance_cache/groups.glsl"
@@ -31,8 +32,22 @@ void mix_groups(uint record, vec3 new_light, vec3 old_light) {
 
 // Of its own luminance, what the old light is taken to be wrong by at least.
 const float k_old_error = 0.05;
+// Squares of a difference, over its variance, up to which it is taken for chance.
+const float k_by_chance = 2.0;
 // Rays from which on slopes are those of the new light; before, the old ones in proportion.
 const uint k_slope_rays = 64u;
+
+// How much the light around has changed, and of what is scaled by that the relative squares of what it is off and of how
+// unsure that is.
+vec3 ratio_around(uint cluster, bool tertiary, float records, out float off, out float unsure) {
+  LightSums all = light_sums(light_sums_texels, push.clusters, tertiary), here = light_sums(light_sums_texels, cluster, tertiary);
+  vec3 ratio = mix(vec3(1.0), light_ratio(all), light_belief(all, vec3(1.0)));
+  ratio = mix(ratio, light_ratio(here), light_belief(here, ratio));
+  float scale = luminance(ratio * here.before), noise = square(min(luminance(ratio), 1.0)) * here.noise;
+  off = scale > 0.0 ? records * max(here.spread - noise, 0.0) / square(scale) : 0.0;
+  unsure = scale > 0.0 ? here.spread / square(scale) : 0.0;
+  return ratio;
+}
 
 void main() {
   uint record = global_index();
@@ -40,23 +55,37 @@ void main() {
   vec4 told = texelFetch(record_texels, int(record * k_record_texels) + 2);
   bool crowded = (floatBitsToUint(told.w) & k_record_crowded) != 0u;
   int at = int(record * k_part_count * k_part_texels);
+  vec3 factor = push.factor, factor_tertiary = push.factor;
+  // Of the scaled old light, by what it is off in this cluster and how well the scale is known, relative squares.
+  float off = 0.0, unsure = 0.0;
+  bool has_rays = push.rays > 0u;
+  if (has_rays) {
+    uint place = texelFetch(place_of_record, int(record / 4u))[record % 4u], cluster = place / k_light_cluster;
+    float n = float(push.leading != 0u ? k_light_cluster / k_light_leading : k_light_cluster);
+    vec3 ratio = ratio_around(cluster, false, n, off, unsure), tertiary = ratio;
+    // What the first rays have read was the old light: at first it changes as the light does from which it comes.
+    float tertiary_off = off, tertiary_unsure = unsure;
+    if (push.leading == 0u) tertiary = ratio_around(cluster, true, n, tertiary_off, tertiary_unsure);
+    factor *= ratio, factor_tertiary *= tertiary;
+    off = max(off, tertiary_off), unsure = max(unsure, tertiary_unsure);
+    has_rays = push.leading == 0u || place % k_light_leading == 0u;
+  }
   float y_new = 0.0, y_old = 0.0;
   for (uint p = 0u; p < k_part_count; ++p) {
     if ((push.parts >> p & 1u) == 0u) continue;
     y_new += luminance(texelFetch(irradiance_texels, at + int(p * k_part_texels)).rgb);
-    y_old += luminance(push.factor * texelFetch(old_texels, at + int(p * k_part_texels)).rgb);
+    y_old += luminance((p == k_part_tertiary ? factor_tertiary : factor) * texelFetch(old_texels, at + int(p * k_part_texels)).rgb);
   }
-  // Few rays that find nothing tell of no noise.
-  float v = square(told.z) + square(y_old) / float(max(push.rays, 1u)), u = square(k_old_error * y_old);
-  float change = max(square(y_new - y_old) - v - u, 0.0);
-  float keep = push.rays == 0u ? 1.0 : v > 0.0 ? v / (v + u + change) : 0.0;
+  float v = max(square(told.z), square(y_old) * ray_noise(record) / float(max(push.rays, 1u))), u = (square(k_old_error) + unsure) * square(y_old);
+  float change = max(square(y_new - y_old) - k_by_chance * (u + v), off * square(y_old));
+  float keep = !has_rays ? 1.0 : v > 0.0 ? v / (v + u + change) : 0.0;
 #if LUCERNA_GROUP_SUMS
   vec3 new_light = vec3(0.0), old_light = vec3(0.0);
   for (uint p = k_part_direct + 1u; p < k_part_count; ++p) {
     bool anew = (push.parts >> p & 1u) != 0u && keep < 1.0;
     vec3 was = texelFetch(old_texels, at + int(p * k_part_texels)).rgb;
     new_light += anew ? (1.0 - keep) * texelFetch(irradiance_texels, at + int(p * k_part_texels)).rgb : vec3(0.0);
-    old_light += anew ? keep * push.factor * was : was;
+    old_light += anew ? keep * (p == k_part_tertiary ? factor_tertiary : factor) * was : was;
   }
   if (!crowded) mix_groups(record, new_light, old_light);
 #endif
@@ -65,7 +94,8 @@ void main() {
     vec4 o[4], n[4];
     for (int k = 0; k < 4; ++k) o[k] = texelFetch(old_texels, to + k), n[k] = texelFetch(irradiance_texels, to + k);
     bool gathered = (push.parts >> p & 1u) != 0u && !crowded;
-    vec3 e = keep >= 1.0 ? push.factor * o[0].rgb : mix(n[0].rgb, push.factor * o[0].rgb, keep);
+    vec3 old_light = (p == k_part_tertiary ? factor_tertiary : factor) * o[0].rgb;
+    vec3 e = keep >= 1.0 ? old_light : mix(n[0].rgb, old_light, keep);
     float ratio = clamp(luminance(e) / max(luminance(o[0].rgb), 1e-20), 0.0, 4.0);
     bool slopes = push.rays >= k_slope_rays;
     for (int k = 0; k < 4; ++k) {

@@ -45,6 +45,14 @@ struct PreviewFilterPush {
   vec3 right, up, forward;
 };
 
+/// Cells along the side of a block that tells how much light has changed.
+LUCERNA_CONST uint k_preview_change_step = 16u;
+struct PreviewChangePush {
+  uint across, down;                 ///< of the grid
+  uint blocks_across, blocks_down;
+  uint all;                          ///< 0: each block's sums; not 0: from these all blocks' ratios
+};
+
 struct PreviewReprojectPush {
   uint width, height;
   uint pass;             ///< of preview_scatter.comp. 0: depths, 1: which pixel is the nearest
@@ -72,6 +80,7 @@ struct PreviewResolvePush {
   uint sampled;          ///< 0: the film has no sample yet
   uint same_light;       ///< not 0: no light has changed since, only the camera or how it is computed
   uint recoloured;       ///< not 0: surfaces had other colours when what was shown before was shown
+  uint blocks_across, blocks_down;  ///< that tell how much light has changed; 0: it has not
 };
 
 /// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered.

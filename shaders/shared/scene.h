@@ -106,6 +106,7 @@ struct Frame {
   float environment_light_pmf;///< probability that the light sampler chooses the environment, or the sky (0: not sampled)
   uint max_depth;
   uint roulette_depth;
+  uint most_branches;         ///< of a path that is followed on several times (VertexOut.branches)
   float scene_radius;
   uint sky_group, sun_group;  ///< of lights, where they are kept apart: of the environment, and of its sun
   uint automaton[32];         ///< paths::pack; k_automaton_states

@@ -216,7 +216,7 @@ void main() {
         if (!again) sample_direct_light(slot, path, surface, bsdf, wo, to_world, random, found.sky_known, found.samples_lights);
 #endif
 #if LUCERNA_VERTEX_HOOKS
-        if (passed || (path.bits & k_path_branched) != 0u) found.branches = 1u;
+        found.branches = passed || (path.bits & k_path_branched) != 0u ? 1u : min(found.branches, frame.most_branches);
         if (found.branches > 1u) {
           if (!again) keep_vertex(slot);
           path.sample_index = branch_sample(path.sample_index, found.branches, push.round);

@@ -17,6 +17,8 @@ void RelightPreview::make_room(uint32_t count) {
   if (!kernel_)
     kernel_ =
         gpu::Kernel(device_, compiler_, "irradiance_cache/relight_preview.comp", group_defines(groups_));
+  if (!change_) change_.emplace(device_, compiler_);
+  change_->make_room(count);
   if (!frame_)
     frame_ = gpu::Buffer(device_, {.name = "cache frame of a preview", .bytes = sizeof(CacheFrame)});
   if (records_ && records_->capacity() >= count) return;
@@ -32,24 +34,36 @@ void RelightPreview::make_room(uint32_t count) {
         {.name = "cache shares of groups before", .bytes = room * records_->group_bytes(), .texel = true});
 }
 
-void RelightPreview::begin(const LookupTables& tables, uint32_t count, const vec3& factor) {
+void RelightPreview::begin(const LookupTables& tables, uint32_t count, const std::optional<vec3>& factor) {
   if (count == 0) return end();
-  if (!active() || count != count_) {
+  const bool anew = !active() || count != count_;
+  known_ = factor && (anew || known_);
+  if (anew) {
     make_room(count);
-    records_->restore(tables.records.raw(count));
+    RawRecords raw = tables.records.raw(count);
+    records_->restore(raw);
+    noise_ = ray_noise(raw);
+    spheres_ = std::move(raw.spheres);
     indexed_ = false;
     factor_ = vec3(1);
   }
   count_ = count;
-  factor_ *= factor;
+  if (factor) factor_ *= *factor;
   begun_ = true;
   // Those that bring no light because paths gather there keep telling where it came from.
   const std::vector<bool> crowded = records_->crowded();
   std::vector<uint32_t> list;
   for (uint32_t r = 0; r < count; ++r)
     if (!crowded[r]) list.push_back(r);
-  queue_.set(std::move(list));
-  round_ = 0, rays_ = 0;
+  const std::vector<uint32_t> ordered = by_place(std::move(list), spheres_);
+  change_->set(ordered, noise_);
+  std::vector<uint32_t> leading, others;
+  for (size_t i = 0; i < ordered.size(); ++i)
+    (i % k_light_leading == 0 ? leading : others).push_back(ordered[i]);
+  leading_ = leading.size();
+  leading.insert(leading.end(), others.begin(), others.end());
+  queue_.set(std::move(leading));
+  round_ = known_ ? k_rounds.size() : 0, rays_ = 0;
 }
 
 void RelightPreview::make_ready(gpu::Stream& stream) {
@@ -59,7 +73,7 @@ void RelightPreview::make_ready(gpu::Stream& stream) {
   }
   if (!std::exchange(begun_, false)) return;
   keep_as_old(stream, *records_, Records::Use::look_up, count_);
-  mix(stream, ~0u);
+  mix(stream, ~0u, 0, false);
   keep_as_old(stream, *records_, Records::Use::look_up, count_);
   stream.run();
   factor_ = vec3(1);
@@ -76,7 +90,10 @@ bool RelightPreview::step(transport::Wavefront& wavefront, const paths::Automato
                           uint32_t seed, const std::function<bool()>& cancel) {
   if (complete()) return true;
   const uint32_t elevations = k_rounds[round_], cells = 4 * elevations * elevations;
-  const std::span<const uint32_t> batch = queue_.next(std::max(1u, wavefront.slots() / cells));
+  const size_t most = std::max(1u, wavefront.slots() / cells);
+  const bool first = round_ == 0 && queue_.done_count() < leading_;
+  const std::span<const uint32_t> batch =
+      queue_.next(first ? std::min(most, leading_ - queue_.done_count()) : most);
   look_up(wavefront, tables, tables.record_routes, true);
   const size_t done = evaluator.evaluate(wavefront, automaton, *records_, batch,
                                          {.elevations = elevations,
@@ -89,16 +106,20 @@ bool RelightPreview::step(transport::Wavefront& wavefront, const paths::Automato
   look_up(wavefront, tables, tables.picture_routes, false);
   queue_.advance(done);
   if (done < batch.size()) return false;
-  if (!queue_.done()) return true;
-  queue_.rewind();
-  rays_ += cells;
-  ++round_;
-  mix(wavefront.stream(), light.parts);
+  if (!queue_.done()) {
+    if (!first || queue_.done_count() < leading_) return true;
+    mix(wavefront.stream(), light.parts, cells, true);
+  } else {
+    queue_.rewind();
+    rays_ += cells;
+    ++round_;
+    mix(wavefront.stream(), light.parts, rays_, false);
+  }
   ++published_;
   return true;
 }
 
-void RelightPreview::mix(gpu::Stream& stream, uint32_t parts) {
+void RelightPreview::mix(gpu::Stream& stream, uint32_t parts, uint32_t rays, bool leading) {
   records_->bind(resources_, Records::Use::gather);
   resources_.set("old_texels", old_);
   if (groups_ > 1) {
@@ -106,7 +127,9 @@ void RelightPreview::mix(gpu::Stream& stream, uint32_t parts) {
     resources_.set("ShownGroups", records_->shares(Records::Use::look_up));
   }
   resources_.set("Shown", records_->light(Records::Use::look_up));
-  stream.dispatch(kernel_, resources_, RelightPreviewPush{factor_, count_, parts, rays_},
+  change_->measure(stream, resources_, factor_, parts, rays, leading);
+  stream.dispatch(kernel_, resources_,
+                  RelightPreviewPush{factor_, count_, parts, rays, change_->clusters(), leading},
                   gpu::groups_for(count_, 64));
   stream.run();
   stream.take_times();
@@ -145,7 +168,8 @@ void RelightPreview::bind(gpu::Resources& to) const {
 
 uint64_t RelightPreview::bytes() const {
   if (!records_) return 0;
-  return records_->bytes() + octree_->bytes() + old_.bytes() + (groups_ > 1 ? old_shares_.bytes() : 0);
+  return records_->bytes() + octree_->bytes() + old_.bytes() + change_->bytes() +
+         (groups_ > 1 ? old_shares_.bytes() : 0);
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -3,13 +3,16 @@
 // whole picture is lit at once. Relighting proper goes pass by pass with hundreds of rays a record, and what
 // it brings does not depend on any of this.
 //
-// Records keep the places and radii they had, and their light as far as that of the new rays does not
-// contradict it (shaders/irradiance_cache/relight_preview.comp). The rays read these same records: light that
-// takes many bounces arrives round by round.
+// Records keep the places and radii they had, and their light, scaled by what the new rays of many records
+// say (light_change.h), as far as their own do not contradict it
+// (shaders/irradiance_cache/relight_preview.comp). The rays read these same records: light that takes many
+// bounces arrives round by round.
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "solvers/irradiance_cache/evaluate.h"
+#include "solvers/irradiance_cache/light_change.h"
 #include "solvers/irradiance_cache/lookup_tables.h"
 #include "solvers/irradiance_cache/ray_levels.h"
 #include "solvers/irradiance_cache/record_ranges.h"
@@ -25,8 +28,9 @@ class RelightPreview {
   /// Makes what so many records need, ahead of time. Throws Error when memory is short.
   void make_room(uint32_t count);
   /// The first `count` records of the tables are about to lose their light; where there is a preview of them
-  /// already, its light is the one before. All light is known to be `factor` times that.
-  void begin(const LookupTables& tables, uint32_t count, const vec3& factor = vec3(1));
+  /// already, its light is the one before. Where all light is known to be `factor` times that, no ray is
+  /// sent.
+  void begin(const LookupTables& tables, uint32_t count, const std::optional<vec3>& factor = {});
   /// Nothing is to be shown any more.
   void end() { count_ = 0; }
   bool active() const { return count_ > 0; }
@@ -58,8 +62,8 @@ class RelightPreview {
   void make_ready(gpu::Stream& stream);
   /// What these hold becomes what was before.
   void keep_as_old(gpu::Stream& stream, const Records& records, Records::Use use, uint32_t count);
-  /// What is shown: of the rays so far and what was before.
-  void mix(gpu::Stream& stream, uint32_t parts);
+  /// What is shown: of the rays so far, that all records have had or the leading ones, and what was before.
+  void mix(gpu::Stream& stream, uint32_t parts, uint32_t rays, bool leading);
 
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
@@ -67,14 +71,19 @@ class RelightPreview {
   std::unique_ptr<Records> records_;  ///< with the rays' light, and as lookups read it what is shown
   std::unique_ptr<lookup::Octree> octree_;
   gpu::Kernel kernel_;
+  std::optional<LightChange> change_;
   gpu::Buffer old_, old_shares_, frame_;
   gpu::Resources resources_;
   RecordQueue queue_;
-  vec3 factor_{1};  ///< of the light before, since it was begun
+  std::vector<vec4> spheres_;
+  std::vector<float> noise_;  ///< ray_noise()
+  size_t leading_ = 0;        ///< in the queue first
+  vec3 factor_{1};            ///< of the light before, since it was begun
   uint32_t count_ = 0, rays_ = 0;
   size_t round_ = 0;
   uint64_t published_ = 0;
   bool looked_up_ = false, indexed_ = false, begun_ = false;
+  bool known_ = false;  ///< the light that is shown is what it will be, but for its noise
 };
 
 }  // namespace lucerna::irradiance_cache

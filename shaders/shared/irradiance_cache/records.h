@@ -81,6 +81,24 @@ struct RelightPreviewPush {
   uint count;  ///< records
   uint parts;  ///< in bits: those that are gathered anew
   uint rays;   ///< that each record has had; 0: all light is that of before
+  uint clusters;  ///< of records, k_light_cluster in each
+  uint leading;   ///< not 0: only the leading ones of clusters have had their rays
+};
+
+/// Records that tell together how much light has changed; a workgroup.
+LUCERNA_CONST uint k_light_cluster = 64u;
+/// Of each cluster one in so many leads: it has its first rays before the others.
+LUCERNA_CONST uint k_light_leading = 8u;
+LUCERNA_CONST uint k_light_sums_texels = 4u;  ///< of a cluster, and of all (irradiance_cache/light_change.glsl)
+/// Most that light is taken to have grown by.
+LUCERNA_CONST float k_most_light_ratio = 16.0f;
+struct LightChangePush {
+  vec3 factor;    ///< as RelightPreviewPush, and so on
+  uint count;     ///< records in all clusters
+  uint parts;
+  uint rays;
+  uint leading;
+  uint clusters;  ///< 0: each cluster's own sums; else those of all of them
 };
 
 LUCERNA_CONST uint k_no_routes = 0x4444u;  ///< k_component_count for every part
