@@ -7,21 +7,21 @@ layout(push_constant, scalar) uniform Push { LightChangePush push; };
 uniform samplerBuffer record_texels, irradiance_texels, old_texels;
 uniform usamplerBuffer clustered;  // records, cluster after cluster
 layout(scalar) buffer Sums { vec4 sums[]; };
-shared vec4 lanes[4][64];
+shared vec4 lanes[5][64];
 
 // Sums over the workgroup, in all rows.
 void add_up(uint lane) {
   for (uint half_way = 32u; half_way > 0u; half_way >>= 1) {
     barrier();
     if (lane < half_way)
-      for (int k = 0; k < 4; ++k) lanes[k][lane] += lanes[k][lane + half_way];
+      for (int k = 0; k < 5; ++k) lanes[k][lane] += lanes[k][lane + half_way];
   }
   barrier();
 }
 // The same of other values, after all have read the sums of the last ones.
 void add_up(uint lane, vec4 a, vec4 b, vec4 c, vec4 d) {
   barrier();
-  lanes[0][lane] = a, lanes[1][lane] = b, lanes[2][lane] = c, lanes[3][lane] = d;
+  lanes[0][lane] = a, lanes[1][lane] = b, lanes[2][lane] = c, lanes[3][lane] = d, lanes[4][lane] = vec4(0.0);
   add_up(lane);
 }
 
@@ -37,11 +37,11 @@ float weight_of(float light, float sum, float count) {
 void main() {
   uint lane = gl_LocalInvocationID.x;
   if (push.clusters > 0u) {
-    for (int k = 0; k < 4; ++k) lanes[k][lane] = vec4(0.0);
+    for (int k = 0; k < 5; ++k) lanes[k][lane] = vec4(0.0);
     for (uint c = lane; c < push.clusters; c += 64u)
-      for (uint k = 0u; k < 4u; ++k) lanes[k][lane] += sums[k_light_sums_texels * c + k];
+      for (uint k = 0u; k < 5u; ++k) lanes[k][lane] += sums[k_light_sums_texels * c + k];
     add_up(lane);
-    if (lane < 4u) sums[k_light_sums_texels * push.clusters + lane] = lanes[lane][0];
+    if (lane < k_light_sums_texels) sums[k_light_sums_texels * push.clusters + lane] = lanes[lane][0];
     return;
   }
   uint cluster = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, entry = 64u * cluster + lane;
@@ -70,13 +70,15 @@ void main() {
   vec3 sum[4] = vec3[4](lanes[0][0].rgb, lanes[1][0].rgb, lanes[2][0].rgb, lanes[3][0].rgb);
   vec2 ratio = vec2(luminance(sum[0]) / max(luminance(sum[1]), 1e-20), luminance(sum[2]) / max(luminance(sum[3]), 1e-20));
   vec2 off = weight * (is - ratio * was);
-  // The noise that rays tell is of all parts together.
+  // The noise that rays tell is of all parts together; few that find nothing tell of none.
+  vec2 told = weight * weight * (variance + square(ratio.x * was.x + ratio.y * was.y) / float(max(push.rays, 1u)));
   vec2 expected = weight * weight * max(vec2(variance), noise * was * was);
-  add_up(lane, vec4(off * off, expected), vec4(0.0), vec4(0.0), vec4(0.0));
-  vec4 squares = lanes[0][0];
+  add_up(lane, vec4(off * off, expected), vec4(told, 0.0, 0.0), vec4(0.0), vec4(0.0));
+  vec4 squares = lanes[0][0], noises = lanes[1][0];
   if (lane == 0u && 64u * cluster < push.count) {
     uint at = k_light_sums_texels * cluster;
     sums[at] = vec4(sum[0], squares.x), sums[at + 1u] = vec4(sum[1], squares.z);
     sums[at + 2u] = vec4(sum[2], squares.y), sums[at + 3u] = vec4(sum[3], squares.w);
+    sums[at + 4u] = noises;
   }
 }

@@ -10,14 +10,16 @@
 struct LightSums {
   vec3 now, before;
   float spread;  // of (now - ratio * before) squared, luminance, where the ratio is that of the cluster's sums
-  float noise;   // the part of it that so few rays are expected to bring where the light has not changed
+  float noise;   // the part of it that the rays tell of their noise
+  float expected;  // ... that so few rays are expected to bring where the light has not changed
 };
 
 // `tertiary`: of that part; else of all others.
 LightSums light_sums(samplerBuffer texels, uint cluster, bool tertiary) {
   int at = int(k_light_sums_texels * cluster + (tertiary ? 2u : 0u));
   vec4 a = texelFetch(texels, at), b = texelFetch(texels, at + 1);
-  return LightSums(a.xyz, b.xyz, a.w, b.w);
+  vec4 noise = texelFetch(texels, int(k_light_sums_texels * cluster) + 4);
+  return LightSums(a.xyz, b.xyz, a.w, tertiary ? noise.y : noise.x, b.w);
 }
 
 // By channel; where a channel had no light, as the luminance.
@@ -37,7 +39,7 @@ float ray_noise(uint record) { return texelFetch(ray_noise_texels, int(record / 
 // what has been found or by what was to be expected; 1 far off.
 float light_belief(LightSums s, vec3 known) {
   float off = square(luminance(s.now - known * s.before));
-  float by_chance = square(min(luminance(known), 1.0)) * s.noise;
+  float by_chance = square(min(luminance(known), 1.0)) * s.expected;
   return off > 0.0 ? clamp(1.0 - 4.0 * s.spread / off, 0.0, 1.0) * smoothstep(4.0 * by_chance, 9.0 * by_chance, off) : 0.0;
 }
 #endif

@@ -39,12 +39,12 @@ const uint k_slope_rays = 64u;
 
 // How much the light around has changed, and of what is scaled by that the relative squares of what it is off and of how
 // unsure that is.
-vec3 ratio_around(uint cluster, bool tertiary, float records, out float off, out float unsure) {
+vec3 ratio_around(uint cluster, bool tertiary, vec3 known, float records, out float off, out float unsure) {
   LightSums all = light_sums(light_sums_texels, push.clusters, tertiary), here = light_sums(light_sums_texels, cluster, tertiary);
-  vec3 ratio = mix(vec3(1.0), light_ratio(all), light_belief(all, vec3(1.0)));
+  vec3 ratio = mix(known, light_ratio(all), light_belief(all, known));
   ratio = mix(ratio, light_ratio(here), light_belief(here, ratio));
-  float scale = luminance(ratio * here.before), noise = square(min(luminance(ratio), 1.0)) * here.noise;
-  off = scale > 0.0 ? records * max(here.spread - noise, 0.0) / square(scale) : 0.0;
+  float scale = luminance(ratio * here.before);
+  off = scale > 0.0 ? records * max(here.spread - here.noise, 0.0) / square(scale) : 0.0;
   unsure = scale > 0.0 ? here.spread / square(scale) : 0.0;
   return ratio;
 }
@@ -62,10 +62,10 @@ void main() {
   if (has_rays) {
     uint place = texelFetch(place_of_record, int(record / 4u))[record % 4u], cluster = place / k_light_cluster;
     float n = float(push.leading != 0u ? k_light_cluster / k_light_leading : k_light_cluster);
-    vec3 ratio = ratio_around(cluster, false, n, off, unsure), tertiary = ratio;
+    vec3 ratio = ratio_around(cluster, false, vec3(1.0), n, off, unsure), tertiary = ratio;
     // What the first rays have read was the old light: at first it changes as the light does from which it comes.
     float tertiary_off = off, tertiary_unsure = unsure;
-    if (push.leading == 0u) tertiary = ratio_around(cluster, true, n, tertiary_off, tertiary_unsure);
+    if (push.leading == 0u) tertiary = ratio_around(cluster, true, ratio, n, tertiary_off, tertiary_unsure);
     factor *= ratio, factor_tertiary *= tertiary;
     off = max(off, tertiary_off), unsure = max(unsure, tertiary_unsure);
     has_rays = push.leading == 0u || place % k_light_leading == 0u;
@@ -76,7 +76,8 @@ void main() {
     y_new += luminance(texelFetch(irradiance_texels, at + int(p * k_part_texels)).rgb);
     y_old += luminance((p == k_part_tertiary ? factor_tertiary : factor) * texelFetch(old_texels, at + int(p * k_part_texels)).rgb);
   }
-  float v = max(square(told.z), square(y_old) * ray_noise(record) / float(max(push.rays, 1u))), u = (square(k_old_error) + unsure) * square(y_old);
+  // Few rays that find nothing tell of no noise.
+  float v = square(told.z) + square(y_old) / float(max(push.rays, 1u)), u = (square(k_old_error) + unsure) * square(y_old);
   float change = max(square(y_new - y_old) - k_by_chance * (u + v), off * square(y_old));
   float keep = !has_rays ? 1.0 : v > 0.0 ? v / (v + u + change) : 0.0;
 #if LUCERNA_GROUP_SUMS
