@@ -250,6 +250,29 @@ TEST_CASE("what was there before is scaled by what few samples of many pixels sa
   CHECK(fine > 0.025);
 }
 
+TEST_CASE("where few samples by chance find nothing what was there before does not go dark") {
+  Stage stage(192, 96);
+  stage.sample(stage.film, 8, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.2f)}; });
+  stage.show();
+  stage.preview.keep();
+  stage.film.clear(stage.stream);
+  // A block of 32x32 pixels finds this light once or twice, or not at all.
+  std::mt19937 random(17);
+  stage.sample(stage.film, 1,
+               [&](uint32_t, uint32_t) { return Sample{.light = vec3(random() % 700 == 0 ? 140.0f : 0)}; });
+  stage.show();
+  const std::vector<float> shown = stage.shown();
+  double darkest = 1;
+  for (uint32_t block = 0; block < 18; ++block) {
+    double sum = 0;
+    for (uint32_t i = 0; i < 1024; ++i)
+      sum += shown[size_t{block / 6 * 32 + i / 32} * 192 + block % 6 * 32 + i % 32];
+    darkest = std::min(darkest, sum / 1024);
+  }
+  // What pixels hold against it by themselves takes some away.
+  CHECK(darkest > 0.06);
+}
+
 TEST_CASE("what was there before is shown in the new colour of a surface at once") {
   Stage stage(96, 64);
   std::mt19937 random(5);
