@@ -75,28 +75,13 @@ void Preview::better() {
 
 uint64_t Preview::bytes() const {
   uint64_t sum = 0;
-  for (const gpu::Buffer* b : {&now_.light,
-                               &now_.surfaces,
-                               &history_.pixels.light,
-                               &history_.pixels.surfaces,
-                               &moved_.light,
-                               &moved_.surfaces,
-                               &draft_.light,
-                               &draft_.surfaces,
-                               &grid_,
-                               &grid_surfaces_,
-                               &filtered_,
-                               &before_[0],
-                               &before_[1],
-                               &lost_[0],
-                               &lost_[1],
-                               &noise_,
-                               &changes_,
-                               &ratios_,
-                               &shares_,
-                               &depths_,
-                               &nearest_})
-    if (*b) sum += b->bytes();
+  const auto add = [&](const gpu::Buffer& b) {
+    if (b) sum += b.bytes();
+  };
+  for (const Pixels* p : {&now_, &history_.pixels, &moved_, &draft_}) add(p->light), add(p->surfaces);
+  for (const gpu::Buffer* b : {&grid_, &grid_surfaces_, &filtered_, &before_[0], &before_[1], &lost_[0],
+                               &lost_[1], &noise_, &changes_, &ratios_, &shares_, &depths_, &nearest_})
+    add(*b);
   return sum;
 }
 
@@ -123,7 +108,7 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
   for (gpu::Buffer& b : lost_) make(b, "preview lost", cells * 16);
   make(noise_, "preview noise", cells * 16);
   const uint64_t blocks = uint64_t{change_blocks((width + 1) / 2)} * change_blocks((height + 1) / 2);
-  make(changes_, "preview changes", 4 * blocks * 16);
+  make(changes_, "preview changes", blocks * k_preview_change_texels * 16);
   make(ratios_, "preview ratios", blocks * 16);
   gpu::make_room(device_, shares_,
                  {.name = "preview shares",

@@ -1,45 +1,33 @@
 // Sums of the light that records have now and had before: of each cluster, then of all clusters (light_change.glsl). One
 // workgroup a cluster; one for all of them.
 #include "lib/variants.glsl"
+#include "shaders/shared/irradiance_cache/records.h"
+#define LUCERNA_SUM_ROWS int(k_light_sums_texels)
 #include "irradiance_cache/light_change.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { LightChangePush push; };
 uniform samplerBuffer record_texels, irradiance_texels, old_texels;
 uniform usamplerBuffer clustered;  // records, cluster after cluster
 layout(scalar) buffer Sums { vec4 sums[]; };
-shared vec4 lanes[5][64];
-
-// Sums over the workgroup, in all rows.
-void add_up(uint lane) {
-  for (uint half_way = 32u; half_way > 0u; half_way >>= 1) {
-    barrier();
-    if (lane < half_way)
-      for (int k = 0; k < 5; ++k) lanes[k][lane] += lanes[k][lane + half_way];
-  }
-  barrier();
-}
-// The same of other values, after all have read the sums of the last ones.
+// Sums other values, after all have read the sums of the last ones.
 void add_up(uint lane, vec4 a, vec4 b, vec4 c, vec4 d) {
   barrier();
   lanes[0][lane] = a, lanes[1][lane] = b, lanes[2][lane] = c, lanes[3][lane] = d, lanes[4][lane] = vec4(0.0);
   add_up(lane);
 }
 
-// No record weighs more than one of a tenth of its cluster's mean.
-const float k_dark = 0.1;
-
 // Over what there is on average, of those that count.
 float weight_of(float light, float sum, float count) {
-  float dark = k_dark * sum / max(count, 1.0);
+  float dark = k_dark_place * sum / max(count, 1.0);
   return dark > 0.0 ? 1.0 / max(light, dark) : 0.0;
 }
 
 void main() {
   uint lane = gl_LocalInvocationID.x;
   if (push.clusters > 0u) {
-    for (int k = 0; k < 5; ++k) lanes[k][lane] = vec4(0.0);
+    for (int k = 0; k < LUCERNA_SUM_ROWS; ++k) lanes[k][lane] = vec4(0.0);
     for (uint c = lane; c < push.clusters; c += 64u)
-      for (uint k = 0u; k < 5u; ++k) lanes[k][lane] += sums[k_light_sums_texels * c + k];
+      for (uint k = 0u; k < k_light_sums_texels; ++k) lanes[k][lane] += sums[k_light_sums_texels * c + k];
     add_up(lane);
     if (lane < k_light_sums_texels) sums[k_light_sums_texels * push.clusters + lane] = lanes[lane][0];
     return;

@@ -2,6 +2,7 @@
 // rays say next to nothing.
 #ifndef LUCERNA_LIGHT_CHANGE_GLSL
 #define LUCERNA_LIGHT_CHANGE_GLSL
+#include "lib/light_change.glsl"
 #include "lib/math.glsl"
 #include "shaders/shared/irradiance_cache/records.h"
 
@@ -35,11 +36,9 @@ uniform samplerBuffer ray_noise_texels;  // four records each
 // what is bright, those that find nothing seem to be without noise.
 float ray_noise(uint record) { return texelFetch(ray_noise_texels, int(record / 4u))[record % 4u]; }
 
-// How far such sums are believed where `known` is what is known without them: 0 within two standard errors of it, by
-// what has been found or by what was to be expected; 1 far off.
+// How far such sums are believed where `known` is what is known without them.
 float light_belief(LightSums s, vec3 known) {
-  float off = square(luminance(s.now - known * s.before));
-  float by_chance = square(min(luminance(known), 1.0)) * s.expected;
-  return off > 0.0 ? clamp(1.0 - 4.0 * s.spread / off, 0.0, 1.0) * smoothstep(4.0 * by_chance, 9.0 * by_chance, off) : 0.0;
+  float off = square(luminance(s.now - known * s.before)), expected = square(min(luminance(known), 1.0)) * s.expected;
+  return light_belief(vec4(off), vec4(s.spread), vec4(expected)).x;
 }
 #endif

@@ -47,6 +47,7 @@ struct PreviewFilterPush {
 
 /// Cells along the side of a block that tells how much light has changed.
 LUCERNA_CONST uint k_preview_change_step = 16u;
+LUCERNA_CONST uint k_preview_change_texels = 4u;  ///< of its sums
 struct PreviewChangePush {
   uint across, down;                 ///< of the grid
   uint blocks_across, blocks_down;

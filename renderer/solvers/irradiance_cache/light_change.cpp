@@ -1,9 +1,6 @@
 #include "solvers/irradiance_cache/light_change.h"
 
 #include <algorithm>
-#include <bit>
-
-#include "base/color.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -37,15 +34,12 @@ std::vector<uint32_t> by_place(std::vector<uint32_t> records, const std::vector<
   return records;
 }
 
-std::vector<float> ray_noise(const RawRecords& records) {
-  std::vector<float> noise(records.size(), 1);
-  for (uint32_t r = 0; r < records.size(); ++r) {
-    const vec4& told = records.places[size_t{r} * k_record_texels + 2];
-    float light = 0;
-    for (uint32_t p = 0; p < k_part_count; ++p)
-      light += luminance(vec3(records.lights[(size_t{r} * k_part_count + p) * k_part_texels]));
-    const float rays = float(std::bit_cast<uint32_t>(told.x)), error = told.z;
-    if (light > 0) noise[r] = std::clamp(rays * error * error / (light * light), 1.0f, 1e4f);
+std::vector<float> ray_noise(const Records& records) {
+  const std::vector<float> light = records.luminances();
+  std::vector<float> noise;
+  for (const Records::Figures& told : records.figures()) {
+    const float y = light[noise.size()];
+    noise.push_back(y > 0 ? std::clamp(told.rays * told.error * told.error / (y * y), 1.0f, 1e4f) : 1.0f);
   }
   return noise;
 }

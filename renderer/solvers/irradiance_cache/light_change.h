@@ -14,7 +14,7 @@ namespace lucerna::irradiance_cache {
 std::vector<uint32_t> by_place(std::vector<uint32_t> records, const std::vector<vec4>& spheres);
 
 /// Of each record, the variance of one ray over the square of its light, as all its rays tell.
-std::vector<float> ray_noise(const RawRecords& records);
+std::vector<float> ray_noise(const Records& records);
 
 class LightChange {
  public:

@@ -40,29 +40,27 @@ void RelightPreview::begin(const LookupTables& tables, uint32_t count, const std
   known_ = factor && (anew || known_);
   if (anew) {
     make_room(count);
-    RawRecords raw = tables.records.raw(count);
+    const RawRecords raw = tables.records.raw(count);
     records_->restore(raw);
-    noise_ = ray_noise(raw);
-    spheres_ = std::move(raw.spheres);
     indexed_ = false;
     factor_ = vec3(1);
+    // Those that bring no light because paths gather there keep telling where it came from.
+    std::vector<uint32_t> lit;
+    for (uint32_t r = 0; r < count; ++r)
+      if (!raw.crowded(r)) lit.push_back(r);
+    const std::vector<uint32_t> ordered = by_place(std::move(lit), raw.spheres);
+    change_->set(ordered, ray_noise(*records_));
+    std::vector<uint32_t> leading, others;
+    for (size_t i = 0; i < ordered.size(); ++i)
+      (i % k_light_leading == 0 ? leading : others).push_back(ordered[i]);
+    leading_ = leading.size();
+    leading.insert(leading.end(), others.begin(), others.end());
+    queue_.set(std::move(leading));
   }
+  queue_.rewind();
   count_ = count;
   if (factor) factor_ *= *factor;
   begun_ = true;
-  // Those that bring no light because paths gather there keep telling where it came from.
-  const std::vector<bool> crowded = records_->crowded();
-  std::vector<uint32_t> list;
-  for (uint32_t r = 0; r < count; ++r)
-    if (!crowded[r]) list.push_back(r);
-  const std::vector<uint32_t> ordered = by_place(std::move(list), spheres_);
-  change_->set(ordered, noise_);
-  std::vector<uint32_t> leading, others;
-  for (size_t i = 0; i < ordered.size(); ++i)
-    (i % k_light_leading == 0 ? leading : others).push_back(ordered[i]);
-  leading_ = leading.size();
-  leading.insert(leading.end(), others.begin(), others.end());
-  queue_.set(std::move(leading));
   round_ = known_ ? k_rounds.size() : 0, rays_ = 0;
 }
 

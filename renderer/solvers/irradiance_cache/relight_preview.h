@@ -75,10 +75,8 @@ class RelightPreview {
   gpu::Buffer old_, old_shares_, frame_;
   gpu::Resources resources_;
   RecordQueue queue_;
-  std::vector<vec4> spheres_;
-  std::vector<float> noise_;  ///< ray_noise()
-  size_t leading_ = 0;        ///< in the queue first
-  vec3 factor_{1};            ///< of the light before, since it was begun
+  size_t leading_ = 0;  ///< in the queue first
+  vec3 factor_{1};      ///< of the light before, since it was begun
   uint32_t count_ = 0, rays_ = 0;
   size_t round_ = 0;
   uint64_t published_ = 0;

@@ -90,8 +90,6 @@ LUCERNA_CONST uint k_light_cluster = 64u;
 /// Of each cluster one in so many leads: it has its first rays before the others.
 LUCERNA_CONST uint k_light_leading = 8u;
 LUCERNA_CONST uint k_light_sums_texels = 5u;  ///< of a cluster, and of all (irradiance_cache/light_change.glsl)
-/// Most that light is taken to have grown by.
-LUCERNA_CONST float k_most_light_ratio = 16.0f;
 struct LightChangePush {
   vec3 factor;    ///< as RelightPreviewPush, and so on
   uint count;     ///< records in all clusters
