@@ -264,7 +264,7 @@ class Latency {
                                       reference.half_difference);
       moments.push_back(m);
     }
-    LatencyResult result = latency_of(moments, shown.back().seconds - loading);
+    LatencyResult result = latency_of(moments, o_.seconds);
     result.scene = file.stem().string(), result.solver = solver, result.edit = k_edit_names[size_t(edit)];
     result.loading_s = loading;
     if (!o_.pictures.empty()) {

@@ -3,6 +3,7 @@
 #include "film/preview.glsl"
 #define LUCERNA_SUM_ROWS int(k_preview_change_texels)
 #include "lib/light_change.glsl"
+#include "lib/sum_rows.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewChangePush push; };
 uniform samplerBuffer grid_texels, grid_surfaces, before_texels;

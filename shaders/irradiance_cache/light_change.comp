@@ -3,6 +3,7 @@
 #include "lib/variants.glsl"
 #include "shaders/shared/irradiance_cache/records.h"
 #define LUCERNA_SUM_ROWS int(k_light_sums_texels)
+#include "lib/sum_rows.glsl"
 #include "irradiance_cache/light_change.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { LightChangePush push; };
