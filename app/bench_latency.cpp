@@ -1,4 +1,5 @@
 // How soon the window shows something to work with after an edit.
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -28,6 +29,22 @@ fs::path scene_file(const std::string& name) {
   return fs::exists(name) || !fs::exists(own) ? fs::path(name) : own;
 }
 
+/// The runs of each edit, in the order of the first ones.
+std::vector<std::vector<bench::LatencyResult>> by_edit(const std::vector<bench::LatencyResult>& results) {
+  std::vector<std::vector<bench::LatencyResult>> rows;
+  for (const bench::LatencyResult& r : results) {
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& of) {
+      const bench::LatencyResult& first = of.front();
+      return first.scene == r.scene && first.solver == r.solver && first.edit == r.edit;
+    });
+    if (row == rows.end())
+      rows.push_back({r});
+    else
+      row->push_back(r);
+  }
+  return rows;
+}
+
 }  // namespace
 
 int bench_latency(const BenchLatencyArguments& a) {
@@ -39,6 +56,7 @@ int bench_latency(const BenchLatencyArguments& a) {
     for (const char* name : bench::k_edit_names) o.edits.push_back(bench::edit_of(name));
   std::tie(o.width, o.height) = parse_size(a.size);
   o.reference_samples = a.reference_samples, o.seconds = a.seconds, o.settle.seconds = a.settle;
+  o.repeats = a.repeats;
   o.device = a.device, o.references = a.references, o.pictures = a.pictures, o.scenes = a.load;
   for (const std::string& pair : a.set) {
     const size_t at = pair.find('=');
@@ -55,6 +73,11 @@ int bench_latency(const BenchLatencyArguments& a) {
         std::fflush(stdout);
       },
       [&] { return interrupt.signal() != 0; });
+  const std::vector<std::vector<bench::LatencyResult>> rows = by_edit(results);
+  if (a.repeats > 1) {
+    std::printf("\nmedian of %u\n", a.repeats);
+    for (const auto& runs : rows) std::printf("%s\n", bench::latency_row(bench::median_of(runs)).c_str());
+  }
   if (a.json.empty()) return 0;
   const bench::Machine machine = bench::this_machine();
   nlohmann::ordered_json j{{"version", LUCERNA_VERSION},
@@ -64,7 +87,12 @@ int bench_latency(const BenchLatencyArguments& a) {
                            {"load", bench::load_average()},
                            {"size", a.size},
                            {"reference_samples", a.reference_samples}};
-  for (const bench::LatencyResult& r : results) j["rows"].push_back(bench::to_json(r));
+  for (const auto& runs : rows) {
+    nlohmann::ordered_json row = bench::to_json(bench::median_of(runs));
+    if (a.repeats > 1)
+      for (const bench::LatencyResult& run : runs) row["runs"].push_back(bench::to_json(run));
+    j["rows"].push_back(row);
+  }
   write_file(a.json, j.dump(2) + "\n");
   return 0;
 }

@@ -293,6 +293,11 @@ void Program::add_bench_latency() {
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
   latency_
+      ->add_option("--repeats", bt.repeats,
+                   "sessions of each scene and solver; the middle one of each figure is told at the end")
+      ->check(CLI::Range(1u, 1000u))
+      ->capture_default_str();
+  latency_
       ->add_option("--settle", bt.settle,
                    "seconds, at most, that are waited before an edit until the picture is complete")
       ->check(CLI::Range(0.0, 3600.0))

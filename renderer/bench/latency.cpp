@@ -168,7 +168,8 @@ class Latency {
     fs::create_directories(o_.references);
     if (!o_.pictures.empty()) fs::create_directories(o_.pictures);
     for (const fs::path& file : o_.files)
-      for (const std::string& solver : o_.solvers) run_scene(file, solver);
+      for (const std::string& solver : o_.solvers)
+        for (uint32_t i = 0; i < o_.repeats; ++i) run_scene(file, solver);
     return std::move(results_);
   }
 
@@ -419,6 +420,25 @@ LatencyResult latency_of(std::span<const Moment> moments, double seconds) {
     for (size_t k = 0; k < k_told_s.size(); ++k)
       if (m.seconds <= k_told_s[k] && k_told_s[k] <= seconds + 0.5) r.error[k] = m.distance.error;
   }
+  return r;
+}
+
+LatencyResult median_of(std::span<const LatencyResult> runs) {
+  LatencyResult r = runs.front();
+  const auto middle = [&](const auto& of) {
+    std::vector<double> all;
+    for (const LatencyResult& run : runs) all.push_back(of(run).value_or(k_infinity));
+    std::sort(all.begin(), all.end());
+    const double value = all[all.size() / 2];
+    return value < k_infinity ? std::optional(value) : std::nullopt;
+  };
+  const auto of = [](auto LatencyResult::*member) {
+    return [member](const LatencyResult& run) { return std::optional<double>(run.*member); };
+  };
+  r.lit_s = middle(of(&LatencyResult::lit_s)), r.usable_s = middle(of(&LatencyResult::usable_s));
+  r.rise = *middle(of(&LatencyResult::rise)), r.loading_s = *middle(of(&LatencyResult::loading_s));
+  for (size_t k = 0; k < r.error.size(); ++k)
+    r.error[k] = middle([k](const LatencyResult& run) { return run.error[k]; });
   return r;
 }
 

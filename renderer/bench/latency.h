@@ -65,6 +65,10 @@ struct LatencyResult {
   double rise = 0;
   double loading_s = 0;  ///< of a load
 };
+/// Of one edit measured several times, each figure by itself: the middle one, of an even number the larger of
+/// the two in the middle. What was not reached counts as later than all. Names are the first one's; at least
+/// one run.
+LatencyResult median_of(std::span<const LatencyResult> runs);
 /// From the moments of an edit, in order, measured until `seconds`. Names are left empty.
 LatencyResult latency_of(std::span<const Moment> moments, double seconds);
 
@@ -74,7 +78,8 @@ struct LatencyOptions {
   std::vector<Edit> edits;                               ///< in this order, one on top of the other
   uint32_t width = 960, height = 540;
   uint32_t reference_samples = 64;
-  double seconds = 10;  ///< that each edit is watched
+  double seconds = 10;   ///< that each edit is watched
+  uint32_t repeats = 1;  ///< sessions of each scene and solver, each with all edits
   struct {
     double seconds = 120;  ///< that it may take to be complete
     uint32_t samples = 8;  ///< a pixel, that it then has
@@ -87,7 +92,8 @@ struct LatencyOptions {
 };
 
 /// Measures all; `done` is told of each edit as it ends. What an edit needs and a scene has not is told by
-/// `message` and left out. Throws Error as loading, rendering and writing do, and when `interrupted`.
+/// `message` and left out. Results of repeated sessions follow each other. Throws Error as loading, rendering
+/// and writing do, and when `interrupted`.
 std::vector<LatencyResult> measure_latency(const LatencyOptions& options, const Message& message,
                                            const std::function<void(const LatencyResult&)>& done,
                                            const std::function<bool()>& interrupted = {});

@@ -89,6 +89,21 @@ TEST_CASE("a picture counts as usable from when it stays so, and every step back
   CHECK(latency_row(latency_of(worse, 5)).size() >= latency_heading().size());
 }
 
+TEST_CASE("of several runs each figure's middle one is told; what was not reached comes last") {
+  LatencyResult a, b, c;
+  a.scene = "hall", a.usable_s = 0.4, a.error[1] = 0.2, a.rise = 0.3;
+  b.usable_s = 2, b.error[1] = 0.1, b.rise = 0.1, b.lit_s = 1;
+  c.error[1] = 0.5, c.rise = 0.2;
+  const LatencyResult m = median_of(std::vector{a, b, c});
+  CHECK(m.scene == "hall");
+  CHECK(m.usable_s == 2.0);
+  CHECK_FALSE(m.lit_s);  // two of three never were
+  CHECK(m.error[1] == 0.2);
+  CHECK_FALSE(m.error[2]);
+  CHECK(m.rise == 0.2);
+  CHECK(median_of(std::vector{a, c}).rise == 0.3);
+}
+
 TEST_CASE("edits are known by their names") {
   for (size_t i = 0; i < k_edit_names.size(); ++i) CHECK(size_t(edit_of(k_edit_names[i])) == i);
   CHECK_THROWS_WITH(edit_of("lamp"), Contains("'lamp'") && Contains("strength") && Contains("solver"));
