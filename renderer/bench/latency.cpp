@@ -259,7 +259,8 @@ class Latency {
     const Reference& reference = reference_of(file, float(std::exp2(s.settings().real("film.ev"))));
     std::vector<Moment> moments;
     for (const Shown& at : shown) {
-      Moment m{at.seconds - loading, {1, 1}};
+      // What is shown while a scene is loaded is what it begins with.
+      Moment m{std::max(0.0, at.seconds - loading), {1, 1}};
       if (at.snapshot && at.snapshot->rgba.size() == reference.mean.size() * 4)
         m.distance = picture_distance(shown_luminance(at.snapshot->rgba), reference.mean, o_.width,
                                       reference.half_difference);

@@ -118,9 +118,9 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
 }
 
 void Preview::pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure,
-                   const Pixels* guide) {
+                   const gpu::Buffer* guide) {
   film.bind(resources_);
-  resources_.set("history_surfaces", (guide ? *guide : history_.pixels).surfaces);
+  resources_.set("guide_surfaces", guide ? *guide : history_.pixels.surfaces);
   resources_.set("Packed", to.light);
   resources_.set("PackedSurfaces", to.surfaces);
   stream.dispatch(pack_, resources_, PreviewPackPush{film.width(), film.height(), exposure, guide != nullptr},
@@ -191,23 +191,30 @@ void Preview::take(gpu::Stream& stream, const Film& film, float exposure, const 
 }
 
 PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film* draft, const View& view,
-                               const PreviewCamera& camera, bool filtered, Sampled sampled) {
+                               const PreviewCamera& camera, bool filtered, Sampled sampled,
+                               const gpu::Buffer* seen) {
   make_room(film.width(), film.height(), draft);
-  const Pixels& seen = history(stream, camera);
+  const Pixels& before_edit = history(stream, camera);
+  const gpu::Buffer* guide = seen ? seen : history_.known ? &before_edit.surfaces : nullptr;
+  const uint32_t surfaces = seen             ? k_preview_surface_seen
+                            : history_.known ? k_preview_surface_before
+                                             : k_preview_surface_unknown;
+  const bool repainted = repainted_ && !seen;
   // Wide cells lose nothing while each has no more than one pixel of a draft.
   const bool wide = sampled == Sampled::none && draft && draft->width() <= width_ / k_preview_first_step;
   const uint32_t step = wide ? k_preview_first_step : k_preview_step;
   const uint32_t across = (width_ + step - 1) / step, down = (height_ + step - 1) / step,
                  cells = across * down;
-  if (sampled != Sampled::none) pack(stream, film, now_, view.exposure, history_.known ? &seen : nullptr);
+  if (sampled != Sampled::none) pack(stream, film, now_, view.exposure, guide);
   if (draft) pack(stream, *draft, draft_, view.exposure, nullptr);
 
   resources_.set("packed_texels", now_.light);
   resources_.set("surface_texels", now_.surfaces);
   resources_.set("draft_texels", draft_.light);
   resources_.set("draft_surfaces", draft_.surfaces);
-  resources_.set("history_texels", seen.light);
-  resources_.set("history_surfaces", seen.surfaces);
+  resources_.set("guide_surfaces", guide ? *guide : before_edit.surfaces);
+  resources_.set("history_texels", before_edit.light);
+  resources_.set("history_surfaces", before_edit.surfaces);
   resources_.set("GridBefore", before_[0]);
   resources_.set("Grid", grid_);
   resources_.set("GridSurfaces", grid_surfaces_);
@@ -222,11 +229,12 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
       .draft_width = draft ? draft->width() : 0,
       .draft_height = draft ? draft->height() : 0,
       .history = history_.known,
-      .repainted = repainted_,
+      .repainted = repainted,
       .history_scale = history_.scale_for(view),
       .draft_share = draft ? float(draft->width()) * float(draft->height()) / float(cells) : 0,
       .step = step,
-      .sampled = sampled != Sampled::none};
+      .sampled = sampled != Sampled::none,
+      .surfaces = surfaces};
   stream.dispatch(halve_, resources_, halve, groups(cells));
   // Other light on the same places: how much other?
   const bool changed = history_.known && !history_.same_light;
@@ -282,14 +290,15 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                    .curve = view.curve,
                                    .filtering = filtered,
                                    .history = history_.known,
-                                   .repainted = repainted_,
+                                   .repainted = repainted,
                                    .history_scale = history_.scale_for(view),
                                    .step = step,
                                    .sampled = sampled != Sampled::none,
                                    .same_light = history_.same_light,
                                    .recoloured = history_.recoloured,
                                    .blocks_across = blocks.x,
-                                   .blocks_down = blocks.y};
+                                   .blocks_down = blocks.y,
+                                   .surfaces = surfaces};
   stream.dispatch(resolve_, resources_, resolve, groups(pixels()));
   stream.run();
   stream.take_times();

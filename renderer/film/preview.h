@@ -48,10 +48,12 @@ class Preview {
   void better();
   /// Film -> its picture, of the layers that show light (View::layer up to shared::k_layer_primary + 3).
   /// `draft`: a film of the same view with pixels of whole pixels, or null; `filtered`: noise is filtered,
-  /// not only where there are no samples. Films must fit(). Throws Error when memory is short. The stream is
+  /// not only where there are no samples. `seen`: the surfaces that the film's pixels show, or null
+  /// (shaders/film/preview_sight.comp). Films must fit(). Throws Error when memory is short. The stream is
   /// run.
   PreviewShares develop(gpu::Stream& stream, const Film& film, const Film* draft, const View& view,
-                        const PreviewCamera& camera, bool filtered, Sampled sampled = Sampled::some);
+                        const PreviewCamera& camera, bool filtered, Sampled sampled = Sampled::some,
+                        const gpu::Buffer* seen = nullptr);
   /// Whether anything is known from before the picture began anew.
   bool has_history() const { return history_.known; }
   /// Has the device compile what recall() needs, which takes it long, so that the first one does not wait for
@@ -84,7 +86,8 @@ class Preview {
   };
   void make_pixels(Pixels& to);
   void make_room(uint32_t width, uint32_t height, const Film* draft);
-  void pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure, const Pixels* guide);
+  void pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure,
+            const gpu::Buffer* guide);
   void move(gpu::Stream& stream, shared::PreviewReprojectPush push);
   void show(gpu::Stream& stream, const Film& film, const Pixels& seen, shared::PreviewRecallPush push);
   const Pixels& history(gpu::Stream& stream, const PreviewCamera& now);

@@ -9,7 +9,7 @@ using namespace shared;
 Sight::Sight(gpu::Device& device, gpu::ShaderCompiler& compiler, gpu::Defines defines)
     : device_(device), compiler_(compiler), defines_(std::move(defines)) {}
 
-void Sight::begin(const Frame& frame) {
+void Sight::begin(const Frame& frame, uint32_t texels) {
   begun_ = false;
   width_ = frame.width, height_ = frame.height;
   parallel_ = frame.orthographic != 0;
@@ -20,7 +20,7 @@ void Sight::begin(const Frame& frame) {
   pixel_ = 2 * glm::length(frame.camera_up) / float(frame.height) * float(stride_);
   done_ = 0;
   gpu::make_texel_room(device_, surfaces_, "surfaces of the picture",
-                       uint64_t{points()} * k_surface_texels * sizeof(vec4));
+                       uint64_t{points()} * texels * sizeof(vec4));
   begun_ = true;
 }
 

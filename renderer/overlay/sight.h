@@ -23,8 +23,9 @@ class Sight {
   /// outlive it.
   Sight(gpu::Device& device, gpu::ShaderCompiler& compiler, gpu::Defines defines = {});
 
-  /// Forgets what was seen: the picture is to be that of `frame`. Throws Error when there is no memory.
-  void begin(const shared::Frame& frame);
+  /// Forgets what was seen: the picture is to be that of `frame`. `texels`: that surfaces() hold of a point.
+  /// Throws Error when there is no memory.
+  void begin(const shared::Frame& frame, uint32_t texels = shared::k_surface_texels);
   /// Forgets what was seen; see() wants begin() again.
   void forget() { begun_ = false; }
   bool begun() const { return begun_; }
@@ -40,7 +41,7 @@ class Sight {
 
   /// How the points lie over the picture; k_no_sight, and no buffer to be read, before all are seen.
   shared::SightGrid grid() const { return seen() ? shared::SightGrid{across_, stride_} : k_no_sight; }
-  /// Of the points, shared::k_surface_texels each.
+  /// Of the points, as `note` has written them.
   const gpu::Buffer& surfaces() const { return surfaces_; }
   uint32_t width() const { return width_; }  ///< of the picture
   uint32_t height() const { return height_; }

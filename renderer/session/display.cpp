@@ -21,12 +21,13 @@ film::PreviewCamera camera_of(const shared::Frame& f) {
 
 void Display::restart(const scene::Changes& changes, const vec3& scale, bool same_light) {
   const auto is = [&](scene::Change c) { return changes.edits.contains(c); };
+  const bool repainted =
+      is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders);
+  if (sight_.rays && (repainted || is(scene::Change::shape))) sight_.rays->forget();
   if (is(scene::Change::shape) || is(scene::Change::size))
     preview_.forget();
   else
-    preview_.keep(scale,
-                  is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders),
-                  same_light);
+    preview_.keep(scale, repainted, same_light);
   plan_.restart();
 }
 
@@ -61,6 +62,7 @@ void Display::mixed() {
 bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
                    const std::function<bool()>& cancel) {
   if (what == DraftPlan::Next::light) return preview_light(engine, view, cancel);
+  if (what == DraftPlan::Next::sight) return see(engine, view, cancel);
   const bool fine = what == DraftPlan::Next::fine;
   const uint32_t step = fine ? shared::k_preview_step : shared::k_coarse_step;
   if (fine) {
@@ -107,6 +109,45 @@ bool Display::preview_light(Engine& engine, const PictureView& view, const std::
   return true;
 }
 
+const gpu::Buffer* Display::seen(const film::PreviewCamera& camera, const PictureView& view) const {
+  const auto& rays = sight_.rays;
+  const bool known = rays && rays->seen() && rays->stride() == 1 && rays->width() == view.width &&
+                     rays->height() == view.height && sight_.camera == camera;
+  return known ? &rays->surfaces() : nullptr;
+}
+
+bool Display::sight_wanted(const Engine& engine, const PictureView& view) const {
+  return uint64_t{view.width} * view.height <= overlay::Sight::k_most_points &&
+         film::Preview::fits(device_.info().limits, view.width, view.height) &&
+         !seen(camera_of(engine.frame(view, view.width, view.height)), view);
+}
+
+bool Display::see(Engine& engine, const PictureView& view, const std::function<bool()>& cancel) {
+  transport::Wavefront& wavefront = engine.wavefront();
+  shared::Frame frame = engine.frame(view, view.width, view.height);
+  const film::PreviewCamera camera = camera_of(frame);
+  if (!sight_.rays || sight_.defines != engine.defines()) {
+    sight_.rays.emplace(device_, compiler_, engine.defines());
+    sight_.defines = engine.defines();
+  }
+  overlay::Sight& rays = *sight_.rays;
+  if (!rays.begun() || rays.width() != view.width || rays.height() != view.height || sight_.camera != camera)
+    rays.begin(frame, 1);
+  sight_.camera = camera;
+  if (!sight_.note) sight_.note = gpu::Kernel(device_, compiler_, "film/preview_sight.comp");
+  const auto note = [&](const shared::SeePush& push) {
+    wavefront.bind_paths(sight_.resources);
+    sight_.resources.set("Surfaces", rays.surfaces());
+    wavefront.stream().dispatch(sight_.note, sight_.resources, push, gpu::groups_for(push.count, 64));
+  };
+  frame.max_depth = 0;  // paths end where they meet a surface
+  wavefront.set_frame(frame, engine.plan().enabled());
+  bool complete = true;
+  wavefront.uncounted([&] { complete = rays.see(wavefront, "sight", note, cancel); });
+  wavefront.set_frame(engine.frame(view, view.width, view.height), engine.plan().enabled());
+  return complete;
+}
+
 bool Display::shows(const film::View& view, const film::Film& film) const {
   return view.layer < shared::k_layer_albedo &&
          film::Preview::fits(device_.info().limits, film.width(), film.height());
@@ -128,7 +169,8 @@ void Display::develop(Engine& engine, const PictureView& view, const film::Film&
     shares_ = {.stale = 1, .filtered = 0};
     return;
   }
-  shares_ = preview_.develop(engine.wavefront().stream(), film, draft, shown, camera, true, sampled);
+  shares_ = preview_.develop(engine.wavefront().stream(), film, draft, shown, camera, true, sampled,
+                             seen(camera, view));
 }
 
 }  // namespace lucerna::session

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "film/preview.h"
+#include "overlay/sight.h"
 #include "scene/change.h"
 #include "session/draft_plan.h"
 #include "session/engine.h"
@@ -13,7 +14,8 @@ namespace lucerna::session {
 
 class Display {
  public:
-  Display(gpu::Device& device, gpu::ShaderCompiler& compiler) : device_(device), preview_(device, compiler) {}
+  Display(gpu::Device& device, gpu::ShaderCompiler& compiler)
+      : device_(device), compiler_(compiler), preview_(device, compiler) {}
 
   /// The picture begins anew, of other light or as seen from elsewhere. `scale`: what an edit is known to
   /// multiply all light by. `same_light`: it changes none of it, only how it is computed or seen.
@@ -28,6 +30,8 @@ class Display {
   void mixed();
 
   DraftPlan& plan() { return plan_; }
+  /// Whether it is not known yet what surfaces the picture's pixels show.
+  bool sight_wanted(const Engine& engine, const PictureView& view) const;
   /// Another sample of a draft, or a piece of light for it. `coarse`: the film of a quarter of the
   /// resolution. False when it was cancelled.
   bool draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
@@ -49,11 +53,23 @@ class Display {
 
  private:
   bool preview_light(Engine& engine, const PictureView& view, const std::function<bool()>& cancel);
+  bool see(Engine& engine, const PictureView& view, const std::function<bool()>& cancel);
+  /// The surfaces of that picture's pixels; null while they are not known.
+  const gpu::Buffer* seen(const film::PreviewCamera& camera, const PictureView& view) const;
 
   gpu::Device& device_;
+  gpu::ShaderCompiler& compiler_;
   film::Preview preview_;
   std::unique_ptr<film::Film> fine_;  ///< of half the resolution; made when it is called for
   DraftPlan plan_;
+  /// What surfaces the pixels of the picture show, with the first vertices of paths alone.
+  struct {
+    std::optional<overlay::Sight> rays;
+    gpu::Defines defines;  ///< that these were made with
+    gpu::Kernel note;
+    gpu::Resources resources;
+    film::PreviewCamera camera;  ///< for which it was asked
+  } sight_;
   film::PreviewShares shares_;
   bool developed_ = false, warm_ = false;
   /// How the picture was shown that is not a preview.

@@ -11,32 +11,38 @@ class DraftPlan {
     nothing,  ///< the picture's own work goes on
     coarse,   ///< a sample of the draft of a quarter of the resolution
     fine,     ///< ... of half of it
-    light     ///< a piece of what solvers make for drafts to look up
+    light,    ///< a piece of what solvers make for drafts to look up
+    sight     ///< a piece of what surfaces the picture's pixels show
   };
   /// The picture begins anew.
   void restart() { *this = {}; }
   /// Light that drafts have looked up has got better: they begin anew.
-  void light_changed() { coarse_ = fine_ = 0; }
+  void light_changed() { coarse_ = fine_ = 0, lit_ = true; }
   /// That has been done, and took so long.
   void drawn(Next what, double seconds) {
     if (what == Next::light) {
       light_s_ += seconds;
       return;
     }
-    ++(what == Next::coarse ? coarse_ : fine_);
+    if (what == Next::coarse) ++coarse_;
+    if (what == Next::fine) ++fine_;
     draft_s_ += seconds;
   }
   /// ... the picture's own work, which took so long.
   void worked(double seconds) { work_s_ += seconds; }
 
   /// `preparing`: the picture's samples wait for what they look up, maybe for long; `filled`: every pixel has
-  /// one. A first sample comes at once. While the picture's samples come, a few more: its first ones fill it
-  /// from one side to the other. While they wait the draft is all that there is to be seen, and gets finer;
-  /// half of the time at first, less and less as more helps less.
-  /// `light`: solvers have more to make for drafts; drafts and that take half of the time each.
-  Next next(bool preparing, bool filled, bool light) const {
+  /// one. A first sample comes at once, but for the first of new light, if that does not take long: without
+  /// it the draft would show the light before. While the picture's samples come, a few more: its first ones
+  /// fill it from one side to the other. While they wait the draft is all that there is to be seen, and gets
+  /// finer; half of the time at first, less and less as more helps less. `light`: solvers have more to make
+  /// for drafts; drafts and that take half of the time each. `sight`: it is not known yet what surfaces
+  /// pixels show; the first draft does not wait for that.
+  Next next(bool preparing, bool filled, bool light, bool sight = false) const {
     if (filled) return Next::nothing;
-    if (coarse_ == 0) return Next::coarse;
+    const bool first_light = light && preparing && !lit_ && light_s_ < k_first_light_s;
+    if (coarse_ == 0) return first_light ? Next::light : Next::coarse;
+    if (sight) return Next::sight;
     if (light && preparing) {
       if (light_s_ <= draft_s_) return Next::light;
       return coarse_ < 2 ? Next::coarse : Next::fine;
@@ -54,7 +60,9 @@ class DraftPlan {
 
  private:
   static constexpr uint32_t k_coarse_samples = 4, k_fine_samples = 64;
+  static constexpr double k_first_light_s = 0.1;
   uint32_t coarse_ = 0, fine_ = 0;
+  bool lit_ = false;  ///< by new light, since the picture began
   double draft_s_ = 0, work_s_ = 0, light_s_ = 0;
 };
 

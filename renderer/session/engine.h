@@ -85,6 +85,8 @@ class Engine {
   /// Whether a component's light is looked up besides its solver's own.
   bool looked_up_besides(size_t component) const;
   double compile_seconds() const { return compile_seconds_; }
+  /// That the wavefront's kernels were made with, for others that work on its paths.
+  const gpu::Defines& defines() const { return scene_defines_; }
 
  private:
   /// Of all solvers together, for the present plan. Throws Error, located at the component, where two of them

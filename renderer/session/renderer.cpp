@@ -482,7 +482,8 @@ bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   if (!engine_ || !display_) return false;
   const bool prepares = preparing();
   if (std::exchange(draft_preparing_, prepares) && !prepares) display_->light_changed();
-  const DraftPlan::Next what = display_->plan().next(prepares, samples() > 0, engine_->previews());
+  const DraftPlan::Next what = display_->plan().next(prepares, samples() > 0, engine_->previews(),
+                                                     display_->sight_wanted(*engine_, picture_view()));
   if (what == DraftPlan::Next::nothing) return false;
   clock_.go();
   const Timer timer;

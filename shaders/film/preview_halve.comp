@@ -4,16 +4,16 @@
 #include "film/preview.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewHalvePush push; };
-uniform samplerBuffer packed_texels, surface_texels, draft_texels, draft_surfaces, history_texels, history_surfaces;
+uniform samplerBuffer packed_texels, surface_texels, guide_surfaces, draft_texels, draft_surfaces, history_texels, history_surfaces;
 layout(scalar) writeonly buffer Grid { vec4 grid[]; };
 layout(scalar) writeonly buffer GridSurfaces { vec4 grid_surfaces[]; };
 // Luminance by component of what was shown before, likewise over the colour; the present's where that is not known.
 layout(scalar) writeonly buffer GridBefore { vec4 grid_before[]; };
 
-// Where the film has no samples, of what was shown before.
+// Where the film has no samples, as it is known otherwise.
 PreviewSurface surface_at(int pixel) {
   if (push.sampled != 0u) return preview_surface(texelFetch(surface_texels, pixel));
-  vec4 texel = push.history != 0u ? texelFetch(history_surfaces, pixel) : vec4(-1.0, 0.0, 0.0, 0.0);
+  vec4 texel = push.surfaces != k_preview_surface_unknown ? texelFetch(guide_surfaces, pixel) : vec4(-1.0, 0.0, 0.0, 0.0);
   return preview_surface(vec4(texel.xyz, 0.0));
 }
 
@@ -44,7 +44,8 @@ void main() {
                    uvec2(push.draft_width, push.draft_height) - 1u);
     int pixel = int(at.y * push.draft_width + at.x);
     PreviewSurface s = preview_surface(texelFetch(draft_surfaces, pixel));
-    if ((here.depth < 0.0 || push.sampled == 0u) && s.samples > 0.0) here = s;
+    bool doubtful = push.sampled == 0u && push.surfaces != k_preview_surface_seen;
+    if ((here.depth < 0.0 || doubtful) && s.samples > 0.0) here = s;
     if (push.repainted != 0u && here.samples <= 0.0 && s.samples > 0.0) here.albedo = s.albedo;
     // Across an edge it is another surface's light, and better than none.
     bool alike = (s.depth > 0.0) == (here.depth > 0.0) &&

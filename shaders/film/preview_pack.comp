@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewPackPush push; };
 layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
-uniform samplerBuffer history_surfaces;
+uniform samplerBuffer guide_surfaces;
 
 void main() {
   uint pixel = global_index();
@@ -31,7 +31,7 @@ void main() {
   s.samples = float(count);
   vec4 texel = preview_texel(s);
   if (count == 0u) {
-    texel = push.guided != 0u ? texelFetch(history_surfaces, int(pixel)) : vec4(-1.0, 0.0, 0.0, 0.0);
+    texel = push.guided != 0u ? texelFetch(guide_surfaces, int(pixel)) : vec4(-1.0, 0.0, 0.0, 0.0);
     texel.w = 0.0;
   }
   packed_surfaces[pixel] = texel;

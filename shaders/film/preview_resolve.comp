@@ -12,7 +12,7 @@
 #include "shaders/shared/tone.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewResolvePush push; };
-uniform samplerBuffer packed_texels, surface_texels, history_texels, history_surfaces;
+uniform samplerBuffer packed_texels, surface_texels, guide_surfaces, history_texels, history_surfaces;
 uniform samplerBuffer filtered_texels, grid_surfaces, noise_texels, before_texels, lost_texels, change_texels;
 layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
@@ -44,9 +44,17 @@ vec4 noise = vec4(0.0), before_smooth = vec4(0.0), lost = vec4(0.0);
 vec3 modulation = vec3(0.0);
 float weights = 0.0, nearest_weight = 0.0, nearest_depth = -1.0;
 
-void add_cell(int cell, PreviewSurface s, float w) {
+// How far a cell's light is its own surface's: it may have next to nothing but light of what is beside it (preview_halve.comp).
+float own_light(PreviewSurface s) { return clamp(4.0 * s.samples, 1e-3, 1.0); }
+
+// `other`: of another surface, where there may be none of the pixel's own. What is dark there is borrowed rather than what
+// shines: a window's frame is not lit as its panes are bright.
+void add_cell(int cell, PreviewSurface s, float w, bool other) {
   PreviewLight l = preview_light(filtered_texels, cell);
-  float there = (l.of[0].w + l.of[1].w + l.of[2].w + l.of[3].w) >= 0.0 && s.samples > 0.0 ? w : 1e-6 * w;
+  vec4 shown = preview_luminances(l);
+  if (other) w *= 1e-4 / square(1.0 + 8.0 * (shown.x + shown.y + shown.z + shown.w));
+  bool known = (l.of[0].w + l.of[1].w + l.of[2].w + l.of[3].w) >= 0.0 && s.samples > 0.0;
+  float there = w * (known ? own_light(s) : 1e-6);
   for (uint c = 0u; c < k_component_count; ++c) light[c] += there * l.of[c];
   lost += there * texelFetch(lost_texels, cell);
   if (push.history != 0u) before_smooth += there * texelFetch(before_texels, cell);
@@ -59,6 +67,17 @@ void add_cell(int cell, PreviewSurface s, float w) {
 bool same_surface(PreviewSurface here, PreviewSurface s) {
   return here.depth > 0.0 && s.depth > 0.0 ? abs(here.depth - s.depth) < 0.1 * here.depth && dot(here.normal, s.normal) > 0.7
                                            : here.depth == s.depth;
+}
+
+// Whether no pixel around shows its surface: what one ray has met of a veil or of leaves finer than pixels.
+bool isolated(ivec2 at, PreviewSurface here) {
+  bool akin = false;
+  for (int k = 0; k < 9 && !akin; ++k) {
+    ivec2 there = at + ivec2(k % 3, k / 3) - 1;
+    bool inside = k != 4 && all(greaterThanEqual(there, ivec2(0))) && there.x < int(push.width) && there.y < int(push.height);
+    akin = inside && same_surface(here, preview_surface(texelFetch(guide_surfaces, there.y * int(push.width) + there.x)));
+  }
+  return !akin;
 }
 
 // By component, between the middles of blocks.
@@ -83,10 +102,13 @@ void main() {
     if (push.sampled != 0u) {
       surface = texelFetch(surface_texels, int(pixel));
       own = preview_light(packed_texels, int(pixel));
-    } else if (push.history != 0u) {
-      surface = vec4(texelFetch(history_surfaces, int(pixel)).xyz, 0.0);
+    } else if (push.surfaces != k_preview_surface_unknown) {
+      surface = vec4(texelFetch(guide_surfaces, int(pixel)).xyz, 0.0);
     }
     PreviewSurface here = preview_surface(surface);
+    if (push.surfaces == k_preview_surface_seen && here.samples <= 0.0 &&
+        isolated(ivec2(pixel % push.width, pixel / push.width), here))
+      here.depth = -1.0;
     vec2 p = (vec2(pixel % push.width, pixel / push.width) + 0.5) / float(push.step) - 0.5;
     ivec2 base = ivec2(floor(p));
     vec2 f = p - vec2(base);
@@ -100,14 +122,15 @@ void main() {
       PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
       vec2 g = mix(1.0 - f, f, vec2(corner));
       float w = g.x * g.y + 1e-3;
+      bool other = false;
       if (here.depth >= 0.0 && s.depth >= 0.0) {
         bool alike = same_surface(here, s);
-        akin += alike ? w : 0.0;
-        w *= alike ? 1.0 : 1e-4;
+        akin += alike ? w * own_light(s) : 0.0;
+        other = !alike;
       } else {
         akin = 1.0;
       }
-      add_cell(cell, s, w);
+      add_cell(cell, s, w, other);
     }
     // A narrow surface has few cells of its own, which the next pixel of it may be beside.
     for (int k = 0; akin <= k_alone && k < 2 * k_wide * 2 * k_wide; ++k) {
@@ -116,7 +139,7 @@ void main() {
       int cell = at.y * int(push.across) + at.x;
       PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
       vec2 away = vec2(at) - p;
-      if (s.depth >= 0.0 && same_surface(here, s)) add_cell(cell, s, exp2(-dot(away, away)));
+      if (s.depth >= 0.0 && same_surface(here, s)) add_cell(cell, s, exp2(-dot(away, away)), false);
     }
     if (akin <= k_alone && weights > k_alone) akin = 1.0;
     float inverse = 1.0 / max(weights, 1e-20);

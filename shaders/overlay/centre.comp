@@ -30,4 +30,6 @@ void main() {
   p.light_group = 0u;
   paths[slot] = p;
   clear_radiance(slot);
+  features[2u * slot] = vec4(0.0);
+  features[2u * slot + 1u] = vec4(0.0);
 }

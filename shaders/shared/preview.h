@@ -15,6 +15,11 @@ LUCERNA_CONST float k_preview_about = -2.0f;
 LUCERNA_CONST uint k_preview_step = 2u;  ///< pixels along the side of a cell of the grid that is filtered
 LUCERNA_CONST uint k_preview_first_step = 4u;  ///< ... while there is a draft of a quarter of the resolution alone
 
+// What is known of the surface of a pixel that has no sample.
+LUCERNA_CONST uint k_preview_surface_unknown = 0u;
+LUCERNA_CONST uint k_preview_surface_before = 1u;  ///< what was shown before
+LUCERNA_CONST uint k_preview_surface_seen = 2u;    ///< what a ray has met
+
 struct PreviewCamera {
   vec3 origin, right, up, forward;  ///< as Frame's
 };
@@ -22,7 +27,7 @@ struct PreviewCamera {
 struct PreviewPackPush {
   uint width, height;
   float exposure;
-  uint guided;  ///< not 0: where there are no samples the surface is the one that was shown before
+  uint guided;  ///< not 0: where there are no samples the surface is known otherwise
 };
 
 struct PreviewHalvePush {
@@ -35,6 +40,7 @@ struct PreviewHalvePush {
   float draft_share;               ///< of a draft's sample, what a cell of the grid gets: its area over the draft pixel's
   uint step;                       ///< pixels along the side of a cell
   uint sampled;                    ///< 0: the film has no sample yet
+  uint surfaces;                   ///< k_preview_surface_*
 };
 
 struct PreviewFilterPush {
@@ -82,6 +88,7 @@ struct PreviewResolvePush {
   uint same_light;       ///< not 0: no light has changed since, only the camera or how it is computed
   uint recoloured;       ///< not 0: surfaces had other colours when what was shown before was shown
   uint blocks_across, blocks_down;  ///< that tell how much light has changed; 0: it has not
+  uint surfaces;         ///< k_preview_surface_*
 };
 
 /// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered.

@@ -3,6 +3,7 @@
 // stay, what was there before stays until the new light says otherwise, and goes where the camera sees it.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <numeric>
 #include <random>
@@ -294,6 +295,42 @@ TEST_CASE("what was there before is shown in the new colour of a surface at once
     CHECK(rms(
               stage.shown(), [](uint32_t, uint32_t) { return 0.1f; }, stage.width) < 0.15);
   }
+}
+
+TEST_CASE("where it is known what surfaces pixels show, a draft has edges and colours of single pixels") {
+  // Stripes three pixels wide, bright and dark, and a step of depth with other light behind it.
+  Stage stage(96, 64);
+  const auto albedo = [](uint32_t x) { return x / 3 % 2 ? 0.8f : 0.2f; };
+  const auto light = [](uint32_t y) { return y < 30 ? 0.9f : 0.3f; };
+  const auto depth = [](uint32_t y) { return y < 30 ? 5.0f : 9.0f; };
+  Film draft(stage.device, 24, 16);
+  draft.clear(stage.stream);
+  stage.sample(draft, 1, [&](uint32_t x, uint32_t y) {
+    const uint32_t px = 4 * x + 1, py = 4 * y + 2;
+    return Sample{.light = vec3(light(py) * albedo(px)), .albedo = vec3(albedo(px)), .depth = depth(py)};
+  });
+  std::vector<vec4> seen;
+  for (uint32_t y = 0; y < stage.height; ++y)
+    for (uint32_t x = 0; x < stage.width; ++x) {
+      const auto byte = uint32_t(std::lround(albedo(x) * 255));
+      // A normal towards the eye is 0 on the octahedron.
+      const uint32_t bits[2] = {0, byte * 0x010101u | 0xff000000u};
+      vec4 texel(depth(y), 0, 0, 0);
+      std::memcpy(&texel.y, bits, sizeof bits);
+      seen.push_back(texel);
+    }
+  gpu::Buffer surfaces(stage.device, {.name = "surfaces", .bytes = seen.size() * 16, .texel = true});
+  surfaces.write(std::span<const vec4>(seen));
+  const auto truth = [&](uint32_t x, uint32_t y) { return light(y) * albedo(x); };
+  stage.show(&draft);
+  const double without = rms(stage.shown(), truth, stage.width);
+  stage.preview.forget();
+  stage.preview.develop(stage.stream, stage.film, &draft, stage.view, stage.camera, true, film::Sampled::none,
+                        &surfaces);
+  const double with = rms(stage.shown(), truth, stage.width);
+  INFO("relative error " << without << ", with the surfaces " << with);
+  CHECK(without > 0.6);
+  CHECK(with < 0.05);
 }
 
 TEST_CASE("what a draft alone has shown stays after an edit, and goes with the camera") {

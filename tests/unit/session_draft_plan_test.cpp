@@ -13,12 +13,40 @@ TEST_CASE("a picture that is begun gets a draft at once, a filled one none") {
     for (const bool light : {false, true}) {
       DraftPlan plan;
       plan.worked(0.001);
+      if (preparing && light) continue;
       CHECK(plan.next(preparing, false, light) == Next::coarse);
       CHECK(plan.next(preparing, true, light) == Next::nothing);
       plan.drawn(Next::coarse, 1);
       plan.restart();
       CHECK(plan.next(preparing, false, light) == Next::coarse);
     }
+}
+
+TEST_CASE("the first draft waits for the first of new light, where that does not take long") {
+  DraftPlan plan;
+  CHECK(plan.next(true, false, true) == Next::light);
+  plan.drawn(Next::light, 0.04);
+  CHECK(plan.next(true, false, true) == Next::light);
+  DraftPlan quick = plan;
+  quick.light_changed();
+  CHECK(quick.next(true, false, true) == Next::coarse);
+  plan.drawn(Next::light, 0.2);
+  CHECK(plan.next(true, false, true) == Next::coarse);
+  plan.restart();
+  CHECK(plan.next(true, false, true) == Next::light);
+}
+
+TEST_CASE("what surfaces pixels show is asked after the first draft, of pictures that are not filled") {
+  DraftPlan plan;
+  CHECK(plan.next(false, false, false, true) == Next::coarse);
+  plan.drawn(Next::coarse, 0.1);
+  CHECK(plan.next(false, false, false, true) == Next::sight);
+  CHECK(plan.next(true, false, true, true) == Next::sight);
+  CHECK(plan.next(false, true, false, true) == Next::nothing);
+  const uint32_t before = plan.coarse_samples();
+  plan.drawn(Next::sight, 0.1);
+  CHECK(plan.coarse_samples() == before);
+  CHECK(plan.next(false, false, false, false) == Next::coarse);
 }
 
 TEST_CASE("while the picture's samples come there are four of the coarse draft, whatever they take") {

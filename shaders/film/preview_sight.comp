@@ -1,0 +1,17 @@
+// Keeps of what the rays of overlay/centre.comp have met first what the preview knows of a pixel's surface.
+#include "shaders/shared/sight.h"
+#include "lib/invocation.glsl"
+#include "film/preview.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { SeePush push; };
+uniform samplerBuffer feature_texels;
+layout(scalar) writeonly buffer Surfaces { vec4 surfaces[]; };
+
+void main() {
+  uint slot = global_index();
+  if (slot >= push.count) return;
+  vec4 colour = texelFetch(feature_texels, int(2u * slot)), facing = texelFetch(feature_texels, int(2u * slot + 1u));
+  bool met = colour.w > 0.0;
+  surfaces[push.first + slot] =
+      preview_texel(PreviewSurface(met ? facing.w : 0.0, met ? normalize(facing.xyz) : vec3(0.0), colour.rgb, 0.0));
+}
