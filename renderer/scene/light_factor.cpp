@@ -9,10 +9,16 @@ bool emits(const Environment& e) { return e.scale > 0 && (e.image != k_none || e
 
 /// Of a lamp that is off nothing.
 vec3 strength(const Light& l) { return l.enabled ? l.intensity : vec3(0); }
+vec3 strength(const Material& m) { return m.unlit ? vec3(m.base_color) : m.emission; }
 
 bool same_but_strength(const Light& a, const Light& b) {
   return a.kind == b.kind && a.position == b.position && a.direction == b.direction &&
          a.inner_cone == b.inner_cone && a.outer_cone == b.outer_cone;
+}
+
+bool same_but_strength(const Material& a, Material b) {
+  b.emission = a.emission;
+  return a == b;
 }
 
 std::optional<vec3> quotient(const vec3& after, const vec3& before) {
@@ -26,33 +32,84 @@ std::optional<vec3> quotient(const vec3& after, const vec3& before) {
   return factor;
 }
 
-}  // namespace
-
-std::optional<vec3> light_factor(const Scene& before, const Scene& after) {
-  const auto shines = [](const Material& m) {
-    return m.emission != vec3(0) || (m.unlit && vec3(m.base_color) != vec3(0));
-  };
-  if (before.lights.size() != after.lights.size() ||
-      std::any_of(after.materials.begin(), after.materials.end(), shines) ||
-      std::any_of(before.materials.begin(), before.materials.end(), shines))
-    return std::nullopt;
-  const Environment &e0 = before.environment, &e1 = after.environment;
-  const bool same_sky = e0.image == e1.image && e0.radiance == e1.radiance && e0.rotation == e1.rotation;
-  std::optional<vec3> factor;
-  if (emits(e0) || emits(e1)) {
-    if (!same_sky || e0.scale <= 0) return std::nullopt;
-    factor = vec3(e1.scale / e0.scale);
+/// The factors that lights tell of so far.
+class Told {
+ public:
+  explicit Told(size_t groups) : factors_(groups) {}
+  /// False where it contradicts what others of the group have told.
+  bool add(size_t group, const std::optional<vec3>& factor) {
+    if (!factor || group >= factors_.size() || (factors_[group] && *factors_[group] != *factor)) return false;
+    factors_[group] = factor;
+    return true;
   }
+  std::optional<std::vector<vec3>> all() const {
+    std::vector<vec3> factors;
+    for (const auto& f : factors_) factors.push_back(f.value_or(vec3(1)));
+    const bool any =
+        std::any_of(factors_.begin(), factors_.end(), [](const auto& f) { return f.has_value(); });
+    return any ? std::optional(factors) : std::nullopt;
+  }
+
+ private:
+  std::vector<std::optional<vec3>> factors_;
+};
+
+bool tell_lamps(const Scene& before, const Scene& after, const LightGroups* groups, Told& told) {
   for (size_t i = 0; i < before.lights.size(); ++i) {
     const Light &l0 = before.lights[i], &l1 = after.lights[i];
     if (strength(l0) == vec3(0) && strength(l1) == vec3(0)) continue;
     const std::optional<vec3> own = quotient(strength(l1), strength(l0));
-    if (!own || (!same_but_strength(l0, l1) && *own != vec3(0))) return std::nullopt;
-    // All emitters alike are as good as one.
-    if (factor && *factor != *own) return std::nullopt;
-    factor = own;
+    if (own && !same_but_strength(l0, l1) && *own != vec3(0)) return false;
+    if (!told.add(groups ? groups->lamps[i] : 0, own)) return false;
   }
-  return factor;
+  return true;
+}
+
+bool tell_surfaces(const Scene& before, const Scene& after, const LightGroups* groups, Told& told) {
+  for (size_t i = 0; i < before.instances.size(); ++i) {
+    const auto& primitives = before.meshes[before.instances[i].mesh].primitives;
+    for (size_t p = 0; p < primitives.size(); ++p) {
+      const Material &m0 = before.materials[primitives[p].material],
+                     &m1 = after.materials[primitives[p].material];
+      if (strength(m0) == vec3(0) && strength(m1) == vec3(0)) continue;
+      if (!is_light(m0) && !is_light(m1)) continue;
+      if (groups && groups->surfaces[i].empty()) return false;
+      if (!told.add(groups ? groups->surfaces[i][p] : 0, quotient(strength(m1), strength(m0)))) return false;
+    }
+  }
+  return true;
+}
+
+bool tell_environment(const Environment& before, const Environment& after, const LightGroups* groups,
+                      Told& told) {
+  if (!emits(before) && !emits(after)) return true;
+  const bool same =
+      before.image == after.image && before.radiance == after.radiance && before.rotation == after.rotation;
+  if (!same || before.scale <= 0) return false;
+  const vec3 factor(after.scale / before.scale);
+  return told.add(groups ? groups->sky : 0, factor) &&
+         (!groups || !groups->has_sun || told.add(groups->sun, factor));
+}
+
+}  // namespace
+
+std::optional<std::vector<vec3>> light_factors(const Scene& before, const Scene& after,
+                                               const LightGroups* groups) {
+  if (before.lights.size() != after.lights.size() || before.instances.size() != after.instances.size() ||
+      !std::equal(before.materials.begin(), before.materials.end(), after.materials.begin(),
+                  after.materials.end(),
+                  [](const Material& a, const Material& b) { return same_but_strength(a, b); }))
+    return std::nullopt;
+  Told told(groups ? groups->groups.size() : 1);
+  const bool known = tell_lamps(before, after, groups, told) && tell_surfaces(before, after, groups, told) &&
+                     tell_environment(before.environment, after.environment, groups, told);
+  return known ? told.all() : std::nullopt;
+}
+
+std::optional<vec3> common_factor(const std::vector<vec3>& factors) {
+  const bool alike =
+      std::all_of(factors.begin(), factors.end(), [&](const vec3& f) { return f == factors.front(); });
+  return !factors.empty() && alike ? std::optional(factors.front()) : std::nullopt;
 }
 
 }  // namespace lucerna::scene

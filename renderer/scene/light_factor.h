@@ -1,13 +1,20 @@
 #pragma once
-// What an edit of lamps or environment is known to do to all light.
+// What an edit of lights is known to do to all light, or to that of their groups.
 #include <optional>
+#include <vector>
 
-#include "scene/scene.h"
+#include "scene/light_groups.h"
 
 namespace lucerna::scene {
 
-/// What the light everywhere is multiplied by, channel by channel: of two scenes with the same surfaces and
-/// one emitter, which is the same but for its strength and colour. Nothing where that cannot be said.
-std::optional<vec3> light_factor(const Scene& before, const Scene& after);
+/// What the light of each group is multiplied by everywhere, channel by channel, by index of the group (1 for
+/// groups without lights); without `groups` what all light is, alone. Of two scenes with the same surfaces,
+/// whose lights are the same but for strength and colour, those of a group all alike. Nothing where that
+/// cannot be said, or where nothing shines. `groups`: of both.
+std::optional<std::vector<vec3>> light_factors(const Scene& before, const Scene& after,
+                                               const LightGroups* groups = nullptr);
+
+/// Of all groups alike; nothing where they differ.
+std::optional<vec3> common_factor(const std::vector<vec3>& factors);
 
 }  // namespace lucerna::scene

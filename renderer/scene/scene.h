@@ -42,6 +42,7 @@ struct TextureUse {
   Id texture = k_none;
   uint32_t uv_set = 0;
   std::array<float, 6> m{1, 0, 0, 0, 1, 0};
+  bool operator==(const TextureUse&) const = default;
   explicit operator bool() const { return texture != k_none; }
 };
 
@@ -77,6 +78,7 @@ struct Material {
   vec3 diffuse_transmission_color{1};
   TextureUse diffuse_transmission_color_texture;  ///< rgb
   std::string group;  ///< of lights, if it emits: extras.light_group; "": not said (light_groups.h)
+  bool operator==(const Material&) const = default;
 };
 
 /// Triangles of one material in object space. Streams are either empty or one entry a vertex.

@@ -31,13 +31,16 @@ void Display::restart(const scene::Changes& changes, const vec3& scale, bool sam
   plan_.restart();
 }
 
-void Display::take(gpu::Stream& stream, const film::Film& film) {
+bool Display::take(gpu::Stream& stream, const film::Film& film) {
+  bool taken = false;
   if (plain_ && film::Preview::fits(device_.info().limits, film.width(), film.height())) try {
       preview_.take(stream, film, plain_->exposure, plain_->camera);
+      taken = true;
     } catch (const Error&) {
       preview_.forget();  // no memory: the next picture begins with nothing
     }
   plain_.reset();
+  return taken;
 }
 
 void Display::plain(const Engine& engine, const PictureView& view, const film::View& shown) {

@@ -21,8 +21,8 @@ class Display {
   /// multiply all light by. `same_light`: it changes none of it, only how it is computed or seen.
   void restart(const scene::Changes& changes, const vec3& scale, bool same_light);
   /// Before that, and before the film is cleared of which every pixel has samples: it is what has been shown,
-  /// where plain() has been told so.
-  void take(gpu::Stream& stream, const film::Film& film);
+  /// where plain() has been told so. Whether it is.
+  bool take(gpu::Stream& stream, const film::Film& film);
   /// What was looked up so far is not the light any more that will be, or that comes from now on: drafts
   /// begin anew, and what they have shown stays until the new is better.
   void light_changed();

@@ -130,12 +130,12 @@ void Engine::adopt(const Engine& before, const scene::Changes& changes) {
 }
 
 void Engine::begin(const PictureView& picture, const scene::Changes& changes,
-                   const std::optional<vec3>& light_factor) {
+                   const std::optional<std::vector<vec3>>& light_factors) {
   // What is switched off changes without new kernels.
   routing_ = routing(picture.settings, picture.world.flat.effects);
   for (const auto& solver : solvers_)
     with(*solver, picture, [&](solvers::Picture own) {
-      own.light_factor = light_factor;
+      own.light_factors = light_factors;
       solver->begin(own, solvers::spoiled_by(solver->info(), changes));
     });
   wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());

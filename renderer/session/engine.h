@@ -44,9 +44,9 @@ class Engine {
   /// Takes over what the solvers of another engine have, where `changes` do not spoil all of it.
   void adopt(const Engine& before, const scene::Changes& changes);
   /// The picture begins anew: sets the wavefront's frame, and tells the solvers.
-  /// `light_factor`: solvers::Picture::light_factor.
+  /// `light_factors`: solvers::Picture::light_factors.
   void begin(const PictureView& picture, const scene::Changes& changes,
-             const std::optional<vec3>& light_factor = {});
+             const std::optional<std::vector<vec3>>& light_factors = {});
 
   film::Developer& developer() { return *developer_; }
   film::ErrorEstimator& estimator() { return *estimator_; }

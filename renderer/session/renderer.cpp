@@ -8,6 +8,7 @@
 #include "plan/plan.h"
 #include "scene/default_light.h"
 #include "scene/io/load.h"
+#include "scene/light_factor.h"
 #include "shaders/shared/film.h"
 
 namespace lucerna::session {
@@ -164,18 +165,31 @@ Renderer::Films Renderer::make_films(uint32_t width, uint32_t height, const uplo
   return films;
 }
 
-void Renderer::restart(const scene::Changes& changes, const std::optional<vec3>& factor) {
+void Renderer::restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors) {
   if (!engine_ || !film_) return;
-  engine_->begin(picture_view(), changes, factor);
+  engine_->begin(picture_view(), changes, factors);
   transport::Wavefront& wavefront = engine_->wavefront();
-  if (display_ && samples() > 0) display_->take(wavefront.stream(), *film_);
+  const std::optional<vec3> factor = factors ? scene::common_factor(*factors) : std::nullopt;
+  const bool by_group = factors && !factor && film_->groups() == factors->size();
+  bool known = factor || keeps_light(changes);
+  if (display_ && samples() > 0) {
+    // Groups that change by different factors are another mix of the picture that there is.
+    if (by_group) {
+      std::vector<vec3> weights = relight_.weights;
+      for (size_t g = 0; g < weights.size(); ++g) weights[g] *= (*factors)[g];
+      film_->set_mix(weights);
+      wavefront.mix(*film_);
+    }
+    const bool taken = display_->take(wavefront.stream(), *film_);
+    known = known || (by_group && taken);
+  }
   film_->set_mix(relight_.weights), coarse_->set_mix(relight_.weights);
   film_->clear(wavefront.stream());
   coarse_->clear(wavefront.stream());
   wavefront.reset_stats();
   mix_pending_ = false;
   start_schedule();
-  if (display_) display_->restart(changes, factor.value_or(vec3(1)), factor || keeps_light(changes));
+  if (display_) display_->restart(changes, factor.value_or(vec3(1)), known);
   draft_preparing_ = false;
   ++restarts_;
   ledger_.clear();

@@ -249,8 +249,9 @@ class Renderer {
   /// The scene with other lights, environment or factors of materials. Kernels are made for what it calls for
   /// now. On failure throws Error and everything stays as it was.
   void edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& change, bool factors);
-  /// `factor`: of all light, where an edit is known to do no more than that (scene::light_factor).
-  void restart(const scene::Changes& changes, const std::optional<vec3>& factor = {});
+  /// `factors`: of the light of each group, where an edit is known to do no more than that
+  /// (scene::light_factors).
+  void restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors = {});
   PictureView picture_view() const {
     return {automaton_, settings_, world_, camera_, width_, height_, relight_.weights};
   }

@@ -48,9 +48,6 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
   auto edited = std::make_shared<scene::Scene>(*world_.scene);
   scene::Material& m = edited->materials[index];
   const scene::Material before = std::exchange(m, material);
-  const auto same_use = [](const scene::TextureUse& a, const scene::TextureUse& b) {
-    return a.texture == b.texture && a.uv_set == b.uv_set && a.m == b.m;
-  };
   bool same = m.alpha_mode == before.alpha_mode && (m.transmission > 0) == (before.transmission > 0) &&
               (m.thickness > 0) == (before.thickness > 0);
   for (const auto use :
@@ -59,7 +56,7 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
         &scene::Material::specular_texture, &scene::Material::specular_color_texture,
         &scene::Material::transmission_texture, &scene::Material::diffuse_transmission_texture,
         &scene::Material::diffuse_transmission_color_texture})
-    same &= same_use(m.*use, before.*use);
+    same &= m.*use == before.*use;
   if (!same)
     throw_error("material", "'{}': its textures, alpha mode, transmission and thickness cannot be changed",
                 before.name);
@@ -76,15 +73,18 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
 
 void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& changes, bool factors) {
   Relight relight = make_relight(engine_->plan(), settings_, edited, width_, height_);
-  std::optional<vec3> factor;
-  if (!factors) factor = scene::light_factor(*world_.lit, *relight.lit);
+  const bool by_group = relight.apart && relight_.apart && *relight.groups == *relight_.groups;
+  const std::optional<std::vector<vec3>> light =
+      scene::light_factors(*world_.lit, *relight.lit, by_group ? relight.groups.get() : nullptr);
+  // Of materials nothing but what they emit is another.
+  const scene::Changes what = light && factors ? scene::Changes(scene::Change::lamp) : changes;
   WorldEdit trial(*device_, world_, std::move(edited), relight.lit,
                   wanted_apart(engine_->plan(), settings_, relight),
                   factors || relight.baked != relight_.baked);
   const bool anew = !engine_->serves(engine_->plan(), settings_, world_);
   Films films =
       keeps(*film_, world_.flat.effects) ? Films{} : make_films(width_, height_, world_.flat.effects);
-  if (anew) engine_ = make_engine(world_, engine_->plan(), settings_, changes);
+  if (anew) engine_ = make_engine(world_, engine_->plan(), settings_, what);
   trial.keep();
   if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
   take(std::move(relight));
@@ -92,7 +92,7 @@ void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Cha
     heed_settings();
   else
     engine_->wavefront().rebind(*world_.device);
-  restart(changes, factor);
+  restart(what, light);
 }
 
 }  // namespace lucerna::session

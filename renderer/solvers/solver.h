@@ -57,8 +57,9 @@ struct Picture {
   const scene::Camera& camera;
   uint32_t width = 0, height = 0;
   shared::Frame frame;  ///< of its paths
-  /// To begin(): what all light is multiplied by since the last one, where that is known; for display.
-  std::optional<vec3> light_factor;
+  /// To begin(): what the light of each group is multiplied by since the last one, or all light, where that
+  /// is known; for display.
+  std::optional<std::vector<vec3>> light_factors;
   /// A frame for paths of the solver's own, from the same camera: with these routes and `enabled` components.
   shared::Frame frame_for(const Routing& routing, uint32_t enabled) const;
 };

@@ -144,6 +144,42 @@ TEST_CASE("the first few rays of a few records tell how much light there is, wha
   CHECK(early == Approx(finally).epsilon(0.08));
 }
 
+TEST_CASE("a lamp of a group of its own is dimmed and tinted at once, without a ray") {
+  Bed bed(true, "hessian");
+  auto scene = std::make_shared<scene::Scene>(*bed.r.scene());
+  scene->lights.push_back(scene->lights[0]);
+  scene->lights[0].name = "lamp", scene->lights[1].name = "other";
+  scene->lights[1].intensity *= 0.2f;
+  scene->lights[1].position = {0.8f, 1.6f, -0.4f};
+  bed.r.set_scene(scene);
+  Settings fine = k_base;
+  fine["cache.error"] = "0.15";
+  test::set(bed.r, fine);
+  test::finish(bed.r);
+  REQUIRE(bed.r.relight().apart);
+  const double before = bed.shown();
+  bed.set_lamp(scene->lights[0].intensity * vec3(0.1f, 0.3f, 0.2f), scene->lights[0].position);
+  // What was shown is shown as that mix of it, and records are known to need no light for drafts.
+  const double recalled = bed.shown();
+  CHECK_FALSE(bed.cache().preview_left());
+  CHECK(bed.cache().status().relighting.share == 0);
+  for (int i = 0; i < 3; ++i) bed.r.draw_draft();
+  const double drafted = bed.shown();
+  // Nor is anything lost when the next edit comes before records are relit.
+  bed.set_lamp(scene->lights[0].intensity * 0.5f, scene->lights[0].position);
+  bed.set_lamp(scene->lights[0].intensity * vec3(0.1f, 0.3f, 0.2f), scene->lights[0].position);
+  for (int i = 0; i < 3; ++i) bed.r.draw_draft();
+  const double again = bed.shown();
+  test::finish(bed.r);
+  const double finally = bed.shown();
+  INFO("before " << before << ", recalled " << recalled << ", drafted " << drafted << ", again " << again
+                 << ", finally " << finally);
+  CHECK(before > 1.3 * finally);  // as encoded
+  CHECK(recalled == Approx(finally).epsilon(0.01));
+  CHECK(drafted == Approx(finally).epsilon(0.03));
+  CHECK(again == Approx(finally).epsilon(0.03));
+}
+
 TEST_CASE("another solver's light begins as what the one before it has shown") {
   Bed bed(true, "hessian");
   const double before = bed.shown();

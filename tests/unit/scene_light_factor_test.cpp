@@ -17,6 +17,24 @@ Scene lit(std::vector<vec3> lamps, float sky = 0) {
   return s;
 }
 
+std::optional<vec3> light_factor(const Scene& before, const Scene& after) {
+  const auto factors = light_factors(before, after);
+  return factors ? std::optional(factors->at(0)) : std::nullopt;
+}
+
+/// With one triangle of every material.
+Scene shining(std::vector<vec3> emission, std::vector<vec3> lamps = {}) {
+  Scene s = lit(std::move(lamps));
+  s.materials.assign(emission.size(), {});
+  s.meshes.emplace_back();
+  for (Id m = 0; m < emission.size(); ++m) {
+    s.materials[m].emission = emission[m];
+    s.meshes[0].primitives.emplace_back().material = m;
+  }
+  s.instances.emplace_back().mesh = 0;
+  return s;
+}
+
 }  // namespace
 
 TEST_CASE("the only lamp's strength and colour are factors of all light") {
@@ -43,7 +61,7 @@ TEST_CASE("of several emitters, or one that moves, nothing can be said") {
   CHECK_FALSE(light_factor(lit({vec3(1)}), moved));
   for (const auto& shine :
        {+[](Material& m) { m.emission = vec3(1); }, +[](Material& m) { m.unlit = true; }}) {
-    Scene before = lit({vec3(1)}), after = lit({vec3(2)});
+    Scene before = shining({vec3(0)}, {vec3(1)}), after = shining({vec3(0)}, {vec3(2)});
     shine(before.materials[0]), shine(after.materials[0]);
     CHECK_FALSE(light_factor(before, after));
   }
@@ -57,4 +75,43 @@ TEST_CASE("the sky alone scales, and turned it does not") {
   turned.environment.rotation = 10;
   CHECK_FALSE(light_factor(lit({}, 2), turned));
   CHECK_FALSE(light_factor(lit({}), lit({})));
+}
+
+TEST_CASE("surfaces that emit are lights as others are, of other surfaces nothing may change") {
+  CHECK(light_factor(shining({vec3(2), vec3(0)}), shining({vec3(1), vec3(0)})) == vec3(0.5f));
+  CHECK(light_factor(shining({vec3(2), vec3(4)}), shining({vec3(1), vec3(2)})) == vec3(0.5f));
+  CHECK_FALSE(light_factor(shining({vec3(2), vec3(4)}), shining({vec3(1), vec3(4)})));
+  CHECK_FALSE(light_factor(shining({vec3(2), vec3(0)}), shining({vec3(2), vec3(1)})));
+  CHECK(light_factor(shining({vec3(2)}, {vec3(3)}), shining({vec3(1)}, {vec3(1.5f)})) == vec3(0.5f));
+  Scene red = shining({vec3(2), vec3(0)});
+  red.materials[1].base_color = vec4(1, 0, 0, 1);
+  CHECK_FALSE(light_factor(shining({vec3(2), vec3(0)}), red));
+}
+
+TEST_CASE("by groups of lights each has a factor of its own") {
+  Scene before = shining({vec3(2), vec3(0), vec3(8)}, {vec3(1), vec3(5)});
+  before.materials[0].name = "panel", before.materials[2].name = "strip";
+  before.lights[0].name = "spot.001", before.lights[1].name = "spot.002";
+  before.environment.radiance = vec3(1), before.environment.scale = 2;
+  const LightGroups groups = group_lights(before);
+  REQUIRE(groups.groups.size() == 4);
+  const auto of = [&](const std::optional<std::vector<vec3>>& factors, const char* name) {
+    return factors->at(groups.find(name));
+  };
+  Scene after = before;
+  after.materials[2].emission = vec3(2);
+  after.environment.scale = 6;
+  after.lights[0].intensity = vec3(2), after.lights[1].intensity = vec3(10);
+  const auto factors = light_factors(before, after, &groups);
+  REQUIRE(factors);
+  CHECK(of(factors, "panel") == vec3(1));
+  CHECK(of(factors, "strip") == vec3(0.25f));
+  CHECK(of(factors, "sky") == vec3(3));
+  CHECK(of(factors, "spot") == vec3(2));
+  CHECK_FALSE(common_factor(*factors));
+  CHECK_FALSE(light_factors(before, after));
+  after.lights[1].intensity = vec3(5);  // one of two in a group
+  CHECK_FALSE(light_factors(before, after, &groups));
+  after = before;
+  CHECK(common_factor(*light_factors(before, after, &groups)) == vec3(1));
 }

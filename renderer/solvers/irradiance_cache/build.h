@@ -81,7 +81,7 @@ struct Cache::Impl {
   void count_anew(bool beyond);
   /// What is placed and not evaluated is dropped, and what was asked for.
   void drop_pass();
-  void relight(const std::optional<vec3>& factor);
+  void relight(const std::optional<std::vector<vec3>>& factors, uint32_t sky_group);
   /// The records of the next pass that stand without light; after the last, building goes on where it was.
   void relight_pass();
   /// Complete records from elsewhere, in place of all.

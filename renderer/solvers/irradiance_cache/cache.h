@@ -149,8 +149,9 @@ class Cache {
   /// goes on where it was, or is complete as it was. Meanwhile those that are relit serve, and no others. The
   /// outcome is that of a cache built in this light, to the bit where places do not depend on light. Ellipses
   /// do: they are made anew, and passes added where they leave gaps.
-  /// `factor`: of all light, where that is known; for preview_relighting() alone.
-  void relight(const std::optional<vec3>& factor = {});
+  /// `factors`: of the light of each group, or of all light, where that is known; for preview_relighting()
+  /// alone. `sky_group`: whose light the sky's is.
+  void relight(const std::optional<std::vector<vec3>>& factors = {}, uint32_t sky_group = 0);
   /// Somebody watches: while records are relit there is a light of them all for display
   /// (relight_preview.h), which look_up_preview() has lookups read, and no longer. preview() goes on with it
   /// a piece at a time while there is something left; previewed() grows as it gets better.

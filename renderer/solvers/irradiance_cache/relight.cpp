@@ -22,7 +22,7 @@ void Cache::Impl::replace_records(const RawRecords& raw) {
   status.records = raw.size();
 }
 
-void Cache::Impl::relight(const std::optional<vec3>& factor) {
+void Cache::Impl::relight(const std::optional<std::vector<vec3>>& factors, uint32_t sky_group) {
   if (status.relighting.records == 0) {
     progress.stopped_before = status.stop == StopReason::dark ? StopReason::building : status.stop;
     // A pass that has its first level has places and radii, and is complete when it is relit. Of one before
@@ -30,7 +30,7 @@ void Cache::Impl::relight(const std::optional<vec3>& factor) {
     if (ranges.complete_pass()) ++status.pass;
   }
   ranges.keep_complete();
-  if (previews) preview.begin(tables, ranges.placed(), factor);
+  if (previews) preview.begin(tables, ranges.placed(), factors, sky_group);
   drop_pass();
   progress.probing.filling = false;
   progress.pauses.dropped();
@@ -69,7 +69,9 @@ void Cache::Impl::relight_pass() {
   next_pass();
 }
 
-void Cache::relight(const std::optional<vec3>& factor) { impl_->relight(factor); }
+void Cache::relight(const std::optional<std::vector<vec3>>& factors, uint32_t sky_group) {
+  impl_->relight(factors, sky_group);
+}
 
 void Cache::preview_relighting(bool on) {
   Impl& c = *impl_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/light_factor.h"
+
 namespace lucerna::irradiance_cache {
 
 using namespace shared;
@@ -32,18 +34,24 @@ void RelightPreview::make_room(uint32_t count) {
     old_shares_ = gpu::Buffer(
         device_,
         {.name = "cache shares of groups before", .bytes = room * records_->group_bytes(), .texel = true});
+  if (groups_ > 1)
+    group_factors_ =
+        gpu::Buffer(device_, {.name = "cache factors of groups", .bytes = groups_ * sizeof(vec4)});
 }
 
-void RelightPreview::begin(const LookupTables& tables, uint32_t count, const std::optional<vec3>& factor) {
+void RelightPreview::begin(const LookupTables& tables, uint32_t count,
+                           const std::optional<std::vector<vec3>>& factors, uint32_t sky_group) {
   if (count == 0) return end();
   const bool anew = !active() || count != count_;
-  known_ = factor && (anew || known_);
+  const std::optional<vec3> common = factors ? scene::common_factor(*factors) : std::nullopt;
+  const bool told = common || (factors && factors->size() == groups_);
+  known_ = told && (anew || known_);
   if (anew) {
     make_room(count);
     const RawRecords raw = tables.records.raw(count);
     records_->restore(raw);
     indexed_ = false;
-    factor_ = vec3(1);
+    std::fill(factors_.begin(), factors_.end(), vec3(1));
     // Those that bring no light because paths gather there keep telling where it came from.
     std::vector<uint32_t> lit;
     for (uint32_t r = 0; r < count; ++r)
@@ -59,7 +67,8 @@ void RelightPreview::begin(const LookupTables& tables, uint32_t count, const std
   }
   queue_.rewind();
   count_ = count;
-  if (factor) factor_ *= *factor;
+  for (size_t g = 0; told && g < factors_.size(); ++g) factors_[g] *= common ? *common : (*factors)[g];
+  sky_group_ = sky_group;
   begun_ = true;
   round_ = known_ ? k_rounds.size() : 0, rays_ = 0;
 }
@@ -74,7 +83,7 @@ void RelightPreview::make_ready(gpu::Stream& stream) {
   mix(stream, ~0u, 0, false);
   keep_as_old(stream, *records_, Records::Use::look_up, count_);
   stream.run();
-  factor_ = vec3(1);
+  std::fill(factors_.begin(), factors_.end(), vec3(1));
 }
 
 void RelightPreview::keep_as_old(gpu::Stream& stream, const Records& records, Records::Use use,
@@ -123,11 +132,16 @@ void RelightPreview::mix(gpu::Stream& stream, uint32_t parts, uint32_t rays, boo
   if (groups_ > 1) {
     resources_.set("old_group_texels", old_shares_);
     resources_.set("ShownGroups", records_->shares(Records::Use::look_up));
+    std::vector<vec4> factors;
+    for (const vec3& f : factors_) factors.emplace_back(f, 0);
+    group_factors_.write(std::span<const vec4>(factors));
+    resources_.set("GroupFactors", group_factors_);
   }
+  const vec3 factor = groups_ > 1 ? vec3(1) : factors_[0];
   resources_.set("Shown", records_->light(Records::Use::look_up));
-  change_->measure(stream, resources_, factor_, parts, rays, leading);
+  change_->measure(stream, resources_, factor, parts, rays, leading);
   stream.dispatch(kernel_, resources_,
-                  RelightPreviewPush{factor_, count_, parts, rays, change_->clusters(), leading},
+                  RelightPreviewPush{factor, count_, parts, rays, change_->clusters(), leading, sky_group_},
                   gpu::groups_for(count_, 64));
   stream.run();
   stream.take_times();

@@ -7,6 +7,7 @@
 // say (light_change.h), as far as their own do not contradict it
 // (shaders/irradiance_cache/relight_preview.comp). The rays read these same records: light that takes many
 // bounces arrives round by round.
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -23,14 +24,15 @@ class RelightPreview {
  public:
   /// `groups`: of lights, as Records.
   RelightPreview(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t groups)
-      : device_(device), compiler_(compiler), groups_(groups) {}
+      : device_(device), compiler_(compiler), groups_(std::max(1u, groups)), factors_(groups_, vec3(1)) {}
 
   /// Makes what so many records need, ahead of time. Throws Error when memory is short.
   void make_room(uint32_t count);
   /// The first `count` records of the tables are about to lose their light; where there is a preview of them
-  /// already, its light is the one before. Where all light is known to be `factor` times that, no ray is
-  /// sent.
-  void begin(const LookupTables& tables, uint32_t count, const std::optional<vec3>& factor = {});
+  /// already, its light is the one before. Where the light of each group of lights, or all light, is known to
+  /// be `factors` times that, no ray is sent. `sky_group`: whose light the sky's is.
+  void begin(const LookupTables& tables, uint32_t count, const std::optional<std::vector<vec3>>& factors = {},
+             uint32_t sky_group = 0);
   /// Nothing is to be shown any more.
   void end() { count_ = 0; }
   bool active() const { return count_ > 0; }
@@ -67,16 +69,17 @@ class RelightPreview {
 
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
-  uint32_t groups_;
+  uint32_t groups_;                   ///< at least 1
   std::unique_ptr<Records> records_;  ///< with the rays' light, and as lookups read it what is shown
   std::unique_ptr<lookup::Octree> octree_;
   gpu::Kernel kernel_;
   std::optional<LightChange> change_;
-  gpu::Buffer old_, old_shares_, frame_;
+  gpu::Buffer old_, old_shares_, frame_, group_factors_;
   gpu::Resources resources_;
   RecordQueue queue_;
-  size_t leading_ = 0;  ///< in the queue first
-  vec3 factor_{1};      ///< of the light before, since it was begun
+  size_t leading_ = 0;         ///< in the queue first
+  std::vector<vec3> factors_;  ///< of the light before, since it was begun, by group
+  uint32_t sky_group_ = 0;
   uint32_t count_ = 0, rays_ = 0;
   size_t round_ = 0;
   uint64_t published_ = 0;

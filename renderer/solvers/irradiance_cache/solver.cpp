@@ -171,7 +171,7 @@ void CacheSolver::begin(const Picture& picture, solvers::Spoils spoils) {
     cache_.clear();
     return;
   }
-  if (spoils.light) cache_.relight(picture.light_factor);
+  if (spoils.light) cache_.relight(picture.light_factors, picture.frame.sky_group);
   if (spoils.coverage) cache_.extend();
 }
 

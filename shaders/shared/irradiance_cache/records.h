@@ -77,12 +77,13 @@ LUCERNA_CONST uint k_candidate_medium = 4u;
 LUCERNA_CONST uint k_candidate_texels = 2u;
 
 struct RelightPreviewPush {
-  vec3 factor;  ///< of the light before
+  vec3 factor;  ///< of the light before; by groups of lights, where these are kept apart, there is more
   uint count;  ///< records
   uint parts;  ///< in bits: those that are gathered anew
   uint rays;   ///< that each record has had; 0: all light is that of before
   uint clusters;  ///< of records, k_light_cluster in each
   uint leading;   ///< not 0: only the leading ones of clusters have had their rays
+  uint sky_group; ///< of lights
 };
 
 /// Records that tell together how much light has changed; a workgroup.
