@@ -386,9 +386,13 @@ PictureDistance picture_distance(std::span<const float> shown, std::span<const f
     ++lit;
     black += a[i] < 0.05f * b[i];
   }
-  for (const Tile& t : tiles)
-    if (t.square > 0) d.error += t.error * std::sqrt(std::max(0.0, 1 - t.noise / t.square));
-  d.error /= double(std::max<size_t>(1, a.size()));
+  // What is left of a right picture is as often below 0 as above, and sums to nothing.
+  for (const Tile& t : tiles) {
+    if (t.square <= 0) continue;
+    const double left = 1 - t.noise / t.square;
+    d.error += t.error * std::copysign(std::sqrt(std::abs(left)), left);
+  }
+  d.error = std::max(0.0, d.error) / double(std::max<size_t>(1, a.size()));
   d.black = double(black) / double(std::max<size_t>(1, lit));
   return d;
 }

@@ -34,7 +34,7 @@ Edit edit_of(const std::string& name);
 struct PictureDistance {
   /// Mean over the pixels of the difference over the reference, after a mean over 3x3 pixels of both; pixels
   /// darker than k_dark are held against k_dark. In tiles of 16x16 pixels, what the reference's own noise has
-  /// in its mean square is taken off.
+  /// in its mean square is taken off; tiles where more than all of it seems to be noise count below 0.
   double error = 0;
   double black = 0;  ///< share of the pixels with light in the reference that show none, 3x3 likewise
 };

@@ -46,7 +46,7 @@ TEST_CASE("a reference's own noise is not the picture's error") {
   const std::vector<float> right(reference.size(), 0.3f), off(reference.size(), 0.36f);
   const double seen = picture_distance(right, reference, k_width).error;
   CHECK(seen > 0.06);
-  CHECK(picture_distance(right, reference, k_width, half).error < 0.3 * seen);
+  CHECK(picture_distance(right, reference, k_width, half).error < 0.1 * seen);
   CHECK(picture_distance(off, reference, k_width, half).error == Approx(0.2).epsilon(0.05));
 }
 
