@@ -87,6 +87,9 @@
 #endif
 
 // What the settings ask for, and what tests do.
+#ifndef LUCERNA_PHOTON_IRRADIANCE
+#define LUCERNA_PHOTON_IRRADIANCE 0
+#endif
 #ifndef LUCERNA_LOOKUP_BIAS
 #define LUCERNA_LOOKUP_BIAS 0
 #endif

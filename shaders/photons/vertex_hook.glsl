@@ -10,7 +10,9 @@
 #include "photons/photon.glsl"
 #include "photons/lookup.glsl"
 #include "photons/area.glsl"
-
+#if LUCERNA_PHOTON_IRRADIANCE
+#include "photons/irradiance.glsl"
+#endif
 
 layout(scalar) buffer PhotonImportance { uint photon_importance[]; };
 
@@ -18,6 +20,9 @@ struct photons_Vertex { uint none; };
 
 photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   uint components = v.again ? 0xffffu : photons.component[v.state];
+#if LUCERNA_PHOTON_IRRADIANCE
+  if (components != 0xffffu && irradiance_read(v, o)) components = 0xffffu;
+#endif
   vec3 x = v.surface.position;
   float radius = photon_radius(x);
   bool looks = components != 0xffffu && photons.count > 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0;

@@ -96,13 +96,16 @@ TEST_CASE("light that is refracted into water has there the irradiance that come
 
 TEST_CASE("flux is conserved in a closed room of one albedo") {
   const vec3 albedo(0.5f, 0.25f, 0.75f);
-  for (const bool final_gather : {false, true}) {
+  for (const std::string way : {"looked up", "gathered", "gathered from a map"}) {
+    const bool final_gather = way != "looked up";
     test::Settings settings = k_all;
     if (final_gather) settings["components.secondary"] = "path";
+    if (way == "gathered from a map")
+      settings["photons.irradiance_map"] = "true", settings["components.caustic"] = "off";
     const test::Result r = test::render(closed_room(albedo), settings, 32, 32);
     const MeanOf secondary = mean_of(r.image, 1), tertiary = mean_of(r.image, 2);
     for (int c = 0; c < 3; ++c) {
-      INFO("channel " << c << ", final gather " << final_gather);
+      INFO("channel " << c << ", " << way);
       const double a = double(albedo[c]);
       CHECK(secondary.value[c] == Approx(a * a).epsilon(0.01));
       // Final gathering sees the dark rims of the map's edges: r / a room's width of its light.
@@ -175,6 +178,41 @@ TEST_CASE("records whose rays end in photons beside caustics of photons make the
   check_choice({{"components.secondary", "cache"},
                 {"components.tertiary", "photons"},
                 {"components.caustic", "photons"}});
+}
+
+TEST_CASE("tertiary light from a map of irradiance makes the picture of path tracing") {
+  const test::Settings settings{{"components.tertiary", "photons"}, {"photons.irradiance_map", "true"}};
+  check_choice(settings);
+  check_choice(with(settings, {{"components.secondary", "cache"}}));
+  // Beside caustics, which are looked up among the round's photons at the first surface.
+  check_choice(with(settings, {{"components.caustic", "photons"}}));
+}
+
+TEST_CASE("a map of irradiance is read where it is asked for, is the same to the bit, and follows the lamp") {
+  scene::Scene room = glass_room();
+  const test::Settings settings{{"components.tertiary", "photons"}, {"photons.irradiance_map", "true"}};
+  test::Render base{.width = 32, .height = 32, .samples = 4, .settings = settings, .validated = false};
+  const test::Result a = test::render(base, &room);
+  base.settings["path.batch"] = "1024";
+  CHECK(test::identical(a.image, test::render(base, &room).image));
+  base.settings["photons.irradiance_map"] = "false";
+  CHECK_FALSE(test::identical(a.image.components[2], test::render(base, &room).image.components[2]));
+  // Where light is looked up at the first surface there is nothing to be known beforehand.
+  base.settings["components.secondary"] = "photons";
+  const test::Result looked_up = test::render(base, &room);
+  base.settings["photons.irradiance_map"] = "true";
+  CHECK(test::identical(looked_up.image, test::render(base, &room).image));
+
+  session::Renderer r(test::renderer_options());
+  r.set_size(32, 32);
+  r.set_scene(std::make_shared<scene::Scene>(room));
+  test::set(r, with(settings, {{"samples", "4"}, {"path.batch", "4096"}}));
+  const film::Image first = test::finish(r);
+  scene::Material lamp = room.materials[1];
+  lamp.emission *= 2.0f;
+  r.set_material(1, lamp);
+  const film::Image bright = test::finish(r);
+  CHECK(test::mean(bright.components[2]) == Approx(2 * test::mean(first.components[2])).epsilon(0.02));
 }
 
 TEST_CASE("records whose rays end in photons follow the lamp") {

@@ -37,6 +37,13 @@ std::vector<OptionInfo> option_rows() {
           "Photons: divides by the surface that there is around a place instead of by a whole disc, "
           "so that borders and creases are not darker than they are.",
           "Correct borders"),
+      boolean_option(
+          "photons.irradiance_map", "false",
+          "Photons: where records' rays, or paths behind their first diffuse surface, look tertiary light "
+          "up, "
+          "irradiance is known beforehand at one photon in four, and the nearest is taken. Such lookups cost "
+          "less and are coarser.",
+          "Irradiance map"),
       without_restart(
           choice_option("overlay.photon_density", "off", {"off", "photons", "irradiance", "importance"}, "",
                         "Shows over the picture how dense the photons of the last round lie, or what they "

@@ -11,9 +11,7 @@ using namespace shared;
 
 namespace {
 
-constexpr uint32_t k_first_capacity = 65536;                           // photons
-constexpr uint32_t k_least_entries = 1024, k_most_entries = 1u << 22;  // of the table
-constexpr uint32_t k_entries_a_photon = 4;
+constexpr uint32_t k_first_capacity = 65536;  // photons
 
 gpu::Buffer texels(gpu::Device& device, const char* name, uint64_t bytes) {
   return gpu::Buffer(device, {.name = name, .bytes = (bytes + 15) / 16 * 16, .texel = true});
@@ -28,20 +26,16 @@ PhotonMap::PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const g
       scene_defines_(scene_defines),
       emitter_(device, compiler, scene_defines, automaton),
       trace_(device, compiler, "photons/trace.comp", scene_defines),
-      keys_(device, compiler, "photons/keys.comp"),
-      arrange_(device, compiler, "photons/arrange.comp"),
-      radix_sort_(device, compiler, sort::Keys::bits64),
+      cells_(device, compiler),
       counts_(device, {.name = "photon counts", .bytes = 4 * k_photon_counts, .memory = gpu::Memory::host}),
-      map_(texels(device, "photons", sizeof(Photon))),
-      table_(texels(device, "table of photons", 8 * k_least_entries)),
       block_(device, {.name = "photon lookups", .bytes = sizeof(PhotonFrame)}),
       importance_(device, {.name = "importance", .bytes = 4 * k_photon_importance_entries}) {
   clear();
 }
 
 void PhotonMap::bind(gpu::Resources& resources) const {
-  resources.set("photon_texels", map_);
-  resources.set("photon_table", table_);
+  resources.set("photon_texels", cells_.photons());
+  resources.set("photon_table", cells_.table());
   resources.set("PhotonBlock", block_);
   resources.set("PhotonImportance", importance_);
 }
@@ -69,7 +63,7 @@ std::vector<double> PhotonMap::worth(transport::Wavefront& wavefront, const tran
   wavefront.bind_paths(r);
   bind(r);
   lights.bind(r);
-  r.set("photon_sorted", *sorted_);
+  r.set("photon_sorted", cells_.sorted());
   r.set("PhotonWorths", worths_);
   wavefront.stream().dispatch(worth_, r,
                               PhotonWorthPush{count, transport::LightEmitter::stratum_step(figures_.paths)},
@@ -104,9 +98,8 @@ void PhotonMap::store_by_importance(bool on) {
 }
 
 uint64_t PhotonMap::bytes() const {
-  uint64_t sum = 0;
-  for (const gpu::Buffer* b : {&list_, &ids_, &entries_, &scratch_, &map_, &table_, &importance_})
-    sum += *b ? b->bytes() : 0;
+  uint64_t sum = cells_.bytes();
+  for (const gpu::Buffer* b : {&list_, &ids_, &importance_}) sum += *b ? b->bytes() : 0;
   return sum;
 }
 
@@ -186,45 +179,15 @@ void PhotonMap::build(transport::Wavefront& wavefront, const Round& round) {
   const Timer timer;
   gpu::Stream& stream = wavefront.stream();
   lookup_ = round.lookup;
-  lookup_.count = stored_;
   lookup_.round = round.number;
-  const uint32_t entries =
-      std::clamp(std::bit_ceil(std::max(1u, k_entries_a_photon * std::min(stored_, 1u << 28))),
-                 k_least_entries, k_most_entries);
-  lookup_.mask = entries - 1;
-  bool moved = false;
-  const auto room = [&](gpu::Buffer& buffer, const char* name, uint64_t bytes) {
-    if (buffer && buffer.bytes() >= bytes) return;
-    buffer = texels(device_, name, bytes);
-    moved = true;
-  };
-  room(table_, "table of photons", uint64_t{8} * entries);
-  room(map_, "photons", uint64_t{stored_} * sizeof(Photon));
-  room(entries_, "keys of photons", uint64_t{16} * stored_);
-  room(scratch_, "keys of photons", uint64_t{16} * stored_);
+  const bool moved = cells_.make_room(stored_, lookup_);
   write_lookup();
-  stream.fill(table_, 0);
-  if (stored_ > 0) {
-    gpu::Resources r;
-    bind_list(r);
-    bind(r);
-    r.set("PhotonKeys", entries_);
-    r.set("PhotonMap", map_);
-    r.set("PhotonTable", table_);
-    const PhotonListPush push{stored_};
-    const uint32_t groups = gpu::groups_for(stored_, 64);
-    stream.dispatch(keys_, r, push, groups, "photon map");
-    const gpu::Buffer& sorted = radix_sort_.encode(stream, entries_, scratch_, {.most = stored_},
-                                                   32 + uint32_t(std::bit_width(entries - 1)), "photon map");
-    sorted_ = &sorted;
-    r.set("photon_sorted", sorted);
-    stream.dispatch(arrange_, r, push, groups, "photon map");
-  }
+  cells_.encode(stream, list_, ids_, block_, stored_);
   wavefront.account_stages();
   if (moved) wavefront.rebind_lookup();
   next_.build_s = timer.seconds();
   figures_ = next_;
-  figures_.photons = stored_, figures_.entries = entries;
+  figures_.photons = stored_, figures_.entries = cells_.entries();
   tracing_ = false;
   complete_ = true;
 }

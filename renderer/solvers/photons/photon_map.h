@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "shaders/shared/photons/photons.h"
-#include "sort/radix_sort.h"
+#include "solvers/photons/photon_cells.h"
 #include "transport/light_emitter.h"
 
 namespace lucerna::photons {
@@ -78,10 +78,9 @@ class PhotonMap {
   gpu::ShaderCompiler& compiler_;
   gpu::Defines scene_defines_;
   transport::LightEmitter emitter_;
-  gpu::Kernel trace_, keys_, arrange_, worth_;
-  sort::RadixSort radix_sort_;
-  gpu::Buffer counts_, list_, ids_, entries_, scratch_, map_, table_, block_, importance_, worths_;
-  const gpu::Buffer* sorted_ = nullptr;     ///< of the complete round
+  gpu::Kernel trace_, worth_;
+  PhotonCells cells_;  ///< with the photons of the complete round
+  gpu::Buffer counts_, list_, ids_, block_, importance_, worths_;
   shared::PhotonFrame lookup_{}, noted_{};  ///< noted_: by whose radii importance is noted
   RoundFigures figures_, next_;             ///< of the last complete round, of the one under way
   bool tracing_ = false, complete_ = false;

@@ -91,12 +91,12 @@ Report make_report(const PhotonReport& r) {
   map.items.push_back(
       ValueRow{"Memory", megabytes_text(double(r.bytes) / 1e6), "Of photons and what finds them."});
   report.sections.push_back(std::move(map));
-  report.sections.push_back(
-      {.title = "Settings",
-       .note = "",
-       .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"}, OptionRow{"photons.floor"},
-                 OptionRow{"photons.alpha"}, OptionRow{"photons.borders"}, OptionRow{"photons.aim"},
-                 OptionRow{"photons.importons"}}});
+  report.sections.push_back({.title = "Settings",
+                             .note = "",
+                             .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"},
+                                       OptionRow{"photons.floor"}, OptionRow{"photons.alpha"},
+                                       OptionRow{"photons.borders"}, OptionRow{"photons.irradiance_map"},
+                                       OptionRow{"photons.aim"}, OptionRow{"photons.importons"}}});
   report.sections.push_back(
       {.title = "Over the picture",
        .note = "",

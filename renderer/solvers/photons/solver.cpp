@@ -45,6 +45,23 @@ bool feeds(const Task& task) {
   return (task.own >> k_tertiary & 1u) != 0 && (task.borrowing >> k_secondary & 1u) != 0;
 }
 
+/// Irradiance is to be known beforehand where tertiary light is looked up: behind a diffuse vertex, which is
+/// not so where secondary light is ours as well.
+bool prepares_irradiance(const Task& task) {
+  return task.settings.boolean("photons.irradiance_map") && parts_of(task) != 0 &&
+         (task.own >> k_tertiary & 1u) != 0 && (task.own >> k_secondary & 1u) == 0;
+}
+
+/// Of lookups' components by state: those that bring nothing but tertiary light.
+std::vector<uint32_t> tertiary_alone(const PhotonFrame& lookup) {
+  std::vector<uint32_t> component(std::begin(lookup.component), std::end(lookup.component));
+  for (uint32_t& packed : component)
+    for (uint32_t p = 0; p < paths::k_part_count; ++p)
+      if (const uint32_t c = packed >> 4 * p & 15u; c != k_tertiary && c != k_photon_no_component)
+        packed = 0xffffu;
+  return component;
+}
+
 std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
                                       const Task& task) {
   return std::make_unique<PhotonSolver>(device, compiler, task);
@@ -79,18 +96,28 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       view_(device, compiler),
       paths_view_(device, compiler, *task.scene_defines, task.automaton),
       inspector_(device, compiler),
-      surfaces_(device) {}
+      surfaces_(device) {
+  if (prepares_irradiance(task)) irradiance_.emplace(device, compiler, *task.scene_defines);
+}
+
+gpu::Defines PhotonSolver::defines() const {
+  gpu::Defines defines;
+  if (sends_) defines["LUCERNA_LOOKUP_BIAS"] = "1";
+  if (irradiance_) defines["LUCERNA_PHOTON_IRRADIANCE"] = "1";
+  return defines;
+}
 
 const solvers::SolverInfo& PhotonSolver::info() const { return photons::info(); }
 
 void PhotonSolver::bind(gpu::Resources& resources) const {
   (feeding_ ? *standing_ : map_).bind(resources);
+  if (irradiance_) irradiance_->bind(resources);
   surfaces_.bind(resources);
 }
 
 bool PhotonSolver::serves(const Task& task) const {
   return routes_of(task).component == routes_.component && parts_of(task) == parts_ &&
-         (sends_ && feeds(task)) == feeds_;
+         (sends_ && feeds(task)) == feeds_ && prepares_irradiance(task) == irradiance_.has_value();
 }
 
 void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
@@ -101,7 +128,9 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   }
   if (spoils.places) map_.clear(), surfaces_.spoil();
   if (standing_ && spoils.any()) standing_->clear();
-  if (feeds_ && !standing_) standing_.emplace(device_, compiler_, scene_defines_, picture.task.automaton);
+  if (irradiance_ && spoils.any()) irradiance_->clear();
+  if ((feeds_ || irradiance_) && !standing_)
+    standing_.emplace(device_, compiler_, scene_defines_, picture.task.automaton);
   feeding_ = fed_ = false;
   map_.restart();
   fresh_ = true;
@@ -122,6 +151,8 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
   const uint64_t pixels = uint64_t{picture.width} * picture.height;
   const auto asked = uint32_t(s.integer("photons.per_round"));
   round.paths = asked > 0 ? asked : uint32_t(std::clamp<uint64_t>(pixels, k_least_paths, k_most_paths));
+  // Few lookups are left to a round where irradiance is known of all that is ours.
+  if (asked == 0 && irradiance_ && picture.task.own == 1u << k_tertiary) round.paths = k_least_paths;
   round.parts = parts_;
   round.account = uint32_t(std::countr_zero(std::max(1u, picture.task.own)));
 
@@ -174,7 +205,15 @@ bool PhotonSolver::feed(transport::Wavefront& wavefront, const Picture& picture,
         picture.flat.scene_radius * std::sqrt(8 * k_standing_photons / (k_pi * float(round.paths)));
     return standing_->trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel);
   }
-  feeding_ = true;
+  if (irradiance_ && !irradiance_->complete()) {
+    const auto from = [&](gpu::Resources& r) {
+      standing_->bind(r);
+      surfaces_.bind(r);
+    };
+    irradiance_->make(wavefront, *standing_, tertiary_alone(standing_->lookup()), from);
+    return true;
+  }
+  feeding_ = feeds_;
   wavefront.rebind_lookup();
   return true;
 }
@@ -239,7 +278,8 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.sorted_per_s = rate(photons_, build_s_);
   r.density = density_;
   r.looked_at = looked_at_, r.inspected = inspected_;
-  r.bytes = map_.bytes() + lights_.bytes() + surfaces_.bytes() + (standing_ ? standing_->bytes() : 0);
+  r.bytes = map_.bytes() + lights_.bytes() + surfaces_.bytes() + (standing_ ? standing_->bytes() : 0) +
+            (irradiance_ ? irradiance_->bytes() : 0);
   const double shrunk =
       s.real("photons.radius") * radius_ratio(rounds_ > 0 ? last_sample_ : 0, s.real("photons.alpha"));
   r.radius_pixels = std::max(shrunk, s.real("photons.floor"));
@@ -292,6 +332,7 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, c
           {"unaimed", r.unaimed},
           {"last_round_photons", r.last.photons},
           {"radius_pixels", r.radius_pixels},
+          {"irradiance_places", irradiance_ ? irradiance_->places() : 0},
           {"bytes", r.bytes}};
 }
 

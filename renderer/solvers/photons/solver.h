@@ -3,6 +3,7 @@
 #include "overlay/light_paths.h"
 #include "schedule/uniform.h"
 #include "solvers/photons/inspector.h"
+#include "solvers/photons/irradiance_map.h"
 #include "solvers/photons/photon_map.h"
 #include "solvers/photons/points_view.h"
 #include "solvers/photons/report.h"
@@ -19,9 +20,7 @@ class PhotonSolver final : public solvers::Solver {
   PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const solvers::Task& task);
 
   const solvers::SolverInfo& info() const override;
-  gpu::Defines defines() const override {
-    return sends_ ? gpu::Defines{{"LUCERNA_LOOKUP_BIAS", "1"}} : gpu::Defines{};
-  }
+  gpu::Defines defines() const override;
   std::string hook() const override { return sends_ ? "photons/vertex_hook.glsl" : ""; }
   void bind(gpu::Resources& resources) const override;
   bool serves(const solvers::Task& task) const override;
@@ -29,7 +28,9 @@ class PhotonSolver final : public solvers::Solver {
   void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
   /// Whether it is known where lookups take place, which casters light paths are aimed at, and with which
   /// shares; and, where records' rays read photons, whether there are some for them.
-  bool ready() const override { return pilot_done() && (!feeds_ || feeding_ || fed_); }
+  bool ready() const override {
+    return pilot_done() && (!feeds_ || feeding_ || fed_) && (!irradiance_ || irradiance_->complete());
+  }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
   bool in_rounds() const override { return sends_; }
@@ -52,7 +53,8 @@ class PhotonSolver final : public solvers::Solver {
 
  private:
   bool pilot_done() const { return (!aims_ && !spares_) || aimed_; }
-  /// One piece of making, or binding, what records' rays read. False when it was cancelled.
+  /// One piece of making, or binding, what records' rays and gathering paths read. False when it was
+  /// cancelled.
   bool feed(transport::Wavefront& wavefront, const solvers::Picture& picture, const solvers::Cancel& cancel);
   PhotonReport state(const solvers::Picture& picture) const;
   Round round_of(const solvers::Picture& picture, uint32_t sample) const;
@@ -72,8 +74,10 @@ class PhotonSolver final : public solvers::Solver {
   // surfaces stay the same.
   bool feeds_;                         ///< there is somebody who reads these
   std::optional<PhotonMap> standing_;  ///< made when it is called for
-  bool feeding_ = false;               ///< lookups read these
-  bool fed_ = false;                   ///< ... and have done so in this picture, which is in its rounds
+  /// Of the standing photons, where light is read behind a diffuse vertex and the settings ask for it.
+  std::optional<IrradianceMap> irradiance_;
+  bool feeding_ = false;  ///< lookups read these
+  bool fed_ = false;      ///< ... and have done so in this picture, which is in its rounds
   PointsView view_;
   overlay::LightPathsPainter paths_view_;
   PhotonInspector inspector_;

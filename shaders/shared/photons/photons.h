@@ -39,6 +39,12 @@ LUCERNA_CONST uint k_photon_most_visits = 2048u;        ///< nodes that a lookup
 LUCERNA_CONST float k_photon_least_area = 1.0f / 64.0f; ///< of the whole disc
 LUCERNA_CONST float k_photon_turned_slab = 0.125f;      ///< of the slab, for what is wound the other way round
 
+// Places where irradiance is known beforehand (photons/irradiance.glsl): one photon in so many, found within a part of the
+// photons' radius. Four texels each: place and bits facet of the side that is lit; irradiance of parts 1, 2, 3.
+LUCERNA_CONST uint k_photon_place_step = 4u;
+LUCERNA_CONST float k_photon_place_radius = 0.6f;
+LUCERNA_CONST uint k_photon_place_texels = 4u;
+
 /// What lookups read besides the photons.
 struct PhotonFrame {
   vec3 eye;         ///< from which radii are measured [m]
