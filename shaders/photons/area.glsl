@@ -76,7 +76,7 @@ vec2 photon_areas(vec3 x, vec3 normal, float radius) {
   float r2 = radius * radius;
   vec2 sum = vec2(0.0);
   uint node = 0u, nodes = photons.surface_nodes, visits = 0u;
-  for (; node < nodes && visits < k_photon_most_visits; ++visits) {
+  for (; node < nodes && visits < photons.most_visits; ++visits) {
     vec4 a = texelFetch(photon_surface_nodes, int(2u * node)), b = texelFetch(photon_surface_nodes, int(2u * node + 1u));
     vec3 away = max(max(a.xyz - x, x - b.xyz), vec3(0.0));
     bool meets = dot(away, away) < r2;

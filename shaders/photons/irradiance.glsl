@@ -13,6 +13,12 @@ layout(scalar) readonly buffer IrradianceBlock { PhotonFrame irradiance; };  // 
 uniform samplerBuffer place_irradiance_texels;                               // k_photon_place_texels a place
 uniform usamplerBuffer place_table;                                          // two entries a texel
 
+uvec2 place_range(ivec3 cell, int level) {
+  uint entry = photon_entry_of(cell, level, irradiance.mask);
+  uvec4 two = texelFetch(place_table, int(entry >> 1));
+  return (entry & 1u) != 0u ? two.zw : two.xy;
+}
+
 // Brings what is known at the nearest place on the side that the path sees; false where there is none near enough, or light
 // comes through the surface as well.
 bool irradiance_read(VertexIn v, inout VertexOut o) {
@@ -22,12 +28,19 @@ bool irradiance_read(VertexIn v, inout VertexOut o) {
   float radius = irradiance.base, nearest2 = radius * radius;
   int level = photon_level(radius);
   ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
-  uint nearest = 0xffffffffu, met = 0u;
+  uint nearest = 0xffffffffu, candidates = 0u;
   for (uint k = 0u; k < k_photon_near_cells; ++k) {
-    uint entry = photon_entry_of(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level, irradiance.mask);
-    uvec4 two = texelFetch(place_table, int(entry >> 1));
-    uvec2 range = (entry & 1u) != 0u ? two.zw : two.xy;
-    for (uint at = range.x; at < range.y && met < k_photon_most_candidates; ++at, ++met) {
+    uvec2 range = place_range(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level);
+    candidates += range.y - range.x;
+  }
+  // Where very many lie together the nearest of every so-manyth is near enough.
+  uint step = (candidates + irradiance.most_candidates - 1u) / max(irradiance.most_candidates, 1u);
+  step = max(step, 1u);
+  uint skip = step > 1u ? hash_combine(hash_combine(v.path.pixel, v.path.sample_index), v.depth) % step : 0u;
+  for (uint k = 0u; k < k_photon_near_cells; ++k) {
+    uvec2 range = place_range(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level);
+    uint at = range.x + skip;
+    for (; at < range.y; at += step) {
       vec4 place = texelFetch(place_irradiance_texels, int(k_photon_place_texels * at));
       vec3 away = place.xyz - x;
       float d2 = dot(away, away);
@@ -36,6 +49,7 @@ bool irradiance_read(VertexIn v, inout VertexOut o) {
       nearest = counts ? at : nearest;
       nearest2 = counts ? d2 : nearest2;
     }
+    skip = at >= range.y ? at - range.y : skip;
   }
   if (nearest == 0xffffffffu) return false;
   vec3 weight = v.path.throughput * v.bsdf.diffuse_albedo * k_inv_pi, all = vec3(0.0);

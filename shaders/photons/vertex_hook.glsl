@@ -43,7 +43,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
     }
   }
   // Where very many lie together every so-manyth is taken, beginning anywhere.
-  uint step = (candidates + k_photon_most_candidates - 1u) / k_photon_most_candidates;
+  uint step = (candidates + photons.most_candidates - 1u) / max(photons.most_candidates, 1u);
   step = max(step, 1u);
   uint skip = step > 1u ? hash_combine(hash_combine(v.path.pixel, v.path.sample_index), v.depth) % step : 0u;
   vec3 found_1 = vec3(0.0), found_2 = vec3(0.0), found_3 = vec3(0.0);  // by part

@@ -171,6 +171,7 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
   f.base = frame.orthographic ? radius : 0;
   f.least = k_least_radius * picture.flat.scene_radius;
   f.most = k_most_radius * picture.flat.scene_radius;
+  f.most_candidates = k_photon_most_candidates, f.most_visits = k_photon_most_visits;
   f.surface_nodes = picture.task.settings.boolean("photons.borders") ? surfaces_.nodes() : 0;
   // Paths that another solver's lookup has left alone find photons as all others do.
   for (uint32_t state = 0; state < k_automaton_states; ++state) {
@@ -201,6 +202,8 @@ bool PhotonSolver::feed(transport::Wavefront& wavefront, const Picture& picture,
     round.paths = std::max(k_standing_paths, round.paths);
     round.lookup = lookup_of(picture, picture.frame, 1);
     round.lookup.slope = 0;
+    round.lookup.most_candidates = k_photon_standing_candidates;
+    round.lookup.most_visits = k_photon_standing_visits;
     round.lookup.base =
         picture.flat.scene_radius * std::sqrt(8 * k_standing_photons / (k_pi * float(round.paths)));
     return standing_->trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel);

@@ -32,17 +32,21 @@ LUCERNA_CONST float k_photon_most_slope = 0.25f;  ///< of the radius over the di
 /// Of candidates that a lookup meets it looks at no more than about so many, at random, each counting for several. (All loops
 /// of eight neighbouring invocations together end after 65535 iterations on lavapipe.)
 LUCERNA_CONST uint k_photon_most_candidates = 4096u;
+/// ... where many lookups make one figure: those of records' rays, and of paths that gather.
+LUCERNA_CONST uint k_photon_standing_candidates = 384u;
+LUCERNA_CONST uint k_photon_place_candidates = 64u;  ///< of places of irradiance, of which one is taken
 LUCERNA_CONST float k_photon_slab = 0.25f;  ///< half the thickness of what a photon's disc counts for, in radii
 LUCERNA_CONST float k_photon_normals = 0.9f;  ///< least cosine between the normals of photon and place
 // How much surface there is around a place (photons/area.glsl).
 LUCERNA_CONST uint k_photon_most_visits = 2048u;        ///< nodes that a lookup meets; beyond it is taken for whole
+LUCERNA_CONST uint k_photon_standing_visits = 128u;     ///< ... of records' rays, whose discs are wide
 LUCERNA_CONST float k_photon_least_area = 1.0f / 64.0f; ///< of the whole disc
 LUCERNA_CONST float k_photon_turned_slab = 0.125f;      ///< of the slab, for what is wound the other way round
 
-// Places where irradiance is known beforehand (photons/irradiance.glsl): one photon in so many, found within a part of the
-// photons' radius. Four texels each: place and bits facet of the side that is lit; irradiance of parts 1, 2, 3.
-LUCERNA_CONST uint k_photon_place_step = 4u;
-LUCERNA_CONST float k_photon_place_radius = 0.6f;
+// Places where irradiance is known beforehand (photons/irradiance.glsl): one photon in so many, found within so many of the
+// photons' radii. Four texels each: place and bits facet of the side that is lit; irradiance of parts 1, 2, 3.
+LUCERNA_CONST uint k_photon_place_step = 2u;
+LUCERNA_CONST float k_photon_place_radius = 1.0f;
 LUCERNA_CONST uint k_photon_place_texels = 4u;
 
 /// What lookups read besides the photons.
@@ -54,6 +58,8 @@ struct PhotonFrame {
   uint count;       ///< photons; 0: none
   uint mask;        ///< entries of the table, less 1
   uint round;
+  uint most_candidates;  ///< that a lookup looks at, about
+  uint most_visits;      ///< nodes of the index of surfaces that it meets
   uint surface_nodes;    ///< of the index of surfaces; 0: borders are not corrected
   uint importance_mask;  ///< entries of the table of importance, less 1; 0: lookups note none
   // By whose radii importance was noted, and whether photons are stored by it.
