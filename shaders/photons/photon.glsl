@@ -38,6 +38,11 @@ uint photon_entry_of(ivec3 cell, int level, uint mask) {
 }
 uint photon_entry(ivec3 cell, int level) { return photon_entry_of(cell, level, photons.mask); }
 
+// Of the photons in their order: that at which irradiance is known beforehand as the place of that number.
+uint photon_of_place(uint place) {
+  return min(k_photon_place_step * place + hash_combine(place, photons.round) % k_photon_place_step, photons.count - 1u);
+}
+
 // By whose radii importance was noted.
 float importance_radius(vec3 x) {
   return clamp(photons.importance_base + photons.importance_slope * distance(x, photons.importance_eye), photons.least, photons.most);

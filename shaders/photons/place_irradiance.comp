@@ -1,5 +1,6 @@
 // Irradiance at places where photons lie, by part: a density estimate over the photons around, as lookups make it
-// (photons/vertex_hook.glsl).
+// (photons/vertex_hook.glsl), of those that are no places. A place's own photon would bring too much, and the gap around a lookup,
+// in which there is no nearer one, too little; of the others places know nothing.
 #include "lib/variants.glsl"
 #include "photons/photon.glsl"
 #include "photons/lookup.glsl"
@@ -46,7 +47,7 @@ void main() {
         vec4 a = texelFetch(photon_texels, int(k_photon_texels * at));
         vec3 away = a.xyz - x;
         float r = photon_radius(a.xyz), d2 = dot(away, away);
-        if (d2 >= r * r) continue;
+        if (d2 >= r * r || photon_of_place(at / k_photon_place_step) == at) continue;
         vec4 b = texelFetch(photon_texels, int(k_photon_texels * at + 1u));
         uint bits = floatBitsToUint(b.w), part = bits >> k_photon_part_shift & 3u;
         vec3 front = facet_unpack(bits & k_photon_facet), side = dot(photon_direction(floatBitsToUint(a.w)), front) > 0.0 ? front : -front;
@@ -60,7 +61,8 @@ void main() {
       skip = at >= range.y ? at - range.y : skip;
     }
   }
-  float weight = float(step) / photon_area(x, normal, radius);
+  const float k_others = float(k_photon_place_step) / float(k_photon_place_step - 1u);
+  float weight = k_others * float(step) / photon_area(x, normal, radius);
   place_irradiance[k_photon_place_texels * i] = vec4(x, uintBitsToFloat(facet_pack(seen)));
   for (uint p = 0u; p < 3u; ++p) place_irradiance[k_photon_place_texels * i + 1u + p] = vec4(weight * found[p], 0.0);
 #if LUCERNA_GROUP_SUMS

@@ -11,7 +11,7 @@ layout(scalar) writeonly buffer PhotonIds { uint photon_ids[]; };
 void main() {
   uint i = global_index();
   if (i >= push.count) return;
-  uint from = min(k_photon_place_step * i + hash_combine(i, photons.round) % k_photon_place_step, photons.count - 1u);
+  uint from = photon_of_place(i);
   for (uint t = 0u; t < k_photon_texels; ++t)
     photon_list[k_photon_texels * i + t] = texelFetch(photon_texels, int(k_photon_texels * from + t));
   photon_ids[i] = i;

@@ -41,7 +41,7 @@ std::vector<OptionInfo> option_rows() {
           "photons.irradiance_map", "false",
           "Photons: where records' rays, or paths behind their first diffuse surface, look tertiary light "
           "up, "
-          "irradiance is known beforehand at one photon in two, and the nearest is taken. Such lookups cost "
+          "irradiance is known beforehand at one photon in four, and the nearest is taken. Such lookups cost "
           "less and are coarser.",
           "Irradiance map"),
       without_restart(

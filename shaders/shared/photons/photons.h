@@ -45,7 +45,7 @@ LUCERNA_CONST float k_photon_turned_slab = 0.125f;      ///< of the slab, for wh
 
 // Places where irradiance is known beforehand (photons/irradiance.glsl): one photon in so many, found within so many of the
 // photons' radii. Four texels each: place and bits facet of the side that is lit; irradiance of parts 1, 2, 3.
-LUCERNA_CONST uint k_photon_place_step = 2u;
+LUCERNA_CONST uint k_photon_place_step = 4u;
 LUCERNA_CONST float k_photon_place_radius = 1.0f;
 LUCERNA_CONST uint k_photon_place_texels = 4u;
 
