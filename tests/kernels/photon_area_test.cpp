@@ -34,6 +34,7 @@ std::vector<vec2> areas(const scene::Scene& scene, const std::vector<Place>& pla
   CHECK(index.serves(flat));
   shared::PhotonFrame frame{};
   frame.surface_nodes = index.nodes();
+  frame.most_visits = shared::k_photon_most_visits;
   gpu::Buffer block(device, {"photon lookups", sizeof frame});
   block.write(&frame, sizeof frame);
   gpu::Buffer asked(device, {"places", places.size() * sizeof(Place)});
