@@ -121,7 +121,6 @@ const gpu::Buffer* Display::seen(const film::PreviewCamera& camera, const Pictur
 
 bool Display::sight_wanted(const Engine& engine, const PictureView& view) const {
   return uint64_t{view.width} * view.height <= overlay::Sight::k_most_points &&
-         film::Preview::fits(device_.info().limits, view.width, view.height) &&
          !seen(camera_of(engine.frame(view, view.width, view.height)), view);
 }
 

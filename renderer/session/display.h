@@ -30,7 +30,7 @@ class Display {
   void mixed();
 
   DraftPlan& plan() { return plan_; }
-  /// Whether it is not known yet what surfaces the picture's pixels show.
+  /// Whether it is not known yet, and can be, what surfaces the pixels show of a picture that is previewed.
   bool sight_wanted(const Engine& engine, const PictureView& view) const;
   /// Another sample of a draft, or a piece of light for it. `coarse`: the film of a quarter of the
   /// resolution. False when it was cancelled.

@@ -496,8 +496,9 @@ bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   if (!engine_ || !display_) return false;
   const bool prepares = preparing();
   if (std::exchange(draft_preparing_, prepares) && !prepares) display_->light_changed();
-  const DraftPlan::Next what = display_->plan().next(prepares, samples() > 0, engine_->previews(),
-                                                     display_->sight_wanted(*engine_, picture_view()));
+  const bool filled = samples() > 0;
+  const bool sight = !filled && previewed(view()) && display_->sight_wanted(*engine_, picture_view());
+  const DraftPlan::Next what = display_->plan().next(prepares, filled, engine_->previews(), sight);
   if (what == DraftPlan::Next::nothing) return false;
   clock_.go();
   const Timer timer;

@@ -44,9 +44,7 @@ void IrradianceMap::make(transport::Wavefront& wavefront, const PhotonMap& map,
                          const std::function<void(gpu::Resources&)>& from) {
   const uint32_t count = gpu::groups_for(map.figures().photons, k_photon_place_step);
   lookup_ = map.lookup();
-  lookup_.base *= k_photon_place_radius;
   lookup_.most_candidates = k_photon_place_candidates;
-  lookup_.least = std::min(lookup_.least, lookup_.base);
   std::copy(component.begin(), component.end(), std::begin(lookup_.component));
   cells_.make_room(count, lookup_);
   write_lookup();

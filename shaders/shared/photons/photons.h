@@ -43,10 +43,9 @@ LUCERNA_CONST uint k_photon_standing_visits = 128u;     ///< ... of records' ray
 LUCERNA_CONST float k_photon_least_area = 1.0f / 64.0f; ///< of the whole disc
 LUCERNA_CONST float k_photon_turned_slab = 0.125f;      ///< of the slab, for what is wound the other way round
 
-// Places where irradiance is known beforehand (photons/irradiance.glsl): one photon in so many, found within so many of the
-// photons' radii. Four texels each: place and bits facet of the side that is lit; irradiance of parts 1, 2, 3.
+// Places where irradiance is known beforehand (photons/irradiance.glsl): one photon in so many, found within the photons'
+// radius. Four texels each: place and bits facet of the side that is lit; irradiance of parts 1, 2, 3.
 LUCERNA_CONST uint k_photon_place_step = 4u;
-LUCERNA_CONST float k_photon_place_radius = 1.0f;
 LUCERNA_CONST uint k_photon_place_texels = 4u;
 
 /// What lookups read besides the photons.
