@@ -55,7 +55,8 @@ int bench_latency(const BenchLatencyArguments& a) {
   if (a.edits.empty())
     for (const char* name : bench::k_edit_names) o.edits.push_back(bench::edit_of(name));
   std::tie(o.width, o.height) = parse_size(a.size);
-  o.reference_samples = a.reference_samples, o.seconds = a.seconds, o.settle.seconds = a.settle;
+  o.reference_samples = a.reference_samples, o.reference_solver = a.reference_solver, o.seconds = a.seconds,
+  o.settle.seconds = a.settle;
   o.repeats = a.repeats;
   o.device = a.device, o.references = a.references, o.pictures = a.pictures, o.scenes = a.load;
   for (const std::string& pair : a.set) {
@@ -86,7 +87,8 @@ int bench_latency(const BenchLatencyArguments& a) {
                            {"cores", machine.cores},
                            {"load", bench::load_average()},
                            {"size", a.size},
-                           {"reference_samples", a.reference_samples}};
+                           {"reference_samples", a.reference_samples},
+                           {"reference_solver", a.reference_solver}};
   for (const auto& runs : rows) {
     nlohmann::ordered_json row = bench::to_json(bench::median_of(runs));
     if (a.repeats > 1)

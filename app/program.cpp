@@ -307,6 +307,12 @@ void Program::add_bench_latency() {
                    "samples a pixel of the reference pictures, in two halves that tell their noise")
       ->check(CLI::Range(1u, 1u << 20))
       ->capture_default_str();
+  latency_
+      ->add_option("--reference-solver", bt.reference_solver,
+                   "of their secondary and tertiary light; cache: with far less noise, and a bias of a few "
+                   "percent")
+      ->check(CLI::IsMember({"path", "cache"}))
+      ->capture_default_str();
   latency_->add_option("--references", bt.references, "folder that keeps the reference pictures")
       ->capture_default_str();
   latency_->add_option("--pictures", bt.pictures, "folder for what was shown at 0.3, 1, 3, 10 and 30 s");

@@ -133,20 +133,17 @@ struct Shown {
   std::shared_ptr<const session::Snapshot> snapshot;
 };
 
-/// A reference picture in the luminance that is shown, and half of what its two halves differ by.
+/// A reference picture in the luminance that is shown, and half of what the halves of its samples differ by.
 struct Reference {
   std::vector<float> mean, half_difference;
 };
 
-Reference developed(const film::FilmImage& one, const film::FilmImage& other, float exposure) {
-  const size_t n = size_t{one.width} * one.height;
-  const std::vector<size_t> of_one = one.layer("rgb"), of_other = other.layer("rgb");
+Reference developed(const film::ReferencePair& halves, float exposure) {
   Reference r;
-  for (size_t i = 0; i < n; ++i) {
+  for (size_t i = 0; i < halves.first.size(); ++i) {
     vec3 mean(0), half(0);
     for (int k = 0; k < 3; ++k) {
-      const float a = exposure * one.channels[of_one[size_t(k)]].second[i],
-                  b = exposure * other.channels[of_other[size_t(k)]].second[i];
+      const float a = exposure * halves.first[i][k], b = exposure * halves.second[i][k];
       // Where one half alone is brighter than white it is noise: cut off it would be missing in the mean.
       const bool white = a > 1 && b > 1;
       mean[k] = white ? 1 : 0.5f * (a + b);
@@ -290,16 +287,18 @@ class Latency {
     const std::string key = fmt::format("{}{}", file.string(), done_edits_);
     const auto known = references_.find(key);
     if (known != references_.end()) return known->second;
-    return references_[key] = developed(half_reference(file, 1), half_reference(file, 2), exposure);
+    const film::FilmImage image = reference_image(file);
+    return references_[key] = developed(read_halves(image, file.string()), exposure);
   }
 
-  /// Of half of the samples. Rendered where no earlier run has left it.
-  film::FilmImage half_reference(const fs::path& file, int half) {
-    const uint32_t samples = std::max(1u, o_.reference_samples / 2);
+  /// With both halves of its samples. Rendered where no earlier run has left it.
+  film::FilmImage reference_image(const fs::path& file) {
+    const uint32_t samples = std::max(2u, o_.reference_samples);
     const std::string key = fmt::format("{} {} {}x{} {} {} {}", LUCERNA_VERSION, scene_hash(file), o_.width,
-                                        o_.height, done_edits_, samples, half);
-    const fs::path kept = o_.references / fmt::format("{}{}-{}x{}-{}-{}.exr", file.stem().string(),
-                                                      done_edits_, o_.width, o_.height, samples, half);
+                                        o_.height, done_edits_, samples, o_.reference_solver);
+    const fs::path kept =
+        o_.references / fmt::format("{}{}-{}x{}-{}-{}.exr", file.stem().string(), done_edits_, o_.width,
+                                    o_.height, o_.reference_solver, samples);
     if (fs::exists(kept)) try {
         film::FilmImage image = film::read_exr(kept);
         if (const auto of = image.metadata.find("bench.key"); of != image.metadata.end() && of->second == key)
@@ -312,17 +311,18 @@ class Latency {
         {.device = o_.device, .validation = false, .shaders = {}, .defines = {}, .scenes = o_.scenes});
     r.set_size(o_.width, o_.height);
     r.load(file, {},
-           {{"components.secondary", "path", "bench"},
-            {"components.tertiary", "path", "bench"},
+           {{"components.secondary", o_.reference_solver, "bench"},
+            {"components.tertiary", o_.reference_solver, "bench"},
             {"sampling.mode", "uniform", "bench"},
             {"samples", std::to_string(samples), "bench"},
-            {"seed", std::to_string(900000 + half), "bench"}});
+            {"seed", "900001", "bench"}});
     for (const Change& change : changes_) change.apply(r);
     while (!r.done()) {
       check();
       r.step();
     }
     film::FilmImage image = r.film_image();
+    add_odd_half(image, r.image());
     image.metadata["bench.key"] = key;
     film::write_exr(kept, image);
     return image;

@@ -1,6 +1,6 @@
 #pragma once
 // How soon the window shows something to work with: a session is driven as the window does it, an edit is
-// made, and every picture that it publishes is held against a path-traced reference of the edited scene.
+// made, and every picture that it publishes is held against a reference of the edited scene.
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -78,6 +78,9 @@ struct LatencyOptions {
   std::vector<Edit> edits;                               ///< in this order, one on top of the other
   uint32_t width = 960, height = 540;
   uint32_t reference_samples = 64;
+  /// Of secondary and tertiary light of the reference: "path", or "cache", whose bias of a few percent is
+  /// small beside k_usable, and whose noise is that of direct light and caustics alone.
+  std::string reference_solver = "path";
   double seconds = 10;   ///< that each edit is watched
   uint32_t repeats = 1;  ///< sessions of each scene and solver, each with all edits
   struct {

@@ -69,7 +69,7 @@ std::vector<AimedPair> aimed_pairs(const upload::FlatScene& flat, const transpor
     }
     for (uint32_t c = 0; c < casters; ++c) {
       AimedPair pair = of_group;
-      pair.caster = c, pair.share = lights.shares()[1 + size_t{g} * casters + c];
+      pair.box = c, pair.share = lights.shares()[1 + size_t{g} * casters + c];
       pairs.push_back(std::move(pair));
     }
   }
@@ -126,10 +126,10 @@ uint32_t LightPathsPainter::draw(const Canvas& canvas, const upload::FlatScene& 
 }
 
 void LightPathsPainter::draw_aim(const Canvas& canvas, const upload::FlatScene& flat,
-                                 const transport::LightSource& lights, std::span<const Box> casters) {
+                                 const transport::LightSource& lights, std::span<const Box> boxes) {
   const std::vector<AimedPair> pairs = aimed_pairs(flat, lights);
-  std::vector<double> by_caster(casters.size(), 0);
-  for (const AimedPair& pair : pairs) by_caster[pair.caster] += pair.share;
+  std::vector<double> by_box(boxes.size(), 0);
+  for (const AimedPair& pair : pairs) by_box[pair.box] += pair.share;
   std::vector<OverlaySegment> segments;
   const auto line = [&](const vec3& from, const vec3& to, const vec3& ink, float width, float alpha,
                         uint32_t rank) {
@@ -143,19 +143,19 @@ void LightPathsPainter::draw_aim(const Canvas& canvas, const upload::FlatScene& 
                         .slack = flat.scene_radius,
                         .rank = rank});
   };
-  for (size_t c = 0; c < casters.size(); ++c)
+  for (size_t c = 0; c < boxes.size(); ++c)
     for (uint32_t edge = 0; edge < 12; ++edge) {
       // Along one axis, at one of four corners of the other two.
       const int axis = int(edge / 4), u = (axis + 1) % 3, v = (axis + 2) % 3;
-      vec3 from = casters[c].lo, to = from;
-      from[u] = to[u] = (edge & 1u) != 0 ? casters[c].hi[u] : casters[c].lo[u];
-      from[v] = to[v] = (edge & 2u) != 0 ? casters[c].hi[v] : casters[c].lo[v];
-      to[axis] = casters[c].hi[axis];
-      line(from, to, aim_ink(by_caster[c]), 0.9f, 1, k_rank_most);
+      vec3 from = boxes[c].lo, to = from;
+      from[u] = to[u] = (edge & 1u) != 0 ? boxes[c].hi[u] : boxes[c].lo[u];
+      from[v] = to[v] = (edge & 2u) != 0 ? boxes[c].hi[v] : boxes[c].lo[v];
+      to[axis] = boxes[c].hi[axis];
+      line(from, to, aim_ink(by_box[c]), 0.9f, 1, k_rank_most);
     }
   for (size_t i = 0; i < std::min(pairs.size(), k_most_lines); ++i) {
     const AimedPair& pair = pairs[i];
-    const vec3 to = casters[pair.caster].centre();
+    const vec3 to = boxes[pair.box].centre();
     const float alpha = std::clamp(0.2f + 0.8f * float(std::sqrt(pair.share)), 0.0f, 1.0f);
     if (pair.from) line(*pair.from, to, aim_ink(pair.share), 0.5f, alpha, k_rank_least);
     if (pair.along)

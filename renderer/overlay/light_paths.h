@@ -8,10 +8,10 @@
 
 namespace lucerna::overlay {
 
-/// A group of lights and a caster, and which share of the paths is sent from one to the other.
+/// A group of lights and a box that is aimed at, and which share of the paths is sent from one to the other.
 struct AimedPair {
   std::string light;  ///< in words: "lamp 3", "sun", "sky", "shining surfaces"
-  uint32_t caster = 0;
+  uint32_t box = 0;
   double share = 0;
   std::optional<vec3> from;   ///< where the light is, if it is anywhere
   std::optional<vec3> along;  ///< unit, from a light that is far away
@@ -32,9 +32,9 @@ class LightPathsPainter {
   /// lights. Returns how many paths were sent.
   uint32_t draw(const Canvas& canvas, const upload::FlatScene& flat, const transport::LightSource& lights,
                 transport::LightRound round, uint32_t lamp, const shared::Frame& picture, uint32_t enabled);
-  /// Boxes of casters, by the share of paths that is aimed at each, and lines from lights.
+  /// The boxes, by the share of paths that is aimed at each, and lines from lights.
   void draw_aim(const Canvas& canvas, const upload::FlatScene& flat, const transport::LightSource& lights,
-                std::span<const Box> casters);
+                std::span<const Box> boxes);
 
  private:
   gpu::Device& device_;

@@ -8,30 +8,39 @@ namespace lucerna::solvers {
 
 namespace {
 
-Table aim_table(std::span<const overlay::AimedPair> pairs) {
+Table aim_table(const AimedAt& at, std::span<const overlay::AimedPair> pairs) {
   constexpr size_t k_rows = 6;
-  Table table{.columns = {"", "aimed from", "at caster", "share"}, .droppable = std::nullopt, .rows = {}};
-  for (size_t i = 0; i < std::min(pairs.size(), k_rows); ++i)
+  Table table{.columns = {"", "aimed from", "at", "share"}, .droppable = std::nullopt, .rows = {}};
+  for (size_t i = 0; i < std::min(pairs.size(), k_rows); ++i) {
+    const uint32_t box = pairs[i].box;
+    const std::string name = box < at.casters ? fmt::format("caster {}", box + 1)
+                                              : fmt::format("entrance {}", box - at.casters + 1);
     table.rows.push_back(
-        {.cells = {"", pairs[i].light, fmt::format("{}", pairs[i].caster + 1), share_text(pairs[i].share, 1)},
+        {.cells = {"", pairs[i].light, name, share_text(pairs[i].share, 1)},
          .bar = float(pairs[i].share / std::max(1e-9, pairs[0].share)),
          .ink = overlay::aim_ink(pairs[i].share),
          .help = "Of all light paths, those that are aimed from this light at this cluster of "
-                 "surfaces that mirror or refract smoothly."});
+                 "surfaces that mirror or refract smoothly, or at where light from afar gets in."});
+  }
   return table;
 }
 
 }  // namespace
 
-void add_aim_rows(std::vector<PanelItem>& items, uint32_t casters, double unaimed,
+void add_aim_rows(std::vector<PanelItem>& items, const AimedAt& at, double unaimed,
                   std::span<const overlay::AimedPair> pairs) {
-  if (casters == 0) return;
-  items.push_back(
-      ValueRow{"Casters", count_text(double(casters)),
-               "Clusters of surfaces that mirror or refract smoothly, at which paths are aimed."});
+  if (at.casters + at.entrances == 0) return;
+  if (at.casters > 0)
+    items.push_back(
+        ValueRow{"Casters", count_text(double(at.casters)),
+                 "Clusters of surfaces that mirror or refract smoothly, at which paths are aimed."});
+  if (at.entrances > 0)
+    items.push_back(ValueRow{"Entrances", count_text(double(at.entrances)),
+                             "Where light of the sun and the sky that comes to be of use arrives first, by a "
+                             "pilot; paths are aimed there."});
   items.push_back(ValueRow{"Aimed", share_text(1 - unaimed, 1),
-                           "Of the paths, at casters; as many as a pilot has found to be of use."});
-  if (!pairs.empty()) items.push_back(aim_table(pairs));
+                           "Of the paths, at these; as many as a pilot has found to be of use."});
+  if (!pairs.empty()) items.push_back(aim_table(at, pairs));
 }
 
 Legend aim_legend() {

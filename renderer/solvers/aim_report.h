@@ -5,9 +5,15 @@
 
 namespace lucerna::solvers {
 
-/// How many casters there are, which share of the paths is aimed, and the greatest shares; nothing where
-/// there is no caster.
-void add_aim_rows(std::vector<PanelItem>& items, uint32_t casters, double unaimed,
+/// Boxes that light paths are aimed at, in this order.
+struct AimedAt {
+  uint32_t casters = 0;
+  uint32_t entrances = 0;  ///< where light from afar gets in
+};
+
+/// How many of both there are, which share of the paths is aimed, and the greatest shares; nothing where
+/// nothing is aimed.
+void add_aim_rows(std::vector<PanelItem>& items, const AimedAt& at, double unaimed,
                   std::span<const overlay::AimedPair> pairs);
 /// What the colours of LightPathsPainter::draw_aim() say.
 Legend aim_legend();

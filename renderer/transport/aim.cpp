@@ -8,11 +8,11 @@ namespace lucerna::transport {
 namespace {
 
 constexpr double k_floor = 0.1, k_found_floor = 0.3;
-constexpr double k_least_unaimed = 1.0 / 7, k_least_unaimed_of_all = 0.5, k_most_unaimed = 0.9;
+constexpr double k_most_unaimed = 0.9;
 
 }  // namespace
 
-std::vector<double> aim_shares(std::span<const double> worth, bool caustics_alone) {
+std::vector<double> aim_shares(std::span<const double> worth, double least_unaimed) {
   std::vector<double> shares(worth.size(), 0.0);
   const size_t pairs = worth.size() - 1;
   double roots = 0;
@@ -20,10 +20,7 @@ std::vector<double> aim_shares(std::span<const double> worth, bool caustics_alon
   for (size_t i = 1; i < worth.size(); ++i) roots += std::sqrt(worth[i]), found += worth[i] > 0 ? 1 : 0;
   const double unaimed_root = std::sqrt(worth[0]);
   const double wanted = roots > 0 ? unaimed_root / (unaimed_root + roots) : 1;
-  const double unaimed =
-      pairs == 0
-          ? 1
-          : std::clamp(wanted, caustics_alone ? k_least_unaimed : k_least_unaimed_of_all, k_most_unaimed);
+  const double unaimed = pairs == 0 ? 1 : std::clamp(wanted, least_unaimed, k_most_unaimed);
   shares[0] = unaimed;
   double sum = 0;
   for (size_t i = 1; i < worth.size(); ++i) {

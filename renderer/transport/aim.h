@@ -11,9 +11,15 @@ namespace lucerna::transport {
 /// Shares of strata from what the pilot's paths of each have brought to the picture; 0 is that which is not
 /// aimed. By the root of it, so that what is dim where nothing else is has paths too, and with a floor: a
 /// tenth of what is aimed is for all pairs alike, and three more for those that have brought anything.
-/// `caustics_alone`: paths that are not aimed bring little else; they keep at least a seventh, and half where
-/// they bring all other light. Sums to 1.
-std::vector<double> aim_shares(std::span<const double> worth, bool caustics_alone);
+/// `least_unaimed`: share that paths that are not aimed keep at least. Sums to 1.
+std::vector<double> aim_shares(std::span<const double> worth, double least_unaimed);
+/// ... where aimed paths bring all that is wanted, and what they miss are chance paths to the same places;
+inline constexpr double k_least_unaimed_of_caustics = 1.0 / 7;
+/// ... where others bring all light but caustics;
+inline constexpr double k_least_unaimed_of_all = 0.5;
+/// ... and where boxes are where light from afar gets in: what comes in over walls and ground outside is
+/// brought by them alone, in few paths, each of which brings more the fewer of them are sent.
+inline constexpr double k_least_unaimed_from_afar = 0.6;
 
 /// A pilot's paths, all in a round of no sample.
 inline constexpr uint32_t k_pilot_paths = 1u << 14, k_pilot_paths_a_stratum = 8;

@@ -22,6 +22,12 @@ gpu::Buffer texels(gpu::Device& device, const char* name, std::span<const vec4> 
 
 }  // namespace
 
+bool from_afar(const upload::FlatLights& lights, uint32_t entry) {
+  if (entry >= lights.entries.size()) return true;
+  const uint32_t kind = lights.entries[entry].kind;
+  return kind == shared::k_light_directional || kind == shared::k_light_environment;
+}
+
 LightGroups group_lights(const upload::FlatScene& flat, std::span<const double> power, uint32_t most) {
   std::vector<uint32_t> triangles;
   std::vector<Box> boxes;
@@ -69,10 +75,13 @@ LightSource::LightSource(gpu::Device& device, const upload::FlatLights& lights, 
     table_.sky = uint32_t(powers_.size());
     powers_.push_back(lights.sky_power);
   }
-  for (const double p : powers_) power_ += p;
+  for (uint32_t i = 0; i < powers_.size(); ++i) {
+    power_ += powers_[i];
+    if (from_afar(lights, i)) power_from_afar_ += powers_[i];
+  }
   const std::vector<vec4> alias = upload::build_alias_table(powers_);
   table_.count = uint32_t(alias.size());
-  if (alias.empty()) power_ = 0;
+  if (alias.empty()) power_ = power_from_afar_ = 0;
   alias_ = texels(device, "table of emission", alias);
   for (gpu::Buffer* b : {&strata_, &boxes_, &groups_, &members_}) *b = texels(device, "aimed emission", {});
   block_ = gpu::Buffer(device, {.name = "emission", .bytes = sizeof table_});

@@ -2,9 +2,9 @@
 // Where paths from lights begin: each light in proportion to its power, with its own distribution over places
 // and directions (shaders/lib/emission.glsl). For photons, and for whatever else is traced from lights.
 //
-// A share of the paths may be aimed at casters (casters.h): strata are the pairs of a group of lights and a
-// caster, besides stratum 0, which is not aimed. Whatever the shares, what paths bring on average stays the
-// same; stratum 0 must have one.
+// A share of the paths may be aimed at casters (casters.h), and at where light from afar gets in
+// (first_hits.h): strata are the pairs of a group of lights and a box, besides stratum 0, which is not aimed.
+// Whatever the shares, what paths bring on average stays the same; stratum 0 must have one.
 #include <span>
 #include <vector>
 
@@ -20,6 +20,9 @@ struct LightGroups {
 };
 /// At most `most` (>= 1), of lights that shine: where there are more, those of the end share one.
 LightGroups group_lights(const upload::FlatScene& flat, std::span<const double> power, uint32_t most);
+
+/// Whether an entry of the light table, or the sky's behind them, sends its light through the scene's disk.
+bool from_afar(const upload::FlatLights& lights, uint32_t entry);
 
 class LightSource {
  public:
@@ -41,6 +44,7 @@ class LightSource {
   void bind(gpu::Resources& resources) const;
   /// Luminance of the flux of all lights [W]; 0: there is nothing to begin.
   double power() const { return power_; }
+  double power_from_afar() const { return power_from_afar_; }  ///< ... of those that are far away
   const shared::EmissionTable& table() const { return table_; }
   uint64_t bytes() const;
 
@@ -49,7 +53,7 @@ class LightSource {
   std::vector<double> powers_, shares_;
   std::vector<std::vector<uint32_t>> members_of_groups_;
   gpu::Buffer alias_, block_, strata_, boxes_, groups_, members_;
-  double power_ = 0;
+  double power_ = 0, power_from_afar_ = 0;
 };
 
 }  // namespace lucerna::transport

@@ -16,15 +16,17 @@ void main() {
   uint i = global_index();
   if (i >= push.count) return;
   vec4 a = texelFetch(photon_texels, int(k_photon_texels * i)), b = texelFetch(photon_texels, int(k_photon_texels * i + 1u));
-  uint path = texelFetch(photon_sorted, int(i)).x >> k_photon_id_events;
-  float radius = importance_radius(a.xyz);
-  uint stratum = 0u;
+  uint id = texelFetch(photon_sorted, int(i)).x, part = floatBitsToUint(b.w) >> k_photon_part_shift & 3u;
+  float radius = importance_radius(a.xyz), importance = float(importance_around(a.xyz)) / (radius * radius);
+  uint stratum = 0u, light = 0u;
   float own = 1.0;
 #if LUCERNA_LIGHTS
   // What is not aimed has brought by itself only what no aimed path would have brought as well.
-  Emission e = sample_emission(make_light_sampler(path, photons.round, frame.seed), push.step);
+  Emission e = sample_emission(make_light_sampler(id >> k_photon_id_events, photons.round, frame.seed), push.step);
   stratum = e.stratum;
+  light = e.light;
   own = stratum == 0u ? e.unaimed : 1.0;
 #endif
-  photon_worths[i] = PhotonWorth(stratum, own * luminance(b.rgb) * float(importance_around(a.xyz)) / (radius * radius));
+  float worth = part > 0u ? own * luminance(b.rgb) * importance : 0.0;
+  photon_worths[i] = PhotonWorth(stratum, light, id, worth, a.xyz, importance);
 }

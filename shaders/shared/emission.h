@@ -22,7 +22,7 @@ LUCERNA_CONST uint k_no_sky_entry = 0xffffffffu;
 // this order: a texel a group (bits first, bits count of its members), a texel an entry of emission_alias (bits group,
 // bits member), a texel a member (bits entry). emission_members: an alias table a group, by power, of entries that count from its
 // first member.
-LUCERNA_CONST uint k_most_casters = 32u;
+LUCERNA_CONST uint k_most_casters = 32u;  ///< of the boxes
 LUCERNA_CONST uint k_most_strata = 4096u;
 
 /// Of a batch of light paths. `count` is the first word of all, as wavefront.glsl has it.

@@ -22,7 +22,8 @@ TEST_CASE("latency of every edit of a small picture is measured, told and writte
   fs::create_directories(folder);
   const std::string where = folder.string();
   const std::string arguments =
-      "cornell --size 48x48 --seconds 1.2 --settle 30 --reference-samples 16 --solvers cache "
+      "cornell --size 48x48 --seconds 1.2 --settle 30 --reference-samples 16 --reference-solver cache "
+      "--solvers cache "
       "--edits load,strength,material,camera,solver --set cache.passes=2 --references " +
       where + "/references --json " + where + "/latency.json --pictures " + where + "/pictures";
   const Run first = run("bench --latency " + arguments);

@@ -1,6 +1,6 @@
 // links: session
-// Light paths that are aimed at what mirrors and refracts: they find casters that others never meet, and
-// change no mean.
+// Light paths that are aimed at what mirrors and refracts, and at where light from afar gets in: they find
+// what others hardly ever meet, and change no mean.
 #include <catch2/catch.hpp>
 
 #include "support/render.h"
@@ -22,7 +22,7 @@ test::Settings unaimed(test::Settings settings) {
 
 struct Rendered {
   film::Image image;
-  double casters = 0, unaimed = 1, photons = 0;
+  double casters = 0, entrances = 0, unaimed = 1, photons = 0;
 };
 Rendered render(const scene::Scene& scene, const test::Settings& settings, uint32_t samples, uint32_t size) {
   session::Renderer r(test::renderer_options(samples <= test::k_validated_samples));
@@ -37,8 +37,8 @@ Rendered render(const scene::Scene& scene, const test::Settings& settings, uint3
   CHECK(r.stats().dropped == 0);
   for (const auto& report : r.reports())
     if (report->solver == "photons")
-      out.casters = report->figure("casters"), out.unaimed = report->figure("unaimed"),
-      out.photons = report->figure("photons");
+      out.casters = report->figure("casters"), out.entrances = report->figure("entrances"),
+      out.unaimed = report->figure("unaimed"), out.photons = report->figure("photons");
   return out;
 }
 
@@ -100,7 +100,69 @@ scene::Scene ball_room() {
   return s;
 }
 
+/// A room of 4 m under a sun and a sky, in a plain of 80 m; light comes in through a slot in its ceiling
+/// alone.
+scene::Scene slotted_room() {
+  scene::Scene s;
+  s.name = "slotted room";
+  s.materials = {test::diffuse({0.7f, 0.65f, 0.6f}), test::diffuse(vec3(0.3f))};
+  test::add_box(s, {-2, 0, -2}, {2, 2.5f, 2}, 0, true);
+  test::add_quad(s, {-2, 2.5f, -2}, {1.6f, 0, 0}, {0, 0, 4}, 0);
+  test::add_quad(s, {0, 2.5f, -2}, {2, 0, 0}, {0, 0, 4}, 0);
+  test::add_quad(s, {-40, -0.01f, 40}, {80, 0, 0}, {0, 0, -80}, 1);
+  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = vec3(3)}};
+  s.lights[0].direction = glm::normalize(vec3(0.2f, -1, 0.1f));
+  scene::Camera front;
+  front.yfov = 1.1f, front.to_world[3] = vec4(0, 1.2f, 1.95f, 1);
+  s.cameras = {front};
+  s.environment.given = true;
+  s.environment.radiance = {0.1f, 0.15f, 0.25f};
+  return s;
+}
+
+/// Mean square of what the halves of a component differ by.
+double noise_of(const film::Image& image, size_t component) {
+  double sum = 0;
+  for (size_t i = 0; i < image.samples.size(); ++i) {
+    const auto d = double(luminance(image.components[component][i] - image.odd_half[component][i]));
+    sum += d * d / double(image.samples.size());
+  }
+  return sum;
+}
+
 }  // namespace
+
+TEST_CASE("light that comes in through a slot is aimed at where it falls, and stays as bright") {
+  const test::Settings photons{{"components.caustic", "off"},
+                               {"components.secondary", "photons"},
+                               {"components.tertiary", "photons"},
+                               {"photons.per_round", "20000"}};
+  const scene::Scene room = slotted_room();
+  const Rendered aimed = render(room, photons, 32, 40), plain = render(room, unaimed(photons), 32, 40);
+  CHECK(aimed.entrances >= 1);
+  CHECK(aimed.unaimed < 0.6);
+  CHECK(plain.entrances == 0);
+  CHECK(aimed.photons > 5 * plain.photons);
+  // Narrow discs, for what wide ones blur out of the slot is missing within.
+  test::Settings narrow = photons;
+  narrow["photons.radius"] = narrow["photons.floor"] = "0.4";
+  const film::Image right = render(room, narrow, 64, 40).image,
+                    path = render(room, {{"components.caustic", "off"}}, 1024, 40).image;
+  for (const size_t c : {1u, 2u}) {
+    const double a = noise_of(aimed.image, c), b = noise_of(plain.image, c);
+    INFO(c << ": " << a << ", without aim " << b);
+    CHECK(a < 0.1 * b);
+    const double mean = test::mean(path.components[c]);
+    const double noise = std::hypot(mean - test::mean(path.odd_half[c]),
+                                    test::mean(right.components[c]) - test::mean(right.odd_half[c]));
+    INFO(test::mean(right.components[c]) << ", path traced " << mean << " +- " << noise);
+    CHECK(noise < 0.02 * mean);
+    CHECK(std::abs(test::mean(right.components[c]) - mean) < 0.005 * mean + 3 * noise);
+  }
+  // In a room that all light reaches nothing is to be found.
+  scene::Scene open = test::block_room();
+  CHECK(render(open, photons, 1, 16).entrances == 0);
+}
 
 TEST_CASE("aim changes no mean") {
   const scene::Scene room = ball_room();

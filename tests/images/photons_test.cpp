@@ -101,7 +101,7 @@ TEST_CASE("flux is conserved in a closed room of one albedo") {
     test::Settings settings = k_all;
     if (final_gather) settings["components.secondary"] = "path";
     if (way == "gathered from a map")
-      settings["photons.irradiance_map"] = "true", settings["components.caustic"] = "off";
+      settings["photons.irradiance_map"] = "all", settings["components.caustic"] = "off";
     const test::Result r = test::render(closed_room(albedo), settings, 32, 32);
     const MeanOf secondary = mean_of(r.image, 1), tertiary = mean_of(r.image, 2);
     for (int c = 0; c < 3; ++c) {
@@ -173,6 +173,9 @@ TEST_CASE("photons at the first surface and records at the second make the pictu
 
 TEST_CASE("records whose rays end in photons make the picture of path tracing") {
   check_choice({{"components.secondary", "cache"}, {"components.tertiary", "photons"}});
+  check_choice({{"components.secondary", "cache"},
+                {"components.tertiary", "photons"},
+                {"photons.irradiance_map", "off"}});
 }
 TEST_CASE("records whose rays end in photons beside caustics of photons make the picture of path tracing") {
   check_choice({{"components.secondary", "cache"},
@@ -181,7 +184,7 @@ TEST_CASE("records whose rays end in photons beside caustics of photons make the
 }
 
 TEST_CASE("tertiary light from a map of irradiance makes the picture of path tracing") {
-  const test::Settings settings{{"components.tertiary", "photons"}, {"photons.irradiance_map", "true"}};
+  const test::Settings settings{{"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}};
   check_choice(settings);
   check_choice(with(settings, {{"components.secondary", "cache"}}));
   // Beside caustics, which are looked up among the round's photons at the first surface.
@@ -190,17 +193,17 @@ TEST_CASE("tertiary light from a map of irradiance makes the picture of path tra
 
 TEST_CASE("a map of irradiance is read where it is asked for, is the same to the bit, and follows the lamp") {
   scene::Scene room = glass_room();
-  const test::Settings settings{{"components.tertiary", "photons"}, {"photons.irradiance_map", "true"}};
+  const test::Settings settings{{"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}};
   test::Render base{.width = 32, .height = 32, .samples = 4, .settings = settings, .validated = false};
   const test::Result a = test::render(base, &room);
   base.settings["path.batch"] = "1024";
   CHECK(test::identical(a.image, test::render(base, &room).image));
-  base.settings["photons.irradiance_map"] = "false";
+  base.settings["photons.irradiance_map"] = "off";
   CHECK_FALSE(test::identical(a.image.components[2], test::render(base, &room).image.components[2]));
   // Where light is looked up at the first surface there is nothing to be known beforehand.
   base.settings["components.secondary"] = "photons";
   const test::Result looked_up = test::render(base, &room);
-  base.settings["photons.irradiance_map"] = "true";
+  base.settings["photons.irradiance_map"] = "all";
   CHECK(test::identical(looked_up.image, test::render(base, &room).image));
 
   session::Renderer r(test::renderer_options());

@@ -88,7 +88,7 @@ std::vector<SharedStruct> structs() {
       SHARED("photons/inspect.h", PhotonInspectHeader, position, radius, normal, area, irradiance, density,
              solid, count, pad0, pad1),
       SHARED("photons/inspect.h", PhotonInspected, position, brings, direction, bits, flux, pad0),
-      SHARED("photons/photons.h", PhotonWorth, stratum, worth),
+      SHARED("photons/photons.h", PhotonWorth, stratum, light, id, worth, position, importance),
       SHARED("emission.h", EmitPush, count, first, round, share, step),
       SHARED("photons/photons.h", PhotonWorthPush, count, step),
       SHARED("photons/photons.h", PhotonListPush, count),

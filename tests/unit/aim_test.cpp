@@ -1,5 +1,6 @@
 // links: transport
 // What light paths are aimed at, and with which shares.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <set>
@@ -7,6 +8,7 @@
 #include "support/rooms.h"
 #include "transport/aim.h"
 #include "transport/casters.h"
+#include "transport/first_hits.h"
 #include "transport/light_source.h"
 
 using namespace lucerna;
@@ -51,6 +53,39 @@ TEST_CASE("metals and solid glass cast, smooth ones; walls, panes and varnish do
   }
 }
 
+TEST_CASE("boxes stand around where light arrives first, and not around what little comes from far off") {
+  std::vector<transport::FirstHit> hits;
+  for (int i = 0; i < 400; ++i) {
+    const vec3 patch = i % 2 == 0 ? vec3(0) : vec3(5, 1, 0);
+    hits.push_back({patch + vec3(i / 2 % 10 * 0.1f, 0, i / 20 * 0.05f), 1});
+  }
+  const auto check = [&] {
+    const std::vector<Box> boxes = transport::first_hit_boxes(hits);
+    CHECK(boxes.size() >= 2);
+    CHECK(boxes.size() <= transport::k_most_first_hit_boxes);
+    size_t within = 0;
+    for (size_t i = 0; i < 400; ++i)
+      within += std::any_of(boxes.begin(), boxes.end(), [&](const Box& b) {
+        return glm::all(glm::lessThan(b.lo, hits[i].place)) &&
+               glm::all(glm::greaterThan(b.hi, hits[i].place));
+      });
+    CHECK(within >= 380);
+    for (const Box& b : boxes) {
+      CHECK(b.size().y > 0);
+      CHECK(b.size().x < 1.2f);  // neither over both patches nor out to what lies far off
+      CHECK(b.lo.x > -1);
+    }
+  };
+  check();
+  for (int i = 0; i < 20; ++i) hits.push_back({vec3(-100, 50, float(i)), 0.01});
+  check();
+  CHECK(transport::first_hit_boxes({}).empty());
+  CHECK(transport::first_hit_boxes({{vec3(1), 0}}).empty());
+  const std::vector<Box> one = transport::first_hit_boxes({{vec3(1), 2}});
+  REQUIRE(one.size() == 1);
+  CHECK(one[0].size().x > 0);
+}
+
 TEST_CASE("lamps are groups of their own, triangles lie together, and many lamps share one") {
   scene::Scene s;
   s.materials = {test::diffuse(vec3(0.5f), vec3(1))};
@@ -80,16 +115,18 @@ TEST_CASE("lamps are groups of their own, triangles lie together, and many lamps
 
 TEST_CASE("shares follow the root of what a pair has brought, and leave none out") {
   const std::vector<double> worth{1, 1e12, 4, 0, 1};
-  const std::vector<double> s = transport::aim_shares(worth, true);
+  const std::vector<double> s = transport::aim_shares(worth, transport::k_least_unaimed_of_caustics);
   CHECK(std::accumulate(s.begin(), s.end(), 0.0) == Approx(1));
   CHECK(s[0] == Approx(1.0 / 7));
   CHECK(s[1] > s[2]);
   CHECK(s[2] > s[3]);
   CHECK(s[4] > 0.1 * (1 - s[0]) / 1.5);  // the floor of what has been found
   CHECK(s[3] > 0.02 * (1 - s[0]));       // ... and of what has not
-  CHECK(transport::aim_shares(worth, false)[0] == Approx(0.5));
-  const std::vector<double> nothing = transport::aim_shares(std::vector<double>{5, 0, 0}, true);
+  CHECK(transport::aim_shares(worth, transport::k_least_unaimed_of_all)[0] == Approx(0.5));
+  const std::vector<double> nothing =
+      transport::aim_shares(std::vector<double>{5, 0, 0}, transport::k_least_unaimed_of_caustics);
   CHECK(nothing[0] == Approx(0.9));
   CHECK(nothing[1] == Approx(0.05));
-  CHECK(transport::aim_shares(std::vector<double>{0}, true) == std::vector<double>{1});
+  CHECK(transport::aim_shares(std::vector<double>{0}, transport::k_least_unaimed_of_caustics) ==
+        std::vector<double>{1});
 }

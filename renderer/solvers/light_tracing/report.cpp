@@ -37,7 +37,7 @@ Report make_report(const LightTracingReport& r) {
       items.push_back(ValueRow{"Dark", share_text(double(r.dark) / double(r.paths), 1),
                                "Of the paths: begun where their light has none, in its texture or map."});
   }
-  add_aim_rows(items, r.casters, r.unaimed, r.aimed);
+  add_aim_rows(items, {r.casters, 0}, r.unaimed, r.aimed);
   if (r.sent_per_s > 0)
     items.push_back(ValueRow{"Sent", count_text(r.sent_per_s) + " / s",
                              "Paths from lights a second of the time in which they are traced."});

@@ -119,7 +119,7 @@ bool LightTracingSolver::prepare(transport::Wavefront& wavefront, const Picture&
   const auto told = [&] { return cancelled = cancel && cancel(); };
   const auto worth = splats_.weigh(wavefront, lights_, round, picture.frame, picture.task.enabled, told);
   if (!worth) return !cancelled;
-  lights_.share_out(transport::aim_shares(*worth, true));
+  lights_.share_out(transport::aim_shares(*worth, transport::k_least_unaimed_of_caustics));
   pairs_ = overlay::aimed_pairs(picture.flat, lights_);
   aimed_ = true, begun_ = false;
   return true;

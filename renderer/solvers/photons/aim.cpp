@@ -16,6 +16,12 @@ namespace {
 constexpr uint32_t k_eye_paths = 1u << 14;
 constexpr double k_pilot_radius = 3;  // of its own pixels, which are wide
 
+// Where light from afar gets in: rounds until so many paths have been of use, or so many rounds are done.
+// Where they are a large part of all, aiming brings nothing; of very few, boxes would tell of chance.
+constexpr uint32_t k_first_hit_paths = 1u << 16, k_most_first_hit_rounds = 8, k_first_hit_round = 0xffffff00u;
+constexpr size_t k_enough_hits = 512, k_least_hits = 16;
+constexpr double k_many = 0.2;
+
 /// The frame of the pilot's eye paths: the same view with fewer pixels.
 Frame small_frame(const Picture& picture) {
   Frame frame = picture.frame;
@@ -26,22 +32,82 @@ Frame small_frame(const Picture& picture) {
   return frame;
 }
 
+/// The first hits of those of `paths` paths from afar that have brought something.
+std::vector<transport::FirstHit> hits_of_use(std::span<const PhotonWorth> photons, uint32_t paths,
+                                             const upload::FlatLights& lights) {
+  struct Path {
+    transport::FirstHit hit;
+    uint32_t events = ~0u;  ///< of the photon that it has left first
+  };
+  std::vector<Path> all(paths);
+  for (const PhotonWorth& p : photons) {
+    if (!transport::from_afar(lights, p.light)) continue;
+    Path& path = all[p.id >> k_photon_id_events];
+    const uint32_t events = p.id & k_most_light_events;
+    path.hit.worth += double(p.worth);
+    if (events < path.events) path.events = events, path.hit.place = p.position;
+  }
+  std::vector<transport::FirstHit> found;
+  for (const Path& path : all)
+    if (path.hit.worth > 0) found.push_back(path.hit);
+  return found;
+}
+
+/// Photons a square metre around a typical lookup: the median over lookups, of which there are at a photon as
+/// many as importance says; from the nearest photons there, each counted `gain` times by its stratum.
+double typical_density(std::span<const PhotonWorth> photons, std::span<const double> gain) {
+  constexpr size_t k_places = 128, k_nearest = 32;
+  std::vector<const PhotonWorth*> seen;
+  for (const PhotonWorth& p : photons)
+    if (p.importance > 0 && p.worth > 0) seen.push_back(&p);
+  if (seen.size() < 2 * k_nearest) return 0;
+  struct Place {
+    double density, lookups;
+  };
+  std::vector<Place> places;
+  std::vector<std::pair<float, float>> near(seen.size());  // distance squared, gain
+  for (size_t k = 0; k < k_places; ++k) {
+    const PhotonWorth& at = *seen[k * seen.size() / k_places];
+    for (size_t i = 0; i < seen.size(); ++i) {
+      const vec3 away = seen[i]->position - at.position;
+      near[i] = {glm::dot(away, away), float(gain[seen[i]->stratum])};
+    }
+    std::nth_element(near.begin(), near.begin() + k_nearest, near.end());
+    double sum = 0;
+    for (size_t i = 0; i < k_nearest; ++i) sum += double(near[i].second);
+    const double area = double(k_pi) * std::max(double(near[k_nearest].first), 1e-30);
+    places.push_back({sum / area, double(at.importance) * area / sum});
+  }
+  std::sort(places.begin(), places.end(),
+            [](const Place& a, const Place& b) { return a.density < b.density; });
+  double all = 0, before = 0;
+  for (const Place& p : places) all += p.lookups;
+  for (const Place& p : places)
+    if ((before += p.lookups) >= 0.5 * all) return p.density;
+  return places.back().density;
+}
+
 }  // namespace
 
 void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
-  const bool caustics = (parts_ >> k_caustic_part & 1u) != 0;
-  const bool aims = sends_ && caustics && lights_.power() > 0 && picture.task.settings.boolean("photons.aim");
-  const bool spares = sends_ && lights_.power() > 0 && picture.task.settings.boolean("photons.importons");
+  constexpr uint32_t k_caustics = 1u << k_caustic_part;
+  const bool lit = sends_ && lights_.power() > 0, asked = picture.task.settings.boolean("photons.aim");
+  bundles_ = lit && asked && (parts_ & k_caustics) != 0;
+  enters_ = lit && asked && (parts_ & ~k_caustics) != 0 && lights_.power_from_afar() > 0;
+  const bool aims = bundles_ || enters_;
+  const bool spares = lit && picture.task.settings.boolean("photons.importons");
   const bool stale =
       spoils.any() || aims != aims_ || spares != spares_ || !transport::same_view(picture.frame, aimed_for_);
   aims_ = aims, spares_ = spares;
   // Whoever only looks from elsewhere finds the same casters.
-  if (spoils.light || spoils.places || !aims) casters_.clear(), casters_known_ = false;
+  if (spoils.light || spoils.places || !bundles_) casters_.clear(), casters_known_ = false;
   if (!stale) return;
   aimed_ = false;
   aim_step_ = AimStep::casters;
   aimed_for_ = picture.frame;
-  worth_.clear(), pairs_.clear();
+  pairs_.clear(), boxes_.clear(), first_hits_.clear();
+  first_hit_rounds_ = 0;
+  density_at_lookups_ = 0;
   lights_.aim(device_, picture.flat, {}, 1);
   map_.store_by_importance(false);
 }
@@ -49,41 +115,105 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
 bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
   if (ready()) return true;
   if (pilot_done()) return feed(wavefront, picture, cancel);
+  switch (aim_step_) {
+    case AimStep::casters: {
+      if (feeds_) wavefront.rebind_lookup();  // what eye paths note is the rounds'
+      if (bundles_ && !casters_known_)
+        casters_ = transport::find_casters(picture.flat), casters_known_ = true;
+      boxes_ = casters_;
+      aimed_ = boxes_.empty() && !enters_ && !spares_;
+      if (aimed_) return true;
+      const Frame frame = small_frame(picture);
+      eye_schedule_.emplace((frame.width + 7) / 8 * ((frame.height + 7) / 8), 1, wavefront.slots());
+      map_.note_importance(wavefront, lookup_of(picture, frame, k_pilot_radius));
+      aim_step_ = AimStep::importance;
+      return true;
+    }
+    case AimStep::importance:
+      return note_importance(wavefront, picture, cancel);
+    case AimStep::first_hits:
+      return note_first_hits(wavefront, picture, cancel);
+    case AimStep::worth:
+      return share_out(wavefront, picture, cancel);
+  }
+  return true;
+}
+
+bool PhotonSolver::note_importance(transport::Wavefront& wavefront, const Picture& picture,
+                                   const Cancel& cancel) {
   const Frame frame = small_frame(picture);
-  if (aim_step_ == AimStep::casters) {
-    if (feeds_) wavefront.rebind_lookup();  // what eye paths note is the rounds'
-    if (aims_ && !casters_known_) casters_ = transport::find_casters(picture.flat), casters_known_ = true;
-    lights_.aim(device_, picture.flat, casters_, 0.5);
-    aimed_ = casters_.empty() && !spares_;
-    if (aimed_) return true;
-    eye_schedule_.emplace((frame.width + 7) / 8 * ((frame.height + 7) / 8), 1, wavefront.slots());
-    map_.note_importance(wavefront, lookup_of(picture, frame, k_pilot_radius));
-    aim_step_ = AimStep::importance;
-    return true;
+  // Paths that go on for this solver's own light alone. Where records bring it, looking it up behind surfaces
+  // as those around the picture's, paths do so in their place, whether there are records yet or not.
+  solvers::Routing routing = routing_of(picture.task);
+  if (feeds_) routing.fallback = picture.task.own;
+  Frame own = picture.frame_for(routing, picture.task.own);
+  if (feeds_)
+    for (uint32_t s = 0; s < k_fallback_state; ++s)
+      own.automaton[s] = own.automaton[k_fallback_state + s % k_gather_state];
+  own.width = frame.width, own.height = frame.height;
+  const schedule::UniformSchedule before = *eye_schedule_;
+  wavefront.set_frame(own, picture.task.own);
+  const bool complete = wavefront.probe(eye_schedule_->next(), cancel);
+  wavefront.set_frame(picture.frame, picture.task.enabled);
+  if (!complete) eye_schedule_ = before;
+  if (!eye_schedule_->done()) return complete;
+  map_.clear();
+  aim_step_ = enters_ ? AimStep::first_hits : AimStep::worth;
+  if (enters_) return complete;
+  begin_sharing(picture);
+  return complete;
+}
+
+void PhotonSolver::begin_sharing(const Picture& picture) {
+  aim_step_ = AimStep::worth;
+  map_.store_by_importance(spares_);
+  lights_.aim(device_, picture.flat, boxes_, 0.5);
+  // Where nothing is aimed there is nothing to share out, but the density may be asked for.
+  aimed_ = boxes_.empty() && !standing_;
+}
+
+bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Picture& picture,
+                                   const Cancel& cancel) {
+  Round round = round_of(picture, k_first_hit_round + first_hit_rounds_);
+  round.lookup = lookup_of(picture, small_frame(picture), k_pilot_radius);
+  round.paths = k_first_hit_paths;
+  round.parts |= 1u;  // light straight from its source falls where paths arrive first
+  if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
+  if (map_.traced() > 0) return true;
+  const std::vector<transport::FirstHit> hits =
+      hits_of_use(map_.worths(wavefront, lights_), round.paths, picture.flat);
+  first_hits_.insert(first_hits_.end(), hits.begin(), hits.end());
+  ++first_hit_rounds_;
+  map_.clear();
+  const double from_afar = lights_.power_from_afar() / lights_.power() * round.paths * first_hit_rounds_;
+  const bool many = double(first_hits_.size()) > k_many * from_afar;
+  if (!many && first_hits_.size() < k_enough_hits && first_hit_rounds_ < k_most_first_hit_rounds) return true;
+  if (!many && first_hits_.size() >= k_least_hits) {
+    const std::vector<Box> places = transport::first_hit_boxes(std::move(first_hits_));
+    boxes_.insert(boxes_.end(), places.begin(), places.end());
   }
-  if (aim_step_ == AimStep::importance) {
-    // Paths that go on for this solver's own light alone.
-    Frame own = picture.frame_for(routing_of(picture.task), picture.task.own);
-    own.width = frame.width, own.height = frame.height;
-    const schedule::UniformSchedule before = *eye_schedule_;
-    wavefront.set_frame(own, picture.task.own);
-    const bool complete = wavefront.probe(eye_schedule_->next(), cancel);
-    wavefront.set_frame(picture.frame, picture.task.enabled);
-    if (!complete) eye_schedule_ = before;
-    if (!eye_schedule_->done()) return complete;
-    map_.clear();
-    map_.store_by_importance(spares_);
-    aim_step_ = AimStep::worth;
-    aimed_ = casters_.empty();
-    return complete;
-  }
+  first_hits_.clear();
+  begin_sharing(picture);
+  return true;
+}
+
+bool PhotonSolver::share_out(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
   Round round = round_of(picture, transport::k_pilot_round);
-  round.lookup = lookup_of(picture, frame, k_pilot_radius);
+  round.lookup = lookup_of(picture, small_frame(picture), k_pilot_radius);
   round.paths = std::max(transport::k_pilot_paths, transport::k_pilot_paths_a_stratum * lights_.strata());
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;
-  worth_ = map_.worth(wavefront, lights_);
-  lights_.share_out(transport::aim_shares(worth_, parts_ == 1u << k_caustic_part));
+  const std::vector<PhotonWorth> told = map_.worths(wavefront, lights_);
+  std::vector<double> worth(lights_.strata(), 0.0);
+  for (const PhotonWorth& p : told) worth[p.stratum] += double(p.worth);
+  const double least = parts_ == 1u << k_caustic_part    ? transport::k_least_unaimed_of_caustics
+                       : boxes_.size() > casters_.size() ? transport::k_least_unaimed_from_afar
+                                                         : transport::k_least_unaimed_of_all;
+  const std::vector<double> before(lights_.shares().begin(), lights_.shares().end());
+  lights_.share_out(transport::aim_shares(worth, least));
+  std::vector<double> gain(before.size());
+  for (size_t i = 0; i < gain.size(); ++i) gain[i] = before[i] > 0 ? lights_.shares()[i] / before[i] : 0;
+  if (standing_) density_at_lookups_ = typical_density(told, gain) / double(round.paths);
   pairs_ = overlay::aimed_pairs(picture.flat, lights_);
   map_.clear();
   aimed_ = true;

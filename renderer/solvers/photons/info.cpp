@@ -24,9 +24,11 @@ std::vector<OptionInfo> option_rows() {
                   "Shrinking"),
       boolean_option(
           "photons.aim", "true",
-          "Photons: aims light paths at what mirrors or refracts smoothly, by what a pilot finds that "
-          "each pair of lamp and caster brings to the picture.",
-          "Aim at casters"),
+          "Photons: aims light paths at what mirrors or refracts smoothly, and those of the sun and the sky "
+          "at "
+          "where their light gets in, by what a pilot finds that each pair of lamp and box brings to the "
+          "picture.",
+          "Aim light paths"),
       boolean_option(
           "photons.importons", "true",
           "Photons: stores them where paths from the eye look, by a short pilot; elsewhere one in four, for "
@@ -37,13 +39,15 @@ std::vector<OptionInfo> option_rows() {
           "Photons: divides by the surface that there is around a place instead of by a whole disc, "
           "so that borders and creases are not darker than they are.",
           "Correct borders"),
-      boolean_option(
-          "photons.irradiance_map", "false",
-          "Photons: where records' rays, or paths behind their first diffuse surface, look tertiary light "
-          "up, "
-          "irradiance is known beforehand at one photon in four, and the nearest is taken. Such lookups cost "
-          "less and are coarser.",
-          "Irradiance map"),
+      choice_option("photons.irradiance_map", "records", {"off", "records", "all"}, "",
+                    "Photons: where tertiary light is looked up behind a diffuse surface irradiance is known "
+                    "beforehand at "
+                    "one photon in four, and the nearest is taken: for the rays of the irradiance cache's "
+                    "records, or for "
+                    "paths that gather as well, for which its error does not fall with more samples. Such "
+                    "lookups cost a "
+                    "small part of what all photons around do.",
+                    "Irradiance map"),
       without_restart(
           choice_option("overlay.photon_density", "off", {"off", "photons", "irradiance", "importance"}, "",
                         "Shows over the picture how dense the photons of the last round lie, or what they "
@@ -61,8 +65,8 @@ std::vector<OptionInfo> option_rows() {
           "overlay.photon_paths_of", 0, 0, 65535, "",
           "Of the lamp of this number alone, in the scene's order; 0: of all lights.", "Paths of lamp")),
       without_restart(boolean_option("overlay.photon_aim", "false",
-                                     "Shows what light paths are aimed at: a box around each caster, and "
-                                     "lines from lights to casters, by "
+                                     "Shows what light paths are aimed at: a box around each caster and "
+                                     "where light from afar gets in, and lines from lights to these, by "
                                      "the share of the paths.",
                                      "Show aim")),
       without_restart(

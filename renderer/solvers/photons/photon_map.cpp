@@ -51,10 +51,10 @@ void PhotonMap::note_importance(transport::Wavefront& wavefront, const PhotonFra
   complete_ = tracing_ = false;
 }
 
-std::vector<double> PhotonMap::worth(transport::Wavefront& wavefront, const transport::LightSource& lights) {
-  std::vector<double> worth(lights.strata(), 0.0);
+std::vector<PhotonWorth> PhotonMap::worths(transport::Wavefront& wavefront,
+                                           const transport::LightSource& lights) {
   const uint32_t count = complete_ ? lookup_.count : 0;
-  if (count == 0) return worth;
+  if (count == 0) return {};
   if (!worth_) worth_ = gpu::Kernel(device_, compiler_, "photons/worth.comp", scene_defines_);
   gpu::make_room(
       device_, worths_,
@@ -70,8 +70,7 @@ std::vector<double> PhotonMap::worth(transport::Wavefront& wavefront, const tran
                               gpu::groups_for(count, 64), "photon map");
   wavefront.account_stages();
   const auto* found = static_cast<const PhotonWorth*>(worths_.mapped());
-  for (uint32_t i = 0; i < count; ++i) worth[found[i].stratum] += double(found[i].worth);
-  return worth;
+  return {found, found + count};
 }
 
 void PhotonMap::clear() {

@@ -53,9 +53,10 @@ class PhotonMap {
   void note_importance(transport::Wavefront& wavefront, const shared::PhotonFrame& lookup);
   /// Whether photons are stored by the importance that was noted last: where nobody looks, one in so many.
   void store_by_importance(bool on);
-  /// What the photons of the complete round bring to the picture, by stratum of their emission, by the
-  /// importance that was noted last.
-  std::vector<double> worth(transport::Wavefront& wavefront, const transport::LightSource& lights);
+  /// What each photon of the complete round brings to the picture, by the importance that was noted last; in
+  /// the order of the map.
+  std::vector<shared::PhotonWorth> worths(transport::Wavefront& wavefront,
+                                          const transport::LightSource& lights);
   /// The round that lookups read; false: none.
   bool complete() const { return complete_; }
   uint32_t round() const { return figures_.round; }
@@ -63,6 +64,8 @@ class PhotonMap {
   uint32_t traced() const { return tracing_ ? traced_ : 0; }
   const RoundFigures& figures() const { return figures_; }
   const shared::PhotonFrame& lookup() const { return lookup_; }
+  /// Of the complete round, with other limits of what lookups look at.
+  void set_lookup(const shared::PhotonFrame& lookup) { lookup_ = lookup, write_lookup(); }
   uint64_t bytes() const;
 
  private:

@@ -47,7 +47,8 @@ Report make_report(const PhotonReport& r) {
   Report report;
   report.solver = info().name;
   report.ready = r.ready;
-  if (!r.ready) report.preparing = "photons: where they are looked for, and what bundles light";
+  if (!r.ready)
+    report.preparing = "photons: where they are looked for, what bundles light, and where it comes in";
   report.state = r.rounds == 0 ? "beginning" : fmt::format("round {}", r.last.round + 1);
   PanelSection map{.title = "Photons", .note = "", .items = {}};
   if (r.lights_power <= 0)
@@ -81,7 +82,7 @@ Report make_report(const PhotonReport& r) {
         Paragraph{"The radius asked for is wider than photons may be seen, and is held to a quarter of "
                   "their distance.",
                   Tone::warning});
-  add_aim_rows(map.items, r.casters, r.unaimed, r.aimed);
+  add_aim_rows(map.items, {r.casters, r.entrances}, r.unaimed, r.aimed);
   const auto rate = [&](const char* name, double n, const char* help) {
     if (n > 0) map.items.push_back(ValueRow{name, count_text(n) + " / s", help});
   };
@@ -131,6 +132,7 @@ Report make_report(const PhotonReport& r) {
                     {"density most", double(r.density.hi)},
                     {"inspected", r.inspected ? double(r.inspected->at.count) : 0},
                     {"casters", double(r.casters)},
+                    {"entrances", double(r.entrances)},
                     {"unaimed", r.unaimed},
                     {"radius pixels", r.radius_pixels},
                     {"bytes", double(r.bytes)}};

@@ -15,8 +15,8 @@ struct PhotonReport {
   RoundFigures last;
   double radius_pixels = 0;
   bool at_floor = false;
-  bool limited = false;  ///< held to less than what was asked for
-  uint32_t casters = 0;
+  bool limited = false;                   ///< held to less than what was asked for
+  uint32_t casters = 0, entrances = 0;    ///< boxes that paths are aimed at
   double unaimed = 1;                     ///< share of the paths
   bool ready = true;                      ///< the pilot is done
   std::vector<overlay::AimedPair> aimed;  ///< greatest share first

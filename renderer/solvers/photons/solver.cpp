@@ -17,10 +17,10 @@ using solvers::Picture, solvers::Task, solvers::Cancel;
 namespace {
 
 constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where their number is left to us
-// Of photons that records' rays read: about so many serve one lookup, for what errs there is seen by all
-// records around; within one radius, whoever looks, as for one photon a path on a cube that fits into the
-// scene's sphere.
-constexpr uint32_t k_standing_paths = 1u << 18, k_standing_round = 0xfffffffdu;
+// Of photons that records' rays read: about so many serve a typical lookup, for what errs there is seen by
+// all records around; within one radius, whoever looks, at most as wide as for one photon a path on a cube
+// that fits into the scene's sphere.
+constexpr uint32_t k_standing_paths = 1u << 20, k_standing_round = 0xfffffffdu;
 constexpr float k_standing_photons = 30;
 /// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
 /// are very wide.
@@ -48,8 +48,11 @@ bool feeds(const Task& task) {
 /// Irradiance is to be known beforehand where tertiary light is looked up: behind a diffuse vertex, which is
 /// not so where secondary light is ours as well.
 bool prepares_irradiance(const Task& task) {
-  return task.settings.boolean("photons.irradiance_map") && parts_of(task) != 0 &&
-         (task.own >> k_tertiary & 1u) != 0 && (task.own >> k_secondary & 1u) == 0;
+  enum : uint32_t { off, records, all };
+  const auto asked = uint32_t(task.settings.choice("photons.irradiance_map"));
+  const bool wanted = asked == all || (asked == records && feeds(task));
+  return wanted && parts_of(task) != 0 && (task.own >> k_tertiary & 1u) != 0 &&
+         (task.own >> k_secondary & 1u) == 0;
 }
 
 /// Of lookups' components by state: those that bring nothing but tertiary light.
@@ -202,10 +205,11 @@ bool PhotonSolver::feed(transport::Wavefront& wavefront, const Picture& picture,
     round.paths = std::max(k_standing_paths, round.paths);
     round.lookup = lookup_of(picture, picture.frame, 1);
     round.lookup.slope = 0;
-    round.lookup.most_candidates = k_photon_standing_candidates;
-    round.lookup.most_visits = k_photon_standing_visits;
-    round.lookup.base =
+    if (!irradiance_) round.lookup.most_candidates = k_photon_standing_candidates;
+    const auto found = float(density_at_lookups_ * round.paths);  // photons a square metre
+    const float widest =
         picture.flat.scene_radius * std::sqrt(8 * k_standing_photons / (k_pi * float(round.paths)));
+    round.lookup.base = found > 0 ? std::min(widest, std::sqrt(k_standing_photons / (k_pi * found))) : widest;
     return standing_->trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel);
   }
   if (irradiance_ && !irradiance_->complete()) {
@@ -214,6 +218,9 @@ bool PhotonSolver::feed(transport::Wavefront& wavefront, const Picture& picture,
       surfaces_.bind(r);
     };
     irradiance_->make(wavefront, *standing_, tertiary_alone(standing_->lookup()), from);
+    PhotonFrame beside = standing_->lookup();
+    beside.most_candidates = k_photon_beside_candidates, beside.most_visits = k_photon_beside_visits;
+    standing_->set_lookup(beside);
     return true;
   }
   feeding_ = feeds_;
@@ -255,8 +262,8 @@ void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
     paths_view_.draw(canvas, picture.flat, lights_, round_of(picture, 0),
                      uint32_t(settings.integer("overlay.photon_paths_of")), picture.frame,
                      picture.task.enabled);
-  if (settings.boolean("overlay.photon_aim") && !casters_.empty())
-    paths_view_.draw_aim(canvas, picture.flat, lights_, casters_);
+  if (settings.boolean("overlay.photon_aim") && lights_.strata() > 1)
+    paths_view_.draw_aim(canvas, picture.flat, lights_, boxes_);
   if (!looked_at_) return;
   const auto at = [](float place, uint32_t pixels) {
     return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
@@ -274,6 +281,7 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.last = map_.figures();
   r.spared = spared_;
   r.casters = uint32_t(casters_.size());
+  r.entrances = uint32_t(std::max(boxes_.size(), casters_.size()) - casters_.size());
   r.unaimed = lights_.shares().empty() ? 1 : lights_.shares()[0];
   r.ready = ready();
   const auto rate = [](uint64_t n, double seconds) { return seconds > 0 ? double(n) / seconds : 0; };
@@ -332,9 +340,12 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, c
           {"dark", r.dark},
           {"spared", r.spared},
           {"casters", r.casters},
+          {"entrances", r.entrances},
           {"unaimed", r.unaimed},
           {"last_round_photons", r.last.photons},
           {"radius_pixels", r.radius_pixels},
+          {"standing_photons", standing_ ? standing_->figures().photons : 0},
+          {"standing_radius", standing_ ? double(standing_->lookup().base) : 0.0},
           {"irradiance_places", irradiance_ ? irradiance_->places() : 0},
           {"bytes", r.bytes}};
 }

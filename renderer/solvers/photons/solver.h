@@ -9,6 +9,7 @@
 #include "solvers/photons/report.h"
 #include "solvers/photons/surface_index.h"
 #include "solvers/solver.h"
+#include "transport/first_hits.h"
 
 namespace lucerna::photons {
 
@@ -88,15 +89,30 @@ class PhotonSolver final : public solvers::Solver {
   transport::LightSource lights_;
 
   // Aimed emission (aim.cpp): casters are found, then a few paths from the eye note where lookups take place,
-  // then a few from the lights tell which pairs of light and caster bring something there.
-  enum class AimStep { casters, importance, worth };
-  bool aims_ = false;    ///< there may be casters, and there is light that they bundle
-  bool spares_ = false;  ///< photons that nobody looks at
-  bool aimed_ = false;   ///< importance and shares are those of this picture
+  // then a few from lights far away where those that come to be of use arrive first, then a few from all
+  // lights which pairs of light and box bring something.
+  enum class AimStep { casters, importance, first_hits, worth };
+  /// One piece of each; false: it was cancelled, and will be done again.
+  bool note_importance(transport::Wavefront& wavefront, const solvers::Picture& picture,
+                       const solvers::Cancel& cancel);
+  bool note_first_hits(transport::Wavefront& wavefront, const solvers::Picture& picture,
+                       const solvers::Cancel& cancel);
+  void begin_sharing(const solvers::Picture& picture);
+  bool share_out(transport::Wavefront& wavefront, const solvers::Picture& picture,
+                 const solvers::Cancel& cancel);
+  bool aims_ = false;     ///< there may be something to aim at
+  bool bundles_ = false;  ///< ... casters, and there is light that they bundle
+  bool enters_ = false;   ///< ... openings that light from afar comes through
+  bool spares_ = false;   ///< photons that nobody looks at
+  bool aimed_ = false;    ///< importance and shares are those of this picture
   AimStep aim_step_ = AimStep::casters;
   std::vector<Box> casters_;
   bool casters_known_ = false;
-  std::vector<double> worth_;  ///< by stratum, of the pilot
+  std::vector<Box> boxes_;  ///< that paths are aimed at: of the casters, then those where light gets in
+  std::vector<transport::FirstHit> first_hits_;  ///< of use, in the pilot's rounds so far
+  uint32_t first_hit_rounds_ = 0;
+  /// Photons that a path leaves on a square metre where lookups typically take place; 0: not known.
+  double density_at_lookups_ = 0;
   std::optional<schedule::UniformSchedule> eye_schedule_;
   std::vector<overlay::AimedPair> pairs_;  ///< with their shares
   shared::Frame aimed_for_{};

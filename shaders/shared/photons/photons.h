@@ -34,12 +34,14 @@ LUCERNA_CONST float k_photon_most_slope = 0.25f;  ///< of the radius over the di
 LUCERNA_CONST uint k_photon_most_candidates = 4096u;
 /// ... where many lookups make one figure: those of records' rays, and of paths that gather.
 LUCERNA_CONST uint k_photon_standing_candidates = 384u;
+/// ... and where irradiance is known beforehand, of those few that no place of it is near enough for.
+LUCERNA_CONST uint k_photon_beside_candidates = 32u;
+LUCERNA_CONST uint k_photon_beside_visits = 16u;
 LUCERNA_CONST uint k_photon_place_candidates = 64u;  ///< of places of irradiance, of which one is taken
 LUCERNA_CONST float k_photon_slab = 0.25f;  ///< half the thickness of what a photon's disc counts for, in radii
 LUCERNA_CONST float k_photon_normals = 0.9f;  ///< least cosine between the normals of photon and place
 // How much surface there is around a place (photons/area.glsl).
 LUCERNA_CONST uint k_photon_most_visits = 2048u;        ///< nodes that a lookup meets; beyond it is taken for whole
-LUCERNA_CONST uint k_photon_standing_visits = 128u;     ///< ... of records' rays, whose discs are wide
 LUCERNA_CONST float k_photon_least_area = 1.0f / 64.0f; ///< of the whole disc
 LUCERNA_CONST float k_photon_turned_slab = 0.125f;      ///< of the slab, for what is wound the other way round
 
@@ -88,10 +90,14 @@ LUCERNA_CONST uint k_photon_most_importance = 4096u;     ///< of one lookup
 /// never light.
 LUCERNA_CONST float k_photon_unseen_share = 0.25f;
 
-/// What a photon of the pilot brings to the picture, up to a factor, and which stratum of emission it comes from.
+/// Of a photon of a pilot: what it brings to the picture, and where it comes from.
 struct PhotonWorth {
-  uint stratum;
-  float worth;
+  uint stratum;      ///< of its path's emission
+  uint light;        ///< ... entry of emission_alias
+  uint id;           ///< k_photon_id_events
+  float worth;       ///< what it brings to the picture, up to a factor; 0: light straight from a lamp
+  vec3 position;     ///< [m]
+  float importance;  ///< how much of the picture hangs on lookups around it, an area, up to a factor
 };
 
 // PhotonCounts, uint each.
