@@ -21,6 +21,7 @@ constexpr double k_pilot_radius = 3;  // of its own pixels, which are wide
 constexpr uint32_t k_first_hit_paths = 1u << 16, k_most_first_hit_rounds = 8, k_first_hit_round = 0xffffff00u;
 constexpr size_t k_enough_hits = 512, k_least_hits = 16;
 constexpr double k_many = 0.2;
+constexpr double k_least_from_afar = 0.05;  // of all lights' power; less is not looked for
 
 /// The frame of the pilot's eye paths: the same view with fewer pixels.
 Frame small_frame(const Picture& picture) {
@@ -93,7 +94,8 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   constexpr uint32_t k_caustics = 1u << k_caustic_part;
   const bool lit = sends_ && lights_.power() > 0, asked = picture.task.settings.boolean("photons.aim");
   bundles_ = lit && asked && (parts_ & k_caustics) != 0;
-  enters_ = lit && asked && (parts_ & ~k_caustics) != 0 && lights_.power_from_afar() > 0;
+  enters_ = lit && asked && (parts_ & ~k_caustics) != 0 &&
+            lights_.power_from_afar() > k_least_from_afar * lights_.power();
   const bool aims = bundles_ || enters_;
   const bool spares = lit && picture.task.settings.boolean("photons.importons");
   const bool stale =
