@@ -165,6 +165,32 @@ TEST_CASE("light that comes in through a slot is aimed at where it falls, and st
   CHECK(render(open, photons, 1, 16).entrances == 0);
 }
 
+TEST_CASE("behind records, too, it is found where light gets in, whether there are some yet or not") {
+  const scene::Scene room = slotted_room();
+  session::Renderer r(test::renderer_options());
+  r.set_size(32, 32);
+  r.set_scene(std::make_shared<scene::Scene>(room));
+  test::set(r, {{"components.caustic", "off"},
+                {"components.secondary", "cache"},
+                {"components.tertiary", "photons"},
+                {"samples", "8"}});
+  const auto entrances = [&] {
+    double n = -1;
+    for (const auto& report : r.reports())
+      if (report->solver == "photons") n = report->figure("entrances");
+    return n;
+  };
+  const film::Image first = test::finish(r);
+  CHECK(entrances() >= 1);
+  scene::Light sun = room.lights[0];
+  sun.intensity *= 2.0f;
+  sun.direction = glm::normalize(vec3(0.1f, -1, 0.2f));
+  r.set_light(0, sun);
+  const film::Image after = test::finish(r);
+  CHECK(entrances() >= 1);
+  CHECK(test::mean(after.components[2]) > 1.3 * test::mean(first.components[2]));
+}
+
 TEST_CASE("aim changes no mean") {
   const scene::Scene room = ball_room();
   const Rendered aimed = render(room, k_aimed, 64, 40), plain = render(room, unaimed(k_aimed), 64, 40);
