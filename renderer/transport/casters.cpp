@@ -93,6 +93,13 @@ std::vector<uint32_t> cluster(std::span<const Box> things, uint32_t most) {
   return of;
 }
 
+std::vector<Box> cluster_boxes(std::span<const Box> things, uint32_t most) {
+  const std::vector<uint32_t> of = cluster(things, most);
+  std::vector<Box> boxes(of.empty() ? 0 : *std::max_element(of.begin(), of.end()) + 1);
+  for (size_t i = 0; i < of.size(); ++i) boxes[of[i]].grow(things[i]);
+  return boxes;
+}
+
 std::vector<bool> casting_materials(const upload::FlatMaterials& flat) {
   const std::vector<vec4>& m = flat.materials;
   std::vector<bool> casts(m.size() / k_material_texels);
@@ -117,9 +124,7 @@ std::vector<Box> find_casters(const upload::FlatScene& flat) {
     for (size_t k = 0; k < 3; ++k) box.grow(flat.positions[3 * prim + k]);
     triangles.push_back(box);
   }
-  const std::vector<uint32_t> of = cluster(triangles, k_most_casters);
-  std::vector<Box> boxes(of.empty() ? 0 : *std::max_element(of.begin(), of.end()) + 1);
-  for (size_t i = 0; i < of.size(); ++i) boxes[of[i]].grow(triangles[i]);
+  std::vector<Box> boxes = cluster_boxes(triangles, k_most_casters);
   for (Box& b : boxes) {
     const vec3 size = b.size(), reach = glm::max(glm::abs(b.lo), glm::abs(b.hi));
     const float wider =

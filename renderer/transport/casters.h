@@ -14,6 +14,9 @@ namespace lucerna::transport {
 /// surface of boxes away (binned as in a tree of least surface; I. Wald 2007).
 std::vector<uint32_t> cluster(std::span<const Box> things, uint32_t most);
 
+/// A box around the things of each such cluster.
+std::vector<Box> cluster_boxes(std::span<const Box> things, uint32_t most);
+
 /// Whether a material's smooth lobes can bundle light: a metal, or glass, rougher at most than 0.5.
 /// Varnish, which mirrors a twenty-fifth of what it gets, is found without being aimed at.
 std::vector<bool> casting_materials(const upload::FlatMaterials& flat);

@@ -30,9 +30,7 @@ std::vector<Box> first_hit_boxes(std::vector<FirstHit> hits) {
     places.push_back({h.place, h.place});
     all.grow(h.place);
   }
-  const std::vector<uint32_t> of = cluster(places, k_most_first_hit_boxes);
-  std::vector<Box> boxes(of.empty() ? 0 : *std::max_element(of.begin(), of.end()) + 1);
-  for (size_t i = 0; i < of.size(); ++i) boxes[of[i]].grow(places[i]);
+  std::vector<Box> boxes = cluster_boxes(places, k_most_first_hit_boxes);
   for (Box& b : boxes) {
     const vec3 reach = glm::max(glm::abs(b.lo), glm::abs(b.hi));
     const float wider =

@@ -160,9 +160,10 @@ bool PhotonSolver::note_importance(transport::Wavefront& wavefront, const Pictur
   if (!complete) eye_schedule_ = before;
   if (!eye_schedule_->done()) return complete;
   map_.clear();
-  aim_step_ = enters_ ? AimStep::first_hits : AimStep::worth;
-  if (enters_) return complete;
-  begin_sharing(picture);
+  if (enters_)
+    aim_step_ = AimStep::first_hits;
+  else
+    begin_sharing(picture);
   return complete;
 }
 
@@ -171,7 +172,7 @@ void PhotonSolver::begin_sharing(const Picture& picture) {
   map_.store_by_importance(spares_);
   lights_.aim(device_, picture.flat, boxes_, 0.5);
   // Where nothing is aimed there is nothing to share out, but the density may be asked for.
-  aimed_ = boxes_.empty() && !standing_;
+  aimed_ = boxes_.empty() && !asks_density();
 }
 
 bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Picture& picture,
@@ -215,7 +216,7 @@ bool PhotonSolver::share_out(transport::Wavefront& wavefront, const Picture& pic
   lights_.share_out(transport::aim_shares(worth, least));
   std::vector<double> gain(before.size());
   for (size_t i = 0; i < gain.size(); ++i) gain[i] = before[i] > 0 ? lights_.shares()[i] / before[i] : 0;
-  if (standing_) density_at_lookups_ = typical_density(told, gain) / double(round.paths);
+  if (asks_density()) density_at_lookups_ = typical_density(told, gain) / double(round.paths);
   pairs_ = overlay::aimed_pairs(picture.flat, lights_);
   map_.clear();
   aimed_ = true;

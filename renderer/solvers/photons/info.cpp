@@ -25,8 +25,7 @@ std::vector<OptionInfo> option_rows() {
       boolean_option(
           "photons.aim", "true",
           "Photons: aims light paths at what mirrors or refracts smoothly, and those of the sun and the sky "
-          "at "
-          "where their light gets in, by what a pilot finds that each pair of lamp and box brings to the "
+          "at where their light gets in, by what a pilot finds that each pair of lamp and box brings to the "
           "picture.",
           "Aim light paths"),
       boolean_option(
@@ -41,12 +40,10 @@ std::vector<OptionInfo> option_rows() {
           "Correct borders"),
       choice_option("photons.irradiance_map", "records", {"off", "records", "all"}, "",
                     "Photons: where tertiary light is looked up behind a diffuse surface irradiance is known "
-                    "beforehand at "
-                    "one photon in four, and the nearest is taken: for the rays of the irradiance cache's "
-                    "records, or for "
-                    "paths that gather as well, for which its error does not fall with more samples. Such "
-                    "lookups cost a "
-                    "small part of what all photons around do.",
+                    "beforehand at one photon in four, and the nearest is taken: for the rays of the "
+                    "irradiance cache's records, or for paths that gather as well, for which its error does "
+                    "not fall with more samples. Such lookups cost a small part of what all photons around "
+                    "do.",
                     "Irradiance map"),
       without_restart(
           choice_option("overlay.photon_density", "off", {"off", "photons", "irradiance", "importance"}, "",

@@ -97,7 +97,9 @@ class PhotonSolver final : public solvers::Solver {
                        const solvers::Cancel& cancel);
   bool note_first_hits(transport::Wavefront& wavefront, const solvers::Picture& picture,
                        const solvers::Cancel& cancel);
-  void begin_sharing(const solvers::Picture& picture);
+  void begin_sharing(const solvers::Picture& picture);  ///< all boxes are known
+  /// Whether standing photons are to be made, whose radius hangs on it.
+  bool asks_density() const { return standing_ && !standing_->complete(); }
   bool share_out(transport::Wavefront& wavefront, const solvers::Picture& picture,
                  const solvers::Cancel& cancel);
   bool aims_ = false;     ///< there may be something to aim at
