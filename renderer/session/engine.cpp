@@ -70,11 +70,9 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
 Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
                const World& world, const plan::Plan& plan, const plan::Settings& settings,
                gpu::Defines defines, const Engine* before)
-    : automaton_(automaton),
-      plan_(plan),
-      scene_defines_(world.device->defines()),
-      routing_(routing(settings, world.flat.effects)) {
+    : automaton_(automaton), plan_(plan), scene_defines_(world.device->defines()) {
   const Timer timer;
+  route(settings, world.flat.effects);
   auto slots = uint32_t(settings.integer("path.batch")) / 64 * 64;
   if (settings.boolean("sampling.coherent"))
     defines["LUCERNA_COHERENT"] = settings.text("sampling.tile") == "8" ? "3" : "4";
@@ -132,7 +130,7 @@ void Engine::adopt(const Engine& before, const scene::Changes& changes) {
 void Engine::begin(const PictureView& picture, const scene::Changes& changes,
                    const std::optional<std::vector<vec3>>& light_factors) {
   // What is switched off changes without new kernels.
-  routing_ = routing(picture.settings, picture.world.flat.effects);
+  route(picture.settings, picture.world.flat.effects);
   for (const auto& solver : solvers_)
     with(*solver, picture, [&](solvers::Picture own) {
       own.light_factors = light_factors;
@@ -180,16 +178,30 @@ bool Engine::previews() const {
   return std::any_of(solvers_.begin(), solvers_.end(), [](const auto& s) { return s->previews(); });
 }
 
-solvers::Routing Engine::routing(const plan::Settings& settings, const upload::Effects& effects) const {
+void Engine::route(const plan::Settings& settings, const upload::Effects& effects) {
+  routing_ = routing(plan_, settings, effects);
+  plan::Plan left = plan_;
+  for (const solvers::SolverInfo* info : plan_.at_work())
+    if (const auto leaves = solvers::type_of(*info).leaves) {
+      const uint32_t bits = leaves(task_of(automaton_, plan_, *info, settings, effects));
+      for (size_t c = 0; c < left.solver.size(); ++c)
+        if ((bits >> c & 1u) != 0) left.solver[c] = solvers::find("path"), left.rest[c] = nullptr;
+    }
+  left_.reset();
+  if (left.solver != plan_.solver) left_ = routing(left, settings, effects);
+}
+
+solvers::Routing Engine::routing(const plan::Plan& plan, const plan::Settings& settings,
+                                 const upload::Effects& effects) const {
   // Nothing is looked up yet, and everything is traced.
   solvers::Routing all{
-      .lookups = {.component = {}, .parts = 0, .traced = plan_.enabled()}, .fallback = 0, .gather = {}};
+      .lookups = {.component = {}, .parts = 0, .traced = plan.enabled()}, .fallback = 0, .gather = {}};
   std::array<const solvers::SolverInfo*, paths::k_component_count> by{};
   uint32_t always = 0;  // what those bring who never leave a path alone
-  for (const solvers::SolverInfo* info : plan_.at_work()) {
+  for (const solvers::SolverInfo* info : plan.at_work()) {
     const auto routing_of = solvers::type_of(*info).routing;
     if (!routing_of) continue;
-    const solvers::Routing own = routing_of(task_of(automaton_, plan_, *info, settings, effects));
+    const solvers::Routing own = routing_of(task_of(automaton_, plan, *info, settings, effects));
     claim(by, *info, brought(own.lookups) & ~own.through);
     merge(all.lookups, own.lookups);
     all.fallback |= own.fallback;
@@ -210,7 +222,9 @@ shared::Frame Engine::frame(const PictureView& picture, uint32_t width, uint32_t
                              .width = width,
                              .height = height,
                              .frame = {}};
-  return own.frame_for(routing_, routing_.lookups.traced);
+  shared::Frame frame = own.frame_for(routing_, routing_.lookups.traced);
+  if (left_) transport::set_left(frame, own.frame_for(*left_, left_->lookups.traced));
+  return frame;
 }
 
 bool Engine::looked_up_besides(size_t component) const {

@@ -89,14 +89,18 @@ class Engine {
   const gpu::Defines& defines() const { return scene_defines_; }
 
  private:
-  /// Of all solvers together, for the present plan. Throws Error, located at the component, where two of them
+  /// Of all solvers together. Throws Error, located at the component, where two of them
   /// bring the same light.
-  solvers::Routing routing(const plan::Settings& settings, const upload::Effects& effects) const;
+  solvers::Routing routing(const plan::Plan& plan, const plan::Settings& settings,
+                           const upload::Effects& effects) const;
+  /// For the present plan, and for the one of parts of the picture where solvers leave light to paths.
+  void route(const plan::Settings& settings, const upload::Effects& effects);
 
   const paths::Automaton& automaton_;
   plan::Plan plan_;
-  gpu::Defines scene_defines_;  ///< that the kernels were made with
-  solvers::Routing routing_;    ///< of the picture begun last
+  gpu::Defines scene_defines_;            ///< that the kernels were made with
+  solvers::Routing routing_;              ///< of the picture begun last
+  std::optional<solvers::Routing> left_;  ///< ... where solvers leave light to paths (SolverType::leaves)
   std::vector<std::unique_ptr<solvers::Solver>> solvers_;
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::shared_ptr<film::Developer> developer_;

@@ -201,6 +201,9 @@ struct SolverType {
   /// Null: nothing but the wavefront is needed. Throws Error: memory, kernels.
   std::unique_ptr<Solver> (*make)(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
                                   const Task& task) = nullptr;
+  /// Components (of Task::own) that it may leave to paths from the eye in parts of the picture, which its
+  /// defines() and bind() tell camera.comp of (LUCERNA_LEFT_TO_PATHS, left_regions). Null: none.
+  uint32_t (*leaves)(const Task& task) = nullptr;
   /// Paths in flight that it needs at least.
   uint32_t least_slots = 0;
   /// upload::FlatScene::sun_threshold that it asks for; 0 or null: none. Task::effects are not known yet.

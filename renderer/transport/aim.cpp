@@ -9,6 +9,7 @@ namespace {
 
 constexpr double k_floor = 0.1, k_found_floor = 0.3;
 constexpr double k_most_unaimed = 0.9;
+constexpr double k_by_power = 0.2, k_light_found_floor = 0.2;
 
 }  // namespace
 
@@ -32,6 +33,30 @@ std::vector<double> aim_shares(std::span<const double> worth, double least_unaim
   }
   for (size_t i = 1; i < worth.size(); ++i) shares[i] *= (1 - unaimed) / sum;
   return shares;
+}
+
+std::vector<double> light_weights(std::span<const std::vector<uint32_t>> groups,
+                                  std::span<const double> power, std::span<const double> worth) {
+  const auto n = double(groups.size());
+  std::vector<double> powers, worths;
+  double all_power = 0, roots = 0, found = 0;
+  for (const std::vector<uint32_t>& group : groups) {
+    double p = 0, w = 0;
+    for (const uint32_t entry : group) p += power[entry], w += worth.empty() ? 0 : worth[entry];
+    powers.push_back(p), worths.push_back(w);
+    all_power += p, roots += std::sqrt(w), found += w > 0 ? 1 : 0;
+  }
+  const bool known = roots > 0;
+  const double by_power = known ? k_by_power : 0.5, even = known ? k_floor : 0.5;
+  std::vector<double> weights(power.size(), 0.0);
+  for (size_t g = 0; g < groups.size(); ++g) {
+    double share = by_power * powers[g] / all_power + even / n;
+    if (known && worths[g] > 0)
+      share += k_light_found_floor / found +
+               (1 - k_by_power - k_floor - k_light_found_floor) * std::sqrt(worths[g]) / roots;
+    for (const uint32_t entry : groups[g]) weights[entry] = share * power[entry] / powers[g];
+  }
+  return weights;
 }
 
 bool same_view(const shared::Frame& a, const shared::Frame& b) {

@@ -21,6 +21,14 @@ inline constexpr double k_least_unaimed_of_all = 0.5;
 /// brought by them alone, in few paths, each of which brings more the fewer of them are sent.
 inline constexpr double k_least_unaimed_from_afar = 0.6;
 
+/// By what lights are chosen where paths are not aimed, an entry each: within a group by power, among groups
+/// for a pilot half by power and half evenly (`worth` empty), and then by the root of what each light has
+/// brought to the picture (`worth`, by entry), with a fifth by power, a tenth for all groups alike and
+/// another fifth for those that have brought anything. So a lamp in a house has paths beside the sun, which
+/// lights all that is outside.
+std::vector<double> light_weights(std::span<const std::vector<uint32_t>> groups,
+                                  std::span<const double> power, std::span<const double> worth);
+
 /// A pilot's paths, all in a round of no sample.
 inline constexpr uint32_t k_pilot_paths = 1u << 14, k_pilot_paths_a_stratum = 8;
 inline constexpr uint32_t k_pilot_round = 0xffffffffu;

@@ -65,4 +65,10 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   return f;
 }
 
+void set_left(shared::Frame& frame, const shared::Frame& other) {
+  constexpr uint32_t k_here = shared::k_left_states;
+  for (uint32_t s = 0; s < k_here; ++s)
+    frame.automaton[k_here + s] = other.automaton[s] + (k_here | k_here << 8 | k_here << 16);
+}
+
 }  // namespace lucerna::transport

@@ -126,6 +126,13 @@ void LightSource::aim(gpu::Device& device, const upload::FlatScene& flat, std::s
   block_.write(&table_, sizeof table_);
 }
 
+void LightSource::choose_by(std::span<const double> weights) {
+  if (const std::vector<vec4> alias =
+          upload::build_alias_table(std::vector<double>(weights.begin(), weights.end()));
+      !alias.empty())
+    alias_.write(std::span<const vec4>(alias));
+}
+
 void LightSource::share_out(std::span<const double> shares) {
   double sum = 0, before = 0;
   for (const double s : shares) sum += s;

@@ -33,6 +33,11 @@ class LightSource {
   /// Paths are aimed at these boxes, in equal shares but for `unaimed` of stratum 0 (0 < unaimed <= 1). None,
   /// or no light: nothing is aimed. Throws Error: no memory.
   void aim(gpu::Device& device, const upload::FlatScene& flat, std::span<const Box> casters, double unaimed);
+  /// Lights are chosen in proportion to these, an entry each, where paths are not aimed: by powers() until
+  /// this is called. Above 0 where a light has power.
+  void choose_by(std::span<const double> weights);
+  /// Luminance of each entry's flux [W].
+  std::span<const double> powers() const { return powers_; }
   /// The strata's shares, or what is in proportion to them; that of stratum 0 above 0.
   void share_out(std::span<const double> shares);
   /// 1 + groups * casters; 1 where nothing is aimed.

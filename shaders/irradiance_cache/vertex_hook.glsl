@@ -23,6 +23,8 @@ struct cache_Vertex {
 
 bool cache_propagates() { return cache.probing == k_probe_errors || cache.probing == k_probe_errors_beyond; }
 // Beyond the lookup, where what records' rays read is noted.
+// The same states twice over: what records bring is nobody's choice but theirs.
+uint cache_state_of(VertexIn v) { return v.state % k_left_states; }
 bool cache_next_read(uint state) { return cache.probing == k_probe_next && state >= k_fallback_state; }
 // Of a sequence apart from those by which directions and lights are chosen.
 float record_lot(VertexIn v) {
@@ -34,10 +36,10 @@ bool cache_coin(VertexIn v) { return (sample_vertex_bits(v.random, v.depth, k_pa
 // nothing out.
 cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   cache_Vertex x;
-  uint routes = cache.routes[v.state];
-  bool beyond = cache.probing == k_probe_beyond && v.state >= k_fallback_state;
+  uint own_state = cache_state_of(v), routes = cache.routes[own_state];
+  bool beyond = cache.probing == k_probe_beyond && own_state >= k_fallback_state;
   bool screen = cache.probing == k_probe_screen && v.depth == 0u;
-  bool next_read = cache_next_read(v.state);
+  bool next_read = cache_next_read(own_state);
   x.looks = (routes != k_no_routes || beyond || next_read || screen) && v.bsdf.p_diffuse + v.bsdf.p_transmitted > 0.0;
   x.noted = false;
   x.note = vec4(0.0);
@@ -103,7 +105,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
 #endif
   o.sky_known = o.sky_known || (x.looks && !x.alone && (routes & 15u) < k_component_count);  // part 0: k_part_direct
   o.samples_lights = o.samples_lights && cache.probing == k_probe_none;
-  if (x.alone && x.gathers && v.state < k_gather_state) o.branches = max(o.branches, cache.branches);
+  if (x.alone && x.gathers && own_state < k_gather_state) o.branches = max(o.branches, cache.branches);
   return x;
 }
 
@@ -124,17 +126,17 @@ void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b)
 uint cache_state(VertexIn v, cache_Vertex x, BsdfSample b, uint state) {
   bool passes_all = (x.alone && !x.gathers) || cache.probing == k_probe_beyond || cache.probing == k_probe_next ||
                     (cache.probing == k_probe_errors_beyond && !x.alone);
-  uint from = passes_all ? k_fallback_state : x.alone ? k_gather_state : k_known_state;
-  bool another = x.looks && b.event == k_event_diffuse && v.state < k_fallback_state && (x.alone || passes_all || v.state >= k_gather_state);
-  return another ? state % k_gather_state + from : state;
+  uint from = passes_all ? k_fallback_state : x.alone ? k_gather_state : k_known_state, own_state = cache_state_of(v);
+  bool another = x.looks && b.event == k_event_diffuse && own_state < k_fallback_state && (x.alone || passes_all || own_state >= k_gather_state);
+  return another ? state % k_gather_state + from + (v.state - own_state) : state;
 }
 
 void cache_leave(VertexIn v, inout cache_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on) {
   bool diffuse = l.b.event == k_event_diffuse, propagates = cache_propagates();
-  bool ends_here = cache.probing == k_probe_lookups || cache.probing == k_probe_reads || cache_next_read(v.state);
+  bool ends_here = cache.probing == k_probe_lookups || cache.probing == k_probe_reads || cache_next_read(cache_state_of(v));
   go_on = go_on && cache.probing != k_probe_screen && !(ends_here && x.looks && diffuse);
   // Of the lookups beyond the first a coin chooses one, and what it brings counts for those it passes over.
-  bool reads = propagates && x.looks && !x.alone && diffuse, later = reads && v.state >= k_fallback_state;
+  bool reads = propagates && x.looks && !x.alone && diffuse, later = reads && cache_state_of(v) >= k_fallback_state;
   if (later) throughput *= 2.0;
   if (reads && l.finite && (later ? cache_coin(v) : cache.probing == k_probe_errors)) {
     uint medium = 0u;
@@ -142,7 +144,7 @@ void cache_leave(VertexIn v, inout cache_Vertex x, Leaving l, inout vec3 through
     medium = !l.b.transmitted || !v.surface.parameters.solid ? v.path.medium : v.surface.front ? v.surface.material + 1u : 0u;
 #endif
     x.noted = true;
-    x.note = vec4(v.surface.position, uintBitsToFloat(1u + v.state + k_note_medium * medium));
+    x.note = vec4(v.surface.position, uintBitsToFloat(1u + cache_state_of(v) + k_note_medium * medium));
     x.note_facing = vec4(l.b.transmitted ? -x.smooth_side : x.smooth_side, uintBitsToFloat(throughput_pack(throughput * k_inv_pi)));
     go_on = false;
   }

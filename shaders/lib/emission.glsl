@@ -35,6 +35,10 @@ struct Emission {
   uint stratum;        // in which it was drawn
   float unaimed;       // share of its density that is not aimed, 0..1
   uint group;          // of lights, where they are kept apart
+  bool afar;           // begins on the disk of the scene
+  float radiance;      // luminance of what a ray meets there; 0: none meets it (points, directions)
+  float sampling;      // how dense light samples are there: over the square of the distance, or of what comes from afar, the
+                       // luminance that one brings over the path's flux
 };
 
 // Random numbers of light path `index` of a round. All paths of a round share the sequences, so that each of their decisions
@@ -179,6 +183,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   e.direction = normalize(vec3(r * cos(phi), r * sin(phi), z));
   e.pdf_place = 1.0;
   e.pdf_direction = 0.25 * k_inv_pi;
+  e.radiance = 0.0;
   vec3 emitted = b.xyz;   // over all densities but the selection's
   float spread = 4.0 * k_pi;
   // Aimed: towards the caster, unless the light lies within its box.
@@ -192,6 +197,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     e.pdf_direction = spot_share(dot(e.direction, c.xyz), b.w, c.w) / spread;
   }
   bool afar = kind == k_light_directional || kind == k_light_environment;
+  e.afar = afar;
   if (kind == k_light_directional) {
     e.direction = c.xyz;
     e.origin = emission_from_afar(e.direction, u_place, stratum > 0u, box);
@@ -231,6 +237,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     there.offset = error_gamma(8.0) * (abs(p0) + abs(p1) + abs(p2)) + vec3(error_gamma(16.0) * max(max3(abs(p1 - p0)), max3(abs(p2 - p0))));
     e.origin = offset_origin(there, e.direction);
     emitted = emission_surface(floatBitsToUint(c.w), there.position, n, sqrt(b.w), plain.rgb);
+    e.radiance = luminance(emitted);
     spread = k_pi * b.w * halves;
   }
 #endif
@@ -249,6 +256,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     emitted = environment_radiance(towards, e.pdf_direction);
     e.pdf_direction /= max(frame.environment_light_pmf, 1e-30);
 #endif
+    e.radiance = luminance(emitted);
     e.direction = -towards;
     e.origin = emission_from_afar(e.direction, u_place, stratum > 0u, box);
     e.pdf_place = 1.0 / disk;
@@ -257,6 +265,9 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
 #endif
   e.flux = emitted * (spread / max(e.pmf, 1e-30));
   e.unaimed = 1.0;
+  // A light sample brings f cos radiance cos / (pmf pdf_place distance^2), of points f cos intensity / (pmf distance^2), of what
+  // comes from afar f cos radiance / (pmf pdf_direction).
+  e.sampling = afar ? e.pdf_place : e.pdf_direction;
   if (emission.casters > 0u) {
     float density = max(emission_density(e, afar, afar ? e.origin : place), 1e-30);
     // What is aimed past the scene's disk is no light that anybody else would send.
@@ -265,6 +276,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     bool sent = e.pdf_direction > 0.0 && (!afar || dot(across, across) <= emission.radius * emission.radius);
     e.flux = sent ? e.flux / density : vec3(0.0);
     e.unaimed = emission_share(0u) / density;
+    e.sampling *= density;
   }
   return e;
 }

@@ -36,6 +36,6 @@ uint automaton_account(uint state) { return (frame.automaton[state] >> 29) & 3u;
 #endif
 
 uint path_automaton(PathState p) { return p.bits & k_path_state_mask; }
-uint path_depth(PathState p) { return (p.bits & ~k_path_branched) >> 8; }
+uint path_depth(PathState p) { return (p.bits & ~k_path_branched) >> k_path_events_shift; }
 
 #endif

@@ -140,6 +140,11 @@
 #define LUCERNA_SPLATS_WEIGHED 0
 #endif
 
+// Photons: where they are not worth their time paths from the eye bring the light instead.
+#ifndef LUCERNA_LEFT_TO_PATHS
+#define LUCERNA_LEFT_TO_PATHS 0
+#endif
+
 // The tracer (lib/bvh.glsl).
 #ifndef LUCERNA_QUERY
 #define LUCERNA_QUERY 0

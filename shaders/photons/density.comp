@@ -3,6 +3,7 @@
 #include "overlay/seen.glsl"
 #include "photons/around.glsl"
 #include "photons/importance.glsl"
+#include "lib/left_regions.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PhotonDensityPush push; };
 layout(scalar) writeonly buffer PhotonDensities { float densities[]; };
@@ -18,6 +19,9 @@ void main() {
   if (push.of == k_density_of_importance) {
     float radius = importance_radius(seen.position);
     value = float(importance_around(seen.position)) / (radius * radius);
+  } else if (push.of == k_density_of_worth) {
+    uint x = pixel % push.width, y = pixel / push.width;
+    value = 1.0 - left_share((vec2(x, y) + 0.5) / vec2(push.width, push.height));
   } else {
     Around around = photons_around(seen.position, seen.normal, seen.solid);
     value = push.of == k_density_of_photons ? around.density : push.of == k_photons_in_disc ? around.count : luminance(around.irradiance);

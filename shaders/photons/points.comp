@@ -1,5 +1,5 @@
-// Photons as points to be drawn over the picture: one invocation a point. Their flux is all the same but for its colour,
-// which is what is shown of it.
+// Photons as points to be drawn over the picture: one invocation a point. Their flux is nearly the same but for its colour, which
+// is what is shown of it.
 #include "lib/invocation.glsl"
 #include "shaders/shared/photons/photons.h"
 #include "shaders/shared/overlay.h"
@@ -22,7 +22,11 @@ void main() {
   OverlayPoint p;
   p.position = a.xyz;
   p.half_width = 0.6;
-  p.color = push.by == k_photons_by_bounce ? ramp_hue(min(events, k_last_hue)) : light;
+  p.color = light;
+  if (push.by == k_photons_by_bounce) p.color = ramp_hue(min(events, k_last_hue));
+  if (push.by == k_photons_by_map) p.color = ramp_hue((floatBitsToUint(b.w) >> k_photon_part_shift & 3u) - 1u);
+  if (push.by == k_photons_by_light) p.color = ramp_hue(floatBitsToUint(b.w) >> k_photon_group_shift);
+  if (push.by == k_photons_by_round) p.color = ramp_hue(push.round);
   p.alpha = 0.9;
   p.edge_width = 0.0;
   p.rank = k_rank_least;

@@ -6,6 +6,7 @@
 
 layout(scalar) writeonly buffer PhotonList { Photon photon_list[]; };  // in the order in which they come ...
 layout(scalar) writeonly buffer PhotonIds { uint photon_ids[]; };      // ... and the one in which they will be
+layout(scalar) writeonly buffer PhotonRadiances { float photon_radiances[]; };
 layout(scalar) buffer PhotonCounts { uint photon_counts[]; };
 layout(scalar) buffer LightPathCounts { uint light_path_counts[]; };
 
@@ -45,9 +46,12 @@ void main() {
     p.bits = facet_pack(v.surface.normal_g) | part << k_photon_part_shift |
              min(depth - 1u, k_photon_most_events) << k_photon_events_shift | path.light_group << k_photon_group_shift;
     uint at = atomicAdd(photon_counts[k_photons_stored], 1u);
+    atomicAdd(photon_counts[k_photons_by_part + part], 1u);
     if (at < photon_counts[k_photons_capacity]) {
       photon_list[at] = p;
       photon_ids[at] = path.pixel << k_photon_id_events | (depth & k_most_light_events);
+      if (photons.tells_radiance != 0u)
+        photon_radiances[at] = min(luminance(v.arriving) / max(path.pdf, 1e-37), k_radiance_unmet);
     }
   }
   light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events - 1u), random);

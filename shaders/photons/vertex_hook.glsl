@@ -15,6 +15,7 @@
 #endif
 
 layout(scalar) buffer PhotonImportance { uint photon_importance[]; };
+layout(scalar) writeonly buffer PhotonLookups { PhotonLookup photon_lookups[]; };
 
 struct photons_Vertex { uint none; };
 
@@ -32,6 +33,9 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
     if (carried > 0.0)
       atomicAdd(photon_importance[photon_entry_of(ivec3(floor(x * photon_inverse_cell(level))), level, photons.importance_mask)],
                 uint(clamp(k_photon_importance_scale * carried, 1.0, float(k_photon_most_importance))));
+    if (v.path.pixel < photons.lookups && (components >> 4u * k_photon_caustic_part & 15u) < k_component_count)
+      photon_lookups[v.path.pixel] =
+          PhotonLookup(x, luminance(v.path.throughput * v.bsdf.diffuse_albedo), facet_pack(v.side));
   }
   int lowest = photon_lowest_level(radius), highest = photon_highest_level(radius);
   uint candidates = 0u;

@@ -10,13 +10,15 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PhotonWorthPush push; };
 uniform samplerBuffer photon_texels;
 uniform usamplerBuffer photon_sorted;  // SortEntry64: its lower word is the photon's number
+layout(scalar) readonly buffer PhotonRadiances { float photon_radiances[]; };
 layout(scalar) writeonly buffer PhotonWorths { PhotonWorth photon_worths[]; };
 
 void main() {
   uint i = global_index();
   if (i >= push.count) return;
   vec4 a = texelFetch(photon_texels, int(k_photon_texels * i)), b = texelFetch(photon_texels, int(k_photon_texels * i + 1u));
-  uint id = texelFetch(photon_sorted, int(i)).x, part = floatBitsToUint(b.w) >> k_photon_part_shift & 3u;
+  uvec4 entry = texelFetch(photon_sorted, int(i));  // number, entry of the table, place in the list
+  uint id = entry.x, part = floatBitsToUint(b.w) >> k_photon_part_shift & 3u;
   float radius = importance_radius(a.xyz), importance = float(importance_around(a.xyz)) / (radius * radius);
   uint stratum = 0u, light = 0u;
   float own = 1.0;
@@ -28,5 +30,9 @@ void main() {
   own = stratum == 0u ? e.unaimed : 1.0;
 #endif
   float worth = part > 0u ? own * luminance(b.rgb) * importance : 0.0;
-  photon_worths[i] = PhotonWorth(stratum, light, id, worth, a.xyz, importance);
+  bool told = photons.tells_radiance != 0u && part == k_photon_caustic_part;
+  vec3 front = facet_unpack(floatBitsToUint(b.w) & k_photon_facet);
+  bool lit_front = dot(photon_direction(floatBitsToUint(a.w)), front) > 0.0;
+  photon_worths[i] = PhotonWorth(stratum, light, id, worth, a.xyz, importance, told ? luminance(b.rgb) : 0.0,
+                                 told ? photon_radiances[entry.z] : 0.0, facet_pack(lit_front ? front : -front));
 }

@@ -109,7 +109,7 @@ struct Frame {
   uint most_branches;         ///< of a path that is followed on several times (VertexOut.branches)
   float scene_radius;
   uint sky_group, sun_group;  ///< of lights, where they are kept apart: of the environment, and of its sun
-  uint automaton[32];         ///< paths::pack; k_automaton_states
+  uint automaton[64];         ///< paths::pack; k_automaton_states
 };
 
 LUCERNA_SHARED_END

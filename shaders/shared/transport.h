@@ -15,27 +15,35 @@ LUCERNA_CONST uint k_fallback_state = 16u;
 LUCERNA_CONST uint k_known_state = 24u;
 /// In which nothing can be brought any more: in place of the eye's own among those, which no path is in that has looked up.
 LUCERNA_CONST uint k_dead_state = 24u;
-LUCERNA_CONST uint k_automaton_states = 32u;
+/// From here on the same once more, of paths in pixels where light that a solver brings elsewhere is left to paths from the
+/// eye (solvers::SolverType::leaves).
+LUCERNA_CONST uint k_left_states = 32u;
+LUCERNA_CONST uint k_automaton_states = 64u;
 
 // Of a path since its last scattering event, where records hold the sky's light (LUCERNA_SKY_APART):
-LUCERNA_CONST uint k_path_sky_only = 1u << 5;     ///< a record's first ray: of all lights it sees the sky alone
-LUCERNA_CONST uint k_path_sky_unasked = 1u << 6;  ///< light samples at the last vertex were of other lights only
-LUCERNA_CONST uint k_path_sky_known = 1u << 7;    ///< what the ray would bring of the sky has been looked up
+LUCERNA_CONST uint k_path_sky_only = 1u << 6;     ///< a record's first ray: of all lights it sees the sky alone
+LUCERNA_CONST uint k_path_sky_unasked = 1u << 7;  ///< light samples at the last vertex were of other lights only
+LUCERNA_CONST uint k_path_sky_known = 1u << 8;    ///< what the ray would bring of the sky has been looked up
 LUCERNA_CONST uint k_path_branched = 1u << 31;    ///< a vertex of it is followed by several branches; no other will be
-LUCERNA_CONST uint k_path_state_mask = 0x1fu;
+LUCERNA_CONST uint k_path_state_mask = 0x3fu;
+LUCERNA_CONST uint k_path_events_shift = 9u;
 
 /// One path: `throughput` already divided by all probabilities.
 struct PathState {
   vec3 throughput;
-  float pdf;           ///< of the last scattered direction, mixture of all lobes, per solid angle; 0: delta or camera
+  float pdf;           ///< of the last scattered direction, mixture of all lobes, per solid angle; 0: delta or camera.
+                       ///< Of a path from a light: flux over the radiance that a path from the eye would bring which went
+                       ///< the same way, by luminance; 0: none would find it
   uint pixel;          ///< index into the film (y * width + x)
   uint sample_index;   ///< of the pixel
-  uint bits;           ///< 0-4 automaton state, 5-7 and 31 k_path_*, 8-30 scattering events so far
+  uint bits;           ///< 0-5 automaton state, 6-8 and 31 k_path_*, 9-30 scattering events so far
   uint medium;         ///< material whose volume the ray is in, plus 1; 0: none
   float travelled;     ///< metres since the last scattering event, over null events
-  float eta_scale;     ///< product of (eta_i/eta_t)^2 that refraction has put into the throughput
+  float eta_scale;     ///< product of (eta_i/eta_t)^2 that refraction has put into the throughput. Of a path from a light:
+                       ///< how dense light samples are that meet where it begins (transport/emit.comp)
   uint nulls;          ///< null events since the last scattering event
-  uint light_group;    ///< of a path from a light: the group that this is of, where groups are kept apart
+  uint light_group;    ///< of a path from a light: the group that this is of, where groups are kept apart;
+                       ///< else the lowest bits of its number
 };
 
 /// What a shadow ray brings if it arrives: the diffuse and the glossy lobe's shares go to lanes of their own.

@@ -8,6 +8,9 @@
 layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
 uniform samplerBuffer splat_picture;
 #endif
+#if LUCERNA_LEFT_TO_PATHS
+#include "lib/left_regions.glsl"
+#endif
 
 void main() {
   uint slot = global_index();
@@ -34,6 +37,11 @@ void main() {
   p.pixel = inside ? pixel : 0xffffffffu;
   p.sample_index = sample_index;
   p.bits = 0u;
+#if LUCERNA_LEFT_TO_PATHS
+  // A coin of its own: either way of computing is right in the mean, whatever else is drawn.
+  uint coin = hash_combine(hash_combine(pixel, sample_index), frame.seed ^ 0x2c1b3c6du);
+  if (float(coin >> 8) * (1.0 / 16777216.0) < left_share(place)) p.bits = k_left_states;
+#endif
   p.medium = 0u;
   p.travelled = 0.0;
   p.eta_scale = 1.0;

@@ -17,11 +17,17 @@ void main() {
   ray.slot = slot;
   vec3 flux = vec3(0.0);
   uint group = 0u;
+  float over_radiance = 0.0, sampling = 0.0;
 #if LUCERNA_LIGHTS
   Sampler random = make_light_sampler(index, push.round, frame.seed);
   Emission e = sample_emission(random, push.step);
   flux = e.flux * push.share;
   group = e.group;
+#if LUCERNA_LIGHT_GROUPS <= 1
+  // To tell lights apart by: of lamps their number, of triangles that lie together that of their cluster.
+  group = emission.casters > 0u ? floatBitsToUint(texelFetch(emission_groups, int(emission.groups + e.light)).x) : e.light;
+  group &= k_most_groups - 1u;
+#endif
   bool finite = is_finite(flux);
   if (!finite) atomicAdd(counters[k_counter_dropped], 1u);
   bool lit = finite && max3(flux) > 0.0;
@@ -30,17 +36,20 @@ void main() {
   ray.direction = e.direction;
   ray.tmax = lit ? k_infinity : -1.0;
   flux = lit ? flux : vec3(0.0);
+  over_radiance = e.radiance > 0.0 ? luminance(flux) / e.radiance : 0.0;
+  // Below 0 where it comes from afar.
+  sampling = (e.afar ? -1.0 : 1.0) * e.sampling / push.share;
 #endif
   rays[slot] = ray;
   PathState p;
   p.throughput = flux;
-  p.pdf = 0.0;
+  p.pdf = over_radiance;
   p.pixel = max3(flux) > 0.0 ? index : 0xffffffffu;
   p.sample_index = push.round;
-  p.bits = 1u << 8;  // the emission has the random numbers of depth 0
+  p.bits = 1u << k_path_events_shift;  // the emission has the random numbers of depth 0
   p.medium = 0u;
   p.travelled = 0.0;
-  p.eta_scale = 1.0;
+  p.eta_scale = sampling;
   p.nulls = 0u;
   p.light_group = group;
   paths[slot] = p;

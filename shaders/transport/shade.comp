@@ -95,7 +95,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   }
   path.throughput = throughput;
   path.pdf = b.pdf;
-  path.bits = next | sky | (v.depth + 1u) << 8 | (path.bits & k_path_branched);
+  path.bits = next | sky | (v.depth + 1u) << k_path_events_shift | (path.bits & k_path_branched);
   path.travelled = 0.0;
   path.nulls = 0u;
 #if LUCERNA_VOLUMES

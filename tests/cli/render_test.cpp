@@ -209,7 +209,8 @@ TEST_CASE("--stats and --ledger tell noise and bias of light that is looked up a
     std::ifstream file(f / "b.json");
     return nlohmann::json::parse(file);
   };
-  const auto j = stats("--samples 6 --set components.caustic=photons --set photons.radius=6");
+  const auto j =
+      stats("--samples 6 --set components.caustic=photons --set photons.worth=false --set photons.radius=6");
   const auto& error = j["error"];
   CHECK(error["records"]["relative"] == 0);
   CHECK(error["bias"]["relative"] > 0.01);
@@ -226,7 +227,8 @@ TEST_CASE("--stats and --ledger tell noise and bias of light that is looked up a
   std::getline(table, head);
   CHECK(head.find(",error_records,error_bias,error_told,") != std::string::npos);
   // With one sample there are no two halves, and nothing is known; paths have no bias to be told of.
-  CHECK(stats("--set components.caustic=photons --samples 1")["error"]["bias"].is_null());
+  CHECK(stats("--set components.caustic=photons --set photons.worth=false --samples 1")["error"]["bias"]
+            .is_null());
   CHECK_FALSE(stats("--samples 6 --set components.caustic=path")["error"].contains("bias"));
 }
 

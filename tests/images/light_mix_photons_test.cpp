@@ -12,11 +12,9 @@ using namespace lucerna::test;
 namespace {
 
 Settings photons(Settings more = {}) {
-  const Settings all{{"components.secondary", "photons"},
-                     {"components.tertiary", "photons"},
-                     {"components.caustic", "photons"},
-                     {"relight.enabled", "compact"},
-                     {"path.batch", "8192"}};
+  const Settings all{{"components.secondary", "photons"}, {"components.tertiary", "photons"},
+                     {"components.caustic", "photons"},   {"photons.worth", "false"},
+                     {"relight.enabled", "compact"},      {"path.batch", "8192"}};
   more.insert(all.begin(), all.end());
   return more;
 }

@@ -11,6 +11,7 @@ using namespace lucerna;
 namespace {
 
 const test::Settings k_aimed{{"components.caustic", "photons"},
+                             {"photons.worth", "false"},
                              {"components.secondary", "off"},
                              {"components.tertiary", "off"},
                              {"photons.per_round", "20000"}};
@@ -253,6 +254,40 @@ TEST_CASE("where nothing bundles light smoothly no path is aimed") {
   CHECK(r.casters == 0);
   CHECK(r.unaimed == 1);
   CHECK(r.photons > 0);
+}
+
+TEST_CASE("a weak lamp in a room has light paths beside a strong one elsewhere") {
+  // Two closed rooms; the camera is in the one with the weak lamp.
+  scene::Scene s;
+  s.name = "two rooms";
+  s.materials = {test::diffuse(vec3(0.6f))};
+  test::add_box(s, {-1, -1, -1}, {1, 1, 1}, 0);
+  test::add_box(s, {9, -1, -1}, {11, 1, 1}, 0);
+  s.lights = {{.name = "weak", .intensity = vec3(1), .position = {0, 0.9f, 0}},
+              {.name = "strong", .intensity = vec3(1e6f), .position = {10, 0.9f, 0}}};
+  s.cameras = {test::looking_down({0, 0.8f, 0}, 1.4f)};
+  s.environment.given = true;
+  const test::Settings photons{{"components.caustic", "off"},
+                               {"components.secondary", "photons"},
+                               {"components.tertiary", "off"},
+                               {"photons.per_round", "16384"}};
+  const film::Image aimed = render(s, photons, 32, 24).image,
+                    by_power = render(s, unaimed(photons), 32, 24).image;
+  // Light samples of paths go by power as well: they are asked in a scene without the strong lamp.
+  s.lights.pop_back();
+  const film::Image path =
+      render(s, {{"components.caustic", "off"}, {"components.tertiary", "off"}}, 512, 24).image;
+  double a = 0, b = 0, blind = 0, noise = 0;
+  for (size_t i = 0; i < aimed.samples.size(); ++i) {
+    a += double(luminance(aimed.components[1][i])), b += double(luminance(path.components[1][i]));
+    blind += double(luminance(by_power.components[1][i]));
+    noise += std::pow(double(luminance(aimed.components[1][i] - aimed.odd_half[1][i])), 2);
+  }
+  CAPTURE(a, b, blind, noise);
+  CHECK(a == Approx(b).epsilon(0.02));
+  CHECK(noise < 1e-4 * a * a / double(aimed.samples.size()));
+  // Without aim one path in a million begins at the weak lamp.
+  CHECK(blind < 0.5 * b);
 }
 
 TEST_CASE("the pilot depends on neither batches nor what was rendered before") {

@@ -65,6 +65,7 @@ Told render(const scene::Scene& scene, uint32_t samples, const test::Settings& m
   r.set_size(k_size, k_size);
   r.set_scene(std::make_shared<scene::Scene>(scene));
   test::Settings settings{{"components.caustic", "photons"},
+                          {"photons.worth", "false"},
                           {"photons.per_round", "200000"},
                           {"samples", std::to_string(samples)}};
   for (const auto& [key, value] : more) settings[key] = value;
@@ -215,7 +216,10 @@ TEST_CASE("what is told is the same however the work is cut or interrupted, and 
     r.settings().set("path.batch", batch);
     r.set_size(40, 32);
     r.set_scene(std::make_shared<scene::Scene>(turned_sun(true)));
-    test::set(r, {{"components.caustic", "photons"}, {"photons.radius", "4"}, {"samples", "5"}});
+    test::set(r, {{"components.caustic", "photons"},
+                  {"photons.worth", "false"},
+                  {"photons.radius", "4"},
+                  {"samples", "5"}});
   };
   make(one, "131072"), make(other, "1024");
   const film::Image image = test::finish(one);
@@ -241,6 +245,7 @@ TEST_CASE("records and photons in one picture are both told of") {
   test::set(r, {{"components.secondary", "cache"},
                 {"components.tertiary", "cache"},
                 {"components.caustic", "photons"},
+                {"photons.worth", "false"},
                 {"photons.radius", "4"},
                 {"samples", "8"}});
   test::finish(r);
@@ -256,9 +261,10 @@ TEST_CASE("records and photons in one picture are both told of") {
   CHECK(r.film().record_errors_complete());
   CHECK(records.interpolation_rms < 0.9 * both.interpolation_rms);
   // Photons alone: nothing of records, though nobody has told of them.
-  test::set(
-      r,
-      {{"components.secondary", "off"}, {"components.tertiary", "off"}, {"components.caustic", "photons"}});
+  test::set(r, {{"components.secondary", "off"},
+                {"components.tertiary", "off"},
+                {"components.caustic", "photons"},
+                {"photons.worth", "false"}});
   test::finish(r);
   const film::ImageError photons = r.image_error();
   CHECK_FALSE(r.film().record_errors_complete());
@@ -276,6 +282,7 @@ TEST_CASE("a target that blur keeps tiles over is not said to be reached, and co
     r.set_size(k_size, 32);
     r.set_scene(std::make_shared<scene::Scene>(turned_sun(true)));
     test::set(r, {{"components.caustic", "photons"},
+                  {"photons.worth", "false"},
                   {"photons.per_round", "300000"},
                   {"photons.radius", radius},
                   {"photons.alpha", "1"},

@@ -43,7 +43,8 @@ template <class F>
 double brightness(const scene::Scene& s, const test::Settings& more, uint32_t samples, F&& counts) {
   constexpr uint32_t k_size = 48;
   test::Settings settings = k_wide;
-  settings["components.caustic"] = "photons", settings["photons.per_round"] = "200000";
+  settings["components.caustic"] = "photons", settings["photons.worth"] = "false",
+  settings["photons.per_round"] = "200000";
   settings["components.secondary"] = settings["components.tertiary"] = "off";
   for (const auto& [key, value] : more) settings[key] = value;
   const test::Result r = test::render(s, settings, samples, k_size);

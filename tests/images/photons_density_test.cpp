@@ -18,6 +18,7 @@ struct Shown {
     r.set_size(48, 40);
     r.set_scene(std::make_shared<scene::Scene>(test::turned_sun(vec3(1))));
     test::set(r, {{"components.caustic", "photons"},
+                  {"photons.worth", "false"},
                   {"photons.per_round", "200000"},
                   {"photons.importons", "false"},
                   {"samples", "2"}});

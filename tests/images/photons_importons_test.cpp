@@ -74,7 +74,8 @@ scene::Scene long_room(bool mirror) {
 
 const test::Settings k_all{{"components.secondary", "photons"},
                            {"components.tertiary", "photons"},
-                           {"components.caustic", "photons"}};
+                           {"components.caustic", "photons"},
+                           {"photons.worth", "false"}};
 
 }  // namespace
 

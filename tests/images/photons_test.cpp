@@ -3,6 +3,7 @@
 // not see, that the picture is one of settings and seed alone, and what there is when there is little.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
 
 #include "solvers/registry.h"
 #include "support/caustics.h"
@@ -15,7 +16,8 @@ namespace {
 
 const test::Settings k_all{{"components.secondary", "photons"},
                            {"components.tertiary", "photons"},
-                           {"components.caustic", "photons"}};
+                           {"components.caustic", "photons"},
+                           {"photons.worth", "false"}};
 
 /// The inside of a box that shines, all of one albedo and without gloss.
 scene::Scene closed_room(const vec3& albedo) {
@@ -51,7 +53,9 @@ scene::Scene glass_room(float lamp = 0.5f) {
 
 TEST_CASE("a beam of even light on a plane has the irradiance that it brings there") {
   const test::Result r = test::render(
-      turned_sun(), {{"components.caustic", "photons"}, {"photons.per_round", "200000"}}, 16, 32);
+      turned_sun(),
+      {{"components.caustic", "photons"}, {"photons.worth", "false"}, {"photons.per_round", "200000"}}, 16,
+      32);
   const vec3 radiance = vec3(0.8f, 0.5f, 0.2f) * vec3(3, 4, 5) * vec3(0.9f, 0.8f, 0.7f) / k_pi;
   for (uint32_t block = 0; block < 16; ++block) {
     glm::dvec3 sum(0);
@@ -79,7 +83,8 @@ TEST_CASE("light that is refracted into water has there the irradiance that come
   s.lights[0].direction = {0, -1, 0};
   s.cameras = {test::looking_down({0, 0.9f, 0}, 0.8f)};
   s.environment.given = true;
-  const test::Settings settings{{"components.caustic", "photons"}, {"photons.per_round", "100000"}};
+  const test::Settings settings{
+      {"components.caustic", "photons"}, {"photons.worth", "false"}, {"photons.per_round", "100000"}};
   const double through = 1 - std::pow(0.33 / 2.33, 2);
   const MeanOf flat = mean_of(test::render(s, settings, 8, 32).image, 3);
   // Shading normals that lean are those that paths weigh light by.
@@ -153,7 +158,7 @@ void check_choice(const test::Settings& choice) {
 }  // namespace
 
 TEST_CASE("caustics of photons beside paths make the picture of path tracing") {
-  check_choice({{"components.caustic", "photons"}});
+  check_choice({{"components.caustic", "photons"}, {"photons.worth", "false"}});
 }
 TEST_CASE("photons for all that they can make the picture of path tracing") { check_choice(k_all); }
 TEST_CASE("final gathering from photons makes the picture of path tracing") {
@@ -165,7 +170,8 @@ TEST_CASE("secondary light of photons beside tertiary light of paths makes the p
 TEST_CASE("caustics of photons beside cached light make the picture of path tracing") {
   check_choice({{"components.secondary", "cache"},
                 {"components.tertiary", "cache"},
-                {"components.caustic", "photons"}});
+                {"components.caustic", "photons"},
+                {"photons.worth", "false"}});
 }
 TEST_CASE("photons at the first surface and records at the second make the picture of path tracing") {
   check_choice({{"components.secondary", "photons"}, {"components.tertiary", "cache"}});
@@ -180,7 +186,8 @@ TEST_CASE("records whose rays end in photons make the picture of path tracing") 
 TEST_CASE("records whose rays end in photons beside caustics of photons make the picture of path tracing") {
   check_choice({{"components.secondary", "cache"},
                 {"components.tertiary", "photons"},
-                {"components.caustic", "photons"}});
+                {"components.caustic", "photons"},
+                {"photons.worth", "false"}});
 }
 
 TEST_CASE("tertiary light from a map of irradiance makes the picture of path tracing") {
@@ -188,7 +195,7 @@ TEST_CASE("tertiary light from a map of irradiance makes the picture of path tra
   check_choice(settings);
   check_choice(with(settings, {{"components.secondary", "cache"}}));
   // Beside caustics, which are looked up among the round's photons at the first surface.
-  check_choice(with(settings, {{"components.caustic", "photons"}}));
+  check_choice(with(settings, {{"components.caustic", "photons"}, {"photons.worth", "false"}}));
 }
 
 TEST_CASE("a map of irradiance is read where it is asked for, is the same to the bit, and follows the lamp") {
@@ -242,7 +249,8 @@ TEST_CASE("records whose rays end in photons follow the lamp") {
 TEST_CASE("solvers that photons do not touch make the same picture to the bit") {
   const scene::Scene room = glass_room();
   const test::Result path = test::render({.samples = 8}, &room);
-  const test::Result r = test::render({.samples = 8, .settings = {{"components.caustic", "photons"}}}, &room);
+  const test::Result r = test::render(
+      {.samples = 8, .settings = {{"components.caustic", "photons"}, {"photons.worth", "false"}}}, &room);
   for (const size_t c : {0u, 1u, 2u}) CHECK(test::identical(path.image.components[c], r.image.components[c]));
   CHECK_FALSE(test::identical(path.image.components[3], r.image.components[3]));
 }
@@ -317,7 +325,7 @@ TEST_CASE("without anything that focuses light no photons are sent for caustics,
   session::Renderer r(test::renderer_options());
   r.set_size(32, 32);
   r.set_scene(std::make_shared<scene::Scene>(room));
-  test::set(r, {{"components.caustic", "photons"}, {"samples", "8"}});
+  test::set(r, {{"components.caustic", "photons"}, {"photons.worth", "false"}, {"samples", "8"}});
   const film::Image image = test::finish(r);
   for (const size_t c : {0u, 1u, 2u, 3u})
     CHECK(test::identical(path.image.components[c], image.components[c]));
@@ -358,8 +366,12 @@ TEST_CASE("very many photons in one place are looked at in part, and their light
   s.lights[0].position = {-3, 2, 0}, s.lights[0].inner_cone = 0.01f, s.lights[0].outer_cone = 0.012f;
   s.lights[0].intensity = vec3(1000);
   const auto sum = [&](const char* paths) {
-    const test::Result r = test::render(
-        s, {{"components.caustic", "photons"}, {"photons.per_round", paths}, {"photons.radius", "8"}}, 4, 32);
+    const test::Result r = test::render(s,
+                                        {{"components.caustic", "photons"},
+                                         {"photons.worth", "false"},
+                                         {"photons.per_round", paths},
+                                         {"photons.radius", "8"}},
+                                        4, 32);
     return test::mean(r.image.components[3]);
   };
   const double few = sum("8000"), many = sum("400000");
@@ -374,16 +386,23 @@ TEST_CASE("photons are drawn over the picture, and told of") {
   test::set(r, with(k_all, {{"samples", "2"}}));
   test::finish(r);
   const std::vector<uint8_t> plain = r.picture(false);
-  for (const char* by : {"flux", "bounce"}) {
+  std::set<std::vector<uint8_t>> all{plain};
+  for (const char* by : {"flux", "map", "light", "round", "bounce"}) {
     test::set(r, {{"overlay.photons", by}});
-    const std::vector<uint8_t> shown = r.picture(false);
-    CHECK(shown != plain);
+    CAPTURE(by);
+    CHECK(all.insert(r.picture(false)).second);
   }
   const auto reports = r.reports();
   REQUIRE(reports.size() == 1);
   CHECK(reports[0]->solver == "photons");
   CHECK(reports[0]->figure("rounds") == 2);
   CHECK(reports[0]->figure("photons") > 1000);
+  double by_part = 0;
+  for (const char* part : {"last secondary", "last tertiary", "last caustic"}) {
+    CHECK(reports[0]->figure(part) > 0);
+    by_part += reports[0]->figure(part);
+  }
+  CHECK(by_part == reports[0]->figure("last photons"));
   CHECK(reports[0]->figure("radius pixels") == Approx(1.5 * std::sqrt((1 + 0.6667) / 2)));
   CHECK(reports[0]->legends.size() == 1);
   CHECK(r.solver_statistics().at("photons").at("rounds") == 2);

@@ -130,3 +130,22 @@ TEST_CASE("shares follow the root of what a pair has brought, and leave none out
   CHECK(transport::aim_shares(std::vector<double>{0}, transport::k_least_unaimed_of_caustics) ==
         std::vector<double>{1});
 }
+
+TEST_CASE("lights are chosen by what they bring, and none is starved by another one's power") {
+  const std::vector<std::vector<uint32_t>> groups{{0, 1}, {2}, {3}};
+  const std::vector<double> power{1, 3, 1e9, 2};
+  const std::vector<double> pilot = transport::light_weights(groups, power, {});
+  CHECK(std::accumulate(pilot.begin(), pilot.end(), 0.0) == Approx(1));
+  CHECK(pilot[1] == Approx(3 * pilot[0]));  // within a group by power
+  CHECK(pilot[0] + pilot[1] == Approx(0.5 / 3).epsilon(1e-6));
+  CHECK(pilot[2] == Approx(0.5 + 0.5 / 3).epsilon(1e-6));
+  // The strong one has brought nothing, the last one four times as much as both of the first group.
+  const std::vector<double> found = transport::light_weights(groups, power, std::vector<double>{1, 0, 0, 4});
+  CHECK(std::accumulate(found.begin(), found.end(), 0.0) == Approx(1));
+  CHECK(found[2] == Approx(0.2 + 0.1 / 3).epsilon(1e-6));
+  CHECK(found[0] + found[1] == Approx(0.1 / 3 + 0.1 + 0.5 / 3).epsilon(1e-6));
+  CHECK(found[3] == Approx(0.1 / 3 + 0.1 + 1.0 / 3).epsilon(1e-6));
+  CHECK(found[1] == Approx(3 * found[0]));
+  // Nothing found at all: as for the pilot.
+  CHECK(transport::light_weights(groups, power, std::vector<double>(4, 0.0)) == pilot);
+}

@@ -114,7 +114,7 @@ TEST_CASE("The matrix of the cache holds both metrics against one another, and c
 }
 
 TEST_CASE("The built-in matrices are good ones") {
-  for (const char* name : {"quick", "full", "cache", "indirect", "caustics"}) {
+  for (const char* name : {"quick", "full", "cache", "indirect", "caustics", "caustic-pictures", "deep"}) {
     const Matrix m = builtin_matrix(name, k_scenes);
     CHECK(m.name == name);
     CHECK(m.repeats >= 3);

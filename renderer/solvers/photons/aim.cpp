@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
+#include "solvers/photons/radius.h"
 #include "solvers/photons/solver.h"
 #include "transport/aim.h"
 #include "transport/casters.h"
@@ -21,6 +23,12 @@ constexpr double k_pilot_radius = 3;  // of its own pixels, which are wide
 constexpr uint32_t k_first_hit_paths = 1u << 16, k_most_first_hit_rounds = 8, k_first_hit_round = 0xffffff00u;
 constexpr size_t k_enough_hits = 512, k_least_hits = 16;
 constexpr double k_many = 0.2;
+// What is done for caustics costs, in units of a vertex of a path from the eye with its light sample.
+constexpr double k_cost_base = 2, k_cost_tail = 3, k_cost_onward = 1.5, k_cost_lookup = 0.5,
+                 k_cost_light_path = 2;
+constexpr uint32_t k_typical_round = 16;
+constexpr uint32_t k_most_left = 1u << 15;  // texels of left_regions
+
 constexpr double k_least_from_afar = 0.05;  // of all lights' power; less is not looked for
 
 /// The frame of the pilot's eye paths: the same view with fewer pixels.
@@ -55,7 +63,7 @@ std::vector<transport::FirstHit> hits_of_use(std::span<const PhotonWorth> photon
 }
 
 /// Photons a square metre around a typical lookup: the median over lookups, of which there are at a photon as
-/// many as importance says; from the nearest photons there, each counted `gain` times by its stratum.
+/// many as importance says; from the nearest photons there, each counted `gain` times.
 double typical_density(std::span<const PhotonWorth> photons, std::span<const double> gain) {
   constexpr size_t k_places = 128, k_nearest = 32;
   std::vector<const PhotonWorth*> seen;
@@ -71,7 +79,7 @@ double typical_density(std::span<const PhotonWorth> photons, std::span<const dou
     const PhotonWorth& at = *seen[k * seen.size() / k_places];
     for (size_t i = 0; i < seen.size(); ++i) {
       const vec3 away = seen[i]->position - at.position;
-      near[i] = {glm::dot(away, away), float(gain[seen[i]->stratum])};
+      near[i] = {glm::dot(away, away), float(gain[size_t(seen[i] - photons.data())])};
     }
     std::nth_element(near.begin(), near.begin() + k_nearest, near.end());
     double sum = 0;
@@ -97,10 +105,12 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   enters_ = lit && asked && (parts_ & ~k_caustics) != 0 &&
             lights_.power_from_afar() > k_least_from_afar * lights_.power();
   const bool aims = bundles_ || enters_;
+  const bool shares_lights = lit && asked && light_groups_.members.size() > 1;
   const bool spares = lit && picture.task.settings.boolean("photons.importons");
-  const bool stale =
-      spoils.any() || aims != aims_ || spares != spares_ || !transport::same_view(picture.frame, aimed_for_);
-  aims_ = aims, spares_ = spares;
+  const bool weighs = lit && leaves_ != 0;
+  const bool stale = spoils.any() || aims != aims_ || shares_lights != shares_lights_ || spares != spares_ ||
+                     weighs != weighs_ || !transport::same_view(picture.frame, aimed_for_);
+  aims_ = aims, shares_lights_ = shares_lights, spares_ = spares, weighs_ = weighs;
   // Whoever only looks from elsewhere finds the same casters.
   if (spoils.light || spoils.places || !bundles_) casters_.clear(), casters_known_ = false;
   if (!stale) return;
@@ -110,7 +120,10 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   pairs_.clear(), boxes_.clear(), first_hits_.clear();
   first_hit_rounds_ = 0;
   density_at_lookups_ = 0;
+  regions_ = {};
+  write_left();
   lights_.aim(device_, picture.flat, {}, 1);
+  lights_.choose_by(lights_.powers());
   map_.store_by_importance(false);
 }
 
@@ -123,11 +136,12 @@ bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& pictu
       if (bundles_ && !casters_known_)
         casters_ = transport::find_casters(picture.flat), casters_known_ = true;
       boxes_ = casters_;
-      aimed_ = boxes_.empty() && !enters_ && !spares_;
+      aimed_ = boxes_.empty() && !enters_ && !shares_lights_ && !spares_ && !weighs_;
       if (aimed_) return true;
       const Frame frame = small_frame(picture);
       eye_schedule_.emplace((frame.width + 7) / 8 * ((frame.height + 7) / 8), 1, wavefront.slots());
-      map_.note_importance(wavefront, lookup_of(picture, frame, k_pilot_radius));
+      map_.note_importance(wavefront, lookup_of(picture, frame, k_pilot_radius),
+                           weighs_ ? frame.width * frame.height : 0);
       aim_step_ = AimStep::importance;
       return true;
     }
@@ -171,8 +185,11 @@ void PhotonSolver::begin_sharing(const Picture& picture) {
   aim_step_ = AimStep::worth;
   map_.store_by_importance(spares_);
   lights_.aim(device_, picture.flat, boxes_, 0.5);
-  // Where nothing is aimed there is nothing to share out, but the density may be asked for.
-  aimed_ = boxes_.empty() && !asks_density();
+  if (shares_lights_)
+    lights_.choose_by(transport::light_weights(light_groups_.members, lights_.powers(), {}));
+  map_.tell_radiance(weighs_);
+  // Where nothing is aimed there is nothing to share out, but other things may be asked for.
+  aimed_ = boxes_.empty() && !asks_density() && !weighs_ && !shares_lights_;
 }
 
 bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Picture& picture,
@@ -207,20 +224,78 @@ bool PhotonSolver::share_out(transport::Wavefront& wavefront, const Picture& pic
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;
   const std::vector<PhotonWorth> told = map_.worths(wavefront, lights_);
-  std::vector<double> worth(lights_.strata(), 0.0);
-  for (const PhotonWorth& p : told) worth[p.stratum] += double(p.worth);
+  std::vector<double> worth(lights_.strata(), 0.0), by_light(lights_.powers().size(), 0.0);
+  for (const PhotonWorth& p : told) worth[p.stratum] += double(p.worth), by_light[p.light] += double(p.worth);
   const double least = parts_ == 1u << k_caustic_part    ? transport::k_least_unaimed_of_caustics
                        : boxes_.size() > casters_.size() ? transport::k_least_unaimed_from_afar
                                                          : transport::k_least_unaimed_of_all;
   const std::vector<double> before(lights_.shares().begin(), lights_.shares().end());
   lights_.share_out(transport::aim_shares(worth, least));
-  std::vector<double> gain(before.size());
-  for (size_t i = 0; i < gain.size(); ++i) gain[i] = before[i] > 0 ? lights_.shares()[i] / before[i] : 0;
+  // A path that is not aimed is as much more likely now as its stratum and its light are.
+  std::vector<double> by_entry(by_light.size(), 1.0);
+  if (shares_lights_) {
+    const auto weights = [&](std::span<const double> brought) {
+      return transport::light_weights(light_groups_.members, lights_.powers(), brought);
+    };
+    const std::vector<double> pilot = weights({}), now = weights(by_light);
+    for (size_t i = 0; i < by_entry.size(); ++i) by_entry[i] = pilot[i] > 0 ? now[i] / pilot[i] : 1;
+    lights_.choose_by(now);
+  }
+  std::vector<double> gain;
+  for (const PhotonWorth& p : told)
+    gain.push_back(lights_.shares()[p.stratum] / before[p.stratum] *
+                   (p.stratum == 0 ? by_entry[p.light] : 1));
   if (asks_density()) density_at_lookups_ = typical_density(told, gain) / double(round.paths);
   pairs_ = overlay::aimed_pairs(picture.flat, lights_);
+  if (weighs_) {
+    map_.tell_radiance(false);
+    choose_left(picture, told, gain, round.paths);
+  }
   map_.clear();
   aimed_ = true;
   return true;
+}
+
+void PhotonSolver::choose_left(const Picture& picture, std::span<const PhotonWorth> told,
+                               std::span<const double> gain, uint32_t pilot_paths) {
+  const OptionValues& s = picture.task.settings;
+  const Frame small = small_frame(picture);
+  const std::vector<PhotonLookup> noted = map_.lookups();
+  // Typical of a picture that is waited for: radii fall slowly.
+  const double radius =
+      std::max(s.real("photons.radius") * radius_ratio(k_typical_round, s.real("photons.alpha")),
+               s.real("photons.floor"));
+  const uint32_t paths = round_of(picture, 0).paths;
+  const WorthPilot pilot{.lookups = std::span(noted).first(size_t{small.width} * small.height),
+                         .width = small.width,
+                         .height = small.height,
+                         .photons = told,
+                         .gain = gain,
+                         .paths = double(paths) / pilot_paths,
+                         .around = lookup_of(picture, small, k_pilot_radius),
+                         .round = lookup_of(picture, picture.frame, radius)};
+  // Where secondary or tertiary light is path traced paths go on behind the first diffuse vertex, and what
+  // they meet of caustics costs nothing more.
+  const uint32_t behind = picture.frame.automaton[0] & 0xffu;
+  const bool goes_on = (picture.frame.automaton[behind] >> 27 & 1u) != 0;
+  const bool alone = picture.task.own == leaves_;  // nobody else looks up what rounds bring
+  const WorthCosts costs{
+      .base = k_cost_base + (goes_on ? k_cost_tail : 0),
+      .lookup = alone ? k_cost_lookup : 0,
+      .onward = goes_on ? 0 : k_cost_onward,
+      .paths = alone ? k_cost_light_path * paths / (double(picture.width) * picture.height) : 0};
+  regions_ = choose_regions(caustic_moments(pilot), small.width, small.height, costs);
+  if (regions_.left.size() >= k_most_left) regions_ = {};
+  write_left();
+}
+
+void PhotonSolver::write_left() {
+  const uint32_t width = std::max(1u, regions_.width), height = std::max(1u, regions_.height);
+  std::vector<vec4> texels{vec4(std::bit_cast<float>(width), std::bit_cast<float>(height), 0, 0)};
+  for (const float share : regions_.left) texels.emplace_back(share, 0, 0, 0);
+  texels.resize(1 + size_t{width} * height, vec4(0));
+  gpu::make_texel_room(device_, left_regions_, "regions left to paths", k_most_left * sizeof(vec4));
+  left_regions_.write(std::span<const vec4>(texels));
 }
 
 }  // namespace lucerna::photons

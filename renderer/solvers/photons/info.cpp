@@ -33,6 +33,11 @@ std::vector<OptionInfo> option_rows() {
           "Photons: stores them where paths from the eye look, by a short pilot; elsewhere one in four, for "
           "all.",
           "Only where looked at"),
+      boolean_option("photons.worth", "true",
+                     "Photons: bring caustics only in those parts of the picture where a pilot finds that "
+                     "they have less "
+                     "noise for their time than paths from the eye; elsewhere these do.",
+                     "Only where worth it"),
       boolean_option(
           "photons.borders", "true",
           "Photons: divides by the surface that there is around a place instead of by a whole disc, "
@@ -45,14 +50,14 @@ std::vector<OptionInfo> option_rows() {
                     "not fall with more samples. Such lookups cost a small part of what all photons around "
                     "do.",
                     "Irradiance map"),
-      without_restart(
-          choice_option("overlay.photon_density", "off", {"off", "photons", "irradiance", "importance"}, "",
-                        "Shows over the picture how dense the photons of the last round lie, or what they "
-                        "bring: a heat map on "
-                        "surfaces, and under the pointer the disc within which photons count, with those. "
-                        "importance: how much of the picture hangs on photons there, by the pilot that "
-                        "decides which are stored.",
-                        "Show density")),
+      without_restart(choice_option(
+          "overlay.photon_density", "off", {"off", "photons", "irradiance", "importance", "worth"}, "",
+          "Shows over the picture how dense the photons of the last round lie, or what they "
+          "bring: a heat map on "
+          "surfaces, and under the pointer the disc within which photons count, with those. "
+          "importance: how much of the picture hangs on photons there, by the pilot that "
+          "decides which are stored; worth: where photons bring caustics.",
+          "Show density")),
       without_restart(boolean_option(
           "overlay.photon_paths", "false",
           "Shows paths from the lights as they are traced: faint up to the first surface, then in the colour "
@@ -67,9 +72,10 @@ std::vector<OptionInfo> option_rows() {
                                      "the share of the paths.",
                                      "Show aim")),
       without_restart(
-          choice_option("overlay.photons", "off", {"off", "flux", "bounce"}, "",
-                        "Shows the photons of the last round where they lie: flux in the colour of "
-                        "their light, bounce by the number of surfaces before.",
+          choice_option("overlay.photons", "off", {"off", "flux", "bounce", "map", "light", "round"}, "",
+                        "Shows the photons of the last round where they lie, in colours: flux of their "
+                        "light, bounce by the number of surfaces before, map by the component that they "
+                        "bring, light by where they come from, round another one each round.",
                         "Show photons")),
   };
 }
@@ -128,6 +134,57 @@ constexpr const char* k_caustics_matrix = R"({
   ]
 })";
 
+/// Whole pictures in which caustics are the hard part, the other light by paths or by records.
+constexpr const char* k_caustic_pictures_matrix = R"({
+  "name": "caustic-pictures",
+  "repeats": 3,
+  "warmup": 1,
+  "reference": {"samples": 16384},
+  "budgets": {"seconds": [3, 5, 10, 60]},
+  "scenes": [
+    {"file": "glass/glass.gltf", "size": "256x256"},
+    {"file": "ring/ring.gltf", "size": "256x144"}
+  ],
+  "settings": [
+    {"name": "plain", "about": "path tracing", "budget": "seconds"},
+    {"name": "photons", "about": "caustics by photons, else path tracing", "budget": "seconds",
+     "set": {"components.caustic": "photons"}},
+    {"name": "photons-cache", "about": "caustics by photons, secondary and tertiary light by records",
+     "budget": "seconds",
+     "set": {"components.caustic": "photons", "components.secondary": "cache", "components.tertiary": "cache"}},
+    {"name": "both-cache", "about": "caustics by light tracing and photons, secondary and tertiary light by records",
+     "budget": "seconds",
+     "set": {"components.caustic": "light+photons", "components.secondary": "cache",
+             "components.tertiary": "cache"}}
+  ]
+})";
+
+/// Secondary and tertiary light alone, by the choices of who computes them.
+constexpr const char* k_deep_matrix = R"({
+  "name": "deep",
+  "repeats": 3,
+  "warmup": 1,
+  "reference": {"samples": 2048},
+  "set": {"components.primary": "off", "components.caustic": "off"},
+  "budgets": {"seconds": [15, 60]},
+  "scenes": [
+    {"file": "hall/hall.gltf", "size": "256x256"},
+    {"file": "sun-patch/sun-patch.gltf", "size": "256x256"},
+    {"file": "atrium/atrium.gltf", "size": "256x256"}
+  ],
+  "settings": [
+    {"name": "plain", "about": "path tracing", "budget": "seconds"},
+    {"name": "cache", "about": "secondary and tertiary light from records", "budget": "seconds",
+     "set": {"components.secondary": "cache", "components.tertiary": "cache"}},
+    {"name": "cache-photons", "about": "records whose rays end in photons", "budget": "seconds",
+     "set": {"components.secondary": "cache", "components.tertiary": "photons"}},
+    {"name": "path-photons", "about": "final gathering: paths that end in photons", "budget": "seconds",
+     "set": {"components.tertiary": "photons"}},
+    {"name": "path-map", "about": "... whose irradiance is known beforehand", "budget": "seconds",
+     "set": {"components.tertiary": "photons", "photons.irradiance_map": "all"}}
+  ]
+})";
+
 }  // namespace
 
 const SolverInfo& info() {
@@ -152,10 +209,19 @@ const SolverInfo& info() {
            {.option = "overlay.photon_density", .label = "Density", .shortcut = 'M', .asks_pointer = true},
            {.option = "overlay.photon_paths", .label = "Paths"},
            {.option = "overlay.photon_aim", .label = "Aim"}},
-      .benches = {{"caustics",
-                   "bundled light alone: path tracing against photons and light tracing, on glass and ring; "
-                   "two hours",
-                   k_caustics_matrix}},
+      .benches =
+          {{"caustics",
+            "bundled light alone: path tracing against photons and light tracing, on glass and ring; "
+            "two hours",
+            k_caustics_matrix},
+           {"caustic-pictures",
+            "whole pictures of glass and ring: path tracing against caustics by photons and light "
+            "tracing, with other light by paths or records; two hours",
+            k_caustic_pictures_matrix},
+           {"deep",
+            "light that has met diffuse surfaces before, by records, photons, and records or paths that "
+            "end in photons, in three interiors; an hour and a half",
+            k_deep_matrix}},
       .against_bias = {"photons.radius", "photons.floor"},
   };
   return all;

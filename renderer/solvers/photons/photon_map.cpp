@@ -29,7 +29,9 @@ PhotonMap::PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const g
       cells_(device, compiler),
       counts_(device, {.name = "photon counts", .bytes = 4 * k_photon_counts, .memory = gpu::Memory::host}),
       block_(device, {.name = "photon lookups", .bytes = sizeof(PhotonFrame)}),
-      importance_(device, {.name = "importance", .bytes = 4 * k_photon_importance_entries}) {
+      importance_(device, {.name = "importance", .bytes = 4 * k_photon_importance_entries}),
+      lookups_(device, {.name = "lookups of caustics", .bytes = sizeof(PhotonLookup)}),
+      radiances_(device, {.name = "radiances of photons", .bytes = 4}) {
   clear();
 }
 
@@ -38,18 +40,27 @@ void PhotonMap::bind(gpu::Resources& resources) const {
   resources.set("photon_table", cells_.table());
   resources.set("PhotonBlock", block_);
   resources.set("PhotonImportance", importance_);
+  resources.set("PhotonLookups", lookups_);
 }
 
-void PhotonMap::note_importance(transport::Wavefront& wavefront, const PhotonFrame& lookup) {
+void PhotonMap::note_importance(transport::Wavefront& wavefront, const PhotonFrame& lookup, uint32_t pixels) {
   lookup_ = lookup;
+  lookup_.lookups = pixels;
+  if (const uint64_t bytes = pixels * sizeof(PhotonLookup); bytes > lookups_.bytes()) {
+    gpu::make_room(device_, lookups_, {.name = "lookups of caustics", .bytes = bytes});
+    wavefront.rebind_lookup();
+  }
   lookup_.count = 0, lookup_.mask = 0, lookup_.importance_mask = k_photon_importance_entries - 1;
   noted_ = lookup;
-  noted_.importance_counts = 0;
+  noted_.importance_counts = 0, noted_.tells_radiance = 0;
   write_lookup();
   wavefront.stream().fill(importance_, 0);
+  wavefront.stream().fill(lookups_, 0);
   wavefront.account_stages();
   complete_ = tracing_ = false;
 }
+
+std::vector<PhotonLookup> PhotonMap::lookups() const { return lookups_.read_all<PhotonLookup>(); }
 
 std::vector<PhotonWorth> PhotonMap::worths(transport::Wavefront& wavefront,
                                            const transport::LightSource& lights) {
@@ -64,6 +75,7 @@ std::vector<PhotonWorth> PhotonMap::worths(transport::Wavefront& wavefront,
   bind(r);
   lights.bind(r);
   r.set("photon_sorted", cells_.sorted());
+  r.set("PhotonRadiances", radiances_);
   r.set("PhotonWorths", worths_);
   wavefront.stream().dispatch(worth_, r,
                               PhotonWorthPush{count, transport::LightEmitter::stratum_step(figures_.paths)},
@@ -85,7 +97,7 @@ void PhotonMap::clear() {
 void PhotonMap::write_lookup() {
   PhotonFrame all = lookup_;
   all.importance_eye = noted_.eye, all.importance_slope = noted_.slope, all.importance_base = noted_.base;
-  all.importance_counts = noted_.importance_counts;
+  all.importance_counts = noted_.importance_counts, all.tells_radiance = noted_.tells_radiance;
   // Where there has been no round, of what photons are stored by.
   if (all.most <= all.least) all.least = noted_.least, all.most = noted_.most;
   block_.write(&all, sizeof all);
@@ -93,6 +105,11 @@ void PhotonMap::write_lookup() {
 
 void PhotonMap::store_by_importance(bool on) {
   noted_.importance_counts = on ? 1 : 0;
+  write_lookup();
+}
+
+void PhotonMap::tell_radiance(bool on) {
+  noted_.tells_radiance = on ? 1 : 0;
   write_lookup();
 }
 
@@ -125,13 +142,15 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
 bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
                             const Round& round, uint32_t count, const Frame& picture, uint32_t enabled,
                             const std::function<bool()>& cancel) {
-  if (!list_) grow(wavefront, k_first_capacity);
+  if (!list_ || (noted_.tells_radiance != 0 && radiances_.bytes() < uint64_t{4} * capacity_))
+    grow(wavefront, std::max(k_first_capacity, capacity_));
   const transport::LightVertexWork work{
       .vertex = &trace_, .stage = "photon vertex", .bind = [&](gpu::Resources& r) { bind_list(r); }};
   for (;;) {
     uint32_t counts[k_photon_counts] = {};
     counts[k_photons_stored] = stored_, counts[k_photons_capacity] = capacity_;
     counts_.write(counts, sizeof counts);
+    const transport::TransportStats before = wavefront.stats();
     if (!emitter_.trace(wavefront, lights, round, traced_, count, work, picture, enabled, cancel))
       return false;
     counts_.read(counts, sizeof counts);
@@ -139,6 +158,10 @@ bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::Li
       stored_ = counts[k_photons_stored];
       next_.escaped += emitter_.escaped(), next_.dark += emitter_.dark();
       next_.spared += counts[k_photons_spared];
+      for (size_t p = 0; p < next_.by_part.size(); ++p) next_.by_part[p] += counts[k_photons_by_part + p];
+      const transport::TransportStats& now = wavefront.stats();
+      next_.rays += now.rays - before.rays, next_.roulette += now.roulette - before.roulette;
+      next_.depth += now.depth - before.depth;
       return true;
     }
     grow(wavefront, counts[k_photons_stored]);
@@ -151,6 +174,7 @@ void PhotonMap::bind_list(gpu::Resources& r) const {
   r.set("PhotonList", list_);
   r.set("photon_list_texels", list_);
   r.set("PhotonIds", ids_);
+  r.set("PhotonRadiances", radiances_);
 }
 
 void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
@@ -165,12 +189,16 @@ void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
   const auto capacity = uint32_t(std::min<uint64_t>(most, std::bit_ceil(needed)));
   gpu::Buffer list = texels(device_, "photons of a round", uint64_t{capacity} * sizeof(Photon));
   gpu::Buffer ids = texels(device_, "numbers of photons", uint64_t{capacity} * 4);
+  const bool tells = noted_.tells_radiance != 0;
+  gpu::Buffer radiances(
+      device_, {.name = "radiances of photons", .bytes = tells ? uint64_t{capacity} * 4 : uint64_t{4}});
   if (stored_ > 0) {
     wavefront.stream().copy(list_, list, uint64_t{stored_} * sizeof(Photon));
     wavefront.stream().copy(ids_, ids, uint64_t{stored_} * 4);
+    if (tells) wavefront.stream().copy(radiances_, radiances, uint64_t{stored_} * 4);
     wavefront.account_stages();
   }
-  list_ = std::move(list), ids_ = std::move(ids);
+  list_ = std::move(list), ids_ = std::move(ids), radiances_ = std::move(radiances);
   capacity_ = capacity;
 }
 

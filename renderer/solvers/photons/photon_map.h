@@ -5,6 +5,7 @@
 // Bit-identical, however threads run and however many paths are in flight: photons are stored in whatever
 // order they come, and the sort that puts them into their cells also puts those of one cell into the order of
 // their paths' numbers.
+#include <array>
 #include <functional>
 
 #include "shaders/shared/photons/photons.h"
@@ -21,10 +22,13 @@ struct Round : transport::LightRound {
 /// Of the last complete round.
 struct RoundFigures {
   uint32_t round = 0, paths = 0, photons = 0;
-  uint32_t escaped = 0;             ///< paths that left the scene
-  uint32_t dark = 0;                ///< paths that began where their light has no light
-  uint32_t entries = 0;             ///< of the table
-  uint32_t spared = 0;              ///< photons that nobody would have looked at
+  uint32_t escaped = 0;                                 ///< paths that left the scene
+  uint32_t dark = 0;                                    ///< paths that began where their light has no light
+  uint32_t entries = 0;                                 ///< of the table
+  uint32_t spared = 0;                                  ///< photons that nobody would have looked at
+  std::array<uint32_t, paths::k_part_count> by_part{};  ///< photons
+  uint64_t rays = 0;                                    ///< that its paths consist of
+  uint64_t roulette = 0, depth = 0;                     ///< paths ended by roulette, by the most events
   uint32_t grown = 0;               ///< batches traced again because there was no room, so far
   double trace_s = 0, build_s = 0;  ///< wall time of its tracing, and of putting it in order
 };
@@ -49,10 +53,15 @@ class PhotonMap {
   bool trace(transport::Wavefront& wavefront, const transport::LightSource& lights, const Round& round,
              const shared::Frame& picture, uint32_t enabled, const std::function<bool()>& cancel);
   /// From now on lookups find nothing, but note how much of the picture hangs on them, from nothing on; until
-  /// a round is complete. `lookup`: by whose radii.
-  void note_importance(transport::Wavefront& wavefront, const shared::PhotonFrame& lookup);
+  /// a round is complete. `lookup`: by whose radii. `pixels`: of the paths' picture, for each of which is
+  /// noted where caustics are looked up; 0: they are not.
+  void note_importance(transport::Wavefront& wavefront, const shared::PhotonFrame& lookup, uint32_t pixels);
+  /// What was noted of each pixel.
+  std::vector<shared::PhotonLookup> lookups() const;
   /// Whether photons are stored by the importance that was noted last: where nobody looks, one in so many.
   void store_by_importance(bool on);
+  /// Whether worths() tells of caustics what paths from the eye would bring of them, in rounds from now on.
+  void tell_radiance(bool on);
   /// What each photon of the complete round brings to the picture, by the importance that was noted last; in
   /// the order of the map.
   std::vector<shared::PhotonWorth> worths(transport::Wavefront& wavefront,
@@ -83,7 +92,7 @@ class PhotonMap {
   transport::LightEmitter emitter_;
   gpu::Kernel trace_, worth_;
   PhotonCells cells_;  ///< with the photons of the complete round
-  gpu::Buffer counts_, list_, ids_, block_, importance_, worths_;
+  gpu::Buffer counts_, list_, ids_, block_, importance_, worths_, lookups_, radiances_;
   shared::PhotonFrame lookup_{}, noted_{};  ///< noted_: by whose radii importance is noted
   RoundFigures figures_, next_;             ///< of the last complete round, of the one under way
   bool tracing_ = false, complete_ = false;

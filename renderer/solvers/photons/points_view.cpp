@@ -20,7 +20,7 @@ void PointsView::draw(const overlay::Canvas& canvas, const PhotonMap& map, uint3
                  {.name = "photon points", .bytes = uint64_t{count} * sizeof(OverlayPoint)});
   map.bind(resources_);
   resources_.set("OverlayPoints", points_);
-  const PhotonPointsPush push{count, step, by, 0};
+  const PhotonPointsPush push{count, step, by, map.round()};
   canvas.stream().dispatch(kernel_, resources_, push, gpu::groups_for(count, 64));
   painter_.draw(canvas, {.points = {&points_, count}, .segments = {}, .discs = {}}, {.dimmed = true});
 }

@@ -1,11 +1,13 @@
 #include "solvers/photons/report.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "base/figures.h"
 #include "shaders/shared/ramp.h"
 #include "solvers/aim_report.h"
 #include "solvers/photons/info.h"
+#include "solvers/photons/radius.h"
 
 namespace lucerna::photons {
 
@@ -41,6 +43,24 @@ Card make_card(const Inspected& found) {
   return card;
 }
 
+/// The radius of rounds 1, 2, 4, ...; those that the picture has had in the accent's ink.
+Histogram radius_columns(const PhotonReport& r) {
+  constexpr uint32_t k_columns = 13;  // to round 4096
+  constexpr vec3 k_had{0.44f, 0.64f, 0.87f}, k_to_come{0.38f, 0.38f, 0.42f};
+  Histogram histogram;
+  for (uint32_t k = 0; k < k_columns; ++k) {
+    const uint32_t round = 1u << k;
+    const double radius = std::max(r.floor, r.first_radius * radius_ratio(round - 1, r.alpha));
+    const std::string name = count_text(round);
+    histogram.columns.push_back({.height = float(radius / std::max(r.floor, r.first_radius)),
+                                 .ink = round <= r.rounds ? k_had : k_to_come,
+                                 .label = name,
+                                 .help = fmt::format("Round {}: {} pixels{}.", name, real_text(radius, 2),
+                                                     radius <= r.floor ? ", the least" : "")});
+  }
+  return histogram;
+}
+
 }  // namespace
 
 Report make_report(const PhotonReport& r) {
@@ -63,6 +83,11 @@ Report make_report(const PhotonReport& r) {
       ValueRow{"Paths a round", count_text(r.last.paths), "That began at lights, in the last round."});
   map.items.push_back(ValueRow{"Photons a round", count_text(r.last.photons),
                                "That these left on surfaces, in the last round."});
+  for (const auto& [part, name, help] :
+       {std::tuple{1u, "Secondary", "Of these: light that has met one diffuse surface before."},
+        {2u, "Tertiary", "Of these: light that has met several diffuse surfaces before."},
+        {3u, "Caustic", "Of these: light that has met mirrors and glass alone."}})
+    if (r.last.by_part[part] > 0) map.items.push_back(ValueRow{name, count_text(r.last.by_part[part]), help});
   map.items.push_back(ValueRow{
       "Stored a path", r.paths > 0 ? real_text(double(r.photons) / double(r.paths), 2) : "\xE2\x80\x93",
       "Photons that a path leaves, on average over the picture's rounds."});
@@ -71,33 +96,60 @@ Report make_report(const PhotonReport& r) {
                                  "Of the photons: where nobody looks, of which a few are kept for all."});
   map.items.push_back(ValueRow{"Left the scene", share_text(double(r.escaped), double(r.paths)),
                                "Of the paths: that met nothing any more."});
+  const auto of_round = [&](const char* name, uint64_t n, const char* help) {
+    if (n > 0) map.items.push_back(ValueRow{name, share_text(double(n), double(r.last.paths)), help});
+  };
+  of_round("Ended by roulette", r.last.roulette, "Of the paths of the last round.");
+  of_round("Ended by their length", r.last.depth,
+           "Of the paths of the last round: after as many events as paths may have (path.max_depth).");
+  if (r.last.paths > 0)
+    map.items.push_back(ValueRow{"Rays a path", real_text(double(r.last.rays) / double(r.last.paths), 2),
+                                 "Of the last round: from surface to surface, the first from the light."});
   if (r.dark > 0)
     map.items.push_back(ValueRow{"Began in the dark", share_text(double(r.dark), double(r.paths)),
                                  "Of the paths: where a lamp's texture or the sky is black."});
   map.items.push_back(ValueRow{
       "Radius", fmt::format("{} pixels{}", real_text(r.radius_pixels, 2), r.at_floor ? ", the least" : ""),
-      "Within which a photon counts, as the camera sees it."});
+      "Within which a photon counts, as the camera sees it; below over rounds."});
+  if (r.sends) map.items.push_back(radius_columns(r));
   if (r.limited)
     map.items.push_back(
         Paragraph{"The radius asked for is wider than photons may be seen, and is held to a quarter of "
                   "their distance.",
                   Tone::warning});
   add_aim_rows(map.items, {r.casters, r.entrances}, r.unaimed, r.aimed);
+  if (r.weighs && r.ready) {
+    map.items.push_back(
+        ValueRow{"Caustics by photons", share_text(r.by_photons, 1),
+                 "Of the picture: elsewhere paths from the eye bring them with less noise for "
+                 "their time, as a pilot has found."});
+    if (r.by_photons < 1)
+      map.items.push_back(ValueRow{"Worth", fmt::format("{} times", real_text(r.worth_gain, 2)),
+                                   "By how much noise times cost of caustics is less than with photons "
+                                   "everywhere, as the pilot sees it."});
+  }
   const auto rate = [&](const char* name, double n, const char* help) {
     if (n > 0) map.items.push_back(ValueRow{name, count_text(n) + " / s", help});
   };
   rate("Sent", r.emitted_per_s, "Paths from lights a second of the time in which they are traced.");
   rate("Stored", r.stored_per_s, "Photons a second of that time.");
   rate("Sorted", r.sorted_per_s, "Photons a second of the time in which a round is put in order.");
+  if (r.rounds > 0) {
+    map.items.push_back(ValueRow{"Tracing a round", ms_text(1e3 * r.trace_s / double(r.rounds)),
+                                 "On average over the picture's rounds."});
+    map.items.push_back(ValueRow{"Sorting a round", ms_text(1e3 * r.build_s / double(r.rounds)),
+                                 "Into the cells by which photons are found."});
+  }
   map.items.push_back(
       ValueRow{"Memory", megabytes_text(double(r.bytes) / 1e6), "Of photons and what finds them."});
   report.sections.push_back(std::move(map));
-  report.sections.push_back({.title = "Settings",
-                             .note = "",
-                             .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"},
-                                       OptionRow{"photons.floor"}, OptionRow{"photons.alpha"},
-                                       OptionRow{"photons.borders"}, OptionRow{"photons.irradiance_map"},
-                                       OptionRow{"photons.aim"}, OptionRow{"photons.importons"}}});
+  report.sections.push_back(
+      {.title = "Settings",
+       .note = "",
+       .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"}, OptionRow{"photons.floor"},
+                 OptionRow{"photons.alpha"}, OptionRow{"photons.borders"},
+                 OptionRow{"photons.irradiance_map"}, OptionRow{"photons.aim"},
+                 OptionRow{"photons.importons"}, OptionRow{"photons.worth"}}});
   report.sections.push_back(
       {.title = "Over the picture",
        .note = "",
@@ -105,6 +157,12 @@ Report make_report(const PhotonReport& r) {
                  OptionRow{"overlay.photon_paths"}, OptionRow{"overlay.photon_paths_of"},
                  OptionRow{"overlay.photon_aim"}}});
   if (r.aim_shown && !r.aimed.empty()) report.legends.push_back(aim_legend());
+  if (r.view == shared::k_photons_by_map) {
+    Legend legend{.title = "light of", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
+    for (const auto& [hue, name] : {std::pair{0u, "secondary"}, {1u, "tertiary"}, {2u, "caustic"}})
+      legend.marks.push_back({shared::ramp_hue(hue), name});
+    report.legends.push_back(std::move(legend));
+  }
   if (r.view == shared::k_photons_by_bounce) {
     Legend legend{.title = "surfaces before", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (uint32_t bounce = 0; bounce < 6; ++bounce)
@@ -112,20 +170,24 @@ Report make_report(const PhotonReport& r) {
     report.legends.push_back(std::move(legend));
   }
   if (r.density.of > 0 && r.density.hi > 0)
-    report.legends.push_back({.title = r.density.of == k_density_of_photons ? "photons a m\u00b2, last round"
-                                       : r.density.of == k_density_of_importance
-                                           ? "what hangs on photons there"
-                                           : "irradiance of the last round's photons",
-                              .ramp = k_ramp_magma,
-                              .ticks = {},
-                              .range = Legend::Range{.lo = r.density.lo, .hi = r.density.hi},
-                              .marks = {}});
+    report.legends.push_back(
+        {.title = r.density.of == k_density_of_photons      ? "photons a m\u00b2, last round"
+                  : r.density.of == k_density_of_worth      ? "samples whose caustics photons bring"
+                  : r.density.of == k_density_of_importance ? "what hangs on photons there"
+                                                            : "irradiance of the last round's photons",
+         .ramp = k_ramp_magma,
+         .ticks = {},
+         .range = Legend::Range{.lo = r.density.lo, .hi = r.density.hi},
+         .marks = {}});
   report.looked_at = r.looked_at;
   if (r.inspected) report.card = make_card(*r.inspected);
   report.figures = {{"rounds", double(r.rounds)},
                     {"light paths", double(r.paths)},
                     {"photons", double(r.photons)},
                     {"last photons", double(r.last.photons)},
+                    {"last secondary", double(r.last.by_part[1])},
+                    {"last tertiary", double(r.last.by_part[2])},
+                    {"last caustic", double(r.last.by_part[3])},
                     {"escaped", double(r.escaped)},
                     {"dark", double(r.dark)},
                     {"spared", double(r.spared)},
@@ -134,6 +196,7 @@ Report make_report(const PhotonReport& r) {
                     {"casters", double(r.casters)},
                     {"entrances", double(r.entrances)},
                     {"unaimed", r.unaimed},
+                    {"by photons", r.by_photons},
                     {"radius pixels", r.radius_pixels},
                     {"bytes", double(r.bytes)}};
   return report;

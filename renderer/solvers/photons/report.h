@@ -14,14 +14,19 @@ struct PhotonReport {
            spared = 0;  ///< of the picture
   RoundFigures last;
   double radius_pixels = 0;
+  double first_radius = 1, floor = 0, alpha = 1;  ///< by the settings
   bool at_floor = false;
   bool limited = false;                   ///< held to less than what was asked for
   uint32_t casters = 0, entrances = 0;    ///< boxes that paths are aimed at
   double unaimed = 1;                     ///< share of the paths
+  bool weighs = false;                    ///< caustics may be left to paths from the eye
+  double by_photons = 1;                  ///< share of the picture where they are not
+  double worth_gain = 1;                  ///< of efficiency by that, as the pilot sees it
   bool ready = true;                      ///< the pilot is done
   std::vector<overlay::AimedPair> aimed;  ///< greatest share first
   bool aim_shown = false;
   uint64_t bytes = 0;
+  double trace_s = 0, build_s = 0;                               ///< of the picture's rounds
   double emitted_per_s = 0, stored_per_s = 0, sorted_per_s = 0;  ///< 0: not yet known
   uint32_t view = 0;                                             ///< overlay.photons
   DensityScale density;

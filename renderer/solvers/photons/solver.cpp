@@ -20,6 +20,7 @@ constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where 
 // Of photons that records' rays read: about so many serve a typical lookup, for what errs there is seen by
 // all records around; within one radius, whoever looks, at most as wide as for one photon a path on a cube
 // that fits into the scene's sphere.
+constexpr uint32_t k_most_light_groups = 64;
 constexpr uint32_t k_standing_paths = 1u << 20, k_standing_round = 0xfffffffdu;
 constexpr float k_standing_photons = 30;
 /// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
@@ -38,7 +39,7 @@ uint32_t parts_of(const Task& task) {
   return routes_of(task).parts & (focuses ? ~0u : ~(1u << k_caustic_part));
 }
 
-constexpr uint8_t k_secondary = 1, k_tertiary = 2;  // components
+constexpr uint8_t k_secondary = 1, k_tertiary = 2, k_caustic = 3;  // components
 
 /// Secondary light is looked up by somebody who prepares it by rays of his own, and tertiary light is ours.
 bool feeds(const Task& task) {
@@ -76,6 +77,7 @@ const solvers::SolverType& type() {
   static const solvers::SolverType all{.info = photons::info(),
                                        .routing = PhotonSolver::routing_of,
                                        .make = make,
+                                       .leaves = PhotonSolver::leaves,
                                        .least_slots = 0,
                                        .sun_threshold = nullptr};
   return all;
@@ -87,11 +89,19 @@ solvers::Routing PhotonSolver::routing_of(const Task& task) {
   return {.lookups = routes, .fallback = 0, .gather = {}};
 }
 
+uint32_t PhotonSolver::leaves(const Task& task) {
+  constexpr uint32_t k_caustics = 1u << k_caustic;
+  const bool brings = (parts_of(task) >> k_caustic_part & 1u) != 0 && (task.straight & k_caustics) == 0;
+  return brings && task.settings.boolean("photons.worth") ? task.own & k_caustics : 0;
+}
+
 PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const Task& task)
     : device_(device),
       compiler_(compiler),
       scene_defines_(*task.scene_defines),
       routes_(routes_of(task)),
+      leaves_(leaves(task)),
+      left_routes_(paths::photon_routes(task.automaton, task.enabled, task.own & ~leaves_, task.straight)),
       parts_(parts_of(task)),
       sends_(parts_ != 0),
       map_(device, compiler, *task.scene_defines, task.automaton),
@@ -101,12 +111,14 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       inspector_(device, compiler),
       surfaces_(device) {
   if (prepares_irradiance(task)) irradiance_.emplace(device, compiler, *task.scene_defines);
+  write_left();
 }
 
 gpu::Defines PhotonSolver::defines() const {
   gpu::Defines defines;
   if (sends_) defines["LUCERNA_LOOKUP_BIAS"] = "1";
   if (irradiance_) defines["LUCERNA_PHOTON_IRRADIANCE"] = "1";
+  if (leaves_ != 0) defines["LUCERNA_LEFT_TO_PATHS"] = "1";
   return defines;
 }
 
@@ -116,17 +128,20 @@ void PhotonSolver::bind(gpu::Resources& resources) const {
   (feeding_ ? *standing_ : map_).bind(resources);
   if (irradiance_) irradiance_->bind(resources);
   surfaces_.bind(resources);
+  resources.set("left_regions", left_regions_);
 }
 
 bool PhotonSolver::serves(const Task& task) const {
   return routes_of(task).component == routes_.component && parts_of(task) == parts_ &&
-         (sends_ && feeds(task)) == feeds_ && prepares_irradiance(task) == irradiance_.has_value();
+         leaves(task) == leaves_ && (sends_ && feeds(task)) == feeds_ &&
+         prepares_irradiance(task) == irradiance_.has_value();
 }
 
 void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   if (!lit_ || spoils.light || spoils.places) {
     lights_ =
         transport::LightSource(device_, picture.flat, picture.flat.scene_centre, picture.flat.scene_radius);
+    light_groups_ = transport::group_lights(picture.flat, lights_.powers(), k_most_light_groups);
     lit_ = true;
   }
   if (spoils.places) map_.clear(), surfaces_.spoil();
@@ -143,6 +158,10 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   spared_ = 0;
 }
 
+uint32_t PhotonSolver::sent_parts() const {
+  return regions_.nowhere ? parts_ & ~(1u << k_caustic_part) : parts_;
+}
+
 bool PhotonSolver::round_ready(uint32_t sample) const {
   return !fresh_ && map_.complete() && last_sample_ == sample;
 }
@@ -156,7 +175,7 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
   round.paths = asked > 0 ? asked : uint32_t(std::clamp<uint64_t>(pixels, k_least_paths, k_most_paths));
   // Few lookups are left to a round where irradiance is known of all that is ours.
   if (asked == 0 && irradiance_ && picture.task.own == 1u << k_tertiary) round.paths = k_least_paths;
-  round.parts = parts_;
+  round.parts = sent_parts();
   round.account = uint32_t(std::countr_zero(std::max(1u, picture.task.own)));
 
   const double shrunk = s.real("photons.radius") * radius_ratio(sample, s.real("photons.alpha"));
@@ -178,15 +197,16 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
   f.surface_nodes = picture.task.settings.boolean("photons.borders") ? surfaces_.nodes() : 0;
   // Paths that another solver's lookup has left alone find photons as all others do.
   for (uint32_t state = 0; state < k_automaton_states; ++state) {
-    const uint32_t of_eye = state % k_gather_state;
+    const uint32_t of_eye = state % k_gather_state, own = state % k_left_states;
+    const paths::LookupRoutes& routes = state < k_left_states ? routes_ : left_routes_;
     f.component[state] = 0xffffu;
-    if (state >= k_known_state || of_eye >= routes_.component.size()) continue;
+    if (own >= k_known_state || of_eye >= routes.component.size()) continue;
     uint32_t packed = 0;
     for (uint32_t p = 0; p < paths::k_part_count; ++p) {
-      uint8_t c = routes_.component[of_eye][p];
+      uint8_t c = routes.component[of_eye][p];
       // Records bring tertiary light to paths that they serve: photons to the records' rays and to paths that
       // these leave alone, both in other states.
-      if (feeds_ && state < k_gather_state && c == k_tertiary) c = paths::k_no_component;
+      if (feeds_ && own < k_gather_state && c == k_tertiary) c = paths::k_no_component;
       packed |= (c == paths::k_no_component ? k_photon_no_component : uint32_t{c}) << 4 * p;
     }
     f.component[state] = packed;
@@ -280,8 +300,10 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.rounds = rounds_, r.paths = paths_, r.photons = photons_, r.escaped = escaped_, r.dark = dark_;
   r.last = map_.figures();
   r.spared = spared_;
+  r.trace_s = trace_s_, r.build_s = build_s_;
   r.casters = uint32_t(casters_.size());
   r.entrances = uint32_t(std::max(boxes_.size(), casters_.size()) - casters_.size());
+  r.weighs = weighs_, r.by_photons = regions_.by_photons, r.worth_gain = regions_.gain;
   r.unaimed = lights_.shares().empty() ? 1 : lights_.shares()[0];
   r.ready = ready();
   const auto rate = [](uint64_t n, double seconds) { return seconds > 0 ? double(n) / seconds : 0; };
@@ -293,6 +315,8 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
             (irradiance_ ? irradiance_->bytes() : 0);
   const double shrunk =
       s.real("photons.radius") * radius_ratio(rounds_ > 0 ? last_sample_ : 0, s.real("photons.alpha"));
+  r.first_radius = s.real("photons.radius"), r.floor = s.real("photons.floor");
+  r.alpha = s.real("photons.alpha");
   r.radius_pixels = std::max(shrunk, s.real("photons.floor"));
   r.at_floor = shrunk <= s.real("photons.floor");
   const auto pixel = double(2 * glm::length(picture.frame.camera_right) / float(picture.frame.width));
@@ -342,6 +366,8 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, c
           {"casters", r.casters},
           {"entrances", r.entrances},
           {"unaimed", r.unaimed},
+          {"by_photons", r.by_photons},
+          {"worth_gain", r.worth_gain},
           {"last_round_photons", r.last.photons},
           {"radius_pixels", r.radius_pixels},
           {"standing_photons", standing_ ? standing_->figures().photons : 0},

@@ -8,6 +8,7 @@
 #include "solvers/photons/points_view.h"
 #include "solvers/photons/report.h"
 #include "solvers/photons/surface_index.h"
+#include "solvers/photons/worth.h"
 #include "solvers/solver.h"
 #include "transport/first_hits.h"
 
@@ -34,7 +35,7 @@ class PhotonSolver final : public solvers::Solver {
   }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
-  bool in_rounds() const override { return sends_; }
+  bool in_rounds() const override { return sends_ && sent_parts() != 0; }
   bool round_ready(uint32_t sample) const override;
   bool prepare_round(transport::Wavefront& wavefront, const solvers::Picture& picture, uint32_t sample,
                      const solvers::Cancel& cancel) override;
@@ -48,12 +49,17 @@ class PhotonSolver final : public solvers::Solver {
   std::map<std::string, double> figures() const override;
 
   const PhotonMap& map() const { return map_; }
+  const Regions& regions() const { return regions_; }
   const PhotonInspector& inspector() const { return inspector_; }
   const std::optional<Inspected>& inspected() const { return inspected_; }
   static solvers::Routing routing_of(const solvers::Task& task);
+  /// SolverType::leaves.
+  static uint32_t leaves(const solvers::Task& task);
 
  private:
-  bool pilot_done() const { return (!aims_ && !spares_) || aimed_; }
+  bool pilot_done() const { return (!aims_ && !shares_lights_ && !spares_ && !weighs_) || aimed_; }
+  /// Parts of light that rounds bring: without caustics where paths from the eye bring all of them.
+  uint32_t sent_parts() const;
   /// One piece of making, or binding, what records' rays and gathering paths read. False when it was
   /// cancelled.
   bool feed(transport::Wavefront& wavefront, const solvers::Picture& picture, const solvers::Cancel& cancel);
@@ -67,8 +73,10 @@ class PhotonSolver final : public solvers::Solver {
   gpu::ShaderCompiler& compiler_;
   gpu::Defines scene_defines_;
   paths::LookupRoutes routes_;
-  uint32_t parts_;  ///< of light that the scene has: without caustics where nothing focuses
-  bool sends_;      ///< photons; else there is nothing that they could bring
+  uint32_t leaves_;                  ///< components; SolverType::leaves
+  paths::LookupRoutes left_routes_;  ///< where these are left
+  uint32_t parts_;                   ///< of light that the scene has: without caustics where nothing focuses
+  bool sends_;                       ///< photons; else there is nothing that they could bring
   PhotonMap map_;
   // Records that are made before there is any round read photons as well, where secondary light is theirs and
   // tertiary light ours: photons of their own, everywhere and within a wider radius, as long as light and
@@ -87,6 +95,7 @@ class PhotonSolver final : public solvers::Solver {
   DensityScale density_;  ///< that is drawn
   SurfaceIndex surfaces_;
   transport::LightSource lights_;
+  transport::LightGroups light_groups_;
 
   // Aimed emission (aim.cpp): casters are found, then a few paths from the eye note where lookups take place,
   // then a few from lights far away where those that come to be of use arrive first, then a few from all
@@ -102,11 +111,19 @@ class PhotonSolver final : public solvers::Solver {
   bool asks_density() const { return standing_ && !standing_->complete(); }
   bool share_out(transport::Wavefront& wavefront, const solvers::Picture& picture,
                  const solvers::Cancel& cancel);
-  bool aims_ = false;     ///< there may be something to aim at
-  bool bundles_ = false;  ///< ... casters, and there is light that they bundle
-  bool enters_ = false;   ///< ... openings that light from afar comes through
-  bool spares_ = false;   ///< photons that nobody looks at
-  bool aimed_ = false;    ///< importance and shares are those of this picture
+  /// Where caustics are left to paths from the eye, by what the pilot has told; `gain` as WorthPilot's.
+  void choose_left(const solvers::Picture& picture, std::span<const shared::PhotonWorth> told,
+                   std::span<const double> gain, uint32_t pilot_paths);
+  void write_left();
+  bool aims_ = false;           ///< there may be something to aim at
+  bool bundles_ = false;        ///< ... casters, and there is light that they bundle
+  bool enters_ = false;         ///< ... openings that light from afar comes through
+  bool shares_lights_ = false;  ///< among which paths are shared by what they bring
+  bool spares_ = false;         ///< photons that nobody looks at
+  bool weighs_ = false;         ///< where photons are worth their time
+  Regions regions_;             ///< none: photons everywhere
+  gpu::Buffer left_regions_;
+  bool aimed_ = false;  ///< importance and shares are those of this picture
   AimStep aim_step_ = AimStep::casters;
   std::vector<Box> casters_;
   bool casters_known_ = false;

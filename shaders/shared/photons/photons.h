@@ -17,7 +17,8 @@ LUCERNA_CONST uint k_photon_facet = 0x3fffffu;
 LUCERNA_CONST uint k_photon_part_shift = 22u;    ///< 2 bits: by which events it came (paths::k_part_count)
 LUCERNA_CONST uint k_photon_events_shift = 24u;  ///< 4 bits: scattering events since its light, 15 and more are 15
 LUCERNA_CONST uint k_photon_most_events = 15u;
-LUCERNA_CONST uint k_photon_group_shift = 28u;   ///< 4 bits: the group of its light, where groups are kept apart
+LUCERNA_CONST uint k_photon_group_shift = 28u;   ///< 4 bits: the group of its light, where groups are kept apart, else of
+                                                 ///< its light's number the lowest
 
 // Photons are found by cells. The radius within which one counts is a function of the place where it lies, so that the places
 // that it counts for are known without asking the others. Cells come in levels, each sqrt(2) times as wide as the one before;
@@ -67,9 +68,12 @@ struct PhotonFrame {
   vec3 importance_eye;
   float importance_slope, importance_base;
   uint importance_counts;  ///< 0: all photons are stored
+  uint lookups;            ///< entries of PhotonLookups, one a pixel, in which caustics' lookups are noted; 0: none is
+  uint tells_radiance;     ///< 1: stored photons tell what paths from the eye would bring (PhotonRadiances)
   uint component[k_automaton_states];  ///< by state of the eye path: four bits a part, the component that it brings light to
 };
 LUCERNA_CONST uint k_photon_no_component = 15u;
+LUCERNA_CONST uint k_photon_caustic_part = 3u;  ///< paths::k_caustic_part
 
 struct PhotonWorthPush {
   uint count;      ///< photons
@@ -98,23 +102,38 @@ struct PhotonWorth {
   float worth;       ///< what it brings to the picture, up to a factor; 0: light straight from a lamp
   vec3 position;     ///< [m]
   float importance;  ///< how much of the picture hangs on lookups around it, an area, up to a factor
+  // Of caustics, where radiance is told:
+  float flux;        ///< luminance; 0: no caustic
+  float radiance;    ///< that arrives as a path from the eye would bring it, which meets the same light the same way
+  uint facet;        ///< side of the surface on which it arrives
 };
+/// Where a path of the pilot from the eye looks caustics up.
+struct PhotonLookup {
+  vec3 position;     ///< [m]
+  float carried;     ///< luminance of its throughput times the diffuse albedo; 0: there is none
+  uint facet;        ///< side of the surface that it sees
+};
+LUCERNA_CONST float k_radiance_unmet = 1e30f;  ///< that no path from the eye could meet
 
 // PhotonCounts, uint each.
 LUCERNA_CONST uint k_photons_stored = 0u;    ///< so far, or wanted to be
 LUCERNA_CONST uint k_photons_capacity = 1u;  ///< for which there is room
 LUCERNA_CONST uint k_photons_spared = 2u;    ///< photons left out because nobody looks where they lie
-LUCERNA_CONST uint k_photon_counts = 3u;
+LUCERNA_CONST uint k_photons_by_part = 3u;   ///< [4]: of those that are stored
+LUCERNA_CONST uint k_photon_counts = 7u;
 
 /// Which photons are drawn, and how.
 struct PhotonPointsPush {
   uint count;       ///< photons
   uint step;        ///< every so-manyth is drawn
   uint by;          ///< k_photons_by_*
-  uint pad0;
+  uint round;
 };
 LUCERNA_CONST uint k_photons_by_flux = 1u;
 LUCERNA_CONST uint k_photons_by_bounce = 2u;
+LUCERNA_CONST uint k_photons_by_map = 3u;    ///< by part
+LUCERNA_CONST uint k_photons_by_light = 4u;
+LUCERNA_CONST uint k_photons_by_round = 5u;
 
 LUCERNA_SHARED_END
 #ifdef __cplusplus

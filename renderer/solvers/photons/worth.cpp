@@ -1,0 +1,186 @@
+#include "solvers/photons/worth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "base/math.h"
+
+namespace lucerna::photons {
+
+using namespace shared;
+
+namespace {
+
+constexpr uint32_t k_region = 2;              // pixels of the pilot's picture, across and down
+constexpr double k_least_found = 4;           // photons that a lookup has found, on average of a region
+constexpr double k_least_found_in_all = 256;  // ... in the whole picture
+constexpr uint32_t k_most_steps = 32;         // of improving the choice
+constexpr double k_dim = 1;                   // noise counts over region's mean^2 + (k_dim picture's mean)^2
+
+double radius_at(const PhotonFrame& f, const vec3& x) {
+  return double(std::clamp(f.base + f.slope * glm::distance(x, f.eye), f.least, f.most));
+}
+
+/// Photons by cubes as wide as the widest radius.
+class Cubes {
+ public:
+  Cubes(std::span<const PhotonWorth> photons, double width) : width_(width) {
+    for (const PhotonWorth& p : photons)
+      if (p.flux > 0) cubes_[key(cube_of(p.position))].push_back(&p);
+  }
+  template <class F>
+  void near(const vec3& x, F&& f) const {
+    const glm::ivec3 at = cube_of(x);
+    for (int dz = -1; dz <= 1; ++dz)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+          if (const auto found = cubes_.find(key(at + glm::ivec3(dx, dy, dz))); found != cubes_.end())
+            for (const PhotonWorth* p : found->second) f(*p);
+  }
+
+ private:
+  glm::ivec3 cube_of(const vec3& x) const { return glm::ivec3(glm::floor(glm::dvec3(x) / width_)); }
+  static uint64_t key(const glm::ivec3& c) {
+    constexpr uint64_t k_mask = (1u << 21) - 1;
+    return (uint64_t(uint32_t(c.x)) & k_mask) << 42 | (uint64_t(uint32_t(c.y)) & k_mask) << 21 |
+           (uint64_t(uint32_t(c.z)) & k_mask);
+  }
+  double width_;
+  std::unordered_map<uint64_t, std::vector<const PhotonWorth*>> cubes_;
+};
+
+}  // namespace
+
+std::vector<Moments> caustic_moments(const WorthPilot& pilot) {
+  double widest = 0;
+  for (const PhotonLookup& l : pilot.lookups)
+    if (l.carried > 0) widest = std::max(widest, radius_at(pilot.around, l.position));
+  std::vector<Moments> all(pilot.lookups.size());
+  if (widest <= 0) return all;
+  const Cubes cubes(pilot.photons, widest);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const PhotonLookup& l = pilot.lookups[i];
+    if (l.carried <= 0) continue;
+    const double around = radius_at(pilot.around, l.position), within = radius_at(pilot.round, l.position);
+    const vec3 side = facet_unpack(l.facet);
+    double flux = 0, squares = 0, met = 0;  // of photons: sum of flux, of its square, of flux times radiance
+    Moments& m = all[i];
+    cubes.near(l.position, [&](const PhotonWorth& p) {
+      const glm::dvec3 away = glm::dvec3(p.position) - glm::dvec3(l.position);
+      if (glm::dot(away, away) >= around * around) return;
+      if (std::abs(glm::dot(away, glm::dvec3(side))) >= double(k_photon_slab) * around) return;
+      if (glm::dot(facet_unpack(p.facet), side) <= k_photon_normals) return;
+      const auto f = double(p.flux);
+      flux += f, squares += f * f / pilot.gain[size_t(&p - pilot.photons.data())],
+          met += f * double(p.radiance);
+      ++m.found;
+    });
+    // f_D = albedo / pi. A photon of the rounds counts by Epanechnikov's kernel, whose square has the
+    // integral 4 / (3 pi r^2); a path from the eye has the density cos / pi, and brings albedo times
+    // radiance.
+    const double area = double(k_pi) * around * around, carried = double(l.carried);
+    const double lambert = carried / double(k_pi);
+    m.mean = lambert * flux / area;
+    m.photons = lambert * lambert * squares / (area * pilot.paths) * 4 / (3 * double(k_pi) * within * within);
+    m.paths = std::max(0.0, carried * lambert * met / area - m.mean * m.mean);
+  }
+  return all;
+}
+
+Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_t height,
+                       const WorthCosts& costs) {
+  Regions out;
+  out.width = (width + k_region - 1) / k_region, out.height = (height + k_region - 1) / k_region;
+  const auto w = int(out.width), h = int(out.height);
+  const auto at = [&](int x, int y) { return size_t(y * w + x); };
+  std::vector<double> pixels(size_t(w * h), 0);
+  std::vector<Region> plain(size_t(w * h));
+  std::vector<Region>& all = out.all;
+  all.resize(plain.size());
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
+      const Moments& m = moments[y * width + x];
+      Region& r = plain[at(int(x / k_region), int(y / k_region))];
+      r.mean += m.mean, r.photons += m.photons, r.paths += m.paths, r.found += m.found;
+      ++pixels[at(int(x / k_region), int(y / k_region))];
+    }
+  const auto around = [&](int x, int y, auto&& f) {
+    for (int v = std::max(0, y - 1); v <= std::min(h - 1, y + 1); ++v)
+      for (int u = std::max(0, x - 1); u <= std::min(w - 1, x + 1); ++u) f(at(u, v));
+  };
+  double mean = 0, found = 0;
+  for (const Region& r : plain) found += r.found;
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      Region& r = all[at(x, y)];
+      double n = 0;
+      around(x, y, [&](size_t k) {
+        r.mean += plain[k].mean, r.photons += plain[k].photons, r.paths += plain[k].paths;
+        r.found += plain[k].found, n += pixels[k];
+      });
+      r.mean /= n, r.photons /= n, r.paths /= n, r.found /= n;
+      mean += r.mean;
+    }
+  const auto regions = double(all.size());
+  mean /= regions;
+  for (Region& r : all) r.weight = mean > 0 ? 1 / (r.mean * r.mean + k_dim * k_dim * mean * mean) : 0;
+
+  // Noise times cost of the whole, by who brings the caustics of each region. Costs are those of a region of
+  // one pixel; light paths are shared by all, and not sent at all where nobody looks them up.
+  const double base = costs.base, looked = costs.lookup, onward = costs.onward;
+  struct Whole {
+    double noise = 0, cost = 0;
+    double product() const { return noise * cost; }
+  };
+  const auto whole = [&](const std::vector<bool>& left) {
+    Whole sum;
+    bool any = false;
+    for (size_t i = 0; i < all.size(); ++i) {
+      sum.noise += all[i].weight * (left[i] ? all[i].paths : all[i].photons);
+      sum.cost += base + (left[i] ? onward : looked);
+      any = any || !left[i];
+    }
+    if (any) sum.cost += costs.paths * regions;
+    return sum;
+  };
+  std::vector<bool> left(all.size(), false);
+  const Whole photons = whole(left);
+  out.left.assign(all.size(), 0.0f);
+  if (!(photons.noise > 0)) return out;  // the pilot has found nothing
+  // Where the whole is best, each region has the way that adds less to noise and cost, relatively.
+  Whole now = photons;
+  for (uint32_t step = 0; step < k_most_steps; ++step) {
+    std::vector<bool> better(all.size());
+    for (size_t i = 0; i < all.size(); ++i) {
+      const Region& r = all[i];
+      better[i] = r.found >= k_least_found && r.weight * r.paths / now.noise + onward / now.cost <
+                                                  r.weight * r.photons / now.noise + looked / now.cost;
+    }
+    const Whole then = whole(better);
+    if (better == left || !(then.product() < now.product())) break;
+    left = better, now = then;
+  }
+  // Photons reach a region further than they must: their way is the one without outliers.
+  std::vector<bool> spread(left);
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      if (!left[at(x, y)]) around(x, y, [&](size_t k) { spread[k] = false; });
+  const std::vector<bool> none(all.size(), true);
+  const Whole mixed = whole(spread), paths = whole(none);
+  std::vector<bool> best(all.size(), false);
+  double least = photons.product();
+  if (mixed.product() < least) best = spread, least = mixed.product();
+  if (found >= k_least_found_in_all && paths.product() < least) best = none, least = paths.product();
+  double share = 0;
+  for (size_t i = 0; i < all.size(); ++i) {
+    out.left[i] = best[i] ? 1 : 0;
+    share += best[i] ? 0 : 1 / regions;
+  }
+  out.by_photons = share;
+  out.nowhere = std::all_of(best.begin(), best.end(), [](bool b) { return b; });
+  out.gain = least > 0 ? photons.product() / least : 1;
+  return out;
+}
+
+}  // namespace lucerna::photons

@@ -1,0 +1,137 @@
+// links: photons
+// Where photons are worth their time for caustics: moments of either way against closed forms, and the
+// choice.
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "base/math.h"
+#include "solvers/photons/worth.h"
+
+using namespace lucerna;
+using photons::Moments, photons::Regions, photons::WorthCosts, photons::WorthPilot;
+
+namespace {
+
+/// Photons of equal flux spread evenly over a square of the plane y = 0, side 2 about the origin, that arrive
+/// from above.
+std::vector<shared::PhotonWorth> even(uint32_t n, float flux, float radiance) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  std::vector<shared::PhotonWorth> all(n);
+  for (shared::PhotonWorth& p : all) {
+    p.position = {unit(random), 0, unit(random)};
+    p.flux = flux, p.radiance = radiance;
+    p.facet = shared::facet_pack(vec3(0, 1, 0));
+  }
+  return all;
+}
+
+WorthPilot pilot_of(const std::vector<shared::PhotonWorth>& photons,
+                    const std::vector<shared::PhotonLookup>& lookups, std::span<const double> gain) {
+  WorthPilot pilot{.lookups = lookups,
+                   .width = uint32_t(lookups.size()),
+                   .height = 1,
+                   .photons = photons,
+                   .gain = gain,
+                   .paths = 1};
+  for (shared::PhotonFrame* f : {&pilot.around, &pilot.round}) f->least = 1e-6f, f->most = 1;
+  pilot.around.base = 0.5f, pilot.round.base = 0.1f;
+  return pilot;
+}
+
+/// 8 x 8 regions of 2 x 2 pixels.
+constexpr uint32_t k_side = 16;
+std::vector<Moments> halves(const Moments& left, const Moments& right) {
+  std::vector<Moments> all;
+  for (uint32_t i = 0; i < k_side * k_side; ++i) all.push_back(i % k_side < k_side / 2 ? left : right);
+  return all;
+}
+Regions choose(const std::vector<Moments>& moments, const WorthCosts& costs) {
+  return photons::choose_regions(moments, k_side, k_side, costs);
+}
+constexpr WorthCosts k_costs{.base = 2, .lookup = 0.5, .onward = 1.5, .paths = 2};
+
+}  // namespace
+
+TEST_CASE("light paths tell the moments of photons and of paths from the eye", "[photons_worth]") {
+  const float albedo = 0.6f, flux = 2e-5f, radiance = 40;
+  const uint32_t n = 200000;
+  const std::vector<shared::PhotonWorth> all = even(n, flux, radiance);
+  const shared::PhotonLookup here{vec3(0), albedo, shared::facet_pack(vec3(0, 1, 0))};
+  const std::vector<shared::PhotonLookup> lookups{here};
+  const std::vector<double> as_before(n, 1), twice(n, 2);
+  const Moments m = photons::caustic_moments(pilot_of(all, lookups, as_before))[0];
+  const double pi = double(k_pi), density = n / 4.0, irradiance = double(flux) * density;
+  // About 39 thousand photons are found: their number errs by half a percent.
+  CHECK(m.found == Approx(density * pi * 0.25).epsilon(0.03));
+  CHECK(m.mean == Approx(double(albedo) / pi * irradiance).epsilon(0.03));
+  // Of Poisson's process of n photons a square metre: n times the kernel's square.
+  const double f = double(albedo * flux) / pi;
+  CHECK(m.photons == Approx(f * f * density * 4 / (3 * pi * 0.01)).epsilon(0.03));
+  // Where light of radiance L comes from the share p of directions, by the cosine, p = E / (pi L): the mean
+  // is albedo L p, the second moment (albedo L)^2 p.
+  const double p = irradiance / (pi * double(radiance)), value = double(albedo * radiance);
+  CHECK(m.paths == Approx(value * value * p * (1 - p)).epsilon(0.03));
+
+  // Twice as many paths, of half the flux: half the variance. The same where each path is twice as likely.
+  WorthPilot more = pilot_of(all, lookups, as_before);
+  more.paths = 2;
+  CHECK(photons::caustic_moments(more)[0].photons == Approx(m.photons / 2));
+  CHECK(photons::caustic_moments(pilot_of(all, lookups, twice))[0].photons == Approx(m.photons / 2));
+  CHECK(photons::caustic_moments(pilot_of(all, lookups, twice))[0].mean == Approx(m.mean));
+}
+
+TEST_CASE("what lies on the other side, or nowhere, tells nothing", "[photons_worth]") {
+  const std::vector<shared::PhotonWorth> all = even(10000, 1, 1);
+  const uint32_t up = shared::facet_pack(vec3(0, 1, 0)), down = shared::facet_pack(vec3(0, -1, 0)),
+                 across = shared::facet_pack(vec3(1, 0, 0));
+  const std::vector<shared::PhotonLookup> lookups{{vec3(0), 1, down},
+                                                  {vec3(0), 1, across},
+                                                  {vec3(0, 0.3f, 0), 1, up},
+                                                  {vec3(0), 0, up},
+                                                  {vec3(9), 1, up}};
+  const std::vector<double> gain(all.size(), 1);
+  for (const Moments& m : photons::caustic_moments(pilot_of(all, lookups, gain))) {
+    CHECK(m.found == 0);
+    CHECK((m.mean == 0 && m.photons == 0 && m.paths == 0));
+  }
+}
+
+TEST_CASE("each region has the way that makes the whole best", "[photons_worth]") {
+  const Moments hard{1, 0.1, 1000, 50}, soft{1, 0.5, 0.2, 50}, unknown{1, 0.5, 0.2, 0};
+  SECTION("photons everywhere where paths hardly find the light") {
+    const Regions r = choose(halves(hard, hard), k_costs);
+    CHECK((r.by_photons == 1 && !r.nowhere && r.gain == 1));
+  }
+  SECTION("none where paths are better") {
+    const Regions r = choose(halves(soft, soft), k_costs);
+    CHECK((r.by_photons == 0 && r.nowhere));
+    // Noise times cost of either way.
+    CHECK(r.gain == Approx(0.5 * (2 + 0.5 + 2) / (0.2 * (2 + 1.5))));
+  }
+  SECTION("each half its own") {
+    const Regions r = choose(halves(hard, soft), k_costs);
+    CHECK_FALSE(r.nowhere);
+    CHECK(r.gain > 1);
+    // The left half; where a neighbour lies in it, judged with it; and one region further.
+    for (uint32_t y = 0; y < r.height; ++y)
+      for (uint32_t x = 0; x < r.width; ++x) CHECK(r.left[y * r.width + x] == (x < 6 ? 0 : 1));
+    CHECK(r.by_photons == Approx(6.0 / 8));
+  }
+  SECTION("photons where the pilot has found little or nothing") {
+    CHECK(
+        choose(halves(unknown, unknown), {.base = 2, .lookup = 0.5, .onward = 1.5, .paths = 0}).by_photons ==
+        1);
+    CHECK(choose(halves({}, {}), k_costs).by_photons == 1);
+  }
+  SECTION("light that no path from the eye meets") {
+    const Moments unmet{1, 0.1, double(shared::k_radiance_unmet), 50};
+    CHECK(choose(halves(unmet, soft), k_costs).left[0] == 0);
+    CHECK(choose(halves(unmet, unmet), k_costs).by_photons == 1);
+  }
+  SECTION("what is sent and looked up for other light costs caustics nothing") {
+    const Moments even{1, 0.2, 0.3, 50};
+    CHECK(choose(halves(even, even), {.base = 2, .lookup = 0, .onward = 0, .paths = 0}).by_photons == 1);
+    CHECK(choose(halves(even, even), {.base = 2, .lookup = 0.5, .onward = 0, .paths = 4}).nowhere);
+  }
+}
