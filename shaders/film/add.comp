@@ -15,9 +15,10 @@ uniform samplerBuffer feature_texels;
 uniform samplerBuffer path_texels;
 layout(scalar) buffer FilmVertices { uint film_vertices[]; };
 uint vertices_of(uint slot) {
-  // PathState.bits: the events that led on and the surfaces passed since; the last vertex is not among them.
+  // The events that led on (PathState.bits) and the surfaces passed since the last; the last vertex is not among them.
   uint bits = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 1u))).z;
-  return 1u + (bits >> 8 & 0xffffu) + (bits >> 24);
+  uint nulls = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 2u))).z;
+  return 1u + ((bits & ~k_path_branched) >> k_path_events_shift) + nulls;
 }
 #endif
 
