@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <unordered_map>
 
 #include "base/math.h"
@@ -16,13 +17,12 @@ constexpr uint32_t k_region = 2;              // pixels of the pilot's picture, 
 constexpr double k_least_found = 4;           // photons that a lookup has found, on average of a region
 constexpr double k_least_found_in_all = 256;  // ... in the whole picture
 constexpr uint32_t k_most_steps = 32;         // of improving the choice
-constexpr double k_dim = 1;                   // noise counts over region's mean^2 + (k_dim picture's mean)^2
 
 double radius_at(const PhotonFrame& f, const vec3& x) {
   return double(std::clamp(f.base + f.slope * glm::distance(x, f.eye), f.least, f.most));
 }
 
-/// Photons by cubes as wide as the widest radius.
+/// Photons by cubes, at least as wide as the radius within which they are looked for.
 class Cubes {
  public:
   Cubes(std::span<const PhotonWorth> photons, double width) : width_(width) {
@@ -53,12 +53,8 @@ class Cubes {
 }  // namespace
 
 std::vector<Moments> caustic_moments(const WorthPilot& pilot) {
-  double widest = 0;
-  for (const PhotonLookup& l : pilot.lookups)
-    if (l.carried > 0) widest = std::max(widest, radius_at(pilot.around, l.position));
   std::vector<Moments> all(pilot.lookups.size());
-  if (widest <= 0) return all;
-  const Cubes cubes(pilot.photons, widest);
+  std::map<int, Cubes> levels;  // by the power of two that is as wide as a radius
   for (size_t i = 0; i < all.size(); ++i) {
     const PhotonLookup& l = pilot.lookups[i];
     if (l.carried <= 0) continue;
@@ -66,7 +62,9 @@ std::vector<Moments> caustic_moments(const WorthPilot& pilot) {
     const vec3 side = facet_unpack(l.facet);
     double flux = 0, squares = 0, met = 0;  // of photons: sum of flux, of its square, of flux times radiance
     Moments& m = all[i];
-    cubes.near(l.position, [&](const PhotonWorth& p) {
+    const int level = std::ilogb(around) + 1;
+    const auto cubes = levels.try_emplace(level, pilot.photons, std::ldexp(1.0, level)).first;
+    cubes->second.near(l.position, [&](const PhotonWorth& p) {
       const glm::dvec3 away = glm::dvec3(p.position) - glm::dvec3(l.position);
       if (glm::dot(away, away) >= around * around) return;
       if (std::abs(glm::dot(away, glm::dvec3(side))) >= double(k_photon_slab) * around) return;
@@ -124,7 +122,7 @@ Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_
     }
   const auto regions = double(all.size());
   mean /= regions;
-  for (Region& r : all) r.weight = mean > 0 ? 1 / (r.mean * r.mean + k_dim * k_dim * mean * mean) : 0;
+  for (Region& r : all) r.weight = mean > 0 ? 1 / (r.mean * r.mean + mean * mean) : 0;
 
   // Noise times cost of the whole, by who brings the caustics of each region. Costs are those of a region of
   // one pixel; light paths are shared by all, and not sent at all where nobody looks them up.
