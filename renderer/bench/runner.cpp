@@ -218,7 +218,9 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
     return budget.kind == BudgetKind::seconds && r->render_seconds() >= budget.value;
   };
   const auto& entries = r->ledger().entries();
-  while (!r->done() && !out_of_time()) {
+  // A picture that is not there in time, for something was still being prepared, is waited for: its time
+  // tells.
+  while (!r->done() && (!out_of_time() || entries.empty())) {
     const size_t lines = entries.size();
     if (!step(*r)) break;
     // Before every pixel has a sample it is not the same picture.

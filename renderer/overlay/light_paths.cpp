@@ -64,7 +64,7 @@ std::vector<AimedPair> aimed_pairs(const upload::FlatScene& flat, const transpor
       }
       of_group.from = sum / float(placed);
       of_group.light = of_group.light == "shining surface"
-                           ? fmt::format("{} shining triangles", members.size())
+                           ? fmt::format("{} triangles", members.size())
                            : fmt::format("{} lights", members.size());
     }
     for (uint32_t c = 0; c < casters; ++c) {
