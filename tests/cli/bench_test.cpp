@@ -68,7 +68,7 @@ void refused(const std::string& arguments, const std::string& expected) {
 TEST_CASE("bench waits for a picture that is still being prepared when its time is over") {
   const Place place;
   std::ofstream(place.path / "m.json")
-      << R"({"repeats": 1, "warmup": 1, "reference": {"samples": 16}, "budgets": {"seconds": [0.0001]},)"
+      << R"({"repeats": 1, "warmup": 1, "reference": {"samples": 16}, "budgets": {"seconds": [0.01]},)"
       << R"("scenes": [{"file": ")" << LUCERNA_SOURCE_DIR
       << R"(/scenes/cornell/cornell.gltf", "size": "16x16"}],)"
       << R"("settings": [{"name": "plain", "budget": "seconds"}, {"name": "cache", "budget": "seconds",)"
@@ -78,7 +78,7 @@ TEST_CASE("bench waits for a picture that is still being prepared when its time 
   REQUIRE(r.status == 0);
   const nlohmann::json cell = read_json(place / "r/cells/cornell.cache.0.0.json");
   CHECK(cell.at("samples") >= 1);
-  CHECK(cell.at("wall_s") > 0.0001);
+  CHECK(cell.at("wall_s") > 0.01);
 }
 
 TEST_CASE("bench measures a matrix, keeps what is there, mends half files and remakes its page") {
