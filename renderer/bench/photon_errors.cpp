@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/photons/radius.h"
-
 namespace lucerna::bench {
 namespace {
 
@@ -99,24 +97,6 @@ std::array<std::optional<Slope>, 3> error_slopes(std::span<const double> x,
     slopes[c] = Slope{*whole, *whole - deviation, *whole + deviation};
   }
   return slopes;
-}
-
-double RadiusLaw::noise(uint32_t rounds) const {
-  double sum = 0;
-  for (uint32_t i = 0; i < rounds; ++i) {
-    const double r = std::max(floor, first * photons::radius_ratio(i, alpha)) / first;
-    sum += 1 / (r * r);
-  }
-  return std::sqrt(sum) / double(rounds);
-}
-
-double RadiusLaw::bias(uint32_t rounds) const {
-  double sum = 0;
-  for (uint32_t i = 0; i < rounds; ++i) {
-    const double r = std::max(floor, first * photons::radius_ratio(i, alpha)) / first;
-    sum += r * r;
-  }
-  return sum / double(rounds);
 }
 
 Slope median95(std::vector<double> values) {

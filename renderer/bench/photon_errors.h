@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "solvers/photons/radius.h"
+
 namespace lucerna::bench {
 
 /// The power of x that y falls or grows with, by least squares on the logarithms. Nothing where fewer than
@@ -51,14 +53,8 @@ std::array<std::optional<Slope>, 3> error_slopes(std::span<const double> x,
                                                  std::span<const SeedPictures> renders,
                                                  std::span<const uint8_t> mask);
 
-/// By which factors noise and bias of the mean of rounds 0 .. n - 1 follow from those of a single round of
-/// radius `first`: C. Knaus and M. Zwicker 2011. A round's variance goes with 1 / r^2 and its bias, where
-/// light bends by no more than a parabola within a disc, with r^2.
-struct RadiusLaw {
-  double first = 1, floor = 0, alpha = 2.0 / 3;  ///< pixels, pixels, 0..1
-  double noise(uint32_t rounds) const;           ///< of rounds >= 1
-  double bias(uint32_t rounds) const;
-};
+/// What noise and bias of rounds are expected to be.
+using photons::RadiusLaw;
 
 /// The median of values with the interval that holds the true median in at least 95 % (order statistics, by
 /// the sign test; all of them where there are too few for that).

@@ -4,10 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include "solvers/photons/solver.h"
-#include "support/render.h"
-#include "support/rooms.h"
+#include "support/caustics.h"
 
 using namespace lucerna;
+using test::with;
 
 namespace {
 
@@ -61,30 +61,7 @@ Rendered render(const scene::Scene& scene, test::Settings settings, uint32_t sam
 
 const test::Settings k_caustics{
     {"components.primary", "off"}, {"components.secondary", "off"}, {"components.tertiary", "off"}};
-test::Settings with(test::Settings settings, const test::Settings& more) {
-  for (const auto& [key, value] : more) settings[key] = value;
-  return settings;
-}
 const test::Settings k_by_photons = with(k_caustics, {{"components.caustic", "photons"}});
-
-/// Mean of the caustics' luminance over the picture's left or right part, with the standard error that its
-/// halves tell: of `n` blocks of pixels, each a mean of its own.
-test::Mean mean_of(const film::Image& image, uint32_t first, uint32_t end) {
-  test::Mean m;
-  double odd = 0, n = 0, spread = 0;
-  for (uint32_t y = 0; y < k_size; ++y)
-    for (uint32_t x = first; x < end; ++x) {
-      const size_t i = y * k_size + x;
-      const auto all = double(luminance(image.components[3][i])),
-                 half = double(luminance(image.odd_half[3][i]));
-      m.value += all, odd += half, ++n;
-      spread += (all - half) * (all - half);
-    }
-  m.value /= n;
-  // Of pixels that err alone, or of photons that they share, whichever is more.
-  m.noise = std::max(std::sqrt(spread) / n, std::abs(m.value - odd / n));
-  return m;
-}
 
 }  // namespace
 
@@ -101,9 +78,12 @@ TEST_CASE("each part of the picture has the better way, and the same light", "[p
   const Rendered photons = render(scene, with(k_by_photons, {{"photons.worth", "false"}}), 256);
   CHECK(photons.by_photons == 1);
   for (const auto& [first, end] : {std::pair{2u, 10u}, {10u, 22u}, {22u, 30u}}) {
-    const test::Mean a = mean_of(both.image, first, end), b = mean_of(photons.image, first, end);
-    CAPTURE(first, a.value, a.noise, b.value, b.noise);
-    CHECK(std::abs(a.value - b.value) < 4 * std::hypot(a.noise, b.noise) + 0.01 * b.value);
+    const test::MeanOf a = test::mean_of(both.image, 3, first, 0, end, k_size),
+                       b = test::mean_of(photons.image, 3, first, 0, end, k_size);
+    for (int c = 0; c < 3; ++c) {
+      CAPTURE(first, c, a.value[c], a.noise[c], b.value[c], b.noise[c]);
+      CHECK(std::abs(a.value[c] - b.value[c]) < 4 * std::hypot(a.noise[c], b.noise[c]) + 0.01 * b.value[c]);
+    }
   }
   // The wide lamp's light has less noise than by as few photons; the small one's has theirs.
   const Rendered few = render(scene, with(with(k_by_photons, k_few), {{"photons.worth", "false"}}), 2048);
@@ -118,6 +98,17 @@ TEST_CASE("each part of the picture has the better way, and the same light", "[p
   };
   CHECK(noise(both.image, 22, 29) == Approx(noise(few.image, 22, 29)).epsilon(0.3));
   CHECK(noise(both.image, 4, 9) < 0.6 * noise(few.image, 4, 9));
+}
+
+TEST_CASE("where photons are nowhere worth it none are sent, and the picture is the path traced one",
+          "[photons_worth]") {
+  scene::Scene scene = two_lamps();
+  scene.materials[3].emission = vec3(0);  // the wide lamp alone
+  const Rendered left = render(scene, with(k_by_photons, k_few), 8), path = render(scene, k_caustics, 8);
+  CHECK(left.regions.nowhere);
+  CHECK(left.by_photons == 0);
+  CHECK(test::identical(left.image, path.image));
+  CHECK(test::mean(left.image.components[3]) > 0);
 }
 
 TEST_CASE("regions are shown, and the same for the same scene, view and settings", "[photons_worth]") {

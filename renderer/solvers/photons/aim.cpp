@@ -2,7 +2,6 @@
 #include <bit>
 #include <cmath>
 
-#include "solvers/photons/radius.h"
 #include "solvers/photons/solver.h"
 #include "transport/aim.h"
 #include "transport/casters.h"
@@ -259,13 +258,10 @@ bool PhotonSolver::share_out(transport::Wavefront& wavefront, const Picture& pic
 
 void PhotonSolver::choose_left(const Picture& picture, std::span<const PhotonWorth> told,
                                std::span<const double> gain, uint32_t pilot_paths) {
-  const OptionValues& s = picture.task.settings;
   const Frame small = small_frame(picture);
   const std::vector<PhotonLookup> noted = map_.lookups();
   // Typical of a picture that is waited for: radii fall slowly.
-  const double radius =
-      std::max(s.real("photons.radius") * radius_ratio(k_typical_round, s.real("photons.alpha")),
-               s.real("photons.floor"));
+  const double radius = radius_law(picture.task.settings).at(k_typical_round);
   const uint32_t paths = round_of(picture, 0).paths;
   const WorthPilot pilot{.lookups = std::span(noted).first(size_t{small.width} * small.height),
                          .width = small.width,

@@ -115,7 +115,8 @@ void PhotonMap::tell_radiance(bool on) {
 
 uint64_t PhotonMap::bytes() const {
   uint64_t sum = cells_.bytes();
-  for (const gpu::Buffer* b : {&list_, &ids_, &importance_}) sum += *b ? b->bytes() : 0;
+  for (const gpu::Buffer* b : {&list_, &ids_, &importance_, &lookups_, &radiances_})
+    sum += *b ? b->bytes() : 0;
   return sum;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 // The radius of photons over rounds.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -14,5 +15,29 @@ inline double radius_ratio(uint32_t round, double alpha) {
   const double n = double(round) + 1;
   return std::exp(0.5 * (std::lgamma(n + alpha) - std::lgamma(1 + alpha) - std::lgamma(n + 1)));
 }
+
+/// The radius of rounds as the camera sees it, and what it promises: a round's variance goes with 1 / r^2 and
+/// its bias, where light bends by no more than a parabola within a disc, with r^2.
+struct RadiusLaw {
+  double first = 1, floor = 0, alpha = 2.0 / 3;  ///< pixels, pixels, 0..1
+  double at(uint32_t round) const { return std::max(floor, first * radius_ratio(round, alpha)); }
+  /// Of the mean of rounds >= 1, over that of one round of radius `first`.
+  double noise(uint32_t rounds) const {
+    double sum = 0;
+    for (uint32_t i = 0; i < rounds; ++i) sum += 1 / square(i);
+    return std::sqrt(sum) / double(rounds);
+  }
+  double bias(uint32_t rounds) const {
+    double sum = 0;
+    for (uint32_t i = 0; i < rounds; ++i) sum += square(i);
+    return sum / double(rounds);
+  }
+
+ private:
+  double square(uint32_t round) const {
+    const double r = at(round) / first;
+    return r * r;
+  }
+};
 
 }  // namespace lucerna::photons

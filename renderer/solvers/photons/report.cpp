@@ -7,7 +7,6 @@
 #include "shaders/shared/ramp.h"
 #include "solvers/aim_report.h"
 #include "solvers/photons/info.h"
-#include "solvers/photons/radius.h"
 
 namespace lucerna::photons {
 
@@ -50,13 +49,13 @@ Histogram radius_columns(const PhotonReport& r) {
   Histogram histogram;
   for (uint32_t k = 0; k < k_columns; ++k) {
     const uint32_t round = 1u << k;
-    const double radius = std::max(r.floor, r.first_radius * radius_ratio(round - 1, r.alpha));
+    const double radius = r.radius_law.at(round - 1);
     const std::string name = count_text(round);
-    histogram.columns.push_back({.height = float(radius / std::max(r.floor, r.first_radius)),
+    histogram.columns.push_back({.height = float(radius / r.radius_law.at(0)),
                                  .ink = round <= r.rounds ? k_had : k_to_come,
                                  .label = name,
                                  .help = fmt::format("Round {}: {} pixels{}.", name, real_text(radius, 2),
-                                                     radius <= r.floor ? ", the least" : "")});
+                                                     radius <= r.radius_law.floor ? ", the least" : "")});
   }
   return histogram;
 }

@@ -3,6 +3,7 @@
 #include "overlay/light_paths.h"
 #include "solvers/photons/inspector.h"
 #include "solvers/photons/photon_map.h"
+#include "solvers/photons/radius.h"
 #include "solvers/report.h"
 
 namespace lucerna::photons {
@@ -14,7 +15,7 @@ struct PhotonReport {
            spared = 0;  ///< of the picture
   RoundFigures last;
   double radius_pixels = 0;
-  double first_radius = 1, floor = 0, alpha = 1;  ///< by the settings
+  RadiusLaw radius_law;
   bool at_floor = false;
   bool limited = false;                   ///< held to less than what was asked for
   uint32_t casters = 0, entrances = 0;    ///< boxes that paths are aimed at

@@ -6,7 +6,6 @@
 
 #include "base/timer.h"
 #include "solvers/photons/info.h"
-#include "solvers/photons/radius.h"
 
 namespace lucerna::photons {
 
@@ -87,6 +86,12 @@ solvers::Routing PhotonSolver::routing_of(const Task& task) {
   paths::LookupRoutes routes = routes_of(task);
   if (parts_of(task) == 0) routes.component.clear(), routes.parts = 0;
   return {.lookups = routes, .fallback = 0, .gather = {}};
+}
+
+RadiusLaw PhotonSolver::radius_law(const OptionValues& settings) {
+  return {.first = settings.real("photons.radius"),
+          .floor = settings.real("photons.floor"),
+          .alpha = settings.real("photons.alpha")};
 }
 
 uint32_t PhotonSolver::leaves(const Task& task) {
@@ -178,8 +183,7 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
   round.parts = sent_parts();
   round.account = uint32_t(std::countr_zero(std::max(1u, picture.task.own)));
 
-  const double shrunk = s.real("photons.radius") * radius_ratio(sample, s.real("photons.alpha"));
-  round.lookup = lookup_of(picture, picture.frame, std::max(shrunk, s.real("photons.floor")));
+  round.lookup = lookup_of(picture, picture.frame, radius_law(s).at(sample));
   return round;
 }
 
@@ -313,12 +317,9 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.looked_at = looked_at_, r.inspected = inspected_;
   r.bytes = map_.bytes() + lights_.bytes() + surfaces_.bytes() + (standing_ ? standing_->bytes() : 0) +
             (irradiance_ ? irradiance_->bytes() : 0);
-  const double shrunk =
-      s.real("photons.radius") * radius_ratio(rounds_ > 0 ? last_sample_ : 0, s.real("photons.alpha"));
-  r.first_radius = s.real("photons.radius"), r.floor = s.real("photons.floor");
-  r.alpha = s.real("photons.alpha");
-  r.radius_pixels = std::max(shrunk, s.real("photons.floor"));
-  r.at_floor = shrunk <= s.real("photons.floor");
+  r.radius_law = radius_law(s);
+  r.radius_pixels = r.radius_law.at(rounds_ > 0 ? last_sample_ : 0);
+  r.at_floor = r.radius_pixels <= r.radius_law.floor;
   const auto pixel = double(2 * glm::length(picture.frame.camera_right) / float(picture.frame.width));
   r.limited = picture.frame.orthographic
                   ? r.radius_pixels * pixel > double(k_most_radius * picture.flat.scene_radius)

@@ -64,6 +64,7 @@ class PhotonSolver final : public solvers::Solver {
   /// cancelled.
   bool feed(transport::Wavefront& wavefront, const solvers::Picture& picture, const solvers::Cancel& cancel);
   PhotonReport state(const solvers::Picture& picture) const;
+  static RadiusLaw radius_law(const OptionValues& settings);
   Round round_of(const solvers::Picture& picture, uint32_t sample) const;
   void begin_aim(const solvers::Picture& picture, solvers::Spoils spoils);
   shared::PhotonFrame lookup_of(const solvers::Picture& picture, const shared::Frame& frame,

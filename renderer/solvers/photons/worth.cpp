@@ -170,13 +170,10 @@ Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_
   double least = photons.product();
   if (mixed.product() < least) best = spread, least = mixed.product();
   if (found >= k_least_found_in_all && paths.product() < least) best = none, least = paths.product();
-  double share = 0;
-  for (size_t i = 0; i < all.size(); ++i) {
-    out.left[i] = best[i] ? 1 : 0;
-    share += best[i] ? 0 : 1 / regions;
-  }
-  out.by_photons = share;
-  out.nowhere = std::all_of(best.begin(), best.end(), [](bool b) { return b; });
+  for (size_t i = 0; i < out.left.size(); ++i) out.left[i] = best[i] ? 1 : 0;
+  const auto by_photons = std::count(best.begin(), best.end(), false);
+  out.by_photons = double(by_photons) / regions;
+  out.nowhere = by_photons == 0;
   out.gain = least > 0 ? photons.product() / least : 1;
   return out;
 }
