@@ -363,6 +363,38 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
   if (!drag_target(ui, plot, a, target, range)) hover(ui, plot, a);
 }
 
+/// What is known before the first samples: of the picture that is shown meanwhile, and of what is prepared.
+std::vector<std::string> early_texts(const session::Snapshot& s) {
+  std::vector<std::string> texts;
+  if (s.shown_error) {
+    const double error = *s.shown_error;
+    std::string when;
+    // As noise falls, with the square root of time.
+    if (error < session::k_usable_error)
+      when = ": usable";
+    else if (s.seconds > 0.1)
+      when = fmt::format(", usable in about {}",
+                         about_text(s.seconds * (std::pow(error / session::k_usable_error, 2) - 1)));
+    texts.push_back(fmt::format("What is shown is off by about {}{}", percent_text(error), when));
+  }
+  if (!s.preparing.empty())
+    texts.push_back(s.preparing_left ? fmt::format("{}; {:.0f} % done, about {} left", s.preparing,
+                                                   100 * s.preparing_done, about_text(*s.preparing_left))
+                                     : s.preparing);
+  texts.push_back("The lines begin with the first samples");
+  return texts;
+}
+
+void draw_early(ImDrawList* list, const Area& inside, const session::Snapshot& s) {
+  float y = inside.lo.y;
+  const float width = inside.width() - px(24);
+  for (const std::string& text : early_texts(s)) {
+    draw_text(list, {inside.lo.x + px(12), y}, {inside.hi.x - px(12), y + px(20)}, elided(text, width),
+              colour::text_dim);
+    y += px(20);
+  }
+}
+
 }  // namespace
 
 double Ui::target() const {
@@ -398,9 +430,8 @@ void draw_accuracy(Ui& ui, const Area& area) {
     const Area inside{{area.lo.x, area.lo.y + px(k_folded_bottom)}, area.hi};
     if (a && ui.scene && !a->ledger.entries().empty())
       body(ui, inside, *a);
-    else
-      draw_text(list, {inside.lo.x + px(12), inside.lo.y}, {inside.hi.x, inside.lo.y + px(20)},
-                "The lines begin with the first samples", colour::text_faint);
+    else if (ui.snapshot && ui.scene)
+      draw_early(list, inside, *ui.snapshot);
   }
   ImGui::End();
 }

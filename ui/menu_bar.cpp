@@ -321,7 +321,10 @@ std::string state_text(const session::Snapshot& s) {
                             : s.coarse ? "first pass"
                                        : "rendering";
   if (!s.preparing.empty() && !s.paused)
-    return fmt::format("{} \xC2\xB7 {}", s.preparing, padded(seconds_text(s.seconds), 7));
+    return fmt::format(
+        "{}{} \xC2\xB7 {}", s.preparing,
+        s.preparing_left ? fmt::format(" \xC2\xB7 {} left", about_text(*s.preparing_left)) : "",
+        padded(seconds_text(s.seconds), 7));
   // In adaptive sampling pixels differ: their mean.
   const std::string samples =
       padded(fmt::format("{:.0f}", adaptive ? s.mean_samples : static_cast<double>(s.samples)), digits);
@@ -333,8 +336,10 @@ std::string state_text(const session::Snapshot& s) {
                      padded(seconds_text(s.seconds), 7));
 }
 
-/// How much of the work is done, 0..1: of the samples, or in adaptive sampling of the rays forecast.
+/// How much of the work is done, 0..1: of what is prepared, of the samples, or in adaptive sampling of the
+/// rays forecast.
 float done_part(const session::Snapshot& s) {
+  if (!s.preparing.empty()) return static_cast<float>(std::max(0.0, s.preparing_done));
   if (s.accuracy && s.accuracy->adaptive) {
     const auto& lines = s.accuracy->ledger.entries();
     const double all = !lines.empty() && lines.back().total_rays ? lines.back().total_rays->middle : 0;

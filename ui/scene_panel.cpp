@@ -47,6 +47,7 @@ std::string name_or(const std::string& name, const char* kind, size_t index) {
 }
 /// What a press on a row does: selects, or takes the selection away.
 void choose(Ui& ui, bool chosen, const char* kind, size_t index) {
+  ui.chosen_in_list = true;
   if (chosen)
     ui.act("select.none");
   else

@@ -57,7 +57,10 @@ void Ui::follow_gesture() {
   held_ = held, flying_ = flying;
 }
 
-bool Ui::reveals() { return std::exchange(revealed_, selection) != selection; }
+bool Ui::reveals() {
+  if (std::exchange(revealed_, selection) == selection) return false;
+  return !std::exchange(chosen_in_list, false);
+}
 
 void Ui::place(const Viewpoint& to) { act_line(place_line(to)); }
 

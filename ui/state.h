@@ -88,8 +88,11 @@ struct Ui : commands::Workspace {
   std::vector<std::string> typed;
 
   Flight flight;
-  /// Whether the selection is new since the last call: then its row is to be shown.
+  /// Whether the selection is new since the last call, and was not made in the list (`chosen_in_list`): then
+  /// its row is to be shown.
   bool reveals();
+  /// A row has been pressed, which is in view; an emissive material has two.
+  bool chosen_in_list = false;
   /// Puts the camera where a drag or a flight has taken it.
   void place(const Viewpoint& view);
   /// The same for turns of the wheel: those that follow one another closely are one step.

@@ -257,10 +257,11 @@ class Latency {
     std::vector<Moment> moments;
     for (const Shown& at : shown) {
       // What is shown while a scene is loaded is what it begins with.
-      Moment m{std::max(0.0, at.seconds - loading), {1, 1}};
+      Moment m{std::max(0.0, at.seconds - loading), {1, 1}, {}};
       if (at.snapshot && at.snapshot->rgba.size() == reference.mean.size() * 4)
         m.distance = picture_distance(shown_luminance(at.snapshot->rgba), reference.mean, o_.width,
-                                      reference.half_difference);
+                                      reference.half_difference),
+        m.told = at.snapshot->shown_error;
       moments.push_back(m);
     }
     LatencyResult result = latency_of(moments, o_.seconds);
@@ -423,7 +424,8 @@ LatencyResult latency_of(std::span<const Moment> moments, double seconds) {
     r.rise = std::max(r.rise, m.distance.error - std::min(least, m.distance.error));
     least = std::min(least, m.distance.error);
     for (size_t k = 0; k < k_told_s.size(); ++k)
-      if (m.seconds <= k_told_s[k] && k_told_s[k] <= seconds + 0.5) r.error[k] = m.distance.error;
+      if (m.seconds <= k_told_s[k] && k_told_s[k] <= seconds + 0.5)
+        r.error[k] = m.distance.error, r.told[k] = m.told;
   }
   return r;
 }
@@ -443,7 +445,8 @@ LatencyResult median_of(std::span<const LatencyResult> runs) {
   r.lit_s = middle(of(&LatencyResult::lit_s)), r.usable_s = middle(of(&LatencyResult::usable_s));
   r.rise = *middle(of(&LatencyResult::rise)), r.loading_s = *middle(of(&LatencyResult::loading_s));
   for (size_t k = 0; k < r.error.size(); ++k)
-    r.error[k] = middle([k](const LatencyResult& run) { return run.error[k]; });
+    r.error[k] = middle([k](const LatencyResult& run) { return run.error[k]; }),
+    r.told[k] = middle([k](const LatencyResult& run) { return run.told[k]; });
   return r;
 }
 
@@ -456,14 +459,16 @@ std::vector<LatencyResult> measure_latency(const LatencyOptions& options, const 
 std::string latency_heading() {
   std::string row =
       fmt::format("{:<14} {:<8} {:<10} {:>8} {:>8}", "scene", "solver", "edit", "lit", "usable");
-  for (const double t : k_told_s) row += fmt::format(" {:>9}", fmt::format("at {:g} s", t));
+  for (const double t : k_told_s) row += fmt::format(" {:>15}", fmt::format("at {:g} s", t));
   return row + fmt::format(" {:>9}", "set back");
 }
 
 std::string latency_row(const LatencyResult& r) {
   std::string row = fmt::format("{:<14} {:<8} {:<10} {:>8} {:>8}", r.scene, r.solver, r.edit,
                                 text(r.lit_s, "s"), text(r.usable_s, "s"));
-  for (const auto& e : r.error) row += fmt::format(" {:>9}", text(e, "%", 100));
+  for (size_t k = 0; k < k_told_s.size(); ++k)
+    row += fmt::format(" {:>15}", text(r.error[k], "%", 100) +
+                                      (r.told[k] ? fmt::format(" ({:.3g})", 100 * *r.told[k]) : ""));
   row += fmt::format(" {:>9}", text(r.rise, "%", 100));
   if (r.loading_s > 0) row += fmt::format("  (loading {:.2f} s)", r.loading_s);
   return row;
@@ -477,7 +482,8 @@ nlohmann::ordered_json to_json(const LatencyResult& r) {
   j["lit_s"] = or_null(r.lit_s);
   j["usable_s"] = or_null(r.usable_s);
   for (size_t k = 0; k < k_told_s.size(); ++k)
-    j["error"][fmt::format("{:g}", k_told_s[k])] = or_null(r.error[k]);
+    j["error"][fmt::format("{:g}", k_told_s[k])] = or_null(r.error[k]),
+                                   j["told"][fmt::format("{:g}", k_told_s[k])] = or_null(r.told[k]);
   j["set_back"] = r.rise;
   j["loading_s"] = r.loading_s;
   return j;

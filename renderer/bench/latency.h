@@ -12,6 +12,8 @@
 
 #include "bench/folder.h"
 #include "scene/io/load.h"
+#include "session/session.h"
+#include "shaders/shared/preview.h"
 
 namespace lucerna::bench {
 
@@ -38,7 +40,7 @@ struct PictureDistance {
   double error = 0;
   double black = 0;  ///< share of the pixels with light in the reference that show none, 3x3 likewise
 };
-inline constexpr float k_dark = 0.02f;
+inline constexpr float k_dark = shared::k_preview_dark;
 /// `half_difference`: of two independent halves of the reference, whose mean it is; empty: it has no noise.
 PictureDistance picture_distance(std::span<const float> shown, std::span<const float> reference,
                                  uint32_t width, std::span<const float> half_difference = {});
@@ -49,10 +51,11 @@ std::vector<float> shown_luminance(std::span<const uint8_t> rgba);
 struct Moment {
   double seconds = 0;
   PictureDistance distance;
+  std::optional<double> told;  ///< the window's own estimate of the error (Snapshot::shown_error)
 };
 
 /// Relative error below which a picture is usable.
-inline constexpr double k_usable = 0.15;
+inline constexpr double k_usable = session::k_usable_error;
 /// Seconds after the edit of which errors are told.
 inline constexpr std::array<double, 5> k_told_s = {0.3, 1, 3, 10, 30};
 
@@ -61,6 +64,7 @@ struct LatencyResult {
   std::optional<double> lit_s;     ///< until no more than 0.1 % of the lit pixels are black, and stay so
   std::optional<double> usable_s;  ///< until the error is below k_usable and stays there
   std::array<std::optional<double>, k_told_s.size()> error{};  ///< where measured for so long
+  std::array<std::optional<double>, k_told_s.size()> told{};   ///< the window's own estimate of it, then
   /// The most by which the error has grown again from its least so far.
   double rise = 0;
   double loading_s = 0;  ///< of a load

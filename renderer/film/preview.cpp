@@ -307,10 +307,12 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   repainted_ = repainted_ && sampled != Sampled::all;
 
   PreviewShares told;
-  double all = 0;
+  double all = 0, error = 0;
   const auto* sums = static_cast<const shared::PreviewShares*>(shares_.mapped());
   for (uint32_t g = 0; g < groups(pixels()); ++g)
-    all += sums[g].all, told.stale += sums[g].stale, told.filtered += sums[g].filtered;
+    all += sums[g].all, told.stale += sums[g].stale, told.filtered += sums[g].filtered,
+        error += sums[g].error;
+  told.error = error / pixels();
   if (all > 0) told.stale /= all, told.filtered /= all;
   return told;
 }

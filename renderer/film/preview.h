@@ -14,10 +14,14 @@
 
 namespace lucerna::film {
 
-/// Of what is shown, by luminance, 0..1.
+/// Of what is shown, 0..1.
 struct PreviewShares {
-  double stale = 0;     ///< light from before the last edit
-  double filtered = 0;  ///< filtered light of the present
+  double stale = 0;     ///< light from before the last edit, by luminance
+  double filtered = 0;  ///< filtered light of the present, by luminance
+  /// Relative error that is expected of a mean over 3x3 pixels: the mean over the picture, each pixel's held
+  /// against shared::k_preview_dark at least and 1 at most. From the noise of the two halves of the samples,
+  /// what filtering may be off by, and how new and older light differ. None: no preview.
+  std::optional<double> error;
 };
 
 /// Of the film's pixels, which have samples.

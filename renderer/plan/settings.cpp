@@ -43,26 +43,25 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
                                                "Samples for all pixels alike, or for the tiles whose noise "
                                                "is not yet under the target. A change keeps "
                                                "the samples there are.",
-                                               "Sampling mode")));
-  list.push_back(without_restart(
-      real_option("sampling.target_error", "0.05", 0.0001, 10, "",
-                  "Adaptive: relative standard error of its pixels under which a tile is done.",
-                  "Sampling target error")));
+                                               "Sampling")));
+  list.push_back(without_restart(real_option(
+      "sampling.target_error", "0.05", 0.0001, 10, "",
+      "Adaptive: relative standard error of its pixels under which a tile is done.", "Target error")));
   list.push_back(without_restart(integer_option(
       "sampling.min_samples", 64, 2, 1 << 20, "samples",
-      "Adaptive: samples that every pixel gets before its tile may be done.", "Sampling min samples")));
+      "Adaptive: samples that every pixel gets before its tile may be done.", "Least samples")));
   list.push_back(without_restart(integer_option(
       "sampling.max_samples", 1024, 2, 1 << 20, "samples",
-      "Adaptive: samples a pixel after which a tile is given up, and reported.", "Sampling max samples")));
+      "Adaptive: samples a pixel after which a tile is given up, and reported.", "Most samples")));
   list.push_back(
       choice_option("sampling.tile", "16", {"8", "16"}, "pixels",
                     "Side of the tiles that adaptive sampling decides on, and that coherent sampling shares.",
-                    "Sampling tile"));
+                    "Tile of sampling"));
   list.push_back(boolean_option(
       "sampling.coherent", "false",
       "The pixels of a tile share their random sequence: neighbouring paths stay together, which some "
       "devices trace faster; noise then has a pattern, and a tile's error is not vouched for.",
-      "Sampling coherent"));
+      "Coherent tiles"));
   list.push_back(integer_option("seed", 0, 0, 4294967295.0, "",
                                 "Seed of every random decision; the same seed gives the same image.",
                                 "Seed"));

@@ -130,13 +130,13 @@ bool Display::see(Engine& engine, const PictureView& view, const std::function<b
   const film::PreviewCamera camera = camera_of(frame);
   if (!sight_.rays || sight_.defines != engine.defines()) {
     sight_.rays.emplace(device_, compiler_, engine.defines());
+    sight_.note = gpu::Kernel(device_, compiler_, "film/preview_sight.comp", engine.defines());
     sight_.defines = engine.defines();
   }
   overlay::Sight& rays = *sight_.rays;
   if (!rays.begun() || rays.width() != view.width || rays.height() != view.height || sight_.camera != camera)
     rays.begin(frame, 1);
   sight_.camera = camera;
-  if (!sight_.note) sight_.note = gpu::Kernel(device_, compiler_, "film/preview_sight.comp");
   const auto note = [&](const shared::SeePush& push) {
     wavefront.bind_paths(sight_.resources);
     sight_.resources.set("Surfaces", rays.surfaces());
@@ -168,7 +168,7 @@ void Display::develop(Engine& engine, const PictureView& view, const film::Film&
   const film::PreviewCamera camera = camera_of(engine.frame(view, view.width, view.height));
   if (!draft && sampled == film::Sampled::none && preview_.has_history()) {
     preview_.recall(engine.wavefront().stream(), film, shown, camera);
-    shares_ = {.stale = 1, .filtered = 0};
+    shares_ = {.stale = 1};
     return;
   }
   shares_ = preview_.develop(engine.wavefront().stream(), film, draft, shown, camera, true, sampled,

@@ -153,13 +153,40 @@ struct Session::Impl {
     filled = false;
   }
 
+  /// Of the picture in progress, now and then: what has gone by, and what the device has worked of it.
+  struct Pace {
+    double seconds = 0, device_s = 0;
+  };
+  static constexpr double k_pace_s = 4;
+  std::array<Pace, 2> pace;  ///< the older first
+
+  /// From the reports of the solvers and what rendering has taken.
+  void tell_preparing(const transport::TransportStats& stats) {
+    next.preparing.clear(), next.preparing_done = -1, next.preparing_left.reset();
+    const auto told = std::find_if(next.reports.begin(), next.reports.end(),
+                                   [](const auto& report) { return !report->preparing.empty(); });
+    if (told == next.reports.end()) return;
+    next.preparing = (*told)->preparing;
+    if (!(*told)->progress) return;
+    next.preparing_done = (*told)->progress->done;
+    // The device is not at it all the time: pictures are shown, drafts are made, most at the beginning.
+    Pace now{next.seconds, 0};
+    for (const auto& s : stats.stages) now.device_s += 1e-3 * s.ms;
+    if (now.seconds < pace[1].seconds) pace = {};
+    if (now.seconds - pace[1].seconds > k_pace_s) pace = {pace[1], now};
+    const double seconds = now.seconds - pace[0].seconds;
+    const double share = pace[1].seconds > 0 && seconds > 0 ? (now.device_s - pace[0].device_s) / seconds : 0;
+    next.preparing_left = 1e-3 * (*told)->progress->left_ms / (share > 0 ? std::clamp(share, 0.2, 1.0) : 0.6);
+  }
+
   void fill_snapshot(Renderer& r, bool numbers) {
     next.width = r.film().width();
     next.height = r.film().height();
     const Timer shown;
     next.rgba = r.shown_picture(!filled, [&] { return pending.load() || quit; });
     publish_seconds = std::max(k_publish_seconds, 4 * shown.seconds());
-    next.stale = r.preview_shares().stale, next.filtered = r.preview_shares().filtered;
+    const film::PreviewShares shares = r.preview_shares();
+    next.stale = shares.stale, next.filtered = shares.filtered, next.shown_error = shares.error;
     const film::View view = r.view();
     next.legend = {};
     if (view.layer >= shared::k_layer_samples)
@@ -171,11 +198,9 @@ struct Session::Impl {
     next.lights_together = r.relight().why_not;
     next.paused = paused;
     next.finished = r.done();
-    next.preparing.clear();
-    next.reports = r.reports();
-    for (const auto& report : next.reports)
-      if (next.preparing.empty()) next.preparing = report->preparing;
     next.seconds = r.seconds();
+    next.reports = r.reports();
+    tell_preparing(r.stats());
     next.camera = r.camera();
     next.tracer = r.tracer_name();
     next.device = r.device().info().name;

@@ -23,6 +23,9 @@ namespace lucerna::session {
 inline constexpr int k_components = 4;  ///< primary, secondary, tertiary, caustic
 extern const std::array<const char*, k_components> k_component_names;
 
+/// Relative error (film::PreviewShares::error) below which a picture is good to work with.
+inline constexpr double k_usable_error = 0.15;
+
 struct ComponentStatus {
   std::string solver = "path";  ///< "path" or "off"
   double mean_luminance = 0;    ///< of its layer
@@ -59,12 +62,16 @@ struct Snapshot {
   bool coarse = false;             ///< some of the picture still is the coarse first image
   /// Of what is shown, by luminance, 0..1: light from before the last edit; filtered light of the present.
   double stale = 0, filtered = 0;
+  /// Of what is shown, where that is a preview: film::PreviewShares::error.
+  std::optional<double> shown_error;
   /// Why the light of groups of lights is not kept apart, so that a mix of them lights the picture anew; ""
   /// where it is.
   std::string lights_together;
   bool paused = false, finished = false;
   /// "" or what is made before the first sample (solvers::Report::preparing).
   std::string preparing;
+  double preparing_done = -1;            ///< of that, 0..1; -1: it cannot be told
+  std::optional<double> preparing_left;  ///< seconds of rendering, about
   /// Wall time since this image was begun, pauses left out: the clock of the ledger's wall_s and of
   /// forecasts.
   double seconds = 0;

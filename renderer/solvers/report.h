@@ -177,6 +177,11 @@ struct Report {
   std::string to_go_on;  ///< where it waits: what it waits for, and which command goes on
   /// What is being made, "" when ready: "cache, pass 3: 2810 records". For the window's bar.
   std::string preparing;
+  /// Of what is being made, 0..1, and the device time that it still takes [ms]; none: it cannot be told.
+  struct Progress {
+    double done = 0, left_ms = 0;
+  };
+  std::optional<Progress> progress;
   std::string state;  ///< one word for the panel's head: "building"
   std::vector<PanelSection> sections;
   std::vector<Legend> legends;

@@ -54,14 +54,15 @@ struct PreviewSurface {
   float depth;  // [m]; 0: nothing is there; below 0: not known
   vec3 normal, albedo;
   float samples;
+  bool emits;  // as far as a ray has met it
 };
 PreviewSurface preview_surface(vec4 texel) {
-  return PreviewSurface(texel.x, preview_normal(floatBitsToUint(texel.y)), unpackUnorm4x8(floatBitsToUint(texel.z)).rgb,
-                        texel.w);
+  vec4 albedo = unpackUnorm4x8(floatBitsToUint(texel.z));
+  return PreviewSurface(texel.x, preview_normal(floatBitsToUint(texel.y)), albedo.rgb, texel.w, albedo.a < 0.5);
 }
 vec4 preview_texel(PreviewSurface s) {
   return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)),
-              uintBitsToFloat(packUnorm4x8(vec4(s.albedo, 1.0))), s.samples);
+              uintBitsToFloat(packUnorm4x8(vec4(s.albedo, s.emits ? 0.0 : 1.0))), s.samples);
 }
 
 // Whether a pixel that was shown, or holds samples, tells of light at all.
@@ -75,6 +76,7 @@ vec3 preview_modulation(PreviewSurface s) { return s.depth > 0.0 ? max(s.albedo,
 float preview_alike(PreviewSurface a, PreviewSurface b, vec3 offset, float scale) {
   if (a.depth < 0.0 || b.depth < 0.0) return 1.0;
   if (a.depth == 0.0 || b.depth == 0.0) return a.depth == b.depth ? 1.0 : 0.0;
+  if (a.emits != b.emits) return 0.0;
   float facing = max(dot(a.normal, b.normal), 0.0);
   float off = max(abs(dot(a.normal, offset)), abs(dot(b.normal, offset))) / scale;
   float facing8 = square(square(square(facing)));

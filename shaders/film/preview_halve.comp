@@ -17,6 +17,21 @@ PreviewSurface surface_at(int pixel) {
   return preview_surface(vec4(texel.xyz, 0.0));
 }
 
+// Whether a draft's pixel may show something else than a cell of it: light of surfaces that emit and of those that do not, side
+// by side in one plane, would show as specks.
+bool mixed_draft(uvec2 at, bool emits) {
+  if (push.surfaces != k_preview_surface_seen) return false;
+  uvec2 size = uvec2(push.width, push.height), draft = uvec2(push.draft_width, push.draft_height);
+  uvec2 first = min(at * size / draft, size - 1u), last = min((at + 1u) * size / draft, size) - 1u;
+  bool other = false;
+  for (uint k = 0u; k < 4u; ++k) {
+    uvec2 corner = uvec2(k % 2u == 0u ? first.x : last.x, k / 2u == 0u ? first.y : last.y);
+    PreviewSurface s = preview_surface(texelFetch(guide_surfaces, int(corner.y * push.width + corner.x)));
+    other = other || s.emits != emits;
+  }
+  return other;
+}
+
 PreviewLight total;
 float weights = 0.0;
 bool noise_known = true;
@@ -50,6 +65,7 @@ void main() {
     // Across an edge it is another surface's light, and better than none.
     bool alike = (s.depth > 0.0) == (here.depth > 0.0) &&
                  (s.depth <= 0.0 || (dot(s.normal, here.normal) > 0.8 && abs(s.depth - here.depth) < 0.1 * here.depth));
+    alike = alike && !mixed_draft(at, here.emits);
     float weight = push.draft_share * s.samples * (alike ? 1.0 : 1e-3);
     add(texelFetch(draft_texels, 2 * pixel), texelFetch(draft_texels, 2 * pixel + 1), s, weight);
   }
@@ -59,7 +75,7 @@ void main() {
     uvec2 at = min(xy + push.step / 2u * uvec2(k % 2u, k / 2u), uvec2(push.width, push.height) - 1u);
     int pixel = int(at.y * push.width + at.x);
     PreviewSurface s = surface_at(pixel);
-    bool alike = (s.depth > 0.0) == (here.depth > 0.0) && dot(s.normal, here.normal) > 0.8;
+    bool alike = (s.depth > 0.0) == (here.depth > 0.0) && dot(s.normal, here.normal) > 0.8 && s.emits == here.emits;
     if (s.samples > 0.0 && (alike || s.depth <= 0.0))
       add(texelFetch(packed_texels, 2 * pixel), texelFetch(packed_texels, 2 * pixel + 1), s, s.samples);
     if (push.history == 0u) continue;

@@ -29,10 +29,8 @@ void main() {
   s.normal = normal.xyz / max(length(normal.xyz), 1e-20);
   s.albedo = albedo.xyz / max(albedo.w, 1.0);
   s.samples = float(count);
-  vec4 texel = preview_texel(s);
-  if (count == 0u) {
-    texel = push.guided != 0u ? texelFetch(guide_surfaces, int(pixel)) : vec4(-1.0, 0.0, 0.0, 0.0);
-    texel.w = 0.0;
-  }
+  vec4 guide = push.guided != 0u ? texelFetch(guide_surfaces, int(pixel)) : vec4(-1.0, 0.0, 0.0, 0.0);
+  s.emits = push.guided != 0u && preview_surface(guide).emits;
+  vec4 texel = count > 0u ? preview_texel(s) : vec4(guide.xyz, 0.0);
   packed_surfaces[pixel] = texel;
 }

@@ -27,6 +27,9 @@ const float k_least_noise = 0.5;  // of a sample, relative, in light that has no
 const float k_clean = 0.02, k_noisy = 0.08;
 // Of filtered light, what the filter may be off by.
 const float k_filter_error = 0.04;
+// Mean size of a deviation, in standard errors: sqrt(2 / pi) of a normal variable's; and a quarter more, by which light that was
+// filtered was measured to be off on interiors, because few samples know too little of their noise.
+const float k_mean_deviation = 1.25 * 0.798;
 
 // Of the nearest cells' weight, what has to be of a pixel's surface. Else cells so far around are asked.
 const float k_alone = 0.02;
@@ -36,7 +39,7 @@ const float k_alone_until = 16.0, k_not_alone_from = 96.0;
 // How much filtered light may get of what the filter has lost: in units of white, and of itself.
 const float k_most_back = 1.0, k_most_back_relative = 3.0;
 
-shared vec3 group_shares[64];
+shared vec4 group_shares[64];
 
 // Sums over the cells that tell of the pixel, by weight.
 vec4 light[k_component_count];
@@ -65,7 +68,8 @@ void add_cell(int cell, PreviewSurface s, float w, bool other) {
 }
 
 bool same_surface(PreviewSurface here, PreviewSurface s) {
-  return here.depth > 0.0 && s.depth > 0.0 ? abs(here.depth - s.depth) < 0.1 * here.depth && dot(here.normal, s.normal) > 0.7
+  return here.depth > 0.0 && s.depth > 0.0 ? abs(here.depth - s.depth) < 0.1 * here.depth && dot(here.normal, s.normal) > 0.7 &&
+                                                       here.emits == s.emits
                                            : here.depth == s.depth;
 }
 
@@ -94,7 +98,7 @@ vec4 light_change(vec2 cell) {
 
 void main() {
   uint pixel = global_index(), lane = gl_LocalInvocationIndex;
-  vec3 told = vec3(0.0);
+  vec4 told = vec4(0.0);
   if (pixel < push.width * push.height) {
     vec4 surface = vec4(-1.0, 0.0, 0.0, 0.0);
     PreviewLight own;
@@ -170,6 +174,8 @@ void main() {
     float by_chance = push.same_light != 0u ? k_by_chance_same : k_by_chance;
     PreviewLight result;
     vec3 color = vec3(0.0);
+    float variance = 0.0;  // of what is shown, as far as it is left by a mean over 3x3 pixels
+    bool unknown = false;
     for (uint c = 0u; c < k_component_count; ++c) {
       float plain = luminance(light[c].rgb) * inverse, back = min(lost[c] * inverse, k_most_back + k_most_back_relative * plain);
       vec3 colour = plain > 1e-4 ? light[c].rgb * (inverse / plain) : vec3(1.0);
@@ -182,7 +188,8 @@ void main() {
       float rough = here.samples > 0.0 ? max(smoothstep(k_clean, k_noisy, relative), alone) : 1.0;
       float amount = push.filtering != 0u || here.samples <= 0.0 ? rough : 0.0;
       vec3 now = mix(own.of[c].rgb, smooth_light, amount);
-      float error = mix(noise[c], luminance(modulation) * max(light[c].w, 0.0) * inverse + k_filter_error * smooth_luminance, amount);
+      float smooth_error = luminance(modulation) * max(light[c].w, 0.0) * inverse + k_filter_error * smooth_luminance;
+      float error = mix(noise[c], smooth_error, amount);
       vec3 before = has_old ? old.of[c].rgb * push.history_scale : vec3(0.0);
       float u = has_old ? square(old.of[c].w) : 0.0, v = square(error) + 1e-8;
       // Paths that have brought nothing yet seem to be without noise: what was there says how much may come.
@@ -199,21 +206,26 @@ void main() {
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;
       if (nothing) keep = has_old ? 1.0 : 0.0;
       now = mix(now, before, keep);
-      float left = sqrt(square((1.0 - keep) * error) + keep * keep * (u + change));
+      float of_before = keep * keep * (u + change), left = sqrt(square((1.0 - keep) * error) + of_before);
       result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);
       if ((push.show >> c & 1u) != 0u) color += now;
-      float shown = luminance(now) * float(push.show >> c & 1u);
-      told += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
+      float showing = float(push.show >> c & 1u), shown = luminance(now) * showing;
+      told.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
+      // Pixels' own samples are independent; what is filtered, or was there before, errs alike in pixels side by side.
+      variance += showing * (square(1.0 - keep) * (square((1.0 - amount) * noise[c]) / 9.0 + square(amount * smooth_error)) + of_before);
+      unknown = unknown || (nothing && !has_old);
     }
+    told.xyz = min(told.xyz, vec3(4.0));
+    told.w = unknown ? 1.0 : min(k_mean_deviation * sqrt(variance) / max(luminance(color), k_preview_dark), 1.0);
     LUCERNA_PREVIEW_STORE(packed, pixel, result)
     picture[pixel] = picture_packed(tone_map(color, push.curve));
   }
-  group_shares[lane] = min(told, vec3(4.0));
+  group_shares[lane] = told;
   barrier();
   if (lane == 0u) {
-    vec3 sum = vec3(0.0);
+    vec4 sum = vec4(0.0);
     for (uint i = 0u; i < 64u; ++i) sum += group_shares[i];
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (group < (push.width * push.height + 63u) / 64u) shares[group] = PreviewShares(sum.x, sum.y, sum.z);
+    if (group < (push.width * push.height + 63u) / 64u) shares[group] = PreviewShares(sum.x, sum.y, sum.z, sum.w);
   }
 }

@@ -3,7 +3,8 @@
 // Of a pixel: k_preview_texels texels of sixteen half floats, component by component red, green, blue and the standard
 // error of the luminance (below 0: not known), in units of what is shown white; and one texel of its surface: depth along the
 // view axis [m] (0: nothing is there; below 0: not known, and where a draft has seen it about k_preview_about less
-// this), bits packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, 1), samples.
+// this), bits packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, 1 or, where it is known to emit
+// light, 0), samples.
 #ifndef LUCERNA_SHARED_PREVIEW_H
 #define LUCERNA_SHARED_PREVIEW_H
 #include "shaders/shared/compat.h"
@@ -91,9 +92,12 @@ struct PreviewResolvePush {
   uint surfaces;         ///< k_preview_surface_*
 };
 
-/// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered.
+/// Pixels darker than this, of white, err in proportion to it.
+LUCERNA_CONST float k_preview_dark = 0.02f;
+/// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered; and of the relative
+/// errors that are expected of a mean over 3x3 pixels (1 at most).
 struct PreviewShares {
-  float all, stale, filtered;
+  float all, stale, filtered, error;
 };
 
 LUCERNA_SHARED_END

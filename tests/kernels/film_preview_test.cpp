@@ -1,115 +1,10 @@
 // links: film film_io
 // What the window shows of a film with few samples, through the real shaders: noise goes and edges of colour
 // stay, what was there before stays until the new light says otherwise, and goes where the camera sees it.
-#include <catch2/catch.hpp>
-#include <cmath>
-#include <cstring>
-#include <functional>
-#include <numeric>
-#include <random>
-
-#include "film/developer.h"
-#include "film/preview.h"
-#include "film/tonemap.h"
+#include "kernels/film_preview_support.h"
 
 using namespace lucerna;
-using film::Film;
-
-namespace {
-
-uint32_t compact(uint32_t x) { return (x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u); }
-
-/// What a sample of a pixel brings.
-struct Sample {
-  vec3 light{0}, albedo{1}, normal{0, 0, 1};
-  float depth = 5;  ///< 0: nothing is there
-};
-using Source = std::function<Sample(uint32_t x, uint32_t y)>;
-
-struct Stage {
-  uint32_t width, height;
-  uint32_t component = 1;  ///< of what samples bring
-  gpu::Device device{{"cpu", true}};
-  gpu::ShaderCompiler compiler;
-  gpu::Stream stream{device};
-  gpu::Kernel add{device, compiler, "film/add.comp"};
-  film::Developer developer{device, compiler};
-  film::Preview preview{device, compiler};
-  Film film{device, width, height};
-  film::View view;
-  film::PreviewCamera camera{{vec3(0), vec3(1, 0, 0), vec3(0, 0.75f, 0), vec3(0, 0, -1)}, false};
-
-  Stage(uint32_t w, uint32_t h) : width(w), height(h) {
-    view.curve = shared::k_tone_linear;
-    film.clear(stream);
-  }
-  ~Stage() { CHECK(device.validation_messages() == 0); }
-
-  /// Adds samples to all of a film's pixels, or to those of its blocks where `where` is true.
-  void sample(
-      Film& to, uint32_t samples, const Source& source,
-      const std::function<bool(uint32_t block)>& where = [](uint32_t) { return true; }) {
-    std::vector<shared::WorkBlock> list;
-    for (uint32_t b = 0; b < to.blocks(); ++b)
-      if (where(b)) list.push_back({b, 0});
-    const size_t slots = list.size() * 64 * samples;
-    std::vector<vec4> light(slots * 4, vec4(0)), features(slots * 2, vec4(0));
-    for (uint32_t s = 0; s < samples; ++s)
-      for (size_t b = 0; b < list.size(); ++b)
-        for (uint32_t code = 0; code < 64; ++code) {
-          const uint32_t across = to.blocks_across(), x = list[b].index % across * 8 + compact(code),
-                         y = list[b].index / across * 8 + compact(code >> 1);
-          const Sample v = source(x, y);
-          const size_t slot = (s * list.size() + b) * 64 + code;
-          light[slot * 4 + component] = vec4(v.light, 0);
-          if (v.depth > 0)
-            features[2 * slot] = vec4(v.albedo, 1), features[2 * slot + 1] = vec4(v.normal, v.depth);
-        }
-    gpu::Buffer radiance(device, {.name = "radiance", .bytes = light.size() * 16, .texel = true});
-    gpu::Buffer surfaces(device, {.name = "features", .bytes = features.size() * 16, .texel = true});
-    gpu::Buffer work(device, {.name = "work", .bytes = list.size() * sizeof(shared::WorkBlock)});
-    radiance.write(std::span<const vec4>(light));
-    surfaces.write(std::span<const vec4>(features));
-    work.write(std::span<const shared::WorkBlock>(list));
-    gpu::Resources resources;
-    to.bind(resources);
-    resources.set("WorkBlocks", work);
-    resources.set("radiance_texels", radiance);
-    resources.set("feature_texels", surfaces);
-    const auto n = uint32_t(list.size());
-    stream.dispatch(add, resources, shared::FilmPush{to.width(), to.height(), 64 * n, samples, 0, 0}, n);
-    stream.run();
-  }
-  film::PreviewShares show(const Film* draft = nullptr, bool filtered = true) {
-    return preview.develop(stream, film, draft, view, camera, filtered);
-  }
-  /// Linear red, as the picture shows it.
-  std::vector<float> shown() const {
-    const std::vector<uint8_t> rgba = film.read_picture();
-    std::vector<float> red;
-    for (size_t i = 0; i < rgba.size(); i += 4) {
-      const float c = float(rgba[i]) / 255;
-      red.push_back(c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f));
-    }
-    return red;
-  }
-};
-
-double mean_of(const std::vector<float>& shown) {
-  return std::accumulate(shown.begin(), shown.end(), 0.0) / double(shown.size());
-}
-
-double rms(const std::vector<float>& shown, const std::function<float(uint32_t, uint32_t)>& truth,
-           uint32_t width) {
-  double sum = 0;
-  for (size_t i = 0; i < shown.size(); ++i) {
-    const double d = shown[i] / truth(uint32_t(i) % width, uint32_t(i) / width) - 1;
-    sum += d * d;
-  }
-  return std::sqrt(sum / double(shown.size()));
-}
-
-}  // namespace
+using namespace lucerna::test;
 
 TEST_CASE("noise of few samples is filtered, and edges of the surfaces' colours stay sharp") {
   for (const uint32_t samples : {1u, 4u}) {
@@ -295,42 +190,6 @@ TEST_CASE("what was there before is shown in the new colour of a surface at once
     CHECK(rms(
               stage.shown(), [](uint32_t, uint32_t) { return 0.1f; }, stage.width) < 0.15);
   }
-}
-
-TEST_CASE("where it is known what surfaces pixels show, a draft has edges and colours of single pixels") {
-  // Stripes three pixels wide, bright and dark, and a step of depth with other light behind it.
-  Stage stage(96, 64);
-  const auto albedo = [](uint32_t x) { return x / 3 % 2 ? 0.8f : 0.2f; };
-  const auto light = [](uint32_t y) { return y < 30 ? 0.9f : 0.3f; };
-  const auto depth = [](uint32_t y) { return y < 30 ? 5.0f : 9.0f; };
-  Film draft(stage.device, 24, 16);
-  draft.clear(stage.stream);
-  stage.sample(draft, 1, [&](uint32_t x, uint32_t y) {
-    const uint32_t px = 4 * x + 1, py = 4 * y + 2;
-    return Sample{.light = vec3(light(py) * albedo(px)), .albedo = vec3(albedo(px)), .depth = depth(py)};
-  });
-  std::vector<vec4> seen;
-  for (uint32_t y = 0; y < stage.height; ++y)
-    for (uint32_t x = 0; x < stage.width; ++x) {
-      const auto byte = uint32_t(std::lround(albedo(x) * 255));
-      // A normal towards the eye is 0 on the octahedron.
-      const uint32_t bits[2] = {0, byte * 0x010101u | 0xff000000u};
-      vec4 texel(depth(y), 0, 0, 0);
-      std::memcpy(&texel.y, bits, sizeof bits);
-      seen.push_back(texel);
-    }
-  gpu::Buffer surfaces(stage.device, {.name = "surfaces", .bytes = seen.size() * 16, .texel = true});
-  surfaces.write(std::span<const vec4>(seen));
-  const auto truth = [&](uint32_t x, uint32_t y) { return light(y) * albedo(x); };
-  stage.show(&draft);
-  const double without = rms(stage.shown(), truth, stage.width);
-  stage.preview.forget();
-  stage.preview.develop(stage.stream, stage.film, &draft, stage.view, stage.camera, true, film::Sampled::none,
-                        &surfaces);
-  const double with = rms(stage.shown(), truth, stage.width);
-  INFO("relative error " << without << ", with the surfaces " << with);
-  CHECK(without > 0.6);
-  CHECK(with < 0.05);
 }
 
 TEST_CASE("what a draft alone has shown stays after an edit, and goes with the camera") {

@@ -128,7 +128,7 @@ std::vector<SharedStruct> structs() {
              repainted, history_scale, step, sampled, same_light, recoloured, blocks_across, blocks_down,
              surfaces),
       SHARED("preview.h", PreviewChangePush, across, down, blocks_across, blocks_down, all),
-      SHARED("preview.h", PreviewShares, all, stale, filtered),
+      SHARED("preview.h", PreviewShares, all, stale, filtered, error),
       SHARED("irradiance_cache/records.h", RelightPreviewPush, factor, count, parts, rays, clusters, leading,
              sky_group),
       SHARED("irradiance_cache/records.h", LightChangePush, factor, count, parts, rays, leading, clusters),

@@ -91,7 +91,8 @@ struct CacheStatus {
   struct {
     /// Not 0: so many records keep their places and are relit, CacheStatus::records of them so far.
     uint32_t records = 0;
-    float share = 0;  ///< of these that has its first level, those under way included
+    float share = 0;    ///< of these that has its first level, those under way included
+    uint64_t rays = 0;  ///< that they had before; 0: not known
   } relighting;
   StopReason stop = StopReason::building;
   bool waits = false;             ///< building has come to a pause (Cache::pause)

@@ -38,7 +38,10 @@ void Cache::Impl::relight(const std::optional<std::vector<vec3>>& factors, uint3
   ranges.lose_light();
   held = gathers;
   status.stop = StopReason::building;
-  status.records = 0, status.relighting = {.records = ranges.placed()}, status.rays = 0;
+  // Relit once more before they were complete, they have not had all their rays.
+  const uint64_t rays = std::max(status.relighting.records > 0 ? status.relighting.rays : 0, status.rays);
+  status.records = 0, status.relighting = {.records = ranges.placed(), .share = 0, .rays = rays},
+  status.rays = 0;
   status.passes.clear();
   write_frame();
   relight_pass();

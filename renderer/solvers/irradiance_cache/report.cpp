@@ -8,6 +8,7 @@
 #include "base/figures.h"
 #include "shaders/shared/irradiance_cache/placement_view.h"
 #include "shaders/shared/ramp.h"
+#include "solvers/irradiance_cache/build_forecast.h"
 #include "solvers/irradiance_cache/info.h"
 
 namespace lucerna::irradiance_cache {
@@ -450,6 +451,8 @@ solvers::Report make_report(const CacheReport& told, const OptionValues& setting
   Report report{.solver = info().name, .ready = !building, .waits = s.waits};
   if (s.waits) report.to_go_on = "building of the cache waits (cache.pause); cache.run goes on";
   report.preparing = preparing(told);
+  if (const auto left = forecast_of(s, settings.real("cache.stop")); left && !s.waits)
+    report.progress = {left->done, left->left_ms};
   report.state = s.waits ? "waits" : building ? "building" : "complete";
   report.sections = {numbers(told, settings, report.state), steps(told), overlays(settings)};
   if (!s.passes.empty()) {

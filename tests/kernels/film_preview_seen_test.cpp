@@ -1,0 +1,140 @@
+// links: film film_io
+// What the window shows of a film while it is known what surface each pixel shows, through the real shaders.
+#include <cstring>
+
+#include "kernels/film_preview_support.h"
+
+using namespace lucerna;
+using namespace lucerna::test;
+
+namespace {
+
+struct Seen {
+  float albedo = 1, depth = 5;
+  bool emits = false;
+};
+
+/// Surfaces of a stage's pixels that face the eye, as shaders/shared/preview.h has them.
+gpu::Buffer surfaces_of(Stage& stage, const std::function<Seen(uint32_t x, uint32_t y)>& at) {
+  std::vector<vec4> texels;
+  for (uint32_t y = 0; y < stage.height; ++y)
+    for (uint32_t x = 0; x < stage.width; ++x) {
+      const Seen s = at(x, y);
+      const auto byte = uint32_t(std::lround(s.albedo * 255));
+      // A normal towards the eye is 0 on the octahedron.
+      const uint32_t bits[2] = {0, byte * 0x010101u | (s.emits ? 0 : 0xff000000u)};
+      vec4 texel(s.depth, 0, 0, 0);
+      std::memcpy(&texel.y, bits, sizeof bits);
+      texels.push_back(texel);
+    }
+  gpu::Buffer surfaces(stage.device, {.name = "surfaces", .bytes = texels.size() * 16, .texel = true});
+  surfaces.write(std::span<const vec4>(texels));
+  return surfaces;
+}
+
+}  // namespace
+
+TEST_CASE("where it is known what surfaces pixels show, a draft has edges and colours of single pixels") {
+  // Stripes three pixels wide, bright and dark, and a step of depth with other light behind it.
+  Stage stage(96, 64);
+  const auto albedo = [](uint32_t x) { return x / 3 % 2 ? 0.8f : 0.2f; };
+  const auto light = [](uint32_t y) { return y < 30 ? 0.9f : 0.3f; };
+  const auto depth = [](uint32_t y) { return y < 30 ? 5.0f : 9.0f; };
+  Film draft(stage.device, 24, 16);
+  draft.clear(stage.stream);
+  stage.sample(draft, 1, [&](uint32_t x, uint32_t y) {
+    const uint32_t px = 4 * x + 1, py = 4 * y + 2;
+    return Sample{.light = vec3(light(py) * albedo(px)), .albedo = vec3(albedo(px)), .depth = depth(py)};
+  });
+  const gpu::Buffer surfaces = surfaces_of(
+      stage, [&](uint32_t x, uint32_t y) { return Seen{.albedo = albedo(x), .depth = depth(y)}; });
+  const auto truth = [&](uint32_t x, uint32_t y) { return light(y) * albedo(x); };
+  stage.show(&draft);
+  const double without = rms(stage.shown(), truth, stage.width);
+  stage.preview.forget();
+  stage.preview.develop(stage.stream, stage.film, &draft, stage.view, stage.camera, true, film::Sampled::none,
+                        &surfaces);
+  const double with = rms(stage.shown(), truth, stage.width);
+  INFO("relative error " << without << ", with the surfaces " << with);
+  CHECK(without > 0.6);
+  CHECK(with < 0.05);
+}
+
+TEST_CASE("a lamp in the plane of a ceiling does not shine on the ceiling beside it, nor get dark spots") {
+  // Of one plane and one colour; its border runs through pixels of the draft.
+  Stage stage(96, 64);
+  stage.component = 0;
+  const auto lamp = [](uint32_t x, uint32_t y) { return x >= 37 && x < 59 && y >= 22 && y < 43; };
+  const auto light = [&](uint32_t x, uint32_t y) { return lamp(x, y) ? 20.0f : 0.3f; };
+  const gpu::Buffer surfaces =
+      surfaces_of(stage, [&](uint32_t x, uint32_t y) { return Seen{.emits = lamp(x, y)}; });
+  std::mt19937 random(5);
+  Film draft(stage.device, 24, 16);
+  draft.clear(stage.stream);
+  stage.sample(draft, 2, [&](uint32_t x, uint32_t y) {
+    return Sample{.light = vec3(light(4 * x + random() % 4, 4 * y + random() % 4))};
+  });
+  const auto worst = [&] {
+    const std::vector<float> shown = stage.shown();
+    float brightest = 0, darkest = 1;
+    for (uint32_t y = 0; y < stage.height; ++y)
+      for (uint32_t x = 0; x < stage.width; ++x) {
+        const float is = shown[y * stage.width + x];
+        if (lamp(x, y))
+          darkest = std::min(darkest, is);
+        else
+          brightest = std::max(brightest, is);
+      }
+    return std::pair(brightest, darkest);
+  };
+  SECTION("of a draft") {
+    stage.preview.develop(stage.stream, stage.film, &draft, stage.view, stage.camera, true,
+                          film::Sampled::none, &surfaces);
+    const auto [brightest, darkest] = worst();
+    CHECK(brightest < 0.33f);
+    CHECK(darkest > 0.9f);
+  }
+  SECTION("of the first samples of all pixels, anywhere in them") {
+    stage.sample(stage.film, 1, [&](uint32_t x, uint32_t y) { return Sample{.light = vec3(light(x, y))}; });
+    stage.preview.develop(stage.stream, stage.film, &draft, stage.view, stage.camera, true,
+                          film::Sampled::all, &surfaces);
+    const auto [brightest, darkest] = worst();
+    CHECK(brightest < 0.33f);
+    CHECK(darkest > 0.9f);
+  }
+}
+
+TEST_CASE("the error that is told of a preview is about that which it has") {
+  for (const uint32_t samples : {2u, 4u, 16u}) {
+    for (const bool filtered : {true, false}) {
+      Stage stage(128, 96);
+      std::mt19937 random(7);
+      std::exponential_distribution<float> noise(1);
+      const auto light = [](uint32_t x, uint32_t y) {
+        return 0.3f + 0.1f * std::sin(0.05f * float(x + 2 * y));
+      };
+      stage.sample(stage.film, samples, [&](uint32_t x, uint32_t y) {
+        return Sample{.light = vec3(light(x, y) * noise(random))};
+      });
+      const std::optional<double> told = stage.show(nullptr, filtered).error;
+      REQUIRE(told);
+      const std::vector<float> shown = stage.shown();
+      double sum = 0;
+      uint32_t count = 0;
+      for (uint32_t y = 1; y + 1 < stage.height; ++y)
+        for (uint32_t x = 1; x + 1 < stage.width; ++x, ++count) {
+          float is = 0, truth = 0;
+          for (uint32_t k = 0; k < 9; ++k) {
+            const uint32_t at_x = x + k % 3 - 1, at_y = y + k / 3 - 1;
+            is += shown[at_y * stage.width + at_x], truth += light(at_x, at_y);
+          }
+          sum += std::abs(is / truth - 1);
+        }
+      const double error = sum / count;
+      INFO(samples << " samples" << (filtered ? ", filtered" : "") << ": off by " << error << ", told "
+                   << *told);
+      CHECK(*told > 0.6 * error);
+      CHECK(*told < 2.5 * error);
+    }
+  }
+}
