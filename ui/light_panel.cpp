@@ -129,21 +129,6 @@ void components(Ui& ui, float width) {
   ImGui::SetCursorScreenPos({at.x, at.y + px(40)});
 }
 
-std::string option_title(const std::string& key) {
-  static const std::map<std::string, std::string> titles{{"samples", "Samples"},
-                                                         {"seed", "Seed"},
-                                                         {"path.max_depth", "Longest path"},
-                                                         {"path.roulette_depth", "Roulette from"},
-                                                         {"path.batch", "Paths in flight"},
-                                                         {"tracer", "Tracer"}};
-  if (const auto found = titles.find(key); found != titles.end()) return found->second;
-  std::string name = key;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == '.' || c == '_'; }, ' ');
-  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-  return name;
-}
-
 /// As many as its default is written with, and two at least.
 int decimals_of(const OptionInfo& option) {
   const size_t point = option.fallback.find('.');
@@ -238,7 +223,7 @@ void draw_light_panel(Ui& ui, const Area& area) {
   if (panel_section(ui, "Render", true)) {
     begin_padded();
     for (const OptionInfo& option : plan::options())
-      if (!placed_elsewhere(option)) option_control(ui, option.key, option_title(option.key));
+      if (!placed_elsewhere(option)) option_control(ui, option.key, option_label(option));
     gap(4);
     const float width = ImGui::CalcItemWidth(), half = std::floor(0.5f * (width - px(8)));
     const bool paused = ui.snapshot && ui.snapshot->paused;

@@ -199,7 +199,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   const uint32_t surfaces = seen             ? k_preview_surface_seen
                             : history_.known ? k_preview_surface_before
                                              : k_preview_surface_unknown;
-  const bool repainted = repainted_ && !seen;
+  const bool repainted = repainted_ && !seen, moved = history_.known && history_.camera != camera;
   // Wide cells lose nothing while each has no more than one pixel of a draft.
   const bool wide = sampled == Sampled::none && draft && draft->width() <= width_ / k_preview_first_step;
   const uint32_t step = wide ? k_preview_first_step : k_preview_step;
@@ -234,7 +234,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
       .draft_share = draft ? float(draft->width()) * float(draft->height()) / float(cells) : 0,
       .step = step,
       .sampled = sampled != Sampled::none,
-      .surfaces = surfaces};
+      .surfaces = surfaces,
+      .moved = moved};
   stream.dispatch(halve_, resources_, halve, groups(cells));
   // Other light on the same places: how much other?
   const bool changed = history_.known && !history_.same_light;
@@ -298,7 +299,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                    .recoloured = history_.recoloured,
                                    .blocks_across = blocks.x,
                                    .blocks_down = blocks.y,
-                                   .surfaces = surfaces};
+                                   .surfaces = surfaces,
+                                   .moved = moved};
   stream.dispatch(resolve_, resources_, resolve, groups(pixels()));
   stream.run();
   stream.take_times();

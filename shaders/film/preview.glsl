@@ -71,6 +71,16 @@ bool preview_lit(PreviewLight l, PreviewSurface s) { return l.of[0].w >= 0.0 || 
 // What light is divided by to be filtered: the surface's colour, where it has one.
 vec3 preview_modulation(PreviewSurface s) { return s.depth > 0.0 ? max(s.albedo, vec3(0.04)) : vec3(1.0); }
 
+// Whether pixels of these show one surface.
+bool preview_same(PreviewSurface a, PreviewSurface b) {
+  if (a.depth <= 0.0 || b.depth <= 0.0) return a.depth == b.depth;
+  return abs(a.depth - b.depth) < 0.1 * a.depth && dot(a.normal, b.normal) > 0.7 && a.emits == b.emits;
+}
+// ... of what was shown before, as far as both are known: another surface's light may lie where this one has come into view.
+bool preview_may_be_same(PreviewSurface now, PreviewSurface was) {
+  return now.depth < 0.0 || was.depth < 0.0 || preview_same(now, was);
+}
+
 // Whether one surface's light tells of the other's: 0..1. `offset`: between their points; `scale`: how far they may be off
 // each other's plane [m].
 float preview_alike(PreviewSurface a, PreviewSurface b, vec3 offset, float scale) {

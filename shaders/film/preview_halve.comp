@@ -81,7 +81,7 @@ void main() {
     if (push.history == 0u) continue;
     PreviewSurface was = preview_surface(texelFetch(history_surfaces, pixel));
     PreviewLight l = preview_light(history_texels, pixel);
-    if (preview_lit(l, was) && (alike || s.depth <= 0.0)) {
+    if (preview_lit(l, was) && (alike || s.depth <= 0.0) && (push.moved == 0u || preview_may_be_same(s, was))) {
       vec3 m = push.history_scale / (was.depth >= 0.0 ? preview_modulation(was) : preview_modulation(here));
       before += vec4(luminance(m * l.of[0].rgb), luminance(m * l.of[1].rgb), luminance(m * l.of[2].rgb), luminance(m * l.of[3].rgb));
       before_known += 1.0;

@@ -67,19 +67,13 @@ void add_cell(int cell, PreviewSurface s, float w, bool other) {
   if (s.samples > 0.0 && s.depth >= 0.0 && there > nearest_weight) nearest_weight = there, nearest_depth = s.depth;
 }
 
-bool same_surface(PreviewSurface here, PreviewSurface s) {
-  return here.depth > 0.0 && s.depth > 0.0 ? abs(here.depth - s.depth) < 0.1 * here.depth && dot(here.normal, s.normal) > 0.7 &&
-                                                       here.emits == s.emits
-                                           : here.depth == s.depth;
-}
-
 // Whether no pixel around shows its surface: what one ray has met of a veil or of leaves finer than pixels.
 bool isolated(ivec2 at, PreviewSurface here) {
   bool akin = false;
   for (int k = 0; k < 9 && !akin; ++k) {
     ivec2 there = at + ivec2(k % 3, k / 3) - 1;
     bool inside = k != 4 && all(greaterThanEqual(there, ivec2(0))) && there.x < int(push.width) && there.y < int(push.height);
-    akin = inside && same_surface(here, preview_surface(texelFetch(guide_surfaces, there.y * int(push.width) + there.x)));
+    akin = inside && preview_same(here, preview_surface(texelFetch(guide_surfaces, there.y * int(push.width) + there.x)));
   }
   return !akin;
 }
@@ -128,7 +122,7 @@ void main() {
       float w = g.x * g.y + 1e-3;
       bool other = false;
       if (here.depth >= 0.0 && s.depth >= 0.0) {
-        bool alike = same_surface(here, s);
+        bool alike = preview_same(here, s);
         akin += alike ? w * own_light(s) : 0.0;
         other = !alike;
       } else {
@@ -143,7 +137,7 @@ void main() {
       int cell = at.y * int(push.across) + at.x;
       PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
       vec2 away = vec2(at) - p;
-      if (s.depth >= 0.0 && same_surface(here, s)) add_cell(cell, s, exp2(-dot(away, away)), false);
+      if (s.depth >= 0.0 && preview_same(here, s)) add_cell(cell, s, exp2(-dot(away, away)), false);
     }
     if (akin <= k_alone && weights > k_alone) akin = 1.0;
     float inverse = 1.0 / max(weights, 1e-20);
@@ -161,9 +155,11 @@ void main() {
     if (push.history != 0u) {
       old = preview_light(history_texels, int(pixel));
       PreviewSurface was = preview_surface(texelFetch(history_surfaces, int(pixel)));
-      has_old = preview_lit(old, was);
-      // A surface of another colour shows the light that fell on it by that.
-      vec3 repaint = push.recoloured != 0u && was.depth > 0.0 ? min(modulation / preview_modulation(was), vec3(8.0)) : vec3(1.0);
+      has_old = preview_lit(old, was) && (push.moved == 0u || preview_may_be_same(here, was));
+      // A surface of another colour shows the light that fell on it by that; so does, seen from nearer, one whose texture has
+      // more detail than there was.
+      bool finer = push.moved != 0u && push.surfaces == k_preview_surface_seen;
+      vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min(modulation / preview_modulation(was), vec3(8.0)) : vec3(1.0);
       vec4 change = light_change(p);
       before_smooth *= change;
       for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= change[c] * vec4(repaint, luminance(repaint));

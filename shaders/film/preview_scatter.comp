@@ -1,5 +1,5 @@
 // Where the pixels of what was shown before are in the picture of another camera: every pixel goes where its surface now
-// is, and the nearest stays (preview_gather.comp takes them over).
+// is, as wide as it is seen there, and the nearest stays (preview_gather.comp takes them over).
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"
 layout(local_size_x = 64) in;
@@ -10,8 +10,10 @@ layout(scalar) buffer NearestPixel { uint nearest_pixel[]; };
 
 const float k_far = 1e8;  // where there is no surface
 
-// Of a pixel before: its pixel now (k_preview_none: outside) and depth.
-uint moved(uint pixel, out float depth) {
+const float k_widest = 4.0;   // pixels
+
+// Of a pixel before: where its middle is now, in pixels, and its depth (0: nowhere) and width [pixels].
+vec2 moved(uint pixel, out float depth, out float width) {
   float from = texelFetch(from_surfaces, int(pixel)).x;
   if (from <= k_preview_about) from = k_preview_about - from;
   vec2 p = vec2(2.0, -2.0) * (vec2(pixel % push.width, pixel / push.width) + 0.5) / vec2(push.width, push.height) +
@@ -22,24 +24,37 @@ uint moved(uint pixel, out float depth) {
   vec3 point = push.before.origin - push.now.origin +
                (parallel ? ray + far * push.before.forward : far * (ray + push.before.forward));
   depth = dot(point, push.now.forward);
-  if (depth <= 0.0 || from < 0.0) return k_preview_none;
-  float ratio = (push.orthographic & 2u) != 0u ? 1.0 : 1.0 / depth;
+  width = 1.0;
+  if (depth <= 0.0 || from < 0.0) {
+    depth = 0.0;
+    return vec2(0.0);
+  }
+  bool parallel_now = (push.orthographic & 2u) != 0u;
+  float ratio = parallel_now ? 1.0 : 1.0 / depth;
   vec2 q = ratio * vec2(dot(point, push.now.right) / dot(push.now.right, push.now.right),
                         dot(point, push.now.up) / dot(push.now.up, push.now.up));
-  if (any(greaterThanEqual(abs(q), vec2(1.0)))) return k_preview_none;
-  uvec2 at = min(uvec2((q * vec2(0.5, -0.5) + 0.5) * vec2(push.width, push.height)), uvec2(push.width, push.height) - 1u);
-  return at.y * push.width + at.x;
+  float size = length(push.before.up) * (parallel ? 1.0 : far), size_now = length(push.now.up) * (parallel_now ? 1.0 : depth);
+  width = clamp(size / size_now, 1.0, k_widest);
+  return (q * vec2(0.5, -0.5) + 0.5) * vec2(push.width, push.height);
 }
 
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
-  float depth;
-  uint to = moved(pixel, depth);
-  if (to == k_preview_none) return;
-  if (push.pass == 0u) {
-    atomicMin(nearest_depth[to], floatBitsToUint(depth));
-  } else if (floatBitsToUint(depth) == nearest_depth[to]) {
-    atomicMin(nearest_pixel[to], pixel);
-  }
+  float depth, width;
+  vec2 middle = moved(pixel, depth, width);
+  ivec2 size = ivec2(push.width, push.height), at = ivec2(floor(middle));
+  if (depth <= 0.0 || any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) return;
+  // The pixels whose middles it covers, and the one that it lies in.
+  ivec2 first = clamp(min(ivec2(ceil(middle - 0.5 * width - 0.5)), at), ivec2(0), size - 1);
+  ivec2 last = clamp(max(ivec2(floor(middle + 0.5 * width - 0.5)), at), ivec2(0), size - 1);
+  for (int y = first.y; y <= last.y; ++y)
+    for (int x = first.x; x <= last.x; ++x) {
+      int to = y * size.x + x;
+      if (push.pass == 0u) {
+        atomicMin(nearest_depth[to], floatBitsToUint(depth));
+      } else if (floatBitsToUint(depth) == nearest_depth[to]) {
+        atomicMin(nearest_pixel[to], pixel);
+      }
+    }
 }

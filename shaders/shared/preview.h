@@ -42,6 +42,7 @@ struct PreviewHalvePush {
   uint step;                       ///< pixels along the side of a cell
   uint sampled;                    ///< 0: the film has no sample yet
   uint surfaces;                   ///< k_preview_surface_*
+  uint moved;                      ///< not 0: what was shown before was seen from elsewhere
 };
 
 struct PreviewFilterPush {
@@ -90,6 +91,7 @@ struct PreviewResolvePush {
   uint recoloured;       ///< not 0: surfaces had other colours when what was shown before was shown
   uint blocks_across, blocks_down;  ///< that tell how much light has changed; 0: it has not
   uint surfaces;         ///< k_preview_surface_*
+  uint moved;            ///< not 0: what was shown before was seen from elsewhere
 };
 
 /// Pixels darker than this, of white, err in proportion to it.

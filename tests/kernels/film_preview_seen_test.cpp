@@ -138,3 +138,57 @@ TEST_CASE("the error that is told of a preview is about that which it has") {
     }
   }
 }
+
+TEST_CASE(
+    "from nearer, what was there has the detail of the surfaces that are seen now, and no other's light") {
+  // A wall of grey, which turns out to have stripes of single pixels from half the distance; and a bar before
+  // it, dark, before a bright part of the wall.
+  Stage stage(96, 64);
+  const auto bar = [](uint32_t x) { return x >= 40 && x < 43; };
+  stage.sample(stage.film, 8, [&](uint32_t x, uint32_t) {
+    return bar(x) ? Sample{.light = vec3(0.01f), .depth = 5}
+                  : Sample{.light = vec3(0.4f), .albedo = vec3(0.5f), .depth = 20};
+  });
+  stage.show();
+  stage.preview.keep({1, 1, 1}, false, true);
+  stage.film.clear(stage.stream);
+  stage.camera.axes.origin = {-10 * 2.5f / 48, 0,
+                              -2.5f};  // the bar moves by ten pixels, the wall by one or two
+  // At once, and without holes in the bar, which is twice as wide then.
+  stage.preview.recall(stage.stream, stage.film, stage.view, stage.camera);
+  const std::vector<float> at_once = stage.shown();
+  for (uint32_t y = 0; y < 64; ++y)
+    for (uint32_t x = 42; x < 48; ++x) CHECK(at_once[y * 96 + x] < 0.05f);
+  // It turns out to be wider than it was seen to be, and the wall a seventh nearer.
+  const auto bar_now = [](uint32_t x) { return x >= 42 && x < 50; };
+  const auto albedo = [&](uint32_t x) { return bar_now(x) ? 1.0f : x % 2 ? 0.8f : 0.2f; };
+  const gpu::Buffer surfaces = surfaces_of(stage, [&](uint32_t x, uint32_t) {
+    return Seen{.albedo = albedo(x), .depth = bar_now(x) ? 2.5f : 17.5f};
+  });
+  // New light is next to unknown: one noisy sample for sixteen pixels.
+  Film draft(stage.device, 24, 16);
+  draft.clear(stage.stream);
+  std::mt19937 random(8);
+  stage.sample(draft, 1, [&](uint32_t x, uint32_t) {
+    const uint32_t px = 4 * x + 2;
+    const float found = random() % 8 == 0 ? 8.0f : 0;
+    return Sample{.light = vec3((bar_now(px) ? 0.01f : 0.8f * albedo(px)) * found),
+                  .albedo = vec3(albedo(px)),
+                  .depth = bar_now(px) ? 2.5f : 17.5f};
+  });
+  stage.preview.develop(stage.stream, stage.film, &draft, stage.view, stage.camera, true, film::Sampled::none,
+                        &surfaces);
+  const std::vector<float> shown = stage.shown();
+  double light = 0, dark = 0, wall = 0;
+  uint32_t count = 0;
+  for (uint32_t y = 8; y < 56; ++y)
+    for (uint32_t x = 8; x < 88; ++x) {
+      if (bar_now(x)) {
+        CHECK(shown[y * 96 + x] < 0.1f);
+      } else if (x < 34 || x > 58) {
+        (x % 2 ? light : dark) += shown[y * 96 + x], wall += shown[y * 96 + x], ++count;
+      }
+    }
+  CHECK(wall / count == Approx(0.4).epsilon(0.1));
+  CHECK(light / dark > 3);
+}
