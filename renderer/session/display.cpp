@@ -29,10 +29,12 @@ void Display::restart(const scene::Changes& changes, const vec3& scale, bool sam
   else
     preview_.keep(scale, repainted, same_light);
   plan_.restart();
+  ++version_;
 }
 
 bool Display::take(gpu::Stream& stream, const film::Film& film) {
   bool taken = false;
+  ++version_;
   if (plain_ && film::Preview::fits(device_.info().limits, film.width(), film.height())) try {
       preview_.take(stream, film, plain_->exposure, plain_->camera);
       taken = true;
@@ -55,15 +57,18 @@ void Display::warm(gpu::Stream& stream, const film::Film& film) {
 void Display::light_changed() {
   preview_.better();
   plan_.light_changed();
+  ++version_;
 }
 
 void Display::mixed() {
   preview_.forget();
   plan_.light_changed();
+  ++version_;
 }
 
 bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
                    const std::function<bool()>& cancel) {
+  ++version_;
   if (what == DraftPlan::Next::light) return preview_light(engine, view, cancel);
   if (what == DraftPlan::Next::sight) return see(engine, view, cancel);
   const bool fine = what == DraftPlan::Next::fine;

@@ -46,6 +46,8 @@ class Display {
   void warm(gpu::Stream& stream, const film::Film& film);
   /// Whether what was there before can be shown at once.
   bool remembers() const { return preview_.has_history(); }
+  /// Grows with all that changes what develop() brings, but samples of the film and how it is shown.
+  uint64_t version() const { return version_; }
   /// Of the picture developed last.
   film::PreviewShares shares() const { return shares_; }
   /// It was developed without a preview.
@@ -72,6 +74,7 @@ class Display {
   } sight_;
   film::PreviewShares shares_;
   bool developed_ = false, warm_ = false;
+  uint64_t version_ = 0;
   /// How the picture was shown that is not a preview.
   struct Plain {
     film::PreviewCamera camera;

@@ -148,6 +148,9 @@ class Renderer {
   /// The same as the window shows it while it is made (Display), with the setting preview.filter; where there
   /// is no such thing, picture(with_coarse).
   std::vector<uint8_t> shown_picture(bool with_coarse, const std::function<bool()>& cancel = {});
+  /// Whether shown_picture() would bring what it brought last, as far as no setting and no scene has changed
+  /// since: there is nothing new, and nothing is drawn over it that may be.
+  bool shows_the_same() const;
   /// Whether shown_picture() has something to show before there is any new light: what was there before.
   bool remembers() const;
   /// Of the picture that shown_picture() has made last.
@@ -295,6 +298,9 @@ class Renderer {
   std::unique_ptr<Engine> engine_;              ///< null before the first scene; goes before the world
   std::unique_ptr<film::Film> film_, coarse_;
   std::unique_ptr<Display> display_;  ///< null in batch
+  struct {
+    uint64_t version = ~uint64_t{0}, paths = 0;
+  } shown_;  ///< Display::version() and the paths of the preview that was shown last
   bool draft_preparing_ = false;      ///< when a draft was drawn last
   scene::Camera camera_;
   uint32_t width_ = 1280, height_ = 720;

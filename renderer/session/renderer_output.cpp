@@ -62,6 +62,14 @@ bool Renderer::previewed(const film::View& v) const {
          samples() < k_previewed_samples && display_->shows(v, *film_);
 }
 
+bool Renderer::shows_the_same() const {
+  const auto draws = [&](const OptionInfo& option) {
+    return option.key.starts_with("overlay.") && settings_.text(option.key) != option.fallback;
+  };
+  return engine_ && film_ && previewed(view()) && !looked_at_ && shown_.version == display_->version() &&
+         shown_.paths == stats().paths && std::none_of(plan::options().begin(), plan::options().end(), draws);
+}
+
 bool Renderer::remembers() const { return engine_ && film_ && previewed(view()) && display_->remembers(); }
 
 std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::function<bool()>& cancel) {
@@ -78,6 +86,7 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
   }
   mark_tiles(v);
   try {
+    shown_ = {display_->version(), stats().paths};
     display_->develop(*engine_, picture_view(), *film_, *coarse_, v, samples(), stats().paths > 0);
   } catch (const Error& e) {
     // The picture itself does not need it.

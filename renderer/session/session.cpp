@@ -182,9 +182,11 @@ struct Session::Impl {
   void fill_snapshot(Renderer& r, bool numbers) {
     next.width = r.film().width();
     next.height = r.film().height();
-    const Timer shown;
-    next.rgba = r.shown_picture(!filled, [&] { return pending.load() || quit; });
-    publish_seconds = std::max(k_publish_seconds, 4 * shown.seconds());
+    if (dirty || next.rgba.empty() || !r.shows_the_same()) {
+      const Timer shown;
+      next.rgba = r.shown_picture(!filled, [&] { return pending.load() || quit; });
+      publish_seconds = std::max(k_publish_seconds, 4 * shown.seconds());
+    }
     const film::PreviewShares shares = r.preview_shares();
     next.stale = shares.stale, next.filtered = shares.filtered, next.shown_error = shares.error;
     const film::View view = r.view();
