@@ -411,6 +411,7 @@ std::vector<float> shown_luminance(std::span<const uint8_t> rgba) {
 
 LatencyResult latency_of(std::span<const Moment> moments, double seconds) {
   LatencyResult r;
+  r.moments.assign(moments.begin(), moments.end());
   double least = k_infinity;
   for (const Moment& m : moments) {
     if (m.distance.black > k_black_share)
@@ -432,6 +433,7 @@ LatencyResult latency_of(std::span<const Moment> moments, double seconds) {
 
 LatencyResult median_of(std::span<const LatencyResult> runs) {
   LatencyResult r = runs.front();
+  if (runs.size() > 1) r.moments.clear();
   const auto middle = [&](const auto& of) {
     std::vector<double> all;
     for (const LatencyResult& run : runs) all.push_back(of(run).value_or(k_infinity));
@@ -486,6 +488,8 @@ nlohmann::ordered_json to_json(const LatencyResult& r) {
                                    j["told"][fmt::format("{:g}", k_told_s[k])] = or_null(r.told[k]);
   j["set_back"] = r.rise;
   j["loading_s"] = r.loading_s;
+  for (const Moment& m : r.moments)
+    j["moments"].push_back({{"s", m.seconds}, {"error", m.distance.error}, {"told", or_null(m.told)}});
   return j;
 }
 

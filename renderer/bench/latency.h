@@ -67,7 +67,8 @@ struct LatencyResult {
   std::array<std::optional<double>, k_told_s.size()> told{};   ///< the window's own estimate of it, then
   /// The most by which the error has grown again from its least so far.
   double rise = 0;
-  double loading_s = 0;  ///< of a load
+  double loading_s = 0;         ///< of a load
+  std::vector<Moment> moments;  ///< all that was shown; of a median none
 };
 /// Of one edit measured several times, each figure by itself: the middle one, of an even number the larger of
 /// the two in the middle. What was not reached counts as later than all. Names are the first one's; at least

@@ -1,6 +1,7 @@
 #pragma once
 // When the window gets samples of drafts: pictures of fewer pixels that stand for the picture until it has
 // samples of its own. No device: pure state.
+#include <bit>
 #include <cstdint>
 
 namespace lucerna::session {
@@ -16,8 +17,12 @@ class DraftPlan {
   };
   /// The picture begins anew.
   void restart() { *this = {}; }
-  /// Light that drafts have looked up has got better: they begin anew.
-  void light_changed() { coarse_ = fine_ = 0, lit_ = true; }
+  /// Light that drafts have looked up has got better: they begin anew. Where there was a finer one, the
+  /// coarse would be worse than that.
+  void light_changed() {
+    fine_first_ = fine_first_ || fine_ > 0;
+    coarse_ = fine_ = 0, lit_ = true;
+  }
   /// That has been done, and took so long.
   void drawn(Next what, double seconds) {
     if (what == Next::light) {
@@ -27,6 +32,7 @@ class DraftPlan {
     if (what == Next::coarse) ++coarse_;
     if (what == Next::fine) ++fine_;
     draft_s_ += seconds;
+    news_ = what == Next::sight || (what == Next::fine && std::has_single_bit(fine_));
   }
   /// ... the picture's own work, which took so long.
   void worked(double seconds) { work_s_ += seconds; }
@@ -41,13 +47,14 @@ class DraftPlan {
   Next next(bool preparing, bool filled, bool light, bool sight = false) const {
     if (filled) return Next::nothing;
     const bool first_light = light && preparing && !lit_ && light_s_ < k_first_light_s;
-    if (coarse_ == 0) return first_light ? Next::light : Next::coarse;
+    const bool coarse = !fine_first_ || !preparing;
+    if (!begun()) return first_light ? Next::light : coarse ? Next::coarse : Next::fine;
     if (sight) return Next::sight;
     if (light && preparing) {
       if (light_s_ <= draft_s_) return Next::light;
-      return coarse_ < 2 ? Next::coarse : Next::fine;
+      return coarse && coarse_ < 2 ? Next::coarse : Next::fine;
     }
-    if (coarse_ < k_coarse_samples) {
+    if (coarse && coarse_ < k_coarse_samples) {
       if (!preparing || draft_s_ <= work_s_) return Next::coarse;
       return Next::nothing;
     }
@@ -55,6 +62,10 @@ class DraftPlan {
     const double share = fine_ < 4 ? 0.5 : fine_ < 16 ? 0.25 : 0.1;
     return draft_s_ <= share * (draft_s_ + work_s_) ? Next::fine : Next::nothing;
   }
+  /// Whether there is a draft.
+  bool begun() const { return coarse_ + fine_ > 0; }
+  /// Whether what was drawn last makes so much of a difference that it is to be shown at once.
+  bool news() const { return news_; }
   uint32_t coarse_samples() const { return coarse_; }
   uint32_t fine_samples() const { return fine_; }
 
@@ -62,7 +73,9 @@ class DraftPlan {
   static constexpr uint32_t k_coarse_samples = 4, k_fine_samples = 64;
   static constexpr double k_first_light_s = 0.1;
   uint32_t coarse_ = 0, fine_ = 0;
-  bool lit_ = false;  ///< by new light, since the picture began
+  bool lit_ = false;         ///< by new light, since the picture began
+  bool fine_first_ = false;  ///< drafts that begin anew are fine ones
+  bool news_ = false;
   double draft_s_ = 0, work_s_ = 0, light_s_ = 0;
 };
 

@@ -127,7 +127,9 @@ class Renderer {
   /// rays and time are not in stats(). False when nothing was drawn.
   bool draw_draft(const std::function<bool()>& cancel = {});
   /// Whether there is a draft of the light as it is known now; it begins anew when that gets better.
-  bool has_draft() const { return display_ && display_->plan().coarse_samples() > 0; }
+  bool has_draft() const { return display_ && display_->plan().begun(); }
+  /// Of what draw_draft() has drawn last: DraftPlan::news().
+  bool draft_news() const { return display_ && display_->plan().news(); }
 
   /// The person's clock: seconds since this image's first step() or draw_draft(), whatever else was done
   /// meanwhile; not between rest() and the next of these, nor after the last.
@@ -300,8 +302,8 @@ class Renderer {
   std::unique_ptr<Display> display_;  ///< null in batch
   struct {
     uint64_t version = ~uint64_t{0}, paths = 0;
-  } shown_;  ///< Display::version() and the paths of the preview that was shown last
-  bool draft_preparing_ = false;      ///< when a draft was drawn last
+  } shown_;                       ///< Display::version() and the paths of the preview that was shown last
+  bool draft_preparing_ = false;  ///< when a draft was drawn last
   scene::Camera camera_;
   uint32_t width_ = 1280, height_ = 720;
   Sampling sampling_;

@@ -298,6 +298,7 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
   };
   if (!paused && renderer.draw_draft(draft_cancelled)) {
     draft_given_up = false;
+    changed = changed || renderer.draft_news();
     // The first one is shown at once, and the first of light that has got better; more of them as pictures
     // are.
     if (renderer.has_draft())

@@ -97,11 +97,46 @@ TEST_CASE("light for drafts and drafts take turns, and better light begins draft
       if (step % 10 == 9) {
         plan.light_changed();
         CHECK(plan.coarse_samples() + plan.fine_samples() == 0);
-        CHECK(plan.next(true, false, true) == Next::coarse);
+        CHECK(plan.next(true, false, true) == (step < 10 ? Next::coarse : Next::fine));
       }
     } else {
       plan.drawn(next, 0.1), drafts += 0.1;
     }
   }
   CHECK(light == Approx(drafts).epsilon(0.1));
+}
+
+TEST_CASE("a draft that begins anew is no coarser than the one that there was") {
+  DraftPlan plan;
+  plan.drawn(Next::coarse, 0.1);
+  plan.light_changed();
+  CHECK(plan.next(true, false, false) == Next::coarse);  // there was no finer one
+  CHECK_FALSE(plan.begun());
+  plan.drawn(Next::coarse, 0.1);
+  plan.drawn(Next::fine, 0.1);
+  plan.light_changed();
+  CHECK_FALSE(plan.begun());
+  CHECK(plan.next(true, false, false) == Next::fine);
+  CHECK(plan.next(false, false, false) == Next::coarse);  // the picture's own samples come now
+  plan.drawn(Next::fine, 0.1);
+  CHECK(plan.begun());
+  CHECK(plan.coarse_samples() == 0);
+  plan.worked(10);
+  CHECK(plan.next(true, false, false) == Next::fine);
+  plan.restart();
+  CHECK(plan.next(true, false, false) == Next::coarse);
+}
+
+TEST_CASE("surfaces, and every fine draft of twice the samples, are shown at once") {
+  DraftPlan plan;
+  plan.drawn(Next::coarse, 0.1);
+  CHECK_FALSE(plan.news());
+  plan.drawn(Next::sight, 0.1);
+  CHECK(plan.news());
+  int shown = 0;
+  for (int i = 0; i < 64; ++i) {
+    plan.drawn(Next::fine, 0.1);
+    shown += plan.news();
+  }
+  CHECK(shown == 7);
 }
