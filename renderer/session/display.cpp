@@ -164,8 +164,7 @@ void Display::develop(Engine& engine, const PictureView& view, const film::Film&
                       const film::Film& coarse, const film::View& shown, uint32_t samples, bool begun) {
   plain_.reset();
   developed_ = true;
-  const bool fine = plan_.fine_samples() > 0;
-  const film::Film* draft = fine ? fine_.get() : plan_.coarse_samples() > 0 ? &coarse : nullptr;
+  const film::Film* draft = plan_.shows_fine() ? fine_.get() : plan_.coarse_samples() > 0 ? &coarse : nullptr;
   if (samples >= k_draft_until) draft = nullptr;
   const film::Sampled sampled = samples > 0 ? film::Sampled::all
                                 : begun     ? film::Sampled::some

@@ -32,7 +32,8 @@ class DraftPlan {
     if (what == Next::coarse) ++coarse_;
     if (what == Next::fine) ++fine_;
     draft_s_ += seconds;
-    news_ = what == Next::sight || (what == Next::fine && std::has_single_bit(fine_));
+    news_ = what == Next::sight || (what == Next::coarse && coarse_ == k_coarse_samples) ||
+            (what == Next::fine && shows_fine() && std::has_single_bit(fine_));
   }
   /// ... the picture's own work, which took so long.
   void worked(double seconds) { work_s_ += seconds; }
@@ -66,6 +67,8 @@ class DraftPlan {
   bool begun() const { return coarse_ + fine_ > 0; }
   /// Whether what was drawn last makes so much of a difference that it is to be shown at once.
   bool news() const { return news_; }
+  /// Whether the fine draft is better than the coarse one: of as many rays it knows less of its noise.
+  bool shows_fine() const { return fine_ > (coarse_ > 0 ? 1 : 0); }
   uint32_t coarse_samples() const { return coarse_; }
   uint32_t fine_samples() const { return fine_; }
 

@@ -120,23 +120,28 @@ TEST_CASE("a draft that begins anew is no coarser than the one that there was") 
   CHECK(plan.next(false, false, false) == Next::coarse);  // the picture's own samples come now
   plan.drawn(Next::fine, 0.1);
   CHECK(plan.begun());
-  CHECK(plan.coarse_samples() == 0);
+  CHECK((plan.coarse_samples() == 0 && plan.shows_fine()));
   plan.worked(10);
   CHECK(plan.next(true, false, false) == Next::fine);
   plan.restart();
   CHECK(plan.next(true, false, false) == Next::coarse);
 }
 
-TEST_CASE("surfaces, and every fine draft of twice the samples, are shown at once") {
+TEST_CASE("surfaces, the last coarse draft and every fine one of twice the samples are shown at once") {
   DraftPlan plan;
   plan.drawn(Next::coarse, 0.1);
   CHECK_FALSE(plan.news());
   plan.drawn(Next::sight, 0.1);
   CHECK(plan.news());
+  plan.drawn(Next::coarse, 0.1);
+  CHECK_FALSE(plan.news());
+  plan.drawn(Next::coarse, 0.1), plan.drawn(Next::coarse, 0.1);
+  CHECK(plan.news());  // the last of them
   int shown = 0;
   for (int i = 0; i < 64; ++i) {
     plan.drawn(Next::fine, 0.1);
     shown += plan.news();
+    CHECK(plan.shows_fine() == (i > 0));  // one sample is no better than four of a quarter of the pixels
   }
-  CHECK(shown == 7);
+  CHECK(shown == 6);
 }
