@@ -23,16 +23,16 @@ class DraftPlan {
     fine_first_ = fine_first_ || fine_ > 0;
     coarse_ = fine_ = 0, lit_ = true;
   }
-  /// That has been done, and took so long.
-  void drawn(Next what, double seconds) {
+  /// That has been done, and took so long; `complete`: no more of it is to be done.
+  void drawn(Next what, double seconds, bool complete = true) {
     if (what == Next::light) {
       light_s_ += seconds;
       return;
     }
     if (what == Next::coarse) ++coarse_;
     if (what == Next::fine) ++fine_;
-    draft_s_ += seconds;
-    news_ = what == Next::sight || (what == Next::coarse && coarse_ == k_coarse_samples) ||
+    if (what != Next::sight) draft_s_ += seconds;
+    news_ = (what == Next::sight && complete) || (what == Next::coarse && coarse_ == k_coarse_samples) ||
             (what == Next::fine && shows_fine() && std::has_single_bit(fine_));
   }
   /// ... the picture's own work, which took so long.
@@ -40,9 +40,9 @@ class DraftPlan {
 
   /// `preparing`: the picture's samples wait for what they look up, maybe for long; `filled`: every pixel has
   /// one. A first sample comes at once, but for the first of new light, if that does not take long: without
-  /// it the draft would show the light before. While the picture's samples come, a few more: its first ones
-  /// fill it from one side to the other. While they wait the draft is all that there is to be seen, and gets
-  /// finer; half of the time at first, less and less as more helps less. `light`: solvers have more to make
+  /// it the draft would show the light before. Then a few more: the picture's first samples fill it from one
+  /// side to the other. While they wait the draft is all that there is to be seen, and gets finer; half of
+  /// the time at first, less and less as more helps less. `light`: solvers have more to make
   /// for drafts; drafts and that take half of the time each. `sight`: it is not known yet what surfaces
   /// pixels show; the first draft does not wait for that.
   Next next(bool preparing, bool filled, bool light, bool sight = false) const {
@@ -55,10 +55,7 @@ class DraftPlan {
       if (light_s_ <= draft_s_) return Next::light;
       return coarse && coarse_ < 2 ? Next::coarse : Next::fine;
     }
-    if (coarse && coarse_ < k_coarse_samples) {
-      if (!preparing || draft_s_ <= work_s_) return Next::coarse;
-      return Next::nothing;
-    }
+    if (coarse && coarse_ < k_coarse_samples) return Next::coarse;
     if (!preparing || fine_ >= k_fine_samples) return Next::nothing;
     const double share = fine_ < 4 ? 0.5 : fine_ < 16 ? 0.25 : 0.1;
     return draft_s_ <= share * (draft_s_ + work_s_) ? Next::fine : Next::nothing;

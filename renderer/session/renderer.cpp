@@ -503,7 +503,8 @@ bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   clock_.go();
   const Timer timer;
   if (!display_->draw(what, *engine_, picture_view(), *coarse_, cancel)) return false;
-  display_->plan().drawn(what, timer.seconds());
+  display_->plan().drawn(what, timer.seconds(),
+                         what != DraftPlan::Next::sight || !display_->sight_wanted(*engine_, picture_view()));
   return true;
 }
 

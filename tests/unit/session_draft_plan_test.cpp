@@ -131,6 +131,8 @@ TEST_CASE("surfaces, the last coarse draft and every fine one of twice the sampl
   DraftPlan plan;
   plan.drawn(Next::coarse, 0.1);
   CHECK_FALSE(plan.news());
+  plan.drawn(Next::sight, 0.1, false);
+  CHECK_FALSE(plan.news());  // a piece of them
   plan.drawn(Next::sight, 0.1);
   CHECK(plan.news());
   plan.drawn(Next::coarse, 0.1);
