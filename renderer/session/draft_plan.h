@@ -41,9 +41,9 @@ class DraftPlan {
   /// `preparing`: the picture's samples wait for what they look up, maybe for long; `filled`: every pixel has
   /// one. A first sample comes at once, but for the first of new light, if that does not take long: without
   /// it the draft would show the light before. Then a few more: the picture's first samples fill it from one
-  /// side to the other. While they wait the draft is all that there is to be seen, and gets finer; half of
-  /// the time at first, less and less as more helps less. `light`: solvers have more to make
-  /// for drafts; drafts and that take half of the time each. `sight`: it is not known yet what surfaces
+  /// side to the other. While they wait the draft is all that there is to be seen, and gets finer: two fine
+  /// samples at once, then half of the time, less and less as more helps less. `light`: solvers have more to
+  /// make for drafts; drafts and that take half of the time each. `sight`: it is not known yet what surfaces
   /// pixels show; the first draft does not wait for that.
   Next next(bool preparing, bool filled, bool light, bool sight = false) const {
     if (filled) return Next::nothing;
@@ -57,7 +57,7 @@ class DraftPlan {
     }
     if (coarse && coarse_ < k_coarse_samples) return Next::coarse;
     if (!preparing || fine_ >= k_fine_samples) return Next::nothing;
-    const double share = fine_ < 4 ? 0.5 : fine_ < 16 ? 0.25 : 0.1;
+    const double share = fine_ < 2 ? 1 : fine_ < 4 ? 0.5 : fine_ < 16 ? 0.25 : 0.1;
     return draft_s_ <= share * (draft_s_ + work_s_) ? Next::fine : Next::nothing;
   }
   /// Whether there is a draft.

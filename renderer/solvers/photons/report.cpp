@@ -157,23 +157,23 @@ Report make_report(const PhotonReport& r) {
                  OptionRow{"overlay.photon_aim"}}});
   if (r.aim_shown && !r.aimed.empty()) report.legends.push_back(aim_legend());
   if (r.view == shared::k_photons_by_map) {
-    Legend legend{.title = "light of", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
+    Legend legend{.title = "Light of", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (const auto& [hue, name] : {std::pair{0u, "secondary"}, {1u, "tertiary"}, {2u, "caustic"}})
       legend.marks.push_back({shared::ramp_hue(hue), name});
     report.legends.push_back(std::move(legend));
   }
   if (r.view == shared::k_photons_by_bounce) {
-    Legend legend{.title = "surfaces before", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
+    Legend legend{.title = "Surfaces before", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (uint32_t bounce = 0; bounce < 6; ++bounce)
       legend.marks.push_back({shared::ramp_hue(bounce), fmt::format("{}{}", bounce, bounce == 5 ? "+" : "")});
     report.legends.push_back(std::move(legend));
   }
   if (r.density.of > 0 && r.density.hi > 0)
     report.legends.push_back(
-        {.title = r.density.of == k_density_of_photons      ? "photons a m\u00b2, last round"
-                  : r.density.of == k_density_of_worth      ? "samples whose caustics photons bring"
-                  : r.density.of == k_density_of_importance ? "what hangs on photons there"
-                                                            : "irradiance of the last round's photons",
+        {.title = r.density.of == k_density_of_photons      ? "Photons a m\u00b2, last round"
+                  : r.density.of == k_density_of_worth      ? "Samples whose caustics photons bring"
+                  : r.density.of == k_density_of_importance ? "What hangs on photons there"
+                                                            : "Irradiance of the last round's photons",
          .ramp = k_ramp_magma,
          .ticks = {},
          .range = Legend::Range{.lo = r.density.lo, .hi = r.density.hi},
