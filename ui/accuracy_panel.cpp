@@ -364,7 +364,7 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
 }
 
 /// What is known before the first samples: of the picture that is shown meanwhile, and of what is prepared.
-std::vector<std::string> early_texts(const session::Snapshot& s) {
+std::vector<std::string> early_texts(const session::Snapshot& s, double target) {
   std::vector<std::string> texts;
   if (s.shown_error) {
     const double error = *s.shown_error;
@@ -381,14 +381,20 @@ std::vector<std::string> early_texts(const session::Snapshot& s) {
     texts.push_back(s.preparing_left ? fmt::format("{}; {:.0f} % done, about {} left", s.preparing,
                                                    100 * s.preparing_done, about_text(*s.preparing_left))
                                      : s.preparing);
+  if (s.preparing_left && s.path_pace && s.path_pace->noise > 0) {
+    const double paths = s.path_pace->seconds_to(target);
+    texts.push_back(fmt::format("Path tracing would take about {} to {}{}", about_text(paths),
+                                tick_text(target, Unit::relative),
+                                paths < s.seconds + *s.preparing_left ? ", less than that" : ""));
+  }
   texts.push_back("The lines begin with the first samples");
   return texts;
 }
 
-void draw_early(ImDrawList* list, const Area& inside, const session::Snapshot& s) {
+void draw_early(ImDrawList* list, const Area& inside, const session::Snapshot& s, double target) {
   float y = inside.lo.y;
   const float width = inside.width() - px(24);
-  for (const std::string& text : early_texts(s)) {
+  for (const std::string& text : early_texts(s, target)) {
     draw_text(list, {inside.lo.x + px(12), y}, {inside.hi.x - px(12), y + px(20)}, elided(text, width),
               colour::text_dim);
     y += px(20);
@@ -431,7 +437,7 @@ void draw_accuracy(Ui& ui, const Area& area) {
     if (a && ui.scene && !a->ledger.entries().empty())
       body(ui, inside, *a);
     else if (ui.snapshot && ui.scene)
-      draw_early(list, inside, *ui.snapshot);
+      draw_early(list, inside, *ui.snapshot, ui.target());
   }
   ImGui::End();
 }

@@ -8,6 +8,8 @@ namespace lucerna::session {
 
 class DraftPlan {
  public:
+  static constexpr uint32_t k_coarse_samples = 4;
+
   enum class Next {
     nothing,  ///< the picture's own work goes on
     coarse,   ///< a sample of the draft of a quarter of the resolution
@@ -70,7 +72,7 @@ class DraftPlan {
   uint32_t fine_samples() const { return fine_; }
 
  private:
-  static constexpr uint32_t k_coarse_samples = 4, k_fine_samples = 64;
+  static constexpr uint32_t k_fine_samples = 64;
   static constexpr double k_first_light_s = 0.1;
   uint32_t coarse_ = 0, fine_ = 0;
   bool lit_ = false;         ///< by new light, since the picture began

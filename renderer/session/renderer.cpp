@@ -191,6 +191,7 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   start_schedule();
   if (display_) display_->restart(changes, factor.value_or(vec3(1)), known);
   draft_preparing_ = false;
+  if (!known) path_pace_.reset();
   ++restarts_;
   ledger_.clear();
   clock_.reset();
@@ -208,7 +209,9 @@ bool Renderer::keeps_light(const scene::Changes& changes) const {
     return option && option->same_light;
   };
   return std::all_of(changes.edits.begin(), changes.edits.end(),
-                     [](scene::Change edit) { return edit == scene::Change::camera; }) &&
+                     [](scene::Change edit) {
+                       return edit == scene::Change::camera || edit == scene::Change::size;
+                     }) &&
          std::all_of(changes.settings.begin(), changes.settings.end(), kept);
 }
 
@@ -492,6 +495,32 @@ std::optional<bool> Renderer::prepare_round(const schedule::WorkItem& item,
   });
 }
 
+void Renderer::note_path_pace(double seconds) {
+  const uint32_t before = display_->plan().coarse_samples();
+  coarse_s_ = before == 0 ? seconds : coarse_s_ + seconds;
+  const auto holds_light = [](const auto& solver) {
+    for (const auto& [name, value] : solver->figures())
+      if (value > 0) return true;
+    return false;
+  };
+  if (before + 1 < DraftPlan::k_coarse_samples || !preparing() ||
+      std::any_of(engine_->solvers().begin(), engine_->solvers().end(), holds_light))
+    return;
+  transport::Wavefront& wavefront = engine_->wavefront();
+  wavefront.uncounted([&] {
+    engine_->estimator().estimate(wavefront.stream(), *coarse_, luminance_floor());
+    wavefront.account_stages();
+  });
+  const double samples = before + 1, pixels = double(coarse_->width()) * coarse_->height();
+  path_pace_ = {.seconds = coarse_s_ / (samples * pixels),
+                .noise = film::image_error(coarse_->errors()).relative(0) * std::sqrt(samples)};
+}
+
+std::optional<stats::SamplePace> Renderer::path_pace() const {
+  if (!path_pace_) return std::nullopt;
+  return stats::SamplePace{.seconds = path_pace_->seconds * width_ * height_, .noise = path_pace_->noise};
+}
+
 bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   if (!engine_ || !display_) return false;
   const bool prepares = preparing();
@@ -503,6 +532,7 @@ bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   clock_.go();
   const Timer timer;
   if (!display_->draw(what, *engine_, picture_view(), *coarse_, cancel)) return false;
+  if (what == DraftPlan::Next::coarse) note_path_pace(timer.seconds());
   display_->plan().drawn(what, timer.seconds(),
                          what != DraftPlan::Next::sight || !display_->sight_wanted(*engine_, picture_view()));
   return true;

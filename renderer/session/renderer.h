@@ -27,6 +27,7 @@
 #include "session/relight.h"
 #include "session/sampling.h"
 #include "session/world.h"
+#include "stats/forecast.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
 
@@ -128,6 +129,9 @@ class Renderer {
   bool draw_draft(const std::function<bool()>& cancel = {});
   /// Whether there is a draft of the light as it is known now; it begins anew when that gets better.
   bool has_draft() const { return display_ && display_->plan().begun(); }
+  /// What path tracing alone would take, as drafts have told before there was any light to be looked up. None
+  /// where they have not.
+  std::optional<stats::SamplePace> path_pace() const;
   /// Of what draw_draft() has drawn last: DraftPlan::news().
   bool draft_news() const { return display_ && display_->plan().news(); }
 
@@ -286,6 +290,8 @@ class Renderer {
   std::optional<bool> prepare_round(const schedule::WorkItem& item, const std::function<bool()>& cancel);
   /// Adds a line to the ledger when one is due, or at once.
   void note_progress(bool at_once);
+  /// Another coarse draft has been drawn, which took so long.
+  void note_path_pace(double seconds);
 
   RendererOptions options_;
   std::shared_ptr<gpu::Device> device_;
@@ -304,6 +310,8 @@ class Renderer {
     uint64_t version = ~uint64_t{0}, paths = 0;
   } shown_;                       ///< Display::version() and the paths of the preview that was shown last
   bool draft_preparing_ = false;  ///< when a draft was drawn last
+  double coarse_s_ = 0;           ///< of the coarse drafts since they began
+  std::optional<stats::SamplePace> path_pace_;  ///< of a picture of one pixel
   scene::Camera camera_;
   uint32_t width_ = 1280, height_ = 720;
   Sampling sampling_;

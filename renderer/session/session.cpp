@@ -203,6 +203,7 @@ struct Session::Impl {
     next.seconds = r.seconds();
     next.reports = r.reports();
     tell_preparing(r.stats());
+    next.path_pace = r.path_pace();
     next.camera = r.camera();
     next.tracer = r.tracer_name();
     next.device = r.device().info().name;

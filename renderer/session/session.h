@@ -72,6 +72,8 @@ struct Snapshot {
   std::string preparing;
   double preparing_done = -1;            ///< of that, 0..1; -1: it cannot be told
   std::optional<double> preparing_left;  ///< seconds of rendering, about
+  /// What path tracing alone would take (Renderer::path_pace).
+  std::optional<stats::SamplePace> path_pace;
   /// Wall time since this image was begun, pauses left out: the clock of the ledger's wall_s and of
   /// forecasts.
   double seconds = 0;

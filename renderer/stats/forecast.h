@@ -103,4 +103,12 @@ double samples_to(const TileProgress& tile, double target, double k);
 std::optional<Band> total_paths(std::span<const TileProgress> tiles, uint32_t across, double target,
                                 double min_samples, double max_samples);
 
+/// What plain sampling takes, about.
+struct SamplePace {
+  double seconds = 0;  ///< of a sample for every pixel
+  double noise = 0;    ///< relative, of the picture with one (Entry::error)
+  /// Until it has that noise, which falls with the square root of the samples.
+  double seconds_to(double error) const { return seconds * (noise / error) * (noise / error); }
+};
+
 }  // namespace lucerna::stats

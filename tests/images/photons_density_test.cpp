@@ -58,7 +58,7 @@ TEST_CASE("the density of photons is that which the round has left, and their ir
   test::set(s.r, {{"overlay.photon_density", "irradiance"}});
   CHECK(s.r.picture(false) != plain);
   CHECK(mean(s.photons->inspector().densities()) == Approx(double(luminance(vec3(3, 4, 5)))).epsilon(0.03));
-  CHECK(s.report()->legends[0].title.find("irradiance") != std::string::npos);
+  CHECK(s.report()->legends[0].title.find("Irradiance") != std::string::npos);
   test::set(s.r, {{"overlay.photon_density", "off"}});
   CHECK(s.r.picture(false) == plain);
   CHECK(s.report()->legends.empty());

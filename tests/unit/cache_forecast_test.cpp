@@ -116,6 +116,8 @@ TEST_CASE("relighting is as far as the rays that records had before") {
   CHECK(forecast_of(s, k_stop)->done < 1);
   s.relighting.rays = 0;
   CHECK_FALSE(forecast_of(s, k_stop));
+  s.relighting = {};  // all are relit, and the next pass has not begun
+  CHECK_FALSE(forecast_of(s, k_stop));
 }
 
 TEST_CASE("building that goes on after relighting is as far as it was") {
@@ -134,6 +136,7 @@ TEST_CASE("what comes into view takes its part of what the cache took") {
     s.passes.back().paths = 1000000, s.passes.back().asked = uint64_t(asked * 1e6);
     const double left = forecast_of(s, k_stop)->left_ms;
     CHECK(left > last);
+    CHECK(forecast_of(s, k_stop)->done == Approx(100130 / (100130 + left)).epsilon(0.01));
     last = left;
   }
   CHECK(last < 100131);

@@ -31,10 +31,11 @@ double left_asked(double share) {
   return k_left_asked.back().left * share / k_left_asked.back().share;
 }
 
-BuildForecast forecast(double all_ms, double done_ms) {
+/// `before_ms`: of building that was complete before this began.
+BuildForecast forecast(double all_ms, double done_ms, double before_ms = 0) {
   // What has taken longer than was foretold is nearly done, as far as one can tell.
   const double left = std::max(all_ms - done_ms, 0.04 * done_ms);
-  return {.done = done_ms / (done_ms + left), .left_ms = left};
+  return {.done = (before_ms + done_ms) / (before_ms + done_ms + left), .left_ms = left};
 }
 
 }  // namespace
@@ -47,6 +48,7 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
     if (s.rays == 0 || s.relighting.rays == 0) return {};
     return forecast(all * std::max(1.0, double(s.relighting.rays) / double(s.rays)), all);
   }
+  if (s.passes.back().relit) return {};  // all are relit, and what is missing has not been looked for yet
   // Passes are counted from 0 again when building is extended: what was built before says how long it takes.
   // Those that were relit stand for the ones that had placed them, which building now goes on from.
   size_t first = s.passes.size() - 1;
@@ -59,7 +61,8 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
   const bool looked = now.paths > 0;
   if (before > 0) {
     if (!looked) return {};
-    return forecast(done - of_pass + before * left_asked(double(now.asked) / double(now.paths)), done);
+    return forecast(done - of_pass + before * left_asked(double(now.asked) / double(now.paths)), done,
+                    before);
   }
   if (now.number == 0) {
     if (now.rays == 0 || now.records == 0) return {};

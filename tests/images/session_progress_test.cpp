@@ -1,0 +1,135 @@
+// links: session
+// What a person is told while light is prepared: how far that is, what path tracing would take instead, and
+// whether the picture that is shown meanwhile is to be made anew.
+#include <catch2/catch.hpp>
+
+#include "images/cache_support.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+using test::Settings;
+
+namespace {
+
+const Settings k_cached{{"components.secondary", "cache"},
+                        {"components.tertiary", "cache"},
+                        {"cache.rays", "64"},
+                        {"cache.max_rays", "256"},
+                        {"cache.max_records", "5000"},
+                        {"samples", "2"},
+                        {"path.batch", "8192"}};
+
+/// The window's renderer of a room whose light is cached, at its beginning.
+struct Window {
+  session::Renderer r;
+  explicit Window(uint32_t size, const Settings& settings = k_cached)
+      : r([] {
+          session::RendererOptions o = test::renderer_options(true);
+          o.interactive = true;
+          return o;
+        }()) {
+    r.set_size(size, size);
+    test::set(r, settings);
+    r.set_scene(std::make_shared<scene::Scene>(test::block_room(true)));
+    test::set(r, settings);
+  }
+  ~Window() { CHECK(r.device().validation_messages() == 0); }
+  std::optional<solvers::Report::Progress> progress() {
+    for (const auto& report : r.reports())
+      if (report->progress) return report->progress;
+    return std::nullopt;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("while a cache is built or relit it is told how far that is") {
+  Window window(48);
+  double least = 1, most = 0;
+  CHECK_FALSE(window.progress());  // nothing is known yet
+  for (int i = 0; i < 10000 && window.r.preparing(); ++i) {
+    window.r.step();
+    if (const auto p = window.progress()) {
+      CHECK(p->left_ms > 0);
+      least = std::min(least, p->done), most = std::max(most, p->done);
+    }
+  }
+  REQUIRE_FALSE(window.r.preparing());
+  CHECK(least < 0.3);
+  CHECK(most > 0.5);
+  CHECK(most < 1);
+  CHECK_FALSE(window.progress());
+  // Relit, it is told by the rays that records had.
+  scene::Light lamp = window.r.scene()->lights[0];
+  lamp.position.x += 0.2f;
+  window.r.set_light(0, lamp);
+  double before = 0;
+  int told = 0;
+  for (int i = 0; i < 10000 && window.r.preparing(); ++i, window.r.step())
+    if (const auto p = window.progress()) {
+      CHECK(p->done > before - 0.05);
+      before = p->done, ++told;
+    }
+  CHECK(told > 0);
+}
+
+TEST_CASE("drafts tell what path tracing would take before there is any light to be looked up") {
+  Window window(64);
+  CHECK_FALSE(window.r.path_pace());
+  for (int i = 0; i < 12 && !window.r.path_pace(); ++i) window.r.draw_draft();
+  const auto pace = window.r.path_pace();
+  REQUIRE(pace);
+  CHECK(pace->seconds > 0);
+  // The noise of one sample is that of a path traced picture.
+  Settings paths = k_cached;
+  paths["components.secondary"] = paths["components.tertiary"] = "path";
+  paths["samples"] = "16";
+  Window traced(64, paths);
+  test::finish(traced.r);
+  const double noise = traced.r.image_error().relative(0) * 4;
+  INFO("noise of one sample " << noise << ", told " << pace->noise);
+  CHECK(pace->noise == Approx(noise).epsilon(0.35));
+  CHECK(pace->seconds_to(pace->noise / 10) == Approx(100 * pace->seconds));
+  // Of a larger picture as much more; of another light nothing is known, and records have light by then.
+  window.r.set_size(64, 128);
+  REQUIRE(window.r.path_pace());
+  CHECK(window.r.path_pace()->seconds == Approx(2 * pace->seconds));
+  while (window.r.preparing()) window.r.step();
+  scene::Light lamp = window.r.scene()->lights[0];
+  lamp.position.x += 0.2f;
+  window.r.set_light(0, lamp);
+  for (int i = 0; i < 12; ++i) window.r.draw_draft();
+  CHECK_FALSE(window.r.path_pace());
+}
+
+TEST_CASE("a preview that nothing has changed is the same, and is known to be") {
+  Window window(48);
+  CHECK_FALSE(window.r.shows_the_same());  // nothing was shown
+  window.r.draw_draft();
+  const auto shown = [&] { return window.r.shown_picture(true); };
+  const std::vector<uint8_t> first = shown();
+  CHECK(window.r.shows_the_same());
+  window.r.step();  // builds records, which nobody has looked up yet
+  CHECK(window.r.shows_the_same());
+  CHECK(shown() == first);
+  while (!window.r.draw_draft()) window.r.step();
+  CHECK_FALSE(window.r.shows_the_same());
+  shown();
+  CHECK(window.r.shows_the_same());
+  // What is drawn over it may change whenever records do.
+  test::set(window.r, {{"overlay.records", "true"}});
+  shown();
+  CHECK_FALSE(window.r.shows_the_same());
+  test::set(window.r, {{"overlay.records", "false"}});
+  shown();
+  CHECK(window.r.shows_the_same());
+  window.r.inspect(vec2(0.5f));
+  CHECK_FALSE(window.r.shows_the_same());
+  window.r.inspect({});
+  // Samples are new, and at last it is no preview.
+  for (int i = 0; i < 10000 && window.r.samples() == 0; ++i) window.r.step();
+  CHECK_FALSE(window.r.shows_the_same());
+  test::finish(window.r);
+  shown();
+  CHECK_FALSE(window.r.shows_the_same());
+}
