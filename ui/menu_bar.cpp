@@ -388,10 +388,12 @@ void draw_menu_bar(Ui& ui, const Area& area) {
       draw_text(list, {begin, area.lo.y}, {end, area.hi.y}, preview, colour::accent, Align::right);
       ImGui::SetCursorScreenPos({begin, area.lo.y});
       ImGui::InvisibleButton("##preview", {end - begin, area.hi.y - area.lo.y - px(2)});
+      const std::string off =
+          s->shown_error ? fmt::format(" It is off by about {}.", percent_text(*s->shown_error)) : "";
       tooltip(
           "What is shown is not the samples alone: light from before the last edit stays until the new is "
-          "better, and the noise of the first samples is filtered. Files have the samples. U shows them as "
-          "they are.");
+          "better, and the noise of the first samples is filtered." +
+          off + " Files have the samples. U shows them as they are.");
     }
     state_left = right - std::max(wide, text_width(state));
     ImGui::SetCursorScreenPos({state_left, area.lo.y});
