@@ -27,13 +27,10 @@ class DraftPlan {
   }
   /// That has been done, and took so long; `complete`: no more of it is to be done.
   void drawn(Next what, double seconds, bool complete = true) {
-    if (what == Next::light) {
-      light_s_ += seconds;
-      return;
-    }
+    if (what == Next::light) light_s_ += seconds;
     if (what == Next::coarse) ++coarse_;
     if (what == Next::fine) ++fine_;
-    if (what != Next::sight) draft_s_ += seconds;
+    if (what == Next::coarse || what == Next::fine) draft_s_ += seconds;
     news_ = (what == Next::sight && complete) || (what == Next::coarse && coarse_ == k_coarse_samples) ||
             (what == Next::fine && shows_fine() && std::has_single_bit(fine_));
   }

@@ -11,7 +11,7 @@ using namespace lucerna::irradiance_cache;
 
 namespace {
 
-constexpr double k_stop = 0.0015;
+constexpr double k_stop = 0.002;  // cache.stop
 
 struct Pass {
   double asked;
@@ -29,7 +29,7 @@ const std::vector<std::vector<Pass>> k_measured = {
      {0.0162, 8199, 2982080, 10427},
      {0.0048, 6669, 2335104, 10139},
      {0.0024, 6407, 2239552, 11025},
-     {0.0013, 720, 335680, 3435}},
+     {0.0016, 720, 335680, 3435}},
     // hall
     {{0.9956, 11189, 5857536, 13508},
      {0.7530, 27511, 11288320, 23410},

@@ -139,6 +139,8 @@ TEST_CASE("surfaces, the last coarse draft and every fine one of twice the sampl
   CHECK_FALSE(plan.news());
   plan.drawn(Next::coarse, 0.1), plan.drawn(Next::coarse, 0.1);
   CHECK(plan.news());  // the last of them
+  plan.drawn(Next::light, 0.1);
+  CHECK_FALSE(plan.news());  // which shows nothing of its own
   int shown = 0;
   for (int i = 0; i < 64; ++i) {
     plan.drawn(Next::fine, 0.1);
