@@ -205,7 +205,7 @@ solvers::Routing Engine::routing(const plan::Plan& plan, const plan::Settings& s
     claim(by, *info, brought(own.lookups) & ~own.through);
     merge(all.lookups, own.lookups);
     all.fallback |= own.fallback;
-    if (own.fallback == 0) always |= brought(own.lookups);
+    always |= brought(own.lookups) & ~own.fallback;
     if (!own.gather.component.empty()) merge(all.gather, own.gather);
   }
   // Paths that one lookup has left alone still find another's.

@@ -79,7 +79,9 @@ vec2 photon_areas(vec3 x, vec3 normal, float radius) {
   for (; node < nodes && visits < photons.most_visits; ++visits) {
     vec4 a = texelFetch(photon_surface_nodes, int(2u * node)), b = texelFetch(photon_surface_nodes, int(2u * node + 1u));
     vec3 away = max(max(a.xyz - x, x - b.xyz), vec3(0.0));
-    bool meets = dot(away, away) < r2;
+    // Within the radius, and not all of it above or below the slab.
+    float height = dot(0.5 * (a.xyz + b.xyz) - x, normal), extent = dot(0.5 * (b.xyz - a.xyz), abs(normal));
+    bool meets = dot(away, away) < r2 && abs(height) <= extent + k_photon_slab * radius;
     uint leaf = floatBitsToUint(b.w), first = leaf >> 3, count = meets ? leaf & 7u : 0u;
     for (uint i = first; i < first + count; ++i)
       sum += photon_triangle(texelFetch(photon_surface_triangles, int(3u * i)).xyz - x, texelFetch(photon_surface_triangles, int(3u * i + 1u)).xyz - x,

@@ -2,6 +2,7 @@
 #ifndef LUCERNA_PHOTONS_PHOTON
 #define LUCERNA_PHOTONS_PHOTON
 #include "shaders/shared/photons/photons.h"
+#include "shaders/shared/ray.h"
 #include "lib/math.glsl"
 #include "lib/sampler.glsl"
 
@@ -21,6 +22,12 @@ vec3 photon_direction(uint bits) {
   return normalize(vec3(p, z));
 }
 
+// Where on its triangle a hit is, 16 bits each.
+uint barycentric_pack(Hit hit) {
+  uvec2 q = uvec2(clamp(vec2(hit.u, hit.v) * 65535.0 + 0.5, vec2(0.0), vec2(65535.0)));
+  return q.x | q.y << 16;
+}
+
 // Within which a photon at x counts; changes by no more than `slope` a metre.
 float photon_radius(vec3 x) { return clamp(photons.base + photons.slope * distance(x, photons.eye), photons.least, photons.most); }
 
@@ -37,11 +44,6 @@ uint photon_entry_of(ivec3 cell, int level, uint mask) {
   return (hash << k_photon_entry_bits | low) & mask;
 }
 uint photon_entry(ivec3 cell, int level) { return photon_entry_of(cell, level, photons.mask); }
-
-// Of the photons in their order: that at which irradiance is known beforehand as the place of that number.
-uint photon_of_place(uint place) {
-  return min(k_photon_place_step * place + hash_combine(place, photons.round) % k_photon_place_step, photons.count - 1u);
-}
 
 // By whose radii importance was noted.
 float importance_radius(vec3 x) {

@@ -7,6 +7,7 @@
 layout(scalar) writeonly buffer PhotonList { Photon photon_list[]; };  // in the order in which they come ...
 layout(scalar) writeonly buffer PhotonIds { uint photon_ids[]; };      // ... and the one in which they will be
 layout(scalar) writeonly buffer PhotonRadiances { float photon_radiances[]; };
+layout(scalar) writeonly buffer PhotonSurfaces { PhotonSurface photon_surfaces[]; };
 layout(scalar) buffer PhotonCounts { uint photon_counts[]; };
 layout(scalar) buffer LightPathCounts { uint light_path_counts[]; };
 
@@ -52,6 +53,8 @@ void main() {
       photon_ids[at] = path.pixel << k_photon_id_events | (depth & k_most_light_events);
       if (photons.tells_radiance != 0u)
         photon_radiances[at] = min(luminance(v.arriving) / max(path.pdf, 1e-37), k_radiance_unmet);
+      if (photons.tells_surface != 0u)
+        photon_surfaces[at] = PhotonSurface(hit.prim << 1 | (dot(ray.direction, v.surface.normal_g) > 0.0 ? 1u : 0u), barycentric_pack(hit));
     }
   }
   light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events - 1u), random);

@@ -17,12 +17,22 @@
 layout(scalar) buffer PhotonImportance { uint photon_importance[]; };
 layout(scalar) writeonly buffer PhotonLookups { PhotonLookup photon_lookups[]; };
 
-struct photons_Vertex { uint none; };
+struct photons_Vertex {
+  uint from;  // first of the states in which a path goes on behind the diffuse lobe; 0: as it is
+};
 
 photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
+  photons_Vertex vertex = photons_Vertex(0u);
   uint components = v.again ? 0xffffu : photons.component[v.state];
+  // A pilot notes where light is looked up, and reads none.
+  bool reads = components != 0xffffu && photons.importance_mask == 0u;
+  // Paths that bring all by themselves do so no longer where it has been looked up.
+  if (reads && v.state % k_left_states >= k_gather_state) vertex.from = k_known_state;
 #if LUCERNA_PHOTON_IRRADIANCE
-  if (components != 0xffffu && irradiance_read(v, o)) components = 0xffffu;
+  if (reads && irradiance_asked(v.state)) {
+    components = 0xffffu;
+    if (!irradiance_read(v, o)) vertex.from = k_fallback_state;
+  }
 #endif
   vec3 x = v.surface.position;
   float radius = photon_radius(x);
@@ -104,11 +114,14 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
 #if LUCERNA_GROUP_SUMS
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) o.by_group[g] += weight * by_group[g];
 #endif
-  return photons_Vertex(0u);
+  return vertex;
 }
 vec3 photons_cosine(VertexIn v, inout photons_Vertex x, vec2 u, vec3 cosine) { return cosine; }
 void photons_weigh(VertexIn v, photons_Vertex x, vec3 direction, inout BsdfSample b) {}
-uint photons_state(VertexIn v, photons_Vertex x, BsdfSample b, uint state) { return state; }
+uint photons_state(VertexIn v, photons_Vertex x, BsdfSample b, uint state) {
+  uint block = v.state - v.state % k_left_states;
+  return x.from != 0u && b.event == k_event_diffuse ? block + x.from + state % k_gather_state : state;
+}
 void photons_leave(VertexIn v, inout photons_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on) {}
 void photons_end(VertexIn v, photons_Vertex x) {}
 #endif

@@ -210,7 +210,7 @@ void main() {
 #endif
       if (!ends) {
         vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
-        VertexIn v = VertexIn(slot, path, state, depth, surface, bsdf, to_world, side, random, again);
+        VertexIn v = VertexIn(slot, path, state, depth, hit, surface, bsdf, to_world, side, random, again);
         VertexHooks hooks = hooks_read(v, found);
 #if LUCERNA_LIGHTS
         if (!again) sample_direct_light(slot, path, surface, bsdf, wo, to_world, random, found.sky_known, found.samples_lights);

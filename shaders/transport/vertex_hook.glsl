@@ -23,6 +23,7 @@ struct VertexIn {
   PathState path;   // as it arrives
   uint state;       // of the automaton
   uint depth;       // scattering events before this one
+  Hit hit;
   Surface surface;
   Bsdf bsdf;
   mat3 to_world;    // shading frame

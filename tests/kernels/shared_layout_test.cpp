@@ -18,6 +18,7 @@
 #include "shaders/shared/octree.h"
 #include "shaders/shared/overlay.h"
 #include "shaders/shared/photons/inspect.h"
+#include "shaders/shared/photons/irradiance.h"
 #include "shaders/shared/photons/photons.h"
 #include "shaders/shared/preview.h"
 #include "shaders/shared/ramp.h"
@@ -81,7 +82,8 @@ std::vector<SharedStruct> structs() {
       SHARED("photons/photons.h", Photon, position, direction, flux, bits),
       SHARED("photons/photons.h", PhotonFrame, eye, slope, base, least, most, count, mask, round,
              most_candidates, most_visits, surface_nodes, importance_mask, importance_eye, importance_slope,
-             importance_base, importance_counts, lookups, tells_radiance, component),
+             importance_base, importance_counts, lookups, tells_radiance, tells_surface, component),
+      SHARED("photons/irradiance.h", IrradianceFrame, triangles, states),
       SHARED("photons/inspect.h", PhotonDensityPush, width, height, of),
       SHARED("photons/inspect.h", PhotonHeatPush, width, height, lo, hi),
       SHARED("photons/inspect.h", PhotonInspectPush, width, height, pixel),
@@ -90,6 +92,7 @@ std::vector<SharedStruct> structs() {
       SHARED("photons/inspect.h", PhotonInspected, position, brings, direction, bits, flux, pad0),
       SHARED("photons/photons.h", PhotonWorth, stratum, light, id, worth, position, importance, flux,
              radiance, facet),
+      SHARED("photons/photons.h", PhotonSurface, side, barycentric),
       SHARED("photons/photons.h", PhotonLookup, position, carried, facet),
       SHARED("emission.h", EmitPush, count, first, round, share, step),
       SHARED("photons/photons.h", PhotonWorthPush, count, step),

@@ -144,7 +144,7 @@ CacheView CacheSolver::view(const Picture& picture) const {
   // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
   view.records_frame = picture.frame_for(
       {.lookups = ray_routes_,
-       .fallback = record_routes_.parts & ~(elsewhere(picture.task) ? 1u << 2 : 0),
+       .fallback = record_routes_.parts,
        .gather = paths::gather_routes(picture.task.automaton, record_routes_.parts, record_routes_)},
       ray_routes_.traced);
   view.records_enabled = record_routes_.parts;

@@ -129,10 +129,10 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
 
 bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
   if (ready()) return true;
-  if (pilot_done()) return feed(wavefront, picture, cancel);
+  if (pilot_done()) return prepare_standing(wavefront, picture, cancel);
   switch (aim_step_) {
     case AimStep::casters: {
-      if (feeds_) wavefront.rebind_lookup();  // what eye paths note is the rounds'
+      if (stands()) wavefront.rebind_lookup();  // what eye paths note is the rounds'
       if (bundles_ && !casters_known_)
         casters_ = transport::find_casters(picture.flat), casters_known_ = true;
       boxes_ = casters_;

@@ -43,13 +43,18 @@ std::vector<OptionInfo> option_rows() {
           "Photons: divides by the surface that there is around a place instead of by a whole disc, "
           "so that borders and creases are not darker than they are.",
           "Correct borders"),
-      choice_option("photons.irradiance_map", "records", {"off", "records", "all"}, "",
-                    "Photons: where tertiary light is looked up behind a diffuse surface irradiance is known "
-                    "beforehand at one photon in four, and the nearest is taken: for the rays of the "
-                    "irradiance cache's records, or for paths that gather as well, for which its error does "
-                    "not fall with more samples. Such lookups cost a small part of what all photons around "
-                    "do.",
-                    "Irradiance map"),
+      choice_option(
+          "photons.irradiance_map", "all", {"off", "records", "all"}, "",
+          "Photons: where tertiary light is looked up behind a diffuse surface irradiance is known "
+          "beforehand, on pieces of surfaces that are as fine as there are photons; where these are "
+          "too few, the path goes on by itself. For the rays of the irradiance cache's records, or "
+          "for paths that gather as well. off: all photons around are added up, which is slow, and "
+          "noisy where they are sparse.",
+          "Irradiance map"),
+      integer_option("photons.nearest", 8, 2, 1024, "photons",
+                     "Photons: as many make up a piece of such a map at least, and as many again tell its "
+                     "light. Less: finer pieces, and more grain.",
+                     "Photons a piece"),
       without_restart(choice_option(
           "overlay.photon_density", "off", {"off", "photons", "irradiance", "importance", "worth"}, "",
           "Shows over the picture how dense the photons of the last round lie, or what they "
@@ -178,10 +183,10 @@ constexpr const char* k_deep_matrix = R"({
      "set": {"components.secondary": "cache", "components.tertiary": "cache"}},
     {"name": "cache-photons", "about": "records whose rays end in photons", "budget": "seconds",
      "set": {"components.secondary": "cache", "components.tertiary": "photons"}},
-    {"name": "path-photons", "about": "final gathering: paths that end in photons", "budget": "seconds",
+    {"name": "path-photons", "about": "final gathering: paths that end in irradiance of photons", "budget": "seconds",
      "set": {"components.tertiary": "photons"}},
-    {"name": "path-map", "about": "... whose irradiance is known beforehand", "budget": "seconds",
-     "set": {"components.tertiary": "photons", "photons.irradiance_map": "all"}}
+    {"name": "path-rounds", "about": "... that add up the photons of rounds instead", "budget": "seconds",
+     "set": {"components.tertiary": "photons", "photons.irradiance_map": "off"}}
   ]
 })";
 

@@ -1,6 +1,6 @@
 #include "solvers/photons/irradiance_map.h"
 
-#include <algorithm>
+#include "solvers/photons/surface_index.h"
 
 namespace lucerna::photons {
 
@@ -8,84 +8,82 @@ using namespace shared;
 
 namespace {
 
-uint32_t group_texels(const gpu::Defines& defines) {
-  const auto groups = defines.find("LUCERNA_LIGHT_GROUPS");
-  return defines.contains("LUCERNA_GROUP_SUMS") ? (uint32_t(std::stoul(groups->second)) + 3) / 4 : 0;
+uint32_t groups_of(const gpu::Defines& defines) {
+  const auto kept = defines.find("LUCERNA_GROUP_SUMS");
+  return kept != defines.end() && kept->second != "0"
+             ? uint32_t(std::stoul(defines.at("LUCERNA_LIGHT_GROUPS")))
+             : 0;
 }
 
 }  // namespace
 
-IrradianceMap::IrradianceMap(gpu::Device& device, gpu::ShaderCompiler& compiler,
-                             const gpu::Defines& scene_defines)
+IrradianceMap::IrradianceMap(gpu::Device& device, const gpu::Defines& scene_defines)
     : device_(device),
-      choose_(device, compiler, "photons/places.comp"),
-      gather_(device, compiler, "photons/place_irradiance.comp", scene_defines),
-      cells_(device, compiler),
-      group_words_(group_texels(scene_defines)),
-      block_(device, {.name = "lookups of irradiance", .bytes = sizeof(PhotonFrame)}) {
+      groups_(groups_of(scene_defines)),
+      block_(device, {.name = "lookups of irradiance", .bytes = sizeof(IrradianceFrame)}) {
   clear();
 }
 
 void IrradianceMap::clear() {
-  complete_ = false;
-  lookup_ = {};
-  lookup_.least = lookup_.most = 1;
-  std::fill(std::begin(lookup_.component), std::end(lookup_.component), 0xffffu);
-  cells_.make_room(0, lookup_);
-  gpu::make_texel_room(device_, irradiance_, "irradiance of places", k_photon_place_texels * 16);
-  if (group_words_ > 0) gpu::make_texel_room(device_, shares_, "groups of places", group_words_ * 16);
-  write_lookup();
+  restart();
+  pieces_ = 0;
+  gpu::make_texel_room(device_, roots_, "triangles of irradiance", sizeof(uvec4));
+  gpu::make_texel_room(device_, nodes_, "irradiance", (1 + groups_) * sizeof(vec4));
+  const IrradianceFrame none{};
+  block_.write(&none, sizeof none);
 }
 
-void IrradianceMap::write_lookup() { block_.write(&lookup_, sizeof lookup_); }
-
-void IrradianceMap::make(transport::Wavefront& wavefront, const PhotonMap& map,
-                         const std::vector<uint32_t>& component,
-                         const std::function<void(gpu::Resources&)>& from) {
-  const uint32_t count = gpu::groups_for(map.figures().photons, k_photon_place_step);
-  lookup_ = map.lookup();
-  lookup_.most_candidates = k_photon_place_candidates;
-  std::copy(component.begin(), component.end(), std::begin(lookup_.component));
-  cells_.make_room(count, lookup_);
-  write_lookup();
-  const auto room = [&](gpu::Buffer& buffer, const char* name, uint64_t bytes) {
-    gpu::make_texel_room(device_, buffer, name, std::max<uint64_t>(bytes, 16));
-  };
-  room(list_, "places of irradiance", uint64_t{count} * sizeof(Photon));
-  room(ids_, "numbers of places", (uint64_t{count} * 4 + 15) / 16 * 16);
-  room(irradiance_, "irradiance of places", uint64_t{count} * k_photon_place_texels * 16);
-  if (group_words_ > 0) room(shares_, "groups of places", uint64_t{count} * group_words_ * 16);
-  if (count > 0) {
-    gpu::Stream& stream = wavefront.stream();
-    const PhotonListPush push{count};
-    const uint32_t groups = gpu::groups_for(count, 64);
-    gpu::Resources r;
-    from(r);
-    r.set("PhotonList", list_);
-    r.set("PhotonIds", ids_);
-    stream.dispatch(choose_, r, push, groups, "photon map");
-    cells_.encode(stream, list_, ids_, block_, count);
-    r.set("place_texels", cells_.photons());
-    r.set("PlaceIrradiance", irradiance_);
-    if (group_words_ > 0) r.set("PlaceGroups", shares_);
-    stream.dispatch(gather_, r, push, groups, "photon map");
-    wavefront.account_stages();
+void IrradianceMap::make(transport::Wavefront& wavefront, const PhotonMap& map, const upload::FlatScene& flat,
+                         const Wanted& wanted) {
+  std::vector<bool> diffuse = diffuse_materials(flat);
+  if (!order_ || diffuse != diffuse_) {
+    order_ = std::make_unique<SideOrder>(order_sides(flat, diffuse));
+    diffuse_ = std::move(diffuse);
+    builder_.reset();
   }
+  if (!builder_) {
+    const std::vector<Photon> photons = map.photons();
+    const std::vector<uint32_t> numbers = map.numbers();
+    const std::vector<PhotonSurface> surfaces = map.surfaces();
+    std::vector<PhotonOnSide> all(photons.size());
+    for (size_t i = 0; i < all.size(); ++i) {
+      const uint32_t part = photons[i].bits >> k_photon_part_shift & 3u;
+      all[i] = {.side = surfaces[i].side,
+                .barycentric = surfaces[i].barycentric,
+                .number = numbers[i],
+                .group = photons[i].bits >> k_photon_group_shift,
+                .flux = part > 0 ? photons[i].flux : vec3(0)};
+    }
+    builder_ = std::make_unique<IrradianceCellsBuilder>(*order_, std::move(all), groups_, wanted.nearest,
+                                                        wanted.widest);
+    maps_ = 0;
+    return;
+  }
+  builder_->add_map(maps_++);
+  if (maps_ < 2) return;
+  upload(builder_->take(), wanted);
+  builder_.reset();
   complete_ = true;
   wavefront.rebind_lookup();
 }
 
-void IrradianceMap::bind(gpu::Resources& resources) const {
-  resources.set("place_irradiance_texels", irradiance_);
-  resources.set("place_table", cells_.table());
-  resources.set("IrradianceBlock", block_);
-  if (group_words_ > 0) resources.set("irradiance_group_texels", shares_);
+void IrradianceMap::upload(const IrradianceCells& cells, const Wanted& wanted) {
+  gpu::make_texel_room(device_, roots_, "triangles of irradiance", cells.roots.size() * sizeof(uvec4));
+  gpu::make_texel_room(device_, nodes_, "irradiance", cells.nodes.size() * sizeof(vec4));
+  roots_.write(std::span<const uvec4>(cells.roots));
+  nodes_.write(std::span<const vec4>(cells.nodes));
+  const IrradianceFrame frame{.triangles = uint32_t(cells.roots.size()),
+                              .states = {uint32_t(wanted.states), uint32_t(wanted.states >> 32)}};
+  block_.write(&frame, sizeof frame);
+  pieces_ = cells.known;
 }
 
-uint64_t IrradianceMap::bytes() const {
-  uint64_t sum = cells_.bytes();
-  for (const gpu::Buffer* b : {&list_, &ids_, &irradiance_, &shares_}) sum += *b ? b->bytes() : 0;
-  return sum;
+void IrradianceMap::bind(gpu::Resources& resources) const {
+  resources.set("irradiance_roots", roots_);
+  resources.set("irradiance_nodes", nodes_);
+  resources.set("IrradianceBlock", block_);
 }
+
+uint64_t IrradianceMap::bytes() const { return roots_.bytes() + nodes_.bytes() + block_.bytes(); }
 
 }  // namespace lucerna::photons

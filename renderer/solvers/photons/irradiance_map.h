@@ -1,36 +1,50 @@
 #pragma once
-// Irradiance at places where photons of a map lie, so that a lookup is to find the nearest place
-// (shaders/photons/irradiance.glsl) instead of adding up all photons around.
+// Irradiance known beforehand where lookups of tertiary light take place, so that one is to find the piece of
+// surface on which it lies (shaders/photons/irradiance.glsl) instead of adding up all photons around.
+#include <memory>
+
+#include "solvers/photons/irradiance_cells.h"
 #include "solvers/photons/photon_map.h"
 
 namespace lucerna::photons {
 
 class IrradianceMap {
  public:
-  /// `scene_defines`: of the kernels that know the scene. Throws Error: a kernel does not compile (located).
-  IrradianceMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines);
+  /// `scene_defines`: of the kernels that know the scene. Throws Error: no memory.
+  IrradianceMap(gpu::Device& device, const gpu::Defines& scene_defines);
 
-  /// From a complete map whose photons all have one radius, as `from` binds it with the surfaces around.
-  /// `component`: by state of the eye path, as PhotonFrame has it, what lookups bring of it. Throws Error
-  /// when memory is short. The wavefront's lookups are bound anew.
-  void make(transport::Wavefront& wavefront, const PhotonMap& map, const std::vector<uint32_t>& component,
-            const std::function<void(gpu::Resources&)>& from);
-  /// Lookups find nothing, until the next one is made.
+  /// What it is to be.
+  struct Wanted {
+    uint32_t nearest = 0;  ///< IrradianceCellsBuilder's
+    float widest = 0;
+    uint64_t states = 0;  ///< bits: of the eye path, in which tertiary light is looked up, and nothing else
+  };
+  /// One piece of making it of a complete map that tells of its surfaces; until complete(). Lookups find what
+  /// there was before until then; with the last piece they are bound anew. Throws Error when memory is short.
+  void make(transport::Wavefront& wavefront, const PhotonMap& map, const upload::FlatScene& flat,
+            const Wanted& wanted);
+  /// It is to be made anew; until then lookups find what there was.
+  void restart() { complete_ = false, builder_.reset(); }
+  /// ... and until then nothing.
   void clear();
+  /// Surfaces are others.
+  void spoil() { clear(), order_.reset(); }
   bool complete() const { return complete_; }
   void bind(gpu::Resources& resources) const;
-  uint32_t places() const { return lookup_.count; }
+  uint32_t pieces() const { return pieces_; }
   uint64_t bytes() const;
 
  private:
-  void write_lookup();
+  void upload(const IrradianceCells& cells, const Wanted& wanted);
 
   gpu::Device& device_;
-  gpu::Kernel choose_, gather_;
-  PhotonCells cells_;
-  uint32_t group_words_;  ///< texels of shares a place; 0: groups are not kept
-  gpu::Buffer list_, ids_, irradiance_, shares_, block_;
-  shared::PhotonFrame lookup_{};
+  uint32_t groups_;  ///< of lights that are kept apart; 0: none are
+  std::unique_ptr<SideOrder> order_;
+  std::vector<bool> diffuse_;  ///< materials, by which it was made
+  std::unique_ptr<IrradianceCellsBuilder> builder_;
+  uint32_t maps_ = 0;  ///< that it has so far
+  gpu::Buffer roots_, nodes_, block_;
+  uint32_t pieces_ = 0;
   bool complete_ = false;
 };
 

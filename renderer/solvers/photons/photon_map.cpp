@@ -13,6 +13,13 @@ namespace {
 
 constexpr uint32_t k_first_capacity = 65536;  // photons
 
+template <class T>
+std::vector<T> first(const gpu::Buffer& buffer, uint32_t count) {
+  std::vector<T> values(count);
+  if (count > 0) buffer.read(values.data(), count * sizeof(T));
+  return values;
+}
+
 gpu::Buffer texels(gpu::Device& device, const char* name, uint64_t bytes) {
   return gpu::Buffer(device, {.name = name, .bytes = (bytes + 15) / 16 * 16, .texel = true});
 }
@@ -31,7 +38,8 @@ PhotonMap::PhotonMap(gpu::Device& device, gpu::ShaderCompiler& compiler, const g
       block_(device, {.name = "photon lookups", .bytes = sizeof(PhotonFrame)}),
       importance_(device, {.name = "importance", .bytes = 4 * k_photon_importance_entries}),
       lookups_(device, {.name = "lookups of caustics", .bytes = sizeof(PhotonLookup)}),
-      radiances_(device, {.name = "radiances of photons", .bytes = 4}) {
+      radiances_(device, {.name = "radiances of photons", .bytes = 4}),
+      on_(device, {.name = "surfaces of photons", .bytes = sizeof(PhotonSurface)}) {
   clear();
 }
 
@@ -98,6 +106,7 @@ void PhotonMap::write_lookup() {
   PhotonFrame all = lookup_;
   all.importance_eye = noted_.eye, all.importance_slope = noted_.slope, all.importance_base = noted_.base;
   all.importance_counts = noted_.importance_counts, all.tells_radiance = noted_.tells_radiance;
+  all.tells_surface = noted_.tells_surface;
   // Where there has been no round, of what photons are stored by.
   if (all.most <= all.least) all.least = noted_.least, all.most = noted_.most;
   block_.write(&all, sizeof all);
@@ -108,14 +117,34 @@ void PhotonMap::store_by_importance(bool on) {
   write_lookup();
 }
 
+void PhotonMap::store_by_importance_of(const PhotonMap& other) {
+  const PhotonFrame& n = other.noted_;
+  noted_.eye = n.eye, noted_.slope = n.slope, noted_.base = n.base;
+  noted_.least = n.least, noted_.most = n.most;
+  noted_.importance_counts = n.importance_counts;
+  importance_of_ = &other;
+  write_lookup();
+}
+
 void PhotonMap::tell_radiance(bool on) {
   noted_.tells_radiance = on ? 1 : 0;
   write_lookup();
 }
 
+void PhotonMap::tell_surface(bool on) {
+  noted_.tells_surface = on ? 1 : 0;
+  write_lookup();
+}
+
+std::vector<Photon> PhotonMap::photons() const { return first<Photon>(list_, figures_.photons); }
+std::vector<uint32_t> PhotonMap::numbers() const { return first<uint32_t>(ids_, figures_.photons); }
+std::vector<PhotonSurface> PhotonMap::surfaces() const {
+  return first<PhotonSurface>(on_, noted_.tells_surface != 0 ? figures_.photons : 0);
+}
+
 uint64_t PhotonMap::bytes() const {
   uint64_t sum = cells_.bytes();
-  for (const gpu::Buffer* b : {&list_, &ids_, &importance_, &lookups_, &radiances_})
+  for (const gpu::Buffer* b : {&list_, &ids_, &importance_, &lookups_, &radiances_, &on_})
     sum += *b ? b->bytes() : 0;
   return sum;
 }
@@ -143,7 +172,11 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
 bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
                             const Round& round, uint32_t count, const Frame& picture, uint32_t enabled,
                             const std::function<bool()>& cancel) {
-  if (!list_ || (noted_.tells_radiance != 0 && radiances_.bytes() < uint64_t{4} * capacity_))
+  const auto short_of = [&](bool told, const gpu::Buffer& buffer, uint64_t bytes) {
+    return told && buffer.bytes() < bytes * capacity_;
+  };
+  if (!list_ || short_of(noted_.tells_radiance != 0, radiances_, 4) ||
+      short_of(noted_.tells_surface != 0, on_, sizeof(PhotonSurface)))
     grow(wavefront, std::max(k_first_capacity, capacity_));
   const transport::LightVertexWork work{
       .vertex = &trace_, .stage = "photon vertex", .bind = [&](gpu::Resources& r) { bind_list(r); }};
@@ -171,11 +204,14 @@ bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::Li
 }
 
 void PhotonMap::bind_list(gpu::Resources& r) const {
+  r.set("PhotonBlock", block_);
+  r.set("PhotonImportance", importance_of_->importance_);
   r.set("PhotonCounts", counts_);
   r.set("PhotonList", list_);
   r.set("photon_list_texels", list_);
   r.set("PhotonIds", ids_);
   r.set("PhotonRadiances", radiances_);
+  r.set("PhotonSurfaces", on_);
 }
 
 void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
@@ -190,16 +226,20 @@ void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
   const auto capacity = uint32_t(std::min<uint64_t>(most, std::bit_ceil(needed)));
   gpu::Buffer list = texels(device_, "photons of a round", uint64_t{capacity} * sizeof(Photon));
   gpu::Buffer ids = texels(device_, "numbers of photons", uint64_t{capacity} * 4);
-  const bool tells = noted_.tells_radiance != 0;
-  gpu::Buffer radiances(
-      device_, {.name = "radiances of photons", .bytes = tells ? uint64_t{capacity} * 4 : uint64_t{4}});
+  const bool radiance = noted_.tells_radiance != 0, surface = noted_.tells_surface != 0;
+  const auto told = [&](const char* name, bool tells, uint64_t bytes) {
+    return gpu::Buffer(device_, {.name = name, .bytes = tells ? capacity * bytes : bytes});
+  };
+  gpu::Buffer radiances = told("radiances of photons", radiance, 4);
+  gpu::Buffer on = told("surfaces of photons", surface, sizeof(PhotonSurface));
   if (stored_ > 0) {
     wavefront.stream().copy(list_, list, uint64_t{stored_} * sizeof(Photon));
     wavefront.stream().copy(ids_, ids, uint64_t{stored_} * 4);
-    if (tells) wavefront.stream().copy(radiances_, radiances, uint64_t{stored_} * 4);
+    if (radiance) wavefront.stream().copy(radiances_, radiances, uint64_t{stored_} * 4);
+    if (surface) wavefront.stream().copy(on_, on, uint64_t{stored_} * sizeof(PhotonSurface));
     wavefront.account_stages();
   }
-  list_ = std::move(list), ids_ = std::move(ids), radiances_ = std::move(radiances);
+  list_ = std::move(list), ids_ = std::move(ids), radiances_ = std::move(radiances), on_ = std::move(on);
   capacity_ = capacity;
 }
 

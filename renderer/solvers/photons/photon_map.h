@@ -60,6 +60,8 @@ class PhotonMap {
   std::vector<shared::PhotonLookup> lookups() const;
   /// Whether photons are stored by the importance that was noted last: where nobody looks, one in so many.
   void store_by_importance(bool on);
+  /// ... by what the other one has noted, as that one does. It outlives this one's rounds.
+  void store_by_importance_of(const PhotonMap& other);
   /// Whether worths() tells of caustics what paths from the eye would bring of them, in rounds from now on.
   void tell_radiance(bool on);
   /// What each photon of the complete round brings to the picture, by the importance that was noted last; in
@@ -73,8 +75,13 @@ class PhotonMap {
   uint32_t traced() const { return tracing_ ? traced_ : 0; }
   const RoundFigures& figures() const { return figures_; }
   const shared::PhotonFrame& lookup() const { return lookup_; }
-  /// Of the complete round, with other limits of what lookups look at.
-  void set_lookup(const shared::PhotonFrame& lookup) { lookup_ = lookup, write_lookup(); }
+  /// Whether surfaces() tells of them, in rounds from now on.
+  void tell_surface(bool on);
+  /// Of the complete round, in whatever order they have come, as the other two: the photons, the number of
+  /// each (k_photon_id_events), and where it lies.
+  std::vector<shared::Photon> photons() const;
+  std::vector<uint32_t> numbers() const;
+  std::vector<shared::PhotonSurface> surfaces() const;
   uint64_t bytes() const;
 
  private:
@@ -92,9 +99,10 @@ class PhotonMap {
   transport::LightEmitter emitter_;
   gpu::Kernel trace_, worth_;
   PhotonCells cells_;  ///< with the photons of the complete round
-  gpu::Buffer counts_, list_, ids_, block_, importance_, worths_, lookups_, radiances_;
+  gpu::Buffer counts_, list_, ids_, block_, importance_, worths_, lookups_, radiances_, on_;
   shared::PhotonFrame lookup_{}, noted_{};  ///< noted_: by whose radii importance is noted
-  RoundFigures figures_, next_;             ///< of the last complete round, of the one under way
+  const PhotonMap* importance_of_ = this;
+  RoundFigures figures_, next_;  ///< of the last complete round, of the one under way
   bool tracing_ = false, complete_ = false;
   uint32_t traced_ = 0, stored_ = 0;  ///< paths and photons of the round under way
   uint32_t capacity_ = 0;

@@ -68,7 +68,9 @@ Report make_report(const PhotonReport& r) {
   report.ready = r.ready;
   if (!r.ready)
     report.preparing = "photons: where they are looked for, what bundles light, and where it comes in";
-  report.state = r.rounds == 0 ? "beginning" : fmt::format("round {}", r.last.round + 1);
+  report.state = r.maps && r.pieces > 0 ? fmt::format("{} pieces", count_text(r.pieces))
+                 : r.rounds == 0        ? "beginning"
+                                        : fmt::format("round {}", r.last.round + 1);
   PanelSection map{.title = "Photons", .note = "", .items = {}};
   if (r.lights_power <= 0)
     map.items.push_back(Paragraph{"Nothing in the scene shines, so that there are no photons."});
@@ -76,12 +78,21 @@ Report make_report(const PhotonReport& r) {
     map.items.push_back(
         Paragraph{"Nothing in the scene reflects or refracts otherwise than diffusely, so that there "
                   "are no caustics: no photons are sent."});
-  map.items.push_back(
-      ValueRow{"Rounds", count_text(double(r.rounds)), "One for every sample of the picture."});
-  map.items.push_back(
-      ValueRow{"Paths a round", count_text(r.last.paths), "That began at lights, in the last round."});
-  map.items.push_back(ValueRow{"Photons a round", count_text(r.last.photons),
-                               "That these left on surfaces, in the last round."});
+  if (r.maps)
+    map.items.push_back(ValueRow{"Maps", count_text(double(r.rounds)),
+                                 "Of irradiance, one after the other: each of twice as many paths, for twice "
+                                 "as many samples of the picture."});
+  else
+    map.items.push_back(
+        ValueRow{"Rounds", count_text(double(r.rounds)), "One for every sample of the picture."});
+  map.items.push_back(ValueRow{r.maps ? "Paths" : "Paths a round", count_text(r.last.paths),
+                               "That began at lights, for the last one."});
+  map.items.push_back(ValueRow{r.maps ? "Photons" : "Photons a round", count_text(r.last.photons),
+                               "That these left on surfaces."});
+  if (r.pieces > 0)
+    map.items.push_back(ValueRow{"Pieces of surface", count_text(r.pieces),
+                                 "Whose irradiance the last map knows. Where there are too few photons paths "
+                                 "go on by themselves."});
   for (const auto& [part, name, help] :
        {std::tuple{1u, "Secondary", "Of these: light that has met one diffuse surface before."},
         {2u, "Tertiary", "Of these: light that has met several diffuse surfaces before."},
@@ -107,11 +118,12 @@ Report make_report(const PhotonReport& r) {
   if (r.dark > 0)
     map.items.push_back(ValueRow{"Began in the dark", share_text(double(r.dark), double(r.paths)),
                                  "Of the paths: where a lamp's texture or the sky is black."});
-  map.items.push_back(ValueRow{
-      "Radius", fmt::format("{} pixels{}", real_text(r.radius_pixels, 2), r.at_floor ? ", the least" : ""),
-      "Within which a photon counts, as the camera sees it; below over rounds."});
-  if (r.sends) map.items.push_back(radius_columns(r));
-  if (r.limited)
+  if (!r.maps)
+    map.items.push_back(ValueRow{
+        "Radius", fmt::format("{} pixels{}", real_text(r.radius_pixels, 2), r.at_floor ? ", the least" : ""),
+        "Within which a photon counts, as the camera sees it; below over rounds."});
+  if (r.sends && !r.maps) map.items.push_back(radius_columns(r));
+  if (r.limited && !r.maps)
     map.items.push_back(
         Paragraph{"The radius asked for is wider than photons may be seen, and is held to a quarter of "
                   "their distance.",
@@ -134,9 +146,11 @@ Report make_report(const PhotonReport& r) {
   rate("Stored", r.stored_per_s, "Photons a second of that time.");
   rate("Sorted", r.sorted_per_s, "Photons a second of the time in which a round is put in order.");
   if (r.rounds > 0) {
-    map.items.push_back(ValueRow{"Tracing a round", ms_text(1e3 * r.trace_s / double(r.rounds)),
-                                 "On average over the picture's rounds."});
-    map.items.push_back(ValueRow{"Sorting a round", ms_text(1e3 * r.build_s / double(r.rounds)),
+    map.items.push_back(
+        ValueRow{r.maps ? "Tracing a map" : "Tracing a round", ms_text(1e3 * r.trace_s / double(r.rounds)),
+                 r.maps ? "On average over the picture's maps." : "On average over the picture's rounds."});
+    map.items.push_back(ValueRow{r.maps ? "Sorting a map" : "Sorting a round",
+                                 ms_text(1e3 * r.build_s / double(r.rounds)),
                                  "Into the cells by which photons are found."});
   }
   map.items.push_back(
@@ -147,7 +161,7 @@ Report make_report(const PhotonReport& r) {
        .note = "",
        .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"}, OptionRow{"photons.floor"},
                  OptionRow{"photons.alpha"}, OptionRow{"photons.borders"},
-                 OptionRow{"photons.irradiance_map"}, OptionRow{"photons.aim"},
+                 OptionRow{"photons.irradiance_map"}, OptionRow{"photons.nearest"}, OptionRow{"photons.aim"},
                  OptionRow{"photons.importons"}, OptionRow{"photons.worth"}}});
   report.sections.push_back(
       {.title = "Over the picture",

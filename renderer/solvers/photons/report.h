@@ -14,6 +14,8 @@ struct PhotonReport {
   uint64_t rounds = 0, paths = 0, photons = 0, escaped = 0, dark = 0,
            spared = 0;  ///< of the picture
   RoundFigures last;
+  bool maps = false;    ///< rounds are maps of irradiance, each for some samples
+  uint32_t pieces = 0;  ///< of the last one
   double radius_pixels = 0;
   RadiusLaw radius_law;
   bool at_floor = false;

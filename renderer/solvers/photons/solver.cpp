@@ -16,12 +16,21 @@ using solvers::Picture, solvers::Task, solvers::Cancel;
 namespace {
 
 constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where their number is left to us
-// Of photons that records' rays read: about so many serve a typical lookup, for what errs there is seen by
-// all records around; within one radius, whoever looks, at most as wide as for one photon a path on a cube
-// that fits into the scene's sphere.
 constexpr uint32_t k_most_light_groups = 64;
-constexpr uint32_t k_standing_paths = 1u << 20, k_standing_round = 0xfffffffdu;
+// Of standing photons about so many serve a typical lookup, for what errs there is seen by all lookups
+// around; within one radius, whoever looks, at most as wide as for one photon a path on a cube that fits into
+// the scene's sphere.
+constexpr uint32_t k_standing_round = 0xfffffe00u;
 constexpr float k_standing_photons = 30;
+/// Paths of standing photons: for records, and for paths that gather, a pixel and at least, at first; then as
+/// many more as there are more samples.
+constexpr uint32_t k_paths_for_records = 1u << 20, k_gather_paths_a_pixel = 2,
+                   k_least_gather_paths = 1u << 17, k_most_gather_paths = 1u << 22;
+/// Samples that the first map of irradiance serves; each further one serves twice as many.
+constexpr uint32_t k_first_gather_samples = 8;
+/// Pieces of a map of irradiance are at most about as large as so many of the discs that hold as many photons
+/// where lookups typically take place.
+constexpr float k_widest = 8;
 /// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
 /// are very wide.
 constexpr float k_least_radius = 1e-6f, k_most_radius = 0.25f;
@@ -55,14 +64,23 @@ bool prepares_irradiance(const Task& task) {
          (task.own >> k_secondary & 1u) == 0;
 }
 
-/// Of lookups' components by state: those that bring nothing but tertiary light.
-std::vector<uint32_t> tertiary_alone(const PhotonFrame& lookup) {
-  std::vector<uint32_t> component(std::begin(lookup.component), std::end(lookup.component));
-  for (uint32_t& packed : component)
-    for (uint32_t p = 0; p < paths::k_part_count; ++p)
-      if (const uint32_t c = packed >> 4 * p & 15u; c != k_tertiary && c != k_photon_no_component)
-        packed = 0xffffu;
-  return component;
+/// States of the eye path in which lookups bring tertiary light and nothing else.
+uint64_t tertiary_states(const PhotonFrame& lookup) {
+  uint64_t states = 0;
+  for (uint32_t state = 0; state < k_automaton_states; ++state) {
+    bool some = false, others = false;
+    for (uint32_t p = 0; p < paths::k_part_count; ++p) {
+      const uint32_t c = lookup.component[state] >> 4 * p & 15u;
+      some = some || c == k_tertiary, others = others || (c != k_tertiary && c != k_photon_no_component);
+    }
+    if (some && !others) states |= uint64_t{1} << state;
+  }
+  return states;
+}
+
+/// Which map of irradiance a sample reads: 0 for the first ones, then 1, ...
+uint32_t epoch_of(uint32_t sample) {
+  return uint32_t(std::bit_width(sample / k_first_gather_samples + 1)) - 1;
 }
 
 std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
@@ -85,7 +103,11 @@ const solvers::SolverType& type() {
 solvers::Routing PhotonSolver::routing_of(const Task& task) {
   paths::LookupRoutes routes = routes_of(task);
   if (parts_of(task) == 0) routes.component.clear(), routes.parts = 0;
-  return {.lookups = routes, .fallback = 0, .gather = {}};
+  // A path that gathers and finds too few photons goes on for what it would have looked up; so do records'
+  // rays.
+  const bool goes_on = feeds(task) || prepares_irradiance(task);
+  const uint32_t others = task.own & ~(1u << k_tertiary);
+  return {.lookups = routes, .fallback = goes_on ? task.enabled & ~others : 0, .gather = {}};
 }
 
 RadiusLaw PhotonSolver::radius_law(const OptionValues& settings) {
@@ -115,7 +137,8 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       paths_view_(device, compiler, *task.scene_defines, task.automaton),
       inspector_(device, compiler),
       surfaces_(device) {
-  if (prepares_irradiance(task)) irradiance_.emplace(device, compiler, *task.scene_defines);
+  if (prepares_irradiance(task)) irradiance_.emplace(device, *task.scene_defines);
+  gathers_alone_ = irradiance_ && task.own == 1u << k_tertiary;
   write_left();
 }
 
@@ -130,7 +153,7 @@ gpu::Defines PhotonSolver::defines() const {
 const solvers::SolverInfo& PhotonSolver::info() const { return photons::info(); }
 
 void PhotonSolver::bind(gpu::Resources& resources) const {
-  (feeding_ ? *standing_ : map_).bind(resources);
+  (reads_standing_ ? *standing_ : map_).bind(resources);
   if (irradiance_) irradiance_->bind(resources);
   surfaces_.bind(resources);
   resources.set("left_regions", left_regions_);
@@ -139,7 +162,8 @@ void PhotonSolver::bind(gpu::Resources& resources) const {
 bool PhotonSolver::serves(const Task& task) const {
   return routes_of(task).component == routes_.component && parts_of(task) == parts_ &&
          leaves(task) == leaves_ && (sends_ && feeds(task)) == feeds_ &&
-         prepares_irradiance(task) == irradiance_.has_value();
+         prepares_irradiance(task) == irradiance_.has_value() &&
+         gathers_alone_ == (irradiance_ && task.own == 1u << k_tertiary);
 }
 
 void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
@@ -150,11 +174,13 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
     lit_ = true;
   }
   if (spoils.places) map_.clear(), surfaces_.spoil();
+  if (spoils.places && irradiance_) irradiance_->spoil();
   if (standing_ && spoils.any()) standing_->clear();
   if (irradiance_ && spoils.any()) irradiance_->clear();
   if ((feeds_ || irradiance_) && !standing_)
     standing_.emplace(device_, compiler_, scene_defines_, picture.task.automaton);
-  feeding_ = fed_ = false;
+  if (standing_) standing_->tell_surface(irradiance_.has_value());
+  reads_standing_ = standing_served_ = false;
   map_.restart();
   fresh_ = true;
   begin_aim(picture, spoils);
@@ -168,7 +194,8 @@ uint32_t PhotonSolver::sent_parts() const {
 }
 
 bool PhotonSolver::round_ready(uint32_t sample) const {
-  return !fresh_ && map_.complete() && last_sample_ == sample;
+  return (gathers_alone_ || (!fresh_ && map_.complete() && last_sample_ == sample)) &&
+         (!renews_standing() || standing_made(epoch_of(sample)));
 }
 
 Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
@@ -178,8 +205,6 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
   const uint64_t pixels = uint64_t{picture.width} * picture.height;
   const auto asked = uint32_t(s.integer("photons.per_round"));
   round.paths = asked > 0 ? asked : uint32_t(std::clamp<uint64_t>(pixels, k_least_paths, k_most_paths));
-  // Few lookups are left to a round where irradiance is known of all that is ours.
-  if (asked == 0 && irradiance_ && picture.task.own == 1u << k_tertiary) round.paths = k_least_paths;
   round.parts = sent_parts();
   round.account = uint32_t(std::countr_zero(std::max(1u, picture.task.own)));
 
@@ -204,7 +229,9 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
     const uint32_t of_eye = state % k_gather_state, own = state % k_left_states;
     const paths::LookupRoutes& routes = state < k_left_states ? routes_ : left_routes_;
     f.component[state] = 0xffffu;
-    if (own >= k_known_state || of_eye >= routes.component.size()) continue;
+    // Who goes on because nothing was known looks up no more, but records' rays, which begin so.
+    if (own >= (irradiance_ && !feeds_ ? k_gather_state : k_known_state) || of_eye >= routes.component.size())
+      continue;
     uint32_t packed = 0;
     for (uint32_t p = 0; p < paths::k_part_count; ++p) {
       uint8_t c = routes.component[of_eye][p];
@@ -218,60 +245,90 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
   return f;
 }
 
-bool PhotonSolver::feed(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
-  if (picture.task.settings.boolean("photons.borders") && !surfaces_.serves(picture.flat)) {
+bool PhotonSolver::standing_made(uint32_t epoch) const {
+  const auto made = [&](bool complete, uint32_t round) {
+    return complete && round >= k_standing_round + epoch;
+  };
+  return made(standing_->complete(), standing_->round()) &&
+         (!irradiance_ || made(irradiance_->complete(), irradiance_round_));
+}
+
+bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture& picture, uint32_t epoch,
+                                 const Cancel& cancel) {
+  const OptionValues& s = picture.task.settings;
+  if (s.boolean("photons.borders") && !surfaces_.serves(picture.flat)) {
     surfaces_.make(device_, picture.flat);
     wavefront.rebind_lookup();
     return true;
   }
-  if (!standing_->complete()) {
-    Round round = round_of(picture, k_standing_round);
-    round.paths = std::max(k_standing_paths, round.paths);
+  const uint32_t number = k_standing_round + epoch;
+  if (!standing_->complete() || standing_->round() < number) {
+    Round round = round_of(picture, number);
+    const uint64_t pixels = uint64_t{picture.width} * picture.height;
+    const uint64_t paths = std::max<uint64_t>(k_gather_paths_a_pixel * pixels, k_least_gather_paths) << epoch;
+    round.paths = feeds_ ? std::max(k_paths_for_records, round.paths)
+                         : uint32_t(std::min<uint64_t>(paths, k_most_gather_paths));
     round.lookup = lookup_of(picture, picture.frame, 1);
     round.lookup.slope = 0;
-    if (!irradiance_) round.lookup.most_candidates = k_photon_standing_candidates;
-    const auto found = float(density_at_lookups_ * round.paths);  // photons a square metre
-    const float widest =
-        picture.flat.scene_radius * std::sqrt(8 * k_standing_photons / (k_pi * float(round.paths)));
-    round.lookup.base = found > 0 ? std::min(widest, std::sqrt(k_standing_photons / (k_pi * found))) : widest;
-    return standing_->trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel);
-  }
-  if (irradiance_ && !irradiance_->complete()) {
-    const auto from = [&](gpu::Resources& r) {
-      standing_->bind(r);
-      surfaces_.bind(r);
-    };
-    irradiance_->make(wavefront, *standing_, tertiary_alone(standing_->lookup()), from);
-    PhotonFrame beside = standing_->lookup();
-    beside.most_candidates = k_photon_beside_candidates, beside.most_visits = k_photon_beside_visits;
-    standing_->set_lookup(beside);
+    round.lookup.most_candidates = k_photon_standing_candidates;
+    round.lookup.base = standing_radius(picture, round.paths, k_standing_photons);
+    standing_->store_by_importance_of(map_);
+    if (!standing_->trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel))
+      return false;
+    if (gathers_alone_ && standing_->traced() == 0) account(standing_->figures());
     return true;
   }
-  feeding_ = feeds_;
+  if (irradiance_->complete()) irradiance_->restart();
+  const auto nearest = uint32_t(s.integer("photons.nearest"));
+  irradiance_->make(
+      wavefront, *standing_, picture.flat,
+      {.nearest = nearest,
+       .widest = k_widest * standing_radius(picture, standing_->figures().paths, 2 * float(nearest)),
+       .states = tertiary_states(standing_->lookup())});
+  irradiance_round_ = standing_->round();
+  return true;
+}
+
+float PhotonSolver::standing_radius(const Picture& picture, uint32_t paths, float photons) const {
+  const auto found = float(density_at_lookups_ * paths);  // photons a square metre
+  const float widest = picture.flat.scene_radius * std::sqrt(8 * photons / (k_pi * float(paths)));
+  return found > 0 ? std::min(widest, std::sqrt(photons / (k_pi * found))) : widest;
+}
+
+bool PhotonSolver::prepare_standing(transport::Wavefront& wavefront, const Picture& picture,
+                                    const Cancel& cancel) {
+  if (!standing_made(0)) return make_standing(wavefront, picture, 0, cancel);
+  standing_served_ = true;
+  reads_standing_ = feeds_ || gathers_alone_;
   wavefront.rebind_lookup();
   return true;
 }
 
 bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture& picture, uint32_t sample,
                                  const Cancel& cancel) {
+  if (renews_standing() && !standing_made(epoch_of(sample)))
+    return make_standing(wavefront, picture, epoch_of(sample), cancel);
   if (fresh_ && picture.task.settings.boolean("photons.borders") && !surfaces_.serves(picture.flat)) {
     surfaces_.make(device_, picture.flat);
     wavefront.rebind_lookup();
     return true;
   }
-  if (feeding_) {
-    feeding_ = false, fed_ = true;
+  if (reads_standing_) {
+    reads_standing_ = false;
     wavefront.rebind_lookup();
   }
   const Round round = round_of(picture, sample);
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;  // not yet complete
-  const RoundFigures& f = map_.figures();
   fresh_ = false, last_sample_ = sample;
-  ++rounds_, paths_ += lights_.power() > 0 ? f.paths : 0, photons_ += f.photons;
-  escaped_ += f.escaped, dark_ += f.dark;
-  trace_s_ += f.trace_s, build_s_ += f.build_s, spared_ += f.spared;
+  account(map_.figures());
   return true;
+}
+
+void PhotonSolver::account(const RoundFigures& f) {
+  ++rounds_, paths_ += lights_.power() > 0 ? f.paths : 0, photons_ += f.photons;
+  escaped_ += f.escaped, dark_ += f.dark, spared_ += f.spared;
+  trace_s_ += f.trace_s, build_s_ += f.build_s;
 }
 
 void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
@@ -281,7 +338,7 @@ void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
   const auto read = [this](gpu::Resources& r) { bind(r); };
   const auto of = uint32_t(settings.choice("overlay.photon_density"));
   if (of > 0) density_ = inspector_.draw_density(canvas, read, of);
-  view_.draw(canvas, map_, uint32_t(settings.choice("overlay.photons")));
+  view_.draw(canvas, shown_map(), uint32_t(settings.choice("overlay.photons")));
   if (settings.boolean("overlay.photon_paths"))
     paths_view_.draw(canvas, picture.flat, lights_, round_of(picture, 0),
                      uint32_t(settings.integer("overlay.photon_paths_of")), picture.frame,
@@ -301,8 +358,9 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   const OptionValues& s = picture.task.settings;
   r.lights_power = lights_.power();
   r.sends = sends_;
+  r.maps = gathers_alone_, r.pieces = irradiance_ ? irradiance_->pieces() : 0;
   r.rounds = rounds_, r.paths = paths_, r.photons = photons_, r.escaped = escaped_, r.dark = dark_;
-  r.last = map_.figures();
+  r.last = shown_map().figures();
   r.spared = spared_;
   r.trace_s = trace_s_, r.build_s = build_s_;
   r.casters = uint32_t(casters_.size());
@@ -373,7 +431,7 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, c
           {"radius_pixels", r.radius_pixels},
           {"standing_photons", standing_ ? standing_->figures().photons : 0},
           {"standing_radius", standing_ ? double(standing_->lookup().base) : 0.0},
-          {"irradiance_places", irradiance_ ? irradiance_->places() : 0},
+          {"irradiance_pieces", irradiance_ ? irradiance_->pieces() : 0},
           {"bytes", r.bytes}};
 }
 

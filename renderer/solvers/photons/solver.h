@@ -29,13 +29,13 @@ class PhotonSolver final : public solvers::Solver {
 
   void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
   /// Whether it is known where lookups take place, which casters light paths are aimed at, and with which
-  /// shares; and, where records' rays read photons, whether there are some for them.
-  bool ready() const override {
-    return pilot_done() && (!feeds_ || feeding_ || fed_) && (!irradiance_ || irradiance_->complete());
-  }
+  /// shares; and, where records' rays or gathering paths read standing photons, whether there are some.
+  bool ready() const override { return pilot_done() && (!stands() || standing_served_); }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
-  bool in_rounds() const override { return sends_ && sent_parts() != 0; }
+  bool in_rounds() const override {
+    return sends_ && ((sent_parts() != 0 && !gathers_alone_) || renews_standing());
+  }
   bool round_ready(uint32_t sample) const override;
   bool prepare_round(transport::Wavefront& wavefront, const solvers::Picture& picture, uint32_t sample,
                      const solvers::Cancel& cancel) override;
@@ -60,9 +60,20 @@ class PhotonSolver final : public solvers::Solver {
   bool pilot_done() const { return (!aims_ && !shares_lights_ && !spares_ && !weighs_) || aimed_; }
   /// Parts of light that rounds bring: without caustics where paths from the eye bring all of them.
   uint32_t sent_parts() const;
-  /// One piece of making, or binding, what records' rays and gathering paths read. False when it was
-  /// cancelled.
-  bool feed(transport::Wavefront& wavefront, const solvers::Picture& picture, const solvers::Cancel& cancel);
+  bool stands() const { return feeds_ || irradiance_; }
+  /// Gathering paths read other photons after some samples, and then again; what records have read, stays.
+  bool renews_standing() const { return irradiance_ && !feeds_; }
+  bool standing_made(uint32_t epoch) const;
+  /// One piece of making what records' rays and gathering paths read. False when it was cancelled.
+  bool make_standing(transport::Wavefront& wavefront, const solvers::Picture& picture, uint32_t epoch,
+                     const solvers::Cancel& cancel);
+  /// ... before the first sample, and of binding it.
+  bool prepare_standing(transport::Wavefront& wavefront, const solvers::Picture& picture,
+                        const solvers::Cancel& cancel);
+  /// Within which a typical lookup finds so many photons of so many paths.
+  float standing_radius(const solvers::Picture& picture, uint32_t paths, float photons) const;
+  void account(const RoundFigures& round);  ///< one that is complete
+  const PhotonMap& shown_map() const { return gathers_alone_ && standing_ ? *standing_ : map_; }
   PhotonReport state(const solvers::Picture& picture) const;
   static RadiusLaw radius_law(const OptionValues& settings);
   Round round_of(const solvers::Picture& picture, uint32_t sample) const;
@@ -79,15 +90,17 @@ class PhotonSolver final : public solvers::Solver {
   uint32_t parts_;                   ///< of light that the scene has: without caustics where nothing focuses
   bool sends_;                       ///< photons; else there is nothing that they could bring
   PhotonMap map_;
-  // Records that are made before there is any round read photons as well, where secondary light is theirs and
-  // tertiary light ours: photons of their own, everywhere and within a wider radius, as long as light and
-  // surfaces stay the same.
-  bool feeds_;                         ///< there is somebody who reads these
+  // What is looked up behind a diffuse surface: photons of their own, everywhere and within a wider radius,
+  // as long as light and surfaces stay the same. Records that are made before there is any round read them,
+  // where secondary light is theirs and tertiary light ours, and paths that gather, by way of irradiance that
+  // is known beforehand.
+  bool feeds_;                         ///< there are records that read them
   std::optional<PhotonMap> standing_;  ///< made when it is called for
-  /// Of the standing photons, where light is read behind a diffuse vertex and the settings ask for it.
   std::optional<IrradianceMap> irradiance_;
-  bool feeding_ = false;  ///< lookups read these
-  bool fed_ = false;      ///< ... and have done so in this picture, which is in its rounds
+  uint32_t irradiance_round_ = 0;  ///< of standing_, from which it was made
+  bool gathers_alone_ = false;     ///< nothing of ours is looked up elsewhere, and there are no other rounds
+  bool reads_standing_ = false;    ///< all lookups do
+  bool standing_served_ = false;   ///< in this picture
   PointsView view_;
   overlay::LightPathsPainter paths_view_;
   PhotonInspector inspector_;

@@ -35,21 +35,12 @@ LUCERNA_CONST float k_photon_most_slope = 0.25f;  ///< of the radius over the di
 LUCERNA_CONST uint k_photon_most_candidates = 4096u;
 /// ... where many lookups make one figure: those of records' rays, and of paths that gather.
 LUCERNA_CONST uint k_photon_standing_candidates = 384u;
-/// ... and where irradiance is known beforehand, of those few that no place of it is near enough for.
-LUCERNA_CONST uint k_photon_beside_candidates = 32u;
-LUCERNA_CONST uint k_photon_beside_visits = 16u;
-LUCERNA_CONST uint k_photon_place_candidates = 64u;  ///< of places of irradiance, of which one is taken
 LUCERNA_CONST float k_photon_slab = 0.25f;  ///< half the thickness of what a photon's disc counts for, in radii
 LUCERNA_CONST float k_photon_normals = 0.9f;  ///< least cosine between the normals of photon and place
 // How much surface there is around a place (photons/area.glsl).
 LUCERNA_CONST uint k_photon_most_visits = 2048u;        ///< nodes that a lookup meets; beyond it is taken for whole
 LUCERNA_CONST float k_photon_least_area = 1.0f / 64.0f; ///< of the whole disc
 LUCERNA_CONST float k_photon_turned_slab = 0.125f;      ///< of the slab, for what is wound the other way round
-
-// Places where irradiance is known beforehand (photons/irradiance.glsl): one photon in so many, found within the photons'
-// radius. Four texels each: place and bits facet of the side that is lit; irradiance of parts 1, 2, 3.
-LUCERNA_CONST uint k_photon_place_step = 4u;
-LUCERNA_CONST uint k_photon_place_texels = 4u;
 
 /// What lookups read besides the photons.
 struct PhotonFrame {
@@ -70,6 +61,7 @@ struct PhotonFrame {
   uint importance_counts;  ///< 0: all photons are stored
   uint lookups;            ///< entries of PhotonLookups, one a pixel, in which caustics' lookups are noted; 0: none is
   uint tells_radiance;     ///< 1: stored photons tell what paths from the eye would bring (PhotonRadiances)
+  uint tells_surface;      ///< 1: stored photons tell where on which triangle they lie (PhotonSurfaces)
   uint component[k_automaton_states];  ///< by state of the eye path: four bits a part, the component that it brings light to
 };
 LUCERNA_CONST uint k_photon_no_component = 15u;
@@ -112,6 +104,11 @@ struct PhotonLookup {
   vec3 position;     ///< [m]
   float carried;     ///< luminance of its throughput times the diffuse albedo; 0: there is none
   uint facet;        ///< side of the surface that it sees
+};
+/// Where a photon lies.
+struct PhotonSurface {
+  uint side;         ///< triangle << 1, and 1 where it arrives at the back
+  uint barycentric;  ///< Hit::u and v, 16 bits each
 };
 LUCERNA_CONST float k_radiance_unmet = 1e30f;  ///< that no path from the eye could meet
 
