@@ -10,7 +10,8 @@ std::vector<OptionInfo> option_rows() {
   return {
       integer_option("photons.per_round", 0, 0, 1 << 24, "paths",
                      "Photons: paths from lights in a round, of which there is one for every sample of the "
-                     "picture; 0: as many as the picture has pixels, at least 16384.",
+                     "picture, or in the first map of irradiance; 0: as many as the picture has pixels, at "
+                     "least 16384, for a map twice as many, at least 131072.",
                      "Paths a round"),
       real_option(
           "photons.radius", "1.5", 0.1, 1000, "pixels",

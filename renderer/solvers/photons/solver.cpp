@@ -265,9 +265,11 @@ bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture&
   if (!standing_->complete() || standing_->round() < number) {
     Round round = round_of(picture, number);
     const uint64_t pixels = uint64_t{picture.width} * picture.height;
-    const uint64_t paths = std::max<uint64_t>(k_gather_paths_a_pixel * pixels, k_least_gather_paths) << epoch;
+    const auto asked = uint64_t(s.integer("photons.per_round"));
+    const uint64_t first =
+        asked > 0 ? asked : std::max<uint64_t>(k_gather_paths_a_pixel * pixels, k_least_gather_paths);
     round.paths = feeds_ ? std::max(k_paths_for_records, round.paths)
-                         : uint32_t(std::min<uint64_t>(paths, k_most_gather_paths));
+                         : uint32_t(std::max(first, std::min<uint64_t>(first << epoch, k_most_gather_paths)));
     round.lookup = lookup_of(picture, picture.frame, 1);
     round.lookup.slope = 0;
     round.lookup.most_candidates = k_photon_standing_candidates;
