@@ -155,12 +155,12 @@ void add(Sum& into, const Sum& from) {
 
 void IrradianceCellsBuilder::cut(uint32_t node, std::span<PhotonOnSide> photons, const Piece& piece,
                                  std::vector<Sum>& found, Sum& rest) {
-  const Sum own = sum_of(photons, piece.area);
-  const bool cuts = own.deciding >= k_quarters * nearest_ && piece.depth < k_irradiance_depth;
-  if (own.deciding == 0 || piece.depth == k_irradiance_depth) {
-    Sum whole = own;
+  const auto deciding = uint32_t(
+      std::count_if(photons.begin(), photons.end(), [&](const auto& p) { return half_of(p) != lit_by_; }));
+  if (deciding == 0 || piece.depth == k_irradiance_depth) {
+    Sum whole = sum_of(photons, piece.area);
     whole.nodes = {node};
-    if (whole.deciding >= nearest_)
+    if (deciding >= nearest_)
       found.push_back(std::move(whole));
     else if (piece.expected < k_hidden)
       add(rest, whole);
@@ -174,13 +174,13 @@ void IrradianceCellsBuilder::cut(uint32_t node, std::span<PhotonOnSide> photons,
     quarters[q.z].push_back(p);
     quarters[q.z].back().barycentric = q.x | q.y << 16;
   }
-  if (!cuts) {
+  if (deciding < k_quarters * nearest_) {
     // One piece of those quarters that have any.
     Sum whole;
     for (uint32_t k = 0; k < 4; ++k) {
       Sum part = sum_of(quarters[k], piece.area / 4);
       part.nodes = {first + k};
-      if (part.deciding > 0 || own.deciding / 4.0 < k_hidden) add(whole, part);
+      if (part.deciding > 0 || deciding / 4.0 < k_hidden) add(whole, part);
     }
     if (whole.deciding >= nearest_)
       found.push_back(std::move(whole));
@@ -191,7 +191,7 @@ void IrradianceCellsBuilder::cut(uint32_t node, std::span<PhotonOnSide> photons,
   const Piece quarter{.area = piece.area / 4,
                       .longest = piece.longest / 2,
                       .depth = piece.depth + 1,
-                      .expected = own.deciding / 4.0};
+                      .expected = deciding / 4.0};
   std::vector<Sum> pieces;
   Sum left;
   for (uint32_t k = 0; k < 4; ++k) cut(first + k, quarters[k], quarter, pieces, left);

@@ -6,20 +6,9 @@ namespace lucerna::photons {
 
 using namespace shared;
 
-namespace {
-
-uint32_t groups_of(const gpu::Defines& defines) {
-  const auto kept = defines.find("LUCERNA_GROUP_SUMS");
-  return kept != defines.end() && kept->second != "0"
-             ? uint32_t(std::stoul(defines.at("LUCERNA_LIGHT_GROUPS")))
-             : 0;
-}
-
-}  // namespace
-
-IrradianceMap::IrradianceMap(gpu::Device& device, const gpu::Defines& scene_defines)
+IrradianceMap::IrradianceMap(gpu::Device& device, uint32_t groups)
     : device_(device),
-      groups_(groups_of(scene_defines)),
+      groups_(groups),
       block_(device, {.name = "lookups of irradiance", .bytes = sizeof(IrradianceFrame)}) {
   clear();
 }

@@ -10,8 +10,8 @@ namespace lucerna::photons {
 
 class IrradianceMap {
  public:
-  /// `scene_defines`: of the kernels that know the scene. Throws Error: no memory.
-  IrradianceMap(gpu::Device& device, const gpu::Defines& scene_defines);
+  /// `groups`: of lights that are kept apart in sums of their own; 0: none are. Throws Error: no memory.
+  IrradianceMap(gpu::Device& device, uint32_t groups);
 
   /// What it is to be.
   struct Wanted {
@@ -38,7 +38,7 @@ class IrradianceMap {
   void upload(const IrradianceCells& cells, const Wanted& wanted);
 
   gpu::Device& device_;
-  uint32_t groups_;  ///< of lights that are kept apart; 0: none are
+  uint32_t groups_;
   std::unique_ptr<SideOrder> order_;
   std::vector<bool> diffuse_;  ///< materials, by which it was made
   std::unique_ptr<IrradianceCellsBuilder> builder_;

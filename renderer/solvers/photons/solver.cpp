@@ -64,6 +64,9 @@ bool prepares_irradiance(const Task& task) {
          (task.own >> k_secondary & 1u) == 0;
 }
 
+/// All that is ours is known so.
+bool gathers_alone(const Task& task) { return prepares_irradiance(task) && task.own == 1u << k_tertiary; }
+
 /// States of the eye path in which lookups bring tertiary light and nothing else.
 uint64_t tertiary_states(const PhotonFrame& lookup) {
   uint64_t states = 0;
@@ -137,8 +140,9 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       paths_view_(device, compiler, *task.scene_defines, task.automaton),
       inspector_(device, compiler),
       surfaces_(device) {
-  if (prepares_irradiance(task)) irradiance_.emplace(device, *task.scene_defines);
-  gathers_alone_ = irradiance_ && task.own == 1u << k_tertiary;
+  if (prepares_irradiance(task))
+    irradiance_.emplace(device, task.effects.groups_in_short() ? task.effects.light_groups : 0);
+  gathers_alone_ = gathers_alone(task);
   write_left();
 }
 
@@ -162,8 +166,7 @@ void PhotonSolver::bind(gpu::Resources& resources) const {
 bool PhotonSolver::serves(const Task& task) const {
   return routes_of(task).component == routes_.component && parts_of(task) == parts_ &&
          leaves(task) == leaves_ && (sends_ && feeds(task)) == feeds_ &&
-         prepares_irradiance(task) == irradiance_.has_value() &&
-         gathers_alone_ == (irradiance_ && task.own == 1u << k_tertiary);
+         prepares_irradiance(task) == irradiance_.has_value() && gathers_alone(task) == gathers_alone_;
 }
 
 void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
