@@ -136,6 +136,7 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
       own.light_factors = light_factors;
       solver->begin(own, solvers::spoiled_by(solver->info(), changes));
     });
+  route(picture.settings, picture.world.flat.effects);  // with what they leave to paths now
   wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
 }
 
@@ -178,17 +179,32 @@ bool Engine::previews() const {
   return std::any_of(solvers_.begin(), solvers_.end(), [](const auto& s) { return s->previews(); });
 }
 
+bool Engine::prepare(solvers::Solver& solver, const PictureView& picture,
+                     const std::function<bool()>& cancel) {
+  const uint32_t before = solver.left();
+  const bool went = with(
+      solver, picture, [&](const solvers::Picture& own) { return solver.prepare(*wavefront_, own, cancel); });
+  if (solver.left() != before) {
+    route(picture.settings, picture.world.flat.effects);
+    wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
+  }
+  return went;
+}
+
 void Engine::route(const plan::Settings& settings, const upload::Effects& effects) {
-  routing_ = routing(plan_, settings, effects);
-  plan::Plan left = plan_;
+  const auto to_paths = [](plan::Plan& plan, uint32_t bits) {
+    for (size_t c = 0; c < plan.solver.size(); ++c)
+      if ((bits >> c & 1u) != 0) plan.solver[c] = solvers::find("path"), plan.rest[c] = nullptr;
+  };
+  plan::Plan here = plan_;
+  for (const auto& solver : solvers_) to_paths(here, solver->left());
+  routing_ = routing(here, settings, effects);
+  plan::Plan left = here;
   for (const solvers::SolverInfo* info : plan_.at_work())
-    if (const auto leaves = solvers::type_of(*info).leaves) {
-      const uint32_t bits = leaves(task_of(automaton_, plan_, *info, settings, effects));
-      for (size_t c = 0; c < left.solver.size(); ++c)
-        if ((bits >> c & 1u) != 0) left.solver[c] = solvers::find("path"), left.rest[c] = nullptr;
-    }
+    if (const auto leaves = solvers::type_of(*info).leaves)
+      to_paths(left, leaves(task_of(automaton_, plan_, *info, settings, effects)));
   left_.reset();
-  if (left.solver != plan_.solver) left_ = routing(left, settings, effects);
+  if (left.solver != here.solver) left_ = routing(left, settings, effects);
 }
 
 solvers::Routing Engine::routing(const plan::Plan& plan, const plan::Settings& settings,

@@ -64,6 +64,8 @@ class Engine {
   /// The first that owes the film errors of lookups (Solver::owes_errors); null: all that is told of them is
   /// known.
   solvers::Solver* owing_errors(const film::Film& film) const;
+  /// A piece of preparation of one that is not ready (Solver::prepare). False when it was cancelled.
+  bool prepare(solvers::Solver& solver, const PictureView& picture, const std::function<bool()>& cancel);
   bool waits() const;
   /// Some solver has more to do for display (Solver::previews).
   bool previews() const;
@@ -93,7 +95,8 @@ class Engine {
   /// bring the same light.
   solvers::Routing routing(const plan::Plan& plan, const plan::Settings& settings,
                            const upload::Effects& effects) const;
-  /// For the present plan, and for the one of parts of the picture where solvers leave light to paths.
+  /// For the present plan less what solvers leave to paths, and for parts of the picture where they leave
+  /// more of it.
   void route(const plan::Settings& settings, const upload::Effects& effects);
 
   const paths::Automaton& automaton_;

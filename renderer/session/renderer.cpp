@@ -438,9 +438,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
   const PictureView view = picture_view();
   transport::Wavefront& wavefront = engine_->wavefront();
   if (solvers::Solver* next = engine_->unready())
-    return engine_->with(*next, view, [&](const solvers::Picture& picture) {
-      return next->prepare(wavefront, picture, cancel);
-    });
+    return engine_->prepare(*next, view, cancel);
   // As soon as every pixel has a sample, so that the picture does not wait, and before errors are told.
   if (solvers::Solver* solver = samples() > 0 ? engine_->owing_errors(*film_) : nullptr) {
     const bool anew = errors_restart_ != restarts_ || errors_of_ != solver;

@@ -103,6 +103,9 @@ class Solver {
   /// to lead preparation from step to step, so that it may wait.
   virtual void heed(const OptionValues& settings, bool interactive) { (void)settings, (void)interactive; }
   virtual bool ready() const { return true; }
+  /// Components (of Task::own) that it has found to be better left to paths from the eye in this picture:
+  /// its lookups bring none of their light. May change in begin() and prepare().
+  virtual uint32_t left() const { return 0; }
   /// Preparation waits for a command.
   virtual bool waits() const { return false; }
   /// One bounded piece of preparation, cancellable between bounces; on return the wavefront's frame is the

@@ -235,11 +235,17 @@ void Wavefront::rebind_lookup() { impl_->rebind_lookup(); }
 uint32_t Wavefront::slots() const { return impl_->slots; }
 
 bool Wavefront::run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel) {
+  if (!try_out(item, film, cancel)) return false;
+  if (impl_->enabled != 0) impl_->stats.paths += item.slots();
+  return true;
+}
+
+bool Wavefront::try_out(const schedule::WorkItem& item, film::Film& film,
+                        const std::function<bool()>& cancel) {
   Impl& w = *impl_;
   const auto pixels = static_cast<uint32_t>(item.blocks.size()) * 64;
   if (item.slots() == 0 || w.enabled == 0) return true;
   if (!probe(item, cancel)) return false;
-  w.stats.paths += item.slots();
   w.add(film, pixels, item.sample_count);
   w.run_and_account(nullptr, nullptr);
   return true;

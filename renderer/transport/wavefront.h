@@ -84,6 +84,8 @@ class Wavefront {
   /// Makes the film's picture anew of its groups of lights, as they are mixed (film::Film::set_mix), where it
   /// keeps them apart by component. Traces nothing.
   void mix(film::Film& film);
+  /// The same for a film that is not the picture's: stats().paths stays as it is.
+  bool try_out(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
   /// The same without a film: for what kernels note on the way.
   bool probe(const schedule::WorkItem& item, const std::function<bool()>& cancel = {});
   /// Traces `count` <= slots() paths between ends of the caller's; cancellable as above, `end` is then not

@@ -86,7 +86,8 @@ TEST_CASE("light of one group is mixed without a ray, whoever computes it") {
   const char* const text = "all: ev=1 color=1,0.5,0.25";
   for (const Settings& how :
        {Settings{}, Settings{{"components.secondary", "cache"}, {"components.tertiary", "cache"}},
-        Settings{{"components.caustic", "light"}}, Settings{{"components.secondary", "photons"}}}) {
+        Settings{{"components.caustic", "light"}},
+        Settings{{"components.secondary", "photons"}, {"photons.worth", "false"}}}) {
     Settings all = how;
     all["relight.groups"] = "*=all";
     Bench b(s, all, 4);

@@ -13,6 +13,7 @@ namespace {
 /// Three pixels, of 40: the discs of a third of all pixels reach beyond the walls that they lie on.
 const test::Settings k_wide{{"components.secondary", "photons"},
                             {"components.tertiary", "photons"},
+                            {"photons.worth", "false"},
                             {"photons.radius", "3"},
                             {"photons.floor", "3"},
                             {"photons.per_round", "60000"}};

@@ -65,7 +65,8 @@ TEST_CASE("the error told of a picture of photons is the true one") {
   // Diffuse light is path traced, for paths are soon done with it; caustics of a small lamp are not, so that
   // photons of many rounds with a small radius are what those with a large one are held against.
   const test::Settings caustic{{"components.caustic", "photons"}, {"photons.worth", "false"}};
-  const test::Settings diffuse{{"components.secondary", "photons"}, {"components.tertiary", "photons"}};
+  const test::Settings diffuse{
+      {"components.secondary", "photons"}, {"components.tertiary", "photons"}, {"photons.worth", "false"}};
   const test::Settings fine{{"components.caustic", "photons"}, {"photons.worth", "false"},
                             {"photons.radius", "0.4"},         {"photons.floor", "0.25"},
                             {"photons.per_round", "200000"},   {"samples", "384"}};

@@ -162,10 +162,10 @@ TEST_CASE("caustics of photons beside paths make the picture of path tracing") {
 }
 TEST_CASE("photons for all that they can make the picture of path tracing") { check_choice(k_all); }
 TEST_CASE("final gathering from photons makes the picture of path tracing") {
-  check_choice({{"components.tertiary", "photons"}});
+  check_choice({{"components.tertiary", "photons"}, {"photons.worth", "false"}});
 }
 TEST_CASE("secondary light of photons beside tertiary light of paths makes the picture of path tracing") {
-  check_choice({{"components.secondary", "photons"}});
+  check_choice({{"components.secondary", "photons"}, {"photons.worth", "false"}});
 }
 TEST_CASE("caustics of photons beside cached light make the picture of path tracing") {
   check_choice({{"components.secondary", "cache"},
@@ -174,7 +174,8 @@ TEST_CASE("caustics of photons beside cached light make the picture of path trac
                 {"photons.worth", "false"}});
 }
 TEST_CASE("photons at the first surface and records at the second make the picture of path tracing") {
-  check_choice({{"components.secondary", "photons"}, {"components.tertiary", "cache"}});
+  check_choice(
+      {{"components.secondary", "photons"}, {"components.tertiary", "cache"}, {"photons.worth", "false"}});
 }
 
 TEST_CASE("records whose rays end in photons make the picture of path tracing") {
@@ -191,16 +192,18 @@ TEST_CASE("records whose rays end in photons beside caustics of photons make the
 }
 
 TEST_CASE("tertiary light from a map of irradiance makes the picture of path tracing") {
-  const test::Settings settings{{"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}};
+  const test::Settings settings{
+      {"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}, {"photons.worth", "false"}};
   check_choice(settings);
   check_choice(with(settings, {{"components.secondary", "cache"}}));
   // Beside caustics, which are looked up among the round's photons at the first surface.
-  check_choice(with(settings, {{"components.caustic", "photons"}, {"photons.worth", "false"}}));
+  check_choice(with(settings, {{"components.caustic", "photons"}}));
 }
 
 TEST_CASE("a map of irradiance is read where it is asked for, is the same to the bit, and follows the lamp") {
   scene::Scene room = glass_room();
-  const test::Settings settings{{"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}};
+  const test::Settings settings{
+      {"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}, {"photons.worth", "false"}};
   test::Render base{.width = 32, .height = 32, .samples = 4, .settings = settings, .validated = false};
   const test::Result a = test::render(base, &room);
   base.settings["path.batch"] = "1024";

@@ -22,24 +22,9 @@ constexpr double k_pilot_radius = 3;  // of its own pixels, which are wide
 constexpr uint32_t k_first_hit_paths = 1u << 16, k_most_first_hit_rounds = 8, k_first_hit_round = 0xffffff00u;
 constexpr size_t k_enough_hits = 512, k_least_hits = 16;
 constexpr double k_many = 0.2;
-// What is done for caustics costs, in units of a vertex of a path from the eye with its light sample:
-// measured on `glass`, `teapot` and `atrium` with lavapipe, to a fifth.
-constexpr double k_cost_base = 2, k_cost_tail = 3, k_cost_onward = 0.4, k_cost_lookup = 2,
-                 k_cost_light_path = 1.5;
-constexpr uint32_t k_typical_round = 16;
 constexpr uint32_t k_most_left = 1u << 15;  // texels of left_regions
 
 constexpr double k_least_from_afar = 0.05;  // of all lights' power; less is not looked for
-
-/// The frame of the pilot's eye paths: the same view with fewer pixels.
-Frame small_frame(const Picture& picture) {
-  Frame frame = picture.frame;
-  const double pixels = double(picture.width) * picture.height;
-  const double scale = std::min(1.0, std::sqrt(k_eye_paths / pixels));
-  frame.width = std::max(1u, uint32_t(std::lround(scale * picture.width)));
-  frame.height = std::max(1u, uint32_t(std::lround(scale * picture.height)));
-  return frame;
-}
 
 /// The first hits of those of `paths` paths from afar that have brought something.
 std::vector<transport::FirstHit> hits_of_use(std::span<const PhotonWorth> photons, uint32_t paths,
@@ -98,6 +83,15 @@ double typical_density(std::span<const PhotonWorth> photons, std::span<const dou
 
 }  // namespace
 
+Frame PhotonSolver::small_frame(const Picture& picture) {
+  Frame frame = picture.frame;
+  const double pixels = double(picture.width) * picture.height;
+  const double scale = std::min(1.0, std::sqrt(k_eye_paths / pixels));
+  frame.width = std::max(1u, uint32_t(std::lround(scale * picture.width)));
+  frame.height = std::max(1u, uint32_t(std::lround(scale * picture.height)));
+  return frame;
+}
+
 void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   constexpr uint32_t k_caustics = 1u << k_caustic_part;
   const bool lit = sends_ && lights_.power() > 0, asked = picture.task.settings.boolean("photons.aim");
@@ -110,6 +104,7 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   const bool weighs = lit && leaves_ != 0;
   const bool stale = spoils.any() || aims != aims_ || shares_lights != shares_lights_ || spares != spares_ ||
                      weighs != weighs_ || !transport::same_view(picture.frame, aimed_for_);
+  begin_trials(picture, stale);
   aims_ = aims, shares_lights_ = shares_lights, spares_ = spares, weighs_ = weighs;
   // Whoever only looks from elsewhere finds the same casters.
   if (spoils.light || spoils.places || !bundles_) casters_.clear(), casters_known_ = false;
@@ -129,7 +124,10 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
 
 bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
   if (ready()) return true;
-  if (pilot_done()) return prepare_standing(wavefront, picture, cancel);
+  if (pilot_done()) {
+    if (stands() && !standing_served_) return prepare_standing(wavefront, picture, cancel);
+    return try_ways(wavefront, picture, cancel);
+  }
   switch (aim_step_) {
     case AimStep::casters: {
       if (stands()) wavefront.rebind_lookup();  // what eye paths note is the rounds'

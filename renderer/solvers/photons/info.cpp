@@ -36,8 +36,9 @@ std::vector<OptionInfo> option_rows() {
           "Only where looked at"),
       boolean_option("photons.worth", "true",
                      "Photons: bring caustics only in those parts of the picture where a pilot finds that "
-                     "they have less "
-                     "noise for their time than paths from the eye; elsewhere these do.",
+                     "they have less noise for their time than paths from the eye; elsewhere these do. "
+                     "Likewise secondary and tertiary light of the whole picture, where those paths have "
+                     "less than half of the noise for their time.",
                      "Only where worth it"),
       boolean_option(
           "photons.borders", "true",

@@ -60,6 +60,16 @@ Histogram radius_columns(const PhotonReport& r) {
   return histogram;
 }
 
+/// Components (bits), as of light: "secondary and tertiary".
+std::string names_of(uint32_t components, bool begins = false) {
+  std::string all;
+  for (size_t c = 0; c < paths::k_component_count; ++c)
+    if ((components >> c & 1u) != 0)
+      all += (all.empty() ? "" : " and ") + std::string(paths::k_component_names[c]);
+  if (begins && !all.empty()) all[0] = char(std::toupper(all[0]));
+  return all;
+}
+
 }  // namespace
 
 Report make_report(const PhotonReport& r) {
@@ -68,9 +78,11 @@ Report make_report(const PhotonReport& r) {
   report.ready = r.ready;
   if (!r.ready)
     report.preparing = "photons: where they are looked for, what bundles light, and where it comes in";
-  report.state = r.maps && r.pieces > 0 ? fmt::format("{} pieces", count_text(r.pieces))
-                 : r.rounds == 0        ? "beginning"
-                                        : fmt::format("round {}", r.last.round + 1);
+  const bool all_left = r.tried != 0 && !r.sends_rounds;
+  report.state = all_left                 ? "left to paths"
+                 : r.maps && r.pieces > 0 ? fmt::format("{} pieces", count_text(r.pieces))
+                 : r.rounds == 0          ? "beginning"
+                                          : fmt::format("round {}", r.last.round + 1);
   PanelSection map{.title = "Photons", .note = "", .items = {}};
   if (r.lights_power <= 0)
     map.items.push_back(Paragraph{"Nothing in the scene shines, so that there are no photons."});
@@ -129,6 +141,18 @@ Report make_report(const PhotonReport& r) {
                   "their distance.",
                   Tone::warning});
   add_aim_rows(map.items, {r.casters, r.entrances}, r.unaimed, r.aimed);
+  if (r.left != 0)
+    map.items.push_back(Paragraph{
+        fmt::format(
+            "A pilot has found that paths from the eye bring {} light with less noise for their time: "
+            "noise times cost is {} times less. So they do. Without 'Only where worth it' photons "
+            "bring it all the same.",
+            names_of(r.left), real_text(r.left_gain, 1)),
+        Tone::warning});
+  else if (r.tried != 0 && r.ready)
+    map.items.push_back(ValueRow{names_of(r.tried, true), "by photons",
+                                 "A pilot has not found that paths from the eye would bring it with much "
+                                 "less noise for their time."});
   if (r.weighs && r.ready) {
     map.items.push_back(
         ValueRow{"Caustics by photons", share_text(r.by_photons, 1),

@@ -9,8 +9,9 @@
 namespace lucerna::photons {
 
 struct PhotonReport {
-  double lights_power = 0;  ///< luminance of all lights' flux [W]
-  bool sends = true;        ///< photons: else there are only caustics to bring, and nothing focuses light
+  double lights_power = 0;   ///< luminance of all lights' flux [W]
+  bool sends_rounds = true;  ///< or maps: else paths from the eye bring all that is asked for
+  bool sends = true;         ///< photons: else there are only caustics to bring, and nothing focuses light
   uint64_t rounds = 0, paths = 0, photons = 0, escaped = 0, dark = 0,
            spared = 0;  ///< of the picture
   RoundFigures last;
@@ -25,6 +26,9 @@ struct PhotonReport {
   bool weighs = false;                    ///< caustics may be left to paths from the eye
   double by_photons = 1;                  ///< share of the picture where they are not
   double worth_gain = 1;                  ///< of efficiency by that, as the pilot sees it
+  uint32_t tried = 0;                     ///< components that were tried by photons and by paths
+  uint32_t left = 0;                      ///< of these, that paths bring in the whole picture
+  double left_gain = 1;                   ///< of efficiency by that, as the pilot sees it
   bool ready = true;                      ///< the pilot is done
   std::vector<overlay::AimedPair> aimed;  ///< greatest share first
   bool aim_shown = false;

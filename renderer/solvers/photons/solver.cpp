@@ -26,8 +26,6 @@ constexpr float k_standing_photons = 30;
 /// many more as there are more samples.
 constexpr uint32_t k_paths_for_records = 1u << 20, k_gather_paths_a_pixel = 2,
                    k_least_gather_paths = 1u << 17, k_most_gather_paths = 1u << 22;
-/// Samples that the first map of irradiance serves; each further one serves twice as many.
-constexpr uint32_t k_first_gather_samples = 8;
 /// Pieces of a map of irradiance are at most about as large as so many of the discs that hold as many photons
 /// where lookups typically take place.
 constexpr float k_widest = 8;
@@ -81,9 +79,16 @@ uint64_t tertiary_states(const PhotonFrame& lookup) {
   return states;
 }
 
+nlohmann::ordered_json component_names(uint32_t components) {
+  nlohmann::ordered_json names = nlohmann::ordered_json::array();
+  for (size_t c = 0; c < paths::k_component_count; ++c)
+    if ((components >> c & 1u) != 0) names.push_back(paths::k_component_names[c]);
+  return names;
+}
+
 /// Which map of irradiance a sample reads: 0 for the first ones, then 1, ...
 uint32_t epoch_of(uint32_t sample) {
-  return uint32_t(std::bit_width(sample / k_first_gather_samples + 1)) - 1;
+  return uint32_t(std::bit_width(sample / PhotonSolver::k_first_gather_samples + 1)) - 1;
 }
 
 std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t,
@@ -131,6 +136,7 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       scene_defines_(*task.scene_defines),
       routes_(routes_of(task)),
       leaves_(leaves(task)),
+      here_routes_(routes_),
       left_routes_(paths::photon_routes(task.automaton, task.enabled, task.own & ~leaves_, task.straight)),
       parts_(parts_of(task)),
       sends_(parts_ != 0),
@@ -193,8 +199,11 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
 }
 
 uint32_t PhotonSolver::sent_parts() const {
-  return regions_.nowhere ? parts_ & ~(1u << k_caustic_part) : parts_;
+  const uint32_t parts = parts_ & here_routes_.parts;
+  return regions_.nowhere ? parts & ~(1u << k_caustic_part) : parts;
 }
+
+bool PhotonSolver::gathers() const { return irradiance_ && (left_ >> k_tertiary & 1u) == 0; }
 
 bool PhotonSolver::round_ready(uint32_t sample) const {
   return (gathers_alone_ || (!fresh_ && map_.complete() && last_sample_ == sample)) &&
@@ -205,14 +214,18 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
   const OptionValues& s = picture.task.settings;
   Round round;
   round.number = sample;
-  const uint64_t pixels = uint64_t{picture.width} * picture.height;
   const auto asked = uint32_t(s.integer("photons.per_round"));
-  round.paths = asked > 0 ? asked : uint32_t(std::clamp<uint64_t>(pixels, k_least_paths, k_most_paths));
+  round.paths = asked > 0 ? asked : paths_of_round(picture);
   round.parts = sent_parts();
   round.account = uint32_t(std::countr_zero(std::max(1u, picture.task.own)));
 
   round.lookup = lookup_of(picture, picture.frame, radius_law(s).at(sample));
   return round;
+}
+
+uint32_t PhotonSolver::paths_of_round(const Picture& picture) {
+  const uint64_t pixels = uint64_t{picture.width} * picture.height;
+  return uint32_t(std::clamp<uint64_t>(pixels, k_least_paths, k_most_paths));
 }
 
 PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, double radius_pixels) const {
@@ -230,10 +243,10 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
   // Paths that another solver's lookup has left alone find photons as all others do.
   for (uint32_t state = 0; state < k_automaton_states; ++state) {
     const uint32_t of_eye = state % k_gather_state, own = state % k_left_states;
-    const paths::LookupRoutes& routes = state < k_left_states ? routes_ : left_routes_;
+    const paths::LookupRoutes& routes = state < k_left_states ? here_routes_ : left_routes_;
     f.component[state] = 0xffffu;
     // Who goes on because nothing was known looks up no more, but records' rays, which begin so.
-    if (own >= (irradiance_ && !feeds_ ? k_gather_state : k_known_state) || of_eye >= routes.component.size())
+    if (own >= (gathers() && !feeds_ ? k_gather_state : k_known_state) || of_eye >= routes.component.size())
       continue;
     uint32_t packed = 0;
     for (uint32_t p = 0; p < paths::k_part_count; ++p) {
@@ -303,9 +316,9 @@ float PhotonSolver::standing_radius(const Picture& picture, uint32_t paths, floa
 bool PhotonSolver::prepare_standing(transport::Wavefront& wavefront, const Picture& picture,
                                     const Cancel& cancel) {
   if (!standing_made(0)) return make_standing(wavefront, picture, 0, cancel);
-  standing_served_ = true;
   reads_standing_ = feeds_ || gathers_alone_;
   wavefront.rebind_lookup();
+  standing_served_ = true;
   return true;
 }
 
@@ -362,7 +375,11 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   PhotonReport r;
   const OptionValues& s = picture.task.settings;
   r.lights_power = lights_.power();
-  r.sends = sends_;
+  r.sends = sends_, r.sends_rounds = in_rounds();
+  if (tries_) r.tried = trials_.empty() ? 0 : trials_[0].judged;
+  r.left = left_;
+  for (const Trial& t : trials_)
+    if (t.left == left_ && t.product > 0) r.left_gain = 1 / t.product;
   r.maps = gathers_alone_, r.pieces = irradiance_ ? irradiance_->pieces() : 0;
   r.rounds = rounds_, r.paths = paths_, r.photons = photons_, r.escaped = escaped_, r.dark = dark_;
   r.last = shown_map().figures();
@@ -420,6 +437,10 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, c
              {"sorted", r.sorted_per_s},       {"looked_up", lookups / seconds},
              {"gathered", gathered / seconds}, {"gathered_a_lookup", lookups > 0 ? gathered / lookups : 0}};
   }
+  nlohmann::ordered_json ways = nlohmann::ordered_json::array();
+  for (const Trial& t : trials_)
+    ways.push_back(
+        {{"left_to_paths", component_names(t.left)}, {"cost", t.cost}, {"noise_times_cost", t.product}});
   return {{"per_second", rates},
           {"rounds", r.rounds},
           {"paths", r.paths},
@@ -432,6 +453,8 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, c
           {"unaimed", r.unaimed},
           {"by_photons", r.by_photons},
           {"worth_gain", r.worth_gain},
+          {"ways", ways},
+          {"left_to_paths", component_names(left_)},
           {"last_round_photons", r.last.photons},
           {"radius_pixels", r.radius_pixels},
           {"standing_photons", standing_ ? standing_->figures().photons : 0},

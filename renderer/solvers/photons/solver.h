@@ -8,6 +8,7 @@
 #include "solvers/photons/points_view.h"
 #include "solvers/photons/report.h"
 #include "solvers/photons/surface_index.h"
+#include "solvers/photons/trials.h"
 #include "solvers/photons/worth.h"
 #include "solvers/solver.h"
 #include "transport/first_hits.h"
@@ -29,8 +30,12 @@ class PhotonSolver final : public solvers::Solver {
 
   void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
   /// Whether it is known where lookups take place, which casters light paths are aimed at, and with which
-  /// shares; and, where records' rays or gathering paths read standing photons, whether there are some.
-  bool ready() const override { return pilot_done() && (!stands() || standing_served_); }
+  /// shares; where records' rays or gathering paths read standing photons, whether there are some; and
+  /// whether photons are worth their time.
+  bool ready() const override {
+    return pilot_done() && (!stands() || standing_served_) && (!tries_ || tried_);
+  }
+  uint32_t left() const override { return left_; }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
   bool in_rounds() const override {
@@ -48,6 +53,9 @@ class PhotonSolver final : public solvers::Solver {
   void look_up_picture(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
   std::map<std::string, double> figures() const override;
 
+  /// Samples that the first map of irradiance serves; each further one serves twice as many.
+  static constexpr uint32_t k_first_gather_samples = 8;
+
   const PhotonMap& map() const { return map_; }
   const Regions& regions() const { return regions_; }
   const PhotonInspector& inspector() const { return inspector_; }
@@ -58,11 +66,13 @@ class PhotonSolver final : public solvers::Solver {
 
  private:
   bool pilot_done() const { return (!aims_ && !shares_lights_ && !spares_ && !weighs_) || aimed_; }
-  /// Parts of light that rounds bring: without caustics where paths from the eye bring all of them.
+  /// Parts of light that rounds bring: without those that paths from the eye bring everywhere.
   uint32_t sent_parts() const;
-  bool stands() const { return feeds_ || irradiance_; }
+  bool stands() const { return feeds_ || gathers(); }
+  /// Paths that gather find irradiance that is known beforehand.
+  bool gathers() const;
   /// Gathering paths read other photons after some samples, and then again; what records have read, stays.
-  bool renews_standing() const { return irradiance_ && !feeds_; }
+  bool renews_standing() const { return gathers() && !feeds_; }
   bool standing_made(uint32_t epoch) const;
   /// One piece of making what records' rays and gathering paths read. False when it was cancelled.
   bool make_standing(transport::Wavefront& wavefront, const solvers::Picture& picture, uint32_t epoch,
@@ -78,15 +88,21 @@ class PhotonSolver final : public solvers::Solver {
   static RadiusLaw radius_law(const OptionValues& settings);
   Round round_of(const solvers::Picture& picture, uint32_t sample) const;
   void begin_aim(const solvers::Picture& picture, solvers::Spoils spoils);
+  /// The frame of a pilot's eye paths: the same view with fewer pixels.
+  static shared::Frame small_frame(const solvers::Picture& picture);
+  /// Light paths of a round, where none is asked for.
+  static uint32_t paths_of_round(const solvers::Picture& picture);
   shared::PhotonFrame lookup_of(const solvers::Picture& picture, const shared::Frame& frame,
                                 double radius_pixels) const;
 
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
   gpu::Defines scene_defines_;
-  paths::LookupRoutes routes_;
+  paths::LookupRoutes routes_;       ///< of all that is ours
   uint32_t leaves_;                  ///< components; SolverType::leaves
-  paths::LookupRoutes left_routes_;  ///< where these are left
+  uint32_t left_ = 0;                ///< ... that are left everywhere
+  paths::LookupRoutes here_routes_;  ///< without these
+  paths::LookupRoutes left_routes_;  ///< ... where those are left as well
   uint32_t parts_;                   ///< of light that the scene has: without caustics where nothing focuses
   bool sends_;                       ///< photons; else there is nothing that they could bring
   PhotonMap map_;
@@ -129,6 +145,20 @@ class PhotonSolver final : public solvers::Solver {
   void choose_left(const solvers::Picture& picture, std::span<const shared::PhotonWorth> told,
                    std::span<const double> gain, uint32_t pilot_paths);
   void write_left();
+
+  // Who brings secondary and tertiary light of the whole picture (try_ways.cpp): each way is tried on a small
+  // one.
+  void begin_trials(const solvers::Picture& picture, bool stale);
+  /// One piece. False: it was cancelled, and will be done again.
+  bool try_ways(transport::Wavefront& wavefront, const solvers::Picture& picture,
+                const solvers::Cancel& cancel);
+  /// Which components (of Task::own) are left to paths from the eye everywhere, from now on.
+  void leave(const solvers::Picture& picture, uint32_t components);
+  bool tries_ = false;  ///< there is something to choose
+  bool tried_ = false;  ///< it is chosen for this picture
+  std::vector<Trial> trials_;
+  std::unique_ptr<film::Film> trial_film_;
+
   bool aims_ = false;           ///< there may be something to aim at
   bool bundles_ = false;        ///< ... casters, and there is light that they bundle
   bool enters_ = false;         ///< ... openings that light from afar comes through

@@ -14,7 +14,16 @@
 
 namespace lucerna::photons {
 
-/// In units of a traced and shaded vertex of a path from the eye.
+/// What is done costs, in units of a vertex of a path from the eye with its light sample: measured on
+/// `glass`, `teapot` and `atrium` with lavapipe, to a fifth. A pixel's sample without caustics; what is
+/// traced on for other light; following a path on for caustics alone; a lookup; a light path with its
+/// photons.
+inline constexpr double k_cost_base = 2, k_cost_tail = 3, k_cost_onward = 0.4, k_cost_lookup = 2,
+                        k_cost_light_path = 1.5;
+/// Of a picture that is waited for: radii fall slowly.
+inline constexpr uint32_t k_typical_round = 16;
+
+/// In those units.
 struct WorthCosts {
   double base = 0;    ///< a pixel's sample, whatever brings its caustics
   double lookup = 0;  ///< of photons, beside that; spared where paths bring caustics

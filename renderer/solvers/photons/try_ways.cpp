@@ -1,0 +1,124 @@
+#include <algorithm>
+
+#include "solvers/photons/solver.h"
+
+namespace lucerna::photons {
+
+using namespace shared;
+using solvers::Cancel, solvers::Picture, solvers::Task;
+
+namespace {
+
+constexpr uint32_t k_deep = 1u << 1 | 1u << 2;  // components: secondary, tertiary
+constexpr uint32_t k_tertiary = 1u << 2;
+constexpr uint32_t k_trial_paths = 1u << 16, k_trial_round = 0xfffffd00u, k_trial_samples = 2;
+
+/// What may be left to paths from the eye, first nothing. Not secondary light without tertiary: what photons
+/// bring at the first diffuse vertex they would have to bring at the second.
+std::vector<uint32_t> ways(uint32_t own) {
+  const uint32_t deep = own & k_deep;
+  if (deep == 0) return {};
+  std::vector<uint32_t> all{0, deep};
+  if (deep == k_deep) all.push_back(k_tertiary);
+  return all;
+}
+
+}  // namespace
+
+void PhotonSolver::begin_trials(const Picture& picture, bool stale) {
+  // Records' rays, which end in photons, go on for all else and have no pixels to be compared by.
+  const bool tries = sends_ && lights_.power() > 0 && !feeds_ && (picture.task.own & k_deep) != 0 &&
+                     picture.task.settings.boolean("photons.worth");
+  if (!stale && tries == tries_) return;
+  tries_ = tries, tried_ = false;
+  trials_.clear(), trial_film_.reset();
+  leave(picture, 0);
+}
+
+void PhotonSolver::leave(const Picture& picture, uint32_t components) {
+  const Task& task = picture.task;
+  left_ = components;
+  const auto routes = [&](uint32_t own) {
+    return paths::photon_routes(task.automaton, task.enabled, own & ~left_, task.straight);
+  };
+  here_routes_ = routes(task.own), left_routes_ = routes(task.own & ~leaves_);
+}
+
+bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
+  const Frame small = small_frame(picture);
+  const double pixels = double(small.width) * small.height;
+  const auto begin_trial = [&] {
+    eye_schedule_.emplace((small.width + 7) / 8 * ((small.height + 7) / 8), k_trial_samples,
+                          wavefront.slots(), true);
+    trial_film_->clear(wavefront.stream());
+    map_.clear();
+    leave(picture, trials_.back().left);
+  };
+  const std::vector<uint32_t> all = ways(picture.task.own);
+  if (trials_.empty()) {
+    trial_film_ = std::make_unique<film::Film>(device_, small.width, small.height);
+    trials_.push_back({.left = all[0], .judged = picture.task.own & k_deep});
+    begin_trial();
+  }
+  Trial& trial = trials_.back();
+  const uint32_t left = trial.left, looked_up = picture.task.own & k_deep & ~left;
+  const bool by_rounds = !irradiance_ && looked_up != 0;
+  const schedule::UniformSchedule before = *eye_schedule_;
+  const schedule::WorkItem item = eye_schedule_->next();
+  Round round = round_of(picture, k_trial_round + item.blocks.front().first_sample);
+  if (by_rounds && !(map_.complete() && map_.round() == round.number)) {
+    *eye_schedule_ = before;
+    round.paths = std::min(round.paths, k_trial_paths);
+    round.lookup = lookup_of(picture, picture.frame, radius_law(picture.task.settings).at(k_typical_round));
+    return map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel);
+  }
+  // Paths that bring our own light and nothing else. Where irradiance is known they find it, unless they are
+  // to go on as if it were not.
+  Task task = picture.task;
+  task.own &= ~left;
+  solvers::Routing routing = routing_of(task);
+  if (irradiance_) routing.fallback = picture.task.own;
+  Frame frame = picture.frame_for(routing, left);
+  if (irradiance_ && left != 0)
+    for (uint32_t s = 0; s < k_fallback_state; ++s)
+      frame.automaton[s] = frame.automaton[k_fallback_state + s % k_gather_state];
+  transport::set_left(frame, frame);
+  frame.width = small.width, frame.height = small.height;
+  wavefront.set_frame(frame, picture.task.own);
+  const uint64_t rays = wavefront.stats().rays;
+  const bool complete = wavefront.try_out(item, *trial_film_, cancel);
+  if (complete) trial.cost += double(wavefront.stats().rays - rays) / (k_trial_samples * pixels);
+  wavefront.set_frame(picture.frame, picture.task.enabled);
+  if (!complete) *eye_schedule_ = before;
+  if (!eye_schedule_->done()) return complete;
+
+  const double picture_pixels = double(picture.width) * picture.height;
+  if (by_rounds) {
+    const auto wanted = double(round.paths);
+    trial.cost += k_cost_lookup + k_cost_light_path * wanted / picture_pixels;
+    for (size_t c = 0; c < trial.variance_factor.size(); ++c)
+      if ((looked_up >> c & 1u) != 0) trial.variance_factor[c] = double(map_.figures().paths) / wanted;
+  } else if (looked_up != 0) {
+    trial.cost +=
+        k_cost_light_path * double(standing_->figures().paths) / (picture_pixels * k_first_gather_samples);
+  }
+  trial.image = trial_film_->read();
+  if (trials_.size() < all.size()) {
+    trials_.push_back({.left = all[trials_.size()], .judged = trial.judged});
+    begin_trial();
+    return true;
+  }
+  leave(picture, trials_[judge(trials_)].left);
+  for (Trial& t : trials_) t.image = {};
+  trial_film_.reset();
+  map_.clear();
+  tried_ = true;
+  if (irradiance_ && left_ != 0) {
+    irradiance_->clear();
+    reads_standing_ = false;
+    wavefront.rebind_lookup();
+  }
+  return true;
+}
+
+}  // namespace lucerna::photons

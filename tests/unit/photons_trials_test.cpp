@@ -1,0 +1,77 @@
+// links: photons
+// Which way of bringing secondary and tertiary light a pilot's small pictures speak for.
+#include <catch2/catch.hpp>
+
+#include "solvers/photons/trials.h"
+
+using namespace lucerna;
+using photons::judge, photons::Trial;
+
+namespace {
+
+constexpr uint32_t k_side = 16, k_secondary = 1, k_tertiary = 2;
+constexpr uint32_t k_both = 1u << k_secondary | 1u << k_tertiary;
+
+/// A picture whose samples of each component are mean - spread and mean + spread.
+Trial trial(double cost, float mean, float secondary, float tertiary, uint32_t judged = k_both) {
+  Trial t;
+  t.judged = judged, t.cost = cost;
+  t.image.width = t.image.height = k_side;
+  for (size_t c = 0; c < film::k_components; ++c) {
+    const float spread = c == k_secondary ? secondary : c == k_tertiary ? tertiary : 100.0f;
+    t.image.components[c].assign(k_side * k_side, vec3(mean));
+    t.image.odd_half[c].assign(k_side * k_side, vec3(mean + spread));
+  }
+  return t;
+}
+
+}  // namespace
+
+TEST_CASE("noise times cost decides, of the components that are judged", "[photons_trials]") {
+  // Variance of a sample: half of the square of the difference, 2 spread^2.
+  std::vector<Trial> trials{trial(2, 1, 0.3f, 0.4f), trial(4, 1, 0.1f, 0.2f), trial(1, 1, 0.3f, 0.2f)};
+  CHECK(judge(trials) == 2);
+  CHECK(trials[0].product == 1);
+  CHECK(trials[1].product == Approx(0.05 * 4 / (0.25 * 2)));
+  CHECK(trials[2].product == Approx(0.13 * 1 / (0.25 * 2)));
+  // Without tertiary light the third has no less noise than the first.
+  for (Trial& t : trials) t.judged = 1u << k_secondary;
+  CHECK(judge(trials) == 1);
+  CHECK(trials[1].product == Approx(0.01 * 4 / (0.09 * 2)));
+  CHECK(trials[2].product == Approx(0.5));
+}
+
+TEST_CASE("what was asked for stays unless another way has less than half of its noise for its time",
+          "[photons_trials]") {
+  std::vector<Trial> trials{trial(1, 1, 0.1f, 0), trial(0.51, 1, 0.1f, 0)};
+  CHECK(judge(trials) == 0);
+  trials[1].cost = 0.49;
+  CHECK(judge(trials) == 1);
+  // In the picture to come there are more photons a round than in the pilot.
+  trials[0].variance_factor[k_secondary] = 0.5;
+  CHECK(judge(trials) == 0);
+  CHECK(trials[1].product == Approx(0.98));
+}
+
+TEST_CASE("what is bright by chance does not excuse itself", "[photons_trials]") {
+  // A block, all of whose light one sample has brought in the first trial and every sample in the second.
+  std::vector<Trial> trials{trial(1, 1, 0, 0), trial(1, 1, 0.4f, 0)};
+  for (Trial& t : trials) t.judged = 1u << k_secondary;
+  for (uint32_t y = 0; y < 8; ++y)
+    for (uint32_t x = 0; x < 8; ++x) {
+      const bool one = x == 0 && y == 0;
+      trials[0].image.components[k_secondary][y * k_side + x] = vec3(one ? 640.0f : 0.0f);
+      trials[0].image.odd_half[k_secondary][y * k_side + x] = vec3(one ? 1280.0f : 0.0f);
+    }
+  CHECK(judge(trials) == 1);
+  CHECK(trials[1].product < 1e-3);
+}
+
+TEST_CASE("where nothing was found nothing is left", "[photons_trials]") {
+  std::vector<Trial> trials{trial(2, 0, 0, 0), trial(1, 0, 0, 0)};
+  CHECK(judge(trials) == 0);
+  CHECK(trials[1].product == 0);
+  // No noise at all is no reason either: what has found no light is not better than what has.
+  trials[0] = trial(2, 1, 0.5f, 0);
+  CHECK(judge(trials) == 0);
+}
