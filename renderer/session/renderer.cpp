@@ -437,8 +437,11 @@ bool Renderer::step(const std::function<bool()>& cancel) {
 bool Renderer::render_item(const std::function<bool()>& cancel) {
   const PictureView view = picture_view();
   transport::Wavefront& wavefront = engine_->wavefront();
-  if (solvers::Solver* next = engine_->unready())
-    return engine_->prepare(*next, view, cancel);
+  if (solvers::Solver* next = engine_->unready()) {
+    const bool rounds = engine_->in_rounds(), went = engine_->prepare(*next, view, cancel);
+    if (engine_->in_rounds() != rounds && samples() == 0) start_schedule();
+    return went;
+  }
   // As soon as every pixel has a sample, so that the picture does not wait, and before errors are told.
   if (solvers::Solver* solver = samples() > 0 ? engine_->owing_errors(*film_) : nullptr) {
     const bool anew = errors_restart_ != restarts_ || errors_of_ != solver;
