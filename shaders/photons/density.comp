@@ -1,6 +1,6 @@
 // How dense photons lie on what each pixel shows, or what they bring there; and the greatest of it, as bits of a float.
 #include "lib/invocation.glsl"
-#include "overlay/seen.glsl"
+#include "overlay/asking.glsl"
 #include "photons/around.glsl"
 #include "photons/importance.glsl"
 #include "lib/left_regions.glsl"
@@ -14,7 +14,7 @@ void photon_met(vec4 a, vec4 b, vec3 wi, float kernel) {}
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
-  Seen seen = seen_at(pixel, push.width, push.height);
+  Asking seen = asking_at(pixel, push.width, push.grid, seen_at(pixel, push.width, push.height));
   float value = 0.0;
   if (push.of == k_density_of_importance) {
     float radius = importance_radius(seen.position);
@@ -23,10 +23,10 @@ void main() {
     uint x = pixel % push.width, y = pixel / push.width;
     value = 1.0 - left_share((vec2(x, y) + 0.5) / vec2(push.width, push.height));
   } else {
-    Around around = photons_around(seen.position, seen.normal, seen.solid);
+    Around around = photons_around(seen.position, seen.normal, seen.asks);
     value = push.of == k_density_of_photons ? around.density : push.of == k_photons_in_disc ? around.count : luminance(around.irradiance);
   }
-  value = seen.solid ? value : k_density_none;
+  value = seen.asks ? value : k_density_none;
   densities[pixel] = value;
   if (value > 0.0) atomicMax(density_most, floatBitsToUint(value));
 }

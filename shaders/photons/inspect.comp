@@ -1,6 +1,6 @@
 // The photons that count at what one pixel shows, by one invocation.
 #include "lib/invocation.glsl"
-#include "overlay/seen.glsl"
+#include "overlay/asking.glsl"
 #include "photons/around.glsl"
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push { PhotonInspectPush push; };
@@ -19,8 +19,8 @@ void photon_met(vec4 a, vec4 b, vec3 wi, float kernel) {
 
 void main() {
   if (global_index() > 0u) return;
-  Seen seen = seen_at(push.pixel, push.width, push.height);
-  Around around = photons_around(seen.position, seen.normal, seen.solid);
+  Asking seen = asking_at(push.pixel, push.width, push.grid, seen_at(push.pixel, push.width, push.height));
+  Around around = photons_around(seen.position, seen.normal, seen.asks);
   header = PhotonInspectHeader(seen.position, photon_radius(seen.position), seen.normal, around.area, around.irradiance, around.density,
-                               seen.solid ? 1u : 0u, listed, 0u, 0u);
+                               seen.asks ? 1u : 0u, listed, 0u, 0u);
 }

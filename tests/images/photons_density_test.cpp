@@ -14,9 +14,9 @@ namespace {
 struct Shown {
   session::Renderer r{test::renderer_options()};
   photons::PhotonSolver* photons = nullptr;
-  Shown() {
+  explicit Shown(const scene::Scene& scene = test::turned_sun(vec3(1))) {
     r.set_size(48, 40);
-    r.set_scene(std::make_shared<scene::Scene>(test::turned_sun(vec3(1))));
+    r.set_scene(std::make_shared<scene::Scene>(scene));
     test::set(r, {{"components.caustic", "photons"},
                   {"photons.worth", "false"},
                   {"photons.per_round", "200000"},
@@ -62,6 +62,33 @@ TEST_CASE("the density of photons is that which the round has left, and their ir
   test::set(s.r, {{"overlay.photon_density", "off"}});
   CHECK(s.r.picture(false) == plain);
   CHECK(s.report()->legends.empty());
+}
+
+TEST_CASE("through glass and in mirrors the irradiance of what lies behind is shown") {
+  // A small slab right below the eye, through which all of the floor is seen.
+  scene::Scene glass = test::turned_sun(vec3(1));
+  glass.materials.push_back({});
+  glass.materials[2].metallic = 0, glass.materials[2].transmission = 1, glass.materials[2].roughness = 0,
+  glass.materials[2].ior = 1.5f;
+  glass.materials[2].thickness = 1;
+  test::add_quad(glass, {-0.04f, 0.87f, 0.04f}, {0.08f, 0, 0}, {0, 0, -0.08f}, 2);
+  test::add_quad(glass, {-0.04f, 0.86f, 0.04f}, {0, 0, -0.08f}, {0.08f, 0, 0}, 2);
+  // The floor seen from beside it, in a mirror that turns the view by a right angle.
+  scene::Scene mirror = test::turned_sun(vec3(1));
+  mirror.cameras[0].to_world = mat4(0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 0, -0.1f, 0.8f, 0, 1);  // along x
+  test::add_quad(mirror, {-0.08f, 0.88f, -0.08f}, {0.16f, -0.16f, 0}, {0, 0, 0.16f}, 1);
+  for (const scene::Scene& scene : {glass, mirror}) {
+    Shown s(scene);
+    test::set(s.r, {{"overlay.photon_density", "irradiance"}});
+    s.r.picture(false);
+    const std::vector<float> found = s.photons->inspector().densities();
+    CHECK(mean(found) == Approx(double(luminance(vec3(3, 4, 5)))).epsilon(0.05));
+    s.photons->look_at(vec2(0.5f, 0.5f));
+    s.r.picture(false);
+    REQUIRE(s.photons->inspected());
+    CHECK(std::abs(s.photons->inspected()->at.position.y) < 1e-3f);
+    CHECK(s.photons->inspected()->at.normal.y > 0.999f);
+  }
 }
 
 TEST_CASE("how fast photons are sent, stored, sorted and gathered is told") {

@@ -61,7 +61,8 @@ std::vector<OptionInfo> option_rows() {
           "overlay.photon_density", "off", {"off", "photons", "irradiance", "importance", "worth"}, "",
           "Shows over the picture how dense the photons of the last round lie, or what they "
           "bring: a heat map on "
-          "surfaces, and under the pointer the disc within which photons count, with those. "
+          "surfaces, through glass and in mirrors as well, and under the pointer the disc within which "
+          "photons count, with those. "
           "importance: how much of the picture hangs on photons there, by the pilot that "
           "decides which are stored; worth: where photons bring caustics.",
           "Show density")),

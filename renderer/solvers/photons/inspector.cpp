@@ -23,7 +23,8 @@ float rounded_up(float value) {
 
 }  // namespace
 
-PhotonInspector::PhotonInspector(gpu::Device& device, gpu::ShaderCompiler& compiler)
+PhotonInspector::PhotonInspector(gpu::Device& device, gpu::ShaderCompiler& compiler,
+                                 const gpu::Defines& scene_defines)
     : device_(device),
       compiler_(compiler),
       most_(device, {.name = "greatest density", .bytes = 4, .memory = gpu::Memory::host}),
@@ -31,7 +32,8 @@ PhotonInspector::PhotonInspector(gpu::Device& device, gpu::ShaderCompiler& compi
                   {.name = "inspected photons",
                    .bytes = sizeof(PhotonInspectHeader) + k_photons_inspected * sizeof(PhotonInspected),
                    .memory = gpu::Memory::host}),
-      painter_(device, compiler) {}
+      painter_(device, compiler),
+      through_(device, compiler, scene_defines) {}
 
 const gpu::Kernel& PhotonInspector::ready(gpu::Kernel& kernel, const char* file) {
   if (!kernel) kernel = gpu::Kernel(device_, compiler_, file);
@@ -43,11 +45,12 @@ void PhotonInspector::look_up(const overlay::Canvas& canvas, const std::function
   gpu::make_room(device_, densities_, {.name = "densities of photons", .bytes = canvas.pixels() * 4});
   canvas.bind(resources_);
   bind(resources_);
+  through_.bind(resources_);
   resources_.set("PhotonDensities", densities_);
   resources_.set("PhotonDensityMost", most_);
   canvas.stream().fill(most_, 0);
   canvas.stream().dispatch(ready(density_, "photons/density.comp"), resources_,
-                           PhotonDensityPush{canvas.width(), canvas.height(), of},
+                           PhotonDensityPush{canvas.width(), canvas.height(), of, through_.grid()},
                            gpu::groups_for(canvas.pixels(), 64));
   canvas.finish();
 }
@@ -73,9 +76,11 @@ std::optional<Inspected> PhotonInspector::inspect(const overlay::Canvas& canvas,
                                                   uint32_t x, uint32_t y) {
   canvas.bind(resources_);
   bind(resources_);
+  through_.bind(resources_);
   resources_.set("PhotonInspection", inspection_);
-  canvas.stream().dispatch(ready(inspect_, "photons/inspect.comp"), resources_,
-                           PhotonInspectPush{canvas.width(), canvas.height(), y * canvas.width() + x}, 1);
+  canvas.stream().dispatch(
+      ready(inspect_, "photons/inspect.comp"), resources_,
+      PhotonInspectPush{canvas.width(), canvas.height(), y * canvas.width() + x, through_.grid()}, 1);
   canvas.finish();
   const auto* header = static_cast<const PhotonInspectHeader*>(inspection_.mapped());
   if (header->solid == 0) return std::nullopt;

@@ -3,6 +3,7 @@
 // that count at one pixel.
 #include <optional>
 
+#include "overlay/look_through.h"
 #include "overlay/painter.h"
 #include "shaders/shared/photons/inspect.h"
 #include "solvers/photons/photon_map.h"
@@ -22,8 +23,16 @@ struct Inspected {
 
 class PhotonInspector {
  public:
-  /// Kernels are compiled when they are first called for. Both must outlive it.
-  PhotonInspector(gpu::Device& device, gpu::ShaderCompiler& compiler);
+  /// `scene_defines`: of the kernels that know the scene's surfaces. Kernels are compiled when they are first
+  /// called for. Both must outlive it.
+  PhotonInspector(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines);
+  /// Looks at what the pixels show, through glass and in mirrors, unless that is known; without it what comes
+  /// first counts. False when the canvas cancels it.
+  bool look(const overlay::Canvas& canvas, const shared::Frame& frame) {
+    return through_.look(canvas, frame);
+  }
+  /// Surfaces are others.
+  void forget() { through_.forget(); }
   /// Over the film's picture. `of`: shared::k_density_of_*. `bind`: what the hook reads.
   DensityScale draw_density(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind,
                             uint32_t of);
@@ -45,6 +54,7 @@ class PhotonInspector {
   gpu::Buffer densities_, most_, inspection_;
   gpu::Resources resources_;
   overlay::Painter painter_;
+  overlay::LookThrough through_;
 };
 
 }  // namespace lucerna::photons

@@ -144,7 +144,7 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       feeds_(sends_ && feeds(task)),
       view_(device, compiler),
       paths_view_(device, compiler, *task.scene_defines, task.automaton),
-      inspector_(device, compiler),
+      inspector_(device, compiler, *task.scene_defines),
       surfaces_(device) {
   if (prepares_irradiance(task))
     irradiance_.emplace(device, task.effects.groups_in_short() ? task.effects.light_groups : 0);
@@ -183,6 +183,7 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
     lit_ = true;
   }
   if (spoils.places) map_.clear(), surfaces_.spoil();
+  if (spoils.any()) inspector_.forget();
   if (spoils.places && irradiance_) irradiance_->spoil();
   if (standing_ && spoils.any()) standing_->clear();
   if (irradiance_ && spoils.any()) irradiance_->clear();
@@ -355,6 +356,7 @@ void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
   if (!sends_) return;
   const auto read = [this](gpu::Resources& r) { bind(r); };
   const auto of = uint32_t(settings.choice("overlay.photon_density"));
+  if ((of > 0 || looked_at_) && !inspector_.look(canvas, picture.frame)) return;
   if (of > 0) density_ = inspector_.draw_density(canvas, read, of);
   view_.draw(canvas, shown_map(), uint32_t(settings.choice("overlay.photons")));
   if (settings.boolean("overlay.photon_paths"))

@@ -2,12 +2,14 @@
 #ifndef LUCERNA_SHARED_PHOTONS_INSPECT_H
 #define LUCERNA_SHARED_PHOTONS_INSPECT_H
 #include "shaders/shared/compat.h"
+#include "shaders/shared/sight.h"
 LUCERNA_SHARED_BEGIN
 
 /// One float a pixel, and of all the greatest.
 struct PhotonDensityPush {
   uint width, height;
   uint of;          ///< k_density_of_*, k_photons_in_disc
+  SightGrid grid;   ///< of what is seen through glass and in mirrors
 };
 LUCERNA_CONST uint k_density_of_photons = 1u;     ///< [1/m^2]
 LUCERNA_CONST uint k_density_of_irradiance = 2u;  ///< luminance [W/m^2, of the scene's unit]
@@ -25,6 +27,7 @@ struct PhotonHeatPush {
 struct PhotonInspectPush {
   uint width, height;
   uint pixel;
+  SightGrid grid;   ///< as above
 };
 LUCERNA_CONST uint k_photons_inspected = 512u;  ///< that are listed at most
 
