@@ -63,9 +63,8 @@ std::vector<AimedPair> aimed_pairs(const upload::FlatScene& flat, const transpor
         if (one.from) sum += *one.from, ++placed;
       }
       of_group.from = sum / float(placed);
-      of_group.light = of_group.light == "shining surface"
-                           ? fmt::format("{} triangles", members.size())
-                           : fmt::format("{} lights", members.size());
+      of_group.light = of_group.light == "shining surface" ? fmt::format("{} triangles", members.size())
+                                                           : fmt::format("{} lights", members.size());
     }
     for (uint32_t c = 0; c < casters; ++c) {
       AimedPair pair = of_group;

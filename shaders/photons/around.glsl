@@ -1,4 +1,5 @@
-// The photons around a place that a pixel shows; each is told to photon_met(), which whoever includes this defines.
+// The photons around a place that a pixel shows; each is told to photon_met(), which whoever includes this defines. Where more
+// than k_photons_around lie together every so-manyth counts for all.
 #ifndef LUCERNA_PHOTONS_AROUND
 #define LUCERNA_PHOTONS_AROUND
 #include "photons/photon.glsl"
@@ -18,12 +19,21 @@ Around photons_around(vec3 x, vec3 normal, bool looks) {
   float radius = photon_radius(x);
   looks = looks && photons.count > 0u;
   int lowest = photon_lowest_level(radius), highest = photon_highest_level(radius);
-  uint met = 0u;
+  uint candidates = 0u;
   for (int level = lowest; looks && level <= highest; ++level) {
     ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
     for (uint k = 0u; k < k_photon_near_cells; ++k) {
       uvec2 range = photon_range(photon_entry(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level));
-      for (uint at = range.x; at < range.y && met < k_photon_most_candidates; ++at, ++met) {
+      candidates += range.y - range.x;
+    }
+  }
+  uint step = max(1u, (candidates + k_photons_around - 1u) / k_photons_around), skip = step / 2u;
+  for (int level = lowest; looks && level <= highest; ++level) {
+    ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
+    for (uint k = 0u; k < k_photon_near_cells; ++k) {
+      uvec2 range = photon_range(photon_entry(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level));
+      uint at = range.x + skip;
+      for (; at < range.y; at += step) {
         vec4 a = texelFetch(photon_texels, int(k_photon_texels * at));
         vec3 away = a.xyz - x;
         float r = photon_radius(a.xyz), d2 = dot(away, away);
@@ -38,8 +48,12 @@ Around photons_around(vec3 x, vec3 normal, bool looks) {
         sum.irradiance += kernel * b.rgb;
         photon_met(a, b, wi, kernel);
       }
+      skip = at - range.y;
     }
   }
+  sum.count *= float(step);
+  sum.density *= float(step);
+  sum.irradiance *= float(step);
   if (sum.count > 0.0) sum.area = photon_area(x, normal, radius);
   sum.density /= sum.area;
   sum.irradiance /= sum.area;

@@ -1,6 +1,7 @@
 // How dense photons lie on what each pixel shows, or what they bring there; and the greatest of it, as bits of a float.
 #include "lib/invocation.glsl"
 #include "overlay/asking.glsl"
+const uint k_photons_around = 192u;
 #include "photons/around.glsl"
 #include "photons/importance.glsl"
 #include "lib/left_regions.glsl"
@@ -12,8 +13,8 @@ layout(scalar) buffer PhotonDensityMost { uint density_most; };
 void photon_met(vec4 a, vec4 b, vec3 wi, float kernel) {}
 
 void main() {
-  uint pixel = global_index();
-  if (pixel >= push.width * push.height) return;
+  uint pixel = push.first + global_index();
+  if (global_index() >= push.count) return;
   Asking seen = asking_at(pixel, push.width, push.grid, seen_at(pixel, push.width, push.height));
   float value = 0.0;
   if (push.of == k_density_of_importance) {

@@ -1,6 +1,8 @@
 // The photons that count at what one pixel shows, by one invocation.
 #include "lib/invocation.glsl"
 #include "overlay/asking.glsl"
+#include "photons/photon.glsl"
+const uint k_photons_around = k_photon_most_candidates;
 #include "photons/around.glsl"
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push { PhotonInspectPush push; };

@@ -10,7 +10,10 @@ using namespace shared;
 
 namespace {
 
-constexpr float k_decades = 1e-3f;  // of the scale, from its end down
+constexpr float k_decades = 1e-3f;       // of the scale, from its end down
+constexpr double k_smooth_photons = 16;  // that what is drawn of a pixel is to be the mean of, about
+constexpr uint32_t k_pixels_at_once = 1u << 15;
+constexpr long k_most_taps = 8;  // pixels to either side
 constexpr vec3 k_disc_ink{1.0f, 0.86f, 0.45f};
 
 /// The next of 1, 2, 5, 10 ...
@@ -40,7 +43,7 @@ const gpu::Kernel& PhotonInspector::ready(gpu::Kernel& kernel, const char* file)
   return kernel;
 }
 
-void PhotonInspector::look_up(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind,
+bool PhotonInspector::look_up(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind,
                               uint32_t of) {
   gpu::make_room(device_, densities_, {.name = "densities of photons", .bytes = canvas.pixels() * 4});
   canvas.bind(resources_);
@@ -49,24 +52,58 @@ void PhotonInspector::look_up(const overlay::Canvas& canvas, const std::function
   resources_.set("PhotonDensities", densities_);
   resources_.set("PhotonDensityMost", most_);
   canvas.stream().fill(most_, 0);
-  canvas.stream().dispatch(ready(density_, "photons/density.comp"), resources_,
-                           PhotonDensityPush{canvas.width(), canvas.height(), of, through_.grid()},
-                           gpu::groups_for(canvas.pixels(), 64));
-  canvas.finish();
+  const auto pixels = uint32_t(canvas.pixels());
+  for (uint32_t first = 0; first < pixels; first += k_pixels_at_once) {
+    if (canvas.cancel && canvas.cancel()) return false;
+    const uint32_t count = std::min(k_pixels_at_once, pixels - first);
+    canvas.stream().dispatch(
+        ready(density_, "photons/density.comp"), resources_,
+        PhotonDensityPush{canvas.width(), canvas.height(), of, first, count, through_.grid()},
+        gpu::groups_for(count, 64));
+    canvas.finish();
+  }
+  return true;
 }
 
 DensityScale PhotonInspector::draw_density(const overlay::Canvas& canvas,
-                                           const std::function<void(gpu::Resources&)>& bind, uint32_t of) {
-  look_up(canvas, bind, of);
-  const auto most = std::bit_cast<float>(*static_cast<const uint32_t*>(most_.mapped()));
-  DensityScale scale{.of = of};
-  if (most > 0) scale.hi = rounded_up(most), scale.lo = k_decades * scale.hi;
-  canvas.stream().dispatch(
-      ready(heat_, "photons/heat.comp"), resources_,
-      PhotonHeatPush{canvas.width(), canvas.height(), most > 0 ? scale.lo : 1.0f, most > 0 ? scale.hi : 2.0f},
-      gpu::groups_for(canvas.pixels(), 64));
+                                           const std::function<void(gpu::Resources&)>& bind, uint32_t of,
+                                           uint32_t photons, uint64_t version) {
+  const bool every_pixel = through_.grid().across > 0 && through_.grid().stride == 1;
+  const bool smooths = every_pixel && (of == k_density_of_photons || of == k_density_of_irradiance);
+  if (of > k_density_of_irradiance || drawn_.of != of || drawn_version_ != version) {
+    drawn_ = {};
+    if (!look_up(canvas, bind, of)) return {};
+    if (smooths) smooth(canvas, photons);
+    const auto most = std::bit_cast<float>(*static_cast<const uint32_t*>(most_.mapped()));
+    drawn_ = {.of = of}, drawn_version_ = version;
+    if (most > 0) drawn_.hi = rounded_up(most), drawn_.lo = k_decades * drawn_.hi;
+  }
+  const DensityScale& scale = drawn_;
+  canvas.bind(resources_);
+  resources_.set("PhotonDensities", smooths ? smoothed_ : densities_);
+  canvas.stream().dispatch(ready(heat_, "photons/heat.comp"), resources_,
+                           PhotonHeatPush{canvas.width(), canvas.height(), scale.hi > 0 ? scale.lo : 1.0f,
+                                          scale.hi > 0 ? scale.hi : 2.0f},
+                           gpu::groups_for(canvas.pixels(), 64));
   canvas.finish();
   return scale;
+}
+
+void PhotonInspector::smooth(const overlay::Canvas& canvas, uint32_t photons) {
+  // As many pixels across as hold so many photons, were these even.
+  const double across = std::sqrt(k_smooth_photons * double(canvas.pixels()) / std::max(1u, photons));
+  const auto taps = uint32_t(std::clamp(std::lround(across), 1l, k_most_taps));
+  for (gpu::Buffer* b : {&halfway_, &smoothed_})
+    gpu::make_room(device_, *b, {.name = "smoothed densities", .bytes = canvas.pixels() * 4});
+  canvas.stream().fill(most_, 0);
+  for (const uint32_t down : {0u, 1u}) {
+    resources_.set("PhotonDensities", down ? halfway_ : densities_);
+    resources_.set("PhotonSmoothed", down ? smoothed_ : halfway_);
+    canvas.stream().dispatch(ready(smooth_, "photons/smooth.comp"), resources_,
+                             PhotonSmoothPush{canvas.width(), canvas.height(), taps, down},
+                             gpu::groups_for(canvas.pixels(), 64));
+    canvas.finish();
+  }
 }
 
 std::vector<float> PhotonInspector::densities() const { return densities_.read_all<float>(); }

@@ -33,11 +33,14 @@ class PhotonInspector {
   }
   /// Surfaces are others.
   void forget() { through_.forget(); }
-  /// Over the film's picture. `of`: shared::k_density_of_*. `bind`: what the hook reads.
+  /// Over the film's picture. `of`: shared::k_density_of_*. `bind`: what the hook reads. `photons`: of the
+  /// round; where they are few for the picture's pixels what is drawn of photons and irradiance is a mean
+  /// over pixels around. `version` of the photons: what is known of one is not looked up again.
   DensityScale draw_density(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind,
-                            uint32_t of);
-  /// Looks all of it up and keeps it: shared::k_density_of_*, or k_photons_in_disc.
-  void look_up(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind, uint32_t of);
+                            uint32_t of, uint32_t photons, uint64_t version);
+  /// Looks all of it up and keeps it: shared::k_density_of_*, or k_photons_in_disc. False when the canvas
+  /// cancels it.
+  bool look_up(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind, uint32_t of);
   /// What was looked up last, by pixel; shared::k_density_none where nothing is seen. For tests.
   std::vector<float> densities() const;
   /// Nothing where no surface is seen. Draws the disc and its photons.
@@ -46,13 +49,16 @@ class PhotonInspector {
 
  private:
   const gpu::Kernel& ready(gpu::Kernel& kernel, const char* file);
+  void smooth(const overlay::Canvas& canvas, uint32_t photons);
   void draw_disc(const overlay::Canvas& canvas, const Inspected& found);
 
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
-  gpu::Kernel density_, heat_, inspect_;
-  gpu::Buffer densities_, most_, inspection_;
+  gpu::Kernel density_, smooth_, heat_, inspect_;
+  gpu::Buffer densities_, halfway_, smoothed_, most_, inspection_;
   gpu::Resources resources_;
+  DensityScale drawn_;          ///< what is known ...
+  uint64_t drawn_version_ = 0;  ///< ... of these photons
   overlay::Painter painter_;
   overlay::LookThrough through_;
 };

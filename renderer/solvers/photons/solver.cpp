@@ -163,7 +163,7 @@ gpu::Defines PhotonSolver::defines() const {
 const solvers::SolverInfo& PhotonSolver::info() const { return photons::info(); }
 
 void PhotonSolver::bind(gpu::Resources& resources) const {
-  (reads_standing_ ? *standing_ : map_).bind(resources);
+  shown_map().bind(resources);
   if (irradiance_) irradiance_->bind(resources);
   surfaces_.bind(resources);
   resources.set("left_regions", left_regions_);
@@ -192,6 +192,7 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   if (standing_) standing_->tell_surface(irradiance_.has_value());
   reads_standing_ = standing_served_ = false;
   map_.restart();
+  ++begun_;
   fresh_ = true;
   begin_aim(picture, spoils);
   rounds_ = paths_ = photons_ = escaped_ = dark_ = 0;
@@ -357,7 +358,10 @@ void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
   const auto read = [this](gpu::Resources& r) { bind(r); };
   const auto of = uint32_t(settings.choice("overlay.photon_density"));
   if ((of > 0 || looked_at_) && !inspector_.look(canvas, picture.frame)) return;
-  if (of > 0) density_ = inspector_.draw_density(canvas, read, of);
+  // Until there are photons there is nothing to show of them.
+  const PhotonMap& shown = shown_map();
+  if (of > 0 && (shown.complete() || of > k_density_of_irradiance))
+    density_ = inspector_.draw_density(canvas, read, of, shown.figures().photons, shown_version());
   view_.draw(canvas, shown_map(), uint32_t(settings.choice("overlay.photons")));
   if (settings.boolean("overlay.photon_paths"))
     paths_view_.draw(canvas, picture.flat, lights_, round_of(picture, 0),
@@ -365,7 +369,7 @@ void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
                      picture.task.enabled);
   if (settings.boolean("overlay.photon_aim") && lights_.strata() > 1)
     paths_view_.draw_aim(canvas, picture.flat, lights_, boxes_);
-  if (!looked_at_) return;
+  if (!looked_at_ || !shown.complete()) return;
   const auto at = [](float place, uint32_t pixels) {
     return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
   };

@@ -83,7 +83,9 @@ class PhotonSolver final : public solvers::Solver {
   /// Within which a typical lookup finds so many photons of so many paths.
   float standing_radius(const solvers::Picture& picture, uint32_t paths, float photons) const;
   void account(const RoundFigures& round);  ///< one that is complete
-  const PhotonMap& shown_map() const { return gathers_alone_ && standing_ ? *standing_ : map_; }
+  const PhotonMap& shown_map() const { return reads_standing_ ? *standing_ : map_; }  ///< that is bound
+  /// Another one whenever other photons are shown, or from elsewhere.
+  uint64_t shown_version() const { return begun_ << 32 | shown_map().round(); }
   PhotonReport state(const solvers::Picture& picture) const;
   static RadiusLaw radius_law(const OptionValues& settings);
   Round round_of(const solvers::Picture& picture, uint32_t sample) const;
@@ -182,6 +184,7 @@ class PhotonSolver final : public solvers::Solver {
 
   bool lit_ = false;          ///< lights_ are the scene's
   uint32_t last_sample_ = 0;  ///< whose round is complete, in this picture
+  uint64_t begun_ = 0;        ///< pictures
   bool fresh_ = true;         ///< no round of this picture is
   uint64_t rounds_ = 0, paths_ = 0, photons_ = 0, escaped_ = 0, dark_ = 0;  ///< of this picture
   uint64_t spared_ = 0;

@@ -9,6 +9,7 @@ LUCERNA_SHARED_BEGIN
 struct PhotonDensityPush {
   uint width, height;
   uint of;          ///< k_density_of_*, k_photons_in_disc
+  uint first, count;  ///< pixels, in raster order
   SightGrid grid;   ///< of what is seen through glass and in mirrors
 };
 LUCERNA_CONST uint k_density_of_photons = 1u;     ///< [1/m^2]
@@ -18,6 +19,13 @@ LUCERNA_CONST uint k_density_of_worth = 4u;       ///< share of the samples in w
 LUCERNA_CONST uint k_photons_in_disc = 5u;        ///< their number
 LUCERNA_CONST float k_density_none = -1.0f;       ///< nothing is seen there
 LUCERNA_CONST float k_density_normals = 0.7f;     ///< least cosine to the normal that is seen, which may be of a normal map
+
+/// The mean over `taps` pixels to either side.
+struct PhotonSmoothPush {
+  uint width, height;
+  uint taps;
+  uint down;        ///< nonzero: above and below
+};
 
 struct PhotonHeatPush {
   uint width, height;
