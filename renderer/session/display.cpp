@@ -83,7 +83,7 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
   const uint32_t before = fine ? plan_.fine_samples() : plan_.coarse_samples();
   if (before == 0) film.clear(wavefront.stream());
   film.set_mix(view.mix);
-  shared::Frame frame = engine.frame(view, film.width(), film.height());
+  shared::Frame frame = engine.draft_frame(view, film.width(), film.height());
   frame.most_branches = 1;  // the first samples say more than better ones
   wavefront.set_frame(frame, engine.plan().enabled());
   schedule::UniformSchedule schedule(film.blocks(), 1, wavefront.slots());

@@ -46,6 +46,13 @@ void claim(std::array<const solvers::SolverInfo*, paths::k_component_count>& by,
   }
 }
 
+/// These components (bits) are paths' from now on.
+void to_paths(plan::Plan& plan, uint32_t components) {
+  for (size_t c = 0; c < plan.solver.size(); ++c)
+    if ((components >> c & 1u) != 0 && plan.solver[c])
+      plan.solver[c] = solvers::find("path"), plan.rest[c] = nullptr;
+}
+
 }  // namespace
 
 solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
@@ -192,19 +199,20 @@ bool Engine::prepare(solvers::Solver& solver, const PictureView& picture,
 }
 
 void Engine::route(const plan::Settings& settings, const upload::Effects& effects) {
-  const auto to_paths = [](plan::Plan& plan, uint32_t bits) {
-    for (size_t c = 0; c < plan.solver.size(); ++c)
-      if ((bits >> c & 1u) != 0) plan.solver[c] = solvers::find("path"), plan.rest[c] = nullptr;
-  };
   plan::Plan here = plan_;
   for (const auto& solver : solvers_) to_paths(here, solver->left());
-  routing_ = routing(here, settings, effects);
+  routes_ = routes_of(here, settings, effects);
+}
+
+Engine::Routes Engine::routes_of(const plan::Plan& here, const plan::Settings& settings,
+                                 const upload::Effects& effects) const {
+  Routes routes{.here = routing(here, settings, effects), .left = {}};
   plan::Plan left = here;
-  for (const solvers::SolverInfo* info : plan_.at_work())
+  for (const solvers::SolverInfo* info : here.at_work())
     if (const auto leaves = solvers::type_of(*info).leaves)
-      to_paths(left, leaves(task_of(automaton_, plan_, *info, settings, effects)));
-  left_.reset();
-  if (left.solver != here.solver) left_ = routing(left, settings, effects);
+      to_paths(left, leaves(task_of(automaton_, here, *info, settings, effects)));
+  if (left.solver != here.solver) routes.left = routing(left, settings, effects);
+  return routes;
 }
 
 solvers::Routing Engine::routing(const plan::Plan& plan, const plan::Settings& settings,
@@ -230,6 +238,21 @@ solvers::Routing Engine::routing(const plan::Plan& plan, const plan::Settings& s
 }
 
 shared::Frame Engine::frame(const PictureView& picture, uint32_t width, uint32_t height) const {
+  return frame_of(routes_, picture, width, height);
+}
+
+shared::Frame Engine::draft_frame(const PictureView& picture, uint32_t width, uint32_t height) const {
+  plan::Plan here = plan_;
+  for (const auto& solver : solvers_)
+    to_paths(here, solver->left() | with(*solver, picture,
+                                         [&](const solvers::Picture& own) { return solver->missing(own); }));
+  const bool all = here.solver == plan_.solver;
+  return frame_of(all ? routes_ : routes_of(here, picture.settings, picture.world.flat.effects), picture,
+                  width, height);
+}
+
+shared::Frame Engine::frame_of(const Routes& routes, const PictureView& picture, uint32_t width,
+                               uint32_t height) const {
   const solvers::Task task = {
       .automaton = automaton_, .settings = picture.settings, .enabled = plan_.enabled()};
   const solvers::Picture own{.task = task,
@@ -238,14 +261,14 @@ shared::Frame Engine::frame(const PictureView& picture, uint32_t width, uint32_t
                              .width = width,
                              .height = height,
                              .frame = {}};
-  shared::Frame frame = own.frame_for(routing_, routing_.lookups.traced);
-  if (left_) transport::set_left(frame, own.frame_for(*left_, left_->lookups.traced));
+  shared::Frame frame = own.frame_for(routes.here, routes.here.lookups.traced);
+  if (routes.left) transport::set_left(frame, own.frame_for(*routes.left, routes.left->lookups.traced));
   return frame;
 }
 
 bool Engine::looked_up_besides(size_t component) const {
   // The part of light that comes straight from a light.
-  return std::any_of(routing_.lookups.component.begin(), routing_.lookups.component.end(),
+  return std::any_of(routes_.here.lookups.component.begin(), routes_.here.lookups.component.end(),
                      [&](const auto& by_part) { return by_part[0] == component; });
 }
 

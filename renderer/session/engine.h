@@ -72,6 +72,8 @@ class Engine {
 
   /// Frame of the picture's paths, in a size of its own.
   shared::Frame frame(const PictureView& picture, uint32_t width, uint32_t height) const;
+  /// ... of a draft's: what solvers have not prepared yet (Solver::missing) is traced.
+  shared::Frame draft_frame(const PictureView& picture, uint32_t width, uint32_t height) const;
   /// Calls f(picture) with the solver's own task.
   template <class F>
   decltype(auto) with(const solvers::Solver& solver, const PictureView& view, F&& f) const {
@@ -95,15 +97,21 @@ class Engine {
   /// bring the same light.
   solvers::Routing routing(const plan::Plan& plan, const plan::Settings& settings,
                            const upload::Effects& effects) const;
-  /// For the present plan less what solvers leave to paths, and for parts of the picture where they leave
-  /// more of it.
+  struct Routes {
+    solvers::Routing here;
+    std::optional<solvers::Routing> left;  ///< ... where solvers leave light to paths (SolverType::leaves)
+  };
+  Routes routes_of(const plan::Plan& here, const plan::Settings& settings,
+                   const upload::Effects& effects) const;
+  shared::Frame frame_of(const Routes& routes, const PictureView& picture, uint32_t width,
+                         uint32_t height) const;
+  /// For the present plan less what solvers leave to paths everywhere (Solver::left).
   void route(const plan::Settings& settings, const upload::Effects& effects);
 
   const paths::Automaton& automaton_;
   plan::Plan plan_;
-  gpu::Defines scene_defines_;            ///< that the kernels were made with
-  solvers::Routing routing_;              ///< of the picture begun last
-  std::optional<solvers::Routing> left_;  ///< ... where solvers leave light to paths (SolverType::leaves)
+  gpu::Defines scene_defines_;  ///< that the kernels were made with
+  Routes routes_;               ///< of the picture begun last
   std::vector<std::unique_ptr<solvers::Solver>> solvers_;
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::shared_ptr<film::Developer> developer_;

@@ -131,6 +131,13 @@ class Solver {
     return true;
   }
 
+  /// For display, before it is ready: components (of Task::own) of whose light lookups find nothing yet, so
+  /// that the window's drafts trace it.
+  virtual uint32_t missing(const Picture& picture) const {
+    (void)picture;
+    return 0;
+  }
+
   // For display, while preparation makes light anew that paths have been reading: something of all of it at
   // once, for the window's drafts. What is prepared does not depend on it.
 

@@ -26,8 +26,12 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   uint components = v.again ? 0xffffu : photons.component[v.state];
   // A pilot notes where light is looked up, and reads none.
   bool reads = components != 0xffffu && photons.importance_mask == 0u;
-  // Paths that bring all by themselves do so no longer where it has been looked up.
-  if (reads && v.state % k_left_states >= k_gather_state) vertex.from = k_known_state;
+  // Paths that bring all by themselves do so no longer where it has been looked up; where there is nothing to be read yet, they do.
+  bool some = photons.count > 0u;
+#if LUCERNA_PHOTON_IRRADIANCE
+  some = some || irradiance.triangles > 0u;
+#endif
+  if (reads && some && v.state % k_left_states >= k_gather_state) vertex.from = k_known_state;
 #if LUCERNA_PHOTON_IRRADIANCE
   if (reads && irradiance_asked(v.state)) {
     components = 0xffffu;

@@ -15,7 +15,7 @@ IrradianceMap::IrradianceMap(gpu::Device& device, uint32_t groups)
 
 void IrradianceMap::clear() {
   restart();
-  pieces_ = 0;
+  pieces_ = 0, readable_ = false;
   gpu::make_texel_room(device_, roots_, "triangles of irradiance", sizeof(uvec4));
   gpu::make_texel_room(device_, nodes_, "irradiance", (1 + groups_) * sizeof(vec4));
   const IrradianceFrame none{};
@@ -64,7 +64,7 @@ void IrradianceMap::upload(const IrradianceCells& cells, const Wanted& wanted) {
   const IrradianceFrame frame{.triangles = uint32_t(cells.roots.size()),
                               .states = {uint32_t(wanted.states), uint32_t(wanted.states >> 32)}};
   block_.write(&frame, sizeof frame);
-  pieces_ = cells.known;
+  pieces_ = cells.known, readable_ = true;
 }
 
 void IrradianceMap::bind(gpu::Resources& resources) const {

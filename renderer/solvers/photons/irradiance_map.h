@@ -30,6 +30,8 @@ class IrradianceMap {
   /// Surfaces are others.
   void spoil() { clear(), order_.reset(); }
   bool complete() const { return complete_; }
+  /// Lookups find something, or at least that nothing is known.
+  bool readable() const { return readable_; }
   void bind(gpu::Resources& resources) const;
   uint32_t pieces() const { return pieces_; }
   uint64_t bytes() const;
@@ -45,7 +47,7 @@ class IrradianceMap {
   uint32_t maps_ = 0;  ///< that it has so far
   gpu::Buffer roots_, nodes_, block_;
   uint32_t pieces_ = 0;
-  bool complete_ = false;
+  bool complete_ = false, readable_ = false;
 };
 
 }  // namespace lucerna::photons

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "base/timer.h"
 
@@ -109,7 +110,12 @@ void PhotonMap::write_lookup() {
   all.tells_surface = noted_.tells_surface;
   // Where there has been no round, of what photons are stored by.
   if (all.most <= all.least) all.least = noted_.least, all.most = noted_.most;
+  if (notes_held_) all.importance_mask = 0, all.lookups = 0;
   block_.write(&all, sizeof all);
+}
+
+void PhotonMap::hold_notes(bool held) {
+  if (std::exchange(notes_held_, held) != held && lookup_.importance_mask != 0) write_lookup();
 }
 
 void PhotonMap::store_by_importance(bool on) {

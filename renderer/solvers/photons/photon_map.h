@@ -56,6 +56,8 @@ class PhotonMap {
   /// a round is complete. `lookup`: by whose radii. `pixels`: of the paths' picture, for each of which is
   /// noted where caustics are looked up; 0: they are not.
   void note_importance(transport::Wavefront& wavefront, const shared::PhotonFrame& lookup, uint32_t pixels);
+  /// Meanwhile, while held, lookups note nothing.
+  void hold_notes(bool held);
   /// What was noted of each pixel.
   std::vector<shared::PhotonLookup> lookups() const;
   /// Whether photons are stored by the importance that was noted last: where nobody looks, one in so many.
@@ -103,7 +105,7 @@ class PhotonMap {
   shared::PhotonFrame lookup_{}, noted_{};  ///< noted_: by whose radii importance is noted
   const PhotonMap* importance_of_ = this;
   RoundFigures figures_, next_;  ///< of the last complete round, of the one under way
-  bool tracing_ = false, complete_ = false;
+  bool tracing_ = false, complete_ = false, notes_held_ = false;
   uint32_t traced_ = 0, stored_ = 0;  ///< paths and photons of the round under way
   uint32_t capacity_ = 0;
 };

@@ -200,6 +200,11 @@ void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   spared_ = 0;
 }
 
+void PhotonSolver::look_up_preview(transport::Wavefront& wavefront, bool on) {
+  (void)wavefront;
+  map_.hold_notes(on);
+}
+
 uint32_t PhotonSolver::sent_parts() const {
   const uint32_t parts = parts_ & here_routes_.parts;
   return regions_.nowhere ? parts & ~(1u << k_caustic_part) : parts;

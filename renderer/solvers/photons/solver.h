@@ -36,6 +36,10 @@ class PhotonSolver final : public solvers::Solver {
     return pilot_done() && (!stands() || standing_served_) && (!tries_ || tried_);
   }
   uint32_t left() const override { return left_; }
+  /// Secondary and tertiary light; caustics are for photons to find.
+  uint32_t missing(const solvers::Picture& picture) const override;
+  /// Drafts note nothing.
+  void look_up_preview(transport::Wavefront& wavefront, bool on) override;
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
   bool in_rounds() const override {

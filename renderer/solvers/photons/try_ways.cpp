@@ -44,6 +44,13 @@ void PhotonSolver::leave(const Picture& picture, uint32_t components) {
   here_routes_ = routes(task.own), left_routes_ = routes(task.own & ~leaves_);
 }
 
+uint32_t PhotonSolver::missing(const Picture& picture) const {
+  // Paths that records leave alone go on for it by themselves.
+  if (feeds_) return 0;
+  const bool known = irradiance_ ? irradiance_->readable() : shown_map().complete();
+  return known ? 0 : picture.task.own & k_deep & ~left_;
+}
+
 bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
   const Frame small = small_frame(picture);
   const double pixels = double(small.width) * small.height;
