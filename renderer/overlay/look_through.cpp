@@ -31,8 +31,7 @@ bool LookThrough::look(const Canvas& canvas, const Frame& frame) {
   bool complete = true;
   wavefront.uncounted([&] {
     while (complete && !sight_.seen())
-      complete = sight_.see(wavefront, "what is shown through glass", keep, canvas.cancel,
-                            {.vertex = &look_, .stage = "what is shown through glass"});
+      complete = sight_.see(wavefront, "what is shown through glass", keep, canvas.cancel, &look_);
   });
   known_ = complete, of_ = frame;
   return complete;

@@ -3,8 +3,6 @@
 // light diffusely, where light that is stored on surfaces can lie. Each ray goes the way that most of the
 // light goes (shaders/overlay/look.comp); what is seen in rough metal or through frosted glass is no surface.
 // Shaders read it by shaders/overlay/asking.glsl.
-#include <memory>
-
 #include "overlay/canvas.h"
 #include "overlay/sight.h"
 
@@ -24,7 +22,6 @@ class LookThrough {
   shared::SightGrid grid() const { return known_ ? sight_.grid() : k_no_sight; }
   /// Sets what asking.glsl reads, whether anything is known or not.
   void bind(gpu::Resources& resources) const;
-  uint64_t bytes() const { return sight_.bytes(); }
 
  private:
   gpu::Device& device_;

@@ -26,18 +26,15 @@ void Sight::begin(const Frame& frame, uint32_t texels) {
 
 bool Sight::see(transport::Wavefront& wavefront, const char* stage,
                 const std::function<void(const SeePush&)>& note, const std::function<bool()>& cancel,
-                const Vertex& instead) {
+                const gpu::Kernel* vertex) {
   if (!centre_) centre_ = gpu::Kernel(device_, compiler_, "overlay/centre.comp", defines_);
   const SeePush push{done_, std::min(points() - done_, wavefront.slots()), across_, down_, stride_};
   wavefront.bind_paths(resources_);
   const auto begin = [&] {
     wavefront.stream().dispatch(centre_, resources_, push, gpu::groups_for(push.count, 64), stage);
   };
-  const transport::PathEnds ends{.begin = begin,
-                                 .first_hits = {},
-                                 .end = [&] { note(push); },
-                                 .vertex = instead.vertex,
-                                 .vertex_stage = instead.stage};
+  const transport::PathEnds ends{
+      .begin = begin, .first_hits = {}, .end = [&] { note(push); }, .vertex = vertex, .vertex_stage = stage};
   if (!wavefront.run(push.count, ends, cancel)) return false;
   done_ += push.count;
   return true;

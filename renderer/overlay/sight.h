@@ -33,15 +33,10 @@ class Sight {
   bool seen() const { return begun_ && done_ == points(); }
   /// Sends the next rays, as many as there are slots. The wavefront's frame is the picture's; `note` records
   /// what writes surfaces() of these points, by what the wavefront's kernels have kept of their paths. All is
-  /// accounted as `stage`. False when it was cancelled. `instead`: what is done with the rays in place of
-  /// shade.comp (transport::PathEnds::vertex).
-  struct Vertex {
-    const gpu::Kernel* vertex = nullptr;
-    std::string stage = {};
-  };
+  /// accounted as `stage`. False when it was cancelled. `vertex`: transport::PathEnds::vertex.
   bool see(transport::Wavefront& wavefront, const char* stage,
            const std::function<void(const shared::SeePush&)>& note, const std::function<bool()>& cancel = {},
-           const Vertex& instead = {nullptr, {}});
+           const gpu::Kernel* vertex = nullptr);
   /// As if all of it had been seen; for tests.
   void set(const std::vector<vec4>& surfaces);
 

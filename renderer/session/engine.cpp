@@ -243,12 +243,15 @@ shared::Frame Engine::frame(const PictureView& picture, uint32_t width, uint32_t
 
 shared::Frame Engine::draft_frame(const PictureView& picture, uint32_t width, uint32_t height) const {
   plan::Plan here = plan_;
-  for (const auto& solver : solvers_)
-    to_paths(here, solver->left() | with(*solver, picture,
-                                         [&](const solvers::Picture& own) { return solver->missing(own); }));
-  const bool all = here.solver == plan_.solver;
-  return frame_of(all ? routes_ : routes_of(here, picture.settings, picture.world.flat.effects), picture,
-                  width, height);
+  uint32_t all_missing = 0;
+  for (const auto& solver : solvers_) {
+    const uint32_t missing =
+        with(*solver, picture, [&](const solvers::Picture& own) { return solver->missing(own); });
+    to_paths(here, solver->left() | missing);
+    all_missing |= missing;
+  }
+  if (all_missing == 0) return frame(picture, width, height);
+  return frame_of(routes_of(here, picture.settings, picture.world.flat.effects), picture, width, height);
 }
 
 shared::Frame Engine::frame_of(const Routes& routes, const PictureView& picture, uint32_t width,

@@ -19,14 +19,7 @@ Around photons_around(vec3 x, vec3 normal, bool looks) {
   float radius = photon_radius(x);
   looks = looks && photons.count > 0u;
   int lowest = photon_lowest_level(radius), highest = photon_highest_level(radius);
-  uint candidates = 0u;
-  for (int level = lowest; looks && level <= highest; ++level) {
-    ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
-    for (uint k = 0u; k < k_photon_near_cells; ++k) {
-      uvec2 range = photon_range(photon_entry(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level));
-      candidates += range.y - range.x;
-    }
-  }
+  uint candidates = looks ? photon_candidates(x, lowest, highest) : 0u;
   uint step = max(1u, (candidates + k_photons_around - 1u) / k_photons_around), skip = step / 2u;
   for (int level = lowest; looks && level <= highest; ++level) {
     ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));

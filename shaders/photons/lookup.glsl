@@ -16,6 +16,19 @@ uvec2 photon_range(uint entry) {
 int photon_lowest_level(float radius) { return photon_level(radius / (1.0 + photons.slope) * (2.0 - k_photon_slack)); }
 int photon_highest_level(float radius) { return photon_level(radius / (1.0 - photons.slope) * k_photon_slack); }
 
+// How many lie in the cells of these levels around a place.
+uint photon_candidates(vec3 x, int lowest, int highest) {
+  uint candidates = 0u;
+  for (int level = lowest; level <= highest; ++level) {
+    ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
+    for (uint k = 0u; k < k_photon_near_cells; ++k) {
+      uvec2 range = photon_range(photon_entry(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level));
+      candidates += range.y - range.x;
+    }
+  }
+  return candidates;
+}
+
 // Epanechnikov's, over the disc of radius r, at the square of a distance below r [1/m^2].
 float photon_kernel(float d2, float r) { return 2.0 * k_inv_pi * (1.0 - d2 / (r * r)) / (r * r); }
 // The one that is the same all over the disc.

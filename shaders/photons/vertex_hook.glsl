@@ -52,14 +52,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
           PhotonLookup(x, luminance(v.path.throughput * v.bsdf.diffuse_albedo), facet_pack(v.side));
   }
   int lowest = photon_lowest_level(radius), highest = photon_highest_level(radius);
-  uint candidates = 0u;
-  for (int level = lowest; looks && level <= highest; ++level) {
-    ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
-    for (uint k = 0u; k < k_photon_near_cells; ++k) {
-      uvec2 range = photon_range(photon_entry(cell + (ivec3(k) >> ivec3(0, 1, 2) & 1), level));
-      candidates += range.y - range.x;
-    }
-  }
+  uint candidates = looks ? photon_candidates(x, lowest, highest) : 0u;
   // Where very many lie together every so-manyth is taken, beginning anywhere.
   uint step = (candidates + photons.most_candidates - 1u) / max(photons.most_candidates, 1u);
   step = max(step, 1u);
