@@ -3,6 +3,7 @@
 // samples of its own. No device: pure state.
 #include <bit>
 #include <cstdint>
+#include <optional>
 
 namespace lucerna::session {
 
@@ -41,10 +42,12 @@ class DraftPlan {
   /// one. A first sample comes at once, but for the first of new light, if that does not take long: without
   /// it the draft would show the light before. Then a few more: the picture's first samples fill it from one
   /// side to the other. While they wait the draft is all that there is to be seen, and gets finer: two fine
-  /// samples at once, then half of the time, less and less as more helps less. `light`: solvers have more to
-  /// make for drafts; drafts and that take half of the time each. `sight`: it is not known yet what surfaces
-  /// pixels show; the first draft does not wait for that.
-  Next next(bool preparing, bool filled, bool light, bool sight = false) const {
+  /// samples at once, then most of the time until `error`, which is told of what is shown, is such that a room
+  /// can be judged by it, for some seconds at most; then less and less as more helps less. `light`: solvers
+  /// have more to make for drafts; drafts and that take half of the time each. `sight`: it is not known yet
+  /// what surfaces pixels show; the first draft does not wait for that.
+  Next next(bool preparing, bool filled, bool light, bool sight = false,
+            std::optional<double> error = {}) const {
     if (filled) return Next::nothing;
     const bool first_light = light && preparing && !lit_ && light_s_ < k_first_light_s;
     const bool coarse = !fine_first_ || !preparing;
@@ -56,7 +59,8 @@ class DraftPlan {
     }
     if (coarse && coarse_ < k_coarse_samples) return Next::coarse;
     if (!preparing || fine_ >= k_fine_samples) return Next::nothing;
-    const double share = fine_ < 2 ? 1 : fine_ < 4 ? 0.5 : fine_ < 16 ? 0.25 : 0.1;
+    const bool rough = error.value_or(1) > k_good_error && draft_s_ < k_patience_s;
+    const double share = fine_ < 2 ? 1 : rough ? 0.75 : fine_ < 4 ? 0.5 : fine_ < 16 ? 0.25 : 0.1;
     return draft_s_ <= share * (draft_s_ + work_s_) ? Next::fine : Next::nothing;
   }
   /// Whether there is a draft.
@@ -71,6 +75,8 @@ class DraftPlan {
  private:
   static constexpr uint32_t k_fine_samples = 64;
   static constexpr double k_first_light_s = 0.1;
+  /// Relative error from which on drafts are no hurry, and seconds after which they are none in any case.
+  static constexpr double k_good_error = 0.06, k_patience_s = 6;
   uint32_t coarse_ = 0, fine_ = 0;
   bool lit_ = false;         ///< by new light, since the picture began
   bool fine_first_ = false;  ///< drafts that begin anew are fine ones

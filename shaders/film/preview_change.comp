@@ -7,10 +7,12 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewChangePush push; };
 uniform samplerBuffer grid_texels, grid_surfaces, before_texels;
-layout(scalar) buffer Sums { vec4 sums[]; };              // 4 a block: light now, before, square of what is off, by component; samples
-layout(scalar) writeonly buffer Ratios { vec4 ratios[]; };  // of a block: now over before
+layout(scalar) buffer Sums { vec4 sums[]; };              // a block: light now, before, square of what is off, by component; samples; square of noise
+// Of a block: now over before; and the variance of a sample over the square of its light.
+layout(scalar) writeonly buffer Ratios { vec4 ratios[]; };
 
 const float k_unusual = 2.0;  // noise of a block over that of the picture, up to which it is expected
+const float k_least_noise = 1.0, k_most_noise = 1e4;  // of a sample, squared, over the square of its light
 const uint k_cells = k_preview_change_step * k_preview_change_step / 64u;  // of a lane
 
 // What sums say of the ratio where `known` is known without them.
@@ -29,51 +31,67 @@ void main() {
     vec4 all = ratio_of(lanes[0][0], lanes[1][0], lanes[2][0], vec4(0.0), vec4(1.0));
     // Of a sample over the square of its light. A block whose few samples have found nothing seems to be without noise.
     vec4 usual = lanes[2][0] * lanes[3][0].x / max(lanes[1][0] * lanes[1][0], vec4(1e-20));
+    // The mean over blocks of its logarithm: a few bright paths are not to speak for all.
+    barrier();
+    lanes[0][lane] = lanes[1][lane] = vec4(0.0);
+    for (uint b = lane; b < blocks; b += 64u) {
+      vec4 light = sums[k_preview_change_texels * b + 1u], square_noise = sums[k_preview_change_texels * b + 4u];
+      vec4 noise = square_noise * sums[k_preview_change_texels * b + 3u].x / max(light * light, vec4(1e-20));
+      vec4 counts = vec4(greaterThan(light * noise, vec4(0.0)));
+      lanes[0][lane] += counts * log2(clamp(noise, vec4(k_least_noise), vec4(k_most_noise))), lanes[1][lane] += counts;
+    }
+    add_up(lane);
+    vec4 noise = exp2(lanes[0][0] / max(lanes[1][0], vec4(1.0)));
     for (uint b = lane; b < blocks; b += 64u) {
       vec4 before = sums[k_preview_change_texels * b + 1u], expected = k_unusual * usual * before * before / max(sums[k_preview_change_texels * b + 3u].x, 1e-3);
-      ratios[b] = ratio_of(sums[k_preview_change_texels * b], before, sums[k_preview_change_texels * b + 2u], expected, all);
+      ratios[k_preview_ratio_texels * b] = ratio_of(sums[k_preview_change_texels * b], before, sums[k_preview_change_texels * b + 2u], expected, all);
+      ratios[k_preview_ratio_texels * b + 1u] = noise;
     }
     return;
   }
   uint block = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   uvec2 first = k_preview_change_step * uvec2(block % push.blocks_across, block / push.blocks_across);
-  vec4 now[k_cells], before[k_cells], weights[k_cells];
+  vec4 now[k_cells], before[k_cells], weights[k_cells], noise[k_cells];
   float samples[k_cells];
   for (int k = 0; k < LUCERNA_SUM_ROWS; ++k) lanes[k][lane] = vec4(0.0);
   for (uint i = 0u; i < k_cells; ++i) {
     uint at = 64u * i + lane;
     uvec2 xy = first + uvec2(at % k_preview_change_step, at / k_preview_change_step);
-    samples[i] = 0.0, now[i] = before[i] = vec4(0.0);
+    samples[i] = 0.0, now[i] = before[i] = vec4(0.0), noise[i] = vec4(-1.0);
     if (xy.x >= push.across || xy.y >= push.down || block >= blocks) continue;
     int cell = int(xy.y * push.across + xy.x);
     PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
     if (s.samples <= 0.0) continue;
     samples[i] = s.samples;
-    now[i] = preview_luminances(preview_light(grid_texels, cell));
+    PreviewLight l = preview_light(grid_texels, cell);
+    now[i] = preview_luminances(l), noise[i] = preview_errors(l);
     before[i] = max(texelFetch(before_texels, cell), vec4(0.0));
     lanes[0][lane] += before[i], lanes[1][lane].x += 1.0;
   }
   add_up(lane);
-  vec4 dark = k_dark_place * lanes[0][0] / max(lanes[1][0].x, 1.0);
+  // One weight for the block: by what single cells had before, those would weigh most that noise had left dark.
+  vec4 mean = max(lanes[0][0] / max(lanes[1][0].x, 1.0), vec4(1e-6));
   barrier();
   for (int k = 0; k < LUCERNA_SUM_ROWS; ++k) lanes[k][lane] = vec4(0.0);
   for (uint i = 0u; i < k_cells; ++i) {
     lanes[3][lane].x += samples[i];
-    weights[i] = samples[i] / max(max(before[i], dark), vec4(1e-6));
+    weights[i] = samples[i] / mean;
     lanes[0][lane] += weights[i] * now[i], lanes[1][lane] += weights[i] * before[i];
   }
   add_up(lane);
   vec4 sum_now = lanes[0][0], sum_before = lanes[1][0], count = lanes[3][0], ratio = sum_now / max(sum_before, vec4(1e-20));
   barrier();
-  lanes[0][lane] = vec4(0.0);
+  lanes[0][lane] = lanes[1][lane] = vec4(0.0);
   for (uint i = 0u; i < k_cells; ++i) {
     vec4 off = weights[i] * (now[i] - ratio * before[i]);
     // Cells that share a sample of a draft err alike.
-    lanes[0][lane] += samples[i] > 0.0 ? off * off / min(samples[i], 1.0) : vec4(0.0);
+    vec4 spread = samples[i] > 0.0 ? off * off / min(samples[i], 1.0) : vec4(0.0), own = weights[i] * noise[i];
+    lanes[0][lane] += spread;
+    lanes[1][lane] += mix(own * own, spread, lessThan(noise[i], vec4(0.0)));  // of one sample it is not known
   }
   add_up(lane);
   if (lane == 0u && block < blocks) {
     uint at = k_preview_change_texels * block;
-    sums[at] = sum_now, sums[at + 1u] = sum_before, sums[at + 2u] = lanes[0][0], sums[at + 3u] = count;
+    sums[at] = sum_now, sums[at + 1u] = sum_before, sums[at + 2u] = lanes[0][0], sums[at + 3u] = count, sums[at + 4u] = lanes[1][0];
   }
 }

@@ -13,7 +13,7 @@
 #endif
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewFilterPush push; };
-uniform samplerBuffer grid_texels, grid_surfaces, before_texels, lost_texels;
+uniform samplerBuffer grid_texels, grid_surfaces, before_texels, lost_texels, change_texels;
 layout(scalar) writeonly buffer FilteredBefore { vec4 filtered_before[]; };  // the same way, so that both can be compared
 layout(scalar) writeonly buffer Filtered { vec4 filtered[]; };
 layout(scalar) writeonly buffer FilteredLost { vec4 filtered_lost[]; };  // luminance, by component
@@ -26,6 +26,10 @@ const float k_alone_until = 0.05;
 // Light from lamps and bundled light have bright parts with sharp borders, which would glow if what is lost there were spread.
 // Of them it is given back as far as the halves of the samples do not agree about it.
 const vec4 k_gives_back = vec4(0.0, 1.0, 1.0, 0.0);
+// Light that has come by way of other surfaces, which single paths find by chance. Lamps' own is there or it is not.
+const vec4 k_by_way = vec4(0.0, 1.0, 1.0, 0.0);
+const float k_around = 9.0;
+const float k_dark = 0.25, k_not_dark = 0.75;  // of what is to be expected
 const float k_agree = 0.3, k_disagree = 0.8;  // standard error over light
 
 vec3 ray_at(vec2 cell) {
@@ -119,6 +123,16 @@ void main() {
   vec4 alike = max(square_mean / max(plain_sum, 1e-20) - mean * mean, vec4(0.0));
   vec4 spread = mix(any, alike, clamp(plain_sum / max(any_sum, 1e-20) * 2.0 - 1.0, 0.0, 1.0)) * (9.0 / 8.0);
   vec4 of_cell = known_sum > 0.5 * plain_sum ? known / max(known_sum, 1e-20) : spread;
+  if (push.blocks_across > 0u) {
+    // Few paths that find next to nothing tell of no noise: they have what samples have of the light that is to be expected.
+    uvec2 blocks = uvec2(push.blocks_across, push.blocks_down);
+    vec4 expected = texelFetch(before_texels, int(cell)) * preview_change(change_texels, blocks, vec2(xy), 0u);
+    vec4 dark = k_by_way * (1.0 - smoothstep(vec4(k_dark), vec4(k_not_dark), mean / max(expected, vec4(1e-6))));
+    vec4 noise = preview_change(change_texels, blocks, vec2(xy), 1u);
+    // Where one path of 1 + noise finds the light: how likely all of those around have missed it.
+    vec4 missed = exp(-k_around * here.samples / (1.0 + noise));
+    of_cell = max(of_cell, dark * missed * noise * expected * expected / max(here.samples, 1e-3));
+  }
   grid_noise[cell] = sqrt(of_cell);
   // A cell that is alone on its surface has nobody to tell it more than its few paths do. Those around, on other surfaces,
   // are better than that.

@@ -78,18 +78,6 @@ bool isolated(ivec2 at, PreviewSurface here) {
   return !akin;
 }
 
-// By component, between the middles of blocks.
-vec4 light_change(vec2 cell) {
-  if (push.blocks_across == 0u) return vec4(1.0);
-  vec2 p = (cell + 0.5) / float(k_preview_change_step) - 0.5;
-  ivec2 last = ivec2(push.blocks_across, push.blocks_down) - 1;
-  ivec2 lo = clamp(ivec2(floor(p)), ivec2(0), last), hi = min(lo + 1, last);
-  vec2 f = clamp(p - vec2(lo), 0.0, 1.0);
-  int row = int(push.blocks_across);
-  return mix(mix(texelFetch(change_texels, lo.y * row + lo.x), texelFetch(change_texels, lo.y * row + hi.x), f.x),
-             mix(texelFetch(change_texels, hi.y * row + lo.x), texelFetch(change_texels, hi.y * row + hi.x), f.x), f.y);
-}
-
 void main() {
   uint pixel = global_index(), lane = gl_LocalInvocationIndex;
   vec4 told = vec4(0.0);
@@ -160,7 +148,7 @@ void main() {
       // more detail than there was.
       bool finer = push.moved != 0u && push.surfaces == k_preview_surface_seen;
       vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min(modulation / preview_modulation(was), vec3(8.0)) : vec3(1.0);
-      vec4 change = light_change(p);
+      vec4 change = preview_change(change_texels, uvec2(push.blocks_across, push.blocks_down), p, 0u);
       before_smooth *= change;
       for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= change[c] * vec4(repaint, luminance(repaint));
     }
@@ -202,7 +190,9 @@ void main() {
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;
       if (nothing) keep = has_old ? 1.0 : 0.0;
       now = mix(now, before, keep);
-      float of_before = keep * keep * (u + change), left = sqrt(square((1.0 - keep) * error) + of_before);
+      // What is told of it does not go by that: light that has changed is right by what is known of it, no more.
+      float doubt = push.same_light != 0u ? change : max(square(difference) - u - v, 0.0);
+      float of_before = keep * keep * (u + doubt), left = sqrt(square((1.0 - keep) * error) + of_before);
       result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);
       if ((push.show >> c & 1u) != 0u) color += now;
       float showing = float(push.show >> c & 1u), shown = luminance(now) * showing;

@@ -103,8 +103,8 @@ void main() {
     y_new += luminance(texelFetch(irradiance_texels, at + int(p * k_part_texels)).rgb);
     y_old += luminance(part_factor(p, factor, factor_tertiary, factor_direct) * texelFetch(old_texels, at + int(p * k_part_texels)).rgb);
   }
-  // Few rays that find nothing tell of no noise.
-  float v = square(told.z) + square(y_old) / float(max(push.rays, 1u)), u = (square(k_old_error) + unsure) * square(y_old);
+  // Few rays that find nothing tell of no noise: they have at least what those before had.
+  float v = max(square(told.z), square(y_old) * ray_noise(record) / float(max(push.rays, 1u))), u = (square(k_old_error) + unsure) * square(y_old);
   float change = max(square(y_new - y_old) - k_by_chance * (u + v), off * square(y_old));
   float keep = !has_rays ? 1.0 : v > 0.0 ? v / (v + u + change) : 0.0;
 #if LUCERNA_GROUP_SUMS

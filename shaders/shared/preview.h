@@ -50,12 +50,14 @@ struct PreviewFilterPush {
   uint step;             ///< between the cells that are weighed: in the first pass no less than a draft's pixel is wide
   uint orthographic;
   uint history;          ///< 0: nothing was shown before
+  uint blocks_across, blocks_down;  ///< as PreviewResolvePush has them
   vec3 right, up, forward;
 };
 
 /// Cells along the side of a block that tells how much light has changed.
 LUCERNA_CONST uint k_preview_change_step = 16u;
-LUCERNA_CONST uint k_preview_change_texels = 4u;  ///< of its sums
+LUCERNA_CONST uint k_preview_change_texels = 5u;  ///< of its sums
+LUCERNA_CONST uint k_preview_ratio_texels = 2u;   ///< of what they say
 struct PreviewChangePush {
   uint across, down;                 ///< of the grid
   uint blocks_across, blocks_down;

@@ -65,12 +65,13 @@ TEST_CASE("while the picture's samples come there are four of the coarse draft, 
   CHECK(drawn == 4);
 }
 
-TEST_CASE("while the samples wait drafts take half of the time, then less, and end") {
+TEST_CASE("while the samples wait drafts of a good picture take half of the time, then less, and end") {
+  constexpr double k_good = 0.05;
   DraftPlan plan;
   double drafts = 0, work = 0, halved = 0;
   uint32_t coarse = 0, fine = 0;
   for (int step = 0; step < 100000; ++step) {
-    const Next next = plan.next(true, false, false);
+    const Next next = plan.next(true, false, false, false, k_good);
     if (next == Next::nothing) {
       plan.worked(0.02), work += 0.02;
       continue;
@@ -84,6 +85,25 @@ TEST_CASE("while the samples wait drafts take half of the time, then less, and e
   CHECK(fine == 64);
   // All of the 68 samples together within a tenth of the time that they are spread over.
   CHECK(drafts / 0.3 == Approx(68));
+}
+
+TEST_CASE("while the samples wait drafts of a rough picture take most of the time, for some seconds") {
+  for (const std::optional<double> error : {std::optional<double>(), std::optional(0.2)}) {
+    DraftPlan plan;
+    double drafts = 0, work = 0, drafts_at_9 = 0;
+    for (int step = 0; step < 4000; ++step) {
+      if (drafts + work < 9) drafts_at_9 = drafts;
+      // Better light begins drafts anew, but does not hold up the work any longer.
+      if (step % 100 == 99) plan.light_changed();
+      if (const Next next = plan.next(true, false, false, false, error); next == Next::nothing) {
+        plan.worked(0.02), work += 0.02;
+      } else {
+        plan.drawn(next, 0.1), drafts += 0.1;
+      }
+    }
+    CHECK(drafts_at_9 == Approx(6).margin(0.5));
+    CHECK(drafts / (drafts + work) < 0.35);
+  }
 }
 
 TEST_CASE("light for drafts and drafts take turns, and better light begins drafts anew") {
