@@ -69,7 +69,6 @@ void Display::mixed() {
 bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
                    const std::function<bool()>& cancel) {
   ++version_;
-  if (what == DraftPlan::Next::light) return preview_light(engine, view, cancel);
   if (what == DraftPlan::Next::sight) return see(engine, view, cancel);
   const bool fine = what == DraftPlan::Next::fine;
   const uint32_t step = fine ? shared::k_preview_step : shared::k_coarse_step;
@@ -99,22 +98,6 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
   for (const auto& solver : engine.solvers()) solver->look_up_preview(wavefront, false);
   wavefront.set_frame(engine.frame(view, view.width, view.height), engine.plan().enabled());
   return complete;
-}
-
-bool Display::preview_light(Engine& engine, const PictureView& view, const std::function<bool()>& cancel) {
-  for (const auto& solver : engine.solvers()) {
-    if (!solver->previews()) continue;
-    const uint64_t before = solver->previewed();
-    bool complete = true;
-    engine.wavefront().uncounted([&] {
-      complete = engine.with(*solver, view, [&](const solvers::Picture& picture) {
-        return solver->preview(engine.wavefront(), picture, cancel);
-      });
-    });
-    if (solver->previewed() != before) light_changed();
-    return complete;
-  }
-  return true;
 }
 
 const gpu::Buffer* Display::seen(const film::PreviewCamera& camera, const PictureView& view) const {

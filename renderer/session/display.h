@@ -32,7 +32,7 @@ class Display {
   DraftPlan& plan() { return plan_; }
   /// Whether it is not known yet, and can be, what surfaces the pixels show of a picture that is previewed.
   bool sight_wanted(const Engine& engine, const PictureView& view) const;
-  /// Another sample of a draft, or a piece of light for it. `coarse`: the film of a quarter of the
+  /// Another sample of a draft, or a piece of what pixels show. `coarse`: the film of a quarter of the
   /// resolution. False when it was cancelled.
   bool draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
             const std::function<bool()>& cancel);
@@ -54,7 +54,6 @@ class Display {
   void plain(const Engine& engine, const PictureView& view, const film::View& shown);
 
  private:
-  bool preview_light(Engine& engine, const PictureView& view, const std::function<bool()>& cancel);
   bool see(Engine& engine, const PictureView& view, const std::function<bool()>& cancel);
   /// The surfaces of that picture's pixels; null while they are not known.
   const gpu::Buffer* seen(const film::PreviewCamera& camera, const PictureView& view) const;

@@ -15,7 +15,6 @@ class DraftPlan {
     nothing,  ///< the picture's own work goes on
     coarse,   ///< a sample of the draft of a quarter of the resolution
     fine,     ///< ... of half of it
-    light,    ///< a piece of what solvers make for drafts to look up
     sight     ///< a piece of what surfaces the picture's pixels show
   };
   /// The picture begins anew.
@@ -24,11 +23,10 @@ class DraftPlan {
   /// coarse would be worse than that.
   void light_changed() {
     fine_first_ = fine_first_ || fine_ > 0;
-    coarse_ = fine_ = 0, lit_ = true;
+    coarse_ = fine_ = 0;
   }
   /// That has been done, and took so long; `complete`: no more of it is to be done.
   void drawn(Next what, double seconds, bool complete = true) {
-    if (what == Next::light) light_s_ += seconds;
     if (what == Next::coarse) ++coarse_;
     if (what == Next::fine) ++fine_;
     if (what == Next::coarse || what == Next::fine) draft_s_ += seconds;
@@ -39,24 +37,16 @@ class DraftPlan {
   void worked(double seconds) { work_s_ += seconds; }
 
   /// `preparing`: the picture's samples wait for what they look up, maybe for long; `filled`: every pixel has
-  /// one. A first sample comes at once, but for the first of new light, if that does not take long: without
-  /// it the draft would show the light before. Then a few more: the picture's first samples fill it from one
-  /// side to the other. While they wait the draft is all that there is to be seen, and gets finer: two fine
-  /// samples at once, then most of the time until `error`, which is told of what is shown, is such that a room
-  /// can be judged by it, for some seconds at most; then less and less as more helps less. `light`: solvers
-  /// have more to make for drafts; drafts and that take half of the time each. `sight`: it is not known yet
-  /// what surfaces pixels show; the first draft does not wait for that.
-  Next next(bool preparing, bool filled, bool light, bool sight = false,
-            std::optional<double> error = {}) const {
+  /// one. A first sample comes at once. Then a few more: the picture's first samples fill it from one side to
+  /// the other. While they wait the draft is all that there is to be seen, and gets finer: two fine
+  /// samples at once, then most of the time until `error`, which is told of what is shown, is such that a
+  /// room can be judged by it, for some seconds at most; then less and less as more helps less. `sight`: it
+  /// is not known yet what surfaces pixels show; the first draft does not wait for that.
+  Next next(bool preparing, bool filled, bool sight = false, std::optional<double> error = {}) const {
     if (filled) return Next::nothing;
-    const bool first_light = light && preparing && !lit_ && light_s_ < k_first_light_s;
     const bool coarse = !fine_first_ || !preparing;
-    if (!begun()) return first_light ? Next::light : coarse ? Next::coarse : Next::fine;
+    if (!begun()) return coarse ? Next::coarse : Next::fine;
     if (sight) return Next::sight;
-    if (light && preparing) {
-      if (light_s_ <= draft_s_) return Next::light;
-      return coarse && coarse_ < 2 ? Next::coarse : Next::fine;
-    }
     if (coarse && coarse_ < k_coarse_samples) return Next::coarse;
     if (!preparing || fine_ >= k_fine_samples) return Next::nothing;
     const bool rough = error.value_or(1) > k_good_error && draft_s_ < k_patience_s;
@@ -74,14 +64,12 @@ class DraftPlan {
 
  private:
   static constexpr uint32_t k_fine_samples = 64;
-  static constexpr double k_first_light_s = 0.1;
   /// Relative error from which on drafts are no hurry, and seconds after which they are none in any case.
   static constexpr double k_good_error = 0.06, k_patience_s = 6;
   uint32_t coarse_ = 0, fine_ = 0;
-  bool lit_ = false;         ///< by new light, since the picture began
   bool fine_first_ = false;  ///< drafts that begin anew are fine ones
   bool news_ = false;
-  double draft_s_ = 0, work_s_ = 0, light_s_ = 0;
+  double draft_s_ = 0, work_s_ = 0;
 };
 
 }  // namespace lucerna::session

@@ -182,10 +182,6 @@ bool Engine::waits() const {
   return next && next->waits();
 }
 
-bool Engine::previews() const {
-  return std::any_of(solvers_.begin(), solvers_.end(), [](const auto& s) { return s->previews(); });
-}
-
 bool Engine::prepare(solvers::Solver& solver, const PictureView& picture,
                      const std::function<bool()>& cancel) {
   const uint32_t before = solver.left();

@@ -67,8 +67,6 @@ class Engine {
   /// A piece of preparation of one that is not ready (Solver::prepare). False when it was cancelled.
   bool prepare(solvers::Solver& solver, const PictureView& picture, const std::function<bool()>& cancel);
   bool waits() const;
-  /// Some solver has more to do for display (Solver::previews).
-  bool previews() const;
 
   /// Frame of the picture's paths, in a size of its own.
   shared::Frame frame(const PictureView& picture, uint32_t width, uint32_t height) const;

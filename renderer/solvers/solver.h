@@ -138,19 +138,9 @@ class Solver {
     return 0;
   }
 
-  // For display, while preparation makes light anew that paths have been reading: something of all of it at
-  // once, for the window's drafts. What is prepared does not depend on it.
-
-  /// There is more to do for it: preview() does a bounded piece. False when that was cancelled.
-  virtual bool previews() const { return false; }
-  virtual bool preview(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
-    (void)wavefront, (void)picture, (void)cancel;
-    return true;
-  }
-  /// Grows as it becomes better.
-  virtual uint64_t previewed() const { return 0; }
-  /// Lookups of the wavefront's paths read it from now on, or no longer; where there is none they read what
-  /// is prepared.
+  /// For display, while preparation makes light anew that paths have been reading: where it is known what
+  /// that will be, lookups of the wavefront's paths read it from now on, or no longer; else they read what is
+  /// prepared.
   virtual void look_up_preview(transport::Wavefront& wavefront, bool on) { (void)wavefront, (void)on; }
 
   /// Preparation is long, and all kernels that it needs have run.

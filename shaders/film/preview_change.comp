@@ -2,7 +2,6 @@
 // blocks of the grid's cells and over the whole picture. One workgroup a block, then one for all.
 #include "film/preview.glsl"
 #define LUCERNA_SUM_ROWS int(k_preview_change_texels)
-#include "lib/light_change.glsl"
 #include "lib/sum_rows.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewChangePush push; };
@@ -11,14 +10,22 @@ layout(scalar) buffer Sums { vec4 sums[]; };              // a block: light now,
 // Of a block: now over before; and the variance of a sample over the square of its light.
 layout(scalar) writeonly buffer Ratios { vec4 ratios[]; };
 
+const float k_most_ratio = 16.0;  // that light is taken to have grown by
 const float k_unusual = 2.0;  // noise of a block over that of the picture, up to which it is expected
 const float k_least_noise = 1.0, k_most_noise = 1e4;  // of a sample, squared, over the square of its light
 const uint k_cells = k_preview_change_step * k_preview_change_step / 64u;  // of a lane
 
+// How far sums are believed, where what is known without them is `off` from them, squared: nothing within two standard errors,
+// by the square that has been found (`spread`) or by that which was to be expected; all of it far off.
+vec4 belief(vec4 off, vec4 spread, vec4 expected) {
+  vec4 found = clamp(1.0 - 4.0 * spread / max(off, vec4(1e-20)), 0.0, 1.0);
+  return found * smoothstep(4.0 * expected, 9.0 * expected + 1e-20, off);
+}
+
 // What sums say of the ratio where `known` is known without them.
 vec4 ratio_of(vec4 now, vec4 before, vec4 spread, vec4 expected, vec4 known) {
-  vec4 off = now - known * before, told = min(now / max(before, vec4(1e-20)), vec4(k_most_light_ratio));
-  return mix(known, mix(known, told, light_belief(off * off, spread, expected)), greaterThan(before, vec4(0.0)));
+  vec4 off = now - known * before, told = min(now / max(before, vec4(1e-20)), vec4(k_most_ratio));
+  return mix(known, mix(known, told, belief(off * off, spread, expected)), greaterThan(before, vec4(0.0)));
 }
 
 void main() {

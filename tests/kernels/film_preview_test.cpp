@@ -146,60 +146,36 @@ TEST_CASE("what was there before is scaled by what few samples of many pixels sa
   CHECK(fine > 0.025);
 }
 
-TEST_CASE("where few samples by chance find nothing what was there before does not go dark") {
-  Stage stage(192, 96);
-  stage.sample(stage.film, 8, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.2f)}; });
-  stage.show();
-  stage.preview.keep();
-  stage.film.clear(stage.stream);
-  // A block of 32x32 pixels finds this light once or twice, or not at all.
-  std::mt19937 random(17);
-  stage.sample(stage.film, 1,
-               [&](uint32_t, uint32_t) { return Sample{.light = vec3(random() % 700 == 0 ? 140.0f : 0)}; });
-  stage.show();
-  const std::vector<float> shown = stage.shown();
-  double darkest = 1;
-  for (uint32_t block = 0; block < 18; ++block) {
-    double sum = 0;
-    for (uint32_t i = 0; i < 1024; ++i)
-      sum += shown[size_t{block / 6 * 32 + i / 32} * 192 + block % 6 * 32 + i % 32];
-    darkest = std::min(darkest, sum / 1024);
-  }
-  CHECK(darkest > 0.12);
-}
-
-TEST_CASE("a lamp's own light is gone where few samples no longer find it, other light is not") {
+TEST_CASE(
+    "where few samples by chance find nothing what was there before does not go dark, but for lamps' own "
+    "light") {
   for (const uint32_t component : {0u, 1u}) {
     Stage stage(192, 96);
     stage.component = component;
-    const auto lit = [](uint32_t x) { return x / 8 % 3 == 0; };  // stripes, of which every other one goes
-    stage.sample(stage.film, 8,
-                 [&](uint32_t x, uint32_t) { return Sample{.light = vec3(lit(x) ? 0.5f : 0.1f)}; });
+    stage.sample(stage.film, 8, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.2f)}; });
     stage.show();
     stage.preview.keep();
     stage.film.clear(stage.stream);
+    // A block of 32x32 pixels finds this light once or twice, or not at all.
     std::mt19937 random(17);
-    stage.sample(stage.film, 1, [&](uint32_t x, uint32_t) {
-      const bool stays = x / 24 % 2 == 0;
-      // Light that comes by way of other surfaces is found by one path of ten.
-      const bool found = component == 0 ? stays : random() % 10 == 0;
-      return Sample{.light = vec3(found ? (lit(x) ? 0.5f : 0.1f) * (component == 0 ? 1.0f : 10.0f) : 0)};
-    });
+    stage.sample(stage.film, 1,
+                 [&](uint32_t, uint32_t) { return Sample{.light = vec3(random() % 700 == 0 ? 140.0f : 0)}; });
     stage.show();
     const std::vector<float> shown = stage.shown();
-    double gone = 0, there = 0, pixels = 0;
-    for (uint32_t y = 0; y < 96; ++y)
-      for (uint32_t x = 2; x < 192; ++x) {
-        if (!lit(x) || x % 8 < 2 || x % 8 > 5) continue;
-        (x / 24 % 2 == 0 ? there : gone) += double(shown[size_t{y} * 192 + x]);
-        pixels += 0.5;
-      }
-    INFO("component " << component << ": " << there / pixels << " where it stays, " << gone / pixels);
-    CHECK(there / pixels == Approx(0.5).epsilon(component == 0 ? 0.1 : 0.25));
+    double darkest = 1;
+    for (uint32_t block = 0; block < 18; ++block) {
+      double sum = 0;
+      for (uint32_t i = 0; i < 1024; ++i)
+        sum += shown[size_t{block / 6 * 32 + i / 32} * 192 + block % 6 * 32 + i % 32];
+      darkest = std::min(darkest, sum / 1024);
+    }
+    INFO("component " << component << ": " << darkest);
+    // Light by way of other surfaces is found by chance; whether a lamp shines on a place any path to it
+    // tells.
     if (component == 0)
-      CHECK(gone / pixels < 0.02);
+      CHECK(darkest < 0.1);
     else
-      CHECK(gone / pixels == Approx(0.5).epsilon(0.25));
+      CHECK(darkest > 0.12);
   }
 }
 

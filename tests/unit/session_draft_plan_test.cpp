@@ -9,44 +9,28 @@ using lucerna::session::DraftPlan;
 using Next = DraftPlan::Next;
 
 TEST_CASE("a picture that is begun gets a draft at once, a filled one none") {
-  for (const bool preparing : {false, true})
-    for (const bool light : {false, true}) {
-      DraftPlan plan;
-      plan.worked(0.001);
-      if (preparing && light) continue;
-      CHECK(plan.next(preparing, false, light) == Next::coarse);
-      CHECK(plan.next(preparing, true, light) == Next::nothing);
-      plan.drawn(Next::coarse, 1);
-      plan.restart();
-      CHECK(plan.next(preparing, false, light) == Next::coarse);
-    }
-}
-
-TEST_CASE("the first draft waits for the first of new light, where that does not take long") {
-  DraftPlan plan;
-  CHECK(plan.next(true, false, true) == Next::light);
-  plan.drawn(Next::light, 0.04);
-  CHECK(plan.next(true, false, true) == Next::light);
-  DraftPlan quick = plan;
-  quick.light_changed();
-  CHECK(quick.next(true, false, true) == Next::coarse);
-  plan.drawn(Next::light, 0.2);
-  CHECK(plan.next(true, false, true) == Next::coarse);
-  plan.restart();
-  CHECK(plan.next(true, false, true) == Next::light);
+  for (const bool preparing : {false, true}) {
+    DraftPlan plan;
+    plan.worked(0.001);
+    CHECK(plan.next(preparing, false) == Next::coarse);
+    CHECK(plan.next(preparing, true) == Next::nothing);
+    plan.drawn(Next::coarse, 1);
+    plan.restart();
+    CHECK(plan.next(preparing, false) == Next::coarse);
+  }
 }
 
 TEST_CASE("what surfaces pixels show is asked after the first draft, of pictures that are not filled") {
   DraftPlan plan;
-  CHECK(plan.next(false, false, false, true) == Next::coarse);
+  CHECK(plan.next(false, false, true) == Next::coarse);
   plan.drawn(Next::coarse, 0.1);
-  CHECK(plan.next(false, false, false, true) == Next::sight);
-  CHECK(plan.next(true, false, true, true) == Next::sight);
-  CHECK(plan.next(false, true, false, true) == Next::nothing);
+  CHECK(plan.next(false, false, true) == Next::sight);
+  CHECK(plan.next(true, false, true) == Next::sight);
+  CHECK(plan.next(false, true, true) == Next::nothing);
   const uint32_t before = plan.coarse_samples();
   plan.drawn(Next::sight, 0.1);
   CHECK(plan.coarse_samples() == before);
-  CHECK(plan.next(false, false, false, false) == Next::coarse);
+  CHECK(plan.next(false, false, false) == Next::coarse);
 }
 
 TEST_CASE("while the picture's samples come there are four of the coarse draft, whatever they take") {
@@ -71,7 +55,7 @@ TEST_CASE("while the samples wait drafts of a good picture take half of the time
   double drafts = 0, work = 0, halved = 0;
   uint32_t coarse = 0, fine = 0;
   for (int step = 0; step < 100000; ++step) {
-    const Next next = plan.next(true, false, false, false, k_good);
+    const Next next = plan.next(true, false, false, k_good);
     if (next == Next::nothing) {
       plan.worked(0.02), work += 0.02;
       continue;
@@ -95,7 +79,7 @@ TEST_CASE("while the samples wait drafts of a rough picture take most of the tim
       if (drafts + work < 9) drafts_at_9 = drafts;
       // Better light begins drafts anew, but does not hold up the work any longer.
       if (step % 100 == 99) plan.light_changed();
-      if (const Next next = plan.next(true, false, false, false, error); next == Next::nothing) {
+      if (const Next next = plan.next(true, false, false, error); next == Next::nothing) {
         plan.worked(0.02), work += 0.02;
       } else {
         plan.drawn(next, 0.1), drafts += 0.1;
@@ -104,26 +88,6 @@ TEST_CASE("while the samples wait drafts of a rough picture take most of the tim
     CHECK(drafts_at_9 == Approx(6).margin(0.5));
     CHECK(drafts / (drafts + work) < 0.35);
   }
-}
-
-TEST_CASE("light for drafts and drafts take turns, and better light begins drafts anew") {
-  DraftPlan plan;
-  double light = 0, drafts = 0;
-  for (int step = 0; step < 200; ++step) {
-    const Next next = plan.next(true, false, true);
-    REQUIRE(next != Next::nothing);  // the work waits for both
-    if (next == Next::light) {
-      plan.drawn(next, 0.2), light += 0.2;
-      if (step % 10 == 9) {
-        plan.light_changed();
-        CHECK(plan.coarse_samples() + plan.fine_samples() == 0);
-        CHECK(plan.next(true, false, true) == (step < 10 ? Next::coarse : Next::fine));
-      }
-    } else {
-      plan.drawn(next, 0.1), drafts += 0.1;
-    }
-  }
-  CHECK(light == Approx(drafts).epsilon(0.1));
 }
 
 TEST_CASE("a draft that begins anew is no coarser than the one that there was") {
@@ -159,8 +123,6 @@ TEST_CASE("surfaces, the last coarse draft and every fine one of twice the sampl
   CHECK_FALSE(plan.news());
   plan.drawn(Next::coarse, 0.1), plan.drawn(Next::coarse, 0.1);
   CHECK(plan.news());  // the last of them
-  plan.drawn(Next::light, 0.1);
-  CHECK_FALSE(plan.news());  // which shows nothing of its own
   int shown = 0;
   for (int i = 0; i < 64; ++i) {
     plan.drawn(Next::fine, 0.1);

@@ -154,13 +154,9 @@ class Cache {
   /// alone. `sky_group`: whose light the sky's is.
   void relight(const std::optional<std::vector<vec3>>& factors = {}, uint32_t sky_group = 0);
   /// Somebody watches: while records are relit there is a light of them all for display
-  /// (relight_preview.h), which look_up_preview() has lookups read, and no longer. preview() goes on with it
-  /// a piece at a time while there is something left; previewed() grows as it gets better.
+  /// (relight_preview.h) where that is known, which look_up_preview() has lookups read, and no longer.
   void preview_relighting(bool on);
-  bool preview_left() const;
-  uint64_t previewed() const;
-  bool preview(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
-               const std::function<bool()>& cancel = {});
+  bool previews_relighting() const;
   void look_up_preview(transport::Wavefront& wavefront, bool on);
   /// In place of its own, the records of another cache of the same scene, made for other lookups, options or
   /// kernels: as far as passes are complete. Returns what of them does not serve here, for the caller to see

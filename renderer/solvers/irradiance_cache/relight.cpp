@@ -30,7 +30,11 @@ void Cache::Impl::relight(const std::optional<std::vector<vec3>>& factors, uint3
     if (ranges.complete_pass()) ++status.pass;
   }
   ranges.keep_complete();
-  if (previews) preview.begin(tables, ranges.placed(), factors, sky_group);
+  // Of records that were being relit, the light before is known where there is a preview of it.
+  if (previews && preview.known(factors) && (preview.active() || status.relighting.records == 0))
+    preview.begin(tables, ranges.placed(), *factors, sky_group);
+  else
+    preview.end();
   drop_pass();
   progress.probing.filling = false;
   progress.pauses.dropped();
@@ -83,23 +87,11 @@ void Cache::preview_relighting(bool on) {
   if (on && ready()) c.preview.make_room(c.ranges.placed());
 }
 
-bool Cache::preview_left() const { return !impl_->preview.complete(); }
-uint64_t Cache::previewed() const { return impl_->preview.published(); }
-
-bool Cache::preview(transport::Wavefront& wavefront, const paths::Automaton& automaton, const CacheView& view,
-                    const std::function<bool()>& cancel) {
-  Impl& c = *impl_;
-  wavefront.set_frame(view.records_frame, view.records_enabled);
-  // Another seed than the one that relighting goes by: the picture does not see its rays before it does.
-  const bool complete = c.preview.step(wavefront, automaton, c.tables, c.evaluator, c.gathers,
-                                       c.options.seed ^ 0x5bd1e995u, cancel);
-  wavefront.set_frame(view.paths_frame, view.paths_enabled);
-  return complete;
-}
+bool Cache::previews_relighting() const { return impl_->preview.active(); }
 
 void Cache::look_up_preview(transport::Wavefront& wavefront, bool on) {
   Impl& c = *impl_;
-  if (c.preview.active()) c.preview.look_up(wavefront, c.tables, c.tables.picture_routes, on);
+  if (c.preview.active()) c.preview.look_up(wavefront, c.tables, on);
 }
 
 solvers::Spoils Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {

@@ -33,12 +33,6 @@ class CacheSolver final : public solvers::Solver {
   void heed(const OptionValues& settings, bool interactive) override;
   bool ready() const override { return cache_.ready(); }
   bool waits() const override { return cache_.status().waits; }
-  bool previews() const override { return cache_.preview_left(); }
-  bool preview(transport::Wavefront& wavefront, const solvers::Picture& picture,
-               const solvers::Cancel& cancel) override {
-    return cache_.preview(wavefront, picture.task.automaton, view(picture), cancel);
-  }
-  uint64_t previewed() const override { return cache_.previewed(); }
   void look_up_preview(transport::Wavefront& wavefront, bool on) override {
     cache_.look_up_preview(wavefront, on);
   }

@@ -79,25 +79,7 @@ LUCERNA_CONST uint k_candidate_texels = 2u;
 struct RelightPreviewPush {
   vec3 factor;  ///< of the light before; by groups of lights, where these are kept apart, there is more
   uint count;  ///< records
-  uint parts;  ///< in bits: those that are gathered anew
-  uint rays;   ///< that each record has had; 0: all light is that of before
-  uint clusters;  ///< of records, k_light_cluster in each
-  uint leading;   ///< not 0: only the leading ones of clusters have had their rays
   uint sky_group; ///< of lights
-};
-
-/// Records that tell together how much light has changed; a workgroup.
-LUCERNA_CONST uint k_light_cluster = 64u;
-/// Of each cluster one in so many leads: it has its first rays before the others.
-LUCERNA_CONST uint k_light_leading = 8u;
-LUCERNA_CONST uint k_light_sums_texels = 5u;  ///< of a cluster, and of all (irradiance_cache/light_change.glsl)
-struct LightChangePush {
-  vec3 factor;    ///< as RelightPreviewPush, and so on
-  uint count;     ///< records in all clusters
-  uint parts;
-  uint rays;
-  uint leading;
-  uint clusters;  ///< 0: each cluster's own sums; else those of all of them
 };
 
 LUCERNA_CONST uint k_no_routes = 0x4444u;  ///< k_component_count for every part
