@@ -29,6 +29,10 @@ class Writer {
     else
       for (const T& value : values) each(*this, value);
   }
+  template <class T>
+  void list(const SharedVector<T>& values) {
+    list(static_cast<const std::vector<T>&>(values));
+  }
 
  private:
   std::ostream& out_;
@@ -60,6 +64,12 @@ class Reader {
       for (uint64_t i = 0; i < count; ++i) each(*this, values.emplace_back());
     }
   }
+  template <class T>
+  void list(SharedVector<T>& values) {
+    std::vector<T> own;
+    list(own);
+    values = std::move(own);
+  }
 
  private:
   std::istream& in_;
@@ -88,7 +98,7 @@ void scene_fields(Archive& a, Scene& s) {
   a.list(s.vertices), a.list(s.tangents), a.list(s.extra), a.list(s.materials);
   a.list(s.buckets);
   a.list(s.entries), a.list(s.light_alias), a.list(s.primitive_light_pmf);
-  a.list(s.environment_alias), a.list(s.environment_density);
+  a.list(s.environment.alias), a.list(s.environment.density);
   a.list(s.lights), a.list(s.environment_texels), a.list(s.bsdf_tables);
   a.plain(s.environment_width), a.plain(s.environment_height), a.plain(s.environment_radiance);
   a.plain(s.environment_rotation), a.plain(s.environment_light_pmf), a.plain(s.scene_radius);

@@ -61,12 +61,12 @@ void WorldEdit::try_out(gpu::Device& device, bool factors) {
     if (factors) materials_ = world_.flat;
     materials_out_ = factors;
     if (factors) upload::flatten_factors(*world_.lit, world_.flat);
-    lights_ = std::move(static_cast<upload::FlatLights&>(world_.flat));
+    lights_ = world_.flat;
     lights_out_ = true;
     upload::flatten_lights(*world_.lit, world_.flat);
     upload::MaterialBuffers materials;
     if (factors) materials = upload::MaterialBuffers(device, world_.flat);
-    upload::LightBuffers lights(device, world_.flat);
+    upload::LightBuffers lights(device, world_.flat, world_.device->lights());
     // Nothing fails from here on.
     if (factors) material_buffers_ = world_.device->exchange(std::move(materials), world_.flat.effects);
     light_buffers_ = world_.device->exchange(std::move(lights), world_.flat.effects);

@@ -24,10 +24,16 @@ gpu::Buffer upload_environment(gpu::Device& device, const FlatLights& flat) {
   for (size_t first = 0; first < count; first += piece.size()) {
     piece.resize(std::min(k_piece, count - first));
     for (size_t i = 0; i < piece.size(); ++i)
-      piece[i] = vec4(flat.environment_texels[first + i], flat.environment_density[first + i]);
+      piece[i] = vec4(flat.environment_texels[first + i], flat.environment.density[first + i]);
     buffer.write(std::span<const vec4>(piece), first);
   }
   return buffer;
+}
+
+std::shared_ptr<const EnvironmentBuffers> environment_of(gpu::Device& device, const FlatLights& flat,
+                                                         const LightBuffers& before) {
+  if (before.environment && before.environment->holds(flat)) return before.environment;
+  return std::make_shared<EnvironmentBuffers>(device, flat);
 }
 
 std::vector<vec4> joined(std::vector<vec4> a, const std::vector<vec4>& b) {
@@ -43,15 +49,26 @@ std::vector<uint8_t> whole_texels(std::vector<uint8_t> bytes) {
 
 }  // namespace
 
-LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat)
+EnvironmentBuffers::EnvironmentBuffers(gpu::Device& device, const FlatLights& flat)
+    : texels(upload_environment(device, flat)),
+      alias(upload<vec4>(device, "environment table", flat.environment.alias)),
+      sun_cells(upload<vec4>(device, "sun table", flat.environment.sun_cells)),
+      of_texels_(flat.environment_texels),
+      of_(flat.environment) {}
+
+bool EnvironmentBuffers::holds(const FlatLights& flat) const {
+  return of_texels_.shares_with(flat.environment_texels) && of_.alias.shares_with(flat.environment.alias) &&
+         of_.density.shares_with(flat.environment.density) &&
+         of_.sun_cells.shares_with(flat.environment.sun_cells);
+}
+
+LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before)
     : lights(upload(device, "lights", flat.lights)),
       alias(upload(device, "light table", joined(flat.light_alias, flat.lamp_alias))),
       pmf(upload(device, "light probabilities", flat.primitive_light_pmf, false)),
       groups(upload(device, "groups of lights", whole_texels(flat.emissive_groups))),
-      environment_texels(upload_environment(device, flat)),
-      environment_alias(upload(device, "environment table", flat.environment_alias)),
-      sun_cells(upload(device, "sun table", flat.sun_cells)),
-      sun_density(upload(device, "sun densities", flat.sun_density)) {}
+      sun_density(upload(device, "sun densities", flat.sun_density)),
+      environment(environment_of(device, flat, before)) {}
 
 MaterialBuffers::MaterialBuffers(gpu::Device& device, const FlatMaterials& flat)
     : materials(upload(device, "scene materials", flat.materials)),
@@ -103,9 +120,9 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("light_alias", lights_.alias);
   r.set("PrimitiveLightPmf", lights_.pmf);
   r.set("emissive_groups", lights_.groups);
-  r.set("environment_texels", lights_.environment_texels);
-  r.set("environment_alias", lights_.environment_alias);
-  r.set("sun_cells", lights_.sun_cells);
+  r.set("environment_texels", lights_.environment->texels);
+  r.set("environment_alias", lights_.environment->alias);
+  r.set("sun_cells", lights_.environment->sun_cells);
   r.set("sun_density", lights_.sun_density);
   r.set("bsdf_table", materials_.tables);
   r.set("bvh_nodes", nodes_);

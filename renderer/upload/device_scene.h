@@ -8,12 +8,25 @@
 
 namespace lucerna::upload {
 
+/// The environment's texels and tables on the device.
+struct EnvironmentBuffers {
+  EnvironmentBuffers(gpu::Device& device, const FlatLights& flat);
+  bool holds(const FlatLights& flat) const;
+  gpu::Buffer texels, alias, sun_cells;
+
+ private:
+  SharedVector<vec3> of_texels_;
+  EnvironmentTables of_;
+};
+
 /// Lights and environment on the device.
 struct LightBuffers {
   LightBuffers() = default;
-  LightBuffers(gpu::Device& device, const FlatLights& flat);
+  /// `before`: whose environment is taken where it is the same.
+  LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before = {});
   explicit operator bool() const { return bool(lights); }
-  gpu::Buffer lights, alias, pmf, groups, environment_texels, environment_alias, sun_cells, sun_density;
+  gpu::Buffer lights, alias, pmf, groups, sun_density;
+  std::shared_ptr<const EnvironmentBuffers> environment;
 };
 
 /// Materials on the device, with the albedo tables of their glasses.
@@ -30,6 +43,7 @@ class DeviceScene {
   /// Takes others (sizes may differ) in place of those it has, which it returns. What was bound before is
   /// stale: call bind() afterwards.
   LightBuffers exchange(LightBuffers lights, const Effects& effects) noexcept;
+  const LightBuffers& lights() const { return lights_; }
   MaterialBuffers exchange(MaterialBuffers materials, const Effects& effects) noexcept;
   /// Names: scene_*, texture_bucket_N, light_alias, PrimitiveLightPmf, environment_*, sun_*, bsdf_table,
   /// bvh_nodes, bvh_triangles.

@@ -9,6 +9,7 @@
 #include "scene/light_groups.h"
 #include "scene/scene.h"
 #include "shaders/shared/scene.h"
+#include "upload/environment_tables.h"
 
 namespace lucerna::upload {
 
@@ -57,10 +58,8 @@ struct LightDistribution {
   uint32_t first_lamp = 0;       ///< of the entries
   float lamp_pmf = 0;            ///< that a lamp is chosen at all
   float environment_light_pmf = 0;
-  std::vector<vec4> environment_alias;
-  /// By texel, of its directions [1/sr]; the sign bit: it is one of the sun's.
-  std::vector<float> environment_density;
-  std::vector<vec4> sun_cells, sun_density;
+  EnvironmentTables environment;
+  std::vector<vec4> sun_density;  ///< EnvironmentTables::sun_density, with the sun's own pmf
   /// Luminance of the flux that each entry sends into the scene [W], for paths that begin at lights: of
   /// distant ones through the scene's disk, of textured triangles by 16 points of each.
   std::vector<double> light_power;
@@ -71,7 +70,8 @@ struct LightDistribution {
 struct Emission {
   std::vector<vec4> lights;                                ///< the light table
   std::vector<uint8_t> emissive_groups;                    ///< by primitive; empty: they are not kept apart
-  std::vector<vec3> environment_texels;                    ///< radiance, without the factor
+  SharedVector<vec3> environment_texels;                   ///< radiance, without the factor
+  std::optional<EnvironmentSource> environment_source;     ///< of these
   uint32_t environment_width = 0, environment_height = 0;  ///< 0: it is dark
   vec3 environment_radiance{0};                            ///< factor of the texels
   float environment_rotation = 0;                          ///< radians

@@ -59,7 +59,7 @@ LightTexels texels_of(const scene::Scene& scene, const FlatScene& flat, const Li
   if (entry.kind == k_light_triangle) return triangle_texels(scene, flat, entry.index);
   const vec4 only_kind(vec3(0), as_float(entry.kind));
   if (entry.kind == k_light_environment) {
-    const auto sun_cells = uint32_t(flat.sun_cells.size() / 2);
+    const auto sun_cells = uint32_t(flat.environment.sun_cells.size() / 2);
     return {only_kind, vec4(as_float(sun_cells), 0, 0, 0), vec4(0), vec4(0)};
   }
   if (entry.index == scene::k_none) return {only_kind, vec4(0), vec4(0), vec4(0)};
@@ -84,8 +84,14 @@ void flatten_emission(const scene::Scene& scene, FlatScene& flat) {
     const EnvironmentMap map(scene);
     e.environment_radiance = vec3(scene.environment.scale);
     e.environment_width = map.width, e.environment_height = map.height;
-    e.environment_texels.resize(size_t(map.width) * map.height);
-    for (size_t i = 0; i < e.environment_texels.size(); ++i) e.environment_texels[i] = map.radiance(i);
+    e.environment_source = EnvironmentSource(scene);
+    if (flat.environment_source == e.environment_source) {
+      e.environment_texels = flat.environment_texels;
+    } else {
+      std::vector<vec3> texels(size_t(map.width) * map.height);
+      for (size_t i = 0; i < texels.size(); ++i) texels[i] = map.radiance(i);
+      e.environment_texels = std::move(texels);
+    }
   }
   static_cast<Emission&>(flat) = std::move(e);
 }

@@ -1,9 +1,7 @@
 // By what lights are chosen: emissive triangles and punctual lights by power, directions of the environment
 // by its luminance.
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <numbers>
 
 #include "scene/lamp.h"
 #include "upload/alias_table.h"
@@ -15,108 +13,11 @@ namespace lucerna::upload {
 namespace {
 
 using namespace shared;
-float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
-
-/// Solid angle of a texel, times width / 2 pi: the difference of two cosines as a product, of which nothing
-/// cancels beside the poles.
-double row_band(uint32_t row, uint32_t h) {
-  return 2 * std::sin(std::numbers::pi * (row + 0.5) / h) * std::sin(0.5 * std::numbers::pi / h);
-}
-/// Density of a texel's directions, per solid angle.
-double texel_density(double pmf, size_t texel, uint32_t w, uint32_t h) {
-  return pmf * w / (2 * std::numbers::pi * row_band(uint32_t(texel / w), h));
-}
-
-/// Weights of texels: luminance under the bilinear filter's support (a 3x3 tent), times the solid angle of
-/// the texel, so that no direction with light has density 0.
-std::vector<double> texel_weights(const std::vector<double>& y, uint32_t w, uint32_t h) {
-  std::vector<double> weights(y.size());
-  for (uint32_t row = 0; row < h; ++row) {
-    const double band = row_band(row, h);
-    for (uint32_t column = 0; column < w; ++column) {
-      double sum = 0;
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
-          const uint32_t r = uint32_t(std::clamp(int(row) + dy, 0, int(h) - 1)), c = (column + w + dx) % w;
-          sum += y[size_t(r) * w + c] * (dx ? 1 : 2) * (dy ? 1 : 2) / 16.0;
-        }
-      weights[size_t(row) * w + column] = sum * band;
-    }
-  }
-  return weights;
-}
-
-/// Luminances of a map's texels.
-std::vector<double> luminances(const EnvironmentMap& map) {
-  std::vector<double> y(size_t(map.width) * map.height);
-  for (size_t i = 0; i < y.size(); ++i) y[i] = luminance(map.radiance(i));
-  return y;
-}
-
-/// Which texels are the sun: those above the threshold times the mean over the sphere.
-std::vector<uint8_t> sun_texels(const std::vector<double>& y, uint32_t w, uint32_t h, double threshold) {
-  double sum = 0;
-  for (uint32_t row = 0; row < h; ++row)
-    for (uint32_t column = 0; column < w; ++column) sum += y[size_t(row) * w + column] * row_band(row, h);
-  const double mean = sum / (2.0 * w);  // bands sum to 2
-  std::vector<uint8_t> sun(y.size());
-  for (size_t i = 0; i < y.size(); ++i) sun[i] = y[i] > threshold * mean;
-  return sun;
-}
 
 double sum_of(const std::vector<double>& values) {
   double sum = 0;
   for (const double v : values) sum += v;
   return sum;
-}
-
-/// What the environment weighs, as one emitter or as two.
-struct EnvironmentWeights {
-  std::vector<double> texels, sun_texels;  ///< the latter none unless the sun is apart
-  std::vector<uint8_t> is_sun;             ///< by texel
-};
-
-EnvironmentWeights environment_weights(const EnvironmentMap& map, bool sun_apart, double threshold) {
-  EnvironmentWeights weights;
-  std::vector<double> y = luminances(map);
-  weights.is_sun.resize(y.size());
-  if (sun_apart) {
-    weights.is_sun = sun_texels(y, map.width, map.height, threshold);
-    std::vector<double> of_sun(y.size());
-    for (size_t i = 0; i < y.size(); ++i)
-      if (weights.is_sun[i]) std::swap(of_sun[i], y[i]);
-    weights.sun_texels = texel_weights(of_sun, map.width, map.height);
-  }
-  weights.texels = texel_weights(y, map.width, map.height);
-  return weights;
-}
-
-/// Table and densities of the environment's texels.
-void choose_texels(const EnvironmentMap& map, const EnvironmentWeights& weights, LightDistribution& to) {
-  to.environment_alias = build_alias_table(weights.texels);
-  const double total = sum_of(weights.texels);
-  to.environment_density.resize(weights.texels.size());
-  for (size_t i = 0; i < weights.texels.size(); ++i) {
-    const float density =
-        total > 0 ? float(texel_density(weights.texels[i] / total, i, map.width, map.height)) : 0;
-    to.environment_density[i] = weights.is_sun[i] ? -density : density;
-  }
-}
-
-/// The sun's table and densities, the latter without the sun's own pmf.
-void choose_sun_cells(const EnvironmentMap& map, const std::vector<double>& weights, LightDistribution& to) {
-  std::vector<double> cells;
-  std::vector<vec4> texels;
-  const double total = sum_of(weights);
-  to.sun_density.assign((weights.size() + 3) / 4, vec4(0));
-  for (size_t i = 0; i < weights.size(); ++i) {
-    if (weights[i] <= 0) continue;
-    to.sun_density[i / 4][int(i % 4)] = float(texel_density(weights[i] / total, i, map.width, map.height));
-    cells.push_back(weights[i]);
-    texels.emplace_back(as_float(uint32_t(i)), 0, 0, 0);
-  }
-  to.sun_cells = build_alias_table(cells);
-  to.sun_cells.insert(to.sun_cells.end(), texels.begin(), texels.end());
 }
 
 /// Mean luminance factor of the emission texture over a triangle, by 16 points; the estimate only steers
@@ -239,18 +140,15 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   add_lamps(scene, disk, choice);
   const bool lit = environment_shines(scene.environment);
   const bool sun_apart = lit && flat.sun_threshold > 0;
-  const EnvironmentMap map(scene);
-  EnvironmentWeights weights;
   double environment = 0, sun = 0;
   if (lit) {
-    weights = environment_weights(map, sun_apart, double(flat.sun_threshold));
+    d.environment = environment_tables(scene, sun_apart ? flat.sun_threshold : 0, flat.environment);
     // Mean radiance times solid angle through the scene's disk.
     const auto power = [&](double sum) {
-      return sum * 2 * k_pi / map.width * scene.environment.scale * disk;
+      return sum * 2 * k_pi / EnvironmentMap(scene).width * scene.environment.scale * disk;
     };
-    sun = power(sum_of(weights.sun_texels));
-    environment = power(sum_of(weights.texels));
-    choose_texels(map, weights, d);
+    sun = power(d.environment.sun_weight);
+    environment = power(d.environment.sky_weight);
   }
   const bool has_sun = sun > 0;
   const double sky_power = environment, sun_power = sun;
@@ -260,7 +158,6 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
     if (all > 0) d.environment_light_pmf = float(environment / all);
     d.sky_power = sky_power;
     if (has_sun) {
-      choose_sun_cells(map, weights.sun_texels, d);
       choice.add(k_light_environment, 0, sun, sun_power);
     }
     if (choice.entries.empty())
@@ -272,8 +169,10 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   d.light_alias = build_alias_table(choice.weights);
   if (!d.light_alias.empty()) d.entries = std::move(choice.entries), d.light_power = std::move(choice.fluxes);
   choose_lamps(scene, choice.weights, flat, d);
-  if (has_sun)
+  if (has_sun) {
+    d.sun_density = d.environment.sun_density;
     for (vec4& four : d.sun_density) four *= d.light_alias.back().z;
+  }
   if (emissive) d.primitive_light_pmf = triangle_densities(flat, d);
   flat.effects.lights = !d.entries.empty();
   flat.effects.emissive = emissive;

@@ -133,7 +133,7 @@ TEST_CASE("directions of the environment map: by its density, which integrates t
       within[std::clamp(int(fy * k_grid), 0, k_grid - 1) * k_grid +
              std::clamp(int(fx * k_grid), 0, k_grid - 1)] += 1;
       const double exact =
-          lights.flat.environment_density[size_t(row) * width + column] * lights.frame.environment_light_pmf;
+          lights.flat.environment.density[size_t(row) * width + column] * lights.frame.environment_light_pmf;
       elsewhere += std::abs(d.pdf / exact - 1) > 1e-3;
       again.push_back(d.direction), pdfs.push_back(d.pdf);
     }
@@ -197,6 +197,55 @@ TEST_CASE("the environment's radiance is the map, bilinear, turned counter-clock
   CHECK(dark == 0);
 }
 
+TEST_CASE("tables of an environment are made once for its texels, whatever else is edited") {
+  const scene::Scene scene = sky(48, 24, 37);
+  upload::FlatScene flat = upload::flatten(scene, 16);
+  const upload::EnvironmentTables before = flat.environment;
+  const SharedVector<vec3> texels = flat.environment_texels;
+  const auto kept = [&] {
+    return flat.environment.alias.shares_with(before.alias) &&
+           flat.environment.density.shares_with(before.density) &&
+           flat.environment.sun_cells.shares_with(before.sun_cells);
+  };
+  scene::Scene edited = scene;
+  const auto as_anew = [&] {
+    const upload::FlatScene anew = upload::flatten(edited, flat.sun_threshold);
+    const auto same = [](const auto& a, const auto& b) {
+      return std::equal(a.begin(), a.end(), b.begin(), b.end());
+    };
+    return same(flat.environment.alias, anew.environment.alias) &&
+           same(flat.environment.density, anew.environment.density) &&
+           same(flat.environment.sun_cells, anew.environment.sun_cells) &&
+           same(flat.sun_density, anew.sun_density) && same(flat.light_alias, anew.light_alias) &&
+           same(flat.environment_texels, anew.environment_texels);
+  };
+  edited.environment.rotation = 80, edited.environment.scale = 3;
+  edited.lights.emplace_back().intensity = vec3(300);
+  upload::flatten_lights(edited, flat);
+  CHECK(kept());
+  CHECK(flat.environment_texels.shares_with(texels));
+  CHECK(as_anew());
+  // Others where the sun is apart by another threshold, or not at all, and where a texel is another.
+  for (const float threshold : {1.5f, 0.0f, 16.0f}) {
+    flat.sun_threshold = threshold;
+    upload::flatten_lights(edited, flat);
+    CHECK_FALSE(kept());
+    CHECK(as_anew());
+  }
+  scene::Image& image = edited.images[edited.environment.image];
+  image.floats[4 * 100] += 50;
+  upload::flatten_lights(edited, flat);
+  CHECK_FALSE(flat.environment_texels.shares_with(texels));
+  CHECK(as_anew());
+  edited.environment.image = scene::k_none;
+  for (const vec3 colour : {vec3(1), vec3(2, 1, 0)}) {
+    edited.environment.radiance = colour;
+    upload::flatten_lights(edited, flat);
+    CHECK(flat.environment_texels[0] == colour);
+    CHECK(as_anew());
+  }
+}
+
 TEST_CASE("sky and sun apart: two emitters that add up to the environment, each sampled by its own density") {
   scene::Scene scene = sky(48, 24, 37);
   scene::Light lamp;
@@ -206,7 +255,7 @@ TEST_CASE("sky and sun apart: two emitters that add up to the environment, each 
   REQUIRE(lights.flat.effects.sky_apart);
   REQUIRE(lights.flat.effects.sun);
   // One texel is the sun; filtering reaches it from the eight around it.
-  CHECK(lights.flat.sun_cells.size() == 2 * 9);
+  CHECK(lights.flat.environment.sun_cells.size() == 2 * 9);
   std::vector<vec3> directions;
   const uint32_t width = 48, height = 24;
   constexpr int k_grid = 8;

@@ -67,7 +67,6 @@ void RelightPreview::make_ready(gpu::Stream& stream) {
   stream.copy(shown, old_, count_ * k_light_bytes);
   if (groups_ > 1)
     stream.copy(records_->shares(Records::Use::look_up), old_shares_, count_ * records_->group_bytes());
-  records_->bind(resources_, Records::Use::gather);
   resources_.set("old_texels", old_);
   resources_.set("Shown", shown);
   if (groups_ > 1) {
