@@ -109,7 +109,7 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
   make(noise_, "preview noise", cells * 16);
   const uint64_t blocks = uint64_t{change_blocks((width + 1) / 2)} * change_blocks((height + 1) / 2);
   make(changes_, "preview changes", blocks * k_preview_change_texels * 16);
-  make(ratios_, "preview ratios", blocks * k_preview_ratio_texels * 16);
+  make(ratios_, "preview ratios", (blocks + 1) * 16);
   gpu::make_room(device_, shares_,
                  {.name = "preview shares",
                   .bytes = groups(n) * sizeof(shared::PreviewShares),

@@ -4,18 +4,13 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "upload/alias_table.h"
 #include "upload/environment_map.h"
 
 namespace lucerna::upload {
 namespace {
-
-double sum_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum;
-}
 
 /// Solid angle of a texel, times width / 2 pi: the difference of two cosines as a product, of which nothing
 /// cancels beside the poles.
@@ -88,7 +83,7 @@ EnvironmentWeights environment_weights(const EnvironmentMap& map, bool sun_apart
 /// Table and densities of the environment's texels.
 void choose_texels(const EnvironmentMap& map, const EnvironmentWeights& weights, EnvironmentTables& to) {
   to.alias = build_alias_table(weights.texels);
-  to.sky_weight = sum_of(weights.texels);
+  to.sky_weight = std::accumulate(weights.texels.begin(), weights.texels.end(), 0.0);
   std::vector<float> densities(weights.texels.size());
   for (size_t i = 0; i < weights.texels.size(); ++i) {
     const float density =
@@ -101,7 +96,7 @@ void choose_texels(const EnvironmentMap& map, const EnvironmentWeights& weights,
 
 /// The sun's table and densities, the latter without the sun's own pmf.
 void choose_sun_cells(const EnvironmentMap& map, const std::vector<double>& weights, EnvironmentTables& to) {
-  to.sun_weight = sum_of(weights);
+  to.sun_weight = std::accumulate(weights.begin(), weights.end(), 0.0);
   if (!(to.sun_weight > 0)) return;
   std::vector<double> cells;
   std::vector<vec4> texels, densities((weights.size() + 3) / 4, vec4(0));

@@ -2,6 +2,7 @@
 // by its luminance.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "scene/lamp.h"
 #include "upload/alias_table.h"
@@ -13,12 +14,6 @@ namespace lucerna::upload {
 namespace {
 
 using namespace shared;
-
-double sum_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum;
-}
 
 /// Mean luminance factor of the emission texture over a triangle, by 16 points; the estimate only steers
 /// sampling.
@@ -126,7 +121,8 @@ void choose_lamps(const scene::Scene& scene, const std::vector<double>& weights,
   }
   if (flat.effects.lamp_candidates == 0 || of_lamps.empty()) return;
   d.lamp_alias = build_alias_table(of_lamps);
-  d.lamp_pmf = float(sum_of(of_lamps) / sum_of(weights));
+  d.lamp_pmf = float(std::accumulate(of_lamps.begin(), of_lamps.end(), 0.0) /
+                     std::accumulate(weights.begin(), weights.end(), 0.0));
 }
 
 }  // namespace
@@ -154,17 +150,16 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   const double sky_power = environment, sun_power = sun;
   balance(choice, environment, sun);
   if (sun_apart) {
-    const double all = environment + sun + sum_of(choice.weights);
+    const double all = environment + sun + std::accumulate(choice.weights.begin(), choice.weights.end(), 0.0);
     if (all > 0) d.environment_light_pmf = float(environment / all);
     d.sky_power = sky_power;
-    if (has_sun) {
-      choice.add(k_light_environment, 0, sun, sun_power);
-    }
+    if (has_sun) choice.add(k_light_environment, 0, sun, sun_power);
     if (choice.entries.empty())
       choice.add(k_light_point, scene::k_none, 1, 0);  // dark: a table is never empty
   } else if (environment > 0) {
     choice.add(k_light_environment, 0, environment, sky_power);
-    d.environment_light_pmf = float(environment / sum_of(choice.weights));
+    d.environment_light_pmf =
+        float(environment / std::accumulate(choice.weights.begin(), choice.weights.end(), 0.0));
   }
   d.light_alias = build_alias_table(choice.weights);
   if (!d.light_alias.empty()) d.entries = std::move(choice.entries), d.light_power = std::move(choice.fluxes);

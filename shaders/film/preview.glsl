@@ -69,14 +69,14 @@ vec4 preview_texel(PreviewSurface s) {
 bool preview_lit(PreviewLight l, PreviewSurface s) { return l.of[0].w >= 0.0 || s.samples > 0.0; }
 
 // What blocks of cells say of how light has changed (film/preview_change.comp), between their middles; 1 where there are none.
-vec4 preview_change(samplerBuffer ratios, uvec2 blocks, vec2 cell, uint which) {
+vec4 preview_change(samplerBuffer ratios, uvec2 blocks, vec2 cell) {
   if (blocks.x == 0u) return vec4(1.0);
   vec2 p = (cell + 0.5) / float(k_preview_change_step) - 0.5;
   ivec2 last = ivec2(blocks) - 1, lo = clamp(ivec2(floor(p)), ivec2(0), last), hi = min(lo + 1, last);
   vec2 f = clamp(p - vec2(lo), 0.0, 1.0);
-  int row = int(blocks.x), texels = int(k_preview_ratio_texels), at = int(which);
-  return mix(mix(texelFetch(ratios, texels * (lo.y * row + lo.x) + at), texelFetch(ratios, texels * (lo.y * row + hi.x) + at), f.x),
-             mix(texelFetch(ratios, texels * (hi.y * row + lo.x) + at), texelFetch(ratios, texels * (hi.y * row + hi.x) + at), f.x), f.y);
+  int row = int(blocks.x);
+  return mix(mix(texelFetch(ratios, lo.y * row + lo.x), texelFetch(ratios, lo.y * row + hi.x), f.x),
+             mix(texelFetch(ratios, hi.y * row + lo.x), texelFetch(ratios, hi.y * row + hi.x), f.x), f.y);
 }
 
 // What light is divided by to be filtered: the surface's colour, where it has one.

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewChangePush push; };
 uniform samplerBuffer grid_texels, grid_surfaces, before_texels;
 layout(scalar) buffer Sums { vec4 sums[]; };              // a block: light now, before, square of what is off, by component; samples; square of noise
-// Of a block: now over before; and the variance of a sample over the square of its light.
+// Of a block: now over before; behind them, of all, the variance of a sample over the square of its light.
 layout(scalar) writeonly buffer Ratios { vec4 ratios[]; };
 
 const float k_most_ratio = 16.0;  // that light is taken to have grown by
@@ -51,9 +51,9 @@ void main() {
     vec4 noise = exp2(lanes[0][0] / max(lanes[1][0], vec4(1.0)));
     for (uint b = lane; b < blocks; b += 64u) {
       vec4 before = sums[k_preview_change_texels * b + 1u], expected = k_unusual * usual * before * before / max(sums[k_preview_change_texels * b + 3u].x, 1e-3);
-      ratios[k_preview_ratio_texels * b] = ratio_of(sums[k_preview_change_texels * b], before, sums[k_preview_change_texels * b + 2u], expected, all);
-      ratios[k_preview_ratio_texels * b + 1u] = noise;
+      ratios[b] = ratio_of(sums[k_preview_change_texels * b], before, sums[k_preview_change_texels * b + 2u], expected, all);
     }
+    if (lane == 0u) ratios[blocks] = noise;
     return;
   }
   uint block = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;

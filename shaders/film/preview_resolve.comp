@@ -148,7 +148,7 @@ void main() {
       // more detail than there was.
       bool finer = push.moved != 0u && push.surfaces == k_preview_surface_seen;
       vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min(modulation / preview_modulation(was), vec3(8.0)) : vec3(1.0);
-      vec4 change = preview_change(change_texels, uvec2(push.blocks_across, push.blocks_down), p, 0u);
+      vec4 change = preview_change(change_texels, uvec2(push.blocks_across, push.blocks_down), p);
       before_smooth *= change;
       for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= change[c] * vec4(repaint, luminance(repaint));
     }
@@ -190,7 +190,7 @@ void main() {
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;
       if (nothing) keep = has_old ? 1.0 : 0.0;
       now = mix(now, before, keep);
-      // What is told of it does not go by that: light that has changed is right by what is known of it, no more.
+      // Where light has changed, the error that is told counts all that samples hold against the old, chance or not.
       float doubt = push.same_light != 0u ? change : max(square(difference) - u - v, 0.0);
       float of_before = keep * keep * (u + doubt), left = sqrt(square((1.0 - keep) * error) + of_before);
       result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);

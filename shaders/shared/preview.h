@@ -57,7 +57,6 @@ struct PreviewFilterPush {
 /// Cells along the side of a block that tells how much light has changed.
 LUCERNA_CONST uint k_preview_change_step = 16u;
 LUCERNA_CONST uint k_preview_change_texels = 5u;  ///< of its sums
-LUCERNA_CONST uint k_preview_ratio_texels = 2u;   ///< of what they say
 struct PreviewChangePush {
   uint across, down;                 ///< of the grid
   uint blocks_across, blocks_down;
