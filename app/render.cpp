@@ -133,6 +133,9 @@ void save_ready(session::Renderer& r, std::map<std::string, std::string>& to_sav
   });
 }
 
+/// Of the time that there is, what solvers may prepare in at most.
+constexpr double k_preparing = 0.5;
+
 /// Until picture and work are done, time is up or somebody interrupts. Seconds that it took.
 double run(session::Renderer& r, const RenderArguments& a, std::map<std::string, std::string>& to_save,
            const Interrupt& interrupt, bool terminal) {
@@ -141,8 +144,17 @@ double run(session::Renderer& r, const RenderArguments& a, std::map<std::string,
   Timer since_line;
   save_ready(r, to_save);
   bool covered = false;  // every pixel has a sample
+  // Not where somebody wants to keep the solvers' work.
+  bool may_prepare = !a.seconds || !makes_picture(a) || !to_save.empty();
   while ((makes_picture(a) || !to_save.empty()) && !r.done() && !interrupt.signal() &&
          (!a.seconds || timer.seconds() < limit)) {
+    if (!may_prepare && timer.seconds() > k_preparing * limit) {
+      may_prepare = true;
+      if (r.preparing()) {
+        log::info("half of the time is up: the picture is rendered with what has been prepared");
+        r.make_do();
+      }
+    }
     if (!r.step()) break;
     save_ready(r, to_save);
     if (!covered && r.samples() > 0) log::info("a sample of every pixel after {:.2f} s", timer.seconds());

@@ -173,8 +173,9 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
       Slider how{.lo = static_cast<float>(option->lo),
                  .hi = static_cast<float>(option->hi),
                  .decimals = whole ? 0 : decimals_of(*option),
-                 .unit = option->unit};
-      how.log = option->lo > 0 && option->hi / option->lo > 100;
+                 .unit = option->unit,
+                 .at_zero = option->at_zero};
+      how.log = option->lo > 0 ? option->hi / option->lo > 100 : !option->at_zero.empty() && option->hi > 100;
       if (option->unit == key) how.unit.clear();  // "Samples 256" says it once
       if (whole) how.step = 1;
       if (option->hi > 4e9)

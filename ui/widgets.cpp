@@ -32,7 +32,13 @@ void draw_caps(ImDrawList* list, ImVec2 at, const std::string& text, ImU32 colou
   }
 }
 
+/// Share of the control's width that stands for 0 where that has a meaning of its own beside a logarithm.
+constexpr float k_zero_share = 0.04f;
+
+bool log_with_zero(const Slider& how) { return how.log && !how.at_zero.empty(); }
+
 std::string number_text(float value, const Slider& how) {
+  if (value == 0 && !how.at_zero.empty()) return how.at_zero;
   std::string text = how.decimals == 0 && value >= 1e4f ? count_text(value) : real_text(value, how.decimals);
   if (how.sign && value >= 0) text = (value > 0 ? "+" : "\xE2\x80\x87") + text;
   return how.unit.empty() ? text : text + (how.unit[0] == '\xC2' ? "" : " ") + how.unit;
@@ -41,11 +47,14 @@ std::string number_text(float value, const Slider& how) {
 float to_fraction(float value, const Slider& how) {
   if (how.hi <= how.lo) return 0;
   const float v = std::clamp(value, how.lo, how.hi);
+  if (log_with_zero(how)) return v < 1 ? 0 : std::lerp(k_zero_share, 1.0f, std::log(v) / std::log(how.hi));
   return how.log ? std::log(v / how.lo) / std::log(how.hi / how.lo) : (v - how.lo) / (how.hi - how.lo);
 }
 
 float from_fraction(float f, const Slider& how) {
   f = std::clamp(f, 0.0f, 1.0f);
+  if (log_with_zero(how))
+    return f < k_zero_share ? 0 : std::pow(how.hi, (f - k_zero_share) / (1 - k_zero_share));
   return how.log ? how.lo * std::pow(how.hi / how.lo, f) : how.lo + f * (how.hi - how.lo);
 }
 

@@ -66,6 +66,7 @@ struct Slider {
   float travel = 1;   ///< share of the range that a drag across the control goes through
   /// What may be typed, when that is more than a drag reaches (typed_lo < typed_hi).
   float typed_lo = 0, typed_hi = 0;
+  std::string at_zero{};  ///< shown for 0, which then is the left end, and `log` begins beside it with 1
 };
 bool slider(const char* id, const std::string& name, float& value, const Slider& how, float width = 0);
 

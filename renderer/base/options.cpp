@@ -76,6 +76,11 @@ OptionInfo of_same_light(OptionInfo option) {
   return option;
 }
 
+OptionInfo with_zero(OptionInfo option, const char* meaning) {
+  option.at_zero = meaning;
+  return option;
+}
+
 std::string describe_values(const OptionInfo& o) {
   switch (o.type) {
     case OptionType::choice:

@@ -27,6 +27,9 @@ struct OptionInfo {
   /// The light stays the same, another way or amount of computing it: until the new picture is better the old
   /// one may be shown.
   bool same_light = false;
+  /// integer and real: what the least value means, where that is 0 and no amount like the others
+  /// ("automatic", "all lamps"); "": it is one.
+  std::string at_zero{};
 };
 
 // Rows, in short.
@@ -42,6 +45,9 @@ OptionInfo text_option(const char* key, const char* help);
 OptionInfo without_restart(OptionInfo option);
 /// The same option, of how light is computed (same_light).
 OptionInfo of_same_light(OptionInfo option);
+
+/// The same option, with that for its value 0 (at_zero).
+OptionInfo with_zero(OptionInfo option, const char* meaning);
 
 /// What values an option takes, for people: "path|off", "true|false", "1 to 64 vertices"; "" for a text.
 std::string describe_values(const OptionInfo& option);

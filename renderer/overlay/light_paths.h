@@ -10,7 +10,7 @@ namespace lucerna::overlay {
 
 /// A group of lights and a box that is aimed at, and which share of the paths is sent from one to the other.
 struct AimedPair {
-  std::string light;  ///< in words: "lamp 3", "sun", "sky", "shining surfaces"
+  std::string light;  ///< by name, or in words: "Chandelier", "Light 3", "12 lights", "sky"
   uint32_t box = 0;
   double share = 0;
   std::optional<vec3> from;   ///< where the light is, if it is anywhere

@@ -186,6 +186,8 @@ class Renderer {
   bool preparing() const { return engine_ && engine_->unready(); }
   /// ... and waits for a command.
   bool waits() const { return engine_ && engine_->waits(); }
+  /// That is to end as soon as it can, with what there is (solvers::Solver::make_do).
+  void make_do();
   /// One of SolverInfo::commands; nothing where the solver is not at work.
   void solver_command(const std::string& name, const std::string& command);
   /// Writes the work of a solver (SolverInfo::file), once it is ready. Throws Error located at `file`: the

@@ -93,4 +93,10 @@ void Renderer::solver_load(const std::string& name, const std::filesystem::path&
   restart(scene::Changes{});
 }
 
+void Renderer::make_do() {
+  if (!engine_) return;
+  for (const auto& solver : engine_->solvers())
+    if (!solver->ready()) solver->make_do();
+}
+
 }  // namespace lucerna::session

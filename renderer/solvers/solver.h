@@ -115,6 +115,10 @@ class Solver {
     return true;
   }
 
+  /// Preparation has had the time that it may take: what can be left out is left to paths, so that it ends
+  /// soon, or at once.
+  virtual void make_do() {}
+
   // In rounds: what paths read is made anew for each of the picture's samples, besides what prepare() makes.
   // Sample i of every pixel reads round i. Items are then of one sample a pixel (schedule/).
 

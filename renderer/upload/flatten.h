@@ -52,6 +52,7 @@ struct LightEntry {
 /// to be as bright as what it is about: samples are divided by the probabilities, whatever they are.
 struct LightDistribution {
   std::vector<LightEntry> entries;         ///< of the light table; emissive triangles first
+  std::vector<std::string> lamp_names;     ///< by scene::Scene::lights, as the scene calls them; may be ""
   std::vector<vec4> light_alias;           ///< of these
   std::vector<float> primitive_light_pmf;  ///< pmf / area [1/m^2]
   std::vector<vec4> lamp_alias;  ///< of the lamps among the entries, which lie together, by the same weights

@@ -134,6 +134,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   const bool emissive = !choice.entries.empty();
   const double disk = double(k_pi) * flat.scene_radius * flat.scene_radius;
   add_lamps(scene, disk, choice);
+  for (const scene::Light& lamp : scene.lights) d.lamp_names.push_back(lamp.name);
   const bool lit = environment_shines(scene.environment);
   const bool sun_apart = lit && flat.sun_threshold > 0;
   double environment = 0, sun = 0;

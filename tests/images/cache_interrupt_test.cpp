@@ -197,3 +197,87 @@ TEST_CASE("three hundred edits while a cache is built end in the picture of the 
     CHECK(test::mean(lived.components[c]) == Approx(test::mean(fresh.components[c])).epsilon(0.05));
   }
 }
+
+TEST_CASE(
+    "a cache that is told to make do at any time ends at once, and the picture is that of a complete one") {
+  Bed bed;
+  session::Renderer& r = bed.r;
+  test::set(r, {{"samples", "64"}});
+  bed.finish();
+  const film::Image complete = r.image();
+  const uint32_t records = test::cache(r)->status().records;
+  uint32_t none = 0, some = 0, stage = 0;
+  for (bool ready = false; !ready; ++stage) {
+    test::set(r, {{"cache.pause", "stage"}});
+    r.restart();
+    for (uint32_t i = 0; i <= stage; ++i) {
+      while (r.step()) {
+      }
+      if (i < stage) r.solver_command("cache", "step");
+    }
+    INFO("after " << where(r));
+    ready = test::cache(r)->ready();
+    const uint32_t before = test::cache(r)->status().records;
+    r.make_do();
+    REQUIRE(test::cache(r)->ready());
+    const irradiance_cache::CacheStatus& s = test::cache(r)->status();
+    CHECK((s.stop == irradiance_cache::StopReason::told) == !ready);
+    CHECK(s.records == before);
+    CHECK(test::cache(r)->records().size() == before);
+    if (ready) break;
+    ++(before == 0 ? none : some);
+    bed.finish();
+    bed.watch();
+    // What is not served is path traced, with the noise of 256 pixels' 64 samples.
+    const film::Image image = r.image();
+    for (const int c : {0, 1, 2})
+      CHECK(test::mean(image.components[c]) == Approx(test::mean(complete.components[c])).epsilon(0.06));
+    // And the next change of the light relights what there is.
+    bed.edit(0, 0);
+    bed.watch();
+    bed.undo();
+  }
+  CHECK(none >= 4);
+  CHECK(some >= 4);
+  CHECK(records > 0);
+}
+
+TEST_CASE(
+    "a lamp that is moved while the first pass is under way takes away only what its light has gone into") {
+  for (const char* metric : {"split-sphere", "hessian"}) {
+    Bed bed;
+    session::Renderer& r = bed.r;
+    test::set(r, {{"cache.metric", metric}, {"cache.pause", "stage"}});
+    // Passes that have evaluated their first level have records, which are relit.
+    for (int stages = 1; stages <= 4; ++stages) {
+      bed.undo();
+      test::set(r, {{"cache.pause", "stage"}});
+      r.restart();
+      for (int stage = 0; stage < stages; ++stage) {
+        while (r.step()) {
+        }
+        if (stage + 1 < stages) r.solver_command("cache", "step");
+      }
+      // And some way into the next one.
+      test::set(r, {{"cache.pause", "off"}});
+      r.step();
+      INFO(metric << ", after " << where(r));
+      REQUIRE(test::cache(r)->status().records == 0);
+      const uint32_t candidates = test::cache(r)->status().passes.back().candidates;
+      CHECK(candidates > 0);
+      bed.edit(0, 3);
+      const irradiance_cache::CacheStatus& s = test::cache(r)->status();
+      REQUIRE(s.passes.size() == 1);
+      CHECK(s.passes.back().candidates == candidates);
+      bed.finish();
+      const irradiance_cache::RawRecords lived =
+          test::cache(r)->records().raw(test::cache(r)->records().size());
+      r.restart();
+      bed.finish();
+      const irradiance_cache::RawRecords fresh =
+          test::cache(r)->records().raw(test::cache(r)->records().size());
+      CHECK(lived.size() == fresh.size());
+      CHECK(test::begins_with(lived, fresh));
+    }
+  }
+}

@@ -82,6 +82,9 @@ struct Cache::Impl {
   /// What is placed and not evaluated is dropped, and what was asked for.
   void drop_pass();
   void relight(const std::optional<std::vector<vec3>>& factors, uint32_t sky_group);
+  /// The first pass has no light yet: places that it has found stay, and only what light has gone into is
+  /// done again. False, and nothing done, where there are records with light, or nothing is being built.
+  bool relight_first_places();
   /// The records of the next pass that stand without light; after the last, building goes on where it was.
   void relight_pass();
   /// Complete records from elsewhere, in place of all.

@@ -31,6 +31,8 @@ const char* words(StopReason reason) {
       return "the room for records is used up";
     case StopReason::dark:
       return "there is no light in the scene";
+    case StopReason::told:
+      return "it has had its share of the time";
     case StopReason::building:
       break;
   }
@@ -73,6 +75,15 @@ void Cache::extend() {
     c.drop_pass();
     if (c.status.relighting.records > 0) c.relight_pass();  // they have been waiting in the dark
   }
+}
+
+void Cache::make_do() {
+  Impl& c = *impl_;
+  if (ready() || c.status.relighting.records > 0) return;
+  c.drop_pass();
+  if (!c.ranges.complete_pass() && !c.status.passes.empty() && !c.status.passes.back().complete)
+    c.status.passes.pop_back();
+  c.finish(StopReason::told);
 }
 
 void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const CacheStatus& status,

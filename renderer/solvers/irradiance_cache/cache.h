@@ -74,7 +74,7 @@ struct CacheOptions {
   DiscontinuityOptions screen;
 };
 
-enum class StopReason { building, covered, passes, records, dark };
+enum class StopReason { building, covered, passes, records, dark, told };
 /// Why building has stopped, as the rest of a sentence.
 const char* words(StopReason reason);
 
@@ -142,6 +142,9 @@ class Cache {
   void look_from(const CacheView& view);
   /// Begins anew, without records.
   void clear();
+  /// Building ends where it is: records that have light serve, and what none serves is path traced. Not while
+  /// records are relit.
+  void make_do();
   /// Goes on building with what there is, for a picture from elsewhere or of another size: its passes are
   /// counted anew. Work in progress is finished first. While building waits it goes on waiting.
   void extend();

@@ -198,9 +198,9 @@ CacheFile decode(const std::string& bytes, const std::string& where) {
   CacheFile cache;
   Reader reader(contents.substr(k_head), where);
   fields(reader, cache);
-  if (cache.status.stop > StopReason::dark)
+  if (cache.status.stop > StopReason::told)
     throw_error(where, "damaged: a reason to stop numbered {}, expected 0 to {}", int(cache.status.stop),
-                int(StopReason::dark));
+                int(StopReason::told));
   return cache;
 }
 

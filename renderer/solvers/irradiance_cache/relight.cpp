@@ -22,7 +22,26 @@ void Cache::Impl::replace_records(const RawRecords& raw) {
   status.records = raw.size();
 }
 
+bool Cache::Impl::relight_first_places() {
+  if (ranges.placed() > 0 || status.relighting.records > 0 || progress.stage == Stage::done) return false;
+  if (progress.stage >= Stage::measure && radii.by_light()) {
+    // Which of those that are tried are kept is by the light, too.
+    tables.records.truncate(0);
+    tables.records.append(places.tried, status.pass);
+    progress.stage = Stage::measure;
+    queue_until(tables.records.size());
+  } else if (progress.stage >= Stage::evaluate) {
+    progress.stage = Stage::evaluate;
+    progress.levels.restart();
+    queue_until(tables.records.size());
+  }
+  progress.pauses.dropped();
+  status.waits = false;
+  return true;
+}
+
 void Cache::Impl::relight(const std::optional<std::vector<vec3>>& factors, uint32_t sky_group) {
+  if (relight_first_places()) return;
   if (status.relighting.records == 0) {
     progress.stopped_before = status.stop == StopReason::dark ? StopReason::building : status.stop;
     // A pass that has its first level has places and radii, and is complete when it is relit. Of one before

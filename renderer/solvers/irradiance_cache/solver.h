@@ -38,6 +38,7 @@ class CacheSolver final : public solvers::Solver {
   }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
+  void make_do() override { cache_.make_do(); }
   bool warm() const override { return ready() || cache_.status().pass >= 2; }
   bool owes_errors(const film::Film& film) const override { return !film.record_errors_complete(); }
   bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const solvers::Picture& picture,

@@ -8,10 +8,12 @@ using namespace solvers;
 
 std::vector<OptionInfo> option_rows() {
   return {
-      integer_option("light.per_round", 0, 0, 1 << 24, "paths",
-                     "Light tracing: paths from lights in a round, of which there is one for every sample of "
-                     "the picture; 0: as many as the picture has pixels, at least 16384.",
-                     "Paths a round"),
+      with_zero(integer_option(
+                    "light.per_round", 0, 0, 1 << 24, "paths",
+                    "Light tracing: paths from lights in a round, of which there is one for every sample of "
+                    "the picture; 0: as many as the picture has pixels, at least 16384.",
+                    "Paths a round"),
+                "automatic"),
       boolean_option("light.aim", "true",
                      "Light tracing: aims light paths at what mirrors or refracts smoothly, by what a pilot "
                      "finds that each pair of lamp and caster brings to the picture.",
@@ -21,9 +23,11 @@ std::vector<OptionInfo> option_rows() {
           "Shows paths from the lights as they are traced: faint up to the first surface, then in the colour "
           "of their light.",
           "Show light paths")),
-      without_restart(integer_option(
-          "overlay.light_paths_of", 0, 0, 65535, "",
-          "Of the lamp of this number alone, in the scene's order; 0: of all lights.", "Paths of lamp")),
+      without_restart(with_zero(
+          integer_option("overlay.light_paths_of", 0, 0, 65535, "",
+                         "Of the lamp of this number alone, in the scene's order; 0: of all lights.",
+                         "Paths of lamp"),
+          "all")),
       without_restart(boolean_option("overlay.light_aim", "false",
                                      "Shows what light paths are aimed at: a box around each caster, and "
                                      "lines from lights to casters, by "

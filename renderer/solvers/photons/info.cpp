@@ -8,11 +8,13 @@ using namespace solvers;
 
 std::vector<OptionInfo> option_rows() {
   return {
-      integer_option("photons.per_round", 0, 0, 1 << 24, "paths",
-                     "Photons: paths from lights in a round, of which there is one for every sample of the "
-                     "picture, or in the first map of irradiance; 0: as many as the picture has pixels, at "
-                     "least 16384, for a map twice as many, at least 131072.",
-                     "Paths a round"),
+      with_zero(integer_option(
+                    "photons.per_round", 0, 0, 1 << 24, "paths",
+                    "Photons: paths from lights in a round, of which there is one for every sample of the "
+                    "picture, or in the first map of irradiance; 0: as many as the picture has pixels, at "
+                    "least 16384, for a map twice as many, at least 131072.",
+                    "Paths a round"),
+                "automatic"),
       real_option(
           "photons.radius", "1.5", 0.1, 1000, "pixels",
           "Photons: radius of the first round, as the camera sees it. Less: less blur, and more grain.",
@@ -71,9 +73,11 @@ std::vector<OptionInfo> option_rows() {
           "Shows paths from the lights as they are traced: faint up to the first surface, then in the colour "
           "of their light.",
           "Show light paths")),
-      without_restart(integer_option(
-          "overlay.photon_paths_of", 0, 0, 65535, "",
-          "Of the lamp of this number alone, in the scene's order; 0: of all lights.", "Paths of lamp")),
+      without_restart(with_zero(
+          integer_option("overlay.photon_paths_of", 0, 0, 65535, "",
+                         "Of the lamp of this number alone, in the scene's order; 0: of all lights.",
+                         "Paths of lamp"),
+          "all")),
       without_restart(boolean_option("overlay.photon_aim", "false",
                                      "Shows what light paths are aimed at: a box around each caster and "
                                      "where light from afar gets in, and lines from lights to these, by "
