@@ -223,6 +223,7 @@ TEST_CASE(
     const irradiance_cache::CacheStatus& s = test::cache(r)->status();
     CHECK((s.stop == irradiance_cache::StopReason::told) == !ready);
     CHECK(s.records == before);
+    CHECK((r.solver_statistics().at("cache").at("stopped_by") == "told") == !ready);
     CHECK(test::cache(r)->records().size() == before);
     if (ready) break;
     ++(before == 0 ? none : some);

@@ -75,6 +75,8 @@ struct CacheOptions {
 };
 
 enum class StopReason { building, covered, passes, records, dark, told };
+inline constexpr const char* k_stop_reasons[] = {"building", "covered", "passes", "records", "dark", "told"};
+static_assert(std::size(k_stop_reasons) == size_t(StopReason::told) + 1);
 /// Why building has stopped, as the rest of a sentence.
 const char* words(StopReason reason);
 

@@ -77,7 +77,6 @@ std::shared_ptr<const solvers::Report> CacheSolver::report(const Canvas& canvas,
 
 nlohmann::ordered_json CacheSolver::statistics(const Canvas& canvas, const Picture& picture) {
   const CacheStatus& s = cache_.status();
-  constexpr const char* k_reasons[] = {"building", "covered", "passes", "records", "dark"};
   nlohmann::ordered_json j{
       {"passes", s.pass},
       {"records", s.records},
@@ -85,7 +84,7 @@ nlohmann::ordered_json CacheSolver::statistics(const Canvas& canvas, const Pictu
       {"rays", s.rays},
       {"uncovered_share", double(s.probed.asked) / double(std::max<uint64_t>(1, s.probed.paths))},
       {"bytes", s.bytes},
-      {"stopped_by", k_reasons[size_t(s.stop)]}};
+      {"stopped_by", k_stop_reasons[size_t(s.stop)]}};
   if (cache_.ready()) {
     const Overlap& o = overlap(canvas, picture);
     j["overlap"] = {{"mean", o.mean},
