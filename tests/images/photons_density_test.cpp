@@ -192,7 +192,7 @@ TEST_CASE("light paths and what they are aimed at are drawn, and change nothing"
   for (const solvers::PanelItem& item : report->sections[0].items)
     if (const auto* table = std::get_if<solvers::Table>(&item)) {
       rows = table->rows.size();
-      CHECK(table->rows[0].cells[1] == "lamp 1");
+      CHECK(table->rows[0].cells[1] == "sun");
     }
   CHECK(rows == 1);
   test::set(s.r, {{"overlay.photon_aim", "false"}});
