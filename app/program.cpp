@@ -141,7 +141,8 @@ void Program::add_render() {
       "relative error that every tile is to reach, such as 0.02: samples go where it is not reached yet");
   render_->add_option("--samples", r.samples, "samples a pixel; with --error, the most that one may get")
       ->check(CLI::Range(int64_t(1), int64_t(1) << 20));
-  render_->add_option("--time", r.seconds, "stop after this many seconds, of which solvers prepare in half at most");
+  render_->add_option("--time", r.seconds,
+                      "stop after this many seconds, of which solvers prepare in half at most");
   render_->add_option("--seed", r.seed, "seed of all random decisions")
       ->check(CLI::Range(int64_t(0), int64_t(4294967295)));
   render_->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
