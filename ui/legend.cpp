@@ -111,8 +111,9 @@ std::vector<std::pair<float, std::string>> ramp_labels(const solvers::Legend& le
   if (!legend.range) return labels;
   const auto [lo, hi, scale] = *legend.range;
   const auto text = [scale = scale](double value) {
-    if (scale == Scale::count) return tick_text(value, Unit::count);
-    return fmt::format("{:.3g}{}", value, scale == Scale::metres ? " m" : "");
+    const std::string number =
+        scale == Scale::count || value >= 1000 ? tick_text(value, Unit::count) : fmt::format("{:.3g}", value);
+    return number + (scale == Scale::metres ? " m" : "");
   };
   for (const Tick& tick : ticks(LogAxis{double{lo}, double{hi}, 0, px(k_ramp_width)}, Unit::count, px(40)))
     labels.emplace_back(shared::ramp_position(static_cast<float>(tick.value), lo, hi, 1u),

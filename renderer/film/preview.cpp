@@ -173,6 +173,12 @@ void Preview::show(gpu::Stream& stream, const Film& film, const Pixels& seen, Pr
 }
 
 void Preview::warm(gpu::Stream& stream, const Film& film) {
+  resources_.set("grid_texels", grid_);
+  resources_.set("grid_surfaces", grid_surfaces_);
+  resources_.set("before_texels", before_[0]);
+  resources_.set("Sums", changes_);
+  resources_.set("Ratios", ratios_);
+  stream.dispatch(change_, resources_, PreviewChangePush{.all = 1}, 1);  // of no blocks
   move(stream, {});  // no pixels
   show(stream, film, moved_, {});
 }

@@ -60,8 +60,8 @@ class Preview {
                         const gpu::Buffer* seen = nullptr);
   /// Whether anything is known from before the picture began anew.
   bool has_history() const { return history_.known; }
-  /// Has the device compile what recall() needs, which takes it long, so that the first one does not wait for
-  /// it. After develop() or take(). The stream is run.
+  /// Has the device compile what an edit needs – recall(), and develop() in other light –, which takes it
+  /// seconds, so that the first one does not wait for it. After develop() or take(). The stream is run.
   void warm(gpu::Stream& stream, const Film& film);
   /// What was there before, as this camera sees it, becomes the film's picture: what can be shown at once,
   /// without any new light. has_history(). What comes into view is taken from what is beside it. Throws and
