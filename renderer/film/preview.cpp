@@ -179,7 +179,7 @@ void Preview::warm(gpu::Stream& stream, const Film& film) {
   resources_.set("Sums", changes_);
   resources_.set("Ratios", ratios_);
   stream.dispatch(change_, resources_, PreviewChangePush{.all = 1}, 1);  // of no blocks
-  move(stream, {});  // no pixels
+  move(stream, {});                                                      // no pixels
   show(stream, film, moved_, {});
 }
 
