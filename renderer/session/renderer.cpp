@@ -110,6 +110,9 @@ void Renderer::take(Relight relight) {
 void Renderer::remix() {
   film_->set_mix(relight_.weights), coarse_->set_mix(relight_.weights);
   if (display_) display_->mixed();
+  constexpr double k_drag_seconds = 0.5;  // between mixes, at most; the first is shown meanwhile
+  mix_dragged_ = since_mix_.seconds() < k_drag_seconds;
+  since_mix_.restart();
   mix_pending_ = true;
   if (!options_.interactive) settle_mix();
 }

@@ -365,7 +365,11 @@ void Session::Impl::run() {
     lock.unlock();
     try {
       if (renderer && renderer->ready()) {
-        if (mixing && !dirty) renderer->settle_mix(), dirty = true;
+        if (mixing && !dirty) {
+          // A drag has shown samples as they are, which may be few: the filter comes before more of them.
+          renderer->settle_mix();
+          publish_picture(*renderer, false);
+        }
         advance(*renderer, work);
       } else {
         publish();
