@@ -110,8 +110,13 @@ void Renderer::take(Relight relight) {
 void Renderer::remix() {
   film_->set_mix(relight_.weights), coarse_->set_mix(relight_.weights);
   if (display_) display_->mixed();
-  constexpr double k_drag_seconds = 0.5;  // between mixes, at most; the first is shown meanwhile
-  mix_dragged_ = since_mix_.seconds() < k_drag_seconds;
+  // A drag at a slider changes one group, and that at presets comes as a row of mixes.
+  constexpr double k_drag_seconds = 0.5;  // between these, at most; the first is shown meanwhile
+  mixed_.resize(relight_.weights.size(), vec3(1));
+  size_t groups = 0;
+  for (size_t g = 0; g < mixed_.size(); ++g)
+    groups += std::exchange(mixed_[g], relight_.weights[g]) != relight_.weights[g];
+  mix_dragged_ = groups <= 1 || since_mix_.seconds() < k_drag_seconds;
   since_mix_.restart();
   mix_pending_ = true;
   if (!options_.interactive) settle_mix();

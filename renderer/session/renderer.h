@@ -303,7 +303,8 @@ class Renderer {
   std::map<std::string, std::string> applied_;  ///< settings that the picture is made with
   World world_;
   Relight relight_;
-  bool mix_pending_ = false, mix_dragged_ = false;  ///< not yet in the film's sums; soon behind another one
+  bool mix_pending_ = false, mix_dragged_ = false;  ///< not yet in the film's sums; by somebody who drags
+  std::vector<vec3> mixed_;                         ///< weights of the last mix
   Timer since_mix_;
   std::shared_ptr<const scene::Scene> loaded_;  ///< as set_scene() was given it
   std::unique_ptr<Engine> engine_;              ///< null before the first scene; goes before the world

@@ -77,7 +77,7 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
   const film::View v = view();
   const bool quick = mix_pending_ && samples() > 0 && film_->quick() && v.layer == shared::k_layer_beauty &&
                      v.show == (1u << paths::k_component_count) - 1 && v.tiles == 0;
-  // A drag is shown at display rate, by samples as they are. Another mix that comes alone takes a little
+  // A drag is shown at display rate, by samples as they are. A mix of other groups at once takes a little
   // longer where that would be grain in place of a picture that is filtered.
   if (quick && (mix_dragged_ || !previewed(v) || display_->shares().filtered < k_little_filtered)) {
     engine_->developer().mix(engine_->wavefront().stream(), *film_, v);

@@ -6,6 +6,7 @@
 #include "ui/layout.h"
 #include "ui/runner.h"
 
+#include <numeric>
 #include <sstream>
 
 using namespace lucerna;
@@ -180,7 +181,8 @@ TEST_CASE("mouse, keys and console act by commands, which a saved session holds"
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const std::vector<std::string> lines = lines_of(saved);
-  INFO(lines.size());
+  INFO(std::accumulate(lines.begin(), lines.end(), std::string(),
+                       [](const std::string& all, const std::string& line) { return all + line + "\n"; }));
   REQUIRE(lines.size() == 11);
   CHECK_THAT(lines[1], Catch::StartsWith("scene.open ") && Catch::EndsWith("hall.gltf"));
   CHECK(lines[2] == "wait_scene");
