@@ -6,7 +6,8 @@
 //
 // Filtering is done on a grid of half the picture's resolution, on light divided by the surface's colour: an
 // edge-avoiding a-trous filter (H. Dammertz et al. 2010) that stops at differences of more than the noise (C.
-// Schied et al. 2017), which the two halves of the samples tell of.
+// Schied et al. 2017), which the two halves of the samples tell of. A pixel whose samples have met several
+// surfaces is shown as a mixture of what those around it that show each of them are.
 #include <optional>
 
 #include "film/film.h"

@@ -5,6 +5,10 @@
 #include "shaders/shared/lanes.h"
 #include "shaders/shared/preview.h"
 
+// Light that has come by way of other surfaces, which single paths find by chance: secondary and tertiary. Lamps' own is there or
+// it is not.
+const vec4 k_preview_by_way = vec4(0.0, 1.0, 1.0, 0.0);
+
 // By component: rgb, standard error of the luminance.
 struct PreviewLight {
   vec4 of[k_component_count];
@@ -54,15 +58,18 @@ struct PreviewSurface {
   float depth;  // [m]; 0: nothing is there; below 0: not known
   vec3 normal, albedo;
   float samples;
-  bool emits;  // as far as a ray has met it
+  bool emits;     // as far as a ray has met it
+  float covered;  // share of the samples that have met a surface, where any has
 };
+const float k_preview_least_covered = 1.0 / 255.0;
 PreviewSurface preview_surface(vec4 texel) {
   vec4 albedo = unpackUnorm4x8(floatBitsToUint(texel.z));
-  return PreviewSurface(texel.x, preview_normal(floatBitsToUint(texel.y)), albedo.rgb, texel.w, albedo.a < 0.5);
+  bool emits = albedo.a < 0.5 * k_preview_least_covered;
+  return PreviewSurface(texel.x, preview_normal(floatBitsToUint(texel.y)), albedo.rgb, texel.w, emits, emits ? 1.0 : albedo.a);
 }
 vec4 preview_texel(PreviewSurface s) {
-  return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)),
-              uintBitsToFloat(packUnorm4x8(vec4(s.albedo, s.emits ? 0.0 : 1.0))), s.samples);
+  float covered = s.emits ? 0.0 : max(s.covered, k_preview_least_covered);
+  return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)), uintBitsToFloat(packUnorm4x8(vec4(s.albedo, covered))), s.samples);
 }
 
 // Whether a pixel that was shown, or holds samples, tells of light at all.
@@ -92,8 +99,31 @@ bool preview_may_be_same(PreviewSurface now, PreviewSurface was) {
   return now.depth < 0.0 || was.depth < 0.0 || preview_same(now, was);
 }
 
+// Whether a surface that emits is seen by the middle of a pixel beside. `surfaces`: what rays through the middles have met.
+bool preview_beside_emitter(samplerBuffer surfaces, uvec2 size, uint pixel) {
+  ivec2 xy = ivec2(pixel % size.x, pixel / size.x);
+  bool beside = false;
+  for (int k = 0; k < 9 && !beside; ++k) {
+    ivec2 at = clamp(xy + ivec2(k % 3, k / 3) - 1, ivec2(0), ivec2(size) - 1);
+    beside = preview_surface(texelFetch(surfaces, at.y * int(size.x) + at.x)).emits;
+  }
+  return beside;
+}
+// Whether samples of a pixel show more than one surface, or one and what is behind all: its depth, normal and colour are means
+// then, and its light a mixture. `centre`: what a ray through its middle has met; depth below 0: not known. `primary`: the
+// luminance that the samples have of lamps' own light, in units of white. `surfaces`: as preview_beside_emitter has it.
+const float k_preview_bright = 0.25, k_preview_facing = 0.95;
+bool preview_mixed(PreviewSurface s, PreviewSurface centre, float primary, samplerBuffer surfaces, uvec2 size, uint pixel) {
+  if (s.samples < 2.0 || s.depth <= 0.0) return false;
+  if (s.covered < 1.0) return true;
+  if (centre.depth < 0.0) return false;
+  if (!preview_same(s, centre) || dot(s.normal, centre.normal) < k_preview_facing) return true;
+  return !s.emits && primary > k_preview_bright && preview_beside_emitter(surfaces, size, pixel);
+}
+
 // Whether one surface's light tells of the other's: 0..1. `offset`: between their points; `scale`: how far they may be off
-// each other's plane [m].
+// each other's plane [m]. Colours of which one is four times as bright count half: light over the colour is not what falls on a
+// surface where it mirrors some of it, and next to a table that shines a dark mat would glow.
 float preview_alike(PreviewSurface a, PreviewSurface b, vec3 offset, float scale) {
   if (a.depth < 0.0 || b.depth < 0.0) return 1.0;
   if (a.depth == 0.0 || b.depth == 0.0) return a.depth == b.depth ? 1.0 : 0.0;
@@ -101,6 +131,7 @@ float preview_alike(PreviewSurface a, PreviewSurface b, vec3 offset, float scale
   float facing = max(dot(a.normal, b.normal), 0.0);
   float off = max(abs(dot(a.normal, offset)), abs(dot(b.normal, offset))) / scale;
   float facing8 = square(square(square(facing)));
-  return square(facing8) * exp2(-off * off);
+  float colours = 0.5 * log2(luminance(preview_modulation(a)) / luminance(preview_modulation(b)));
+  return square(facing8) * exp2(-off * off - square(square(colours)));
 }
 #endif

@@ -23,9 +23,6 @@ layout(scalar) writeonly buffer GridNoise { vec4 grid_noise[]; };  // standard e
 const float k_most_lost = 32.0;
 // Per sample of a cell: how soon one that is alone is taken at its word.
 const float k_alone_until = 0.05;
-// Light that has come by way of other surfaces, which single paths find by chance: secondary and tertiary. Lamps' own is there or
-// it is not.
-const vec4 k_by_way = vec4(0.0, 1.0, 1.0, 0.0);
 const float k_around = 9.0;                    // cells whose paths might have found it
 const float k_dark = 0.25, k_not_dark = 0.75;  // of what is to be expected
 // Light from lamps and bundled light have bright parts with sharp borders, which would glow if what is lost there were spread.
@@ -127,7 +124,7 @@ void main() {
     // Few paths that find next to nothing tell of no noise: they have what samples have of the light that is to be expected.
     uvec2 blocks = uvec2(push.blocks_across, push.blocks_down);
     vec4 expected = texelFetch(before_texels, int(cell)) * preview_change(change_texels, blocks, vec2(xy));
-    vec4 dark = k_by_way * (1.0 - smoothstep(vec4(k_dark), vec4(k_not_dark), mean / max(expected, vec4(1e-6))));
+    vec4 dark = k_preview_by_way * (1.0 - smoothstep(vec4(k_dark), vec4(k_not_dark), mean / max(expected, vec4(1e-6))));
     vec4 noise = texelFetch(change_texels, int(blocks.x * blocks.y));
     // Where one path of 1 + noise finds the light: how likely all of those around have missed it.
     vec4 missed = exp(-k_around * here.samples / (1.0 + noise));
@@ -153,7 +150,7 @@ void main() {
   vec4 chance = by_chance / max(bright, vec4(1e-20)) *
                 (1.0 - smoothstep(vec4(k_agree), vec4(k_disagree), certain / max(brightest, vec4(1e-20))));
   if (own.of[0].w < 0.0) chance = 1.0 - smoothstep(vec4(k_agree), vec4(k_disagree), next_bright / max(brightest, vec4(1e-20)));
-  vec4 back = max(k_by_way, chance);
+  vec4 back = max(k_preview_by_way, chance);
   lost = back * max(lost - preview_luminances(result), vec4(0.0));
 #endif
   filtered_lost[cell] = lost;

@@ -10,11 +10,23 @@ layout(scalar) writeonly buffer GridSurfaces { vec4 grid_surfaces[]; };
 // Luminance by component of what was shown before, likewise over the colour; the present's where that is not known.
 layout(scalar) writeonly buffer GridBefore { vec4 grid_before[]; };
 
+PreviewSurface centre_of(int pixel) {
+  PreviewSurface s = preview_surface(texelFetch(guide_surfaces, pixel));
+  if (push.surfaces != k_preview_surface_seen) s.depth = -1.0;
+  return s;
+}
+
 // Where the film has no samples, as it is known otherwise.
 PreviewSurface surface_at(int pixel) {
   if (push.sampled != 0u) return preview_surface(texelFetch(surface_texels, pixel));
   vec4 texel = push.surfaces != k_preview_surface_unknown ? texelFetch(guide_surfaces, pixel) : vec4(-1.0, 0.0, 0.0, 0.0);
   return preview_surface(vec4(texel.xyz, 0.0));
+}
+
+// Whether a pixel's samples show several surfaces.
+bool mixed(int pixel, PreviewSurface s) {
+  float primary = luminance(preview_light(packed_texels, pixel).of[0].rgb);
+  return preview_mixed(s, centre_of(pixel), primary, guide_surfaces, uvec2(push.width, push.height), uint(pixel));
 }
 
 // Whether a draft's pixel may show something else than a cell of it: light of surfaces that emit and of those that do not, side
@@ -47,13 +59,26 @@ void add(vec4 a, vec4 b, PreviewSurface s, float weight) {
   weights += weight;
 }
 
+int pixel_of(uvec2 xy, uint k) {
+  uvec2 at = min(xy + push.step / 2u * uvec2(k % 2u, k / 2u), uvec2(push.width, push.height) - 1u);
+  return int(at.y * push.width + at.x);
+}
+bool alike(PreviewSurface a, PreviewSurface b) {
+  return (a.depth > 0.0) == (b.depth > 0.0) && dot(a.normal, b.normal) > 0.8 && a.emits == b.emits;
+}
+
 void main() {
   uint cell = global_index();
   if (cell >= push.across * push.down) return;
   uvec2 xy = push.step * uvec2(cell % push.across, cell / push.across);
   for (uint c = 0u; c < k_component_count; ++c) total.of[c] = vec4(0.0);
   // The cell's surface is that of its first pixel; pixels that show another one are left out where that is known.
-  PreviewSurface here = surface_at(int(xy.y * push.width + xy.x));
+  int first = int(xy.y * push.width + xy.x);
+  PreviewSurface here = surface_at(first), centre = centre_of(first);
+  if (centre.depth >= 0.0 && mixed(first, here)) {
+    centre.samples = here.samples;
+    here = centre;
+  }
   if (push.draft_width > 0u) {
     uvec2 at = min(xy * uvec2(push.draft_width, push.draft_height) / uvec2(push.width, push.height),
                    uvec2(push.draft_width, push.draft_height) - 1u);
@@ -63,25 +88,31 @@ void main() {
     if ((here.depth < 0.0 || doubtful) && s.samples > 0.0) here = s;
     if (push.repainted != 0u && here.samples <= 0.0 && s.samples > 0.0) here.albedo = s.albedo;
     // Across an edge it is another surface's light, and better than none.
-    bool alike = (s.depth > 0.0) == (here.depth > 0.0) &&
+    bool akin = (s.depth > 0.0) == (here.depth > 0.0) &&
                  (s.depth <= 0.0 || (dot(s.normal, here.normal) > 0.8 && abs(s.depth - here.depth) < 0.1 * here.depth));
-    alike = alike && !mixed_draft(at, here.emits);
-    float weight = push.draft_share * s.samples * (alike ? 1.0 : 1e-3);
+    akin = akin && !mixed_draft(at, here.emits);
+    float weight = push.draft_share * s.samples * (akin ? 1.0 : 1e-3);
     add(texelFetch(draft_texels, 2 * pixel), texelFetch(draft_texels, 2 * pixel + 1), s, weight);
   }
   vec4 before = vec4(0.0);
   float before_known = 0.0;
-  for (uint k = 0u; k < 4u; ++k) {  // of a wider cell, which is one of a draft alone, these tell enough
-    uvec2 at = min(xy + push.step / 2u * uvec2(k % 2u, k / 2u), uvec2(push.width, push.height) - 1u);
-    int pixel = int(at.y * push.width + at.x);
+  // Pixels that show other surfaces as well are left out where there are some that do not.
+  bool show_others[4], pure = false;
+  for (uint k = 0u; k < 4u && push.sampled != 0u; ++k) {
+    int pixel = pixel_of(xy, k);
     PreviewSurface s = surface_at(pixel);
-    bool alike = (s.depth > 0.0) == (here.depth > 0.0) && dot(s.normal, here.normal) > 0.8 && s.emits == here.emits;
-    if (s.samples > 0.0 && (alike || s.depth <= 0.0))
+    show_others[k] = mixed(pixel, s);
+    pure = pure || (s.samples > 0.0 && alike(s, here) && !show_others[k]);
+  }
+  for (uint k = 0u; k < 4u; ++k) {  // of a wider cell, which is one of a draft alone, these tell enough
+    int pixel = pixel_of(xy, k);
+    PreviewSurface s = surface_at(pixel);
+    if (s.samples > 0.0 && (alike(s, here) || s.depth < 0.0) && !(pure && show_others[k]))
       add(texelFetch(packed_texels, 2 * pixel), texelFetch(packed_texels, 2 * pixel + 1), s, s.samples);
     if (push.history == 0u) continue;
     PreviewSurface was = preview_surface(texelFetch(history_surfaces, pixel));
     PreviewLight l = preview_light(history_texels, pixel);
-    if (preview_lit(l, was) && (alike || s.depth <= 0.0) && (push.moved == 0u || preview_may_be_same(s, was))) {
+    if (preview_lit(l, was) && (alike(s, here) || s.depth < 0.0) && (push.moved == 0u || preview_may_be_same(s, was))) {
       vec3 m = push.history_scale / (was.depth >= 0.0 ? preview_modulation(was) : preview_modulation(here));
       before += vec4(luminance(m * l.of[0].rgb), luminance(m * l.of[1].rgb), luminance(m * l.of[2].rgb), luminance(m * l.of[3].rgb));
       before_known += 1.0;

@@ -29,6 +29,7 @@ void main() {
   s.normal = normal.xyz / max(length(normal.xyz), 1e-20);
   s.albedo = albedo.xyz / max(albedo.w, 1.0);
   s.samples = float(count);
+  s.covered = albedo.w > 0.0 ? albedo.w / n : 1.0;
   vec4 guide = push.guided != 0u ? texelFetch(guide_surfaces, int(pixel)) : vec4(-1.0, 0.0, 0.0, 0.0);
   s.emits = push.guided != 0u && preview_surface(guide).emits;
   vec4 texel = count > 0u ? preview_texel(s) : vec4(guide.xyz, 0.0);

@@ -25,6 +25,8 @@ const float k_by_chance = 3.0, k_by_chance_same = 16.0;
 const float k_least_noise = 0.5;  // of a sample, relative, in light that has not changed
 // Relative noise of a pixel up to which it is shown as it is, and from which on it is filtered.
 const float k_clean = 0.02, k_noisy = 0.08;
+// Of what pixels around have, the noise of a pixel from which on that is asked itself.
+const float k_outlier = 3.0;
 // Of filtered light, what the filter may be off by.
 const float k_filter_error = 0.04;
 // Mean size of a deviation, in standard errors: sqrt(2 / pi) of a normal variable's; and a quarter more, by which light that was
@@ -34,7 +36,7 @@ const float k_mean_deviation = 1.25 * 0.798;
 // Of the nearest cells' weight, what has to be of a pixel's surface. Else cells so far around are asked.
 const float k_alone = 0.02;
 const int k_wide = 3;
-// A pixel that is of no cell's surface is filtered until it has so many samples, less and less up to so many.
+// A pixel that is of no cell's surface, or an outlier, is filtered until it has so many samples, less and less up to so many.
 const float k_alone_until = 16.0, k_not_alone_from = 96.0;
 // How much filtered light may get of what the filter has lost: in units of white, and of itself.
 const float k_most_back = 1.0, k_most_back_relative = 3.0;
@@ -46,6 +48,9 @@ vec4 light[k_component_count];
 vec4 noise = vec4(0.0), before_smooth = vec4(0.0), lost = vec4(0.0);
 vec3 modulation = vec3(0.0);
 float weights = 0.0, nearest_weight = 0.0, nearest_depth = -1.0;
+ivec2 grid_size() { return ivec2(push.across, push.down); }
+bool in_grid(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, grid_size())); }
+int cell_at(ivec2 at) { return at.y * int(push.across) + at.x; }
 
 // How far a cell's light is its own surface's: it may have next to nothing but light of what is beside it (preview_halve.comp).
 float own_light(PreviewSurface s) { return clamp(4.0 * s.samples, 1e-3, 1.0); }
@@ -65,6 +70,90 @@ void add_cell(int cell, PreviewSurface s, float w, bool other) {
   modulation += there * preview_modulation(s);
   weights += there;
   if (s.samples > 0.0 && s.depth >= 0.0 && there > nearest_weight) nearest_weight = there, nearest_depth = s.depth;
+}
+
+// What is around a pixel whose samples show several surfaces: the one in its middle, others, and what is behind all.
+const uint k_own = 0u, k_other = 1u, k_background = 2u, k_part_count = 3u;
+uint part_of(PreviewSurface cell, PreviewSurface centre) {
+  if (cell.depth == 0.0) return k_background;
+  return preview_same(cell, centre) ? k_own : k_other;
+}
+struct Part {
+  float weight, depth, primary, emits;
+  vec3 normal, albedo;
+};
+const int k_mix_across = 3;  // cells
+const float k_apart = 0.3;   // difference of depths, relative, that tells as much as one of normals
+
+// How much of what is met is of part a, by where between both parts the means of the pixel's samples lie.
+float share_of(Part a, Part b, PreviewSurface here, float primary) {
+  vec3 normal = a.normal - b.normal, albedo = a.albedo - b.albedo;
+  float depth = (a.depth - b.depth) / (k_apart * here.depth), light = a.primary - b.primary;
+  float off = dot(here.normal - b.normal, normal) + dot(here.albedo - b.albedo, albedo) + (here.depth - b.depth) / (k_apart * here.depth) * depth;
+  float all = dot(normal, normal) + dot(albedo, albedo) + square(depth);
+  // Light that is emitted has no noise.
+  if (max(a.emits, b.emits) > 0.5) {
+    off = light * (primary - b.primary);
+    all = square(light);
+  }
+  return all > 0.0 ? clamp(off / all, 0.0, 1.0) : 1.0;
+}
+
+// Light of a pixel that shows several surfaces: of those around that show each of them alone, in the shares that its means
+// and the number of its rays that have met any tell of. False, and nothing is done: nobody around shows its own.
+bool mix_cells(vec2 p, PreviewSurface here, PreviewSurface centre, float primary) {
+  if (centre.depth <= 0.0) centre = here;
+  Part parts[k_part_count];
+  for (uint i = 0u; i < k_part_count; ++i) parts[i] = Part(0.0, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
+  for (int k = 0; k < k_mix_across * k_mix_across; ++k) {
+    ivec2 at = ivec2(round(p)) + ivec2(k % k_mix_across, k / k_mix_across) - k_mix_across / 2;
+    if (!in_grid(at)) continue;
+    int cell = cell_at(at);
+    PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
+    if (s.depth < 0.0 || s.samples <= 0.0) continue;
+    vec2 away = vec2(at) - p;
+    float w = exp2(-dot(away, away)) * own_light(s);
+    uint i = part_of(s, centre);
+    parts[i].weight += w;
+    parts[i].depth += w * s.depth;
+    parts[i].normal += w * s.normal;
+    parts[i].albedo += w * s.albedo;
+    parts[i].emits += s.emits ? w : 0.0;
+    parts[i].primary += w * luminance(preview_modulation(s) * preview_light(filtered_texels, cell).of[0].rgb);
+  }
+  if (parts[k_own].weight <= 0.0) return false;
+  for (uint i = 0u; i < k_part_count; ++i) {
+    float scale = 1.0 / max(parts[i].weight, 1e-20);
+    parts[i].depth *= scale;
+    parts[i].normal *= scale;
+    parts[i].albedo *= scale;
+    parts[i].emits *= scale;
+    parts[i].primary *= scale;
+  }
+  float own = parts[k_other].weight > 0.0 ? share_of(parts[k_own], parts[k_other], here, primary) : 1.0;
+  float met = parts[k_background].weight > 0.0 ? here.covered : 1.0;
+  float share[k_part_count];
+  share[k_own] = met * own / parts[k_own].weight;
+  share[k_other] = met * (1.0 - own) / max(parts[k_other].weight, 1e-20);
+  share[k_background] = (1.0 - met) / max(parts[k_background].weight, 1e-20);
+  for (int k = 0; k < k_mix_across * k_mix_across; ++k) {
+    ivec2 at = ivec2(round(p)) + ivec2(k % k_mix_across, k / k_mix_across) - k_mix_across / 2;
+    if (!in_grid(at)) continue;
+    int cell = cell_at(at);
+    PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
+    if (s.depth < 0.0 || s.samples <= 0.0) continue;
+    vec2 away = vec2(at) - p;
+    float w = exp2(-dot(away, away)) * own_light(s) * share[part_of(s, centre)];
+    vec3 m = preview_modulation(s);
+    float shown = luminance(m);
+    PreviewLight l = preview_light(filtered_texels, cell);
+    for (uint c = 0u; c < k_component_count; ++c) light[c] += w * l.of[c] * vec4(m, shown);
+    lost += w * shown * texelFetch(lost_texels, cell);
+    if (push.history != 0u) before_smooth += w * shown * texelFetch(before_texels, cell);
+    noise += w * shown * texelFetch(noise_texels, cell) * sqrt(max(s.samples, 1e-3));
+  }
+  weights = 1.0;
+  return true;
 }
 
 // Whether no pixel around shows its surface: what one ray has met of a veil or of leaves finer than pixels.
@@ -98,13 +187,19 @@ void main() {
     vec2 p = (vec2(pixel % push.width, pixel / push.width) + 0.5) / float(push.step) - 0.5;
     ivec2 base = ivec2(floor(p));
     vec2 f = p - vec2(base);
-    // The grid's four nearest cells, those of another surface left out.
     for (uint c = 0u; c < k_component_count; ++c) light[c] = vec4(0.0);
-    float akin = 0.0;
-    for (int k = 0; k < 4; ++k) {
+    PreviewSurface centre = preview_surface(texelFetch(guide_surfaces, int(pixel)));
+    if (push.surfaces != k_preview_surface_seen) centre.depth = -1.0;
+    float primary = luminance(own.of[0].rgb);
+    bool mixture = push.sampled != 0u &&
+                   preview_mixed(here, centre, primary, guide_surfaces, uvec2(push.width, push.height), pixel) &&
+                   mix_cells(p, here, centre, primary);
+    float akin = mixture ? 1.0 : 0.0;
+    // The grid's four nearest cells, those of another surface left out.
+    for (int k = 0; k < 4 && !mixture; ++k) {
       ivec2 corner = ivec2(k & 1, k >> 1);
-      ivec2 at = clamp(base + corner, ivec2(0), ivec2(push.across, push.down) - 1);
-      int cell = at.y * int(push.across) + at.x;
+      ivec2 at = clamp(base + corner, ivec2(0), grid_size() - 1);
+      int cell = cell_at(at);
       PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
       vec2 g = mix(1.0 - f, f, vec2(corner));
       float w = g.x * g.y + 1e-3;
@@ -121,22 +216,24 @@ void main() {
     // A narrow surface has few cells of its own, which the next pixel of it may be beside.
     for (int k = 0; akin <= k_alone && k < 2 * k_wide * 2 * k_wide; ++k) {
       ivec2 at = base + ivec2(k % (2 * k_wide), k / (2 * k_wide)) - (k_wide - 1);
-      if (any(lessThan(at, ivec2(0))) || at.x >= int(push.across) || at.y >= int(push.down)) continue;
-      int cell = at.y * int(push.across) + at.x;
+      if (!in_grid(at)) continue;
+      int cell = cell_at(at);
       PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
       vec2 away = vec2(at) - p;
       if (s.depth >= 0.0 && preview_same(here, s)) add_cell(cell, s, exp2(-dot(away, away)), false);
     }
     if (akin <= k_alone && weights > k_alone) akin = 1.0;
     float inverse = 1.0 / max(weights, 1e-20);
-    if (here.depth >= 0.0 && (push.repainted == 0u || here.samples > 0.0)) {
+    if (mixture) {
+      modulation = vec3(1.0);  // each part has its own
+    } else if (here.depth >= 0.0 && (push.repainted == 0u || here.samples > 0.0)) {
       modulation = preview_modulation(here);
     } else {
       modulation *= inverse;
     }
     noise *= inverse * luminance(modulation) * inversesqrt(max(here.samples, 1.0));
     // What cells know of noise is not this pixel's then, and two paths that found nothing are not certain.
-    float alone = akin > k_alone ? 0.0 : 1.0 - smoothstep(k_alone_until, k_not_alone_from, here.samples);
+    float few = 1.0 - smoothstep(k_alone_until, k_not_alone_from, here.samples), alone = akin > k_alone ? 0.0 : few;
     PreviewLight old;
     for (uint c = 0u; c < k_component_count; ++c) old.of[c] = vec4(0.0);
     bool has_old = false;
@@ -147,7 +244,7 @@ void main() {
       // A surface of another colour shows the light that fell on it by that; so does, seen from nearer, one whose texture has
       // more detail than there was.
       bool finer = push.moved != 0u && push.surfaces == k_preview_surface_seen;
-      vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min(modulation / preview_modulation(was), vec3(8.0)) : vec3(1.0);
+      vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min((mixture ? preview_modulation(here) : modulation) / preview_modulation(was), vec3(8.0)) : vec3(1.0);
       vec4 change = preview_change(change_texels, uvec2(push.blocks_across, push.blocks_down), p);
       before_smooth *= change;
       for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= change[c] * vec4(repaint, luminance(repaint));
@@ -167,9 +264,14 @@ void main() {
       float smooth_luminance = luminance(smooth_light), own_luminance = luminance(own.of[c].rgb);
       // Where light was lost nearby, paths that found none are not certain.
       noise[c] = max(noise[c], luminance(modulation) * back);
-      float relative = noise[c] / max(max(smooth_luminance, own_luminance), k_luminance_floor);
+      // Nor is a pixel whose halves differ by far more than those around: a rare bright path would show as a speck.
+      float doubt_own = own.of[c].w > k_outlier * noise[c] ? own.of[c].w : 0.0;
+      float relative = max(noise[c], doubt_own) / max(max(smooth_luminance, own_luminance), k_luminance_floor);
+      // Two of few paths that brought far more than is around may agree by chance. Lamps' own light has such borders.
+      bool far_above = k_preview_by_way[c] > 0.0 && own_luminance > 2.0 * smooth_luminance + k_outlier * noise[c];
       // How far its own samples are not to be shown alone.
-      float rough = here.samples > 0.0 ? max(smoothstep(k_clean, k_noisy, relative), alone) : 1.0;
+      float unlikely = far_above ? few * smoothstep(k_clean, k_noisy, noise[c] / max(smooth_luminance, k_luminance_floor)) : 0.0;
+      float rough = here.samples > 0.0 ? max(smoothstep(k_clean, k_noisy, relative), max(unlikely, alone)) : 1.0;
       float amount = push.filtering != 0u || here.samples <= 0.0 ? rough : 0.0;
       vec3 now = mix(own.of[c].rgb, smooth_light, amount);
       float smooth_error = luminance(modulation) * max(light[c].w, 0.0) * inverse + k_filter_error * smooth_luminance;

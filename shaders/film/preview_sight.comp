@@ -19,5 +19,5 @@ void main() {
   vec3 sent = vec3(0.0);
   for (uint lane = 0u; lane < k_light_lanes; ++lane) sent += texelFetch(radiance_texels, int(radiance_texel(slot, lane))).rgb;
   surfaces[push.first + slot] = preview_texel(PreviewSurface(met ? facing.w : 0.0, met ? normalize(facing.xyz) : vec3(0.0),
-                                                             colour.rgb, 0.0, met && max3(sent) > 0.0));
+                                                             colour.rgb, 0.0, met && max3(sent) > 0.0, 1.0));
 }

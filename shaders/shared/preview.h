@@ -3,8 +3,8 @@
 // Of a pixel: k_preview_texels texels of sixteen half floats, component by component red, green, blue and the standard
 // error of the luminance (below 0: not known), in units of what is shown white; and one texel of its surface: depth along the
 // view axis [m] (0: nothing is there; below 0: not known, and where a draft has seen it about k_preview_about less
-// this), bits packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, 1 or, where it is known to emit
-// light, 0), samples.
+// this), bits packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, share of the samples that have met
+// it or, where it is known to emit light, 0), samples.
 #ifndef LUCERNA_SHARED_PREVIEW_H
 #define LUCERNA_SHARED_PREVIEW_H
 #include "shaders/shared/compat.h"

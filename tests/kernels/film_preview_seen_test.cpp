@@ -1,38 +1,9 @@
 // links: film film_io
 // What the window shows of a film while it is known what surface each pixel shows, through the real shaders.
-#include <cstring>
-
 #include "kernels/film_preview_support.h"
 
 using namespace lucerna;
 using namespace lucerna::test;
-
-namespace {
-
-struct Seen {
-  float albedo = 1, depth = 5;
-  bool emits = false;
-};
-
-/// Surfaces of a stage's pixels that face the eye, as shaders/shared/preview.h has them.
-gpu::Buffer surfaces_of(Stage& stage, const std::function<Seen(uint32_t x, uint32_t y)>& at) {
-  std::vector<vec4> texels;
-  for (uint32_t y = 0; y < stage.height; ++y)
-    for (uint32_t x = 0; x < stage.width; ++x) {
-      const Seen s = at(x, y);
-      const auto byte = uint32_t(std::lround(s.albedo * 255));
-      // A normal towards the eye is 0 on the octahedron.
-      const uint32_t bits[2] = {0, byte * 0x010101u | (s.emits ? 0 : 0xff000000u)};
-      vec4 texel(s.depth, 0, 0, 0);
-      std::memcpy(&texel.y, bits, sizeof bits);
-      texels.push_back(texel);
-    }
-  gpu::Buffer surfaces(stage.device, {.name = "surfaces", .bytes = texels.size() * 16, .texel = true});
-  surfaces.write(std::span<const vec4>(texels));
-  return surfaces;
-}
-
-}  // namespace
 
 TEST_CASE("where it is known what surfaces pixels show, a draft has edges and colours of single pixels") {
   // Stripes three pixels wide, bright and dark, and a step of depth with other light behind it.

@@ -1,0 +1,134 @@
+// links: film film_io
+// What the window shows where pixels' samples meet several surfaces or materials, through the real shaders.
+#include <algorithm>
+
+#include "kernels/film_preview_support.h"
+
+using namespace lucerna;
+using namespace lucerna::test;
+
+namespace {
+
+/// Share of a pixel that the nearer of two surfaces covers, left of a border that is askew.
+float covered(uint32_t x, uint32_t y) { return std::clamp(20.5f + 0.3f * float(y) - float(x), 0.0f, 1.0f); }
+
+struct Border {
+  double edge,
+      beside;  ///< rms of relative errors of mixed pixels, mean of the nearer one's next to the border
+};
+
+/// Of light `near` that one in four paths finds, before `far`, which has no noise.
+Border border_of(Stage& stage, float near, float far) {
+  const std::vector<float> shown = stage.shown();
+  double square = 0, mixed = 0, sum = 0, count = 0;
+  for (uint32_t y = 2; y + 2 < stage.height; ++y)
+    for (uint32_t x = 2; x + 2 < stage.width; ++x) {
+      const float share = covered(x, y), truth = share * near + (1 - share) * far,
+                  value = shown[y * stage.width + x];
+      if (share > 0 && share < 1) {
+        square += (value / truth - 1) * (value / truth - 1), mixed += 1;
+      } else if (share == 1 && covered(x + 2, y) < 1) {
+        sum += value, count += 1;
+      }
+    }
+  return {std::sqrt(square / mixed), sum / count};
+}
+
+constexpr float k_near = 0.15f, k_far = 0.9f;
+constexpr uint32_t k_samples = 12;
+// Of twelve samples' shares of two lights, for those shares that are there: sqrt(s (1 - s) / 12) times 0.75
+// over the mean.
+constexpr double k_edge_error = 0.3;
+
+/// Adds samples of the nearer surface, by its share, and of the other.
+void sample_border(Stage& stage, const Sample& near, const Sample& far) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<float> any(0, 1);
+  stage.sample(stage.film, k_samples, [&](uint32_t x, uint32_t y) {
+    if (any(random) >= covered(x, y)) return far;
+    Sample s = near;
+    s.light *= any(random) < 0.25f ? 4.0f : 0.0f;
+    return s;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("before a bright sky a pixel shows as much of either as its samples have met") {
+  Stage stage(64, 48);
+  sample_border(stage, {.light = vec3(k_near)}, {.light = vec3(k_far), .depth = 0});
+  stage.show();
+  const Border shown = border_of(stage, k_near, k_far);
+  INFO("edge " << shown.edge << ", beside it " << shown.beside);
+  CHECK(shown.edge < k_edge_error);
+  CHECK(shown.beside < 1.25 * k_near);
+}
+
+TEST_CASE("before another surface a pixel shows as much of either as its depth tells of") {
+  Stage stage(64, 48);
+  sample_border(stage, {.light = vec3(k_near), .depth = 2}, {.light = vec3(k_far), .depth = 9});
+  const gpu::Buffer surfaces = surfaces_of(
+      stage, [](uint32_t x, uint32_t y) { return Seen{.depth = covered(x, y) > 0.5f ? 2.0f : 9.0f}; });
+  stage.preview.develop(stage.stream, stage.film, nullptr, stage.view, stage.camera, true, film::Sampled::all,
+                        &surfaces);
+  const Border shown = border_of(stage, k_near, k_far);
+  INFO("edge " << shown.edge << ", beside it " << shown.beside);
+  CHECK(shown.edge < k_edge_error);
+  CHECK(shown.beside < 1.25 * k_near);
+}
+
+TEST_CASE("beside a pane that shines in its plane a frame shows its own light, and their border both") {
+  Stage stage(64, 48);
+  stage.component = 0;
+  sample_border(stage, {.light = vec3(k_near)}, {.light = vec3(k_far)});
+  const gpu::Buffer surfaces =
+      surfaces_of(stage, [](uint32_t x, uint32_t y) { return Seen{.emits = covered(x, y) <= 0.5f}; });
+  stage.preview.develop(stage.stream, stage.film, nullptr, stage.view, stage.camera, true, film::Sampled::all,
+                        &surfaces);
+  const Border shown = border_of(stage, k_near, k_far);
+  INFO("edge " << shown.edge << ", beside it " << shown.beside);
+  CHECK(shown.edge < k_edge_error);
+  CHECK(shown.beside < 1.25 * k_near);
+}
+
+TEST_CASE("a dark mat on a table that mirrors a window does not glow") {
+  // The table's light is a mirror's: over its colour it is far more than what falls on the mat.
+  Stage stage(96, 64);
+  std::mt19937 random(3);
+  const auto mat = [](uint32_t x, uint32_t y) { return x >= 30 && x < 66 && y >= 20 && y < 44; };
+  stage.sample(stage.film, 2, [&](uint32_t x, uint32_t y) {
+    const float found = random() % 3 == 0 ? 3 : 0;
+    return mat(x, y) ? Sample{.light = vec3(0.01f * found), .albedo = vec3(0.05f)}
+                     : Sample{.light = vec3(0.8f * found), .albedo = vec3(0.5f)};
+  });
+  stage.show();
+  const std::vector<float> shown = stage.shown();
+  double sum = 0, count = 0;
+  for (uint32_t y = 20; y < 44; ++y)
+    for (uint32_t x = 30; x < 66; ++x) sum += shown[y * 96 + x], count += 1;
+  INFO("the mat's light " << sum / count);
+  CHECK(sum / count < 0.015);
+  CHECK(sum / count > 0.006);
+}
+
+TEST_CASE("a bright path among many, or two among few, is no speck") {
+  Stage stage(96, 64);
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise(0, 1);
+  const bool few = GENERATE(true, false);
+  const uint32_t samples = few ? 6 : 24;
+  // In every 16th column and row: a path of one half, or one of each.
+  std::vector<uint32_t> added(size_t{96} * 64, 0);
+  stage.sample(stage.film, samples, [&](uint32_t x, uint32_t y) {
+    float light = std::max(0.0f, 0.2f + 0.12f * noise(random));
+    if (x % 16 == 9 && y % 16 == 9 && x < 96 && y < 64 && ++added[y * 96 + x] <= (few ? 2u : 1u)) light += 6;
+    return Sample{.light = vec3(light)};
+  });
+  stage.show();
+  const std::vector<float> shown = stage.shown();
+  for (uint32_t y = 9; y < 64; y += 16)
+    for (uint32_t x = 9; x < 96; x += 16) {
+      INFO(samples << " samples, pixel " << x << " " << y);
+      CHECK(shown[y * 96 + x] < 0.4f);
+    }
+}
