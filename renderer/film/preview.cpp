@@ -79,8 +79,9 @@ uint64_t Preview::bytes() const {
     if (b) sum += b.bytes();
   };
   for (const Pixels* p : {&now_, &history_.pixels, &moved_, &draft_}) add(p->light), add(p->surfaces);
-  for (const gpu::Buffer* b : {&grid_, &grid_surfaces_, &filtered_, &before_[0], &before_[1], &lost_[0],
-                               &lost_[1], &noise_, &changes_, &ratios_, &shares_, &depths_, &nearest_})
+  for (const gpu::Buffer* b :
+       {&grid_, &grid_surfaces_, &filtered_, &before_[0], &before_[1], &lost_[0], &lost_[1], &texture_[0],
+        &texture_[1], &noise_, &changes_, &ratios_, &shares_, &depths_, &nearest_})
     add(*b);
   return sum;
 }
@@ -106,6 +107,7 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
   make(grid_surfaces_, "preview grid surfaces", cells * 16);
   for (gpu::Buffer& b : before_) make(b, "preview before", cells * 16);
   for (gpu::Buffer& b : lost_) make(b, "preview lost", cells * 16);
+  for (gpu::Buffer& b : texture_) make(b, "preview texture", cells * 16);
   make(noise_, "preview noise", cells * 16);
   const uint64_t blocks = uint64_t{change_blocks((width + 1) / 2)} * change_blocks((height + 1) / 2);
   make(changes_, "preview changes", blocks * k_preview_change_texels * 16);
@@ -222,6 +224,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   resources_.set("history_texels", before_edit.light);
   resources_.set("history_surfaces", before_edit.surfaces);
   resources_.set("GridBefore", before_[0]);
+  resources_.set("GridTexture", texture_[0]);
   resources_.set("Grid", grid_);
   resources_.set("GridSurfaces", grid_surfaces_);
   resources_.set("grid_surfaces", grid_surfaces_);
@@ -258,7 +261,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
     stream.dispatch(change_, resources_, push, 1);
   }
   const gpu::Buffer *from = &grid_, *to = &filtered_, *before = &before_[0], *before_to = &before_[1],
-                    *lost = &lost_[0], *lost_to = &lost_[1];
+                    *lost = &lost_[0], *lost_to = &lost_[1], *texture = &texture_[0],
+                    *texture_to = &texture_[1];
   // Cells that show one pixel of a draft tell nothing of its noise.
   const uint32_t base = draft && 3 * draft->width() < 2 * across ? 2 : 1;
   for (uint32_t pass = 0; pass < k_filter_passes; ++pass) {
@@ -268,6 +272,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
     resources_.set("FilteredBefore", *before_to);
     resources_.set("lost_texels", *lost);
     resources_.set("FilteredLost", *lost_to);
+    resources_.set("texture_texels", *texture);
+    resources_.set("FilteredTexture", *texture_to);
     const PreviewFilterPush push{.across = across,
                                  .down = down,
                                  // Even and odd cells meet at last.
@@ -283,10 +289,12 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
     std::swap(from, to);
     std::swap(before, before_to);
     std::swap(lost, lost_to);
+    std::swap(texture, texture_to);
   }
   resources_.set("filtered_texels", *from);
   resources_.set("before_texels", *before);
   resources_.set("lost_texels", *lost);
+  resources_.set("texture_texels", *texture);
   resources_.set("Packed", now_.light);
   resources_.set("PackedSurfaces", now_.surfaces);
   resources_.set("Picture", film.picture());

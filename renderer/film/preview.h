@@ -104,8 +104,8 @@ class Preview {
   Pixels now_, draft_;
   History history_;
   Pixels moved_;  ///< the history's as they are seen now, where that is from elsewhere
-  gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], lost_[2], noise_, changes_, ratios_, shares_,
-      depths_, nearest_;
+  gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], lost_[2], texture_[2], noise_, changes_, ratios_,
+      shares_, depths_, nearest_;
   gpu::Resources resources_;
   PreviewCamera camera_;
   std::optional<PreviewCamera> moved_camera_;  ///< of `moved_`

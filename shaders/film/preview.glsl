@@ -89,6 +89,25 @@ vec4 preview_change(samplerBuffer ratios, uvec2 blocks, vec2 cell) {
 // What light is divided by to be filtered: the surface's colour, where it has one.
 vec3 preview_modulation(PreviewSurface s) { return s.depth > 0.0 ? max(s.albedo, vec3(0.04)) : vec3(1.0); }
 
+// How light goes with the colours of a surface: of pixels side by side the products of both's differences, and the squares of those
+// of the colour and of the light, in luminance; of how many such sums it is the mean (1 over that); and the mean of 1 over what
+// light is multiplied with to be filtered.
+struct PreviewTexture {
+  vec3 inverse;
+  float with_light, square, light_square, few;
+};
+PreviewTexture preview_texture(vec4 texel) {
+  vec4 a = vec4(unpackHalf2x16(floatBitsToUint(texel.x)), unpackHalf2x16(floatBitsToUint(texel.y)));
+  vec4 b = vec4(unpackHalf2x16(floatBitsToUint(texel.z)), unpackHalf2x16(floatBitsToUint(texel.w)));
+  return PreviewTexture(a.xyz, a.w, b.x, b.y, b.z);
+}
+vec4 preview_texel(PreviewTexture t) { return preview_texel(vec4(t.inverse, t.with_light), vec4(t.square, t.light_square, t.few, 0.0)); }
+PreviewTexture preview_sum(PreviewTexture a, PreviewTexture b, float weight) {
+  return PreviewTexture(a.inverse + weight * b.inverse, a.with_light + weight * b.with_light, a.square + weight * b.square,
+                        a.light_square + weight * b.light_square, a.few + square(weight) * b.few);
+}
+const PreviewTexture k_preview_no_texture = PreviewTexture(vec3(0.0), 0.0, 0.0, 0.0, 0.0);
+
 // Whether pixels of these show one surface.
 bool preview_same(PreviewSurface a, PreviewSurface b) {
   if (a.depth <= 0.0 || b.depth <= 0.0) return a.depth == b.depth;

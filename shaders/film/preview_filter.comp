@@ -13,10 +13,11 @@
 #endif
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewFilterPush push; };
-uniform samplerBuffer grid_texels, grid_surfaces, before_texels, lost_texels, change_texels;
+uniform samplerBuffer grid_texels, grid_surfaces, before_texels, lost_texels, change_texels, texture_texels;
 layout(scalar) writeonly buffer FilteredBefore { vec4 filtered_before[]; };  // the same way, so that both can be compared
 layout(scalar) writeonly buffer Filtered { vec4 filtered[]; };
 layout(scalar) writeonly buffer FilteredLost { vec4 filtered_lost[]; };  // luminance, by component
+layout(scalar) writeonly buffer FilteredTexture { vec4 filtered_texture[]; };
 layout(scalar) writeonly buffer GridNoise { vec4 grid_noise[]; };  // standard error of a cell, by component
 
 // Luminance of a cell, in units of white, up to which it is given back.
@@ -52,6 +53,7 @@ void main() {
   for (uint c = 0u; c < k_component_count; ++c) sum[c] = vec3(0.0);
   vec4 weights = vec4(0.0), variance = vec4(0.0), before = vec4(0.0), lost = vec4(0.0);
   float plain_sum = 0.0;
+  PreviewTexture colours = k_preview_no_texture;
 #if LUCERNA_PREVIEW_FIRST
   vec4 mean = vec4(0.0), square_mean = vec4(0.0), known = vec4(0.0), any_mean = vec4(0.0), any_square = vec4(0.0);
   vec4 around[k_component_count];  // on whatever surfaces, and weights
@@ -73,6 +75,7 @@ void main() {
     float plain = kernel * alike;
     vec4 w = vec4(plain);
     plain_sum += plain;
+    colours = preview_sum(colours, preview_texture(texelFetch(texture_texels, there)), plain);
 #if LUCERNA_PREVIEW_FIRST
     // Few cells hold most of what single paths bring: shown bright, they count for less.
     float white = 1.0 / luminance(preview_modulation(s));
@@ -138,6 +141,8 @@ void main() {
   error = sqrt(of_cell * alike_square) / max(plain_sum, 1e-20);
 #endif
   lost /= max(plain_sum, 1e-20);
+  filtered_texture[cell] = plain_sum > 0.0 ? preview_texel(preview_sum(k_preview_no_texture, colours, 1.0 / plain_sum))
+                                           : texelFetch(texture_texels, int(cell));
   PreviewLight result;
   for (uint c = 0u; c < k_component_count; ++c) result.of[c] = vec4(sum[c] * inverse[c], error[c]);
 #if LUCERNA_PREVIEW_FIRST

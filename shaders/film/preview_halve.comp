@@ -9,6 +9,7 @@ layout(scalar) writeonly buffer Grid { vec4 grid[]; };
 layout(scalar) writeonly buffer GridSurfaces { vec4 grid_surfaces[]; };
 // Luminance by component of what was shown before, likewise over the colour; the present's where that is not known.
 layout(scalar) writeonly buffer GridBefore { vec4 grid_before[]; };
+layout(scalar) writeonly buffer GridTexture { vec4 grid_texture[]; };
 
 PreviewSurface centre_of(int pixel) {
   PreviewSurface s = preview_surface(texelFetch(guide_surfaces, pixel));
@@ -67,6 +68,36 @@ bool alike(PreviewSurface a, PreviewSurface b) {
   return (a.depth > 0.0) == (b.depth > 0.0) && dot(a.normal, b.normal) > 0.8 && a.emits == b.emits;
 }
 
+// What light over the colour is held against where light does not follow the colour (preview_resolve.comp).
+const float k_most_light = 4.0;
+PreviewTexture texture_of(uvec2 xy, PreviewSurface here, bool show_others[4]) {
+  PreviewTexture t = k_preview_no_texture;
+  t.few = 1.0;
+  float known = 0.0, light[4], colour[4];
+  bool own[4];
+  for (uint k = 0u; k < 4u; ++k) {
+    int pixel = pixel_of(xy, k);
+    PreviewSurface s = surface_at(pixel);
+    own[k] = s.samples > 0.0 && s.depth > 0.0 && alike(s, here) && !show_others[k];
+    if (!own[k]) continue;
+    vec3 m = preview_modulation(s);
+    vec4 y = preview_luminances(preview_light(packed_texels, pixel));
+    light[k] = min(y.x + y.y + y.z + y.w, k_most_light);
+    colour[k] = luminance(m);
+    t.inverse += 1.0 / m;
+    known += 1.0;
+  }
+  t.inverse = known > 0.0 ? t.inverse / known : 1.0 / preview_modulation(here);
+  for (uint k = 0u; k < 4u; ++k) {  // side by side, and one above the other
+    uint a = k < 2u ? 2u * k : k - 2u, b = k < 2u ? a + 1u : a + 2u;
+    if (!own[a] || !own[b]) continue;
+    t.with_light += (light[a] - light[b]) * (colour[a] - colour[b]);
+    t.square += square(colour[a] - colour[b]);
+    t.light_square += square(light[a] - light[b]);
+  }
+  return t;
+}
+
 void main() {
   uint cell = global_index();
   if (cell >= push.across * push.down) return;
@@ -97,7 +128,7 @@ void main() {
   vec4 before = vec4(0.0);
   float before_known = 0.0;
   // Pixels that show other surfaces as well are left out where there are some that do not.
-  bool show_others[4], pure = false;
+  bool show_others[4] = bool[](true, true, true, true), pure = false;
   for (uint k = 0u; k < 4u && push.sampled != 0u; ++k) {
     int pixel = pixel_of(xy, k);
     PreviewSurface s = surface_at(pixel);
@@ -128,4 +159,5 @@ void main() {
   LUCERNA_PREVIEW_STORE(grid, cell, total)
   here.samples = weights;
   grid_surfaces[cell] = preview_texel(here);
+  grid_texture[cell] = preview_texel(texture_of(xy, here, show_others));
 }

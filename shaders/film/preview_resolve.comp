@@ -13,7 +13,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewResolvePush push; };
 uniform samplerBuffer packed_texels, surface_texels, guide_surfaces, history_texels, history_surfaces;
-uniform samplerBuffer filtered_texels, grid_surfaces, noise_texels, before_texels, lost_texels, change_texels;
+uniform samplerBuffer filtered_texels, grid_surfaces, noise_texels, before_texels, lost_texels, change_texels, texture_texels;
 layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
@@ -25,6 +25,8 @@ const float k_by_chance = 3.0, k_by_chance_same = 16.0;
 const float k_least_noise = 0.5;  // of a sample, relative, in light that has not changed
 // Relative noise of a pixel up to which it is shown as it is, and from which on it is filtered.
 const float k_clean = 0.02, k_noisy = 0.08;
+// Of light, how much may not follow the colours; and of the sums that are filtered, 1 over how many are independent at most.
+const float k_prior = 0.35, k_fewest = 1.0 / 256.0;
 // Of what pixels around have, the noise of a pixel from which on that is asked itself.
 const float k_outlier = 3.0;
 // Of filtered light, what the filter may be off by.
@@ -47,6 +49,7 @@ shared vec4 group_shares[64];
 vec4 light[k_component_count];
 vec4 noise = vec4(0.0), before_smooth = vec4(0.0), lost = vec4(0.0);
 vec3 modulation = vec3(0.0);
+PreviewTexture colours = k_preview_no_texture;
 float weights = 0.0, nearest_weight = 0.0, nearest_depth = -1.0;
 ivec2 grid_size() { return ivec2(push.across, push.down); }
 bool in_grid(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, grid_size())); }
@@ -68,6 +71,7 @@ void add_cell(int cell, PreviewSurface s, float w, bool other) {
   if (push.history != 0u) before_smooth += there * texelFetch(before_texels, cell);
   if (push.sampled != 0u) noise += there * texelFetch(noise_texels, cell) * sqrt(max(s.samples, 1e-3));  // of one sample
   modulation += there * preview_modulation(s);
+  colours = preview_sum(colours, preview_texture(texelFetch(texture_texels, cell)), there);
   weights += there;
   if (s.samples > 0.0 && s.depth >= 0.0 && there > nearest_weight) nearest_weight = there, nearest_depth = s.depth;
 }
@@ -156,6 +160,16 @@ bool mix_cells(vec2 p, PreviewSurface here, PreviewSurface centre, float primary
   return true;
 }
 
+// How much of the light goes with a surface's colours, 0..1: what it mirrors does not. `falling`: light over the colour. A
+// regression of differences of light on those of colour; what is to be expected before is that all does, give or take k_prior.
+float follows_colour(PreviewTexture t, float falling) {
+  float scale = falling * t.square;
+  if (scale <= 1e-9) return 1.0;
+  // Of four pairs a cell.
+  float variance = 0.25 * t.light_square * t.square * max(t.few, k_fewest) / square(scale);
+  return clamp(1.0 + (t.with_light / scale - 1.0) * square(k_prior) / (square(k_prior) + variance), 0.0, 1.0);
+}
+
 // Whether no pixel around shows its surface: what one ray has met of a veil or of leaves finer than pixels.
 bool isolated(ivec2 at, PreviewSurface here) {
   bool akin = false;
@@ -228,6 +242,10 @@ void main() {
       modulation = vec3(1.0);  // each part has its own
     } else if (here.depth >= 0.0 && (push.repainted == 0u || here.samples > 0.0)) {
       modulation = preview_modulation(here);
+      float falling = 0.0;
+      for (uint c = 0u; c < k_component_count; ++c) falling += max(luminance(light[c].rgb) * inverse, 0.0);
+      vec3 plain = 1.0 / max(inverse * colours.inverse, vec3(1e-6));
+      modulation = mix(plain, modulation, follows_colour(preview_sum(k_preview_no_texture, colours, inverse), falling));
     } else {
       modulation *= inverse;
     }
@@ -244,7 +262,7 @@ void main() {
       // A surface of another colour shows the light that fell on it by that; so does, seen from nearer, one whose texture has
       // more detail than there was.
       bool finer = push.moved != 0u && push.surfaces == k_preview_surface_seen;
-      vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min((mixture ? preview_modulation(here) : modulation) / preview_modulation(was), vec3(8.0)) : vec3(1.0);
+      vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min((here.depth >= 0.0 ? preview_modulation(here) : modulation) / preview_modulation(was), vec3(8.0)) : vec3(1.0);
       vec4 change = preview_change(change_texels, uvec2(push.blocks_across, push.blocks_down), p);
       before_smooth *= change;
       for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= change[c] * vec4(repaint, luminance(repaint));

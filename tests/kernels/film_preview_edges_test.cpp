@@ -111,6 +111,23 @@ TEST_CASE("a dark mat on a table that mirrors a window does not glow") {
   CHECK(sum / count > 0.006);
 }
 
+TEST_CASE("what a floor mirrors does not show its pattern, and what falls on it does") {
+  // Planks of two colours, of which light knows nothing, or half of it, or which it goes with.
+  Stage stage(96, 64);
+  std::mt19937 random(7);
+  const float share = GENERATE(0.0f, 0.5f, 1.0f);
+  const auto albedo = [](uint32_t x) { return x / 5 % 2 ? 0.6f : 0.2f; };
+  const auto light = [&](uint32_t x) { return 0.4f * (1 - share + share * albedo(x) / 0.4f); };
+  stage.sample(stage.film, 4, [&](uint32_t x, uint32_t) {
+    return Sample{.light = vec3(random() % 4 == 0 ? 4 * light(x) : 0), .albedo = vec3(albedo(x))};
+  });
+  stage.show();
+  const double off = rms(
+      stage.shown(), [&](uint32_t x, uint32_t) { return light(x); }, 96);
+  INFO("share " << share << ", relative error " << off);
+  CHECK(off < 0.15);
+}
+
 TEST_CASE("a bright path among many, or two among few, is no speck") {
   Stage stage(96, 64);
   std::mt19937 random(5);
