@@ -64,37 +64,74 @@ int pixel_of(uvec2 xy, uint k) {
   uvec2 at = min(xy + push.step / 2u * uvec2(k % 2u, k / 2u), uvec2(push.width, push.height) - 1u);
   return int(at.y * push.width + at.x);
 }
+uvec2 draft_at(uvec2 xy) {
+  uvec2 size = uvec2(push.draft_width, push.draft_height);
+  return min(xy * size / uvec2(push.width, push.height), size - 1u);
+}
 bool alike(PreviewSurface a, PreviewSurface b) {
   return (a.depth > 0.0) == (b.depth > 0.0) && dot(a.normal, b.normal) > 0.8 && a.emits == b.emits;
 }
 
-// What light over the colour is held against where light does not follow the colour (preview_resolve.comp).
+// Light, in units of white, up to which it is looked at to tell whether it goes with the colours (preview_resolve.comp).
 const float k_most_light = 4.0;
-PreviewTexture texture_of(uvec2 xy, PreviewSurface here, bool show_others[4]) {
+// Of four pixels, two rows of two.
+struct Quad {
+  float light[4], colour[4];
+  bool known[4];
+};
+PreviewTexture texture_of(Quad q, uint pairs) {
   PreviewTexture t = k_preview_no_texture;
-  t.few = 1.0;
-  float known = 0.0, light[4], colour[4];
-  bool own[4];
+  t.few = 4.0 / float(pairs);
+  for (uint k = 0u; k < pairs; ++k) {  // one beside the other, one below the other, and so from the last one
+    uint a = k < 2u ? 0u : 3u, b = k % 2u == 0u ? 1u : 2u;
+    if (!q.known[a] || !q.known[b]) continue;
+    t.with_light += (q.light[a] - q.light[b]) * (q.colour[a] - q.colour[b]);
+    t.square += square(q.colour[a] - q.colour[b]);
+    t.light_square += square(q.light[a] - q.light[b]);
+  }
+  return t;
+}
+float shown(vec4 y) { return min(y.x + y.y + y.z + y.w, k_most_light); }
+
+PreviewTexture texture_of_pixels(uvec2 xy, PreviewSurface here, bool show_others[4]) {
+  Quad q;
+  vec3 sum = vec3(0.0);
+  float count = 0.0;
   for (uint k = 0u; k < 4u; ++k) {
     int pixel = pixel_of(xy, k);
     PreviewSurface s = surface_at(pixel);
-    own[k] = s.samples > 0.0 && s.depth > 0.0 && alike(s, here) && !show_others[k];
-    if (!own[k]) continue;
+    q.known[k] = s.samples > 0.0 && s.depth > 0.0 && alike(s, here) && !show_others[k];
+    if (!q.known[k]) continue;
     vec3 m = preview_modulation(s);
-    vec4 y = preview_luminances(preview_light(packed_texels, pixel));
-    light[k] = min(y.x + y.y + y.z + y.w, k_most_light);
-    colour[k] = luminance(m);
-    t.inverse += 1.0 / m;
-    known += 1.0;
+    q.light[k] = shown(preview_luminances(preview_light(packed_texels, pixel)));
+    q.colour[k] = luminance(m);
+    sum += 1.0 / m;
+    count += 1.0;
   }
-  t.inverse = known > 0.0 ? t.inverse / known : 1.0 / preview_modulation(here);
-  for (uint k = 0u; k < 4u; ++k) {  // side by side, and one above the other
-    uint a = k < 2u ? 2u * k : k - 2u, b = k < 2u ? a + 1u : a + 2u;
-    if (!own[a] || !own[b]) continue;
-    t.with_light += (light[a] - light[b]) * (colour[a] - colour[b]);
-    t.square += square(colour[a] - colour[b]);
-    t.light_square += square(light[a] - light[b]);
+  PreviewTexture t = texture_of(q, 4u);
+  t.inverse = sum / max(count, 1.0);
+  return t;
+}
+// The same of a pixel of the draft and those after it.
+PreviewTexture texture_of_draft(uvec2 at, PreviewSurface here) {
+  Quad q;
+  uvec2 size = uvec2(push.draft_width, push.draft_height);
+  vec3 own = vec3(0.0);
+  for (uint k = 0u; k < 3u; ++k) {
+    uvec2 there = at + uvec2(k % 2u, k / 2u);
+    q.known[k] = all(lessThan(there, size));
+    if (!q.known[k]) continue;
+    int pixel = int(there.y * size.x + there.x);
+    PreviewSurface s = preview_surface(texelFetch(draft_surfaces, pixel));
+    q.known[k] = s.samples > 0.0 && s.depth > 0.0 && alike(s, here);
+    if (!q.known[k]) continue;
+    vec3 m = preview_modulation(s);
+    q.light[k] = shown(preview_luminances(preview_light(draft_texels, pixel)));
+    q.colour[k] = luminance(m);
+    if (k == 0u) own = 1.0 / m;
   }
+  PreviewTexture t = texture_of(q, 2u);
+  t.inverse = own;
   return t;
 }
 
@@ -111,8 +148,7 @@ void main() {
     here = centre;
   }
   if (push.draft_width > 0u) {
-    uvec2 at = min(xy * uvec2(push.draft_width, push.draft_height) / uvec2(push.width, push.height),
-                   uvec2(push.draft_width, push.draft_height) - 1u);
+    uvec2 at = draft_at(xy);
     int pixel = int(at.y * push.draft_width + at.x);
     PreviewSurface s = preview_surface(texelFetch(draft_surfaces, pixel));
     bool doubtful = push.sampled == 0u && push.surfaces != k_preview_surface_seen;
@@ -159,5 +195,9 @@ void main() {
   LUCERNA_PREVIEW_STORE(grid, cell, total)
   here.samples = weights;
   grid_surfaces[cell] = preview_texel(here);
-  grid_texture[cell] = preview_texel(texture_of(xy, here, show_others));
+  PreviewTexture t = k_preview_no_texture;
+  if (push.sampled != 0u) t = texture_of_pixels(xy, here, show_others);
+  if (t.inverse.x <= 0.0 && push.draft_width > 0u) t = texture_of_draft(draft_at(xy), here);
+  if (t.inverse.x <= 0.0) t.inverse = 1.0 / preview_modulation(here);
+  grid_texture[cell] = preview_texel(t);
 }
