@@ -13,6 +13,9 @@ namespace {
 /// Samples of every pixel from which on a draft, of wider pixels, tells nothing any more.
 constexpr uint32_t k_draft_until = 4;
 
+/// In which one another is looked for.
+constexpr uint32_t k_most_mirrors = 4;
+
 film::PreviewCamera camera_of(const shared::Frame& f) {
   return {{f.camera_origin, f.camera_right, f.camera_up, f.camera_forward}, f.orthographic != 0};
 }
@@ -118,7 +121,8 @@ bool Display::see(Engine& engine, const PictureView& view, const std::function<b
   const film::PreviewCamera camera = camera_of(frame);
   if (!sight_.rays || sight_.defines != engine.defines()) {
     sight_.rays.emplace(device_, compiler_, engine.defines());
-    sight_.note = gpu::Kernel(device_, compiler_, "film/preview_sight.comp", engine.defines());
+    sight_.look = gpu::Kernel(device_, compiler_, "film/preview_look.comp", engine.defines());
+    sight_.note = gpu::Kernel(device_, compiler_, "film/preview_sight.comp");
     sight_.defines = engine.defines();
   }
   overlay::Sight& rays = *sight_.rays;
@@ -130,10 +134,10 @@ bool Display::see(Engine& engine, const PictureView& view, const std::function<b
     sight_.resources.set("Surfaces", rays.surfaces());
     wavefront.stream().dispatch(sight_.note, sight_.resources, push, gpu::groups_for(push.count, 64));
   };
-  frame.max_depth = 0;  // paths end where they meet a surface
+  frame.max_depth = k_most_mirrors;
   wavefront.set_frame(frame, engine.plan().enabled());
   bool complete = true;
-  wavefront.uncounted([&] { complete = rays.see(wavefront, "sight", note, cancel); });
+  wavefront.uncounted([&] { complete = rays.see(wavefront, "sight", note, cancel, &sight_.look); });
   wavefront.set_frame(engine.frame(view, view.width, view.height), engine.plan().enabled());
   return complete;
 }

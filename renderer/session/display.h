@@ -63,11 +63,11 @@ class Display {
   film::Preview preview_;
   std::unique_ptr<film::Film> fine_;  ///< of half the resolution; made when it is called for
   DraftPlan plan_;
-  /// What surfaces the pixels of the picture show, with the first vertices of paths alone.
+  /// What surfaces the pixels of the picture show, in mirrors too (film/preview_look.comp).
   struct {
     std::optional<overlay::Sight> rays;
     gpu::Defines defines;  ///< that these were made with
-    gpu::Kernel note;
+    gpu::Kernel look, note;
     gpu::Resources resources;
     film::PreviewCamera camera;  ///< for which it was asked
   } sight_;

@@ -21,6 +21,7 @@ PreviewSurface centre_of(int pixel) {
 PreviewSurface surface_at(int pixel) {
   if (push.sampled != 0u) return preview_surface(texelFetch(surface_texels, pixel));
   vec4 texel = push.surfaces != k_preview_surface_unknown ? texelFetch(guide_surfaces, pixel) : vec4(-1.0, 0.0, 0.0, 0.0);
+  if (texel.w == k_preview_mirrored) texel.x = -1.0;  // a draft knows of the mirror
   return preview_surface(vec4(texel.xyz, 0.0));
 }
 

@@ -31,7 +31,15 @@ void main() {
   s.samples = float(count);
   s.covered = albedo.w > 0.0 ? albedo.w / n : 1.0;
   vec4 guide = push.guided != 0u ? texelFetch(guide_surfaces, int(pixel)) : vec4(-1.0, 0.0, 0.0, 0.0);
-  s.emits = push.guided != 0u && preview_surface(guide).emits;
-  vec4 texel = count > 0u ? preview_texel(s) : vec4(guide.xyz, 0.0);
+  PreviewSurface seen = preview_surface(guide);
+  bool mirrored = push.guided != 0u && seen.samples == k_preview_mirrored;
+  s.emits = push.guided != 0u && seen.emits;
+  // In a mirror samples have met the mirror.
+  if (mirrored) {
+    float samples = s.samples;
+    s = seen;
+    s.samples = samples;
+  }
+  vec4 texel = count > 0u ? preview_texel(s) : vec4(mirrored ? -1.0 : guide.x, guide.yz, 0.0);
   packed_surfaces[pixel] = texel;
 }

@@ -128,6 +128,30 @@ TEST_CASE("what a floor mirrors does not show its pattern, and what falls on it 
   CHECK(off < 0.15);
 }
 
+TEST_CASE("what a mirror shows has the borders of what it shows") {
+  // Samples meet the mirror; behind it, as it were, lie two surfaces of other light.
+  Stage stage(96, 64);
+  std::mt19937 random(21);
+  const auto light = [](uint32_t x) { return x < 41 ? 0.1f : 0.7f; };
+  stage.sample(stage.film, 4, [&](uint32_t x, uint32_t) {
+    return Sample{.light = vec3(random() % 3 == 0 ? 3 * light(x) : 0)};
+  });
+  const auto error = [&](bool mirrored) {
+    const gpu::Buffer surfaces = surfaces_of(stage, [&](uint32_t x, uint32_t) {
+      return mirrored ? Seen{.depth = x < 41 ? 8.0f : 12.0f, .mirrored = true} : Seen{};
+    });
+    stage.preview.forget();
+    stage.preview.develop(stage.stream, stage.film, nullptr, stage.view, stage.camera, true,
+                          film::Sampled::all, &surfaces);
+    return rms(
+        stage.shown(), [&](uint32_t x, uint32_t) { return light(x); }, 96);
+  };
+  const double without = error(false), with = error(true);
+  INFO("relative error " << without << ", with what the mirror shows " << with);
+  CHECK(without > 0.3);
+  CHECK(with < 0.15);
+}
+
 TEST_CASE("a bright path among many, or two among few, is no speck") {
   Stage stage(96, 64);
   std::mt19937 random(5);
