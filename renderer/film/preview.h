@@ -54,7 +54,7 @@ class Preview {
   /// Film -> its picture, of the layers that show light (View::layer up to shared::k_layer_primary + 3).
   /// `draft`: a film of the same view with pixels of whole pixels, or null; `filtered`: noise is filtered,
   /// not only where there are no samples. `seen`: the surfaces that the film's pixels show, or null
-  /// (shaders/film/preview_sight.comp). Films must fit(). Throws Error when memory is short. The stream is
+  /// (shaders/film/preview_look.comp). Films must fit(). Throws Error when memory is short. The stream is
   /// run.
   PreviewShares develop(gpu::Stream& stream, const Film& film, const Film* draft, const View& view,
                         const PreviewCamera& camera, bool filtered, Sampled sampled = Sampled::some,

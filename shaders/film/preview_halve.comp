@@ -21,7 +21,6 @@ PreviewSurface centre_of(int pixel) {
 PreviewSurface surface_at(int pixel) {
   if (push.sampled != 0u) return preview_surface(texelFetch(surface_texels, pixel));
   vec4 texel = push.surfaces != k_preview_surface_unknown ? texelFetch(guide_surfaces, pixel) : vec4(-1.0, 0.0, 0.0, 0.0);
-  if (texel.w == k_preview_mirrored) texel.x = -1.0;  // a draft knows of the mirror
   return preview_surface(vec4(texel.xyz, 0.0));
 }
 
@@ -29,6 +28,18 @@ PreviewSurface surface_at(int pixel) {
 bool mixed(int pixel, PreviewSurface s) {
   float primary = luminance(preview_light(packed_texels, pixel).of[0].rgb);
   return preview_mixed(s, centre_of(pixel), primary, guide_surfaces, uvec2(push.width, push.height), uint(pixel));
+}
+
+uvec2 draft_size() { return uvec2(push.draft_width, push.draft_height); }
+// Of a draft's pixel; where its middle shows a mirror, what is seen in that.
+PreviewSurface draft_surface(uvec2 at) {
+  PreviewSurface s = preview_surface(texelFetch(draft_surfaces, int(at.y * push.draft_width + at.x)));
+  if (push.surfaces != k_preview_surface_seen) return s;
+  uvec2 size = uvec2(push.width, push.height), middle = min((2u * at + 1u) * size / (2u * draft_size()), size - 1u);
+  PreviewSurface seen = preview_surface(texelFetch(guide_surfaces, int(middle.y * push.width + middle.x)));
+  if (seen.samples != k_preview_mirrored) return s;
+  seen.samples = s.samples;
+  return seen;
 }
 
 // Whether a draft's pixel may show something else than a cell of it: light of surfaces that emit and of those that do not, side
@@ -66,8 +77,7 @@ int pixel_of(uvec2 xy, uint k) {
   return int(at.y * push.width + at.x);
 }
 uvec2 draft_at(uvec2 xy) {
-  uvec2 size = uvec2(push.draft_width, push.draft_height);
-  return min(xy * size / uvec2(push.width, push.height), size - 1u);
+  return min(xy * draft_size() / uvec2(push.width, push.height), draft_size() - 1u);
 }
 bool alike(PreviewSurface a, PreviewSurface b) {
   return (a.depth > 0.0) == (b.depth > 0.0) && dot(a.normal, b.normal) > 0.8 && a.emits == b.emits;
@@ -116,14 +126,14 @@ PreviewTexture texture_of_pixels(uvec2 xy, PreviewSurface here, bool show_others
 // The same of a pixel of the draft and those after it.
 PreviewTexture texture_of_draft(uvec2 at, PreviewSurface here) {
   Quad q;
-  uvec2 size = uvec2(push.draft_width, push.draft_height);
+  uvec2 size = draft_size();
   vec3 own = vec3(0.0);
   for (uint k = 0u; k < 3u; ++k) {
     uvec2 there = at + uvec2(k % 2u, k / 2u);
     q.known[k] = all(lessThan(there, size));
     if (!q.known[k]) continue;
     int pixel = int(there.y * size.x + there.x);
-    PreviewSurface s = preview_surface(texelFetch(draft_surfaces, pixel));
+    PreviewSurface s = draft_surface(there);
     q.known[k] = s.samples > 0.0 && s.depth > 0.0 && alike(s, here);
     if (!q.known[k]) continue;
     vec3 m = preview_modulation(s);
@@ -151,7 +161,7 @@ void main() {
   if (push.draft_width > 0u) {
     uvec2 at = draft_at(xy);
     int pixel = int(at.y * push.draft_width + at.x);
-    PreviewSurface s = preview_surface(texelFetch(draft_surfaces, pixel));
+    PreviewSurface s = draft_surface(at);
     bool doubtful = push.sampled == 0u && push.surfaces != k_preview_surface_seen;
     if ((here.depth < 0.0 || doubtful) && s.samples > 0.0) here = s;
     if (push.repainted != 0u && here.samples <= 0.0 && s.samples > 0.0) here.albedo = s.albedo;

@@ -40,6 +40,6 @@ void main() {
     s = seen;
     s.samples = samples;
   }
-  vec4 texel = count > 0u ? preview_texel(s) : vec4(mirrored ? -1.0 : guide.x, guide.yz, 0.0);
+  vec4 texel = count > 0u ? preview_texel(s) : vec4(guide.xyz, 0.0);
   packed_surfaces[pixel] = texel;
 }

@@ -192,8 +192,7 @@ void main() {
       surface = texelFetch(surface_texels, int(pixel));
       own = preview_light(packed_texels, int(pixel));
     } else if (push.surfaces != k_preview_surface_unknown) {
-      surface = texelFetch(guide_surfaces, int(pixel));
-      surface = vec4(surface.w == k_preview_mirrored ? -1.0 : surface.x, surface.yz, 0.0);  // a draft knows of the mirror
+      surface = vec4(texelFetch(guide_surfaces, int(pixel)).xyz, 0.0);
     }
     PreviewSurface here = preview_surface(surface);
     if (push.surfaces == k_preview_surface_seen && here.samples <= 0.0 &&
