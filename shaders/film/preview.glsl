@@ -133,10 +133,12 @@ bool preview_beside_emitter(samplerBuffer surfaces, uvec2 size, uint pixel) {
 // luminance that the samples have of lamps' own light, in units of white. `surfaces`: as preview_beside_emitter has it.
 const float k_preview_bright = 0.25, k_preview_facing = 0.95;
 bool preview_mixed(PreviewSurface s, PreviewSurface centre, float primary, samplerBuffer surfaces, uvec2 size, uint pixel) {
-  if (s.samples < 2.0 || s.depth <= 0.0) return false;
-  if (s.covered < 1.0) return true;
+  if (s.samples <= 0.0 || s.depth <= 0.0) return false;
+  if (s.samples >= 2.0) {
+    if (s.covered < 1.0) return true;
+    if (centre.depth >= 0.0 && (!preview_same(s, centre) || dot(s.normal, centre.normal) < k_preview_facing)) return true;
+  }
   if (centre.depth < 0.0) return false;
-  if (!preview_same(s, centre) || dot(s.normal, centre.normal) < k_preview_facing) return true;
   return !s.emits && primary > k_preview_bright && preview_beside_emitter(surfaces, size, pixel);
 }
 

@@ -11,6 +11,8 @@ layout(scalar) writeonly buffer GridSurfaces { vec4 grid_surfaces[]; };
 layout(scalar) writeonly buffer GridBefore { vec4 grid_before[]; };
 layout(scalar) writeonly buffer GridTexture { vec4 grid_texture[]; };
 
+const float k_doubtful = 0.01;  // what samples count that may have met something else
+
 PreviewSurface centre_of(int pixel) {
   PreviewSurface s = preview_surface(texelFetch(guide_surfaces, pixel));
   if (push.surfaces != k_preview_surface_seen) s.depth = -1.0;
@@ -204,7 +206,11 @@ void main() {
   vec4 now = vec4(luminance(total.of[0].rgb), luminance(total.of[1].rgb), luminance(total.of[2].rgb), luminance(total.of[3].rgb));
   grid_before[cell] = before_known > 0.0 ? before / before_known : now;
   LUCERNA_PREVIEW_STORE(grid, cell, total)
-  here.samples = weights;
+  // Where all of them may have light of what shines beside they tell little of its own.
+  bool lit_beside = push.sampled != 0u && !pure && !here.emits && luminance(preview_modulation(here) * total.of[0].rgb) > k_preview_bright &&
+                  push.surfaces == k_preview_surface_seen &&
+                  preview_beside_emitter(guide_surfaces, uvec2(push.width, push.height), uint(first));
+  here.samples = weights * (lit_beside ? k_doubtful : 1.0);
   grid_surfaces[cell] = preview_texel(here);
   PreviewTexture t = k_preview_no_texture;
   if (push.sampled != 0u) t = texture_of_pixels(xy, here, show_others);

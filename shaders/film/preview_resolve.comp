@@ -205,9 +205,11 @@ void main() {
     PreviewSurface centre = preview_surface(texelFetch(guide_surfaces, int(pixel)));
     if (push.surfaces != k_preview_surface_seen) centre.depth = -1.0;
     float primary = luminance(own.of[0].rgb);
-    bool mixture = push.sampled != 0u &&
-                   preview_mixed(here, centre, primary, guide_surfaces, uvec2(push.width, push.height), pixel) &&
-                   mix_cells(p, here, centre, primary);
+    bool mixed = push.sampled != 0u && preview_mixed(here, centre, primary, guide_surfaces, uvec2(push.width, push.height), pixel);
+    bool mixture = mixed && mix_cells(p, here, centre, primary);
+    // A slat before a lamp that no cell is of: what its samples have is mostly the lamp's, which has no noise.
+    bool mostly_lamp = mixed && !mixture && primary > k_preview_bright &&
+                       preview_beside_emitter(guide_surfaces, uvec2(push.width, push.height), pixel);
     float akin = mixture ? 1.0 : 0.0;
     // The grid's four nearest cells, those of another surface left out.
     for (int k = 0; k < 4 && !mixture; ++k) {
@@ -287,9 +289,10 @@ void main() {
       float relative = max(noise[c], doubt_own) / max(max(smooth_luminance, own_luminance), k_luminance_floor);
       // Two of few paths that brought far more than is around may agree by chance. Lamps' own light has such borders.
       bool far_above = k_preview_by_way[c] > 0.0 && own_luminance > 2.0 * smooth_luminance + k_outlier * noise[c];
-      // How far its own samples are not to be shown alone.
       float unlikely = far_above ? few * smoothstep(k_clean, k_noisy, noise[c] / max(smooth_luminance, k_luminance_floor)) : 0.0;
+      // How far its own samples are not to be shown alone.
       float rough = here.samples > 0.0 ? max(smoothstep(k_clean, k_noisy, relative), max(unlikely, alone)) : 1.0;
+      if (mostly_lamp && c == 0u) rough = 0.0;
       float amount = push.filtering != 0u || here.samples <= 0.0 ? rough : 0.0;
       vec3 now = mix(own.of[c].rgb, smooth_light, amount);
       float smooth_error = luminance(modulation) * max(light[c].w, 0.0) * inverse + k_filter_error * smooth_luminance;

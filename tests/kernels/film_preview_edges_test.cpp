@@ -13,25 +13,27 @@ namespace {
 float covered(uint32_t x, uint32_t y) { return std::clamp(20.5f + 0.3f * float(y) - float(x), 0.0f, 1.0f); }
 
 struct Border {
-  double edge,
-      beside;  ///< rms of relative errors of mixed pixels, mean of the nearer one's next to the border
+  double edge;       ///< rms of relative errors of mixed pixels
+  double beside;     ///< mean of the nearer one's pixels next to the border
+  double brightest;  ///< of the nearer one's pixels that show nothing else
 };
 
 /// Of light `near` that one in four paths finds, before `far`, which has no noise.
 Border border_of(Stage& stage, float near, float far) {
   const std::vector<float> shown = stage.shown();
-  double square = 0, mixed = 0, sum = 0, count = 0;
+  double square = 0, mixed = 0, sum = 0, count = 0, brightest = 0;
   for (uint32_t y = 2; y + 2 < stage.height; ++y)
     for (uint32_t x = 2; x + 2 < stage.width; ++x) {
       const float share = covered(x, y), truth = share * near + (1 - share) * far,
                   value = shown[y * stage.width + x];
       if (share > 0 && share < 1) {
         square += (value / truth - 1) * (value / truth - 1), mixed += 1;
-      } else if (share == 1 && covered(x + 2, y) < 1) {
-        sum += value, count += 1;
+      } else if (share == 1) {
+        brightest = std::max(brightest, double(value));
+        if (covered(x + 2, y) < 1) sum += value, count += 1;
       }
     }
-  return {std::sqrt(square / mixed), sum / count};
+  return {std::sqrt(square / mixed), sum / count, brightest};
 }
 
 constexpr float k_near = 0.15f, k_far = 0.9f;
@@ -77,17 +79,18 @@ TEST_CASE("before another surface a pixel shows as much of either as its depth t
   CHECK(shown.beside < 1.25 * k_near);
 }
 
-TEST_CASE("beside a pane that shines in its plane a frame shows its own light, and their border both") {
+TEST_CASE("beside a lamp that shines in its plane a frame shows its own light") {
   Stage stage(64, 48);
   stage.component = 0;
-  sample_border(stage, {.light = vec3(k_near)}, {.light = vec3(k_far)});
+  const float far = 20 * k_far;
+  sample_border(stage, {.light = vec3(k_near)}, {.light = vec3(far)});
   const gpu::Buffer surfaces =
       surfaces_of(stage, [](uint32_t x, uint32_t y) { return Seen{.emits = covered(x, y) <= 0.5f}; });
   stage.preview.develop(stage.stream, stage.film, nullptr, stage.view, stage.camera, true, film::Sampled::all,
                         &surfaces);
-  const Border shown = border_of(stage, k_near, k_far);
-  INFO("edge " << shown.edge << ", beside it " << shown.beside);
-  CHECK(shown.edge < k_edge_error);
+  const Border shown = border_of(stage, k_near, far);
+  INFO("beside it " << shown.beside << ", brightest " << shown.brightest);
+  CHECK(shown.brightest < 3 * k_near);
   CHECK(shown.beside < 1.25 * k_near);
 }
 
