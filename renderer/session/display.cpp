@@ -13,7 +13,7 @@ namespace {
 /// Samples of every pixel from which on a draft, of wider pixels, tells nothing any more.
 constexpr uint32_t k_draft_until = 4;
 
-/// In which one another is looked for.
+/// That a ray is followed through, one mirrored in another.
 constexpr uint32_t k_most_mirrors = 4;
 
 film::PreviewCamera camera_of(const shared::Frame& f) {

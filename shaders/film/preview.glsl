@@ -118,6 +118,12 @@ bool preview_may_be_same(PreviewSurface now, PreviewSurface was) {
   return now.depth < 0.0 || was.depth < 0.0 || preview_same(now, was);
 }
 
+// What a ray through a pixel's middle has met; depth below 0: not known. `known`: k_preview_surface_*, of `surfaces`.
+PreviewSurface preview_centre(samplerBuffer surfaces, uint known, int pixel) {
+  PreviewSurface s = preview_surface(texelFetch(surfaces, pixel));
+  if (known != k_preview_surface_seen) s.depth = -1.0;
+  return s;
+}
 // Whether a surface that emits is seen by the middle of a pixel beside. `surfaces`: what rays through the middles have met.
 bool preview_beside_emitter(samplerBuffer surfaces, uvec2 size, uint pixel) {
   ivec2 xy = ivec2(pixel % size.x, pixel / size.x);

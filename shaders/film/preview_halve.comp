@@ -13,11 +13,7 @@ layout(scalar) writeonly buffer GridTexture { vec4 grid_texture[]; };
 
 const float k_doubtful = 0.01;  // what samples count that may have met something else
 
-PreviewSurface centre_of(int pixel) {
-  PreviewSurface s = preview_surface(texelFetch(guide_surfaces, pixel));
-  if (push.surfaces != k_preview_surface_seen) s.depth = -1.0;
-  return s;
-}
+PreviewSurface centre_of(int pixel) { return preview_centre(guide_surfaces, push.surfaces, pixel); }
 
 // Where the film has no samples, as it is known otherwise.
 PreviewSurface surface_at(int pixel) {

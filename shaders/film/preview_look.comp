@@ -20,14 +20,6 @@ bool emits(Surface surface) {
   return any;
 }
 
-// Of the ray through the pixel's middle.
-vec3 first_direction(uint pixel) {
-  vec2 xy = vec2(pixel % frame.width, pixel / frame.width);
-  vec2 ndc = (xy + 0.5) / vec2(frame.width, frame.height) * 2.0 - 1.0;
-  vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;
-  return normalize(frame.camera_forward + (frame.orthographic != 0u ? vec3(0.0) : shift));
-}
-
 void main() {
   uint index = global_index();
   if (index >= push.count) return;
@@ -54,7 +46,7 @@ void main() {
 #endif
   bool mirrored = path_depth(path) > 0u;
   if (!passed && !mirrors) {
-    vec3 first = first_direction(path.pixel), turned = first - ray.direction;
+    vec3 first = camera_direction(camera_shift(vec2(path.pixel % frame.width, path.pixel / frame.width) + 0.5)), turned = first - ray.direction;
     if ((path_depth(path) & 1u) != 0u && dot(turned, turned) > 0.0) normal = reflect(normal, normalize(turned));
     float found = float(k_sight_met | (mirrored ? k_sight_mirrored : 0u) | (emits(surface) ? k_sight_emits : 0u));
     features[2u * slot] = vec4(path.throughput * surface.parameters.base, found);

@@ -89,6 +89,17 @@ struct Part {
 const int k_mix_across = 3;  // cells
 const float k_apart = 0.3;   // difference of depths, relative, that tells as much as one of normals
 
+// The k-th of the cells about a place, with its weight; false where none is known.
+bool near_cell(vec2 p, int k, out int cell, out PreviewSurface s, out float weight) {
+  ivec2 at = ivec2(round(p)) + ivec2(k % k_mix_across, k / k_mix_across) - k_mix_across / 2;
+  if (!in_grid(at)) return false;
+  cell = cell_at(at);
+  s = preview_surface(texelFetch(grid_surfaces, cell));
+  vec2 away = vec2(at) - p;
+  weight = exp2(-dot(away, away)) * own_light(s);
+  return s.depth >= 0.0 && s.samples > 0.0;
+}
+
 // How much of what is met is of part a, by where between both parts the means of the pixel's samples lie.
 float share_of(Part a, Part b, PreviewSurface here, float primary) {
   vec3 normal = a.normal - b.normal, albedo = a.albedo - b.albedo;
@@ -109,14 +120,11 @@ bool mix_cells(vec2 p, PreviewSurface here, PreviewSurface centre, float primary
   if (centre.depth <= 0.0) centre = here;
   Part parts[k_part_count];
   for (uint i = 0u; i < k_part_count; ++i) parts[i] = Part(0.0, 0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
+  int cell;
+  PreviewSurface s;
+  float w;
   for (int k = 0; k < k_mix_across * k_mix_across; ++k) {
-    ivec2 at = ivec2(round(p)) + ivec2(k % k_mix_across, k / k_mix_across) - k_mix_across / 2;
-    if (!in_grid(at)) continue;
-    int cell = cell_at(at);
-    PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
-    if (s.depth < 0.0 || s.samples <= 0.0) continue;
-    vec2 away = vec2(at) - p;
-    float w = exp2(-dot(away, away)) * own_light(s);
+    if (!near_cell(p, k, cell, s, w)) continue;
     uint i = part_of(s, centre);
     parts[i].weight += w;
     parts[i].depth += w * s.depth;
@@ -141,13 +149,8 @@ bool mix_cells(vec2 p, PreviewSurface here, PreviewSurface centre, float primary
   share[k_other] = met * (1.0 - own) / max(parts[k_other].weight, 1e-20);
   share[k_background] = (1.0 - met) / max(parts[k_background].weight, 1e-20);
   for (int k = 0; k < k_mix_across * k_mix_across; ++k) {
-    ivec2 at = ivec2(round(p)) + ivec2(k % k_mix_across, k / k_mix_across) - k_mix_across / 2;
-    if (!in_grid(at)) continue;
-    int cell = cell_at(at);
-    PreviewSurface s = preview_surface(texelFetch(grid_surfaces, cell));
-    if (s.depth < 0.0 || s.samples <= 0.0) continue;
-    vec2 away = vec2(at) - p;
-    float w = exp2(-dot(away, away)) * own_light(s) * share[part_of(s, centre)];
+    if (!near_cell(p, k, cell, s, w)) continue;
+    w *= share[part_of(s, centre)];
     vec3 m = preview_modulation(s);
     float shown = luminance(m);
     PreviewLight l = preview_light(filtered_texels, cell);
@@ -202,8 +205,7 @@ void main() {
     ivec2 base = ivec2(floor(p));
     vec2 f = p - vec2(base);
     for (uint c = 0u; c < k_component_count; ++c) light[c] = vec4(0.0);
-    PreviewSurface centre = preview_surface(texelFetch(guide_surfaces, int(pixel)));
-    if (push.surfaces != k_preview_surface_seen) centre.depth = -1.0;
+    PreviewSurface centre = preview_centre(guide_surfaces, push.surfaces, int(pixel));
     float primary = luminance(own.of[0].rgb);
     bool mixed = push.sampled != 0u && preview_mixed(here, centre, primary, guide_surfaces, uvec2(push.width, push.height), pixel);
     bool mixture = mixed && mix_cells(p, here, centre, primary);
@@ -264,7 +266,8 @@ void main() {
       // A surface of another colour shows the light that fell on it by that; so does, seen from nearer, one whose texture has
       // more detail than there was.
       bool finer = push.moved != 0u && push.surfaces == k_preview_surface_seen;
-      vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min((here.depth >= 0.0 ? preview_modulation(here) : modulation) / preview_modulation(was), vec3(8.0)) : vec3(1.0);
+      vec3 colour = here.depth >= 0.0 ? preview_modulation(here) : modulation;
+      vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min(colour / preview_modulation(was), vec3(8.0)) : vec3(1.0);
       vec4 change = preview_change(change_texels, uvec2(push.blocks_across, push.blocks_down), p);
       before_smooth *= change;
       for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= change[c] * vec4(repaint, luminance(repaint));

@@ -35,6 +35,13 @@ bool automaton_goes_on(uint state) {
 uint automaton_account(uint state) { return (frame.automaton[state] >> 29) & 3u; }
 #endif
 
+// Where a point of the picture [pixels] lies from the camera's axis, and the direction of the ray through it.
+vec3 camera_shift(vec2 xy) {
+  vec2 ndc = xy / vec2(frame.width, frame.height) * 2.0 - 1.0;
+  return ndc.x * frame.camera_right - ndc.y * frame.camera_up;
+}
+vec3 camera_direction(vec3 shift) { return normalize(frame.camera_forward + (frame.orthographic != 0u ? vec3(0.0) : shift)); }
+
 uint path_automaton(PathState p) { return p.bits & k_path_state_mask; }
 uint path_depth(PathState p) { return (p.bits & ~k_path_branched) >> k_path_events_shift; }
 

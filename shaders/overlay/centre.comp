@@ -9,11 +9,10 @@ void main() {
   uint point = push.first + slot;
   uvec2 at = uvec2(point % push.across, point / push.across) * push.stride + push.stride / 2u;
   uvec2 xy = min(at, uvec2(frame.width, frame.height) - 1u);
-  vec2 ndc = (vec2(xy) + 0.5) / vec2(frame.width, frame.height) * 2.0 - 1.0;
-  vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;
+  vec3 shift = camera_shift(vec2(xy) + 0.5);
   Ray ray;
   ray.origin = frame.camera_origin + (frame.orthographic != 0u ? shift : vec3(0.0));
-  ray.direction = normalize(frame.camera_forward + (frame.orthographic != 0u ? vec3(0.0) : shift));
+  ray.direction = camera_direction(shift);
   ray.tmax = k_infinity;
   ray.slot = slot;
   rays[slot] = ray;

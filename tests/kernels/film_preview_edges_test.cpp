@@ -54,16 +54,21 @@ void sample_border(Stage& stage, const Sample& near, const Sample& far) {
   });
 }
 
+/// Mixed pixels show both in their shares, those beside them the nearer one alone.
+void check_border(Stage& stage) {
+  const Border shown = border_of(stage, k_near, k_far);
+  INFO("edge " << shown.edge << ", beside it " << shown.beside);
+  CHECK(shown.edge < k_edge_error);
+  CHECK(shown.beside < 1.25 * k_near);
+}
+
 }  // namespace
 
 TEST_CASE("before a bright sky a pixel shows as much of either as its samples have met") {
   Stage stage(64, 48);
   sample_border(stage, {.light = vec3(k_near)}, {.light = vec3(k_far), .depth = 0});
   stage.show();
-  const Border shown = border_of(stage, k_near, k_far);
-  INFO("edge " << shown.edge << ", beside it " << shown.beside);
-  CHECK(shown.edge < k_edge_error);
-  CHECK(shown.beside < 1.25 * k_near);
+  check_border(stage);
 }
 
 TEST_CASE("before another surface a pixel shows as much of either as its depth tells of") {
@@ -71,12 +76,8 @@ TEST_CASE("before another surface a pixel shows as much of either as its depth t
   sample_border(stage, {.light = vec3(k_near), .depth = 2}, {.light = vec3(k_far), .depth = 9});
   const gpu::Buffer surfaces = surfaces_of(
       stage, [](uint32_t x, uint32_t y) { return Seen{.depth = covered(x, y) > 0.5f ? 2.0f : 9.0f}; });
-  stage.preview.develop(stage.stream, stage.film, nullptr, stage.view, stage.camera, true, film::Sampled::all,
-                        &surfaces);
-  const Border shown = border_of(stage, k_near, k_far);
-  INFO("edge " << shown.edge << ", beside it " << shown.beside);
-  CHECK(shown.edge < k_edge_error);
-  CHECK(shown.beside < 1.25 * k_near);
+  show_seen(stage, surfaces);
+  check_border(stage);
 }
 
 TEST_CASE("beside a lamp that shines in its plane a frame shows its own light") {
@@ -86,8 +87,7 @@ TEST_CASE("beside a lamp that shines in its plane a frame shows its own light") 
   sample_border(stage, {.light = vec3(k_near)}, {.light = vec3(far)});
   const gpu::Buffer surfaces =
       surfaces_of(stage, [](uint32_t x, uint32_t y) { return Seen{.emits = covered(x, y) <= 0.5f}; });
-  stage.preview.develop(stage.stream, stage.film, nullptr, stage.view, stage.camera, true, film::Sampled::all,
-                        &surfaces);
+  show_seen(stage, surfaces);
   const Border shown = border_of(stage, k_near, far);
   INFO("beside it " << shown.beside << ", brightest " << shown.brightest);
   CHECK(shown.brightest < 3 * k_near);
@@ -144,8 +144,7 @@ TEST_CASE("what a mirror shows has the borders of what it shows") {
       return mirrored ? Seen{.depth = x < 41 ? 8.0f : 12.0f, .mirrored = true} : Seen{};
     });
     stage.preview.forget();
-    stage.preview.develop(stage.stream, stage.film, nullptr, stage.view, stage.camera, true,
-                          film::Sampled::all, &surfaces);
+    show_seen(stage, surfaces);
     return rms(
         stage.shown(), [&](uint32_t x, uint32_t) { return light(x); }, 96);
   };

@@ -116,6 +116,12 @@ inline gpu::Buffer surfaces_of(Stage& stage, const std::function<Seen(uint32_t x
   return surfaces;
 }
 
+/// The preview of a stage's film, of whose pixels it is known what they show.
+inline film::PreviewShares show_seen(Stage& stage, const gpu::Buffer& surfaces) {
+  return stage.preview.develop(stage.stream, stage.film, nullptr, stage.view, stage.camera, true,
+                               film::Sampled::all, &surfaces);
+}
+
 inline double mean_of(const std::vector<float>& shown) {
   return std::accumulate(shown.begin(), shown.end(), 0.0) / double(shown.size());
 }
