@@ -378,7 +378,7 @@ std::vector<std::string> early_texts(const session::Snapshot& s, double target) 
     texts.push_back(fmt::format("What is shown is off by about {}{}", percent_text(error), when));
   }
   if (!s.preparing.empty())
-    texts.push_back(s.preparing_left ? fmt::format("{}; {:.0f} % done, about {} left", s.preparing,
+    texts.push_back(s.preparing_left ? fmt::format("{}; {:.0f} % of all work, about {} left", s.preparing,
                                                    100 * s.preparing_done, about_text(*s.preparing_left))
                                      : s.preparing);
   if (s.preparing_left && s.path_pace && s.path_pace->noise > 0) {

@@ -16,6 +16,7 @@
 #include "bench/reference.h"
 #include "film/io/image_file.h"
 #include "film/tonemap.h"
+#include "plan/settings.h"
 #include "session/renderer.h"
 #include "session/session.h"
 
@@ -162,6 +163,9 @@ class Latency {
       : o_(options), message_(message), done_(done), interrupted_(interrupted) {}
 
   std::vector<LatencyResult> run() {
+    // A session would report a refused one and go on without it.
+    plan::Settings checked;
+    for (const auto& [key, value] : o_.set) checked.set(key, value, "--set");
     fs::create_directories(o_.references);
     if (!o_.pictures.empty()) fs::create_directories(o_.pictures);
     for (const fs::path& file : o_.files)

@@ -116,13 +116,9 @@ void AccuracyKeeper::follow(const Renderer& r, uint64_t scene_id) {
   }
   now_.scene_id = scene_id;
   if (r.passes() != passes_) note_pass(r);
-  const auto& lines = r.ledger().entries();
-  const auto& known = now_.ledger.entries();
-  if (lines.size() == known.size() &&
-      (lines.empty() || (lines.back().paths == known.back().paths &&
-                         lines.back().truth.has_value() == known.back().truth.has_value())))
-    return;
+  if (r.ledger().changes() == now_.ledger.changes()) return;
   now_.ledger = r.ledger();
+  const auto& lines = now_.ledger.entries();
   double hardest = 0;
   if (r.adaptive())
     for (const schedule::Tile& t : r.adaptive()->tiles())

@@ -13,8 +13,8 @@ namespace {
 /// Samples of every pixel from which on a draft, of wider pixels, tells nothing any more.
 constexpr uint32_t k_draft_until = 4;
 
-/// That a ray is followed through, one mirrored in another.
-constexpr uint32_t k_most_mirrors = 4;
+/// Mirrors and surfaces of glass that a ray is followed by: two panes, or a drinking glass, seen in a mirror.
+constexpr uint32_t k_most_turns = 6;
 
 film::PreviewCamera camera_of(const shared::Frame& f) {
   return {{f.camera_origin, f.camera_right, f.camera_up, f.camera_forward}, f.orthographic != 0};
@@ -134,7 +134,7 @@ bool Display::see(Engine& engine, const PictureView& view, const std::function<b
     sight_.resources.set("Surfaces", rays.surfaces());
     wavefront.stream().dispatch(sight_.note, sight_.resources, push, gpu::groups_for(push.count, 64));
   };
-  frame.max_depth = k_most_mirrors;
+  frame.max_depth = k_most_turns;
   wavefront.set_frame(frame, engine.plan().enabled());
   bool complete = true;
   wavefront.uncounted([&] { complete = rays.see(wavefront, "sight", note, cancel, &sight_.look); });

@@ -63,7 +63,7 @@ class Display {
   film::Preview preview_;
   std::unique_ptr<film::Film> fine_;  ///< of half the resolution; made when it is called for
   DraftPlan plan_;
-  /// What surfaces the pixels of the picture show, in mirrors too (film/preview_look.comp).
+  /// What surfaces the pixels of the picture show, in mirrors and through glass too (film/preview_look.comp).
   struct {
     std::optional<overlay::Sight> rays;
     gpu::Defines defines;  ///< that these were made with

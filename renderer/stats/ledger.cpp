@@ -11,6 +11,7 @@ void Ledger::add(const Entry& entry) {
   // The end of a render may come right after a line: it takes that line's place.
   if (!entries_.empty() && entries_.back().paths == entry.paths) entries_.pop_back();
   entries_.push_back(entry);
+  ++changes_;
 }
 
 std::string Ledger::csv() const {

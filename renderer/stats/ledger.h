@@ -63,14 +63,17 @@ class Ledger {
     return last < 32 * pixels ? paths >= last + last / 2 : paths >= last + last / 4;
   }
   void add(const Entry& entry);
-  void clear() { entries_.clear(); }
+  void clear() { entries_.clear(), ++changes_; }
   const std::vector<Entry>& entries() const { return entries_; }
+  /// How often lines have come or gone: another number tells that there is something new.
+  uint64_t changes() const { return changes_; }
 
   /// A table with a heading, a line an entry; empty fields for what is not known.
   std::string csv() const;
 
  private:
   std::vector<Entry> entries_;
+  uint64_t changes_ = 0;
 };
 
 }  // namespace lucerna::stats

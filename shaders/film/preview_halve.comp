@@ -29,13 +29,13 @@ bool mixed(int pixel, PreviewSurface s) {
 }
 
 uvec2 draft_size() { return uvec2(push.draft_width, push.draft_height); }
-// Of a draft's pixel; where its middle shows a mirror, what is seen in that.
+// Of a draft's pixel; where its middle shows a mirror or glass, what is seen there.
 PreviewSurface draft_surface(uvec2 at) {
   PreviewSurface s = preview_surface(texelFetch(draft_surfaces, int(at.y * push.draft_width + at.x)));
   if (push.surfaces != k_preview_surface_seen) return s;
   uvec2 size = uvec2(push.width, push.height), middle = min((2u * at + 1u) * size / (2u * draft_size()), size - 1u);
   PreviewSurface seen = preview_surface(texelFetch(guide_surfaces, int(middle.y * push.width + middle.x)));
-  if (seen.samples != k_preview_mirrored) return s;
+  if (seen.samples != k_preview_beyond) return s;
   seen.samples = s.samples;
   return seen;
 }

@@ -1,7 +1,8 @@
-// What rays through the picture's pixels show, in mirrors as well: the first surface that does not only mirror. In place of
-// transport/shade.comp (transport/wavefront.h, PathEnds::vertex), from overlay/centre.comp to film/preview_sight.comp, which
-// reads the features as k_sight_* says. What is seen in a mirror lies behind it, mirrored at its plane: there it moves as a
-// surface does when the camera moves.
+// What rays through the picture's pixels show, in mirrors and through glass as well: the first surface that does not only mirror
+// or refract. They go on with most of the light. In place of transport/shade.comp (transport/wavefront.h, PathEnds::vertex), from
+// overlay/centre.comp to film/preview_sight.comp, which reads the features as k_sight_* says. What is seen in a mirror lies behind
+// it, mirrored at its plane, and what is seen through glass where it would be without: there it moves, about, as a surface does
+// when the camera moves.
 #include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
@@ -30,33 +31,44 @@ void main() {
   if (path.pixel == 0xffffffffu || hit.prim == k_no_hit) return;
   Surface surface = make_surface(ray, hit);
   float travelled = path.travelled + hit.t;
-  bool passed = false, mirrors = false;
+  bool passed = false, followed = false, mirrors = false;
+  vec3 colour = surface.parameters.base;
 #if LUCERNA_ALPHA
   passed = surface_coverage(surface) < 0.5;
+  if (passed) colour = vec3(1.0);
 #endif
-  vec3 normal = surface.front ? surface.normal_s : -surface.normal_s, direction = ray.direction;
-#if LUCERNA_SPECULAR
-  if (!passed && !emits(surface) && surface.parameters.transmission == 0.0 && path_depth(path) < frame.max_depth) {
-    vec3 wo = -ray.direction * shading_frame(surface, -ray.direction);  // transposed
+  vec3 side = surface.front ? surface.normal_g : -surface.normal_g, normal = surface.front ? surface.normal_s : -surface.normal_s;
+  vec3 direction = ray.direction;
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+  if (!passed && !emits(surface)) {
+    mat3 to_world = shading_frame(surface, -ray.direction);
+    vec3 wo = -ray.direction * to_world;  // transposed
     Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
-    direction = reflect(ray.direction, normal);
-    mirrors = bsdf.delta && max3(bsdf.diffuse + bsdf.transmitted) <= 0.0 &&
-              dot(direction, surface.front ? surface.normal_g : -surface.normal_g) > 0.0;
+#if LUCERNA_THIN_GLASS
+    passed = bsdf_straight_probability(bsdf, wo.z) > 0.5;
+#endif
+    if (!passed && max3(bsdf.diffuse + bsdf.transmitted) <= 0.0 && path_depth(path) < frame.max_depth) {
+      BsdfSample b = bsdf_sample(bsdf, wo, vec2(0.0, 0.5), vec2(0.5));
+      direction = normalize(to_world * b.wi);
+      mirrors = !b.transmitted;
+      // What is rough shows no surface.
+      followed = b.event == k_event_specular && (dot(direction, side) > 0.0) == mirrors && max3(b.weight) > 0.0;
+    }
   }
 #endif
-  bool mirrored = path_depth(path) > 0u;
-  if (!passed && !mirrors) {
+  if (!passed && !followed) {
     vec3 first = camera_direction(camera_shift(vec2(path.pixel % frame.width, path.pixel / frame.width) + 0.5)), turned = first - ray.direction;
-    if ((path_depth(path) & 1u) != 0u && dot(turned, turned) > 0.0) normal = reflect(normal, normalize(turned));
-    float found = float(k_sight_met | (mirrored ? k_sight_mirrored : 0u) | (emits(surface) ? k_sight_emits : 0u));
+    if ((path.nulls & 1u) != 0u && dot(turned, turned) > 0.0) normal = reflect(normal, normalize(turned));
+    float found = float(k_sight_met | (path_depth(path) > 0u ? k_sight_beyond : 0u) | (emits(surface) ? k_sight_emits : 0u));
     features[2u * slot] = vec4(path.throughput * surface.parameters.base, found);
     features[2u * slot + 1u] = vec4(normal, travelled * dot(first, frame.camera_forward));
     return;
   }
-  if (mirrors) {
-    path.throughput *= surface.parameters.base;
+  path.throughput *= colour;
+  if (followed) {
     path.bits += 1u << k_path_events_shift;
-    features[2u * slot] = vec4(0.0, 0.0, 0.0, float(k_sight_mirrored));
+    path.nulls += mirrors ? 1u : 0u;  // of mirrors, here
+    features[2u * slot] = vec4(0.0, 0.0, 0.0, float(k_sight_beyond));
   } else {
     direction = ray.direction;
   }

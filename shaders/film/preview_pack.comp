@@ -32,10 +32,10 @@ void main() {
   s.covered = albedo.w > 0.0 ? albedo.w / n : 1.0;
   vec4 guide = push.guided != 0u ? texelFetch(guide_surfaces, int(pixel)) : vec4(-1.0, 0.0, 0.0, 0.0);
   PreviewSurface seen = preview_surface(guide);
-  bool mirrored = push.guided != 0u && seen.samples == k_preview_mirrored;
+  bool beyond = push.guided != 0u && seen.samples == k_preview_beyond;
   s.emits = push.guided != 0u && seen.emits;
-  // In a mirror samples have met the mirror.
-  if (mirrored) {
+  // Samples have met the mirror or the glass.
+  if (beyond) {
     float samples = s.samples;
     s = seen;
     s.samples = samples;

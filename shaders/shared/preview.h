@@ -4,7 +4,7 @@
 // error of the luminance (below 0: not known), in units of what is shown white; and one texel of its surface: depth along the
 // view axis [m] (0: nothing is there; below 0: not known, and where a draft has seen it about k_preview_about less
 // this), bits packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, share of the samples that have met
-// it or, where it is known to emit light, 0), samples – of what a ray has met: 0, or k_preview_mirrored.
+// it or, where it is known to emit light, 0), samples – of what a ray has met: 0, or k_preview_beyond.
 #ifndef LUCERNA_SHARED_PREVIEW_H
 #define LUCERNA_SHARED_PREVIEW_H
 #include "shaders/shared/compat.h"
@@ -13,9 +13,9 @@ LUCERNA_SHARED_BEGIN
 LUCERNA_CONST uint k_preview_texels = 2u;
 LUCERNA_CONST uint k_preview_none = 0xffffffffu;  ///< no pixel
 LUCERNA_CONST float k_preview_about = -2.0f;
-LUCERNA_CONST float k_preview_mirrored = -1.0f;  ///< it is seen in a mirror
+LUCERNA_CONST float k_preview_beyond = -1.0f;  ///< it is seen in a mirror or through glass
 /// Bits of what a ray through a pixel has found (film/preview_look.comp).
-LUCERNA_CONST uint k_sight_met = 1u, k_sight_mirrored = 2u, k_sight_emits = 4u;
+LUCERNA_CONST uint k_sight_met = 1u, k_sight_beyond = 2u, k_sight_emits = 4u;
 LUCERNA_CONST uint k_preview_step = 2u;  ///< pixels along the side of a cell of the grid that is filtered
 LUCERNA_CONST uint k_preview_first_step = 4u;  ///< ... while there is a draft of a quarter of the resolution alone
 

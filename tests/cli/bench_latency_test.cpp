@@ -59,5 +59,7 @@ TEST_CASE("what bench latency cannot do it says") {
   refused("cornell --edits lamp", "there is no edit 'lamp'");
   refused("cornell --size 12", "expected WIDTHxHEIGHT");
   refused("cornell --set film.ev", "expected KEY=VALUE");
+  refused("cornell --set cache.no_such_key=1", "cache.no_such_key");
+  refused("cornell --set film.ev=bright", "film.ev");
   refused("no-such-scene", "no-such-scene");
 }

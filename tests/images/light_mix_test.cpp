@@ -7,6 +7,7 @@
 #include "base/blackbody.h"
 #include "film/io/image_file.h"
 #include "images/light_mix_support.h"
+#include "session/accuracy.h"
 #include "support/folder.h"
 
 using namespace lucerna;
@@ -113,6 +114,26 @@ TEST_CASE("light of one group is mixed without a ray, whoever computes it") {
     b.mix("all: mute");
     for (const auto& component : b.r.image().components)
       CHECK(std::all_of(component.begin(), component.end(), [](const vec3& v) { return v == vec3(0); }));
+  }
+}
+
+TEST_CASE("what is told of the error of a finished picture is told of the mix that is shown") {
+  Bench b(room());
+  session::AccuracyKeeper keeper;
+  b.image();
+  b.r.finish_ledger();
+  const auto told = [&] {
+    keeper.follow(b.r, 1);
+    return keeper.publish(b.r, true)->error()[0];
+  };
+  double last = told();
+  CHECK(last > 0);
+  for (const char* text : {"sky: solo", "lamp: solo", "block: solo", ""}) {
+    b.mix(text);
+    INFO(text);
+    CHECK(told() == Approx(b.r.image_error().relative(0)));
+    CHECK(told() != last);
+    last = told();
   }
 }
 

@@ -139,9 +139,9 @@ TEST_CASE("what a mirror shows has the borders of what it shows") {
   stage.sample(stage.film, 4, [&](uint32_t x, uint32_t) {
     return Sample{.light = vec3(random() % 3 == 0 ? 3 * light(x) : 0)};
   });
-  const auto error = [&](bool mirrored) {
+  const auto error = [&](bool beyond) {
     const gpu::Buffer surfaces = surfaces_of(stage, [&](uint32_t x, uint32_t) {
-      return mirrored ? Seen{.depth = x < 41 ? 8.0f : 12.0f, .mirrored = true} : Seen{};
+      return beyond ? Seen{.depth = x < 41 ? 8.0f : 12.0f, .beyond = true} : Seen{};
     });
     stage.preview.forget();
     show_seen(stage, surfaces);

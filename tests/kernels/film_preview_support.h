@@ -95,7 +95,7 @@ struct Stage {
 
 struct Seen {
   float albedo = 1, depth = 5;
-  bool emits = false, mirrored = false;
+  bool emits = false, beyond = false;
 };
 
 /// Surfaces of a stage's pixels that face the eye, as shaders/shared/preview.h has them.
@@ -107,7 +107,7 @@ inline gpu::Buffer surfaces_of(Stage& stage, const std::function<Seen(uint32_t x
       const auto byte = uint32_t(std::lround(s.albedo * 255));
       // A normal towards the eye is 0 on the octahedron.
       const uint32_t bits[2] = {0, byte * 0x010101u | (s.emits ? 0 : 0xff000000u)};
-      vec4 texel(s.depth, 0, 0, s.mirrored ? shared::k_preview_mirrored : 0);
+      vec4 texel(s.depth, 0, 0, s.beyond ? shared::k_preview_beyond : 0);
       std::memcpy(&texel.y, bits, sizeof bits);
       texels.push_back(texel);
     }
