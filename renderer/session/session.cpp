@@ -8,6 +8,7 @@
 #include <deque>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "base/log.h"
 #include "base/timer.h"
@@ -61,6 +62,11 @@ struct Session::Impl {
     std::shared_ptr<std::promise<void>> promise;
   };
   std::vector<Save> saves;  // that wait for what they are to write
+  struct Measure {
+    std::optional<vec2> at;
+    std::shared_ptr<std::promise<film::Brightness>> promise;
+  };
+  std::vector<Measure> measures;  // that wait for a picture
 
   bool works(Renderer& r) const { return r.ready() && !paused && !r.done() && !r.waits(); }
 
@@ -93,6 +99,16 @@ struct Session::Impl {
       if (now) write(r, save);
       return now;
     });
+  }
+
+  void measure_due(Renderer& r) {
+    if (r.samples() == 0 && !r.has_draft() && works(r)) return;
+    for (const Measure& m : std::exchange(measures, {})) try {
+        r.settle_mix();
+        m.promise->set_value(r.measure(m.at));
+      } catch (...) {
+        m.promise->set_exception(std::current_exception());
+      }
   }
 
   void give_up_saves(const char* why) {
@@ -271,6 +287,7 @@ void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mut
     if (!renderer) throw Error("device", "there is none to render with");
     command.run(*renderer);
     write_due(*renderer);
+    measure_due(*renderer);
   } catch (const std::exception& e) {
     log::error("{}", e.what());
   }
@@ -383,7 +400,7 @@ void Session::Impl::run() {
       publish();
       dirty = false;
     }
-    if (renderer) write_due(*renderer);
+    if (renderer) write_due(*renderer), measure_due(*renderer);
     lock.lock();
   }
   end(renderer.get(), lock);
@@ -526,14 +543,7 @@ void Session::inspect(std::optional<vec2> at) {
 std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at) {
   auto promise = std::make_shared<std::promise<film::Brightness>>();
   auto result = promise->get_future().share();
-  impl_->post([at, promise](Renderer& r) {
-    try {
-      r.settle_mix();
-      promise->set_value(r.measure(at));
-    } catch (...) {
-      promise->set_exception(std::current_exception());
-    }
-  });
+  impl_->post([s = impl_.get(), at, promise](Renderer&) { s->measures.push_back({at, promise}); });
   return result;
 }
 

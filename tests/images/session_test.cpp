@@ -89,6 +89,19 @@ TEST_CASE("files that are asked for are written, also when the session ends at o
   CHECK(std::filesystem::exists(file("b.png")));
 }
 
+TEST_CASE("a picture is measured as soon as there is one, also right after an edit") {
+  Heard heard;
+  Session session({.device = "cpu"});
+  session.set_size(32, 24);
+  session.load(gltf("cornell"));
+  for (int round = 0; round < 4; ++round) {
+    session.set("components.secondary", round % 2 == 0 ? "cache" : "path");
+    const film::Brightness found = session.measure(std::nullopt).get();
+    CHECK(found.ev.has_value());
+  }
+  CHECK(heard.errors == 0);
+}
+
 TEST_CASE("a session without a device tells those who wait for files") {
   Session session({.device = "no such device"});
   CHECK_THROWS(session.save("/tmp/lucerna-never.exr").get());
