@@ -13,7 +13,7 @@ namespace {
 /// Samples of every pixel from which on a draft, of wider pixels, tells nothing any more.
 constexpr uint32_t k_draft_until = 4;
 
-/// Mirrors and surfaces of glass that a ray is followed by: two panes, or a drinking glass, seen in a mirror.
+/// Of mirrors and surfaces of glass, that a ray is followed by: two panes seen in a mirror are five.
 constexpr uint32_t k_most_turns = 6;
 
 film::PreviewCamera camera_of(const shared::Frame& f) {

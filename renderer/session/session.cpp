@@ -111,6 +111,11 @@ struct Session::Impl {
       }
   }
 
+  void serve_due(Renderer& r) {
+    write_due(r);
+    measure_due(r);
+  }
+
   void give_up_saves(const char* why) {
     for (const Save& save : saves) {
       const std::string before = save.solver.empty() ? std::string("the picture had a sample")
@@ -286,8 +291,7 @@ void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mut
   try {
     if (!renderer) throw Error("device", "there is none to render with");
     command.run(*renderer);
-    write_due(*renderer);
-    measure_due(*renderer);
+    serve_due(*renderer);
   } catch (const std::exception& e) {
     log::error("{}", e.what());
   }
@@ -400,7 +404,7 @@ void Session::Impl::run() {
       publish();
       dirty = false;
     }
-    if (renderer) write_due(*renderer), measure_due(*renderer);
+    if (renderer) serve_due(*renderer);
     lock.lock();
   }
   end(renderer.get(), lock);

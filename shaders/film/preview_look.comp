@@ -6,7 +6,7 @@
 #include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
-#include "lib/surface.glsl"
+#include "lib/sight.glsl"
 #include "shaders/shared/preview.h"
 
 bool emits(Surface surface) {
@@ -31,32 +31,11 @@ void main() {
   if (path.pixel == 0xffffffffu || hit.prim == k_no_hit) return;
   Surface surface = make_surface(ray, hit);
   float travelled = path.travelled + hit.t;
-  bool passed = false, followed = false, mirrors = false;
-  vec3 colour = surface.parameters.base;
-#if LUCERNA_ALPHA
-  passed = surface_coverage(surface) < 0.5;
-  if (passed) colour = vec3(1.0);
-#endif
-  vec3 side = surface.front ? surface.normal_g : -surface.normal_g, normal = surface.front ? surface.normal_s : -surface.normal_s;
-  vec3 direction = ray.direction;
-#if LUCERNA_SPECULAR || LUCERNA_GLASS
-  if (!passed && !emits(surface)) {
-    mat3 to_world = shading_frame(surface, -ray.direction);
-    vec3 wo = -ray.direction * to_world;  // transposed
-    Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
-#if LUCERNA_THIN_GLASS
-    passed = bsdf_straight_probability(bsdf, wo.z) > 0.5;
-#endif
-    if (!passed && max3(bsdf.diffuse + bsdf.transmitted) <= 0.0 && path_depth(path) < frame.max_depth) {
-      BsdfSample b = bsdf_sample(bsdf, wo, vec2(0.0, 0.5), vec2(0.5));
-      direction = normalize(to_world * b.wi);
-      mirrors = !b.transmitted;
-      // What is rough shows no surface.
-      followed = b.event == k_event_specular && (dot(direction, side) > 0.0) == mirrors && max3(b.weight) > 0.0;
-    }
-  }
-#endif
-  if (!passed && !followed) {
+  SightStep on = sight_step(surface, ray.direction);
+  if (!on.cut_out && emits(surface)) on.straight = on.turned = false;
+  on.turned = on.turned && path_depth(path) < frame.max_depth;
+  if (!on.straight && !on.turned) {
+    vec3 normal = surface.front ? surface.normal_s : -surface.normal_s;
     vec3 first = camera_direction(camera_shift(vec2(path.pixel % frame.width, path.pixel / frame.width) + 0.5)), turned = first - ray.direction;
     if ((path.nulls & 1u) != 0u && dot(turned, turned) > 0.0) normal = reflect(normal, normalize(turned));
     float found = float(k_sight_met | (path_depth(path) > 0u ? k_sight_beyond : 0u) | (emits(surface) ? k_sight_emits : 0u));
@@ -64,17 +43,15 @@ void main() {
     features[2u * slot + 1u] = vec4(normal, travelled * dot(first, frame.camera_forward));
     return;
   }
-  path.throughput *= colour;
-  if (followed) {
+  if (!on.cut_out) path.throughput *= surface.parameters.base;
+  if (on.turned) {
     path.bits += 1u << k_path_events_shift;
-    path.nulls += mirrors ? 1u : 0u;  // of mirrors, here
+    path.nulls += on.mirrored ? 1u : 0u;  // of mirrors, here
     features[2u * slot] = vec4(0.0, 0.0, 0.0, float(k_sight_beyond));
-  } else {
-    direction = ray.direction;
   }
   path.travelled = travelled;
-  rays[slot].origin = offset_origin(surface, direction);
-  rays[slot].direction = direction;
+  rays[slot].origin = offset_origin(surface, on.direction);
+  rays[slot].direction = on.direction;
   store_path(slot, path);
   next_queue[atomicAdd(counters[k_counter_next], 1u)] = slot;
   atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);

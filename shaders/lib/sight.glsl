@@ -1,0 +1,38 @@
+// How a ray goes on that shows what is seen through glass and in mirrors: the way of most of the light.
+#ifndef LUCERNA_LIB_SIGHT
+#define LUCERNA_LIB_SIGHT
+#include "lib/surface.glsl"
+
+struct SightStep {
+  bool straight;   // on as it came: the surface is cut out there, or a thin wall of smooth glass
+  bool cut_out;    // the former
+  bool turned;     // mirrored or refracted; neither: what is met there is what is seen, or it is rough and shows no surface
+  bool mirrored;   // if turned
+  bool diffuse;    // the surface scatters light diffusely
+  vec3 direction;  // of the ray that goes on
+};
+
+SightStep sight_step(Surface surface, vec3 direction) {
+  SightStep s = SightStep(false, false, false, false, false, direction);
+#if LUCERNA_ALPHA
+  s.straight = s.cut_out = surface_coverage(surface) < 0.5;
+  if (s.cut_out) return s;
+#endif
+  mat3 to_world = shading_frame(surface, -direction);
+  vec3 wo = -direction * to_world;  // transposed
+  Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
+#if LUCERNA_THIN_GLASS
+  s.straight = bsdf_straight_probability(bsdf, wo.z) > 0.5;
+  if (s.straight) return s;
+#endif
+  s.diffuse = max3(bsdf.diffuse_albedo + bsdf.transmitted_albedo) > 0.0;
+  if (s.diffuse) return s;
+  BsdfSample b = bsdf_sample(bsdf, wo, vec2(0.0, 0.5), vec2(0.5));
+  s.direction = normalize(to_world * b.wi);
+  s.mirrored = !b.transmitted;
+  vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
+  s.turned = b.event == k_event_specular && (dot(s.direction, side) > 0.0) == s.mirrored && max3(b.weight) > 0.0;
+  return s;
+}
+
+#endif
