@@ -1,5 +1,7 @@
 #include "plan/plan.h"
 
+#include "shaders/shared/bsdf_table.h"
+
 namespace lucerna::plan {
 
 uint32_t Plan::enabled() const {
@@ -46,31 +48,68 @@ Plan make_plan(const Settings& settings) {
   return plan;
 }
 
+namespace {
+
+/// Whether some of a material's lobes are so smooth that they count as deltas. A texture is taken at its
+/// factors: it can only make a surface smoother, and seldom makes all of it polished.
+bool polished(const scene::Material& m) {
+  const bool reflects = m.metallic > 0 || m.transmission > 0 || (m.specular > 0 && m.ior != 1);
+  return !m.unlit && reflects && m.roughness * m.roughness < shared::k_delta_alpha;
+}
+
+/// Names of the polished materials that surfaces have.
+std::vector<std::string> polished_materials(const scene::Scene& scene) {
+  std::vector<bool> used(scene.materials.size(), false);
+  for (const scene::Instance& instance : scene.instances)
+    if (instance.mesh != scene::k_none)
+      for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives) used[p.material] = true;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < used.size(); ++i)
+    if (used[i] && polished(scene.materials[i])) names.push_back(scene.materials[i].name);
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words, const char* between) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : between) + word;
+  return all;
+}
+
+}  // namespace
+
 std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene& scene) {
-  // Words that end in SL: no secondary light, which reaches its lamp from a diffuse vertex (...DL).
-  constexpr uint32_t k_secondary = 1u << 1;
-  if ((plan.enabled() & ~k_secondary) == 0) return {};
+  // Words that end in D[DGS]*SL: of primary light lamps without size have none, and secondary light reaches
+  // its lamp from a diffuse vertex.
   constexpr size_t k_caustic = 3;
-  const solvers::SolverInfo *caustics = plan.solver[k_caustic], *rest = plan.rest[k_caustic];
-  const bool straight = caustics && caustics->straight_only;
-  if (caustics && caustics->finds_points && !straight) return {};
-  if (straight && rest && rest->finds_points) return {};
-  size_t lamps = 0, solids = 0;
-  for (const scene::Light& light : scene.lights) lamps += light.enabled;
-  for (const scene::Material& m : scene.materials) solids += m.transmission > 0 && m.thickness > 0;
-  if (lamps == 0 || solids == 0) return {};
-  if (straight)
-    return {fmt::format(
-        "{}: light of {} point, spot or directional light{} that comes through solid glass is missing where "
-        "it "
-        "is itself seen in a mirror or through glass: {} is joined to what the camera sees straight; "
-        "components.caustic={}+photons finds it all",
-        scene.file, lamps, lamps == 1 ? "" : "s", caustics->title, caustics->name)};
-  return {fmt::format(
-      "{}: light of {} point, spot or directional light{} does not come through solid glass ({} material{} "
-      "with KHR_materials_volume): path tracing cannot aim at a point through a refracting surface, "
-      "only find emissive meshes",
-      scene.file, lamps, lamps == 1 ? "" : "s", solids, solids == 1 ? "" : "s")};
+  size_t lamps = 0;
+  for (const scene::Light& light : scene.lights) lamps += light.enabled && light.intensity != vec3(0);
+  const std::vector<std::string> materials = polished_materials(scene);
+  if (lamps == 0 || materials.empty()) return {};
+  std::vector<std::string> missing, settings, lines;
+  for (const size_t c : {size_t{2}, k_caustic}) {
+    const solvers::SolverInfo *solver = plan.solver[c], *rest = plan.rest[c];
+    if (!solver || (rest && rest->finds_points) || (solver->finds_points && !solver->straight_only)) continue;
+    const std::string name = paths::k_component_names[c];
+    if (solver->straight_only) {
+      lines.push_back(fmt::format(
+          "{}: {} light of point, spot and directional lights is missing where it is seen in a mirror or "
+          "through glass: {} connects to directly visible surfaces only; set components.{}={}+photons to "
+          "compute all of it",
+          scene.file, name, solver->title, name, solver->name));
+      continue;
+    }
+    missing.push_back(name);
+    settings.push_back(fmt::format("components.{}=photons", name));
+  }
+  if (missing.empty()) return lines;
+  const std::string &material = materials.front(), others = std::to_string(materials.size() - 1);
+  lines.insert(
+      lines.begin(),
+      fmt::format("{}: {} light is incomplete: paths from the eye cannot find the light of {} point, spot or "
+                  "directional light{} by way of polished surfaces (material '{}'{}); set {} to compute it",
+                  scene.file, joined(missing, " and "), lamps, lamps == 1 ? "" : "s", material,
+                  materials.size() > 1 ? " and " + others + " more" : "", joined(settings, " and ")));
+  return lines;
 }
 
 }  // namespace lucerna::plan

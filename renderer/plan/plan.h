@@ -37,8 +37,9 @@ struct Plan {
 /// declared.
 Plan make_plan(const Settings& settings);
 
-/// Light that the scene has and the plan's solvers cannot find, one line each, with what to do about it.
-/// Without what belongs to components that are off: that is not asked for.
+/// Light that the scene has and the plan's solvers cannot find, one line each, with what to do about it:
+/// caustic and tertiary light that point, spot and directional lights send by way of polished surfaces
+/// (mirrors, glass, varnish), which paths from the eye cannot hit. Components that are off are left out.
 std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene& scene);
 
 }  // namespace lucerna::plan

@@ -21,4 +21,12 @@ inline constexpr uint32_t k_most_first_hit_boxes = 16;
 /// wider than these, so that no box is flat. Empty where nothing has brought anything.
 std::vector<Box> first_hit_boxes(std::vector<FirstHit> hits);
 
+inline constexpr uint32_t k_most_nested_boxes = 12;
+
+/// Boxes around the middle of these places (the weighted median of each axis), within which lie 50, 80 and
+/// 95 % of their weight, and then wider ones up to `extent` [m], four times each: for what is spread so
+/// widely that a few clusters would be chance. What is aimed at them all gets ever rarer with the distance.
+/// At most k_most_nested_boxes; empty where there is no weight.
+std::vector<Box> nested_boxes(std::vector<FirstHit> places, float extent);
+
 }  // namespace lucerna::transport

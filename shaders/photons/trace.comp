@@ -27,11 +27,13 @@ void main() {
   Sampler random = make_light_sampler(path.pixel, path.sample_index, frame.seed);
   LightVertex v = light_vertex(path, ray, hit, random);
   uint part = automaton_component(state);
+  bool unreachable = path.pdf == 0.0 && depth > 1u;
   bool wanted = v.lit && part < k_component_count && max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
   if (wanted && !is_finite(v.arriving)) {
     atomicAdd(counters[k_counter_dropped], 1u);
     wanted = false;
   }
+  if (wanted && (unreachable ? photons.skips_unreachable != 0u : (photons.unreachable_parts >> part & 1u) != 0u)) wanted = false;
   // Importons (I. Peter and G. Pietrek, "Importance Driven Construction of Photon Maps", 1998), as roulette.
   float share = 1.0;
   if (wanted && photons.importance_counts != 0u && importance_around(v.surface.position) == 0u) share = k_photon_unseen_share;
@@ -45,7 +47,8 @@ void main() {
     p.direction = photon_pack_direction(-ray.direction);
     p.flux = v.arriving / share;
     p.bits = facet_pack(v.surface.normal_g) | part << k_photon_part_shift |
-             min(depth - 1u, k_photon_most_events) << k_photon_events_shift | path.light_group << k_photon_group_shift;
+             min(depth - 1u, k_photon_most_events) << k_photon_events_shift | path.light_group << k_photon_group_shift |
+             (unreachable ? k_photon_unreachable : 0u);
     uint at = atomicAdd(photon_counts[k_photons_stored], 1u);
     atomicAdd(photon_counts[k_photons_by_part + part], 1u);
     if (at < photon_counts[k_photons_capacity]) {
@@ -57,5 +60,6 @@ void main() {
         photon_surfaces[at] = PhotonSurface(hit.prim << 1 | (dot(ray.direction, v.surface.normal_g) > 0.0 ? 1u : 0u), barycentric_pack(hit));
     }
   }
+  if ((photons.unreachable_parts & k_photon_ends_reachable) != 0u && path.pdf > 0.0) return;
   light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events - 1u), random);
 }

@@ -23,9 +23,11 @@ struct photons_Vertex {
 
 photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   photons_Vertex vertex = photons_Vertex(0u);
-  uint components = v.again ? 0xffffu : photons.component[v.state];
-  // A pilot notes where light is looked up, and reads none.
-  bool reads = components != 0xffffu && photons.importance_mask == 0u;
+  uint word = v.again ? k_photon_no_components : photons.component[v.state];
+  uint components = word & k_photon_no_components, only = word >> k_photon_unreachable_only_shift;  // bits, by part
+  // A pilot notes where light is looked up, and reads none. Where only light is read that paths from the eye do not find, these
+  // go on as they would without.
+  bool reads = components != k_photon_no_components && only == 0u && photons.importance_mask == 0u;
   // Paths that bring all by themselves do so no longer where it has been looked up; where there is nothing to be read yet, they do.
   bool some = photons.count > 0u;
 #if LUCERNA_PHOTON_IRRADIANCE
@@ -34,14 +36,14 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   if (reads && some && v.state % k_left_states >= k_gather_state) vertex.from = k_known_state;
 #if LUCERNA_PHOTON_IRRADIANCE
   if (reads && irradiance_asked(v.state)) {
-    components = 0xffffu;
+    components = k_photon_no_components;
     if (!irradiance_read(v, o)) vertex.from = k_fallback_state;
   }
 #endif
   vec3 x = v.surface.position;
   float radius = photon_radius(x);
-  bool looks = components != 0xffffu && photons.count > 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0;
-  if (photons.importance_mask != 0u && components != 0xffffu) {
+  bool looks = components != k_photon_no_components && photons.count > 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0;
+  if (photons.importance_mask != 0u && components != k_photon_no_components) {
     float carried = luminance(v.path.throughput * (v.bsdf.diffuse + v.bsdf.transmitted));
     int level = photon_level(importance_radius(x));
     if (carried > 0.0)
@@ -51,6 +53,10 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
       photon_lookups[v.path.pixel] =
           PhotonLookup(x, luminance(v.path.throughput * v.bsdf.diffuse_albedo), facet_pack(v.side));
   }
+  // What light has to reach in order to be of use: diffuse vertices of the pilot's paths behind the first.
+  if (photons.importance_mask != 0u && v.depth > 0u && v.depth <= photons.vertices && v.path.pixel < photons.lookups && !automaton_no_diffuse(v.state))
+    photon_lookups[photons.lookups + v.path.pixel * photons.vertices + v.depth - 1u] =
+        PhotonLookup(x, luminance(v.path.throughput * v.bsdf.diffuse_albedo), facet_pack(v.side));
   int lowest = photon_lowest_level(radius), highest = photon_highest_level(radius);
   uint candidates = looks ? photon_candidates(x, lowest, highest) : 0u;
   // Where very many lie together every so-manyth is taken, beginning anywhere.
@@ -80,7 +86,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         bool reflected = dot(wi, v.side) > 0.0;
         vec3 side = dot(wi, front) > 0.0 ? front : -front;
         float agree = reflected ? dot(side, v.side) : dot(front, v.surface.normal_g);
-        bool counts = agree > k_photon_normals && abs(dot(away, v.surface.normal_g)) < k_photon_slab * r;
+        bool counts = ((only >> part & 1u) == 0u || (bits & k_photon_unreachable) != 0u) && agree > k_photon_normals && abs(dot(away, v.surface.normal_g)) < k_photon_slab * r;
         vec3 flux = counts ? diffuse_of_flux(v.bsdf, v.to_world, v.surface.normal_g, wi, reflected) * b.rgb : vec3(0.0), light = flux * photon_kernel(d2, r);
         bool brought = part > 0u && (components >> 4u * part & 15u) < k_component_count;
         found_flat += brought ? flux * photon_flat_kernel(r) : vec3(0.0);

@@ -34,5 +34,6 @@ void main() {
   vec3 front = facet_unpack(floatBitsToUint(b.w) & k_photon_facet);
   bool lit_front = dot(photon_direction(floatBitsToUint(a.w)), front) > 0.0;
   photon_worths[i] = PhotonWorth(stratum, light, id, worth, a.xyz, importance, told ? luminance(b.rgb) : 0.0,
-                                 told ? photon_radiances[entry.z] : 0.0, facet_pack(lit_front ? front : -front));
+                                 told ? photon_radiances[entry.z] : 0.0, facet_pack(lit_front ? front : -front),
+                                 (floatBitsToUint(b.w) & k_photon_unreachable) != 0u ? 1u : 0u);
 }

@@ -93,12 +93,13 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     if (go_on && finite && !survives) atomicAdd(counters[k_counter_roulette], 1u);
     go_on = go_on && finite && survives;
     path.throughput = throughput / max(q, 1e-30);
-    // A path from the eye is not subject to this roulette. Where it scatters glossily at the first vertex from the light, light
-    // samples bring f cos flux sampling / distance^2 there, and f cos is about the weight times the density drawn from, either
-    // way round; by the balance heuristic the harmonic sum of both is left.
+    // A path from the eye is not subject to this roulette. Unless the first vertex from the light scatters specularly, light
+    // samples contribute f cos flux sampling / distance^2 there, and f cos is about the weight times the density drawn from,
+    // either way round; by the balance heuristic the harmonic sum of both remains. 0 remains where no path from the eye finds
+    // the light: behind a specular event at the first vertex from a point or a direction.
     path.pdf /= max(q, 1e-30);
-    if (depth == 1u && b.event == k_event_glossy)
-      path.pdf += (path.eta_scale < 0.0 ? 1.0 : travelled * travelled) / max(b.pdf * abs(path.eta_scale), 1e-37);
+    if (depth == 1u && b.event != k_event_specular)
+      path.pdf += max((path.eta_scale < 0.0 ? 1.0 : travelled * travelled) / max(b.pdf * abs(path.eta_scale), 1e-37), 1e-30);
     path.bits = next | (depth + 1u) << k_path_events_shift;
     path.travelled = 0.0;
     path.nulls = 0u;

@@ -75,3 +75,32 @@ TEST_CASE("where nothing was found nothing is left", "[photons_trials]") {
   trials[0] = trial(2, 1, 0.5f, 0);
   CHECK(judge(trials) == 0);
 }
+
+TEST_CASE("a trial that has missed light has the variance of what is too rare for it", "[photons_trials]") {
+  // Photons have found nothing at all, and show no variance.
+  std::vector<Trial> trials{trial(2, 0, 0, 0), trial(4, 1, 0.1f, 0)};
+  for (Trial& t : trials) t.judged = 1u << k_secondary;
+  CHECK(judge(trials) == 1);
+  // 64 pixels of two samples each have found none: the variance is 128 times the square of what is certain,
+  // 1 - 3 * 0.1. Relative to the trial that has found light; of paths 2 * 0.1^2.
+  CHECK(trials[1].product == Approx(0.02 * 4 / (128 * 0.49 * 2)));
+  // Pixels that read the same photons are as one.
+  trials[0].pixels_in_common = 64;
+  judge(trials);
+  CHECK(trials[1].product == Approx(0.02 * 4 / (2 * 0.49 * 2)));
+  // In one block of four, and the other way round.
+  std::vector<Trial> dark{trial(1, 1, 0.1f, 0), trial(1, 1, 0.1f, 0)};
+  for (Trial& t : dark) t.judged = 1u << k_secondary;
+  for (auto* layer : {&dark[0].image.components[k_secondary], &dark[0].image.odd_half[k_secondary]})
+    for (uint32_t y = 0; y < 8; ++y)
+      for (uint32_t x = 0; x < 8; ++x) (*layer)[y * k_side + x] = vec3(0);
+  CHECK(judge(dark) == 1);
+  std::swap(dark[0], dark[1]);
+  CHECK(judge(dark) == 0);
+  CHECK(dark[1].product > 10);
+  // More than half of it is no miss.
+  std::vector<Trial> half{trial(1, 0.6f, 0.1f, 0), trial(1, 1, 0.1f, 0)};
+  for (Trial& t : half) t.judged = 1u << k_secondary;
+  CHECK(judge(half) == 0);
+  CHECK(half[1].product == Approx(1));
+}

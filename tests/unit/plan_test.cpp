@@ -51,25 +51,44 @@ TEST_CASE("every component has one solver of the registry, or none") {
   }
 }
 
-TEST_CASE("lamps behind solid glass are warned about, and nothing else is") {
+TEST_CASE("light that the chosen solvers cannot find is warned about, and nothing else is") {
   const plan::Plan p = plan::make_plan({});
   scene::Scene s = one_triangle();
   CHECK(plan::unreachable_light(p, s).empty());
   s.lights.resize(2);
   CHECK(plan::unreachable_light(p, s).empty());
-  s.materials[0].transmission = 1;  // a thin wall lets shadow rays through
+  // Rough surfaces scatter light where paths from the eye can sample it.
+  s.materials[0].transmission = 1, s.materials[0].thickness = 0.1f;
   CHECK(plan::unreachable_light(p, s).empty());
-  s.materials[0].thickness = 0.1f;
+  // Glass, a mirror, varnish.
+  s.materials[0].roughness = 0;
   REQUIRE(plan::unreachable_light(p, s).size() == 1);
-  CHECK(plan::unreachable_light(p, s)[0].find("one.gltf") == 0);
-  // Nobody asks for that light where its components are off.
+  CHECK(plan::unreachable_light(p, s)[0].find("one.gltf: tertiary and caustic light") == 0);
+  s.materials[0].transmission = 0, s.materials[0].thickness = 0, s.materials[0].metallic = 1;
+  CHECK(plan::unreachable_light(p, s).size() == 1);
+  s.materials[0].metallic = 0;
+  CHECK(plan::unreachable_light(p, s).size() == 1);
+  s.materials[0].specular = 0;
+  CHECK(plan::unreachable_light(p, s).empty());
+  s.materials[0].specular = 1;
+  // A polished material that no surface has.
+  scene::Scene unused = s;
+  unused.materials.insert(unused.materials.begin(), scene::Material{});
+  unused.materials[0].roughness = 1;
+  CHECK(plan::unreachable_light(p, unused).empty());
+  // Components that are off are not asked for.
   plan::Settings some;
   for (const char* key : {"components.primary", "components.tertiary"}) some.set(key, "off");
-  CHECK(plan::unreachable_light(plan::make_plan(some), s).size() == 1);
+  REQUIRE(plan::unreachable_light(plan::make_plan(some), s).size() == 1);
+  CHECK(plan::unreachable_light(plan::make_plan(some), s)[0].find("tertiary") == std::string::npos);
   some.set("components.caustic", "off");
   CHECK(plan::unreachable_light(plan::make_plan(some), s).empty());
-  plan::Settings photons;  // find it
+  // Photons find it, of the components that they compute.
+  plan::Settings photons;
   photons.set("components.caustic", "photons");
+  REQUIRE(plan::unreachable_light(plan::make_plan(photons), s).size() == 1);
+  CHECK(plan::unreachable_light(plan::make_plan(photons), s)[0].find("one.gltf: tertiary light") == 0);
+  photons.set("components.tertiary", "photons");
   CHECK(plan::unreachable_light(plan::make_plan(photons), s).empty());
   photons.set("components.caustic", "light+photons");
   CHECK(plan::unreachable_light(plan::make_plan(photons), s).empty());

@@ -10,7 +10,7 @@ namespace lucerna::photons {
 
 using namespace shared;
 using paths::k_caustic_part;
-using solvers::Cancel, solvers::Picture;
+using solvers::Cancel, solvers::Picture, solvers::Task;
 
 namespace {
 
@@ -22,7 +22,10 @@ constexpr double k_pilot_radius = 3;  // of its own pixels, which are wide
 constexpr uint32_t k_first_hit_paths = 1u << 16, k_most_first_hit_rounds = 8, k_first_hit_round = 0xffffff00u;
 constexpr size_t k_enough_hits = 512, k_least_hits = 16;
 constexpr double k_many = 0.2;
-constexpr uint32_t k_most_left = 1u << 15;  // texels of left_regions
+/// After so many rounds with too few they are aimed at where paths from the eye go on behind lookups.
+constexpr uint32_t k_unaimed_first_hit_rounds = 2, k_reached_vertices = 3;
+constexpr uint32_t k_deep = 1u << 1 | 1u << 2;  // components: secondary, tertiary
+constexpr uint32_t k_most_left = 1u << 15;      // texels of left_regions
 
 constexpr double k_least_from_afar = 0.05;  // of all lights' power; less is not looked for
 
@@ -92,6 +95,19 @@ Frame PhotonSolver::small_frame(const Picture& picture) {
   return frame;
 }
 
+bool PhotonSolver::may_hide(const Picture& picture) const {
+  // What smooth mirrors and glass do with the light of lamps that have no size.
+  const upload::Effects& e = picture.task.effects;
+  if (!e.specular && !e.solid_glass && !e.thin_glass) return false;
+  const std::span<const double> powers = lights_.powers();
+  for (size_t i = 0; i < picture.flat.entries.size(); ++i) {
+    const uint32_t kind = picture.flat.entries[i].kind;
+    const bool has_no_size = kind == k_light_point || kind == k_light_spot || kind == k_light_directional;
+    if (has_no_size && powers[i] > 0) return true;
+  }
+  return false;
+}
+
 void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   constexpr uint32_t k_caustics = 1u << k_caustic_part;
   const bool lit = sends_ && lights_.power() > 0, asked = picture.task.settings.boolean("photons.aim");
@@ -102,8 +118,10 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   const bool shares_lights = lit && asked && light_groups_.members.size() > 1;
   const bool spares = lit && picture.task.settings.boolean("photons.importons");
   const bool weighs = lit && leaves_ != 0;
+  hides_ = lit && may_hide(picture);
   const bool stale = spoils.any() || aims != aims_ || shares_lights != shares_lights_ || spares != spares_ ||
                      weighs != weighs_ || !transport::same_view(picture.frame, aimed_for_);
+  if (stale) unreachable_found_ = false;
   begin_trials(picture, stale);
   aims_ = aims, shares_lights_ = shares_lights, spares_ = spares, weighs_ = weighs;
   // Whoever only looks from elsewhere finds the same casters.
@@ -112,7 +130,7 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   aimed_ = false;
   aim_step_ = AimStep::casters;
   aimed_for_ = picture.frame;
-  pairs_.clear(), boxes_.clear(), first_hits_.clear();
+  pairs_.clear(), boxes_.clear(), reached_boxes_.clear(), first_hits_.clear();
   first_hit_rounds_ = 0;
   density_at_lookups_ = 0;
   regions_ = {};
@@ -134,12 +152,13 @@ bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& pictu
       if (bundles_ && !casters_known_)
         casters_ = transport::find_casters(picture.flat), casters_known_ = true;
       boxes_ = casters_;
-      aimed_ = boxes_.empty() && !enters_ && !shares_lights_ && !spares_ && !weighs_;
+      aimed_ = boxes_.empty() && !enters_ && !shares_lights_ && !spares_ && !weighs_ && !hides_;
       if (aimed_) return true;
       const Frame frame = small_frame(picture);
       eye_schedule_.emplace((frame.width + 7) / 8 * ((frame.height + 7) / 8), 1, wavefront.slots());
       map_.note_importance(wavefront, lookup_of(picture, frame, k_pilot_radius),
-                           weighs_ ? frame.width * frame.height : 0);
+                           weighs_ || enters_ ? frame.width * frame.height : 0,
+                           enters_ ? k_reached_vertices : 0);
       aim_step_ = AimStep::importance;
       return true;
     }
@@ -158,7 +177,10 @@ bool PhotonSolver::note_importance(transport::Wavefront& wavefront, const Pictur
   const Frame frame = small_frame(picture);
   // Paths that go on for this solver's own light alone. Where records bring it, looking it up behind surfaces
   // as those around the picture's, paths do so in their place, whether there are records yet or not.
-  solvers::Routing routing = routing_of(picture.task);
+  // Where light from afar is to be aimed they go on behind lookups, to where it has to arrive.
+  Task task = picture.task;
+  if (enters_ && !feeds_) task.own &= ~k_deep;
+  solvers::Routing routing = routing_of(task);
   if (feeds_) routing.fallback = picture.task.own;
   Frame own = picture.frame_for(routing, picture.task.own);
   if (feeds_)
@@ -171,11 +193,15 @@ bool PhotonSolver::note_importance(transport::Wavefront& wavefront, const Pictur
   wavefront.set_frame(picture.frame, picture.task.enabled);
   if (!complete) eye_schedule_ = before;
   if (!eye_schedule_->done()) return complete;
-  map_.clear();
-  if (enters_)
+  if (enters_) {
+    std::vector<transport::FirstHit> reached;
+    for (const PhotonLookup& l : map_.reached())
+      if (l.carried > 0) reached.push_back({l.position, double(l.carried)});
+    reached_boxes_ = transport::nested_boxes(std::move(reached), 2 * picture.flat.scene_radius);
     aim_step_ = AimStep::first_hits;
-  else
-    begin_sharing(picture);
+  }
+  map_.clear();
+  if (!enters_) begin_sharing(picture);
   return complete;
 }
 
@@ -187,7 +213,7 @@ void PhotonSolver::begin_sharing(const Picture& picture) {
     lights_.choose_by(transport::light_weights(light_groups_.members, lights_.powers(), {}));
   map_.tell_radiance(weighs_);
   // Where nothing is aimed there is nothing to share out, but other things may be asked for.
-  aimed_ = boxes_.empty() && !asks_density() && !weighs_ && !shares_lights_;
+  aimed_ = boxes_.empty() && !asks_density() && !weighs_ && !shares_lights_ && !hides_;
 }
 
 bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Picture& picture,
@@ -204,11 +230,21 @@ bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Pictur
   ++first_hit_rounds_;
   map_.clear();
   const double from_afar = lights_.power_from_afar() / lights_.power() * round.paths * first_hit_rounds_;
-  const bool many = double(first_hits_.size()) > k_many * from_afar;
-  if (!many && first_hits_.size() < k_enough_hits && first_hit_rounds_ < k_most_first_hit_rounds) return true;
-  if (!many && first_hits_.size() >= k_least_hits) {
-    const std::vector<Box> places = transport::first_hit_boxes(std::move(first_hits_));
-    boxes_.insert(boxes_.end(), places.begin(), places.end());
+  const bool by_chance = first_hit_rounds_ <= k_unaimed_first_hit_rounds;
+  const bool many = by_chance && double(first_hits_.size()) > k_many * from_afar;
+  if (!many && first_hits_.size() < k_enough_hits && first_hit_rounds_ < k_most_first_hit_rounds) {
+    // Too rare to be found by chance: from now on half of the paths go where it would be of use.
+    if (first_hit_rounds_ == k_unaimed_first_hit_rounds)
+      lights_.aim(device_, picture.flat, reached_boxes_, 0.5);
+    return true;
+  }
+  if (!many) {
+    const auto aim_at = [&](const std::vector<Box>& places) {
+      boxes_.insert(boxes_.end(), places.begin(), places.end());
+    };
+    if (first_hits_.size() >= k_least_hits) aim_at(transport::first_hit_boxes(std::move(first_hits_)));
+    // Where they were found by aiming alone there are others besides.
+    if (!by_chance) aim_at(reached_boxes_);
   }
   first_hits_.clear();
   begin_sharing(picture);
@@ -243,6 +279,9 @@ bool PhotonSolver::share_out(transport::Wavefront& wavefront, const Picture& pic
   for (const PhotonWorth& p : told)
     gain.push_back(lights_.shares()[p.stratum] / before[p.stratum] *
                    (p.stratum == 0 ? by_entry[p.light] : 1));
+  unreachable_found_ = std::any_of(told.begin(), told.end(),
+                                   [](const PhotonWorth& p) { return p.unreachable != 0 && p.worth > 0; });
+  route(picture.task);
   if (asks_density()) density_at_lookups_ = typical_density(told, gain) / double(round.paths);
   pairs_ = overlay::aimed_pairs(picture.flat, lights_);
   if (weighs_) {

@@ -52,16 +52,19 @@ void PhotonMap::bind(gpu::Resources& resources) const {
   resources.set("PhotonLookups", lookups_);
 }
 
-void PhotonMap::note_importance(transport::Wavefront& wavefront, const PhotonFrame& lookup, uint32_t pixels) {
+void PhotonMap::note_importance(transport::Wavefront& wavefront, const PhotonFrame& lookup, uint32_t pixels,
+                                uint32_t vertices) {
   lookup_ = lookup;
-  lookup_.lookups = pixels;
-  if (const uint64_t bytes = pixels * sizeof(PhotonLookup); bytes > lookups_.bytes()) {
+  lookup_.lookups = noted_pixels_ = pixels, lookup_.vertices = vertices;
+  if (const uint64_t bytes = uint64_t{pixels} * (1 + vertices) * sizeof(PhotonLookup);
+      bytes > lookups_.bytes()) {
     gpu::make_room(device_, lookups_, {.name = "lookups of caustics", .bytes = bytes});
     wavefront.rebind_lookup();
   }
   lookup_.count = 0, lookup_.mask = 0, lookup_.importance_mask = k_photon_importance_entries - 1;
   noted_ = lookup;
   noted_.importance_counts = 0, noted_.tells_radiance = 0;
+  noted_.unreachable_parts = 0, noted_.skips_unreachable = 0;
   write_lookup();
   wavefront.stream().fill(importance_, 0);
   wavefront.stream().fill(lookups_, 0);
@@ -69,7 +72,12 @@ void PhotonMap::note_importance(transport::Wavefront& wavefront, const PhotonFra
   complete_ = tracing_ = false;
 }
 
-std::vector<PhotonLookup> PhotonMap::lookups() const { return lookups_.read_all<PhotonLookup>(); }
+std::vector<PhotonLookup> PhotonMap::lookups() const { return first<PhotonLookup>(lookups_, noted_pixels_); }
+
+std::vector<PhotonLookup> PhotonMap::reached() const {
+  const std::vector<PhotonLookup> all = lookups_.read_all<PhotonLookup>();
+  return {all.begin() + std::min<ptrdiff_t>(noted_pixels_, ptrdiff_t(all.size())), all.end()};
+}
 
 std::vector<PhotonWorth> PhotonMap::worths(transport::Wavefront& wavefront,
                                            const transport::LightSource& lights) {
@@ -97,7 +105,7 @@ std::vector<PhotonWorth> PhotonMap::worths(transport::Wavefront& wavefront,
 void PhotonMap::clear() {
   lookup_ = {};
   lookup_.least = lookup_.most = 1;
-  std::fill(std::begin(lookup_.component), std::end(lookup_.component), 0xffffu);
+  std::fill(std::begin(lookup_.component), std::end(lookup_.component), k_photon_no_components);
   write_lookup();
   figures_ = {};
   complete_ = tracing_ = false;
@@ -108,9 +116,10 @@ void PhotonMap::write_lookup() {
   all.importance_eye = noted_.eye, all.importance_slope = noted_.slope, all.importance_base = noted_.base;
   all.importance_counts = noted_.importance_counts, all.tells_radiance = noted_.tells_radiance;
   all.tells_surface = noted_.tells_surface;
+  all.unreachable_parts = noted_.unreachable_parts, all.skips_unreachable = noted_.skips_unreachable;
   // Where there has been no round, of what photons are stored by.
   if (all.most <= all.least) all.least = noted_.least, all.most = noted_.most;
-  if (notes_held_) all.importance_mask = 0, all.lookups = 0;
+  if (notes_held_) all.importance_mask = 0, all.lookups = all.vertices = 0;
   block_.write(&all, sizeof all);
 }
 
@@ -129,6 +138,13 @@ void PhotonMap::store_by_importance_of(const PhotonMap& other) {
   noted_.least = n.least, noted_.most = n.most;
   noted_.importance_counts = n.importance_counts;
   importance_of_ = &other;
+  write_lookup();
+}
+
+void PhotonMap::store_parts(uint32_t unreachable_parts, bool skips_unreachable) {
+  const uint32_t skips = skips_unreachable ? 1 : 0;
+  if (noted_.unreachable_parts == unreachable_parts && noted_.skips_unreachable == skips) return;
+  noted_.unreachable_parts = unreachable_parts, noted_.skips_unreachable = skips;
   write_lookup();
 }
 

@@ -54,16 +54,22 @@ class PhotonMap {
              const shared::Frame& picture, uint32_t enabled, const std::function<bool()>& cancel);
   /// From now on lookups find nothing, but note how much of the picture hangs on them, from nothing on; until
   /// a round is complete. `lookup`: by whose radii. `pixels`: of the paths' picture, for each of which is
-  /// noted where caustics are looked up; 0: they are not.
-  void note_importance(transport::Wavefront& wavefront, const shared::PhotonFrame& lookup, uint32_t pixels);
+  /// noted where caustics are looked up; 0: they are not. `vertices`: where the first so many vertices behind
+  /// the first are that lie behind a diffuse one, too (reached()).
+  void note_importance(transport::Wavefront& wavefront, const shared::PhotonFrame& lookup, uint32_t pixels,
+                       uint32_t vertices);
   /// Meanwhile, while held, lookups note nothing.
   void hold_notes(bool held);
-  /// What was noted of each pixel.
+  /// What was noted of each pixel, and of the vertices behind; carried 0: nothing.
   std::vector<shared::PhotonLookup> lookups() const;
+  std::vector<shared::PhotonLookup> reached() const;
   /// Whether photons are stored by the importance that was noted last: where nobody looks, one in so many.
   void store_by_importance(bool on);
   /// ... by what the other one has noted, as that one does. It outlives this one's rounds.
   void store_by_importance_of(const PhotonMap& other);
+  /// Of `unreachable_parts` (bits) rounds from now on store only light that no path from the eye finds
+  /// (k_photon_unreachable); with `skips_unreachable` they store none of that light.
+  void store_parts(uint32_t unreachable_parts, bool skips_unreachable);
   /// Whether worths() tells of caustics what paths from the eye would bring of them, in rounds from now on.
   void tell_radiance(bool on);
   /// What each photon of the complete round brings to the picture, by the importance that was noted last; in
@@ -108,6 +114,7 @@ class PhotonMap {
   bool tracing_ = false, complete_ = false, notes_held_ = false;
   uint32_t traced_ = 0, stored_ = 0;  ///< paths and photons of the round under way
   uint32_t capacity_ = 0;
+  uint32_t noted_pixels_ = 0;
 };
 
 }  // namespace lucerna::photons

@@ -65,18 +65,37 @@ bool prepares_irradiance(const Task& task) {
 /// All that is ours is known so.
 bool gathers_alone(const Task& task) { return prepares_irradiance(task) && task.own == 1u << k_tertiary; }
 
-/// States of the eye path in which lookups bring tertiary light and nothing else.
+/// States of the eye path in which lookups contribute tertiary light and nothing else.
 uint64_t tertiary_states(const PhotonFrame& lookup) {
   uint64_t states = 0;
   for (uint32_t state = 0; state < k_automaton_states; ++state) {
     bool some = false, others = false;
     for (uint32_t p = 0; p < paths::k_part_count; ++p) {
+      if ((lookup.component[state] >> (k_photon_unreachable_only_shift + p) & 1u) != 0) continue;
       const uint32_t c = lookup.component[state] >> 4 * p & 15u;
       some = some || c == k_tertiary, others = others || (c != k_tertiary && c != k_photon_no_component);
     }
     if (some && !others) states |= uint64_t{1} << state;
   }
   return states;
+}
+
+/// Where light of these components that no path from the eye finds is looked up: at the first diffuse vertex,
+/// for the paths go on for all other light.
+paths::LookupRoutes unreachable_routes(const Task& task, uint32_t components) {
+  constexpr uint32_t k_photon_components = 1u << k_secondary | 1u << k_tertiary | 1u << k_caustic;
+  paths::LookupRoutes routes =
+      paths::photon_routes(task.automaton, task.enabled, task.enabled & k_photon_components, task.straight);
+  routes.parts = 0;
+  for (auto& by_part : routes.component)
+    for (uint32_t p = 0; p < paths::k_part_count; ++p) {
+      uint8_t& c = by_part[p];
+      if (c == paths::k_no_component || c == k_secondary || (components >> c & 1u) == 0)
+        c = paths::k_no_component;
+      else
+        routes.parts |= 1u << p;
+    }
+  return routes;
 }
 
 nlohmann::ordered_json component_names(uint32_t components) {
@@ -205,15 +224,37 @@ void PhotonSolver::look_up_preview(transport::Wavefront& wavefront, bool on) {
   map_.hold_notes(on);
 }
 
-uint32_t PhotonSolver::sent_parts() const {
+uint32_t PhotonSolver::whole_parts() const {
   const uint32_t parts = parts_ & here_routes_.parts;
   return regions_.nowhere ? parts & ~(1u << k_caustic_part) : parts;
 }
 
+uint32_t PhotonSolver::sent_parts() const {
+  return whole_parts() | (parts_ & (unreachable_here_.parts | unreachable_left_.parts));
+}
+
+void PhotonSolver::route(const Task& task) {
+  const auto routes = [&](uint32_t delegated) {
+    return paths::photon_routes(task.automaton, task.enabled, task.own & ~delegated, task.straight);
+  };
+  here_routes_ = routes(left_), left_routes_ = routes(left_ | leaves_);
+  // Paths that find no irradiance go on by themselves, too.
+  const uint32_t by_paths = left_ | (gathers() && !feeds_ ? 1u << k_tertiary : 0);
+  const auto unreachable = [&](uint32_t components) {
+    return unreachable_routes(task, unreachable_found_ ? components & task.own : 0);
+  };
+  unreachable_here_ = unreachable(by_paths), unreachable_left_ = unreachable(by_paths | leaves_);
+}
+
 bool PhotonSolver::gathers() const { return irradiance_ && (left_ >> k_tertiary & 1u) == 0; }
 
+bool PhotonSolver::reads_rounds() const {
+  // Where irradiance is all that is read, rounds are sent for light that no path finds.
+  return sent_parts() != 0 && !(gathers_alone_ && gathers() && unreachable_here_.parts == 0);
+}
+
 bool PhotonSolver::round_ready(uint32_t sample) const {
-  return (gathers_alone_ || (!fresh_ && map_.complete() && last_sample_ == sample)) &&
+  return (!reads_rounds() || (!fresh_ && map_.complete() && last_sample_ == sample)) &&
          (!renews_standing() || standing_made(epoch_of(sample)));
 }
 
@@ -250,8 +291,10 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
   // Paths that another solver's lookup has left alone find photons as all others do.
   for (uint32_t state = 0; state < k_automaton_states; ++state) {
     const uint32_t of_eye = state % k_gather_state, own = state % k_left_states;
-    const paths::LookupRoutes& routes = state < k_left_states ? here_routes_ : left_routes_;
-    f.component[state] = 0xffffu;
+    const bool here = state < k_left_states;
+    const paths::LookupRoutes &routes = here ? here_routes_ : left_routes_,
+                              &unreachable = here ? unreachable_here_ : unreachable_left_;
+    f.component[state] = k_photon_no_components;
     // Who goes on because nothing was known looks up no more, but records' rays, which begin so.
     if (own >= (gathers() && !feeds_ ? k_gather_state : k_known_state) || of_eye >= routes.component.size())
       continue;
@@ -261,6 +304,10 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
       // Records bring tertiary light to paths that they serve: photons to the records' rays and to paths that
       // these leave alone, both in other states.
       if (feeds_ && own < k_gather_state && c == k_tertiary) c = paths::k_no_component;
+      if (c == paths::k_no_component && own < k_gather_state) {
+        c = unreachable.component[of_eye][p];
+        if (c != paths::k_no_component) packed |= 1u << (k_photon_unreachable_only_shift + p);
+      }
       packed |= (c == paths::k_no_component ? k_photon_no_component : uint32_t{c}) << 4 * p;
     }
     f.component[state] = packed;
@@ -298,9 +345,10 @@ bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture&
     round.lookup.most_candidates = k_photon_standing_candidates;
     round.lookup.base = standing_radius(picture, round.paths, k_standing_photons);
     standing_->store_by_importance_of(map_);
+    standing_->store_parts(0, gathers() && !feeds_ && unreachable_found_);
     if (!standing_->trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel))
       return false;
-    if (gathers_alone_ && standing_->traced() == 0) account(standing_->figures());
+    if (!reads_rounds() && standing_->traced() == 0) account(standing_->figures());
     return true;
   }
   if (irradiance_->complete()) irradiance_->restart();
@@ -323,7 +371,7 @@ float PhotonSolver::standing_radius(const Picture& picture, uint32_t paths, floa
 bool PhotonSolver::prepare_standing(transport::Wavefront& wavefront, const Picture& picture,
                                     const Cancel& cancel) {
   if (!standing_made(0)) return make_standing(wavefront, picture, 0, cancel);
-  reads_standing_ = feeds_ || gathers_alone_;
+  reads_standing_ = feeds_ || !reads_rounds();
   wavefront.rebind_lookup();
   standing_served_ = true;
   return true;
@@ -338,16 +386,19 @@ bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture&
     wavefront.rebind_lookup();
     return true;
   }
-  if (reads_standing_) {
-    reads_standing_ = false;
-    wavefront.rebind_lookup();
-  }
+  read_standing(wavefront, false);
   const Round round = round_of(picture, sample);
+  store_parts(round.parts);
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;  // not yet complete
   fresh_ = false, last_sample_ = sample;
   account(map_.figures());
   return true;
+}
+
+void PhotonSolver::store_parts(uint32_t sent) {
+  const uint32_t only = sent & ~whole_parts();
+  map_.store_parts(only | (only == sent ? k_photon_ends_reachable : 0), false);
 }
 
 void PhotonSolver::account(const RoundFigures& f) {
@@ -391,7 +442,7 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.left = left_;
   for (const Trial& t : trials_)
     if (t.left == left_ && t.product > 0) r.left_gain = 1 / t.product;
-  r.maps = gathers_alone_, r.pieces = irradiance_ ? irradiance_->pieces() : 0;
+  r.maps = gathers_alone_ && !reads_rounds(), r.pieces = irradiance_ ? irradiance_->pieces() : 0;
   r.rounds = rounds_, r.paths = paths_, r.photons = photons_, r.escaped = escaped_, r.dark = dark_;
   r.last = shown_map().figures();
   r.spared = spared_;

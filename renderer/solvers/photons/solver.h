@@ -42,9 +42,7 @@ class PhotonSolver final : public solvers::Solver {
   void look_up_preview(transport::Wavefront& wavefront, bool on) override;
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
-  bool in_rounds() const override {
-    return sends_ && ((sent_parts() != 0 && !gathers_alone_) || renews_standing());
-  }
+  bool in_rounds() const override { return sends_ && (reads_rounds() || renews_standing()); }
   bool round_ready(uint32_t sample) const override;
   bool prepare_round(transport::Wavefront& wavefront, const solvers::Picture& picture, uint32_t sample,
                      const solvers::Cancel& cancel) override;
@@ -69,9 +67,15 @@ class PhotonSolver final : public solvers::Solver {
   static uint32_t leaves(const solvers::Task& task);
 
  private:
-  bool pilot_done() const { return (!aims_ && !shares_lights_ && !spares_ && !weighs_) || aimed_; }
-  /// Parts of light that rounds bring: without those that paths from the eye bring everywhere.
+  bool pilot_done() const { return (!aims_ && !shares_lights_ && !spares_ && !weighs_ && !hides_) || aimed_; }
+  /// Parts of light that are stored: all of it, and with that what only rounds find of those that paths from
+  /// the eye compute.
+  uint32_t whole_parts() const;
   uint32_t sent_parts() const;
+  bool reads_rounds() const;
+  void store_parts(uint32_t sent);  ///< which of these rounds store as a whole
+  /// Sets the routes below.
+  void route(const solvers::Task& task);
   bool stands() const { return feeds_ || gathers(); }
   /// Paths that gather find irradiance that is known beforehand.
   bool gathers() const;
@@ -86,7 +90,8 @@ class PhotonSolver final : public solvers::Solver {
                         const solvers::Cancel& cancel);
   /// Within which a typical lookup finds so many photons of so many paths.
   float standing_radius(const solvers::Picture& picture, uint32_t paths, float photons) const;
-  void account(const RoundFigures& round);  ///< one that is complete
+  void account(const RoundFigures& round);                       ///< one that is complete
+  void read_standing(transport::Wavefront& wavefront, bool on);  ///< lookups of all paths do
   const PhotonMap& shown_map() const { return reads_standing_ ? *standing_ : map_; }  ///< that is bound
   /// Another one whenever other photons are shown, or from elsewhere.
   uint64_t shown_version() const { return begun_ << 32 | shown_map().round(); }
@@ -94,6 +99,7 @@ class PhotonSolver final : public solvers::Solver {
   static RadiusLaw radius_law(const OptionValues& settings);
   Round round_of(const solvers::Picture& picture, uint32_t sample) const;
   void begin_aim(const solvers::Picture& picture, solvers::Spoils spoils);
+  bool may_hide(const solvers::Picture& picture) const;
   /// The frame of a pilot's eye paths: the same view with fewer pixels.
   static shared::Frame small_frame(const solvers::Picture& picture);
   /// Light paths of a round, where none is asked for.
@@ -109,8 +115,12 @@ class PhotonSolver final : public solvers::Solver {
   uint32_t left_ = 0;                ///< ... that are left everywhere
   paths::LookupRoutes here_routes_;  ///< without these
   paths::LookupRoutes left_routes_;  ///< ... where those are left as well
-  uint32_t parts_;                   ///< of light that the scene has: without caustics where nothing focuses
-  bool sends_;                       ///< photons; else there is nothing that they could bring
+  /// Where light of components that are left to paths is looked up as far as these cannot find it: points,
+  /// spots and directional lights by way of smooth mirrors and glass (k_photon_unreachable).
+  paths::LookupRoutes unreachable_here_, unreachable_left_;
+  bool unreachable_found_ = false;  ///< the pilot has met such light
+  uint32_t parts_;                  ///< of light that the scene has: without caustics where nothing focuses
+  bool sends_;                      ///< photons; else there is nothing that they could bring
   PhotonMap map_;
   // What is looked up behind a diffuse surface: photons of their own, everywhere and within a wider radius,
   // as long as light and surfaces stay the same. Records that are made before there is any round read them,
@@ -169,6 +179,7 @@ class PhotonSolver final : public solvers::Solver {
   bool bundles_ = false;        ///< ... casters, and there is light that they bundle
   bool enters_ = false;         ///< ... openings that light from afar comes through
   bool shares_lights_ = false;  ///< among which paths are shared by what they bring
+  bool hides_ = false;          ///< there may be light that no path from the eye finds
   bool spares_ = false;         ///< photons that nobody looks at
   bool weighs_ = false;         ///< where photons are worth their time
   Regions regions_;             ///< none: photons everywhere
@@ -178,6 +189,7 @@ class PhotonSolver final : public solvers::Solver {
   std::vector<Box> casters_;
   bool casters_known_ = false;
   std::vector<Box> boxes_;  ///< that paths are aimed at: of the casters, then those where light gets in
+  std::vector<Box> reached_boxes_;               ///< around where paths from the eye go on behind lookups
   std::vector<transport::FirstHit> first_hits_;  ///< of use, in the pilot's rounds so far
   uint32_t first_hit_rounds_ = 0;
   /// Photons that a path leaves on a square metre where lookups typically take place; 0: not known.

@@ -1,6 +1,8 @@
 #include "solvers/photons/trials.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/math.h"
 
@@ -9,59 +11,114 @@ namespace {
 
 constexpr uint32_t k_block = 8;      // pixels, along each side
 constexpr double k_much_less = 0.5;  // of the first one's product
+constexpr double k_samples = 2;      // a pixel, of a trial
+constexpr double k_certain = 3;      // standard errors
+constexpr double k_missing = 0.5;    // of what is certainly there
 
+/// What one trial says, by block of the picture; behind the blocks, of the whole picture.
 struct Noise {
   std::vector<double> variance;  ///< a pixel each: of one sample's luminance
-  std::vector<double> around;    ///< a block each: mean luminance
-  double mean = 0;
+  std::vector<double> around;    ///< mean luminance
+  /// Of a component: mean luminance, its standard error, and the variance of one sample's light that has been
+  /// missed (miss()).
+  struct Light {
+    double mean = 0, error = 0, missed = 0;
+  };
+  std::array<std::vector<Light>, film::k_components> light;
 };
 
-Noise noise_of(const Trial& trial) {
+struct Blocks {
+  uint32_t width, height, across, count;  ///< pixels; blocks in a row, in all
+  explicit Blocks(const film::Image& image)
+      : width(image.width),
+        height(image.height),
+        across((width + k_block - 1) / k_block),
+        count(across * ((height + k_block - 1) / k_block)) {}
+  size_t of(size_t pixel) const { return pixel / width / k_block * across + pixel % width / k_block; }
+  double pixels(size_t block) const {
+    if (block == count) return double(width) * height;
+    const auto side = [](uint32_t first, uint32_t all) { return std::min(k_block, all - first); };
+    return double(side(uint32_t(block % across) * k_block, width)) *
+           side(uint32_t(block / across) * k_block, height);
+  }
+};
+
+Noise noise_of(const Trial& trial, const Blocks& blocks) {
   const film::Image& image = trial.image;
-  const uint32_t across = (image.width + k_block - 1) / k_block,
-                 down = (image.height + k_block - 1) / k_block;
   Noise n;
   n.variance.assign(size_t{image.width} * image.height, 0);
-  n.around.assign(size_t{across} * down, 0);
-  std::vector<double> pixels(n.around.size(), 0);
-  for (uint32_t y = 0; y < image.height; ++y)
-    for (uint32_t x = 0; x < image.width; ++x) {
-      const size_t i = size_t{y} * image.width + x, block = size_t{y / k_block} * across + x / k_block;
-      ++pixels[block];
-      for (size_t c = 0; c < film::k_components; ++c) {
-        if ((trial.judged >> c & 1u) == 0) continue;
-        const double mean = double(luminance(image.components[c][i])),
-                     odd = double(luminance(image.odd_half[c][i]));
-        // The even sample is 2 mean - odd; half the square of the two samples' difference.
-        n.variance[i] += 2 * (odd - mean) * (odd - mean) * trial.variance_factor[c];
-        n.around[block] += mean;
-        n.mean += mean;
+  n.around.assign(blocks.count + 1, 0);
+  for (size_t c = 0; c < film::k_components; ++c) {
+    if ((trial.judged >> c & 1u) == 0) continue;
+    n.light[c].resize(blocks.count + 1);
+    std::vector<double> odds(blocks.count + 1, 0), variances(blocks.count + 1, 0);
+    for (size_t i = 0; i < n.variance.size(); ++i) {
+      const double mean = double(luminance(image.components[c][i])),
+                   odd = double(luminance(image.odd_half[c][i]));
+      // The even sample is 2 mean - odd; half the square of the two samples' difference.
+      const double variance = 2 * (odd - mean) * (odd - mean);
+      n.variance[i] += variance * trial.variance_factor[c];
+      for (const size_t b : {blocks.of(i), size_t{blocks.count}})
+        n.light[c][b].mean += mean, odds[b] += odd, variances[b] += variance;
+    }
+    for (size_t b = 0; b <= blocks.count; ++b) {
+      Noise::Light& l = n.light[c][b];
+      const double pixels = blocks.pixels(b);
+      l.mean /= pixels;
+      // By the pixels, and by the two samples' means, which have in them what pixels have in common.
+      l.error = std::max(std::sqrt(variances[b] / 2) / pixels, std::abs(odds[b] / pixels - l.mean));
+      n.around[b] += l.mean;
+    }
+  }
+  return n;
+}
+
+/// Sets Noise::Light::missed of all trials.
+void miss(std::span<const Trial> trials, std::vector<Noise>& noises, const Blocks& blocks) {
+  for (size_t c = 0; c < film::k_components; ++c)
+    for (size_t b = 0; !noises[0].light[c].empty() && b <= blocks.count; ++b) {
+      double certain = 0;
+      for (const Noise& n : noises)
+        certain = std::max(certain, n.light[c][b].mean - k_certain * n.light[c][b].error);
+      for (size_t t = 0; t < trials.size(); ++t) {
+        Noise::Light& l = noises[t].light[c][b];
+        const double missing = certain - l.mean;
+        if (missing < k_missing * certain) continue;
+        const double independent = std::max(1.0, blocks.pixels(b) / trials[t].pixels_in_common);
+        l.missed = k_samples * independent * missing * missing * trials[t].variance_factor[c];
       }
     }
-  for (size_t b = 0; b < pixels.size(); ++b) n.around[b] /= pixels[b];
-  n.mean /= double(n.variance.size());
-  return n;
+}
+
+/// Sum over the components.
+double missed_at(const Noise& noise, size_t block) {
+  double sum = 0;
+  for (const auto& light : noise.light) sum += light.empty() ? 0 : light[block].missed;
+  return sum;
 }
 
 }  // namespace
 
 size_t judge(std::span<Trial> trials) {
+  const Blocks blocks(trials[0].image);
   std::vector<Noise> noises;
-  for (const Trial& trial : trials) noises.push_back(noise_of(trial));
-  Noise least = noises[0];
-  for (const Noise& n : noises) {
-    for (size_t b = 0; b < n.around.size(); ++b) least.around[b] = std::min(least.around[b], n.around[b]);
-    least.mean = std::min(least.mean, n.mean);
-  }
-  const uint32_t width = trials[0].image.width, across = (width + k_block - 1) / k_block;
+  for (const Trial& trial : trials) noises.push_back(noise_of(trial, blocks));
+  miss(trials, noises, blocks);
+  // The least luminance around, of trials that have not missed any.
+  std::vector<double> least(blocks.count + 1, std::numeric_limits<double>::max());
+  for (const Noise& n : noises)
+    for (size_t b = 0; b <= blocks.count; ++b)
+      if (!(missed_at(n, b) > 0)) least[b] = std::min(least[b], n.around[b]);
+  for (size_t b = 0; b <= blocks.count; ++b)
+    if (least[b] == std::numeric_limits<double>::max()) least[b] = noises[0].around[b];
   std::vector<double> products;
   for (size_t t = 0; t < trials.size(); ++t) {
     double relative = 0;
     for (size_t i = 0; i < noises[t].variance.size(); ++i) {
-      const auto x = uint32_t(i % width), y = uint32_t(i / width);
-      const double around = least.around[size_t{y / k_block} * across + x / k_block];
-      const double square = around * around + least.mean * least.mean;
-      if (square > 0) relative += noises[t].variance[i] / square;
+      const size_t block = blocks.of(i);
+      const double around = least[block], mean = least[blocks.count];
+      const double square = around * around + mean * mean;
+      if (square > 0) relative += (noises[t].variance[i] + missed_at(noises[t], block)) / square;
     }
     products.push_back(relative * trials[t].cost);
   }

@@ -22,6 +22,8 @@ struct Trial {
   double cost = 0;      ///< of a pixel's sample, in vertices of a path from the eye
   /// By how much the variance of each component is less in the picture to come than here.
   std::array<double, film::k_components> variance_factor = {1, 1, 1, 1};
+  /// Neighbouring pixels that read the same photons, and so have their noise in common; at least 1.
+  double pixels_in_common = 1;
 
   /// Set by judge(): noise times cost, over that of the first trial. 0: nothing was found.
   double product = 1;
@@ -34,6 +36,11 @@ struct Trial {
 /// Noise is the variance of a pixel over the square of the luminance around (of its block of 8x8 pixels, in
 /// that trial which has the least, and of the picture), so that what is bright by chance does not excuse
 /// itself.
+///
+/// A trial that has found nothing shows no variance either. All trials estimate the same light; so where one
+/// has less than half of what another one has certainly found (three standard errors below its mean), its
+/// light comes by samples too rare to be met by so few, and its variance is at least n times the square of
+/// what is missing, n: independent samples of the block. Such a trial does not say how bright the block is.
 size_t judge(std::span<Trial> trials);
 
 }  // namespace lucerna::photons

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "solvers/photons/solver.h"
 
@@ -35,13 +36,13 @@ void PhotonSolver::begin_trials(const Picture& picture, bool stale) {
   leave(picture, 0);
 }
 
+void PhotonSolver::read_standing(transport::Wavefront& wavefront, bool on) {
+  if (std::exchange(reads_standing_, on) != on) wavefront.rebind_lookup();
+}
+
 void PhotonSolver::leave(const Picture& picture, uint32_t components) {
-  const Task& task = picture.task;
   left_ = components;
-  const auto routes = [&](uint32_t own) {
-    return paths::photon_routes(task.automaton, task.enabled, own & ~left_, task.straight);
-  };
-  here_routes_ = routes(task.own), left_routes_ = routes(task.own & ~leaves_);
+  route(picture.task);
 }
 
 uint32_t PhotonSolver::missing(const Picture& picture) const {
@@ -69,7 +70,7 @@ bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& pict
   }
   Trial& trial = trials_.back();
   const uint32_t left = trial.left, looked_up = picture.task.own & k_deep & ~left;
-  const bool by_rounds = !irradiance_ && looked_up != 0;
+  const bool by_rounds = reads_rounds();
   const schedule::UniformSchedule before = *eye_schedule_;
   const schedule::WorkItem item = eye_schedule_->next();
   Round round = round_of(picture, k_trial_round + item.blocks.front().first_sample);
@@ -77,8 +78,10 @@ bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& pict
     *eye_schedule_ = before;
     round.paths = std::min(round.paths, k_trial_paths);
     round.lookup = lookup_of(picture, picture.frame, radius_law(picture.task.settings).at(k_typical_round));
+    store_parts(round.parts);
     return map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel);
   }
+  read_standing(wavefront, irradiance_ && !by_rounds);
   // Paths that bring our own light and nothing else. Where irradiance is known they find it, unless they are
   // to go on as if it were not.
   Task task = picture.task;
@@ -102,10 +105,17 @@ bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& pict
   const double picture_pixels = double(picture.width) * picture.height;
   if (by_rounds) {
     const auto wanted = double(round.paths);
+    // Discs are as wide as the picture's pixels say, of which the trial's are some each.
+    if (!irradiance_ && looked_up != 0) {
+      const double radius = radius_law(picture.task.settings).at(k_typical_round);
+      trial.pixels_in_common = std::max(1.0, double(k_pi) * radius * radius * pixels / picture_pixels);
+    }
     trial.cost += k_cost_lookup + k_cost_light_path * wanted / picture_pixels;
     for (size_t c = 0; c < trial.variance_factor.size(); ++c)
-      if ((looked_up >> c & 1u) != 0) trial.variance_factor[c] = double(map_.figures().paths) / wanted;
-  } else if (looked_up != 0) {
+      if (!irradiance_ && (looked_up >> c & 1u) != 0)
+        trial.variance_factor[c] = double(map_.figures().paths) / wanted;
+  }
+  if (irradiance_ && looked_up != 0) {
     trial.cost +=
         k_cost_light_path * double(standing_->figures().paths) / (picture_pixels * k_first_gather_samples);
   }
@@ -122,9 +132,9 @@ bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& pict
   tried_ = true;
   if (irradiance_ && left_ != 0) {
     irradiance_->clear();
-    reads_standing_ = false;
     wavefront.rebind_lookup();
   }
+  read_standing(wavefront, irradiance_ && left_ == 0 && !reads_rounds());
   return true;
 }
 

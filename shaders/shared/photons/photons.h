@@ -15,8 +15,10 @@ struct Photon {
 LUCERNA_CONST uint k_photon_texels = 2u;
 LUCERNA_CONST uint k_photon_facet = 0x3fffffu;
 LUCERNA_CONST uint k_photon_part_shift = 22u;    ///< 2 bits: by which events it came (paths::k_part_count)
-LUCERNA_CONST uint k_photon_events_shift = 24u;  ///< 4 bits: scattering events since its light, 15 and more are 15
-LUCERNA_CONST uint k_photon_most_events = 15u;
+LUCERNA_CONST uint k_photon_events_shift = 24u;  ///< 3 bits: scattering events since its light, 7 and more are 7
+LUCERNA_CONST uint k_photon_most_events = 7u;
+/// Light that no path from the eye finds: of a point, a spot or a directional light, whose first event is specular.
+LUCERNA_CONST uint k_photon_unreachable = 1u << 27;
 LUCERNA_CONST uint k_photon_group_shift = 28u;   ///< 4 bits: the group of its light, where groups are kept apart, else of
                                                  ///< its light's number the lowest
 
@@ -60,10 +62,18 @@ struct PhotonFrame {
   float importance_slope, importance_base;
   uint importance_counts;  ///< 0: all photons are stored
   uint lookups;            ///< entries of PhotonLookups, one a pixel, in which caustics' lookups are noted; 0: none is
+  uint vertices;           ///< behind those, so many a pixel: where its path goes on from the first diffuse vertex
   uint tells_radiance;     ///< 1: stored photons tell what paths from the eye would bring (PhotonRadiances)
   uint tells_surface;      ///< 1: stored photons tell where on which triangle they lie (PhotonSurfaces)
-  uint component[k_automaton_states];  ///< by state of the eye path: four bits a part, the component that it brings light to
+  uint unreachable_parts;  ///< bit p: of part p only photons with k_photon_unreachable are stored; k_photon_ends_reachable
+  uint skips_unreachable;  ///< 1: photons with k_photon_unreachable are not stored
+  /// By state of the eye path. Bits 4p to 4p+3: the component to which part p contributes. Bit 16+p: of part p only photons
+  /// with k_photon_unreachable count, because paths from the eye compute the rest of it.
+  uint component[k_automaton_states];
 };
+LUCERNA_CONST uint k_photon_unreachable_only_shift = 16u;
+LUCERNA_CONST uint k_photon_ends_reachable = 1u << 31;  ///< no others are stored: paths that leave none end
+LUCERNA_CONST uint k_photon_no_components = 0xffffu;  ///< of PhotonFrame::component, without the bits above
 LUCERNA_CONST uint k_photon_no_component = 15u;
 LUCERNA_CONST uint k_photon_caustic_part = 3u;  ///< paths::k_caustic_part
 
@@ -98,6 +108,7 @@ struct PhotonWorth {
   float flux;        ///< luminance; 0: no caustic
   float radiance;    ///< that arrives as a path from the eye would bring it, which meets the same light the same way
   uint facet;        ///< side of the surface on which it arrives
+  uint unreachable;  ///< 1: k_photon_unreachable
 };
 /// Where a path of the pilot from the eye looks caustics up.
 struct PhotonLookup {
