@@ -126,3 +126,80 @@ TEST_CASE("cancelled trials are tried again", "[photons_trials]") {
   for (uint32_t step = 0; !s.r.done() && step < 100000; ++step) s.r.step([&] { return ++asked % 41 == 0; });
   CHECK(test::identical(whole, s.r.image()));
 }
+
+namespace {
+
+/// A room with a block of mirrors: part of what its lamp, a point, sends is found by no path from the eye.
+scene::Scene mirror_room() {
+  scene::Scene s = test::block_room(true);
+  s.materials[0].double_sided = true, s.environment = {}, s.environment.given = true;
+  s.materials[1] = {}, s.materials[1].metallic = 1, s.materials[1].roughness = 0;
+  return s;
+}
+
+void check_same_light(const film::Image& a, const film::Image& b, size_t component, double tolerance) {
+  const test::MeanOf x = test::mean_of(a, int(component), 0, 0, a.width, a.height),
+                     y = test::mean_of(b, int(component), 0, 0, b.width, b.height);
+  for (int c = 0; c < 3; ++c) {
+    CAPTURE(component, c, x.value[c], x.noise[c], y.value[c], y.noise[c]);
+    CHECK(std::abs(x.value[c] - y.value[c]) <
+          4 * std::hypot(x.noise[c], y.noise[c]) + tolerance * y.value[c]);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("where paths are chosen photons compute what these cannot find", "[photons_trials]") {
+  const scene::Scene room = mirror_room();
+  const test::Settings all{{"components.secondary", "photons"},
+                           {"components.tertiary", "photons"},
+                           {"components.caustic", "photons"}};
+  const film::Image truth =
+      Session(room, with(all, {{"photons.per_round", k_many}, {"photons.worth", "false"}}), 16).image();
+  Session chosen(room, with(all, {{"photons.per_round", k_few}}), 1024);
+  const film::Image image = chosen.image();
+  REQUIRE(chosen.solver().left() == (k_secondary | k_tertiary));
+  const film::Image paths = Session(room, {}, 64).image();
+  // Part of the tertiary light is beyond paths, and all of the caustics.
+  CHECK(test::mean(paths.components[2]) < 0.96 * test::mean(truth.components[2]));
+  CHECK(test::mean(paths.components[3]) == 0);
+  for (const size_t c : {1u, 2u, 3u}) check_same_light(image, truth, c, 0.02);
+  // Alone, beside path traced secondary light: by maps of irradiance, and where these know nothing.
+  for (const char* nearest : {"8", "1024"}) {
+    Session gathers(room,
+                    {{"components.tertiary", "photons"},
+                     {"components.caustic", "off"},
+                     {"photons.per_round", "16384"},
+                     {"photons.nearest", nearest}},
+                    64);
+    check_same_light(gathers.image(), truth, 2, 0.03);
+  }
+}
+
+TEST_CASE("a house on a wide ground has its light, and photons do not report darkness as exact",
+          "[photons_trials]") {
+  // Four metres of walls around a block, under a sun; the ground is two kilometres wide. The camera sees a
+  // wall in the shade, which the ground lights.
+  scene::Scene s;
+  s.name = "house";
+  s.materials = {test::diffuse(vec3(0.6f))};
+  test::add_quad(s, {-1000, 0, 1000}, {2000, 0, 0}, {0, 0, -2000});
+  test::add_box(s, {-2, 0, -2}, {2, 3, 2});
+  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = vec3(3)}};
+  s.lights[0].direction = normalize(vec3(0, -0.857f, -0.514f));
+  scene::Camera camera;
+  camera.yfov = 0.5f;
+  camera.to_world = mat4(vec4(-1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, -1, 0), vec4(0, 1.5f, -6, 1));
+  s.cameras = {camera};
+  s.environment.given = true;
+  const test::Settings photons{{"components.secondary", "photons"}, {"components.tertiary", "photons"}};
+  const film::Image paths = Session(s, {}, 64).image();
+  Session chosen(s, photons, 64);
+  const film::Image image = chosen.image();
+  for (const size_t c : {1u, 2u}) check_same_light(image, paths, c, 0);
+  // Where photons have to bring it many arrive, though a path that is not aimed finds the house by chance of
+  // one in 100,000.
+  Session forced(s, with(photons, {{"photons.worth", "false"}}), 1);
+  forced.image();
+  CHECK(forced.solver().map().figures().photons > 50);
+}
