@@ -26,6 +26,8 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   const film::TileSpread sum = film::tile_spread(tiles);
   tell_tiles(j, sum);
   j["heavy_tailed_tiles"] = sum.heavy_tailed;
+  // Where photons are looked up and none has come by.
+  j["unknown_tiles"] = std::count_if(tiles.begin(), tiles.end(), [](const auto& t) { return t.unknown; });
   // The parts of that sum, by where they come from.
   const auto part = [&](const char* name, double rms, double relative, double film::TileError::*of) {
     j[name] = {{"rms", rms}, {"relative", relative}};

@@ -89,16 +89,23 @@ double quadratic_mean(double squares, double pixels) {
 }
 }  // namespace
 
+bool without_evidence(const shared::BlockError& block) {
+  return block.interpolation_relative > 0 && block.interpolation_relative < shared::k_most_without_evidence;
+}
+
 RelativeError relative_error(const Film& film, std::span<const uint32_t> blocks) {
   Quadrants quadrants;
   double pixels = 0, records = 0, interpolation = 0;
+  bool unknown = false;
   for (const uint32_t b : blocks) {
     const shared::BlockError& e = film.errors()[b];
     quadrants.add(e);
+    unknown = unknown || without_evidence(e);
     for (const float n : e.quadrant_pixels) pixels += n;
     records += e.records_relative, interpolation += e.interpolation_relative;
   }
-  return {quadrants.relative(), quadratic_mean(records, pixels), quadratic_mean(interpolation, pixels)};
+  return {unknown ? std::max(quadrants.relative(), 1.0) : quadrants.relative(),
+          quadratic_mean(records, pixels), quadratic_mean(interpolation, pixels)};
 }
 
 TileError tile_error(std::span<const shared::BlockError> blocks,
@@ -121,9 +128,10 @@ TileError tile_error(std::span<const shared::BlockError> blocks,
   double by_records = 0, by_interpolation = 0;
   for (const shared::BlockError& b : blocks) {
     quadrants.add(b);
+    tile.unknown = tile.unknown || without_evidence(b);
     by_records += b.records_relative, by_interpolation += b.interpolation_relative;
   }
-  tile.relative = quadrants.relative();
+  tile.relative = tile.unknown ? std::max(quadrants.relative(), 1.0) : quadrants.relative();
   tile.records = records_error(records);
   tile.records.interpolation = std::hypot(tile.records.interpolation, blur_error(blocks));
   tile.relative_records = quadratic_mean(by_records, tile.pixels);
@@ -237,6 +245,7 @@ ImageError image_error(std::span<const shared::BlockError> blocks) {
   for (const shared::BlockError& b : blocks) {
     image.pixels += b.pixels, fourth += b.fourth;
     records += b.records, interpolation += b.interpolation;
+    if (without_evidence(b)) image.unknown += b.pixels;
     for (int k = 0; k < 5; ++k) image.luminance[k] += b.luminance[k], variance[k] += b.variance[k];
   }
   if (image.pixels == 0) return image;
@@ -244,6 +253,7 @@ ImageError image_error(std::span<const shared::BlockError> blocks) {
     image.luminance[k] /= image.pixels;
     image.rms[k] = std::sqrt(variance[k] / image.pixels);
   }
+  image.unknown /= image.pixels;
   image.records_rms = quadratic_mean(records, image.pixels);
   image.interpolation_rms = quadratic_mean(interpolation, image.pixels);
   image.degrees = fourth > 0 ? 3 * variance[0] * variance[0] / fourth : image.pixels;

@@ -10,7 +10,12 @@
 // lookup_bias_known()), and 0 where nothing is looked up. What they come to together: base/error_sum.h.
 //
 // What else a biased solver gets wrong for ever is not in it.
+//
+// Where lookups have found nothing in any sample of a block (photons that are too few to come by there) the
+// halves agree on nothing, and no noise is seen. No sample is no evidence: such a block has an unknown error,
+// and counts as wrong by all of its light, tiles by 1, the picture by its share of the pixels.
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -33,6 +38,9 @@ shared::BlockRecords mixed_records(const shared::BlockRecords& records, const sh
 /// tell it independently of each other, so that the root of their product, 0 where they do not agree in sign,
 /// is free of their noise in the mean of its square.
 double blur_error(std::span<const shared::BlockError> blocks);
+
+/// Whether lookups of secondary or tertiary light have found nothing in any sample of this block.
+bool without_evidence(const shared::BlockError& block);
 
 /// Of a tile: some blocks that lie together.
 struct TileError {
@@ -57,6 +65,7 @@ struct TileError {
   double relative_records = 0, relative_interpolation = 0;
   /// Of the three relative ones: what is told of the tile.
   double relative_sum() const { return error_sum(relative, relative_records, relative_interpolation); }
+  bool unknown = false;  ///< a block of it is without_evidence(); `relative` is then 1 at least
   /// Set by mark_heavy_tails(): the noise is not of a kind that the interval below can speak for.
   bool heavy_tailed = false;
 
@@ -116,8 +125,13 @@ struct ImageError {
   double degrees = 0;
   /// Of the sum: the same of what records make of each pixel.
   double records_rms = 0, interpolation_rms = 0;
-  /// rms over the sum's mean luminance: one scale for all, so that components can be compared.
-  double relative(int layer) const { return luminance[0] > 0 ? rms[layer] / luminance[0] : 0; }
+  double unknown = 0;  ///< share of the pixels that lie in blocks without_evidence()
+  /// rms over the sum's mean luminance: one scale for all, so that components can be compared. Of the sum,
+  /// with pixels of unknown error counted as wrong by the mean luminance.
+  double relative(int layer) const {
+    const double known = luminance[0] > 0 ? rms[size_t(layer)] / luminance[0] : 0;
+    return layer == 0 ? std::sqrt(known * known + unknown) : known;
+  }
   double relative_records() const { return luminance[0] > 0 ? records_rms / luminance[0] : 0; }
   double relative_interpolation() const { return luminance[0] > 0 ? interpolation_rms / luminance[0] : 0; }
   /// Of the three: what is told of the picture.

@@ -10,6 +10,7 @@
 #include "photons/photon.glsl"
 #include "photons/lookup.glsl"
 #include "photons/area.glsl"
+#include "shaders/shared/film.h"
 #if LUCERNA_PHOTON_IRRADIANCE
 #include "photons/irradiance.glsl"
 #endif
@@ -103,6 +104,11 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   }
   vec3 weight = v.path.throughput * float(step);
   vec2 areas = vec2(1.0);
+  // Where deep light is looked up and none has come by there is no telling yet how dark it is.
+  bool deep = ((components >> 4 & 15u) < k_component_count && (only >> 1 & 1u) == 0u) ||
+              ((components >> 8 & 15u) < k_component_count && (only >> 2 & 1u) == 0u);
+  if (deep && photons.importance_mask == 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0 && max3(found_1 + found_2 + found_3) <= 0.0)
+    o.bias += k_found_nothing;
   // Only where there is something to correct.
   if (max3(found_1 + found_2 + found_3) > 0.0) areas = photon_areas(x, v.surface.normal_g, radius);
   o.bias += 2.0 * luminance(weight * found_flat) / areas.y;

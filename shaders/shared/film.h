@@ -73,6 +73,12 @@ struct BlockRecords {
 /// about one step of an 8-bit sRGB picture, so that black corners do not eat the render.
 LUCERNA_CONST float k_luminance_floor = 0.02f;
 
+/// What a lookup of secondary or tertiary light adds to its path's bias when it has found nothing at all (photons that do not
+/// lie anywhere near): far below any bias, so that it is lost beside one. A block in which this is all that there is has no
+/// evidence of how dark it is (film/error.h): BlockError::interpolation_relative is then above 0 and at most the second value.
+LUCERNA_CONST float k_found_nothing = 1e-15f;
+LUCERNA_CONST float k_most_without_evidence = 1e-22f;
+
 struct ErrorPush {
   uint width, height;
   uint block_count;

@@ -203,3 +203,28 @@ TEST_CASE("a house on a wide ground has its light, and photons do not report dar
   forced.image();
   CHECK(forced.solver().map().figures().photons > 50);
 }
+
+TEST_CASE("light that no photon has brought is unknown, and holds the picture", "[photons_trials]") {
+  // So few light paths that none comes by; a wide ground on which they are lost.
+  scene::Scene s = test::block_room();
+  test::add_quad(s, {-3000, -1, 3000}, {6000, 0, 0}, {0, 0, -6000});
+  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = vec3(3)}};
+  s.lights[0].direction = {0, -1, 0};
+  Session blind(s,
+                {{"components.secondary", "photons"},
+                 {"components.tertiary", "photons"},
+                 {"photons.worth", "false"},
+                 {"photons.per_round", "1"},
+                 {"sampling.mode", "adaptive"},
+                 {"sampling.min_samples", "4"},
+                 {"sampling.max_samples", "8"}},
+                8);
+  blind.image();
+  CHECK(blind.r.image_error().relative_sum() >= 1);
+  REQUIRE(blind.r.adaptive());
+  CHECK(blind.r.adaptive()->count(schedule::TileState::done) == 0);
+  // By paths the same darkness is known: the room is closed.
+  Session paths(s, {}, 8);
+  paths.image();
+  CHECK(paths.r.image_error().relative_sum() == 0);
+}

@@ -524,3 +524,28 @@ TEST_CASE("a tile's error is its paths' and its records' in quadrature, and inte
   e.records = e.records_relative = -1e-3f;
   CHECK(film::tile_error({&e, 1}).relative_records == 0);
 }
+
+TEST_CASE("where lookups have found nothing the error is unknown, not none", "[film_error]") {
+  constexpr float k_mark = shared::k_found_nothing;
+  shared::BlockError dark{};
+  dark.pixels = 64;
+  for (float& n : dark.quadrant_pixels) n = 16;
+  CHECK_FALSE(film::without_evidence(dark));  // nothing is looked up, as in path tracing
+  // The least and the most that is left of the marks: the square, over that of the pixel's scale.
+  for (const float scale : {shared::k_luminance_floor, 100.0f}) {
+    dark.interpolation_relative = 64 * k_mark * k_mark / (scale * scale);
+    CHECK(film::without_evidence(dark));
+  }
+  dark.interpolation_relative = 1e-12f;  // one of the halves has found something
+  CHECK_FALSE(film::without_evidence(dark));
+  dark.interpolation_relative = k_mark * k_mark;
+  const film::TileError tile = film::tile_error(std::array{dark});
+  CHECK(tile.unknown);
+  CHECK(tile.relative == 1);
+  // A quarter of a picture; and all of one, which is black.
+  shared::BlockError lit{};
+  lit.pixels = 64, lit.luminance[0] = 64;
+  CHECK(film::image_error(std::array{lit, dark, lit, lit}).relative(0) == Approx(0.5));
+  CHECK(film::image_error(std::array{dark}).relative_sum() == 1);
+  CHECK(film::image_error(std::array{lit}).relative_sum() == 0);
+}

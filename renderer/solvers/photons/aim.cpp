@@ -312,7 +312,8 @@ void PhotonSolver::choose_left(const Picture& picture, std::span<const PhotonWor
   // they meet of caustics costs nothing more.
   const uint32_t behind = picture.frame.automaton[0] & 0xffu;
   const bool goes_on = (picture.frame.automaton[behind] >> 27 & 1u) != 0;
-  const bool alone = picture.task.own == leaves_;  // nobody else looks up what rounds bring
+  // Whether nothing else is looked up of what rounds store.
+  const bool alone = picture.task.own == leaves_ && !unreachable_found_;
   const WorthCosts costs{
       .base = k_cost_base + (goes_on ? k_cost_tail : 0),
       .lookup = alone ? k_cost_lookup : 0,

@@ -65,6 +65,7 @@ std::vector<Moments> caustic_moments(const WorthPilot& pilot) {
     const int level = std::ilogb(around) + 1;
     const auto cubes = levels.try_emplace(level, pilot.photons, std::ldexp(1.0, level)).first;
     cubes->second.near(l.position, [&](const PhotonWorth& p) {
+      if (p.unreachable != 0) return;  // photons compute it either way
       const glm::dvec3 away = glm::dvec3(p.position) - glm::dvec3(l.position);
       if (glm::dot(away, away) >= around * around) return;
       if (std::abs(glm::dot(away, glm::dvec3(side))) >= double(k_photon_slab) * around) return;
