@@ -218,6 +218,10 @@ void Runner::advance() {
   while (running() && !ui_.status) {
     // A script may put steps behind the one that is being carried out.
     const Step step = steps_.front();
+    if (!current_.command && waits_for_earlier(step)) {
+      ui_.wake();
+      return;
+    }
     const bool failed = [&] {
       try {
         if (carry_out(step)) return false;
@@ -236,6 +240,14 @@ void Runner::advance() {
     steps_.pop_front();
     ui_.wake(3);
   }
+}
+
+bool Runner::waits_for_earlier(const Step& step) const {
+  const commands::Command* next = ui_.registry.parse(step.line, step.where).command;
+  if (!next) return false;
+  if (next->needs_outcome && ui_.snapshot && !ui_.up_to_date() && !ui_.loading()) return true;
+  // The panels' own commands need no picture.
+  return ui_.resizing && !next->name.starts_with("window.") && !next->name.starts_with("view.");
 }
 
 bool Runner::carry_out(const Step& step) {

@@ -39,6 +39,8 @@ class Runner {
     bool begun = false;  ///< a frame has been shown since
   };
 
+  /// True while what was commanded before has not the effect yet that the step reads.
+  bool waits_for_earlier(const Step& step) const;
   /// True when the step is done; false: to be asked again.
   bool carry_out(const Step& step);
   /// Ends the script that the step belongs to, and the program if it is its own.

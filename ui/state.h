@@ -144,6 +144,8 @@ struct Ui : commands::Workspace {
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
   int picture_divisor = 1;  ///< window pixels per picture pixel
+  /// Frames to be drawn until the room for the picture is as the commands so far have it.
+  int frames_to_settle = 0;
   /// Pixels of the picture; none: as many as the window has room for.
   std::optional<std::pair<uint32_t, uint32_t>> picture_size;
   bool light_marks = false;  ///< lights are marked in the picture
@@ -211,6 +213,9 @@ struct Ui : commands::Workspace {
  protected:
   void scene_changed() override;
   void measured(const std::string& text) override;
+  void size_refused(uint32_t width, uint32_t height) override {
+    if (picture_size) picture_size.emplace(width, height);
+  }
   bool exposes_at_load() const override { return !scripted; }
 
  private:

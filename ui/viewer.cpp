@@ -102,8 +102,7 @@ class Viewer {
     const auto snapshot = ui_.snapshot;
     const auto scene = ui_.scene;
     ui_.refresh(ui_.time());
-    ui_.resizing = sent_size_ != wanted_size_ ||
-                   (ui_.has_picture() && std::pair(ui_.snapshot->width, ui_.snapshot->height) != sent_size_);
+    ui_.resizing = ui_.frames_to_settle > 0 || size_changed_at_ >= 0;
     if (snapshot != ui_.snapshot) {
       ui_.wake(1);
       fresh_picture_ = ui_.snapshot != nullptr;
@@ -180,6 +179,7 @@ class Viewer {
       draw_log(ui_, areas.log);
     }
     draw_picture(ui_, areas.picture);
+    if (ui_.frames_to_settle > 0) --ui_.frames_to_settle, ui_.wake(1);
     draw_dialogs(ui_);
     ImGui::PopFont();
     window_.end_frame();
@@ -197,9 +197,8 @@ class Viewer {
     send();
   }
 
-  /// Tells the renderer about the camera and the size of the viewport.
+  /// Gives the picture the size that there is room for, once that has settled.
   void send() {
-    ui_.send_camera();
     const ImVec2 ratio = ImGui::GetIO().DisplayFramebufferScale;
     const auto divided = [&](float units, float scale) {
       return static_cast<uint32_t>(std::max(1.0f, units * scale / static_cast<float>(ui_.picture_divisor)));
@@ -207,10 +206,10 @@ class Viewer {
     const std::pair<uint32_t, uint32_t> room{divided(ui_.picture.width(), ratio.x),
                                              divided(ui_.picture.height(), ratio.y)};
     const std::pair<uint32_t, uint32_t> size = ui_.picture_size.value_or(room);
+    const bool first = wanted_size_.first == 0;
     if (size != wanted_size_) wanted_size_ = size, size_changed_at_ = ui_.now;
-    if (size_changed_at_ >= 0 && (ui_.now - size_changed_at_ >= k_settle || sent_size_.first == 0)) {
-      if (sent_size_ != wanted_size_) ui_.session.set_size(wanted_size_.first, wanted_size_.second);
-      sent_size_ = wanted_size_;
+    if (size_changed_at_ >= 0 && (ui_.now - size_changed_at_ >= k_settle || first || ui_.picture_size)) {
+      ui_.set_size(wanted_size_.first, wanted_size_.second);
       size_changed_at_ = -1;
     } else if (size_changed_at_ >= 0) {
       ui_.wake(1);
@@ -237,7 +236,7 @@ class Viewer {
   Window window_;
   bool fresh_picture_ = false;
   double last_draw_ = -1, last_present_ = 0, hovering_since_ = -10;
-  std::pair<uint32_t, uint32_t> wanted_size_{0, 0}, sent_size_{0, 0};
+  std::pair<uint32_t, uint32_t> wanted_size_{0, 0};
   double size_changed_at_ = -1;
 };
 

@@ -220,7 +220,7 @@ void advance_view(Ui& ui, const vec3& metres, bool through) {
 void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
   ImGuiIO& io = ImGui::GetIO();
   if (!ui.view) return;
-  const float height = std::max(1.0f, ui.picture.height());
+  const float height = std::max(1.0f, shown.height());
   const vec2 drag(io.MouseDelta.x, io.MouseDelta.y);
   const bool typing = io.WantTextInput ||
                       ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
@@ -251,7 +251,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
         ui.act("select", "light", ui.drag.lamp->light + 1);
       drag_lamp(ui, shown);
     } else if (io.MouseDown[0] && io.KeyCtrl) {
-      turn_sky(ui, io.MousePos.x - io.MouseClickedPos[0].x, ui.picture.width());
+      turn_sky(ui, io.MousePos.x - io.MouseClickedPos[0].x, shown.width());
     } else if (io.MouseDown[1] || (flying && io.MouseDown[0])) {
       commands::look(view, 0.5f * angles);
       ui.place(view);
@@ -401,7 +401,6 @@ void draw_toolbar(Ui& ui, const Area& area) {
 void draw_picture(Ui& ui, const Area& area) {
   begin_panel("##picture", area, colour::surround, false);
   ui.picture = area;
-  if (area.height() > 0) ui.aspect = area.width() / area.height();
   ImDrawList* list = ImGui::GetWindowDrawList();
   const bool shown = ui.has_picture() && ui.texture != 0;
   Area frame = area;  // of the picture itself

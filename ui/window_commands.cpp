@@ -56,6 +56,7 @@ struct Add {
                      .run =
                          [&ui = ui, run = std::move(run)](const Arguments& a) {
                            run(a);
+                           ui.frames_to_settle = 2, ui.resizing = true;
                            ui.wake(3);
                          },
                      .recorded = recorded});
@@ -142,9 +143,10 @@ void add_picture_commands(Ui& ui, const Add& add) {
        {.name = "height", .type = Type::integer, .lo = 0, .hi = 16384, .unit = "pixels"}},
       [&ui](const Arguments& a) {
         ui.picture_size.reset();
-        if (a.integer("width") > 0 && a.integer("height") > 0)
-          ui.picture_size.emplace(static_cast<uint32_t>(a.integer("width")),
-                                  static_cast<uint32_t>(a.integer("height")));
+        if (a.integer("width") == 0 || a.integer("height") == 0) return;
+        ui.picture_size.emplace(static_cast<uint32_t>(a.integer("width")),
+                                static_cast<uint32_t>(a.integer("height")));
+        ui.set_size(ui.picture_size->first, ui.picture_size->second);
       });
   add("view.selection", "Marks the selected object in the picture.", {on()},
       [&ui](const Arguments& a) { ui.brackets = a.boolean("on"); });

@@ -94,8 +94,7 @@ void Workspace::add_motion(std::string name, std::string help, std::vector<Param
                       needs_view();
                       Viewpoint moving = *view;
                       act(moving, a);
-                      view = moving;
-                      moved();
+                      take_view(moving);
                     },
                 .moves = true});
 }
@@ -118,9 +117,7 @@ void Workspace::add_camera_commands() {
                 .run =
                     [this](const Arguments& a) {
                       const int index = camera_index(a.text("camera"));
-                      view = make_viewpoint(scene->cameras[static_cast<size_t>(index)], bounds);
-                      moved();
-                      scene_camera = index;
+                      take_view(make_viewpoint(scene->cameras[static_cast<size_t>(index)], bounds), index);
                     },
                 .moves = true});
 }

@@ -215,11 +215,21 @@ void Workspace::add_document_commands() {
   registry.add({.name = "undo",
                 .help = "Takes back the last change of a setting, a light, the environment or what is shown.",
                 .parameters = {},
-                .run = [this](const Arguments&) { undo(); }});
+                .run = [this](const Arguments&) { undo(); },
+                .needs_outcome = true});
   registry.add({.name = "redo",
                 .help = "Does again what was undone last.",
                 .parameters = {},
-                .run = [this](const Arguments&) { redo(); }});
+                .run = [this](const Arguments&) { redo(); },
+                .needs_outcome = true});
+}
+
+void Workspace::give(const std::string& key, const std::string& value) {
+  if (key == "camera" && view && !loading() && setting(key) != value)
+    throw Error("", "the camera to start with; camera.select takes another one now");
+  if (key == "film.ev") exposure_given_ = true;
+  edit().settings[key] = value;
+  touched_.push_back(key);
 }
 
 void Workspace::add_setting_commands() {
@@ -236,29 +246,18 @@ void Workspace::add_setting_commands() {
              known_option(a.text("key"));
              plan::Settings().set(a.text("key"), a.text("value"), "");
            },
-       .run =
-           [this](const Arguments& a) {
-             if (a.text("key") == "camera" && view && !loading())
-               throw Error("", "the camera to start with; camera.select takes another one now");
-             if (a.text("key") == "film.ev") exposure_given_ = true;
-             edit().settings[a.text("key")] = a.text("value");
-             touched_.push_back(a.text("key"));
-           },
+       .run = [this](const Arguments& a) { give(a.text("key"), a.text("value")); },
        .undoable = true});
-  registry.add({.name = "reset",
-                .help = "Gives a setting its default value.",
-                .parameters = {{.name = "key",
-                                .help = "the setting",
-                                .which = true,
-                                .names = [](const std::vector<std::string>&) { return setting_keys(); }}},
-                .check = [](const Arguments& a) { known_option(a.text("key")); },
-                .run =
-                    [this](const Arguments& a) {
-                      const std::string& key = a.text("key");
-                      edit().settings[key] = known_option(key).fallback;
-                      touched_.push_back(key);
-                    },
-                .undoable = true});
+  registry.add(
+      {.name = "reset",
+       .help = "Gives a setting its default value.",
+       .parameters = {{.name = "key",
+                       .help = "the setting",
+                       .which = true,
+                       .names = [](const std::vector<std::string>&) { return setting_keys(); }}},
+       .check = [](const Arguments& a) { known_option(a.text("key")); },
+       .run = [this](const Arguments& a) { give(a.text("key"), known_option(a.text("key")).fallback); },
+       .undoable = true});
   for (const OptionInfo& option : plan::options())
     registry.add_prefix(option.key, "set " + quote(option.key));
 }
@@ -404,6 +403,7 @@ void Workspace::add_shown_commands() {
              Document& d = edit();
              d.solo = -1;
              d.settings["show." + a.text("component")] = a.text("on");
+             touched_.push_back("show." + a.text("component"));
            },
        .undoable = true});
   components.push_back("none");

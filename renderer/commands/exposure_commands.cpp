@@ -69,7 +69,7 @@ void Workspace::add_exposure_commands() {
 
 void Workspace::measure(std::optional<vec2> at, bool of_load) {
   measure_failure_.clear();
-  measuring_ = Measuring{session.measure(at), at.has_value(), of_load, view_scene};
+  measuring_ = Measuring{session.measure(at, scene_id_), at.has_value(), of_load, view_scene};
 }
 
 void Workspace::take_measure() {

@@ -17,7 +17,7 @@ void Workspace::add_inspect_commands() {
        .run =
            [this, place](const Arguments& a) {
              needs_lookup();
-             session.inspect(place(a));
+             session.inspect(place(a), scene_id_);
            },
        .done =
            [this, place](const Arguments& a) {

@@ -32,8 +32,7 @@ void Workspace::add_interior_commands() {
                       for (int i = 0; i < steps; ++i)
                         commands::walk(walked, look(), way / static_cast<float>(steps), eye_height,
                                        a.has("through") && a.boolean("through"));
-                      view = walked;
-                      moved();
+                      take_view(walked);
                     },
                 .moves = true});
   registry.add({.name = "camera.walking",
@@ -57,8 +56,7 @@ void Workspace::add_interior_commands() {
                       const vec3 eye = eye_of(standing.camera);
                       standing.camera.to_world[3] =
                           vec4(step_straight(look(), eye, rise, clearance(standing.extent)), 1);
-                      view = standing;
-                      moved();
+                      take_view(standing);
                       walking = true;
                     },
                 .moves = true});
@@ -71,8 +69,7 @@ void Workspace::add_interior_commands() {
                       if (!walking || !view) return;
                       Viewpoint standing = *view;
                       commands::walk(standing, look(), vec2(0), eye_height, false);
-                      view = standing;
-                      moved();
+                      take_view(standing);
                     },
                 .moves = true});
 }

@@ -34,20 +34,15 @@ void Workspace::add_scene_commands() {
                 .help = "Opens a glTF scene. The one shown stays until the new one is ready, or if it fails.",
                 .parameters = {file_named({".gltf", ".glb"})},
                 .run = [this](const Arguments& a) {
-                  opening_ = true, open_failed_ = false;
-                  scene_at_open_ = snapshot ? snapshot->scene_id : 0;
-                  exposure_given_ = false;
+                  open_failed_ = exposure_given_ = false;
                   session.load(a.text("file"));
                   opened_by_ = session.commands();
                 }});
   registry.add({.name = "scene.cancel",
                 .help = "Gives up the load in progress; the scene shown stays.",
                 .parameters = {},
-                .run =
-                    [this](const Arguments&) {
-                      session.cancel();
-                      if (std::exchange(opening_, false)) forget_open();
-                    },
+                .run = [this](const Arguments&) { session.cancel(); },
+                .done = [this](const Arguments&) { return !loading(); },
                 .recorded = false});
 }
 
@@ -77,7 +72,7 @@ void Workspace::add_render_commands() {
                 .parameters = {file_named({".exr"})},
                 .run = [this](const Arguments& a) {
                   needs_scene();
-                  session.set_reference(a.text("file"));
+                  session.set_reference(a.text("file"), scene_id_);
                 }});
   add_plain("reference.clear", "Forgets the picture taken for the truth.",
             [this] { session.clear_reference(); });
@@ -95,7 +90,8 @@ void Workspace::add_script_commands() {
                       save_script(a.text("file"));
                       log::info("session saved as {}", a.text("file"));
                     },
-                .recorded = false});
+                .recorded = false,
+                .needs_outcome = true});
   registry.add(
       {.name = "help",
        .help = "Lists the commands, or explains one.",
@@ -152,12 +148,9 @@ bool Workspace::has_samples(int64_t samples) {
   if (snapshot && snapshot->id != waited_id_) waited_id_ = snapshot->id, waited_since_ = now;
   if (error_count > waited_errors_ && now - waited_since_ > k_standstill)
     throw Error("", "the picture stands still after an error");
-  if (!snapshot || camera_moved || resizing) return false;
-  if (const solvers::Report* told = waiting(); told && up_to_date()) throw Error("", told->to_go_on);
-  // A picture of an earlier camera does not count.
-  if (view && !same_view(snapshot->camera, view->camera)) return false;
-  // Nor does one from before the last edits.
-  if (!up_to_date()) return false;
+  // A picture from before the last edits, cameras and sizes does not count.
+  if (!up_to_date() || resizing) return false;
+  if (const solvers::Report* told = waiting()) throw Error("", told->to_go_on);
   return snapshot->finished || (!snapshot->coarse && snapshot->samples >= samples);
 }
 

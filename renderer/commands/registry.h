@@ -85,6 +85,8 @@ struct Command {
   bool undoable = false;  ///< changes the document (workspace.h)
   bool moves = false;     ///< moves the camera, which can be undone too
   bool recorded = true;   ///< belongs into the script of a session
+  /// It reads which of the lines before were refused: a script waits for that.
+  bool needs_outcome = false;
 };
 
 /// A line that has been understood.

@@ -71,7 +71,7 @@ void Workspace::add_file_commands(const SolverInfo& solver) {
                 .run =
                     [this, &solver](const Arguments& a) {
                       needs_scene();
-                      saved_ = session.solver_save(solver.name, a.text("file"));
+                      saved_ = session.solver_save(solver.name, a.text("file"), scene_id_);
                     },
                 .done = [this](const Arguments&) { return saved(); }});
   registry.add({.name = solver.name + ".load",
@@ -79,7 +79,7 @@ void Workspace::add_file_commands(const SolverInfo& solver) {
                 .parameters = {file_named({file.extension})},
                 .run = [this, &solver](const Arguments& a) {
                   needs_scene();
-                  session.solver_load(solver.name, a.text("file"));
+                  session.solver_load(solver.name, a.text("file"), scene_id_);
                 }});
 }
 
@@ -87,7 +87,7 @@ void Workspace::add_leading_commands(const SolverInfo& solver) {
   // True once preparation waits or is complete, with all in force that was commanded.
   const auto still = [this, &solver](const Arguments&) {
     const solvers::Report* told = report(solver);
-    return up_to_date() && !camera_moved && told && (told->waits || told->ready);
+    return up_to_date() && told && (told->waits || told->ready);
   };
   for (const solvers::CommandInfo& command : solver.commands) {
     Command c{.name = solver.name + "." + command.name,
@@ -95,7 +95,7 @@ void Workspace::add_leading_commands(const SolverInfo& solver) {
               .parameters = {},
               .run = [this, &solver, name = command.name](const Arguments&) {
                 needs_solver(solver);
-                session.solver_command(solver.name, name);
+                session.solver_command(solver.name, name, scene_id_);
               }};
     if (command.until_still) c.parameters = {time_limit()}, c.done = still;
     registry.add(std::move(c));

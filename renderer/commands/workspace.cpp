@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <tuple>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/log.h"
+#include "scene/range.h"
 
 namespace lucerna::commands {
 namespace {
@@ -74,17 +76,34 @@ Workspace::Workspace(session::Session& s) : session(s) {
 
 void Workspace::refresh(double time) {
   now = time;
-  // The scene after the snapshot: a picture's scene is then never newer than the one held here.
+  // The state after the snapshot: a picture's scene is then never newer than the one held here.
   snapshot = session.snapshot();
-  scene = session.scene();
-  known_ = session.settings();
+  session::State state = session.state();
+  scene = std::move(state.scene), known_ = std::move(state.settings), scene_id_ = state.scene_id;
+  drop_refused();
   drop_taken();
   follow_scene();
-  if (opening_ && snapshot && snapshot->commands >= opened_by_ && snapshot->scene_id == scene_at_open_) {
-    opening_ = false, open_failed_ = true;
-    forget_open();
+  follow_picture();
+  if (snapshot && snapshot->commands >= opened_by_ && snapshot->scene_id == scene_id_) {
+    const bool no_picture = snapshot->paused && snapshot->rgba.empty();  // drawing it has failed
+    if (view_scene == scene_id_ || no_picture) opened_by_ = 0;
   }
   take_measure();
+}
+
+void Workspace::drop_refused() {
+  if (!snapshot || !snapshot->refused) return;
+  for (; refused_seen_ < snapshot->refused->size(); ++refused_seen_) {
+    const uint64_t number = (*snapshot->refused)[refused_seen_];
+    if (number == opened_by_) open_failed_ = true;
+    // A file that cannot be read lights nothing.
+    if (std::erase_if(environments_sent_, [&](const auto& sent) { return sent.first == number; }) > 0)
+      environment_file_ =
+          environments_sent_.empty() ? environment_in_force_ : environments_sent_.back().second;
+    std::erase_if(undo_, [&](Step& step) { return step.sent.refuse(number); });
+    std::erase_if(redo_, [&](Step& step) { return step.sent.refuse(number); });
+    std::erase_if(recorded_, [&](Recorded& entry) { return entry.sent.refuse(number); });
+  }
 }
 
 void Workspace::drop_taken() {
@@ -97,17 +116,16 @@ void Workspace::drop_taken() {
   std::erase_if(pending_materials_, [&](const auto& entry) {
     return !scene || entry.first >= scene->materials.size() || over(entry.second.sent);
   });
-  // A file that could not be read lights nothing.
-  if (environment_sent_ != 0 && over(environment_sent_)) {
-    environment_sent_ = 0;
-    if (scene && !environment_file_.empty() && scene->environment.file != environment_file_)
-      environment_file_.clear();
-  }
+  std::erase_if(environments_sent_, [&](const auto& sent) {
+    if (over(sent.first)) environment_in_force_ = sent.second;
+    return over(sent.first);
+  });
   if (pending_environment_ && (!scene || over(pending_environment_->sent))) pending_environment_.reset();
 }
 
 void Workspace::follow_scene() {
   if (!snapshot || !scene || snapshot->scene_id == view_scene || snapshot->rgba.empty()) return;
+  if (snapshot->scene_id != scene_id_) return;  // the next one is there already, without a picture
   view_scene = snapshot->scene_id;
   bounds = scene::bounds(*scene);
   view = make_viewpoint(snapshot->camera, bounds);
@@ -115,7 +133,7 @@ void Workspace::follow_scene() {
   selection = {};
   pending_lights_.clear(), pending_materials_.clear(), pending_environment_.reset();
   undo_.clear(), redo_.clear();
-  dark_.clear(), environment_file_.clear(), environment_sent_ = 0;
+  dark_.clear(), environment_file_.clear(), environment_in_force_.clear(), environments_sent_.clear();
   walking = false;
   // Beside the window: it is a second's work in a large scene. One that is still at work is not waited for.
   probe_.reset();
@@ -132,12 +150,29 @@ void Workspace::follow_scene() {
   scene_camera = -1;
   for (size_t i = 0; i < scene->cameras.size(); ++i)
     if (same_view(scene->cameras[i], snapshot->camera)) scene_camera = static_cast<int>(i);
-  camera_moved = false;
-  if (opening_ && snapshot->scene_id != scene_at_open_) {
-    opening_ = false;
-    recorded_.push_back({"wait_scene", "wait_scene"});
-  }
+  if (loading()) recorded_.push_back({"wait_scene", "wait_scene"});
   scene_changed();
+}
+
+void Workspace::follow_picture() {
+  if (!up_to_date() || snapshot->rgba.empty() || snapshot->scene_id != view_scene) return;
+  if (view && !same_view(snapshot->camera, view->camera)) {
+    view = make_viewpoint(snapshot->camera, bounds);
+    scene_camera = -1;
+  }
+  const std::pair now_shown(snapshot->width, snapshot->height);
+  aspect = static_cast<float>(now_shown.first) / static_cast<float>(std::max(1u, now_shown.second));
+  if (size_.first != 0 && size_ != now_shown) {
+    size_ = now_shown;
+    size_refused(now_shown.first, now_shown.second);
+  }
+}
+
+void Workspace::set_size(uint32_t width, uint32_t height) {
+  if (size_ == std::pair(width, height)) return;
+  size_ = {width, height};
+  session.set_size(width, height);
+  aspect = static_cast<float>(width) / static_cast<float>(std::max(1u, height));
 }
 
 Document Workspace::document() const {
@@ -205,17 +240,17 @@ Document& Workspace::edit() {
 void Workspace::send(const Document& before, const Document& after) {
   for (const auto& [key, value] : after.settings) {
     const auto old = before.settings.find(key);
-    // While a scene is being loaded nobody knows what its settings will be: what was asked for is sent.
-    const bool asked = loading() && std::find(touched_.begin(), touched_.end(), key) != touched_.end();
-    if (!asked && old != before.settings.end() && old->second == value) continue;
-    session.set(key, value);
+    // Settings that are given by name act on the scene that comes, whatever it brings.
+    const bool named = std::find(touched_.begin(), touched_.end(), key) != touched_.end();
+    if (!(named && loading()) && old != before.settings.end() && old->second == value) continue;
+    session.set(key, value, named ? session::k_any_scene : scene_id_);
     pending_[key] = {value, session.commands()};
   }
   if (scene)
     for (uint32_t i = 0; i < std::min(after.lights.size(), scene->lights.size()); ++i) {
       if (i < before.lights.size() && before.lights[i] == after.lights[i]) continue;
       pending_lights_[i] = {after.lights[i], 0};
-      session.set_light(i, light(i));
+      session.set_light(i, light(i), scene_id_);
       pending_lights_[i].sent = session.commands();
     }
   if (scene)
@@ -227,19 +262,22 @@ void Workspace::send(const Document& before, const Document& after) {
         dark_[i] = after.materials[i].emission;
       if (i < before.materials.size() && seen(before.materials[i]) == seen(after.materials[i])) continue;
       pending_materials_[i] = {seen(after.materials[i]), 0};
-      session.set_material(i, material(i));
+      session.set_material(i, material(i), scene_id_);
       pending_materials_[i].sent = session.commands();
     }
-  if (before.environment_file != after.environment_file) {
-    environment_file_ = after.environment_file;
-    session.set_environment_file(environment_file_);
-    environment_sent_ = session.commands();
-  }
-  if (before.environment_scale != after.environment_scale ||
+  const bool other_file = before.environment_file != after.environment_file;
+  if (other_file || before.environment_scale != after.environment_scale ||
       before.environment_rotation != after.environment_rotation) {
-    session.set_environment(after.environment_scale, after.environment_rotation);
-    pending_environment_ =
-        PendingEnvironment{after.environment_scale, after.environment_rotation, session.commands()};
+    const float scale = after.environment_scale, rotation = after.environment_rotation;
+    if (other_file)
+      session.set_environment_file(after.environment_file, scale, rotation, scene_id_);
+    else
+      session.set_environment(scale, rotation, scene_id_);
+    pending_environment_ = PendingEnvironment{scale, rotation, session.commands()};
+    if (other_file) {
+      environment_file_ = after.environment_file;
+      environments_sent_.emplace_back(session.commands(), environment_file_);
+    }
   }
   solo_ = after.solo;
   shown_before_ = after.shown_before;
@@ -266,12 +304,14 @@ void Workspace::carry_out(const Line& line, uint64_t gesture, const std::string&
       throw Error(where, what.starts_with(head) ? what : head + what);
     }
   };
+  const uint64_t first = session.commands(), moves = moves_;
   if (!line.command->undoable) {
     const std::optional<Viewpoint> view_before = view;
     const int camera_before = scene_camera;
     located([&] { line.command->run(line.arguments); });
-    if (line.command->moves && view_before) note_move(line, gesture, *view_before, camera_before);
-    record(line, gesture);
+    const Sent sent = sent_since(first, moves);
+    if (line.command->moves && view_before) note_move(line, gesture, *view_before, camera_before, sent);
+    record(line, gesture, sent);
     return;
   }
   const std::string target = registry.target(line);
@@ -286,18 +326,28 @@ void Workspace::carry_out(const Line& line, uint64_t gesture, const std::string&
   working_.reset();
   send(now_seen, after);
   const bool asked = loading() && !touched_.empty();
+  const Sent sent = sent_since(first, moves);
   if (merges)
-    undo_.back().after = after, undo_.back().line = registry.print(line);
+    undo_.back().after = after, undo_.back().line = registry.print(line),
+    undo_.back().sent.last = std::max(undo_.back().sent.last, sent.last);
   else if (after != now_seen)
-    undo_.push_back({registry.print(line), target, gesture, now_seen, after});
+    undo_.push_back({registry.print(line), target, gesture, now_seen, after, sent});
   else if (!asked)
     return;
   if (undo_.size() > k_steps) undo_.erase(undo_.begin());
   redo_.clear();
-  record(line, gesture);
+  record(line, gesture, sent);
 }
 
-void Workspace::note_move(const Line& line, uint64_t gesture, const Viewpoint& before, int camera_before) {
+Workspace::Sent Workspace::sent_since(uint64_t before, uint64_t moves) const {
+  Sent sent{before + 1, session.commands()};
+  // A camera may have taken the number of the one before.
+  if (sent.last < sent.first && moves_ != moves) sent.first = sent.last;
+  return sent;
+}
+
+void Workspace::note_move(const Line& line, uint64_t gesture, const Viewpoint& before, int camera_before,
+                          const Sent& sent) {
   if (!view || (same_view(before.camera, view->camera) && before.distance == view->distance &&
                 camera_before == scene_camera))
     return;
@@ -306,22 +356,31 @@ void Workspace::note_move(const Line& line, uint64_t gesture, const Viewpoint& b
     Step& step = undo_.back();
     step.move->after = *view, step.move->camera_after = scene_camera;
     step.line = registry.print(line), step.target = target;
+    step.sent.last = std::max(step.sent.last, sent.last);
   } else {
     undo_.push_back({registry.print(line),
                      target,
                      gesture,
                      {},
                      {},
+                     sent,
                      Step::Move{before, *view, camera_before, scene_camera}});
     if (undo_.size() > k_steps) undo_.erase(undo_.begin());
   }
   redo_.clear();
 }
 
-void Workspace::show(const Viewpoint& to, int camera) {
+void Workspace::take_view(const Viewpoint& to, int camera) {
+  scene::Camera checked = to.camera;
+  checked.name.clear();  // a view that has been moved is no camera of the scene
+  scene::check_range(checked);
+  if (!std::isfinite(to.distance)) throw Error("camera", "what it looks at is not a finite distance away");
+  const bool same = view && same_view(view->camera, to.camera);
   view = to;
-  moved();
   scene_camera = camera;
+  if (same) return;
+  session.set_camera(to.camera, view_scene);
+  ++moves_;
 }
 
 void Workspace::undo() {
@@ -330,28 +389,30 @@ void Workspace::undo() {
   undo_.pop_back();
   touched_.clear();
   if (step.move)
-    show(step.move->before, step.move->camera_before);
+    take_view(step.move->before, step.move->camera_before);
   else
     send(document(), step.before);
-  step.gesture = 0;
+  step.gesture = 0, step.sent = {};
   redo_.push_back(std::move(step));
 }
 
 void Workspace::redo() {
   if (redo_.empty()) throw Error("", "there is nothing to do again");
+  const uint64_t first = session.commands(), moves = moves_;
   Step step = std::move(redo_.back());
   redo_.pop_back();
   touched_.clear();
   if (step.move)
-    show(step.move->after, step.move->camera_after);
+    take_view(step.move->after, step.move->camera_after);
   else
     send(document(), step.after);
+  step.sent = sent_since(first, moves);
   undo_.push_back(std::move(step));
 }
 
-void Workspace::record(const Line& line, uint64_t gesture) {
+void Workspace::record(const Line& line, uint64_t gesture, const Sent& sent) {
   if (!line.command->recorded) return;
-  Recorded entry{line.command->name, registry.target(line), gesture};
+  Recorded entry{line.command->name, registry.target(line), gesture, {}, sent};
   const bool writes = std::any_of(line.command->parameters.begin(), line.command->parameters.end(),
                                   [](const Parameter& p) { return p.writes; });
   if (writes) entry.saved = saved_;
@@ -396,27 +457,10 @@ void Workspace::record_wait() {
   if (before == recorded_.rend() || before->line != wait.line) recorded_.push_back(std::move(wait));
 }
 
-void Workspace::forget_open() {
-  const auto last = std::find_if(recorded_.rbegin(), recorded_.rend(),
-                                 [](const Recorded& entry) { return entry.line.starts_with("scene.open "); });
-  if (last != recorded_.rend()) recorded_.erase(std::next(last).base());
-}
-
 bool Workspace::saved() const {
   if (saved_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   if (failed(saved_)) throw Error("", "nothing was written");
   return true;
-}
-
-void Workspace::send_camera() {
-  if (!camera_moved || !view) return;
-  camera_moved = false;
-  session.set_camera(view->camera);
-}
-
-void Workspace::moved() {
-  camera_moved = true;
-  scene_camera = -1;
 }
 
 const session::Probe* Workspace::probe(bool wait) {

@@ -3,8 +3,13 @@
 // way to change any of it: run(line). It keeps what can be undone and the script of what was done. One
 // thread.
 //
-// An edit is seen here at once and handed to the session, which takes it when it can; until then the edit
-// stands above what the session says (or for two seconds: then the session has refused it).
+// An edit is seen here at once and handed to the session, in the order of the lines, so that each line acts
+// on what the lines before have left. Until the session has carried it out the edit stands above what the
+// session says. If the session refuses it, it is taken out of what can be undone and of the script.
+//
+// Edits belong to the scene shown. While another one is being loaded, lines that name things of a scene are
+// refused; moves of the camera, undo and what is derived from the scene's own settings are left out by the
+// session when the other scene comes. Settings given by name act on the scene that comes.
 #include <array>
 #include <future>
 #include <memory>
@@ -75,8 +80,8 @@ class Workspace {
   /// Whether the newest picture knows what all commands so far have brought.
   bool up_to_date() const { return snapshot && snapshot->commands >= session.commands(); }
   std::shared_ptr<const scene::Scene> scene;  ///< with the edits that the session has taken
-  /// A scene is being loaded.
-  bool loading() const { return opening_ || (!open_failed_ && snapshot && snapshot->progress >= 0); }
+  /// A scene is being loaded, or loaded without a picture yet.
+  bool loading() const { return opened_by_ != 0; }
   /// Errors seen so far, counted by whoever listens to the log.
   uint64_t error_count = 0;
 
@@ -140,11 +145,10 @@ class Workspace {
   float speed = 1.5f;             ///< of flight, m/s
   float aspect = 1.5f;            ///< width / height of the picture
   int scene_camera = -1;          ///< the one taken last and not moved since
-  /// The camera was moved and the session has not been told yet (send_camera).
-  bool camera_moved = false;
-  /// The session has been told of another size, or will be, and has not drawn a picture of it yet.
+  /// Gives the picture another size, pixels; aspect follows.
+  void set_size(uint32_t width, uint32_t height);
+  /// The picture is to have another size that the session does not know yet.
   bool resizing = false;
-  void send_camera();
   /// "camera.place ..." that makes exactly this view.
   static std::string place_line(const Viewpoint& view);
   bool walking = false;             ///< keys lead along the floor
@@ -172,14 +176,27 @@ class Workspace {
   virtual void scene_changed() {}
   /// Called when what was measured has set the exposure; `text` says to what.
   virtual void measured(const std::string& text) { (void)text; }
+  /// Called when the session has refused the size that was asked for last; the picture keeps this one.
+  virtual void size_refused(uint32_t width, uint32_t height) { (void)width, (void)height; }
   /// Whether the exposure is to be found when a scene comes that brings none.
   virtual bool exposes_at_load() const { return false; }
 
  private:
+  /// Numbers of the session's commands that a line has become.
+  struct Sent {
+    uint64_t first = 1, last = 0;  ///< none where last < first
+    uint64_t refused = 0;          ///< of them
+    /// Counts a command that was refused; true if no other one is left.
+    bool refuse(uint64_t number) {
+      if (number < first || number > last) return false;
+      return ++refused == last - first + 1;
+    }
+  };
   struct Step {
     std::string line, target;
     uint64_t gesture;
     Document before, after;
+    Sent sent = {};
     /// Of a move of the camera, which changes nothing else.
     struct Move {
       Viewpoint before, after;
@@ -191,6 +208,7 @@ class Workspace {
     std::string line, target;
     uint64_t gesture = 0;
     session::Saved saved = {};  ///< that it was to write a file, and how that has ended
+    Sent sent = {};
   };
   // Edits that the session has been told and that its snapshots do not hold yet: what is asked for is shown.
   // `sent` is the number of the command (Session::commands); it is over when a snapshot counts it.
@@ -241,16 +259,21 @@ class Workspace {
   void add_file_commands(const solvers::SolverInfo& solver);
   void add_leading_commands(const solvers::SolverInfo& solver);
   void carry_out(const Line& line, uint64_t gesture, const std::string& where);
+  /// What the session was given since `before`, a number of its commands, and since `moves`.
+  Sent sent_since(uint64_t before, uint64_t moves) const;
   Document& edit();  ///< the document that the running command may change
+  /// A setting that the running command names; it acts on a scene that is being loaded, too. Throws Error.
+  void give(const std::string& key, const std::string& value);
   void send(const Document& before, const Document& after);
-  void record(const Line& line, uint64_t gesture);
+  void record(const Line& line, uint64_t gesture, const Sent& sent);
   /// Has the script wait for as many samples as the picture has now.
   void record_wait();
-  /// Takes the last scene.open out of the script: it did nothing.
-  void forget_open();
   /// Whether the file of the last command that writes one is there. Throws Error when it will not be.
   bool saved() const;
   void follow_scene();
+  /// Takes up the camera and the size that the session has, where it has refused, or chosen, another.
+  void follow_picture();
+  void drop_refused();
   void drop_taken();
   std::pair<float, float> environment_() const;
   void needs_view() const;
@@ -268,9 +291,11 @@ class Workspace {
   void apply_mix();
   int camera_index(const std::string& which) const;
   Selection selection_of(const std::string& kind, const std::string& which) const;
-  void moved();
-  void note_move(const Line& line, uint64_t gesture, const Viewpoint& before, int camera_before);
-  void show(const Viewpoint& view, int camera);
+  /// The one way to move the camera: takes the view up and gives it to the session. Throws Error as
+  /// scene::check_range; then nothing has changed.
+  void take_view(const Viewpoint& view, int camera = -1);
+  void note_move(const Line& line, uint64_t gesture, const Viewpoint& before, int camera_before,
+                 const Sent& sent);
   std::vector<std::string> bookmark_names() const;
   /// At what is `wanted`, of which nothing is all.
   Look look_at(std::function<bool(const session::Picked&)> wanted);
@@ -286,8 +311,8 @@ class Workspace {
   std::map<uint32_t, PendingMaterial> pending_materials_;
   std::optional<PendingEnvironment> pending_environment_;
   std::map<uint32_t, vec3> dark_;  ///< emission of the materials that are switched off
-  std::string environment_file_;
-  uint64_t environment_sent_ = 0;  ///< number of the command that asked for it; 0: none is on its way
+  std::string environment_file_, environment_in_force_;
+  std::vector<std::pair<uint64_t, std::string>> environments_sent_;  ///< numbers and files on their way
   std::future<std::shared_ptr<const session::Probe>> probing_;
   std::vector<std::future<std::shared_ptr<const session::Probe>>> retired_;  ///< of scenes that are gone
   std::shared_ptr<const session::Probe> probe_;
@@ -311,10 +336,12 @@ class Workspace {
   std::vector<Step> undo_, redo_;
   std::vector<Recorded> recorded_;
   session::Saved saved_;                        ///< of the last command that writes a file
-  bool opening_ = false;                        ///< scene.open was run and has not ended
-  bool open_failed_ = false;                    ///< the last one has failed
-  uint64_t opened_by_ = 0;                      ///< its number among the session's commands
-  uint64_t scene_at_open_ = 0;                  ///< shown when it was run
+  bool open_failed_ = false;                    ///< the last scene.open has failed
+  uint64_t opened_by_ = 0;                      ///< its number, until its scene is shown or it has failed
+  session::SceneId scene_id_ = 0;               ///< of `scene`
+  size_t refused_seen_ = 0;                     ///< of the session's refused commands
+  uint64_t moves_ = 0;                          ///< cameras given to the session
+  std::pair<uint32_t, uint32_t> size_{0, 0};    ///< asked for last
   double waited_since_ = -1;                    ///< when the running wait began, or saw a new picture
   uint64_t waited_errors_ = 0, waited_id_ = 0;  ///< errors when it began; picture seen last
 };

@@ -9,6 +9,7 @@
 #include "scene/default_light.h"
 #include "scene/io/load.h"
 #include "scene/light_factor.h"
+#include "scene/range.h"
 #include "shaders/shared/film.h"
 
 namespace lucerna::session {
@@ -64,6 +65,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
                        scene::Camera camera, const Progress& progress, const scene::Changes& changes) {
   rest();
   // Everything that can fail happens before the old scene is given up.
+  scene::check_range(camera);
   const plan::Plan plan = plan::make_plan(settings);
   Relight relight = make_relight(plan, settings, scene, width_, height_);
   World world = make_world(*device_, std::move(scene), relight.lit, settings.text("tracer"),
@@ -330,6 +332,7 @@ void Renderer::apply_settings() {
   try {
     const scene::Camera camera =
         changed("camera") ? scene::starting_camera(*world_.scene, settings_.text("camera")) : camera_;
+    scene::check_range(camera);
     if (changed("tracer") || changed("path.batch")) {
       install(world_.scene, settings_, camera, {}, changes);
       return;
@@ -415,6 +418,7 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
 }
 
 void Renderer::set_camera(const scene::Camera& camera) {
+  scene::check_range(camera);
   camera_ = camera;
   restart(scene::Change::camera);
 }

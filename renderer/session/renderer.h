@@ -75,6 +75,7 @@ class Renderer {
   void apply_settings();
   /// Throws Error as film::check_size; the size before stays.
   void set_size(uint32_t width, uint32_t height);
+  /// Throws Error as scene::check_range, as do the edits below; then what was there before stays.
   void set_camera(const scene::Camera& camera);
   const scene::Camera& camera() const { return camera_; }
   /// Camera of the scene by name; Error when there is none such, listing the names.
@@ -82,8 +83,10 @@ class Renderer {
   void set_light(uint32_t index, const scene::Light& light);
   void set_environment(float scale, float rotation_degrees);
   /// Lights the scene by this latitude-longitude image instead of its own environment; "": by its own again.
-  /// Throws Error as scene::load_environment; the environment before stays.
-  void set_environment_file(const std::filesystem::path& file);
+  /// With this factor and rotation, or with those in force. Throws Error as scene::load_environment; the
+  /// environment before stays.
+  void set_environment_file(const std::filesystem::path& file, std::optional<float> scale = {},
+                            std::optional<float> rotation_degrees = {});
   /// Throws Error when there is no such material, or when textures or what a surface lets through (alpha
   /// mode, transmission, thickness) would be others: these are the scene's shape, as rays find it.
   void set_material(uint32_t index, const scene::Material& material);

@@ -3,6 +3,7 @@
 
 #include "scene/io/environment_file.h"
 #include "scene/light_factor.h"
+#include "scene/range.h"
 #include "session/renderer.h"
 
 namespace lucerna::session {
@@ -10,6 +11,7 @@ namespace lucerna::session {
 void Renderer::set_light(uint32_t index, const scene::Light& light) {
   if (!world_.scene || index >= world_.scene->lights.size())
     throw_error("light", "there is no light {}", index);
+  scene::check_range(light);
   auto edited = std::make_shared<scene::Scene>(*world_.scene);
   edited->lights[index] = light;
   edit(edited, scene::Change::lamp, false);
@@ -20,10 +22,12 @@ void Renderer::set_environment(float scale, float rotation_degrees) {
   auto edited = std::make_shared<scene::Scene>(*world_.scene);
   edited->environment.scale = scale;
   edited->environment.rotation = rotation_degrees;
+  scene::check_range(edited->environment);
   edit(edited, scene::Change::environment, false);
 }
 
-void Renderer::set_environment_file(const std::filesystem::path& file) {
+void Renderer::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
+                                    std::optional<float> rotation_degrees) {
   if (!world_.scene || !loaded_) throw_error(file.string(), "there is no scene to be lit");
   auto edited = std::make_shared<scene::Scene>(*world_.scene);
   // The images as they were loaded, so that those of earlier files go.
@@ -36,8 +40,9 @@ void Renderer::set_environment_file(const std::filesystem::path& file) {
     environment.given = true;
     edited->images.push_back(std::move(image));
   }
-  environment.scale = world_.scene->environment.scale;
-  environment.rotation = world_.scene->environment.rotation;
+  environment.scale = scale.value_or(world_.scene->environment.scale);
+  environment.rotation = rotation_degrees.value_or(world_.scene->environment.rotation);
+  scene::check_range(environment);
   edited->environment = environment;
   edit(edited, scene::Change::environment, false);
 }
@@ -45,6 +50,7 @@ void Renderer::set_environment_file(const std::filesystem::path& file) {
 void Renderer::set_material(uint32_t index, const scene::Material& material) {
   if (!world_.scene || index >= world_.scene->materials.size())
     throw_error("material", "there is no material {}", index);
+  scene::check_range(material);
   auto edited = std::make_shared<scene::Scene>(*world_.scene);
   scene::Material& m = edited->materials[index];
   const scene::Material before = std::exchange(m, material);

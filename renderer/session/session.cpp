@@ -26,6 +26,9 @@ constexpr double k_draft_seconds = 0.5;    // without a draft at most, while edi
 constexpr double k_mix_pause_seconds = 0.2;
 constexpr double k_numbers_seconds = 0.5;  // between read-backs of the film for shares
 constexpr int k_nice = 10;                 // rendering yields to the window's thread
+
+/// Thrown by a command that has ended without effect, as was wished.
+struct Abandoned {};
 }  // namespace
 
 struct Session::Impl {
@@ -33,22 +36,17 @@ struct Session::Impl {
   std::thread thread;
   mutable std::mutex mutex;
   std::condition_variable wake;
-  struct Command {
-    std::function<void(Renderer&)> run;
-    bool saves;  // carried out before the end, too
-  };
-  std::deque<Command> queue;
+  CommandQueue queue;
   std::atomic<bool> quit{false}, pending{false};
-  uint64_t posted = 0;
   // Loads are numbered as they are asked for; those up to a number are given up.
   std::atomic<uint64_t> loads{0}, given_up{0};
   std::shared_ptr<const Snapshot> snapshot;
-  std::shared_ptr<const scene::Scene> scene;
-  plan::Settings settings;
+  State state;
   std::function<void()> published;
 
   // Of the session thread alone.
   Snapshot next;
+  SceneId scene_id = 0;  // of the renderer's scene; the snapshot has it with the first picture
   AccuracyKeeper accuracy;
   Timer since_publish, since_numbers, since_given_up;
   bool paused = false, dirty = true, coarse_wanted = false, better_wanted = false, recall_wanted = false,
@@ -127,28 +125,34 @@ struct Session::Impl {
     saves.clear();
   }
 
-  Saved post_save(const std::filesystem::path& file, const std::string& solver) {
+  Saved post_save(const std::filesystem::path& file, const std::string& solver, SceneId scene) {
     // A promise that is dropped, for want of a device, is a failure to the one who waits.
     auto promise = std::make_shared<std::promise<void>>();
     Saved saved = promise->get_future().share();
-    post(
-        [this, file, solver, promise](Renderer& r) {
-          saves.push_back({file, solver, promise});
-          if (!solver.empty() && !due(r, saves.back()))
-            log::info("{}: will be written when {} is complete", file.string(), solvers::find(solver)->title);
-        },
-        true);
+    const auto run = [this, file, solver, promise](Renderer& r) {
+      saves.push_back({file, solver, promise});
+      if (!solver.empty() && !due(r, saves.back()))
+        log::info("{}: will be written when {} is complete", file.string(), solvers::find(solver)->title);
+    };
+    post({.run = run, .subject = file.string(), .scene = scene, .saves = true});
     return saved;
   }
 
-  void post(std::function<void(Renderer&)> command, bool saves = false) {
+  void post(Command command) {
     {
       std::lock_guard lock(mutex);
-      queue.push_back({std::move(command), saves});
-      ++posted;
+      queue.push(std::move(command));
       pending = true;
     }
     wake.notify_one();
+  }
+
+  /// The snapshots from now on say that this one was refused.
+  void refuse(const Command& command) {
+    auto all = next.refused ? std::make_shared<std::vector<uint64_t>>(*next.refused)
+                            : std::make_shared<std::vector<uint64_t>>();
+    all->push_back(command.number);
+    next.refused = std::move(all);
   }
 
   void publish_activity(const std::string& what, float fraction) {
@@ -201,6 +205,7 @@ struct Session::Impl {
   }
 
   void fill_snapshot(Renderer& r, bool numbers) {
+    next.scene_id = scene_id;
     next.width = r.film().width();
     next.height = r.film().height();
     if (dirty || next.rgba.empty() || !r.shows_the_same()) {
@@ -237,7 +242,7 @@ struct Session::Impl {
     next.stages.clear();
     for (const auto& s : stats.stages) next.stages.push_back({s.name, s.ms, s.host});
     next.mean_samples = double(stats.paths) / (double(next.width) * next.height);
-    accuracy.follow(r, next.scene_id);
+    accuracy.follow(r, scene_id);
     next.accuracy = accuracy.publish(r, numbers || dirty);
     const auto ms = r.component_ms_a_sample();
     for (int c = 0; c < k_components; ++c) {
@@ -285,27 +290,39 @@ std::unique_ptr<Renderer> Session::Impl::make_renderer() {
 }
 
 void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
-  Command command = std::move(queue.front());
-  queue.pop_front();
+  Command command = queue.pop();
+  const uint64_t number = command.number;
   lock.unlock();
   try {
     if (!renderer) throw Error("device", "there is none to render with");
-    command.run(*renderer);
-    serve_due(*renderer);
+    if (command.scene == k_any_scene || command.scene == scene_id) {
+      command.run(*renderer);
+    } else {
+      log::warning("a command for {} was left out: another scene was loaded before its turn",
+                   command.subject);
+      refuse(command);
+    }
+  } catch (const Abandoned&) {
+    refuse(command);
   } catch (const std::exception& e) {
     log::error("{}", e.what());
+    refuse(command);
   }
   command = {};
   if (renderer) {
+    try {
+      serve_due(*renderer);
+    } catch (const std::exception& e) {
+      log::error("{}", e.what());
+    }
     lock.lock();
-    settings = renderer->settings();
-    scene = renderer->scene();
+    state = {scene_id, renderer->scene(), renderer->settings()};
     pending = !queue.empty();
     lock.unlock();
   }
   next.activity.clear();
   next.progress = -1;
-  ++next.commands;
+  next.commands = number;
   dirty = true;
   lock.lock();
 }
@@ -330,7 +347,7 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
   } else if (pending && coarse_wanted) {
     if (!std::exchange(draft_given_up, true)) since_given_up.restart();
   } else if (work && renderer.step([&] { return pending.load() || quit; })) {
-    accuracy.follow(renderer, next.scene_id);
+    accuracy.follow(renderer, scene_id);
   }
   // The last line of the ledger is that of the finished image.
   if (renderer.done() && !renderer.ledger().entries().empty() &&
@@ -352,9 +369,10 @@ void Session::Impl::publish_picture(Renderer& renderer, bool numbers) {
 }
 
 void Session::Impl::end(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
-  for (Command& command : queue)
-    if (command.saves && renderer) command.run(*renderer);
-  queue.clear();
+  while (!queue.empty())
+    if (const Command command = queue.pop();
+        command.saves && renderer && (command.scene == k_any_scene || command.scene == scene_id))
+      command.run(*renderer);
   lock.unlock();
   std::erase_if(saves, [&](const Save& save) {
     if (save.solver.empty()) write(*renderer, save);
@@ -401,6 +419,9 @@ void Session::Impl::run() {
       next.activity.clear();
       next.progress = -1;
       next.paused = paused = true;
+      // A picture of the scene before is none of this one.
+      if (next.scene_id != scene_id && renderer)
+        next.scene_id = scene_id, next.camera = renderer->camera(), next.rgba.clear();
       publish();
       dirty = false;
     }
@@ -428,7 +449,7 @@ Session::~Session() {
 
 void Session::load(const std::filesystem::path& file) {
   const uint64_t number = ++impl_->loads;
-  impl_->post([s = impl_.get(), file, number](Renderer& r) {
+  const auto run = [s = impl_.get(), file, number](Renderer& r) {
     Timer since;
     const auto goes_on = [&] { return number > s->given_up; };
     try {
@@ -442,9 +463,9 @@ void Session::load(const std::filesystem::path& file) {
     } catch (const Error&) {
       if (goes_on()) throw;
       log::info("{}: loading was given up", file.string());
-      return;
+      throw Abandoned();
     }
-    ++s->next.scene_id;
+    ++s->scene_id;
     s->restarted();
     s->give_up_saves("another scene was loaded");
     const auto count = [](uint64_t n, const char* what) {
@@ -452,131 +473,149 @@ void Session::load(const std::filesystem::path& file) {
     };
     log::info("{} loaded: {}, {}, {}", file.string(), count(scene::count_triangles(*r.scene()), "triangle"),
               count(r.scene()->lights.size(), "lamp"), count(r.scene()->cameras.size(), "camera"));
-  });
+  };
+  impl_->post({.run = run, .subject = file.string()});
 }
 
-void Session::set(const std::string& key, const std::string& value) {
-  impl_->post([s = impl_.get(), key, value](Renderer& r) {
+void Session::set(const std::string& key, const std::string& value, SceneId scene) {
+  const auto run = [s = impl_.get(), key, value](Renderer& r) {
     const uint64_t before = r.restarts();
     r.settings().set(key, value, "setting");
     r.apply_settings();
     if (r.restarts() != before) s->restarted();
-  });
+  };
+  impl_->post({.run = run, .subject = key, .scene = scene});
 }
 
-void Session::set_camera(const scene::Camera& camera) {
-  impl_->post([s = impl_.get(), camera](Renderer& r) {
+void Session::set_camera(const scene::Camera& camera, SceneId scene) {
+  const auto run = [s = impl_.get(), camera](Renderer& r) {
     r.set_camera(camera);
     s->restarted();
-  });
+  };
+  impl_->post({.run = run, .subject = "the camera", .scene = scene, .camera = true});
 }
 
 void Session::set_size(uint32_t width, uint32_t height) {
-  impl_->post([s = impl_.get(), width, height](Renderer& r) {
+  const auto run = [s = impl_.get(), width, height](Renderer& r) {
     r.set_size(width, height);
     s->restarted();
-  });
+  };
+  impl_->post({.run = run, .subject = "the size"});
 }
 
-void Session::set_light(uint32_t index, const scene::Light& light) {
-  impl_->post([s = impl_.get(), index, light](Renderer& r) {
+void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
+  const auto run = [s = impl_.get(), index, light](Renderer& r) {
     r.set_light(index, light);
     s->restarted();
-  });
+  };
+  impl_->post({.run = run, .subject = "a light", .scene = scene});
 }
 
-void Session::set_environment(float scale, float rotation_degrees) {
-  impl_->post([s = impl_.get(), scale, rotation_degrees](Renderer& r) {
+void Session::set_environment(float scale, float rotation_degrees, SceneId scene) {
+  const auto run = [s = impl_.get(), scale, rotation_degrees](Renderer& r) {
     r.set_environment(scale, rotation_degrees);
     s->restarted();
-  });
+  };
+  impl_->post({.run = run, .subject = "the environment", .scene = scene});
 }
 
-void Session::set_environment_file(const std::filesystem::path& file) {
-  impl_->post([s = impl_.get(), file](Renderer& r) {
+void Session::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
+                                   std::optional<float> rotation_degrees, SceneId scene) {
+  const auto run = [s = impl_.get(), file, scale, rotation_degrees](Renderer& r) {
     if (!file.empty()) s->publish_activity(fmt::format("reading {}", file.filename().string()), -1);
-    r.set_environment_file(file);
+    r.set_environment_file(file, scale, rotation_degrees);
     s->restarted();
     if (!file.empty()) log::info("{} lights the scene", file.string());
-  });
+  };
+  impl_->post({.run = run, .subject = "the environment", .scene = scene});
 }
 
-void Session::set_material(uint32_t index, const scene::Material& material) {
-  impl_->post([s = impl_.get(), index, material](Renderer& r) {
+void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {
+  const auto run = [s = impl_.get(), index, material](Renderer& r) {
     r.set_material(index, material);
     s->restarted();
-  });
+  };
+  impl_->post({.run = run, .subject = "a material", .scene = scene});
 }
 
 void Session::set_paused(bool paused) {
-  impl_->post([s = impl_.get(), paused](Renderer&) { s->paused = paused; });
+  const auto run = [s = impl_.get(), paused](Renderer&) { s->paused = paused; };
+  impl_->post({.run = run, .subject = "rendering"});
 }
 
 void Session::restart() {
-  impl_->post([s = impl_.get()](Renderer& r) {
+  const auto run = [s = impl_.get()](Renderer& r) {
     r.restart();
     s->restarted();
-  });
+  };
+  impl_->post({.run = run, .subject = "rendering"});
 }
 
 void Session::reload_shaders() {
-  impl_->post([s = impl_.get()](Renderer& r) {
+  const auto run = [s = impl_.get()](Renderer& r) {
     const Timer timer;
     r.reload_shaders();
     s->restarted();
     log::info("shaders reloaded in {:.2f} s", timer.seconds());
-  });
+  };
+  impl_->post({.run = run, .subject = "the shaders"});
 }
 
-void Session::set_reference(const std::filesystem::path& file) {
-  impl_->post([file](Renderer& r) {
+void Session::set_reference(const std::filesystem::path& file, SceneId scene) {
+  const auto run = [file](Renderer& r) {
     r.set_reference(file);
     r.finish_ledger();  // what there is is held against it at once
     log::info("{} is the reference", file.string());
-  });
+  };
+  impl_->post({.run = run, .subject = "the reference", .scene = scene});
 }
 
 void Session::clear_reference() {
-  impl_->post([](Renderer& r) { r.clear_reference(); });
+  const auto run = [](Renderer& r) { r.clear_reference(); };
+  impl_->post({.run = run, .subject = "the reference"});
 }
 
-void Session::inspect(std::optional<vec2> at) {
-  impl_->post([at](Renderer& r) { r.inspect(at); });
+void Session::inspect(std::optional<vec2> at, SceneId scene) {
+  const auto run = [at](Renderer& r) { r.inspect(at); };
+  impl_->post({.run = run, .subject = "a place of the picture", .scene = scene});
 }
 
-std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at) {
+std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, SceneId scene) {
   auto promise = std::make_shared<std::promise<film::Brightness>>();
   auto result = promise->get_future().share();
-  impl_->post([s = impl_.get(), at, promise](Renderer&) { s->measures.push_back({at, promise}); });
+  const auto run = [s = impl_.get(), at, promise](Renderer&) { s->measures.push_back({at, promise}); };
+  impl_->post({.run = run, .subject = "the exposure", .scene = scene});
   return result;
 }
 
-Saved Session::save(const std::filesystem::path& file) { return impl_->post_save(file, ""); }
+Saved Session::save(const std::filesystem::path& file) { return impl_->post_save(file, "", k_any_scene); }
 
-Saved Session::solver_save(const std::string& solver, const std::filesystem::path& file) {
-  return impl_->post_save(file, solver);
+Saved Session::solver_save(const std::string& solver, const std::filesystem::path& file, SceneId scene) {
+  return impl_->post_save(file, solver, scene);
 }
 
-void Session::solver_load(const std::string& solver, const std::filesystem::path& file) {
-  impl_->post([s = impl_.get(), solver, file](Renderer& r) {
+void Session::solver_load(const std::string& solver, const std::filesystem::path& file, SceneId scene) {
+  const auto run = [s = impl_.get(), solver, file](Renderer& r) {
     r.solver_load(solver, file);
     s->restarted();
-  });
+  };
+  impl_->post({.run = run, .subject = file.string(), .scene = scene});
 }
 
-void Session::solver_command(const std::string& solver, const std::string& command) {
-  impl_->post([s = impl_.get(), solver, command](Renderer& r) {
+void Session::solver_command(const std::string& solver, const std::string& command, SceneId scene) {
+  const auto run = [s = impl_.get(), solver, command](Renderer& r) {
     const solvers::SolverInfo* info = solvers::find(solver);
     if (!info || !solvers::find_command(*info, command))
       throw Error(solver, fmt::format("there is no command '{}'", command));
     r.solver_command(solver, command);
     s->paused = false;
-  });
+  };
+  impl_->post({.run = run, .subject = solver + "." + command, .scene = scene});
 }
 
 uint64_t Session::commands() const {
   std::lock_guard lock(impl_->mutex);
-  return impl_->posted;
+  return impl_->queue.given();
 }
 
 void Session::cancel() { impl_->given_up = impl_->loads.load(); }
@@ -586,14 +625,9 @@ std::shared_ptr<const Snapshot> Session::snapshot() const {
   return impl_->snapshot;
 }
 
-std::shared_ptr<const scene::Scene> Session::scene() const {
+State Session::state() const {
   std::lock_guard lock(impl_->mutex);
-  return impl_->scene;
-}
-
-plan::Settings Session::settings() const {
-  std::lock_guard lock(impl_->mutex);
-  return impl_->settings;
+  return impl_->state;
 }
 
 void Session::on_publish(std::function<void()> call) {

@@ -16,6 +16,7 @@
 #include "scene/io/load.h"
 #include "scene/scene.h"
 #include "session/accuracy.h"
+#include "session/command_queue.h"
 #include "solvers/report.h"
 
 namespace lucerna::session {
@@ -49,9 +50,12 @@ struct Legend {
 
 /// What the window draws: replaced as a whole, never changed after publishing.
 struct Snapshot {
-  uint64_t id = 0;                 ///< grows with every published snapshot
-  uint64_t scene_id = 0;           ///< grows when another scene is loaded
-  uint64_t commands = 0;           ///< carried out before it was made (Session::commands)
+  uint64_t id = 0;        ///< grows with every published snapshot
+  SceneId scene_id = 0;   ///< of the scene that the picture and the camera below are of
+  uint64_t commands = 0;  ///< carried out, or refused, before it was made (Session::commands)
+  /// Numbers of the commands that were refused (with an error logged) or left out (another scene was loaded
+  /// before their turn, or the load was given up), in order; null: none. What was there before them stays.
+  std::shared_ptr<const std::vector<uint64_t>> refused;
   uint32_t width = 0, height = 0;  ///< of the picture
   std::vector<uint8_t> rgba;       ///< width * height * 4, sRGB, top row first; tone-mapped
   Legend legend;                   ///< of the picture, where it is a heat map
@@ -99,6 +103,13 @@ struct Options {
   scene::LoadOptions scenes = {};  ///< what scenes may read and take
 };
 
+/// What the session holds, at one moment.
+struct State {
+  SceneId scene_id = 0;                       ///< 0 before the first scene
+  std::shared_ptr<const scene::Scene> scene;  ///< as loaded, with edits applied; null before the first
+  plan::Settings settings;
+};
+
 /// Of a file that is to be written: ready when it is, or will never be; get() then throws what kept it from
 /// being (which has been logged as well).
 using Saved = std::shared_future<void>;
@@ -112,48 +123,56 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   // Commands: queued, carried out in order at the next work-item boundary. Failures are logged as errors
-  // (log::add_listener), and what was there before stays.
+  // (log::add_listener) and listed in Snapshot::refused, and what was there before stays.
+  //
+  // `scene`: the scene that a command means, by State::scene_id. If another one has been loaded by its turn
+  // the command is left out, with a warning.
   void load(const std::filesystem::path& file);
-  void set(const std::string& key, const std::string& value);
-  void set_camera(const scene::Camera& camera);
+  void set(const std::string& key, const std::string& value, SceneId scene = k_any_scene);
+  /// Of several in a row that are not carried out yet only the last one counts; they have one number.
+  void set_camera(const scene::Camera& camera, SceneId scene = k_any_scene);
   void set_size(uint32_t width, uint32_t height);
-  void set_light(uint32_t index, const scene::Light& light);
-  void set_environment(float scale, float rotation_degrees);
+  void set_light(uint32_t index, const scene::Light& light, SceneId scene = k_any_scene);
+  void set_environment(float scale, float rotation_degrees, SceneId scene = k_any_scene);
   /// Renderer::set_environment_file
-  void set_environment_file(const std::filesystem::path& file);
-  void set_material(uint32_t index, const scene::Material& material);  ///< Renderer::set_material
+  void set_environment_file(const std::filesystem::path& file, std::optional<float> scale = {},
+                            std::optional<float> rotation_degrees = {}, SceneId scene = k_any_scene);
+  /// Renderer::set_material
+  void set_material(uint32_t index, const scene::Material& material, SceneId scene = k_any_scene);
   void set_paused(bool paused);
   void restart();         ///< throws the samples away and starts anew
   void reload_shaders();  ///< compiles again; on error the old kernels stay and the message is logged
   /// Holds the picture against this one from now on (Renderer::set_reference).
-  void set_reference(const std::filesystem::path& file);
+  void set_reference(const std::filesystem::path& file, SceneId scene = k_any_scene);
   void clear_reference();
   /// What solvers hold at that point of the picture (0..1 to the right and down): told by Snapshot::reports
   /// and drawn over the picture from now on; nothing: no longer.
-  void inspect(std::optional<vec2> at);
+  void inspect(std::optional<vec2> at, SceneId scene = k_any_scene);
   /// Renderer::measure, as soon as there is an image; get() throws what kept it from being. Nothing is
   /// logged.
-  std::shared_future<film::Brightness> measure(std::optional<vec2> at);
+  std::shared_future<film::Brightness> measure(std::optional<vec2> at, SceneId scene = k_any_scene);
   /// EXR or PNG of what there is, as soon as every pixel has a sample; where rendering rests without, at
   /// once.
   Saved save(const std::filesystem::path& file);
   /// Keeps a solver's work (SolverInfo::file) as soon as it is complete; given up when another scene is
   /// loaded.
-  Saved solver_save(const std::string& solver, const std::filesystem::path& file);
-  void solver_load(const std::string& solver, const std::filesystem::path& file);
+  Saved solver_save(const std::string& solver, const std::filesystem::path& file,
+                    SceneId scene = k_any_scene);
+  void solver_load(const std::string& solver, const std::filesystem::path& file, SceneId scene = k_any_scene);
   /// One of SolverInfo::commands. Rendering that was paused goes on, too.
-  void solver_command(const std::string& solver, const std::string& command);
+  void solver_command(const std::string& solver, const std::string& command, SceneId scene = k_any_scene);
   void cancel();  ///< gives up all loads that were asked for so far and are not done
 
-  /// Commands given so far: a snapshot of as many knows what they have brought.
+  /// The number of the newest command, from 1 on. A snapshot that counts it shows what it has done.
   uint64_t commands() const;
 
   /// The newest picture; null before the first. Cheap.
   std::shared_ptr<const Snapshot> snapshot() const;
-  /// The scene as loaded (with edits applied); null before one is. Replaced, never changed.
-  std::shared_ptr<const scene::Scene> scene() const;
-  /// Current settings (a copy).
-  plan::Settings settings() const;
+  /// Replaced, never changed; as new as snapshot() was before, or newer.
+  State state() const;
+  /// Parts of it.
+  std::shared_ptr<const scene::Scene> scene() const { return state().scene; }
+  plan::Settings settings() const { return state().settings; }
   /// Called on the session thread after each publication (for glfwPostEmptyEvent). Set before the first
   /// command.
   void on_publish(std::function<void()> call);

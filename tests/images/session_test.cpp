@@ -66,6 +66,71 @@ TEST_CASE("a load that was given up stays so, whatever is loaded after it") {
   CHECK(session.snapshot()->scene_id == 3);
 }
 
+TEST_CASE("a command for a scene that is gone is left out, and what is refused is listed") {
+  Heard heard;
+  Session session({.device = "cpu"});
+  session.set_size(32, 24);
+  session.load(gltf("cornell"));
+  settle(session);
+  const session::State before = session.state();
+  CHECK(before.scene_id == 1);
+  scene::Camera camera = scene::starting_camera(*before.scene, "");
+  camera.to_world[3].x += 0.25f;
+  session.load(gltf("hall"));
+  const uint64_t load = session.commands();
+  session.set_camera(camera, before.scene_id);
+  session.set("film.ev", "2", before.scene_id);
+  session.set_environment(3, 90, before.scene_id);
+  session.set("samples", "77");
+  settle(session);
+  auto snapshot = session.snapshot();
+  REQUIRE(snapshot->refused);
+  CHECK(*snapshot->refused == std::vector<uint64_t>{load + 1, load + 2, load + 3});
+  CHECK(snapshot->scene_id == 2);
+  CHECK(snapshot->camera.to_world == scene::starting_camera(*session.scene(), "").to_world);
+  CHECK(session.settings().real("film.ev") != 2);
+  CHECK(session.scene()->environment.scale == 1);
+  CHECK(session.settings().integer("samples") == 77);
+  CHECK(heard.errors == 0);
+
+  // What cannot be rendered is refused, and the picture before goes on.
+  camera.to_world[3].x = 1e19f;
+  session.set_camera(camera);
+  session.set_environment(std::numeric_limits<float>::infinity(), 0);
+  session.set_size(1u << 20, 1u << 20);
+  session.load("missing.gltf");
+  settle(session);
+  snapshot = until(session, [](const Snapshot& s) { return s.samples > 0; });
+  CHECK(snapshot->refused->size() == 7);
+  CHECK(heard.errors == 4);
+  CHECK(snapshot->camera.to_world == scene::starting_camera(*session.scene(), "").to_world);
+  CHECK(snapshot->width == 32);
+}
+
+TEST_CASE("a picture is named as that of the scene that it shows, also while another one is being loaded") {
+  Session session({.device = "cpu"});
+  session.set_size(32, 24);
+  session.load(gltf("cornell"));
+  settle(session);
+  const auto first = session.snapshot()->camera;
+  std::mutex mutex;
+  std::vector<std::shared_ptr<const Snapshot>> seen;
+  session.on_publish([&] {
+    std::lock_guard lock(mutex);
+    seen.push_back(session.snapshot());
+  });
+  session.load(gltf("hall"));
+  session.load("missing.gltf");
+  settle(session);
+  session.on_publish({});
+  const auto second = scene::starting_camera(*session.scene(), "");
+  REQUIRE(first.to_world != second.to_world);
+  std::lock_guard lock(mutex);
+  for (const auto& s : seen)
+    CHECK(s->camera.to_world == (s->scene_id == 1 ? first.to_world : second.to_world));
+  CHECK(session.snapshot()->scene_id == 2);
+}
+
 TEST_CASE("files that are asked for are written, also when the session ends at once") {
   const test::Folder folder;
   const auto file = [&](const char* name) { return folder.path / name; };

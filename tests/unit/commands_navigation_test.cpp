@@ -71,7 +71,6 @@ TEST_CASE("moves of the camera are undone, a drag as one step, among all other s
   CHECK(same_view(b.work.view->camera, start.camera));
   CHECK(b.work.scene_camera == 0);
   CHECK_FALSE(b.work.can_undo());
-  b.work.send_camera();
   REQUIRE(b.until([&] { return b.work.snapshot && same_view(b.work.snapshot->camera, start.camera); }));
   for (int i = 0; i < 4; ++i) b.run("redo");
   CHECK(b.work.scene_camera == -1);

@@ -6,9 +6,9 @@
 #include <atomic>
 #include <cmath>
 #include <condition_variable>
-#include <deque>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
+#include <map>
 #include <mutex>
 #include <thread>
 
@@ -91,12 +91,15 @@ inline scene::Scene make_scene(const std::filesystem::path& file) {
 struct Session::Impl {
   std::mutex mutex;
   std::condition_variable wake;
-  std::deque<std::function<void()>> commands;
+  CommandQueue commands;
+  std::map<uint64_t, std::function<void()>> runs;  ///< by number
+  std::vector<uint64_t> refused;
   std::shared_ptr<const Snapshot> snapshot;
   std::shared_ptr<const scene::Scene> scene;
   plan::Settings settings;
   std::function<void()> call;
-  std::atomic<bool> stop{false}, cancelled{false};
+  std::atomic<bool> stop{false};
+  std::atomic<uint64_t> loads{0}, given_up{0};
   uint32_t width = 0, height = 0;
   scene::Camera camera;
   uint64_t id = 0, scene_id = 0;
@@ -108,7 +111,7 @@ struct Session::Impl {
   // Building of the cache, as far as it has come since it was to wait: six stages, then it is complete.
   uint32_t stages = 0;
   bool cache_runs = false;
-  uint64_t posted = 0, done = 0;
+  uint64_t done = 0;
 
   std::string activity;
   float progress = -1;
@@ -116,15 +119,15 @@ struct Session::Impl {
 
   Impl() : thread([this] { run(); }) {}
   ~Impl() {
-    stop = true, cancelled = true;
+    stop = true, given_up = loads.load();
     wake.notify_all();
     thread.join();
   }
 
-  void post(std::function<void()> command) {
+  void post(const std::function<void()>& command, SceneId scene = k_any_scene, bool camera = false) {
     std::lock_guard lock(mutex);
-    commands.push_back(std::move(command));
-    ++posted;
+    commands.push({.run = {}, .subject = {}, .scene = scene, .camera = camera});
+    runs[commands.given()] = command;
     wake.notify_all();
   }
 
@@ -134,6 +137,7 @@ struct Session::Impl {
     s->device = "llvmpipe (LLVM 15.0.6, 256 bits)", s->tracer = "host";
     s->max_samples = static_cast<uint32_t>(settings.integer("samples"));
     s->commands = done;
+    if (!refused.empty()) s->refused = std::make_shared<const std::vector<uint64_t>>(refused);
     s->samples = samples, s->paused = paused, s->finished = scene && samples >= s->max_samples;
     s->coarse = samples == 0;
     if (scene && width > 0) {
@@ -302,22 +306,23 @@ struct Session::Impl {
 
   void restart() { samples = stages = 0, cache_runs = false, ++run_number; }
 
-  void load(const std::filesystem::path& file) {
-    cancelled = false;
+  void load(const std::filesystem::path& file, uint64_t number) {
     const std::string name = file.filename().string();
     const int steps = name.find("slow") != std::string::npos ? 60 : 6;
-    for (int i = 0; i < steps && !cancelled; ++i) {
+    for (int i = 0; i < steps && number > given_up; ++i) {
       activity = "loading " + name + ": textures " + std::to_string(100 * i / steps) + " %";
       progress = static_cast<float>(i) / static_cast<float>(steps);
       publish();
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     activity.clear(), progress = -1;
-    if (cancelled)
+    if (number <= given_up) {
       log::info("{}: loading was given up", file.string());
-    else if (name.find("missing") != std::string::npos)
-      log::error("{}: no such file; expected a .gltf or .glb scene", file.string());
-    else {
+      throw 0;
+    }
+    if (name.find("missing") != std::string::npos)
+      throw Error(file.string(), "no such file; expected a .gltf or .glb scene");
+    {
       auto fresh = std::make_shared<scene::Scene>(fake::make_scene(file));
       camera = scene::starting_camera(*fresh, "");
       std::lock_guard lock(mutex);
@@ -330,18 +335,31 @@ struct Session::Impl {
     publish();
   }
 
+  void carry_out(const Command& command, const std::function<void()>& act) {
+    try {
+      if (command.scene != k_any_scene && command.scene != scene_id) throw 0;
+      act();
+    } catch (const Error& error) {
+      log::error("{}", error.what());
+      refused.push_back(command.number);
+    } catch (int) {
+      refused.push_back(command.number);
+    }
+  }
+
   void run() {
     while (!stop) {
-      std::function<void()> command;
+      std::optional<Command> command;
+      std::function<void()> act;
       {
         std::unique_lock lock(mutex);
         wake.wait_for(lock, std::chrono::milliseconds(30), [&] { return stop || !commands.empty(); });
-        if (!commands.empty()) command = std::move(commands.front()), commands.pop_front();
+        if (!commands.empty()) command = commands.pop(), act = runs[command->number];
       }
       if (command) {
         if (const int ms = fake::busy_ms) std::this_thread::sleep_for(std::chrono::milliseconds(ms));
-        command();
-        ++done;
+        carry_out(*command, act);
+        done = command->number;
         publish();
         continue;
       }
@@ -357,83 +375,98 @@ struct Session::Impl {
 Session::Session(const Options&) : impl_(std::make_unique<Impl>()) {}
 Session::~Session() = default;
 void Session::load(const std::filesystem::path& file) {
-  impl_->post([this, file] { impl_->load(file); });
+  impl_->post([this, file, number = ++impl_->loads] { impl_->load(file, number); });
 }
-void Session::set(const std::string& key, const std::string& value) {
-  impl_->post([this, key, value] {
-    try {
-      std::lock_guard lock(impl_->mutex);
-      impl_->settings.set(key, value);
-    } catch (const Error& error) {
-      log::error("{}", error.what());
-    }
-    impl_->publish();
-  });
+/// A mix of lights that is named "nonsense" is refused.
+void Session::set(const std::string& key, const std::string& value, SceneId scene) {
+  impl_->post(
+      [this, key, value] {
+        if (key == "relight.mix" && value == "nonsense") throw Error(key, "no mix of lights");
+        std::lock_guard lock(impl_->mutex);
+        impl_->settings.set(key, value);
+      },
+      scene);
 }
-void Session::set_camera(const scene::Camera& camera) {
-  impl_->post([this, camera] { impl_->camera = camera, impl_->restart(), impl_->publish(); });
+void Session::set_camera(const scene::Camera& camera, SceneId scene) {
+  impl_->post([this, camera] { impl_->camera = camera, impl_->restart(), impl_->publish(); }, scene, true);
 }
+/// Pictures wider than 4096 pixels are refused.
 void Session::set_size(uint32_t width, uint32_t height) {
   impl_->post([this, width, height] {
+    if (width > 4096) throw Error("size", "too large");
     impl_->width = width, impl_->height = height, impl_->restart(), impl_->publish();
   });
 }
-void Session::set_light(uint32_t index, const scene::Light& light) {
-  impl_->post([this, index, light] {
-    auto edited = std::make_shared<scene::Scene>(*impl_->scene);
-    edited->lights[index] = light;
-    {
-      std::lock_guard lock(impl_->mutex);
-      impl_->scene = edited;
-    }
-    impl_->restart(), impl_->publish();
-  });
+void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
+  impl_->post(
+      [this, index, light] {
+        auto edited = std::make_shared<scene::Scene>(*impl_->scene);
+        edited->lights[index] = light;
+        {
+          std::lock_guard lock(impl_->mutex);
+          impl_->scene = edited;
+        }
+        impl_->restart(), impl_->publish();
+      },
+      scene);
 }
-void Session::set_environment(float scale, float rotation) {
-  impl_->post([this, scale, rotation] {
-    auto edited = std::make_shared<scene::Scene>(*impl_->scene);
-    edited->environment.scale = scale, edited->environment.rotation = rotation;
-    {
-      std::lock_guard lock(impl_->mutex);
-      impl_->scene = edited;
-    }
-    impl_->restart(), impl_->publish();
-  });
+void Session::set_environment(float scale, float rotation, SceneId scene) {
+  impl_->post(
+      [this, scale, rotation] {
+        auto edited = std::make_shared<scene::Scene>(*impl_->scene);
+        edited->environment.scale = scale, edited->environment.rotation = rotation;
+        {
+          std::lock_guard lock(impl_->mutex);
+          impl_->scene = edited;
+        }
+        impl_->restart(), impl_->publish();
+      },
+      scene);
 }
 /// Files that are named "broken" cannot be read.
-void Session::set_environment_file(const std::filesystem::path& file) {
-  impl_->post([this, file] {
-    if (file.string().find("broken") != std::string::npos)
-      return log::error("{}: the image cannot be decoded", file.string());
-    auto edited = std::make_shared<scene::Scene>(*impl_->scene);
-    edited->environment.file = file.empty() ? fake::make_scene("hall.gltf").environment.file : file.string();
-    {
-      std::lock_guard lock(impl_->mutex);
-      impl_->scene = edited;
-    }
-    impl_->restart(), impl_->publish();
-  });
+void Session::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
+                                   std::optional<float> rotation, SceneId scene) {
+  impl_->post(
+      [this, file, scale, rotation] {
+        if (file.string().find("broken") != std::string::npos)
+          throw Error(file.string(), "the image cannot be decoded");
+        auto edited = std::make_shared<scene::Scene>(*impl_->scene);
+        if (scale) edited->environment.scale = *scale;
+        if (rotation) edited->environment.rotation = *rotation;
+        edited->environment.file =
+            file.empty() ? fake::make_scene("hall.gltf").environment.file : file.string();
+        {
+          std::lock_guard lock(impl_->mutex);
+          impl_->scene = edited;
+        }
+        impl_->restart(), impl_->publish();
+      },
+      scene);
 }
 /// A grey of half the middle one's brightness, black at the left border; the whole asks for 2.5 stops more.
-std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at) {
+std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, SceneId scene) {
   auto promise = std::make_shared<std::promise<film::Brightness>>();
-  impl_->post([at, promise] {
-    film::Brightness found{vec3(0.09f), at ? 1.0f : 2.5f};
-    if (at && at->x < 0.05f) found = {};
-    promise->set_value(found);
-  });
+  impl_->post(
+      [at, promise] {
+        film::Brightness found{vec3(0.09f), at ? 1.0f : 2.5f};
+        if (at && at->x < 0.05f) found = {};
+        promise->set_value(found);
+      },
+      scene);
   return promise->get_future().share();
 }
-void Session::set_material(uint32_t index, const scene::Material& material) {
-  impl_->post([this, index, material] {
-    auto edited = std::make_shared<scene::Scene>(*impl_->scene);
-    edited->materials[index] = material;
-    {
-      std::lock_guard lock(impl_->mutex);
-      impl_->scene = edited;
-    }
-    impl_->restart(), impl_->publish();
-  });
+void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {
+  impl_->post(
+      [this, index, material] {
+        auto edited = std::make_shared<scene::Scene>(*impl_->scene);
+        edited->materials[index] = material;
+        {
+          std::lock_guard lock(impl_->mutex);
+          impl_->scene = edited;
+        }
+        impl_->restart(), impl_->publish();
+      },
+      scene);
 }
 void Session::set_paused(bool paused) {
   impl_->post([this, paused] { impl_->paused = paused, impl_->publish(); });
@@ -445,19 +478,21 @@ void Session::reload_shaders() {
   impl_->post(
       [] { log::error("surface.comp:42: 'throughputt' : undeclared identifier; the kernels in use stay"); });
 }
-void Session::set_reference(const std::filesystem::path& file) {
-  impl_->post([this, file] {
-    if (file.string().find("missing") != std::string::npos)
-      log::error("{}: cannot be opened", file.string());
-    else
-      impl_->reference = file.filename().string(), impl_->publish();
-  });
+void Session::set_reference(const std::filesystem::path& file, SceneId scene) {
+  impl_->post(
+      [this, file] {
+        if (file.string().find("missing") != std::string::npos)
+          throw Error(file.string(), "cannot be opened");
+        else
+          impl_->reference = file.filename().string(), impl_->publish();
+      },
+      scene);
 }
 void Session::clear_reference() {
   impl_->post([this] { impl_->reference.clear(), impl_->publish(); });
 }
-void Session::inspect(std::optional<vec2> at) {
-  impl_->post([this, at] { impl_->looked_at = at, impl_->publish(); });
+void Session::inspect(std::optional<vec2> at, SceneId scene) {
+  impl_->post([this, at] { impl_->looked_at = at, impl_->publish(); }, scene);
 }
 Saved Session::save(const std::filesystem::path& file) {
   auto promise = std::make_shared<std::promise<void>>();
@@ -475,39 +510,41 @@ Saved Session::save(const std::filesystem::path& file) {
   });
   return promise->get_future().share();
 }
-Saved Session::solver_save(const std::string&, const std::filesystem::path& file) { return save(file); }
-void Session::solver_load(const std::string&, const std::filesystem::path& file) {
-  impl_->post([this, file] {
-    if (file.string().find("missing") != std::string::npos)
-      log::error("{}: cannot be read", file.string());
-    else
-      impl_->restart(), impl_->publish();
-  });
+Saved Session::solver_save(const std::string&, const std::filesystem::path& file, SceneId) {
+  return save(file);
 }
-void Session::solver_command(const std::string& solver, const std::string& command) {
-  impl_->post([this, solver, command] {
-    if (solver != "cache") log::info("{} is told to {}", solver, command);
-    if (solver + "." + command == "cache.step") ++impl_->stages;
-    if (solver + "." + command == "cache.run") impl_->cache_runs = true;
-    impl_->paused = false;
-  });
+void Session::solver_load(const std::string&, const std::filesystem::path& file, SceneId scene) {
+  impl_->post(
+      [this, file] {
+        if (file.string().find("missing") != std::string::npos)
+          throw Error(file.string(), "cannot be read");
+        else
+          impl_->restart(), impl_->publish();
+      },
+      scene);
+}
+void Session::solver_command(const std::string& solver, const std::string& command, SceneId scene) {
+  impl_->post(
+      [this, solver, command] {
+        if (solver != "cache") log::info("{} is told to {}", solver, command);
+        if (solver + "." + command == "cache.step") ++impl_->stages;
+        if (solver + "." + command == "cache.run") impl_->cache_runs = true;
+        impl_->paused = false;
+      },
+      scene);
 }
 uint64_t Session::commands() const {
   std::lock_guard lock(impl_->mutex);
-  return impl_->posted;
+  return impl_->commands.given();
 }
-void Session::cancel() { impl_->cancelled = true; }
+void Session::cancel() { impl_->given_up = impl_->loads.load(); }
 std::shared_ptr<const Snapshot> Session::snapshot() const {
   std::lock_guard lock(impl_->mutex);
   return impl_->snapshot;
 }
-std::shared_ptr<const scene::Scene> Session::scene() const {
+State Session::state() const {
   std::lock_guard lock(impl_->mutex);
-  return impl_->scene;
-}
-plan::Settings Session::settings() const {
-  std::lock_guard lock(impl_->mutex);
-  return impl_->settings;
+  return {impl_->scene_id, impl_->scene, impl_->settings};
 }
 void Session::on_publish(std::function<void()> call) {
   std::lock_guard lock(impl_->mutex);

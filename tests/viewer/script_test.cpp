@@ -169,3 +169,26 @@ TEST_CASE("in the program the picture that a script saves is there, whole, howev
   }
   CHECK(bytes(again) == bytes(session));
 }
+
+TEST_CASE("in the program a saved picture shows the camera and the size that were commanded before it") {
+  if (test::no_program()) return;
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  const auto outcome = test::program("scenes/cornell/cornell.gltf",
+                                     "wait_scene\nview.size 64 48\nsamples 4\nimage.save " + file("a.exr") +
+                                         "\ncamera.orbit 0.5 0\nimage.save " + file("b.exr") +
+                                         "\nview.size 48 32\nimage.save " + file("c.exr") +
+                                         "\nundo\nview.size 0 0\nimage.save " + file("d.exr") +
+                                         "\nview.divisor 4\nimage.save " + file("e.exr") + "\nquit\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  const auto image = [&](const char* name) { return film::read_exr(file(name)); };
+  const auto a = image("a.exr"), b = image("b.exr"), c = image("c.exr"), d = image("d.exr"),
+             e = image("e.exr");
+  CHECK(a.metadata.at("view") != b.metadata.at("view"));
+  CHECK(b.metadata.at("view") == c.metadata.at("view"));
+  CHECK(d.metadata.at("view") == a.metadata.at("view"));
+  CHECK((b.width == 64 && c.width == 48 && c.height == 32));
+  CHECK(d.width > 64);
+  CHECK(e.width == d.width / 4);
+}

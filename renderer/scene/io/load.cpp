@@ -83,7 +83,8 @@ void check_instances(const Document& document, const Scene& scene) {
   }
 }
 
-// The renderer works in world space, so what a matrix makes of the coordinates must be in range too.
+// The renderer works in world space, so what a matrix makes of the coordinates must be in range too. Cameras
+// are checked when one is taken: a file may hold one that is never used.
 void check_world(const Document& document, const Scene& scene) {
   std::vector<Box> boxes(scene.meshes.size());
   for (size_t i = 0; i < boxes.size(); ++i)
@@ -99,6 +100,11 @@ void check_world(const Document& document, const Scene& scene) {
         throw_error(document.file, "node '{}' places geometry beyond {} m from the origin", instance.name,
                     k_max_coordinate);
     }
+  }
+  try {
+    for (const Light& light : scene.lights) check_range(light);
+  } catch (const Error& error) {
+    throw Error(document.file, error.what());
   }
 }
 

@@ -1,0 +1,81 @@
+#include "scene/range.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace lucerna::scene {
+namespace {
+
+bool finite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool within(float value, float lo, float hi) { return value >= lo && value <= hi; }
+
+/// Each channel is 0 to `most`.
+bool within(const vec3& v, float most) {
+  return within(v.x, 0, most) && within(v.y, 0, most) && within(v.z, 0, most);
+}
+
+void check_place(const char* kind, const std::string& name, const vec3& p) {
+  if (!in_range(p))
+    throw_error(name.empty() ? kind : fmt::format("{} '{}'", kind, name),
+                "its place ({:.4g}, {:.4g}, {:.4g}) is beyond {:.0g} m from the origin", p.x, p.y, p.z,
+                k_max_coordinate);
+}
+
+}  // namespace
+
+bool in_range(const vec3& p) {
+  return within(p.x, -k_max_coordinate, k_max_coordinate) &&
+         within(p.y, -k_max_coordinate, k_max_coordinate) && within(p.z, -k_max_coordinate, k_max_coordinate);
+}
+
+void check_range(const Camera& c) {
+  const std::string where = c.name.empty() ? "camera" : fmt::format("camera '{}'", c.name);
+  check_place("camera", c.name, vec3(c.to_world[3]));
+  const glm::mat3 axes(c.to_world);
+  if (!finite(axes[0]) || !finite(axes[1]) || !finite(axes[2]) || !std::isnormal(glm::determinant(axes)))
+    throw_error(where, "its axes are not finite or not independent");
+  if (c.orthographic) {
+    const bool holds = c.xmag > 0 && c.ymag > 0 && std::max(c.xmag, c.ymag) <= k_max_coordinate;
+    if (!holds)
+      throw_error(where, "it sees {:.4g} x {:.4g} m, expected above 0 and at most {:.0g}", 2 * c.xmag,
+                  2 * c.ymag, 2 * k_max_coordinate);
+  } else if (!(c.yfov > 0 && c.yfov <= k_max_yfov)) {
+    throw_error(where, "its field of view is {:.4g} radians, expected above 0 and at most {}", c.yfov,
+                k_max_yfov);
+  }
+  if (!within(c.aspect, 0, 1e4f)) throw_error(where, "its aspect is {:.4g}, expected 0 to 10000", c.aspect);
+}
+
+void check_range(const Light& l) {
+  const std::string where = l.name.empty() ? "light" : fmt::format("light '{}'", l.name);
+  check_place("light", l.name, l.position);
+  if (!finite(l.direction) || !(glm::length(l.direction) > 0))
+    throw_error(where, "its direction is not finite or 0");
+  if (!within(l.intensity, k_max_strength))
+    throw_error(where, "its intensity ({:.4g}, {:.4g}, {:.4g}) is not between 0 and {:.0g}", l.intensity.x,
+                l.intensity.y, l.intensity.z, k_max_strength);
+  if (!(l.inner_cone >= 0 && l.inner_cone <= l.outer_cone && l.outer_cone <= 0.5001f * k_pi))
+    throw_error(where, "its cones are {:.4g} and {:.4g} radians, expected 0 <= inner <= outer <= pi/2",
+                l.inner_cone, l.outer_cone);
+}
+
+void check_range(const Material& m) {
+  const std::string where = m.name.empty() ? "material" : fmt::format("material '{}'", m.name);
+  if (!within(vec3(m.base_color), k_max_strength) || !within(m.roughness, 0, k_max_strength) ||
+      !within(m.metallic, 0, k_max_strength))
+    throw_error(where, "its colour, roughness or metallic is negative or not finite");
+  if (!within(m.emission, k_max_strength))
+    throw_error(where, "it emits ({:.4g}, {:.4g}, {:.4g}), expected 0 to {:.0g}", m.emission.x, m.emission.y,
+                m.emission.z, k_max_strength);
+}
+
+void check_range(const Environment& e) {
+  if (!within(e.scale, 0, k_max_strength))
+    throw_error("environment", "its factor {:.4g} is not between 0 and {:.0g}", e.scale, k_max_strength);
+  if (!std::isfinite(e.rotation)) throw_error("environment", "its rotation is not finite");
+}
+
+}  // namespace lucerna::scene

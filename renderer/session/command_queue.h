@@ -1,0 +1,56 @@
+#pragma once
+// Commands on their way to the renderer, carried out in the order in which they were given. No locks: the
+// session guards it.
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace lucerna::session {
+
+class Renderer;
+
+/// Number of a loaded scene, from 1 on; it grows with every load.
+using SceneId = uint64_t;
+/// For a command that acts on whatever scene is there when its turn comes.
+inline constexpr SceneId k_any_scene = 0;
+
+struct Command {
+  std::function<void(Renderer&)> run;
+  std::string subject;  ///< what it changes or reads, for messages: "the camera"
+  /// The scene that it is for. With another one loaded by the time of its turn it is left out.
+  SceneId scene = k_any_scene;
+  bool saves = false;   ///< carried out before the session ends, too
+  bool camera = false;  ///< only the last of several in a row counts
+  uint64_t number = 0;  ///< from 1 on, in order; given by push()
+};
+
+class CommandQueue {
+ public:
+  /// Adds it at the end. A camera takes the place, and the number, of a camera for the same scene that is
+  /// still last in the queue.
+  void push(Command command) {
+    if (command.camera && !queue_.empty() && queue_.back().camera && queue_.back().scene == command.scene) {
+      command.number = queue_.back().number;
+      queue_.back() = std::move(command);
+      return;
+    }
+    command.number = ++given_;
+    queue_.push_back(std::move(command));
+  }
+  Command pop() {
+    Command first = std::move(queue_.front());
+    queue_.pop_front();
+    return first;
+  }
+  bool empty() const { return queue_.empty(); }
+  /// The number of the newest command; 0 before the first.
+  uint64_t given() const { return given_; }
+
+ private:
+  std::deque<Command> queue_;
+  uint64_t given_ = 0;
+};
+
+}  // namespace lucerna::session

@@ -1,0 +1,218 @@
+// links: commands
+// In what order lines act, and on which scene: each on what the lines before have left, and on the scene that
+// it was given for. Over a session without a renderer.
+#include "support/folder.h"
+#include "unit/workspace_bench.h"
+
+using namespace lucerna;
+using namespace lucerna::commands;
+using namespace lucerna::test;
+using Catch::Contains;
+
+namespace {
+
+/// Until the session has carried out all that it was given.
+bool quiet(WorkspaceBench& b) {
+  return b.until([&] { return b.work.up_to_date() && !b.work.loading(); });
+}
+
+}  // namespace
+
+TEST_CASE("a camera and a size reach the session before what is commanded next") {
+  WorkspaceBench b;
+  b.open();
+  REQUIRE(quiet(b));
+  const uint64_t before = b.session.commands();
+  session::fake::busy_ms = 50;
+  b.work.run("camera.select Detail");
+  CHECK(b.session.commands() == before + 1);
+  b.work.run("film.ev 1");
+  b.work.set_size(80, 50);
+  CHECK(b.work.aspect == Approx(1.6));
+  CHECK(b.session.commands() == before + 3);
+  CHECK_FALSE(b.work.up_to_date());
+  session::fake::busy_ms = 0;
+  REQUIRE(quiet(b));
+  CHECK(same_view(b.work.snapshot->camera, b.work.scene->cameras[2]));
+  CHECK(b.work.snapshot->width == 80);
+  // What changes nothing starts no picture again.
+  const uint64_t given = b.session.commands();
+  b.work.run("camera.select Detail");
+  b.work.set_size(80, 50);
+  CHECK(b.session.commands() == given);
+}
+
+TEST_CASE("of cameras that wait behind each other only the last is drawn") {
+  WorkspaceBench b;
+  b.open();
+  REQUIRE(quiet(b));
+  const uint64_t before = b.session.commands();
+  session::fake::busy_ms = 200;
+  b.work.run("film.ev 1");  // keeps the session busy
+  for (int i = 0; i < 20; ++i) b.work.run("camera.orbit 0.01 0");
+  CHECK(b.session.commands() <= before + 3);
+  session::fake::busy_ms = 0;
+  REQUIRE(quiet(b));
+  CHECK(same_view(b.work.snapshot->camera, b.work.view->camera));
+}
+
+TEST_CASE("no command takes the camera where nothing can be rendered") {
+  WorkspaceBench b;
+  b.open();
+  const Viewpoint start = *b.work.view;
+  for (const char* line : {"camera.dolly -400", "camera.dolly -1000", "camera.fly 0 0 -1e9",
+                           "camera.place 1e9,1e9,1e9 0,0,0 0,1,0", "camera.walk 1e4 1e4 through=on"}) {
+    INFO(line);
+    std::string failure;
+    for (int i = 0; i < 3 && failure.empty(); ++i) failure = b.failure(line);
+    if (std::string(line).starts_with("camera.walk") || std::string(line).starts_with("camera.place"))
+      CHECK(failure.empty());  // just within
+    else
+      CHECK_THAT(failure, Contains("1e+09 m from the origin"));
+    const vec3 eye = eye_of(b.work.view->camera);
+    CHECK((std::isfinite(eye.x + eye.y + eye.z) && glm::length(eye) < 2e9f));
+    b.run(Workspace::place_line(start));
+  }
+  CHECK_FALSE(b.failure("light.set 2 position=1e10,0,0").empty());
+}
+
+TEST_CASE("what is done while a scene is being loaded does not reach the new one") {
+  WorkspaceBench b;
+  b.open();
+  b.run("light.set 2 intensity=1");
+  b.run("mix.set \"Brass lamp\" ev=1");
+  b.run("relight.presets \"mine = sky: ev=1\"");
+  REQUIRE(b.settled());
+  REQUIRE(quiet(b));
+  for (const std::string line :
+       {"undo", "camera.orbit 0.3 0", "camera.dolly -3", "view.solo tertiary", "mix.reset",
+        "mix.preset.save more", "mix.preset.delete mine", "mix.group Sun=a b"}) {
+    INFO(line);
+    b.run("scene.open other.gltf");
+    REQUIRE(b.work.loading());
+    try {
+      b.work.run(line);
+    } catch (const Error&) {
+      // Refused: that is as good.
+    }
+    b.run("wait_scene");
+    REQUIRE(quiet(b));
+    CHECK(same_view(b.work.view->camera, b.work.scene->cameras[0]));
+    CHECK(same_view(b.work.snapshot->camera, b.work.view->camera));
+    CHECK(b.session.scene()->lights[1].intensity.x == 12);
+    CHECK(b.work.solo() == -1);
+    CHECK(b.work.setting("show.primary") == "true");
+    CHECK(b.work.script().back() == "wait_scene");
+    b.run("light.set 2 intensity=1");
+    b.run("mix.set \"Brass lamp\" ev=1");
+    REQUIRE(quiet(b));
+  }
+}
+
+TEST_CASE("what is done while a load fails stays done") {
+  WorkspaceBench b;
+  b.open();
+  REQUIRE(quiet(b));
+  b.run("scene.open missing.gltf");
+  b.work.run("camera.orbit 0.3 0");
+  const Viewpoint moved = *b.work.view;
+  b.work.run("film.ev 1");
+  REQUIRE(quiet(b));
+  CHECK(same_view(b.work.view->camera, moved.camera));
+  CHECK(same_view(b.work.snapshot->camera, moved.camera));
+  CHECK(b.work.setting_real("film.ev") == 1);
+  CHECK_THAT(b.work.script().back(), Catch::StartsWith("set film.ev"));
+  CHECK(b.work.script().size() == 4);
+}
+
+TEST_CASE("two loads in a row: the first one is shown when the second fails") {
+  WorkspaceBench b;
+  b.open();
+  b.run("camera.orbit 0.3 0");
+  REQUIRE(quiet(b));
+  b.run("scene.open other.gltf");
+  b.run("scene.open missing.gltf");
+  b.run("wait_load");
+  REQUIRE(quiet(b));
+  CHECK(b.work.scene->name == "other");
+  CHECK(b.work.view_scene == b.work.snapshot->scene_id);
+  CHECK(same_view(b.work.view->camera, b.work.scene->cameras[0]));
+  CHECK(same_view(b.work.snapshot->camera, b.work.view->camera));
+  b.run("wait_samples 1");
+  CHECK(b.failure("wait_scene").empty());
+  CHECK_THROWS_WITH(b.work.registry.find("wait_scene")->done({}), "no scene was loaded");
+}
+
+TEST_CASE("a load that is given up leaves no trace") {
+  WorkspaceBench b;
+  b.open();
+  b.run("scene.open slow.gltf");
+  b.run("scene.cancel");
+  CHECK_FALSE(b.work.loading());
+  CHECK(b.work.script().size() == 2);
+  CHECK(b.work.scene->name == "hall");
+}
+
+TEST_CASE("the camera to start with is no way to move the camera") {
+  WorkspaceBench b;
+  b.run("scene.open hall.gltf");
+  b.run("camera Detail");
+  b.run("wait_scene");
+  REQUIRE(quiet(b));
+  CHECK_THAT(b.failure("reset camera"), Contains("camera.select takes another one now"));
+  CHECK_THAT(b.failure("set camera Entrance"), Contains("camera.select takes another one now"));
+  CHECK(b.work.setting("camera") == "Detail");
+  // Whoever moves it, the view is the picture's.
+  b.session.set_camera(b.work.scene->cameras[1]);
+  REQUIRE(quiet(b));
+  CHECK(same_view(b.work.view->camera, b.work.scene->cameras[1]));
+}
+
+TEST_CASE("what the session refuses is neither undone nor saved") {
+  WorkspaceBench b;
+  b.open();
+  b.run("light.set 2 intensity=5");
+  REQUIRE(quiet(b));
+  const std::vector<std::string> before = b.work.script();
+  const Document document = b.work.document();
+  b.run("set relight.mix nonsense");
+  CHECK(b.work.can_undo());
+  REQUIRE(quiet(b));
+  CHECK(b.work.script() == before);
+  CHECK(b.work.document() == document);
+  CHECK_THAT(b.work.undo_text(), Catch::StartsWith("light.set"));
+  // A drag of which the last step alone is refused can be undone.
+  b.run("set relight.mix \"sky: ev=1\"", 3), b.run("set relight.mix nonsense", 3);
+  REQUIRE(quiet(b));
+  CHECK_THAT(b.work.undo_text(), Contains("relight.mix"));
+  CHECK(b.work.setting("relight.mix") == "sky: ev=1");
+  b.run("undo"), b.run("undo");
+  REQUIRE(quiet(b));
+  CHECK(b.work.setting("relight.mix").empty());
+  CHECK(b.work.light(1).intensity.x == Approx(12));
+  // A file that cannot be read leaves the one before, as bright and as turned as it was.
+  const Folder folder;
+  for (const char* name : {"red.exr", "broken.exr"}) std::ofstream(folder.path / name) << "x";
+  b.run("environment.load " + quote((folder.path / "red.exr").string()));
+  b.run("environment.set scale=3");
+  b.run("environment.load " + quote((folder.path / "broken.exr").string()));
+  REQUIRE(quiet(b));
+  CHECK_THAT(b.work.environment_file(), Catch::EndsWith("red.exr"));
+  CHECK(b.work.environment_scale() == 3);
+  CHECK(b.session.scene()->environment.scale == 3);
+  CHECK_THAT(b.work.undo_text(), Catch::StartsWith("environment.set"));
+}
+
+TEST_CASE("a size that is refused is given up") {
+  WorkspaceBench b;
+  b.open();
+  b.work.set_size(64, 64);
+  REQUIRE(quiet(b));
+  b.work.set_size(16384, 16384);
+  b.run("wait_samples 1");
+  CHECK(b.work.snapshot->width == 64);
+  CHECK(b.work.aspect == 1);
+  b.work.set_size(32, 64);
+  REQUIRE(quiet(b));
+  CHECK(b.work.snapshot->width == 32);
+}
