@@ -31,10 +31,13 @@ class UniformSchedule {
     start_pass();
   }
   bool done() const { return sample_ >= samples_ || blocks_ == 0; }
-  /// Samples that every pixel has.
-  uint32_t complete() const { return std::min(sample_, samples_); }
-  /// More may be asked for (or fewer) at any time.
-  void set_samples(uint32_t samples) { samples_ = samples; }
+  /// Samples that every pixel has; more than samples() where fewer were wanted later.
+  uint32_t complete() const { return sample_; }
+  /// More may be wanted (or fewer) at any time. A pass that has begun is completed as it was begun.
+  void set_samples(uint32_t samples) {
+    samples_ = samples;
+    if (block_ == 0) start_pass();
+  }
   uint32_t samples() const { return samples_; }
   /// Passes that are complete.
   uint32_t passes() const { return passes_; }

@@ -140,7 +140,30 @@ TEST_CASE("another mode of sampling keeps the samples there are, and each is the
   }
   const film::Image more = r.image();
   for (const uint32_t n : more.samples) CHECK(n == 40);
+  // Fewer are wanted than there are: none is forgotten, so that none is taken twice.
+  set("samples", "8");
+  CHECK(r.done());
+  CHECK(r.samples() == 40);
+  set("sampling.max_samples", "48");
+  set("sampling.mode", "adaptive");
+  while (r.step()) {
+  }
+  set("sampling.mode", "uniform");
+  set("samples", "50");  // less than another pass as large as the last
+  while (r.step()) {
+  }
+  const film::Image longest = r.image();
+  for (const uint32_t n : longest.samples) CHECK(n == 50);
   CHECK(r.restarts() == begun);
+  r.restart();
+  while (r.step()) {
+  }
+  const film::Image whole = r.image();
+  most = 0;
+  for (int c = 0; c < film::k_components; ++c)
+    for (size_t i = 0; i < whole.samples.size(); ++i)
+      most = std::max(most, double(luminance(glm::abs(longest.components[c][i] - whole.components[c][i]))));
+  CHECK(most < 1e-4 * light);
   CHECK(r.device().validation_messages() == 0);
 }
 

@@ -391,3 +391,37 @@ TEST_CASE("items of one sample: all their blocks have the same next sample, whoe
   }
   for (const uint32_t n : samples) CHECK(n == 8);
 }
+
+TEST_CASE("samples wanted later, more or fewer, are taken exactly once") {
+  const auto run = [](UniformSchedule& u, std::vector<uint32_t>& next) {
+    while (!u.done()) {
+      const WorkItem item = u.next();
+      for (const WorkBlock& b : item.blocks) {
+        CHECK(b.first_sample == next[b.index]);
+        next[b.index] += item.sample_count;
+      }
+    }
+  };
+  std::vector<uint32_t> have(12, 0);
+  UniformSchedule u(12, 64, 64 * 64);
+  run(u, have);
+  for (const uint32_t more : {70u, 71u, 128u}) {
+    u.set_samples(more);
+    run(u, have);
+    CHECK(u.complete() == more);
+    CHECK(have == std::vector<uint32_t>(12, more));
+  }
+  u.set_samples(8);
+  CHECK(u.done());
+  CHECK(u.complete() == 128);
+  CHECK(u.counts() == have);
+  // In the middle of a pass too.
+  u.set_samples(200);
+  for (const WorkBlock& b : u.next().blocks) have[b.index] = u.counts()[b.index];
+  u.set_samples(8);
+  CHECK(u.done());
+  CHECK(u.counts() == have);
+  u.set_samples(300);
+  run(u, have);
+  CHECK(have == std::vector<uint32_t>(12, 300));
+}
