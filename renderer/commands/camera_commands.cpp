@@ -1,6 +1,7 @@
 // Commands that move the camera, and the selection that it can be framed on.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "commands/workspace.h"
@@ -153,14 +154,24 @@ void Workspace::add_motion_commands() {
              [](Viewpoint& v, const Arguments& a) {
                fly(v, {a.number("right"), a.number("up"), a.number("forward")});
              });
-  add_motion("camera.place", "Puts the camera at a place, looking at a point that it then orbits about.",
+  add_motion("camera.place",
+             "Puts the camera at a place, looking at a point that it then orbits about. With fov it is a "
+             "perspective camera, with height an orthographic one.",
              {vector("eye", "where it stands", "m"), vector("target", "what it looks at", "m"),
               vector("up", "what is upwards in the picture", ""), optional(fov()), optional(height())},
-             [](Viewpoint& v, const Arguments& a) {
+             [this](Viewpoint& v, const Arguments& a) {
                if (!place(v, a.vector("eye"), a.vector("target"), a.vector("up")))
                  throw Error("", "eye and target must differ, and up must not point from one to the other");
-               if (a.has("fov")) set_fov(v.camera, a.real("fov"));
-               if (a.has("height")) set_height(v.camera, a.number("height"));
+               if (a.has("fov") && a.has("height"))
+                 throw Error("", "fov and height exclude each other: give one");
+               if (a.has("fov")) {
+                 v.camera.orthographic = false;
+                 set_fov(v.camera, a.real("fov"));
+               }
+               if (a.has("height")) {
+                 if (!std::exchange(v.camera.orthographic, true)) v.camera.ymag = 1, v.camera.xmag = aspect;
+                 set_height(v.camera, a.number("height"));
+               }
              });
   add_motion(
       "camera.frame",

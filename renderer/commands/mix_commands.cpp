@@ -305,7 +305,8 @@ void Workspace::add_mix_commands() {
   registry.add(
       {.name = "mix.apply",
        .help = "Writes the light mix into the scene's lamps, surfaces and environment, and resets it. The "
-               "picture starts again. A group whose lights cannot take it keeps its mix, which is said.",
+               "light is the same: where it is kept by groups, the picture keeps its samples. A group whose "
+               "lights cannot take the mix keeps it, with a warning.",
        .parameters = {},
        .run = [this](const Arguments&) { apply_mix(); },
        .undoable = true});

@@ -151,7 +151,9 @@ bool Workspace::has_samples(int64_t samples) {
   // A picture from before the last edits, cameras and sizes does not count.
   if (!up_to_date() || resizing) return false;
   if (const solvers::Report* told = waiting()) throw Error("", told->to_go_on);
-  return snapshot->finished || (!snapshot->coarse && snapshot->samples >= samples);
+  if (snapshot->finished || (!snapshot->coarse && snapshot->samples >= samples)) return true;
+  if (snapshot->paused) throw Error("", "rendering is paused; render.resume takes more samples");
+  return false;
 }
 
 std::string Workspace::manual(const std::string& topic) const {

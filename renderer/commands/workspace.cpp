@@ -237,7 +237,50 @@ Document& Workspace::edit() {
   return *working_;
 }
 
+bool Workspace::send_lights(const Document& before, const Document& after) {
+  static const std::string key = "relight.mix";
+  // All the rest, with the lights as they were.
+  Document rest = after;
+  rest.settings[key] = before.settings.at(key);
+  if (!scene || rest == before || rest.settings != before.settings || loading()) return false;
+  session::LightsEdit edit{
+      .lights = {}, .materials = {}, .environment_scale = {}, .mix = after.settings.at(key)};
+  if (rest.lights.size() != before.lights.size() || rest.materials.size() != before.materials.size())
+    return false;
+  for (uint32_t i = 0; i < rest.lights.size(); ++i) {
+    if (rest.lights[i] == before.lights[i]) continue;
+    edit.lights.emplace_back(i, light(i));
+    after.lights[i].put(edit.lights.back().second);
+    rest.lights[i].intensity = before.lights[i].intensity, rest.lights[i].enabled = before.lights[i].enabled;
+  }
+  for (uint32_t i = 0; i < rest.materials.size(); ++i) {
+    if (rest.materials[i] == before.materials[i]) continue;
+    edit.materials.emplace_back(i, material(i));
+    edit.materials.back().second.emission = seen(after.materials[i]).emission;
+    rest.materials[i].emission = before.materials[i].emission;
+    rest.materials[i].emits = before.materials[i].emits;
+  }
+  if (rest.environment_scale != before.environment_scale) edit.environment_scale = rest.environment_scale;
+  rest.environment_scale = before.environment_scale;
+  if (rest != before) return false;
+  session.set_lights(edit, scene_id_);
+  const uint64_t sent = session.commands();
+  pending_[key] = {edit.mix, sent};
+  for (const auto& [i, l] : edit.lights) pending_lights_[i] = {after.lights[i], sent};
+  for (const auto& [i, m] : edit.materials) {
+    pending_materials_[i] = {seen(after.materials[i]), sent};
+    if (after.materials[i].emits)
+      dark_.erase(i);
+    else
+      dark_[i] = after.materials[i].emission;
+  }
+  pending_environment_ = PendingEnvironment{after.environment_scale, after.environment_rotation, sent};
+  return true;
+}
+
 void Workspace::send(const Document& before, const Document& after) {
+  if (before.settings.at("relight.mix") != after.settings.at("relight.mix") && send_lights(before, after))
+    return;
   for (const auto& [key, value] : after.settings) {
     const auto old = before.settings.find(key);
     // Settings that are given by name act on the scene that comes, whatever it brings.
@@ -288,7 +331,7 @@ Line Workspace::run(const std::string& text, uint64_t gesture, const std::string
   if (!line.command) return line;
   const uint64_t before = session.commands();
   carry_out(line, gesture, where);
-  // The camera is sent a little later.
+  // A camera may have taken the number of the one before.
   if (session.commands() > before || line.command->moves) sent_line_ = text;
   return line;
 }
@@ -450,6 +493,14 @@ void Workspace::record_wait() {
   if (!up_to_date() || snapshot->samples == 0) return;
   if (!recorded_.empty() && recorded_.back().line.starts_with("wait_samples ")) recorded_.pop_back();
   Recorded wait{line("wait_samples", snapshot->samples, named("limit", 86400)), "wait_samples"};
+  // A picture that rests has the samples that it had when it was stopped: the wait before that is for them.
+  if (snapshot->paused) {
+    const auto pause = std::find_if(recorded_.rbegin(), recorded_.rend(),
+                                    [](const Recorded& entry) { return entry.line == "render.pause"; });
+    if (pause != recorded_.rend() && std::next(pause) != recorded_.rend() &&
+        std::next(pause)->target == "wait_samples")
+      *std::next(pause) = wait;
+  }
   // Who saves the same picture twice has waited once.
   const auto before = std::find_if(recorded_.rbegin(), recorded_.rend(), [](const Recorded& entry) {
     return !entry.line.starts_with("image.save ");

@@ -265,6 +265,8 @@ class Workspace {
   /// A setting that the running command names; it acts on a scene that is being loaded, too. Throws Error.
   void give(const std::string& key, const std::string& value);
   void send(const Document& before, const Document& after);
+  /// Where strengths of lights and their mix are all that differs: as one. False: there is more, or less.
+  bool send_lights(const Document& before, const Document& after);
   void record(const Line& line, uint64_t gesture, const Sent& sent);
   /// Has the script wait for as many samples as the picture has now.
   void record_wait();

@@ -1,6 +1,7 @@
 #include "scene/light_factor.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lucerna::scene {
 namespace {
@@ -104,6 +105,43 @@ std::optional<std::vector<vec3>> light_factors(const Scene& before, const Scene&
   const bool known = tell_lamps(before, after, groups, told) && tell_surfaces(before, after, groups, told) &&
                      tell_environment(before.environment, after.environment, groups, told);
   return known ? told.all() : std::nullopt;
+}
+
+bool is_multiplied(const Scene& before, const Scene& after, const LightGroups& groups,
+                   const std::vector<vec3>& factors) {
+  // A product, a quotient and a mix that was written as text: a few roundings each.
+  constexpr float k_rounding = 1e-5f;
+  const auto equals = [&](const vec3& strength, const vec3& was, size_t group) {
+    for (int k = 0; k < 3; ++k) {
+      const float expected = was[k] * factors[group][k];
+      if (!(std::abs(strength[k] - expected) <= k_rounding * expected)) return false;
+    }
+    return true;
+  };
+  if (before.lights.size() != after.lights.size() || before.instances.size() != after.instances.size() ||
+      !std::equal(before.materials.begin(), before.materials.end(), after.materials.begin(),
+                  after.materials.end(),
+                  [](const Material& a, const Material& b) { return same_but_strength(a, b); }))
+    return false;
+  for (size_t i = 0; i < before.lights.size(); ++i)
+    if (!same_but_strength(before.lights[i], after.lights[i]) ||
+        !equals(strength(after.lights[i]), strength(before.lights[i]), groups.lamps[i]))
+      return false;
+  for (size_t i = 0; i < before.instances.size(); ++i) {
+    const auto& primitives = before.meshes[before.instances[i].mesh].primitives;
+    for (size_t p = 0; p < primitives.size(); ++p) {
+      const Material &m0 = before.materials[primitives[p].material],
+                     &m1 = after.materials[primitives[p].material];
+      if (m0.emission == m1.emission && groups.surfaces[i].empty()) continue;
+      if (groups.surfaces[i].empty() || !equals(strength(m1), strength(m0), groups.surfaces[i][p]))
+        return false;
+    }
+  }
+  const Environment &e0 = before.environment, &e1 = after.environment;
+  if (!emits(e0) && !emits(e1)) return true;
+  return e0.image == e1.image && e0.radiance == e1.radiance && e0.rotation == e1.rotation &&
+         equals(vec3(e1.scale), vec3(e0.scale), groups.sky) &&
+         (!groups.has_sun || equals(vec3(e1.scale), vec3(e0.scale), groups.sun));
 }
 
 std::optional<vec3> common_factor(const std::vector<vec3>& factors) {

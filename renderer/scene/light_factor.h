@@ -14,6 +14,11 @@ namespace lucerna::scene {
 std::optional<std::vector<vec3>> light_factors(const Scene& before, const Scene& after,
                                                const LightGroups* groups = nullptr);
 
+/// True if all light of `after` is that of `before` times the factor of its group, but for rounding: surfaces
+/// are the same, and lights are but for strength and colour. `groups`: of both.
+bool is_multiplied(const Scene& before, const Scene& after, const LightGroups& groups,
+                   const std::vector<vec3>& factors);
+
 /// Of all groups alike; nothing where they differ.
 std::optional<vec3> common_factor(const std::vector<vec3>& factors);
 

@@ -134,15 +134,27 @@ void Engine::adopt(const Engine& before, const scene::Changes& changes) {
       solver->adopt(*wavefront_, *old);
 }
 
+void Engine::adopt(const solvers::Solver& before, const scene::Changes& since) {
+  solvers::Solver* own = find(before.info().name);
+  if (!own || solvers::spoiled_by(own->info(), since).places) return;
+  own->adopt(*wavefront_, before);
+  missed_[own] = since;
+}
+
 void Engine::begin(const PictureView& picture, const scene::Changes& changes,
                    const std::optional<std::vector<vec3>>& light_factors) {
   // What is switched off changes without new kernels.
   route(picture.settings, picture.world.flat.effects);
   for (const auto& solver : solvers_)
     with(*solver, picture, [&](solvers::Picture own) {
-      own.light_factors = light_factors;
-      solver->begin(own, solvers::spoiled_by(solver->info(), changes));
+      solvers::Spoils spoils = solvers::spoiled_by(solver->info(), changes);
+      if (const auto missed = missed_.find(solver.get()); missed != missed_.end())
+        spoils |= solvers::spoiled_by(solver->info(), missed->second);
+      else
+        own.light_factors = light_factors;
+      solver->begin(own, spoils);
     });
+  missed_.clear();
   route(picture.settings, picture.world.flat.effects);  // with what they leave to paths now
   wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
 }

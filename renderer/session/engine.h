@@ -1,7 +1,9 @@
 #pragma once
 // The wavefront's kernels with the solvers of a plan, made for one world.
+#include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "film/developer.h"
@@ -43,6 +45,10 @@ class Engine {
   const plan::Plan& plan() const { return plan_; }
   /// Takes over what the solvers of another engine have, where `changes` do not spoil all of it.
   void adopt(const Engine& before, const scene::Changes& changes);
+  /// The same of one solver, that has made no picture since these changes.
+  void adopt(const solvers::Solver& before, const scene::Changes& since);
+  /// For an engine that is given up: its solvers with their work.
+  std::vector<std::unique_ptr<solvers::Solver>> release_solvers() { return std::exchange(solvers_, {}); }
   /// The picture begins anew: sets the wavefront's frame, and tells the solvers.
   /// `light_factors`: solvers::Picture::light_factors.
   void begin(const PictureView& picture, const scene::Changes& changes,
@@ -111,6 +117,8 @@ class Engine {
   gpu::Defines scene_defines_;  ///< that the kernels were made with
   Routes routes_;               ///< of the picture begun last
   std::vector<std::unique_ptr<solvers::Solver>> solvers_;
+  /// What solvers that were adopted alone have missed before the next picture.
+  std::map<const solvers::Solver*, scene::Changes> missed_;
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::shared_ptr<film::Developer> developer_;
   std::shared_ptr<film::ErrorEstimator> estimator_;

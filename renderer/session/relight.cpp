@@ -1,5 +1,8 @@
 #include "session/relight.h"
 
+#include <algorithm>
+
+#include "scene/light_factor.h"
 #include "solvers/solver.h"
 
 namespace lucerna::session {
@@ -81,12 +84,52 @@ Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
   return r;
 }
 
+namespace {
+
+void weigh(Relight& relight, const scene::LightMix& mix) {
+  relight.weights = scene::mix_weights(mix, *relight.groups);
+  for (size_t g = 0; g < relight.written.size(); ++g) relight.weights[g] *= relight.written[g];
+}
+
+}  // namespace
+
+bool write_mix(Relight& relight, std::shared_ptr<const scene::Scene> scene, const scene::Scene& lit,
+               const plan::Settings& settings, const std::string& text) {
+  if (!relight.apart || !relight.groups) return false;
+  const scene::LightGroups groups = scene::group_lights(
+      *scene, scene::parse_group_rules(settings.text("relight.groups")), *relight.scene, *relight.groups);
+  if (groups != *relight.groups) return false;
+  const std::vector<vec3> weights = scene::mix_weights(scene::parse_mix(text), groups);
+  std::vector<vec3> factors(weights.size(), vec3(1));
+  for (size_t g = 0; g < weights.size(); ++g)
+    for (int k = 0; k < 3; ++k) {
+      if (weights[g][k] > 0)
+        factors[g][k] = relight.weights[g][k] / weights[g][k];
+      else if (relight.weights[g][k] > 0)
+        return false;
+    }
+  if (!scene::is_multiplied(lit, *scene, groups, factors)) return false;
+  relight.scene = std::move(scene);
+  const bool same = std::all_of(factors.begin(), factors.end(), [](const vec3& f) { return f == vec3(1); });
+  relight.written = same ? std::vector<vec3>() : std::move(factors);
+  relight.baked = same ? "" : "lights";
+  return true;
+}
+
+void keep_written(Relight& relight, const Relight& before) {
+  if (before.written.empty() || !relight.apart || relight.scene != before.scene ||
+      *relight.groups != *before.groups)
+    return;
+  relight.written = before.written, relight.baked = before.baked, relight.lit = before.lit;
+  for (size_t g = 0; g < relight.written.size(); ++g) relight.weights[g] *= relight.written[g];
+}
+
 void remix(Relight& relight, const std::string& text) {
   const scene::LightMix mix = scene::parse_mix(text);
   relight.messages = relight.groups->messages;
   for (const std::string& name : scene::unknown_groups(mix, *relight.groups))
     relight.messages.push_back(unknown_group(name, *relight.groups));
-  relight.weights = scene::mix_weights(mix, *relight.groups);
+  weigh(relight, mix);
 }
 
 }  // namespace lucerna::session

@@ -76,7 +76,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
       film_ && keeps(*film_, world.flat.effects) ? Films{} : make_films(width_, height_, world.flat.effects);
   if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
   if (options_.interactive && !display_) display_ = std::make_unique<Display>(*device_, *compiler_);
-  engine_ = std::move(engine);
+  use(std::move(engine), changes);
   world_ = std::move(world);
   settings_ = std::move(settings);
   camera_ = std::move(camera);
@@ -88,8 +88,10 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
 Relight Renderer::make_relight(const plan::Plan& plan, const plan::Settings& settings,
                                std::shared_ptr<const scene::Scene> scene, uint32_t width,
                                uint32_t height) const {
-  return session::make_relight(plan, settings, std::move(scene), options_.interactive,
-                               uint64_t{width} * height, device_->info().memory_bytes, relight_);
+  Relight relight = session::make_relight(plan, settings, std::move(scene), options_.interactive,
+                                          uint64_t{width} * height, device_->info().memory_bytes, relight_);
+  keep_written(relight, relight_);
+  return relight;
 }
 
 upload::LightsApart Renderer::wanted_apart(const plan::Plan& plan, const plan::Settings& settings,
@@ -140,13 +142,21 @@ std::unique_ptr<Engine> Renderer::make_engine(const World& world, const plan::Pl
   const bool same_shaders = !changes.edits.contains(scene::Change::shaders);
   auto engine = std::make_unique<Engine>(*device_, *compiler_, automaton_, world, plan, settings,
                                          options_.defines, same_shaders ? engine_.get() : nullptr);
+  kept_.hand_to(*engine, changes);
   if (engine_) engine->adopt(*engine_, changes);
   return engine;
 }
 
+void Renderer::use(std::unique_ptr<Engine> engine, const scene::Changes& changes) {
+  if (engine_) kept_.replace(*engine_, *engine, changes);
+  engine_ = std::move(engine);
+  // Kept work is a convenience: it leaves most of the memory to the picture.
+  if (device_->allocated_bytes() > device_->info().memory_bytes / 2) kept_.clear();
+}
+
 void Renderer::reload_shaders() {
   if (!engine_) return;
-  engine_ = make_engine(world_, engine_->plan(), settings_, scene::Change::shaders);
+  use(make_engine(world_, engine_->plan(), settings_, scene::Change::shaders), scene::Change::shaders);
   heed_settings();
   restart(scene::Change::shaders);
 }
@@ -177,6 +187,7 @@ Renderer::Films Renderer::make_films(uint32_t width, uint32_t height, const uplo
 
 void Renderer::restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors) {
   if (!engine_ || !film_) return;
+  kept_.note(changes);
   engine_->begin(picture_view(), changes, factors);
   transport::Wavefront& wavefront = engine_->wavefront();
   const std::optional<vec3> factor = factors ? scene::common_factor(*factors) : std::nullopt;
@@ -226,6 +237,7 @@ bool Renderer::keeps_light(const scene::Changes& changes) const {
 }
 
 void Renderer::start_schedule() {
+  floor_ = luminance_floor();
   if (settings_.text("sampling.mode") == "adaptive")
     sampling_.start(
         schedule::AdaptiveSchedule(film_->blocks_across(), film_->blocks_down(), adaptive_options()));
@@ -235,6 +247,7 @@ void Renderer::start_schedule() {
 }
 
 void Renderer::change_schedule() {
+  floor_ = luminance_floor();
   const std::vector<uint32_t> have = sampling_.counts();
   if (settings_.text("sampling.mode") == "adaptive") {
     std::vector<schedule::TileErrors> errors;
@@ -345,6 +358,7 @@ void Renderer::apply_settings() {
     throw;
   }
   heed_settings();
+  kept_.note(changes);
   if (changed("samples") && !again) sampling_.uniform().set_samples(uint32_t(settings_.integer("samples")));
   if (changed("sampling.mode") && !again)
     change_schedule();
@@ -380,7 +394,7 @@ bool Renderer::apply_plan(scene::Changes& changes) {
   Films films =
       keeps(*film_, world_.flat.effects) ? Films{} : make_films(width_, height_, world_.flat.effects);
   if (anew)
-    engine_ = make_engine(world_, plan, settings_, changes);
+    use(make_engine(world_, plan, settings_, changes), changes);
   else
     engine_->set_plan(plan);
   if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
@@ -404,7 +418,7 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
       edit.emplace(*device_, world_, world_.scene, relight.lit, apart, relit);
     Films films = make_films(width, height, world_.flat.effects);
     if (edit && !engine_->serves(engine_->plan(), settings_, world_)) {
-      engine_ = make_engine(world_, engine_->plan(), settings_, scene::Change::size);
+      use(make_engine(world_, engine_->plan(), settings_, scene::Change::size), scene::Change::size);
       heed_settings();
     } else if (edit) {
       engine_->wavefront().rebind(*world_.device);
@@ -427,6 +441,7 @@ void Renderer::choose_camera(const std::string& name) { set_camera(scene::find_c
 
 bool Renderer::step(const std::function<bool()>& cancel) {
   if (engine_) settle_mix();
+  if (engine_ && samples() > 0 && judged_otherwise()) change_schedule();
   if (!engine_ || done()) return false;
   clock_.go();
   const Timer timer;

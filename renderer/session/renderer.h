@@ -24,6 +24,8 @@
 #include "scene/scene.h"
 #include "session/display.h"
 #include "session/engine.h"
+#include "session/kept_solvers.h"
+#include "session/lights_edit.h"
 #include "session/relight.h"
 #include "session/sampling.h"
 #include "session/world.h"
@@ -90,6 +92,9 @@ class Renderer {
   /// Throws Error when there is no such material, or when textures or what a surface lets through (alpha
   /// mode, transmission, thickness) would be others: these are the scene's shape, as rays find it.
   void set_material(uint32_t index, const scene::Material& material);
+  /// All of that as one. Where the light is the same as now, mixed by groups before and written into the
+  /// lights then, or the other way round, the picture goes on. Throws Error; then nothing has changed.
+  void set_lights(const LightsEdit& edit);
   /// The scene's groups of lights, and what the settings make of them.
   const Relight& relight() const { return relight_; }
   /// In the window another mix is shown at once, and the film's own sums follow with the next step(), or with
@@ -105,7 +110,7 @@ class Renderer {
   uint32_t passes() const { return sampling_.passes(); }
 
   bool ready() const { return engine_ != nullptr; }
-  bool done() const { return sampling_.done(); }
+  bool done() const { return sampling_.done() && !judged_otherwise(); }
   /// Samples that every pixel has.
   uint32_t samples() const { return sampling_.samples(); }
   /// Samples a pixel at which the image is finished; adaptive: that no pixel goes beyond.
@@ -260,6 +265,8 @@ class Renderer {
   /// everything stays.
   std::unique_ptr<Engine> make_engine(const World& world, const plan::Plan& plan,
                                       const plan::Settings& settings, const scene::Changes& changes) const;
+  /// Puts another engine in the place of the one in use, whose work is kept where it may serve again.
+  void use(std::unique_ptr<Engine> engine, const scene::Changes& changes);
   /// The scene with other lights, environment or factors of materials. Kernels are made for what it calls for
   /// now. On failure throws Error and everything stays as it was.
   void edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& change, bool factors);
@@ -275,6 +282,8 @@ class Renderer {
   bool previewed(const film::View& view) const;  ///< whether the window shows a preview of it
   film::HeatScale heat_scale(uint32_t layer) const;
   float luminance_floor() const;
+  /// Another exposure shows other errors than those that tiles have stopped by.
+  bool judged_otherwise() const { return adaptive() && floor_ != luminance_floor(); }
   /// The picture's light is as before, however it is computed and wherever it is seen from.
   bool keeps_light(const scene::Changes& changes) const;
   void start_schedule();
@@ -311,6 +320,7 @@ class Renderer {
   Timer since_mix_;
   std::shared_ptr<const scene::Scene> loaded_;  ///< as set_scene() was given it
   std::unique_ptr<Engine> engine_;              ///< null before the first scene; goes before the world
+  KeptSolvers kept_;
   std::unique_ptr<film::Film> film_, coarse_;
   std::unique_ptr<Display> display_;  ///< null in batch
   struct {
@@ -322,6 +332,7 @@ class Renderer {
   scene::Camera camera_;
   uint32_t width_ = 1280, height_ = 720;
   Sampling sampling_;
+  float floor_ = 0;  ///< luminance_floor() that the adaptive schedule's errors are of
   uint64_t restarts_ = 0;
   uint64_t errors_restart_ = ~0ull;  ///< the image of which lookups' errors are being estimated ...
   const solvers::Solver* errors_of_ = nullptr;  ///< ... and whose

@@ -77,6 +77,39 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
   edit(edited, colour ? scene::Change::colour : scene::Change::material, true);
 }
 
+void Renderer::set_lights(const LightsEdit& e) {
+  if (!world_.scene) throw Error("light", "there is no scene");
+  auto edited = std::make_shared<scene::Scene>(*world_.scene);
+  for (const auto& [index, light] : e.lights) {
+    if (index >= edited->lights.size()) throw_error("light", "there is no light {}", index);
+    scene::check_range(light);
+    edited->lights[index] = light;
+  }
+  for (const auto& [index, material] : e.materials) {
+    if (index >= edited->materials.size()) throw_error("material", "there is no material {}", index);
+    scene::check_range(material);
+    edited->materials[index].emission = material.emission;
+  }
+  if (e.environment_scale) edited->environment.scale = *e.environment_scale;
+  scene::check_range(edited->environment);
+  if (write_mix(relight_, edited, *world_.lit, settings_, e.mix)) {
+    world_.scene = edited;
+    settings_.set("relight.mix", e.mix);
+    applied_["relight.mix"] = settings_.text("relight.mix");
+    return;
+  }
+  const std::string before = settings_.text("relight.mix");
+  settings_.set("relight.mix", e.mix);
+  try {
+    scene::Changes changes;
+    changes.edits = {scene::Change::lamp, scene::Change::environment, scene::Change::colour};
+    edit(edited, changes, true);
+  } catch (...) {
+    settings_.set("relight.mix", before);
+    throw;
+  }
+}
+
 void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& changes, bool factors) {
   Relight relight = make_relight(engine_->plan(), settings_, edited, width_, height_);
   const bool by_group = relight.apart && relight_.apart && *relight.groups == *relight_.groups;
@@ -90,7 +123,7 @@ void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Cha
   const bool anew = !engine_->serves(engine_->plan(), settings_, world_);
   Films films =
       keeps(*film_, world_.flat.effects) ? Films{} : make_films(width_, height_, world_.flat.effects);
-  if (anew) engine_ = make_engine(world_, engine_->plan(), settings_, what);
+  if (anew) use(make_engine(world_, engine_->plan(), settings_, what), what);
   trial.keep();
   if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
   take(std::move(relight));

@@ -538,6 +538,15 @@ void Session::set_material(uint32_t index, const scene::Material& material, Scen
   impl_->post({.run = run, .subject = "a material", .scene = scene});
 }
 
+void Session::set_lights(const LightsEdit& edit, SceneId scene) {
+  const auto run = [s = impl_.get(), edit](Renderer& r) {
+    const uint64_t before = r.restarts();
+    r.set_lights(edit);
+    if (r.restarts() != before) s->restarted();
+  };
+  impl_->post({.run = run, .subject = "the lights", .scene = scene});
+}
+
 void Session::set_paused(bool paused) {
   const auto run = [s = impl_.get(), paused](Renderer&) { s->paused = paused; };
   impl_->post({.run = run, .subject = "rendering"});

@@ -17,6 +17,7 @@
 #include "scene/scene.h"
 #include "session/accuracy.h"
 #include "session/command_queue.h"
+#include "session/lights_edit.h"
 #include "solvers/report.h"
 
 namespace lucerna::session {
@@ -139,6 +140,7 @@ class Session {
                             std::optional<float> rotation_degrees = {}, SceneId scene = k_any_scene);
   /// Renderer::set_material
   void set_material(uint32_t index, const scene::Material& material, SceneId scene = k_any_scene);
+  void set_lights(const LightsEdit& edit, SceneId scene = k_any_scene);  ///< Renderer::set_lights
   void set_paused(bool paused);
   void restart();         ///< throws the samples away and starts anew
   void reload_shaders();  ///< compiles again; on error the old kernels stay and the message is logged

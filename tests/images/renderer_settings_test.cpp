@@ -8,6 +8,7 @@
 #include "session/renderer.h"
 #include "support/complaints.h"
 #include "support/device.h"
+#include "support/render.h"
 
 using namespace lucerna;
 
@@ -165,6 +166,32 @@ TEST_CASE("another mode of sampling keeps the samples there are, and each is the
       most = std::max(most, double(luminance(glm::abs(longest.components[c][i] - whole.components[c][i]))));
   CHECK(most < 1e-4 * light);
   CHECK(r.device().validation_messages() == 0);
+}
+
+TEST_CASE("tiles that are finished in the dark go on when more exposure shows their noise") {
+  session::Renderer r(test::renderer_options());
+  r.set_size(40, 24);
+  r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
+  test::set(r, {{"sampling.mode", "adaptive"},
+                {"sampling.target_error", "0.05"},
+                {"sampling.min_samples", "8"},
+                {"sampling.max_samples", "64"},
+                {"film.ev", "-12"}});
+  const film::Image dark = test::finish(r);
+  for (const uint32_t n : dark.samples) CHECK(n == 8);
+  const uint64_t begun = r.restarts();
+  test::set(r, {{"film.ev", "1"}});
+  CHECK_FALSE(r.done());
+  const film::Image bright = test::finish(r);
+  CHECK(r.done());
+  CHECK(r.restarts() == begun);
+  CHECK(*std::max_element(bright.samples.begin(), bright.samples.end()) == 64);
+  // Less exposure asks for nothing.
+  const uint64_t paths = r.stats().paths;
+  test::set(r, {{"film.ev", "-12"}});
+  test::finish(r);
+  CHECK(r.done());
+  CHECK(r.stats().paths == paths);
 }
 
 TEST_CASE("the heat map of cost shares the whole device time out") {

@@ -216,3 +216,75 @@ TEST_CASE("a size that is refused is given up") {
   REQUIRE(quiet(b));
   CHECK(b.work.snapshot->width == 32);
 }
+
+TEST_CASE("a wait for samples that will not come says so") {
+  WorkspaceBench b;
+  b.open();
+  REQUIRE(b.until([&] { return b.work.up_to_date() && b.work.snapshot->samples >= 3; }));
+  b.run("render.pause");
+  const Line few = b.work.registry.parse("wait_samples 2"), many = b.work.registry.parse("wait_samples 200");
+  REQUIRE(quiet(b));
+  CHECK(few.command->done(few.arguments));
+  CHECK_THROWS_WITH(many.command->done(many.arguments), Contains("rendering is paused; render.resume"));
+  // A script of it waits for what the picture had when it was stopped.
+  b.run("image.save /tmp/never.exr");
+  const std::vector<std::string> lines = b.work.script();
+  REQUIRE(lines.size() == 6);
+  CHECK(lines[2] == line("wait_samples", b.work.snapshot->samples, named("limit", 86400)));
+  CHECK(lines[3] == "render.pause");
+  CHECK(lines[4] == lines[2]);
+}
+
+TEST_CASE("a view of either kind is taken from a camera of either kind") {
+  WorkspaceBench b;
+  b.open();
+  b.work.set_size(96, 64);
+  const Viewpoint start = *b.work.view;
+  b.run("camera.bookmark wide");
+  b.run("camera.place 0,1,3 0,1,0 0,1,0 height=2");
+  const scene::Camera flat = b.work.view->camera;
+  CHECK(flat.orthographic);
+  CHECK(flat.ymag == 1);
+  CHECK(flat.xmag == 1.5f);
+  b.run("camera.bookmark flat");
+  b.run("camera.go wide");
+  CHECK_FALSE(b.work.view->camera.orthographic);
+  CHECK(b.work.view->camera.yfov == Approx(start.camera.yfov));
+  CHECK(glm::length(eye_of(b.work.view->camera) - eye_of(start.camera)) < 1e-4f);
+  b.run("camera.go flat");
+  CHECK(b.work.view->camera.orthographic);
+  CHECK(b.work.view->camera.ymag == Approx(1));
+  CHECK_THAT(b.failure("camera.place 0,1,3 0,1,0 0,1,0 height=2 fov=40"), Contains("exclude each other"));
+}
+
+TEST_CASE("the aspect is that of the picture") {
+  WorkspaceBench b;
+  b.open();
+  REQUIRE(quiet(b));
+  CHECK(b.work.aspect == Approx(64.0 / 36));
+  b.session.set_size(30, 60);
+  REQUIRE(quiet(b));
+  CHECK(b.work.aspect == 0.5f);
+}
+
+TEST_CASE("a mix that is written into the lights reaches the session as one edit, and comes back as one") {
+  WorkspaceBench b;
+  b.open();
+  b.run("mix.set \"Brass lamp\" ev=1");
+  b.run("mix.set Sun mute=on");
+  REQUIRE(quiet(b));
+  const uint64_t before = b.session.commands();
+  b.run("mix.apply");
+  CHECK(b.session.commands() == before + 1);
+  CHECK(b.work.light(1).intensity.x == Approx(24));
+  CHECK_FALSE(b.work.light(0).enabled);
+  REQUIRE(b.settled());
+  CHECK(b.session.scene()->lights[1].intensity.x == Approx(24));
+  CHECK(b.session.settings().text("relight.mix").empty());
+  b.run("undo");
+  CHECK(b.session.commands() == before + 2);
+  REQUIRE(b.settled());
+  CHECK(b.session.scene()->lights[1].intensity.x == 12);
+  CHECK(b.session.scene()->lights[0].enabled);
+  CHECK_THAT(b.session.settings().text("relight.mix"), Contains("Brass lamp"));
+}

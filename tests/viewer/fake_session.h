@@ -468,6 +468,19 @@ void Session::set_material(uint32_t index, const scene::Material& material, Scen
       },
       scene);
 }
+void Session::set_lights(const LightsEdit& edit, SceneId scene) {
+  impl_->post(
+      [this, edit] {
+        auto edited = std::make_shared<scene::Scene>(*impl_->scene);
+        for (const auto& [i, light] : edit.lights) edited->lights[i] = light;
+        for (const auto& [i, material] : edit.materials) edited->materials[i] = material;
+        if (edit.environment_scale) edited->environment.scale = *edit.environment_scale;
+        std::lock_guard lock(impl_->mutex);
+        impl_->scene = edited;
+        impl_->settings.set("relight.mix", edit.mix);
+      },
+      scene);
+}
 void Session::set_paused(bool paused) {
   impl_->post([this, paused] { impl_->paused = paused, impl_->publish(); });
 }
