@@ -65,6 +65,7 @@ uint64_t geometry(const Scene& scene) {
     const auto& [name, mesh, to_world, flipped, group] = instance;
     add_all(hash, mesh < meshes.size() ? meshes[mesh] : 0, to_world, flipped);
   }
+  if (scene.origin != glm::dvec3(0)) hash.add_value(scene.origin);
   return hash.low();
 }
 

@@ -148,6 +148,9 @@ struct Environment {
 struct Scene {
   std::string name;  ///< the file's stem
   std::string file;
+  /// The point of the file that is the scene's origin [m]: 0 but for geometry far away (recentre.h). Every
+  /// position of the scene is counted from there; adding this gives the file's.
+  glm::dvec3 origin{0};
   // Copies of a scene share these: who edits a lamp copies lamps.
   SharedVector<Image> images;
   SharedVector<Texture> textures;

@@ -251,38 +251,19 @@ TEST_CASE("absurd sizes are refused before memory is asked for") {
              Contains("buffers[0]: byteLength is 1000000000000, but only 36 bytes are there"));
 }
 
-TEST_CASE("singular matrices above something that is shown") {
-  const json flat{{"scale", {1, 0, 1}}};
-  CHECK_THAT(broken([&](Asset& a) { a.doc["nodes"][0].update(flat); }),
-             Contains("a.gltf: nodes[0]: the node's matrix is singular"));
-  CHECK_THAT(broken([](Asset& a) {
-               a.doc["nodes"][0]["matrix"] = {1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-             }),
-             Contains("nodes[0]: the node's matrix is singular"));
+TEST_CASE("matrices above something that is shown") {
   CHECK_THAT(broken([](Asset& a) {
                a.doc["nodes"][0]["matrix"] = {1e38, 0, 0, 0, 0, 1e38, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
              }),
-             Contains("singular or not finite"));
+             Contains("nodes[0]: the node's matrix in the world is not finite"));
   CHECK_THAT(broken([](Asset& a) {
                a.doc["nodes"][0]["rotation"] = {0, 0, 0, 0};
              }),
              Contains("nodes[0].rotation: a quaternion of length 0"));
-  // An ancestor: named itself, not its child.
-  const auto under = [&](const json& child) {
-    Asset a = good();
-    a.doc["nodes"][0] = child;
-    a.doc["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
-    a.doc["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
-    json parent = flat;
-    parent["children"] = {0};
-    a.doc["scenes"][0]["nodes"] = {a.add("nodes", parent)};
-    return failure(a);
-  };
-  CHECK_THAT(under({{"mesh", 0}}), Contains("nodes[1]: the node's matrix is singular"));
-  CHECK_THAT(under({{"camera", 0}}), Contains("nodes[1]: the node's matrix is singular"));
-  CHECK_THAT(under({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}),
-             Contains("nodes[1]: the node's matrix is singular"));
-  CHECK(under({{"name", "nothing"}}).empty());
+  // Harmless where nothing hangs below.
+  CHECK(broken([](Asset& a) {
+          a.doc["scenes"][0]["nodes"].push_back(a.add("nodes", {{"rotation", {0, 0, 0, 0}}}));
+        }).empty());
   // Small but sound.
   CHECK(broken([](Asset& a) { a.doc["nodes"][0]["scale"] = {1e-4, 1e-4, 1e-4}; }).empty());
   // Each matrix sound, their product endless.

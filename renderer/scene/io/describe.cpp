@@ -193,6 +193,7 @@ nlohmann::ordered_json describe(const Scene& scene) {
     out["bounds"] = nullptr;
   else
     out["bounds"] = {{"lo", rgb(box.lo)}, {"hi", rgb(box.hi)}};
+  out["origin"] = {scene.origin.x, scene.origin.y, scene.origin.z};
   out["settings"] = Json::object();
   for (const auto& [key, value] : scene.settings) out["settings"][key] = value;
   out["warnings"] = scene.warnings;
@@ -218,6 +219,9 @@ std::string describe_text(const Scene& scene) {
        number("primitives"), number("instances"));
   if (!d["bounds"].is_null())
     line("bounds       {} to {} m", triple(d["bounds"]["lo"]), triple(d["bounds"]["hi"]));
+  if (scene.origin != glm::dvec3(0))
+    line("origin       {} {} {} m of the file; bounds and all other positions are counted from there",
+         scene.origin.x, scene.origin.y, scene.origin.z);
   line("materials    {}", d["materials"].size());
   for (const Json& m : d["materials"]) line("  {}: {}", name(m), kind(m));
   line("images       {}, {:.1f} MiB; {} textures", d["images"].size(),

@@ -15,8 +15,15 @@ bool finite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && 
 
 class PrimitiveLoader {
  public:
-  PrimitiveLoader(Document& document, const tinygltf::Primitive& source, std::string where)
-      : document_(document), source_(source), where_(std::move(where)) {}
+  /// `origin`: of placed vertices; chosen by the first one where it has no value.
+  PrimitiveLoader(Document& document, const tinygltf::Primitive& source, const Item& item, const Pose& pose,
+                  std::optional<glm::dvec3>& origin)
+      : document_(document),
+        source_(source),
+        item_(item),
+        where_(item.path()),
+        pose_(pose),
+        origin_(origin) {}
 
   /// False when there is nothing to show.
   bool load(MaterialLoader& materials, Primitive& primitive);
@@ -39,7 +46,9 @@ class PrimitiveLoader {
   void keep_used_vertices();
   template <class Vector>
   std::vector<Vector> read_stream(const AccessorReader& reader, int components) const;
+  void check_position(const vec3& p, size_t element) const;
   void read_positions(Primitive& primitive);
+  void turn_mirrored_triangles();
   size_t drop_degenerate(const std::vector<vec3>& positions);
   void read_normals(Primitive& primitive);
   std::vector<vec2> read_uvs(const char* name);
@@ -48,7 +57,11 @@ class PrimitiveLoader {
 
   Document& document_;
   const tinygltf::Primitive& source_;
+  Item item_;
   std::string where_;
+  const Pose& pose_;
+  std::optional<glm::dvec3>& origin_;
+  std::optional<Deformer> deformer_;
   std::vector<uvec3> triangles_;
   std::vector<uint32_t> used_;  // accessor element of each kept vertex
   size_t vertices_ = 0;         // of the POSITION accessor
@@ -138,19 +151,39 @@ std::vector<Vector> PrimitiveLoader::read_stream(const AccessorReader& reader, i
   return result;
 }
 
+void PrimitiveLoader::check_position(const vec3& p, size_t element) const {
+  if (!finite(p))
+    throw_error(located("attributes.POSITION"), "vertex {} is ({}, {}, {}), expected finite numbers", element,
+                p.x, p.y, p.z);
+  const vec3 a = glm::abs(p);
+  if (std::max({a.x, a.y, a.z}) > k_max_coordinate)
+    throw_error(located("attributes.POSITION"), "vertex {} is ({}, {}, {}), beyond {} m", element, p.x, p.y,
+                p.z, k_max_coordinate);
+}
+
 void PrimitiveLoader::read_positions(Primitive& primitive) {
-  const AccessorReader reader = open("POSITION", 3, 3);
-  primitive.positions = read_stream<vec3>(reader, 3);
-  for (size_t i = 0; i < primitive.positions.size(); ++i) {
-    const vec3& p = primitive.positions[i];
-    if (!finite(p))
-      throw_error(located("attributes.POSITION"), "vertex {} is ({}, {}, {}), expected finite numbers",
-                  used_[i], p.x, p.y, p.z);
-    const vec3 a = glm::abs(p);
-    if (std::max({a.x, a.y, a.z}) > k_max_coordinate)
-      throw_error(located("attributes.POSITION"), "vertex {} is ({}, {}, {}), beyond {} m", used_[i], p.x,
-                  p.y, p.z, k_max_coordinate);
+  primitive.positions = read_stream<vec3>(open("POSITION", 3, 3), 3);
+  for (size_t i = 0; i < used_.size(); ++i) check_position(primitive.positions[i], used_[i]);
+  deformer_->add_targets("POSITION", used_, primitive.positions, 3, 3);
+  for (size_t i = 0; i < used_.size(); ++i) {
+    vec3& p = primitive.positions[i];
+    check_position(p, used_[i]);
+    if (!deformer_->placed()) continue;
+    const glm::dvec3 placed(deformer_->matrix(used_[i]) * glm::dvec4(p, 1));
+    check_position(vec3(placed), used_[i]);
+    if (!origin_) origin_ = glm::round(placed / 64.0) * 64.0;
+    p = vec3(placed - *origin_);
   }
+}
+
+// A mirrored joint leaves the outside outside.
+void PrimitiveLoader::turn_mirrored_triangles() {
+  if (!deformer_->skinned()) return;
+  std::vector<double> determinants;
+  for (const uint32_t element : used_)
+    determinants.push_back(glm::determinant(glm::dmat3(deformer_->matrix(element))));
+  for (uvec3& t : triangles_)
+    if (determinants[t.x] + determinants[t.y] + determinants[t.z] < 0) std::swap(t.y, t.z);
 }
 
 size_t PrimitiveLoader::drop_degenerate(const std::vector<vec3>& positions) {
@@ -170,6 +203,11 @@ void PrimitiveLoader::read_normals(Primitive& primitive) {
     return;
   }
   primitive.normals = read_stream<vec3>(open("NORMAL", 3, 3), 3);
+  deformer_->add_targets("NORMAL", used_, primitive.normals, 3, 3);
+  if (deformer_->placed())
+    for (size_t i = 0; i < used_.size(); ++i)
+      primitive.normals[i] =
+          vec3(normal_matrix(glm::dmat3(deformer_->matrix(used_[i]))) * glm::dvec3(primitive.normals[i]));
   std::vector<uint8_t> bad(primitive.normals.size(), 0);
   size_t count = 0;
   for (size_t i = 0; i < primitive.normals.size(); ++i) {
@@ -205,6 +243,7 @@ std::vector<vec2> PrimitiveLoader::read_uvs(const char* name) {
     return {};
   }
   std::vector<vec2> uvs = read_stream<vec2>(open(name, 2, 2), 2);
+  deformer_->add_targets(name, used_, uvs, 2, 2);
   size_t bad = 0;
   for (vec2& uv : uvs) {
     if (std::abs(uv.x) < 1e6f && std::abs(uv.y) < 1e6f) continue;
@@ -222,9 +261,10 @@ void PrimitiveLoader::read_colors(Primitive& primitive) {
   primitive.colors.assign(used_.size(), vec4(1));
   size_t bad = 0;
   bool white = true;
-  for (size_t i = 0; i < used_.size(); ++i) {
-    vec4& color = primitive.colors[i];
-    reader.read(used_[i], &color[0], reader.components());
+  for (size_t i = 0; i < used_.size(); ++i)
+    reader.read(used_[i], &primitive.colors[i][0], reader.components());
+  deformer_->add_targets("COLOR_0", used_, primitive.colors, 3, 4);
+  for (vec4& color : primitive.colors) {
     for (int k = 0; k < 4; ++k) {
       if (std::isfinite(color[k])) {
         color[k] = std::clamp(color[k], 0.0f, 1.0f);  // glTF 2.0, 3.7.2.1
@@ -241,6 +281,12 @@ void PrimitiveLoader::read_colors(Primitive& primitive) {
 
 void PrimitiveLoader::read_tangents(Primitive& primitive) {
   primitive.tangents = read_stream<vec4>(open("TANGENT", 4, 4), 4);
+  deformer_->add_targets("TANGENT", used_, primitive.tangents, 3, 3);
+  for (size_t i = 0; deformer_->placed() && i < used_.size(); ++i) {
+    const glm::dmat3 m(deformer_->matrix(used_[i]));
+    vec4& t = primitive.tangents[i];
+    t = vec4(vec3(m * glm::dvec3(t)), glm::determinant(m) < 0 ? -t.w : t.w);
+  }
   size_t bad = 0;
   for (size_t i = 0; i < primitive.tangents.size(); ++i) {
     vec4& tangent = primitive.tangents[i];
@@ -272,7 +318,7 @@ bool PrimitiveLoader::load(MaterialLoader& materials, Primitive& primitive) {
   vertices_ = open("POSITION", 3, 3).count();
   if (attribute("TEXCOORD_2") >= 0)
     warn("{} primitives have more than two sets of texture coordinates; the others are ignored");
-  if (attribute("JOINTS_0") >= 0) warn("{} primitives are skinned; they are shown in their rest pose");
+  deformer_.emplace(document_, source_, item_, pose_, vertices_);
   if (!read_triangles(vertices_)) return false;
 
   keep_used_vertices();
@@ -285,8 +331,9 @@ bool PrimitiveLoader::load(MaterialLoader& materials, Primitive& primitive) {
     if (triangles_.empty()) return false;
     for (uvec3& t : triangles_) t = uvec3(used_[t.x], used_[t.y], used_[t.z]);
     keep_used_vertices();
-    primitive.positions = read_stream<vec3>(open("POSITION", 3, 3), 3);
+    read_positions(primitive);
   }
+  turn_mirrored_triangles();
   primitive.material = materials.material(source_.material);
   const MaterialNeeds& needs = materials.needs(primitive.material);
   if (needs.uv[0]) primitive.uv0 = read_uvs("TEXCOORD_0");
@@ -305,16 +352,19 @@ bool PrimitiveLoader::load(MaterialLoader& materials, Primitive& primitive) {
 
 }  // namespace
 
-Mesh load_mesh(Document& document, uint32_t index, MaterialLoader& materials) {
+Mesh load_mesh(Document& document, uint32_t index, MaterialLoader& materials, const Pose& pose,
+               glm::dvec3& origin) {
   const tinygltf::Mesh& source = document.model.meshes[index];
+  const Item primitives = document.root().at("meshes").at(index).at("primitives");
   Mesh mesh;
   mesh.name = source.name.empty() ? fmt::format("mesh {}", index) : source.name;
+  std::optional<glm::dvec3> chosen;
   for (size_t i = 0; i < source.primitives.size(); ++i) {
-    PrimitiveLoader loader(document, source.primitives[i],
-                           fmt::format("meshes[{}].primitives[{}]", index, i));
+    PrimitiveLoader loader(document, source.primitives[i], primitives.at(i), pose, chosen);
     Primitive primitive;
     if (loader.load(materials, primitive)) mesh.primitives.push_back(std::move(primitive));
   }
+  origin = chosen.value_or(glm::dvec3(0));
   return mesh;
 }
 

@@ -1,13 +1,15 @@
 #include "scene/io/load.h"
 
 #include <algorithm>
-#include <set>
+#include <numeric>
+#include <utility>
 
 #include "scene/io/document.h"
 #include "scene/io/environment.h"
 #include "scene/io/geometry.h"
 #include "scene/io/materials.h"
 #include "scene/io/nodes.h"
+#include "scene/recentre.h"
 
 namespace lucerna::scene {
 namespace {
@@ -36,35 +38,45 @@ void list_extensions(Document& document, Scene& scene) {
 }
 
 void warn_of_motion(Document& document) {
-  const Item root = document.root();
-  const auto animations = root.find("animations");
+  const auto animations = document.root().find("animations");
   if (animations && animations->json().is_array() && !animations->json().empty())
     document.warnings.add("{} animations are ignored: the scene is shown at rest", {}, animations->size());
-  const auto meshes = root.find("meshes");
-  for (size_t i = 0; meshes && i < meshes->size(); ++i) {
-    const Item primitives = meshes->at(i).at("primitives");
-    for (size_t k = 0; k < primitives.size(); ++k)
-      if (const auto targets = primitives.at(k).find("targets"))
-        document.warnings.add("{} primitives have morph targets; they are shown without",
-                              primitives.at(k).path());
-  }
 }
 
-// Meshes that instances use, each once, in glTF's order; instances of empty meshes vanish.
-void load_meshes(Document& document, Scene& scene, MaterialLoader& materials) {
-  std::map<Id, Id> ids;
-  for (const Instance& instance : scene.instances) ids[instance.mesh] = k_none;
+// Meshes that instances use, each pose once, in glTF's order; instances of empty meshes vanish.
+void load_meshes(Document& document, Scene& scene, Placement& placement, MaterialLoader& materials) {
+  std::vector<uint32_t> order(placement.uses.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return placement.uses[a].mesh < placement.uses[b].mesh; });
+  std::vector<Id> ids(order.size(), k_none);
+  std::vector<glm::dvec3> origins(order.size(), glm::dvec3(0));
   size_t done = 0;
-  for (auto& [index, id] : ids) {
-    document.progress(0.15f + 0.35f * static_cast<float>(done++) / static_cast<float>(ids.size()),
+  for (const uint32_t use : order) {
+    document.progress(0.15f + 0.35f * static_cast<float>(done++) / static_cast<float>(order.size()),
                       "geometry");
-    Mesh mesh = load_mesh(document, index, materials);
+    const auto& [index, pose] = placement.uses[use];
+    Mesh mesh = load_mesh(document, index, materials, pose, origins[use]);
     if (mesh.primitives.empty()) continue;
-    id = static_cast<Id>(scene.meshes.size());
+    ids[use] = static_cast<Id>(scene.meshes.size());
     scene.meshes.push_back(std::move(mesh));
   }
-  for (Instance& instance : scene.instances) instance.mesh = ids[instance.mesh];
-  scene.instances.erase_if([](const Instance& instance) { return instance.mesh == k_none; });
+  std::vector<Instance> shown;
+  std::vector<glm::dmat4> matrices;
+  shown.reserve(scene.instances.size());
+  matrices.reserve(scene.instances.size());
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    Instance& instance = scene.instances[i];
+    const Id use = instance.mesh;
+    if (ids[use] == k_none) continue;
+    instance.mesh = ids[use];
+    glm::dmat4 matrix = placement.instances[i];
+    matrix[3] += glm::dvec4(origins[use], 0);
+    matrices.push_back(matrix);
+    shown.push_back(std::move(instance));
+  }
+  scene.instances = std::move(shown);
+  placement.instances = std::move(matrices);
 }
 
 // About what a triangle and a vertex take in the world, with the tree over them and the device's copy.
@@ -83,29 +95,90 @@ void check_instances(const Document& document, const Scene& scene) {
   }
 }
 
-// The renderer works in world space, so what a matrix makes of the coordinates must be in range too. Cameras
-// are checked when one is taken: a file may hold one that is never used.
-void check_world(const Document& document, const Scene& scene) {
+std::vector<Box> mesh_boxes(const Scene& scene) {
   std::vector<Box> boxes(scene.meshes.size());
   for (size_t i = 0; i < boxes.size(); ++i)
     for (const Primitive& primitive : scene.meshes[i].primitives)
       for (const vec3& p : primitive.positions) boxes[i].grow(p);
-  for (const Instance& instance : scene.instances) {
-    const Box& box = boxes[instance.mesh];
+  return boxes;
+}
+
+// The renderer works in world space, so what a matrix makes of the coordinates must be in range too.
+void check_world(const Document& document, const Scene& scene, const Placement& placement,
+                 const std::vector<Box>& boxes) {
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    const Box& box = boxes[scene.instances[i].mesh];
     for (int corner = 0; corner < 8; ++corner) {
-      const vec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                   corner & 4 ? box.hi.z : box.lo.z);
-      const vec3 a = glm::abs(vec3(instance.to_world * vec4(p, 1)));
-      if (!(std::max({a.x, a.y, a.z}) <= k_max_coordinate))
-        throw_error(document.file, "node '{}' places geometry beyond {} m from the origin", instance.name,
-                    k_max_coordinate);
+      const glm::dvec4 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                         corner & 4 ? box.hi.z : box.lo.z, 1);
+      const glm::dvec3 a = glm::abs(glm::dvec3(placement.instances[i] * p));
+      if (!(std::max({a.x, a.y, a.z}) <= double{k_max_coordinate}))
+        throw_error(document.file, "node '{}' places geometry beyond {} m from the origin",
+                    scene.instances[i].name, k_max_coordinate);
     }
   }
+}
+
+// Cameras are checked when one is taken: a file may hold one that is never used.
+void check_lights(const Document& document, const Scene& scene) {
   try {
     for (const Light& light : scene.lights) check_range(light);
   } catch (const Error& error) {
     throw Error(document.file, error.what());
   }
+}
+
+// Chooses the scene's origin and puts everything in its place.
+void place(Scene& scene, Placement& placement, const std::vector<Box>& boxes, Document& document) {
+  const auto is_lamp = [&scene](const Mesh& mesh) {
+    return std::all_of(mesh.primitives.begin(), mesh.primitives.end(),
+                       [&](const Primitive& p) { return scene.materials[p.material].emission != vec3(0); });
+  };
+  std::vector<Extent> extents, lamps;
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    const glm::dmat4& matrix = placement.instances[i];
+    const Id id = scene.instances[i].mesh;
+    const Mesh& mesh = std::as_const(scene.meshes)[id];
+    const glm::dvec3 lo(boxes[id].lo), hi(boxes[id].hi), half = 0.5 * (hi - lo);
+    glm::dvec3 size(0);
+    for (int axis = 0; axis < 3; ++axis) size += glm::abs(glm::dvec3(matrix[axis])) * half[axis];
+    size_t triangles = 0;
+    for (const Primitive& p : mesh.primitives) triangles += p.triangles.size();
+    const double radius = glm::length(size);
+    (is_lamp(mesh) ? lamps : extents)
+        .push_back({glm::dvec3(matrix * glm::dvec4(0.5 * (lo + hi), 1)), radius,
+                    radius * static_cast<double>(triangles)});
+  }
+  std::vector<glm::dvec3> cameras;
+  for (const glm::dmat4& matrix : placement.cameras) cameras.emplace_back(matrix[3]);
+  scene.origin = choose_origin(extents.empty() ? lamps : extents, cameras);
+  const bool moved = scene.origin != glm::dvec3(0);
+  if (moved)
+    document.warnings.add(
+        fmt::format("the geometry is far from the origin: all positions are counted from "
+                    "{} {} {} m of the file",
+                    scene.origin.x, scene.origin.y, scene.origin.z));
+
+  // Meshes whose own coordinates are far from their origin are moved near it too: an exact difference.
+  std::vector<glm::dvec3> shifts(scene.meshes.size(), glm::dvec3(0));
+  for (size_t i = 0; i < shifts.size(); ++i) {
+    const glm::dvec3 centre(boxes[i].centre());
+    const double radius{boxes[i].radius()};
+    if (glm::length(centre) > (moved ? k_far : k_far * k_far) * radius)
+      shifts[i] = round_origin(centre, radius);
+    if (shifts[i] == glm::dvec3(0)) continue;
+    for (Primitive& primitive : scene.meshes[i].primitives)
+      for (vec3& p : primitive.positions) p = vec3(glm::dvec3(p) - shifts[i]);
+  }
+  for (size_t i = 0; i < scene.instances.size(); ++i) {
+    glm::dmat4 matrix = placement.instances[i];
+    matrix[3] += glm::dvec4(glm::dmat3(matrix) * shifts[scene.instances[i].mesh] - scene.origin, 0);
+    scene.instances[i].to_world = mat4(matrix);
+  }
+  for (size_t i = 0; i < cameras.size(); ++i)
+    scene.cameras[i].to_world[3] = vec4(vec3(cameras[i] - scene.origin), 1);
+  for (size_t i = 0; i < scene.lights.size(); ++i)
+    scene.lights[i].position = vec3(placement.lights[i] - scene.origin);
 }
 
 }  // namespace
@@ -123,11 +196,14 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, const 
     open_document(document, path);
     list_extensions(document, scene);
     warn_of_motion(document);
-    load_nodes(document, scene);
+    Placement placement = load_nodes(document, scene);
     MaterialLoader materials(document, scene);
-    load_meshes(document, scene, materials);
+    load_meshes(document, scene, placement, materials);
     check_instances(document, scene);
-    check_world(document, scene);
+    const std::vector<Box> boxes = mesh_boxes(scene);
+    check_world(document, scene, placement, boxes);
+    place(scene, placement, boxes, document);
+    check_lights(document, scene);
     document.progress(0.5f, "textures");
     materials.load_images(options.images);
     if (!options.settings || !load_settings(document, scene)) load_extras_environment(document, scene);

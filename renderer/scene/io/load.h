@@ -1,17 +1,24 @@
 #pragma once
 // glTF 2.0 files into Scene. What is read, and what becomes of input that is not as it should be:
 // - Error (the message names file and element): a missing or truncated file, JSON that does not parse, a
-// value of a
-//   wrong type, an index out of range, an accessor beyond its view or a view beyond its buffer, positions
-//   that are not finite, a cyclic node graph or a node with two parents, a singular matrix above a mesh,
-//   camera or light, a required extension that is not known, an environment that cannot be read, a
-//   settings.json that is not as described below.
+//   value of a wrong type, an index out of range, an accessor beyond its view or a view beyond its buffer, positions
+//   that are not finite, a cyclic node graph or a node with two parents, a matrix above a mesh, camera or
+//   light that is not finite, a skin that a node has and that is not as glTF asks, a required extension that
+//   is not known, an environment that cannot be read, a settings.json that is not as described below.
 //   A buffer or an environment outside the scene's folder (below), and more memory than LoadOptions allows.
 // - One line in Scene::warnings, with a count: degenerate triangles (removed), points and lines (left out),
-// textures
-//   that are missing, outside the scene's folder, cannot be decoded or have no texels (white instead; flat
-//   for normal maps), values outside their range (clamped), extensions that are not known, skins, morph
-//   targets and animations (rest pose is shown).
+//   textures that are missing, outside the scene's folder, cannot be decoded or have no texels (white
+//   instead; flat for normal maps), values outside their range (clamped), extensions that are not known,
+//   cameras that cannot be used (left out), animations (the pose of nodes and weights is shown), what nodes
+//   of scale 0 hold (left out), and that the scene is far from the origin.
+// Meshes of skins are where their joints are; their node's matrix is ignored. Morph targets have the node's
+// weights, else the mesh's. A mesh in a node that is flat (scale 0 on one axis) is shown flat.
+//
+// Geometry far from the origin relative to its own extent is moved near it, with cameras and lamps
+// (recentre.h): Scene::origin is the point of the file that positions are then counted from, everywhere in
+// the program (bounds, cameras in commands and scripts, views kept in images). Node matrices are concatenated
+// in double precision before that. A warning, `lucerna info` and its JSON name the origin.
+//
 // Honoured extensions: KHR_materials_emissive_strength, _ior, _specular, _transmission, _volume,
 // _diffuse_transmission, _unlit, KHR_lights_punctual (range ignored), KHR_texture_transform,
 // KHR_mesh_quantization, EXT_mesh_gpu_instancing.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <map>
 
 #include "scene/io/accessor.h"
 
@@ -20,26 +21,42 @@ dmat4 trs(const dvec3& t, const glm::dquat& r, const dvec3& s) {
                dvec4(t, 1));
 }
 
-// Singular as far as single precision can tell, which is what the renderer computes with.
-bool singular(const dmat4& m) {
+enum class Kind {
+  regular,  // can be inverted as far as single precision can tell, which is what the renderer computes with
+  flat,     // takes volumes to areas
+  nothing,  // takes areas to lines or points
+  endless,  // beyond single precision's range
+};
+
+Kind kind_of(const dmat4& m) {
   double largest = 0;
   for (int c = 0; c < 4; ++c)
     for (int r = 0; r < 4; ++r) {
-      if (!std::isfinite(m[c][r]) || std::abs(m[c][r]) > 1e18) return true;
+      if (!std::isfinite(m[c][r]) || std::abs(m[c][r]) > 1e18) return Kind::endless;
       if (c < 3) largest = std::max(largest, std::abs(m[c][r]));
     }
-  const auto determinant = static_cast<float>(glm::determinant(dmat3(m)));
-  if (!std::isnormal(determinant)) return true;
-  return std::abs(glm::determinant(dmat3(m) / largest)) < 1e-12;
+  if (largest == 0) return Kind::nothing;
+  const dmat3 linear(m), unit = linear / largest;
+  if (std::isnormal(static_cast<float>(glm::determinant(linear))) &&
+      std::abs(glm::determinant(unit)) >= 1e-12)
+    return Kind::regular;
+  double area = 0;
+  for (int c = 0; c < 3; ++c) area = std::max(area, glm::length(glm::cross(unit[c], unit[(c + 1) % 3])));
+  return area < 1e-12 ? Kind::nothing : Kind::flat;
 }
 
-dvec3 unit(const dvec4& column) { return glm::normalize(dvec3(column)); }
+// An axis of a matrix of rank 2 or 3; where it has no length, what the two others give.
+dvec3 axis(const dmat4& m, int i) {
+  const dvec3 column(m[i]);
+  const dvec3 across = glm::cross(dvec3(m[(i + 1) % 3]), dvec3(m[(i + 2) % 3]));
+  return glm::normalize(glm::length(column) > 0 ? column : across);
+}
 
 class Walker {
  public:
   Walker(Document& document, Scene& scene) : document_(document), scene_(scene), root_(document.root()) {}
 
-  void walk() {
+  Placement walk() {
     std::vector<std::pair<uint32_t, dmat4>> stack;
     const std::vector<uint32_t> roots = find_roots();
     for (size_t i = roots.size(); i-- > 0;) stack.emplace_back(roots[i], dmat4(1));
@@ -48,18 +65,18 @@ class Walker {
       stack.pop_back();
       const tinygltf::Node& node = document_.model.nodes[index];
       const Item item = root_.at("nodes").at(index);
-      const dmat4 local = local_matrix(node, item);
-      // The first singular matrix on the way down is the culprit; what hangs below decides whether it
-      // matters.
-      if (singular(local) && holds_anything(index))
-        item.fail(
-            "the node's matrix is singular or not finite, but the node or one below holds a mesh, camera or "
-            "light");
-      const dmat4 world = parent * local;
+      dmat4 world;
+      try {
+        world = parent * local_matrix(node, item);
+      } catch (const Error&) {
+        if (holds_anything(index)) throw;
+        continue;
+      }
       visit(index, node, item, world);
       for (size_t i = node.children.size(); i-- > 0;)
         stack.emplace_back(static_cast<uint32_t>(node.children[i]), world);
     }
+    return std::move(placement_);
   }
 
  private:
@@ -121,32 +138,126 @@ class Walker {
     return trs(t, r, s);
   }
 
+  // The node's matrix in the world, whether or not the scene shows the node.
+  dmat4 global_matrix(uint32_t index) {
+    if (globals_.empty()) {
+      globals_.resize(document_.model.nodes.size());
+      parents_.assign(globals_.size(), k_none);
+      for (uint32_t i = 0; i < globals_.size(); ++i)
+        for (int child : document_.model.nodes[i].children) parents_[static_cast<size_t>(child)] = i;
+    }
+    std::vector<uint32_t> chain;
+    for (uint32_t at = index; at != k_none && !globals_[at]; at = parents_[at]) chain.push_back(at);
+    for (size_t i = chain.size(); i-- > 0;) {
+      const uint32_t at = chain[i], parent = parents_[at];
+      const dmat4 local = local_matrix(document_.model.nodes[at], root_.at("nodes").at(at));
+      globals_[at] = parent == k_none ? local : *globals_[parent] * local;
+    }
+    return *globals_[index];
+  }
+
+  std::vector<dmat4> joint_matrices(const Item& skin_of_node) {
+    const auto skins = root_.find("skins");
+    const uint32_t index = skin_of_node.index(skins ? skins->size() : 0, "skins");
+    const Item skin = skins->at(index);
+    const Item joints = skin.at("joints");
+    if (joints.size() == 0) joints.fail("expected at least one");
+    std::optional<AccessorReader> inverse;
+    if (const auto found = skin.find("inverseBindMatrices")) {
+      inverse.emplace(document_, found->index(document_.model.accessors.size(), "accessors"));
+      if (inverse->components() != 16 || inverse->component_type() != TINYGLTF_COMPONENT_TYPE_FLOAT)
+        found->fail("expected 4 x 4 matrices of floats");
+      if (inverse->count() < joints.size())
+        found->fail("{} matrices, but the skin has {} joints", inverse->count(), joints.size());
+    }
+    document_.budget.take(joints.size() * sizeof(dmat4), joints.where(), "{} joints", joints.size());
+    std::vector<dmat4> result;
+    result.reserve(joints.size());
+    for (size_t i = 0; i < joints.size(); ++i) {
+      glm::mat4 bind(1);
+      if (inverse) inverse->read(i, &bind[0][0], 16);
+      result.push_back(global_matrix(joints.at(i).index(document_.model.nodes.size(), "nodes")) *
+                       dmat4(bind));
+    }
+    return result;
+  }
+
+  // Weights of morph targets: the node's, else the mesh's. Empty where all are 0.
+  std::vector<float> morph_weights(const Item& node, uint32_t mesh) const {
+    auto list = node.find("weights");
+    if (!list) list = root_.at("meshes").at(mesh).find("weights");
+    std::vector<float> weights;
+    for (size_t i = 0; list && i < list->size(); ++i)
+      weights.push_back(static_cast<float>(list->at(i).number()));
+    if (std::all_of(weights.begin(), weights.end(), [](float w) { return w == 0; })) weights.clear();
+    return weights;
+  }
+
+  // The use of a mesh that all nodes with the same weights share.
+  Id shared_use(uint32_t mesh, const std::vector<float>& weights) {
+    const auto [place, fresh] = shared_.try_emplace(std::make_pair(mesh, weights), k_none);
+    if (fresh) place->second = add_use({mesh, {weights, {}, {}}});
+    return place->second;
+  }
+
+  Id add_use(MeshUse use) {
+    placement_.uses.push_back(std::move(use));
+    return static_cast<Id>(placement_.uses.size() - 1);
+  }
+
   void visit(uint32_t index, const tinygltf::Node& node, const Item& item, const dmat4& world) {
     const auto extensions = item.find("extensions");
     const auto light = light_of(index);
-    const bool holds = node.mesh >= 0 || node.camera >= 0 || light;
-    if (holds && singular(world)) item.fail("the node's matrix in the world is singular or not finite");
+    if (node.mesh < 0 && node.camera < 0 && !light) return;
+    const auto skin = node.mesh >= 0 ? item.find("skin") : std::nullopt;
+    const Kind kind = kind_of(world);
+    if (kind == Kind::endless && (!skin || node.camera >= 0 || light))
+      item.fail("the node's matrix in the world is not finite");
     const std::string name = node.name.empty() ? fmt::format("node {}", index) : node.name;
     const std::string group = light_group(item);
     if (node.mesh >= 0) {
+      const auto mesh = static_cast<uint32_t>(node.mesh);
       const size_t before = scene_.instances.size();
       const auto instancing = extensions ? extensions->find("EXT_mesh_gpu_instancing") : std::nullopt;
-      if (instancing)
-        add_instances(*instancing, name, static_cast<Id>(node.mesh), world);
+      const std::vector<float> weights = morph_weights(item, mesh);
+      if (skin && instancing)
+        document_.warnings.add("{} skinned meshes with EXT_mesh_gpu_instancing: shown once",
+                               instancing->path());
+      if (skin)
+        place_instance(name, add_use({mesh, {weights, joint_matrices(*skin), world}}), dmat4(1));
+      else if (instancing)
+        add_instances(*instancing, name, mesh, weights, world);
       else
-        add_instance(name, static_cast<Id>(node.mesh), world);
+        add_instance(name, mesh, weights, world, item.path());
       for (size_t i = before; !group.empty() && i < scene_.instances.size(); ++i)
         scene_.instances[i].group = group;
+    }
+    if ((node.camera >= 0 || light) && kind == Kind::nothing) {
+      document_.warnings.add("{} cameras or lamps in nodes of scale 0: left out", item.path());
+      return;
     }
     if (node.camera >= 0) add_camera(name, static_cast<size_t>(node.camera), world);
     if (light) add_light(*light, name, world, group);
   }
 
-  void add_instance(const std::string& name, Id mesh, const dmat4& world) {
-    scene_.instances.push_back({name, mesh, mat4(world), glm::determinant(dmat3(world)) < 0, {}});
+  void place_instance(const std::string& name, Id use, const dmat4& world) {
+    scene_.instances.push_back({name, use, mat4(1), glm::determinant(dmat3(world)) < 0, {}});
+    placement_.instances.push_back(world);
   }
 
-  void add_instances(const Item& extension, const std::string& name, Id mesh, const dmat4& world) {
+  void add_instance(const std::string& name, uint32_t mesh, const std::vector<float>& weights,
+                    const dmat4& world, const std::string& where) {
+    const Kind kind = kind_of(world);
+    if (kind == Kind::nothing)
+      document_.warnings.add("{} meshes in nodes or instances of scale 0: left out", where);
+    else if (kind == Kind::flat)
+      place_instance(name, add_use({mesh, {weights, {}, world}}), dmat4(1));
+    else
+      place_instance(name, shared_use(mesh, weights), world);
+  }
+
+  void add_instances(const Item& extension, const std::string& name, uint32_t mesh,
+                     const std::vector<float>& weights, const dmat4& world) {
     const Item attributes = extension.at("attributes");
     std::optional<AccessorReader> readers[3];
     const char* keys[3] = {"TRANSLATION", "ROTATION", "SCALE"};
@@ -166,19 +277,23 @@ class Walker {
                                   [](const auto& reader) { return reader && reader->backed(); }))
       attributes.fail("{} instances, of which no attribute has a buffer view", count);
     const size_t text = name.size() + 1 + std::to_string(count).size();
-    document_.budget.take(count * (sizeof(Instance) + (text > 15 ? text + 17 : 0)), extension.where(),
-                          "{} instances", count);
+    document_.budget.take(count * (sizeof(Instance) + sizeof(dmat4) + (text > 15 ? text + 17 : 0)),
+                          extension.where(), "{} instances", count);
     scene_.instances.reserve(scene_.instances.size() + count);
+    placement_.instances.reserve(placement_.instances.size() + count);
     for (size_t i = 0; i < count; ++i) {
       vec3 t(0), s(1);
       vec4 q(0, 0, 0, 1);
       if (readers[0]) readers[0]->read(i, &t[0], 3);
       if (readers[1]) readers[1]->read(i, &q[0], 4);
       if (readers[2]) readers[2]->read(i, &s[0], 3);
-      const glm::dquat r(q.w, q.x, q.y, q.z);
+      glm::dquat r(q.w, q.x, q.y, q.z);
+      // What has no size may have no rotation either.
+      if (s == vec3(0)) r = glm::dquat(1, 0, 0, 0);
       const dmat4 to_world = world * trs(dvec3(t), r / glm::length(r), dvec3(s));
-      if (singular(to_world)) extension.fail("the matrix of instance {} is singular or not finite", i);
-      add_instance(fmt::format("{} #{}", name, i), mesh, to_world);
+      if (kind_of(to_world) == Kind::endless) extension.fail("the matrix of instance {} is not finite", i);
+      add_instance(fmt::format("{} #{}", name, i), mesh, weights, to_world,
+                   fmt::format("{}, instance {}", extension.path(), i));
     }
   }
 
@@ -188,30 +303,52 @@ class Walker {
     camera.name = item.text("name", node);
     if (camera.name.empty()) camera.name = node;
     // Right angles and unit lengths: a camera has no scale, though a mirrored one stays mirrored.
-    const dvec3 z = unit(world[2]);
-    const dvec3 y = glm::normalize(dvec3(world[1]) - z * glm::dot(z, dvec3(world[1])));
-    const dvec3 x = glm::cross(y, z) * (glm::determinant(dmat3(world)) < 0 ? -1.0 : 1.0);
-    camera.to_world = mat4(dmat4(dvec4(x, 0), dvec4(y, 0), dvec4(z, 0), world[3]));
+    const dvec3 z = axis(world, 2), up = axis(world, 1);
+    dvec3 y = up - z * glm::dot(z, up);
+    if (glm::length(y) < 1e-9) y = glm::cross(z, dvec3(world[0]));
+    y = glm::normalize(y);
+    dvec3 x = glm::cross(y, z) * (glm::determinant(dmat3(world)) < 0 ? -1.0 : 1.0);
+    try {
+      read_lens(item, camera);
+    } catch (const Error& error) {
+      // As good as none, and no reason to keep a scene from opening that may never look through it.
+      document_.warnings.add("{} cameras that cannot be used: left out", error.what());
+      return;
+    }
+    if (camera.xmag < 0) x = -x;
+    if (camera.ymag < 0) y = -y;
+    camera.xmag = std::abs(camera.xmag), camera.ymag = std::abs(camera.ymag);
+    camera.to_world = mat4(dmat4(dvec4(x, 0), dvec4(y, 0), dvec4(z, 0), dvec4(0, 0, 0, 1)));
+    placement_.cameras.push_back(world);
+    scene_.cameras.push_back(camera);
+  }
+
+  // Fills what a glTF camera says of its lens; negative xmag and ymag, which mirror the picture, stay so.
+  void read_lens(const Item& item, Camera& camera) {
     const std::string& type = item.at("type").text();
-    const auto positive = [](const Item& parent, const char* key, double most) {
+    const auto within = [](const Item& parent, const char* key, double least, double most) {
       const double value = parent.at(key).number();
-      if (!(value > 0) || value > most) parent.at(key).fail("{} is not above 0 and at most {}", value, most);
+      if (value == 0 || !(value >= least) || value > most)
+        parent.at(key).fail("{} is not {} and at most {}", value, least < 0 ? "other than 0" : "above 0",
+                            most);
       return static_cast<float>(value);
     };
     if (type == "perspective") {
       const Item p = item.at("perspective");
-      camera.yfov = positive(p, "yfov", 3.14);
-      if (p.find("aspectRatio")) camera.aspect = positive(p, "aspectRatio", 1e4);
+      camera.yfov = within(p, "yfov", 0, 3.14);
+      if (p.find("aspectRatio")) camera.aspect = within(p, "aspectRatio", 0, 1e4);
     } else if (type == "orthographic") {
       const Item o = item.at("orthographic");
       camera.orthographic = true;
-      camera.xmag = positive(o, "xmag", 1e9);
-      camera.ymag = positive(o, "ymag", 1e9);
-      camera.aspect = camera.xmag / camera.ymag;
+      camera.xmag = within(o, "xmag", -1e9, 1e9);
+      camera.ymag = within(o, "ymag", -1e9, 1e9);
+      camera.aspect = std::abs(camera.xmag / camera.ymag);
+      if (camera.xmag < 0 || camera.ymag < 0)
+        document_.warnings.add("{} cameras with a negative xmag or ymag: their pictures are mirrored",
+                               o.path());
     } else {
       item.at("type").fail("'{}', expected perspective or orthographic", type);
     }
-    scene_.cameras.push_back(camera);
   }
 
   void add_light(const Item& reference, const std::string& node, const dmat4& world,
@@ -240,8 +377,7 @@ class Walker {
     light.intensity = glm::clamp(value, vec3(0), vec3(1e30f));
     if (value != light.intensity)
       document_.warnings.add("{} lights with a negative or endless intensity: clamped", item.path());
-    light.position = vec3(world[3]);
-    light.direction = vec3(-unit(world[2]));
+    light.direction = vec3(-axis(world, 2));
     if (const auto spot = item.find("spot"); spot && light.kind == LightKind::spot) {
       const double outer = spot->number("outerConeAngle", glm::radians(45.0));
       const double inner = spot->number("innerConeAngle", 0);
@@ -254,11 +390,16 @@ class Walker {
                                spot->path());
     }
     scene_.lights.push_back(light);
+    placement_.lights.emplace_back(world[3]);
   }
 
   Document& document_;
   Scene& scene_;
   Item root_;
+  Placement placement_;
+  std::map<std::pair<uint32_t, std::vector<float>>, Id> shared_;
+  std::vector<std::optional<dmat4>> globals_;  // by node, once asked for
+  std::vector<uint32_t> parents_;
 };
 
 }  // namespace
@@ -271,6 +412,6 @@ std::optional<Item> default_scene(const Document& document) {
       static_cast<size_t>(root.integer("scene", 0, 0, static_cast<int64_t>(scenes->size()) - 1)));
 }
 
-void load_nodes(Document& document, Scene& scene) { Walker(document, scene).walk(); }
+Placement load_nodes(Document& document, Scene& scene) { return Walker(document, scene).walk(); }
 
 }  // namespace lucerna::scene

@@ -1,15 +1,34 @@
 #pragma once
 // The node hierarchy of a glTF document.
-#include <map>
+#include <optional>
 
+#include "scene/io/deform.h"
 #include "scene/io/document.h"
 
 namespace lucerna::scene {
 
+/// A glTF mesh in one pose. Nodes that show a mesh alike share it.
+struct MeshUse {
+  uint32_t mesh = 0;  ///< glTF index
+  Pose pose;
+};
+
+/// Where things are, in the file's coordinates and in double precision; in the order of the scene's lists.
+struct Placement {
+  std::vector<MeshUse> uses;  ///< Instance::mesh indexes these until meshes are loaded
+  std::vector<glm::dmat4> instances, cameras;
+  std::vector<glm::dvec3> lights;
+};
+
 /// Walks the default scene (scenes[scene], else the first, else all roots) and fills instances, cameras and
-/// lights. Instance::mesh holds the glTF mesh index. Throws a located Error where a matrix above a mesh,
-/// camera or light is singular or not finite.
-void load_nodes(Document& document, Scene& scene);
+/// lights, all but their places.
+/// - The matrix of a skinned mesh's node is ignored (glTF 2.0, 3.7.3.3), whatever it is.
+/// - A matrix that is singular in single precision but of rank 2 flattens meshes, which then have a pose of
+///   their own; cameras and lights keep the orientation that their other axes give. What has a matrix of
+///   rank 1 or 0 (scale 0 hides things: glTF 2.0, 3.5.3) is left out with a warning.
+/// - A camera whose values cannot be used is left out with a warning.
+/// Throws a located Error where a matrix above a mesh, camera or light is not finite.
+Placement load_nodes(Document& document, Scene& scene);
 
 /// The scene object that load_nodes walks, if there is one.
 std::optional<Item> default_scene(const Document& document);
