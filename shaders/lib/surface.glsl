@@ -191,8 +191,9 @@ mat3 shading_frame(Surface s, vec3 wo) {
   return mat3(t, b, n);
 }
 
-// What a diffuse lobe makes of flux that arrives on the surface that is there from wi, while paths from the eye weigh it by the
-// shading normal: f_D |wi.n_s| / |wi.n_g|. `to_world`: the shading frame on the viewer's side; `reflected`: wi is on that side.
+// Radiance that a diffuse lobe makes of flux F which arrived from wi on an area dA of a facet with normal n_g, while paths from the
+// eye weigh light by the shading normal: L_i dw = F / (dA |wi.n_g|), so L = f_D |wi.n_s| / |wi.n_g| F / dA, without F / dA.
+// `to_world`: the shading frame on the viewer's side; `reflected`: wi is on that side.
 vec3 diffuse_of_flux(Bsdf bsdf, mat3 to_world, vec3 normal_g, vec3 wi_world, bool reflected) {
   vec3 wi = wi_world * to_world;
   vec3 f = bsdf_diffuse(bsdf, wi);

@@ -22,6 +22,12 @@ struct photons_Vertex {
   uint from;  // first of the states in which a path goes on behind the diffuse lobe; 0: as it is
 };
 
+// The shortest rotation that takes unit vector a to b, of w.
+vec3 turn_along(vec3 w, vec3 a, vec3 b) {
+  vec3 both = a + b;
+  return w - both * (dot(both, w) / (1.0 + dot(a, b))) + b * (2.0 * dot(a, w));
+}
+
 photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   photons_Vertex vertex = photons_Vertex(0u);
   uint word = v.again ? k_photon_no_components : photons.component[v.state];
@@ -69,6 +75,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   vec3 by_group[k_group_count];  // of all that is brought, by group of lights
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) by_group[g] = vec3(0.0);
 #endif
+  uint own_facet = facet_pack(v.surface.normal_g);
   vec3 found_flat = vec3(0.0);  // of all parts that are brought, by the flat kernel
   for (int level = lowest; looks && level <= highest; ++level) {
     ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
@@ -82,13 +89,18 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         if (d2 >= r * r) continue;
         vec4 b = texelFetch(photon_texels, int(k_photon_texels * at + 1u));
         uint bits = floatBitsToUint(b.w), part = bits >> k_photon_part_shift & 3u;
-        vec3 wi = photon_direction(floatBitsToUint(a.w)), front = facet_unpack(bits & k_photon_facet);
+        vec3 wi = photon_direction(floatBitsToUint(a.w));
+        // The normal of the photon's facet, without the error of its 22 bits where that is the vertex's own.
+        vec3 front = (bits & k_photon_facet) == own_facet ? v.surface.normal_g : facet_unpack(bits & k_photon_facet);
         // The side on which it arrives is the one that the path sees, or its surface is this one, lit from behind.
-        bool reflected = dot(wi, v.side) > 0.0;
         vec3 side = dot(wi, front) > 0.0 ? front : -front;
+        bool reflected = dot(side, v.side) > 0.0;
         float agree = reflected ? dot(side, v.side) : dot(front, v.surface.normal_g);
-        bool counts = ((only >> part & 1u) == 0u || (bits & k_photon_unreachable) != 0u) && agree > k_photon_normals && abs(dot(away, v.surface.normal_g)) < k_photon_slab * r;
-        vec3 flux = counts ? diffuse_of_flux(v.bsdf, v.to_world, v.surface.normal_g, wi, reflected) * b.rgb : vec3(0.0), light = flux * photon_kernel(d2, r);
+        bool wanted = (only >> part & 1u) == 0u || (bits & k_photon_unreachable) != 0u;
+        if (!wanted || agree <= k_photon_normals || abs(dot(away, v.surface.normal_g)) >= k_photon_slab * r) continue;
+        // Its facet is turned into this one's plane: the cosine that the flux is divided by is that to the photon's own facet.
+        wi = reflected ? turn_along(wi, side, v.side) : turn_along(wi, front, v.surface.normal_g);
+        vec3 flux = diffuse_of_flux(v.bsdf, v.to_world, v.surface.normal_g, wi, reflected) * b.rgb, light = flux * photon_kernel(d2, r);
         bool brought = part > 0u && (components >> 4u * part & 15u) < k_component_count;
         found_flat += brought ? flux * photon_flat_kernel(r) : vec3(0.0);
         found_1 += part == 1u ? light : vec3(0.0);
