@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "shaders/shared/transport.h"
+#include "upload/media.h"
 
 namespace lucerna::transport {
 
@@ -35,6 +36,12 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.roulette_depth = options.roulette_depth;
   f.most_branches = ~0u;
   f.scene_radius = flat.scene_radius;
+  Box start;
+  start.grow(f.camera_origin);
+  if (camera.orthographic)
+    for (const float x : {-1.0f, 1.0f})
+      for (const float y : {-1.0f, 1.0f}) start.grow(f.camera_origin + x * f.camera_right + y * f.camera_up);
+  f.camera_in_solids = upload::meets_solids(flat, start);
   if (flat.groups) f.sky_group = flat.groups->sky, f.sun_group = flat.groups->sun;
   const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);
   const std::vector<uint32_t> table = paths::pack(automaton, options.enabled, options.routes, met);

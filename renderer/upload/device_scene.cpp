@@ -72,7 +72,8 @@ LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat, const Li
 
 MaterialBuffers::MaterialBuffers(gpu::Device& device, const FlatMaterials& flat)
     : materials(upload(device, "scene materials", flat.materials)),
-      tables(upload(device, "albedo tables", flat.bsdf_tables)) {}
+      tables(upload(device, "albedo tables", flat.bsdf_tables)),
+      media(upload(device, "volumes", flat.media)) {}
 
 DeviceScene::DeviceScene(gpu::Device& device, const FlatScene& flat, const bvh::BvhData& tree)
     : triangles_(upload(device, "scene triangles", flat.triangles)),
@@ -125,6 +126,7 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("sun_cells", lights_.environment->sun_cells);
   r.set("sun_density", lights_.sun_density);
   r.set("bsdf_table", materials_.tables);
+  r.set("scene_media", materials_.media);
   r.set("bvh_nodes", nodes_);
   r.set("bvh_triangles", bvh_triangles_);
   for (size_t b = 0; b < buckets_.size(); ++b) r.set(fmt::format("texture_bucket_{}", b), buckets_[b]);
@@ -147,6 +149,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_THIN_GLASS", e.thin_glass);
   set("LUCERNA_DIFFUSE_TRANSMISSION", e.diffuse_transmission);
   set("LUCERNA_VOLUMES", e.volumes);
+  d["LUCERNA_MEDIA"] = std::to_string(e.media);
   set("LUCERNA_UNLIT", e.unlit);
   set("LUCERNA_ALPHA", e.alpha);
   set("LUCERNA_NORMAL_MAPS", e.normal_maps);

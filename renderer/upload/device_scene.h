@@ -29,12 +29,12 @@ struct LightBuffers {
   std::shared_ptr<const EnvironmentBuffers> environment;
 };
 
-/// Materials on the device, with the albedo tables of their glasses.
+/// Materials on the device, with the albedo tables of their glasses and the volumes of their solids.
 struct MaterialBuffers {
   MaterialBuffers() = default;
   MaterialBuffers(gpu::Device& device, const FlatMaterials& flat);
   explicit operator bool() const { return bool(materials); }
-  gpu::Buffer materials, tables;
+  gpu::Buffer materials, tables, media;
 };
 
 class DeviceScene {
@@ -46,7 +46,7 @@ class DeviceScene {
   const LightBuffers& lights() const { return lights_; }
   MaterialBuffers exchange(MaterialBuffers materials, const Effects& effects) noexcept;
   /// Names: scene_*, texture_bucket_N, light_alias, PrimitiveLightPmf, environment_*, sun_*, bsdf_table,
-  /// bvh_nodes, bvh_triangles.
+  /// scene_media, bvh_nodes, bvh_triangles.
   void bind(gpu::Resources& resources) const;
   /// #defines that compile in what the scene needs and nothing else.
   gpu::Defines defines() const;

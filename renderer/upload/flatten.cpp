@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "upload/alias_table.h"
 #include "upload/bsdf_table.h"
+#include "upload/media.h"
 #include "upload/textures.h"
 
 namespace lucerna::upload {
@@ -128,6 +129,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
   if (flat.bsdf_tables.empty() || flat.glass_iors != glass_iors)
     flat.bsdf_tables = build_bsdf_tables(glass_iors);
   flat.glass_iors = std::move(glass_iors);
+  flatten_media(flat);
 }
 
 namespace {

@@ -22,6 +22,7 @@ struct Effects {
   /// Lamps that a light sample is drawn from by what each sends there, besides its power; 0: there are few.
   uint32_t lamp_candidates = 0;
   bool sky_apart = false, sun = false;  ///< FlatScene::sun_threshold; texels that are brighter
+  uint32_t media = 0;                   ///< that solids hold, where any absorbs (upload/media.h)
   uint32_t light_groups = 1;            ///< that are kept apart (FlatScene::groups)
   bool group_components = true;         ///< ... by component, too
   bool uv_transforms = false;           ///< a use of a texture that is scaled, turned or shifted
@@ -81,11 +82,15 @@ struct Emission {
 /// What flatten_lights() makes.
 struct FlatLights : LightDistribution, Emission {};
 
+struct SolidShells;  // upload/media.h
+
 /// What flatten_factors() makes, with the uses of textures.
 struct FlatMaterials {
   std::vector<vec4> materials;
   std::vector<vec4> bsdf_tables;
-  std::vector<float> glass_iors;  ///< that they are for
+  std::vector<float> glass_iors;              ///< that they are for
+  std::vector<vec4> media;                    ///< scene_media; empty: no solid absorbs
+  std::shared_ptr<const SolidShells> shells;  ///< that `media` is made of
 };
 
 struct FlatScene : FlatLights, FlatMaterials {

@@ -11,7 +11,7 @@ void main() {
   uint index = global_index();
   if (index >= push.count) return;
   float told = texelFetch(candidate_texels, int(slot_of(index) * k_candidate_texels)).w;
-  uint origin = told > 0.0 ? (uint(told) - 1u) % k_candidate_medium : 0u;
+  uint origin = told > 0.0 ? (uint(told) - 1u) % k_candidate_media : 0u;
   taken[index] = told > 0.0 && (origin != k_origin_screen || push.screen_too != 0u) ? 1u : 0u;
   if (told > 0.0) atomicAdd(asked[index / (64u * push.samples) * 3u + origin], 1u);
 }

@@ -44,7 +44,7 @@ void main() {
   OctreeRange range = cache_range(x, light > 0.0);
   for (uint i = range.first; i < range.last; ++i) {
     uint other = octree_sphere(i);
-    float weight = other == record ? 0.0 : read_weight(x, n, record_medium(record), i);
+    float weight = other == record ? 0.0 : read_weight(x, n, record_media(record), i);
     vec3 facing = texelFetch(record_texels, int(other * k_record_texels + 1u)).xyz;
     others += weight > 0.0 ? weight * extrapolated(other, facing, x - octree_copy(i).xyz, n) : 0.0;
     weights += weight;

@@ -1,5 +1,5 @@
 // Irradiance as the present records give it at the points of the screen-space stage, what its noise is, and how near the
-// nearest of those that serve is. The camera is in no medium.
+// nearest of those that serve is.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "shaders/shared/irradiance_cache/discontinuity.h"
@@ -12,9 +12,10 @@ void main() {
   uint point = global_index();
   if (point >= push.count) return;
   vec4 place = texelFetch(surface_texels, int(point * k_surface_texels));
-  vec3 normal = texelFetch(surface_texels, int(point * k_surface_texels + 1u)).xyz;
+  vec4 seen = texelFetch(surface_texels, int(point * k_surface_texels + 1u));
+  vec3 normal = seen.xyz;
   bool solid = place.w >= 0.0;
-  Cached found = cache_lookup(place.xyz, normal, normal, 0u, solid, 0.0);
+  Cached found = cache_lookup(place.xyz, normal, normal, floatBitsToUint(seen.w) >> k_surface_media_shift, solid, 0.0);
   float light = 0.0, nearest = k_infinity, weights = 0.0, variance = 0.0;
   for (uint p = 0u; p < k_part_count; ++p) light += luminance(found.part[p]);
   OctreeRange range = cache_range(place.xyz, solid && found.weight > 0.0);

@@ -56,7 +56,7 @@ vec4 record_shape(uint record, vec4 place) {
 #endif
 }
 
-uint record_medium(uint record) { return floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 5u)).x); }
+uint record_media(uint record) { return floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 5u)).x); }
 
 bool record_crowded(uint record) {
   return record_flagged_crowded(texelFetch(record_texels, int(record * k_record_texels + 2u)).w);
@@ -115,9 +115,9 @@ OctreeRange cache_range(vec3 x, bool asks) {
 
 // `n`: geometric, on the side whose light is asked for; `shading`: the normal that the light falls on. They may differ by
 // what the gradient of rotation can bridge; beyond that nothing is served. `asks` false: an empty answer, without work.
-// `medium`: that the point lies in, as PathState has it; records of others have other light. `u`: a number in [0, 1) by which
+// `media`: that the point lies in, as PathState has them; records of others have other light. `u`: a number in [0, 1) by which
 // a record is drawn where groups of lights are kept apart.
-Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks, float u) {
+Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool asks, float u) {
   Cached found;
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
   found.weight = 0.0;
@@ -138,7 +138,7 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint medium, bool asks, float 
       vec3 off_centre = x - place.xyz;
       within = dot(off_centre, off_centre) < square(place.w);
 #if LUCERNA_VOLUMES
-      within = within && record_medium(octree_sphere(i)) == medium;
+      within = within && record_media(octree_sphere(i)) == media;
 #endif
     }
     uint record = octree_sphere(at);

@@ -24,7 +24,7 @@ struct ErrorSums {
 
 // Adds what a path reads where that was noted, `share` of it.
 void propagate(inout ErrorSums sum, vec4 note, vec4 facing, float share) {
-  uint bits = floatBitsToUint(note.w), state = (bits - 1u) % k_note_medium, medium = (bits - 1u) / k_note_medium;
+  uint bits = floatBitsToUint(note.w), state = (bits - 1u) % k_note_media, media = (bits - 1u) / k_note_media;
   bool there = bits != 0u && share > 0.0;
   vec3 brings = throughput_unpack(floatBitsToUint(facing.w));
   uint routes = cache.routes[there ? state : 0u];
@@ -34,7 +34,7 @@ void propagate(inout ErrorSums sum, vec4 note, vec4 facing, float share) {
   float weights = 0.0;
   OctreeRange range = cache_range(note.xyz, there);
   for (uint i = range.first; i < range.last; ++i) {
-    float weight = read_weight(note.xyz, facing.xyz, medium, i);
+    float weight = read_weight(note.xyz, facing.xyz, media, i);
     if (weight <= 0.0) continue;
     uint record = octree_sphere(i);
     float light = 0.0;

@@ -5,13 +5,13 @@
 #include "irradiance_cache/error_propagation.glsl"
 
 // The weight that cache_lookup() gives the record in place `at` of the octree's lists, 0: none.
-float read_weight(vec3 x, vec3 n, uint medium, uint at) {
+float read_weight(vec3 x, vec3 n, uint media, uint at) {
   uint record = octree_sphere(at);
   vec4 place = octree_copy(at), facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
   vec3 away = x - place.xyz;
   bool within = dot(away, away) < square(place.w) && !record_crowded(record);
 #if LUCERNA_VOLUMES
-  within = within && record_medium(record) == medium;
+  within = within && record_media(record) == media;
 #endif
   return within ? record_weight(x, n, place, facing, record_shape(record, place)) : 0.0;
 }

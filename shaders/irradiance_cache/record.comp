@@ -36,7 +36,7 @@ void main() {
   p.pixel = (push.pilot != 0u ? 0xc0000000u : 0x80000000u) | record;  // sequences apart from the pixels', and from each other
   p.sample_index = push.rays_before + cell;
   p.bits = push.state | k_path_sky_only | 1u << k_path_events_shift;
-  p.medium = floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 5u)).x);
+  p.media = floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 5u)).x);
   p.travelled = 0.0;
   p.eta_scale = 1.0;
   p.nulls = 0u;

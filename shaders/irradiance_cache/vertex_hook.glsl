@@ -60,12 +60,12 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     vec3 albedo = v.path.throughput * (facing == 0 ? v.bsdf.diffuse_albedo : v.bsdf.transmitted_albedo) * k_inv_pi;
     bool asks = x.looks && max3(albedo) > 0.0;
     // What lies on that side of the surface.
-    uint medium = 0u;
+    uint media = 0u;
 #if LUCERNA_VOLUMES
-    medium = facing == 0 || !v.surface.parameters.solid ? v.path.medium : v.surface.front ? v.surface.material + 1u : 0u;
+    media = facing == 0 ? v.path.media : media_behind(v.surface, v.path.media);
 #endif
     float sign = facing == 0 ? 1.0 : -1.0;
-    Cached found = cache_lookup(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], medium, asks, record_lot(v));
+    Cached found = cache_lookup(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], media, asks, record_lot(v));
     bool missing = asks && found.weight <= 0.0;
     // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
     bool notes = ((missing && found.guide == k_no_guide) || (asks && notes_all)) && cache.probing != k_probe_none && !cache_propagates() &&
@@ -74,7 +74,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     if (notes && (servable || screen)) {
       uint origin = beyond ? k_origin_recursive : v.depth == 0u ? k_origin_screen : k_origin_world;
       x.noted = true;
-      x.note = vec4(offset_origin(v.surface, sign * v.side), (servable ? 1.0 : -1.0) * float(1u + origin + k_candidate_medium * medium));
+      x.note = vec4(offset_origin(v.surface, sign * v.side), (servable ? 1.0 : -1.0) * float(1u + origin + k_candidate_media * media));
       x.note_facing = vec4(sign * x.smooth_side, uintBitsToFloat(facet_pack(sign * v.side)));
     }
     x.alone = x.alone || missing;
@@ -139,12 +139,12 @@ void cache_leave(VertexIn v, inout cache_Vertex x, Leaving l, inout vec3 through
   bool reads = propagates && x.looks && !x.alone && diffuse, later = reads && cache_state_of(v) >= k_fallback_state;
   if (later) throughput *= 2.0;
   if (reads && l.finite && (later ? cache_coin(v) : cache.probing == k_probe_errors)) {
-    uint medium = 0u;
+    uint media = 0u;
 #if LUCERNA_VOLUMES
-    medium = !l.b.transmitted || !v.surface.parameters.solid ? v.path.medium : v.surface.front ? v.surface.material + 1u : 0u;
+    media = l.b.transmitted ? media_behind(v.surface, v.path.media) : v.path.media;
 #endif
     x.noted = true;
-    x.note = vec4(v.surface.position, uintBitsToFloat(1u + cache_state_of(v) + k_note_medium * medium));
+    x.note = vec4(v.surface.position, uintBitsToFloat(1u + cache_state_of(v) + k_note_media * media));
     x.note_facing = vec4(l.b.transmitted ? -x.smooth_side : x.smooth_side, uintBitsToFloat(throughput_pack(throughput * k_inv_pi)));
     go_on = false;
   }

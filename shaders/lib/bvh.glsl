@@ -13,6 +13,7 @@
 #include "lib/variants.glsl"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/trace.h"
+#include "lib/triangle_test.glsl"
 
 // ---- fetch ----
 #if LUCERNA_FETCH_STORAGE
@@ -43,83 +44,6 @@ const uint k_bvh_flag = 0x80000000u;  // of a link: leaf; of a triangle: non-opa
 const uint k_bvh_prim = 0x1fffffffu;  // of a triangle's word, its id
 const uint k_bvh_done = 0xffffffffu;  // no link: no leaf has 7 triangles
 
-// ---- triangles ----
-// Watertight test of Woop, Benthin and Wald (JCGT 2(1), 2013): vertices are moved so that the ray starts at the origin
-// and sheared so that it runs along the axis kz in which its direction is largest; the signs of three 2D edge functions
-// then decide. `precise` matters: a fused multiply-add would give two triangles different signs for the edge that they
-// share. renderer/bvh/embree/packed_triangles.h is the same test, operation by operation.
-struct ShearedRay {
-  vec3 origin;  // kx, ky, kz
-  vec3 shear;
-  bvec3 along;  // which axis kz is
-};
-
-vec3 bvh_permute(vec3 v, bvec3 along) {
-  return along.x ? v.yzx : along.y ? v.zxy : v;
-}
-
-ShearedRay bvh_shear(Ray ray) {
-  vec3 a = abs(ray.direction);
-  ShearedRay s;
-  s.along.x = a.x >= a.y && a.x >= a.z;
-  s.along.y = !s.along.x && a.y >= a.z;
-  s.along.z = !s.along.x && !s.along.y;
-  vec3 d = bvh_permute(ray.direction, s.along);
-  s.origin = bvh_permute(ray.origin, s.along);
-  precise float inverse = 1.0 / d.z;
-  precise vec2 shear = d.xy * inverse;
-  s.shear = vec3(shear, inverse);
-  return s;
-}
-
-// The rounding error of the product a * b = p, exactly (T. J. Dekker, Numer. Math. 18, 1971): each factor is cut in two
-// halves whose products need no rounding. It needs neither a fused multiply-add, which Vulkan does not promise to be
-// fused, nor double precision, which a device may lack.
-float bvh_product_error(float a, float b, float p) {
-  precise float ca = 4097.0 * a, cb = 4097.0 * b;
-  precise float ah = ca - (ca - a), bh = cb - (cb - b);
-  precise float al = a - ah, bl = b - bh;
-  precise float e = ((ah * bh - p) + ah * bl + al * bh) + al * bl;
-  return e;
-}
-
-// a * b - c * d. Where both products round to the same float, it is the difference of their errors, so that the sign
-// is always exact.
-float bvh_difference(float a, float b, float c, float d) {
-  precise float p = a * b;
-  precise float q = c * d;
-  precise float r = p - q;
-#if !LUCERNA_ROUNDED_EDGES
-  precise float e = bvh_product_error(a, b, p) - bvh_product_error(c, d, q);
-  r = r == 0.0 ? e : r;
-#endif
-  return r;
-}
-
-// Whether the ray's line passes through the triangle; if so, where: distance t (of any sign), weights u of p1, v of p2.
-bool bvh_test(ShearedRay s, vec3 p0, vec3 p1, vec3 p2, out float t, out float u, out float v) {
-  precise vec3 a = bvh_permute(p0, s.along) - s.origin;
-  precise vec3 b = bvh_permute(p1, s.along) - s.origin;
-  precise vec3 c = bvh_permute(p2, s.along) - s.origin;
-  precise vec2 a2 = a.xy - s.shear.xy * a.z;
-  precise vec2 b2 = b.xy - s.shear.xy * b.z;
-  precise vec2 c2 = c.xy - s.shear.xy * c.z;
-  precise float wa = bvh_difference(c2.x, b2.y, c2.y, b2.x);
-  precise float wb = bvh_difference(a2.x, c2.y, a2.y, c2.x);
-  precise float wc = bvh_difference(b2.x, a2.y, b2.y, a2.x);
-  precise float det = wa + wb + wc;
-  precise float scale = 1.0 / det;
-  precise float along = wa * (s.shear.z * a.z) + wb * (s.shear.z * b.z) + wc * (s.shear.z * c.z);
-  precise float distance = along * scale;
-  precise float weight_b = wb * scale;
-  precise float weight_c = wc * scale;
-  t = distance;
-  u = weight_b;
-  v = weight_c;
-  float least = min(wa, min(wb, wc)), most = max(wa, max(wb, wc));
-  return (least >= 0.0 || most <= 0.0) && det != 0.0;
-}
-
 // ---- boxes ----
 // The shear moves a triangle by up to 5 units of rounding (2^-24) of its distance, and the planes of the boxes, computed
 // as origin * inverse + byte * (cell * inverse), lie wrong by up to 5 units of theirs; boxes are widened by as much. Both
@@ -128,13 +52,6 @@ bool bvh_test(ShearedRay s, vec3 p0, vec3 p1, vec3 p2, out float t, out float u,
 float bvh_margin(Ray ray, float reach) {
   vec3 o = abs(ray.origin);
   return 6e-7 * (reach + max(o.x, max(o.y, o.z)));
-}
-
-// A direction without zeros, so that no product below is 0 * infinity.
-vec3 bvh_inverse(vec3 d) {
-  const float tiny = 1e-25;
-  bvec3 small = lessThan(abs(d), vec3(tiny));
-  return 1.0 / mix(d, mix(vec3(tiny), vec3(-tiny), lessThan(d, vec3(0.0))), small);
 }
 
 // Rounding of the three operations on each side of the slab test, 2 gamma(3) with gamma(n) = n 2^-24 / (1 - n 2^-24)

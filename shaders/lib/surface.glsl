@@ -7,6 +7,7 @@
 #include "lib/variants.glsl"
 #include "lib/frame.glsl"
 #include "lib/bsdf.glsl"
+#include "lib/media.glsl"
 
 uniform samplerBuffer scene_triangles;
 uniform samplerBuffer scene_vertices;
@@ -211,9 +212,13 @@ vec3 offset_origin(Surface s, vec3 direction) {
   return mix(intBitsToFloat(bits), moved, tiny);
 }
 
-// Absorption coefficient [1/m] of a material's volume.
-vec3 material_absorption(uint material) {
-  return texelFetch(scene_materials, int(material * k_material_texels + k_material_volume)).rgb;
+#if LUCERNA_VOLUMES
+// The media behind the surface, of a ray that goes through it.
+uint media_behind(Surface s, uint stack) {
+  uint medium = uint(texelFetch(scene_materials, int(s.material * k_material_texels + k_material_detail)).z);
+  if (medium == 0u) return stack;
+  return s.front ? media_enter(stack, medium) : media_leave(stack, medium);
 }
+#endif
 
 #endif

@@ -43,6 +43,9 @@
 #ifndef LUCERNA_VOLUMES
 #define LUCERNA_VOLUMES 0
 #endif
+#ifndef LUCERNA_MEDIA
+#define LUCERNA_MEDIA 0
+#endif
 #ifndef LUCERNA_UNLIT
 #define LUCERNA_UNLIT 0
 #endif

@@ -63,7 +63,7 @@ void store_path(uint slot, PathState p) {
   paths[slot].pdf = p.pdf;
   paths[slot].bits = p.bits;
 #if LUCERNA_VOLUMES
-  paths[slot].medium = p.medium;
+  paths[slot].media = p.media;
 #endif
 #if LUCERNA_TRANSPARENT
   paths[slot].travelled = p.travelled;

@@ -77,6 +77,10 @@ void main() {
   // Of a surface that is there in part so much is seen.
   vec3 light = v.coverage * v.arriving * reflected_to_eye(v.surface, seen.towards, -ray.direction) *
                (abs(dot(seen.towards, v.surface.normal_g)) * seen.per_cosine);
+#if LUCERNA_VOLUMES
+  bool reflected = dot(seen.towards, v.surface.normal_g) > 0.0 == v.surface.front;
+  light *= media_transmittance(reflected ? path.media : media_behind(v.surface, path.media), seen.distance);
+#endif
   bool finite = is_finite(light);
   if (wanted && !finite) atomicAdd(counters[k_counter_dropped], 1u);
   if (wanted && finite && max3(light) > 0.0) {

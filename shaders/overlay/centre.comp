@@ -2,6 +2,7 @@
 #define LUCERNA_PUSH SeePush
 #include "shaders/shared/sight.h"
 #include "lib/wavefront.glsl"
+#include "lib/media.glsl"
 
 void main() {
   uint slot = global_index();
@@ -22,7 +23,10 @@ void main() {
   p.pixel = xy.y * frame.width + xy.x;
   p.sample_index = 0u;
   p.bits = 0u;
-  p.medium = 0u;
+  p.media = 0u;
+#if LUCERNA_VOLUMES
+  for (uint once = 0u; once < frame.camera_in_solids; ++once) p.media = media_at(ray.origin, p.pixel);
+#endif
   p.travelled = 0.0;
   p.eta_scale = 1.0;
   p.nulls = 0u;

@@ -21,7 +21,7 @@ LUCERNA_CONST uint k_material_surface = 2u;       ///< metallic, roughness, ior,
 LUCERNA_CONST uint k_material_specular = 3u;      ///< specular colour rgb, transmission
 LUCERNA_CONST uint k_material_volume = 4u;        ///< absorption rgb [1/m], glass table row (-1: none)
 LUCERNA_CONST uint k_material_diffuse_t = 5u;     ///< diffuse transmission colour rgb, factor
-LUCERNA_CONST uint k_material_detail = 6u;        ///< normal scale, alpha cutoff, 0, 0
+LUCERNA_CONST uint k_material_detail = 6u;        ///< normal scale, alpha cutoff, medium of a solid (scene_media), 0
 LUCERNA_CONST uint k_material_textures = 7u;      ///< then k_texture_texels for each use:
 // (rectangle on the page: x, y, width, height over the page's size) (bits:texture, m2, m5, 0) (m0 m1 m3 m4)
 LUCERNA_CONST uint k_texture_texels = 3u;
@@ -86,6 +86,17 @@ LUCERNA_CONST uint k_light_environment = 4u;
 // sun_cells: alias table of the cells, like light_alias, then bits of the texel that each is.
 // sun_density: four texels each: density of the texel's directions as the sun's, times the sun's pmf in light_alias.
 // bsdf_table: see renderer/upload/bsdf_table.h.
+//
+// scene_media, where a solid absorbs: what volumes hold, and the closed shells around them (renderer/upload/media.h).
+//   0: bits of the first node's texel, of how many nodes there are, and of the first triangle's texel
+//   1 ...: absorption rgb [1/m] of each medium, the medium's number being the texel's
+//   2 a node, in depth-first order: (low corner, bits of the node behind all below it | k_media_around)
+//                                   (high corner, bits 0 of an inner node, else first triangle << 3 | triangles)
+//   3 a triangle: its vertices, counter-clockwise from outside; the first with the medium
+LUCERNA_CONST uint k_media_around = 0x80000000u;  ///< met where the place lies in the box, else where the ray meets it; a shell
+                                                  ///< begins at one
+/// Numbers that stacks of media have (shaders/lib/media.glsl) are below this.
+LUCERNA_CONST uint k_media_stacks = 1u << 20;
 
 /// What every kernel knows of the frame. Lengths in metres, angles in radians.
 struct Frame {
@@ -108,6 +119,7 @@ struct Frame {
   uint roulette_depth;
   uint most_branches;         ///< of a path that is followed on several times (VertexOut.branches)
   float scene_radius;
+  uint camera_in_solids;      ///< 1: paths from the camera may start inside a solid
   uint sky_group, sun_group;  ///< of lights, where they are kept apart: of the environment, and of its sun
   uint automaton[64];         ///< paths::pack; k_automaton_states
 };

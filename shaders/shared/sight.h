@@ -6,10 +6,12 @@ LUCERNA_SHARED_BEGIN
 
 // surface_texels: 2 a point, in raster order:
 //   0: position, off its surface [m]; depth along the view axis [m], or k_surface_none, k_surface_bent
-//   1: smooth normal on the side that is seen; bits facet
+//   1: smooth normal on the side that is seen; bits facet | media << k_surface_media_shift, where these are noted
 LUCERNA_CONST uint k_surface_texels = 2u;
+LUCERNA_CONST uint k_surface_media_shift = 22u;
+LUCERNA_CONST uint k_surface_media = 1u << 10;  ///< media numbers are below that
 LUCERNA_CONST float k_surface_none = -1.0f;  ///< nothing diffuse is seen
-/// What is seen is diffuse, but its normal map leads too far off for what is stored to serve it.
+/// What is seen is diffuse, but its normal map leads too far off for what is stored to serve it, or too many media enclose it.
 LUCERNA_CONST float k_surface_bent = -2.0f;
 
 /// How the points lie over the picture, for those who ask what a pixel shows.

@@ -37,7 +37,7 @@ struct PathState {
   uint pixel;          ///< index into the film (y * width + x)
   uint sample_index;   ///< of the pixel
   uint bits;           ///< 0-5 automaton state, 6-8 and 31 k_path_*, 9-30 scattering events so far
-  uint medium;         ///< material whose volume the ray is in, plus 1; 0: none
+  uint media;          ///< that the ray is in, a stack (lib/media.glsl); 0: none
   float travelled;     ///< metres since the last scattering event, over null events
   float eta_scale;     ///< product of (eta_i/eta_t)^2 that refraction has put into the throughput. Of a path from a light:
                        ///< how dense light samples are that meet where it begins (transport/emit.comp)

@@ -3,6 +3,7 @@
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
 #include "lib/blocks.glsl"
+#include "lib/media.glsl"
 #if LUCERNA_SPLATS
 #include "shaders/shared/splat.h"
 layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
@@ -42,7 +43,10 @@ void main() {
   uint coin = hash_combine(hash_combine(pixel, sample_index), frame.seed ^ 0x2c1b3c6du);
   if (float(coin >> 8) * (1.0 / 16777216.0) < left_share(place)) p.bits = k_left_states;
 #endif
-  p.medium = 0u;
+  p.media = 0u;
+#if LUCERNA_VOLUMES
+  for (uint once = 0u; once < frame.camera_in_solids; ++once) p.media = media_at(ray.origin, hash_combine(pixel, sample_index));
+#endif
   p.travelled = 0.0;
   p.eta_scale = 1.0;
   p.nulls = 0u;

@@ -108,8 +108,7 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   float weight = l.delta ? 1.0 : mis_weight(l.pdf, f.pdf);
   vec3 arrives = path.throughput * l.radiance * (weight / max(l.pdf, 1e-37));
 #if LUCERNA_VOLUMES
-  uint medium = reflected ? path.medium : surface.parameters.solid ? (surface.front ? surface.material + 1u : 0u) : path.medium;
-  if (medium != 0u) arrives *= exp(-material_absorption(medium - 1u) * min(l.distance, 1e30));
+  arrives *= media_transmittance(reflected ? path.media : media_behind(surface, path.media), min(l.distance, 1e30));
 #endif
   ShadowState shadow;
   shadow.diffuse = component_d < k_component_count ? arrives * f.diffuse : vec3(0.0);

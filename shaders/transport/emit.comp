@@ -47,7 +47,11 @@ void main() {
   p.pixel = max3(flux) > 0.0 ? index : 0xffffffffu;
   p.sample_index = push.round;
   p.bits = 1u << k_path_events_shift;  // the emission has the random numbers of depth 0
-  p.medium = 0u;
+  p.media = 0u;
+#if LUCERNA_VOLUMES && LUCERNA_LIGHTS
+  // What comes from afar begins outside.
+  for (uint once = e.afar || !lit ? 1u : 0u; once < 1u; ++once) p.media = media_at(e.origin, hash_combine(index, push.round));
+#endif
   p.travelled = 0.0;
   p.eta_scale = sampling;
   p.nulls = 0u;

@@ -30,7 +30,7 @@ LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random)
   LightVertex v;
   v.surface = make_surface(ray, hit);
 #if LUCERNA_VOLUMES
-  if (path.medium != 0u) path.throughput *= exp(-material_absorption(path.medium - 1u) * hit.t);
+  path.throughput *= media_transmittance(path.media, hit.t);
 #endif
   v.arriving = path.throughput;
   v.passed = false;
@@ -104,7 +104,7 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     path.travelled = 0.0;
     path.nulls = 0u;
 #if LUCERNA_VOLUMES
-    if (b.transmitted && v.surface.parameters.solid) path.medium = v.surface.front ? v.surface.material + 1u : 0u;
+    if (b.transmitted) path.media = media_behind(v.surface, path.media);
 #endif
   }
   if (!go_on) return;

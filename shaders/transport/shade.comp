@@ -99,7 +99,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   path.travelled = 0.0;
   path.nulls = 0u;
 #if LUCERNA_VOLUMES
-  if (b.transmitted && v.surface.parameters.solid) path.medium = v.surface.front ? v.surface.material + 1u : 0u;
+  if (b.transmitted) path.media = media_behind(v.surface, path.media);
 #endif
   return go_on;
 }
@@ -169,7 +169,7 @@ void main() {
   if (hit.prim != k_no_hit) {
     Surface surface = make_surface(ray, hit);
 #if LUCERNA_VOLUMES
-    if (path.medium != 0u) path.throughput *= exp(-material_absorption(path.medium - 1u) * hit.t);
+    path.throughput *= media_transmittance(path.media, hit.t);
 #endif
 #if LUCERNA_LIGHT_GROUPS > 1 && (LUCERNA_EMISSIVE || LUCERNA_UNLIT)
     group = emissive_group(hit.prim);

@@ -19,7 +19,7 @@ struct Place {
   vec3 position{0}, normal{0, 1, 0};
   uint32_t facet = 0;                         ///< geometric normal, shared::facet_pack()
   uint32_t origin = shared::k_origin_screen;  ///< shared::k_origin_*: what asked for it
-  uint32_t medium = 0;                        ///< that it lies in, as shared::PathState::medium
+  uint32_t medium = 0;                        ///< that it lies in, as shared::PathState::media
   float reach = 0;  ///< of a candidate: within that distance it stands for others [m]; records have none
 };
 

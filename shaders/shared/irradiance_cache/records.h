@@ -19,7 +19,7 @@ LUCERNA_CONST uint k_part_count = 4u;
 // What share each group of lights has in them stands apart (irradiance_cache/groups.glsl).
 
 /// Files keep the texels below as they are: another number for another meaning of them.
-LUCERNA_CONST uint k_record_layout = 3u;
+LUCERNA_CONST uint k_record_layout = 4u;
 // record_texels: k_record_texels a record.
 //   0: position xyz [m], moved off its surface by the error bound; radius of validity, the greater of an
 //   ellipse [m], 0: none yet
@@ -31,7 +31,7 @@ LUCERNA_CONST uint k_record_layout = 3u;
 //   4: of metric `hessian`: what the pilot rays of this record and of those around it say of the light here,
 //   by which its ellipse is made: the Hessian of the irradiance's luminance in tangent and bitangent, xx, xy,
 //   yy [1/m^2], and that luminance
-//   5: bits of the medium in which the record lies, as PathState has it; of metric `hessian` the greatest r
+//   5: bits of the media in which the record lies, as PathState has them; of metric `hessian` the greatest r
 //   at which such an ellipse holds nothing that a ray met [m], 0: not known yet; 0; 0
 LUCERNA_CONST uint k_record_texels = 6u;
 /// Most of the greater radius over the lesser.
@@ -71,9 +71,9 @@ LUCERNA_CONST uint k_no_guide = 0xffffffffu;
 LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + 2u * k_part_count * k_part_texels + 1u);
 
 // candidate_texels: 2 a path slot, all 0 where there is none:
-//   0: position, off its surface; where there is one 1 + k_origin_* + k_candidate_medium times the medium
+//   0: position, off its surface; where there is one 1 + k_origin_* + k_candidate_media times the media
 //   1: smooth normal on the side that asks, bits facet
-LUCERNA_CONST uint k_candidate_medium = 4u;
+LUCERNA_CONST uint k_candidate_media = 4u;
 LUCERNA_CONST uint k_candidate_texels = 2u;
 
 struct RelightPreviewPush {
@@ -108,10 +108,10 @@ LUCERNA_CONST uint k_probe_errors = 6u;
 LUCERNA_CONST uint k_probe_errors_beyond = 7u;
 
 // Noted by these, in candidate_texels:
-//   0: position; bits 1 + state of the automaton + k_note_medium times the medium, 0: nothing is noted
+//   0: position; bits 1 + state of the automaton + k_note_media times the media, 0: nothing is noted
 //   1: smooth normal on the side that is lit, bits throughput_pack() of the throughput behind the diffuse
 //   lobe, over pi
-LUCERNA_CONST uint k_note_medium = 32u;
+LUCERNA_CONST uint k_note_media = 32u;
 
 /// leave_one_out.comp leaves for every record, over the luminance of its irradiance: what it is off by where
 /// it ends, by what the others around say of it beyond what it says itself; 0, 0, 0; the same of their errors

@@ -1,0 +1,35 @@
+#pragma once
+// The volumes of a scene: which media there are, and which of them enclose a place where a path starts
+// (shaders/lib/media.glsl).
+//
+// A medium is what solids absorb: materials with transmission and thickness that absorb alike are one medium.
+// A path keeps a stack of the media that it has entered; the last one entered and not yet left absorbs, and
+// glTF has no priorities that would say otherwise. Where a path starts (camera, lamp, emissive surface) the
+// stack is found from closed shells: triangles of one solid material, connected by vertices of equal
+// position, in which each edge is used as often in either direction. Open surfaces enclose nothing.
+#include <memory>
+#include <vector>
+
+#include "upload/flatten.h"
+
+namespace lucerna::upload {
+
+/// Closed shells of solids, as a binary tree in depth-first order whose nodes name where to go on when they
+/// are missed (texels: shaders/shared/scene.h, scene_media).
+struct SolidShells {
+  std::vector<bool> solid;          ///< by material: the shells are made of these
+  std::vector<Box> boxes;           ///< one a shell
+  std::vector<vec4> nodes;          ///< 2 a node; leaves count triangles from 0
+  std::vector<vec4> triangles;      ///< 3 a triangle, counter-clockwise from outside
+  std::vector<uint32_t> materials;  ///< one a triangle
+};
+std::shared_ptr<const SolidShells> make_solid_shells(const FlatScene& flat, std::vector<bool> solid);
+
+/// Sets FlatMaterials::media, ::shells, Effects::media and each material's medium, for the materials that
+/// `flat` has. Nothing where no solid absorbs.
+void flatten_media(FlatScene& flat);
+
+/// Whether any solid's box meets `box`, so that a path that starts in it may start inside a medium.
+bool meets_solids(const FlatMaterials& flat, const Box& box);
+
+}  // namespace lucerna::upload
