@@ -103,22 +103,28 @@ void glass_table(vec4* table, double eta) {
     vec4* row = table + j * k_table_mu;
     for (uint32_t i = 0; i < k_table_mu; ++i) {
       const double t = double(i) / (k_table_mu - 1), mu = std::max(t * t, 1e-6);
-      double e = j == 0 ? 1 : 0;
+      // Of a smooth surface facets lie along it: all of F is reflected, all of 1 - F transmitted.
+      double e = j == 0 ? 1 : 0, e_0 = 0, e_1 = 0;
       if (j > 0) {
         integrate_visible(mu, alpha, k_samples, [&](Vec wo, Vec h, double oh, Vec wi) {
           const double f = fresnel(std::min(oh, 1.0), eta);
-          if (wi.z > 0) e += f * g2_over_g1(wo.z, wi.z, alpha) / k_samples;
+          if (wi.z > 0) {
+            const double g = g2_over_g1(wo.z, wi.z, alpha) / k_samples;
+            e += f * g;
+            if (f < 1) e_0 += g, e_1 += f * g;
+          }
           if (f < 1) {
             const double ct = std::sqrt(1 - (1 - oh * oh) / (eta * eta));
             const double z = -wo.z / eta + (oh / eta - ct) * h.z;
-            if (z < 0) e += (1 - f) * g2_over_g1(wo.z, -z, alpha) / k_samples;
+            if (z < 0) {
+              const double g = g2_over_g1(wo.z, -z, alpha) / k_samples;
+              e += (1 - f) * g, e_0 -= g, e_1 -= f * g;
+            }
           }
         });
       }
-      row[i] = vec4(float(std::min(e, 1.0)), 0, 0, 0);
+      row[i] = vec4(float(std::min(e, 1.0)), float(e_0), float(e_1), 0);
     }
-    const float average = float(row_average(row, 0));
-    for (uint32_t i = 0; i < k_table_mu; ++i) row[i].y = average;
   }
 }
 
@@ -126,7 +132,8 @@ constexpr uint32_t k_points = k_table_mu * k_table_rough, k_columns = k_table_mu
                    k_rows = k_table_rough - 1;
 static_assert(shared::k_table_cells == k_columns * k_rows);
 static_assert(shared::k_table_schlick_texels == 2 * shared::k_table_cells + k_rows);
-static_assert(shared::k_table_glass_texels == shared::k_table_cells + k_rows);
+static_assert(shared::k_table_glass_block == shared::k_table_cells + k_rows);
+static_assert(shared::k_table_glass_texels == 3 * shared::k_table_glass_block);
 
 void append_schlick(const vec4* points, std::vector<vec4>& out) {
   for (uint32_t j = 0; j < k_rows; ++j)
@@ -139,14 +146,16 @@ void append_schlick(const vec4* points, std::vector<vec4>& out) {
   }
 }
 
-void append_glass(const vec4* points, std::vector<vec4>& out) {
+void append_glass(const vec4* points, int k, std::vector<vec4>& out) {
   for (uint32_t j = 0; j < k_rows; ++j)
     for (uint32_t i = 0; i < k_columns; ++i) {
       const vec4 *low = points + j * k_table_mu + i, *high = low + k_table_mu;
-      out.push_back(vec4(low[0].x, low[1].x, high[0].x, high[1].x));
+      out.push_back(vec4(low[0][k], low[1][k], high[0][k], high[1][k]));
     }
-  for (uint32_t j = 0; j < k_rows; ++j)
-    out.push_back(vec4(points[j * k_table_mu].y, points[(j + 1) * k_table_mu].y, 0, 0));
+  for (uint32_t j = 0; j < k_rows; ++j) {
+    const vec4* low = points + j * k_table_mu;
+    out.push_back(vec4(row_average(low, k), row_average(low + k_table_mu, k), 0, 0));
+  }
 }
 
 /// Both sides of a surface of glass, as build_bsdf_tables() lays them out.
@@ -154,7 +163,7 @@ std::vector<vec4> glass_tables(float ior) {
   std::vector<vec4> tables, points(k_points);
   for (const double eta : {double(ior), 1.0 / ior}) {
     glass_table(points.data(), eta);
-    append_glass(points.data(), tables);
+    for (int k = 0; k < 3; ++k) append_glass(points.data(), k, tables);
   }
   return tables;
 }

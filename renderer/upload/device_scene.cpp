@@ -147,6 +147,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_SPECULAR", e.specular);
   set("LUCERNA_SOLID_GLASS", e.solid_glass);
   set("LUCERNA_THIN_GLASS", e.thin_glass);
+  set("LUCERNA_GLASS_SPECULAR", e.glass_specular);
   set("LUCERNA_DIFFUSE_TRANSMISSION", e.diffuse_transmission);
   set("LUCERNA_VOLUMES", e.volumes);
   d["LUCERNA_MEDIA"] = std::to_string(e.media);

@@ -84,7 +84,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
   std::vector<float> glass_iors;
   Effects& e = flat.effects;
   e.specular = e.solid_glass = e.thin_glass = e.diffuse_transmission = false;
-  e.volumes = e.unlit = e.alpha = false;
+  e.volumes = e.unlit = e.alpha = e.glass_specular = false;
   flat.materials.resize(scene.materials.size() * k_material_texels);
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const scene::Material& m = scene.materials[i];
@@ -121,6 +121,8 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && !lets_all_through));
     e.solid_glass |= solid;
     e.thin_glass |= thin;
+    e.glass_specular |= (solid || thin) && (m.specular != 1 || m.specular_color != vec3(1) ||
+                                            m.specular_texture || m.specular_color_texture);
     e.diffuse_transmission |= m.diffuse_transmission > 0;
     e.volumes |= any(absorption);
     e.unlit |= m.unlit;

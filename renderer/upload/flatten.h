@@ -17,8 +17,9 @@ namespace lucerna::upload {
 struct Effects {
   bool lights = false, emissive = false, environment_map = false, specular = false, solid_glass = false,
        thin_glass = false, diffuse_transmission = false, volumes = false, unlit = false, alpha = false,
-       normal_maps = false, vertex_extra = false, tex_base = false, tex_metallic_roughness = false,
-       tex_emission = false, tex_specular = false, tex_transmission = false, tex_diffuse_transmission = false;
+       glass_specular = false, normal_maps = false, vertex_extra = false, tex_base = false,
+       tex_metallic_roughness = false, tex_emission = false, tex_specular = false, tex_transmission = false,
+       tex_diffuse_transmission = false;
   /// Lamps that a light sample is drawn from by what each sends there, besides its power; 0: there are few.
   uint32_t lamp_candidates = 0;
   bool sky_apart = false, sun = false;  ///< FlatScene::sun_threshold; texels that are brighter

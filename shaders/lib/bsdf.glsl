@@ -5,6 +5,9 @@
 //                          Lambert base/pi, coupled by (1-E(wo))(1-E(wi))/(1-E_avg)         D
 //                          diffuse transmission, coupled likewise                           D
 //   glass (1-m)t           GGX reflection and refraction with exact Fresnel (solid), or slab (thin)   G (S)
+// Of glass with KHR_materials_specular each face reflects f (f0' + (1-f0') (F-f0)/(1-f0)) in place of F, f0' = min(1, f0 color),
+// as the extension has it with Schlick's (F-f0)/(1-f0); what it does not reflect it transmits, channel by channel. Total reflection
+// stays total, for there is no way through (LUCERNA_GLASS_SPECULAR).
 // w = (1 - wo.h)^5. Every GGX lobe has its multiple-scattering complement (Kulla and Conty 2017):
 //   f_ms = F_ms (1-E1(wo))(1-E1(wi)) / (pi (1-E1_avg)),  F_ms = F_avg^2 E1_avg / (1 - F_avg (1-E1_avg)).
 // For solid glass the missing energy leaves on both sides in proportion to the sides' etendue (1-E_avg) n^2, the split
@@ -48,6 +51,15 @@ struct SurfaceParameters {
   int glass_row;
 };
 
+// Of what glass reflects: of all channels alike, or of each. Choices are made by glass_choice().
+#if LUCERNA_GLASS_SPECULAR
+#define GLASS_VALUE vec3
+float glass_choice(vec3 value) { return luminance(value); }
+#else
+#define GLASS_VALUE float
+float glass_choice(float value) { return value; }
+#endif
+
 // Prepared for one wo.
 struct Bsdf {
   vec3 diffuse;          // f_D on wo's side = diffuse * coupling(wi) / pi
@@ -66,13 +78,16 @@ struct Bsdf {
   vec3 d_f0, d_f90, d_f_ms;  // of the dielectric alone, for the coupling
 #endif
 #if LUCERNA_GLASS
+#if LUCERNA_GLASS_SPECULAR
+  vec3 face_0, face_1;   // a face reflects face_0 + face_1 F
+#endif
   float glass;           // weight
   vec3 tint;             // of what is transmitted
   float eta;             // n on the other side / n on wo's side
   bool solid;
   bool glass_delta;      // smooth, or a solid that does not refract: facets turn no ray then, however rough
   uint table_here, table_there;
-  float ms_reflected, ms_transmitted;  // complement, times (1-E(wo)); radiance scale included
+  GLASS_VALUE ms_reflected, ms_transmitted;  // complement, times (1-E(wo)); radiance scale included
 #endif
   // Probabilities of the lobes; they sum to 1, or are all 0 for a black surface.
   float p_diffuse, p_transmitted, p_specular, p_specular_ms, p_glass, p_glass_ms;
@@ -119,16 +134,34 @@ vec2 specular_average(float roughness, bool delta) {
 }
 #endif
 #if LUCERNA_SOLID_GLASS
-float glass_albedo(uint table, float mu, float roughness) {
-  TablePlace p = table_place(mu, roughness);
-  vec4 e = texelFetch(bsdf_table, int(k_table_schlick_texels + (table - 1u) * k_table_glass_texels) + p.cell);
+float glass_cell(uint first, TablePlace p) {
+  vec4 e = texelFetch(bsdf_table, int(first) + p.cell);
   vec2 row = mix(e.xy, e.zw, p.at.y);
   return mix(row.x, row.y, p.at.x);
 }
-float glass_average(uint table, float roughness) {
-  TablePlace p = table_place(0.0, roughness);
-  vec4 e = texelFetch(bsdf_table, int(k_table_schlick_texels + (table - 1u) * k_table_glass_texels + k_table_cells) + p.row);
+float glass_row(uint first, TablePlace p) {
+  vec4 e = texelFetch(bsdf_table, int(first + k_table_cells) + p.row);
   return mix(e.x, e.y, p.at.y);
+}
+GLASS_VALUE glass_albedo(Bsdf b, uint table, float mu, float roughness) {
+  TablePlace p = table_place(mu, roughness);
+  uint first = k_table_schlick_texels + (table - 1u) * k_table_glass_texels;
+#if LUCERNA_GLASS_SPECULAR
+  return glass_cell(first, p) + b.face_0 * glass_cell(first + k_table_glass_block, p) +
+         (b.face_1 - 1.0) * glass_cell(first + 2u * k_table_glass_block, p);
+#else
+  return glass_cell(first, p);
+#endif
+}
+GLASS_VALUE glass_average(Bsdf b, uint table, float roughness) {
+  TablePlace p = table_place(0.0, roughness);
+  uint first = k_table_schlick_texels + (table - 1u) * k_table_glass_texels;
+#if LUCERNA_GLASS_SPECULAR
+  return glass_row(first, p) + b.face_0 * glass_row(first + k_table_glass_block, p) +
+         (b.face_1 - 1.0) * glass_row(first + 2u * k_table_glass_block, p);
+#else
+  return glass_row(first, p);
+#endif
 }
 #endif
 
@@ -201,8 +234,15 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
   float ior = max(s.ior, 1.0);
   b.eta = s.solid ? (s.inside ? 1.0 / ior : ior) : ior;
   // Thin: E1 of a mirror; average slab reflectance through the fit of Kulla and Conty to the Fresnel average.
-  float average = (ior - 1.0) / (4.08567 + 1.00071 * ior);
-  float slab = 2.0 * average / (1.0 + average);
+  GLASS_VALUE average = GLASS_VALUE((ior - 1.0) / (4.08567 + 1.00071 * ior));
+#if LUCERNA_GLASS_SPECULAR
+  float f_0 = square((ior - 1.0) / (ior + 1.0));
+  vec3 own_0 = min(vec3(1.0), f_0 * s.specular_color);
+  b.face_1 = s.specular * (1.0 - own_0) / (1.0 - f_0);
+  b.face_0 = s.specular * own_0 - b.face_1 * f_0;
+  average = b.face_0 + b.face_1 * average;
+#endif
+  GLASS_VALUE slab = 2.0 * average / (1.0 + average);
   float k = missing / (k_pi * missing_average);
   b.ms_reflected = k * slab;
   b.ms_transmitted = k * (1.0 - slab);
@@ -213,14 +253,15 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
     uint outside = 1u + 2u * uint(max(s.glass_row, 0));
     b.table_here = s.inside ? outside + 1u : outside;
     b.table_there = s.inside ? outside : outside + 1u;
-    float lost_here = max(1e-7, 1.0 - glass_average(b.table_here, s.roughness));
-    float lost_there = max(1e-7, 1.0 - glass_average(b.table_there, s.roughness));
+    GLASS_VALUE lost_here = max(GLASS_VALUE(1e-7), 1.0 - glass_average(b, b.table_here, s.roughness));
+    GLASS_VALUE lost_there = max(GLASS_VALUE(1e-7), 1.0 - glass_average(b, b.table_there, s.roughness));
     // Shares of etendue: n_here = 1, n_there = eta.
-    float share_there = lost_there * b.eta * b.eta / (lost_here + lost_there * b.eta * b.eta);
-    missing = max(0.0, 1.0 - glass_albedo(b.table_here, mu, s.roughness));
-    b.ms_reflected = (1.0 - share_there) * missing / (k_pi * lost_here);
+    GLASS_VALUE share_there = lost_there * b.eta * b.eta / (lost_here + lost_there * b.eta * b.eta);
+    GLASS_VALUE missing_here = max(GLASS_VALUE(0.0), 1.0 - glass_albedo(b, b.table_here, mu, s.roughness));
+    b.ms_reflected = (1.0 - share_there) * missing_here / (k_pi * lost_here);
     // Radiance arriving from there: K(there->here) = K(here->there) / eta^2.
-    b.ms_transmitted = share_there * missing / (k_pi * lost_there * b.eta * b.eta);
+    b.ms_transmitted = share_there * missing_here / (k_pi * lost_there * b.eta * b.eta);
+    missing = glass_choice(missing_here);
   }
 #endif
   b.glass_delta = b.delta || (s.solid && abs(b.eta - 1.0) < k_same_medium);
@@ -243,6 +284,13 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
 
 #if LUCERNA_GLASS
 // Reflectance of the boundary at a facet.
+#if LUCERNA_GLASS_SPECULAR
+vec3 glass_fresnel(Bsdf b, float cos_h) {
+  float f = fresnel_dielectric(cos_h, b.eta);
+  vec3 face = f < 1.0 ? b.face_0 + b.face_1 * f : vec3(1.0);
+  return b.solid ? face : 2.0 * face / (1.0 + face);
+}
+#else
 float glass_fresnel(Bsdf b, float cos_h) {
   float slab = fresnel_slab(cos_h, b.eta);
 #if LUCERNA_SOLID_GLASS
@@ -252,6 +300,7 @@ float glass_fresnel(Bsdf b, float cos_h) {
   return slab;
 #endif
 }
+#endif
 #endif
 
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
@@ -301,18 +350,19 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   }
 #endif
 #if LUCERNA_GLASS
-  float f = glass_fresnel(b, cos_oh);
-  float ms_pdf_share = b.ms_reflected / max(b.ms_reflected + b.ms_transmitted, 1e-30);
-  float missing_i = missing;
+  GLASS_VALUE f = glass_fresnel(b, cos_oh);
+  float f_choice = glass_choice(f);
+  float ms_pdf_share = glass_choice(b.ms_reflected) / max(glass_choice(b.ms_reflected + b.ms_transmitted), 1e-30);
+  GLASS_VALUE missing_i = GLASS_VALUE(missing);
 #if LUCERNA_SOLID_GLASS
-  float there = glass_albedo(b.solid && !same_side ? b.table_there : b.solid ? b.table_here : 1u, cos_i, b.roughness);
-  missing_i = b.solid ? max(0.0, 1.0 - there) : missing;
+  GLASS_VALUE there = glass_albedo(b, b.solid && !same_side ? b.table_there : b.solid ? b.table_here : 1u, cos_i, b.roughness);
+  missing_i = b.solid ? max(GLASS_VALUE(0.0), 1.0 - there) : GLASS_VALUE(missing);
 #endif
   float facets = b.glass_delta ? 0.0 : 1.0;
   vec3 reflected = vec3(f * shape * facets + b.ms_reflected * missing_i * cos_i);
   vec3 passed = b.tint * ((1.0 - f) * shape * facets + b.ms_transmitted * missing_i * cos_i);
-  float pdf_reflected = f * pdf_h * facets;
-  float pdf_passed = (1.0 - f) * pdf_h * facets;
+  float pdf_reflected = f_choice * pdf_h * facets;
+  float pdf_passed = (1.0 - f_choice) * pdf_h * facets;
 #if LUCERNA_SOLID_GLASS
   if (b.solid) {
     vec3 g = wo + b.eta * wi;
@@ -321,10 +371,14 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
     bool valid = !b.glass_delta && !same_side && oh > 0.0 && ih < 0.0;
     float denominator = square(ih + oh / b.eta);
     float jacobian = valid ? -ih / max(denominator, 1e-30) : 0.0;   // d omega_h / d omega_i
+#if LUCERNA_GLASS_SPECULAR
+    vec3 ft = 1.0 - glass_fresnel(b, max(oh, 0.0));
+#else
     float ft = 1.0 - fresnel_dielectric(max(oh, 0.0), b.eta);
+#endif
     float dt = valid ? ggx_d(ht, b.alpha) * max(oh, 0.0) / wo.z * jacobian : 0.0;
     passed = b.tint * (ft * dt * ggx_g2(wo.z, cos_i, b.alpha) / (b.eta * b.eta) + b.ms_transmitted * missing_i * cos_i);
-    pdf_passed = ft * dt * ggx_g1(wo.z, b.alpha);
+    pdf_passed = glass_choice(ft) * dt * ggx_g1(wo.z, b.alpha);
   }
 #endif
   v.glossy += b.glass * (same_side ? reflected : passed);
@@ -356,7 +410,7 @@ bool bsdf_glossy(Bsdf b) {
 // Straight transmission past shadow rays: of a smooth thin wall; 0 for everything else.
 vec3 bsdf_straight(Bsdf b, float mu) {
 #if LUCERNA_THIN_GLASS
-  if (b.delta && !b.solid) return b.glass * b.tint * (1.0 - fresnel_slab(mu, b.eta));
+  if (b.delta && !b.solid) return b.glass * b.tint * (1.0 - glass_fresnel(b, mu));
 #endif
   return vec3(0.0);
 }
@@ -364,7 +418,7 @@ vec3 bsdf_straight(Bsdf b, float mu) {
 // before bsdf_sample, which draws from the others alone.
 float bsdf_straight_probability(Bsdf b, float mu) {
 #if LUCERNA_THIN_GLASS
-  if (b.delta && !b.solid) return b.p_glass * (1.0 - fresnel_slab(mu, b.eta));
+  if (b.delta && !b.solid) return b.p_glass * (1.0 - glass_choice(glass_fresnel(b, mu)));
 #endif
   return 0.0;
 }
@@ -413,9 +467,9 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec3 cosine, vec2 lobe) {
     vec3 facet = b.glass_delta ? vec3(0.0, 0.0, 1.0) : h;
     float cos_facet = dot(wo, facet);
     vec3 off = 2.0 * cos_facet * facet - wo;
-    float f = glass_fresnel(b, cos_facet);
-    float pick = at / b.p_glass;
-    bool reflect_it = pick < f || (b.glass_delta && !b.solid);
+    GLASS_VALUE f = glass_fresnel(b, cos_facet);
+    float pick = at / b.p_glass, f_choice = glass_choice(f);
+    bool reflect_it = pick < f_choice || (b.glass_delta && !b.solid);
     vec3 passed = vec3(off.xy, -off.z);
     float scale = 1.0;
 #if LUCERNA_SOLID_GLASS
@@ -433,13 +487,17 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec3 cosine, vec2 lobe) {
     if (b.glass_delta) {
       delta = true;
       s.event = k_event_specular;
+#if LUCERNA_GLASS_SPECULAR
+      s.weight = b.glass / b.p_glass * (reflect_it ? f / max(f_choice, 1e-30) : b.tint * scale * (1.0 - f) / max(1.0 - f_choice, 1e-30));
+#else
       s.weight = b.glass / b.p_glass * (reflect_it ? vec3(1.0) : b.tint * scale);
+#endif
     }
   }
   at -= b.p_glass;
   bool in_complement = at >= 0.0 && b.p_glass_ms > 0.0;
   if (in_complement) {
-    float share = b.ms_reflected / max(b.ms_reflected + b.ms_transmitted, 1e-30);
+    float share = glass_choice(b.ms_reflected) / max(glass_choice(b.ms_reflected + b.ms_transmitted), 1e-30);
     s.wi = complement_sample(b, u);
     if (at / b.p_glass_ms >= share) s.wi.z = -s.wi.z;
   }

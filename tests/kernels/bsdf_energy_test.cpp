@@ -178,6 +178,38 @@ TEST_CASE("white furnace by draws, smooth and nearly smooth") {
   CHECK(jury.verdict() == "");
 }
 
+TEST_CASE("glass reflects as much of F as its specular factor and colour say") {
+  // Nearly smooth, so that what leaves on either side is what facets along the surface make of it.
+  std::vector<Material> materials;
+  std::vector<View> views;
+  for (const uint32_t solid : {0u, 1u})
+    for (const float specular : {0.f, 0.5f, 1.f})
+      for (const vec3& tint : {vec3(1), vec3(0.5f, 1, 4)})
+        for (const float cosine : {1.f, 0.4f}) {
+          Material m;
+          m.base = vec3(1), m.roughness = 0.1f, m.transmission = 1;
+          m.specular = specular, m.specular_color = tint;
+          m.solid = solid, m.glass_row = solid ? 0 : -1;
+          views.push_back({static_cast<uint32_t>(materials.size()), direction(cosine, 1)});
+          materials.push_back(m);
+        }
+  Probe probe(materials);
+  const auto spheres = integrate(probe, views, 1e-5);
+  for (size_t i = 0; i < views.size(); ++i) {
+    const Material& m = materials[i];
+    const double c = double(views[i].wo.z), t = std::sqrt(1 - (1 - c * c) / 2.25);
+    const double p = (1.5 * c - t) / (1.5 * c + t), s = (c - 1.5 * t) / (c + 1.5 * t),
+                 f = (p * p + s * s) / 2;
+    INFO(describe(m, views[i].wo));
+    for (int k = 0; k < 3; ++k) {
+      const double own = std::min(1.0, 0.04 * double(m.specular_color[k]));
+      double expected = double(m.specular) * (own + (1 - own) * (f - 0.04) / 0.96);
+      if (!m.solid) expected = 2 * expected / (1 + expected);
+      CHECK(spheres[i].over(true)[4 + k] == Approx(expected).margin(0.003));
+    }
+  }
+}
+
 TEST_CASE("no material gives more than it gets") {
   const Furnace f = furnace(10, 160, 0.08f);
   Probe probe(f.materials);

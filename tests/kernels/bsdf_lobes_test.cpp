@@ -66,10 +66,12 @@ TEST_CASE("a leaner variant of the shader gives what the full one gives") {
       {"diffuse transmission", surface_effects(false, {"LUCERNA_DIFFUSE_TRANSMISSION"}),
        [](Material& m) { m.specular = 0, m.diffuse_transmission = 0.4f; }},
       {"specular", surface_effects(false, {"LUCERNA_SPECULAR"}), [](Material& m) { m.metallic = 0.4f; }},
-      {"thin glass", surface_effects(false, {"LUCERNA_THIN_GLASS"}),
+      {"thin glass", surface_effects(false, {"LUCERNA_THIN_GLASS", "LUCERNA_GLASS_SPECULAR"}),
        [](Material& m) { m.specular = 0, m.transmission = 0.7f; }},
-      {"solid glass", surface_effects(false, {"LUCERNA_SOLID_GLASS"}),
+      {"solid glass", surface_effects(false, {"LUCERNA_SOLID_GLASS", "LUCERNA_GLASS_SPECULAR"}),
        [](Material& m) { m.specular = 0, m.transmission = 0.7f, m.solid = 1, m.glass_row = 0; }},
+      {"specular and thin glass", surface_effects(false, {"LUCERNA_SPECULAR", "LUCERNA_THIN_GLASS"}),
+       [](Material& m) { m.metallic = 0.2f, m.transmission = 0.7f; }},
       {"specular and solid glass", surface_effects(false, {"LUCERNA_SPECULAR", "LUCERNA_SOLID_GLASS"}),
        [](Material& m) {
          m.metallic = 0.2f, m.transmission = 0.7f, m.solid = m.inside = 1, m.glass_row = 0;

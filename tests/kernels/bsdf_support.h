@@ -52,8 +52,8 @@ enum class Subject { bsdf, visible_normals, cosine };
 /// #defines with every effect of the surface model on, or off but for those named.
 inline gpu::Defines surface_effects(bool all, std::initializer_list<const char*> on = {}) {
   gpu::Defines defines;
-  for (const char* name :
-       {"LUCERNA_SPECULAR", "LUCERNA_SOLID_GLASS", "LUCERNA_THIN_GLASS", "LUCERNA_DIFFUSE_TRANSMISSION"})
+  for (const char* name : {"LUCERNA_SPECULAR", "LUCERNA_SOLID_GLASS", "LUCERNA_THIN_GLASS",
+                           "LUCERNA_GLASS_SPECULAR", "LUCERNA_DIFFUSE_TRANSMISSION"})
     defines[name] = all ? "1" : "0";
   for (const char* name : on) defines[name] = "1";
   return defines;
