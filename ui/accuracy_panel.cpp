@@ -432,7 +432,7 @@ void draw_accuracy(Ui& ui, const Area& area) {
       break;
     }
   }
-  if (ui.layout.bottom_open) {
+  if (ui.shown.bottom_open) {
     const Area inside{{area.lo.x, area.lo.y + px(k_folded_bottom)}, area.hi};
     if (a && ui.scene && !a->ledger.entries().empty())
       body(ui, inside, *a);

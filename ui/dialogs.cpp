@@ -224,7 +224,7 @@ void file_dialog(Ui& ui) {
   ImGui::PopStyleVar(4);
 }
 
-constexpr float k_key_names = 220, k_key_text = 400;  // widths of the page's columns
+constexpr float k_key_text = 400;  // of the solvers' rows
 
 /// Keys and what they do; rows without keys are gaps.
 std::vector<std::pair<std::string, std::string>> key_rows() {
@@ -295,27 +295,37 @@ void key_page(Ui& ui) {
   if (ui.help && !open) ImGui::OpenPopup("##keys");
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({std::floor(0.5f * window.x), std::floor(0.5f * window.y)}, 0, {0.5f, 0.5f});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {window.x, window.y - px(16)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(20), px(16)});
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), 0});
   open = ImGui::BeginPopup("##keys", ImGuiWindowFlags_NoMove);
   if (open) {
     const std::vector<std::pair<std::string, std::string>> rows = key_rows();
     label("Keys and mouse", colour::text, theme().fonts.strong);
     gap(6);
-    ImGui::PushItemWidth(px(520));
+    // Columns as wide as their texts, as far as the window has room; longer texts take more lines.
+    float names = 0, texts = 0;
+    for (const auto& [keys, what] : rows)
+      names = std::max(names, text_width(keys)), texts = std::max(texts, text_width(what));
+    names = std::min(names, 0.4f * window.x) + px(20);
+    texts = std::clamp(window.x - names - px(40 + 32), px(120), texts + 1);
+    ImFont* font = theme().fonts.regular;
     for (const auto& [keys, what] : rows) {
       if (keys.empty()) {
         gap(8);
         continue;
       }
       const ImVec2 at = ImGui::GetCursorScreenPos();
-      ImGui::Dummy({px(k_key_names + k_key_text), px(20)});
-      draw_text(ImGui::GetWindowDrawList(), at, {at.x + px(k_key_names - 8), at.y + px(20)}, keys,
-                colour::text);
-      draw_text(ImGui::GetWindowDrawList(), {at.x + px(k_key_names), at.y},
-                {at.x + px(k_key_names + k_key_text), at.y + px(20)}, what, colour::text_dim);
+      const auto lines = [&](const std::string& text, float width) {
+        return font->CalcTextSizeA(font->FontSize, 1e9f, width, text.c_str()).y;
+      };
+      const float room = names - px(20);
+      ImGui::Dummy({names + texts, std::max(lines(keys, room), lines(what, texts)) + px(3)});
+      ImDrawList* list = ImGui::GetWindowDrawList();
+      list->AddText(font, font->FontSize, at, colour::text, keys.c_str(), nullptr, room);
+      list->AddText(font, font->FontSize, {at.x + names, at.y}, colour::text_dim, what.c_str(), nullptr,
+                    texts);
     }
-    ImGui::PopItemWidth();
     ImGui::EndPopup();
   }
   ui.help = open;
@@ -471,7 +481,7 @@ void draw_splitters(Ui& ui, const Areas& areas) {
     return twice;
   };
   const float reach = px(3);
-  const Layout& l = ui.layout;
+  const Layout& l = ui.shown;
   const float left = areas.left.hi.x, right = areas.right.lo.x, bottom = areas.accuracy.lo.y;
   const auto edge = [&](const char* name, const char* panel, ImVec2 lo, ImVec2 hi, bool along_x,
                         float direction, float size, bool open) {

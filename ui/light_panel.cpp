@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "chart.h"
+#include "panel_block.h"
 #include "solvers/registry.h"
 #include "state.h"
 #include "widgets.h"
@@ -135,12 +136,35 @@ int decimals_of(const OptionInfo& option) {
   return point == std::string::npos ? 2 : std::max(2, int(option.fallback.size() - point) - 1);
 }
 
+/// Whether the name says the unit already: "Samples 256", not "Samples 256 samples".
+bool named_by_unit(std::string name, const std::string& unit) {
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return !unit.empty() && (" " + name + " ").find(" " + unit + " ") != std::string::npos;
+}
+
 /// Whether an option has a place of its own elsewhere in the window (or none: texts that belong to the
 /// scene).
 bool placed_elsewhere(const OptionInfo& option) {
   for (const char* head : {"components.", "show.", "film.", "overlay."})
     if (option.key.rfind(head, 0) == 0) return true;
   return option.type == OptionType::text || solvers::owner_of(option.key);
+}
+
+/// The options of the render, and what it is to do.
+void render_rows(Ui& ui) {
+  for (const OptionInfo& option : plan::options())
+    if (!placed_elsewhere(option)) option_control(ui, option.key, option_label(option));
+  gap(4);
+  const float width = ImGui::CalcItemWidth(), half = std::floor(0.5f * (width - px(8)));
+  const bool paused = ui.snapshot && ui.snapshot->paused;
+  ImGui::BeginDisabled(!ui.snapshot);
+  if (button("##pause", paused ? "Resume" : "Pause", paused, half))
+    ui.act(paused ? "render.resume" : "render.pause");
+  tooltip("Stops taking samples, and goes on later from there. Space.");
+  ImGui::SameLine(0, px(8));
+  if (button("##restart", "Start again", false, width - half - px(8))) ui.act("render.restart");
+  tooltip("Throws the samples away and starts the picture again. R.");
+  ImGui::EndDisabled();
 }
 
 }  // namespace
@@ -176,7 +200,7 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
                  .unit = option->unit,
                  .at_zero = option->at_zero};
       how.log = option->lo > 0 ? option->hi / option->lo > 100 : !option->at_zero.empty() && option->hi > 100;
-      if (option->unit == key) how.unit.clear();  // "Samples 256" says it once
+      if (named_by_unit(name, option->unit)) how.unit.clear();
       if (whole) how.step = 1;
       if (option->hi > 4e9)
         how.hi = 65535, how.bar = false, how.travel = 0.01f,
@@ -197,7 +221,7 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
 }
 
 void draw_light_panel(Ui& ui, const Area& area) {
-  if (!ui.layout.left_open) {
+  if (!ui.shown.left_open) {
     begin_panel("##light_folded", area, colour::panel, false);
     if (folded_strip("Light", area.lo, area.hi, true)) ui.act("window.fold", "left", false);
     ImGui::End();
@@ -207,38 +231,14 @@ void draw_light_panel(Ui& ui, const Area& area) {
   std::string note;
   if (ui.solo() >= 0)
     note = fmt::format("solo {}", session::k_component_names[static_cast<size_t>(ui.solo())]);
-  if (panel_section(ui, "Light", true, note)) {
-    const float width = begin_padded();
-    components(ui, width);
-    end_padded();
-    gap(4);
-  }
-  if (ui.scene && panel_section(ui, "Light mix", false, ui.setting("relight.mix").empty() ? "" : "mixed")) {
-    begin_padded();
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
-    draw_mix(ui);
-    ImGui::PopStyleVar();
-    end_padded();
-    gap(10);
-  }
-  if (panel_section(ui, "Render", true)) {
-    begin_padded();
-    for (const OptionInfo& option : plan::options())
-      if (!placed_elsewhere(option)) option_control(ui, option.key, option_label(option));
-    gap(4);
-    const float width = ImGui::CalcItemWidth(), half = std::floor(0.5f * (width - px(8)));
-    const bool paused = ui.snapshot && ui.snapshot->paused;
-    ImGui::BeginDisabled(!ui.snapshot);
-    if (button("##pause", paused ? "Resume" : "Pause", paused, half))
-      ui.act(paused ? "render.resume" : "render.pause");
-    tooltip("Stops taking samples, and goes on later from there. Space.");
-    ImGui::SameLine(0, px(8));
-    if (button("##restart", "Start again", false, width - half - px(8))) ui.act("render.restart");
-    tooltip("Throws the samples away and starts the picture anew. R.");
-    ImGui::EndDisabled();
-    end_padded();
-    gap(12);
-  }
+  panel_block(ui, "Light", true, note, 4, [&] { components(ui, ImGui::CalcItemWidth()); });
+  if (ui.scene)
+    panel_block(ui, "Light mix", false, ui.setting("relight.mix").empty() ? "" : "mixed", 10, [&] {
+      ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
+      draw_mix(ui);
+      ImGui::PopStyleVar();
+    });
+  panel_block(ui, "Render", true, "", 12, [&] { render_rows(ui); });
   hairline();
   ImGui::End();
 }

@@ -133,14 +133,14 @@ void draw_log(Ui& ui, const Area& area) {
   begin_panel("##log", area, colour::panel, false);
   panel_heading("LOG", area);
   ImGui::SetCursorScreenPos({area.hi.x - px(28), area.lo.y + px(3)});
-  if (sign_button("##fold", ui.layout.bottom_open ? Sign::chevron_down : Sign::chevron_up, true,
+  if (sign_button("##fold", ui.shown.bottom_open ? Sign::chevron_down : Sign::chevron_up, true,
                   colour::text_faint))
-    ui.act("window.fold", "bottom", ui.layout.bottom_open);
-  tooltip(ui.layout.bottom_open ? "Folds the strip." : "Unfolds the strip.");
+    ui.act("window.fold", "bottom", ui.shown.bottom_open);
+  tooltip(ui.shown.bottom_open ? "Folds the strip." : "Unfolds the strip.");
   static const char* names[] = {"Debug", "Info", "Warnings", "Errors"};
   std::array<size_t, 4> counts{};
   for (const LogLine& line : ui.log) ++counts[static_cast<size_t>(line.level)];
-  if (ui.layout.bottom_open && area.width() > px(460)) {
+  if (ui.shown.bottom_open && area.width() > px(460)) {
     float right = area.hi.x - px(36);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const auto chip = [&](const char* id, const std::string& text, bool on, ImU32 ink, bool counted = false) {
@@ -173,7 +173,7 @@ void draw_log(Ui& ui, const Area& area) {
       tooltip(fmt::format("{} lines of this level.", ui.log_levels[l] ? "Hides" : "Shows"));
     }
   }
-  if (ui.layout.bottom_open) {
+  if (ui.shown.bottom_open) {
     ImGui::SetCursorScreenPos({area.lo.x, area.lo.y + px(30)});
     const float console = px(28);
     ImGui::BeginChild("##lines", {area.width(), std::max(1.0f, area.hi.y - area.lo.y - px(30) - console)});

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 
 #include "chart.h"
@@ -12,9 +14,12 @@
 namespace lucerna::ui {
 namespace {
 
+/// Closer together where the window is low.
+float entry_height() { return px(ImGui::GetIO().DisplaySize.y < px(560) ? 22 : 26); }
+
 /// One entry of a menu, with its keys and the truth about it; a tick at the left when it is on.
 bool entry(const char* name, const char* keys, const char* help, bool on = false, bool enabled = true) {
-  const float width = std::max(px(232), ImGui::GetContentRegionAvail().x), height = px(26);
+  const float width = std::max(px(232), ImGui::GetContentRegionAvail().x), height = entry_height();
   const ImVec2 lo = ImGui::GetCursorScreenPos(), hi(lo.x + width, lo.y + height);
   ImGui::BeginDisabled(!enabled);
   ImGui::PushID(name);
@@ -47,6 +52,28 @@ bool begin_menu(const char* name) {
   return open;
 }
 
+/// A menu in a menu, in the place of an entry; end_submenu() if it is open.
+bool begin_submenu(const char* name, const char* help, bool enabled = true) {
+  const float space = ImGui::GetFontSize(), height = entry_height();
+  // ImGui makes room for the text and lets its row reach half of the spacing further on both sides.
+  const float above = std::floor(0.5f * (height - space));
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + above);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, height - space});
+  const std::string blanks(static_cast<size_t>(std::round(px(26) / text_width(" "))), ' ');
+  const bool open = ImGui::BeginMenu((blanks + name + "##menu").c_str(), enabled);
+  ImGui::PopStyleVar();
+  if (!open) {
+    tooltip(help);
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() - above);
+  }
+  return open;
+}
+
+void end_submenu() {
+  ImGui::EndMenu();
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() - std::floor(0.5f * (entry_height() - ImGui::GetFontSize())));
+}
+
 void end_menu() {
   ImGui::PopStyleVar();
   ImGui::EndMenu();
@@ -70,6 +97,7 @@ void solver_files(Ui& ui) {
     const bool complete = used && report && report->ready;
     const std::string unused = fmt::format("No component is computed by {}.", solver->name);
     const std::string name = uncapitalised(solver->label);
+    ImGui::PushID(solver->name.c_str());
     if (entry(("Load " + name + "\xE2\x80\xA6").c_str(), nullptr,
               used
                   ? fmt::format("Takes {} from a file {}.", solver->file->content, solver->file->fits).c_str()
@@ -84,6 +112,7 @@ void solver_files(Ui& ui) {
                      : unused.c_str(),
               false, complete))
       ui.act("dialog." + solver->name + "_save");
+    ImGui::PopID();
     divide();
   }
 }
@@ -150,21 +179,20 @@ void edit_menu(Ui& ui) {
 
 /// What can be drawn over the picture of a solver's work.
 void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
-  const bool used = ui.uses(solver);
   for (size_t i = 0; i < solver.views.size(); ++i) {
     const solvers::ViewInfo& view = solver.views[i];
     const OptionInfo* option = plan::find_option(view.option);
-    const std::string name = solver.label + " " + uncapitalised(view.label);
+    const std::string name = capitalised(view.label);
     if (option->type == OptionType::choice && view.ring.empty()) {
       // An entry a value; the key goes through them, from the first.
       for (size_t k = 1; k < option->choices.size(); ++k) {
         const std::string& value = option->choices[k];
         const bool on = ui.setting(option->key) == value;
         if (entry(fmt::format("{}: {}", name, value).c_str(), k == 1 ? key_name(view.shortcut) : nullptr,
-                  option->help.c_str(), on, used))
+                  option->help.c_str(), on))
           ui.act("set", option->key, on ? option->choices.front() : value);
       }
-    } else if (entry(name.c_str(), key_name(view.shortcut), option->help.c_str(), ui.view_on(view), used)) {
+    } else if (entry(name.c_str(), key_name(view.shortcut), option->help.c_str(), ui.view_on(view))) {
       ui.turn_view(view);
     }
     for (const std::string& key : view.refined_by) {
@@ -177,7 +205,7 @@ void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
         last = last && k <= i;
       }
       const OptionInfo* by = plan::find_option(key);
-      if (!used || !on || !last || !by) continue;
+      if (!on || !last || !by) continue;
       for (const std::string& choice : by->choices)
         if (entry(fmt::format("   {} {}", uncapitalised(option_label(*by)), choice).c_str(), nullptr,
                   by->help.c_str(), ui.setting(key) == choice))
@@ -190,13 +218,16 @@ void view_menu(Ui& ui) {
   if (!begin_menu("View")) return;
   if (entry("Panels", "Tab", "Shows or hides all panels.", ui.layout.panels))
     ui.act("window.panels", !ui.layout.panels);
-  if (entry("Light", nullptr, "Components and options.", ui.layout.left_open))
-    ui.act("window.fold", "left", ui.layout.left_open);
+  if (entry("Light", nullptr, "Components and options.", ui.shown.left_open))
+    ui.act("window.fold", "left", ui.shown.left_open);
   // What the right panel shows; that which it shows already is folded away.
   const auto side = [&](const std::string& name, const char* key, const std::string& help,
                         const std::string& what) {
-    const bool on = ui.layout.right_open && ui.side == what;
-    if (!entry(name.c_str(), key, help.c_str(), on)) return;
+    const bool on = ui.shown.right_open && ui.side == what;
+    ImGui::PushID(what.c_str());  // a solver may have the name of a panel
+    const bool pressed = entry(name.c_str(), key, help.c_str(), on);
+    ImGui::PopID();
+    if (!pressed) return;
     if (on)
       ui.act("window.fold", "right", true);
     else
@@ -208,8 +239,8 @@ void view_menu(Ui& ui) {
     if (solver->has_panel())
       side(solver->label, next == solver->name || ui.side == solver->name ? "K" : nullptr,
            panel_help(*solver), solver->name);
-  if (entry("Accuracy, passes and log", nullptr, "The strip at the bottom.", ui.layout.bottom_open))
-    ui.act("window.fold", "bottom", ui.layout.bottom_open);
+  if (entry("Accuracy, passes and log", nullptr, "The strip at the bottom.", ui.shown.bottom_open))
+    ui.act("window.fold", "bottom", ui.shown.bottom_open);
   divide();
   if (entry("Selection", nullptr, "Marks the selected object in the picture.", ui.brackets))
     ui.act("view.selection", !ui.brackets);
@@ -225,17 +256,29 @@ void view_menu(Ui& ui) {
             "Neither filters the noise of the first samples nor keeps what was shown before an edit.",
             ui.setting("preview.filter") == "off"))
     ui.act("set", "preview.filter", ui.setting("preview.filter") == "off" ? "auto" : "off");
-  for (const solvers::SolverInfo* solver : solvers::registered()) solver_views(ui, *solver);
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    if (solver->views.empty()) continue;
+    const bool used = ui.uses(*solver);
+    ImGui::PushID(solver->name.c_str());
+    if (begin_submenu((solver->label + " over the picture").c_str(),
+                      fmt::format("No component is computed by {}.", solver->title).c_str(), used)) {
+      solver_views(ui, *solver);
+      end_submenu();
+    }
+    ImGui::PopID();
+  }
   if (entry("Forget earlier renders", nullptr,
             "Takes the lines of earlier renders out of the plot of accuracy.", false,
             !ui.runs.earlier().empty()))
     ui.act("accuracy.clear_runs");
   divide();
-  for (const auto& [divisor, name] :
-       {std::pair{1, "Full resolution"}, {2, "Half resolution"}, {4, "Quarter resolution"}})
-    if (entry(name, nullptr, "Pixels of the picture for each pixel of the window; fewer converge sooner.",
-              ui.picture_divisor == divisor))
-      ui.act("view.divisor", divisor);
+  if (begin_submenu("Resolution", "Pixels of the picture for each pixel of the window.")) {
+    for (const auto& [divisor, name] : {std::pair{1, "Full"}, {2, "Half"}, {4, "Quarter"}})
+      if (entry(name, nullptr, "Pixels of the picture for each pixel of the window; fewer converge sooner.",
+                ui.picture_divisor == divisor))
+        ui.act("view.divisor", divisor);
+    end_submenu();
+  }
   end_menu();
 }
 
@@ -312,28 +355,30 @@ std::string preview_text(const session::Snapshot& s) {
   return s.filtered > 0.02 ? "filtered" : "";
 }
 
-/// "142 / 256 samples · 1.82 % · 12.3 s", each number in the width of the largest.
-std::string state_text(const session::Snapshot& s) {
+/// "rendering   142 / 256 samples · 1.82 % · 12.3 s", each number in the width of the largest; then shorter
+/// texts for less room.
+std::array<std::string, 3> state_texts(const session::Snapshot& s) {
   const bool adaptive = s.accuracy && s.accuracy->adaptive;
   const size_t digits = fmt::format("{}", s.max_samples).size();
   const std::string state = s.finished ? "finished"
                             : s.paused ? "paused"
                             : s.coarse ? "first pass"
                                        : "rendering";
-  if (!s.preparing.empty() && !s.paused)
-    return fmt::format(
-        "{}{} \xC2\xB7 {}", s.preparing,
-        s.preparing_left ? fmt::format(" \xC2\xB7 {} left", about_text(*s.preparing_left)) : "",
-        padded(seconds_text(s.seconds), 7));
+  if (!s.preparing.empty() && !s.paused) {
+    const std::string text =
+        fmt::format("{}{}", s.preparing,
+                    s.preparing_left ? fmt::format(" · {} left", about_text(*s.preparing_left)) : "");
+    return {fmt::format("{} · {}", text, padded(seconds_text(s.seconds), 7)), text, s.preparing};
+  }
   // In adaptive sampling pixels differ: their mean.
-  const std::string samples =
+  const std::string count =
       padded(fmt::format("{:.0f}", adaptive ? s.mean_samples : static_cast<double>(s.samples)), digits);
+  const std::string samples = adaptive ? fmt::format("{} samples on average", count)
+                                       : fmt::format("{} / {} samples", count, s.max_samples);
   const double error = s.accuracy ? s.accuracy->error()[0] : 0;
-  return fmt::format("{}   {} \xC2\xB7 {} \xC2\xB7 {}", state,
-                     adaptive ? fmt::format("{} samples on average", samples)
-                              : fmt::format("{} / {} samples", samples, s.max_samples),
-                     padded(error > 0 ? percent_text(error) : "\xE2\x80\x93", 6),
-                     padded(seconds_text(s.seconds), 7));
+  const std::string noise = padded(error > 0 ? percent_text(error) : "–", 6);
+  return {fmt::format("{}   {} · {} · {}", state, samples, noise, padded(seconds_text(s.seconds), 7)),
+          fmt::format("{} · {}", count, noise), noise};
 }
 
 /// How much of the work is done, 0..1: of what is prepared, of the samples, or in adaptive sampling of the
@@ -369,25 +414,31 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   const session::Snapshot* s = ui.snapshot.get();
   // The scene's name stands over the picture, or behind the menus where they reach further.
   const float left =
-      std::max(menus_end + px(8), area.lo.x + px((ui.layout.left_open ? ui.layout.left : 0) + 8));
+      std::max(menus_end + px(8), area.lo.x + px((ui.shown.left_open ? ui.shown.left : 0) + 8));
   float right = area.hi.x - px(16), state_left = right;
   if (s && ui.scene && s->max_samples > 0) {
-    const std::string state = state_text(*s);
+    const std::array<std::string, 3> states = state_texts(*s);
     // The numbers stand still: the field is as wide as its longest text.
-    const float wide = text_width(state_text([&] {
+    const std::array<std::string, 3> longest = state_texts([&] {
       session::Snapshot widest;
       widest.samples = s->max_samples, widest.max_samples = s->max_samples, widest.seconds = 99.9,
       widest.mean_samples = s->max_samples, widest.accuracy = s->accuracy, widest.coarse = true;
       return widest;
-    }()));
-    draw_text(list, {right - std::max(wide, text_width(state)), area.lo.y}, {right, area.hi.y}, state,
+    }());
+    // As much of it as there is room for behind the menus.
+    const auto width_of = [&](size_t i) { return std::max(text_width(longest[i]), text_width(states[i])); };
+    size_t which = 0;
+    while (which + 1 < states.size() && right - width_of(which) < menus_end + px(8)) ++which;
+    state_left = std::max(right - width_of(which), menus_end + px(8));
+    draw_text(list, {state_left, area.lo.y}, {right, area.hi.y}, elided(states[which], right - state_left),
               colour::text, Align::right);
-    if (const std::string preview = preview_text(*s); !preview.empty()) {
-      const float end = right - std::max(wide, text_width(state)) - px(16),
-                  begin = end - text_width("100 % from before");
-      draw_text(list, {begin, area.lo.y}, {end, area.hi.y}, preview, colour::accent, Align::right);
-      ImGui::SetCursorScreenPos({begin, area.lo.y});
-      ImGui::InvisibleButton("##preview", {end - begin, area.hi.y - area.lo.y - px(2)});
+    const float preview_end = state_left - px(16),
+                preview_begin = preview_end - text_width("100 % from before");
+    if (const std::string preview = preview_text(*s); !preview.empty() && preview_begin > menus_end) {
+      draw_text(list, {preview_begin, area.lo.y}, {preview_end, area.hi.y}, preview, colour::accent,
+                Align::right);
+      ImGui::SetCursorScreenPos({preview_begin, area.lo.y});
+      ImGui::InvisibleButton("##preview", {preview_end - preview_begin, area.hi.y - area.lo.y - px(2)});
       const std::string off =
           s->shown_error ? fmt::format(" It is off by about {}.", percent_text(*s->shown_error)) : "";
       tooltip(
@@ -395,15 +446,14 @@ void draw_menu_bar(Ui& ui, const Area& area) {
           "better, and the noise of the first samples is filtered." +
           off + " Files have the samples. U shows them as they are.");
     }
-    state_left = right - std::max(wide, text_width(state));
     ImGui::SetCursorScreenPos({state_left, area.lo.y});
-    ImGui::InvisibleButton("##state", {right - state_left, area.hi.y - area.lo.y - px(2)});
+    ImGui::InvisibleButton("##state", {std::max(1.0f, right - state_left), area.hi.y - area.lo.y - px(2)});
     tooltip(
-        "Samples a pixel, noise of the mean (estimated; the panel Accuracy tells that of the tiles beside "
-        "it), "
-        "and the time that has gone by since this picture was begun, pauses left out.");
+        (which > 0 ? states[0] + ". " : "") +
+        "Samples a pixel, noise of the mean (estimated; the panel Accuracy shows that of the tiles beside "
+        "it), and the time that has gone by since this picture was begun, pauses left out.");
     // Room for preview_text(), so that nothing moves when it goes.
-    right = state_left - text_width("100 % from before") - px(40);
+    right = preview_begin - px(24);
   }
   if (s && !s->device.empty()) {
     const float room = std::max(0.0f, right - left - px(160));

@@ -138,7 +138,7 @@ void draw_passes(Ui& ui, const Area& area) {
       tooltip(machine_text(*s));
     }
   }
-  if (ui.layout.bottom_open) {
+  if (ui.shown.bottom_open) {
     const Area inside{{area.lo.x + px(12), area.lo.y + px(k_folded_bottom) + px(4)},
                       {area.hi.x - px(16), area.hi.y - px(12)}};
     if (s && s->accuracy && !s->stages.empty()) {

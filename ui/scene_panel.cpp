@@ -8,6 +8,7 @@
 #include "base/color.h"
 #include "commands/light_edit.h"
 #include "emitters.h"
+#include "panel_block.h"
 #include "scene/lamp.h"
 #include "state.h"
 #include "widgets.h"
@@ -437,7 +438,7 @@ void objects(Ui& ui, bool reveal) {
 }  // namespace
 
 void draw_scene_panel(Ui& ui, const Area& area) {
-  if (!ui.layout.right_open) return;
+  if (!ui.shown.right_open) return;
   begin_panel("##scene", area, colour::panel, true);
   if (!ui.scene) {
     bool open = true;
@@ -450,16 +451,11 @@ void draw_scene_panel(Ui& ui, const Area& area) {
     return;
   }
   const auto block = [&](const char* title, size_t count, bool fallback, auto&& draw) {
-    if (panel_section(ui, title, fallback, count > 0 ? fmt::format("{}", count) : "")) {
-      begin_padded();
-      ImGui::PushID(title);
+    panel_block(ui, title, fallback, count > 0 ? fmt::format("{}", count) : "", 10, [&] {
       ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
       draw();
       ImGui::PopStyleVar();
-      ImGui::PopID();
-      end_padded();
-      gap(10);
-    }
+    });
   };
   // What has been selected elsewhere, by a click in the picture say, is brought into view.
   const bool reveal = ui.reveals();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "panel_block.h"
 #include "solvers/registry.h"
 #include "state.h"
 #include "widgets.h"
@@ -264,14 +265,8 @@ void Items::operator()(const solvers::StepStrip& strip) {
 
 /// A section of the panel around what `draw` draws.
 template <class Draw>
-void block(Ui& ui, const std::string& title, const std::string& note, Draw&& draw) {
-  if (!panel_section(ui, title.c_str(), true, note)) return;
-  begin_padded();
-  ImGui::PushID(title.c_str());
-  draw();
-  ImGui::PopID();
-  end_padded();
-  gap(10);
+void block(Ui& ui, const std::string& title, const std::string& note, const Draw& draw) {
+  panel_block(ui, title.c_str(), true, note, 10, draw);
 }
 
 /// The components that a solver serves, as words.
@@ -336,7 +331,7 @@ Area draw_side_tabs(Ui& ui, const Area& area) {
   std::vector<Tab> tabs{{k_scene_side, "Scene", "Cameras, lights, environment, materials."}};
   for (const SolverInfo* solver : solvers::registered())
     if (solver->has_panel()) tabs.push_back({solver->name, solver->label, panel_help(*solver) + " K."});
-  if (!ui.layout.right_open) {
+  if (!ui.shown.right_open) {
     begin_panel("##side_folded", area, colour::panel, false);
     const auto shown =
         std::find_if(tabs.begin(), tabs.end(), [&](const Tab& t) { return t.side == ui.side; });
@@ -378,7 +373,7 @@ Area draw_side_tabs(Ui& ui, const Area& area) {
 }
 
 void draw_solver_panel(Ui& ui, const SolverInfo& solver, const Area& area) {
-  if (!ui.layout.right_open) return;
+  if (!ui.shown.right_open) return;
   begin_panel(("##solver_" + solver.name).c_str(), area, colour::panel, true);
   const bool used = ui.uses(solver);
   const Report* report = used && ui.scene ? ui.report(solver) : nullptr;

@@ -118,7 +118,7 @@ std::string Ui::next_side() const {
     if (solver->has_panel() && sides.empty()) sides.push_back(solver->name);
   if (sides.empty()) return k_scene_side;
   if (side == k_scene_side) return sides.front();
-  if (!layout.right_open) return side;
+  if (!shown.right_open) return side;
   const auto at = std::find(sides.begin(), sides.end(), side);
   return at == sides.end() || at + 1 == sides.end() ? k_scene_side : *(at + 1);
 }

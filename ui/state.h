@@ -131,7 +131,8 @@ struct Ui : commands::Workspace {
   void follow_busy();
 
   // The window.
-  Layout layout;
+  Layout layout;                         ///< as chosen
+  Layout shown;                          ///< as this frame has room for
   std::map<std::string, bool> sections;  ///< open or not, by title
   std::deque<LogLine> log;
   bool log_follows = true;
@@ -231,6 +232,9 @@ struct Ui : commands::Workspace {
     std::optional<stats::Band> band;
   } forecast_;
 };
+
+/// Handles the keys pressed and draws all parts of the window where the layout puts them; once a frame.
+void draw_parts(Ui& ui);
 
 // The parts, each in a file of its own; called once a frame in this order. Coordinates are window pixels.
 void draw_menu_bar(Ui& ui, const Area& area);

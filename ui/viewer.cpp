@@ -162,25 +162,8 @@ class Viewer {
     window_.begin_frame();
     ImGui::PushFont(theme().fonts.regular);
     ui_.follow_gesture();
-    handle_keys(ui_);
-    const Areas areas = arrange(ui_.layout, ImGui::GetIO().DisplaySize, theme().scale);
-    if (ui_.layout.panels) {
-      draw_splitters(ui_, areas);
-      draw_menu_bar(ui_, areas.bar);
-      draw_light_panel(ui_, areas.left);
-      draw_toolbar(ui_, areas.toolbar);
-      const Area side = draw_side_tabs(ui_, areas.right);
-      if (const solvers::SolverInfo* solver = solvers::find(ui_.side))
-        draw_solver_panel(ui_, *solver, side);
-      else
-        draw_scene_panel(ui_, side);
-      draw_accuracy(ui_, areas.accuracy);
-      draw_passes(ui_, areas.passes);
-      draw_log(ui_, areas.log);
-    }
-    draw_picture(ui_, areas.picture);
+    draw_parts(ui_);
     if (ui_.frames_to_settle > 0) --ui_.frames_to_settle, ui_.wake(1);
-    draw_dialogs(ui_);
     ImGui::PopFont();
     window_.end_frame();
     if (!ui_.shot.file.empty()) {
@@ -241,6 +224,28 @@ class Viewer {
 };
 
 }  // namespace
+
+void draw_parts(Ui& ui) {
+  handle_keys(ui);
+  const Areas areas = arrange(ui.layout, ImGui::GetIO().DisplaySize, theme().scale);
+  ui.shown = areas.shown;
+  if (ui.layout.panels) {
+    draw_splitters(ui, areas);
+    draw_menu_bar(ui, areas.bar);
+    draw_light_panel(ui, areas.left);
+    draw_toolbar(ui, areas.toolbar);
+    const Area side = draw_side_tabs(ui, areas.right);
+    if (const solvers::SolverInfo* solver = solvers::find(ui.side))
+      draw_solver_panel(ui, *solver, side);
+    else
+      draw_scene_panel(ui, side);
+    draw_accuracy(ui, areas.accuracy);
+    draw_passes(ui, areas.passes);
+    draw_log(ui, areas.log);
+  }
+  draw_picture(ui, areas.picture);
+  draw_dialogs(ui);
+}
 
 int run_viewer(session::Session& session, const ViewerOptions& options) {
   return Viewer(session, options).run();

@@ -352,6 +352,8 @@ void draw_toolbar(Ui& ui, const Area& area) {
   const float pad = px(8), y = area.lo.y + px(6);
   const float tone_width = px(88), ev_width = px(92), grey_width = px(46), tiles_width = px(46);
   float right = area.hi.x - pad;
+  // In a narrow picture the layers come first; what is left out is in the menus too.
+  const bool narrow = area.width() < 2 * pad + tone_width + ev_width + grey_width + tiles_width + px(96);
   const OptionInfo* tone = plan::find_option("film.tone_curve");
   if (tone) {
     right -= tone_width;
@@ -382,16 +384,18 @@ void draw_toolbar(Ui& ui, const Area& area) {
                      .typed_hi = static_cast<float>(ev->hi)};
     if (slider("##ev", "", value, how, ev_width)) ui.act("set", "film.ev", fmt::format("{:.4g}", value));
     tooltip(ev->help + " Double-click to type.");
-    right -= px(4) + grey_width;
+    right -= px(4);
+  }
+  if (!narrow) {
+    right -= grey_width;
     ImGui::SetCursorScreenPos({right, y});
     if (button("##grey", "Grey", ui.dropper, grey_width)) ui.act("exposure.dropper", !ui.dropper);
     tooltip("The next click in the picture sets the exposure so that what it hits is middle grey. B.");
-    right -= px(4);
+    right -= px(4) + tiles_width;
+    ImGui::SetCursorScreenPos({right, y});
+    if (button("##tiles", "Tiles", ui.setting_on("overlay.tiles"), tiles_width)) ui.toggle("overlay.tiles");
+    tooltip(plan::find_option("overlay.tiles")->help + " T.");
   }
-  right -= tiles_width;
-  ImGui::SetCursorScreenPos({right, y});
-  if (button("##tiles", "Tiles", ui.setting_on("overlay.tiles"), tiles_width)) ui.toggle("overlay.tiles");
-  tooltip(plan::find_option("overlay.tiles")->help + " T.");
   right -= px(8);
   ImGui::SetCursorScreenPos({area.lo.x + pad, y});
   layer_buttons(ui, right - area.lo.x - pad);

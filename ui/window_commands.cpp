@@ -37,8 +37,15 @@ std::vector<std::string> section_names(const Ui& ui) {
 float& size_of(Layout& layout, const std::string& panel) {
   return panel == "left" ? layout.left : panel == "right" ? layout.right : layout.bottom;
 }
-bool& open_of(Layout& layout, const std::string& panel) {
-  return panel == "left" ? layout.left_open : panel == "right" ? layout.right_open : layout.bottom_open;
+void set_open(Layout& layout, const std::string& panel, bool open) {
+  const Panel which = panel == "left" ? Panel::left : panel == "right" ? Panel::right : Panel::bottom;
+  (which == Panel::left    ? layout.left_open
+   : which == Panel::right ? layout.right_open
+                           : layout.bottom_open) = open;
+  if (open)
+    layout.opened_last = which;
+  else if (layout.opened_last == which)
+    layout.opened_last.reset();
 }
 
 using commands::Arguments;
@@ -73,11 +80,11 @@ void add_panel_commands(Ui& ui, const Add& add) {
   add("window.panels", "Shows or hides all panels.", {on()},
       [&ui](const Arguments& a) { ui.layout.panels = a.boolean("on"); });
   add("window.fold", "Folds a panel, or unfolds it.", {panel, {.name = "folded", .type = Type::boolean}},
-      [&ui](const Arguments& a) { open_of(ui.layout, a.text("panel")) = !a.boolean("folded"); });
+      [&ui](const Arguments& a) { set_open(ui.layout, a.text("panel"), !a.boolean("folded")); });
   add("window.side", "Says what the panel on the right shows, and unfolds it.",
       {{.name = "what", .type = Type::choice, .choices = sides()}}, [&ui](const Arguments& a) {
         ui.side = a.text("what");
-        ui.layout.right_open = true;
+        set_open(ui.layout, "right", true);
       });
   add("window.split", "Sets the width of a side panel, or the height of the strip at the bottom.",
       {panel, {.name = "size", .type = Type::real, .lo = 0, .hi = 10000, .unit = "design pixels"}},
@@ -203,7 +210,8 @@ void add_log_commands(Ui& ui, const Add& add) {
   add(
       "log.type", "Puts the keyboard into the line under the log.", {},
       [&ui](const Arguments&) {
-        ui.layout.panels = ui.layout.bottom_open = true;
+        ui.layout.panels = true;
+        set_open(ui.layout, "bottom", true);
         ui.console.focus = true;
       },
       false);

@@ -83,6 +83,34 @@ TEST_CASE("the parts of the window tile it and leave room for the picture") {
     }
 }
 
+TEST_CASE("a small window folds and narrows panels, and a larger one has them again as they were") {
+  ui::Layout chosen;
+  chosen.left = 300, chosen.right = 320, chosen.bottom = 260;
+  for (const auto& [width, height] : {std::array{640.0f, 420.0f}, {700.0f, 480.0f}, {900.0f, 600.0f}}) {
+    INFO(width << " x " << height);
+    for (const auto last : {std::optional<ui::Panel>(), std::optional(ui::Panel::left),
+                            std::optional(ui::Panel::right), std::optional(ui::Panel::bottom)}) {
+      chosen.opened_last = last;
+      const ui::Areas small = ui::arrange(chosen, {width, height}, 1);
+      CHECK(small.picture.width() >= ui::k_least_picture_width);
+      CHECK(small.picture.height() >= ui::k_least_picture_height);
+      for (const bool left : {true, false}) {
+        const bool open = left ? small.shown.left_open : small.shown.right_open;
+        const float size = left ? small.left.width() : small.right.width();
+        CHECK(size >= (open ? ui::k_least_side : ui::k_folded));
+      }
+      // What was asked for last is there.
+      if (last == ui::Panel::left) CHECK(small.shown.left_open);
+      if (last == ui::Panel::right) CHECK(small.shown.right_open);
+      if (last == ui::Panel::bottom) CHECK(small.shown.bottom_open);
+    }
+  }
+  const ui::Areas large = ui::arrange(chosen, {1440, 900}, 1);
+  CHECK(large.left.width() == 300);
+  CHECK(large.right.width() == 320);
+  CHECK(large.log.height() == 260);
+}
+
 TEST_CASE("percentiles") {
   CHECK(ui::percentile({}, 0.5) == 0);
   CHECK(ui::percentile({4, 1, 3, 2, 5}, 0.5) == 3);

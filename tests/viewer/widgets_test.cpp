@@ -1,0 +1,386 @@
+// links: ui film_io
+// Every control of every panel, without a display: each has an id that no other has in the same frame, and a
+// click on it reaches it. ImGui's items pass through this file (tests/CMakeLists.txt wraps them), so that no
+// panel has to cooperate.
+#include "fake_session.h"
+#include "support.h"
+#include "ui/theme.h"
+#include "ui/viewer.h"
+
+#define IMGUI_DEFINE_MATH_OPERATORS
+#include <imgui_internal.h>
+
+#include <chrono>
+#include <set>
+#include <thread>
+
+#include "commands/registry.h"
+#include "solvers/registry.h"
+#include "ui/state.h"
+
+using namespace lucerna;
+
+namespace {
+
+struct Item {
+  ImGuiID id;
+  ImGuiWindow* window;
+  ImRect box;
+};
+
+/// A button or an entry of a list, as it was drawn in the last frame.
+struct Control {
+  std::string name;  ///< its own part of the id
+  ImGuiID id;
+  ImGuiWindow* window;
+  ImRect box, seen;  ///< in full; what its window shows of it
+  bool disabled, pressed;
+};
+
+/// What the last frame drew.
+struct Frame {
+  std::vector<Item> items;
+  std::vector<Control> controls;
+} g_frame;
+/// The control whose press is answered; all other presses are recorded and withheld, so that nothing changes.
+std::optional<ImGuiID> g_answered;
+
+bool withheld(const char* name, ImGuiID id, bool pressed) {
+  const ImGuiLastItemData& item = GImGui->LastItemData;
+  ImGuiWindow* window = ImGui::GetCurrentWindow();
+  ImRect seen = item.Rect;
+  seen.ClipWithFull(window->ClipRect);
+  g_frame.controls.push_back({name, id, window, item.Rect, seen,
+                              (GImGui->CurrentItemFlags & ImGuiItemFlags_Disabled) != 0, pressed});
+  return pressed && g_answered == id;
+}
+
+}  // namespace
+
+bool real_item_add(const ImRect& box, ImGuiID id, const ImRect* nav,
+                   ImGuiItemFlags flags) asm("__real__ZN5ImGui7ItemAddERK6ImRectjPS1_i");
+bool wrap_item_add(const ImRect& box, ImGuiID id, const ImRect* nav,
+                   ImGuiItemFlags flags) asm("__wrap__ZN5ImGui7ItemAddERK6ImRectjPS1_i");
+bool wrap_item_add(const ImRect& box, ImGuiID id, const ImRect* nav, ImGuiItemFlags flags) {
+  if (id != 0) g_frame.items.push_back({id, ImGui::GetCurrentWindow(), box});
+  return real_item_add(box, id, nav, flags);
+}
+
+bool real_button(const char* name, const ImVec2& size,
+                 int flags) asm("__real__ZN5ImGui15InvisibleButtonEPKcRK6ImVec2i");
+bool wrap_button(const char* name, const ImVec2& size,
+                 int flags) asm("__wrap__ZN5ImGui15InvisibleButtonEPKcRK6ImVec2i");
+bool wrap_button(const char* name, const ImVec2& size, int flags) {
+  const ImGuiID id = ImGui::GetID(name);
+  const bool pressed = real_button(name, size, flags);
+  return withheld(name, id, pressed);
+}
+
+bool real_entry(const char* name, bool on, int flags,
+                const ImVec2& size) asm("__real__ZN5ImGui10SelectableEPKcbiRK6ImVec2");
+bool wrap_entry(const char* name, bool on, int flags,
+                const ImVec2& size) asm("__wrap__ZN5ImGui10SelectableEPKcbiRK6ImVec2");
+bool wrap_entry(const char* name, bool on, int flags, const ImVec2& size) {
+  const ImGuiID id = ImGui::GetID(name);
+  const bool pressed = real_entry(name, on, flags | ImGuiSelectableFlags_DontClosePopups, size);
+  return withheld(name, id, pressed);
+}
+
+namespace {
+
+/// A window's panels without a window: frames are drawn into lists that nothing shows.
+class Walk {
+ public:
+  explicit Walk(float width = 1600, float height = 1000) : session_({}), ui_(session_) {
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = {width, height};
+    io.DeltaTime = 1.0f / 30;
+    io.MouseDoubleClickTime = 0;
+    io.KeyMap[ImGuiKey_Escape] = 256;
+    ui::apply_theme(1);
+    ui_.scripted = true;
+    ui_.texture = 1, ui_.texture_width = 64, ui_.texture_height = 48;
+  }
+  ~Walk() {
+    ui_.session.on_publish({});
+    ImGui::DestroyContext();
+  }
+
+  ui::Ui& ui() { return ui_; }
+
+  /// Carries out a command and draws until the session has done it and has taken its samples: then nothing
+  /// moves while controls are clicked.
+  void act(const std::string& line) {
+    ui_.act_line(line);
+    settle();
+  }
+  void settle() {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto busy = [&] {
+      const auto s = session_.snapshot();
+      return !s || s->commands < session_.commands() || (ui_.scene && !s->finished);
+    };
+    for (frames(1); busy(); frames(1)) {
+      REQUIRE(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    frames(3);
+  }
+
+  void frames(int n) {
+    for (int i = 0; i < n; ++i) frame();
+  }
+
+  /// Checks that no id is used twice in a frame. `where`: the part of the window that is looked at.
+  void check_ids(const std::string& where) {
+    frame();
+    std::map<std::pair<ImGuiWindow*, ImGuiID>, int> uses;
+    for (const Item& item : g_frame.items) ++uses[{item.window, item.id}];
+    for (const Item& item : g_frame.items)
+      if (const int n = std::exchange(uses[{item.window, item.id}], 1); n > 1) {
+        std::string names;
+        for (const Control& c : g_frame.controls)
+          if (c.id == item.id) names += " " + c.name;
+        INFO(where << ": " << n << " items of one id:" << names << " at " << item.box.Min.x << " "
+                   << item.box.Min.y << " in " << item.window->Name);
+        CHECK(n == 1);
+      }
+  }
+
+  /// Clicks every control that `of` takes and checks that the press reaches it. What opens a list or a picker
+  /// is opened, and its controls are clicked too. Returns how many were clicked.
+  template <class Of>
+  int click_all(const std::string& where, const Of& of) {
+    check_ids(where);
+    std::vector<Control> controls;
+    for (const Control& c : g_frame.controls)
+      if (of(c) && !c.disabled && c.name != "##view") controls.push_back(c);
+    int clicked = 0;
+    std::map<ImGuiID, int> seen;
+    for (const Control& c : controls) {
+      const int nth = seen[c.id]++;
+      INFO(where << ": " << c.name << " at " << c.box.Min.x << " " << c.box.Min.y << " in "
+                 << c.window->Name);
+      if (!bring_into_view(c.id, nth)) continue;
+      CHECK(click(c.id, nth));
+      ++clicked;
+      if (c.name == "##open" && !(c.window->Flags & ImGuiWindowFlags_Popup)) {
+        g_answered = c.id;
+        click(c.id, nth);
+        g_answered.reset();
+        frames(2);
+        clicked += click_all(where + ": " + c.name, in_popup);
+        close();
+      }
+    }
+    return clicked;
+  }
+
+  static bool in_popup(const Control& c) {
+    return (c.window->RootWindow->Flags & ImGuiWindowFlags_Popup) != 0;
+  }
+  static bool anywhere(const Control&) { return true; }
+
+  /// Opens a menu by its place among those of the bar, or among those in the menu that is open.
+  bool open_menu(size_t n, bool in_bar) {
+    frame();
+    std::vector<Item> menus;
+    for (const Item& item : g_frame.items) {
+      const bool popup = (item.window->Flags & ImGuiWindowFlags_Popup) != 0;
+      if ((in_bar ? std::string(item.window->Name) == "##bar" : popup) &&
+          std::none_of(g_frame.controls.begin(), g_frame.controls.end(),
+                       [&](const Control& c) { return c.id == item.id; }))
+        menus.push_back(item);
+    }
+    if (n >= menus.size()) return false;
+    press(menus[n].box.GetCenter());
+    frames(2);
+    return true;
+  }
+
+  void close() {
+    if (!GImGui->OpenPopupStack.empty()) ImGui::ClosePopupToLevel(0, true);
+    ui_.dialog = {}, ui_.help = false;
+    ImGui::GetIO().MousePos = {-1, -1};
+    frames(2);
+  }
+
+  /// The control of that name whose box begins nearest to a place, if any.
+  std::vector<Control> named(const std::string& name) const {
+    std::vector<Control> list;
+    for (const Control& c : g_frame.controls)
+      if (c.name == name) list.push_back(c);
+    return list;
+  }
+  bool click(ImGuiID id, int nth) {
+    const Control* c = find(id, nth);
+    if (!c) return false;
+    press(c->seen.GetCenter());
+    c = find(id, nth);
+    return c && c->pressed;
+  }
+
+ private:
+  void frame() {
+    ui_.now = ui_.time();
+    ui_.refresh(ui_.now);
+    ui_.keys.clear();
+    g_frame = {};
+    ImGui::NewFrame();
+    ImGui::PushFont(ui::theme().fonts.regular);
+    ui_.follow_gesture();
+    ui::draw_parts(ui_);
+    ImGui::PopFont();
+    ImGui::Render();
+  }
+
+  const Control* find(ImGuiID id, int nth) const {
+    for (const Control& c : g_frame.controls)
+      if (c.id == id && nth-- == 0) return &c;
+    return nullptr;
+  }
+
+  /// The button goes down and up at a place; the last frame is that of the release.
+  void press(const ImVec2& at) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = {std::floor(at.x), std::floor(at.y)};
+    frames(2);
+    io.MouseDown[0] = true;
+    frame();
+    io.MouseDown[0] = false;
+    frame();
+  }
+
+  /// Scrolls the control's window where that is needed; false: it has no room to be seen (folded away).
+  bool bring_into_view(ImGuiID id, int nth) {
+    frame();
+    const Control* c = find(id, nth);
+    if (!c) return false;
+    ImGuiWindow* window = c->window;
+    if (c->seen.GetHeight() < c->box.GetHeight() && window->ScrollMax.y > 0) {
+      ImGui::SetScrollY(window, window->Scroll.y + c->box.GetCenter().y - window->InnerRect.GetCenter().y);
+      frames(3);
+      c = find(id, nth);
+    }
+    return c && c->seen.GetWidth() >= 1 && c->seen.GetHeight() >= 1;
+  }
+
+  session::Session session_;
+  ui::Ui ui_;
+};
+
+const std::vector<std::string> k_sections{"Light",       "Light mix", "Render",  "Camera", "Lights",
+                                          "Environment", "Materials", "Objects", "Options"};
+
+/// The hall with all sections open.
+void open_hall(Walk& walk) {
+  walk.act("samples 4");
+  walk.ui().session.set_size(64, 48);
+  walk.act("scene.open hall.gltf");
+  walk.settle();
+  REQUIRE(walk.ui().scene);
+  REQUIRE(walk.ui().has_picture());
+  for (const std::string& section : k_sections) walk.ui().sections[section] = true;
+  walk.frames(3);
+}
+
+}  // namespace
+
+TEST_CASE("no id is used twice in a frame, and a click reaches every control of every panel") {
+  Walk walk;
+  open_hall(walk);
+  ui::Ui& ui = walk.ui();
+  int clicked = 0;
+  SECTION("the scene's side, nothing selected, then a lamp, a surface and a material") {
+    clicked += walk.click_all("scene", Walk::anywhere);
+    for (const char* selected : {"light 3", "material 5", "material 1"}) {
+      walk.act(std::string("select ") + selected);
+      clicked +=
+          walk.click_all(selected, [](const Control& c) { return std::string(c.window->Name) == "##scene"; });
+    }
+    CHECK(clicked > 150);
+  }
+  SECTION("every solver's side, in use or not") {
+    for (const bool used : {false, true})
+      for (const solvers::SolverInfo* solver : solvers::registered()) {
+        if (!solver->has_panel()) continue;
+        if (used)
+          for (size_t c = 0; c < solver->serves.size(); ++c)
+            if (solver->serves[c])
+              walk.act("set components." + std::string(session::k_component_names[c]) + " " + solver->name);
+        walk.act("window.side " + solver->name);
+        const std::string panel = "##solver_" + solver->name;
+        clicked += walk.click_all(panel, [&](const Control& c) { return c.window->Name == panel; });
+      }
+    CHECK(clicked > 20);
+  }
+  SECTION("the menus") {
+    for (const char* line : {"set components.secondary cache", "set components.tertiary photons",
+                             "set components.caustic light"})
+      walk.act(line);
+    size_t n = 0, inner = 0;
+    for (; walk.open_menu(n, true); ++n) {
+      clicked += walk.click_all(fmt::format("menu {}", n + 1), Walk::in_popup);
+      walk.close();
+      for (size_t m = 0; walk.open_menu(n, true) && walk.open_menu(m, false); ++m, ++inner) {
+        ImGuiWindow* first = GImGui->OpenPopupStack[0].Window;
+        clicked += walk.click_all(fmt::format("menu {}, menu {}", n + 1, m + 1),
+                                  [&](const Control& c) { return Walk::in_popup(c) && c.window != first; });
+        walk.close();
+      }
+      walk.close();
+    }
+    CHECK(n == 6);
+    CHECK(inner == 4);
+    CHECK(clicked > 45);
+  }
+  SECTION("the dialogs, the keys and the cards") {
+    for (const char* dialog : {"dialog.open", "dialog.save", "dialog.reference", "dialog.script"}) {
+      walk.act(dialog);
+      clicked += walk.click_all(dialog, Walk::in_popup);
+      walk.close();
+    }
+    CHECK(clicked >= 8);
+    walk.act("window.keys");
+    walk.check_ids("keys");
+    walk.close();
+    ui.welcome = true, ui.errors = {"first", "second"};
+    walk.frames(2);
+    clicked = walk.click_all("cards",
+                             [](const Control& c) { return c.name == "##begin" || c.name == "##dismiss"; });
+    CHECK(clicked == 2);
+  }
+  SECTION("folded panels, and a window as small as it can be") {
+    for (const char* panel : {"left", "right", "bottom"}) walk.act(fmt::format("window.fold {} true", panel));
+    clicked = walk.click_all("folded", Walk::anywhere);
+    CHECK(clicked > 10);
+    for (const char* panel : {"left", "right", "bottom"})
+      walk.act(fmt::format("window.fold {} false", panel));
+    ImGui::GetIO().DisplaySize = {640, 400};
+    walk.frames(3);
+    CHECK(walk.click_all("small", Walk::anywhere) > 100);
+  }
+}
+
+TEST_CASE("solo of the first group of the light mix mutes the others") {
+  Walk walk;
+  open_hall(walk);
+  const std::vector<Control> solos = walk.named("##solo");
+  const size_t groups = walk.ui().light_groups().groups.size();
+  REQUIRE(groups > 0);
+  REQUIRE(solos.size() == session::k_components + groups);
+  // The mix is below the components.
+  const Control& first = solos[session::k_components];
+  int nth = 0;
+  for (size_t i = 0; i < session::k_components; ++i) nth += solos[i].id == first.id;
+  g_answered = first.id;
+  walk.click(first.id, nth);
+  g_answered.reset();
+  walk.frames(2);
+  const auto mix = walk.ui().light_mix();
+  const auto found = mix.find(walk.ui().light_groups().groups[0].name);
+  REQUIRE(found != mix.end());
+  CHECK(found->second.solo);
+}
