@@ -23,7 +23,32 @@ uint32_t limited_tiles(const Accuracy& a) {
       }));
 }
 
-std::string short_percent(double fraction) { return fmt::format("{:.3g} %", 100 * fraction); }
+std::string short_percent(double fraction, int figures = 3) {
+  return fmt::format("{:.{}g} %", 100 * fraction, figures);
+}
+
+/// A forecast as a sentence and shorter ones. A range that spans a factor has no middle to name, and where
+/// even the end of it is open only its beginning is said.
+std::vector<std::string> forecast_texts(const std::string& all, const std::string& goal,
+                                        const stats::Band& forecast) {
+  constexpr double k_vague = 2.5, k_open = 12;  // high over low
+  const std::string low = about_text(forecast.low), high = about_text(forecast.high);
+  const std::string middle = about_text(forecast.middle);
+  const double span = forecast.high / std::max(forecast.low, 1e-9);
+  if (low == high)
+    return {fmt::format("{} will take about {}", all, middle), fmt::format("{} in about {}", goal, middle),
+            goal};
+  if (span > k_open)
+    return {fmt::format("{} will take more than {}", all, low), fmt::format("{} in more than {}", goal, low),
+            goal};
+  std::vector<std::string> texts;
+  if (span <= k_vague)
+    texts.push_back(fmt::format("{} will take about {} ({} to {})", all, middle, low, high));
+  texts.push_back(fmt::format("{} will take {} to {}", all, low, high));
+  texts.push_back(fmt::format("{} in {} to {}", goal, low, high));
+  texts.push_back(goal);
+  return texts;
+}
 
 /// " (a.rays, a.noise)": settings of the solvers that have an effect on what samples leave.
 std::string advice(std::vector<std::string> solvers::SolverInfo::*settings) {
@@ -124,17 +149,35 @@ std::vector<std::string> target_texts(const Accuracy& a, double target,
     return {fmt::format("{} will not be reached: lookups are the limit ({}), more samples hardly help", goal,
                         short_percent(a.ledger.entries().back().floor())),
             fmt::format("{}: lookups are the limit", goal), goal};
+  if (a.finished && !a.adaptive && (!forecast || forecast->high > seconds * (1 + 1e-9)))
+    return {fmt::format("{} was not reached: Samples ended at {:.0f}, at {}", goal, a.max_samples,
+                        percent_text(a.ledger.entries().back().sum())),
+            fmt::format("{} was not reached with {:.0f} samples", goal, a.max_samples),
+            fmt::format("{} was not reached", goal), goal};
   if (!forecast) return {all + ": too early to tell", all};
   if (forecast->high <= seconds * (1 + 1e-9))
     return {fmt::format("{} was reached after {}", all, about_text(forecast->middle)), all};
-  const std::string low = about_text(forecast->low), high = about_text(forecast->high);
-  const std::string middle = about_text(forecast->middle);
-  std::vector<std::string> texts;
-  if (low != high) texts.push_back(fmt::format("{} will take about {} ({} to {})", all, middle, low, high));
-  texts.push_back(fmt::format("{} will take about {}", all, middle));
-  texts.push_back(fmt::format("{} in about {}", goal, middle));
-  texts.push_back(goal);
-  return texts;
+  if (const auto end = session::seconds_to_end(a); end && forecast->high > *end) {
+    const std::string samples = fmt::format("{:.0f}", a.max_samples), after = about_text(*end);
+    const auto error = stats::error_at(a.ledger, a.max_samples);
+    if (forecast->low <= *end)
+      return {fmt::format("{} may not be reached: Samples ends at {}, after {}", goal, samples, after),
+              fmt::format("{} may not be reached with {} samples", goal, samples),
+              fmt::format("{} may not be reached", goal), goal};
+    return {fmt::format("{} will not be reached: Samples ends at {}, after {}{}", goal, samples, after,
+                        error ? fmt::format(" at about {}", short_percent(error->middle, 2)) : ""),
+            fmt::format("{} will not be reached with {} samples", goal, samples),
+            fmt::format("{} will not be reached", goal), goal};
+  }
+  if (const uint32_t over = a.adaptive ? session::tiles_out_of_reach(a, target) : 0; over > 0) {
+    return {fmt::format("{} of {} tiles are likely to stay over {}, with all of {:.0f} samples; all is done "
+                        "in {} to {}",
+                        over, a.tiles.size(), goal, a.max_samples, about_text(forecast->low),
+                        about_text(forecast->high)),
+            fmt::format("{} of {} tiles are likely to stay over {}", over, a.tiles.size(), goal),
+            fmt::format("{} tiles likely over {}", over, goal), goal};
+  }
+  return forecast_texts(all, goal, *forecast);
 }
 
 }  // namespace lucerna::ui

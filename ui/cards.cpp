@@ -69,10 +69,12 @@ void busy_card(Ui& ui, const Area& area) {
   const std::string time = seconds_text(seconds);
   draw_text(list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)}, time, colour::text_dim,
             Align::right);
-  draw_text(
-      list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)},
-      elided(ui.busy.text.empty() ? "Working" : "Working: " + ui.busy.text, w - px(36) - text_width(time)),
-      colour::text);
+  draw_text(list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)},
+            elided(ui.busy.done           ? "First picture"
+                   : ui.busy.text.empty() ? "Working"
+                                          : "Working: " + ui.busy.text,
+                   w - px(36) - text_width(time)),
+            colour::text);
   // How far it is nobody knows; that it goes on is seen.
   const float lo_x = lo.x + px(12), room = hi.x - px(12) - lo_x, part = 0.25f;
   const float at = static_cast<float>(0.5 - 0.5 * std::cos(2 * seconds)) * (1 - part);

@@ -1,12 +1,9 @@
-// What lies above the panels: file dialogs, the page of keys; and the keys themselves. Also the frame of
-// every panel.
+// What lies above the panels: the page of keys; and the keys themselves. Also the frame of every panel.
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
-#include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 #include <utility>
 
@@ -14,215 +11,8 @@
 #include "state.h"
 #include "widgets.h"
 
-namespace fs = std::filesystem;
-
 namespace lucerna::ui {
 namespace {
-
-struct Completion {
-  std::string path, name;
-  bool folder;
-};
-
-/// What a dialog asks for, by its purpose.
-struct Question {
-  std::string title, note;
-  std::string command, answer;  ///< that is run with the file; the button's word for it
-  std::vector<std::string> endings;
-  bool reads = false;  ///< the file is there already
-};
-
-Question question(const Dialog& dialog) {
-  using Purpose = Dialog::Purpose;
-  switch (dialog.purpose) {
-    case Purpose::none:
-      break;
-    case Purpose::open:
-      return {.title = "Open a scene",
-              .note = "A .gltf or .glb file. Tab completes; arrows choose.",
-              .command = "scene.open",
-              .answer = "Open",
-              .endings = {".gltf", ".glb"},
-              .reads = true};
-    case Purpose::save:
-      return {.title = "Save the picture",
-              .note = ".exr holds all layers as floats; .png what is shown, through exposure and tone curve.",
-              .command = "image.save",
-              .answer = "Save",
-              .endings = {".exr", ".png"}};
-    case Purpose::script:
-      return {.title = "Save the session as a script",
-              .note = "What was done, one command a line; lucerna --script FILE does it again.",
-              .command = "script.save",
-              .answer = "Save",
-              .endings = {".lucerna"}};
-    case Purpose::reference:
-      return {.title = "Load a reference",
-              .note = "An .exr of this view and size, rendered long and with another seed.",
-              .command = "reference.load",
-              .answer = "Load",
-              .endings = {".exr"},
-              .reads = true};
-    case Purpose::solver_load:
-      return {.title = "Load a " + uncapitalised(dialog.solver->label),
-              .note = fmt::format("A {} file {}.", dialog.solver->file->extension, dialog.solver->file->fits),
-              .command = dialog.solver->name + ".load",
-              .answer = "Load",
-              .endings = {dialog.solver->file->extension},
-              .reads = true};
-    case Purpose::solver_save:
-      return {.title = "Save the " + uncapitalised(dialog.solver->label),
-              .note = capitalised(dialog.solver->file->content) + ", for this scene as it is lit now.",
-              .command = dialog.solver->name + ".save",
-              .answer = "Save",
-              .endings = {dialog.solver->file->extension}};
-  }
-  return {};
-}
-
-/// Files of a kind and folders that begin with what is typed.
-std::vector<Completion> completions(const std::string& typed, const Dialog& dialog) {
-  std::vector<Completion> list;
-  for (const std::string& path : commands::paths_starting(typed, question(dialog).endings)) {
-    const bool folder = path.back() == '/';
-    const size_t slash = path.rfind('/', path.size() - 2);
-    list.push_back({path, slash == std::string::npos ? path : path.substr(slash + 1), folder});
-  }
-  return list;
-}
-
-std::string expanded(const std::string& path) {
-  if (path.rfind("~/", 0) == 0)
-    if (const char* home = std::getenv("HOME")) return home + path.substr(1);
-  return path;
-}
-
-bool is_folder(const std::string& path) {
-  std::error_code error;
-  return fs::is_directory(path, error);
-}
-
-/// Tab puts the marked entry into the field, or what all entries share; arrows mark. Works on the text as it
-/// is at this moment, which may be newer than the list on the screen.
-int complete_field(ImGuiInputTextCallbackData* data) {
-  auto& dialog = *static_cast<Dialog*>(data->UserData);
-  if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) dialog.marked = -1;
-  const auto list = completions(expanded(data->Buf), dialog);
-  if (list.empty()) return 0;
-  const int last = static_cast<int>(list.size()) - 1;
-  if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory)
-    dialog.marked = std::clamp(dialog.marked + (data->EventKey == ImGuiKey_DownArrow ? 1 : -1), 0, last);
-  if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) {
-    std::string common = list[static_cast<size_t>(std::clamp(dialog.marked, 0, last))].path;
-    if (dialog.marked < 0)
-      for (const Completion& c : list) {
-        const auto differ = std::mismatch(common.begin(), common.end(), c.path.begin(), c.path.end());
-        common.erase(differ.first, common.end());
-      }
-    data->DeleteChars(0, data->BufTextLen);
-    data->InsertChars(0, common.c_str());
-    dialog.marked = -1;
-  }
-  return 0;
-}
-
-void file_dialog(Ui& ui) {
-  Dialog& dialog = ui.dialog;
-  if (dialog.purpose == Dialog::Purpose::none) return;
-  const Question asked = question(dialog);
-  // Each has a field of its own, so that none begins with what was typed into another.
-  const std::string title = "##" + asked.command;
-  if (dialog.fresh) ImGui::OpenPopup(title.c_str()), dialog.fresh = false, dialog.focus = true;
-  const ImVec2 window = ImGui::GetIO().DisplaySize;
-  const float width = std::min(px(560), window.x - px(48));
-  ImGui::SetNextWindowPos({std::floor(0.5f * (window.x - width)), std::floor(0.18f * window.y)});
-  ImGui::SetNextWindowSize({width, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(16), px(14)});
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(8)});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(3));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
-  if (ImGui::BeginPopupModal(
-          title.c_str(), nullptr,
-          ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
-    label(asked.title, colour::text, theme().fonts.strong);
-    std::error_code ignored;
-    if (!asked.reads && fs::is_regular_file(expanded(dialog.path), ignored))
-      label(dialog.purpose == Dialog::Purpose::script
-                ? "A file of that name exists; it is replaced if it is a saved session."
-                : "A file of that name exists and will be replaced.",
-            colour::warning, theme().fonts.small);
-    else
-      label(asked.note, colour::text_dim, theme().fonts.small);
-    ImGui::SetNextItemWidth(-1);
-    if (dialog.focus) ImGui::SetKeyboardFocusHere(), dialog.to_end = true;
-    dialog.focus = false;
-    const std::vector<Completion> list = completions(expanded(dialog.path), dialog);
-    const bool entered =
-        ImGui::InputText("##path", &dialog.path,
-                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
-                             ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackEdit,
-                         complete_field, &dialog);
-    // Focus selects all; one wants to go on typing behind the last slash.
-    if (ImGuiInputTextState* field = ImGui::GetInputTextState(ImGui::GetItemID());
-        field && dialog.to_end && ImGui::IsItemActive()) {
-      field->Stb.cursor = field->Stb.select_start = field->Stb.select_end = field->CurLenW;
-      dialog.to_end = false;
-    }
-    const float rows = 7 * px(24);
-    std::string chosen;
-    ImGui::BeginChild("##completions", {0, rows});
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
-    if (list.empty())
-      label(asked.reads ? "No such file or folder starts like that" : "A new file", colour::text_faint);
-    for (int i = 0; i < static_cast<int>(list.size()); ++i) {
-      const Completion& c = list[static_cast<size_t>(i)];
-      ImGui::PushID(i);
-      const ImVec2 at = ImGui::GetCursorScreenPos();
-      const float w = ImGui::GetContentRegionAvail().x;
-      if (ImGui::Selectable("##entry", i == dialog.marked, ImGuiSelectableFlags_DontClosePopups, {w, px(24)}))
-        chosen = c.path;
-      if (i == dialog.marked) ImGui::SetScrollHereY(0.5f);
-      draw_text(ImGui::GetWindowDrawList(), {at.x + px(8), at.y}, {at.x + w, at.y + px(24)},
-                elided(c.name, w - px(16)), c.folder ? colour::text_dim : colour::text);
-      ImGui::PopID();
-    }
-    ImGui::PopStyleVar();
-    ImGui::EndChild();
-
-    bool done = false, accept = entered;
-    if (entered && dialog.marked >= 0 && dialog.marked < static_cast<int>(list.size()))
-      chosen = list[static_cast<size_t>(dialog.marked)].path;
-    if (!chosen.empty()) {
-      dialog.path = chosen, dialog.marked = -1;
-      accept = !is_folder(chosen);
-      ImGui::ClearActiveID();
-      dialog.focus = true;  // the field takes the focus again, with the new text
-    }
-    const float w = px(96);
-    ImGui::SetCursorPosX(ImGui::GetWindowWidth() - 2 * w - px(24));
-    if (button("##cancel", "Cancel", false, w)) done = true;
-    ImGui::SameLine(0, px(8));
-    if (button("##accept", asked.answer, true, w)) accept = true;
-    if (ui.pressed(GLFW_KEY_ESCAPE)) done = true;
-    if (accept && !dialog.path.empty()) {
-      const std::string file = expanded(dialog.path);
-      if (is_folder(file)) {
-        if (dialog.path.back() != '/') dialog.path += '/';
-        dialog.focus = true;
-        ImGui::ClearActiveID();
-      } else {
-        ui.act(asked.command, file);
-        done = true;
-      }
-    }
-    if (done) dialog = {}, ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
-    if (dialog.focus) ui.wake(3);
-  } else {
-    dialog = {};
-  }
-  ImGui::PopStyleVar(4);
-}
 
 constexpr float k_key_text = 400;  // of the solvers' rows
 
@@ -361,28 +151,8 @@ bool panel_section(Ui& ui, const char* title, bool fallback, const std::string& 
   return open;
 }
 
-void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver) {
-  dialog = {};
-  dialog.purpose = purpose;
-  dialog.solver = solver;
-  dialog.fresh = true;
-  std::error_code error;
-  if (purpose == Dialog::Purpose::open) {
-    const fs::path here =
-        scene && !scene->file.empty() ? fs::path(scene->file).parent_path() : fs::path("scenes");
-    if (fs::is_directory(here, error)) dialog.path = (here / "").string();
-  } else if (purpose == Dialog::Purpose::reference || purpose == Dialog::Purpose::solver_load) {
-    dialog.path = fs::current_path(error).string() + "/";
-  } else if (purpose == Dialog::Purpose::script) {
-    dialog.path = (scene ? scene->name : "session") + ".lucerna";
-  } else if (scene) {
-    dialog.path = scene->name + question(dialog).endings[0];
-  }
-  wake(4);
-}
-
 void draw_dialogs(Ui& ui) {
-  file_dialog(ui);
+  draw_file_dialog(ui);
   key_page(ui);
 }
 

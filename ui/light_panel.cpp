@@ -20,6 +20,18 @@ const char* meaning(int component) {
   return texts[component];
 }
 
+/// What a value of components.X means: a solver's name, two joined by a plus, or off.
+std::string solver_help(const std::string& value) {
+  if (value == "off")
+    return "Off: its paths are not traced beyond what the others need, and its light is missing.";
+  const size_t plus = value.find('+');
+  const solvers::SolverInfo* solver = solvers::find(value.substr(0, plus));
+  const std::string first = solver ? solver->help : "";
+  if (plus == std::string::npos) return first;
+  const solvers::SolverInfo* other = solvers::find(value.substr(plus + 1));
+  return first + (other ? " " + other->help : std::string());
+}
+
 void component_row(Ui& ui, int c, float width) {
   const auto index = static_cast<size_t>(c);
   const std::string name = session::k_component_names[index];
@@ -68,10 +80,13 @@ void component_row(Ui& ui, int c, float width) {
     solver_width = std::min(solver_width, std::max(px(76), width - beside));
     int chosen = static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.setting(key)) -
                                   option->choices.begin());
-    if (choice("##solver", "", option->choices, chosen, solver_width))
+    std::vector<std::string> helps;
+    for (const std::string& solver : option->choices) helps.push_back(solver_help(solver));
+    const std::string help =
+        option->help + (static_cast<size_t>(chosen) < helps.size() ? " " + helps[size_t(chosen)] : "");
+    if (choice("##solver", "", option->choices, chosen, solver_width, helps))
       ui.act("set", key, option->choices[static_cast<size_t>(chosen)]);
-    tooltip(option->help +
-            " Off: its paths are not traced beyond what the others need, and its light is missing.");
+    tooltip(help);
   }
   const float right = at.x + width;
   const bool known = status && !off && ui.snapshot->samples > 0;

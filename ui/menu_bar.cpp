@@ -214,11 +214,19 @@ void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
   }
 }
 
+/// "Irradiance cache" of "the irradiance cache".
+std::string title_of(const solvers::SolverInfo& solver) {
+  const std::string& title = solver.title;
+  return capitalised(title.starts_with("the ") ? title.substr(4) : title);
+}
+
 void view_menu(Ui& ui) {
   if (!begin_menu("View")) return;
   if (entry("Panels", "Tab", "Shows or hides all panels.", ui.layout.panels))
     ui.act("window.panels", !ui.layout.panels);
-  if (entry("Light", nullptr, "Components and options.", ui.shown.left_open))
+  if (entry("Components and options", nullptr,
+            "The panel on the left: the four components of light and the options of the render.",
+            ui.shown.left_open))
     ui.act("window.fold", "left", ui.shown.left_open);
   // What the right panel shows; that which it shows already is folded away.
   const auto side = [&](const std::string& name, const char* key, const std::string& help,
@@ -237,7 +245,7 @@ void view_menu(Ui& ui) {
   const std::string next = ui.next_side();
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (solver->has_panel())
-      side(solver->label, next == solver->name || ui.side == solver->name ? "K" : nullptr,
+      side(title_of(*solver), next == solver->name || ui.side == solver->name ? "K" : nullptr,
            panel_help(*solver), solver->name);
   if (entry("Accuracy, passes and log", nullptr, "The strip at the bottom.", ui.shown.bottom_open))
     ui.act("window.fold", "bottom", ui.shown.bottom_open);
@@ -260,7 +268,7 @@ void view_menu(Ui& ui) {
     if (solver->views.empty()) continue;
     const bool used = ui.uses(*solver);
     ImGui::PushID(solver->name.c_str());
-    if (begin_submenu((solver->label + " over the picture").c_str(),
+    if (begin_submenu((title_of(*solver) + ": views").c_str(),
                       fmt::format("No component is computed by {}.", solver->title).c_str(), used)) {
       solver_views(ui, *solver);
       end_submenu();
@@ -444,7 +452,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
       tooltip(
           "What is shown is not the samples alone: light from before the last edit stays until the new is "
           "better, and the noise of the first samples is filtered." +
-          off + " Files have the samples. U shows them as they are.");
+          off + " EXR files have the samples; a PNG is saved either way. U shows them as they are.");
     }
     ImGui::SetCursorScreenPos({state_left, area.lo.y});
     ImGui::InvisibleButton("##state", {std::max(1.0f, right - state_left), area.hi.y - area.lo.y - px(2)});

@@ -88,24 +88,47 @@ void Ui::measured(const std::string& text) {
   print(log::Level::info, text);
 }
 
+std::vector<std::pair<std::string, std::string>> Ui::set_with(const std::string& key,
+                                                              const std::string& value) {
+  // The target's line stays where it is when the way of sampling changes.
+  if (key == "sampling.target_error") what_if_asked = false;
+  if (key != "sampling.mode" || value == setting(key)) return {};
+  if (value == "uniform") {
+    what_if = setting_real("sampling.target_error"), what_if_asked = false;
+  } else if (std::exchange(what_if_asked, false)) {
+    return {{"sampling.target_error", fmt::format("{:.4g}", what_if)}};
+  }
+  return {};
+}
+
+void Ui::written(const std::string& name) { notice("Saved " + name, 6); }
+
 double Ui::busy_seconds() const {
   const double seconds = busy.command != 0 ? now - busy.since : 0;
   return seconds > 0.5 ? seconds : 0;
 }
 
 void Ui::follow_busy() {
-  const uint64_t given = session.commands(), carried_out = snapshot ? snapshot->commands : 0;
-  if (busy.command != 0 && carried_out < busy.command) return;
-  busy.command = given > carried_out ? given : 0;
-  busy.since = now, busy.text = sent_line();
+  const uint64_t given = session.commands(), done = session.commands_done();
+  const bool all_done = done >= given;
+  const uint64_t shown_up_to = snapshot ? snapshot->commands : 0;
+  const uint64_t current = !all_done ? done + 1 : shown_up_to < given ? given : 0;
+  if (current == busy.command && all_done == busy.done) return;
+  busy.command = current, busy.done = all_done, busy.since = now;
+  busy.text = current == 0 || all_done ? "" : line_of(current);
 }
 
 void Ui::scene_changed() {
   flight = {};
   errors.clear();
+  if (!scene->unknown_extensions.empty())
+    notice(fmt::format("Not supported, shown without: {}", fmt::join(scene->unknown_extensions, ", ")), 12);
   if (scene->file.empty()) return;
-  std::erase(recent, scene->file);
-  recent.insert(recent.begin(), scene->file);
+  // For later runs from other folders too.
+  std::error_code error;
+  const std::string file = std::filesystem::absolute(scene->file, error).lexically_normal().string();
+  std::erase(recent, file);
+  recent.insert(recent.begin(), file);
   if (recent.size() > 8) recent.resize(8);
 }
 

@@ -2,9 +2,11 @@
 // What the window knows and what its parts share: the workspace, what the panels show, the log, and requests
 // to the loop that draws.
 #include <deque>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 
 #include "accuracy_plot.h"
 #include "base/log.h"
@@ -50,10 +52,12 @@ struct Dialog {
   Purpose purpose = Purpose::none;
   const solvers::SolverInfo* solver = nullptr;  ///< whose work is loaded or saved
   std::string path;
-  bool fresh = false;   ///< to be opened in the next frame
-  bool focus = false;   ///< its field takes the keyboard in the next frame
-  bool to_end = false;  ///< the cursor goes behind the text once the field has the keyboard
-  int marked = -1;      ///< entry of the completion list
+  bool fresh = false;     ///< to be opened in the next frame
+  bool focus = false;     ///< its field takes the keyboard in the next frame
+  bool to_end = false;    ///< the cursor goes behind the text once the field has the keyboard
+  int marked = -1;        ///< entry of the completion list
+  bool pictures = false;  ///< the program's scenes are shown in its place
+  bool as_shown = true;   ///< a PNG is saved with the filter that the window shows
 };
 
 /// The line under the log.
@@ -88,6 +92,7 @@ struct Ui : commands::Workspace {
   std::vector<std::string> typed;
 
   Flight flight;
+  std::set<int> chorded;  ///< GLFW keys whose last press was with Ctrl: they do not fly
   /// Whether the selection is new since the last call, and was not made in the list (`chosen_in_list`): then
   /// its row is to be shown.
   bool reveals();
@@ -120,11 +125,13 @@ struct Ui : commands::Workspace {
   bool welcome = false;   ///< the first steps are shown
   bool welcomed = false;  ///< ... and were, now or in an earlier run
 
-  /// What the renderer has been at for a while, and since when; no text while it is not.
+  /// What the renderer does now, and since when. A command that is carried out is not shown any more: then
+  /// the first picture of it is in progress.
   struct {
-    uint64_t command = 0;  ///< the session's number of it
+    uint64_t command = 0;  ///< the session's number of it; 0: nothing is to be waited for
+    bool done = false;     ///< it is carried out, and no picture shows it yet
     double since = 0;
-    std::string text;
+    std::string text;  ///< the line that gave it; "" for none
   } busy;
   /// Seconds that the renderer has been at one thing; 0 while that is not worth telling.
   double busy_seconds() const;
@@ -144,6 +151,9 @@ struct Ui : commands::Workspace {
   std::vector<std::string> recent;  ///< files, newest first
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
+  /// OpenGL name of an image file's picture, made when it is first asked for; 0 where it cannot be read. Null
+  /// without a window.
+  std::function<unsigned(const std::string&)> picture_of;
   int picture_divisor = 1;  ///< window pixels per picture pixel
   /// Frames to be drawn until the room for the picture is as the commands so far have it.
   int frames_to_settle = 0;
@@ -169,6 +179,8 @@ struct Ui : commands::Workspace {
   // Accuracy.
   Runs runs;
   double what_if = 0.01;  ///< relative error that is asked about in uniform sampling
+  /// It was asked about since the target was set last: adaptive sampling begins with it.
+  bool what_if_asked = false;
   /// What the target's line stands at: the setting in adaptive sampling, the question in uniform.
   double target() const;
   /// Seconds of rendering until it is reached.
@@ -217,6 +229,9 @@ struct Ui : commands::Workspace {
   void size_refused(uint32_t width, uint32_t height) override {
     if (picture_size) picture_size.emplace(width, height);
   }
+  void written(const std::string& name) override;
+  std::vector<std::pair<std::string, std::string>> set_with(const std::string& key,
+                                                            const std::string& value) override;
   bool exposes_at_load() const override { return !scripted; }
 
  private:
@@ -261,6 +276,7 @@ void draw_inspection(Ui& ui, const Area& area);
 void keep_view(Ui& ui);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
+void draw_file_dialog(Ui& ui);  ///< part of draw_dialogs
 void handle_keys(Ui& ui);
 
 /// GLFW's key and modifiers of a name such as "ctrl+z". Throws Error when there is none such.

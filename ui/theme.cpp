@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "assets.h"
+
 namespace fs = std::filesystem;
 
 namespace lucerna::ui {
@@ -34,12 +36,7 @@ constexpr float k_line_over_em = 1.21f;
 
 std::vector<fs::path> font_folders() {
   std::vector<fs::path> folders;
-  if (const char* assets = std::getenv("LUCERNA_ASSETS"); assets && *assets)
-    folders.push_back(fs::path(assets) / "fonts");
-  std::error_code error;
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(self.parent_path().parent_path() / "share" / "lucerna" / "assets" / "fonts");
-  folders.push_back(fs::path(LUCERNA_SOURCE_DIR) / "assets" / "fonts");
+  for (const fs::path& assets : asset_folders()) folders.push_back(assets / "fonts");
   folders.push_back("/usr/share/fonts/opentype/inter");
   return folders;
 }

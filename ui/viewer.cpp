@@ -37,6 +37,7 @@ class Viewer {
       if (ui_.welcome) remember(ui_);
     }
     if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
+    ui_.picture_of = [this](const std::string& file) { return texture_of(file); };
     session.on_publish([] { Window::wake(); });
     if (!options.scene.empty()) ui_.act("scene.open", options.scene.string());
     for (const std::string& line : settings_) ui_.act_line(line);
@@ -211,7 +212,27 @@ class Viewer {
     }
   }
 
+  unsigned texture_of(const std::string& file) {
+    const auto [known, fresh] = textures_.try_emplace(file, 0);
+    if (!fresh) return known->second;
+    try {
+      const film::FilmImage image = film::read_exr(file);
+      const std::vector<size_t> channels = image.layer("");
+      if (channels.size() < 3) return 0;
+      std::vector<uint8_t> rgba(size_t{image.width} * image.height * 4, 255);
+      for (size_t i = 0; i < rgba.size() / 4; ++i)
+        for (size_t c = 0; c < 3; ++c)
+          rgba[4 * i + c] = static_cast<uint8_t>(
+              std::clamp(image.channels[channels[c]].second[i] * 255 + 0.5f, 0.0f, 255.0f));
+      known->second = window_.make_texture(rgba, image.width, image.height);
+    } catch (const Error& error) {
+      log::warning("{}", error.what());
+    }
+    return known->second;
+  }
+
   ViewerOptions options_;
+  std::map<std::string, unsigned> textures_;  ///< of image files; 0: cannot be read
   LogInbox inbox_;
   Ui ui_;
   Runner runner_;

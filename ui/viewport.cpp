@@ -228,8 +228,14 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
 
   // Flight: while the pointer is over the picture.
   vec3 wish(0);
+  // A key that was pressed with Ctrl is a command until it is released, also where Ctrl is up before it.
+  for (const auto& [key, mods] : ui.keys)
+    if (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER))
+      ui.chorded.insert(key);
+    else
+      ui.chorded.erase(key);
   if ((hovered || active) && !typing && !io.KeyCtrl) {
-    const auto down = [&](int key) { return io.KeysDown[key] ? 1.0f : 0.0f; };
+    const auto down = [&](int key) { return io.KeysDown[key] && !ui.chorded.contains(key) ? 1.0f : 0.0f; };
     wish = {down(GLFW_KEY_D) - down(GLFW_KEY_A), down(GLFW_KEY_E) - down(GLFW_KEY_Q),
             down(GLFW_KEY_W) - down(GLFW_KEY_S)};
   }

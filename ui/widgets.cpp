@@ -92,9 +92,11 @@ void tooltip(const std::string& text) {
   const ImRect& rect = GImGui->LastItemData.Rect;
   const ImGuiID key = ImHashData(&rect, sizeof(rect), GImGui->LastItemData.ID);
   const double now = ImGui::GetTime();
-  static double seen = 0;
-  if (key != last || now - seen > 0.5) last = key, since = now;
-  seen = now;
+  // Shown as long as it is in every frame, however far these lie apart.
+  static int seen = 0;
+  const int frame = ImGui::GetFrameCount();
+  if (key != last || frame > seen + 1) last = key, since = now;
+  seen = frame;
   if (now - since < 0.45) return;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(10), px(7)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(3));
@@ -412,7 +414,7 @@ bool colour_field(const char* id, const std::string& name, vec3& linear, const s
 }
 
 bool choice(const char* id, const std::string& name, const std::vector<std::string>& entries, int& index,
-            float width) {
+            float width, const std::vector<std::string>& helps) {
   const float w = full_width(width > 0 ? width : ImGui::CalcItemWidth());
   const ImVec2 lo = ImGui::GetCursorScreenPos(), hi(lo.x + w, lo.y + row_height());
   ImGui::PushID(id);
@@ -449,6 +451,7 @@ bool choice(const char* id, const std::string& name, const std::vector<std::stri
       const ImVec2 at = ImGui::GetCursorScreenPos();
       const float entry_width = std::max(w - px(8), text_width(entries[static_cast<size_t>(i)]) + px(24));
       if (ImGui::Selectable("##entry", i == index, 0, {entry_width, px(24)})) changed = i != index, index = i;
+      if (static_cast<size_t>(i) < helps.size()) tooltip(helps[static_cast<size_t>(i)]);
       draw_text(ImGui::GetWindowDrawList(), {at.x + px(4), at.y}, {at.x + entry_width, at.y + px(24)},
                 entries[static_cast<size_t>(i)], i == index ? colour::text : colour::text_dim);
       ImGui::PopStyleColor();

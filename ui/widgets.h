@@ -80,9 +80,9 @@ ImU32 display_colour(const vec3& linear);
 /// linear, 0..1 in each channel. Returns whether it changed.
 bool colour_field(const char* id, const std::string& name, vec3& linear, const std::string& note = "");
 
-/// A drop-down; `index` < 0 shows nothing chosen. `marks` colours the entries (0: none).
+/// A drop-down; `index` < 0 shows nothing chosen. `helps`: tooltips of the entries, in their order.
 bool choice(const char* id, const std::string& name, const std::vector<std::string>& entries, int& index,
-            float width = 0);
+            float width = 0, const std::vector<std::string>& helps = {});
 
 /// A thin bar of several parts (fractions of the width).
 struct Part {

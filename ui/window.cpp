@@ -120,6 +120,7 @@ Window::Window(int width, int height, bool hidden, float scale) : events_(new Ev
 
 Window::~Window() {
   if (texture_) glDeleteTextures(1, &texture_);
+  for (const unsigned texture : textures_) glDeleteTextures(1, &texture);
   ImGui_ImplOpenGL3_Shutdown();
   ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
@@ -150,12 +151,13 @@ void Window::follow_scale() {
 bool Window::closing() const { return glfwWindowShouldClose(window_); }
 
 bool Window::wait(double seconds) {
-  events_->any = false;
+  // A script's input since the last call counts as much as a hand's.
+  if (events_->any) seconds = 0;
   if (seconds > 0)
     glfwWaitEventsTimeout(seconds);
   else
     glfwPollEvents();
-  return events_->any;
+  return std::exchange(events_->any, false);
 }
 
 void Window::begin_frame() {
@@ -242,6 +244,22 @@ unsigned Window::upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32
     glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, w, h, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
   }
   return texture_;
+}
+
+unsigned Window::make_texture(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height) {
+  unsigned texture = 0;
+  glGenTextures(1, &texture);
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, static_cast<GLsizei>(width), static_cast<GLsizei>(height), 0,
+               GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  for (const unsigned filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+  for (const unsigned wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
+  textures_.push_back(texture);
+  return texture;
 }
 
 void Window::move_mouse(float x, float y) {

@@ -33,6 +33,8 @@ class Window {
   void set_title(const std::string& title);
   /// Puts a picture into the texture (made anew when the size changes). Returns its OpenGL name.
   unsigned upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height);
+  /// A picture that stays, drawn smoothly at other sizes. Returns its OpenGL name.
+  unsigned make_texture(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height);
   /// A key that went down, with its modifiers (GLFW_MOD_*).
   struct Key {
     int key, mods;
@@ -65,6 +67,7 @@ class Window {
   float asked_scale_ = 0, scale_ = 0;
   double refresh_seconds_ = 1.0 / 60;
   unsigned texture_ = 0;
+  std::vector<unsigned> textures_;  ///< of make_texture()
   uint32_t texture_width_ = 0, texture_height_ = 0;
 };
 

@@ -106,9 +106,9 @@ void add_panel_commands(Ui& ui, const Add& add) {
 void add_accuracy_commands(Ui& ui, const Add& add) {
   add("accuracy.what_if",
       "In uniform sampling: asks what this relative error of the picture would cost. In adaptive sampling "
-      "sampling.target_error is the question.",
+      "sampling.target_error is the question; it begins with the error that was asked about last.",
       {{.name = "error", .type = Type::real, .lo = 0.0001, .hi = 10}},
-      [&ui](const Arguments& a) { ui.what_if = a.real("error"); });
+      [&ui](const Arguments& a) { ui.what_if = a.real("error"), ui.what_if_asked = true; });
   add("accuracy.clear_runs", "Takes the lines of earlier renders out of the plot of accuracy.", {},
       [&ui](const Arguments&) { ui.runs.clear(); });
 }

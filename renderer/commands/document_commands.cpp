@@ -228,8 +228,9 @@ void Workspace::give(const std::string& key, const std::string& value) {
   if (key == "camera" && view && !loading() && setting(key) != value)
     throw Error("", "the camera to start with; camera.select takes another one now");
   if (key == "film.ev") exposure_given_ = true;
-  edit().settings[key] = value;
-  touched_.push_back(key);
+  std::vector<std::pair<std::string, std::string>> changes = set_with(key, value);
+  changes.emplace_back(key, value);
+  for (const auto& [changed, to] : changes) edit().settings[changed] = to, touched_.push_back(changed);
 }
 
 void Workspace::add_setting_commands() {

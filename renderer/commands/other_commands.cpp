@@ -56,16 +56,30 @@ void Workspace::add_render_commands() {
             [this] { session.restart(); });
   add_plain("shaders.reload", "Compiles the shaders again; when that fails the old ones stay.",
             [this] { session.reload_shaders(); });
-  registry.add({.name = "image.save",
-                .help = "Writes the picture as it is, once every pixel has a sample: all layers as EXR, or "
-                        "what is shown as PNG. A script waits for that, and fails when it cannot be.",
-                .parameters = {file_to_write({".exr", ".png"}), time_limit()},
-                .run =
-                    [this](const Arguments& a) {
-                      record_wait();
-                      saved_ = session.save(a.text("file"));
-                    },
-                .done = [this](const Arguments&) { return saved(); }});
+  registry.add(
+      {.name = "image.save",
+       .help = "Writes the picture, once every pixel has a sample: all layers as EXR, untouched, or "
+               "through exposure and tone curve as PNG. A script waits for that, and fails when it "
+               "cannot be.",
+       .parameters = {file_to_write({".exr", ".png"}),
+                      time_limit(),
+                      {.name = "as",
+                       .type = Type::choice,
+                       .help = "of a PNG; shown: with the filter of the first samples, as the window "
+                               "shows it; unfiltered (when not given): the samples as they are",
+                       .choices = {"unfiltered", "shown"},
+                       .optional = true}},
+       .run =
+           [this](const Arguments& a) {
+             const std::string& file = a.text("file");
+             const bool png = std::filesystem::path(file).extension() == ".png";
+             const bool as_shown = a.has("as") && a.text("as") == "shown";
+             if (as_shown && !png) throw Error("", "as: only a PNG is saved as shown");
+             record_wait();
+             saved_ = session.save(file, as_shown);
+             writing_.push_back({file + (png ? as_shown ? ", as shown" : ", unfiltered" : ""), saved_});
+           },
+       .done = [this](const Arguments&) { return saved(); }});
   registry.add({.name = "reference.load",
                 .help = "Takes a picture for the truth, to hold this one against: an EXR with all layers, of "
                         "the same scene, view and size.",

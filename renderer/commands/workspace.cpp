@@ -89,6 +89,15 @@ void Workspace::refresh(double time) {
     if (view_scene == scene_id_ || no_picture) opened_by_ = 0;
   }
   take_measure();
+  take_written();
+}
+
+void Workspace::take_written() {
+  std::erase_if(writing_, [&](const Writing& w) {
+    if (w.saved.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    if (!failed(w.saved)) written(w.name);
+    return true;
+  });
 }
 
 void Workspace::drop_refused() {
@@ -331,9 +340,24 @@ Line Workspace::run(const std::string& text, uint64_t gesture, const std::string
   if (!line.command) return line;
   const uint64_t before = session.commands();
   carry_out(line, gesture, where);
-  // A camera may have taken the number of the one before.
-  if (session.commands() > before || line.command->moves) sent_line_ = text;
+  note_sent(before, text, line.command->moves);
   return line;
+}
+
+void Workspace::note_sent(uint64_t before, const std::string& line, bool moves) {
+  constexpr size_t k_kept = 200;
+  const uint64_t now_given = session.commands();
+  if (now_given > before)
+    given_by_.push_back({before + 1, now_given, line});
+  else if (moves && !given_by_.empty() && given_by_.back().last == now_given)
+    given_by_.back().line = line;  // the camera has taken the number of the one before
+  if (given_by_.size() > k_kept) given_by_.pop_front();
+}
+
+std::string Workspace::line_of(uint64_t command) const {
+  for (const GivenBy& given : given_by_)
+    if (given.first <= command && command <= given.last) return given.line;
+  return "";
 }
 
 void Workspace::carry_out(const Line& line, uint64_t gesture, const std::string& where) {

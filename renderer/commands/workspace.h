@@ -11,6 +11,7 @@
 // refused; moves of the camera, undo and what is derived from the scene's own settings are left out by the
 // session when the other scene comes. Settings given by name act on the scene that comes.
 #include <array>
+#include <deque>
 #include <future>
 #include <memory>
 #include <optional>
@@ -85,9 +86,9 @@ class Workspace {
   /// Errors seen so far, counted by whoever listens to the log.
   uint64_t error_count = 0;
 
-  /// The last line, of a control, a script or the console, that has given the session something to do; ""
-  /// before.
-  const std::string& sent_line() const { return sent_line_; }
+  /// The line, of a control, a script or the console, that gave the session its command of that number
+  /// (Session::commands); "" where no line did, or long ago.
+  std::string line_of(uint64_t command) const;
 
   /// Carries out a line. Lines of one `gesture` (not 0) on the same target are one step to undo and one line
   /// of the script: the last. Throws Error, at `where`, when it is not understood or cannot be done; then
@@ -178,6 +179,14 @@ class Workspace {
   virtual void measured(const std::string& text) { (void)text; }
   /// Called when the session has refused the size that was asked for last; the picture keeps this one.
   virtual void size_refused(uint32_t width, uint32_t height) { (void)width, (void)height; }
+  /// Called when a picture has been written; `name`: its file and how it was written.
+  virtual void written(const std::string& name) { (void)name; }
+  /// Settings that change in the same step when one is set to a value, and theirs.
+  virtual std::vector<std::pair<std::string, std::string>> set_with(const std::string& key,
+                                                                    const std::string& value) {
+    (void)key, (void)value;
+    return {};
+  }
   /// Whether the exposure is to be found when a scene comes that brings none.
   virtual bool exposes_at_load() const { return false; }
 
@@ -261,6 +270,8 @@ class Workspace {
   void carry_out(const Line& line, uint64_t gesture, const std::string& where);
   /// What the session was given since `before`, a number of its commands, and since `moves`.
   Sent sent_since(uint64_t before, uint64_t moves) const;
+  /// Notes which line gave the commands since the session had `before`.
+  void note_sent(uint64_t before, const std::string& line, bool moves);
   Document& edit();  ///< the document that the running command may change
   /// A setting that the running command names; it acts on a scene that is being loaded, too. Throws Error.
   void give(const std::string& key, const std::string& value);
@@ -306,6 +317,8 @@ class Workspace {
   /// Asks for the brightness of the picture, or at a point; `of_load`: nobody has asked for it.
   void measure(std::optional<vec2> at, bool of_load);
   void take_measure();
+  /// Calls written() for what has been.
+  void take_written();
 
   plan::Settings known_;
   std::map<std::string, Pending> pending_;
@@ -334,9 +347,20 @@ class Workspace {
   std::array<bool, session::k_components> shown_before_{};
   std::optional<Document> working_;
   std::vector<std::string> touched_;  ///< settings that the running command set, changed or not
-  std::string sent_line_;
+  /// Lines and the last of the session's commands that each has given, the newest last.
+  struct GivenBy {
+    uint64_t first, last;
+    std::string line;
+  };
+  std::deque<GivenBy> given_by_;
   std::vector<Step> undo_, redo_;
   std::vector<Recorded> recorded_;
+  /// Pictures on their way to files, as they are to be named.
+  struct Writing {
+    std::string name;
+    session::Saved saved;
+  };
+  std::vector<Writing> writing_;
   session::Saved saved_;                        ///< of the last command that writes a file
   bool open_failed_ = false;                    ///< the last scene.open has failed
   uint64_t opened_by_ = 0;                      ///< its number, until its scene is shown or it has failed

@@ -1,6 +1,7 @@
 #include "session/accuracy.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "session/renderer.h"
 
@@ -61,10 +62,30 @@ std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
   if (!total) return std::nullopt;
   const double rays_a_path =
       static_cast<double>(last.rays - last.prepared_rays) / static_cast<double>(last.paths);
-  const auto seconds = [&](double all) {
-    return last.wall_s + std::max(0.0, all - static_cast<double>(last.paths)) * rays_a_path * each;
+  const double spread = std::exp(stats::spread_of_pace(a.ledger));
+  const auto seconds = [&](double all, double rate) {
+    return last.wall_s + rate * std::max(0.0, all - static_cast<double>(last.paths)) * rays_a_path * each;
   };
-  return stats::Band{seconds(total->low), seconds(total->middle), seconds(total->high)};
+  return stats::Band{seconds(total->low, 1 / spread), seconds(total->middle, 1),
+                     seconds(total->high, spread)};
+}
+
+uint32_t tiles_out_of_reach(const Accuracy& a, double target) {
+  return static_cast<uint32_t>(std::count_if(a.tiles.begin(), a.tiles.end(), [&](const TileStatus& t) {
+    const double goal = schedule::paths_goal(float(target), t.records, t.interpolation);
+    if (t.error <= goal || t.samples < stats::Outlook::k_least_samples) return false;
+    const stats::TileProgress tile{.error = double(t.error), .samples = double(t.samples)};
+    return !(goal > 0) || stats::samples_to(tile, goal, stats::k_usual_k) > a.max_samples;
+  }));
+}
+
+std::optional<double> seconds_to_end(const Accuracy& a) {
+  if (a.adaptive || a.ledger.entries().empty()) return std::nullopt;
+  const stats::Entry& last = a.ledger.entries().back();
+  if (a.max_samples <= last.samples) return last.wall_s;
+  const double each = stats::seconds_a_path(a.ledger);
+  if (each <= 0 || last.samples <= 0) return std::nullopt;
+  return last.wall_s + each * static_cast<double>(last.paths) * (a.max_samples / last.samples - 1);
 }
 
 std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {

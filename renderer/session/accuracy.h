@@ -75,6 +75,14 @@ struct Accuracy {
 /// a ray has taken lately. Nothing before there is enough to tell by.
 std::optional<stats::Band> seconds_to(const Accuracy& accuracy, double target);
 
+/// Tiles that in adaptive sampling are not expected to come under the target with the most samples that a
+/// pixel is given (Accuracy::max_samples).
+uint32_t tiles_out_of_reach(const Accuracy& accuracy, double target);
+
+/// Seconds of rendering, from the image's start, at which uniform sampling has all its samples (`samples`).
+/// Nothing in adaptive sampling, nor before the first line of the ledger.
+std::optional<double> seconds_to_end(const Accuracy& accuracy);
+
 /// The tiles of the image in progress; errors are those of the last estimate. `flags`: heavy tails are
 /// marked, which takes a look at the whole film.
 std::vector<TileStatus> tile_status(const Renderer& renderer, bool flags);

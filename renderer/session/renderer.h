@@ -176,7 +176,9 @@ class Renderer {
   film::Brightness measure(std::optional<vec2> at) const;
   /// The image with its layers and metadata (its own noise among them), as EXR files hold it.
   film::FilmImage film_image();
-  void save(const std::filesystem::path& file);
+  /// Writes film_image() as EXR, or what the window shows as PNG: through exposure and tone curve, `as_shown`
+  /// with the preview's filter too, where that is on.
+  void save(const std::filesystem::path& file, bool as_shown = false);
 
   // Solvers at work, by name (solvers/registry.h). Path tracing is none: the wavefront is it.
 

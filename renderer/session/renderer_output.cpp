@@ -198,7 +198,7 @@ film::FilmImage Renderer::film_image() {
   return out;
 }
 
-void Renderer::save(const std::filesystem::path& file) {
+void Renderer::save(const std::filesystem::path& file, bool as_shown) {
   if (!engine_) throw Error(file.string(), "nothing to save yet; load a scene first");
   const std::string extension = file.extension().string();
   if (extension == ".exr")
@@ -207,7 +207,8 @@ void Renderer::save(const std::filesystem::path& file) {
     // Where somebody looks is no part of what is kept.
     const std::optional<vec2> at = looked_at_;
     inspect(std::nullopt);
-    const std::vector<uint8_t> shown = picture(false);
+    settle_mix();
+    const std::vector<uint8_t> shown = as_shown ? shown_picture(false) : picture(false);
     inspect(at);
     film::write_png(file, film_->width(), film_->height(), shown);
   } else

@@ -14,6 +14,7 @@
 #include "base/timer.h"
 #include "session/renderer.h"
 #include "solvers/registry.h"
+#include "stats/forecast.h"
 
 namespace lucerna::session {
 
@@ -38,6 +39,7 @@ struct Session::Impl {
   std::condition_variable wake;
   CommandQueue queue;
   std::atomic<bool> quit{false}, pending{false};
+  uint64_t done = 0;  // number of the last command that was carried out
   // Loads are numbered as they are asked for; those up to a number are given up.
   std::atomic<uint64_t> loads{0}, given_up{0};
   std::shared_ptr<const Snapshot> snapshot;
@@ -57,6 +59,7 @@ struct Session::Impl {
   struct Save {
     std::filesystem::path file;
     std::string solver;  // whose work it keeps; "": the picture
+    bool as_shown = false;
     std::shared_ptr<std::promise<void>> promise;
   };
   std::vector<Save> saves;  // that wait for what they are to write
@@ -80,7 +83,7 @@ struct Session::Impl {
   static void write(Renderer& r, const Save& save) {
     try {
       if (save.solver.empty())
-        r.save(save.file);
+        r.save(save.file, save.as_shown);
       else
         r.solver_save(save.solver, save.file);
       log::info("saved {}", save.file.string());
@@ -125,12 +128,13 @@ struct Session::Impl {
     saves.clear();
   }
 
-  Saved post_save(const std::filesystem::path& file, const std::string& solver, SceneId scene) {
+  Saved post_save(const std::filesystem::path& file, const std::string& solver, SceneId scene,
+                  bool as_shown = false) {
     // A promise that is dropped, for want of a device, is a failure to the one who waits.
     auto promise = std::make_shared<std::promise<void>>();
     Saved saved = promise->get_future().share();
-    const auto run = [this, file, solver, promise](Renderer& r) {
-      saves.push_back({file, solver, promise});
+    const auto run = [this, file, solver, as_shown, promise](Renderer& r) {
+      saves.push_back({file, solver, as_shown, promise});
       if (!solver.empty() && !due(r, saves.back()))
         log::info("{}: will be written when {} is complete", file.string(), solvers::find(solver)->title);
     };
@@ -178,30 +182,24 @@ struct Session::Impl {
     filled = false;
   }
 
-  /// Of the picture in progress, now and then: what has gone by, and what the device has worked of it.
-  struct Pace {
-    double seconds = 0, device_s = 0;
-  };
-  static constexpr double k_pace_s = 4;
-  std::array<Pace, 2> pace;  ///< the older first
+  stats::WorkPace pace;  // of what is prepared
 
-  /// From the reports of the solvers and what rendering has taken.
-  void tell_preparing(const transport::TransportStats& stats) {
+  /// From the reports of the solvers and the time that their work has taken so far.
+  void tell_preparing() {
     next.preparing.clear(), next.preparing_done = -1, next.preparing_left.reset();
     const auto told = std::find_if(next.reports.begin(), next.reports.end(),
                                    [](const auto& report) { return !report->preparing.empty(); });
-    if (told == next.reports.end()) return;
+    if (told == next.reports.end()) {
+      pace = {};
+      return;
+    }
     next.preparing = (*told)->preparing;
     if (!(*told)->progress) return;
-    next.preparing_done = (*told)->progress->done;
-    // The device is not at it all the time: pictures are shown, drafts are made, most at the beginning.
-    Pace now{next.seconds, 0};
-    for (const auto& s : stats.stages) now.device_s += 1e-3 * s.ms;
-    if (now.seconds < pace[1].seconds) pace = {};
-    if (now.seconds - pace[1].seconds > k_pace_s) pace = {pace[1], now};
-    const double seconds = now.seconds - pace[0].seconds;
-    const double share = pace[1].seconds > 0 && seconds > 0 ? (now.device_s - pace[0].device_s) / seconds : 0;
-    next.preparing_left = 1e-3 * (*told)->progress->left_ms / (share > 0 ? std::clamp(share, 0.2, 1.0) : 0.6);
+    const solvers::Report::Progress& progress = *(*told)->progress;
+    next.preparing_done = progress.done;
+    // The solver is not at work all the time: pictures are shown and preview samples drawn between.
+    const double done_ms = progress.left_ms * progress.done / std::max(1e-9, 1 - progress.done);
+    next.preparing_left = pace.follow(next.seconds, done_ms, progress.left_ms);
   }
 
   void fill_snapshot(Renderer& r, bool numbers) {
@@ -228,7 +226,7 @@ struct Session::Impl {
     next.finished = r.done();
     next.seconds = r.seconds();
     next.reports = r.reports();
-    tell_preparing(r.stats());
+    tell_preparing();
     next.path_pace = r.path_pace();
     next.camera = r.camera();
     next.tracer = r.tracer_name();
@@ -325,6 +323,7 @@ void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mut
   next.commands = number;
   dirty = true;
   lock.lock();
+  done = next.commands;
 }
 
 void Session::Impl::advance(Renderer& renderer, bool work) {
@@ -597,7 +596,9 @@ std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, Sc
   return result;
 }
 
-Saved Session::save(const std::filesystem::path& file) { return impl_->post_save(file, "", k_any_scene); }
+Saved Session::save(const std::filesystem::path& file, bool as_shown) {
+  return impl_->post_save(file, "", k_any_scene, as_shown);
+}
 
 Saved Session::solver_save(const std::string& solver, const std::filesystem::path& file, SceneId scene) {
   return impl_->post_save(file, solver, scene);
@@ -625,6 +626,11 @@ void Session::solver_command(const std::string& solver, const std::string& comma
 uint64_t Session::commands() const {
   std::lock_guard lock(impl_->mutex);
   return impl_->queue.given();
+}
+
+uint64_t Session::commands_done() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->done;
 }
 
 void Session::cancel() { impl_->given_up = impl_->loads.load(); }

@@ -76,7 +76,7 @@ struct Snapshot {
   /// "" or what is made before the first sample (solvers::Report::preparing).
   std::string preparing;
   double preparing_done = -1;            ///< of that, 0..1; -1: it cannot be told
-  std::optional<double> preparing_left;  ///< seconds of rendering, about
+  std::optional<double> preparing_left;  ///< seconds of rendering, about (stats::WorkPace)
   /// What path tracing alone would take (Renderer::path_pace).
   std::optional<stats::SamplePace> path_pace;
   /// Wall time since this image was begun, pauses left out: the clock of the ledger's wall_s and of
@@ -154,8 +154,8 @@ class Session {
   /// logged.
   std::shared_future<film::Brightness> measure(std::optional<vec2> at, SceneId scene = k_any_scene);
   /// EXR or PNG of what there is, as soon as every pixel has a sample; where rendering rests without, at
-  /// once.
-  Saved save(const std::filesystem::path& file);
+  /// once. `as_shown`: a PNG has the filter of the first samples, as the snapshots have it.
+  Saved save(const std::filesystem::path& file, bool as_shown = false);
   /// Keeps a solver's work (SolverInfo::file) as soon as it is complete; given up when another scene is
   /// loaded.
   Saved solver_save(const std::string& solver, const std::filesystem::path& file,
@@ -167,6 +167,9 @@ class Session {
 
   /// The number of the newest command, from 1 on. A snapshot that counts it shows what it has done.
   uint64_t commands() const;
+  /// Those carried out so far; the picture that shows the last of them may be still to come. The one after
+  /// them, if given, is in progress.
+  uint64_t commands_done() const;
 
   /// The newest picture; null before the first. Cheap.
   std::shared_ptr<const Snapshot> snapshot() const;

@@ -109,6 +109,15 @@ double Outlook::exponent() const {
   return sum;
 }
 
+double Outlook::error(double growth, double wanted) const {
+  double low = -14, high = 5;  // logarithms
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (probability(std::exp(middle), growth) < wanted ? low : high) = middle;
+  }
+  return std::exp(high);
+}
+
 double seconds_a_path(const Ledger& ledger) {
   const auto& lines = ledger.entries();
   if (lines.empty() || lines.back().paths == 0) return 0;
@@ -117,6 +126,19 @@ double seconds_a_path(const Ledger& ledger) {
     if (2 * line->paths <= last.paths)
       return (last.wall_s - line->wall_s) / static_cast<double>(last.paths - line->paths);
   return (last.wall_s - last.prepared_s) / static_cast<double>(last.paths);
+}
+
+double spread_of_pace(const Ledger& ledger) {
+  const auto& lines = ledger.entries();
+  if (lines.empty()) return k_rate_spread;
+  const Entry& last = lines.back();
+  const double half = seconds_a_path(ledger);
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line)
+    if (4 * line->paths <= 3 * last.paths && half > 0) {
+      const double quarter = (last.wall_s - line->wall_s) / static_cast<double>(last.paths - line->paths);
+      return std::max(k_rate_spread, std::abs(std::log(quarter / half)));
+    }
+  return k_rate_spread;
 }
 
 double paths_target(const Ledger& ledger, double target) {
@@ -149,18 +171,51 @@ std::optional<Band> seconds_to(const Ledger& ledger, double target) {
   if (!outlook.known()) return std::nullopt;
   const Entry& last = entries.back();
   const double each = seconds_a_path(ledger) * static_cast<double>(last.paths);
+  const double spread = std::exp(spread_of_pace(ledger));
   const auto seconds = [&](double probability, double rate) {
     return last.wall_s + rate * each * (outlook.growth(target, probability) - 1);
   };
-  return Band{seconds(k_band, 1 - k_rate_spread), seconds(0.5, 1), seconds(1 - k_band, 1 + k_rate_spread)};
+  return Band{seconds(k_band, 1 / spread), seconds(0.5, 1), seconds(1 - k_band, spread)};
+}
+
+std::optional<Band> error_at(const Ledger& ledger, double samples) {
+  const auto& entries = ledger.entries();
+  const Outlook outlook(ledger);
+  if (!outlook.known()) return std::nullopt;
+  const Entry& last = entries.back();
+  const double growth = std::max(1.0, samples / last.samples);
+  const auto sum = [&](double probability) {
+    return error_sum(outlook.error(growth, probability), last.records, last.interpolation);
+  };
+  return Band{sum(k_band), sum(0.5), sum(1 - k_band)};
+}
+
+std::optional<double> WorkPace::follow(double seconds, double done, double left) {
+  if (points_.empty() || seconds < points_.back().seconds || done < points_.back().done) *this = {};
+  const double news = points_.empty() ? 0 : done - points_.back().done;
+  points_.push_back({seconds, done});
+  const Point& begun = points_.front();
+  const double elapsed = seconds - begun.seconds, worked = done - begun.done;
+  if (elapsed < k_least_seconds || worked < k_least_share * (worked + left) || worked <= 0)
+    return std::nullopt;
+  // What a unit has taken in the newer half of the work, so that its slow beginning does not count.
+  const auto half = std::find_if(points_.rbegin(), points_.rend(),
+                                 [&](const Point& p) { return p.done - begun.done <= 0.5 * worked; });
+  const double rest = left * (seconds - half->seconds) / (done - half->done);
+  // The mean of what that half has said; a unit of work counts as much as any other.
+  const double total = elapsed + rest;
+  total_ = total_ ? *total_ + std::min(1.0, 2 * news / worked) * (total - *total_) : total;
+  return std::max(*total_ - elapsed, k_least_rest * rest);
 }
 
 namespace {
 
-constexpr double k_usual_k = 1.2, k_spread_of_k = 0.5;  // of log k
+constexpr double k_spread_of_k = 0.5;  // of log k
 constexpr double k_least_k = 0.5, k_most_k = 2.5;
 constexpr int k_laws = 12;
-constexpr double k_history_spread = 0.07;                      // of the mean of log(error / expected)
+constexpr double k_history_spread = 0.07;  // of the mean of log(error / expected)
+/// How often errors leave every law because light was met for the first time, and how far.
+constexpr double k_surprise = 0.01, k_surprise_spread = 1.5;
 constexpr double k_law_spread = 0.05, k_growth_spread = 0.15;  // of log(paths)
 
 /// 1/error^k over saturation. Beyond it a measured error tells little; at least a quarter of what it says
@@ -219,10 +274,13 @@ std::optional<Band> total_paths(std::span<const TileProgress> tiles, uint32_t ac
     for (const TileProgress& t : tiles)
       if (t.open && t.error > 0 && t.earlier_error > 0 && t.earlier_samples > 0)
         sum += std::log(t.error / expected_error(t, k)), ++count;
-    const double off = count > 0 ? sum / count / k_history_spread : 0;
+    const double off = count > 0 ? sum / count : 0;
+    const double history =
+        (1 - k_surprise) * std::exp(-0.5 * square(off / k_history_spread)) +
+        k_surprise * k_history_spread / k_surprise_spread * std::exp(-0.5 * square(off / k_surprise_spread));
     const double prior = std::log(k / k_usual_k) / k_spread_of_k;
     const double paths = std::log(open_paths(k));
-    laws[static_cast<size_t>(i)] = {std::exp(-0.5 * (square(off) + square(prior))), paths,
+    laws[static_cast<size_t>(i)] = {history * std::exp(-0.5 * square(prior)), paths,
                                     k_law_spread + k_growth_spread * (paths - std::log(now))};
   }
   double weights = 0;

@@ -36,6 +36,8 @@ class Outlook {
   /// Samples a pixel, over those of the last line (>= 1), with which the error is under `target` (> 0) with
   /// the probability `wanted`, 0 < p < 1.
   double growth(double target, double wanted) const;
+  /// The error that is not exceeded with the probability `wanted` when there are `growth` times the samples.
+  double error(double growth, double wanted) const;
   /// -d log(error) / d log(N) now, as expected: 1/2 to 1.
   double exponent() const;
 
@@ -59,14 +61,39 @@ double paths_target(const Ledger& ledger, double target);
 
 /// Wall seconds (Entry::wall_s) from the image's start until the sum's error is `target` in uniform sampling:
 /// the band holds the truth in 90 of 100 cases, as Outlook says; each further sample takes what those of the
-/// last half of the work have taken, give or take a twentieth. Nothing before Outlook is known(), nor where
-/// paths_target() is 0. What is
-/// reached already is told as the second in which it was, between two lines.
+/// last half of the work have taken, give or take spread_of_pace(). Nothing before Outlook is known(), nor
+/// where paths_target() is 0. What is reached already is told as the second in which it was, between two
+/// lines.
 std::optional<Band> seconds_to(const Ledger& ledger, double target);
+
+/// The sum's error (Entry::sum) with so many samples a pixel, by the records of the last line; the band holds
+/// it in 90 of 100 cases. Nothing before Outlook is known().
+std::optional<Band> error_at(const Ledger& ledger, double samples);
+
+/// Seconds left of work whose whole amount is an estimate that changes while the work goes on. What is said
+/// does not jump with it: totals are averaged over the newer half of the work, each unit of work alike.
+class WorkPace {
+ public:
+  static constexpr double k_least_seconds = 3, k_least_share = 0.1;
+  /// `done`, `left`: units of work. Nothing until k_least_seconds and k_least_share of the work have gone by:
+  /// what a unit takes is not known before. Work that is less than before, or an earlier time, is a new one.
+  std::optional<double> follow(double seconds, double done, double left);
+
+ private:
+  static constexpr double k_least_rest = 0.5;  ///< of what the newest pace makes of the rest
+  struct Point {
+    double seconds = 0, done = 0;
+  };
+  std::vector<Point> points_;    ///< since the work was begun
+  std::optional<double> total_;  ///< seconds from then to the end
+};
 
 /// Wall seconds that a path has taken lately: over the last half of the work, so that the first, short passes
 /// do not count. 0 before there is a line.
 double seconds_a_path(const Ledger& ledger);
+/// By how much that differs between the last half and the last quarter of the work, as a logarithm; a
+/// twentieth at least.
+double spread_of_pace(const Ledger& ledger);
 
 /// A tile as the forecast sees it.
 struct TileProgress {
@@ -89,6 +116,7 @@ inline constexpr double k_saturated_error = 0.63;
 /// s the noise of one sample; k says how soon: about 2 where all pixels of a tile are alike, 1 and less where
 /// light comes in amounts of all sizes, so that pixels leave saturation one after another.
 double samples_to(const TileProgress& tile, double target, double k);
+inline constexpr double k_usual_k = 1.2;  ///< where nothing is known of the picture
 
 /// Paths of the whole adaptive render: those there are, and for every open tile those that bring its error
 /// under the target and its neighbours' (`across` tiles in a row) under twice the target, within the minimum
@@ -97,9 +125,11 @@ double samples_to(const TileProgress& tile, double target, double k);
 ///
 /// How fast tiles leave saturation is the picture's: log k is taken to be normal about log(1.2) with 0.5
 /// before, and weighted by how well the law takes the tiles' earlier errors to the present ones in the mean
-/// of the logarithms (deviation 0.07). What a law says is itself off by 5 % and 15 % of the logarithm of the
-/// growth. Of the bands told while seven interiors were rendered to 20 and to 10 %, 128 of 134 held the truth
-/// (with 16 samples a pixel on average 26 of 28). They do not foresee light that no sample has met yet.
+/// of the logarithms (deviation 0.07; once in a hundred times errors follow no law, because light is met that
+/// no sample had met before, and then history says next to nothing). What a law says is itself off by 5 % and
+/// 15 % of the logarithm of the growth. Of the bands told while seven interiors were rendered to 20 and to 10
+/// %, 128 of 134 held the truth (with 16 samples a pixel on average 26 of 28). They do not foresee light that
+/// no sample has met yet.
 std::optional<Band> total_paths(std::span<const TileProgress> tiles, uint32_t across, double target,
                                 double min_samples, double max_samples);
 

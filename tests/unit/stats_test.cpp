@@ -180,7 +180,7 @@ TEST_CASE("the band of 90 % holds the truth of made-up renders in nine cases of 
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   constexpr int k_pixels = 400, k_renders = 200;
-  int told = 0, in = 0, low = 0;
+  int told = 0, in = 0, low = 0, pairs = 0, steady = 0;
   double width = 0;
   for (int render = 0; render < k_renders; ++render) {
     const double q = 0.25 + 0.75 * uniform(random), bend = std::pow(10, 2 * uniform(random) - 0.5);
@@ -204,6 +204,7 @@ TEST_CASE("the band of 90 % holds the truth of made-up renders in nine cases of 
       all.push_back(e);
     }
     const double target = all.back().error[0];
+    std::optional<Band> before;
     for (const Entry& e : all) {
       ledger.add(e);
       if (e.error[0] <= target) break;  // reached by luck, before the end
@@ -216,6 +217,8 @@ TEST_CASE("the band of 90 % holds the truth of made-up renders in nine cases of 
       for (const Entry& line : all) whole.add(line);
       const double truth = seconds_to(whole, target)->middle;
       ++told, in += band->low <= truth && truth <= band->high, low += truth > band->high;
+      if (before) ++pairs, steady += before->low <= band->middle && band->middle <= before->high;
+      before = band;
       width += std::log(band->high / band->low);
     }
   }
@@ -224,6 +227,8 @@ TEST_CASE("the band of 90 % holds the truth of made-up renders in nine cases of 
   REQUIRE(told > 1000);
   CHECK(in > 0.88 * told);
   CHECK(low < 0.1 * told);
+  // What is said next was within what was said before.
+  CHECK(steady > 0.97 * pairs);
   CHECK(std::exp(width / told) < 5);
 }
 
@@ -264,4 +269,88 @@ TEST_CASE("paths of an adaptive render: easy tiles stop at the minimum, hard one
   CHECK(std::isfinite(samples_to({.error = 1.2, .samples = 2, .pixels = 256}, 0.01, 1)));
   CHECK(samples_to({.error = 0, .samples = 8, .pixels = 256}, 0.01, 1) == 8);
   CHECK(samples_to({.error = 0.1, .samples = 8, .pixels = 256}, 5, 1) < 8);
+}
+
+TEST_CASE("an open tile whose error rises is never taken for done") {
+  for (const double jump : {1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 1e4, 1e8}) {
+    CAPTURE(jump);
+    std::vector<TileProgress> list(4, {.error = 0.01, .samples = 64, .pixels = 256, .open = false});
+    list[0] = {.error = 0.02 * jump,
+               .samples = 64,
+               .pixels = 256,
+               .open = true,
+               .earlier_error = 0.02,
+               .earlier_samples = 32};
+    const double now = 4 * 64 * 256.0, most = (1024 + 3 * 64) * 256.0;
+    const auto band = total_paths(list, 2, 0.01, 16, 1024);
+    REQUIRE(band);
+    CHECK(band->low > 1.05 * now);
+    CHECK(band->middle > 1.5 * now);
+    CHECK(band->low <= band->middle);
+    CHECK(band->middle <= band->high);
+    CHECK(band->high <= 1.0001 * most);
+    // From twenty times the target it is far: the cap is in sight.
+    if (jump >= 10) CHECK(band->high > 0.9 * most);
+  }
+}
+
+TEST_CASE("the error at the end of a render with a fixed number of samples lies within its band") {
+  for (const double exponent : {0.5, 0.6}) {
+    const Ledger ledger = render(exponent, 20000);  // 200 samples a pixel
+    const auto band = error_at(ledger, 1000);
+    REQUIRE(band);
+    const double truth = 2 * std::pow(1000.0, -exponent);
+    CHECK(band->low < truth);
+    CHECK(band->high > truth);
+    CHECK(band->high < 2 * band->low);
+    // It is the inverse of the time to that error.
+    const auto seconds = seconds_to(ledger, band->middle);
+    REQUIRE(seconds);
+    CHECK(seconds->middle == Approx(100).epsilon(0.1));
+  }
+  CHECK_FALSE(error_at(render(0.5, 800), 1000));
+}
+
+TEST_CASE("a pace that changes widens the band of seconds, both ways") {
+  Ledger slowing;
+  const Ledger even = render(0.5, 100000);
+  for (Entry e : even.entries()) {
+    if (e.paths > 75000) e.wall_s += 3e-3 * (double(e.paths) - 75000);  // four times the time from here on
+    slowing.add(e);
+  }
+  CHECK(spread_of_pace(even) == Approx(0.05));
+  CHECK(spread_of_pace(slowing) > 0.2);
+  const auto wide = seconds_to(slowing, 0.02), plain = seconds_to(even, 0.02);
+  REQUIRE((wide && plain));
+  CHECK(wide->high / wide->low > 1.3 * (plain->high / plain->low));
+}
+
+TEST_CASE("what is left of work whose amount is an estimate does not jump") {
+  // Relighting as it was met: the first rays cost eight times as much, what a ray is said to cost falls to
+  // the truth within a quarter of the work, and estimates are off by a tenth now and then.
+  WorkPace pace;
+  std::vector<double> totals;
+  const double work = 1000;
+  double seconds = 0, left_before = 1e9;
+  for (double done = 0; done < work; done += 10) {
+    const double estimate = work * (1 + 4 * std::exp(-done / 60) + 0.1 * std::sin(done));
+    const double left = std::max(estimate - done, 0.04 * done);
+    if (const auto told = pace.follow(seconds, done, left)) {
+      CHECK(seconds >= WorkPace::k_least_seconds);
+      CHECK(*told >= 0);
+      // It counts down: never up by more than a tenth of what it was.
+      CHECK(*told < 1.1 * left_before);
+      left_before = *told;
+      totals.push_back(seconds + *told);
+    }
+    seconds += done < 50 ? 0.8 : 0.1;
+  }
+  REQUIRE(totals.size() > 60);
+  for (const double total : totals) {
+    CHECK(total < 1.6 * seconds);
+    CHECK(total > seconds / 1.6);
+  }
+  for (size_t i = 1; i < totals.size(); ++i) CHECK(totals[i] == Approx(totals[i - 1]).epsilon(0.12));
+  // The next work begins from nothing.
+  CHECK_FALSE(pace.follow(seconds + 1, 5, 100));
 }

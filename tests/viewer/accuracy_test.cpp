@@ -22,7 +22,7 @@ std::vector<std::string> labels(const LogAxis& axis, Unit unit, float room) {
 /// A uniform render of `samples` passes of 0.5 s whose error falls with the root of the samples.
 session::Accuracy uniform(int samples, double first_error = 0.8) {
   session::Accuracy a;
-  a.run = 1, a.scene_id = 1, a.max_samples = 256, a.pixels = 1000;
+  a.run = 1, a.scene_id = 1, a.max_samples = 100000, a.pixels = 1000;
   for (double n = 1; n <= samples; n *= 1.25) {
     stats::Entry e;
     e.told = true, e.wall_s = e.render_s = e.device_s = 0.5 * n;
@@ -155,6 +155,13 @@ TEST_CASE("uniform sampling: what a smaller error will cost, in words") {
   CHECK(texts.at(0) == "1 % will take about 2 min 10 s (1 min 40 s to 3 min)");
   CHECK(texts.back() == "1 %");
   for (size_t i = 1; i < texts.size(); ++i) CHECK(texts[i].size() < texts[i - 1].size());
+  // A wide range has no middle to name, and of a very wide one only the beginning is known.
+  CHECK(target_texts(a, 0.01, stats::Band{100, 200, 600}, now).at(0) == "1 % will take 1 min 40 s to 10 min");
+  CHECK(target_texts(a, 0.01, stats::Band{100, 500, 3000}, now).at(0) ==
+        "1 % will take more than 1 min 40 s");
+  CHECK(target_texts(a, 0.01, stats::Band{100, 100.5, 101}, now).at(0) == "1 % will take about 1 min 40 s");
+  for (const std::string& text : target_texts(a, 0.01, stats::Band{100, 130, 180}, now))
+    if (text != "1 %") CHECK_THAT(text, Catch::Contains("1 min 40 s to 3 min"));
   const auto reached = session::seconds_to(a, 2 * error);
   REQUIRE(reached);
   CHECK_THAT(target_texts(a, 0.16, reached, now).at(0), Catch::StartsWith("16 % was reached after "));
@@ -163,6 +170,34 @@ TEST_CASE("uniform sampling: what a smaller error will cost, in words") {
   const session::Accuracy early = uniform(12);
   CHECK_FALSE(session::seconds_to(early, 0.01));
   CHECK(target_texts(early, 0.01, {}, 6).at(0) == "1 %: too early to tell");
+}
+
+TEST_CASE("a target beyond the last sample of uniform sampling is not promised") {
+  session::Accuracy a = uniform(100);
+  a.max_samples = 256;
+  const double now = a.ledger.entries().back().wall_s;
+  const auto end = session::seconds_to_end(a);
+  REQUIRE(end);
+  CHECK(*end == Approx(128).epsilon(0.02));
+  // 0.8 / 16 = 5 % at the end.
+  const auto text = [&](double target) {
+    return target_texts(a, target, session::seconds_to(a, target), now);
+  };
+  CHECK_THAT(text(0.01).at(0),
+             Catch::StartsWith("1 % will not be reached: Samples ends at 256, after 2 min 10 s at about "));
+  CHECK_THAT(text(0.01).at(0), Catch::EndsWith("4.7 %"));
+  CHECK(text(0.05).at(0) == "5 % may not be reached: Samples ends at 256, after 2 min 10 s");
+  CHECK_THAT(text(0.07).at(0), Catch::StartsWith("7 % will take about "));
+  for (const double target : {0.01, 0.05}) {
+    const auto texts = text(target);
+    for (size_t i = 1; i < texts.size(); ++i) CHECK(texts[i].size() < texts[i - 1].size());
+  }
+  session::Accuracy finished = uniform(260);
+  finished.max_samples = 256, finished.finished = true;
+  CHECK_THAT(target_texts(finished, 0.01, session::seconds_to(finished, 0.01), 128).at(0),
+             Catch::StartsWith("1 % was not reached: Samples ended at 256, at "));
+  CHECK_THAT(target_texts(finished, 0.1, session::seconds_to(finished, 0.1), 128).at(0),
+             Catch::StartsWith("10 % was reached after "));
 }
 
 TEST_CASE("noise has three names: of the mean, of the median tile, of the worst tenth of the tiles") {
@@ -248,8 +283,15 @@ TEST_CASE("adaptive sampling: the forecast is of the rays that the tiles still n
   REQUIRE(looser);
   CHECK(tighter->middle > band->middle);
   CHECK(looser->high == Approx(now).epsilon(0.3));
-  CHECK_THAT(target_texts(a, 0.05, band, now).at(0),
-             Catch::StartsWith("Every tile under 5 % will take about "));
+  CHECK_THAT(target_texts(a, 0.05, band, now).at(0), Catch::StartsWith("Every tile under 5 % will take "));
+
+  // The hard tile would need more than it is given.
+  session::Accuracy few = a;
+  few.max_samples = 512;
+  CHECK(session::tiles_out_of_reach(a, 0.05) == 0);
+  CHECK(session::tiles_out_of_reach(few, 0.05) == 1);
+  CHECK_THAT(target_texts(few, 0.05, session::seconds_to(few, 0.05), now).at(0),
+             Catch::StartsWith("1 of 4 tiles are likely to stay over 5 %, with all of 512 samples; "));
 
   session::Accuracy over = a;
   over.finished = true;

@@ -2,7 +2,8 @@
 // A session without a renderer: the same class, defined here with a moving gradient for a picture, so that
 // the window can be run and tested on its own. Included by one test file, which then does not take the real
 // one from its library. Names with "missing" fail to load and to be saved; names with "slow" load for three
-// seconds and are saved after half a one; the name "empty" makes a scene without cameras and lights.
+// seconds and are saved after half a one; the name "empty" makes a scene without cameras and lights, "sheen"
+// one that needs an extension that is not supported.
 #include <atomic>
 #include <cmath>
 #include <condition_variable>
@@ -28,6 +29,9 @@ inline std::function<std::optional<solvers::Report>(const plan::Settings&, std::
 
 /// How long each command takes.
 inline std::atomic<int> busy_ms{0};
+
+/// How long the first picture after each command takes.
+inline std::atomic<int> drawing_ms{0};
 
 inline scene::Scene make_scene(const std::filesystem::path& file) {
   scene::Scene scene;
@@ -83,6 +87,7 @@ inline scene::Scene make_scene(const std::filesystem::path& file) {
   scene.environment.file = "sky/late_morning_2k.exr";
   scene.environment.image = 0;
   scene.images.emplace_back();
+  if (scene.name == "sheen") scene.unknown_extensions = {"KHR_materials_sheen"};
   return scene;
 }
 
@@ -359,7 +364,11 @@ struct Session::Impl {
       if (command) {
         if (const int ms = fake::busy_ms) std::this_thread::sleep_for(std::chrono::milliseconds(ms));
         carry_out(*command, act);
-        done = command->number;
+        {
+          std::lock_guard lock(mutex);
+          done = command->number;
+        }
+        if (const int ms = fake::drawing_ms) std::this_thread::sleep_for(std::chrono::milliseconds(ms));
         publish();
         continue;
       }
@@ -507,7 +516,7 @@ void Session::clear_reference() {
 void Session::inspect(std::optional<vec2> at, SceneId scene) {
   impl_->post([this, at] { impl_->looked_at = at, impl_->publish(); }, scene);
 }
-Saved Session::save(const std::filesystem::path& file) {
+Saved Session::save(const std::filesystem::path& file, bool) {
   auto promise = std::make_shared<std::promise<void>>();
   impl_->post([file, promise] {
     const std::string name = file.filename().string();
@@ -549,6 +558,10 @@ void Session::solver_command(const std::string& solver, const std::string& comma
 uint64_t Session::commands() const {
   std::lock_guard lock(impl_->mutex);
   return impl_->commands.given();
+}
+uint64_t Session::commands_done() const {
+  std::lock_guard lock(impl_->mutex);
+  return impl_->done;
 }
 void Session::cancel() { impl_->given_up = impl_->loads.load(); }
 std::shared_ptr<const Snapshot> Session::snapshot() const {

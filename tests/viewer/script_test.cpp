@@ -54,19 +54,27 @@ TEST_CASE("names of other formats are refused before anything is done") {
         Catch::StartsWith("s: line 1: ") && Catch::Contains("expected a file name that ends in ."));
 }
 
-TEST_CASE("what the renderer is said to be busy with is the last line that gave it something to do") {
+TEST_CASE("the renderer is said to be busy with the command that it carries out, not one that is done") {
   session::Session session({});
-  const auto busy_after = [&](const std::vector<std::string>& lines) {
-    ui::Ui window(session);
-    window.snapshot = session.snapshot();
-    ui::Runner runner(window, lines, "s", true);
-    runner.advance();
+  ui::Ui window(session);
+  ui::Runner runner(window, {"film.ev 1", "window.fold left true", "image.save slow.exr", "wait 60"}, "s",
+                    true);
+  session::fake::busy_ms = 150, session::fake::drawing_ms = 300;
+  runner.advance();
+  std::vector<std::string> texts;
+  const auto begin = std::chrono::steady_clock::now();
+  while (texts.empty() || window.busy.command != 0) {
+    window.refresh(window.time());
     window.follow_busy();
-    return window.busy.text;
-  };
-  CHECK(busy_after({"film.ev 1", "image.save slow.exr"}) == "image.save slow.exr");
-  // What is the window's alone, and waiting, is nothing to the renderer.
-  CHECK(busy_after({"film.ev 2", "window.fold left true", "wait 60"}) == "film.ev 2");
+    const std::string text = window.busy.command == 0 ? "" : window.busy.done ? "drawing" : window.busy.text;
+    // What is done is not shown.
+    if (!window.busy.done && window.busy.command != 0) CHECK(session.commands_done() <= window.busy.command);
+    if (!text.empty() && (texts.empty() || texts.back() != text)) texts.push_back(text);
+    REQUIRE(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  session::fake::busy_ms = 0, session::fake::drawing_ms = 0;
+  CHECK(texts == std::vector<std::string>{"film.ev 1", "image.save slow.exr", "drawing"});
 }
 
 TEST_CASE("a script that calls itself is told so") {
@@ -191,4 +199,26 @@ TEST_CASE("in the program a saved picture shows the camera and the size that wer
   CHECK((b.width == 64 && c.width == 48 && c.height == 32));
   CHECK(d.width > 64);
   CHECK(e.width == d.width / 4);
+}
+
+TEST_CASE("the target that is asked about stays when the way of sampling changes, in one step to undo") {
+  session::Session session({});
+  ui::Ui window(session);
+  const auto target = [&] { return window.setting_real("sampling.target_error"); };
+  const auto act = [&](const std::string& line) { window.run(line); };
+  act("accuracy.what_if 0.023");
+  act("set sampling.mode adaptive");
+  CHECK(target() == Approx(0.023));
+  CHECK(window.target() == Approx(0.023));
+  act("undo");
+  CHECK(window.setting("sampling.mode") == "uniform");
+  CHECK(target() == Approx(0.05));
+  // What was set outright is not overridden, neither before nor after.
+  act("accuracy.what_if 0.03");
+  act("set sampling.target_error 0.2");
+  act("set sampling.mode adaptive");
+  CHECK(target() == Approx(0.2));
+  // And back: the line stays.
+  act("set sampling.mode uniform");
+  CHECK(window.target() == Approx(0.2));
 }

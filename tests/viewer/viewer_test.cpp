@@ -97,3 +97,37 @@ TEST_CASE("a reference is loaded for a picture of its size, and refused with bot
   CHECK_THAT(outcome.output, Catch::Contains("the reference is 96x64 pixels, the picture 80x64"));
   CHECK(test::Picture(png).contrast(60, 540, 420, 680) > 0.03);  // the lines
 }
+
+TEST_CASE("a PNG is saved as it is shown or unfiltered, by name; an EXR only as it is") {
+  if (test::no_program()) return;
+  const test::Folder folder;
+  const auto file = [&](const char* name) { return (folder.path / name).string(); };
+  // Without panels the picture fills the window.
+  const auto outcome =
+      viewer("scenes/cornell/cornell.gltf",
+             "window.size 640 420\nwindow.panels false\nwait_scene\nwait 0.5\nwait_samples 4\nrender.pause\n"
+             "wait 0.5\nscreenshot " +
+                 file("window.png") + "\nimage.save " + file("shown.png") + " as=shown\nimage.save " +
+                 file("plain.png") + "\nimage.save " + file("named.png") + " as=unfiltered\nquit 0\n");
+  INFO(outcome.output);
+  REQUIRE(outcome.status == 0);
+  const test::Picture window(file("window.png")), shown(file("shown.png")), plain(file("plain.png")),
+      named(file("named.png"));
+  REQUIRE(shown.image.width == 640);
+  REQUIRE(shown.image.height == 420);
+  int off = 0, other = 0, differs = 0;
+  for (uint32_t y = 0; y < 300; ++y)
+    for (uint32_t x = 0; x < 640; ++x) {
+      off += glm::length(shown.at(x, y) - window.at(x, y)) > 0.5f / 255;
+      other += glm::length(shown.at(x, y) - plain.at(x, y)) > 3.0f / 255;
+      differs += plain.at(x, y) != named.at(x, y);
+    }
+  CHECK(off == 0);
+  CHECK(other > 20000);
+  CHECK(differs == 0);
+
+  const auto refused = viewer("scenes/cornell/cornell.gltf",
+                              "wait_scene\nimage.save " + file("a.exr") + " as=shown\nquit 0\n");
+  CHECK(refused.status == 1);
+  CHECK_THAT(refused.output, Catch::Contains("as: only a PNG is saved as shown"));
+}

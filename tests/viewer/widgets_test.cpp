@@ -16,6 +16,7 @@
 
 #include "commands/registry.h"
 #include "solvers/registry.h"
+#include "ui/assets.h"
 #include "ui/state.h"
 
 using namespace lucerna;
@@ -41,6 +42,7 @@ struct Control {
 struct Frame {
   std::vector<Item> items;
   std::vector<Control> controls;
+  std::string tooltip;  ///< text of the tooltip that is shown
 } g_frame;
 /// The control whose press is answered; all other presses are recorded and withheld, so that nothing changes.
 std::optional<ImGuiID> g_answered;
@@ -84,6 +86,14 @@ bool wrap_entry(const char* name, bool on, int flags, const ImVec2& size) {
   const ImGuiID id = ImGui::GetID(name);
   const bool pressed = real_entry(name, on, flags | ImGuiSelectableFlags_DontClosePopups, size);
   return withheld(name, id, pressed);
+}
+
+void real_text(const char* begin, const char* end) asm("__real__ZN5ImGui15TextUnformattedEPKcS1_");
+void wrap_text(const char* begin, const char* end) asm("__wrap__ZN5ImGui15TextUnformattedEPKcS1_");
+void wrap_text(const char* begin, const char* end) {
+  if (ImGui::GetCurrentWindow()->Flags & ImGuiWindowFlags_Tooltip)
+    g_frame.tooltip += end ? std::string(begin, end) : std::string(begin);
+  real_text(begin, end);
 }
 
 namespace {
@@ -200,6 +210,20 @@ class Walk {
     return true;
   }
 
+  /// The tooltip of what is at a place where the pointer rests, with so many seconds between frames.
+  std::string tooltip_at(const ImVec2& at, float between_frames) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = {-1, -1};
+    frames(2);
+    io.MousePos = at;
+    const float before = std::exchange(io.DeltaTime, between_frames);
+    frames(between_frames < 0.5f ? 20 : 3);
+    io.DeltaTime = before;
+    return g_frame.tooltip;
+  }
+
+  std::vector<std::pair<int, int>> keys;  ///< GLFW's and their modifiers, pressed in the next frame
+
   void close() {
     if (!GImGui->OpenPopupStack.empty()) ImGui::ClosePopupToLevel(0, true);
     ui_.dialog = {}, ui_.help = false;
@@ -226,7 +250,7 @@ class Walk {
   void frame() {
     ui_.now = ui_.time();
     ui_.refresh(ui_.now);
-    ui_.keys.clear();
+    ui_.keys = std::exchange(keys, {});
     g_frame = {};
     ImGui::NewFrame();
     ImGui::PushFont(ui::theme().fonts.regular);
@@ -339,6 +363,7 @@ TEST_CASE("no id is used twice in a frame, and a click reaches every control of 
   SECTION("the dialogs, the keys and the cards") {
     for (const char* dialog : {"dialog.open", "dialog.save", "dialog.reference", "dialog.script"}) {
       walk.act(dialog);
+      if (std::string(dialog) == "dialog.save") ui.dialog.path = "a.png";
       clicked += walk.click_all(dialog, Walk::in_popup);
       walk.close();
     }
@@ -383,4 +408,129 @@ TEST_CASE("solo of the first group of the light mix mutes the others") {
   const auto found = mix.find(walk.ui().light_groups().groups[0].name);
   REQUIRE(found != mix.end());
   CHECK(found->second.solo);
+}
+
+TEST_CASE("components, solvers and the entries of their lists have tooltips, however slowly frames come") {
+  Walk walk;
+  open_hall(walk);
+  std::vector<Control> names = walk.named("##name");
+  names.resize(session::k_components);
+  // Of each component the field of its solver is the first that opens below its name.
+  for (const float between : {1.0f / 30, 0.8f}) {
+    INFO(between << " s between frames");
+    CHECK_THAT(walk.tooltip_at(names[0].box.GetCenter(), between), Catch::StartsWith("Primary: "));
+    CHECK_THAT(walk.tooltip_at(names[3].box.GetCenter(), between), Catch::StartsWith("Caustic: "));
+    const ImVec2 below(names[1].box.Min.x + 40, names[1].box.Max.y + 14);
+    CHECK_THAT(walk.tooltip_at(below, between),
+               Catch::StartsWith("Solver of the secondary component") && Catch::Contains("Path tracing: "));
+  }
+  const auto field = std::find_if(names.begin() + 1, names.end(), [](const Control&) { return true; });
+  const ImVec2 below(field->box.Min.x + 40, field->box.Max.y + 14);
+  for (const Control& c : walk.named("##open"))
+    if (c.box.Contains(below)) {
+      g_answered = c.id;
+      walk.click(c.id, 0);
+      g_answered.reset();
+      break;
+    }
+  walk.frames(2);
+  std::vector<std::string> helps;
+  for (const Control& c : walk.named("##entry"))
+    if (Walk::in_popup(c)) helps.push_back(walk.tooltip_at(c.box.GetCenter(), 0.8f));
+  const OptionInfo* option = plan::find_option("components.secondary");
+  REQUIRE(helps.size() == option->choices.size());
+  for (size_t i = 0; i < helps.size(); ++i) {
+    INFO(option->choices[i]);
+    const solvers::SolverInfo* solver = solvers::find(option->choices[i]);
+    CHECK_THAT(helps[i], Catch::StartsWith(solver ? solver->help.substr(0, 12) : "Off: "));
+  }
+  walk.close();
+}
+
+TEST_CASE("Ctrl+S pressed and released within a frame, or let go after Ctrl, does not move the camera") {
+  Walk walk;
+  open_hall(walk);
+  REQUIRE(walk.ui().view);
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = {800, 300};
+  walk.frames(3);
+  const auto eye = [&] { return commands::eye_of(walk.ui().view->camera); };
+  const vec3 before = eye();
+  const auto press = [&](int key, int mods) {
+    walk.keys = {{key, mods}};
+    io.KeysDown[key] = true;
+    walk.frames(3);
+    io.KeysDown[key] = false;
+    walk.frames(3);
+  };
+  press('S', 2);
+  CHECK(walk.ui().dialog.purpose == ui::Dialog::Purpose::save);
+  CHECK(eye() == before);
+  walk.close();
+  io.MousePos = {800, 300};
+  walk.frames(3);
+  press('B', 2), press('D', 2), press('W', 2);
+  CHECK(eye() == before);
+  press('S', 0);
+  CHECK(eye() != before);
+}
+
+TEST_CASE("what a scene needs and is not supported is said over the picture") {
+  Walk walk;
+  open_hall(walk);
+  CHECK(walk.ui().note.text.empty());
+  walk.act("scene.open sheen.gltf");
+  CHECK_THAT(walk.ui().note.text, Catch::Contains("Not supported") && Catch::Contains("KHR_materials_sheen"));
+}
+
+TEST_CASE("what has been saved is named over the picture, with how") {
+  Walk walk;
+  open_hall(walk);
+  for (const auto& [line, said] : {std::pair{"image.save a.png as=shown", "Saved a.png, as shown"},
+                                   {"image.save a.png", "Saved a.png, unfiltered"},
+                                   {"image.save a.exr", "Saved a.exr"}}) {
+    walk.act(line);
+    walk.settle();
+    CHECK(walk.ui().note.text == said);
+  }
+  walk.ui().note.text.clear();
+  walk.act("image.save missing/a.png");
+  CHECK(walk.ui().note.text.empty());
+}
+
+TEST_CASE(
+    "the Open dialog goes to the folder above and to places, and greets an empty folder without blame") {
+  const test::Folder folder;
+  const auto inner = folder.path / "inner";
+  std::filesystem::create_directory(inner);
+  std::ofstream(folder.path / "a.gltf") << "{}";
+  Walk walk;
+  open_hall(walk);
+  walk.ui().recent = {(folder.path / "a.gltf").string()};
+  walk.act("dialog.open");
+  ImGui::ClearActiveID();  // the field holds its own text while it has the keyboard
+  walk.ui().dialog.pictures = false, walk.ui().dialog.path = inner.string() + "/";
+  walk.frames(3);
+  const auto press = [&](const char* name, int nth = 0) {
+    std::vector<Control> found = walk.named(name);
+    REQUIRE(found.size() > static_cast<size_t>(nth));
+    g_answered = found[static_cast<size_t>(nth)].id;
+    CHECK(walk.click(*g_answered, 0));
+    g_answered.reset();
+    walk.frames(3);
+  };
+  CHECK(walk.named("##entry").empty());
+  press("##parent");
+  CHECK(walk.ui().dialog.path == folder.path.string() + "/");
+  CHECK(walk.named("##entry").size() == 2);
+  press("##working");
+  CHECK(walk.ui().dialog.path == std::filesystem::current_path().string() + "/");
+  press("##root");
+  CHECK(walk.ui().dialog.path == "/");
+  CHECK(walk.named("##parent").empty());
+  press("##scenes");
+  CHECK(walk.named("##picture").size() == ui::gallery().size());
+  CHECK(ui::gallery().size() >= 10);
+  press("##recent");
+  CHECK(walk.ui().dialog.purpose == ui::Dialog::Purpose::none);
 }

@@ -1,0 +1,393 @@
+// The dialogs that ask for a file: a field that completes, places to go to, and the program's own scenes as
+// pictures.
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui_internal.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "assets.h"
+#include "solvers/registry.h"
+#include "state.h"
+#include "widgets.h"
+
+namespace fs = std::filesystem;
+
+namespace lucerna::ui {
+namespace {
+
+struct Completion {
+  std::string path, name;
+  bool folder;
+};
+
+/// What a dialog asks for, by its purpose.
+struct Question {
+  std::string title, note;
+  std::string command, answer;  ///< that is run with the file; the button's word for it
+  std::vector<std::string> endings;
+  bool reads = false;  ///< the file is there already
+};
+
+Question question(const Dialog& dialog) {
+  using Purpose = Dialog::Purpose;
+  switch (dialog.purpose) {
+    case Purpose::none:
+      break;
+    case Purpose::open:
+      return {.title = "Open a scene",
+              .note = "A .gltf or .glb file. Tab completes; arrows choose.",
+              .command = "scene.open",
+              .answer = "Open",
+              .endings = {".gltf", ".glb"},
+              .reads = true};
+    case Purpose::save:
+      return {
+          .title = "Save the picture",
+          .note =
+              ".exr holds all layers as floats, untouched; .png the picture through exposure and tone curve.",
+          .command = "image.save",
+          .answer = "Save",
+          .endings = {".exr", ".png"}};
+    case Purpose::script:
+      return {.title = "Save the session as a script",
+              .note = "What was done, one command a line; lucerna --script FILE does it again.",
+              .command = "script.save",
+              .answer = "Save",
+              .endings = {".lucerna"}};
+    case Purpose::reference:
+      return {.title = "Load a reference",
+              .note = "An .exr of this view and size, rendered long and with another seed.",
+              .command = "reference.load",
+              .answer = "Load",
+              .endings = {".exr"},
+              .reads = true};
+    case Purpose::solver_load:
+      return {.title = "Load a " + uncapitalised(dialog.solver->label),
+              .note = fmt::format("A {} file {}.", dialog.solver->file->extension, dialog.solver->file->fits),
+              .command = dialog.solver->name + ".load",
+              .answer = "Load",
+              .endings = {dialog.solver->file->extension},
+              .reads = true};
+    case Purpose::solver_save:
+      return {.title = "Save the " + uncapitalised(dialog.solver->label),
+              .note = capitalised(dialog.solver->file->content) + ", for this scene as it is lit now.",
+              .command = dialog.solver->name + ".save",
+              .answer = "Save",
+              .endings = {dialog.solver->file->extension}};
+  }
+  return {};
+}
+
+/// Files of a kind and folders that begin with what is typed.
+std::vector<Completion> completions(const std::string& typed, const Dialog& dialog) {
+  std::vector<Completion> list;
+  for (const std::string& path : commands::paths_starting(typed, question(dialog).endings)) {
+    const bool folder = path.back() == '/';
+    const size_t slash = path.rfind('/', path.size() - 2);
+    list.push_back({path, slash == std::string::npos ? path : path.substr(slash + 1), folder});
+  }
+  return list;
+}
+
+std::string expanded(const std::string& path) {
+  if (path.rfind("~/", 0) == 0)
+    if (const char* home = std::getenv("HOME")) return home + path.substr(1);
+  return path;
+}
+
+bool is_folder(const std::string& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+/// Tab puts the marked entry into the field, or what all entries share; arrows mark. Works on the text as it
+/// is at this moment, which may be newer than the list on the screen.
+int complete_field(ImGuiInputTextCallbackData* data) {
+  auto& dialog = *static_cast<Dialog*>(data->UserData);
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) dialog.marked = -1, dialog.pictures = false;
+  const auto list = completions(expanded(data->Buf), dialog);
+  if (list.empty()) return 0;
+  const int last = static_cast<int>(list.size()) - 1;
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory)
+    dialog.marked = std::clamp(dialog.marked + (data->EventKey == ImGuiKey_DownArrow ? 1 : -1), 0, last);
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) {
+    std::string common = list[static_cast<size_t>(std::clamp(dialog.marked, 0, last))].path;
+    if (dialog.marked < 0)
+      for (const Completion& c : list) {
+        const auto differ = std::mismatch(common.begin(), common.end(), c.path.begin(), c.path.end());
+        common.erase(differ.first, common.end());
+      }
+    data->DeleteChars(0, data->BufTextLen);
+    data->InsertChars(0, common.c_str());
+    dialog.marked = -1;
+  }
+  return 0;
+}
+
+/// The folder that a path names or lies in, absolute.
+fs::path folder_of(const std::string& path) {
+  std::error_code error;
+  const fs::path whole = fs::absolute(path.empty() ? "." : path, error);
+  return whole.has_filename() ? whole.parent_path() : whole.parent_path().lexically_normal();
+}
+
+/// As the field has it: with a slash at the end.
+std::string as_typed(const fs::path& folder) { return (folder / "").lexically_normal().string(); }
+
+void go_to(Dialog& dialog, const fs::path& folder) {
+  std::string rest;
+  // What a file is to be called stays when another folder is chosen for it.
+  if (!question(dialog).reads) rest = fs::path(dialog.path).filename().string();
+  dialog.path = as_typed(folder) + rest;
+  dialog.marked = -1, dialog.pictures = false, dialog.focus = true;
+  ImGui::ClearActiveID();
+}
+
+/// One line of a list. Returns whether it was pressed.
+bool row(const char* id, const std::string& text, bool on, ImU32 ink, const std::string& help = "") {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float w = ImGui::GetContentRegionAvail().x;
+  const bool pressed = ImGui::Selectable(id, on, ImGuiSelectableFlags_DontClosePopups, {w, px(24)});
+  tooltip(help);
+  draw_text(ImGui::GetWindowDrawList(), {at.x + px(8), at.y}, {at.x + w, at.y + px(24)},
+            elided(text, w - px(16)), ink);
+  return pressed;
+}
+
+/// Where one may want to go, at the left.
+void places(Ui& ui, Dialog& dialog, std::string& chosen) {
+  const bool opens = dialog.purpose == Dialog::Purpose::open;
+  const fs::path here = folder_of(expanded(dialog.path));
+  std::error_code error;
+  const auto place = [&](const char* id, const char* name, const fs::path& folder) {
+    if (folder.empty() || !fs::is_directory(folder, error)) return;
+    const bool on = !dialog.pictures && fs::equivalent(folder, here, error);
+    if (row(id, name, on, on ? colour::text : colour::text_dim, folder.string())) go_to(dialog, folder);
+  };
+  if (opens && !gallery().empty() &&
+      row("##scenes", "Lucerna's scenes", dialog.pictures, dialog.pictures ? colour::text : colour::text_dim,
+          "Scenes that come with the program."))
+    dialog.pictures = true;
+  const char* home = std::getenv("HOME");
+  place("##home", "Home", home ? home : "");
+  place("##working", "Working folder", fs::current_path(error));
+  if (ui.scene && !ui.scene->file.empty())
+    place("##of_scene", "The scene's folder", folder_of(ui.scene->file));
+  place("##root", "Computer", "/");
+  if (!opens || ui.recent.empty()) return;
+  gap(6);
+  label("  Recent", colour::text_faint, theme().fonts.small);
+  gap(2);
+  const std::vector<std::string> files = ui.recent;
+  for (size_t i = 0; i < files.size(); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    if (row("##recent", fs::path(files[i]).filename().string(), false, colour::text_dim, files[i]))
+      chosen = files[i];
+    ImGui::PopID();
+  }
+}
+
+/// The program's scenes as pictures with their names.
+void pictures(Ui& ui, std::string& chosen) {
+  const float space = px(8), all = ImGui::GetContentRegionAvail().x;
+  const float across = std::max(1.0f, std::floor((all + space) / (px(150) + space)));
+  const float w = std::floor((all + space) / across) - space, h = std::floor(w * 9 / 16);
+  const ImVec2 origin = ImGui::GetCursorScreenPos();
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  for (size_t i = 0; i < gallery().size(); ++i) {
+    const GalleryScene& scene = gallery()[i];
+    const float column = static_cast<float>(i % static_cast<size_t>(across)),
+                line = static_cast<float>(i / static_cast<size_t>(across));
+    const ImVec2 lo(origin.x + column * (w + space), origin.y + line * (h + px(28)));
+    const ImVec2 hi(lo.x + w, lo.y + h);
+    ImGui::SetCursorScreenPos(lo);
+    ImGui::PushID(scene.name.c_str());
+    if (ImGui::InvisibleButton("##picture", {w, h + px(22)})) chosen = scene.file.string();
+    const bool hovered = ImGui::IsItemHovered();
+    tooltip(scene.file.string());
+    ImGui::PopID();
+    if (const unsigned texture = ui.picture_of ? ui.picture_of(scene.picture.string()) : 0)
+      list->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(texture)), lo, hi, {0, 0},
+                            {1, 1}, IM_COL32_WHITE, px(3));
+    else
+      list->AddRectFilled(lo, hi, colour::field, px(3));
+    if (hovered) list->AddRect(lo, hi, colour::accent, px(3), 0, px(1.5f));
+    draw_text(list, {lo.x, hi.y}, {hi.x, hi.y + px(22)}, capitalised(scene.name),
+              hovered ? colour::text : colour::text_dim);
+  }
+}
+
+/// Files and folders that begin with what is typed, below the folder above them.
+void files(Dialog& dialog, const Question& asked, const std::vector<Completion>& list, std::string& chosen) {
+  const fs::path here = folder_of(expanded(dialog.path));
+  std::error_code error;
+  if (here.has_relative_path() &&
+      row("##parent", "\xE2\x86\x91  Parent folder", false, colour::text_dim, here.parent_path().string()))
+    go_to(dialog, here.parent_path());
+  if (list.empty()) {
+    const bool whole = dialog.path.empty() || dialog.path.back() == '/';
+    const std::string text = !fs::is_directory(here, error) ? "There is no such folder"
+                             : !asked.reads                 ? "A new file"
+                             : whole
+                                 ? fmt::format("Nothing here ends in {}", fmt::join(asked.endings, " or "))
+                                 : "Nothing here begins like that";
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::Dummy({1, px(24)});
+    draw_text(ImGui::GetWindowDrawList(), {at.x + px(8), at.y}, {at.x + px(400), at.y + px(24)}, text,
+              colour::text_faint);
+  }
+  for (int i = 0; i < static_cast<int>(list.size()); ++i) {
+    const Completion& c = list[static_cast<size_t>(i)];
+    ImGui::PushID(i);
+    if (row("##entry", c.name, i == dialog.marked, c.folder ? colour::text_dim : colour::text))
+      chosen = c.path;
+    if (i == dialog.marked) ImGui::SetScrollHereY(0.5f);
+    ImGui::PopID();
+  }
+}
+
+/// How a PNG is written.
+void way_of_saving(Dialog& dialog) {
+  if (dialog.purpose != Dialog::Purpose::save || fs::path(dialog.path).extension() != ".png") return;
+  const float w = px(112);
+  if (button("##shown", "As shown", dialog.as_shown, w)) dialog.as_shown = true;
+  tooltip("As the window shows it: while there are few samples their noise is filtered.");
+  ImGui::SameLine(0, px(4));
+  if (button("##unfiltered", "Unfiltered", !dialog.as_shown, w)) dialog.as_shown = false;
+  tooltip("The samples as they are, with their noise.");
+}
+
+}  // namespace
+
+void draw_file_dialog(Ui& ui) {
+  Dialog& dialog = ui.dialog;
+  if (dialog.purpose == Dialog::Purpose::none) return;
+  const Question asked = question(dialog);
+  // Each has a field of its own, so that none begins with what was typed into another.
+  const std::string title = "##" + asked.command;
+  if (dialog.fresh) ImGui::OpenPopup(title.c_str()), dialog.fresh = false, dialog.focus = true;
+  const ImVec2 window = ImGui::GetIO().DisplaySize;
+  const float width = std::min(px(760), window.x - px(48));
+  const float top = std::floor(std::min(0.18f * window.y, window.y - px(380)));
+  ImGui::SetNextWindowPos({std::floor(0.5f * (window.x - width)), std::max(px(12), top)});
+  ImGui::SetNextWindowSize({width, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(16), px(14)});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(8)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(3));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
+  if (ImGui::BeginPopupModal(
+          title.c_str(), nullptr,
+          ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize)) {
+    label(asked.title, colour::text, theme().fonts.strong);
+    std::error_code ignored;
+    if (!asked.reads && fs::is_regular_file(expanded(dialog.path), ignored))
+      label(dialog.purpose == Dialog::Purpose::script
+                ? "A file of that name exists; it is replaced if it is a saved session."
+                : "A file of that name exists and will be replaced.",
+            colour::warning, theme().fonts.small);
+    else
+      label(asked.note, colour::text_dim, theme().fonts.small);
+    ImGui::SetNextItemWidth(-1);
+    if (dialog.focus) ImGui::SetKeyboardFocusHere(), dialog.to_end = true;
+    dialog.focus = false;
+    const std::vector<Completion> list = completions(expanded(dialog.path), dialog);
+    const bool entered =
+        ImGui::InputText("##path", &dialog.path,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
+                             ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackEdit,
+                         complete_field, &dialog);
+    // Focus selects all; one wants to go on typing behind the last slash.
+    if (ImGuiInputTextState* field = ImGui::GetInputTextState(ImGui::GetItemID());
+        field && dialog.to_end && ImGui::IsItemActive()) {
+      field->Stb.cursor = field->Stb.select_start = field->Stb.select_end = field->CurLenW;
+      dialog.to_end = false;
+    }
+    // The rest of the window's height is for what may be chosen.
+    const float above = ImGui::GetCursorScreenPos().y, below = px(56);
+    const float rows = std::clamp(window.y - above - below - px(24), 3 * px(24), 13 * px(24));
+    std::string chosen;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
+    if (width > px(520)) {
+      ImGui::BeginChild("##places", {px(176), rows});
+      places(ui, dialog, chosen);
+      ImGui::EndChild();
+      ImGui::SameLine(0, px(12));
+    }
+    ImGui::BeginChild("##completions", {0, rows});
+    if (dialog.pictures)
+      pictures(ui, chosen);
+    else
+      files(dialog, asked, list, chosen);
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+
+    bool done = false, accept = entered;
+    if (entered && dialog.marked >= 0 && dialog.marked < static_cast<int>(list.size()))
+      chosen = list[static_cast<size_t>(dialog.marked)].path;
+    if (!chosen.empty()) {
+      dialog.path = chosen, dialog.marked = -1;
+      accept = !is_folder(chosen);
+      ImGui::ClearActiveID();
+      dialog.focus = true;  // the field takes the focus again, with the new text
+    }
+    const float w = px(96), line = ImGui::GetCursorPosY();
+    way_of_saving(dialog);
+    ImGui::SetCursorPos({ImGui::GetWindowWidth() - 2 * w - px(24), line});
+    if (button("##cancel", "Cancel", false, w)) done = true;
+    ImGui::SameLine(0, px(8));
+    if (button("##accept", asked.answer, true, w)) accept = true;
+    if (ui.pressed(GLFW_KEY_ESCAPE)) done = true;
+    if (accept && !dialog.path.empty()) {
+      const std::string file = expanded(dialog.path);
+      if (is_folder(file)) {
+        if (dialog.path.back() != '/') dialog.path += '/';
+        dialog.focus = true;
+        ImGui::ClearActiveID();
+      } else {
+        if (dialog.purpose == Dialog::Purpose::save && dialog.as_shown &&
+            fs::path(file).extension() == ".png")
+          ui.act(asked.command, file, named("as", "shown"));
+        else
+          ui.act(asked.command, file);
+        done = true;
+      }
+    }
+    if (done) dialog = {}, ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+    if (dialog.focus) ui.wake(3);
+  } else {
+    dialog = {};
+  }
+  ImGui::PopStyleVar(4);
+}
+
+void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver) {
+  dialog = {};
+  dialog.purpose = purpose;
+  dialog.solver = solver;
+  dialog.fresh = true;
+  std::error_code error;
+  if (purpose == Dialog::Purpose::open) {
+    // Its own scenes are shown while no other is open.
+    const fs::path here = scene && !scene->file.empty() ? folder_of(scene->file) : fs::current_path(error);
+    if (fs::is_directory(here, error)) dialog.path = as_typed(here);
+    dialog.pictures =
+        !gallery().empty() && (!scene || scene->file.empty() ||
+                               std::any_of(gallery().begin(), gallery().end(), [&](const GalleryScene& own) {
+                                 return fs::equivalent(own.file, scene->file, error);
+                               }));
+  } else if (purpose == Dialog::Purpose::reference || purpose == Dialog::Purpose::solver_load) {
+    dialog.path = fs::current_path(error).string() + "/";
+  } else if (purpose == Dialog::Purpose::script) {
+    dialog.path = (scene ? scene->name : "session") + ".lucerna";
+  } else if (scene) {
+    dialog.path = scene->name + question(dialog).endings[0];
+  }
+  wake(4);
+}
+
+}  // namespace lucerna::ui
