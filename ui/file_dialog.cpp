@@ -308,7 +308,8 @@ void draw_file_dialog(Ui& ui) {
     }
     // The rest of the window's height is for what may be chosen.
     const float above = ImGui::GetCursorScreenPos().y, below = px(56);
-    const float rows = std::clamp(window.y - above - below - px(24), 3 * px(24), 13 * px(24));
+    const float most = dialog.purpose == Dialog::Purpose::open ? 13 : 9;
+    const float rows = std::clamp(window.y - above - below - px(24), 3 * px(24), most * px(24));
     std::string chosen;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
     if (width > px(520)) {
@@ -324,6 +325,7 @@ void draw_file_dialog(Ui& ui) {
       files(dialog, asked, list, chosen);
     ImGui::EndChild();
     ImGui::PopStyleVar();
+    gap(4);
 
     bool done = false, accept = entered;
     if (entered && dialog.marked >= 0 && dialog.marked < static_cast<int>(list.size()))

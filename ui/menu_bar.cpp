@@ -59,9 +59,11 @@ bool begin_submenu(const char* name, const char* help, bool enabled = true) {
   const float above = std::floor(0.5f * (height - space));
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + above);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, height - space});
-  const std::string blanks(static_cast<size_t>(std::round(px(26) / text_width(" "))), ' ');
-  const bool open = ImGui::BeginMenu((blanks + name + "##menu").c_str(), enabled);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  const ImVec2 at(ImGui::GetCursorScreenPos().x + px(26), ImGui::GetCursorScreenPos().y);
+  const bool open = ImGui::BeginMenu((std::string("##") + name).c_str(), enabled);
   ImGui::PopStyleVar();
+  draw_text(list, at, {at.x + px(206), at.y + space}, name, enabled ? colour::text : colour::text_faint);
   if (!open) {
     tooltip(help);
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() - above);
