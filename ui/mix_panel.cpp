@@ -130,7 +130,7 @@ void preset_rows(Ui& ui) {
   if (button("##reset", "Reset", false, width - half - px(6))) ui.act("mix.reset");
   tooltip("All groups as the scene has them.");
   if (button("##apply", "Write into the lights", false, width)) ui.act("mix.apply");
-  tooltip("Makes the mix the lights' own strength and colour. The picture starts again; undo takes it back.");
+  tooltip("Makes the mix the lights' own strength and colour. The light stays the same; undo takes it back.");
 }
 
 }  // namespace
