@@ -51,7 +51,7 @@ bench::Matrix choose_matrix(const BenchArguments& a) {
 
 /// What an earlier run into the same folder reported; null when there is none, or half a file.
 Json earlier_report(const fs::path& folder) {
-  if (!fs::exists(folder / "report.json")) return {};
+  if (!file_exists(folder / "report.json")) return {};
   try {
     return bench::read_report(folder);
   } catch (const Error&) {

@@ -8,6 +8,7 @@
 #include "app/verbs.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "session/renderer.h"
 
 namespace lucerna::app {
@@ -89,7 +90,7 @@ int bench_interpolation(const BenchInterpolationArguments& a) {
                     .c_str());
     all["ways"].push_back(j);
   }
-  if (!a.json.empty()) write_file(a.json, all.dump(2) + "\n");
+  if (!a.json.empty()) write_file(a.json, json_text(all, 2) + "\n");
   return 0;
 }
 

@@ -6,6 +6,7 @@
 #include "app/interrupt.h"
 #include "app/verbs.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/log.h"
 #include "bench/latency.h"
 #include "bench/machine.h"
@@ -26,7 +27,7 @@ std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
 /// A file, or the name of a scene that comes with the program.
 fs::path scene_file(const std::string& name) {
   const fs::path own = fs::path(LUCERNA_SOURCE_DIR) / "scenes" / name / (name + ".gltf");
-  return fs::exists(name) || !fs::exists(own) ? fs::path(name) : own;
+  return file_exists(name) || !file_exists(own) ? fs::path(name) : own;
 }
 
 /// The runs of each edit, in the order of the first ones.
@@ -95,7 +96,7 @@ int bench_latency(const BenchLatencyArguments& a) {
       for (const bench::LatencyResult& run : runs) row["runs"].push_back(bench::to_json(run));
     j["rows"].push_back(row);
   }
-  write_file(a.json, j.dump(2) + "\n");
+  write_file(a.json, json_text(j, 2) + "\n");
   return 0;
 }
 

@@ -10,6 +10,7 @@
 #include "app/verbs.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/math.h"
 #include "solvers/lookup/octree.h"
 
@@ -242,7 +243,7 @@ int bench_lookup(const BenchLookupArguments& a) {
   Bench bench(device, a);
   for (const uint32_t n : a.sizes)
     for (const char* kind : {"photons", "records"}) bench.run(kind, n);
-  if (!a.json.empty()) write_file(a.json, bench.to_json().dump(2) + "\n");
+  if (!a.json.empty()) write_file(a.json, json_text(bench.to_json(), 2) + "\n");
   return 0;
 }
 

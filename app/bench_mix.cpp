@@ -11,6 +11,7 @@
 #include "app/verbs.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/timer.h"
 #include "session/renderer.h"
 #include "session/session.h"
@@ -158,21 +159,21 @@ int bench_mix(const BenchMixArguments& a) {
     const auto times = [](const Timing& t) {
       return Json{{"median", t.median}, {"low", t.low}, {"high", t.high}};
     };
-    write_file(a.json, Json{{"scene", a.scene},
-                            {"width", a.width},
-                            {"height", a.height},
-                            {"samples", a.samples},
-                            {"groups", groups},
-                            {"keep", a.keep},
-                            {"bytes_a_pixel", film::sum_bytes(groups, r.film().groups_kept())},
-                            {"cpu_s_one_group", cpu[0]},
-                            {"cpu_s", cpu[1]},
-                            {"shown_s", times(shown)},
-                            {"shown_cpu_s", shown_cpu},
-                            {"drag_begins_s", times(begun)},
-                            {"drag_s", times(dragged)},
-                            {"settled_s", times(settled)}}
-                               .dump(2) +
+    write_file(a.json, json_text(Json{{"scene", a.scene},
+                                      {"width", a.width},
+                                      {"height", a.height},
+                                      {"samples", a.samples},
+                                      {"groups", groups},
+                                      {"keep", a.keep},
+                                      {"bytes_a_pixel", film::sum_bytes(groups, r.film().groups_kept())},
+                                      {"cpu_s_one_group", cpu[0]},
+                                      {"cpu_s", cpu[1]},
+                                      {"shown_s", times(shown)},
+                                      {"shown_cpu_s", shown_cpu},
+                                      {"drag_begins_s", times(begun)},
+                                      {"drag_s", times(dragged)},
+                                      {"settled_s", times(settled)}},
+                                 2) +
                            "\n");
   }
   return 0;

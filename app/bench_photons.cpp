@@ -8,6 +8,7 @@
 #include "app/interrupt.h"
 #include "app/verbs.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/log.h"
 #include "base/timer.h"
 #include "bench/machine.h"
@@ -36,7 +37,7 @@ int bench_photons(const BenchPhotonsArguments& a) {
   const Json identity{{"version", LUCERNA_VERSION}, {"device", device["name"]}, {"processor", machine.cpu}};
   const bench::ReportFolder folder(path, bench::to_json(options), identity, {"units"});
   double before = 0;
-  if (fs::exists(path / "report.json"))
+  if (file_exists(path / "report.json"))
     if (const Json old = Json::parse(read_file(path / "report.json"), nullptr, false); old.is_object())
       before = old.value("wall_s", 0.0);
 
@@ -68,7 +69,7 @@ int bench_photons(const BenchPhotonsArguments& a) {
               {"device", device}};
   for (const auto& [part, found] : measured->items()) report[part] = found;
   const std::string text = bench::photons_text(report);
-  write_file(path / "report.json", report.dump(1) + "\n");
+  write_file(path / "report.json", json_text(report, 1) + "\n");
   write_file(path / "report.txt", text);
   write_file(path / "report.html", bench::photons_page(report));
   std::printf("%s%s\n", text.c_str(), (path / "report.html").c_str());

@@ -9,6 +9,7 @@
 #include "app/verbs.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "sort/radix_sort.h"
 
 namespace lucerna::app {
@@ -132,7 +133,7 @@ int bench_sort(const BenchSortArguments& a) {
                          {"seconds", {{"median", r.time.median}, {"low", r.time.low}, {"high", r.time.high}}},
                          {"elements_per_s", r.size / r.time.median},
                          {"factor_over_first", r.ratio}});
-  write_file(a.json, j.dump(2) + "\n");
+  write_file(a.json, json_text(j, 2) + "\n");
   return 0;
 }
 

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 #include "app/interrupt.h"
 #include "app/render_stats.h"
 #include "app/verbs.h"
 #include "base/file.h"
+#include "base/json_text.h"
 #include "base/log.h"
 #include "base/timer.h"
 #include "session/renderer.h"
@@ -123,30 +125,55 @@ bool load(session::Renderer& r, const RenderArguments& a, const std::vector<sess
   return true;
 }
 
-/// Writes solvers' work that is ready, and forgets that it was asked for.
-void save_ready(session::Renderer& r, std::map<std::string, std::string>& to_save) {
-  std::erase_if(to_save, [&](const auto& entry) {
-    const auto& [name, file] = entry;
-    const bool ready = r.solver(name)->ready();
-    if (ready) r.solver_save(name, file);
-    return ready;
-  });
-}
+/// What is written. An output that fails does not keep the others from being written.
+class Outputs {
+ public:
+  explicit Outputs(std::map<std::string, std::string> work) : work_(std::move(work)) {}
+
+  /// Solvers' work that is not yet written: files by solvers' names.
+  const std::map<std::string, std::string>& work() const { return work_; }
+  /// Writes solvers' work that is ready.
+  void save_ready(session::Renderer& r) {
+    std::erase_if(work_, [&](const auto& entry) {
+      const auto& [name, file] = entry;
+      const bool ready = r.solver(name)->ready();
+      if (ready) attempt([&] { r.solver_save(name, file); });
+      return ready;
+    });
+  }
+  /// Runs `write`; prints why it failed.
+  void attempt(const std::function<void()>& write) {
+    try {
+      write();
+    } catch (const std::exception& e) {
+      fail(e.what());
+    }
+  }
+  void fail(const std::string& why) {
+    std::fprintf(stderr, "lucerna: %s\n", why.c_str());
+    failed_ = true;
+  }
+  bool failed() const { return failed_; }
+
+ private:
+  std::map<std::string, std::string> work_;
+  bool failed_ = false;
+};
 
 /// Of the time that there is, what solvers may prepare in at most.
 constexpr double k_preparing = 0.5;
 
 /// Until picture and work are done, time is up or somebody interrupts. Seconds that it took.
-double run(session::Renderer& r, const RenderArguments& a, std::map<std::string, std::string>& to_save,
-           const Interrupt& interrupt, bool terminal) {
+double run(session::Renderer& r, const RenderArguments& a, Outputs& outputs, const Interrupt& interrupt,
+           bool terminal) {
   const double limit = a.seconds.value_or(0);  // 0: none
   const Timer timer;
   Timer since_line;
-  save_ready(r, to_save);
+  outputs.save_ready(r);
   bool covered = false;  // every pixel has a sample
   // Not where somebody wants to keep the solvers' work.
-  bool may_prepare = !a.seconds || !makes_picture(a) || !to_save.empty();
-  while ((makes_picture(a) || !to_save.empty()) && !r.done() && !interrupt.signal() &&
+  bool may_prepare = !a.seconds || !makes_picture(a) || !outputs.work().empty();
+  while ((makes_picture(a) || !outputs.work().empty()) && !r.done() && !interrupt.signal() &&
          (!a.seconds || timer.seconds() < limit)) {
     if (!may_prepare && timer.seconds() > k_preparing * limit) {
       may_prepare = true;
@@ -156,7 +183,7 @@ double run(session::Renderer& r, const RenderArguments& a, std::map<std::string,
       }
     }
     if (!r.step()) break;
-    save_ready(r, to_save);
+    outputs.save_ready(r);
     if (!covered && r.samples() > 0) log::info("a sample of every pixel after {:.2f} s", timer.seconds());
     covered = r.samples() > 0;
     if (terminal && since_line.seconds() > 0.2)
@@ -238,24 +265,26 @@ int render(const RenderArguments& a) {
     if (!r.solver(name))
       throw_error(fmt::format("--{}-save", name),
                   "no component is computed by '{}'; add --set components.secondary={}", name, name);
-  const double wall = run(r, a, to_save, interrupt, terminal);
+  Outputs outputs(to_save);
+  const double wall = run(r, a, outputs, interrupt, terminal);
   const bool interrupted = interrupt.signal() != 0;
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
   if (!interrupted) check_time(r, a);
   if (makes_picture(a) && r.adaptive() && !interrupted) report_unreached(*r.adaptive(), advice(r));
-  if (makes_picture(a)) find_exposure(r, changes);
-  for (const std::string& file : a.outputs) r.save(file);
-  if (!a.ledger.empty()) write_file(a.ledger, r.ledger().csv());
-  if (!a.stats.empty()) write_file(a.stats, make_stats(r, wall).dump(2) + "\n");
-  for (const auto& [name, file] : to_save) {
-    if (!interrupted)
-      throw_error(file, "not written: {} was still being built when rendering ended",
-                  solvers::find(name)->title);
-    std::fprintf(stderr, "lucerna: %s: not written; it was still being built\n", file.c_str());
-  }
+  if (makes_picture(a)) outputs.attempt([&] { find_exposure(r, changes); });
+  for (const std::string& file : a.outputs) outputs.attempt([&] { r.save(file); });
+  if (!a.ledger.empty()) outputs.attempt([&] { write_file(a.ledger, r.ledger().csv()); });
+  if (!a.stats.empty())
+    outputs.attempt([&] { write_file(a.stats, json_text(make_stats(r, wall), 2) + "\n"); });
+  for (const auto& [name, file] : outputs.work())
+    if (interrupted)
+      std::fprintf(stderr, "lucerna: %s: not written; it was still being built\n", file.c_str());
+    else
+      outputs.fail(fmt::format("{}: not written: {} was still being built when rendering ended", file,
+                               solvers::find(name)->title));
   if (r.stats().dropped) log::warning("{} contributions were not finite and were dropped", r.stats().dropped);
-  return interrupted ? interrupt.status() : 0;
+  return interrupted ? interrupt.status() : outputs.failed() ? 1 : 0;
 }
 
 }  // namespace lucerna::app

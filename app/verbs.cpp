@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "film/io/compare.h"
 #include "gpu/device.h"
 #include "scene/io/load.h"
@@ -12,7 +13,7 @@ namespace lucerna::app {
 int info(const std::string& file, bool json, const scene::LoadOptions& scenes) {
   const scene::Scene scene = scene::load(file, scenes);
   if (json)
-    std::printf("%s\n", scene::describe(scene).dump(2).c_str());
+    std::printf("%s\n", json_text(scene::describe(scene), 2).c_str());
   else
     std::printf("%s", scene::describe_text(scene).c_str());
   return 0;
@@ -46,7 +47,7 @@ int devices(bool json) {
         d.optional.int64 ? "yes" : "no", d.optional.float64 ? "yes" : "no");
     if (!d.missing.empty()) std::printf("   cannot be used: lacks %s\n", d.missing.c_str());
   }
-  if (json) std::printf("%s\n", list.dump(2).c_str());
+  if (json) std::printf("%s\n", json_text(list, 2).c_str());
   return 0;
 }
 

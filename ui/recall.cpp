@@ -5,6 +5,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
+
 namespace fs = std::filesystem;
 
 namespace lucerna::ui {
@@ -69,7 +71,7 @@ void remember(const Ui& ui) {
   const fs::path temporary = fs::path(file) += ".new";
   {
     std::ofstream stream(temporary);
-    stream << json.dump(2) << '\n';
+    stream << json_text(json, 2) << '\n';
     if (!stream) return;
   }
   fs::rename(temporary, file, error);

@@ -230,7 +230,7 @@ void Runner::advance() {
         if (ui_.now - began_ > limit && !measure_ && current_.command->name != "wait")
           throw_error(step.where, "{}: gave up after {:.0f} s", current_.command->name, limit);
         return false;
-      } catch (const Error& error) {
+      } catch (const std::exception& error) {
         log::error("{}", error.what());
         give_up(step);
         return true;
@@ -306,7 +306,7 @@ void Runner::console(const std::string& line) {
                 ui_.manual(parsed.arguments.has("command") ? parsed.arguments.text("command") : ""));
     else
       ui_.run(line);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     ui_.print(log::Level::error, error.what());
   }
 }

@@ -44,7 +44,7 @@ void Ui::act_line(const std::string& line) {
   if (gesture == 0 && ImGui::GetActiveID() != 0) follow_gesture();
   try {
     run(line, gesture);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     log::error("{}", error.what());
   }
   wake();

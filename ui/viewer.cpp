@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/timer.h"
 #include "film/io/image_file.h"
 #include "recall.h"
@@ -205,8 +206,8 @@ class Viewer {
     const std::vector<uint8_t> rgba = window_.read(width, height);
     try {
       film::write_png(file, width, height, rgba, {{k_window_mark, LUCERNA_VERSION}});
-      log::info("window saved as {}", std::filesystem::absolute(file).string());
-    } catch (const Error& error) {
+      log::info("window saved as {}", absolute_path(file).string());
+    } catch (const std::exception& error) {
       log::error("{}", error.what());
       ui_.shot.failed = true;
     }

@@ -1,16 +1,23 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
+
+#include "base/output_file.h"
 
 namespace lucerna {
 
-/// Writes a file whole or not at all: under a temporary name in its folder, flushed to disk, then renamed.
-/// Throws Error located at `file`; what was there before then stays.
-void write_file(const std::filesystem::path& file, const std::string& bytes);
+/// Writes a file whole or not at all (OutputFile, which see for links, pipes and devices). Throws Error
+/// located at `file`; what was there before then stays.
+void write_file(const std::filesystem::path& file, std::string_view bytes);
 /// Throws Error located at `file` when it cannot be read.
 std::string read_file(const std::filesystem::path& file);
-/// Throws Error located at `file` when it plainly could not be written: its folder is missing or closed, or
-/// the name is a folder's. For long work, before it begins.
-void check_writable(const std::filesystem::path& file);
+/// Whether something has that name, behind links; of folders, whether it is one. False if that cannot be
+/// found out.
+bool file_exists(const std::filesystem::path& file);
+bool is_folder(const std::filesystem::path& path);
+/// The path from the root, without "." and "..". Where the working folder is gone a relative path stays as it
+/// is.
+std::filesystem::path absolute_path(const std::filesystem::path& path);
 
 }  // namespace lucerna

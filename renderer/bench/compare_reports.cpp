@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/json_text.h"
+
 namespace lucerna::bench {
 namespace {
 
@@ -53,7 +55,7 @@ void compare_heads(const Json& a, const Json& b, std::string& text) {
   for (const char* key : {"/version", "/device/name", "/machine/cpu", "/machine/cores"}) {
     const Json::json_pointer at(key);
     const Json x = a.contains(at) ? a.at(at) : Json(), y = b.contains(at) ? b.at(at) : Json();
-    if (x != y) text += fmt::format("note: {} differs: {} and {}\n", key + 1, x.dump(), y.dump());
+    if (x != y) text += fmt::format("note: {} differs: {} and {}\n", key + 1, json_text(x), json_text(y));
   }
   for (const Json* report : {&a, &b})
     if (!report->value("complete", false))

@@ -7,6 +7,9 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/file.h"
+#include "base/json_text.h"
+
 namespace lucerna::bench {
 namespace {
 
@@ -59,10 +62,11 @@ ReportFolder::ReportFolder(const fs::path& path, const Json& matrix, const Json&
   if (existed && fs::exists(claim_file, code)) {
     check_claim(where, read_file(claim_file), claim);
   } else if (existed) {
-    for (const auto& entry : fs::directory_iterator(path, code))
-      if (entry.path().filename() != "references")
+    for (fs::directory_iterator entry(path, code); !code && entry != fs::directory_iterator();
+         entry.increment(code))
+      if (entry->path().filename() != "references")
         throw_error(where, "holds '{}', which no bench made; name an empty or a new folder with --report",
-                    entry.path().filename().string());
+                    entry->path().filename().string());
   }
   if (!existed) fs::create_directories(path, code);
   if (code) throw_error(where, "the folder cannot be made: {}", code.message());
@@ -71,7 +75,7 @@ ReportFolder::ReportFolder(const fs::path& path, const Json& matrix, const Json&
     fs::create_directories(path / part, code);
     if (code) throw_error((path / part).string(), "the folder cannot be made: {}", code.message());
   }
-  if (!fs::exists(claim_file)) write_file(claim_file, claim.dump(2) + "\n");
+  if (!file_exists(claim_file)) write_file(claim_file, json_text(claim, 2) + "\n");
   lock_ = open(claim_file.c_str(), O_RDONLY | O_CLOEXEC);
   if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     close(lock_);
@@ -93,7 +97,7 @@ std::map<std::string, Result> Folder::load(const Matrix& matrix,
   for (const Cell& c : matrix.cells()) {
     const std::string id = matrix.id(c);
     const fs::path file = path_ / "cells" / (id + ".json");
-    if (!fs::exists(file)) continue;
+    if (!file_exists(file)) continue;
     try {
       Result r = parse_result(read_file(file), file.string());
       const SceneEntry& scene = matrix.scenes[c.scene];
@@ -113,7 +117,7 @@ std::map<std::string, Result> Folder::load(const Matrix& matrix,
 }
 
 void Folder::save(const std::string& id, const Result& result) const {
-  write_file(path_ / "cells" / (id + ".json"), to_json(result).dump(1) + "\n");
+  write_file(path_ / "cells" / (id + ".json"), json_text(to_json(result), 1) + "\n");
 }
 
 }  // namespace lucerna::bench

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "base/color.h"
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/timer.h"
@@ -166,8 +167,11 @@ class Latency {
     // A session would report a refused one and go on without it.
     plan::Settings checked;
     for (const auto& [key, value] : o_.set) checked.set(key, value, "--set");
-    fs::create_directories(o_.references);
-    if (!o_.pictures.empty()) fs::create_directories(o_.pictures);
+    for (const fs::path& folder : {o_.references, o_.pictures}) {
+      std::error_code error;
+      if (!folder.empty()) fs::create_directories(folder, error);
+      if (error) throw_error(folder.string(), "the folder cannot be made: {}", error.message());
+    }
     for (const fs::path& file : o_.files)
       for (const std::string& solver : o_.solvers)
         for (uint32_t i = 0; i < o_.repeats; ++i) run_scene(file, solver);
@@ -304,7 +308,7 @@ class Latency {
     const fs::path kept =
         o_.references / fmt::format("{}{}-{}x{}-{}-{}.exr", file.stem().string(), done_edits_, o_.width,
                                     o_.height, o_.reference_solver, samples);
-    if (fs::exists(kept)) try {
+    if (file_exists(kept)) try {
         film::FilmImage image = film::read_exr(kept);
         if (const auto of = image.metadata.find("bench.key"); of != image.metadata.end() && of->second == key)
           return image;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "base/file.h"
+#include "base/json_text.h"
 #include "plan/settings.h"
 
 namespace lucerna::bench {
@@ -42,14 +42,14 @@ class Node {
     return nodes;
   }
   std::string text() const {
-    if (!json_.is_string()) throw_error(where_, "expected a text, found {}", json_.dump());
+    if (!json_.is_string()) throw_error(where_, "expected a text, found {}", json_text(json_));
     return json_.get<std::string>();
   }
   double number(double lo, double hi, bool whole) const {
     const double x = json_.is_number() ? json_.get<double>() : NAN;
     if (!(x >= lo && x <= hi) || (whole && x != std::floor(x)))
       throw_error(where_, "expected a {}number from {} to {}, found {}", whole ? "whole " : "", lo, hi,
-                  json_.dump());
+                  json_text(json_));
     return x;
   }
   uint32_t count(double lo, double hi) const { return uint32_t(number(lo, hi, true)); }
@@ -60,8 +60,9 @@ class Node {
     plan::Settings probe;
     for (const auto& [key, value] : json_.items()) {
       if (!value.is_primitive() || value.is_null())
-        throw_error(where_, "'{}': expected a text, a number or true or false, found {}", key, value.dump());
-      const std::string word = value.is_string() ? value.get<std::string>() : value.dump();
+        throw_error(where_, "'{}': expected a text, a number or true or false, found {}", key,
+                    json_text(value));
+      const std::string word = value.is_string() ? value.get<std::string>() : json_text(value);
       if (key == "samples" || key == "seed")
         throw_error(where_, "'{}' is the bench's own affair; use budgets.samples and seed", key);
       probe.set(key, word, where_);
@@ -174,7 +175,9 @@ SceneEntry read_scene(const Node& node, const Matrix& m, const fs::path& folder,
   const Node file = node.at("file");
   const fs::path path = file.text();
   s.file = (path.is_absolute() ? path : folder / path).lexically_normal();
-  if (!fs::is_regular_file(s.file)) throw_error(file.where(), "there is no file '{}'", s.file.string());
+  std::error_code error;
+  if (!fs::is_regular_file(s.file, error))
+    throw_error(file.where(), "there is no file '{}'", s.file.string());
   s.name =
       node.has("name") ? read_name(node.at("name")) : read_name({Json(path.stem().string()), file.where()});
   if (std::any_of(m.scenes.begin(), m.scenes.end(), [&](const SceneEntry& o) { return o.name == s.name; }))
@@ -263,11 +266,9 @@ Matrix parse_matrix(const std::string& text, const std::string& where, const fs:
 }
 
 Matrix read_matrix(const fs::path& file) {
-  std::ifstream in(file);
-  std::stringstream text;
-  if (in && !fs::is_directory(file)) text << in.rdbuf();
-  if (!in || fs::is_directory(file)) throw_error(file.string(), "cannot be read; expected a matrix file");
-  return parse_matrix(text.str(), file.string(), file.parent_path());
+  if (!file_exists(file) || is_folder(file))
+    throw_error(file.string(), "cannot be read; expected a matrix file");
+  return parse_matrix(read_file(file), file.string(), file.parent_path());
 }
 
 nlohmann::ordered_json to_json(const Matrix& m) {

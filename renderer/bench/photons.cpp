@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "base/color.h"
+#include "base/file.h"
+#include "base/json_text.h"
 #include "base/timer.h"
 #include "bench/photon_errors.h"
 #include "bench/reference.h"
@@ -387,7 +389,7 @@ void Bench::plan_rounds() {
            const auto r = load("glass", k_rounds_side,
                                alone("caustic") + Values{{"components.caustic", "photons"},
                                                          {"photons.per_round", std::to_string(paths)}});
-           write_file(f, timed_rounds(*r, paths).dump(1) + "\n");
+           write_file(f, json_text(timed_rounds(*r, paths), 1) + "\n");
          }});
 }
 
@@ -420,7 +422,7 @@ void Bench::plan_lamps() {
                                                     {"photons.per_round", std::to_string(k_lamp_paths)}}));
                         Json j = timed_rounds(*r, k_lamp_paths);
                         j["lamps"] = lamps;
-                        write_file(f, j.dump(1) + "\n");
+                        write_file(f, json_text(j, 1) + "\n");
                       }});
 }
 
@@ -449,17 +451,17 @@ void Bench::plan_free() {
            tell(double(i) / o_.pairs);
          }
          const Slope m = median95(extra);
-         write_file(f, Json{{"scene", "cornell"},
-                            {"samples", k_free_samples},
-                            {"pairs", o_.pairs},
-                            {"extra", m.value},
-                            {"low", m.low},
-                            {"high", m.high},
-                            {"path_cpu_s", median(plain)},
-                            {"rays", path->stats().rays},
-                            {"rays_with_photons", photons->stats().rays},
-                            {"light_paths", photons->figure("light paths")}}
-                               .dump(1) +
+         write_file(f, json_text(Json{{"scene", "cornell"},
+                                      {"samples", k_free_samples},
+                                      {"pairs", o_.pairs},
+                                      {"extra", m.value},
+                                      {"low", m.low},
+                                      {"high", m.high},
+                                      {"path_cpu_s", median(plain)},
+                                      {"rays", path->stats().rays},
+                                      {"rays_with_photons", photons->stats().rays},
+                                      {"light_paths", photons->figure("light paths")}},
+                                 1) +
                            "\n");
        }});
 }
@@ -471,7 +473,7 @@ Json Bench::run() {
   if (wanted("free")) plan_free();
   std::vector<const Unit*> todo;
   for (const Unit& u : units_)
-    if (!fs::exists(u.file)) todo.push_back(&u), effort_ += u.effort;
+    if (!file_exists(u.file)) todo.push_back(&u), effort_ += u.effort;
   status_.steps = todo.size();
   for (const Unit* u : todo) {
     ++status_.step;

@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/file.h"
 #include "base/hash.h"
+#include "base/json_text.h"
 #include "film/io/image_file.h"
 #include "solvers/registry.h"
 
@@ -68,7 +70,7 @@ void set_aside(const fs::path& file, const std::string& why, const Message& mess
   do {
     old = file.string() + (n == 1 ? ".old" : fmt::format(".old{}", n));
     ++n;
-  } while (fs::exists(old));
+  } while (file_exists(old));
   std::error_code code;
   fs::rename(file, old, code);
   if (code) throw_error(file.string(), "{}, and it cannot be renamed: {}", why, code.message());
@@ -85,7 +87,7 @@ std::string scene_hash(const fs::path& file) {
   std::set<std::string> files;
   collect_files(Json::parse(json_part(bytes), nullptr, false), files);
   const fs::path settings = file.parent_path() / "settings.json";
-  if (fs::exists(settings)) {
+  if (file_exists(settings)) {
     const std::string text = read_file(settings);
     hash.add(text);
     collect_files(Json::parse(text, nullptr, false), files);
@@ -108,7 +110,7 @@ std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const s
   for (const auto& [key, value] : values)
     if (!solvers::owner_of(key)) j["set"][key] = value;
   Pieces hash;
-  hash.add(j.dump());
+  hash.add(json_text(j));
   return hash.text();
 }
 
@@ -157,7 +159,7 @@ std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneE
                                             const std::string& key, const Message& message) {
   ReferenceInfo info;
   info.file = reference_file(folder, scene);
-  if (!fs::exists(info.file)) return std::nullopt;
+  if (!file_exists(info.file)) return std::nullopt;
   std::string why;
   try {
     const film::FilmImage image = film::read_exr(info.file);

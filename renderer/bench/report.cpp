@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/file.h"
+#include "base/json_text.h"
 #include "bench/analysis.h"
 #include "bench/page.h"
 
@@ -460,13 +462,13 @@ std::string make_csv(const Json& report) {
 }
 
 void write_report(const fs::path& folder, const Json& report) {
-  write_file(folder / "report.json", report.dump(1) + "\n");
+  write_file(folder / "report.json", json_text(report, 1) + "\n");
   write_file(folder / "report.csv", make_csv(report));
   write_file(folder / "report.html", make_page(report, folder / "pictures"));
 }
 
 Json read_report(const fs::path& file_or_folder) {
-  const fs::path file = fs::is_directory(file_or_folder) ? file_or_folder / "report.json" : file_or_folder;
+  const fs::path file = is_folder(file_or_folder) ? file_or_folder / "report.json" : file_or_folder;
   Json report = Json::parse(read_file(file), nullptr, false);
   if (report.is_discarded()) throw_error(file.string(), "not JSON, perhaps half a file");
   if (!report.is_object() || report.value("what", "") != "lucerna bench" || !report.contains("scenes"))

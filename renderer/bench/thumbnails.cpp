@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/file.h"
 #include "bench/folder.h"
 #include "bench/html.h"
 #include "film/io/image_file.h"
@@ -61,7 +62,7 @@ std::string magma_gradient() {
 }
 
 std::optional<ErrorPicture> read_error_picture(const fs::path& file) {
-  if (!fs::exists(file)) return std::nullopt;
+  if (!file_exists(file)) return std::nullopt;
   try {
     film::FilmImage image = film::read_exr(file);
     if (image.channels.size() != 1) return std::nullopt;
@@ -86,7 +87,7 @@ double scale_of(const ErrorPicture& picture) {
 std::string image_tag(const fs::path& png, uint32_t width, uint32_t height, const std::string& alt,
                       const std::string& title) {
   try {
-    return fs::exists(png) ? tag_of(read_file(png), width, height, alt, title) : "";
+    return file_exists(png) ? tag_of(read_file(png), width, height, alt, title) : "";
   } catch (const Error&) {
     return "";
   }

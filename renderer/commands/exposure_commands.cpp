@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/log.h"
 #include "commands/workspace.h"
 
@@ -52,7 +53,7 @@ void Workspace::add_exposure_commands() {
                            "no such file; expected a latitude-longitude image (.exr or .hdr)");
              needs_scene();
              Document& d = edit();
-             d.environment_file = std::filesystem::absolute(a.text("file")).lexically_normal().string();
+             d.environment_file = absolute_path(a.text("file")).string();
              d.environment_scale = 1, d.environment_rotation = 0;
            },
        .undoable = true});

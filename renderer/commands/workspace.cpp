@@ -4,7 +4,6 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <tuple>
 
 #include "base/error.h"
@@ -364,7 +363,7 @@ void Workspace::carry_out(const Line& line, uint64_t gesture, const std::string&
   const auto located = [&](auto&& act) {
     try {
       act();
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
       working_.reset();
       const std::string what = error.what();
       const std::string head = line.command->name + ": ";
@@ -487,7 +486,7 @@ void Workspace::record(const Line& line, uint64_t gesture, const Sent& sent) {
   for (const Parameter& p : line.command->parameters) {
     if (!line.arguments.has(p.name)) continue;
     std::string value = line.arguments.text(p.name);
-    if (p.type == Type::file) value = std::filesystem::absolute(value).lexically_normal().string();
+    if (p.type == Type::file) value = absolute_path(value).string();
     entry.line += " " + (p.optional ? p.name + "=" : "") + quote(value);
   }
   if (gesture != 0 && !recorded_.empty() && recorded_.back().gesture == gesture &&
@@ -505,8 +504,7 @@ std::vector<std::string> Workspace::script() const {
 }
 
 void Workspace::save_script(const std::string& file) const {
-  if (std::error_code error;
-      std::filesystem::exists(file, error) && !read_file(file).starts_with(k_script_head))
+  if (file_exists(file) && !read_file(file).starts_with(k_script_head))
     throw Error(file, "is there already and no saved session: another name is needed");
   std::string text = k_script_head;
   for (const std::string& line : script()) text += line + '\n';

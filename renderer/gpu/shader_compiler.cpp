@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <mutex>
 
+#include "base/file.h"
 #include "base/timer.h"
 #include "gpu/kernel.h"
 #include "gpu/shader_cache.h"
@@ -189,8 +190,7 @@ struct ShaderCompiler::Impl {
   uint64_t hits = 0;
 };
 
-ShaderCompiler::ShaderCompiler(fs::path root)
-    : impl_(std::make_unique<Impl>(fs::absolute(root).lexically_normal())) {}
+ShaderCompiler::ShaderCompiler(fs::path root) : impl_(std::make_unique<Impl>(absolute_path(root))) {}
 ShaderCompiler::~ShaderCompiler() = default;
 
 fs::path ShaderCompiler::default_root() {

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
 #include "paths/automaton.h"
 #include "solvers/registry.h"
 
@@ -172,7 +173,7 @@ std::string Settings::changed_json() const {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const OptionInfo& option : options())
     if (text(option.key) != option.fallback) json[option.key] = text(option.key);
-  return json.dump();
+  return json_text(json);
 }
 
 }  // namespace lucerna::plan

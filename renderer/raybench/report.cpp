@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
+
 namespace lucerna::raybench {
 
 std::string to_text(const Report& r, const std::string& yardstick) {
@@ -65,7 +67,7 @@ std::string to_json(const Report& r) {
     for (const auto& s : f.time.stages) frame["stages_ms"][s.name] = s.ms;
     j["frame"][f.tracer] = frame;
   }
-  return j.dump(2);
+  return json_text(j, 2);
 }
 
 }  // namespace lucerna::raybench

@@ -2,9 +2,11 @@
 
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <type_traits>
 
 #include "base/error.h"
+#include "base/file.h"
 
 namespace lucerna::raybench {
 namespace {
@@ -114,22 +116,14 @@ void camera_fields(Archive& a, Camera& c) {
 }  // namespace
 
 void write(const std::filesystem::path& file, const FlatFile& flat) {
-  const std::filesystem::path temporary = file.string() + ".tmp";
-  std::ofstream out(temporary, std::ios::binary);
+  std::ostringstream out(std::ios::binary);
   out.write(k_magic, sizeof k_magic);
   Writer w(out);
   w.list(std::vector<char>(flat.name.begin(), flat.name.end()));
   scene_fields(w, flat.scene);
   camera_fields(w, flat.camera);
   bvh::write(out, flat.tree);
-  out.close();
-  std::error_code failed;
-  if (out) std::filesystem::rename(temporary, file, failed);
-  if (!out || failed) {
-    std::filesystem::remove(temporary, failed);
-    throw_error(file.string(),
-                "cannot write here; check that the folder exists, may be written and has room");
-  }
+  write_file(file, std::move(out).str());
 }
 
 FlatFile read(const std::filesystem::path& file) {

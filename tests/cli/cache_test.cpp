@@ -81,5 +81,5 @@ TEST_CASE("a picture rendered with a saved cache is the same, and nothing is gat
   const test::Run nowhere =
       test::run("render " + k_scene + k_cached + "--cache-save " + (f / "no/such/folder/a.cache"));
   CHECK(nowhere.status == 1);
-  CHECK_THAT(nowhere.out, Contains("no/such/folder/a.cache: cannot write here"));
+  CHECK_THAT(nowhere.out, Contains("no/such/folder/a.cache: cannot be written: No such file or directory"));
 }

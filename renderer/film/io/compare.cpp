@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "base/json_text.h"
+
 namespace lucerna::film {
 namespace {
 
@@ -189,7 +191,7 @@ std::string to_json(const Comparison& c) {
   json["blocks"] = c.blocks.count;
   json["block_ratio"] = {
       {"p05", number(c.blocks.p05)}, {"median", number(c.blocks.median)}, {"p95", number(c.blocks.p95)}};
-  return json.dump();
+  return json_text(json);
 }
 
 std::string to_text(const Comparison& c) {

@@ -2,25 +2,18 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cerrno>
-#include <cstring>
 #include <set>
 #include <system_error>
+
+#include "base/output_file.h"
 
 namespace lucerna::film {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path folder_of(const fs::path& file) {
-  return file.has_parent_path() ? file.parent_path() : fs::path(".");
-}
 
 /// OpenImageIO ends some messages with a line break or joins several by one; an Error is one line.
 std::string one_line(std::string text) {
@@ -30,10 +23,10 @@ std::string one_line(std::string text) {
 }
 
 /// The file under its temporary name, as OpenImageIO writes it. Its own PNG writer does not notice a full
-/// disk, so the first failure is kept here.
+/// disk; OutputFile::commit does.
 class FileProxy : public OIIO::Filesystem::IOProxy {
  public:
-  FileProxy(int handle, const fs::path& file) : IOProxy(file.string(), Write), handle_(handle) {}
+  FileProxy(OutputFile& output, const std::string& name) : IOProxy(name, Write), output_(output) {}
   const char* proxytype() const override { return "file"; }
   size_t write(const void* data, size_t size) override {
     const size_t written = pwrite(data, size, m_pos);
@@ -41,85 +34,16 @@ class FileProxy : public OIIO::Filesystem::IOProxy {
     return written;
   }
   size_t pwrite(const void* data, size_t size, int64_t offset) override {
-    size_t done = 0;
-    while (done < size) {
-      const ssize_t n = ::pwrite(handle_, static_cast<const char*>(data) + done, size - done,
-                                 offset + static_cast<int64_t>(done));
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) {
-        if (failure_ == 0) failure_ = n < 0 ? errno : ENOSPC;
-        break;
-      }
-      done += static_cast<size_t>(n);
-    }
+    const size_t done = output_.write_at(data, size, offset);
     end_ = std::max(end_, offset + static_cast<int64_t>(done));
     return done;
   }
   size_t size() const override { return static_cast<size_t>(end_); }
-  /// errno of the first write that failed, or 0.
-  int failure() const { return failure_; }
 
  private:
-  int handle_;
-  int failure_ = 0;
+  OutputFile& output_;
   int64_t end_ = 0;
 };
-
-/// A new, empty file beside `file` that no one else has; it goes away unless it is committed.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const fs::path& file) : target_(file) {
-    // Mode 0666 and O_EXCL rather than mkstemp, whose files are for their owner alone: an output file follows
-    // the umask like any other.
-    static std::atomic<uint32_t> counter = 0;
-    do {
-      path_ = folder_of(file) / fmt::format(".{}.{}-{}", file.filename().string(), getpid(), counter++);
-      handle_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    } while (handle_ < 0 && errno == EEXIST);
-    if (handle_ < 0) {
-      const int code = errno;
-      throw_error(target_.string(), "cannot write into the folder '{}': {}", folder_of(file).string(),
-                  std::strerror(code));
-    }
-  }
-  ~TemporaryFile() {
-    close(handle_);
-    std::error_code ignored;
-    if (!committed_) fs::remove(path_, ignored);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  const fs::path& path() const { return path_; }
-  int handle() const { return handle_; }
-
-  /// Data first, then the name, then the folder's entry: after a power cut the old or the new file is there,
-  /// whole.
-  void commit() {
-    if (fsync(handle_) != 0) throw_error(target_.string(), "cannot write to disk: {}", std::strerror(errno));
-    std::error_code code;
-    fs::rename(path_, target_, code);
-    if (code) throw_error(target_.string(), "cannot replace the file: {}", code.message());
-    committed_ = true;
-    const int folder = open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder >= 0) fsync(folder), close(folder);
-  }
-
- private:
-  fs::path target_, path_;
-  int handle_ = -1;
-  bool committed_ = false;
-};
-
-void check_target(const fs::path& file) {
-  const std::string where = file.string();
-  if (file.filename().empty()) throw_error(where.empty() ? "output" : where, "expected a file name");
-  std::error_code code;
-  const fs::path folder = folder_of(file);
-  if (!fs::exists(folder, code)) throw_error(where, "the folder '{}' does not exist", folder.string());
-  if (!fs::is_directory(folder, code)) throw_error(where, "'{}' is not a folder", folder.string());
-  if (fs::is_directory(file, code)) throw_error(where, "is a folder, expected a file name");
-}
 
 void check_size(const std::string& where, int64_t width, int64_t height) {
   if (width <= 0 || height <= 0) throw_error(where, "the image is empty ({}x{})", width, height);
@@ -131,17 +55,22 @@ void check_size(const std::string& where, int64_t width, int64_t height) {
 /// `format` is OpenImageIO's name of the format, "openexr" or "png".
 void write_with_oiio(const fs::path& file, const std::string& format, const OIIO::ImageSpec& spec,
                      OIIO::TypeDesc type, const void* pixels) {
-  check_target(file);
-  TemporaryFile temporary(file);
-  FileProxy proxy(temporary.handle(), temporary.path());
+  OutputFile target(file);
+  // Formats are written back and forth; what can only be appended to has them whole.
+  FileProxy in_file(target, file.string());
+  OIIO::Filesystem::IOVecOutput in_memory;
+  OIIO::Filesystem::IOProxy* proxy = &in_file;
+  if (target.streams()) proxy = &in_memory;
   auto output = OIIO::ImageOutput::create(format);
-  if (!output || !output->set_ioproxy(&proxy))
+  if (!output || !output->set_ioproxy(proxy))
     throw_error(file.string(), "cannot write {} here: {}", format, one_line(OIIO::geterror()));
   const bool written =
-      output->open(temporary.path().string(), spec) && output->write_image(type, pixels) && output->close();
-  if (proxy.failure() != 0) throw_error(file.string(), "cannot write: {}", std::strerror(proxy.failure()));
-  if (!written) throw_error(file.string(), "cannot write: {}", one_line(output->geterror()));
-  temporary.commit();
+      output->open(file.string(), spec) && output->write_image(type, pixels) && output->close();
+  if (target.streams() && written)
+    target.write({reinterpret_cast<const char*>(in_memory.buffer().data()), in_memory.buffer().size()});
+  // What kept bytes from the disk says more than what the format's writer makes of it.
+  if (written || target.failed()) target.commit();
+  if (!written) throw_error(file.string(), "cannot be written: {}", one_line(output->geterror()));
 }
 
 /// "primary.R" -> {"primary", "R"}; "R" -> {"", "R"}.
@@ -300,11 +229,10 @@ void write_png(const fs::path& file, uint32_t width, uint32_t height, std::span<
 }
 
 void check_writable(const fs::path& file) {
-  check_target(file);
+  lucerna::check_writable(file);
   const std::string ending = file.extension().string();
   if (ending != ".exr" && ending != ".png")
     throw_error(file.string(), "expected a name that ends in .exr or .png, found '{}'", ending);
-  TemporaryFile probe(file);
 }
 
 }  // namespace lucerna::film

@@ -1,7 +1,6 @@
 #pragma once
 // Image files in and out: the film's EXR, the tone-mapped PNG, and any image that OpenImageIO reads.
-// A file that exists is never left half overwritten: output goes to a temporary name in the same folder, is
-// synced to disk and then renamed over the target.
+// A file that exists is never left half overwritten (base/output_file.h).
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -66,9 +65,8 @@ std::map<std::string, std::string> read_metadata(const std::filesystem::path& fi
 void write_png(const std::filesystem::path& file, uint32_t width, uint32_t height,
                std::span<const uint8_t> rgba, const std::map<std::string, std::string>& metadata = {});
 
-/// Throws the Error that writing `file` later would end in, as far as that can be known: a missing folder, a
-/// folder that cannot be written, a target that is a folder, an ending other than .exr or .png. For use
-/// before a long render; leaves no trace on disk.
+/// Throws the Error that writing `file` later would end in, if that can be known: lucerna::check_writable,
+/// and an ending other than .exr or .png. For use before a long render; leaves no trace on disk.
 void check_writable(const std::filesystem::path& file);
 
 }  // namespace lucerna::film

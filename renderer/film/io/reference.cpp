@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_text.h"
+
 namespace lucerna::film {
 namespace {
 
@@ -24,7 +26,7 @@ std::optional<LayerFigures> parse_noise(const std::string& text) {
 std::string noise_text(const LayerFigures& rms) {
   nlohmann::ordered_json json;
   for (int k = 0; k < k_reference_layers; ++k) json[k_names[k]] = rms[size_t(k)];
-  return json.dump();
+  return json_text(json);
 }
 
 Reference read_reference(const std::filesystem::path& file, uint32_t width, uint32_t height) {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/json_text.h"
 #include "scene/light_groups.h"
 
 namespace lucerna::scene {
@@ -145,7 +146,7 @@ void make_model(Document& document) {
   tinygltf::TinyGLTF parser;
   tinygltf::Model model;
   std::string error, warning;
-  const std::string text = reduced.dump();
+  const std::string text = json_text(reduced);
   if (text.size() > 0xffffffffu) throw_error(document.file, "more than 4 GiB of JSON");
   bool ok = false;
   try {
@@ -193,9 +194,9 @@ std::vector<uint8_t> read_file(const std::filesystem::path& path, const std::str
   const std::string name = where == path.string() ? "" : fmt::format(" '{}'", path.string());
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw_error(where, "no such file{}", name);
+  if (!exists(status)) throw_error(where, "no such file{}", name);
   // Devices and pipes have no end or never answer.
-  if (!std::filesystem::is_regular_file(status)) throw_error(where, "not a regular file{}", name);
+  if (!is_regular_file(status)) throw_error(where, "not a regular file{}", name);
   const uintmax_t size = std::filesystem::file_size(path, error);
   std::ifstream stream(path, std::ios::binary);
   if (error || !stream) throw_error(where, "the file cannot be opened{}", name);
@@ -312,7 +313,7 @@ std::string light_group(const Item& item) {
   const auto group = extras->find("light_group");
   if (!group) return "";
   const auto& json = group->json();
-  if (json.is_number_integer()) return group_name(json.dump());
+  if (json.is_number_integer()) return group_name(json_text(json));
   if (!json.is_string()) group->fail("expected the name of a group of lights");
   return group_name(json.get<std::string>());
 }

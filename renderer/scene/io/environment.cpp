@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/json_text.h"
 #include "scene/io/images.h"
 #include "scene/io/nodes.h"
 
@@ -55,7 +56,7 @@ void flatten(const nlohmann::ordered_json& object, const std::string& prefix, co
     else if (value.is_string())
       scene.settings.emplace_back(name, value.get<std::string>());
     else if (value.is_boolean() || value.is_number())
-      scene.settings.emplace_back(name, value.dump());
+      scene.settings.emplace_back(name, json_text(value));
     else
       throw_error(file + ": " + name, "expected a number, a string, true or false, found {}",
                   value.type_name());

@@ -210,11 +210,13 @@ void write_cache(const std::filesystem::path& file, const CacheFile& cache) {
 
 CacheFile read_cache(const std::filesystem::path& file) {
   // What is no cache is not read to its end, however long.
-  if (std::ifstream in(file, std::ios::binary); in && std::filesystem::is_regular_file(file)) {
+  std::error_code error;
+  const uint64_t size = std::filesystem::file_size(file, error);  // an error where it is no regular file
+  if (std::ifstream in(file, std::ios::binary); in && !error) {
     std::string head(k_head, 0);
     in.read(head.data(), k_head);
     head.resize(static_cast<size_t>(in.gcount()));
-    check_head(head, std::filesystem::file_size(file), file.string());
+    check_head(head, size, file.string());
   }
   return decode(read_file(file), file.string());
 }

@@ -1,0 +1,91 @@
+// links: film_io
+// What a batch render writes: all of it, whatever fails beside it, under any name, into links and pipes.
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "film/io/image_file.h"
+#include "support/folder.h"
+#include "support/run.h"
+
+namespace fs = std::filesystem;
+using namespace lucerna;
+using Catch::Contains;
+using test::run;
+using test::Run;
+
+namespace {
+
+const std::string k_cornell = std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/";
+
+/// A render of a tiny picture with more arguments.
+Run render(const std::string& more, const std::string& scene = k_cornell + "cornell.gltf") {
+  return run("render '" + scene + "' --size 16x16 --samples 2 --quiet " + more);
+}
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("an output that fails does not keep the others from being written") {
+  const test::Folder f;
+  const std::string at = f.path.string() + "/";
+  for (const char* name : {"full.exr", "full.csv", "full.cache"}) fs::create_symlink("/dev/full", f / name);
+  const Run r = render("--set components.secondary=cache --set cache.error=0.5 -o " + at + "full.exr -o " +
+                       at + "a.png -o " + at + "a.exr --ledger " + at + "full.csv --stats " + at +
+                       "a.json --cache-save " + at + "full.cache");
+  INFO(r.out);
+  CHECK(r.status == 1);
+  for (const char* name : {"full.exr", "full.csv", "full.cache"}) {
+    CHECK_THAT(r.out, Contains(at + name + ": cannot be written: No space left on device"));
+    CHECK(fs::is_symlink(f / name));
+  }
+  CHECK(fs::is_character_file("/dev/full"));
+  CHECK(film::read_exr(f / "a.exr").width == 16);
+  CHECK(film::read_exr(f / "a.png").width == 16);
+  CHECK(nlohmann::json::parse(read_text(f / "a.json")).contains("settings"));
+}
+
+TEST_CASE("names that are no UTF-8 are written with what is not replaced") {
+  const test::Folder f;
+  const std::string scene = (f / "f\xFCr.gltf").string();
+  fs::copy_file(k_cornell + "cornell.gltf", scene);
+  fs::copy_file(k_cornell + "cornell.bin", f / "cornell.bin");
+  const Run r = render("--set 'relight.groups=A\xE9=light' -o '" + (f / "\xFF.exr").string() + "' --stats '" +
+                           (f / "\xFF.json").string() + "'",
+                       scene);
+  INFO(r.out);
+  CHECK(r.status == 0);
+  const auto stats = nlohmann::json::parse(read_text(f / "\xFF.json"));
+  CHECK_THAT(stats["scene"].get<std::string>(), Contains("f\xEF\xBF\xBDr.gltf"));
+  CHECK_THAT(film::read_exr(f / "\xFF.exr").metadata.at("settings"), Contains("A\xEF\xBF\xBD=light"));
+  const Run info = run("info --json '" + scene + "'");
+  CHECK(info.status == 0);
+  CHECK(nlohmann::json::accept(info.out));
+}
+
+TEST_CASE("outputs go into pipes, through links and to standard output, which stay") {
+  const test::Folder f;
+  const std::string at = f.path.string() + "/";
+  REQUIRE(mkfifo((f / "pipe.exr").c_str(), 0600) == 0);
+  fs::create_symlink("target.png", f / "link.png");
+  const Run r =
+      test::run_command("cat " + at + "pipe.exr > " + at + "read.exr & " + LUCERNA_BINARY + " render " +
+                        k_cornell + "cornell.gltf --size 16x16 --samples 2 --quiet -o " + at +
+                        "pipe.exr -o " + at + "link.png --ledger /dev/null --stats /dev/stdout; wait");
+  INFO(r.out);
+  CHECK(r.status == 0);
+  CHECK(nlohmann::json::parse(r.out).at("samples") == 2);
+  CHECK(film::read_exr(f / "read.exr").find("primary.R"));
+  CHECK(film::read_exr(f / "target.png").width == 16);
+  CHECK(fs::is_fifo(f / "pipe.exr"));
+  CHECK(fs::is_symlink(f / "link.png"));
+  CHECK(fs::is_character_file("/dev/null"));
+}

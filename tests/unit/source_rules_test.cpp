@@ -1,0 +1,145 @@
+// links: base
+// Rules on the sources that no type can state: JSON is written in one place, and std::filesystem never
+// throws.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <regex>
+#include <sstream>
+
+#include "support/paths.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// The text without its comments; line ends stay.
+std::string code_of(const std::string& text) { return std::regex_replace(text, std::regex("//[^\n]*"), ""); }
+
+int line_of(const std::string& text, size_t at) {
+  return 1 + int(std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n'));
+}
+
+/// The arguments of a call, from behind its opening parenthesis on.
+size_t arguments(const std::string& text, size_t at) {
+  int depth = 1;
+  size_t commas = 0;
+  bool any = false;
+  for (; at < text.size() && depth > 0; ++at) {
+    const char c = text[at];
+    if (c == '(' || c == '{' || c == '[') ++depth;
+    if (c == ')' || c == '}' || c == ']') --depth;
+    if (c == ',' && depth == 1) ++commas;
+    if (depth > 0 && !std::isspace(static_cast<unsigned char>(c))) any = true;
+  }
+  return any ? commas + 1 : 0;
+}
+
+/// Calls that throw std::filesystem::filesystem_error where the disk is not as expected, which ends the
+/// window.
+std::vector<std::string> throwing_calls(const std::string& text) {
+  // Arguments of the form that takes a std::error_code.
+  static const std::map<std::string, size_t> k_quiet = {{"absolute", 2},
+                                                        {"canonical", 2},
+                                                        {"weakly_canonical", 2},
+                                                        {"copy_file", 3},
+                                                        {"copy", 3},
+                                                        {"create_directory", 2},
+                                                        {"create_directories", 2},
+                                                        {"current_path", 1},
+                                                        {"directory_iterator", 2},
+                                                        {"exists", 2},
+                                                        {"equivalent", 3},
+                                                        {"file_size", 2},
+                                                        {"is_directory", 2},
+                                                        {"is_empty", 2},
+                                                        {"is_regular_file", 2},
+                                                        {"is_symlink", 2},
+                                                        {"is_fifo", 2},
+                                                        {"is_other", 2},
+                                                        {"last_write_time", 2},
+                                                        {"permissions", 3},
+                                                        {"read_symlink", 2},
+                                                        {"recursive_directory_iterator", 2},
+                                                        {"relative", 3},
+                                                        {"remove", 2},
+                                                        {"remove_all", 2},
+                                                        {"rename", 3},
+                                                        {"space", 2},
+                                                        {"status", 2},
+                                                        {"symlink_status", 2},
+                                                        {"temp_directory_path", 1}};
+  static const std::regex k_call(R"((?:\bfs|std::filesystem)::(\w+)(?: \w+)?[({])");
+  std::vector<std::string> found;
+  for (std::sregex_iterator call(text.begin(), text.end(), k_call), end; call != end; ++call) {
+    const auto quiet = k_quiet.find((*call)[1]);
+    if (quiet == k_quiet.end()) continue;
+    const size_t count = arguments(text, size_t(call->position() + call->length()));
+    // An iterator without arguments is the end of all.
+    if (count == 0 && quiet->first.ends_with("iterator")) continue;
+    if (count < quiet->second)
+      found.push_back(std::to_string(line_of(text, size_t(call->position()))) + ": " + quiet->first);
+  }
+  static const std::regex k_entry(R"((?:->|\.)(is_regular_file|is_directory|is_symlink|file_size)\(\))");
+  for (std::sregex_iterator call(text.begin(), text.end(), k_entry), end; call != end; ++call)
+    found.push_back(std::to_string(line_of(text, size_t(call->position()))) + ": " + (*call)[1].str());
+  static const std::regex k_loop(
+      R"(for \([^;)]*: *(?:fs|std::filesystem)::(?:recursive_)?directory_iterator)");
+  for (std::sregex_iterator loop(text.begin(), text.end(), k_loop), end; loop != end; ++loop)
+    found.push_back(std::to_string(line_of(text, size_t(loop->position()))) + ": a loop over a folder");
+  return found;
+}
+
+/// Files of the program in which `rule` finds something, with that.
+std::string violations(const std::function<std::vector<std::string>(const std::string&)>& rule) {
+  const fs::path root = LUCERNA_SOURCE_DIR;
+  std::string all;
+  size_t files = 0;
+  for (const char* folder : {"app", "ui", "renderer"})
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
+      const std::string ending = entry.path().extension().string();
+      if (ending != ".h" && ending != ".cpp") continue;
+      ++files;
+      if (entry.path().filename() == "json_text.h") continue;
+      for (const std::string& found : rule(code_of(read(entry.path()))))
+        all += entry.path().lexically_relative(root).string() + ":" + found + "\n";
+    }
+  REQUIRE(files > 300);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("JSON becomes text by json_text alone, which names from outside cannot make throw") {
+  const auto dumps = [](const std::string& text) {
+    std::vector<std::string> found;
+    for (size_t at = text.find("dump("); at != std::string::npos; at = text.find("dump(", at + 1))
+      if (at > 0 && (text[at - 1] == '.' || text[at - 1] == '>'))
+        found.push_back(std::to_string(line_of(text, at)) + ": dump");
+    return found;
+  };
+  CHECK(dumps("a;\nx.dump(2)") == std::vector<std::string>{"2: dump"});
+  CHECK(dumps("json_text(x, 2)").empty());
+  CHECK(violations(dumps) == "");
+}
+
+TEST_CASE("std::filesystem is called in the forms that do not throw") {
+  using Found = std::vector<std::string>;
+  CHECK(throwing_calls("if (fs::exists(f)) x();") == Found{"1: exists"});
+  CHECK(throwing_calls("std::filesystem::absolute(a.text(\"file\", 2))") == Found{"1: absolute"});
+  CHECK(throwing_calls("\nfs::file_size(f, error); fs::rename(a, b);") == Found{"2: rename"});
+  CHECK(throwing_calls("fs::current_path(error) != fs::directory_iterator()").empty());
+  CHECK(throwing_calls("for (const auto& e : fs::directory_iterator(f, error)) e.is_directory();").size() ==
+        2);
+  CHECK(violations(throwing_calls) == "");
+}
