@@ -114,6 +114,40 @@ TEST_CASE("Values that are not finite are counted on each side and spoil nothing
   CHECK(c.mean_ratio == std::vector<double>{1, 1, 1});
 }
 
+TEST_CASE("Pixels that are not finite are counted in every layer of either image") {
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
+  FilmImage a = flat(8, 8, 1, 1, 1), b = flat(8, 8, 1, 1, 1);
+  CHECK(film::non_finite_text(film::compare(a, b)).empty());
+  // One pixel counts once, whatever the number of its channels.
+  a.channels[0].second[3] = nan, a.channels[1].second[3] = infinity, a.channels[1].second[4] = nan;
+  b.channels[2].second[9] = -infinity;
+  for (FilmImage* image : {&a, &b}) image->channels.emplace_back("caustic.R", std::vector<float>(64, 0));
+  b.channels[3].second[0] = b.channels[3].second[1] = b.channels[3].second[2] = nan;
+  CHECK(film::non_finite_text(film::compare(a, b)) ==
+        "rgb: 2 pixels of the first image, 1 of the second; caustic: 0 pixels of the first image, 3 of the "
+        "second");
+  CHECK(film::non_finite_text(film::compare(a, b, "caustic")) ==
+        "caustic: 0 pixels of the first image, 3 of the second; rgb: 2 pixels of the first image, 1 of the "
+        "second");
+  const auto json = nlohmann::json::parse(film::to_json(film::compare(a, b)));
+  CHECK(json["non_finite_pixels"] == nlohmann::json{{"rgb", {2, 1}}, {"caustic", {0, 3}}});
+  CHECK(film::to_text(film::compare(a, b)).find("caustic: 0 pixels") != std::string::npos);
+}
+
+TEST_CASE("Depth is infinite where nothing was hit, which is no fault") {
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
+  FilmImage a = flat(4, 4, 1, 1, 1), b = a;
+  for (FilmImage* image : {&a, &b}) image->channels.emplace_back("Z", std::vector<float>(16, 5));
+  a.channels[3].second[0] = b.channels[3].second[0] = infinity;
+  a.channels[3].second[1] = infinity;  // beside a silhouette
+  CHECK(film::compare(a, b).non_finite_layers.empty());
+  CHECK(film::non_finite_text(film::compare(a, b, "Z")) == "Z: 1 pixels of the first image, 0 of the second");
+  b.channels[3].second[2] = nan;
+  CHECK(film::non_finite_text(film::compare(a, b)) == "Z: 0 pixels of the first image, 1 of the second");
+}
+
 TEST_CASE("Block ratios see a local error that the mean hides") {
   FilmImage a = flat(64, 64, 1, 1, 1);
   const FilmImage b = a;

@@ -73,6 +73,40 @@ double trimmed_mean(std::vector<double>& values, double share) {
   return mean(values, kept);
 }
 
+/// How many pixels of a layer of `image` have a value that `bad` finds.
+template <class Bad>
+uint64_t count_pixels(const FilmImage& image, const std::string& layer, const Bad& bad) {
+  const std::vector<size_t> planes = image.layer(layer);
+  uint64_t count = 0;
+  for (size_t p = 0; p < size_t{image.width} * image.height; ++p)
+    count += std::any_of(planes.begin(), planes.end(),
+                         [&](size_t plane) { return bad(image.channels[plane].second[p], p); });
+  return count;
+}
+
+std::vector<NonFinitePixels> find_non_finite(const FilmImage& a, const FilmImage& b,
+                                             const std::string& compared) {
+  std::vector<std::string> layers{compared};
+  for (const FilmImage* image : {&a, &b})
+    for (const std::string& layer : image->layers())
+      if (std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
+  const std::string k_depth = "Z";
+  std::vector<NonFinitePixels> found;
+  for (const std::string& layer : layers) {
+    NonFinitePixels pixels{.layer = layer};
+    for (size_t side = 0; side < 2; ++side) {
+      const FilmImage &image = side == 0 ? a : b, &other = side == 0 ? b : a;
+      const std::vector<float>* across = layer == compared ? other.find(k_depth) : nullptr;
+      pixels.count[side] = count_pixels(image, layer, [&](float value, size_t p) {
+        if (layer != k_depth || std::isnan(value)) return !std::isfinite(value);
+        return across && std::isinf(value) && (*across)[p] != value;
+      });
+    }
+    if (pixels.count != std::array<uint64_t, 2>{0, 0}) found.push_back(pixels);
+  }
+  return found;
+}
+
 nlohmann::json number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
@@ -106,6 +140,7 @@ Comparison compare(const FilmImage& a, const FilmImage& b, const std::string& la
   result.width = a.width;
   result.height = a.height;
   result.channels = planes.names;
+  result.non_finite_layers = find_non_finite(a, b, result.layer);
   result.mean_a.assign(count, 0);
   result.mean_b.assign(count, 0);
 
@@ -177,6 +212,9 @@ std::string to_json(const Comparison& c) {
   json["pixels"] = c.pixels;
   json["non_finite"] = c.non_finite;
   json["nan"] = c.nan;
+  json["non_finite_pixels"] = nlohmann::ordered_json::object();
+  for (const NonFinitePixels& pixels : c.non_finite_layers)
+    json["non_finite_pixels"][pixels.layer] = pixels.count;
   json["mean_a"] = numbers(c.mean_a);
   json["mean_b"] = numbers(c.mean_b);
   json["mean_ratio"] = numbers(c.mean_ratio);
@@ -194,10 +232,19 @@ std::string to_json(const Comparison& c) {
   return json_text(json);
 }
 
+std::string non_finite_text(const Comparison& c) {
+  std::string text;
+  for (const NonFinitePixels& pixels : c.non_finite_layers)
+    text += fmt::format("{}{}: {} pixels of the first image, {} of the second", text.empty() ? "" : "; ",
+                        pixels.layer, pixels.count[0], pixels.count[1]);
+  return text;
+}
+
 std::string to_text(const Comparison& c) {
   std::string text = fmt::format("{}  {}x{}, {} finite pixels\n", c.layer, c.width, c.height, c.pixels);
   text += fmt::format("  not finite    {} and {} values, {} and {} of them NaN\n", c.non_finite[0],
                       c.non_finite[1], c.nan[0], c.nan[1]);
+  if (!c.non_finite_layers.empty()) text += fmt::format("  in the layers {}\n", non_finite_text(c));
   for (size_t i = 0; i < c.channels.size(); ++i)
     text += fmt::format("  mean {:<8} {:.6g} / {:.6g} = {:.5f}\n", c.channels[i], c.mean_a[i], c.mean_b[i],
                         c.mean_ratio[i]);

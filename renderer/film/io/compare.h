@@ -14,6 +14,13 @@ struct CompareOptions {
   uint32_t block = 16;  ///< side of the blocks, pixels; > 0 (blocks at the right and bottom may be smaller)
 };
 
+/// Pixels of one layer with a value that is NaN or infinite, in a and in b. Z is infinite where nothing was
+/// hit: there NaNs count, and infinities in one image alone where Z is the layer that is compared.
+struct NonFinitePixels {
+  std::string layer;
+  std::array<uint64_t, 2> count{0, 0};
+};
+
 /// With a the image, b the reference, C the layer's channels (all weigh the same) and mean_C the average over
 /// them: every mean is over the pixels whose channels are finite in both images, in double precision.
 struct Comparison {
@@ -23,7 +30,10 @@ struct Comparison {
   uint64_t pixels = 0;                       ///< that are finite in both: what the figures rest on
   std::array<uint64_t, 2> non_finite{0, 0};  ///< values (not pixels) that are NaN or infinite, in a and in b
   std::array<uint64_t, 2> nan{0, 0};         ///< of those, the NaNs
-  std::vector<double> mean_a, mean_b;        ///< per channel
+  /// Layers of either image, the one compared or not, that are not finite somewhere. No figure below holds
+  /// for such pictures.
+  std::vector<NonFinitePixels> non_finite_layers;
+  std::vector<double> mean_a, mean_b;  ///< per channel
   std::vector<double>
       mean_ratio;     ///< mean_a / mean_b per channel; 1 when both are 0, infinite when only b is
   double rmse = 0;    ///< sqrt(mean over pixels of mean_C (a - b)^2)
@@ -54,6 +64,8 @@ Comparison compare(const FilmImage& a, const FilmImage& b, const std::string& la
 
 /// One JSON object, one line; numbers that are not finite are null.
 std::string to_json(const Comparison& comparison);
+/// "" or which layers are not finite, one line: "rgb: 12 pixels of the first image, 0 of the second; ...".
+std::string non_finite_text(const Comparison& comparison);
 /// A few lines for a person, ending in a line break.
 std::string to_text(const Comparison& comparison);
 
