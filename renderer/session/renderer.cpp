@@ -156,7 +156,11 @@ void Renderer::use(std::unique_ptr<Engine> engine, const scene::Changes& changes
 
 void Renderer::reload_shaders() {
   if (!engine_) return;
-  use(make_engine(world_, engine_->plan(), settings_, scene::Change::shaders), scene::Change::shaders);
+  std::unique_ptr<Engine> engine = make_engine(world_, engine_->plan(), settings_, scene::Change::shaders);
+  std::unique_ptr<Display> display;
+  if (display_) display = std::make_unique<Display>(*device_, *compiler_);
+  use(std::move(engine), scene::Change::shaders);
+  display_ = std::move(display), shown_ = {};
   heed_settings();
   restart(scene::Change::shaders);
 }

@@ -117,9 +117,14 @@ film::Brightness Renderer::measure(std::optional<vec2> at) const {
   const auto sampled = [](uint32_t n) { return n > 0; };
   if (std::none_of(image.samples.begin(), image.samples.end(), sampled))
     throw Error("", "there is no picture to measure yet");
+  // The light that is shown: components left out of the picture are not in it, and a layer is one of them.
+  // Other layers have no exposure; the picture is measured then.
+  const film::View v = view();
+  const bool one = v.layer >= shared::k_layer_primary && v.layer < shared::k_layer_albedo;
+  const uint32_t shown = one ? 1u << (v.layer - shared::k_layer_primary) : v.show;
   std::vector<vec3> sum(image.samples.size(), vec3(0));
-  for (const auto& component : image.components)
-    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
+  for (size_t c = 0; c < image.components.size(); ++c)
+    for (size_t i = 0; i < sum.size() && (shown >> c & 1u); ++i) sum[i] += image.components[c][i];
   return at ? film::measure_point(sum, image.width, image.height, *at)
             : film::measure_picture(sum, image.width, image.height);
 }
@@ -182,7 +187,12 @@ film::FilmImage Renderer::film_image() {
   add("", "RGB", sum);
   for (int c = 0; c < film::k_components; ++c)
     add(std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
-  if (settings_.boolean("relight.layers") && relight_.apart) add_group_layers(out, *film_, relight_);
+  if (settings_.boolean("relight.layers")) {
+    if (relight_.apart)
+      add_group_layers(out, *film_, relight_);
+    else
+      log::warning("relight.layers: the EXR has no layers of groups of lights: {}", relight_.why_not);
+  }
   add("albedo.", "RGB", image.albedo);
   add("N.", "XYZ", image.normal);
   out.channels.emplace_back("Z", image.depth);

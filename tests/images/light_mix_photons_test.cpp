@@ -4,6 +4,7 @@
 // rays end in photons.
 #include <catch2/catch.hpp>
 
+#include "base/log.h"
 #include "images/light_mix_support.h"
 
 using namespace lucerna;
@@ -51,6 +52,27 @@ TEST_CASE("a mix of photons' light is that of photons from lamps of that strengt
     CHECK(worst_z(as_one_component(b.r.image()), as_one_component(anew.image())) < 5);
   }
   CHECK(b.r.stats().rays == rays);
+}
+
+TEST_CASE("layers of groups that are not kept are missed aloud") {
+  const auto warnings = [](const Settings& how) {
+    Bench b(room(), photons(how), 1);
+    b.image();
+    std::string text;
+    const int token = log::add_listener([&](log::Level, const std::string& line) { text += line + "\n"; });
+    const film::FilmImage image = b.r.film_image();
+    log::remove_listener(token);
+    bool found = false;
+    for (const auto& [name, values] : image.channels) found |= name.starts_with("light.");
+    CHECK(found == text.empty());
+    return text;
+  };
+  CHECK(warnings({{"relight.layers", "true"}}).empty());
+  CHECK_THAT(warnings({{"relight.layers", "true"}, {"relight.enabled", "on"}}),
+             Catch::Contains("relight.layers: the EXR has no layers of groups of lights: ") &&
+                 Catch::Contains("relight.enabled=compact"));
+  CHECK_THAT(warnings({{"relight.layers", "true"}, {"relight.enabled", "off"}}),
+             Catch::Contains("relight.enabled is off"));
 }
 
 TEST_CASE("records whose rays end in photons keep their groups") {

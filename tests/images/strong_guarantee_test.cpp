@@ -180,6 +180,22 @@ TEST_CASE("shaders that do not compile leave the kernels in use") {
     }
     return test::finish(r);
   };
+  {
+    // The window's preview has kernels too, which are made again with the others.
+    session::RendererOptions options = test::renderer_options();
+    options.shaders = shaders, options.interactive = true;
+    session::Renderer r(options);
+    r.set_size(16, 16);
+    r.set_scene(std::make_shared<scene::Scene>(test::block_room(true)));
+    const std::filesystem::path file = shaders / "film/preview_resolve.comp";
+    const std::string text = read_file(file);
+    std::ofstream(file) << text << "\nvoid broken() { nonsense; }\n";
+    CHECK_THROWS_WITH(r.reload_shaders(), Catch::Contains("nonsense"));
+    CHECK(r.shown_picture(true).size() == 16 * 16 * 4);
+    std::ofstream(file) << text;
+    CHECK_NOTHROW(r.reload_shaders());
+    CHECK(r.shown_picture(true).size() == 16 * 16 * 4);
+  }
   const film::Image wanted = render(nullptr);
   for (const char* broken : {"transport/shade.comp", "irradiance_cache/radius.comp", "film/tonemap.comp"}) {
     INFO(broken);

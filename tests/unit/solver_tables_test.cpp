@@ -10,6 +10,28 @@
 
 using namespace lucerna;
 
+TEST_CASE("every setting of the picture has a row in each solver's table of changes") {
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    if (solver->changes.empty()) continue;
+    for (const OptionInfo& option : plan::options()) {
+      const solvers::SolverInfo* owner = solvers::owner_of(option.key);
+      if (owner && owner != solver) continue;
+      INFO(solver->name << ": " << option.key);
+      CHECK(std::any_of(solver->changes.begin(), solver->changes.end(), [&](const solvers::ChangeRow& row) {
+        const auto* head = std::get_if<std::string_view>(&row.what);
+        return head && option.key.starts_with(*head);
+      }));
+    }
+    // A mix where groups are not kept apart is an edit of all lights: surfaces are what they were.
+    scene::Changes relit(scene::Change::lamp);
+    relit.edits.insert({scene::Change::environment, scene::Change::colour});
+    relit.settings = {"relight.mix"};
+    INFO(solver->name);
+    CHECK(solvers::spoiled_by(*solver, relit).light);
+    CHECK_FALSE(solvers::spoiled_by(*solver, relit).places);
+  }
+}
+
 TEST_CASE("views, commands and files of every solver are such as the window and scripts can use") {
   const std::string windows = "ADEFKLQRSTW";  // keys that the window has for itself
   std::set<std::string> names, extensions;
