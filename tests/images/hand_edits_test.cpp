@@ -46,6 +46,33 @@ void write_sky(const std::filesystem::path& file, const std::vector<vec3>& texel
 
 }  // namespace
 
+TEST_CASE("the exposure is measured by the light that is shown") {
+  Bench b(test::block_room(true));
+  const film::Image image = b.image();
+  const vec2 at(0.5f, 0.7f);
+  std::vector<vec3> sum(image.samples.size(), vec3(0));
+  for (const auto& component : image.components)
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
+  const auto check = [&](const std::vector<vec3>& shown) {
+    CHECK(b.r.measure(at).ev == film::measure_point(shown, image.width, image.height, at).ev);
+    CHECK(b.r.measure(std::nullopt).ev == film::measure_picture(shown, image.width, image.height).ev);
+  };
+  const auto set = [&](const char* key, const char* value) {
+    b.r.settings().set(key, value);
+    b.r.apply_settings();
+  };
+  check(sum);
+  set("film.layer", "secondary");
+  check(image.components[1]);
+  set("film.layer", "normal");
+  check(sum);
+  set("film.layer", "beauty");
+  for (const char* hidden : {"show.primary", "show.secondary", "show.caustic"}) set(hidden, "false");
+  check(image.components[2]);
+  set("show.tertiary", "false");
+  CHECK_FALSE(b.r.measure(at).ev);
+}
+
 TEST_CASE("a lamp that is moved, and a surface made a light, light as if they had always been so") {
   const scene::Scene before = test::block_room(true);
   scene::Scene after = before;

@@ -156,6 +156,35 @@ TEST_CASE("a dropped image lights the scene until it is undone, unless it cannot
   b.run("environment.load " + quote(broken.string()));
   REQUIRE(b.until([&] { return b.work.environment_file().empty(); }));
   CHECK(b.errors == 1);
+
+  // What is refused leaves everything as it was: the light, what can be undone, the script.
+  b.run("environment.load " + quote(file.string()));
+  b.run("environment.set scale=3 rotation=45");
+  const std::string undone = b.work.undo_text();
+  const auto script = b.work.script();
+  b.run("environment.load " + quote(broken.string()));
+  b.run("light.set 1 intensity=7");
+  CHECK(b.work.environment_file() == broken.string());
+  REQUIRE(b.until([&] { return b.work.environment_file() == file.string(); }));
+  CHECK(b.errors == 2);
+  REQUIRE(b.settled());
+  CHECK(b.work.environment_scale() == 3);
+  CHECK(b.work.environment_rotation() == 45);
+  CHECK(b.work.script().size() == script.size() + 1);
+  b.run("undo");
+  CHECK(b.work.undo_text() == undone);
+  CHECK(b.work.environment_file() == file.string());
+  b.run("redo"), b.run("undo"), b.run("undo");
+  REQUIRE(b.settled());
+  CHECK(b.errors == 2);
+  CHECK(b.work.scene->environment.file == file.string());
+  b.run("environment.own");
+  REQUIRE(b.until([&] { return b.work.scene->environment.file != file.string(); }));
+  // Two on their way: what the last one that can be read brings.
+  b.run("environment.load " + quote(file.string())), b.run("environment.load " + quote(broken.string()));
+  REQUIRE(b.until([&] { return b.errors == 3 && b.work.environment_file() == file.string(); }));
+  b.run("environment.own"), b.run("environment.load " + quote(broken.string()));
+  REQUIRE(b.until([&] { return b.errors == 4 && b.work.environment_file().empty(); }));
   CHECK_THAT(b.failure("environment.load /no/such/sky.hdr"), Contains("/no/such/sky.hdr: no such file"));
   std::filesystem::remove(file), std::filesystem::remove(broken);
 }
