@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 
+#include "app/interrupt.h"
 #include "app/verbs.h"
 #include "base/error.h"
 #include "base/huge_pages.h"
@@ -14,6 +14,7 @@
 #include "bench/matrix.h"
 #include "plan/settings.h"
 #include "solvers/registry.h"
+#include "ui/script.h"
 #include "ui/viewer.h"
 
 namespace lucerna::app {
@@ -63,6 +64,7 @@ class Program {
 
   CLI::App app_{"Lucerna: watch global illumination being computed, component by component"};
   std::string scene_, device_, script_;
+  CLI::Option* script_given_ = nullptr;
   std::vector<std::string> set_;
   bool verbose_ = false, stay_ = false;
   scene::LoadOptions scenes_;
@@ -108,9 +110,10 @@ void Program::add_viewer() {
   app_.add_option("SCENE", scene_, "glTF scene (.gltf or .glb) to open in the viewer");
   app_.add_option("--device", device_, k_device_help);
   app_.add_option("--set", set_, "viewer: KEY=VALUE; see below")->allow_extra_args(false);
-  app_.add_option("--script", script_,
-                  "viewer: file with commands, one a line; 'help' under the log lists them. Its end ends the "
-                  "program, with 1 after an error");
+  script_given_ = app_.add_option(
+      "--script", script_,
+      "viewer: file with commands, one a line; 'help' under the log lists them. Its end ends the "
+      "program, with 1 after an error");
   app_.add_flag("-v,--verbose", verbose_, "say more on standard error");
   app_.add_flag("--stay", stay_, "viewer: the window stays when the script has ended");
   add_scene_options(&app_);
@@ -138,11 +141,14 @@ void Program::add_render() {
   render_->add_option("--camera", r.camera, "name of a scene camera");
   render_->add_option(
       "--error", r.error,
-      "relative error that every tile is to reach, such as 0.02: samples go where it is not reached yet");
+      "relative error that every tile is to reach, such as 0.02: samples go where it is not reached yet. A "
+      "render ends at the first of --error, --samples and --time that is reached; what is not given does not "
+      "end it where --time is, and without --time samples do, or with --error sampling.max_samples");
   render_->add_option("--samples", r.samples, "samples a pixel; with --error, the most that one may get")
       ->check(CLI::Range(int64_t(1), int64_t(1) << 20));
   render_->add_option("--time", r.seconds,
-                      "stop after this many seconds, of which solvers prepare in half at most");
+                      "stop after this many seconds, of which solvers prepare in half at most, or earlier "
+                      "where --error or samples that are given (also by --set or the scene) are reached");
   render_->add_option("--seed", r.seed, "seed of all random decisions")
       ->check(CLI::Range(int64_t(0), int64_t(4294967295)));
   render_->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
@@ -175,8 +181,10 @@ void Program::add_small_verbs() {
   compare_->add_option("B", c.b, "reference")->required();
   compare_->add_option("--layer", c.layer, "layer instead of R, G, B: primary, secondary, ...");
   compare_->add_flag("--json", c.json, "as JSON");
-  compare_->add_option("--max-relmse", c.max_relmse, "exit with 1 when the relative MSE is above this")
-      ->check(finite());
+  compare_
+      ->add_option("--max-relmse", c.max_relmse,
+                   "exit with 1 when the relative MSE is above this, or a value of any layer is not finite")
+      ->check(finite() & CLI::Range(0.0, 1e300));
 }
 
 void Program::add_bench() {
@@ -411,19 +419,21 @@ int Program::run(int argc, char** argv) {
 }
 
 int Program::view() {
-  session::Session session({.device = device_, .validation = false, .shaders = {}, .scenes = scenes_});
+  // From here on, so that saves in progress are finished and what the window remembers is kept.
+  const Interrupt interrupt;
   ui::ViewerOptions options;
   options.scene = scene_;
   options.set = set_;
   options.stay = stay_;
-  if (!script_.empty()) {
-    std::ifstream in(script_);
-    if (!in) throw Error(script_, "cannot be read");
-    for (std::string line; std::getline(in, line);) options.script.push_back(line);
+  if (script_given_->count() > 0) {
+    options.script = ui::read_script(script_);
     if (options.script.empty()) options.script.emplace_back();  // an empty script ends, too
     options.script_name = script_;
   }
-  return ui::run_viewer(session, options);
+  session::Session session({.device = device_, .validation = false, .shaders = {}, .scenes = scenes_});
+  options.interrupted = [&] { return interrupt.signal() != 0; };
+  const int status = ui::run_viewer(session, options);
+  return interrupt.signal() ? interrupt.status() : status;
 }
 
 }  // namespace

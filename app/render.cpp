@@ -28,12 +28,13 @@ std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
 }
 
 void print_progress(const session::Renderer& r, double seconds, double limit, bool last) {
-  const double share = limit > 0 ? std::min(1.0, seconds / limit) : double(r.samples()) / r.max_samples();
   const double paths = double(r.stats().paths) / (double(r.film().width()) * r.film().height());
-  double done = limit > 0 ? share : std::max(share, paths / r.max_samples());
-  if (const schedule::AdaptiveSchedule* s = r.adaptive(); s && limit <= 0)
+  double done = std::max(double(r.samples()), paths) / r.max_samples();
+  if (const schedule::AdaptiveSchedule* s = r.adaptive())
     done = double(s->count(schedule::TileState::done) + s->count(schedule::TileState::capped)) /
            double(s->tiles().size());
+  // Whichever limit is nearer.
+  if (limit > 0) done = std::max(done, std::min(1.0, seconds / limit));
   const double left = done > 0 ? seconds * (1 - done) / done : 0;
   std::fprintf(stderr, "\r%5.1f %%  %u/%u samples  %.2f Mray/s  %.2f samples/s  %s %.0f s left   %s",
                100 * done, r.samples(), r.max_samples(),
@@ -85,7 +86,7 @@ std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
   }
   if (a.samples != -1) {
     change("samples", std::to_string(a.samples), "--samples");
-    if (a.error) change("sampling.max_samples", std::to_string(a.samples));
+    if (a.error) change("sampling.max_samples", std::to_string(a.samples), "--samples");
   }
   if (a.error) {
     if (!(*a.error > 0))
@@ -94,10 +95,28 @@ std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
     change("sampling.target_error", fmt::format("{}", *a.error));
   }
   if (a.seed != -1) change("seed", std::to_string(a.seed));
-  if (a.seconds && a.samples == -1) change("samples", "1048576");
   plan::Settings probe;
   for (const session::SettingChange& c : changes) probe.set(c.key, c.value, c.where);
   return changes;
+}
+
+/// A render ends at the first of the limits that are given: --error, --samples or the settings of the same
+/// meaning, --time. With --time the samples that nothing gives do not end it.
+void set_limits(session::Renderer& r, const RenderArguments& a,
+                const std::vector<session::SettingChange>& changes) {
+  const auto given = [&](const std::string& key) {
+    const auto& scenes = r.scene()->settings;
+    return std::any_of(changes.begin(), changes.end(), [&](const auto& c) { return c.key == key; }) ||
+           std::any_of(scenes.begin(), scenes.end(), [&](const auto& s) { return s.first == key; });
+  };
+  const bool adaptive = r.settings().text("sampling.mode") == "adaptive";
+  const std::string key = adaptive ? "sampling.max_samples" : "samples";
+  if (given(key)) return;
+  if (a.samples != -1)
+    r.settings().set(key, std::to_string(a.samples), "--samples");
+  else if (a.seconds)
+    r.settings().set(key, fmt::format("{:.0f}", plan::find_option(key)->hi));
+  r.apply_settings();
 }
 
 /// Scene, camera, reference and kept work. False: interrupted.
@@ -118,6 +137,7 @@ bool load(session::Renderer& r, const RenderArguments& a, const std::vector<sess
     return false;
   }
   if (terminal) std::fprintf(stderr, "\r%-60s\r", "");
+  set_limits(r, a, changes);
   if (!a.camera.empty()) r.choose_camera(a.camera);
   if (!a.reference.empty()) r.set_reference(a.reference);
   for (const auto& [name, file] : a.solver_load)

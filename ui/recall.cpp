@@ -1,16 +1,32 @@
 #include "recall.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
+#include <utility>
 
+#include "base/error.h"
+#include "base/file.h"
 #include "base/json_text.h"
+#include "base/log.h"
 
 namespace fs = std::filesystem;
 
 namespace lucerna::ui {
 namespace {
+
+using Json = nlohmann::ordered_json;
+using Files = std::vector<std::string>;
+
+constexpr double k_lasts = 0.5;  // seconds after which a change of the panels is saved
 
 fs::path state_file() {
   if (const char* state = std::getenv("XDG_STATE_HOME"); state && *state)
@@ -20,20 +36,84 @@ fs::path state_file() {
   return {};
 }
 
-}  // namespace
+/// Held while this lives; other processes wait for it.
+class Lock {
+ public:
+  explicit Lock(const fs::path& file) : handle_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
+    // Where no lock can be had at all, as on some network folders, saving goes on without.
+    held_ = handle_ < 0 || flock(handle_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  }
+  ~Lock() {
+    if (handle_ >= 0) close(handle_);
+  }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+  bool held() const { return held_; }
 
-void recall(Ui& ui) {
-  std::ifstream stream(state_file());
-  const auto json = nlohmann::json::parse(stream, nullptr, false);
-  if (!json.is_object()) return;
+ private:
+  int handle_;
+  bool held_ = false;
+};
+
+/// Nothing where there is none, or no JSON object.
+Json read_state() {
   try {
-    for (const auto& file : json.value("recent", nlohmann::json::array()))
-      if (ui.recent.size() < 8) ui.recent.push_back(file.get<std::string>());
+    const Json json = Json::parse(read_file(state_file()), nullptr, false);
+    if (json.is_object()) return json;
+  } catch (const Error&) {
+  }
+  return {};
+}
+
+Json state_of(const Ui& ui) {
+  Json json;
+  json["recent"] = ui.recent;
+  json["left"] = ui.layout.left, json["right"] = ui.layout.right, json["bottom"] = ui.layout.bottom;
+  json["strip"] = {{"passes", ui.layout.passes_share}, {"log", ui.layout.log_share}};
+  json["left_open"] = ui.layout.left_open, json["right_open"] = ui.layout.right_open,
+  json["bottom_open"] = ui.layout.bottom_open;
+  json["welcomed"] = ui.welcomed;
+  auto& bookmarks = json["bookmarks"] = Json::object();
+  for (const auto& [scene, views] : ui.bookmarks)
+    if (!views.empty()) bookmarks[scene] = views;
+  json["sections"] = Json(ui.sections);
+  if (ui.sections.empty()) json["sections"] = Json::object();
+  return json;
+}
+
+struct Lists {
+  Files recent;
+  std::map<std::string, commands::Workspace::Bookmarks> bookmarks;
+};
+
+/// Values of another type are passed over: another program's file, or an older one.
+Lists lists_of(const Json& json) {
+  const auto part = [](const Json& from, const std::string& key) {
+    const auto found = from.find(key);
+    return found == from.end() ? Json() : *found;
+  };
+  Lists lists;
+  for (const auto& file : part(json, "recent"))
+    if (file.is_string() && lists.recent.size() < k_recent_files) lists.recent.push_back(file);
+  const Json scenes = part(json, "bookmarks");  // items() keeps no temporary alive
+  if (!scenes.is_object()) return lists;
+  for (const auto& [file, views] : scenes.items()) {
+    if (!views.is_object()) continue;
+    for (const auto& [name, line] : views.items())
+      if (line.is_string()) lists.bookmarks[file][name] = line;
+  }
+  return lists;
+}
+
+void take(const Lists& lists, Ui& ui) { ui.recent = lists.recent, ui.bookmarks = lists.bookmarks; }
+
+void take_panels(const Json& json, Ui& ui) {
+  try {
     Layout layout;
     layout.left = json.value("left", layout.left);
     layout.right = json.value("right", layout.right);
     layout.bottom = json.value("bottom", layout.bottom);
-    const auto shares = json.value("strip", nlohmann::json::object());
+    const auto shares = json.value("strip", Json::object());
     layout.passes_share = shares.value("passes", layout.passes_share);
     layout.log_share = shares.value("log", layout.log_share);
     layout.left_open = json.value("left_open", true);
@@ -41,40 +121,100 @@ void recall(Ui& ui) {
     layout.bottom_open = json.value("bottom_open", true);
     ui.layout = layout;
     ui.welcomed = json.value("welcomed", false);
-    // items() keeps no temporary alive.
-    const auto bookmarks = json.value("bookmarks", nlohmann::json::object());
-    for (const auto& [file, views] : bookmarks.items())
-      for (const auto& [name, line] : views.items()) ui.bookmarks[file][name] = line.get<std::string>();
-    const auto sections = json.value("sections", nlohmann::json::object());
+    const auto sections = json.value("sections", Json::object());
     for (const auto& [name, open] : sections.items()) ui.sections[name] = open.get<bool>();
   } catch (const nlohmann::json::exception&) {
-    // Somebody else's file, or an older one: what was read so far holds.
   }
 }
 
-void remember(const Ui& ui) {
+/// `theirs` with what changed from `before` to `mine`.
+Json merged(const Json& before, const Json& mine, Json theirs) {
+  if (!theirs.is_object()) return mine;
+  for (const auto& [key, value] : mine.items()) {
+    const auto old = before.find(key);
+    if (old != before.end() && *old == value) continue;
+    if (value.is_object())
+      theirs[key] = merged(old == before.end() ? Json::object() : *old, value,
+                           theirs.contains(key) ? theirs[key] : Json::object());
+    else
+      theirs[key] = value;
+  }
+  for (const auto& [key, value] : before.items())
+    if (!mine.contains(key)) theirs.erase(key);
+  return theirs;
+}
+
+/// The files that were put in front of `before` to make `mine`, then `theirs`.
+Files merged_recent(const Files& before, const Files& mine, const Files& theirs) {
+  const auto without = [](const Files& list, const Files& front) {
+    Files rest;
+    for (const std::string& file : list)
+      if (std::find(front.begin(), front.end(), file) == front.end()) rest.push_back(file);
+    return rest;
+  };
+  for (size_t k = 0;; ++k) {
+    Files front(mine.begin(), mine.begin() + std::ptrdiff_t(k));
+    const Files old = without(before, front), rest(mine.begin() + std::ptrdiff_t(k), mine.end());
+    if (rest.size() > old.size() || !std::equal(rest.begin(), rest.end(), old.begin())) continue;
+    for (const std::string& file : without(theirs, front)) front.push_back(file);
+    if (front.size() > k_recent_files) front.resize(k_recent_files);
+    return front;
+  }
+}
+
+}  // namespace
+
+struct Memory::Kept {
+  Json saved;              ///< of this window, as it was when it was last read or written
+  Json seen;               ///< as it was when follow() looked last
+  double changed_at = -1;  ///< when that differed from what it was before
+  bool warned = false;
+};
+
+Memory::Memory(Ui& ui) : ui_(ui), kept_(std::make_unique<Kept>()) {
+  const Json json = read_state();
+  if (json.is_object()) take(lists_of(json), ui_), take_panels(json, ui_);
+  kept_->saved = kept_->seen = state_of(ui_);
+}
+
+Memory::~Memory() {
+  // Another window that is stopped while it holds the lock is not waited for without end.
+  for (int i = 0; state_of(ui_) != kept_->saved && !save() && i < 100; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
+
+void Memory::follow(double now) {
+  const Json mine = state_of(ui_);
+  if (mine == kept_->saved) return;
+  if (mine != kept_->seen) kept_->changed_at = now, kept_->seen = mine;
+  const auto differs = [&](const char* key) { return mine[key] != kept_->saved[key]; };
+  if (differs("bookmarks") || differs("recent") || differs("welcomed") || now - kept_->changed_at > k_lasts)
+    save();
+}
+
+bool Memory::save() {
   const fs::path file = state_file();
-  if (file.empty()) return;
-  nlohmann::ordered_json json;
-  json["recent"] = ui.recent;
-  json["left"] = ui.layout.left, json["right"] = ui.layout.right, json["bottom"] = ui.layout.bottom;
-  json["strip"] = {{"passes", ui.layout.passes_share}, {"log", ui.layout.log_share}};
-  json["left_open"] = ui.layout.left_open, json["right_open"] = ui.layout.right_open,
-  json["bottom_open"] = ui.layout.bottom_open;
-  json["welcomed"] = ui.welcomed;
-  auto& bookmarks = json["bookmarks"] = nlohmann::ordered_json::object();
-  for (const auto& [scene, views] : ui.bookmarks)
-    if (!views.empty()) bookmarks[scene] = views;
-  json["sections"] = ui.sections;
+  if (file.empty()) return true;
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
-  const fs::path temporary = fs::path(file) += ".new";
-  {
-    std::ofstream stream(temporary);
-    stream << json_text(json, 2) << '\n';
-    if (!stream) return;
+  const Lock lock(fs::path(file) += ".lock");
+  if (!lock.held()) return false;
+  Json theirs = read_state();
+  if (!theirs.is_object()) theirs = kept_->saved;
+  const Json mine = state_of(ui_);
+  Json all = merged(kept_->saved, mine, theirs);
+  all["recent"] =
+      merged_recent(lists_of(kept_->saved).recent, lists_of(mine).recent, lists_of(theirs).recent);
+  try {
+    write_file(file, json_text(all, 2) + "\n");
+  } catch (const Error& e) {
+    if (!std::exchange(kept_->warned, true)) log::warning("{}; bookmarks are not kept", e.what());
+    kept_->saved = mine;  // not tried again for the same change
+    return true;
   }
-  fs::rename(temporary, file, error);
+  take(lists_of(all), ui_);
+  kept_->saved = kept_->seen = state_of(ui_);
+  return true;
 }
 
 }  // namespace lucerna::ui

@@ -1,9 +1,10 @@
 #include "script.h"
 
 #include <algorithm>
-#include <fstream>
+#include <sstream>
 
 #include "base/error.h"
+#include "base/file.h"
 
 namespace lucerna::ui {
 
@@ -18,8 +19,11 @@ std::vector<Step> parse_script(const commands::Registry& registry, const std::ve
 }
 
 std::vector<std::string> read_script(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) throw Error(file, "cannot be read; expected a script, one command a line");
+  if (file.empty()) throw Error("script", "expected a file name, found ''");
+  const std::string text = read_file(file);
+  if (text.find('\0') != std::string::npos)
+    throw Error(file, "is no text; expected a script, one command a line");
+  std::istringstream in(text);
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;

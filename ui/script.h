@@ -44,7 +44,7 @@ struct Step {
 /// Checks every line. Throws Error "NAME: line N: ..." at the first mistake.
 std::vector<Step> parse_script(const commands::Registry& registry, const std::vector<std::string>& lines,
                                const std::string& name);
-/// The lines of a file. Throws Error when it cannot be read.
+/// The lines of a file. Throws Error when it cannot be read, is a folder or no text.
 std::vector<std::string> read_script(const std::string& file);
 
 /// The value below which a share `p` (0..1) of the values lies; linear between neighbours. 0 for none.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/timer.h"
 #include "solvers/registry.h"
 
@@ -124,12 +125,10 @@ void Ui::scene_changed() {
   if (!scene->unknown_extensions.empty())
     notice(fmt::format("Not supported, shown without: {}", fmt::join(scene->unknown_extensions, ", ")), 12);
   if (scene->file.empty()) return;
-  // For later runs from other folders too.
-  std::error_code error;
-  const std::string file = std::filesystem::absolute(scene->file, error).lexically_normal().string();
+  const std::string file = absolute_path(scene->file).string();
   std::erase(recent, file);
   recent.insert(recent.begin(), file);
-  if (recent.size() > 8) recent.resize(8);
+  if (recent.size() > k_recent_files) recent.resize(k_recent_files);
 }
 
 std::string Ui::next_side() const {

@@ -26,6 +26,8 @@ using commands::Viewpoint;
 /// The right panel's name for the scene, beside the names of solvers.
 inline constexpr const char* k_scene_side = "scene";
 
+inline constexpr size_t k_recent_files = 8;  ///< that are kept
+
 struct LogLine {
   log::Level level;
   double time;  ///< seconds since the window opened
@@ -148,7 +150,7 @@ struct Ui : commands::Workspace {
   Console console;
   Dialog dialog;
   bool help = false;
-  std::vector<std::string> recent;  ///< files, newest first
+  std::vector<std::string> recent;  ///< files, newest first, from the root
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
   /// OpenGL name of an image file's picture, made when it is first asked for; 0 where it cannot be read. Null

@@ -32,10 +32,8 @@ class Viewer {
         window_(options.width, options.height, options.hidden, options.scale) {
     ui_.scripted = !options.script.empty();
     if (remembers()) {
-      recall(ui_);
-      // Now, so that it is never shown again, however this run ends.
+      memory_.emplace(ui_);
       ui_.welcome = !std::exchange(ui_.welcomed, true);
-      if (ui_.welcome) remember(ui_);
     }
     if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
     ui_.picture_of = [this](const std::string& file) { return texture_of(file); };
@@ -44,15 +42,14 @@ class Viewer {
     for (const std::string& line : settings_) ui_.act_line(line);
   }
 
-  ~Viewer() {
-    ui_.session.on_publish({});
-    if (remembers()) remember(ui_);
-  }
+  ~Viewer() { ui_.session.on_publish({}); }
 
   int run() {
-    while (!window_.closing() && !ui_.status) {
+    const auto interrupted = [&] { return options_.interrupted && options_.interrupted(); };
+    while (!window_.closing() && !ui_.status && !interrupted()) {
       pause_until_needed();
       collect();
+      if (memory_) memory_->follow(ui_.now);
       runner_.advance();
       inject();
       if (ui_.status) break;
@@ -236,6 +233,7 @@ class Viewer {
   std::map<std::string, unsigned> textures_;  ///< of image files; 0: cannot be read
   LogInbox inbox_;
   Ui ui_;
+  std::optional<Memory> memory_;
   Runner runner_;
   std::vector<std::string> settings_;
   Window window_;

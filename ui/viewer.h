@@ -2,6 +2,7 @@
 // The window: a lookdev viewer over one Session. It never waits for the renderer; everything it does goes
 // through the session's commands, and everything it shows comes from the session's snapshots.
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct ViewerOptions {
   std::vector<std::string> script;     ///< steps carried out in order, one command a line; see script.h
   std::string script_name = "script";  ///< for messages: "NAME: line 3: ..."
   bool stay = false;                   ///< the window stays open when the script has ended
+  std::function<bool()> interrupted;   ///< ends the window as closing it does; empty: nothing does
 };
 
 /// Opens the window and runs until it is closed or the script quits or ends. Returns the exit status: 0, the

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "commands/workspace.h"
 
 namespace lucerna::commands {
@@ -74,10 +75,19 @@ void Workspace::add_interior_commands() {
                 .moves = true});
 }
 
+namespace {
+
+/// By which a scene's bookmarks are kept: its file, the same from any folder.
+std::string bookmarks_key(const scene::Scene& scene) {
+  return scene.file.empty() ? "" : absolute_path(scene.file).string();
+}
+
+}  // namespace
+
 const Workspace::Bookmarks& Workspace::bookmarks_here() const {
   static const Bookmarks none;
   if (!scene) return none;
-  const auto found = bookmarks.find(scene->file);
+  const auto found = bookmarks.find(bookmarks_key(*scene));
   return found == bookmarks.end() ? none : found->second;
 }
 
@@ -106,7 +116,7 @@ void Workspace::add_bookmark_commands() {
        .parameters = {{.name = "name", .help = "of the view", .optional = true, .names = names}},
        .run = [this](const Arguments& a) {
          needs_scene(), needs_view();
-         Bookmarks& here = bookmarks[scene->file];
+         Bookmarks& here = bookmarks[bookmarks_key(*scene)];
          std::string name = a.has("name") ? a.text("name") : "";
          if (a.has("name") && name.find_first_not_of(" \t") == std::string::npos)
            throw Error("", "name: it is empty");
@@ -134,7 +144,7 @@ void Workspace::add_bookmark_commands() {
                 .parameters = {{.name = "name", .help = "of a bookmark", .names = names}},
                 .run = [this, known](const Arguments& a) {
                   known(a.text("name"));
-                  bookmarks[scene->file].erase(a.text("name"));
+                  bookmarks[bookmarks_key(*scene)].erase(a.text("name"));
                 }});
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -71,6 +72,15 @@ TEST_CASE("render writes layers, PNG and figures") {
   CHECK(other.status == 0);
   CHECK(run("compare " + (f / "a.exr").string() + " " + (f / "b.exr").string() + " --max-relmse 0").status ==
         1);
+  film::FilmImage broken = image;
+  for (auto& [channel, values] : broken.channels)
+    if (channel.starts_with("caustic.")) values[7] = std::nanf("");
+  film::write_exr(f / "nan.exr", broken);
+  const std::string a_exr = (f / "a.exr").string(), nan_exr = (f / "nan.exr").string();
+  CHECK(run("compare " + a_exr + " " + nan_exr).status == 0);
+  refused("compare " + a_exr + " " + nan_exr + " --max-relmse 1",
+          "not finite: caustic: 0 pixels of the first image, 1 of the second");
+  refused("compare " + nan_exr + " " + nan_exr + " --layer caustic --max-relmse 1", "caustic: 1 pixels");
   for (const auto& entry : fs::directory_iterator(f))
     CHECK(entry.path().filename().string().find("tmp") == std::string::npos);
   fs::remove_all(f);
@@ -126,6 +136,14 @@ TEST_CASE("wrong arguments are refused with their place") {
   for (const char* seconds : {"0", "-0", "-1", "nan", "-nan", "inf", "x"})
     refused(nowhere + "--time " + seconds, "--time");
   refused("compare a.exr b.exr --max-relmse nan", "--max-relmse");
+  refused("compare a.exr b.exr --max-relmse -1", "--max-relmse");
+  const fs::path f = folder();
+  std::ofstream(f / "binary.lucerna") << std::string("wait 0\n\0", 8);
+  refused("--script " + f.string(), f.string() + ": cannot be read: it is a folder");
+  refused("--script " + (f / "none.lucerna").string(), "none.lucerna: cannot be read: No such file");
+  refused("--script " + (f / "binary.lucerna").string(), "binary.lucerna: is no text");
+  refused("--script ''", "expected a file name");
+  fs::remove_all(f);
   refused(good + "--camera nowhere --samples 1", "no camera 'nowhere'");
   refused(good + "--device nothing", "nothing");
   refused("render " + scene("cornell") + " -o /no/such/folder/a.exr", "/no/such/folder");
@@ -144,6 +162,35 @@ TEST_CASE("--time that is up before there is a picture is told, and leaves no bl
               f.string(),
           "no pixel has a sample after so many seconds: the irradiance cache was still at work");
   CHECK_FALSE(fs::exists(f));
+}
+
+TEST_CASE("a render ends at the first limit that is given, and at no other") {
+  const fs::path f = folder();
+  const auto stats = [&](const std::string& more) {
+    const Run r = run("render " + scene("cornell") + " --size 8x8 --quiet --stats " +
+                      (f / "l.json").string() + " " + more);
+    INFO(r.out);
+    REQUIRE(r.status == 0);
+    std::ifstream in(f / "l.json");
+    return nlohmann::json::parse(in);
+  };
+  CHECK(stats("--time 60 --set samples=3")["samples"] == 3);
+  CHECK(stats("--time 60 --samples 3")["samples"] == 3);
+  const auto uniform = stats("--time 0.5");
+  CHECK(uniform["settings"]["samples"] == "1048576");
+  CHECK(uniform["wall_s"] < 30);
+  const std::string unreachable = "--set sampling.min_samples=2 --error 0.0001 ";
+  const auto timed = stats(unreachable + "--time 0.5");
+  CHECK(timed["settings"]["sampling.max_samples"] == "1048576");
+  CHECK(timed["wall_s"] < 30);
+  CHECK(stats(unreachable + "--time 60 --samples 4")["tiles"]["most_samples"] == 4);
+  CHECK(stats(unreachable + "--time 60 --set sampling.max_samples=4")["tiles"]["most_samples"] == 4);
+  CHECK(
+      stats("--set sampling.mode=adaptive --set sampling.target_error=0.0001 --samples 4")["tiles"]
+                                                                                          ["most_samples"] ==
+      3);
+  CHECK(stats("--error 10 --time 60 --set sampling.min_samples=4")["tiles"]["most_samples"] == 4);
+  fs::remove_all(f);
 }
 
 TEST_CASE("--error: samples go where the noise is, and what was not reached is told") {

@@ -1,43 +1,147 @@
 // links: ui
-// What the window keeps between runs comes back: bookmarks by scene, and that the first steps were shown.
+// What the window keeps between runs comes back: bookmarks by scene, recent files, panels, and that the first
+// steps were shown. Several windows share it.
 #include "viewer/fake_session.h"
 
+#include <sys/stat.h>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
 
+#include "base/file.h"
 #include "support/folder.h"
 #include "ui/recall.h"
 
 using namespace lucerna;
 
+namespace {
+
+const std::string k_line = "camera.place 1,2,3 0,0,0 0,1,0 fov=40";
+
+/// A window with its memory, without the window.
+struct Window {
+  session::Session session{{}};
+  ui::Ui ui{session};
+  ui::Memory memory{ui};
+};
+
+struct StateFolder : test::Folder {
+  StateFolder() { setenv("XDG_STATE_HOME", path.c_str(), 1); }
+  std::filesystem::path file() const { return path / "lucerna" / "window.json"; }
+};
+
+}  // namespace
+
 TEST_CASE("bookmarks and the first steps outlive the window; a damaged file is passed over") {
-  const test::Folder folder;
-  setenv("XDG_STATE_HOME", folder.path.c_str(), 1);
-  const std::string line = "camera.place 1,2,3 0,0,0 0,1,0 fov=40";
+  const StateFolder folder;
   {
-    session::Session session({});
-    ui::Ui window(session);
-    ui::recall(window);  // nothing there yet
-    CHECK_FALSE(window.welcomed);
-    CHECK(window.bookmarks.empty());
-    window.welcomed = true;
-    window.bookmarks["/a/hall.gltf"]["From the \"stage\""] = line;
-    window.bookmarks["/a/empty.gltf"];
-    ui::remember(window);
+    Window window;  // nothing there yet
+    CHECK_FALSE(window.ui.welcomed);
+    CHECK(window.ui.bookmarks.empty());
+    window.ui.welcomed = true;
+    window.ui.bookmarks["/a/hall.gltf"]["From the \"stage\""] = k_line;
+    window.ui.bookmarks["/a/empty.gltf"];
+    window.ui.bookmarks["/a/b\xFChne.gltf"]["\xE9"] = k_line;
   }
-  session::Session session({});
-  ui::Ui window(session);
-  ui::recall(window);
-  CHECK(window.welcomed);
-  CHECK(window.bookmarks.size() == 1);
-  CHECK(window.bookmarks["/a/hall.gltf"]["From the \"stage\""] == line);
-  const auto file = folder.path / "lucerna" / "window.json";
-  REQUIRE(std::filesystem::exists(file));
+  {
+    Window window;
+    CHECK(window.ui.welcomed);
+    CHECK(window.ui.bookmarks.size() == 2);
+    CHECK(window.ui.bookmarks["/a/hall.gltf"]["From the \"stage\""] == k_line);
+  }
+  REQUIRE(std::filesystem::exists(folder.file()));
   for (const char* text :
-       {"", "[1]", "{\"bookmarks\": 3}", "{\"bookmarks\": {\"a\": {\"b\": 1}}}", "{\"welcomed\": \"yes\"}"}) {
-    std::ofstream(file) << text;
-    ui::Ui damaged(session);
-    CHECK_NOTHROW(ui::recall(damaged));
+       {"", "[1]", "{\"bookmarks\": 3}", "{\"bookmarks\": {\"a\": {\"b\": 1}}}", "{\"welcomed\": \"yes\"}",
+        "{\"recent\": {\"a\": 1}, \"sections\": [], \"left\": \"x\"}"}) {
+    std::ofstream(folder.file()) << text;
+    INFO(text);
+    CHECK_NOTHROW([] {
+      Window damaged;
+      damaged.ui.bookmarks["/a/hall.gltf"]["new"] = k_line;
+    }());
+    Window after;
+    CHECK(after.ui.bookmarks["/a/hall.gltf"]["new"] == k_line);
   }
+}
+
+TEST_CASE("two windows keep each other's bookmarks, files and panels") {
+  const StateFolder folder;
+  {
+    Window before;
+    before.ui.bookmarks["/a"] = {{"old", k_line}, {"gone", k_line}};
+    before.ui.recent = {"/1", "/2", "/3"};
+  }
+  {
+    Window first, second;
+    first.ui.bookmarks["/a"]["first"] = k_line;
+    first.ui.bookmarks["/a"].erase("gone");
+    first.ui.recent = {"/4", "/1", "/2", "/3"};
+    first.ui.layout.left = 300;
+    first.ui.sections["Camera"] = true;
+    REQUIRE(first.memory.save());
+    second.ui.bookmarks["/a"]["second"] = k_line;
+    second.ui.bookmarks["/b"]["other"] = k_line;
+    second.ui.recent = {"/3", "/5", "/1", "/2"};
+    second.ui.layout.bottom = 200;
+    second.ui.sections["Render"] = false;
+    REQUIRE(second.memory.save());
+    // A window that saves knows the others' views from then on; its panels stay as they are.
+    CHECK(second.ui.bookmarks["/a"].size() == 3);
+    CHECK(second.ui.recent == std::vector<std::string>{"/3", "/5", "/4", "/1", "/2"});
+    CHECK(second.ui.layout.left == ui::Layout().left);
+  }
+  Window after;
+  using Views = commands::Workspace::Bookmarks;
+  CHECK(after.ui.bookmarks["/a"] == Views{{"first", k_line}, {"old", k_line}, {"second", k_line}});
+  CHECK(after.ui.bookmarks["/b"] == Views{{"other", k_line}});
+  CHECK(after.ui.recent == std::vector<std::string>{"/3", "/5", "/4", "/1", "/2"});
+  CHECK(after.ui.layout.left == 300);
+  CHECK(after.ui.layout.bottom == 200);
+  CHECK(after.ui.sections == std::map<std::string, bool>{{"Camera", true}, {"Render", false}});
+}
+
+TEST_CASE("bookmarks are saved at once, panels when they have come to rest, and nothing without a change") {
+  const StateFolder folder;
+  Window window;
+  window.memory.follow(1);
+  CHECK_FALSE(std::filesystem::exists(folder.file()));
+  window.ui.bookmarks["/a"]["x"] = k_line;
+  window.memory.follow(2);
+  CHECK_THAT(read_file(folder.file()), Catch::Contains("\"x\""));
+
+  window.ui.layout.left = 400;
+  window.memory.follow(3);
+  window.ui.layout.left = 401;
+  window.memory.follow(3.4);
+  window.memory.follow(3.8);
+  CHECK_THAT(read_file(folder.file()), !Catch::Contains("401"));
+  window.memory.follow(4);
+  CHECK_THAT(read_file(folder.file()), Catch::Contains("\"left\": 401"));
+
+  const auto written = [&] {
+    struct stat status {};
+    REQUIRE(stat(folder.file().c_str(), &status) == 0);
+    return status.st_ino;
+  };
+  const auto before = written();
+  window.memory.follow(9);
+  CHECK(written() == before);
+}
+
+TEST_CASE("what cannot be kept is said once") {
+  const StateFolder folder;
+  std::ofstream(folder.path / "lucerna") << "a file where the folder should be";
+  int warnings = 0;
+  const int token = log::add_listener([&](log::Level, const std::string& line) {
+    warnings += line.find("bookmarks are not kept") != std::string::npos;
+  });
+  {
+    Window window;
+    for (const char* name : {"x", "y"}) {
+      window.ui.bookmarks["/a"][name] = k_line;
+      window.memory.follow(1);
+    }
+  }
+  log::remove_listener(token);
+  CHECK(warnings == 1);
 }

@@ -39,6 +39,20 @@ TEST_CASE("the viewer starts, renders cornell, saves a screenshot and quits") {
   CHECK(green > 500);
 }
 
+TEST_CASE("SIGTERM closes the window as its user does, and what it remembers is kept") {
+  if (test::no_program()) return;
+  const test::Folder folder;
+  const std::string kept = (folder.path / "lucerna/window.json").string();
+  // The first steps are remembered as soon as they are shown: the window is open then.
+  std::ofstream(folder.path / "steps.sh")
+      << "XDG_STATE_HOME=" << folder.path.string() << ' ' << LUCERNA_BINARY << " &\n"
+      << "until test -s " << kept << "; do sleep 0.1; done\nkill -TERM $!\nwait $!\n";
+  const test::Outcome ended = test::run(test::with_display("sh " + (folder.path / "steps.sh").string()));
+  INFO(ended.output);
+  CHECK(ended.status == 143);
+  CHECK_THAT(read_file(kept), Catch::Contains("\"welcomed\": true"));
+}
+
 TEST_CASE("a scene that is not there is an error in the window, and the script's failure the exit status") {
   if (test::no_program()) return;
   const test::Folder folder;
