@@ -44,6 +44,15 @@ CLI::Validator finite() {
       "");
 }
 
+/// An empty name is a variable of the shell that is not set, rather than no file.
+CLI::Validator named() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return text.empty() ? std::string("'': expected a file name") : std::string();
+      },
+      "");
+}
+
 /// The command line: what each verb takes, added verb by verb, and which of them is meant.
 class Program {
  public:
@@ -64,7 +73,6 @@ class Program {
 
   CLI::App app_{"Lucerna: watch global illumination being computed, component by component"};
   std::string scene_, device_, script_;
-  CLI::Option* script_given_ = nullptr;
   std::vector<std::string> set_;
   bool verbose_ = false, stay_ = false;
   scene::LoadOptions scenes_;
@@ -110,10 +118,10 @@ void Program::add_viewer() {
   app_.add_option("SCENE", scene_, "glTF scene (.gltf or .glb) to open in the viewer");
   app_.add_option("--device", device_, k_device_help);
   app_.add_option("--set", set_, "viewer: KEY=VALUE; see below")->allow_extra_args(false);
-  script_given_ = app_.add_option(
-      "--script", script_,
-      "viewer: file with commands, one a line; 'help' under the log lists them. Its end ends the "
-      "program, with 1 after an error");
+  app_.add_option("--script", script_,
+                  "viewer: file with commands, one a line; 'help' under the log lists them. Its end ends the "
+                  "program, with 1 after an error")
+      ->check(named());
   app_.add_flag("-v,--verbose", verbose_, "say more on standard error");
   app_.add_flag("--stay", stay_, "viewer: the window stays when the script has ended");
   add_scene_options(&app_);
@@ -153,18 +161,23 @@ void Program::add_render() {
       ->check(CLI::Range(int64_t(0), int64_t(4294967295)));
   render_->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
   render_->add_option("--device", r.device, k_device_help);
-  render_->add_option("--ledger", r.ledger, "time, rays and error as they went on, as CSV");
-  render_->add_option("--reference", r.reference,
-                      "EXR of the same picture, converged: ledger and figures then tell the true error");
+  render_->add_option("--ledger", r.ledger, "time, rays and error as they went on, as CSV")->check(named());
+  render_
+      ->add_option("--reference", r.reference,
+                   "EXR of the same picture, converged: ledger and figures then tell the true error")
+      ->check(named());
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     if (!solver->file) continue;
-    render_->add_option(
-        "--" + solver->name + "-load", r.solver_load[solver->name],
-        "begin with " + solver->file->content + " in this file, of the same scene and settings");
-    render_->add_option("--" + solver->name + "-save", r.solver_save[solver->name],
-                        "write " + solver->file->content + ", once they are complete");
+    render_
+        ->add_option("--" + solver->name + "-load", r.solver_load[solver->name],
+                     "begin with " + solver->file->content + " in this file, of the same scene and settings")
+        ->check(named());
+    render_
+        ->add_option("--" + solver->name + "-save", r.solver_save[solver->name],
+                     "write " + solver->file->content + ", once they are complete")
+        ->check(named());
   }
-  render_->add_option("--stats", r.stats, "write figures of the run as JSON");
+  render_->add_option("--stats", r.stats, "write figures of the run as JSON")->check(named());
   render_->add_flag("--quiet", r.quiet, "no progress line");
   add_scene_options(render_);
 }
@@ -227,7 +240,7 @@ void Program::add_bench_rays() {
       ->check(CLI::Range(0u, 1u << 20))
       ->capture_default_str();
   rays_->add_option("--seed", b.seed, "seed of the rays")->capture_default_str();
-  rays_->add_option("--flat", b.flat, "write the flattened scene for lucerna-raybench");
+  rays_->add_option("--flat", b.flat, "write the flattened scene for lucerna-raybench")->check(named());
   rays_->add_option("--device", b.device, k_device_help);
   rays_->add_flag("--json", b.json, "as JSON");
   add_scene_options(rays_);
@@ -238,7 +251,7 @@ void Program::add_small_benches() {
     verb->add_option("--repeats", a.repeats, "measurements of each figure")
         ->check(CLI::Range(least_repeats, 1000))
         ->capture_default_str();
-    verb->add_option("--json", a.json, "file to write the figures to");
+    verb->add_option("--json", a.json, "file to write the figures to")->check(named());
     verb->add_option("--device", a.device, k_device_help);
   };
   const auto of_scene = [](CLI::App* verb, auto& a) {
@@ -272,8 +285,9 @@ void Program::add_small_benches() {
                              "lookups a second in what solvers have prepared for a scene, by the ways of "
                              "looking up that they offer");
   of_scene(interpolation_, bi);
-  interpolation_->add_option("--reference", bi.reference,
-                             "EXR of the same picture, converged: tells errors too");
+  interpolation_
+      ->add_option("--reference", bi.reference, "EXR of the same picture, converged: tells errors too")
+      ->check(named());
   measured(interpolation_, bi, 1);
   add_scene_options(interpolation_);
   mix_ = bench_->add_subcommand(
@@ -425,7 +439,7 @@ int Program::view() {
   options.scene = scene_;
   options.set = set_;
   options.stay = stay_;
-  if (script_given_->count() > 0) {
+  if (!script_.empty()) {
     options.script = ui::read_script(script_);
     if (options.script.empty()) options.script.emplace_back();  // an empty script ends, too
     options.script_name = script_;

@@ -193,6 +193,8 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   const uint32_t seed = matrix_.seed + uint32_t(cell.repeat);
   values["seed"] = std::to_string(seed);
   values["samples"] = std::to_string(budget.kind == BudgetKind::samples ? uint64_t(budget.value) : 1u << 20);
+  // Where time ends it, the samples of no setting do.
+  if (budget.kind == BudgetKind::seconds) values.emplace("sampling.max_samples", std::to_string(1u << 20));
   if (budget.kind == BudgetKind::errors) values["sampling.target_error"] = fmt::format("{}", budget.value);
 
   const Timer setup;

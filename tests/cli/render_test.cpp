@@ -142,7 +142,9 @@ TEST_CASE("wrong arguments are refused with their place") {
   refused("--script " + f.string(), f.string() + ": cannot be read: it is a folder");
   refused("--script " + (f / "none.lucerna").string(), "none.lucerna: cannot be read: No such file");
   refused("--script " + (f / "binary.lucerna").string(), "binary.lucerna: is no text");
-  refused("--script ''", "expected a file name");
+  for (const char* option : {"--script", "render x.gltf --stats", "render x.gltf --ledger",
+                             "render x.gltf --reference", "render x.gltf --cache-save"})
+    refused(option + std::string(" ''"), "expected a file name");
   fs::remove_all(f);
   refused(good + "--camera nowhere --samples 1", "no camera 'nowhere'");
   refused(good + "--device nothing", "nothing");
@@ -185,10 +187,9 @@ TEST_CASE("a render ends at the first limit that is given, and at no other") {
   CHECK(timed["wall_s"] < 30);
   CHECK(stats(unreachable + "--time 60 --samples 4")["tiles"]["most_samples"] == 4);
   CHECK(stats(unreachable + "--time 60 --set sampling.max_samples=4")["tiles"]["most_samples"] == 4);
-  CHECK(
-      stats("--set sampling.mode=adaptive --set sampling.target_error=0.0001 --samples 4")["tiles"]
-                                                                                          ["most_samples"] ==
-      3);
+  const auto by_setting =
+      stats("--set sampling.mode=adaptive --set sampling.target_error=0.0001 --samples 4");
+  CHECK(by_setting["tiles"]["most_samples"] == 4);
   CHECK(stats("--error 10 --time 60 --set sampling.min_samples=4")["tiles"]["most_samples"] == 4);
   fs::remove_all(f);
 }

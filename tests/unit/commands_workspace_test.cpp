@@ -129,6 +129,13 @@ TEST_CASE("a failed load is noticed, and the scene before stays") {
   CHECK(b.work.scene->name == "hall");
   CHECK(b.work.selection == Selection{Kind::light, 1});
   CHECK(b.work.script().back() == "select light 2");  // a load that failed is not done again
+  // Nor are pictures and records that could not be read.
+  b.run("reference.load missing.exr"), b.run("cache.load missing.cache");
+  REQUIRE(b.until([&] { return b.errors == 3; }));
+  CHECK(b.work.script().back() == "select light 2");
+  b.run("reference.load truth.exr");
+  REQUIRE(b.settled());
+  CHECK_THAT(b.work.script().back(), Contains("reference.load") && Contains("truth.exr"));
   b.open("other.gltf");
   CHECK(b.work.scene->name == "other");
   CHECK(b.work.selection == Selection{});
