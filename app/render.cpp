@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
+#include <set>
 
 #include "app/interrupt.h"
 #include "app/render_stats.h"
@@ -48,6 +50,16 @@ bool makes_picture(const RenderArguments& a) {
   return !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty();
 }
 
+/// Throws Error where two outputs are one file, of which the first would be lost.
+void check_distinct(const std::vector<std::string>& files) {
+  std::set<std::string> targets;
+  for (const std::string& file : files)
+    // Pipes and devices take all, one after the other.
+    if (const std::filesystem::path target = file_behind(file);
+        !target.empty() && !targets.insert(target.string()).second)
+      throw_error(file, "two outputs have this name; give each its own");
+}
+
 /// Throws Error where nothing would be written, or something cannot be: before hours are spent on it.
 void check_outputs(const RenderArguments& a, const std::map<std::string, std::string>& to_save) {
   if (!makes_picture(a) && to_save.empty()) {
@@ -69,6 +81,11 @@ void check_outputs(const RenderArguments& a, const std::map<std::string, std::st
   if (!a.stats.empty()) check_writable(a.stats);
   if (!a.ledger.empty()) check_writable(a.ledger);
   for (const auto& [name, file] : to_save) check_writable(file);
+  std::vector<std::string> files = a.outputs;
+  for (const std::string& file : {a.stats, a.ledger})
+    if (!file.empty()) files.push_back(file);
+  for (const auto& [name, file] : to_save) files.push_back(file);
+  check_distinct(files);
   if (a.seconds && !(std::isfinite(*a.seconds) && *a.seconds > 0))
     throw_error("--time", "'{}': expected a positive number of seconds", *a.seconds);
 }

@@ -36,7 +36,7 @@ fs::path state_file() {
   return {};
 }
 
-/// Held while this lives; other processes wait for it.
+/// Held while this lives, unless another process holds it.
 class Lock {
  public:
   explicit Lock(const fs::path& file) : handle_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {

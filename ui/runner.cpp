@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "film/io/image_file.h"
 
 namespace lucerna::ui {
@@ -25,9 +26,10 @@ constexpr double k_longest_wait = 300;   // seconds
 constexpr double k_between_moves = 1.5;  // seconds
 const std::vector<std::string> k_buttons{"left", "right", "middle"};
 
-/// That the picture of a window may be written there. Throws Error where something else is.
+/// That the picture of a window may be written there. Throws Error where another file is that it would
+/// replace.
 std::string checked_target(const std::string& file) {
-  if (std::error_code error; std::filesystem::exists(file, error)) {
+  if (is_plain_file(file)) {
     bool ours = false;
     try {
       ours = film::read_metadata(file).count(k_window_mark) > 0;

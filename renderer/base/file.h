@@ -16,6 +16,8 @@ std::string read_file(const std::filesystem::path& file);
 /// found out.
 bool file_exists(const std::filesystem::path& file);
 bool is_folder(const std::filesystem::path& path);
+/// Whether it is neither a folder nor a pipe or device, which may never answer a reader.
+bool is_plain_file(const std::filesystem::path& file);
 /// The path from the root, without "." and "..". Where the working folder is gone a relative path stays as it
 /// is.
 std::filesystem::path absolute_path(const std::filesystem::path& path);

@@ -201,4 +201,11 @@ void check_writable(const fs::path& file) {
     check(access(folder_of(place.path).c_str(), W_OK | X_OK) == 0);
 }
 
+fs::path file_behind(const fs::path& name) {
+  const Place place = place_of(name);
+  if (place.own || (place.mode && !S_ISREG(*place.mode))) return {};
+  std::error_code error;
+  return fs::canonical(folder_of(place.path), error) / place.path.filename();
+}
+
 }  // namespace lucerna

@@ -53,4 +53,8 @@ class OutputFile {
 /// work, before it begins.
 void check_writable(const std::filesystem::path& file);
 
+/// The file that an output of that name makes or replaces, behind all links and from the root; "" where it
+/// goes into a pipe, a device or a descriptor. Throws Error as check_writable() does.
+std::filesystem::path file_behind(const std::filesystem::path& name);
+
 }  // namespace lucerna

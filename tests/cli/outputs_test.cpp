@@ -53,6 +53,21 @@ TEST_CASE("an output that fails does not keep the others from being written") {
   CHECK(nlohmann::json::parse(read_text(f / "a.json")).contains("settings"));
 }
 
+TEST_CASE("two outputs of one name are refused, by whatever way they are named") {
+  const test::Folder f;
+  const std::string at = f.path.string() + "/";
+  fs::create_symlink("a.exr", f / "b.exr");
+  for (const std::string& other :
+       {at + "a.exr", at + "../" + f.path.filename().string() + "/a.exr", at + "b.exr"}) {
+    const Run r = render("-o " + at + "a.exr -o " + other);
+    INFO(r.out);
+    CHECK(r.status == 1);
+    CHECK_THAT(r.out, Contains("two outputs have this name"));
+  }
+  CHECK_FALSE(fs::exists(f / "a.exr"));
+  CHECK(render("--stats /dev/null --ledger /dev/null").status == 0);
+}
+
 TEST_CASE("names that are no UTF-8 are written with what is not replaced") {
   const test::Folder f;
   const std::string scene = (f / "f\xFCr.gltf").string();

@@ -206,7 +206,8 @@ TEST_CASE("A disk that fills up is one located message and leaves the old file")
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   CHECK_THAT(exr, Catch::StartsWith(file.string() + ": cannot be written: File too large"));
-  CHECK_THAT(png, Catch::StartsWith((folder.path / "a.png").string() + ": cannot be written: File too large"));
+  CHECK_THAT(png,
+             Catch::StartsWith((folder.path / "a.png").string() + ": cannot be written: File too large"));
   CHECK(read_text(file) == "old");
   CHECK(folder.entries() == 1);
 }
@@ -216,6 +217,8 @@ TEST_CASE("An image that cannot be read is one located message") {
   const std::string none = (folder.path / "none.exr").string();
   CHECK_THAT(error_of([&] { film::read_exr(none); }), Catch::Equals(none + ": there is no such file"));
   CHECK_THAT(error_of([&] { film::read_exr(folder.path); }), Catch::Contains("is a folder"));
+  REQUIRE(mkfifo((folder.path / "pipe.exr").c_str(), 0600) == 0);
+  CHECK_THAT(error_of([&] { film::read_metadata(folder.path / "pipe.exr"); }), Catch::Contains("is a pipe"));
   write_text(folder.path / "text.exr", "this is no image");
   CHECK_THAT(error_of([&] { film::read_exr(folder.path / "text.exr"); }),
              Catch::Contains("text.exr: cannot read"));

@@ -1,6 +1,10 @@
 // links: ui film_io
 // What scripts promise: they end, they wait for what they save, they tell failure by their exit status, and
 // they replace no file that is not theirs. Over a session without a renderer, and in the program itself.
+#include <sys/stat.h>
+
+#include <future>
+
 #include "inside.h"
 #include "ui/runner.h"
 
@@ -131,6 +135,11 @@ TEST_CASE("screenshots and saved sessions replace their like alone") {
   CHECK(twice.status == 0);
   CHECK_THAT(bytes(file("theirs.lucerna")), Catch::EndsWith("select light 2\n"));
   CHECK(bytes(file("theirs.tmp")) == "dear");
+  // A pipe is written into.
+  REQUIRE(mkfifo(file("pipe.lucerna").c_str(), 0600) == 0);
+  auto read = std::async(std::launch::async, [&] { return test::run("cat " + file("pipe.lucerna"), 60); });
+  CHECK(test::window("wait_scene\nselect light 2\nscript.save " + file("pipe.lucerna") + "\n").status == 0);
+  CHECK_THAT(read.get().output, Catch::EndsWith("select light 2\n"));
 }
 
 TEST_CASE("in the program the picture that a script saves is there, whole, however soon the script ends") {

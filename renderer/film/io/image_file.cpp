@@ -8,7 +8,7 @@
 #include <set>
 #include <system_error>
 
-#include "base/output_file.h"
+#include "base/file.h"
 
 namespace lucerna::film {
 namespace {
@@ -169,6 +169,8 @@ std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
   std::error_code code;
   if (!fs::exists(file, code)) throw_error(where.empty() ? "image" : where, "there is no such file");
   if (fs::is_directory(file, code)) throw_error(where, "is a folder, expected an image");
+  // A pipe cannot be read back and forth, and may never answer.
+  if (!is_plain_file(file)) throw_error(where, "is a pipe or a device, expected an image");
   auto input = OIIO::ImageInput::open(where);
   if (!input) throw_error(where, "cannot read this image: {}", one_line(OIIO::geterror()));
   return input;
