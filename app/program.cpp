@@ -146,7 +146,7 @@ void Program::add_render() {
           "OUT.exr or OUT.png; may be given several times, or not at all where --stats or --ledger is")
       ->allow_extra_args(false);
   render_->add_option("--size", r.size, "picture, WIDTHxHEIGHT")->capture_default_str();
-  render_->add_option("--camera", r.camera, "name of a scene camera");
+  render_->add_option("--camera", r.camera, "name of a scene camera, or its number from 1");
   render_->add_option(
       "--error", r.error,
       "relative error that every tile is to reach, such as 0.02: samples go where it is not reached yet. A "
@@ -225,7 +225,7 @@ void Program::add_bench() {
 void Program::add_bench_rays() {
   rays_ = bench_->add_subcommand("rays", "rays a second of every tracer, and of Embree as it comes");
   rays_->add_option("SCENE", b.scene, "glTF scene")->required();
-  rays_->add_option("--camera", b.camera, "name of a scene camera");
+  rays_->add_option("--camera", b.camera, "name of a scene camera, or its number from 1");
   rays_->add_option("--rays", b.rays, "primary rays")
       ->check(CLI::Range(64u, 1u << 22))
       ->capture_default_str();

@@ -16,6 +16,13 @@ inline std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
+/// The text's first bytes, at most so many, cut between two characters of UTF-8.
+inline std::string cut_text(const std::string& text, size_t bytes) {
+  if (text.size() <= bytes) return text;
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xc0) == 0x80) --bytes;
+  return text.substr(0, bytes);
+}
+
 /// Without blanks, tabs and line ends at either end.
 inline std::string trimmed(const std::string& text) {
   const char* blanks = " \t\r\n";

@@ -157,8 +157,9 @@ void Workspace::add_motion_commands() {
   add_motion("camera.place",
              "Puts the camera at a place, looking at a point that it then orbits about. With fov it is a "
              "perspective camera, with height an orthographic one.",
-             {vector("eye", "where it stands", "m"), vector("target", "what it looks at", "m"),
-              vector("up", "what is upwards in the picture", ""), optional(fov()), optional(height())},
+             {vector("eye", "where it stands, from the scene's origin (lucerna info)", "m"),
+              vector("target", "what it looks at", "m"), vector("up", "what is upwards in the picture", ""),
+              optional(fov()), optional(height())},
              [this](Viewpoint& v, const Arguments& a) {
                if (!place(v, a.vector("eye"), a.vector("target"), a.vector("up")))
                  throw Error("", "eye and target must differ, and up must not point from one to the other");

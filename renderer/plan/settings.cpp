@@ -112,7 +112,7 @@ void add_display_options(std::vector<OptionInfo>& list) {
   list.push_back(of_same_light(choice_option(
       "tracer", "auto", {"auto", "compute-bvh", "host"}, "",
       "Who traces rays: auto takes host (Embree) on CPU devices and compute-bvh elsewhere.", "Tracer")));
-  list.push_back(text_option("camera", "Name of the scene camera to start with."));
+  list.push_back(text_option("camera", "Name of the scene camera to start with, or its number from 1."));
   list.push_back(without_restart(
       real_option("film.ev", "0", -20, 20, "EV", "Exposure: the picture is multiplied by 2 to this power.")));
   list.push_back(without_restart(choice_option(

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/text.h"
 
 namespace lucerna::scene {
@@ -144,12 +145,20 @@ std::vector<LightGroupRule> parse_group_rules(const std::string& text) {
 }
 
 bool matches_pattern(const std::string& pattern, const std::string& name) {
+  // The end of the character of UTF-8 that begins there.
+  const auto after = [&name](size_t at) {
+    do ++at;
+    while (at < name.size() && (static_cast<unsigned char>(name[at]) & 0xc0) == 0x80);
+    return at;
+  };
   // The last * is gone back to when what follows it does not fit.
   size_t p = 0, n = 0, star = std::string::npos, from = 0;
   while (n < name.size()) {
     if (p < pattern.size() && pattern[p] == '*')
       star = p++, from = n;
-    else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n]))
+    else if (p < pattern.size() && pattern[p] == '?')
+      ++p, n = after(n);
+    else if (p < pattern.size() && pattern[p] == name[n])
       ++p, ++n;
     else if (star != std::string::npos)
       p = star + 1, n = ++from;
@@ -161,7 +170,13 @@ bool matches_pattern(const std::string& pattern, const std::string& name) {
 }
 
 std::string group_name(const std::string& text) {
-  std::string name = trimmed(text.substr(0, 64));
+  constexpr size_t k_most = 64;
+  std::string name = trimmed(text);
+  if (name.size() > k_most) {
+    Hash hash;
+    hash.add(name);
+    name = fmt::format("{}~{:08x}", trimmed(cut_text(name, k_most - 9)), static_cast<uint32_t>(hash.low()));
+  }
   for (char& c : name)
     if (c == ';' || c == ':' || c == '=' || c == '|' || static_cast<unsigned char>(c) < 32) c = '_';
   return name;

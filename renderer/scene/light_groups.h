@@ -41,8 +41,8 @@ struct LightGroups {
 };
 
 /// What names go into which group: "PATTERN=GROUP; PATTERN=GROUP". In a pattern * stands for any characters
-/// and ? for one. It is held against names of lamps, of nodes and materials that emit, and against "sky" and
-/// "sun"; the last that fits counts.
+/// and ? for one (of UTF-8). It is held against names of lamps, of nodes and materials that emit, and against
+/// "sky" and "sun"; the last that fits counts.
 struct LightGroupRule {
   std::string pattern, group;
   bool operator==(const LightGroupRule&) const = default;
@@ -50,8 +50,9 @@ struct LightGroupRule {
 /// Throws Error, naming the part that is wrong.
 std::vector<LightGroupRule> parse_group_rules(const std::string& text);
 bool matches_pattern(const std::string& pattern, const std::string& name);
-/// Without blanks at its ends, and with _ for the characters ; : = | that part words of a mix; at most 64
-/// bytes. "" stays "".
+/// Without blanks at its ends, and with _ for the characters ; : = | that part words of a mix. "" stays "".
+/// Of a name of more than 64 bytes the first characters stay, followed by ~ and eight digits that tell it
+/// from other names with the same beginning: at most 64 bytes.
 std::string group_name(const std::string& text);
 /// A lamp's or material's name without the number at its end: "Spot.001" and "Spot 2" are both "Spot".
 std::string kind_of_light(const std::string& name);

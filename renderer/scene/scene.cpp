@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 
+#include <charconv>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -41,6 +42,12 @@ const Camera& find_camera(const Scene& scene, const std::string& name) {
   for (const Camera& c : scene.cameras) {
     if (c.name == name) return c;
     names += (names.empty() ? "'" : ", '") + c.name + "'";
+  }
+  size_t number = 0;
+  const char* end = name.data() + name.size();
+  if (const auto [stop, error] = std::from_chars(name.data(), end, number);
+      error == std::errc() && stop == end) {
+    if (number >= 1 && number <= scene.cameras.size()) return scene.cameras[number - 1];
   }
   throw_error("camera", "the scene has no camera '{}'; it has {}", name, names.empty() ? "none" : names);
 }

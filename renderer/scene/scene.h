@@ -175,10 +175,11 @@ uint64_t count_triangles(const Scene& scene);
 /// The camera used when a scene has none: looks at the bounds' centre from the front and a little above.
 Camera default_camera(const Scene& scene);
 
-/// The camera of that name. Throws Error, listing the names, when there is none.
+/// The first camera of that name, or else of that number, from 1. Throws Error, listing the names, when there
+/// is none.
 const Camera& find_camera(const Scene& scene, const std::string& name);
 
-/// The camera to begin with: that of the name, or for an empty name the scene's first, or default_camera().
+/// The camera to begin with: find_camera()'s, or for an empty name the scene's first, or default_camera().
 Camera starting_camera(const Scene& scene, const std::string& name);
 
 }  // namespace lucerna::scene

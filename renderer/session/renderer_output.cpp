@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 #include <utility>
 
 #include "base/log.h"
@@ -151,10 +152,13 @@ void add_light_layer(film::FilmImage& out, const std::string& name, const std::v
 /// Of one group the picture is the layer.
 void add_group_layers(film::FilmImage& out, const film::Film& film, const Relight& relight) {
   if (film.groups() == 1) return;
+  std::set<std::string> used;
   for (uint32_t g = 0; g < film.groups(); ++g) {
     // A dot would part the layer's name.
     std::string name = "light." + relight.groups->groups[g].name;
     std::replace(name.begin() + 6, name.end(), '.', '_');
+    // Which may make it another group's.
+    while (!used.insert(name).second) name += '_';
     if (film.in_short()) {
       add_light_layer(out, name, film.read_group_sum(g), relight.weights[g]);
       continue;
@@ -204,6 +208,8 @@ film::FilmImage Renderer::film_image() {
   out.metadata["tracer"] = tracer_name();
   out.metadata["scene"] = world_.scene->name;
   out.metadata["view"] = view_text();
+  if (const glm::dvec3& o = world_.scene->origin; o != glm::dvec3(0))
+    out.metadata["origin"] = fmt::format("{} {} {}", o.x, o.y, o.z);
   out.metadata["noise"] = film::noise_text(image_error().rms);
   return out;
 }

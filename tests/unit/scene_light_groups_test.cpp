@@ -42,11 +42,33 @@ TEST_CASE("a name's kind is what is before the number at its end") {
   CHECK(scene::kind_of_light("").empty());
 }
 
+TEST_CASE("long names of groups are cut between characters and stay different") {
+  const std::string long_name(63, 'x');
+  CHECK(scene::group_name(long_name) == long_name);
+  const std::string a = scene::group_name(long_name + "\u00e4\u00f6"),
+                    b = scene::group_name(long_name + "\u00e4\u00fc");
+  CHECK(a.size() <= 64);
+  CHECK(a != b);
+  CHECK(scene::group_name(a) == a);
+  for (int length = 50; length < 70; ++length) {
+    std::string name(static_cast<size_t>(length), 'x');
+    for (int i = 0; i < 10; ++i) name += "\u00e4";
+    CHECK_NOTHROW(json(scene::group_name(name)).dump());
+  }
+  const std::string lamp = "Luminaire - Downlight - Recessed - LED - 150 mm - 3000 K - 12 W - ";
+  const LightGroups g =
+      scene::group_lights(lamps({lamp + "hall.001", lamp + "stairs.001", lamp + "hall.002"}));
+  CHECK(g.groups.size() == 2);
+  CHECK(g.lamps == std::vector<uint8_t>{0, 1, 0});
+}
+
 TEST_CASE("patterns") {
   using scene::matches_pattern;
   CHECK(matches_pattern("*", ""));
   CHECK(matches_pattern("*lamp*", "a lamp here"));
   CHECK(matches_pattern("l?mp", "lamp"));
+  CHECK(matches_pattern("l?mp*", "l\u00e4mpchen"));
+  CHECK_FALSE(matches_pattern("l??mp", "l\u00e4mp"));
   CHECK(matches_pattern("a*b*c", "axxbyybzzc"));
   CHECK_FALSE(matches_pattern("a*b*c", "axxbyybzz"));
   CHECK_FALSE(matches_pattern("lamp", "lamps"));

@@ -106,6 +106,9 @@ TEST_CASE("extensions of materials") {
   CHECK(m.thickness == 0.1f);
   CHECK(m.attenuation_distance == 2);
   CHECK(m.attenuation_color == vec3(1, 0.5f, 0.25f));
+  // Of no distance: nothing is absorbed, and the file opens.
+  CHECK(load_material(extension("KHR_materials_volume", {{"attenuationDistance", 0}})).attenuation_distance ==
+        k_infinity);
   m = load_material(
       extension("KHR_materials_diffuse_transmission",
                 {{"diffuseTransmissionFactor", 0.5}, {"diffuseTransmissionColorFactor", {0.25, 0.5, 1}}}));

@@ -158,6 +158,23 @@ TEST_CASE("a camera that cannot be used does not keep a scene from opening") {
            "cameras[0].orthographic.xmag: 0 is not other than 0");
 }
 
+TEST_CASE("a camera is found by its name, or by its number from 1") {
+  const auto camera = [](const char* name, double yfov) {
+    return json{{"name", name}, {"type", "perspective"}, {"perspective", {{"yfov", yfov}, {"znear", 0.1}}}};
+  };
+  Asset asset = with_camera(camera("cam", 0.5));
+  for (const auto& [name, yfov] : {std::pair("cam", 0.25), std::pair("1", 0.75)})
+    asset.doc["scenes"][0]["nodes"].push_back(
+        asset.add("nodes", {{"camera", asset.add("cameras", camera(name, yfov))}}));
+  const Scene scene = asset.load();
+  CHECK(scene::find_camera(scene, "cam").yfov == 0.5f);
+  CHECK(scene::find_camera(scene, "2").yfov == 0.25f);
+  CHECK(scene::find_camera(scene, "1").yfov == 0.75f);  // a name before a number
+  CHECK(scene::starting_camera(scene, "3").yfov == 0.75f);
+  for (const char* none : {"0", "4", "-1", "2.5", "2 ", "99999999999999999999"})
+    CHECK_THROWS_WITH(scene::find_camera(scene, none), Contains("it has 'cam', 'cam', '1'"));
+}
+
 TEST_CASE("negative xmag and ymag mirror the picture") {
   const json plan{{"type", "orthographic"},
                   {"orthographic", {{"xmag", -4}, {"ymag", 2}, {"znear", 0}, {"zfar", 9}}}};

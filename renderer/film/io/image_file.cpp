@@ -5,10 +5,15 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
+#include <optional>
 #include <set>
+#include <string_view>
 #include <system_error>
 
 #include "base/file.h"
+#include "base/picture_window.h"
+#include "base/radiance_hdr.h"
 
 namespace lucerna::film {
 namespace {
@@ -164,16 +169,47 @@ void write_exr(const fs::path& file, const FilmImage& image) {
 
 namespace {
 
-std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
+struct OpenImage {
+  std::optional<RadianceHeader> radiance;
+  std::vector<uint8_t> bytes;  // of a Radiance picture, without its header
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
+  std::unique_ptr<OIIO::ImageInput> input;
+};
+
+bool is_radiance(const fs::path& file) {
+  char magic[2] = {};
+  std::ifstream stream(file, std::ios::binary);
+  return stream.read(magic, 2) && magic[0] == '#' && magic[1] == '?';
+}
+
+OpenImage open_image(const fs::path& file) {
   const std::string where = file.string();
   std::error_code code;
   if (!fs::exists(file, code)) throw_error(where.empty() ? "image" : where, "there is no such file");
   if (fs::is_directory(file, code)) throw_error(where, "is a folder, expected an image");
   // A pipe cannot be read back and forth, and may never answer.
   if (!is_plain_file(file)) throw_error(where, "is a pipe or a device, expected an image");
-  auto input = OIIO::ImageInput::open(where);
-  if (!input) throw_error(where, "cannot read this image: {}", one_line(OIIO::geterror()));
-  return input;
+  OpenImage image;
+  if (is_radiance(file)) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
+    image.radiance = read_radiance_header(bytes);
+    if (image.radiance) image.bytes = without_radiance_header(bytes, *image.radiance);
+  }
+  if (image.radiance) {
+    image.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(image.bytes.data(), image.bytes.size());
+    OIIO::ImageSpec config;
+    OIIO::Filesystem::IOProxy* proxy = image.memory.get();
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    OIIO::ImageSpec spec;
+    image.input = OIIO::ImageInput::create("hdr");
+    if (image.input && !image.input->open("/dev/null/image", spec, config))
+      throw_error(where, "cannot read this image: {}", one_line(image.input->geterror()));
+  } else {
+    image.input = OIIO::ImageInput::open(where);
+  }
+  if (!image.input) throw_error(where, "cannot read this image: {}", one_line(OIIO::geterror()));
+  return image;
 }
 
 std::map<std::string, std::string> metadata_of(const OIIO::ImageSpec& spec) {
@@ -190,24 +226,29 @@ std::map<std::string, std::string> metadata_of(const OIIO::ImageSpec& spec) {
 }  // namespace
 
 std::map<std::string, std::string> read_metadata(const fs::path& file) {
-  return metadata_of(open_image(file)->spec());
+  return metadata_of(open_image(file).input->spec());
 }
 
 FilmImage read_exr(const fs::path& file) {
   const std::string where = file.string();
-  const auto input = open_image(file);
+  const OpenImage opened = open_image(file);
+  const auto& input = opened.input;
   const OIIO::ImageSpec& spec = input->spec();
   check_size(where, spec.width, spec.height);
+  const PictureWindow window = window_of(spec, std::string_view(input->format_name()) == "openexr");
+  check_size(where, window.full_width, window.full_height);
   if (spec.depth > 1 || spec.deep)
     throw_error(where, "expected a flat image, found a deep or volumetric one");
 
   FilmImage image;
-  image.width = static_cast<uint32_t>(spec.width);
-  image.height = static_cast<uint32_t>(spec.height);
+  image.width = opened.radiance ? opened.radiance->width() : window.full_width;
+  image.height = opened.radiance ? opened.radiance->height() : window.full_height;
   const size_t pixels = size_t{image.width} * image.height, count = static_cast<size_t>(spec.nchannels);
-  std::vector<float> interleaved(pixels * count);
+  std::vector<float> interleaved(size_t{window.width} * window.height * count);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data()))
     throw_error(where, "cannot read this image: {}", one_line(input->geterror()));
+  if (opened.radiance) interleaved = upright_radiance(interleaved, count, *opened.radiance);
+  if (!window.whole()) interleaved = fit_to_picture(interleaved, count, window);
   for (size_t c = 0; c < count; ++c) {
     std::vector<float> values(pixels);
     for (size_t p = 0; p < pixels; ++p) values[p] = interleaved[p * count + c];

@@ -50,10 +50,11 @@ inline constexpr uint32_t k_max_image_size = 32768;
 /// untouched.
 void write_exr(const std::filesystem::path& file, const FilmImage& image);
 
-/// Reads any image that OpenImageIO knows (its first subimage, full resolution), as float. EXR and HDR are
-/// linear as stored; integer formats are scaled to 0..1 and keep the file's transfer curve. Channels that are
-/// named R, G, B, A or carry a layer name keep their names. Throws Error located at `file` when it is
-/// missing, truncated, empty or larger than k_max_image_size.
+/// Reads any image that OpenImageIO knows (its first subimage, full resolution), as float. An EXR's data
+/// window is placed in its display window, 0 outside; a Radiance picture is turned upright, its exposure
+/// divided out. EXR and HDR are linear as stored; integer formats are scaled to 0..1 and keep the file's
+/// transfer curve. Channels that are named R, G, B, A or carry a layer name keep their names. Throws Error
+/// located at `file` when it is missing, truncated, empty or larger than k_max_image_size.
 FilmImage read_exr(const std::filesystem::path& file);
 
 /// The metadata of an image file, as FilmImage has them, without its pixels. Throws Error located at `file`

@@ -31,6 +31,7 @@ void read_environment(Document& document, Scene& scene, const Item& item, bool s
     document.progress(0.95f, "environment");
     Image image = decode_image(read_file(document, resolve_uri(document, *file), file->where()),
                                environment.file, file->where(), Precision::linear_floats, document.budget);
+    check_environment_shape(image, file->where());
     image.name = environment.file;
     if (const size_t mended = mend_texels(image))
       document.warnings.add("{} texel values of the environment that are negative or not finite: replaced",

@@ -1,7 +1,5 @@
 #include "scene/io/environment_file.h"
 
-#include <cmath>
-
 #include "scene/io/document.h"
 #include "scene/io/images.h"
 
@@ -16,10 +14,7 @@ Image load_environment(const std::filesystem::path& file, uint64_t most_bytes) {
   Image image = decode_image(read_file(file, where, budget), file.filename().string(), where,
                              Precision::linear_floats, budget);
   image.name = where;
-  const double ratio = double(image.width) / image.height;
-  if (std::abs(ratio / 2 - 1) > 0.02)
-    throw_error(where, "{} x {} pixels: a latitude-longitude image is twice as wide as high", image.width,
-                image.height);
+  check_environment_shape(image, where);
   mend_texels(image);
   return image;
 }

@@ -1,11 +1,12 @@
 #pragma once
 // glTF 2.0 files into Scene. What is read, and what becomes of input that is not as it should be:
 // - Error (the message names file and element): a missing or truncated file, JSON that does not parse, a
-//   value of a wrong type, an index out of range, an accessor beyond its view or a view beyond its buffer, positions
-//   that are not finite, a cyclic node graph or a node with two parents, a matrix above a mesh, camera or
-//   light that is not finite, a skin that a node has and that is not as glTF asks, a required extension that
-//   is not known, an environment that cannot be read, a settings.json that is not as described below.
-//   A buffer or an environment outside the scene's folder (below), and more memory than LoadOptions allows.
+//   value of a wrong type, an index out of range, an accessor beyond its view or a view beyond its buffer,
+//   positions that are not finite, a cyclic node graph or a node with two parents, a matrix above a mesh,
+//   camera or light that is not finite, a skin that a node has and that is not as glTF asks, a required
+//   extension that is not known, an environment that cannot be read, a settings.json that is not as described
+//   below. A buffer or an environment outside the scene's folder (below), and more memory than LoadOptions
+//   allows.
 // - One line in Scene::warnings, with a count: degenerate triangles (removed), points and lines (left out),
 //   textures that are missing, outside the scene's folder, cannot be decoded or have no texels (white
 //   instead; flat for normal maps), values outside their range (clamped), extensions that are not known,

@@ -214,8 +214,11 @@ void MaterialLoader::read_extensions(const Item& extensions, Material& m, Materi
     m.attenuation_color = color(*e, "attenuationColor", vec3(1), 1);
     if (e->find("attenuationDistance")) {
       const float distance = factor(*e, "attenuationDistance", 1, 0, 3e38f);
-      if (distance <= 0) e->at("attenuationDistance").fail("{} is not above 0", distance);
-      m.attenuation_distance = distance;
+      if (distance > 0)
+        m.attenuation_distance = distance;
+      else
+        document_.warnings.add("{} attenuation distances that are not above 0: nothing is absorbed",
+                               e->path());
     }
   }
   if (const auto e = extensions.find("KHR_materials_diffuse_transmission")) {
