@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/log.h"
+#include "commands/refusal.h"
 #include "scene/range.h"
 
 namespace lucerna::commands {
@@ -108,8 +109,19 @@ void Workspace::drop_refused() {
     if (std::erase_if(environments_sent_, [&](const auto& sent) { return sent.first == number; }) > 0)
       environment_file_ =
           environments_sent_.empty() ? environment_in_force_ : environments_sent_.back().second;
-    std::erase_if(undo_, [&](Step& step) { return step.sent.refuse(number); });
-    std::erase_if(redo_, [&](Step& step) { return step.sent.refuse(number); });
+    std::vector<Step> gone;
+    for (std::vector<Step>* steps : {&undo_, &redo_})
+      std::erase_if(*steps, [&](Step& step) {
+        const bool refused = step.sent.refuse(number);
+        if (refused && !step.move) gone.push_back(step);
+        return refused;
+      });
+    // Steps that were made before the refusal was known hold the change, too.
+    for (const Step& refused : gone)
+      for (std::vector<Step>* steps : {&undo_, &redo_})
+        for (Step& step : *steps)
+          for (Document* d : {&step.before, &step.after})
+            if (!step.move) take_back(*d, refused.before, refused.after);
     std::erase_if(recorded_, [&](Recorded& entry) { return entry.sent.refuse(number); });
   }
 }
