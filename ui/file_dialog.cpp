@@ -24,7 +24,7 @@ struct Completion {
   bool folder;
 };
 
-/// What a dialog asks for, by its purpose.
+/// The question that a dialog puts, by its purpose.
 struct Question {
   std::string title, note;
   std::string command, answer;  ///< that is run with the file; the button's word for it

@@ -335,13 +335,13 @@ TEST_CASE("what is left of work whose amount is an estimate does not jump") {
   for (double done = 0; done < work; done += 10) {
     const double estimate = work * (1 + 4 * std::exp(-done / 60) + 0.1 * std::sin(done));
     const double left = std::max(estimate - done, 0.04 * done);
-    if (const auto told = pace.follow(seconds, done, left)) {
+    if (const auto rest = pace.follow(seconds, done, left)) {
       CHECK(seconds >= WorkPace::k_least_seconds);
-      CHECK(*told >= 0);
+      CHECK(*rest >= 0);
       // It counts down: never up by more than a tenth of what it was.
-      CHECK(*told < 1.1 * left_before);
-      left_before = *told;
-      totals.push_back(seconds + *told);
+      CHECK(*rest < 1.1 * left_before);
+      left_before = *rest;
+      totals.push_back(seconds + *rest);
     }
     seconds += done < 50 ? 0.8 : 0.1;
   }

@@ -46,11 +46,10 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
   for (const CachePass& p : s.passes) all += p.total_ms();
   if (s.relighting.records > 0) {
     if (s.rays == 0 || s.relighting.rays == 0) return {};
-    // Rays take the time; what every pass takes beside them is spent already.
+    // By rays alone: what is set up before the first of them is spent already.
     double evaluating = 0;
     for (const CachePass& p : s.passes) evaluating += p.ms[size_t(BuildStep::evaluate)];
-    const double left = std::max(0.0, double(s.relighting.rays) / double(s.rays) - 1);
-    return forecast(all + evaluating * left, all);
+    return forecast(evaluating * std::max(1.0, double(s.relighting.rays) / double(s.rays)), evaluating);
   }
   if (s.passes.back().relit) return {};  // all are relit, and what is missing has not been looked for yet
   // Passes are counted from 0 again when building is extended: what was built before says how long it takes.
