@@ -1,7 +1,8 @@
 // The `compute-bvh` tracer: for each row of the queue, its ray's hit (see shaders/shared/ray.h for both).
 //
 // Defines: LUCERNA_QUERY = 0 closest, 1 any_opaque, 2 closest_non_opaque (see lucerna::bvh::Query);
-// LUCERNA_NON_OPAQUE where the scene has non-opaque triangles; those of lib/bvh.glsl.
+// LUCERNA_NON_OPAQUE where the scene has non-opaque triangles; those of lib/bvh.glsl. With
+// LUCERNA_COUNT_BVH the hit's u is the number of nodes visited and triangles tested.
 #include "lib/variants.glsl"
 #include "lib/invocation.glsl"
 #include "shaders/shared/ray.h"
@@ -27,5 +28,8 @@ void main() {
   Ray ray = Ray(a.xyz, a.w, b.xyz, floatBitsToUint(b.w));
   ray.tmax = inside ? ray.tmax : 0.0;
   Hit hit = bvh_trace(ray, LUCERNA_QUERY);
+#if LUCERNA_COUNT_BVH
+  hit.u = float(bvh_visits);
+#endif
   if (inside) hits[index] = hit;
 }

@@ -113,6 +113,7 @@ class Checker {
           return fail(fmt::format("triangle {} was changed", word.value));
         own.grow(p);
       }
+      own = grown(own, margin_of(&triangles_.vertices[3 * size_t{word.value}]));
       const Box part{glm::max(own.lo, box.lo), glm::min(own.hi, box.hi)};
       if (part.empty()) return fail(fmt::format("triangle {} lies outside its leaf", word.value));
       covered_[word.value].grow(part);

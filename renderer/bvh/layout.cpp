@@ -19,12 +19,6 @@ float half_area(const Box& box) {
   return s.x * s.y + s.y * s.z + s.z * s.x;
 }
 
-float reach_of(const Box& bounds) {
-  if (bounds.empty()) return 0;
-  const vec3 m = glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi));
-  return std::max({m.x, m.y, m.z});
-}
-
 /// Stack entries that a subtree of `height` levels of inner nodes needs when every node takes in two levels.
 uint32_t least_stack(uint32_t height) { return height / 2 * 3 + height % 2; }
 
@@ -52,7 +46,6 @@ class Writer {
       area_ = std::max(half_area(data_.bounds), 1e-30f);
       inner(0, 1, k_stack);
     }
-    data_.nodes[2].z = std::bit_cast<uint32_t>(reach_of(data_.bounds));
     data_.node_count = static_cast<uint32_t>(data_.nodes.size() / k_node_texels);
     data_.triangle_count = static_cast<uint32_t>(data_.triangles.size() / 3);
     return std::move(data_);
@@ -165,7 +158,7 @@ Grid Grid::around(std::span<const Box> boxes) {
   grid.origin = all.lo;
   for (int axis = 0; axis < 3; ++axis) {
     // The least power of two of which 255 reach across. In double precision, where differences of floats of
-    // one scene and all that follows are exact or rounded far below the traversal's margin.
+    // one scene and all that follows are exact or rounded far below what the traversal allows for.
     const double lo = all.lo[axis], extent = double{all.hi[axis]} - lo;
     int e = -126;
     if (extent > 0) {
@@ -211,7 +204,7 @@ BvhData flatten(const Tree& tree, const Triangles& triangles) {
 
 namespace {
 
-constexpr std::array<char, 8> k_magic = {'L', 'U', 'C', 'B', 'V', 'H', '0', '2'};
+constexpr std::array<char, 8> k_magic = {'L', 'U', 'C', 'B', 'V', 'H', '0', '3'};
 
 struct Header {
   std::array<char, 8> magic = k_magic;

@@ -9,11 +9,10 @@
 // A node is 4 texels of RGBA32UI:
 //   0  (origin x, y, z as float bits, exponents)   cell of axis a: 2^(e - 127), e = byte a of `exponents`
 //   1  (x low, x high, y low, y high)              byte c is that of child c: its plane lies at
-//   2  (z low, z high, reach, 0)                   origin + byte * cell
+//   2  (z low, z high, 0, 0)                       origin + byte * cell
 //   3  links of the four children: leaf << 31 | value; an inner node's index, or first triangle << 3 |
 //   triangles (0..4)
-// `reach` (float bits) of node 0 is the largest absolute coordinate of the scene, from which the traversal
-// takes its rounding margin. A child that is not there has low 255, high 0 and an empty leaf. Nodes lie in
+// A child that is not there has low 255, high 0 and an empty leaf. Nodes lie in
 // depth-first order, node 0 is the root and always there: an empty scene has a root without children.
 //
 // A triangle is 3 texels of RGBA32F, in leaf order: (p0, word), (p1, 0), (p2, 0). Its word is the primitive

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 
@@ -45,6 +46,28 @@ uint32_t append_median(Tree& tree, uint32_t first, uint32_t count) {
 
 }  // namespace
 
+float margin_of(const vec3* vertices) {
+  Box box;
+  for (int k = 0; k < 3; ++k) box.grow(vertices[k]);
+  double size = 0;
+  for (int axis = 0; axis < 3; ++axis) size = std::max(size, double{box.hi[axis]} - double{box.lo[axis]});
+  return static_cast<float>(0x1p-20 * size);
+}
+
+Box grown(const Box& box, float margin) {
+  Box out;
+  constexpr double k_most = std::numeric_limits<float>::max();
+  for (int axis = 0; axis < 3; ++axis) {
+    // What a double rounds of them lies far below the last place of the float.
+    const double lo = std::max(double{box.lo[axis]} - double{margin}, -k_most),
+                 hi = std::min(double{box.hi[axis]} + double{margin}, k_most);
+    const auto l = static_cast<float>(lo), h = static_cast<float>(hi);
+    out.lo[axis] = l > lo ? std::nextafter(l, -k_infinity) : l;
+    out.hi[axis] = h < hi ? std::nextafter(h, k_infinity) : h;
+  }
+  return out;
+}
+
 std::vector<Reference> references_of(const Triangles& triangles) {
   std::vector<Reference> references;
   references.reserve(triangles.count());
@@ -57,6 +80,7 @@ std::vector<Reference> references_of(const Triangles& triangles) {
     if (glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)) == glm::dvec3(0)) continue;
     Reference reference{{}, static_cast<uint32_t>(i)};
     reference.box.grow(a), reference.box.grow(b), reference.box.grow(c);
+    reference.box = grown(reference.box, margin_of(&a));
     references.push_back(reference);
   }
   return references;

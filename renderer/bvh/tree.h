@@ -3,8 +3,8 @@
 // device.
 //
 // A reference is a triangle's id with the box of that part of it that the leaf must answer for (smaller than
-// the triangle's own box where a builder has split it). The references under a node, inner or leaf, are
-// contiguous.
+// the triangle's own box where a builder has split it), with the margin of the triangle's test around it. The
+// references under a node, inner or leaf, are contiguous.
 #include <vector>
 
 #include "bvh/bvh.h"
@@ -28,9 +28,20 @@ struct Tree {
   std::vector<Reference> references;
 };
 
+/// How far beside a triangle, in metres along each axis, its test may accept a ray: 16 roundings of the
+/// largest side of its box. The test (embree/packed_triangles.h) rounds the vertices' places as the ray sees
+/// them by a few units in the last place of their distances from the ray's origin. What of that is in
+/// proportion to the distance of the hit is, along every axis, a relative error of the distance at which the
+/// ray meets the faces of a box, and traversals allow for it there; what is left is in proportion to the size
+/// of the triangle alone, wherever it lies and however large the scene is.
+float margin_of(const vec3* vertices);
+
+/// `box` grown by `margin` on all sides, rounded outwards.
+Box grown(const Box& box, float margin);
+
 /// One reference for every triangle that can be hit: those of no area (equal or collinear vertices) are left
-/// out, for they have no normal to shade with. Throws Error naming the first triangle with a vertex that is
-/// not finite.
+/// out, for they have no normal to shade with. Boxes are grown by margin_of() the triangle: a ray that the
+/// test accepts meets them. Throws Error naming the first triangle with a vertex that is not finite.
 std::vector<Reference> references_of(const Triangles& triangles);
 
 /// Levels of inner nodes that `count` references need at least: ceil(log2(ceil(count / k_max_leaf))).

@@ -12,12 +12,11 @@ namespace {
 
 using namespace shared;
 
-/// 2^-23 of the scene's size off the surface: enough for a bench, whose rays only need to be like a
-/// renderer's.
+/// Some roundings of the triangle's size and place off the surface: enough for a bench, whose rays only need
+/// to be like a renderer's.
 class Surface {
  public:
-  explicit Surface(const FlatFile& f)
-      : flat_(f.scene), step_(1e-6f * std::max(1e-3f, f.scene.scene_radius)) {}
+  explicit Surface(const FlatFile& f) : flat_(f.scene) {}
 
   vec3 normal(const Ray& ray, const Hit& hit) const {
     const vec3* p = &flat_.positions[3 * size_t(hit.prim)];
@@ -27,12 +26,11 @@ class Surface {
   vec3 point(const Hit& hit, vec3 n) const {
     const vec3* p = &flat_.positions[3 * size_t(hit.prim)];
     const vec3 at = (1 - hit.u - hit.v) * p[0] + hit.u * p[1] + hit.v * p[2];
-    return at + n * (step_ + 1e-6f * (std::abs(at.x) + std::abs(at.y) + std::abs(at.z)));
+    return at + n * (bvh::margin_of(p) + 1e-6f * (std::abs(at.x) + std::abs(at.y) + std::abs(at.z)));
   }
 
  private:
   const upload::FlatScene& flat_;
-  float step_;
 };
 
 class Random {

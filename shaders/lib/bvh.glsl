@@ -2,11 +2,12 @@
 //
 // What a device likes is chosen here and nowhere else:
 //   LUCERNA_FETCH_STORAGE  nodes and triangles from storage buffers (default: texel buffers, LUCERNA_FETCH_TEXEL)
+//   LUCERNA_COUNT_BVH      bvh_visits counts nodes visited and triangles tested
 //   LUCERNA_STACK_LOCAL    a stack in registers or private memory (default: in shared memory, LUCERNA_STACK_SHARED)
 // The kernel must have declared its local_size_x, at most 64, before including this file.
 //
 // No hit is lost to rounding. The triangle test is watertight; the boxes are tested so that they hold all that the
-// triangle test accepts: see bvh_margin(). And hits do not depend on the order of traversal: at equal distance the
+// triangle test accepts: see k_bvh_slack. And hits do not depend on the order of traversal: at equal distance the
 // lower primitive id wins.
 #ifndef LUCERNA_LIB_BVH
 #define LUCERNA_LIB_BVH
@@ -39,24 +40,22 @@ shared uint bvh_stack[k_bvh_stack * 64u];
 #define bvh_stack_at(i) bvh_stack[(i) * 64u + gl_LocalInvocationIndex]
 #endif
 
+#if LUCERNA_COUNT_BVH
+uint bvh_visits = 0u;
+#endif
+
 // ---- words ----
 const uint k_bvh_flag = 0x80000000u;  // of a link: leaf; of a triangle: non-opaque
 const uint k_bvh_prim = 0x1fffffffu;  // of a triangle's word, its id
 const uint k_bvh_done = 0xffffffffu;  // no link: no leaf has 7 triangles
 
 // ---- boxes ----
-// The shear moves a triangle by up to 5 units of rounding (2^-24) of its distance, and the planes of the boxes, computed
-// as origin * inverse + byte * (cell * inverse), lie wrong by up to 5 units of theirs; boxes are widened by as much. Both
-// distances are bounded by that from the world's origin. It also keeps a ray that runs within a box's face inside it:
-// the margin is larger than the last place of any coordinate.
-float bvh_margin(Ray ray, float reach) {
-  vec3 o = abs(ray.origin);
-  return 6e-7 * (reach + max(o.x, max(o.y, o.z)));
-}
-
-// Rounding of the three operations on each side of the slab test, 2 gamma(3) with gamma(n) = n 2^-24 / (1 - n 2^-24)
-// (T. Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013).
-const float k_bvh_slab = 1.0 + 3.6e-7;
+// The ray meets the faces of the boxes at origin * inverse + byte * (cell * inverse), a sum of two terms that may cancel. Each
+// is wrong by up to 5 roundings (2^-24) of its own size, and so is the distance at which the test finds a triangle, beyond
+// what the boxes hold (margin_of(), renderer/bvh/tree.h); distances that are compared err by 7. Faces are moved towards and
+// away from the ray's origin by 17 roundings of both terms. So what is allowed for grows with the box and with its distance
+// from the ray, never with the scene.
+const float k_bvh_slack = 1e-6;
 
 // The four bytes of a word, the lowest first.
 vec4 bvh_bytes(uint w) { return vec4(ivec4(uvec4(w, w >> 8, w >> 16, w >> 24) & 0xffu)); }
@@ -83,32 +82,32 @@ Hit bvh_trace(Ray ray, const uint query) {
   ShearedRay sheared = bvh_shear(ray);
   vec3 inverse = bvh_inverse(ray.direction);
   bvec3 back = lessThan(inverse, vec3(0.0));
-  // Where the ray starts as seen from the planes by which it enters and leaves: low planes move down by the margin,
-  // high ones up.
-  float margin = bvh_margin(ray, uintBitsToFloat(bvh_node_texel(2u).z));
-  vec3 aside = mix(vec3(margin), vec3(-margin), back);
-  vec3 near_origin = ray.origin + aside, far_origin = ray.origin - aside;
 
   uint link = ray.tmax > 0.0 ? 0u : k_bvh_done;
   uint depth = 0u;
   while (link != k_bvh_done) {
     while (link < k_bvh_flag) {
+#if LUCERNA_COUNT_BVH
+      ++bvh_visits;
+#endif
       uint at = link * 4u;
       uvec4 head = bvh_node_texel(at), xy = bvh_node_texel(at + 1u), z = bvh_node_texel(at + 2u);
       uvec4 links = bvh_node_texel(at + 3u);
       vec3 origin = uintBitsToFloat(head.xyz);
       vec3 step = uintBitsToFloat(uvec3(head.w << 23, head.w << 15, head.w << 7) & 0x7f800000u) * inverse;
-      vec3 near = (origin - near_origin) * inverse, far = (origin - far_origin) * inverse;
+      vec3 start = (origin - ray.origin) * inverse;
+      vec3 near = start - k_bvh_slack * abs(start), far = start + k_bvh_slack * abs(start);
+      vec3 step_near = step - k_bvh_slack * abs(step), step_far = step + k_bvh_slack * abs(step);
       // Near and far planes by the direction's sign. Compared as integers, which order as floats do unless both are
       // negative; then any of them says the same here, and no instruction is spent on NaNs, which cannot occur.
-      ivec4 x0 = floatBitsToInt(bvh_bytes(back.x ? xy.y : xy.x) * step.x + near.x);
-      ivec4 x1 = floatBitsToInt(bvh_bytes(back.x ? xy.x : xy.y) * step.x + far.x);
-      ivec4 y0 = floatBitsToInt(bvh_bytes(back.y ? xy.w : xy.z) * step.y + near.y);
-      ivec4 y1 = floatBitsToInt(bvh_bytes(back.y ? xy.z : xy.w) * step.y + far.y);
-      ivec4 z0 = floatBitsToInt(bvh_bytes(back.z ? z.y : z.x) * step.z + near.z);
-      ivec4 z1 = floatBitsToInt(bvh_bytes(back.z ? z.x : z.y) * step.z + far.z);
+      ivec4 x0 = floatBitsToInt(bvh_bytes(back.x ? xy.y : xy.x) * step_near.x + near.x);
+      ivec4 x1 = floatBitsToInt(bvh_bytes(back.x ? xy.x : xy.y) * step_far.x + far.x);
+      ivec4 y0 = floatBitsToInt(bvh_bytes(back.y ? xy.w : xy.z) * step_near.y + near.y);
+      ivec4 y1 = floatBitsToInt(bvh_bytes(back.y ? xy.z : xy.w) * step_far.y + far.y);
+      ivec4 z0 = floatBitsToInt(bvh_bytes(back.z ? z.y : z.x) * step_near.z + near.z);
+      ivec4 z1 = floatBitsToInt(bvh_bytes(back.z ? z.x : z.y) * step_far.z + far.z);
       ivec4 enter = max(max(x0, y0), max(z0, ivec4(0)));
-      vec4 leave = intBitsToFloat(min(min(x1, y1), min(z1, ivec4(floatBitsToInt(hit.t))))) * k_bvh_slab;
+      vec4 leave = intBitsToFloat(min(min(x1, y1), min(z1, ivec4(floatBitsToInt(hit.t)))));
       bvec4 inside = lessThanEqual(intBitsToFloat(enter), leave);
       ivec4 key = mix(ivec4(k_bvh_missed), (enter & ~3) | ivec4(0, 1, 2, 3), inside);
       // Sorted by a network of five comparators.
@@ -139,6 +138,9 @@ Hit bvh_trace(Ray ray, const uint query) {
     }
     if (link == k_bvh_done) break;
     uint first = (link & ~k_bvh_flag) >> 3, count = link & 7u;
+#if LUCERNA_COUNT_BVH
+    bvh_visits += count;
+#endif
     for (uint i = 0u; i < count; ++i) {
       uint at = (first + i) * 3u;
       vec4 p0 = bvh_triangle_texel(at), p1 = bvh_triangle_texel(at + 1u), p2 = bvh_triangle_texel(at + 2u);

@@ -146,6 +146,31 @@ TEST_CASE("no ray leaks through a closed mesh, on the device: 10^7 rays") {
   }
 }
 
+TEST_CASE("far things change neither hits nor work, on the device") {
+  Random random(26);
+  const Mesh near = soup(random, 20000, 0.05f, 0.001f);
+  const std::vector<Ray> rays = hard_rays(random, near, 20000, 0.05f);
+  const gpu::Kernel counting = kernel(Query::closest, false, {{"LUCERNA_COUNT_BVH", "1"}});
+  std::vector<Hit> alone(rays.size()), beside(rays.size());
+  const auto visits = [&](const std::vector<Hit>& hits) {  // of rays that do not go there
+    double sum = 0;
+    for (size_t i = 0; i < hits.size(); ++i)
+      if (alone[i].prim != shared::k_no_hit) sum += double(hits[i].u);
+    return sum;
+  };
+  ComputeTracer(near).trace(counting, rays, alone);
+  for (const Mesh& far_thing : far_things()) {
+    ComputeTracer(joined(near, far_thing)).trace(counting, rays, beside);
+    size_t differ = 0;
+    for (size_t i = 0; i < rays.size(); ++i)
+      differ +=
+          alone[i].prim != shared::k_no_hit && (alone[i].prim != beside[i].prim || alone[i].t != beside[i].t);
+    CHECK(differ == 0);
+    // A dome has boxes with the middle in them.
+    CHECK(visits(beside) < 1.1 * visits(alone) + 20.0 * double(rays.size()));
+  }
+}
+
 TEST_CASE("a tree that fills the stack") {
   // Triangles each as large as their distance, the farthest at the root: on each level an inner node with two
   // of them and the rest. The pair is larger than the rest, so that nodes of four children take in the pair

@@ -66,6 +66,26 @@ TEST_CASE("no ray leaks through a closed mesh: 10^7 rays") {
   }
 }
 
+TEST_CASE("far things change neither hits nor work") {
+  Random random(16);
+  const Mesh near = soup(random, 20000, 0.05f, 0.001f);
+  const std::vector<Ray> rays = hard_rays(random, near, 20000, 0.05f);
+  std::vector<Hit> alone(rays.size()), beside(rays.size());
+  const HostTracer first(near.view());
+  first.trace(Query::closest, rays, alone, nullptr, 20000, false);
+  for (const Mesh& far_thing : far_things()) {
+    const Mesh both = joined(near, far_thing);
+    const HostTracer second(both.view());
+    second.trace(Query::closest, rays, beside, nullptr, 20000, false);
+    size_t differ = 0;
+    for (size_t i = 0; i < rays.size(); ++i)
+      differ += alone[i].prim != shared::k_no_hit && std::memcmp(&alone[i], &beside[i], sizeof(Hit)) != 0;
+    CHECK(differ == 0);
+    // Each ray that goes on meets what is far away, and a dome has boxes with the middle in them.
+    CHECK(double(second.leaf_tests()) < 1.1 * double(first.leaf_tests()) + 2.0 * double(rays.size()));
+  }
+}
+
 TEST_CASE("queues, threads and dead rays") {
   Random random(14);
   const Mesh mesh = soup(random, 2000, 10, 2, vec3(0), 0.3f);

@@ -250,6 +250,28 @@ inline std::string judge(const Triangles& triangles, Query query, const Ray& ray
   return {};
 }
 
+/// Things that stand far away from a scene of metres, each alone: the tracers' work and hits near the origin
+/// must not depend on them.
+inline std::vector<Mesh> far_things() {
+  std::vector<Mesh> things;
+  for (const float away : {2e4f, 1e5f}) {
+    Mesh wall;  // as large as a house
+    const vec3 p(away, 0, 0), up(0, 10, 0), along(0, 0, 10);
+    wall.add(p, p + along, p + along + up), wall.add(p, p + along + up, p + up);
+    things.push_back(wall);
+    Mesh dome = icosphere(2, away);  // around all
+    things.push_back(dome);
+  }
+  return things;
+}
+
+/// `mesh`, and behind its triangles those of `more`.
+inline Mesh joined(Mesh mesh, const Mesh& more) {
+  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+  mesh.non_opaque.insert(mesh.non_opaque.end(), more.non_opaque.begin(), more.non_opaque.end());
+  return mesh;
+}
+
 /// A mesh with rays that are hard on it.
 struct Case {
   std::string name;
@@ -291,6 +313,23 @@ inline std::vector<Case> hard_cases(size_t rays_each) {
   Mesh one;
   one.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, true);
   add("one triangle", one, 2);
+  const Mesh near = soup(random, 300, 5, 1, vec3(0), 0.4f);
+  for (const Mesh& far_thing : far_things()) {
+    Mesh both = joined(near, far_thing);
+    std::vector<Ray> rays = hard_rays(random, near, rays_each / 4, 8);
+    const std::vector<Ray> across = hard_rays(random, both, rays_each / 4, 8);
+    rays.insert(rays.end(), across.begin(), across.end());
+    // Back from there.
+    for (size_t i = 0; i < rays_each / 4; ++i)
+      rays.push_back(towards(both.vertices.back() + random.in_box(3),
+                             near.vertices[random.below(static_cast<uint32_t>(near.vertices.size()))]));
+    cases.push_back({"beside something far away", std::move(both), std::move(rays)});
+  }
+  Mesh on_ground = near;
+  const float wide = 5e4f;
+  on_ground.add({-wide, 0.1f, -wide}, {wide, 0.3f, -wide}, {wide, 0.3f, wide});
+  on_ground.add({-wide, 0.1f, -wide}, {wide, 0.3f, wide}, {-wide, 0.1f, wide}, true);
+  add("on a very large ground", on_ground, 8);
   cases.push_back({"no triangle", Mesh{}, hard_rays(random, one, 100, 2)});
   return cases;
 }
@@ -318,7 +357,10 @@ inline std::vector<Closed> closed_meshes() {
   const vec3 far(1e4f, -1e4f, 5e3f);
   return {{icosphere(5, 2), vec3(0), 1},
           {star(random, 60, 2, 0.2f), vec3(0), 0.5f},
-          {icosphere(3, 3, far), far, 1}};
+          {icosphere(3, 3, far), far, 1},
+          {joined(star(random, 60, 2, 0.2f), far_things()[2]), vec3(0), 0.5f},
+          // Seen from far outside, whence its triangles are hardly larger than rounding.
+          {joined(icosphere(2, 1e5f), icosphere(4, 2)), vec3(0), 5e4f}};
 }
 
 /// Rays from inside a closed mesh, half of them straight at its edges and vertices, where leaks would be.

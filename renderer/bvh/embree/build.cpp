@@ -63,7 +63,9 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
   return static_cast<BuiltNode*>(leaf);
 }
 
-/// Boxes of the parts of a triangle on both sides of a plane, within the box it has already been cut to.
+/// Boxes of the parts of a triangle on both sides of a plane, within the box it has already been cut to. Each
+/// has the margin of the triangle's test around it, which keeps the parts of large triangles from becoming
+/// smaller than what can be known of where their rays go.
 void split(const RTCBuildPrimitive* primitive, unsigned axis, float position, RTCBounds* left,
            RTCBounds* right, void* user) {
   const Job& job = *static_cast<Job*>(user);
@@ -83,7 +85,9 @@ void split(const RTCBuildPrimitive* primitive, unsigned axis, float position, RT
   }
   low.hi[k] = high.lo[k] = position;
   const Box whole = box_of(*primitive);
-  const auto clip = [&whole](const Box& part) {
+  const float margin = margin_of(p);
+  const auto clip = [&](const Box& exact) {
+    const Box part = grown(exact, margin);
     const Box clipped{glm::max(part.lo, whole.lo), glm::min(part.hi, whole.hi)};
     return clipped.empty() ? whole : clipped;
   };

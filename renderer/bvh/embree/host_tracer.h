@@ -1,5 +1,5 @@
 #pragma once
-// The `host` tracer: Embree on the mapped queues, for devices that are the CPU itself.
+// The `host` tracer: the processor on the mapped queues, for devices that are the CPU itself.
 #include <memory>
 #include <span>
 
@@ -7,10 +7,11 @@
 
 namespace lucerna::bvh {
 
-/// Answers the same queries as shaders/trace.comp, on the same rays and hits. Embree finds the leaves (its
-/// robust flag on); the triangles in them meet our own watertight test, because Embree's lets 1 in 150 of the
-/// rays aimed exactly at a vertex through a closed mesh. It costs no time: ours takes the leaf of four at
-/// once and needs no filter for ties.
+/// Answers the same queries as shaders/trace.comp, on the same rays and hits. Embree builds the tree; the
+/// walk is our own (wide_tree.h), because Embree's own over user geometry is not conservative and its
+/// triangles' test lets 1 in 150 of the rays aimed exactly at a vertex through a closed mesh. Whatever is
+/// rounded on the way is rounded in proportion to a box, a triangle or its distance from the ray, so that a
+/// thing far away changes neither speed nor hits elsewhere.
 ///
 /// The test is the shader's, operation by operation, so the two tracers agree bit for bit on devices that
 /// divide with correct rounding (lavapipe does). On others they may differ
@@ -21,7 +22,7 @@ namespace lucerna::bvh {
 /// Where the distances computed are equal, both take the lower primitive id.
 class HostTracer {
  public:
-  /// Builds Embree's own trees (robust flag on); copies what it needs of `triangles`. `threads` trace, the
+  /// Builds its trees and copies what it needs of `triangles`. `threads` trace, the
   /// caller of trace() included; 0: one a core. Throws Error: out of memory.
   explicit HostTracer(const Triangles& triangles, int threads = 0);
   ~HostTracer();
@@ -37,8 +38,10 @@ class HostTracer {
              const uint32_t* queue, uint32_t count, bool coherent) const;
 
   int threads() const;
-  /// Bytes of Embree's trees and our copies of the geometry.
+  /// Bytes of the trees and copies of the geometry.
   uint64_t bytes() const;
+  /// Tests of a ray against a leaf so far: what tracing costs, whatever the machine. For tests and benches.
+  uint64_t leaf_tests() const;
 
  private:
   struct Impl;

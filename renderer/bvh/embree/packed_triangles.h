@@ -41,6 +41,7 @@ struct ShearedRay {
   float limit;                            ///< hits beyond it do not count
   uint32_t best_prim = shared::k_no_hit;  ///< hit at `limit`, if any: an equal distance needs a lower id
   int kx, ky, kz;                         ///< kz: the axis in which the direction is largest
+  float along;                            ///< |direction| in that axis
 
   explicit ShearedRay(const shared::Ray& ray) : limit(std::nextafter(ray.tmax, 0.0f)) {
     const vec3& d = ray.direction;
@@ -48,11 +49,24 @@ struct ShearedRay {
     kz = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
     kx = kz == 2 ? 0 : kz + 1;
     ky = kx == 2 ? 0 : kx + 1;
+    along = std::abs(d[kz]);
     shear[2] = 1.0f / d[kz];
     shear[0] = d[kx] * shear[2], shear[1] = d[ky] * shear[2];
     origin[0] = ray.origin[kx], origin[1] = ray.origin[ky], origin[2] = ray.origin[kz];
   }
   ShearedRay() = default;
+
+  /// The direction of the line that the test follows: unlike ray.direction's it has no rounding of the shear
+  /// against it. Its largest component is 1 or -1.
+  vec3 direction() const {
+    const float forward = shear[2] < 0 ? -1.0f : 1.0f;
+    vec3 d;
+    d[kx] = forward * shear[0], d[ky] = forward * shear[1], d[kz] = forward;
+    return d;
+  }
+  /// A distance along that direction within which every triangle lies whose t is at most `t`, in spite of t's
+  /// rounding.
+  float reach(float t) const { return 1.000002f * (t * along); }
 };
 
 /// The lanes whose mask is set, as bits.
