@@ -224,6 +224,9 @@ Device::Device(const DeviceOptions& options) : handles_(std::make_unique<Handles
   h.info = select(devices, options.selector);
   h.physical = physical[h.info.index];
   describe(h.instance, h.physical, h.info.index, &h.queue_family);
+  if (options.most_storage_buffer > 0)
+    h.info.limits.max_storage_buffer =
+        std::min(h.info.limits.max_storage_buffer, options.most_storage_buffer);
 
   const bool atomic_float =
       contains(extensions(h.instance, h.physical), VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME);

@@ -56,6 +56,8 @@ struct DeviceOptions {
   bool validation = false;
   /// false: device memory is never mapped, not even where it could be, as on a GPU. For tests of the copies.
   bool map_device_memory = true;
+  /// Not 0: a storage buffer reaches no further than that, in bytes. For tests of what outgrows it.
+  uint64_t most_storage_buffer = 0;
 };
 
 struct Handles;  // gpu/vulkan.h

@@ -22,7 +22,7 @@ film::View Renderer::view() const {
     if (settings_.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
   v.curve = uint32_t(settings_.choice("film.tone_curve"));
   v.exposure = float(std::exp2(settings_.real("film.ev")));
-  v.scale = 2 * world_.flat.scene_radius;
+  v.scale = 2 * world_.flat.core_radius;
   v.heat = heat_scale(v.layer);
   if (settings_.boolean("overlay.tiles")) v.tiles = tile_side();
   return v;

@@ -70,7 +70,9 @@ LightSource::LightSource(gpu::Device& device, const upload::FlatLights& lights, 
             .sun_pmf = lights.light_alias.empty() ? 0 : lights.light_alias.back().z,
             .casters = 0,
             .groups = 0,
-            .pad0 = 0};
+            .core_centre = scene_centre,
+            .core_radius = 1.0001f * scene_radius,
+            .core_share = 0};
   if (lights.sky_power > 0) {
     table_.sky = uint32_t(powers_.size());
     powers_.push_back(lights.sky_power);
@@ -85,6 +87,14 @@ LightSource::LightSource(gpu::Device& device, const upload::FlatLights& lights, 
   alias_ = texels(device, "table of emission", alias);
   for (gpu::Buffer* b : {&strata_, &boxes_, &groups_, &members_}) *b = texels(device, "aimed emission", {});
   block_ = gpu::Buffer(device, {.name = "emission", .bytes = sizeof table_});
+  block_.write(&table_, sizeof table_);
+}
+
+LightSource::LightSource(gpu::Device& device, const upload::FlatScene& flat)
+    : LightSource(device, flat, flat.scene_centre, flat.scene_radius) {
+  if (flat.core_radius == flat.scene_radius) return;
+  table_.core_centre = flat.core_centre, table_.core_radius = 1.0001f * flat.core_radius;
+  table_.core_share = 0.5f;
   block_.write(&table_, sizeof table_);
 }
 

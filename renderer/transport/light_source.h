@@ -30,6 +30,8 @@ class LightSource {
   /// Throws Error: no memory. Nothing is aimed.
   LightSource(gpu::Device& device, const upload::FlatLights& lights, const vec3& scene_centre,
               float scene_radius);
+  /// Half of what comes from afar begins in front of the scene's core, where that is not the scene.
+  LightSource(gpu::Device& device, const upload::FlatScene& flat);
   /// Paths are aimed at these boxes, in equal shares but for `unaimed` of stratum 0 (0 < unaimed <= 1). None,
   /// or no light: nothing is aimed. Throws Error: no memory.
   void aim(gpu::Device& device, const upload::FlatScene& flat, std::span<const Box> casters, double unaimed);

@@ -54,12 +54,24 @@ Sampler make_light_sampler(uint index, uint round, uint seed) {
   return s;
 }
 
-// A point of the disk across `direction` that the whole scene can be seen through, before the scene.
+// A point of the disk across `direction` that the whole scene can be seen through, before the scene. Where something
+// stands far away a share of the points lies on the disk of the rest, which would get next to none.
 vec3 emission_disk(vec3 direction, vec2 u) {
   vec3 t, b;
   make_basis(direction, t, b);
+  bool core = u.x < emission.core_share;
+  u.x = core ? u.x / emission.core_share : (u.x - emission.core_share) / (1.0 - emission.core_share);
   vec2 d = sample_disk(u);
-  return emission.centre + emission.radius * (d.x * t + d.y * b - direction);
+  if (!core) return emission.centre + emission.radius * (d.x * t + d.y * b - direction);
+  vec3 through = emission.core_centre + emission.core_radius * (d.x * t + d.y * b);
+  return through - direction * (dot(through - emission.centre, direction) + emission.radius);
+}
+// Its density there, per area.
+float emission_disk_pdf(vec3 direction, vec3 origin) {
+  float pdf = (1.0 - emission.core_share) / (k_pi * emission.radius * emission.radius);
+  vec3 off = origin - emission.core_centre, across = off - dot(off, direction) * direction;
+  bool core = emission.core_share > 0.0 && dot(across, across) <= emission.core_radius * emission.core_radius;
+  return core ? pdf + emission.core_share / (k_pi * emission.core_radius * emission.core_radius) : pdf;
 }
 
 // The same where the path is to pass through a box.
@@ -176,7 +188,6 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   e.group = group_of_light(at, sky);
 #endif
   uint kind = sky ? k_light_environment : floatBitsToUint(a.w);
-  float disk = k_pi * emission.radius * emission.radius;
   // Point: evenly over the sphere.
   float z = 1.0 - 2.0 * u_direction.y, r = sqrt(max(0.0, 1.0 - z * z)), phi = 2.0 * k_pi * u_direction.x;
   e.origin = a.xyz;
@@ -201,9 +212,9 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   if (kind == k_light_directional) {
     e.direction = c.xyz;
     e.origin = emission_from_afar(e.direction, u_place, stratum > 0u, box);
-    e.pdf_place = 1.0 / disk;
+    e.pdf_place = emission_disk_pdf(e.direction, e.origin);
     e.pdf_direction = 1.0;
-    spread = disk;
+    spread = 1.0 / e.pdf_place;
   }
 #if LUCERNA_EMISSIVE
   if (kind == k_light_triangle) {
@@ -259,8 +270,8 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     e.radiance = luminance(emitted);
     e.direction = -towards;
     e.origin = emission_from_afar(e.direction, u_place, stratum > 0u, box);
-    e.pdf_place = 1.0 / disk;
-    spread = e.pdf_direction > 0.0 ? disk / e.pdf_direction : 0.0;
+    e.pdf_place = emission_disk_pdf(e.direction, e.origin);
+    spread = e.pdf_direction > 0.0 ? 1.0 / (e.pdf_place * e.pdf_direction) : 0.0;
   }
 #endif
   e.flux = emitted * (spread / max(e.pmf, 1e-30));

@@ -28,8 +28,9 @@ uint barycentric_pack(Hit hit) {
   return q.x | q.y << 16;
 }
 
-// Within which a photon at x counts; changes by no more than `slope` a metre.
-float photon_radius(vec3 x) { return clamp(photons.base + photons.slope * distance(x, photons.eye), photons.least, photons.most); }
+// Within which a photon at x counts; changes by no more than `slope` a metre, and where rounding bounds it by
+// k_photon_least_radius.
+float photon_radius(vec3 x) { return photon_radius_of(photons.base + photons.slope * distance(x, photons.eye), photons.most, x); }
 
 // The level whose cells are as wide as a photon of that radius needs them.
 int photon_level(float radius) { return int(ceil(2.0 * log2(2.0 * k_photon_slack * radius))); }
@@ -47,6 +48,6 @@ uint photon_entry(ivec3 cell, int level) { return photon_entry_of(cell, level, p
 
 // By whose radii importance was noted.
 float importance_radius(vec3 x) {
-  return clamp(photons.importance_base + photons.importance_slope * distance(x, photons.importance_eye), photons.least, photons.most);
+  return photon_radius_of(photons.importance_base + photons.importance_slope * distance(x, photons.importance_eye), photons.most, x);
 }
 #endif

@@ -14,8 +14,8 @@ layout(scalar) readonly buffer PhotonRadiances { float photon_radiances[]; };
 layout(scalar) writeonly buffer PhotonWorths { PhotonWorth photon_worths[]; };
 
 void main() {
-  uint i = global_index();
-  if (i >= push.count) return;
+  uint to = global_index(), i = push.first + to;
+  if (to >= push.count) return;
   vec4 a = texelFetch(photon_texels, int(k_photon_texels * i)), b = texelFetch(photon_texels, int(k_photon_texels * i + 1u));
   uvec4 entry = texelFetch(photon_sorted, int(i));  // number, entry of the table, place in the list
   uint id = entry.x, part = floatBitsToUint(b.w) >> k_photon_part_shift & 3u;
@@ -33,7 +33,7 @@ void main() {
   bool told = photons.tells_radiance != 0u && part == k_photon_caustic_part;
   vec3 front = facet_unpack(floatBitsToUint(b.w) & k_photon_facet);
   bool lit_front = dot(photon_direction(floatBitsToUint(a.w)), front) > 0.0;
-  photon_worths[i] = PhotonWorth(stratum, light, id, worth, a.xyz, importance, told ? luminance(b.rgb) : 0.0,
-                                 told ? photon_radiances[entry.z] : 0.0, facet_pack(lit_front ? front : -front),
-                                 (floatBitsToUint(b.w) & k_photon_unreachable) != 0u ? 1u : 0u);
+  photon_worths[to] = PhotonWorth(stratum, light, id, worth, a.xyz, importance, told ? luminance(b.rgb) : 0.0,
+                                  told ? photon_radiances[entry.z] : 0.0, facet_pack(lit_front ? front : -front),
+                                  (floatBitsToUint(b.w) & k_photon_unreachable) != 0u ? 1u : 0u);
 }

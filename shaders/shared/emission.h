@@ -13,7 +13,9 @@ struct EmissionTable {
   float sun_pmf; ///< of the sun in light_alias, where the sky is apart
   uint casters;  ///< boxes that paths are aimed at; 0: none is
   uint groups;   ///< of lights
-  uint pad0;
+  vec3 core_centre;   ///< ... of what lies together, where something else stands far away (FlatScene::core_radius)
+  float core_radius;
+  float core_share;   ///< of what comes from afar, that begins on a disk of that radius; 0: nothing stands far away
 };
 LUCERNA_CONST uint k_no_sky_entry = 0xffffffffu;
 

@@ -149,7 +149,7 @@ CacheView CacheSolver::view(const Picture& picture) const {
       ray_routes_.traced);
   view.records_enabled = record_routes_.parts;
   view.width = picture.width, view.height = picture.height;
-  view.scene_radius = picture.flat.scene_radius;
+  view.scene_radius = picture.flat.core_radius;
   view.dark = !picture.flat.effects.lights;
   return view;
 }

@@ -28,14 +28,15 @@ std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& 
   return std::make_unique<LightTracingSolver>(device, compiler, task);
 }
 
-/// What sums are counted in: so little of what a path brings that lies as far away as the scene is wide that
-/// one that lies a hundred thousand times nearer still fits.
+/// What sums are counted in: so little of what a path brings that lies as far away as the scene's core is
+/// wide that one that lies thirty thousand times nearer still fits, and one that lies as many times farther
+/// away is some units.
 float unit_of(const Picture& picture, double power, uint32_t paths) {
   const Frame& f = picture.frame;
   const double area = 4.0 * double(glm::length(f.camera_right)) * double(glm::length(f.camera_up)) /
                       (double(picture.width) * picture.height);
-  const double far = f.orthographic ? 1.0 : double(picture.flat.scene_radius);
-  const double unit = std::exp2(-28) * power / (double(paths) * area * far * far);
+  const double far = f.orthographic ? 1.0 : double(picture.flat.core_radius);
+  const double unit = std::exp2(-34) * power / (double(paths) * area * far * far);
   return std::isfinite(unit) && unit > 1e-37 ? float(std::min(unit, 1e30)) : 1e-37f;
 }
 
@@ -78,8 +79,7 @@ bool LightTracingSolver::serves(const Task& task) const {
 
 void LightTracingSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   if (!lit_ || spoils.light || spoils.places) {
-    lights_ =
-        transport::LightSource(device_, picture.flat, picture.flat.scene_centre, picture.flat.scene_radius);
+    lights_ = transport::LightSource(device_, picture.flat);
     lit_ = true, casters_set_ = false;
   }
   splats_.restart();

@@ -13,8 +13,7 @@ using namespace shared;
 
 namespace {
 
-constexpr int k_morton_bits = 57;
-constexpr uint32_t k_axis_cells = 1u << (k_morton_bits / 3);
+constexpr int k_morton_bits = 96;
 /// A piece is cut where each quarter has about as many photons as one must have.
 constexpr uint32_t k_quarters = 4;
 /// Where so many photons that decide are to be expected by what lies around, and there is none, the surface
@@ -50,9 +49,11 @@ SideOrder order_sides(const upload::FlatScene& flat, const std::vector<bool>& di
   const auto triangles = uint32_t(flat.triangles.size());
   order.areas.resize(triangles), order.longest.resize(triangles);
   order.places.assign(2 * size_t{triangles}, k_no_place);
-  order.across = std::max(2 * flat.scene_radius, 1e-30f);
-  const vec3 corner = flat.scene_centre - vec3(flat.scene_radius);
-  std::vector<std::pair<uint64_t, uint32_t>> all;
+  const vec3 corner = glm::abs(flat.scene_centre) + vec3(flat.scene_radius);
+  int exponent = 0;
+  std::frexp(std::max({corner.x, corner.y, corner.z, 1e-30f}), &exponent);
+  order.across = std::ldexp(1.0f, exponent + 1);
+  std::vector<std::pair<SideOrder::Key, uint32_t>> all;
   for (uint32_t t = 0; t < triangles; ++t) {
     if (!diffuse[flat.triangles[t].w & k_triangle_material_mask] || flat.non_opaque[t] != 0) continue;
     const vec3* p = &flat.positions[3 * size_t{t}];
@@ -62,14 +63,19 @@ SideOrder order_sides(const upload::FlatScene& flat, const std::vector<bool>& di
     order.areas[t] = 0.5f * twice;
     order.longest[t] =
         std::max({glm::distance(p[0], p[1]), glm::distance(p[1], p[2]), glm::distance(p[2], p[0])});
-    const vec3 at = ((p[0] + p[1] + p[2]) / 3.0f - corner) / order.across * float(k_axis_cells);
-    uint64_t code = 0;
-    for (int a = 0; a < 3; ++a)
-      code |= spread(uint64_t(std::clamp(at[a], 0.0f, float(k_axis_cells - 1)))) << a;
+    const glm::dvec3 at = glm::dvec3((p[0] + p[1] + p[2]) / 3.0f) / double(order.across) + 0.5;
+    SideOrder::Key code;
+    for (int a = 0; a < 3; ++a) {
+      const auto cell = uint64_t(std::clamp(std::ldexp(at[a], 32), 0.0, std::ldexp(1.0, 32) - 1));
+      code.high |= spread(cell >> 16) << a, code.low |= spread(cell & 0xffffu) << a;
+    }
     const bool flipped = (flat.triangles[t].w & k_triangle_flipped) != 0;
     const vec3 front = (flipped ? -across : across) / twice;
     for (uint32_t back = 0; back < 2; ++back)
-      all.emplace_back(uint64_t{facing(back != 0 ? -front : front)} << k_morton_bits | code, t << 1 | back);
+      all.emplace_back(
+          SideOrder::Key{uint64_t{facing(back != 0 ? -front : front)} << (k_morton_bits / 2) | code.high,
+                         code.low},
+          t << 1 | back);
   }
   std::sort(all.begin(), all.end());
   order.sides.reserve(all.size()), order.keys.reserve(all.size());
@@ -217,14 +223,16 @@ void IrradianceCellsBuilder::cluster(uint32_t first, uint32_t last, int bit, Res
     rest.ranges.emplace_back(first, last), rest.deciding += decided_[last] - decided_[first];
   };
   if (first == last) return;
-  const double across = double(order_.across) / double(1u << std::min(19, (k_morton_bits - 1 - bit) / 3));
+  const double across = std::ldexp(double(order_.across), -((k_morton_bits - 1 - bit) / 3));
   // Nothing in here has enough of what is left over.
   if (decided_[last] - decided_[first] < nearest_ || bit < 0) return leave();
-  const uint64_t key = order_.keys[first] >> bit | 1;
+  SideOrder::Key key = order_.keys[first].above(bit);
+  (bit >= 48 ? key.high : key.low) |= 1;
   const auto* begin = order_.keys.data();
-  const auto middle = uint32_t(std::lower_bound(begin + first, begin + last, key,
-                                                [&](uint64_t a, uint64_t b) { return a >> bit < b; }) -
-                               begin);
+  const auto middle = uint32_t(
+      std::lower_bound(begin + first, begin + last, key,
+                       [&](const SideOrder::Key& a, const SideOrder::Key& b) { return a.above(bit) < b; }) -
+      begin);
   Rest left;
   cluster(first, middle, bit - 1, left);
   cluster(middle, last, bit - 1, left);
@@ -289,8 +297,8 @@ void IrradianceCellsBuilder::add_map(uint32_t lit_by) {
   // Sides that face alike.
   Rest none;
   for (uint32_t from = 0, to = 0; from < order_.keys.size(); from = to) {
-    while (to < order_.keys.size() && order_.keys[to] >> k_morton_bits == order_.keys[from] >> k_morton_bits)
-      ++to;
+    const SideOrder::Key faces = order_.keys[from].above(k_morton_bits);
+    while (to < order_.keys.size() && order_.keys[to].above(k_morton_bits) == faces) ++to;
     cluster(from, to, k_morton_bits - 1, none);
   }
 }

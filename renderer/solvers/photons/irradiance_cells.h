@@ -8,6 +8,7 @@
 // of other surfaces. Pieces are chosen by one half of the photons and lit by the other, so that what a piece
 // has does not hang on why it is one. What has too few photons even together with what lies around stays
 // unknown.
+#include <compare>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,17 @@ namespace lucerna::photons {
 /// Sides of triangles on which irradiance is looked for, so that those near each other that face alike stand
 /// together. Without what is partly transparent, whose area is not known.
 struct SideOrder {
+  /// 6 bits which way a side faces, then the 96 of the Morton code of its centre: 48 and 48. The code's cubes
+  /// are cut at the world's origin and in halves from there, so that what lies far away cuts no other cubes
+  /// here, and 32 bits an axis make them small everywhere.
+  struct Key {
+    uint64_t high = 0, low = 0;
+    friend bool operator==(const Key&, const Key&) = default;
+    friend auto operator<=>(const Key&, const Key&) = default;
+    Key above(int bit) const { return bit >= 48 ? Key{high >> (bit - 48), 0} : Key{high, low >> bit}; }
+  };
   std::vector<uint32_t> sides;   ///< triangle << 1, and 1: its back
-  std::vector<uint64_t> keys;    ///< grow: 6 bits which way it faces, 57 bits the Morton code of its centre
+  std::vector<Key> keys;         ///< grow
   std::vector<float> areas;      ///< [m^2], a triangle each
   std::vector<float> longest;    ///< edge of a triangle [m]
   std::vector<uint32_t> places;  ///< a side each: where it stands in `sides`; k_no_place: nowhere

@@ -4,6 +4,7 @@
 #include <bit>
 #include <utility>
 
+#include "base/log.h"
 #include "base/timer.h"
 
 namespace lucerna::photons {
@@ -84,9 +85,12 @@ std::vector<PhotonWorth> PhotonMap::worths(transport::Wavefront& wavefront,
   const uint32_t count = complete_ ? lookup_.count : 0;
   if (count == 0) return {};
   if (!worth_) worth_ = gpu::Kernel(device_, compiler_, "photons/worth.comp", scene_defines_);
+  const uint32_t at_once = std::min(
+      count,
+      uint32_t(std::min<uint64_t>(device_.info().limits.max_storage_buffer / sizeof(PhotonWorth), ~0u)));
   gpu::make_room(
       device_, worths_,
-      {.name = "worths of photons", .bytes = count * sizeof(PhotonWorth), .memory = gpu::Memory::host});
+      {.name = "worths of photons", .bytes = at_once * sizeof(PhotonWorth), .memory = gpu::Memory::host});
   gpu::Resources r;
   wavefront.bind_paths(r);
   bind(r);
@@ -94,21 +98,26 @@ std::vector<PhotonWorth> PhotonMap::worths(transport::Wavefront& wavefront,
   r.set("photon_sorted", cells_.sorted());
   r.set("PhotonRadiances", radiances_);
   r.set("PhotonWorths", worths_);
-  wavefront.stream().dispatch(worth_, r,
-                              PhotonWorthPush{count, transport::LightEmitter::stratum_step(figures_.paths)},
-                              gpu::groups_for(count, 64), "photon map");
-  wavefront.account_stages();
-  const auto* found = static_cast<const PhotonWorth*>(worths_.mapped());
-  return {found, found + count};
+  std::vector<PhotonWorth> all;
+  for (uint32_t first = 0; first < count; first += at_once) {
+    const uint32_t n = std::min(at_once, count - first);
+    wavefront.stream().dispatch(
+        worth_, r, PhotonWorthPush{n, transport::LightEmitter::stratum_step(figures_.paths), first},
+        gpu::groups_for(n, 64), "photon map");
+    wavefront.account_stages();
+    const auto* found = static_cast<const PhotonWorth*>(worths_.mapped());
+    all.insert(all.end(), found, found + n);
+  }
+  return all;
 }
 
 void PhotonMap::clear() {
   lookup_ = {};
-  lookup_.least = lookup_.most = 1;
   std::fill(std::begin(lookup_.component), std::end(lookup_.component), k_photon_no_components);
   write_lookup();
   figures_ = {};
   complete_ = tracing_ = false;
+  fits_ = ~0u;
 }
 
 void PhotonMap::write_lookup() {
@@ -118,7 +127,7 @@ void PhotonMap::write_lookup() {
   all.tells_surface = noted_.tells_surface;
   all.unreachable_parts = noted_.unreachable_parts, all.skips_unreachable = noted_.skips_unreachable;
   // Where there has been no round, of what photons are stored by.
-  if (all.most <= all.least) all.least = noted_.least, all.most = noted_.most;
+  if (all.most <= 0) all.most = noted_.most;
   if (notes_held_) all.importance_mask = 0, all.lookups = all.vertices = 0;
   block_.write(&all, sizeof all);
 }
@@ -135,7 +144,7 @@ void PhotonMap::store_by_importance(bool on) {
 void PhotonMap::store_by_importance_of(const PhotonMap& other) {
   const PhotonFrame& n = other.noted_;
   noted_.eye = n.eye, noted_.slope = n.slope, noted_.base = n.base;
-  noted_.least = n.least, noted_.most = n.most;
+  noted_.most = n.most;
   noted_.importance_counts = n.importance_counts;
   importance_of_ = &other;
   write_lookup();
@@ -174,32 +183,48 @@ uint64_t PhotonMap::bytes() const {
 bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSource& lights,
                       const Round& round, const Frame& picture, uint32_t enabled,
                       const std::function<bool()>& cancel) {
-  if (!tracing_ || next_.round != round.number || next_.paths != round.paths) {
-    next_ = {.round = round.number, .paths = round.paths, .grown = figures_.grown};
-    tracing_ = true;
-    traced_ = stored_ = 0;
-  }
-  if (lights.power() > 0 && traced_ < round.paths) {
-    const uint32_t count = std::min(wavefront.slots(), round.paths - traced_);
+  Round fitting = round;
+  for (;;) {
+    fitting.paths = std::min({round.paths, k_most_light_paths, fits_});
+    if (!tracing_ || next_.round != fitting.number || next_.paths != fitting.paths) {
+      next_ = {
+          .round = fitting.number, .paths = fitting.paths, .grown = figures_.grown, .wanted = round.paths};
+      tracing_ = true;
+      traced_ = stored_ = 0;
+    }
+    if (lights.power() <= 0 || traced_ >= fitting.paths) break;
+    const uint32_t count = std::min(wavefront.slots(), fitting.paths - traced_);
     const Timer timer;
-    if (!trace_batch(wavefront, lights, round, count, picture, enabled, cancel)) return false;
+    const Went went = trace_batch(wavefront, lights, fitting, count, picture, enabled, cancel);
+    if (went == Went::cancelled) return false;
+    if (went == Went::too_many) {
+      // Half as many paths, from the first: how many fit depends on the round alone, not on its batches.
+      fits_ = std::max(1u, fitting.paths / 2);
+      tracing_ = false;
+      log::warning(
+          "photons: {} light paths leave more than the {} photons that one buffer of this device holds; "
+          "{} are traced instead",
+          fitting.paths, most_photons(), fits_);
+      continue;
+    }
     next_.trace_s += timer.seconds();
     traced_ += count;
-    if (traced_ < round.paths) return true;
+    if (traced_ < fitting.paths) return true;
+    break;
   }
-  build(wavefront, round);
+  build(wavefront, fitting);
   return true;
 }
 
-bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
-                            const Round& round, uint32_t count, const Frame& picture, uint32_t enabled,
-                            const std::function<bool()>& cancel) {
+PhotonMap::Went PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
+                                       const Round& round, uint32_t count, const Frame& picture,
+                                       uint32_t enabled, const std::function<bool()>& cancel) {
   const auto short_of = [&](bool told, const gpu::Buffer& buffer, uint64_t bytes) {
     return told && buffer.bytes() < bytes * capacity_;
   };
   if (!list_ || short_of(noted_.tells_radiance != 0, radiances_, 4) ||
       short_of(noted_.tells_surface != 0, on_, sizeof(PhotonSurface)))
-    grow(wavefront, std::max(k_first_capacity, capacity_));
+    grow(wavefront, std::min(most_photons(), std::max(k_first_capacity, capacity_)));
   const transport::LightVertexWork work{
       .vertex = &trace_, .stage = "photon vertex", .bind = [&](gpu::Resources& r) { bind_list(r); }};
   for (;;) {
@@ -208,7 +233,7 @@ bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::Li
     counts_.write(counts, sizeof counts);
     const transport::TransportStats before = wavefront.stats();
     if (!emitter_.trace(wavefront, lights, round, traced_, count, work, picture, enabled, cancel))
-      return false;
+      return Went::cancelled;
     counts_.read(counts, sizeof counts);
     if (counts[k_photons_stored] <= capacity_) {
       stored_ = counts[k_photons_stored];
@@ -218,8 +243,9 @@ bool PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::Li
       const transport::TransportStats& now = wavefront.stats();
       next_.rays += now.rays - before.rays, next_.roulette += now.roulette - before.roulette;
       next_.depth += now.depth - before.depth;
-      return true;
+      return Went::on;
     }
+    if (counts[k_photons_stored] > most_photons()) return Went::too_many;
     grow(wavefront, counts[k_photons_stored]);
     ++next_.grown;
   }
@@ -236,16 +262,12 @@ void PhotonMap::bind_list(gpu::Resources& r) const {
   r.set("PhotonSurfaces", on_);
 }
 
+uint32_t PhotonMap::most_photons() const {
+  return uint32_t(std::min<uint64_t>(device_.info().limits.max_storage_buffer / sizeof(Photon), 1u << 28));
+}
+
 void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
-  const uint64_t most =
-      std::min<uint64_t>(device_.info().limits.max_storage_buffer / sizeof(Photon), ~0u >> 1);
-  if (needed > most)
-    throw_error(
-        "photons.per_round",
-        "a round leaves more than {} photons, the most that this device can hold in one array; ask for "
-        "fewer light paths a round",
-        most);
-  const auto capacity = uint32_t(std::min<uint64_t>(most, std::bit_ceil(needed)));
+  const auto capacity = uint32_t(std::min(uint64_t{most_photons()}, std::bit_ceil(uint64_t{needed})));
   gpu::Buffer list = texels(device_, "photons of a round", uint64_t{capacity} * sizeof(Photon));
   gpu::Buffer ids = texels(device_, "numbers of photons", uint64_t{capacity} * 4);
   const bool radiance = noted_.tells_radiance != 0, surface = noted_.tells_surface != 0;

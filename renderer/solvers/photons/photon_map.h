@@ -5,6 +5,7 @@
 // Bit-identical, however threads run and however many paths are in flight: photons are stored in whatever
 // order they come, and the sort that puts them into their cells also puts those of one cell into the order of
 // their paths' numbers.
+#include <algorithm>
 #include <array>
 #include <functional>
 
@@ -29,7 +30,8 @@ struct RoundFigures {
   std::array<uint32_t, paths::k_part_count> by_part{};  ///< photons
   uint64_t rays = 0;                                    ///< that its paths consist of
   uint64_t roulette = 0, depth = 0;                     ///< paths ended by roulette, by the most events
-  uint32_t grown = 0;               ///< batches traced again because there was no room, so far
+  uint32_t grown = 0;   ///< batches traced again because there was no room, so far
+  uint32_t wanted = 0;  ///< paths that were asked for; more than `paths` where a buffer could not hold theirs
   double trace_s = 0, build_s = 0;  ///< wall time of its tracing, and of putting it in order
 };
 
@@ -45,7 +47,7 @@ class PhotonMap {
   /// Lookups find nothing, until the next round is complete.
   void clear();
   /// The next round is to begin anew.
-  void restart() { tracing_ = false; }
+  void restart() { tracing_ = false, fits_ = ~0u; }
 
   /// One batch of the round, as many paths as the wavefront has slots; with the last the round is complete.
   /// The wavefront's frame is then `picture`, of `enabled` components, again. False when it was cancelled: it
@@ -79,6 +81,8 @@ class PhotonMap {
   /// The round that lookups read; false: none.
   bool complete() const { return complete_; }
   uint32_t round() const { return figures_.round; }
+  /// Of so many paths those that are traced, as far as is known: fewer where their photons outgrow a buffer.
+  uint32_t fitting(uint32_t paths) const { return std::min(paths, fits_); }
   /// Paths of the round under way.
   uint32_t traced() const { return tracing_ ? traced_ : 0; }
   const RoundFigures& figures() const { return figures_; }
@@ -93,10 +97,12 @@ class PhotonMap {
   uint64_t bytes() const;
 
  private:
-  bool trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights, const Round& round,
+  enum class Went { cancelled, on, too_many };
+  Went trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights, const Round& round,
                    uint32_t count, const shared::Frame& picture, uint32_t enabled,
                    const std::function<bool()>& cancel);
   void bind_list(gpu::Resources& resources) const;  ///< what stores photons
+  uint32_t most_photons() const;
   void grow(transport::Wavefront& wavefront, uint32_t needed);
   void build(transport::Wavefront& wavefront, const Round& round);
   void write_lookup();
@@ -113,6 +119,7 @@ class PhotonMap {
   RoundFigures figures_, next_;  ///< of the last complete round, of the one under way
   bool tracing_ = false, complete_ = false, notes_held_ = false;
   uint32_t traced_ = 0, stored_ = 0;  ///< paths and photons of the round under way
+  uint32_t fits_ = ~0u;               ///< paths of which photons fit into the device's largest buffer
   uint32_t capacity_ = 0;
   uint32_t noted_pixels_ = 0;
 };

@@ -99,6 +99,11 @@ Report make_report(const PhotonReport& r) {
         ValueRow{"Rounds", count_text(double(r.rounds)), "One for every sample of the picture."});
   map.items.push_back(ValueRow{r.maps ? "Paths" : "Paths a round", count_text(r.last.paths),
                                "That began at lights, for the last one."});
+  if (r.last.paths < r.last.wanted)
+    map.items.push_back(Paragraph{
+        fmt::format("{} light paths were asked for. Their photons do not fit into one buffer of this device.",
+                    count_text(r.last.wanted)),
+        Tone::warning});
   map.items.push_back(ValueRow{r.maps ? "Photons" : "Photons a round", count_text(r.last.photons),
                                "That these left on surfaces."});
   if (r.pieces > 0)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "base/timer.h"
 #include "solvers/photons/info.h"
@@ -29,9 +30,9 @@ constexpr uint32_t k_paths_for_records = 1u << 20, k_gather_paths_a_pixel = 2,
 /// Pieces of a map of irradiance are at most about as large as so many of the discs that hold as many photons
 /// where lookups typically take place.
 constexpr float k_widest = 8;
-/// The radius is held between these parts of the scene's: where the eye lies on a surface, and where pixels
-/// are very wide.
-constexpr float k_least_radius = 1e-6f, k_most_radius = 0.25f;
+/// Of the picture's lesser half, what the radius is at most where the camera is orthographic; else
+/// k_photon_most_slope holds it.
+constexpr float k_most_radius = 0.25f;
 
 paths::LookupRoutes routes_of(const Task& task) {
   return paths::photon_routes(task.automaton, task.enabled, task.own, task.straight);
@@ -103,6 +104,12 @@ nlohmann::ordered_json component_names(uint32_t components) {
   for (size_t c = 0; c < paths::k_component_count; ++c)
     if ((components >> c & 1u) != 0) names.push_back(paths::k_component_names[c]);
   return names;
+}
+
+/// Whatever the scene's size is: something far away must not change the radius.
+float most_radius(const Frame& frame) {
+  if (frame.orthographic == 0) return std::numeric_limits<float>::max();
+  return k_most_radius * std::min(glm::length(frame.camera_right), glm::length(frame.camera_up));
 }
 
 /// Which map of irradiance a sample reads: 0 for the first ones, then 1, ...
@@ -196,8 +203,7 @@ bool PhotonSolver::serves(const Task& task) const {
 
 void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   if (!lit_ || spoils.light || spoils.places) {
-    lights_ =
-        transport::LightSource(device_, picture.flat, picture.flat.scene_centre, picture.flat.scene_radius);
+    lights_ = transport::LightSource(device_, picture.flat);
     light_groups_ = transport::group_lights(picture.flat, lights_.powers(), k_most_light_groups);
     lit_ = true;
   }
@@ -284,8 +290,7 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
   f.eye = frame.camera_origin;
   f.slope = frame.orthographic ? 0 : std::min(radius, k_photon_most_slope);
   f.base = frame.orthographic ? radius : 0;
-  f.least = k_least_radius * picture.flat.scene_radius;
-  f.most = k_most_radius * picture.flat.scene_radius;
+  f.most = most_radius(frame);
   f.most_candidates = k_photon_most_candidates, f.most_visits = k_photon_most_visits;
   f.surface_nodes = picture.task.settings.boolean("photons.borders") ? surfaces_.nodes() : 0;
   // Paths that another solver's lookup has left alone find photons as all others do.
@@ -338,12 +343,17 @@ bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture&
     const auto asked = uint64_t(s.integer("photons.per_round"));
     const uint64_t first =
         asked > 0 ? asked : std::max<uint64_t>(k_gather_paths_a_pixel * pixels, k_least_gather_paths);
-    round.paths = feeds_ ? std::max(k_paths_for_records, round.paths)
-                         : uint32_t(std::max(first, std::min<uint64_t>(first << epoch, k_most_gather_paths)));
+    round.paths =
+        feeds_
+            ? std::max(k_paths_for_records, round.paths)
+            : uint32_t(std::min<uint64_t>(
+                  k_most_light_paths,
+                  std::max(first, std::min<uint64_t>(first << std::min(epoch, 32u), k_most_gather_paths))));
     round.lookup = lookup_of(picture, picture.frame, 1);
     round.lookup.slope = 0;
     round.lookup.most_candidates = k_photon_standing_candidates;
-    round.lookup.base = standing_radius(picture, round.paths, k_standing_photons);
+    round.lookup.base = standing_radius(picture, standing_->fitting(round.paths), k_standing_photons);
+    round.lookup.most = round.lookup.base;
     standing_->store_by_importance_of(map_);
     standing_->store_parts(0, gathers() && !feeds_ && unreachable_found_);
     if (!standing_->trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel))
@@ -364,7 +374,7 @@ bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture&
 
 float PhotonSolver::standing_radius(const Picture& picture, uint32_t paths, float photons) const {
   const auto found = float(density_at_lookups_ * paths);  // photons a square metre
-  const float widest = picture.flat.scene_radius * std::sqrt(8 * photons / (k_pi * float(paths)));
+  const float widest = picture.flat.core_radius * std::sqrt(8 * photons / (k_pi * float(paths)));
   return found > 0 ? std::min(widest, std::sqrt(photons / (k_pi * found))) : widest;
 }
 
@@ -463,9 +473,8 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.radius_pixels = r.radius_law.at(rounds_ > 0 ? last_sample_ : 0);
   r.at_floor = r.radius_pixels <= r.radius_law.floor;
   const auto pixel = double(2 * glm::length(picture.frame.camera_right) / float(picture.frame.width));
-  r.limited = picture.frame.orthographic
-                  ? r.radius_pixels * pixel > double(k_most_radius * picture.flat.scene_radius)
-                  : r.radius_pixels * pixel > double{k_photon_most_slope};
+  r.limited = r.radius_pixels * pixel >
+              double(picture.frame.orthographic ? most_radius(picture.frame) : k_photon_most_slope);
   r.view = uint32_t(s.choice("overlay.photons"));
   r.aim_shown = s.boolean("overlay.photon_aim");
   r.aimed = pairs_;

@@ -19,7 +19,7 @@ constexpr double k_least_found_in_all = 256;  // ... in the whole picture
 constexpr uint32_t k_most_steps = 32;         // of improving the choice
 
 double radius_at(const PhotonFrame& f, const vec3& x) {
-  return double(std::clamp(f.base + f.slope * glm::distance(x, f.eye), f.least, f.most));
+  return double(photon_radius_of(f.base + f.slope * glm::distance(x, f.eye), f.most, x));
 }
 
 /// Photons by cubes, at least as wide as the radius within which they are looked for.

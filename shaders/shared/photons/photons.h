@@ -32,6 +32,9 @@ LUCERNA_CONST uint k_photon_near_cells = 8u;
 LUCERNA_CONST uint k_photon_entry_bits = 5u;
 LUCERNA_CONST float k_photon_slack = 1.0002f;     ///< cells are so much wider than they must be, against rounding
 LUCERNA_CONST float k_photon_most_slope = 0.25f;  ///< of the radius over the distance from the eye
+/// A radius is at least so large a part of the place's largest coordinate: 64 units in its last place, so that the rounding of
+/// places and of their cells does not show.
+LUCERNA_CONST float k_photon_least_radius = 1.0f / 131072.0f;
 /// Of candidates that a lookup meets it looks at no more than about so many, at random, each counting for several. (All loops
 /// of eight neighbouring invocations together end after 65535 iterations on lavapipe.)
 LUCERNA_CONST uint k_photon_most_candidates = 4096u;
@@ -49,7 +52,7 @@ struct PhotonFrame {
   vec3 eye;         ///< from which radii are measured [m]
   float slope;      ///< radius over the distance from there
   float base;       ///< ... and beside it, where the camera is orthographic [m]
-  float least, most;///< the radius is held between these [m]
+  float most;       ///< the radius is at most that [m]; 0: there has been no pass
   uint count;       ///< photons; 0: none
   uint mask;        ///< entries of the table, less 1
   uint round;
@@ -75,11 +78,21 @@ LUCERNA_CONST uint k_photon_unreachable_only_shift = 16u;
 LUCERNA_CONST uint k_photon_ends_reachable = 1u << 31;  ///< no others are stored: paths that leave none end
 LUCERNA_CONST uint k_photon_no_components = 0xffffu;  ///< of PhotonFrame::component, without the bits above
 LUCERNA_CONST uint k_photon_no_component = 15u;
+
+/// `wanted` as a place's radius: what a float can say of places there, and of how wide pixels are, are its bounds. [m]
+LUCERNA_INLINE float photon_radius_of(float wanted, float most, vec3 x) {
+  vec3 a = abs(x);
+  float coordinate = a.x > a.y ? a.x : a.y;
+  coordinate = a.z > coordinate ? a.z : coordinate;
+  float least = k_photon_least_radius * coordinate + 1e-20f, radius = wanted < most ? wanted : most;
+  return radius > least ? radius : least;
+}
 LUCERNA_CONST uint k_photon_caustic_part = 3u;  ///< paths::k_caustic_part
 
 struct PhotonWorthPush {
   uint count;      ///< photons
   uint step;
+  uint first;      ///< of them in the map
 };
 struct PhotonListPush {
   uint count;      ///< photons

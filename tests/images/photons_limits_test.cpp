@@ -1,0 +1,59 @@
+// links: session
+// Photons where they outgrow the device's largest buffer: fewer light paths, the same light, and word of it.
+#include "support/caustics.h"
+
+using namespace lucerna;
+using test::mean_of, test::MeanOf;
+
+namespace {
+
+struct Rendered {
+  film::Image image;
+  uint64_t paths = 0, photons = 0;
+  nlohmann::ordered_json statistics;
+};
+
+Rendered render(const test::Settings& settings, uint64_t most_storage_buffer) {
+  session::RendererOptions options = test::renderer_options(false);
+  if (most_storage_buffer > 0)
+    options.on = std::make_shared<gpu::Device>(
+        gpu::DeviceOptions{.selector = "cpu", .most_storage_buffer = most_storage_buffer});
+  session::Renderer r(options);
+  r.settings().set("path.batch", "16384");
+  scene::Scene room = test::block_room();
+  room.materials[0].base_color = vec4(vec3(0.85f), 1);
+  r.set_size(24, 24);
+  r.set_scene(std::make_shared<scene::Scene>(room));
+  test::Settings all = settings;
+  all.insert({{"samples", "4"}, {"cache.max_records", "2000"}, {"photons.worth", "false"}});
+  test::set(r, all);
+  Rendered made;
+  made.image = test::finish(r);
+  r.visit_solvers(
+      [&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
+        if (std::string(solver.info().name) == "photons")
+          made.statistics = solver.statistics(canvas, picture);
+      });
+  return made;
+}
+
+}  // namespace
+
+TEST_CASE("photons that do not fit into a buffer are fewer, and their light is the same") {
+  for (const test::Settings& settings :
+       {test::Settings{{"components.tertiary", "photons"}},
+        test::Settings{{"components.tertiary", "photons"}, {"photons.irradiance_map", "off"}},
+        test::Settings{{"components.secondary", "photons"},
+                       {"components.tertiary", "photons"},
+                       {"photons.per_round", "300000"}}}) {
+    const Rendered free = render(settings, 0), held = render(settings, 6 << 20);
+    CHECK(held.statistics.at("last_round_photons") <= (6u << 20) / 32);
+    CHECK(free.statistics.at("last_round_photons") > (6u << 20) / 32);
+    for (const int component : {1, 2}) {
+      const MeanOf a = mean_of(free.image, component), b = mean_of(held.image, component);
+      INFO(component);
+      CHECK(a.value.x > 0);
+      CHECK(std::abs(a.value.x - b.value.x) < 4 * (a.noise.x + b.noise.x) + 0.01 * a.value.x);
+    }
+  }
+}
