@@ -8,29 +8,22 @@
 #include "upload/alias_table.h"
 #include "upload/environment_map.h"
 #include "upload/flatten.h"
-#include "upload/textures.h"
+#include "upload/texture_mean.h"
 
 namespace lucerna::upload {
 namespace {
 
 using namespace shared;
 
-/// Mean luminance factor of the emission texture over a triangle, by 16 points; the estimate only steers
-/// sampling.
-double texture_mean(const scene::Scene& scene, const scene::TextureUse& use, const FlatScene& flat,
+/// Of the emission texture on a triangle: what must be above 0 wherever it shines, for nothing else starts
+/// light paths there.
+double texture_mean(TextureMeans& means, const scene::TextureUse& use, const FlatScene& flat,
                     const uvec4& t) {
-  if (!use) return 1;
-  double sum = 0;
-  for (int i = 0; i < 16; ++i) {
-    float u = (i % 4 + 0.5f) / 4, v = (i / 4 + 0.5f) / 4;
-    if (u + v > 1) u = 1 - u, v = 1 - v;
-    const auto uv = [&](uint32_t vertex) {
-      if (use.uv_set == 1 && !flat.extra.empty()) return vec2(flat.extra[2 * size_t(vertex) + 1]);
-      return vec2(flat.vertices[2 * size_t(vertex)].w, flat.vertices[2 * size_t(vertex) + 1].w);
-    };
-    sum += luminance(read_texture(scene, use, (1 - u - v) * uv(t.x) + u * uv(t.y) + v * uv(t.z)));
-  }
-  return sum / 16;
+  const auto uv = [&](uint32_t vertex) {
+    if (use.uv_set == 1 && !flat.extra.empty()) return vec2(flat.extra[2 * size_t(vertex) + 1]);
+    return vec2(flat.vertices[2 * size_t(vertex)].w, flat.vertices[2 * size_t(vertex) + 1].w);
+  };
+  return means.over(use, {uv(t.x), uv(t.y), uv(t.z)});
 }
 
 /// m^2
@@ -53,18 +46,19 @@ struct Choice {
 
 /// Emissive triangles: flux pi * L * A, twice that when both sides emit.
 void add_triangles(const scene::Scene& scene, const FlatScene& flat, Choice& choice) {
+  TextureMeans means(scene);
   for (uint32_t i = 0; i < flat.triangles.size(); ++i) {
     const scene::Material& m = scene.materials[flat.triangles[i].w & k_triangle_material_mask];
     if (m.unlit || luminance(m.emission) <= 0) continue;
     const float area = triangle_area(flat, i);
     if (!(area > 0)) continue;
-    const double mean = texture_mean(scene, m.emission_texture, flat, flat.triangles[i]);
+    const double mean = texture_mean(means, m.emission_texture, flat, flat.triangles[i]);
     const double flux = double(k_pi) * area * luminance(m.emission) * mean * (m.double_sided ? 2 : 1);
     choice.add(k_light_triangle, i, flux, flux);
   }
 }
 
-/// Lamps: flux; of a directional one that through a disk as large as the scene.
+/// Lamps: flux; of a directional one that through a disk as large as the scene's core.
 void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const scene::Light& l = scene.lights[i];
@@ -132,7 +126,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   Choice choice;
   add_triangles(scene, flat, choice);
   const bool emissive = !choice.entries.empty();
-  const double disk = double(k_pi) * flat.scene_radius * flat.scene_radius;
+  const double disk = double(k_pi) * flat.core_radius * flat.core_radius;
   add_lamps(scene, disk, choice);
   for (const scene::Light& lamp : scene.lights) d.lamp_names.push_back(lamp.name);
   const bool lit = environment_shines(scene.environment);

@@ -153,6 +153,18 @@ TextureMap pack_textures(const scene::Scene& scene, std::vector<Bucket>& buckets
   return map;
 }
 
+vec3 read_texel(const scene::Scene& scene, scene::Id texture, uint32_t x, uint32_t y) {
+  const scene::Texture& t = scene.textures[texture];
+  const scene::Image& image = scene.images[t.image];
+  const size_t at = 4 * (size_t(y) * image.width + x);
+  vec3 c;
+  for (int k = 0; k < 3; ++k) {
+    const double value = image.floats.empty() ? image.bytes[at + k] / 255.0 : image.floats[at + k];
+    c[k] = float(t.srgb && image.floats.empty() ? linear_from_srgb(value) : value);
+  }
+  return c;
+}
+
 vec3 read_texture(const scene::Scene& scene, const scene::TextureUse& use, vec2 uv) {
   const scene::Texture& t = scene.textures[use.texture];
   const scene::Image& image = scene.images[t.image];
@@ -164,14 +176,7 @@ vec3 read_texture(const scene::Scene& scene, const scene::TextureUse& use, vec2 
     if (wrap == scene::Wrap::mirror) x = std::abs(x - 2 * std::floor(0.5f * x + 0.5f));
     return std::min(uint32_t(std::clamp(x, 0.f, 1.f) * size), size - 1);
   };
-  const size_t at =
-      4 * (size_t(index(v, image.height, t.wrap_v)) * image.width + index(u, image.width, t.wrap_u));
-  vec3 c;
-  for (int k = 0; k < 3; ++k) {
-    const double x = image.floats.empty() ? image.bytes[at + k] / 255.0 : image.floats[at + k];
-    c[k] = float(t.srgb && image.floats.empty() ? linear_from_srgb(x) : x);
-  }
-  return c;
+  return read_texel(scene, use.texture, index(u, image.width, t.wrap_u), index(v, image.height, t.wrap_v));
 }
 
 }  // namespace lucerna::upload

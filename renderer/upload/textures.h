@@ -34,6 +34,9 @@ struct TextureMap {
 TextureMap pack_textures(const scene::Scene& scene, std::vector<Bucket>& buckets,
                          uint64_t bucket_bytes = k_bucket_bytes);
 
+/// A texel's linear colour. Host side, for estimates.
+vec3 read_texel(const scene::Scene& scene, scene::Id texture, uint32_t x, uint32_t y);
+
 /// A texel as the shader would read it at uv (before the use's transform), nearest, linear colour. Host side,
 /// for estimates.
 vec3 read_texture(const scene::Scene& scene, const scene::TextureUse& use, vec2 uv);
