@@ -34,7 +34,7 @@ WorthPilot pilot_of(const std::vector<shared::PhotonWorth>& photons,
                    .photons = photons,
                    .gain = gain,
                    .paths = 1};
-  for (shared::PhotonFrame* f : {&pilot.around, &pilot.round}) f->least = 1e-6f, f->most = 1;
+  for (shared::PhotonFrame* f : {&pilot.around, &pilot.round}) f->most = 1;
   pilot.around.base = 0.5f, pilot.round.base = 0.1f;
   return pilot;
 }
