@@ -75,7 +75,11 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
                      "Paths in flight"));
   for (size_t i = first; i < list.size(); ++i) list[i] = of_same_light(std::move(list[i]));
   list.push_back(integer_option("path.max_depth", 64, 1, 1024, "vertices",
-                                "Scattering events after which a path ends.", "Longest path"));
+                                "Scattering events between the eye and a light that a path has at most, "
+                                "whichever solver computes it. Under 16, irradiance caches are read only by "
+                                "vertices that the camera sees directly, because records hold light of paths "
+                                "of that many events from there; paths compute the rest.",
+                                "Longest path"));
 }
 
 void add_relight_options(std::vector<OptionInfo>& list) {

@@ -65,10 +65,12 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     media = facing == 0 ? v.path.media : media_behind(v.surface, v.path.media);
 #endif
     float sign = facing == 0 ? 1.0 : -1.0;
-    Cached found = cache_lookup(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], media, asks, record_lot(v));
+    // Records hold light of paths whose first event is theirs.
+    bool too_long = v.depth > 0u && frame.max_depth < k_deep_paths;
+    Cached found = cache_lookup(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], media, asks && !too_long, record_lot(v));
     bool missing = asks && found.weight <= 0.0;
     // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
-    bool notes = ((missing && found.guide == k_no_guide) || (asks && notes_all)) && cache.probing != k_probe_none && !cache_propagates() &&
+    bool notes = !too_long && ((missing && found.guide == k_no_guide) || (asks && notes_all)) && cache.probing != k_probe_none && !cache_propagates() &&
                  (cache.probing != k_probe_next || next_read) && !(beyond && cache_coin(v));
     bool servable = cache_can_serve(sign * x.smooth_side, sign * v.to_world[2]);
     if (notes && (servable || screen)) {

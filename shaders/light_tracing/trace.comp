@@ -104,5 +104,5 @@ void main() {
     shadow_queue[atomicAdd(counters[k_counter_shadow], 1u)] = slot;
     atomicAdd(counters[k_counter_shadow_rays + automaton_account(state)], 1u);
   }
-  light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events - 1u), random);
+  light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events) - 1u, random);
 }

@@ -42,5 +42,5 @@ void main() {
   }
   if (missed) return;
   LightVertex v = light_vertex(path, ray, hit, random);
-  light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events - 1u), random);
+  light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events) - 1u, random);
 }

@@ -22,6 +22,7 @@ bool irradiance_asked(uint state) { return (irradiance.states[state >> 5] >> (st
 // surface is not known.
 bool irradiance_read(VertexIn v, inout VertexOut o) {
   if (irradiance.triangles == 0u || max3(v.bsdf.transmitted) > 0.0) return false;
+  if (v.depth != k_irradiance_events && frame.max_depth < k_deep_paths) return false;
   uvec4 roots = texelFetch(irradiance_roots, int(v.hit.prim));
   uint side = dot(v.side, v.surface.normal_g) > 0.0 ? 0u : 1u, node = roots[2u * (v.path.sample_index & 1u) + side];
   uint packed = barycentric_pack(v.hit);

@@ -28,7 +28,8 @@ void main() {
   LightVertex v = light_vertex(path, ray, hit, random);
   uint part = automaton_component(state);
   bool unreachable = path.pdf == 0.0 && depth > 1u;
-  bool wanted = v.lit && part < k_component_count && max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
+  // Events of the word that this makes for the eye, the surface's own with them.
+  bool wanted = depth <= frame.max_depth && v.lit && part < k_component_count && max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
   if (wanted && !is_finite(v.arriving)) {
     atomicAdd(counters[k_counter_dropped], 1u);
     wanted = false;
@@ -61,5 +62,5 @@ void main() {
     }
   }
   if ((photons.unreachable_parts & k_photon_ends_reachable) != 0u && path.pdf > 0.0) return;
-  light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events - 1u), random);
+  light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events) - 1u, random);
 }

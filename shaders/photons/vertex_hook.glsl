@@ -97,6 +97,8 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         bool reflected = dot(side, v.side) > 0.0;
         float agree = reflected ? dot(side, v.side) : dot(front, v.surface.normal_g);
         bool wanted = (only >> part & 1u) == 0u || (bits & k_photon_unreachable) != 0u;
+        // Events of the whole path: those of the eye's, this one, and the photon's.
+        wanted = wanted && v.depth + 1u + (bits >> k_photon_events_shift & k_photon_most_events) <= frame.max_depth;
         if (!wanted || agree <= k_photon_normals || abs(dot(away, v.surface.normal_g)) >= k_photon_slab * r) continue;
         // Its facet is turned into this one's plane: the cosine that the flux is divided by is that to the photon's own facet.
         wi = reflected ? turn_along(wi, side, v.side) : turn_along(wi, front, v.surface.normal_g);

@@ -28,6 +28,10 @@ LUCERNA_CONST uint k_path_branched = 1u << 31;    ///< a vertex of it is followe
 LUCERNA_CONST uint k_path_state_mask = 0x3fu;
 LUCERNA_CONST uint k_path_events_shift = 9u;
 
+/// With a maximum depth below this, light that is stored for all lookups alike is read only where it has been stored for paths of
+/// that many events; paths bring it elsewhere. From here on the few events more that such light may have are neglected.
+LUCERNA_CONST uint k_deep_paths = 16u;
+
 /// One path: `throughput` already divided by all probabilities.
 struct PathState {
   vec3 throughput;

@@ -37,11 +37,13 @@ void IrradianceMap::make(transport::Wavefront& wavefront, const PhotonMap& map, 
     std::vector<PhotonOnSide> all(photons.size());
     for (size_t i = 0; i < all.size(); ++i) {
       const uint32_t part = photons[i].bits >> k_photon_part_shift & 3u;
+      const uint32_t events = photons[i].bits >> k_photon_events_shift & k_photon_most_events;
+      const bool counts = part > 0 && k_irradiance_events + 1 + events <= wanted.max_depth;
       all[i] = {.side = surfaces[i].side,
                 .barycentric = surfaces[i].barycentric,
                 .number = numbers[i],
                 .group = photons[i].bits >> k_photon_group_shift,
-                .flux = part > 0 ? photons[i].flux : vec3(0)};
+                .flux = counts ? photons[i].flux : vec3(0)};
     }
     builder_ = std::make_unique<IrradianceCellsBuilder>(*order_, std::move(all), groups_, wanted.nearest,
                                                         wanted.widest);

@@ -367,7 +367,8 @@ bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture&
       wavefront, *standing_, picture.flat,
       {.nearest = nearest,
        .widest = k_widest * standing_radius(picture, standing_->figures().paths, 2 * float(nearest)),
-       .states = tertiary_states(standing_->lookup())});
+       .states = tertiary_states(standing_->lookup()),
+       .max_depth = picture.frame.max_depth});
   irradiance_round_ = standing_->round();
   return true;
 }

@@ -12,6 +12,8 @@ LUCERNA_CONST uint k_irradiance_known = 1u;  ///< it is the same all over the pi
 LUCERNA_CONST uint k_irradiance_first = 2u;  ///< least link to nodes
 LUCERNA_CONST uint k_irradiance_depth = 14u; ///< most cuts
 
+/// Of an eye path that looks it up: for these the light is kept that paths of frame.max_depth events bring.
+LUCERNA_CONST uint k_irradiance_events = 1u;
 LUCERNA_CONST uint k_irradiance_component = 2u;  ///< tertiary light
 LUCERNA_CONST uint k_irradiance_whole = 65536u;   ///< 1 of what PhotonSurface::barycentric is in
 
