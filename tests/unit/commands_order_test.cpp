@@ -181,6 +181,14 @@ TEST_CASE("what the session refuses is neither undone nor saved") {
   CHECK(b.work.script() == before);
   CHECK(b.work.document() == document);
   CHECK_THAT(b.work.undo_text(), Catch::StartsWith("light.set"));
+  // A step that was made before the refusal was known does not bring it back.
+  b.run("set relight.mix nonsense"), b.run("light.set 1 intensity=7");
+  REQUIRE(quiet(b));
+  const uint64_t errors = b.errors;
+  b.run("undo"), b.run("redo"), b.run("undo");
+  REQUIRE(quiet(b));
+  CHECK(b.errors == errors);
+  CHECK(b.work.document() == document);
   // A drag of which the last step alone is refused can be undone.
   b.run("set relight.mix \"sky: ev=1\"", 3), b.run("set relight.mix nonsense", 3);
   REQUIRE(quiet(b));
