@@ -9,6 +9,7 @@
 #include "bvh/embree/reference.h"
 #include "raybench/report.h"
 #include "scene/io/load.h"
+#include "scene/range.h"
 
 namespace lucerna::app {
 
@@ -17,6 +18,7 @@ int bench_rays(const BenchRaysArguments& a) {
   raybench::FlatFile flat{.name = scene.name, .scene = upload::flatten(scene), .tree = {}, .camera = {}};
   if (flat.scene.triangles.empty()) throw Error(a.scene, "there are no triangles to trace");
   flat.camera = scene::starting_camera(scene, a.camera);
+  scene::check_range(flat.camera);
   const bvh::Triangles triangles{flat.scene.positions, flat.scene.non_opaque};
   flat.tree = bvh::build(triangles);
   if (!a.flat.empty()) {
