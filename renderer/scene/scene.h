@@ -37,7 +37,7 @@ struct Texture {
 };
 
 /// A use of a texture by a material. Coordinates: uv' = (m[0]*u + m[1]*v + m[2], m[3]*u + m[4]*v + m[5]), (u,
-/// v) of `uv_set` (0 or 1), v downwards from the top row as in glTF.
+/// v) of `uv_set` (0 or 1: Primitive::uv0 or uv1), v downwards from the top row as in glTF.
 struct TextureUse {
   Id texture = k_none;
   uint32_t uv_set = 0;

@@ -177,6 +177,24 @@ TEST_CASE("an EXR's data window is placed in its display window") {
   CHECK(write_window(9, 9, 3, 3, 0, 0) == std::vector<float>(8, 0.f));                    // apart
 }
 
+TEST_CASE("a fourth channel of an EXR that is no alpha is left out") {
+  TempFolder folder;
+  OIIO::ImageSpec spec(2, 1, 4, OIIO::TypeDesc::FLOAT);
+  const auto alpha = [&](const char* name) {
+    spec.channelnames = {"R", "G", "B", name};
+    spec.alpha_channel = spec.z_channel = -1;
+    (*name == 'A' ? spec.alpha_channel : spec.z_channel) = 3;
+    auto out = OIIO::ImageOutput::create((folder / "sky.exr").string());
+    REQUIRE(out->open((folder / "sky.exr").string(), spec));
+    const float pixels[8] = {0.5f, 0.5f, 0.5f, 0.25f, 0.5f, 0.5f, 0.5f, 0.25f};
+    REQUIRE(out->write_image(OIIO::TypeDesc::FLOAT, pixels));
+    out->close();
+    return scene::load_environment(folder / "sky.exr", 1 << 20).floats.at(3);
+  };
+  CHECK(alpha("A") == 0.25f);
+  CHECK(alpha("Z") == 1);
+}
+
 TEST_CASE("one rule for the shape of environments, in scenes and by themselves") {
   TempFolder folder;
   const auto complaint = [&](int width, int height) {

@@ -175,23 +175,33 @@ TEST_CASE("KHR_texture_transform") {
   CHECK(use_of({{"texCoord", 1}}).uv_set == 1);
 }
 
-TEST_CASE("texture coordinates: two sets, and only those that a material reads") {
+TEST_CASE("texture coordinates: two sets of any number, and only those that a material reads") {
   Asset asset;
   const int texture = asset.add("textures", {{"source", asset.add("images", {{"uri", "no.png"}})}});
   asset.textured_triangle(
       {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}, {"texCoord", 1}}}}}});
   asset.textured_triangle(
       {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}, {"texCoord", 2}}}}}});
-  for (json& mesh : asset.doc["meshes"])
-    mesh["primitives"][0]["attributes"]["TEXCOORD_2"] = mesh["primitives"][0]["attributes"]["TEXCOORD_0"];
+  json pbr{{"baseColorTexture", {{"index", texture}, {"texCoord", 0}}},
+           {"metallicRoughnessTexture", {{"index", texture}, {"texCoord", 2}}}};
+  asset.textured_triangle({{"pbrMetallicRoughness", pbr},
+                           {"emissiveTexture", {{"index", texture}, {"texCoord", 1}}},
+                           {"emissiveFactor", {1, 1, 1}}});
+  const int second = asset.accessor<float>("VEC2", {5, 5, 6, 5, 5, 6});
+  for (json& mesh : asset.doc["meshes"]) mesh["primitives"][0]["attributes"]["TEXCOORD_2"] = second;
   const Scene scene = asset.load();
   CHECK(scene.materials[0].base_color_texture.uv_set == 1);
   CHECK(scene.meshes[0].primitives[0].uv0.empty());
   CHECK(scene.meshes[0].primitives[0].uv1.size() == 3);
-  CHECK_FALSE(scene.materials[1].base_color_texture);
-  CHECK(scene.meshes[1].primitives[0].uv0.empty());
-  CHECK(warnings_with(scene, "1 textures that use TEXCOORD_2") == 1);
-  CHECK(warnings_with(scene, "2 primitives have more than two sets") == 1);
+  CHECK(scene.materials[1].base_color_texture.uv_set == 0);
+  CHECK(scene.meshes[1].primitives[0].uv0.at(1) == vec2(6, 5));
+  CHECK(scene.meshes[1].primitives[0].uv1.empty());
+  CHECK(scene.materials[2].base_color_texture.uv_set == 0);
+  CHECK(scene.materials[2].metallic_roughness_texture.uv_set == 1);
+  CHECK(scene.meshes[2].primitives[0].uv0.at(1) == vec2(1, 0));
+  CHECK(scene.meshes[2].primitives[0].uv1.at(1) == vec2(6, 5));
+  CHECK_FALSE(scene.materials[2].emission_texture);
+  CHECK(warnings_with(scene, "1 textures that use a third set of texture coordinates") == 1);
 }
 
 TEST_CASE("tangents are there exactly where a normal texture needs them") {

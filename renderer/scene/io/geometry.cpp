@@ -316,8 +316,6 @@ bool PrimitiveLoader::load(MaterialLoader& materials, Primitive& primitive) {
     return false;
   }
   vertices_ = open("POSITION", 3, 3).count();
-  if (attribute("TEXCOORD_2") >= 0)
-    warn("{} primitives have more than two sets of texture coordinates; the others are ignored");
   deformer_.emplace(document_, source_, item_, pose_, vertices_);
   if (!read_triangles(vertices_)) return false;
 
@@ -336,8 +334,8 @@ bool PrimitiveLoader::load(MaterialLoader& materials, Primitive& primitive) {
   turn_mirrored_triangles();
   primitive.material = materials.material(source_.material);
   const MaterialNeeds& needs = materials.needs(primitive.material);
-  if (needs.uv[0]) primitive.uv0 = read_uvs("TEXCOORD_0");
-  if (needs.uv[1]) primitive.uv1 = read_uvs("TEXCOORD_1");
+  if (needs.sets[0] >= 0) primitive.uv0 = read_uvs(fmt::format("TEXCOORD_{}", needs.sets[0]).c_str());
+  if (needs.sets[1] >= 0) primitive.uv1 = read_uvs(fmt::format("TEXCOORD_{}", needs.sets[1]).c_str());
   read_colors(primitive);
   primitive.triangles = std::move(triangles_);
   read_normals(primitive);

@@ -31,6 +31,19 @@ std::array<float, 6> transform_matrix(const Item& transform) {
           static_cast<float>(-s * scale.x), static_cast<float>(c * scale.y), static_cast<float>(offset.y)};
 }
 
+// Which of a material's two sets of texture coordinates TEXCOORD_n is; nothing when both are others.
+std::optional<uint32_t> take_slot(std::array<int, 2>& sets, int n) {
+  for (uint32_t slot = 0; slot < 2; ++slot)
+    if (sets[slot] == n) return slot;
+  const uint32_t own = n == 1 ? 1 : 0;
+  for (const uint32_t slot : {own, 1 - own})
+    if (sets[slot] < 0) {
+      sets[slot] = n;
+      return slot;
+    }
+  return std::nullopt;
+}
+
 Wrap wrap_mode(int gl) {
   if (gl == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clamp;
   if (gl == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::mirror;
@@ -121,12 +134,13 @@ TextureUse MaterialLoader::texture_use(const Item& parent, const char* key, Use 
       result.m = transform_matrix(*transform);
       set = transform->integer("texCoord", set, 0, 1 << 16);
     }
-  if (set > 1) {
-    document_.warnings.add("{} textures that use TEXCOORD_2 or higher are left out", info->path());
+  const auto slot = take_slot(needs.sets, static_cast<int>(set));
+  if (!slot) {
+    document_.warnings.add("{} textures that use a third set of texture coordinates in a material: left out",
+                           info->path());
     return TextureUse();
   }
-  result.uv_set = static_cast<uint32_t>(set);
-  needs.uv[set] = true;
+  result.uv_set = *slot;
   const Wanted wanted{texture, use == Use::colour, use == Use::normal};
   const auto [place, fresh] = wanted_ids_.try_emplace(wanted, static_cast<Id>(wanted_.size()));
   if (fresh) wanted_.push_back(wanted);

@@ -1,5 +1,6 @@
 #pragma once
 // Materials and textures of a glTF document.
+#include <array>
 #include <map>
 #include <tuple>
 #include <vector>
@@ -10,8 +11,10 @@ namespace lucerna::scene {
 
 /// What geometry must know of a material.
 struct MaterialNeeds {
-  bool uv[2] = {false, false};  ///< which texture coordinates its textures read
-  TextureUse normal_map;        ///< how its normal map is read; none without one
+  /// n of the TEXCOORD_n that its textures read as TextureUse::uv_set 0 and 1; -1: none. 0 and 1 are
+  /// themselves unless a set beyond them came first.
+  std::array<int, 2> sets{-1, -1};
+  TextureUse normal_map;  ///< how its normal map is read; none without one
 };
 
 /// Reads materials on demand, and their images at the end.
