@@ -111,6 +111,13 @@ TEST_CASE("relighting is as far as the rays that records had before") {
   REQUIRE(told);
   CHECK(told->done == Approx(0.25));
   CHECK(told->left_ms == Approx(150));
+  // Rays are counted before their time is known, and what is set up before them does not scale.
+  s.passes[0].ms = {};
+  s.passes[0].ms[size_t(BuildStep::measure)] = 500;
+  CHECK_FALSE(forecast_of(s, k_stop));
+  s.passes[0].ms[size_t(BuildStep::evaluate)] = 50;
+  CHECK(forecast_of(s, k_stop)->left_ms == Approx(150));
+  CHECK(forecast_of(s, k_stop)->done == Approx(0.25));
   // More rays than before: nearly done, never more than all.
   s.rays = s.passes[0].rays = 5000;
   CHECK(forecast_of(s, k_stop)->done < 1);

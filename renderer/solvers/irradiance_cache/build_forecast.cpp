@@ -49,6 +49,7 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
     // By rays alone: what is set up before the first of them is spent already.
     double evaluating = 0;
     for (const CachePass& p : s.passes) evaluating += p.ms[size_t(BuildStep::evaluate)];
+    if (evaluating <= 0) return {};  // rays are counted before their time is known
     return forecast(evaluating * std::max(1.0, double(s.relighting.rays) / double(s.rays)), evaluating);
   }
   if (s.passes.back().relit) return {};  // all are relit, and what is missing has not been looked for yet
