@@ -399,7 +399,7 @@ def main():
     s.write("A meeting hall in the evening under twenty spot lights in a coffered ceiling, with carafes, glasses and water "
             "on a long dark table: what the spots, which are points, send through solid glass is a caustic that photons alone find "
             "(camera table: close to it).",
-            {"film.ev": -4.9, "components.caustic": "photons", "environment": {"file": "sky.hdr", "scale": 45}})
+            {"film.ev": -4.9, "components.tertiary": "photons", "components.caustic": "photons", "environment": {"file": "sky.hdr", "scale": 45}})
 
 
 if __name__ == "__main__":

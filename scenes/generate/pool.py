@@ -121,7 +121,7 @@ def main():
     s.camera("below", (2.9, -0.85, 1.7), (-2.0, -0.75, -1.6), yfov=60)
     s.write("A tiled basin with waves under a low sun, and a globe lamp by the wall: caustics on the shaded wall and roof "
             "above, and on the tiles below, seen through the water that makes them.",
-            {"film.ev": -0.35, "components.secondary": "cache", "components.tertiary": "cache",
+            {"film.ev": -0.35, "components.secondary": "cache", "components.tertiary": "photons",
              "components.caustic": "photons", "environment": {"file": "sky.hdr", "scale": 0.22}})
 
 
