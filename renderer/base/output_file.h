@@ -8,13 +8,11 @@ namespace lucerna {
 
 /// Where an output goes, and how its bytes get there:
 /// - a regular file, or a name that no file has: under a temporary name beside it, flushed to disk, then
-/// renamed
-///   by commit(). The old file stays until then, and stays for good where commit() is not reached. The new
-///   file has the permissions of the one that it replaces.
+///   renamed by commit(). The old file stays until then, and stays for good where commit() is not reached.
+///   The new file has the permissions of the one that it replaces.
 /// - a symbolic link: its target, by these same rules. The link stays.
-/// - a pipe, a device, or one of the process's own descriptors (/dev/stdout, /dev/fd/3): bytes go straight
-/// into
-///   it, in order. It stays, and so do bytes that were written before a failure.
+/// - a pipe, a device, or one of the process's own descriptors (/dev/stdout, /dev/fd/3): bytes go into it
+///   directly, in order. It stays, and so do bytes that were written before a failure.
 /// Every failure is an Error located at the name that was given.
 class OutputFile {
  public:

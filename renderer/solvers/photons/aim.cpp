@@ -24,8 +24,7 @@ constexpr size_t k_enough_hits = 512, k_least_hits = 16;
 constexpr double k_many = 0.2;
 /// After so many rounds with too few they are aimed at where paths from the eye go on behind lookups.
 constexpr uint32_t k_unaimed_first_hit_rounds = 2, k_reached_vertices = 3;
-constexpr uint32_t k_deep = 1u << 1 | 1u << 2;  // components: secondary, tertiary
-constexpr uint32_t k_most_left = 1u << 15;      // texels of left_regions
+constexpr uint32_t k_most_left = 1u << 15;  // texels of left_regions
 
 constexpr double k_least_from_afar = 0.05;  // of all lights' power; less is not looked for
 

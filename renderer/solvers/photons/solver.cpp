@@ -162,8 +162,6 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       scene_defines_(*task.scene_defines),
       routes_(routes_of(task)),
       leaves_(leaves(task)),
-      here_routes_(routes_),
-      left_routes_(paths::photon_routes(task.automaton, task.enabled, task.own & ~leaves_, task.straight)),
       parts_(parts_of(task)),
       sends_(parts_ != 0),
       map_(device, compiler, *task.scene_defines, task.automaton),
@@ -175,6 +173,7 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
   if (prepares_irradiance(task))
     irradiance_.emplace(device, task.effects.groups_in_short() ? task.effects.light_groups : 0);
   gathers_alone_ = gathers_alone(task);
+  route(task);
   write_left();
 }
 

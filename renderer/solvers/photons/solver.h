@@ -17,6 +17,9 @@ namespace lucerna::photons {
 
 const solvers::SolverType& type();
 
+/// Components (bits) of light that has met a diffuse surface before: secondary and tertiary.
+inline constexpr uint32_t k_deep = 1u << 1 | 1u << 2;
+
 class PhotonSolver final : public solvers::Solver {
  public:
   /// Throws Error as PhotonMap.

@@ -10,7 +10,6 @@ using solvers::Cancel, solvers::Picture, solvers::Task;
 
 namespace {
 
-constexpr uint32_t k_deep = 1u << 1 | 1u << 2;  // components: secondary, tertiary
 constexpr uint32_t k_tertiary = 1u << 2;
 constexpr uint32_t k_trial_paths = 1u << 16, k_trial_round = 0xfffffd00u, k_trial_samples = 2;
 
