@@ -111,6 +111,8 @@ class Film {
   /// after a clear(), nothing is known.
   void make_room_for_record_errors();
   void complete_record_errors() { record_errors_complete_ = true; }
+  /// Records have become other ones.
+  void forget_record_errors() { record_errors_complete_ = false; }
   bool record_errors_complete() const { return record_errors_complete_; }
   /// Empty while nothing is known.
   std::span<const shared::BlockRecords> records() const;

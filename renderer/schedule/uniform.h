@@ -2,6 +2,7 @@
 // Uniform sampling: the same number of samples for every pixel, cut into work items. Pure functions of
 // counts.
 #include <algorithm>
+#include <bit>
 #include <utility>
 #include <vector>
 
@@ -84,7 +85,9 @@ class UniformSchedule {
     // The first passes are single, so that something is seen at once; then as many samples as fill the
     // device, or twice as many as before: adding to the film costs the same for one sample as for several.
     const uint32_t fitting = std::max(k_least_pass, slots_ / std::max(1u, 64 * behind));
-    pass_ = one_sample_ ? 1 : std::min({fitting, std::max(1u, sample_), level - sample_});
+    // They end at every power of two, whatever fits.
+    const uint32_t next_power = sample_ > 0 ? 2 * std::bit_floor(sample_) : 1;
+    pass_ = one_sample_ ? 1 : std::min({fitting, next_power - sample_, level - sample_});
   }
   uint32_t blocks_ = 0, samples_ = 0, slots_ = 64;
   uint32_t block_ = 0, sample_ = 0, pass_ = 1, passes_ = 0;

@@ -189,6 +189,18 @@ solvers::Solver* Engine::owing_errors(const film::Film& film) const {
   return nullptr;
 }
 
+solvers::Solver* Engine::refining() const {
+  for (const auto& solver : solvers_)
+    if (solver->refines()) return solver.get();
+  return nullptr;
+}
+
+solvers::Solver* Engine::refinable() const {
+  for (const auto& solver : solvers_)
+    if (solver->paths_refined() > 0) return solver.get();
+  return nullptr;
+}
+
 bool Engine::waits() const {
   const solvers::Solver* next = unready();
   return next && next->waits();

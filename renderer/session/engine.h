@@ -70,6 +70,9 @@ class Engine {
   /// The first that owes the film errors of lookups (Solver::owes_errors); null: all that is told of them is
   /// known.
   solvers::Solver* owing_errors(const film::Film& film) const;
+  /// The one at work at refining what paths read (Solver::refine), or that can be; null: none.
+  solvers::Solver* refining() const;
+  solvers::Solver* refinable() const;
   /// A piece of preparation of one that is not ready (Solver::prepare). False when it was cancelled.
   bool prepare(solvers::Solver& solver, const PictureView& picture, const std::function<bool()>& cancel);
   bool waits() const;

@@ -302,6 +302,10 @@ class Renderer {
   bool apply_plan(scene::Changes& changes);
   void heed_settings();  ///< tells the solvers
   bool render_item(const std::function<bool()>& cancel);
+  /// Where further work on what paths read takes more from the picture's squared error than as many further
+  /// samples do: a piece of it, and whether that was done.
+  std::optional<bool> refine(const std::function<bool()>& cancel);
+  bool refining_pays(uint64_t paths);
   /// Where the item cannot be traced yet: a piece of the round that it reads, and whether that was done.
   std::optional<bool> prepare_round(const schedule::WorkItem& item, const std::function<bool()>& cancel);
   /// Adds a line to the ledger when one is due, or at once.
@@ -338,6 +342,7 @@ class Renderer {
   uint64_t restarts_ = 0;
   uint64_t errors_restart_ = ~0ull;  ///< the image of which lookups' errors are being estimated ...
   const solvers::Solver* errors_of_ = nullptr;  ///< ... and whose
+  uint32_t weighed_at_ = 0;                     ///< samples at which refining_pays() was looked at last
   std::optional<vec2> looked_at_;
 
   // What is told of it.

@@ -1,5 +1,6 @@
 #pragma once
 // Which pixels get samples next: uniform or adaptive, behind one face.
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,12 @@ class Sampling {
   bool done() const { return adaptive_ ? adaptive_->done() : uniform_.done(); }
   /// Samples that every pixel has.
   uint32_t samples() const { return adaptive_ ? adaptive_->least_samples() : uniform_.complete(); }
+  /// Samples that some pixel has.
+  uint32_t most_samples() const {
+    if (!adaptive_) return uniform_.complete();
+    const std::vector<uint32_t> all = counts();
+    return all.empty() ? 0 : *std::max_element(all.begin(), all.end());
+  }
   /// Samples a pixel at which the image is finished; adaptive: that no pixel goes beyond.
   uint32_t max_samples() const { return adaptive_ ? adaptive_->options().max_samples : uniform_.samples(); }
   /// Passes over the picture, or over the tiles at work, that are complete.

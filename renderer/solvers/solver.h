@@ -119,6 +119,19 @@ class Solver {
   /// soon, or at once.
   virtual void make_do() {}
 
+  // By and by: what paths read has a noise that samples do not take away, and as they grow more it is to be
+  // less.
+
+  /// Paths that have gone into what can be refined so far; 0: nothing can.
+  virtual uint64_t paths_refined() const { return 0; }
+  /// Only when ready(): one bounded piece of that work, the first of it where none is under way; errors are
+  /// then owed anew. While refines() no path of the picture is traced. False when it was cancelled.
+  virtual bool refine(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
+    (void)wavefront, (void)picture, (void)cancel;
+    return true;
+  }
+  virtual bool refines() const { return false; }
+
   // In rounds: what paths read is made anew for each of the picture's samples, besides what prepare() makes.
   // Sample i of every pixel reads round i. Items are then of one sample a pixel (schedule/).
 

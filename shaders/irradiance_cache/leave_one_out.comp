@@ -26,7 +26,8 @@ float extrapolated(uint record, vec3 facing, vec3 away, vec3 n) {
     int from = int((record * k_part_count + p) * k_part_texels);
     vec4 a = texelFetch(irradiance_texels, from), b = texelFetch(irradiance_texels, from + 1);
     vec4 c = texelFetch(irradiance_texels, from + 2), d = texelFetch(irradiance_texels, from + 3);
-    vec3 change = r.x * vec3(a.a, b.xy) + r.y * vec3(b.zw, c.x) + t.x * c.yzw + t.y * d.xyz;
+    vec2 held = slope_offset(t, d.w);
+    vec3 change = r.x * vec3(a.a, b.xy) + r.y * vec3(b.zw, c.x) + held.x * c.yzw + held.y * d.xyz;
     light += luminance(a.rgb + clamp(change, -a.rgb, a.rgb));
   }
   return light;

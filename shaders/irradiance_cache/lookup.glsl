@@ -1,7 +1,7 @@
 // Irradiance at a point from the records around it: the mean of what each extrapolates by its gradients,
 // with a weight that falls to 0 at the border of its validity (E. Tabellion and A. Lamorlette, 2004), so that no seam
-// shows. LUCERNA_CACHE_PARTS: bit p: part p is read. LUCERNA_CACHE_ELLIPSES:
-// 1 where records may be ellipses.
+// shows. LUCERNA_CACHE_PARTS: bit p: part p is read. LUCERNA_CACHE_ELLIPSES: 1 where records may be ellipses;
+// LUCERNA_CACHE_GATHERS: 1 where some may say that paths gather.
 #ifndef LUCERNA_IRRADIANCE_CACHE_LOOKUP
 #define LUCERNA_IRRADIANCE_CACHE_LOOKUP
 #include "lib/variants.glsl"
@@ -11,9 +11,9 @@
 #include "irradiance_cache/ellipse.glsl"
 #include "irradiance_cache/least_radius.glsl"
 #include "shaders/shared/facet.h"
+#include "lib/reservoir.glsl"
 #if LUCERNA_GROUP_SUMS
 #include "irradiance_cache/groups.glsl"
-#include "lib/reservoir.glsl"
 #endif
 
 uniform samplerBuffer record_texels;
@@ -113,72 +113,158 @@ OctreeRange cache_range(vec3 x, bool asks) {
   return OctreeRange(range.first, asks && cache.record_count > 0u ? range.last : range.first);
 }
 
+// A record on its own, as it stands in the octree's lists.
+struct Serving {
+  uint record;
+  vec4 place, facing;
+  float weight;   // 0: it serves the point not
+  bool crowded;   // ... and holds no light
+};
+
+// The next record of a range whose sphere holds the point; `i` goes behind it. Ten are listed for each, and lanes wait for the
+// longest list.
+Serving next_serving(inout uint i, uint last, vec3 x, vec3 n, uint media) {
+  Serving s;
+  uint at = i;
+  s.place = vec4(0.0);
+  bool within = false;
+  for (; i < last && !within; ++i) {
+    at = i;
+    s.place = octree_copy(i);
+    vec3 off_centre = x - s.place.xyz;
+    within = dot(off_centre, off_centre) < square(s.place.w);
+#if LUCERNA_VOLUMES
+    within = within && record_media(octree_sphere(i)) == media;
+#endif
+  }
+  s.record = octree_sphere(at);
+  s.facing = texelFetch(record_texels, int(s.record * k_record_texels + 1u));
+  s.weight = within ? record_weight(x, n, s.place, s.facing, record_shape(s.record, s.place)) : 0.0;
+#if LUCERNA_CACHE_GATHERS
+  s.crowded = s.weight > 0.0 && record_crowded(s.record);
+#else
+  s.crowded = false;
+#endif
+  return s;
+}
+
+// A record's light, extrapolated to a place that is `away` from it and where the light falls on `shading`.
+struct Extrapolation {
+  vec2 r, t;  // turn and offset, along tangent and bitangent
+};
+// Of an offset, the part over which slopes are extrapolated that hold so far.
+vec2 slope_offset(vec2 t, float holds) { return t * min(1.0, holds / max(length(t), 1e-30)); }
+Extrapolation extrapolation(vec3 normal, vec3 away, vec3 shading) {
+  vec3 tangent, bitangent;
+  make_basis(normal, tangent, bitangent);
+  vec3 turn = cross(normal, shading);
+  return Extrapolation(vec2(dot(turn, tangent), dot(turn, bitangent)), vec2(dot(away, tangent), dot(away, bitangent)));
+}
+vec3 record_part(uint record, uint part, Extrapolation by) {
+  int from = int((record * k_part_count + part) * k_part_texels);
+  vec4 a = texelFetch(irradiance_texels, from), b = texelFetch(irradiance_texels, from + 1);
+  vec4 c = texelFetch(irradiance_texels, from + 2), d = texelFetch(irradiance_texels, from + 3);
+  // Not below 0; and no further up than down, because a limit on one side would make light of noisy gradients.
+  vec2 t = slope_offset(by.t, d.w);
+  vec3 change = by.r.x * vec3(a.a, b.xy) + by.r.y * vec3(b.zw, c.x) + t.x * c.yzw + t.y * d.xyz;
+  return a.rgb + clamp(change, -a.rgb, a.rgb);
+}
+bool part_is_read(uint part) { return (uint(LUCERNA_CACHE_PARTS) >> part & 1u) != 0u; }
+
+Cached nothing_cached() {
+  Cached found;
+  for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
+  found.weight = 0.0;
+  found.guide = k_no_guide;
+#if LUCERNA_GROUP_SUMS
+  [[unroll]] for (uint g = 0u; g < k_group_count; ++g) found.group[g] = vec3(0.0);
+#endif
+  return found;
+}
+
+// What groups have in `light`, by their shares in a record's.
+#if LUCERNA_GROUP_SUMS
+void share_out(inout Cached found, uint record, vec3 light) {
+  [[unroll]] for (uint t = 0u; t < k_group_texels; ++t) {
+    uvec4 shares = texelFetch(record_group_texels, int(record * k_group_texels + t));
+    [[unroll]] for (uint g = 4u * t; g < min(4u * t + 4u, k_group_count); ++g) found.group[g] = light * share_unpack(shares[g % 4u]);
+  }
+}
+#endif
+
 // `n`: geometric, on the side whose light is asked for; `shading`: the normal that the light falls on. They may differ by
 // what the gradient of rotation can bridge; beyond that nothing is served. `asks` false: an empty answer, without work.
 // `media`: that the point lies in, as PathState has them; records of others have other light. `u`: a number in [0, 1) by which
 // a record is drawn where groups of lights are kept apart.
 Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool asks, float u) {
-  Cached found;
-  for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
-  found.weight = 0.0;
-  found.guide = k_no_guide;
+  Cached found = nothing_cached();
 #if LUCERNA_GROUP_SUMS
   RecordLot lot = RecordLot(Reservoir(u, 0.0), 0u, vec3(0.0));
 #endif
   Nearest nearest = nothing_near();
   OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
-    // On to the next sphere that holds the point: ten are listed for each, and lanes wait for the longest list.
-    uint at = i;
-    vec4 place = vec4(0.0);
-    bool within = false;
-    for (; i < range.last && !within; ++i) {
-      at = i;
-      place = octree_copy(i);
-      vec3 off_centre = x - place.xyz;
-      within = dot(off_centre, off_centre) < square(place.w);
-#if LUCERNA_VOLUMES
-      within = within && record_media(octree_sphere(i)) == media;
-#endif
-    }
-    uint record = octree_sphere(at);
-    vec4 facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
-    float weight = within ? record_weight(x, n, place, facing, record_shape(record, place)) : 0.0;
-    bool crowded = weight > 0.0 && record_crowded(record);
+    Serving s = next_serving(i, range.last, x, n, media);
     Nearest before = nearest;
-    nearest = nearer(nearest, weight, x - place.xyz, crowded);
-    found.guide = nearest.crowded < before.crowded ? record : found.guide;
-    weight = crowded ? 0.0 : weight;
-    vec3 tangent, bitangent;
-    make_basis(facing.xyz, tangent, bitangent);
-    vec3 turn = cross(facing.xyz, shading), away = x - place.xyz;
-    vec2 r = vec2(dot(turn, tangent), dot(turn, bitangent)), t = vec2(dot(away, tangent), dot(away, bitangent));
+    nearest = nearer(nearest, s.weight, x - s.place.xyz, s.crowded);
+    found.guide = nearest.crowded < before.crowded ? s.record : found.guide;
+    float weight = s.crowded ? 0.0 : s.weight;
+    Extrapolation by = extrapolation(s.facing.xyz, x - s.place.xyz, shading);
     vec3 light = vec3(0.0);  // weighted, of all groups
     for (uint p = 0u; p < k_part_count; ++p) {
-      if ((uint(LUCERNA_CACHE_PARTS) >> p & 1u) == 0u) continue;
-      int from = int((record * k_part_count + p) * k_part_texels);
-      vec4 a = texelFetch(irradiance_texels, from), b = texelFetch(irradiance_texels, from + 1);
-      vec4 c = texelFetch(irradiance_texels, from + 2), d = texelFetch(irradiance_texels, from + 3);
-      // Not below 0; and no further up than down, because a limit on one side would make light of noisy gradients.
-      vec3 change = r.x * vec3(a.a, b.xy) + r.y * vec3(b.zw, c.x) + t.x * c.yzw + t.y * d.xyz;
-      vec3 part = weight > 0.0 ? weight * (a.rgb + clamp(change, -a.rgb, a.rgb)) : vec3(0.0);
+      if (!part_is_read(p)) continue;
+      vec3 part = record_part(s.record, p, by);
+      part = weight > 0.0 ? weight * part : vec3(0.0);
       found.part[p] += part;
       if (p != k_part_direct) light += part;
     }
 #if LUCERNA_GROUP_SUMS
-    lot = draw_record(lot, record, light);
+    lot = draw_record(lot, s.record, light);
 #endif
     found.weight += weight;
   }
   found.weight = paths_gather(nearest) ? 0.0 : found.weight;
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = found.weight > 0.0 ? found.part[p] / found.weight : vec3(0.0);
 #if LUCERNA_GROUP_SUMS
-  vec3 light = found.weight > 0.0 ? lot.light / found.weight : vec3(0.0);
-  [[unroll]] for (uint t = 0u; t < k_group_texels; ++t) {
-    uvec4 shares = texelFetch(record_group_texels, int(lot.record * k_group_texels + t));
-    [[unroll]] for (uint g = 4u * t; g < min(4u * t + 4u, k_group_count); ++g) found.group[g] = light * share_unpack(shares[g % 4u]);
-  }
+  share_out(found, lot.record, found.weight > 0.0 ? lot.light / found.weight : vec3(0.0));
 #endif
+  return found;
+}
+
+// The same of one of the records that serve, each drawn with its share in the weight: right in the mean over `u`. Records that
+// serve a place differ by little, and of a drawn one alone the light is read: with all of them half of the time of a sample
+// was theirs.
+Cached cache_draw(vec3 x, vec3 n, vec3 shading, uint media, bool asks, float u) {
+  Cached found = nothing_cached();
+  Reservoir drawing = Reservoir(u, 0.0);
+  uint record = 0u;
+  vec3 place = vec3(0.0), facing = vec3(0.0, 0.0, 1.0);
+  Nearest nearest = nothing_near();
+  OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
+  for (uint i = range.first; i < range.last;) {
+    Serving s = next_serving(i, range.last, x, n, media);
+    Nearest before = nearest;
+    nearest = nearer(nearest, s.weight, x - s.place.xyz, s.crowded);
+    found.guide = nearest.crowded < before.crowded ? s.record : found.guide;
+    bool drawn = reservoir_draw(drawing, s.crowded ? 0.0 : s.weight);
+    record = drawn ? s.record : record;
+    place = drawn ? s.place.xyz : place;
+    facing = drawn ? s.facing.xyz : facing;
+  }
+  found.weight = paths_gather(nearest) ? 0.0 : drawing.total;
+  Extrapolation by = extrapolation(facing, x - place, shading);
+  vec3 light = vec3(0.0);
+  // A loop, because a branch saves no work on lavapipe: of vertices that look nothing up, nothing is read.
+  for (uint once = 0u; once < (found.weight > 0.0 ? 1u : 0u); ++once) {
+    for (uint p = 0u; p < k_part_count; ++p) {
+      if (!part_is_read(p)) continue;
+      found.part[p] = record_part(record, p, by);
+      if (p != k_part_direct) light += found.part[p];
+    }
+#if LUCERNA_GROUP_SUMS
+    share_out(found, record, light);
+#endif
+  }
   return found;
 }
 #endif

@@ -56,6 +56,8 @@ void main() {
     // Slopes change as the luminance does.
     float ratio = luminance(scaled) / max(luminance(light.rgb), 1e-20);
     shown[at] = vec4(scaled, ratio * light.a);
-    for (int k = 1; k < int(k_part_texels); ++k) shown[at + k] = ratio * texelFetch(old_texels, at + k);
+    for (int k = 1; k + 1 < int(k_part_texels); ++k) shown[at + k] = ratio * texelFetch(old_texels, at + k);
+    vec4 last = texelFetch(old_texels, at + int(k_part_texels) - 1);
+    shown[at + int(k_part_texels) - 1] = vec4(ratio * last.xyz, last.w);
   }
 }

@@ -26,10 +26,8 @@ bool cache_propagates() { return cache.probing == k_probe_errors || cache.probin
 // The same states twice over: what records bring is nobody's choice but theirs.
 uint cache_state_of(VertexIn v) { return v.state % k_left_states; }
 bool cache_next_read(uint state) { return cache.probing == k_probe_next && state >= k_fallback_state; }
-// Of a sequence apart from those by which directions and lights are chosen.
-float record_lot(VertexIn v) {
-  return to_unit(uvec2(hash_mix(sample_vertex_bits(v.random, v.depth, k_pad_light_choice).x))).x;
-}
+// By which a record is drawn.
+float record_lot(VertexIn v) { return sample_2d(v.random, k_pad_record + v.depth).x; }
 bool cache_coin(VertexIn v) { return (sample_vertex_bits(v.random, v.depth, k_pad_light_choice).x & 1u) != 0u; }
 
 // What lies behind this vertex's diffuse lobe: from the records, or where there are none by going on in the states that leave
@@ -67,7 +65,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     float sign = facing == 0 ? 1.0 : -1.0;
     // Records hold light of paths whose first event is theirs.
     bool too_long = v.depth > 0u && frame.max_depth < k_deep_paths;
-    Cached found = cache_lookup(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], media, asks && !too_long, record_lot(v));
+    Cached found = cache_draw(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], media, asks && !too_long, record_lot(v));
     bool missing = asks && found.weight <= 0.0;
     // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
     bool notes = !too_long && ((missing && found.guide == k_no_guide) || (asks && notes_all)) && cache.probing != k_probe_none && !cache_propagates() &&
@@ -112,16 +110,22 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
 }
 
 vec3 cache_cosine(VertexIn v, inout cache_Vertex x, vec2 u, vec3 cosine) {
+#if LUCERNA_CACHE_GATHERS
   // Not while places are looked for: these are not to hang on the light.
   bool guided = x.alone && x.gathers && (cache.probing == k_probe_none || cache_propagates());
   x.guide = make_guide(guided ? x.guiding : k_no_guide, v.to_world[2]);
   return x.guide.total > 0.0 ? guide_sample(x.guide, u) * v.to_world : cosine;
+#else
+  return cosine;
+#endif
 }
 
 // What is met is weighed against light samples by the density without the guide: these weights need but add up to 1.
 void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b) {
+#if LUCERNA_CACHE_GATHERS
   if (x.guide.total > 0.0 && !b.transmitted && b.pdf > 0.0)
     b.weight *= b.pdf / (b.pdf + v.bsdf.p_diffuse * k_inv_pi * b.wi.z * (guide_density(x.guide, direction) - 1.0));
+#endif
 }
 
 // Behind the vertex: in states that have passed this lookup over, or all, or that have done with them.

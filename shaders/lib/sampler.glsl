@@ -16,6 +16,8 @@ const uint k_pad_light_uv = 1u;
 const uint k_pad_lobe = 2u;          // x: lobe, y: label; of a null event's stream: x by alpha, y through a pane
 const uint k_pad_direction = 3u;
 const uint k_pad_light_detail = 4u;  // which texel of the environment
+// From here on one for each vertex: which record of an irradiance cache is read there.
+const uint k_pad_record = 0x8000u;
 // From here on no pads: the streams of null events.
 const uint k_pad_null = 0x10000u;
 

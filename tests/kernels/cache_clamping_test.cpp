@@ -42,7 +42,7 @@ struct Bed : test::RecordBed {
   Clamping clamping;
 
   Bed(uint32_t capacity, Metric metric)
-      : clamping(device, compiler, capacity, irradiance_cache::Cache::defines({}, metric)) {}
+      : clamping(device, compiler, capacity, irradiance_cache::Cache::defines({}, metric, false)) {}
 
   std::vector<Record> clamp(const std::vector<Disc>& discs, float near) {
     shared::CacheFrame frame{};

@@ -18,11 +18,12 @@ Cache::Impl::Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t s
       gathers{.parts = routes.records.parts,
               .recursive = tables.records_look_up(),
               .elsewhere = routes.elsewhere},
-      radii(device, compiler, options.radius, o.most_records, defines(routes.records, o.radius.metric)),
+      radii(device, compiler, options.radius, o.most_records,
+            defines(routes.records, o.radius.metric, o.gather)),
       evaluator(device, compiler, slots, o.groups),
       places(device, compiler),
-      picture(device, compiler, o.most_records, defines(routes.records, o.radius.metric)),
-      overlay(device, compiler, defines(routes.records, o.radius.metric)),
+      picture(device, compiler, o.most_records, defines(routes.records, o.radius.metric, o.gather)),
+      overlay(device, compiler, defines(routes.records, o.radius.metric, o.gather)),
       progress{.probing = {}, .queue = {}, .levels = RayLevels(o.rays), .clock = {}, .pauses = {}},
       preview(device, compiler, o.groups) {
   count_bytes();
@@ -33,6 +34,7 @@ void Cache::Impl::count_bytes() {
 }
 
 void Cache::Impl::clear() {
+  progress.refining = {};
   preview.end();
   tables.records.clear();
   places.forget();
@@ -100,7 +102,7 @@ void Cache::Impl::end_pass(const Work& w) {
   // The levels' rays have met more than the first's. Records that are relit stay as they are: nobody would
   // fill gaps.
   if (progress.levels.level() > 0 && status.relighting.records == 0)
-    clamp_radii(w, ranges.evaluated(), options.radius.nearest);
+    clamp_radii(w, ranges.evaluated(), options.radius.nearest, ranges.evaluated());
   overlay.set_scales(tables.records.figures());
   pass().complete = true;
   if (status.relighting.records > 0) return relight_pass();

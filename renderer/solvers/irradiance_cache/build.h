@@ -34,6 +34,7 @@ struct BuildProgress {
   RayLevels levels;   ///< of the stage evaluate
   StageClock clock;
   Pauses pauses;
+  Refining refining;
   /// Why building had stopped before records were relit, which it does again once they are.
   StopReason stopped_before = StopReason::building;
 };
@@ -71,7 +72,7 @@ struct Cache::Impl {
   bool probe(const Work& work);
   bool choose(const Work& work);
   bool measure(const Work& work);
-  bool thin();
+  bool thin(const Work& work);
   bool evaluate(const Work& work);
   bool index(const Work& work);
   void finish(StopReason reason);
@@ -90,6 +91,10 @@ struct Cache::Impl {
   /// Complete records from elsewhere, in place of all.
   void replace_records(const RawRecords& raw);
 
+  /// Records that are noisier than the last time allowed, over the root of 2, are to get further rays.
+  void begin_refining();
+  /// That is given up as far as it has come.
+  void end_refining();
   /// One piece of looking at the picture's points; false when it was cancelled.
   bool see(transport::Wavefront& wavefront, const CacheView& view, const std::function<bool()>& cancel);
   /// ... or all of them, for somebody who watches.
@@ -156,7 +161,9 @@ struct Cache::Impl {
   /// ... of all, also of earlier passes, by the records around, that they be no wider than they need be.
   /// ... of the first `count`, those that are evaluated at least, by what is nearest to any of them; the
   /// octree is built anew.
-  void clamp_radii(const Work& work, uint32_t count, float near);
+  /// `settled`: of these which of them crowd stays as it is, and how far those reach that serve records' rays
+  /// alone: other records have read them.
+  void clamp_radii(const Work& work, uint32_t count, float near, uint32_t settled);
 
   // Light:
   /// One piece of looking where the picture reads records; false when it was cancelled.
@@ -166,6 +173,10 @@ struct Cache::Impl {
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
   bool next_level();
+  /// Of these, which have all had as many rays, those that are too noisy.
+  std::vector<uint32_t> noisy(const std::vector<uint32_t>& records) const;
+  /// The records of any pass that are to get further light next, and their level. False when there are none.
+  bool next_refined();
   float share_of_noise(uint32_t record) const;
   /// ... without those that bring no light because paths gather there.
   std::vector<uint32_t> without_crowded(std::vector<uint32_t> list) const;

@@ -67,6 +67,12 @@ bool Cache::Impl::gather(const Work& w) {
 bool Cache::Impl::evaluate(const Work& w) {
   if (!picture.reads.seen()) return see_reads(w);
   RayLevels& levels = progress.levels;
+  if (progress.refining.under_way && progress.queue.all().empty()) {
+    if (picture.importance.size() != ranges.evaluated())
+      picture.importance = picture.reads.measure(w.stream(), binding(), ranges.evaluated());
+    if (!next_refined()) end_refining();
+    return true;
+  }
   if (!progress.queue.done()) {
     if (!gather(w)) return false;
     if (!progress.queue.done()) return true;
@@ -74,6 +80,11 @@ bool Cache::Impl::evaluate(const Work& w) {
     if (!levels.end_round()) return true;
   }
   levels.end_level();
+  if (progress.refining.under_way) {
+    publish_level(w);
+    if (!next_refined()) end_refining();
+    return true;
+  }
   const uint32_t done_level = levels.level() + 1;
   const bool first = ranges.waiting() > 0;
   bool more_levels = true;
@@ -115,12 +126,13 @@ void Cache::Impl::publish_level(const Work& w) {
     set_radii(w, radii.by_light() ? By::light : By::distance);
     held = gathers;
   }
+  const uint32_t settled = ranges.evaluated();
   ranges.evaluate_pass();
   status.records = ranges.evaluated();
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
   add_time(BuildStep::octree, timer.milliseconds());
-  if (anew) clamp_radii(w, ranges.evaluated(), options.radius.nearest);
+  if (anew) clamp_radii(w, ranges.evaluated(), options.radius.nearest, settled);
   write_frame();
 }
 
@@ -134,22 +146,56 @@ float Cache::Impl::share_of_noise(uint32_t record) const {
                     int(progress.levels.level()));
 }
 
-bool Cache::Impl::next_level() {
-  RecordQueue& queue = progress.queue;
-  queue.set(without_crowded(queue.all()));  // the rays so far may have met what is near
-  if (queue.done() || uint64_t{4} * progress.levels.rays() > options.most_rays) return false;
+std::vector<uint32_t> Cache::Impl::noisy(const std::vector<uint32_t>& records) const {
+  if (records.empty() || uint64_t{4} * progress.levels.rays() > options.most_rays) return {};
   const std::vector<Records::Figures> figures = tables.records.figures();
   const std::vector<float> light = tables.records.luminances();
+  const float noise = options.noise * progress.refining.noise;
   std::vector<Noise> noises;
-  for (const uint32_t r : queue.all())
-    noises.push_back({figures[r].error, light[r], options.noise * share_of_noise(r)});
-  std::vector<uint32_t> longer;
+  for (const uint32_t r : records) noises.push_back({figures[r].error, light[r], noise * share_of_noise(r)});
+  std::vector<uint32_t> found;
   for (const uint32_t i : too_noisy(noises, dark_luminance(light, ranges.evaluated())))
-    longer.push_back(queue.all()[i]);
-  queue.set(std::move(longer));
+    found.push_back(records[i]);
+  return found;
+}
+
+bool Cache::Impl::next_level() {
+  RecordQueue& queue = progress.queue;
+  queue.set(noisy(without_crowded(queue.all())));  // the rays so far may have met what is near
   if (queue.done()) return false;
   progress.levels.next();
   return true;
+}
+
+void Cache::Impl::begin_refining() {
+  if (progress.stage != Stage::done || ranges.evaluated() == 0) return;
+  progress.refining = {.under_way = true, .noise = progress.refining.noise / std::sqrt(2.0f)};
+  progress.queue.set({});
+  progress.stage = Stage::evaluate;
+  if (status.passes.empty()) status.passes.push_back({.number = status.pass, .complete = true});  // loaded
+}
+
+void Cache::Impl::end_refining() {
+  if (!progress.refining.under_way) return;
+  progress.refining.under_way = false;
+  progress.queue.set({});
+  progress.stage = Stage::done;
+}
+
+bool Cache::Impl::next_refined() {
+  for (uint32_t& level = progress.refining.level;; ++level) {
+    progress.levels.resume(level);
+    if (uint64_t{4} * progress.levels.rays() > options.most_rays) return false;
+    const std::vector<Records::Figures> figures = tables.records.figures();
+    std::vector<uint32_t> here;
+    for (uint32_t r = 0; r < ranges.evaluated(); ++r)
+      if (figures[r].rays == float(progress.levels.rays_before())) here.push_back(r);
+    progress.queue.set(noisy(without_crowded(std::move(here))));
+    if (progress.queue.done()) continue;
+    progress.levels.next();
+    ++level;
+    return true;
+  }
 }
 
 std::vector<uint32_t> Cache::Impl::without_crowded(std::vector<uint32_t> list) const {

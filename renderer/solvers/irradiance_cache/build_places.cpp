@@ -18,8 +18,8 @@ namespace {
 constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
 /// Passes that ask beyond the lookup too, where the cache reads itself, and how finely they look there: what
 /// no record serves there costs time, not accuracy.
-constexpr uint32_t k_deep_passes = 3;
-constexpr float k_deep_spacing = 1.0f / 64;
+constexpr uint32_t k_deep_passes = 2;
+constexpr float k_deep_spacing = 1.0f / 32;
 /// Width of the finest cells of the picture that ask, in the spacing of the pass: gaps about finer detail are
 /// left to later passes, whose records read those of the first and are cheaper.
 constexpr float k_finest_of_spacing = 0.5f;
@@ -196,13 +196,15 @@ bool Cache::Impl::choose(const Work& w) {
   return true;
 }
 
-bool Cache::Impl::thin() {
+bool Cache::Impl::thin(const Work& w) {
   const Timer host;
   std::vector<float> off_planes;
   for (size_t i = 0; i < places.tried.size(); ++i)
     off_planes.push_back(tables.off_plane(places.tried[i], places.radii[i]));
   places.chosen = thin_out(places.tried, places.radii, off_planes,
-                           {.share = options.thinning, .normal_tolerance = k_normal_tolerance});
+                           {.share = options.thinning,
+                            .normal_tolerance = k_normal_tolerance,
+                            .least_beyond = k_deep_spacing * w.view.scene_radius});
   tables.records.keep(ranges.evaluated(), places.chosen);
   pass().records = uint32_t(places.chosen.size());
   queue_until(tables.records.size());

@@ -52,9 +52,10 @@ Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
 
 Cache::~Cache() = default;
 
-gpu::Defines Cache::defines(const paths::LookupRoutes& own, Metric metric) {
+gpu::Defines Cache::defines(const paths::LookupRoutes& own, Metric metric, bool gathers) {
   return {{"LUCERNA_CACHE_PARTS", std::to_string(own.parts)},
-          {"LUCERNA_CACHE_ELLIPSES", metric == Metric::hessian ? "1" : "0"}};
+          {"LUCERNA_CACHE_ELLIPSES", metric == Metric::hessian ? "1" : "0"},
+          {"LUCERNA_CACHE_GATHERS", gathers ? "1" : "0"}};
 }
 
 void Cache::bind(gpu::Resources& resources) const {
@@ -66,6 +67,8 @@ void Cache::clear() { impl_->clear(); }
 
 void Cache::extend() {
   Impl& c = *impl_;
+  c.end_refining();
+  c.progress.refining = {};
   c.progress.probing.camera_moved = true;
   c.count_anew(true);
   c.picture.forget();
@@ -110,7 +113,11 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
 
 void Cache::look_from(const CacheView& view) { impl_->look_from(view); }
 
-bool Cache::ready() const { return impl_->progress.stage == Stage::done; }
+bool Cache::ready() const { return impl_->progress.stage == Stage::done || refines(); }
+
+void Cache::refine() { impl_->begin_refining(); }
+
+bool Cache::refines() const { return impl_->progress.refining.under_way; }
 
 void Cache::pause(PauseAfter after) {
   impl_->progress.pauses.set(after);
@@ -149,7 +156,7 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
     case Stage::measure:
       return impl_->measure(work);
     case Stage::thin:
-      return impl_->thin();
+      return impl_->thin(work);
     case Stage::evaluate:
       return impl_->evaluate(work);
     case Stage::index:

@@ -136,7 +136,8 @@ class Cache {
   ~Cache();
 
   /// For the kernels of a wavefront that reads a cache with these routes of its own and this metric.
-  static gpu::Defines defines(const paths::LookupRoutes& own, Metric metric);
+  /// `gathers`: CacheOptions::gather.
+  static gpu::Defines defines(const paths::LookupRoutes& own, Metric metric, bool gathers);
   /// Under the names of shaders/irradiance_cache/lookup.glsl.
   void bind(gpu::Resources& resources) const;
   /// Which records are the least that there may be, and so serve coarsely, depends on who looks. Call it
@@ -147,6 +148,11 @@ class Cache {
   /// Building ends where it is: records that have light serve, and what none serves is path traced. Not while
   /// records are relit.
   void make_do();
+  /// When ready: records whose noise is more than the picture can bear by now, over the root of 2 what it
+  /// could the last time, get further light, with the same places and radii, while step() is called and
+  /// refines(). Whatever changes the cache ends it.
+  void refine();
+  bool refines() const;
   /// Goes on building with what there is, for a picture from elsewhere or of another size: its passes are
   /// counted anew. Work in progress is finished first. While building waits it goes on waiting.
   void extend();

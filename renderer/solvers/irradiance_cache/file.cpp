@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they lie in memory");
 // A record that grows or shrinks is refused by its size; this asks whether k_record_layout, too, is right.
-static_assert(k_record_texels == 6 && k_part_texels == 4 && k_part_count == 4 && k_record_layout == 4);
+static_assert(k_record_texels == 6 && k_part_texels == 4 && k_part_count == 4 && k_record_layout == 5);
 
 constexpr char k_magic[8] = {'L', 'U', 'C', 'C', 'A', 'C', 'H', 'E'};
 constexpr size_t k_head = sizeof k_magic + 3 * sizeof(uint32_t) + sizeof(uint64_t);

@@ -61,6 +61,7 @@ void LookupTables::bind(gpu::Resources& to) const {
 lookup::OctreeOptions LookupTables::octree_options(uint32_t records) {
   return {.spheres = records,
           .references = k_references * records,
+          .leaf_scale = 0.5f,
           .copies = true,
           .discs = true,
           .crowd = k_crowd};

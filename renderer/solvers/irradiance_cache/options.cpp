@@ -24,13 +24,13 @@ std::vector<OptionInfo> radius_rows() {
           "Irradiance cache: greatest radius of a record over the distance of the nearest thing that it or "
           "a record that it reaches sees. Less: more records, and less error, where narrow things stand "
           "before a surface."),
-      real_option("cache.min_radius", "3", 0, 100, "pixels",
+      real_option("cache.min_radius", "6", 0, 100, "pixels",
                   "Irradiance cache: least radius of a record, as the camera sees it.",
                   "Radius \xE2\x89\xA5"),
       real_option("cache.max_radius", "0.1", 0.001, 1, "of the scene's radius",
                   "Irradiance cache: greatest radius of a record.", "Radius \xE2\x89\xA4"),
       boolean_option(
-          "cache.gather", "true",
+          "cache.gather", "false",
           "Irradiance cache: where something is nearer than twice the least radius, along edges, records "
           "only "
           "tell where light comes from. Paths gather it from there and end in records one vertex later: "
@@ -59,7 +59,7 @@ std::vector<OptionInfo> light_rows() {
           "before.",
           "Most rays"),
       real_option(
-          "cache.noise", "0.03", 0, 10, "",
+          "cache.noise", "0.3", 0, 10, "",
           "Irradiance cache: relative standard error above which a record with a radius of 3 % of the "
           "picture's height gets more rays than the first level. Those that more of the picture reads get "
           "more of them, others fewer, for what they are worth to it.",
@@ -81,7 +81,7 @@ std::vector<OptionInfo> light_rows() {
       integer_option("cache.passes", 12, 1, 64, "passes", "Irradiance cache: passes of building at most.",
                      "Most passes"),
       real_option(
-          "cache.stop", "0.002", 0, 1, "",
+          "cache.stop", "0.02", 0, 1, "",
           "Irradiance cache: building ends when no greater share of the paths still asks for records; "
           "these are "
           "path traced.",

@@ -35,6 +35,13 @@ struct PictureProbing {
   }
 };
 
+/// Further light for records that have some, once building is complete.
+struct Refining {
+  bool under_way = false;
+  uint32_t level = 0;  ///< records that have had the rays of levels up to this one are looked at next
+  float noise = 1;     ///< what records may have, over that of building
+};
+
 /// Times the stages of a pass by what the pass has taken so far.
 class StageClock {
  public:

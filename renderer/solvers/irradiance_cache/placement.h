@@ -82,6 +82,9 @@ struct ThinningOptions {
   /// Of its radius: where a record that is kept makes others superfluous. The less, the more overlap.
   float share = 0.6f;
   float normal_tolerance = 0.015f;  ///< as the lookup has it
+  /// Records that other records' rays ask for (k_origin_recursive) go where they are narrower [m]: rays go on
+  /// there, for less than it takes to cover what is narrow.
+  float least_beyond = 0;
 };
 
 /// Of records whose radii are known those that are needed, the widest first: indices in rising order. A

@@ -66,6 +66,12 @@ class RayLevels {
   }
   void end_level() { in_level_ = 0; }
   void next() { ++level_; }
+  /// For records that have had the rays of all levels up to this one, which is complete.
+  void resume(uint32_t level) { level_ = level, in_level_ = 0, before_ = rays_up_to(level); }
+  /// That a record has had when it is done with a level: its own and those before.
+  uint32_t rays_up_to(uint32_t level) const {
+    return uint32_t(first_ * (((uint64_t{1} << 2 * (level + 1)) - 1) / 3));
+  }
 
  private:
   uint32_t first_, level_ = 0, in_level_ = 0, before_ = 0;

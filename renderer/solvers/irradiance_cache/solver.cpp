@@ -125,11 +125,12 @@ CacheSolver::CacheSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, uin
       record_routes_(routes_of_records(task)),
       ray_routes_(routes_of_rays(task)),
       metric_(Metric(task.settings.choice("cache.metric"))),
+      gathers_(task.settings.boolean("cache.gather")),
       cache_(device, compiler, slots, all_routes(task), read_options(task)) {}
 
 const solvers::SolverInfo& CacheSolver::info() const { return irradiance_cache::info(); }
 
-gpu::Defines CacheSolver::defines() const { return Cache::defines(record_routes_, metric_); }
+gpu::Defines CacheSolver::defines() const { return Cache::defines(record_routes_, metric_, gathers_); }
 
 bool CacheSolver::serves(const Task& task) const {
   return picture_routes(task).component == picture_routes_.component &&
@@ -188,6 +189,11 @@ bool CacheSolver::prepare(transport::Wavefront& wavefront, const Picture& pictur
     cache_.preview_relighting(interactive_);
   }
   return progress;
+}
+
+bool CacheSolver::refine(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
+  if (!cache_.refines()) cache_.refine();
+  return !cache_.refines() || cache_.step(wavefront, picture.task.automaton, view(picture), cancel);
 }
 
 bool CacheSolver::estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,

@@ -39,6 +39,10 @@ class CacheSolver final : public solvers::Solver {
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
   void make_do() override { cache_.make_do(); }
+  uint64_t paths_refined() const override { return cache_.status().rays; }
+  bool refines() const override { return cache_.refines(); }
+  bool refine(transport::Wavefront& wavefront, const solvers::Picture& picture,
+              const solvers::Cancel& cancel) override;
   bool warm() const override { return ready() || cache_.status().pass >= 2; }
   bool owes_errors(const film::Film& film) const override { return !film.record_errors_complete(); }
   bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const solvers::Picture& picture,
@@ -74,6 +78,7 @@ class CacheSolver final : public solvers::Solver {
   /// Of the picture's paths; of the rays of records, in records; of these, whoever looks up.
   paths::LookupRoutes picture_routes_, record_routes_, ray_routes_;
   Metric metric_;
+  bool gathers_;
   Cache cache_;
   /// What of an adopted cache does not serve here; of a new one all.
   solvers::Spoils lacks_ = solvers::k_spoils_all;

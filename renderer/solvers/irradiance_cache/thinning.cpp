@@ -54,6 +54,7 @@ std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const fl
   };
   for (const uint32_t i : order) {
     const Place& p = places[i];
+    if (p.origin == shared::k_origin_recursive && radii[i] < o.least_beyond) continue;
     bool covered = false;
     for (const int level : levels) {
       const Cell at = cell_at(p.position, level);

@@ -19,7 +19,7 @@ LUCERNA_CONST uint k_part_count = 4u;
 // What share each group of lights has in them stands apart (irradiance_cache/groups.glsl).
 
 /// Files keep the texels below as they are: another number for another meaning of them.
-LUCERNA_CONST uint k_record_layout = 4u;
+LUCERNA_CONST uint k_record_layout = 5u;
 // record_texels: k_record_texels a record.
 //   0: position xyz [m], moved off its surface by the error bound; radius of validity, the greater of an
 //   ellipse [m], 0: none yet
@@ -49,13 +49,13 @@ LUCERNA_CONST uint k_origin_world = 1u;   ///< what it sees in mirrors, through 
 LUCERNA_CONST uint k_origin_recursive =
     2u;  ///< a vertex beyond the lookup: what other records' rays will ask
 
-// irradiance_texels: k_part_texels for each (record, part), record by record: 16 floats, of which 15 are
-// used:
+// irradiance_texels: k_part_texels for each (record, part), record by record: 16 floats:
 //   irradiance rgb; rotational gradient rgb along the tangent, then along the bitangent; translational
-//   likewise [1/m].
+//   likewise [1/m]; how far off the record the latter holds [m], k_record_slope_most at most.
 // Tangent and bitangent are make_basis() of the normal. Rotational gradient: change of the irradiance as the
 // normal n_i turns to n, by the components of n_i x n.
 LUCERNA_CONST uint k_part_texels = 4u;
+LUCERNA_CONST float k_record_slope_most = 1e30f;
 
 // Of a record that crowds the same texels hold one byte for each cell of its hemisphere, elevations of one
 // azimuth in turn: the luminance that its rays brought from there, over the greatest of them. Cells are even
@@ -171,7 +171,7 @@ struct ClampPush {
   uint count;      ///< records
   float near;      ///< lesser radius over the distance of the nearest thing, at most
   float crowd;     ///< as EllipsePush has it ...
-  uint undecided;  ///< ... for records from this one on
+  uint settled;    ///< ... for records from this one on; of those before, the least there may be of some stay as they are
 };
 /// Of a record that none clamps: the bits of infinity.
 LUCERNA_CONST uint k_no_bound = 0x7f800000u;
