@@ -120,6 +120,41 @@ TEST_CASE("queues, threads and dead rays") {
   CHECK(same(queued, expected));
 }
 
+TEST_CASE("rays of a camera have the hits that each has alone") {
+  Random random(18);
+  const Mesh mesh = soup(random, 20000, 10, 0.5f, vec3(0), 0.3f);
+  const HostTracer tracer(mesh.view());
+  std::vector<Ray> rays;
+  const auto add = [&](const vec3& eye, const vec3& size) {
+    for (uint32_t y = 0; y < 96; ++y)
+      for (uint32_t x = 0; x < 96; ++x) {
+        const uint32_t tile = x / 8 + 12 * (y / 8), in = x % 8 + 8 * (y % 8);
+        const vec3 at(float(8 * (tile % 12) + in % 8) - 47, float(8 * (tile / 12) + in / 8) - 47, -96);
+        rays.push_back(make_ray(eye, glm::normalize(at * size), 1e30f));
+      }
+  };
+  add(vec3(1, 2, 14), vec3(1));    // from outside
+  add(vec3(0.1f, 0, 1), vec3(4));  // from within
+  add(vec3(-3, 1, 12), vec3(1, 1e-4f, 1));
+  for (size_t i = 0; i < rays.size(); ++i) {
+    rays[i].origin += 0.1f * random.in_box(1);  // as through a lens
+    if (i % 700 == 3) rays[i].tmax = -1;
+    if (i % 320 == 5) rays[i].direction.y = std::nanf("");
+    if (i % 11 == 0) rays[i].tmax = random.uniform(0, 20);
+  }
+  const auto count = static_cast<uint32_t>(rays.size());
+  for (const Query query : k_queries) {
+    std::vector<Hit> alone(count), together(count);
+    tracer.trace(query, rays, alone, nullptr, count, false);
+    const uint64_t tests = tracer.leaf_tests();
+    tracer.trace(query, rays, together, nullptr, count - 13, true);
+    // The last ones are not there.
+    std::copy(alone.end() - 13, alone.end(), together.end() - 13);
+    CHECK(same(alone, together));
+    CHECK(tracer.leaf_tests() - tests < 3 * tests);
+  }
+}
+
 TEST_CASE("the bench's yardstick sees the same scene") {
   Random random(15);
   const Mesh mesh = soup(random, 2000, 10, 2);

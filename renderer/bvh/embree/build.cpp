@@ -22,7 +22,7 @@ struct BuiltInner : BuiltNode {
   Box box[2];
 };
 struct BuiltLeaf : BuiltNode {
-  Reference references[k_largest_leaf];
+  Reference* references = nullptr;
 };
 
 struct Job {
@@ -59,7 +59,10 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
                   void*) {
   auto* leaf = new (rtcThreadLocalAlloc(allocator, sizeof(BuiltLeaf), 16)) BuiltLeaf;
   leaf->count = static_cast<uint32_t>(count);
-  for (size_t i = 0; i < count; ++i) leaf->references[i] = {box_of(primitives[i]), primitives[i].primID};
+  leaf->references =
+      static_cast<Reference*>(rtcThreadLocalAlloc(allocator, count * sizeof(Reference), alignof(Reference)));
+  for (size_t i = 0; i < count; ++i)
+    new (leaf->references + i) Reference{box_of(primitives[i]), primitives[i].primID};
   return static_cast<BuiltNode*>(leaf);
 }
 

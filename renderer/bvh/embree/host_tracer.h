@@ -31,7 +31,7 @@ class HostTracer {
 
   /// For i in [0, count): traces rays[j] into hits[j], where j = queue ? queue[i] : i. Other hits are left
   /// alone. Dead rays (tmax <= 0 or NaN) get no hit. `coherent` says that neighbours in the array start
-  /// alike, as camera rays do; it is a hint for speed, heeded only without a queue, so that a ray's hit never
+  /// alike, as camera rays do; it is a hint for speed, used only without a queue, so that a ray's hit never
   /// depends on the order in which other rays were queued. Results do not depend on the number of threads.
   /// Blocks until done; callers on several threads take turns.
   void trace(Query query, std::span<const shared::Ray> rays, std::span<shared::Hit> hits,

@@ -13,6 +13,7 @@
 // (lavapipe does), t, u and v are the same bits.
 #include <emmintrin.h>
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -29,7 +30,7 @@ typedef int32_t Ints __attribute__((vector_size(4 * k_lanes)));
 #define LUCERNA_LANES_INLINE [[gnu::always_inline]] inline
 
 /// Up to k_lanes triangles, transposed. Unused lanes repeat another lane, which changes no result.
-struct alignas(4 * k_lanes) PackedTriangles {
+struct alignas(64) PackedTriangles {
   Floats vertex[3][3];  ///< [vertex][axis]
   uint32_t prim[k_lanes];
 };
@@ -43,7 +44,7 @@ struct ShearedRay {
   int kx, ky, kz;                         ///< kz: the axis in which the direction is largest
   float along;                            ///< |direction| in that axis
 
-  explicit ShearedRay(const shared::Ray& ray) : limit(std::nextafter(ray.tmax, 0.0f)) {
+  explicit ShearedRay(const shared::Ray& ray) : limit(before(ray.tmax)) {
     const vec3& d = ray.direction;
     const float x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z);
     kz = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
@@ -56,6 +57,8 @@ struct ShearedRay {
   }
   ShearedRay() = default;
 
+  /// The float before a positive one: std::nextafter(x, 0), without its call.
+  static float before(float x) { return x > 0 ? std::bit_cast<float>(std::bit_cast<uint32_t>(x) - 1) : x; }
   /// The direction of the line that the test follows: unlike ray.direction's it has no rounding of the shear
   /// against it. Its largest component is 1 or -1.
   vec3 direction() const {
@@ -93,6 +96,7 @@ LUCERNA_LANES_INLINE void refine(Floats& r, const Floats& a, const Floats& b, co
 LUCERNA_LANES_INLINE uint32_t intersect(const PackedTriangles& triangles, const ShearedRay& ray, Floats& t,
                                         Floats& u, Floats& v) {
   Floats x[3], y[3], z[3];
+#pragma GCC unroll 3
   for (int k = 0; k < 3; ++k) {
     const Floats along = triangles.vertex[k][ray.kz] - ray.origin[2];
     x[k] = (triangles.vertex[k][ray.kx] - ray.origin[0]) - ray.shear[0] * along;

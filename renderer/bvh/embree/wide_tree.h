@@ -14,7 +14,7 @@
 
 namespace lucerna::bvh {
 
-struct alignas(4 * k_lanes) WideNode {
+struct alignas(64) WideNode {
   Floats face[6];           ///< [2 * axis + side] of every child, side 0: the lower
   uint32_t child[k_lanes];  ///< k_wide_leaf | index of a leaf, or index of a node
   uint32_t children = 0;    ///< the first so many are there; the boxes of others are empty
@@ -30,7 +30,8 @@ struct WideTree {
   }
 };
 
-/// Of the triangles that are wanted. Leaves of `tree` hold k_lanes references at most.
+/// Of the triangles that are wanted. Its leaves are chosen here: `tree` best has one reference a leaf, and
+/// holds k_lanes in a leaf at most.
 WideTree make_wide_tree(const Tree& tree, const Triangles& triangles,
                         const std::function<bool(uint32_t prim)>& wanted);
 
