@@ -180,8 +180,8 @@ void light_details(Ui& ui, size_t i, const scene::Light& light) {
             {.lo = 1e-3f, .hi = 1e6f, .log = true, .decimals = 2, .unit = "W", .bar = false, .travel = 0.2f}))
       ui.act("light.set", i + 1, named("power", power));
     tooltip("All the light that the lamp gives off, in its strongest channel.");
-    const vec3 middle = ui.bounds.empty() ? vec3(0) : ui.bounds.centre();
-    const float radius = std::max(ui.bounds.empty() ? 1.0f : ui.bounds.radius(), 1e-2f);
+    const vec3 middle = ui.core.empty() ? vec3(0) : ui.core.centre();
+    const float radius = std::max(ui.core.empty() ? 1.0f : ui.core.radius(), 1e-2f);
     const float reach = 4 * radius + glm::length(middle);
     vec3 position = light.position;
     if (slider_row("##position", "Position", position,

@@ -118,7 +118,7 @@ void Workspace::add_camera_commands() {
                 .run =
                     [this](const Arguments& a) {
                       const int index = camera_index(a.text("camera"));
-                      take_view(make_viewpoint(scene->cameras[static_cast<size_t>(index)], bounds), index);
+                      take_view(make_viewpoint(scene->cameras[static_cast<size_t>(index)], core), index);
                     },
                 .moves = true});
 }

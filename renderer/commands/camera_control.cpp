@@ -55,10 +55,10 @@ vec3 up_of(const scene::Camera& camera) { return vec3(rigid(camera.to_world)[1])
 vec3 forward_of(const scene::Camera& camera) { return -vec3(rigid(camera.to_world)[2]); }
 vec3 pivot_of(const Viewpoint& view) { return eye_of(view.camera) + view.distance * forward_of(view.camera); }
 
-Viewpoint make_viewpoint(const scene::Camera& camera, const Box& bounds) {
+Viewpoint make_viewpoint(const scene::Camera& camera, const Box& core) {
   Viewpoint view{.camera = camera};
-  if (!bounds.empty() && bounds.radius() > 0) view.extent = bounds.radius();
-  const vec3 centre = bounds.empty() ? vec3(0) : bounds.centre();
+  if (!core.empty() && core.radius() > 0) view.extent = core.radius();
+  const vec3 centre = core.empty() ? vec3(0) : core.centre();
   const float depth = glm::dot(centre - eye_of(camera), forward_of(camera));
   view.distance = std::clamp(depth, 0.05f * view.extent, 2 * view.extent);
   return view;

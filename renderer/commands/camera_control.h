@@ -9,7 +9,7 @@ namespace lucerna::commands {
 struct Viewpoint {
   scene::Camera camera;
   float distance = 1;  ///< to the pivot, metres, > 0
-  float extent = 1;    ///< radius of the scene, metres, > 0; scales speeds and smallest steps
+  float extent = 1;    ///< radius of the scene's core, metres, > 0; scales speeds and smallest steps
 };
 
 vec3 eye_of(const scene::Camera& camera);
@@ -18,9 +18,10 @@ vec3 up_of(const scene::Camera& camera);
 vec3 forward_of(const scene::Camera& camera);
 vec3 pivot_of(const Viewpoint& view);
 
-/// Takes a scene camera; the pivot lies ahead at the depth of the centre of `bounds` (held to between 1/20
-/// and 2 radii), so that orbiting turns about what is being looked at. An empty box counts as one metre.
-Viewpoint make_viewpoint(const scene::Camera& camera, const Box& bounds);
+/// Takes a scene camera; the pivot lies ahead at the depth of the centre of `core`
+/// (scene::core_bounds(); held to between 1/20 and 2 radii), so that orbiting turns about what is being
+/// looked at. An empty box counts as one metre.
+Viewpoint make_viewpoint(const scene::Camera& camera, const Box& core);
 
 /// Turns the eye about the pivot: x about world Y (positive: counter-clockwise seen from above), y raises the
 /// eye. Elevation stops 1 degree before the poles. The distance does not change.
@@ -40,7 +41,7 @@ bool place(Viewpoint& view, const vec3& eye, const vec3& target, const vec3& up)
 void fly(Viewpoint& view, const vec3& metres);
 /// Keeps the direction and moves so that the sphere around `box` fills the picture (aspect = width / height).
 void frame(Viewpoint& view, const Box& box, float aspect);
-/// A walking pace for a scene of that radius, m/s: 1.5 in a room, proportional beyond.
+/// A walking pace for a scene of that extent, m/s: 1.5 in a room, proportional beyond.
 float walking_speed(float extent);
 
 /// Flight with soft starts and stops, independent of the frame rate.

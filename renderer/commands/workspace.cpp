@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "commands/refusal.h"
+#include "scene/core.h"
 #include "scene/range.h"
 
 namespace lucerna::commands {
@@ -147,8 +148,8 @@ void Workspace::follow_scene() {
   if (!snapshot || !scene || snapshot->scene_id == view_scene || snapshot->rgba.empty()) return;
   if (snapshot->scene_id != scene_id_) return;  // the next one is there already, without a picture
   view_scene = snapshot->scene_id;
-  bounds = scene::bounds(*scene);
-  view = make_viewpoint(snapshot->camera, bounds);
+  core = scene::core_bounds(*scene);
+  view = make_viewpoint(snapshot->camera, core);
   speed = walking_speed(view->extent);
   selection = {};
   pending_lights_.clear(), pending_materials_.clear(), pending_environment_.reset();
@@ -177,7 +178,7 @@ void Workspace::follow_scene() {
 void Workspace::follow_picture() {
   if (!up_to_date() || snapshot->rgba.empty() || snapshot->scene_id != view_scene) return;
   if (view && !same_view(snapshot->camera, view->camera)) {
-    view = make_viewpoint(snapshot->camera, bounds);
+    view = make_viewpoint(snapshot->camera, core);
     scene_camera = -1;
   }
   const std::pair now_shown(snapshot->width, snapshot->height);
@@ -590,7 +591,7 @@ Box Workspace::selection_bounds() const {
   };
   switch (selection.kind) {
     case Kind::none:
-      return bounds;
+      return core;
     case Kind::material:
       for (const scene::Instance& instance : scene->instances)
         add(instance, [&](const scene::Primitive& p) { return p.material == selection.index; });
@@ -602,13 +603,13 @@ Box Workspace::selection_bounds() const {
     case Kind::light:
       if (selection.index < scene->lights.size() &&
           scene->lights[selection.index].kind != scene::LightKind::directional) {
-        const float reach = 0.05f * std::max(bounds.radius(), 1e-3f);
+        const float reach = 0.05f * std::max(core.radius(), 1e-3f);
         box.grow(scene->lights[selection.index].position - vec3(reach));
         box.grow(scene->lights[selection.index].position + vec3(reach));
       }
       break;
   }
-  return box.empty() ? bounds : box;
+  return box.empty() ? core : box;
 }
 
 std::string Workspace::selection_name() const {

@@ -142,7 +142,7 @@ class Workspace {
   // The camera.
   std::optional<Viewpoint> view;  ///< none before the first picture of a scene
   uint64_t view_scene = 0;        ///< scene_id that `view` belongs to
-  Box bounds;                     ///< of the scene
+  Box core;                       ///< of the scene: without what stands far away (scene::core_bounds())
   float speed = 1.5f;             ///< of flight, m/s
   float aspect = 1.5f;            ///< width / height of the picture
   int scene_camera = -1;          ///< the one taken last and not moved since
@@ -169,7 +169,7 @@ class Workspace {
   bool measuring() const { return measuring_.has_value(); }
 
   Selection selection;
-  Box selection_bounds() const;  ///< of the scene when nothing is selected
+  Box selection_bounds() const;  ///< that of the scene (core) when nothing is selected
   std::string selection_name() const;
 
  protected:

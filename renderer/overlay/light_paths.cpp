@@ -95,7 +95,7 @@ uint32_t LightPathsPainter::draw(const Canvas& canvas, const upload::FlatScene& 
                                  const transport::LightSource& lights, transport::LightRound round,
                                  uint32_t lamp, const Frame& picture, uint32_t enabled) {
   if (lights.power() <= 0 || canvas.wavefront.slots() == 0) return 0;
-  LightPathsView view{0, k_all_lights, flat.scene_radius, 0};
+  LightPathsView view{0, k_all_lights, flat.core_radius, 0};
   for (uint32_t i = 0; lamp > 0 && i < flat.entries.size(); ++i) {
     const upload::LightEntry& e = flat.entries[i];
     const bool is_lamp = e.kind == k_light_point || e.kind == k_light_spot || e.kind == k_light_directional;
@@ -145,7 +145,7 @@ void LightPathsPainter::draw_aim(const Canvas& canvas, const upload::FlatScene& 
                         .color = ink,
                         .alpha = alpha,
                         .strength = 1,
-                        .slack = flat.scene_radius,
+                        .slack = flat.core_radius,
                         .rank = rank});
   };
   for (size_t c = 0; c < boxes.size(); ++c)
@@ -164,7 +164,7 @@ void LightPathsPainter::draw_aim(const Canvas& canvas, const upload::FlatScene& 
     const float alpha = std::clamp(0.2f + 0.8f * float(std::sqrt(pair.share)), 0.0f, 1.0f);
     if (pair.from) line(*pair.from, to, aim_ink(pair.share), 0.5f, alpha, k_rank_least);
     if (pair.along)
-      line(to - 2 * flat.scene_radius * *pair.along, to, aim_ink(pair.share), 0.5f, alpha, k_rank_least);
+      line(to - 2 * flat.core_radius * *pair.along, to, aim_ink(pair.share), 0.5f, alpha, k_rank_least);
   }
   painter_.draw(canvas, {}, segments, {}, {.dimmed = true});
 }

@@ -8,9 +8,9 @@
 #include <map>
 
 #include "base/error.h"
+#include "scene/core.h"
 #include "upload/alias_table.h"
 #include "upload/bsdf_table.h"
-#include "upload/core.h"
 #include "upload/media.h"
 #include "upload/textures.h"
 
@@ -78,7 +78,7 @@ void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
   flat.scene_centre = box.empty() ? vec3(0) : box.centre();
   flat.scene_radius = box.empty() ? 1.f : std::max(box.radius(), 1e-6f);
   flat.core_centre = flat.scene_centre, flat.core_radius = flat.scene_radius;
-  if (const std::optional<Box> core = core_of(flat.positions))
+  if (const std::optional<Box> core = scene::core_of(flat.positions))
     flat.core_centre = core->centre(), flat.core_radius = std::max(core->radius(), 1e-6f);
 }
 

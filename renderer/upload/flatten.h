@@ -108,8 +108,8 @@ struct FlatScene : FlatLights, FlatMaterials {
   bool group_components = true;  ///< by component, too; else all light of a group in one (film::GroupsKept)
   vec3 scene_centre{0};
   float scene_radius = 1;  ///< of a sphere around that which holds all surfaces
-  /// The same without what stands far away from the rest (core_of()): what sizes are measured by, where one
-  /// is needed that is the scene's.
+  /// The same without what stands far away from the rest (scene::core_of()): what sizes are measured by,
+  /// where one is needed that is the scene's.
   vec3 core_centre{0};
   float core_radius = 1;
   Effects effects;

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "scene/core.h"
 #include "session/pick.h"
 
 using namespace lucerna;
@@ -31,7 +32,8 @@ struct Room {
   scene::Scene scene;
   std::unique_ptr<session::Probe> probe;
   enum : uint32_t { floor, ceiling, west, east, north, south, across, table };
-  Room() {
+  /// `far`: a wall stands so far away, if that is not 0.
+  explicit Room(float far = 0) {
     add_box(scene, {-4.2f, -0.2f, -3.2f}, {4.2f, 0, 3.2f});
     add_box(scene, {-4.2f, 3, -3.2f}, {4.2f, 3.2f, 3.2f});
     add_box(scene, {-4.2f, 0, -3.2f}, {-4, 3, 3.2f});
@@ -44,6 +46,7 @@ struct Room {
       const float z = -1.5f + 0.3f * static_cast<float>(i);
       add_box(scene, {3, 0, z}, {4, 0.18f * static_cast<float>(i + 1), z + 0.3f});
     }
+    if (far > 0) add_box(scene, {far, -far, 0}, {far + 1, far, far});
     probe = std::make_unique<session::Probe>(std::make_shared<scene::Scene>(scene));
   }
   Look look(uint32_t but = ~0u) const {
@@ -58,7 +61,7 @@ struct Room {
     scene::Camera camera;
     camera.to_world = glm::inverse(glm::lookAt(eye, target, vec3(0, 1, 0)));
     camera.yfov = 1;
-    return make_viewpoint(camera, scene::bounds(scene));
+    return make_viewpoint(camera, scene::core_bounds(scene));
   }
 };
 
@@ -189,4 +192,26 @@ TEST_CASE("framing ends neither behind a wall nor inside one") {
   CHECK(inside(eye_of(whole.camera)));
   CHECK(eye_of(whole.camera).x == Approx(-clearance(whole.extent)).margin(0.01));
   CHECK_FALSE(enclosed(room.look(), {12, 1, 0}, whole.extent));
+}
+
+TEST_CASE("something far away changes neither speed, nor steps, nor what is framed") {
+  const Room alone;
+  const Look look = alone.look();
+  for (const float far : {2e3f, 2e4f, 1e5f}) {
+    INFO("a wall at " << far << " m");
+    const Room beside(far);
+    CHECK(scene::bounds(beside.scene).radius() > 100 * scene::bounds(alone.scene).radius());
+    Viewpoint a = alone.view({-3, 1.65f, 2}, {-3, 1.2f, -2}), b = beside.view({-3, 1.65f, 2}, {-3, 1.2f, -2});
+    CHECK(b.extent == a.extent);
+    CHECK(b.distance == a.distance);
+    CHECK(walking_speed(b.extent) == walking_speed(a.extent));
+    walk_far(a, look, {2, 9}), walk_far(b, beside.look(), {2, 9});
+    CHECK(glm::distance(eye_of(b.camera), eye_of(a.camera)) < 1e-3f);
+    for (Viewpoint* v : {&a, &b}) dolly(*v, 3), dolly(*v, -5);
+    CHECK(glm::distance(eye_of(b.camera), eye_of(a.camera)) < 1e-3f);
+    CHECK(enclosed(beside.look(), {0, 1, 0}, b.extent));
+    CHECK_FALSE(enclosed(beside.look(), {12, 1, 0}, b.extent));
+    frame(a, scene::core_bounds(alone.scene), 1.5f), frame(b, scene::core_bounds(beside.scene), 1.5f);
+    CHECK(b.distance == a.distance);
+  }
 }

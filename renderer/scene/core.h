@@ -3,9 +3,9 @@
 #include <optional>
 #include <span>
 
-#include "base/math.h"
+#include "scene/scene.h"
 
-namespace lucerna::upload {
+namespace lucerna::scene {
 
 /// The box of those triangles that lie together; nothing: all do. Triangles are taken by the distance of
 /// their farthest corner from the median of their centres, half of them at least, and on until the next one
@@ -13,4 +13,7 @@ namespace lucerna::upload {
 /// `positions`: three a triangle.
 std::optional<Box> core_of(std::span<const vec3> positions);
 
-}  // namespace lucerna::upload
+/// The same of all instances, in world space; where all lie together, bounds().
+Box core_bounds(const Scene& scene);
+
+}  // namespace lucerna::scene
