@@ -17,7 +17,8 @@
 // On lavapipe all loops of an invocation together end, silently, after 65535 iterations.
 //
 // Contract: every sphere (c, r) with dot(x - c, x - c) <= r * r, in float as written here or exactly, is in the range,
-// once; others may be. The order is that of the spheres' indices. Points outside the root have an empty range. A leaf that
+// once; others may be. The order is that of the spheres' indices. Points outside a root that is not open have an empty
+// range. A leaf that
 // is split has one reference of its own, to no sphere: it lies in no range, but may share a texel with the end of one.
 //
 // The host binds these by Octree::bind().
@@ -80,16 +81,20 @@ OctreeRange octree_leaf(uint code) {
   return OctreeRange(found.y, found.z);
 }
 
+// The outermost of `cells` along every axis hold what lies beyond an open root.
+vec3 octree_held(vec3 cell, uint cells) {
+  return octree.open != 0u ? clamp(cell, vec3(0.0), vec3(float(cells) - 1.0)) : cell;
+}
 // Cell of a point along every axis; monotone in x, so that a point between two others lies in a cell between theirs.
-// Outside the root it is negative or at least octree.cells.
+// Outside a root that is not open it is negative or at least octree.cells.
 vec3 octree_cell(vec3 x) {
   precise vec3 offset = x - octree.origin;
-  return floor(offset * octree.inverse_leaf);
+  return octree_held(floor(offset * octree.inverse_leaf), octree.cells);
 }
 // ... of leaves `split` levels finer, of which 2^split lie in each of those.
 vec3 octree_cell(vec3 x, uint split) {
   precise vec3 offset = x - octree.origin;
-  return floor(offset * ldexp(octree.inverse_leaf, int(split)));
+  return octree_held(floor(offset * ldexp(octree.inverse_leaf, int(split))), octree.cells << split);
 }
 
 OctreeRange octree_find(vec3 x) {

@@ -5,7 +5,10 @@
 // which is what octree_cell() scales (exactly, by a power of two) and floors. With u = 2^-24, |q(x) - (x - origin)| <=
 // u * edge, likewise for the centre, and |x - c| <= r (1 + 4u). So q(x) lies within safe_radius(r) + 2u * edge of q(c), on
 // every axis and in the distance. The differences below err by another u * edge each, the root by 4u of its value. A
-// margin of 32u * edge covers all.
+// margin of 32u * edge covers all. For centres beyond an open root their distance from its origin stands for the edge.
+//
+// The outermost cells of an open root have no outer faces: nothing is known there of where in a row's square, or in a
+// cell, a point lies, only that it lies in the sphere's box.
 //
 // LUCERNA_OCTREE_DISCS: 1 where spheres are asked for only near the plane through their centre, within `disc_thickness` of
 // their radius on either side: only the cells are visited that this slab passes through, some of each row.
@@ -25,6 +28,7 @@ const float k_steep = 0.05;
 
 struct SphereCells {
   ivec3 first, last;   // box of cells, both included
+  int most;            // the last cell of the root along each axis
   vec3 centre;         // in leaves from the origin
   float square;        // of the radius, enlarged, in leaves
 #if LUCERNA_OCTREE_DISCS
@@ -36,9 +40,12 @@ struct SphereCells {
 // Those from `lowest` to `highest`, both included, of the cells that are `split` levels finer than the leaves; lengths are in
 // such cells.
 SphereCells sphere_cells(vec4 s, uint index, uint split, ivec3 lowest, ivec3 highest) {
+  uint cells = octree.cells << split;
   float inverse_leaf = ldexp(octree.inverse_leaf, int(split));
   precise vec3 offset = s.xyz - octree.origin, centre = offset * inverse_leaf;
-  precise float enlarged = safe_radius(s.w) + octree.edge * (32.0 / 16777216.0), radius = enlarged * inverse_leaf;
+  vec3 away = abs(offset);
+  float edge = octree.open != 0u ? max(octree.edge, max(max(away.x, away.y), away.z)) : octree.edge;
+  precise float enlarged = safe_radius(s.w) + edge * (32.0 / 16777216.0), radius = enlarged * inverse_leaf;
   precise float square = radius * radius;
 #if LUCERNA_OCTREE_SINGLE
   precise vec3 low = centre, high = centre;
@@ -46,13 +53,15 @@ SphereCells sphere_cells(vec4 s, uint index, uint split, ivec3 lowest, ivec3 hig
   precise vec3 low = centre - radius, high = centre + radius;
 #endif
   SphereCells c;
-  c.first = clamp(ivec3(floor(low)), lowest, highest);
-  c.last = clamp(ivec3(floor(high)), lowest, highest);
+  c.first = clamp(ivec3(octree_held(floor(low), cells)), lowest, highest);
+  c.last = clamp(ivec3(octree_held(floor(high), cells)), lowest, highest);
+  c.most = int(cells) - 1;
   c.centre = centre;
   c.square = square;
 #if LUCERNA_OCTREE_DISCS
   c.normal = texelFetch(disc_normals, int(push.normal_stride * index + push.normal_at)).xyz;
-  c.half_ = push.thickness * radius + k_slab_margin;
+  // Beyond an open root places are rounded by more.
+  c.half_ = push.thickness * radius + k_slab_margin + (octree.open != 0u ? edge * inverse_leaf * (32.0 / 16777216.0) : 0.0);
 #endif
   return c;
 }
@@ -65,10 +74,15 @@ SphereCells sphere_cells(vec4 s, uint index, uint code, uint levels) {
   return sphere_cells(s, index, levels, low, low + int(1u << levels) - 1);
 }
 
+bool outermost(ivec2 cell, int most) {
+  return octree.open != 0u && (any(equal(cell, ivec2(0))) || any(equal(cell, ivec2(most))));
+}
+
 // Cells that a sphere overlaps, at most, where they are 2^k leaves wide.
 uint most_cells(SphereCells c, uint k) {
   uvec3 n = uvec3((c.last >> k) - (c.first >> k) + 1);
 #if LUCERNA_OCTREE_DISCS
+  if (octree.open != 0u && (any(equal(c.first, ivec3(0))) || any(equal(c.last, ivec3(c.most))))) return n.x * n.y * n.z;
   // Along the axis that the slab crosses most steeply, in every column of the two others.
   vec3 a = abs(c.normal);
   float most = max(max(a.x, a.y), a.z);
@@ -96,6 +110,10 @@ ivec2 row_cells(SphereCells c, ivec2 row) {
   return c.first.xx;
 #else
   precise vec2 low = vec2(row) - c.centre.yz, high = c.centre.yz - vec2(row + 1);
+  if (octree.open != 0u) {
+    low = mix(low, vec2(0.0), equal(row, ivec2(0)));
+    high = mix(high, vec2(0.0), equal(row, ivec2(c.most)));
+  }
   precise vec2 d = max(max(low, high), 0.0), dd = d * d;
   precise float left = c.square - dd.x, rest = left - dd.y, half_chord = sqrt(max(rest, 0.0));
   precise float from = c.centre.x - half_chord, to = c.centre.x + half_chord;
@@ -103,7 +121,9 @@ ivec2 row_cells(SphereCells c, ivec2 row) {
   // The slab: |n.x x + v| <= half, where v goes over what the row's square makes of the other axes.
   precise vec2 middle = vec2(row) + 0.5 - c.centre.yz, parts = c.normal.yz * middle, spreads = abs(c.normal.yz);
   precise float v = parts.x + parts.y, slack = c.half_ + 0.5 * (spreads.x + spreads.y);
-  if (abs(c.normal.x) >= k_steep) {
+  if (outermost(row, c.most)) {
+    // The row's square has no end.
+  } else if (abs(c.normal.x) >= k_steep) {
     precise float one = (-slack - v) / c.normal.x, other = (slack - v) / c.normal.x;
     from = max(from, c.centre.x + min(one, other));
     to = min(to, c.centre.x + max(one, other));
@@ -111,8 +131,10 @@ ivec2 row_cells(SphereCells c, ivec2 row) {
     rest = -1.0;
   }
 #endif
-  return rest < 0.0 || to < from ? ivec2(1, 0)
-                                 : ivec2(max(c.first.x, int(floor(from))), min(c.last.x, int(floor(to))));
+  if (rest < 0.0 || to < from) return ivec2(1, 0);
+  vec2 ends = floor(vec2(from, to));
+  if (octree.open != 0u) ends = clamp(ends, 0.0, float(c.most));
+  return ivec2(max(c.first.x, int(ends.x)), min(c.last.x, int(ends.y)));
 #endif
 }
 

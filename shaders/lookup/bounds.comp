@@ -1,13 +1,15 @@
 // Octree, step 1: box, number and summed diameter of every run's spheres.
 #include "lib/octree_build.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
-layout(scalar) writeonly buffer RunBounds { vec4 run_bounds[]; };   // low, sum of diameters; high, spheres
+layout(scalar) writeonly buffer RunBounds { vec4 run_bounds[]; };   // low, sum of diameters; high, spheres; (x) of how many the sum is
 
 void main() {
   if (global_index() >= LUCERNA_OCTREE_RUNS) return;
   Run run = own_run(global_index(), sphere_count());
   vec3 low = vec3(3.4e38), high = vec3(-3.4e38);
-  float sum = 0.0, n = 0.0;
+  float sum = 0.0, n = 0.0, summed = 0.0;
+  // What stands far away does not say how large leaves must be where points are.
+  bool core = all(lessThanEqual(push.core_low, push.core_high));
   for (uint i = run.first; i < run.end; ++i) {
     vec4 s = texelFetch(spheres, int(i));
     bool used = usable(s);
@@ -15,10 +17,13 @@ void main() {
     vec3 r = vec3(safe_radius(s.w)), slack = (abs(s.xyz) + r) * (1.0 / 4194304.0) + 1e-30;
     low = used ? min(low, s.xyz - r - slack) : low;
     high = used ? max(high, s.xyz + r + slack) : high;
-    sum += used ? 2.0 * s.w : 0.0;
+    bool counts = used && (!core || (all(greaterThanEqual(s.xyz, push.core_low)) && all(lessThanEqual(s.xyz, push.core_high))));
+    sum += counts ? 2.0 * s.w : 0.0;
+    summed += counts ? 1.0 : 0.0;
     n += used ? 1.0 : 0.0;
   }
-  uint at = 2u * global_index();
+  uint at = 3u * global_index();
   run_bounds[at] = vec4(low, sum);
   run_bounds[at + 1u] = vec4(high, n);
+  run_bounds[at + 2u] = vec4(summed, 0.0, 0.0, 0.0);
 }

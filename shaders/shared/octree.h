@@ -17,7 +17,7 @@ struct OctreeHeader {
   float leaf;           ///< edge of a leaf: a power of two, so that scaling by it is exact
   float inverse_leaf;   ///< 1 / leaf
   float edge;           ///< of the root, leaf * cells
-  float mean_diameter;  ///< of the spheres
+  float mean_diameter;  ///< of the spheres, of those about the core where there is one
   uint level;           ///< of the leaves, 0..k_octree_levels
   uint wanted_level;    ///< what the spheres' mean size called for; `level` is less where memory does not suffice
   uint cells;           ///< leaves along the root's edge, 1 << level; 0: no sphere, every query is empty
@@ -31,6 +31,7 @@ struct OctreeHeader {
   uint split;           ///< levels by which leaves are split at most
   uint split_references;///< that are written with those of split leaves, and one for each of these
   uint split_cells;     ///< that all split leaves have together
+  uint open;            ///< 1: spheres lie beyond the root, and its outermost cells hold whatever lies beyond them
   uint overflow;        ///< references that not even a single leaf could hold: that many are missing
 };
 
@@ -46,6 +47,8 @@ struct OctreePush {
   uint normal_stride;   ///< of discs: sphere i's normal is texel normal_stride * i + normal_at of disc_normals
   uint normal_at;
   float thickness;      ///< of discs: half of the slab's, of the radius
+  vec3 core_low;        ///< box that the root is held to; low > high: it holds all spheres
+  vec3 core_high;
 };
 
 LUCERNA_SHARED_END

@@ -282,6 +282,88 @@ TEST_CASE("discs are found near their planes, in fewer leaves than their spheres
   }
 }
 
+TEST_CASE("what lies far away makes no leaf larger, and is found") {
+  Bench bench(GENERATE(0u, 4u));
+  INFO("crowd " << bench.crowd);
+  const bool discs = GENERATE(false, true);
+  INFO("discs " << discs);
+  constexpr uint32_t k_near = 3000, k_far = 200, k_points = 30000;
+  const vec3 centre(1, 2, 3);
+  Box core;
+  core.grow(centre - 8.0f), core.grow(centre + 8.0f);
+  float alone = 0;
+  for (const float far : {0.0f, 2e4f, 1e5f, 1e7f}) {
+    INFO("spheres " << far << " m away");
+    std::mt19937 random(31);
+    Spheres spheres = mixed_spheres(k_near, centre, 10, 32);
+    Points points = points_for(spheres, k_points, centre, 10, 33);
+    for (uint32_t i = 0; far > 0 && i < k_far; ++i) {
+      // Beyond one face or several, some of them so large that they reach back.
+      vec3 p(uniform(random), uniform(random), uniform(random));
+      p = centre + 10.0f * (p - 0.5f);
+      for (int axis = 0; axis < 3; ++axis)
+        if (i % 7 & (1 << axis)) p[axis] = (i & 8 ? -far : far) * uniform(random);
+      spheres.insert(spheres.begin() + random() % spheres.size(),
+                     vec4(p, i % 5 == 0 ? 1.01f * glm::distance(p, centre) : 1e-3f + 2 * uniform(random)));
+    }
+    std::vector<vec4> normals;
+    for (size_t i = 0; i < spheres.size(); ++i) {
+      vec3 n(uniform(random) - 0.5f, uniform(random) - 0.5f, uniform(random) - 0.5f);
+      if (i % 2 == 0) n = 1e-3f * n, n[int(i / 2 % 3)] = 1;
+      normals.emplace_back(glm::normalize(n), 0);
+    }
+    Points beyond = points_for(spheres, k_points, centre, far, 34);
+    for (uint32_t i = 0; far > 0 && i < k_points / 3; ++i) {  // in the planes of discs
+      const uint32_t of = random() % uint32_t(spheres.size());
+      const vec3 n(normals[of]), d = vec3(uniform(random), uniform(random), uniform(random)) - 0.5f;
+      beyond[3 * i] = vec4(vec3(spheres[of]) + spheres[of].w * (d - glm::dot(d, n) * n), 0);
+    }
+    if (far > 0) points.insert(points.end(), beyond.begin(), beyond.end());
+    gpu::Buffer texels = bench.texels("normals", normals.size() * sizeof(vec4));
+    texels.write(std::span<const vec4>(normals));
+    bench.upload(spheres);
+    const lookup::Discs planes{.normals = texels, .stride = 1, .at = 0, .thickness = 0.2f};
+    const auto count = uint32_t(spheres.size());
+    Octree octree(
+        bench.device, bench.compiler,
+        {.spheres = count, .references = 1000000, .leaf_scale = 0.5f, .discs = discs, .crowd = bench.crowd});
+    octree.set_core(core);
+    octree.build(bench.stream, bench.spheres, {.most = count}, discs ? &planes : nullptr);
+    CHECK(octree.header().open == (far > 0 ? 1u : 0u));
+    gpu::Kernel probe(bench.device, bench.compiler, test::shader("octree_probe.comp"),
+                      {{"LUCERNA_DISCS", discs ? "1" : "0"}});
+    gpu::Buffer in = bench.texels("points", points.size() * sizeof(vec4)),
+                out = bench.texels("found", points.size() * sizeof(Found));
+    in.write(std::span<const vec4>(points));
+    gpu::Resources r;
+    octree.bind(r);
+    r.set("spheres", bench.spheres);
+    r.set("normals", texels);
+    r.set("points", in);
+    r.set("Found", out);
+    bench.stream.dispatch(probe, r, uint32_t(points.size()), gpu::groups_for(points.size(), 64));
+    bench.stream.run();
+    const std::vector<Found> found = out.read_all<Found>();
+    const Differences d = compare(found, points, [&](const vec4& x) {
+      Found f{};
+      for (uint32_t i = 0; i < count; ++i) {
+        if (!contains(spheres[i], x)) continue;
+        const vec3 off = (vec3(x) - vec3(spheres[i])) * vec3(normals[i]);
+        if (!discs || std::abs(off.x + off.y + off.z) <= 0.2f * spheres[i].w) add(f, i);
+      }
+      return f;
+    });
+    CHECK(d.wrong == 0);
+    CHECK(d.unordered == 0);
+    // Of what is near, what lies far away has no part but by its size.
+    double listed = 0;
+    for (uint32_t i = 0; i < k_points; ++i) listed += found[i].list;
+    if (far == 0) alone = float(listed);
+    CHECK(listed < 1.5 * double(alone) + double(k_far) * k_points);
+    CHECK(octree.header().leaf <= 2);
+  }
+}
+
 TEST_CASE("an octree that no buffer can hold is refused") {
   Bench bench;
   const uint32_t most = Octree::most_references(bench.device);

@@ -50,6 +50,7 @@ void Cache::Impl::clear() {
 }
 
 void Cache::Impl::look_from(const CacheView& view) {
+  tables.octree.set_core(view.core);
   const Frame& f = view.paths_frame;
   const LeastRadius now{
       .eye = f.camera_origin,

@@ -110,6 +110,7 @@ struct CacheView {
   uint32_t paths_enabled = 0, records_enabled = 0;  ///< ... and what each may bring, in bits
   uint32_t width = 0, height = 0;
   float scene_radius = 1;
+  Box core;           ///< of the scene where something stands far away from it; empty: all lies together
   bool dark = false;  ///< the scene has no light: nothing is placed, and what there is waits to be relit
 };
 

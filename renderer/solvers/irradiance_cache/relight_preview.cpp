@@ -46,6 +46,7 @@ void RelightPreview::begin(const LookupTables& tables, uint32_t count, const std
   if (count == 0) return end();
   if (!active() || count != count_) {
     make_room(count);
+    octree_->set_core(tables.octree.core());
     records_->restore(tables.records.raw(count));
     indexed_ = false;
     std::fill(factors_.begin(), factors_.end(), vec3(1));

@@ -151,6 +151,10 @@ CacheView CacheSolver::view(const Picture& picture) const {
   view.records_enabled = record_routes_.parts;
   view.width = picture.width, view.height = picture.height;
   view.scene_radius = picture.flat.core_radius;
+  if (picture.flat.core_radius < picture.flat.scene_radius) {
+    view.core.grow(picture.flat.core_centre - picture.flat.core_radius);
+    view.core.grow(picture.flat.core_centre + picture.flat.core_radius);
+  }
   view.dark = !picture.flat.effects.lights;
   return view;
 }

@@ -72,7 +72,7 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
   };
   const uint64_t references = std::max(options.references, 1u), slots = std::bit_ceil(references + 1);
   header_buffer_ = buffer("header", sizeof(shared::OctreeHeader));
-  run_bounds_ = buffer("bounds of runs", runs * 2 * sizeof(vec4));
+  run_bounds_ = buffer("bounds of runs", runs * 3 * sizeof(vec4));
   run_needs_ = buffer("needs of runs", runs * (shared::k_octree_levels + 1) * sizeof(uint32_t));
   run_leaves_ = buffer("leaves of runs", runs * sizeof(uint32_t));
   sphere_references_ = buffer("references of spheres", uint64_t(options.spheres) * sizeof(uint32_t));
@@ -158,7 +158,9 @@ void Octree::bind_spheres(Work& work, const gpu::Buffer& spheres, const sort::Co
                options_.leaf_scale,
                discs ? discs->stride : 0,
                discs ? discs->at : 0,
-               discs ? discs->thickness : 0};
+               discs ? discs->thickness : 0,
+               core_.empty() ? vec3(1) : core_.lo,
+               core_.empty() ? vec3(-1) : core_.hi};
 }
 
 /// Chooses the level of the leaves by the room there is, and writes a reference for each leaf that a sphere

@@ -9,6 +9,7 @@
 // and a query there is two lookups. Everything is built on the device: references are counted, placed by a
 // prefix sum, written, sorted by the Morton code of their leaf, and cut into leaves. No order comes from
 // atomics: two builds of the same spheres are the same byte for byte.
+#include "base/math.h"
 #include "gpu/stream.h"
 #include "shaders/shared/octree.h"
 #include "sort/radix_sort.h"
@@ -61,8 +62,16 @@ class Octree {
   /// `capacity`). Only when not even one leaf can list every sphere, `overflow` is not 0, and the spheres of
   /// the highest indices are missing.
   /// `discs`: if and only if the options say that there are.
+  ///
+  /// Where a core is set, the root holds what of the spheres' box lies in it: see set_core().
   const shared::OctreeHeader& build(gpu::Stream& stream, const gpu::Buffer& spheres, const sort::Count& count,
                                     const Discs* discs = nullptr);
+
+  /// Of the builds to come: where most points are, without what stands far away, metres; empty: the root
+  /// holds all spheres. Without it a single far sphere makes all leaves so large that one lists thousands.
+  /// What lies beyond the core is found in the outermost leaves. Changes speed and memory, never a result.
+  void set_core(const Box& core) { core_ = core; }
+  const Box& core() const { return core_; }
 
   /// Of the last build.
   const shared::OctreeHeader& header() const { return header_; }
@@ -83,6 +92,7 @@ class Octree {
   void split_crowded(Work& work, const sort::Count& written);
 
   OctreeOptions options_;
+  Box core_;
   uint32_t groups_;
   sort::PrefixSum prefix_sum_;
   sort::RadixSort sorter_;
