@@ -6,7 +6,9 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { SplatPush push; };
 layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
-layout(scalar) buffer SplatSums { SplatSum splat_sums[]; };
+layout(scalar) buffer SplatRed { LongSum splat_red[]; };
+layout(scalar) buffer SplatGreen { LongSum splat_green[]; };
+layout(scalar) buffer SplatBlue { LongSum splat_blue[]; };
 #if LUCERNA_GROUP_SUMS
 layout(scalar) buffer SplatOwnerList { SplatOwners splat_owners[]; };
 #endif
@@ -18,8 +20,7 @@ float in_units(LongSum sum) { return (float(sum.high) * 4294967296.0 + float(sum
 void main() {
   uint pixel = global_index();
   if (pixel >= push.count) return;
-  SplatSum sum = splat_sums[pixel];
-  vec3 light = vec3(in_units(sum.red), in_units(sum.green), in_units(sum.blue)) * splat_frame.unit;
+  vec3 light = vec3(in_units(splat_red[pixel]), in_units(splat_green[pixel]), in_units(splat_blue[pixel])) * splat_frame.unit;
   bool lit = light.r + light.g + light.b > 0.0;
   uint groups = 0u;
 #if LUCERNA_GROUP_SUMS
@@ -35,5 +36,5 @@ void main() {
 #endif
   atomicAdd(splat_counts[k_splats_pixels], 1u);
   LongSum none = LongSum(0u, 0u, 0u);
-  splat_sums[pixel] = SplatSum(none, none, none);
+  splat_red[pixel] = splat_green[pixel] = splat_blue[pixel] = none;
 }

@@ -4,11 +4,9 @@
 #include "shaders/shared/wide_sum.h"
 LUCERNA_SHARED_BEGIN
 
-/// Sums of a round, in units of SplatFrame::unit, by colour: whole numbers, so that they are the same in whatever order paths
-/// come. They cannot wrap: a path brings a pixel less than 2^64 at a time, and less than 2^32 times a round.
-struct SplatSum {
-  LongSum red, green, blue;
-};
+// Sums of a round are LongSum, in units of SplatFrame::unit, in a buffer for each colour, which so is smaller than a pixel of
+// the film: whole numbers, so that they are the same in whatever order paths come. They cannot wrap: a path brings a pixel less
+// than 2^64 at a time, and less than 2^32 times a round.
 
 /// Whose light a pixel's is, by colour, where groups of lights are kept in short (LUCERNA_GROUP_SUMS): that of one path, drawn
 /// with the probability of its share of the sum, so that each group's light is expected right. Of n paths, each with an

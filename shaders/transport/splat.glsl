@@ -8,7 +8,9 @@
 #include "shaders/shared/splat.h"
 
 layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
-layout(scalar) buffer SplatSums { SplatSum splat_sums[]; };
+layout(scalar) buffer SplatRed { LongSum splat_red[]; };
+layout(scalar) buffer SplatGreen { LongSum splat_green[]; };
+layout(scalar) buffer SplatBlue { LongSum splat_blue[]; };
 #if LUCERNA_GROUP_SUMS
 layout(scalar) buffer SplatOwnerList { SplatOwners splat_owners[]; };
 #endif
@@ -47,9 +49,9 @@ void add_splat(uint slot, ShadowState state) {
   ADD_TO_LONG_SUM(splat_worths[state.pad0], worth.x, worth.y);
 #else
   uvec2 red = two_words(units.r), green = two_words(units.g), blue = two_words(units.b);
-  ADD_TO_LONG_SUM(splat_sums[state.lanes].red, red.x, red.y);
-  ADD_TO_LONG_SUM(splat_sums[state.lanes].green, green.x, green.y);
-  ADD_TO_LONG_SUM(splat_sums[state.lanes].blue, blue.x, blue.y);
+  ADD_TO_LONG_SUM(splat_red[state.lanes], red.x, red.y);
+  ADD_TO_LONG_SUM(splat_green[state.lanes], green.x, green.y);
+  ADD_TO_LONG_SUM(splat_blue[state.lanes], blue.x, blue.y);
 #endif
 }
 #endif

@@ -1,5 +1,6 @@
 // links: session
 // Photons where they outgrow the device's largest buffer: fewer light paths, the same light, and word of it.
+// Light tracing, where all of its sums would.
 #include "support/caustics.h"
 
 using namespace lucerna;
@@ -59,4 +60,29 @@ TEST_CASE("photons that do not fit into a buffer are fewer, and their light is t
       CHECK(std::abs(a.value.x - b.value.x) < 4 * (a.noise.x + b.noise.x) + 0.01 * a.value.x);
     }
   }
+}
+
+TEST_CASE("light tracing needs no larger buffer than the film") {
+  // A pixel takes 36 bytes of sums, and 16 in a buffer of the film.
+  constexpr uint32_t k_width = 640, k_height = 480;
+  static_assert(36 * k_width * k_height > k_limit && 16 * k_width * k_height < k_limit);
+  film::Image images[2];
+  for (const bool held : {false, true}) {
+    session::RendererOptions options = test::renderer_options(false);
+    options.on = std::make_shared<gpu::Device>(
+        gpu::DeviceOptions{.selector = "cpu", .most_storage_buffer = held ? k_limit : 0});
+    session::Renderer r(options);
+    r.settings().set("path.batch", "16384");
+    r.set_size(k_width, k_height);
+    r.set_scene(std::make_shared<scene::Scene>(test::turned_sun()));
+    test::set(r, {{"components.caustic", "light"},
+                  {"components.primary", "off"},
+                  {"components.secondary", "off"},
+                  {"components.tertiary", "off"},
+                  {"light.per_round", "20000"},
+                  {"samples", "1"}});
+    images[held] = test::finish(r);
+  }
+  CHECK(mean_of(images[0], 3).value.x > 0);
+  CHECK(test::identical(images[0], images[1]));
 }

@@ -68,7 +68,6 @@ std::vector<SharedStruct> structs() {
       SHARED("wide_sum.h", WideSum, low, high),
       SHARED("wide_sum.h", LongSum, low, middle, high),
       SHARED("splat.h", SplatOwners, red, green, blue),
-      SHARED("splat.h", SplatSum, red, green, blue),
       SHARED("splat.h", SplatFrame, width, height, component, unit),
       SHARED("splat.h", SplatPush, count),
       SHARED("overlay.h", LightPathsView, step, light, radius, pad0),

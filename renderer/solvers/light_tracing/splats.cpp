@@ -37,6 +37,12 @@ void Splats::bind(gpu::Resources& resources) const {
   resources.set("splat_picture", picture_);
 }
 
+void Splats::bind_sums(gpu::Resources& resources) const {
+  constexpr const char* k_names[] = {"SplatRed", "SplatGreen", "SplatBlue"};
+  for (size_t i = 0; i < sums_.size(); ++i) resources.set(k_names[i], sums_[i]);
+  if (groups_) resources.set("SplatOwnerList", owners_);
+}
+
 void Splats::write_frame(bool shown) {
   SplatFrame f = frame_;
   if (!shown) f.width = f.height = 0;
@@ -47,8 +53,10 @@ void Splats::begin(transport::Wavefront& wavefront, uint32_t width, uint32_t hei
                    float unit) {
   restart();
   const uint64_t pixels = uint64_t{width} * height;
-  if (width != frame_.width || height != frame_.height || !sums_) {
-    gpu::Buffer sums(device_, {.name = "sums of splats", .bytes = pixels * sizeof(SplatSum)});
+  if (width != frame_.width || height != frame_.height || !sums_[0]) {
+    std::array<gpu::Buffer, 3> sums;
+    for (gpu::Buffer& of_color : sums)
+      of_color = {device_, {.name = "sums of splats", .bytes = pixels * sizeof(LongSum)}};
     gpu::Buffer picture(device_, {.name = "picture of splats", .bytes = 16 * pixels, .texel = true});
     gpu::Buffer owners;
     if (groups_) owners = {device_, {.name = "groups of splats", .bytes = pixels * sizeof(SplatOwners)}};
@@ -61,7 +69,7 @@ void Splats::begin(transport::Wavefront& wavefront, uint32_t width, uint32_t hei
 }
 
 void Splats::clear(transport::Wavefront& wavefront) {
-  wavefront.stream().fill(sums_, 0);
+  for (const gpu::Buffer& of_color : sums_) wavefront.stream().fill(of_color, 0);
   if (groups_) wavefront.stream().fill(owners_, ~0u);
   wavefront.account_stages();
 }
@@ -85,8 +93,7 @@ Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::Lig
                                             [&](gpu::Resources& r) {
                                               bind(r);
                                               r.set("SplatCounts", counts_);
-                                              r.set("SplatSums", sums_);
-                                              if (groups_) r.set("SplatOwnerList", owners_);
+                                              bind_sums(r);
                                               r.set("LightRoundBlock", round_);
                                               if (worths_) r.set("SplatWorths", worths_);
                                             },
@@ -123,8 +130,7 @@ bool Splats::trace(transport::Wavefront& wavefront, const transport::LightSource
   gpu::Resources r;
   bind(r);
   r.set("SplatCounts", counts_);
-  r.set("SplatSums", sums_);
-  if (groups_) r.set("SplatOwnerList", owners_);
+  bind_sums(r);
   r.set("SplatPicture", picture_);
   wavefront.stream().dispatch(resolve_, r, SplatPush{pixels}, gpu::groups_for(pixels, 64), "splats");
   wavefront.account_stages();
@@ -161,7 +167,8 @@ std::optional<std::vector<double>> Splats::weigh(transport::Wavefront& wavefront
 
 uint64_t Splats::bytes() const {
   uint64_t sum = picture_.bytes();
-  for (const gpu::Buffer* b : {&sums_, &owners_, &worths_}) sum += *b ? b->bytes() : 0;
+  for (const gpu::Buffer* b : {&sums_[0], &sums_[1], &sums_[2], &owners_, &worths_})
+    sum += *b ? b->bytes() : 0;
   return sum;
 }
 

@@ -2,6 +2,8 @@
 // What the light paths of one round bring straight to the camera's pixels (shaders/shared/splat.h).
 //
 // Bit-identical, however threads run and however many paths are in flight: light is summed in whole numbers.
+#include <array>
+
 #include "shaders/shared/splat.h"
 #include "transport/light_emitter.h"
 
@@ -62,6 +64,7 @@ class Splats {
              uint32_t enabled, const std::function<bool()>& cancel);
   void write_frame(bool shown);
   void clear(transport::Wavefront& wavefront);
+  void bind_sums(gpu::Resources& resources) const;
 
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
@@ -70,7 +73,9 @@ class Splats {
   transport::LightEmitter emitter_;
   Kernels summed_, weighed_;  ///< weighed_: when it is first called for
   gpu::Kernel resolve_;
-  gpu::Buffer counts_, block_, round_, sums_, picture_, worths_;
+  gpu::Buffer counts_, block_, round_, picture_, worths_;
+  /// LongSum of each pixel: red, green, blue. One buffer of all would be the largest that a picture needs.
+  std::array<gpu::Buffer, 3> sums_;
   gpu::Buffer owners_;  ///< of groups_
   shared::SplatFrame frame_{};
   RoundFigures figures_, next_;
