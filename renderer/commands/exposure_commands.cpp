@@ -57,15 +57,19 @@ void Workspace::add_exposure_commands() {
              d.environment_scale = 1, d.environment_rotation = 0;
            },
        .undoable = true});
-  registry.add({.name = "environment.own",
-                .help = "Lights the scene by its own environment again.",
-                .parameters = {},
-                .run =
-                    [this](const Arguments&) {
-                      needs_scene();
-                      edit().environment_file.clear();
-                    },
-                .undoable = true});
+  registry.add(
+      {.name = "environment.own",
+       .help = "Lights the scene by its own environment again, as bright and as turned as its file has it.",
+       .parameters = {},
+       .run =
+           [this](const Arguments&) {
+             needs_scene();
+             Document& d = edit();
+             d.environment_file.clear();
+             d.environment_scale = own_environment_.first;
+             d.environment_rotation = own_environment_.second;
+           },
+       .undoable = true});
 }
 
 void Workspace::measure(std::optional<vec2> at, bool of_load) {

@@ -153,6 +153,7 @@ void Workspace::follow_scene() {
   speed = walking_speed(view->extent);
   selection = {};
   pending_lights_.clear(), pending_materials_.clear(), pending_environment_.reset();
+  own_environment_ = {scene->environment.scale, scene->environment.rotation};
   undo_.clear(), redo_.clear();
   dark_.clear(), environment_file_.clear(), environment_in_force_.clear(), environments_sent_.clear();
   walking = false;

@@ -327,6 +327,7 @@ class Workspace {
   std::optional<PendingEnvironment> pending_environment_;
   std::map<uint32_t, vec3> dark_;  ///< emission of the materials that are switched off
   std::string environment_file_, environment_in_force_;
+  std::pair<float, float> own_environment_{1, 0};  ///< scale and rotation (degrees) that the scene's file has
   std::vector<std::pair<uint64_t, std::string>> environments_sent_;  ///< numbers and files on their way
   std::future<std::shared_ptr<const session::Probe>> probing_;
   std::vector<std::future<std::shared_ptr<const session::Probe>>> retired_;  ///< of scenes that are gone

@@ -171,15 +171,14 @@ bool matches_pattern(const std::string& pattern, const std::string& name) {
 
 std::string group_name(const std::string& text) {
   constexpr size_t k_most = 64;
-  std::string name = trimmed(text);
-  if (name.size() > k_most) {
-    Hash hash;
-    hash.add(name);
-    name = fmt::format("{}~{:08x}", trimmed(cut_text(name, k_most - 9)), static_cast<uint32_t>(hash.low()));
-  }
+  const std::string whole = trimmed(text);
+  std::string name = whole;
   for (char& c : name)
     if (c == ';' || c == ':' || c == '=' || c == '|' || static_cast<unsigned char>(c) < 32) c = '_';
-  return name;
+  if (name == whole && name.size() <= k_most) return name;
+  Hash hash;
+  hash.add(whole);
+  return fmt::format("{}~{:08x}", trimmed(cut_text(name, k_most - 9)), static_cast<uint32_t>(hash.low()));
 }
 
 std::string kind_of_light(const std::string& name) {

@@ -50,9 +50,10 @@ struct LightGroupRule {
 /// Throws Error, naming the part that is wrong.
 std::vector<LightGroupRule> parse_group_rules(const std::string& text);
 bool matches_pattern(const std::string& pattern, const std::string& name);
-/// Without blanks at its ends, and with _ for the characters ; : = | that part words of a mix. "" stays "".
-/// Of a name of more than 64 bytes the first characters stay, followed by ~ and eight digits that tell it
-/// from other names with the same beginning: at most 64 bytes.
+/// Without blanks at its ends, and with _ for the characters ; : = | that separate words of a mix. "" stays
+/// "". Of a name of more than 64 bytes the first characters stay. Where either changes the name, ~ and eight
+/// digits of it follow, so that names that differ stay different: at most 64 bytes. Of its own result the
+/// function changes nothing.
 std::string group_name(const std::string& text);
 /// A lamp's or material's name without the number at its end: "Spot.001" and "Spot 2" are both "Spot".
 std::string kind_of_light(const std::string& name);

@@ -137,6 +137,7 @@ TEST_CASE("a dropped image lights the scene until it is undone, unless it cannot
   const auto broken = folder / ("lucerna-broken-" + std::to_string(getpid()) + ".hdr");
   std::ofstream(file) << "x";
   std::ofstream(broken) << "x";
+  const scene::Environment own = b.work.scene->environment;
   b.run("environment.set scale=3 rotation=45");
   b.run("environment.load " + quote(file.string()));
   CHECK(b.work.environment_file() == file.string());
@@ -152,6 +153,11 @@ TEST_CASE("a dropped image lights the scene until it is undone, unless it cannot
   REQUIRE(b.until([&] { return b.work.scene->environment.file == file.string(); }));
   b.run("environment.own");
   REQUIRE(b.until([&] { return b.work.scene->environment.file != file.string(); }));
+  // As bright and as turned as the scene has it, not as what was there before.
+  REQUIRE(b.settled());
+  CHECK(b.work.environment_scale() == own.scale);
+  CHECK(b.work.environment_rotation() == own.rotation);
+  CHECK(b.work.scene->environment.scale == own.scale);
   CHECK(b.errors == 0);
   b.run("environment.load " + quote(broken.string()));
   REQUIRE(b.until([&] { return b.work.environment_file().empty(); }));

@@ -2,6 +2,9 @@
 // Groups of lights: from extras, by name patterns, by kind where nothing is said; and what is too much.
 #include "scene/light_groups.h"
 
+#include <set>
+
+#include "scene/light_mix.h"
 #include "support/rooms.h"
 #include "unit/scene_support.h"
 
@@ -40,6 +43,19 @@ TEST_CASE("a name's kind is what is before the number at its end") {
   CHECK(scene::kind_of_light("Spot") == "Spot");
   CHECK(scene::kind_of_light("40") == "40");
   CHECK(scene::kind_of_light("").empty());
+}
+
+TEST_CASE("names that differ in one character are different groups") {
+  std::set<std::string> names;
+  for (const char* name : {"a;b", "a:b", "a=b", "a|b", "a_b", "a\tb", "a\nb", "a b"}) {
+    const std::string group = scene::group_name(name);
+    CHECK(group.find_first_of(";:=|\t\n") == std::string::npos);
+    CHECK(scene::group_name(group) == group);
+    CHECK(names.insert(group).second);
+    // A mix finds it by either name.
+    CHECK(scene::parse_mix(group + ": ev=1").count(group) == 1);
+  }
+  CHECK(scene::group_lights(lamps({"key:a", "key=a", "key:a.001"})).groups.size() == 2);
 }
 
 TEST_CASE("long names of groups are cut between characters and stay different") {
@@ -166,7 +182,8 @@ TEST_CASE("extras of a file's nodes, lamps and materials are read, and described
   REQUIRE(scene.lights.size() == 3);
   CHECK(scene.lights[0].group == "evening");
   CHECK(scene.lights[1].group == "3");
-  CHECK(scene.lights[2].group == "cold_ blue");
+  CHECK(scene.lights[2].group == scene::group_name("cold: blue"));
+  CHECK_THAT(scene.lights[2].group, Catch::StartsWith("cold_ blue~"));
   CHECK(scene.instances[0].group == "evening");
   const json described = json::parse(scene::describe(scene).dump());
   CHECK(described["light_groups"][0] == json{{"name", "evening"}, {"lamps", 1}, {"surfaces", 0}});
