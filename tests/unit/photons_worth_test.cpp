@@ -118,11 +118,16 @@ TEST_CASE("each region has the way that makes the whole best", "[photons_worth]"
       for (uint32_t x = 0; x < r.width; ++x) CHECK(r.left[y * r.width + x] == (x < 6 ? 0 : 1));
     CHECK(r.by_photons == Approx(6.0 / 8));
   }
-  SECTION("photons where the pilot has found little or nothing") {
-    CHECK(
-        choose(halves(unknown, unknown), {.base = 2, .lookup = 0.5, .onward = 1.5, .paths = 0}).by_photons ==
-        1);
-    CHECK(choose(halves({}, {}), k_costs).by_photons == 1);
+  SECTION("paths where the pilot has found little or nothing") {
+    for (const Moments& few : {unknown, Moments{}}) {
+      const Regions none = choose(halves(few, few), k_costs);
+      CHECK((none.nowhere && none.scarce));
+      const Regions half = choose(halves(hard, few), k_costs);
+      CHECK((!half.nowhere && !half.scarce));
+      for (uint32_t y = 0; y < half.height; ++y)
+        for (uint32_t x = 0; x < half.width; ++x) CHECK(half.left[y * half.width + x] == (x < 6 ? 0 : 1));
+    }
+    CHECK_FALSE(choose(halves(soft, soft), k_costs).scarce);
   }
   SECTION("light that no path from the eye meets") {
     const Moments unmet{1, 0.1, double(shared::k_radiance_unmet), 50};

@@ -320,6 +320,8 @@ void PhotonSolver::choose_left(const Picture& picture, std::span<const PhotonWor
       .paths = alone ? k_cost_light_path * paths / (double(picture.width) * picture.height) : 0};
   regions_ = choose_regions(caustic_moments(pilot), small.width, small.height, costs);
   if (regions_.left.size() >= k_most_left) regions_ = {};
+  // So few photons do not say that no light is hidden from paths: photons go on to compute that.
+  if (regions_.scarce && hides_) unreachable_found_ = true, route(picture.task);
   write_left();
 }
 

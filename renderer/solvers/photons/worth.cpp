@@ -13,8 +13,9 @@ using namespace shared;
 
 namespace {
 
-constexpr uint32_t k_region = 2;              // pixels of the pilot's picture, across and down
-constexpr double k_least_found = 4;           // photons that a lookup has found, on average of a region
+constexpr uint32_t k_region = 2;  // pixels of the pilot's picture, across and down
+// Photons that a lookup has found, on average of a region, from which on they say what light comes there.
+constexpr double k_least_found = 4;
 constexpr double k_least_found_in_all = 256;  // ... in the whole picture
 constexpr uint32_t k_most_steps = 32;         // of improving the choice
 
@@ -143,38 +144,44 @@ Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_
     if (any) sum.cost += costs.paths * regions;
     return sum;
   };
-  std::vector<bool> left(all.size(), false);
-  const Whole photons = whole(left);
+  const Whole photons = whole(std::vector<bool>(all.size(), false));
   out.left.assign(all.size(), 0.0f);
-  if (!(photons.noise > 0)) return out;  // the pilot has found nothing
+  // Few photons come where little light does, and are noise there; what is so rare that the pilot has missed
+  // it would be as rare in passes. So paths have these regions, which find all of this light (Moments).
+  std::vector<bool> left(all.size());
+  for (size_t i = 0; i < all.size(); ++i) left[i] = all[i].found < k_least_found;
+  // Photons reach a region further than they must: their way is the one without outliers.
+  const auto spread = [&](const std::vector<bool>& of) {
+    std::vector<bool> result(of);
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x)
+        if (!of[at(x, y)]) around(x, y, [&](size_t k) { result[k] = false; });
+    return result;
+  };
+  std::vector<bool> best = spread(left);
   // Where the whole is best, each region has the way that adds less to noise and cost, relatively.
-  Whole now = photons;
+  Whole now = whole(left);
   for (uint32_t step = 0; step < k_most_steps; ++step) {
     std::vector<bool> better(all.size());
     for (size_t i = 0; i < all.size(); ++i) {
       const Region& r = all[i];
-      better[i] = r.found >= k_least_found && r.weight * r.paths / now.noise + onward / now.cost <
-                                                  r.weight * r.photons / now.noise + looked / now.cost;
+      better[i] = r.found < k_least_found || r.weight * r.paths / now.noise + onward / now.cost <
+                                                 r.weight * r.photons / now.noise + looked / now.cost;
     }
     const Whole then = whole(better);
     if (better == left || !(then.product() < now.product())) break;
     left = better, now = then;
   }
-  // Photons reach a region further than they must: their way is the one without outliers.
-  std::vector<bool> spread(left);
-  for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x)
-      if (!left[at(x, y)]) around(x, y, [&](size_t k) { spread[k] = false; });
-  const std::vector<bool> none(all.size(), true);
-  const Whole mixed = whole(spread), paths = whole(none);
-  std::vector<bool> best(all.size(), false);
-  double least = photons.product();
-  if (mixed.product() < least) best = spread, least = mixed.product();
+  const std::vector<bool> none(all.size(), true), mixed_left = spread(left);
+  const Whole mixed = whole(mixed_left), paths = whole(none);
+  double least = whole(best).product();
+  if (mixed.product() < least) best = mixed_left, least = mixed.product();
   if (found >= k_least_found_in_all && paths.product() < least) best = none, least = paths.product();
   for (size_t i = 0; i < out.left.size(); ++i) out.left[i] = best[i] ? 1 : 0;
   const auto by_photons = std::count(best.begin(), best.end(), false);
   out.by_photons = double(by_photons) / regions;
   out.nowhere = by_photons == 0;
+  out.scarce = found < k_least_found_in_all;
   out.gain = least > 0 ? photons.product() / least : 1;
   return out;
 }

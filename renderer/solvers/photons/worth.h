@@ -62,11 +62,12 @@ struct Regions {
   std::vector<Region> all;
   std::vector<float> left;  ///< share of samples in which paths bring caustics: 0 or 1, row by row
   bool nowhere = false;     ///< photons: all are left
+  bool scarce = false;      ///< the pilot has found too few photons to say anything
   double by_photons = 1;    ///< share of the picture
   double gain = 1;          ///< of efficiency, over photons everywhere; as the pilot sees it
 };
 /// `moments`: of a picture of width x height pixels. Regions are of 2x2 of these, each judged with its eight
-/// neighbours; where a lookup has found few photons, photons it is.
+/// neighbours; where a lookup has found few photons, paths have it. `moments` are of light that paths find.
 Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_t height,
                        const WorthCosts& costs);
 
