@@ -1,0 +1,174 @@
+#include "session/session_thread.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+namespace lucerna::session {
+
+namespace {
+constexpr double k_draft_seconds = 0.5;  // without a draft at most, while edits come one after the other
+// Without another mix, after which the last one is taken up in full.
+constexpr double k_mix_pause_seconds = 0.2;
+constexpr int k_nice = 10;  // rendering yields to the window's thread
+
+}  // namespace
+
+std::unique_ptr<Renderer> Session::Impl::make_renderer() {
+  try {
+    auto renderer = std::make_unique<Renderer>(
+        RendererOptions{options.device, options.validation, options.shaders, {}, true, options.scenes});
+    next.device = renderer->device().info().name;
+    publish();
+    return renderer;
+  } catch (const std::exception& e) {
+    log::error("{}", e.what());
+    publish_activity(std::string("no device: ") + e.what(), -1);
+    return nullptr;
+  }
+}
+
+void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
+  Command command = queue.pop();
+  const uint64_t number = command.number;
+  lock.unlock();
+  try {
+    if (!renderer) throw Error("device", "there is none to render with");
+    if (command.scene == k_any_scene || command.scene == scene_id) {
+      command.run(*renderer);
+    } else {
+      log::warning("a command for {} was left out: another scene was loaded before its turn",
+                   command.subject);
+      refuse(command);
+    }
+  } catch (const Abandoned&) {
+    refuse(command);
+  } catch (const std::exception& e) {
+    log::error("{}", e.what());
+    refuse(command);
+  }
+  command = {};
+  if (renderer) {
+    try {
+      serve_due(*renderer);
+    } catch (const std::exception& e) {
+      log::error("{}", e.what());
+    }
+    lock.lock();
+    state = {scene_id, renderer->scene(), renderer->settings()};
+    pending = !queue.empty();
+    lock.unlock();
+  }
+  next.activity.clear();
+  next.progress = -1;
+  next.commands = number;
+  dirty = true;
+  lock.lock();
+  done = next.commands;
+}
+
+void Session::Impl::advance(Renderer& renderer, bool work) {
+  // What was there before, as it is seen now, does not wait for new light.
+  if (std::exchange(recall_wanted, false) && renderer.remembers()) publish_picture(renderer, false);
+  bool changed = dirty;
+  // A row of edits that come faster than drafts are drawn shows some of them all the same.
+  const auto draft_cancelled = [&] {
+    return quit || (pending && (!draft_given_up || since_given_up.seconds() < k_draft_seconds));
+  };
+  if (!paused && renderer.draw_draft(draft_cancelled)) {
+    draft_given_up = false;
+    changed = changed || renderer.draft_news();
+    // The first one is shown at once, and the first of light that has got better; more of them as pictures
+    // are.
+    if (renderer.has_draft())
+      changed = changed || std::exchange(coarse_wanted, false);
+    else
+      coarse_wanted = coarse_wanted || std::exchange(better_wanted, false);
+  } else if (pending && coarse_wanted) {
+    if (!std::exchange(draft_given_up, true)) since_given_up.restart();
+  } else if (work && renderer.step([&] { return pending.load() || quit; })) {
+    accuracy.follow(renderer, scene_id);
+  }
+  // The last line of the ledger is that of the finished image.
+  if (renderer.done() && !renderer.ledger().entries().empty() &&
+      renderer.ledger().entries().back().paths != renderer.stats().paths)
+    renderer.finish_ledger();
+  if (!filled && renderer.samples() > 0) filled = changed = true;
+  if (changed || since_publish.seconds() > publish_seconds || renderer.done() || renderer.waits())
+    publish_picture(renderer, renderer.samples() > 0 && !renderer.mix_pending() &&
+                                  (since_numbers.seconds() > numbers_seconds || renderer.done() || paused));
+}
+
+/// `numbers`: with what has to be read back from the film.
+void Session::Impl::publish_picture(Renderer& renderer, bool numbers) {
+  if (numbers) since_numbers.restart();
+  fill_snapshot(renderer, numbers);
+  publish();
+  since_publish.restart();
+  dirty = false;
+}
+
+void Session::Impl::end(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
+  while (!queue.empty())
+    if (const Command command = queue.pop();
+        command.saves && renderer && (command.scene == k_any_scene || command.scene == scene_id))
+      command.run(*renderer);
+  lock.unlock();
+  std::erase_if(saves, [&](const Save& save) {
+    if (save.solver.empty()) write(*renderer, save);
+    return save.solver.empty();
+  });
+  give_up_saves("the program ended");
+}
+
+void Session::Impl::run() {
+  // Threads that the device starts inherit this, so that the window is served first.
+  setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), k_nice);
+  const std::unique_ptr<Renderer> renderer = make_renderer();
+  std::unique_lock lock(mutex);
+  while (!quit) {
+    while (!queue.empty() && !quit) carry_out_next(renderer.get(), lock);
+    pending = false;
+    // A drag at a group's slider: what it shows comes first, the film's sums and more samples when it pauses.
+    const bool mixing = renderer && renderer->mix_pending();
+    if (mixing && !dirty && wake.wait_for(lock, std::chrono::duration<double>(k_mix_pause_seconds), [&] {
+          return quit || !queue.empty();
+        }))
+      continue;
+    const bool work = renderer && works(*renderer) && !(mixing && dirty);
+    if (renderer && !work) renderer->rest();
+    if (!work && !dirty && !mixing) {
+      wake.wait(lock, [&] { return quit || !queue.empty(); });
+      continue;
+    }
+    lock.unlock();
+    try {
+      if (renderer && renderer->ready()) {
+        if (mixing && !dirty) {
+          // A drag has shown samples as they are, which may be few: the filter comes before more of them.
+          renderer->settle_mix();
+          publish_picture(*renderer, false);
+        }
+        advance(*renderer, work);
+      } else {
+        publish();
+        dirty = false;
+      }
+    } catch (const std::exception& e) {
+      log::error("{}", e.what());
+      next.activity.clear();
+      next.progress = -1;
+      next.paused = paused = true;
+      // A picture of the scene before is none of this one.
+      if (next.scene_id != scene_id && renderer)
+        next.scene_id = scene_id, next.camera = renderer->camera(), next.rgba.clear();
+      publish();
+      dirty = false;
+    }
+    if (renderer) serve_due(*renderer);
+    lock.lock();
+  }
+  end(renderer.get(), lock);
+}
+
+}  // namespace lucerna::session

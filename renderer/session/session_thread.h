@@ -1,0 +1,265 @@
+#pragma once
+// The session's own thread: what it holds, and what it does between commands.
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "base/log.h"
+#include "base/timer.h"
+#include "session/renderer.h"
+#include "session/session.h"
+#include "solvers/registry.h"
+#include "stats/forecast.h"
+
+namespace lucerna::session {
+
+inline constexpr double k_publish_seconds = 0.1;  // between pictures while the image refines
+inline constexpr double k_numbers_seconds = 0.5;  // between read-backs of the film for shares
+
+/// Thrown by a command that has ended without effect, as was wished.
+struct Abandoned {};
+
+struct Session::Impl {
+  Options options;
+  std::thread thread;
+  mutable std::mutex mutex;
+  std::condition_variable wake;
+  CommandQueue queue;
+  std::atomic<bool> quit{false}, pending{false};
+  uint64_t done = 0;  // number of the last command that was carried out
+  // Loads are numbered as they are asked for; those up to a number are given up.
+  std::atomic<uint64_t> loads{0}, given_up{0};
+  std::shared_ptr<const Snapshot> snapshot;
+  State state;
+  std::function<void()> published;
+
+  // Of the session thread alone.
+  Snapshot next;
+  SceneId scene_id = 0;  // of the renderer's scene; the snapshot has it with the first picture
+  AccuracyKeeper accuracy;
+  Timer since_publish, since_numbers, since_given_up;
+  bool paused = false, dirty = true, coarse_wanted = false, better_wanted = false, recall_wanted = false,
+       draft_given_up = false, size_known = false;
+  bool filled = false;
+  double publish_seconds = k_publish_seconds;  // showing takes no more than a fifth of the time
+  double numbers_seconds = k_numbers_seconds;  // and read-backs no more than a twentieth
+  struct Save {
+    std::filesystem::path file;
+    std::string solver;  // whose work it keeps; "": the picture
+    bool as_shown = false;
+    std::shared_ptr<std::promise<void>> promise;
+  };
+  std::vector<Save> saves;  // that wait for what they are to write
+  struct Measure {
+    std::optional<vec2> at;
+    std::shared_ptr<std::promise<film::Brightness>> promise;
+  };
+  std::vector<Measure> measures;  // that wait for a picture
+
+  bool works(Renderer& r) const { return r.ready() && !paused && !r.done() && !r.waits(); }
+
+  /// Whether it is to be written now, or cannot be, which writing will tell.
+  bool due(Renderer& r, const Save& save) const {
+    if (!save.solver.empty()) {
+      const solvers::Solver* solver = r.solver(save.solver);
+      return !solver || solver->ready();
+    }
+    return r.samples() > 0 || !works(r);
+  }
+
+  static void write(Renderer& r, const Save& save) {
+    try {
+      if (save.solver.empty())
+        r.save(save.file, save.as_shown);
+      else
+        r.solver_save(save.solver, save.file);
+      log::info("saved {}", save.file.string());
+      save.promise->set_value();
+    } catch (const std::exception& e) {
+      log::error("{}", e.what());
+      save.promise->set_exception(std::current_exception());
+    }
+  }
+
+  void write_due(Renderer& r) {
+    std::erase_if(saves, [&](const Save& save) {
+      const bool now = due(r, save);
+      if (now) write(r, save);
+      return now;
+    });
+  }
+
+  void measure_due(Renderer& r) {
+    if (r.samples() == 0 && !r.has_draft() && works(r)) return;
+    for (const Measure& m : std::exchange(measures, {})) try {
+        r.settle_mix();
+        m.promise->set_value(r.measure(m.at));
+      } catch (...) {
+        m.promise->set_exception(std::current_exception());
+      }
+  }
+
+  void serve_due(Renderer& r) {
+    write_due(r);
+    measure_due(r);
+  }
+
+  void give_up_saves(const char* why) {
+    for (const Save& save : saves) {
+      const std::string before = save.solver.empty() ? std::string("the picture had a sample")
+                                                     : solvers::find(save.solver)->title + " was complete";
+      const Error error(save.file.string(), fmt::format("not written: {} before {}", why, before));
+      log::error("{}", error.what());
+      save.promise->set_exception(std::make_exception_ptr(error));
+    }
+    saves.clear();
+  }
+
+  Saved post_save(const std::filesystem::path& file, const std::string& solver, SceneId scene,
+                  bool as_shown = false) {
+    // A promise that is dropped, for want of a device, is a failure to the one who waits.
+    auto promise = std::make_shared<std::promise<void>>();
+    Saved saved = promise->get_future().share();
+    const auto run = [this, file, solver, as_shown, promise](Renderer& r) {
+      saves.push_back({file, solver, as_shown, promise});
+      if (!solver.empty() && !due(r, saves.back()))
+        log::info("{}: will be written when {} is complete", file.string(), solvers::find(solver)->title);
+    };
+    post({.run = run, .subject = file.string(), .scene = scene, .saves = true});
+    return saved;
+  }
+
+  void post(Command command) {
+    {
+      std::lock_guard lock(mutex);
+      queue.push(std::move(command));
+      pending = true;
+    }
+    wake.notify_one();
+  }
+
+  /// The snapshots from now on say that this one was refused.
+  void refuse(const Command& command) {
+    auto all = next.refused ? std::make_shared<std::vector<uint64_t>>(*next.refused)
+                            : std::make_shared<std::vector<uint64_t>>();
+    all->push_back(command.number);
+    next.refused = std::move(all);
+  }
+
+  void publish_activity(const std::string& what, float fraction) {
+    next.activity = what;
+    next.progress = fraction;
+    publish();
+  }
+
+  void publish() {
+    auto copy = std::make_shared<Snapshot>(next);
+    copy->id = ++next.id;
+    std::function<void()> call;
+    {
+      std::lock_guard lock(mutex);
+      snapshot = std::move(copy);
+      call = published;
+    }
+    if (call) call();
+  }
+
+  void restarted() {
+    coarse_wanted = better_wanted = recall_wanted = dirty = true;
+    filled = false;
+  }
+
+  stats::WorkPace pace;  // of what is prepared
+
+  /// From the reports of the solvers and the time that their work has taken so far.
+  void tell_preparing() {
+    next.preparing.clear(), next.preparing_done = -1, next.preparing_left.reset();
+    const auto told = std::find_if(next.reports.begin(), next.reports.end(),
+                                   [](const auto& report) { return !report->preparing.empty(); });
+    if (told == next.reports.end()) {
+      pace = {};
+      return;
+    }
+    next.preparing = (*told)->preparing;
+    if (!(*told)->progress) return;
+    const solvers::Report::Progress& progress = *(*told)->progress;
+    next.preparing_done = progress.done;
+    // The solver is not at work all the time: pictures are shown and preview samples drawn between.
+    const double done_ms = progress.left_ms * progress.done / std::max(1e-9, 1 - progress.done);
+    next.preparing_left = pace.follow(next.seconds, done_ms, progress.left_ms);
+  }
+
+  void fill_snapshot(Renderer& r, bool numbers) {
+    next.scene_id = scene_id;
+    next.width = r.film().width();
+    next.height = r.film().height();
+    if (dirty || next.rgba.empty() || !r.shows_the_same()) {
+      const Timer shown;
+      next.rgba = r.shown_picture(!filled, [&] { return pending.load() || quit; });
+      publish_seconds = std::max(k_publish_seconds, 4 * shown.seconds());
+    }
+    const film::PreviewShares shares = r.preview_shares();
+    next.stale = shares.stale, next.filtered = shares.filtered, next.shown_error = shares.error;
+    const film::View view = r.view();
+    next.legend = {};
+    if (view.layer >= shared::k_layer_samples)
+      next.legend = {view.layer, view.heat.ramp, view.heat.logarithmic, view.heat.lo, view.heat.hi};
+    next.tiles = view.tiles > 0;
+    next.samples = r.samples();
+    next.max_samples = r.max_samples();
+    next.coarse = !filled;
+    next.lights_together = r.relight().why_not;
+    next.paused = paused;
+    next.finished = r.done();
+    next.seconds = r.seconds();
+    next.reports = r.reports();
+    tell_preparing();
+    next.path_pace = r.path_pace();
+    next.camera = r.camera();
+    next.tracer = r.tracer_name();
+    next.device = r.device().info().name;
+    next.device_mb = double(r.device().allocated_bytes()) / (1 << 20);
+    const transport::TransportStats& stats = r.stats();
+    next.rays = stats.rays;
+    const double tracing = r.render_seconds();
+    next.mrays_per_second = tracing > 0 ? 1e-6 * double(stats.rays) / tracing : 0;
+    next.dropped = stats.dropped;
+    next.stages.clear();
+    for (const auto& s : stats.stages) next.stages.push_back({s.name, s.ms, s.host});
+    next.mean_samples = double(stats.paths) / (double(next.width) * next.height);
+    accuracy.follow(r, scene_id);
+    next.accuracy = accuracy.publish(r, numbers || dirty);
+    const auto ms = r.component_ms_a_sample();
+    for (int c = 0; c < k_components; ++c) {
+      next.components[c].solver = r.settings().text(std::string("components.") + k_component_names[c]);
+      next.components[c].ms_per_sample = ms[size_t(c)];
+    }
+    if (numbers) {
+      const Timer taken;
+      next.host_mb = peak_host_mb();
+      const auto means = film::Film::means(r.image());
+      double total = 0;
+      for (const vec3& m : means) total += luminance(m);
+      for (int c = 0; c < k_components; ++c) {
+        next.components[c].mean_luminance = luminance(means[c]);
+        next.components[c].share = total > 0 ? luminance(means[c]) / total : 0;
+      }
+      numbers_seconds = std::max(k_numbers_seconds, 20 * taken.seconds());
+    }
+  }
+
+  /// Null where there is no device to render with, which is told.
+  std::unique_ptr<Renderer> make_renderer();
+  /// The first command of the queue. `lock` is held before and after, not meanwhile.
+  void carry_out_next(Renderer* renderer, std::unique_lock<std::mutex>& lock);
+  /// A draft or, where there is `work`, a piece of the picture; publishes it when it is time.
+  void advance(Renderer& renderer, bool work);
+  void publish_picture(Renderer& renderer, bool numbers);
+  /// What is still to be written, before the thread ends; `lock` is held before and not after.
+  void end(Renderer* renderer, std::unique_lock<std::mutex>& lock);
+  void run();
+};
+
+}  // namespace lucerna::session
