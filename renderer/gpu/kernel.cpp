@@ -128,7 +128,9 @@ Kernel& Kernel::operator=(Kernel&&) noexcept = default;
 Kernel::Kernel(Device& device, ShaderCompiler& compiler, const std::string& file, const Defines& defines,
                std::vector<SpecConstant> constants) {
   Handles& h = device.handles();
-  const std::vector<uint32_t> words = compiler.compile(file, defines);
+  Defines all = defines;
+  all["LUCERNA_SUBGROUPS"] = h.info.optional.subgroups ? "1" : "0";
+  const std::vector<uint32_t> words = compiler.compile(file, all);
   const spirv::Module module = spirv::reflect(words);
   auto impl = std::make_unique<Impl>();
   impl->handles = &h;

@@ -73,6 +73,13 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
                      "Paths in flight at once; sets the memory of the path state. Never fewer than "
                      "4096 where light is cached.",
                      "Paths in flight"));
+  list.push_back(choice_option(
+      "path.classes", "auto", {"auto", "always", "off"}, "",
+      "Hits are shaded by kernels of their own for the kinds of materials that most of them are on, instead "
+      "of "
+      "by one for all. The picture is the same. auto: once enough have been shaded to make up for compiling "
+      "them; always: from the second batch of paths on.",
+      "Shading by material"));
   for (size_t i = first; i < list.size(); ++i) list[i] = of_same_light(std::move(list[i]));
   list.push_back(integer_option("path.max_depth", 64, 1, 1024, "vertices",
                                 "Scattering events between the eye and a light that a path has at most, "

@@ -12,7 +12,7 @@ namespace lucerna::raybench {
 namespace {
 
 // A file is only read by the version that wrote it: whoever changes a structure below changes the number.
-constexpr char k_magic[16] = "lucerna flat 4\n";
+constexpr char k_magic[16] = "lucerna flat 5\n";
 
 /// One description of the format serves both directions.
 class Writer {

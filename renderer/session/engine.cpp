@@ -105,8 +105,12 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
     bind = [this](gpu::Resources& r) {
       for (const auto& solver : solvers_) solver->bind(r);
     };
+  const std::string& classes = settings.text("path.classes");
+  const auto rules = classes == "off"      ? transport::HitClassRules::never()
+                     : classes == "always" ? transport::HitClassRules::at_once()
+                                           : transport::HitClassRules{};
   wavefront_ = std::make_unique<transport::Wavefront>(device, compiler, *world.device, slots, world.trace(),
-                                                      defines, bind);
+                                                      defines, bind, rules);
   developer_ = before ? before->developer_ : std::make_shared<film::Developer>(device, compiler);
   estimator_ = before && before->solvers_.empty() == solvers_.empty()
                    ? before->estimator_

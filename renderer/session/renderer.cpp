@@ -53,7 +53,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   // A scene starts with the defaults and its own settings; only how to compute is the machine's affair and
   // stays.
   plan::Settings settings;
-  for (const char* key : {"tracer", "path.batch"}) settings.set(key, settings_.text(key));
+  for (const char* key : {"tracer", "path.batch", "path.classes"}) settings.set(key, settings_.text(key));
   for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
   for (const SettingChange& change : changes) settings.set(change.key, change.value, change.where);
   scene::Camera camera = scene::starting_camera(*scene, settings.text("camera"));
@@ -352,7 +352,7 @@ void Renderer::apply_settings() {
     const scene::Camera camera =
         changed("camera") ? scene::starting_camera(*world_.scene, settings_.text("camera")) : camera_;
     scene::check_range(camera);
-    if (changed("tracer") || changed("path.batch")) {
+    if (changed("tracer") || changed("path.batch") || changed("path.classes")) {
       install(world_.scene, settings_, camera, {}, changes);
       return;
     }

@@ -1,6 +1,8 @@
 #include "transport/wavefront.h"
 
 #include <algorithm>
+#include <bit>
+#include <optional>
 
 #include "base/timer.h"
 #include "shaders/shared/trace.h"
@@ -19,6 +21,7 @@ struct Wavefront::Impl {
   bool in_short = false;  // ... all components of one together
   bool tells_bias = false;
   uint32_t enabled = 15;
+  std::vector<uint64_t> in_queue;  // a bit a slot
   uint8_t first_account = 0;
   double compile_seconds = 0;
 
@@ -30,6 +33,7 @@ struct Wavefront::Impl {
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
   std::function<void(gpu::Resources&)> bind_lookup;
+  std::optional<HitShading> by_class;
   TransportStats stats;
 
   Impl(gpu::Device& d, uint32_t n, const upload::Effects& effects, HostTrace trace)
@@ -66,12 +70,15 @@ struct Wavefront::Impl {
   }
 
   void rebind_lookup() {
-    for (gpu::Resources& r : main)
-      if (bind_lookup) bind_lookup(r);
+    for (size_t k = 0; k < main.size(); ++k) {
+      if (bind_lookup) bind_lookup(main[k]);
+      by_class->bind(k, main[k]);
+    }
   }
 
   void bind(const upload::DeviceScene& scene) {
     transparent = scene.effects().transparent();
+    by_class->set_features(scene.effects().kinds);
     for (int k = 0; k < 2; ++k) {
       for (gpu::Resources* r : {&main[k], &shade_shadow[k]}) {
         scene.bind(*r);
@@ -155,10 +162,49 @@ struct Wavefront::Impl {
     }
     run_and_account(closest, shadows);
     const Timer timer;
+    if (queue) order_by_slot({static_cast<uint32_t*>(queue->mapped()), count});
     host_trace(query, {static_cast<const Ray*>(r.mapped()), slots}, {static_cast<Hit*>(h.mapped()), slots},
                queue ? static_cast<const uint32_t*>(queue->mapped()) : nullptr, count, !queue);
     const bool is_shadow = std::string_view(name).substr(0, 6) == "shadow";
     account(name, timer.milliseconds(), is_shadow ? shadows : closest, true);
+  }
+
+  /// Puts a queue's slots, no two alike, into their order, in which they lie in memory and in the picture.
+  void order_by_slot(std::span<uint32_t> queue) {
+    if (queue.size() < 1024) return;
+    in_queue.assign((slots + 63) / 64, 0);
+    for (const uint32_t slot : queue) in_queue[slot / 64] |= uint64_t{1} << slot % 64;
+    uint32_t* out = queue.data();
+    for (uint32_t word = 0; word < in_queue.size(); ++word)
+      for (uint64_t bits = in_queue[word]; bits != 0; bits &= bits - 1)
+        *out++ = word * 64 + uint32_t(std::countr_zero(bits));
+  }
+  /// Runs what is recorded; of the shadow rays those that are on their way still.
+  uint32_t take_going(const uint32_t* closest, const uint32_t* shadows) {
+    run_and_account(closest, shadows);
+    const uint32_t going = static_cast<const uint32_t*>(counters.mapped())[k_counter_shadow_next];
+    stream.fill(counters, 0, 4 * k_counter_shadow_next, 4);
+    return going;
+  }
+  /// On the host: puts those of the first shadow queue's rays that have met nothing into the second one.
+  uint32_t pass_unblocked(uint32_t count, const uint32_t* shadows) {
+    const Timer timer;
+    const auto* from = static_cast<const uint32_t*>(shadow_queues[0].mapped());
+    auto* to = static_cast<uint32_t*>(shadow_queues[1].mapped());
+    const auto* met = static_cast<const Hit*>(shadow_hits.mapped());
+    uint32_t going = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+      to[going] = from[i];
+      going += met[from[i]].prim == k_no_hit ? 1 : 0;
+    }
+    account("shadow trace", timer.milliseconds(), shadows, true);
+    return going;
+  }
+  /// Whether any of a shadow queue's rays has met something.
+  bool meets_any(uint32_t side, uint32_t count) const {
+    const auto* queue = static_cast<const uint32_t*>(shadow_queues[side].mapped());
+    const auto* met = static_cast<const Hit*>(shadow_hits.mapped());
+    return std::any_of(queue, queue + count, [&](uint32_t slot) { return met[slot].prim != k_no_hit; });
   }
 
   static uint32_t workgroups(uint32_t count) { return (count + 63) / 64; }
@@ -166,7 +212,7 @@ struct Wavefront::Impl {
 
 Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
                      uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines,
-                     std::function<void(gpu::Resources&)> bind_lookup)
+                     std::function<void(gpu::Resources&)> bind_lookup, const HitClassRules& rules)
     : impl_(std::make_unique<Impl>(device, slots, scene.effects(), std::move(host_trace))) {
   Impl& w = *impl_;
   const Timer timer;
@@ -194,6 +240,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
     w.lanes_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
   }
   w.bind_lookup = std::move(bind_lookup);
+  w.by_class.emplace(device, compiler, slots, defines, scene.effects().kinds, rules);
   w.bind(scene);
   if (!w.host_trace) {
     // Where nothing is transparent the any-hit kernel need not look at the flag.
@@ -306,7 +353,8 @@ bool Wavefront::run(uint32_t count, const PathEnds& ends, const std::function<bo
 
 bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel) {
   Impl& w = *this;
-  TransportPush push{count, 0, 64, 0};
+  TransportPush push{count, 0, 0, 0};
+  uint64_t shaded = 0;
   uint32_t closest[k_component_count] = {}, shadows[k_component_count] = {};
   closest[w.first_account] = count;
   std::array<gpu::Resources, 2> own;  // of the caller's kernel
@@ -321,6 +369,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
   }
   const std::array<gpu::Resources, 2>& arriving = ends.arrival ? of_arrival : w.shade_shadow;
   const gpu::Kernel& shadow = ends.arrival ? *ends.arrival : w.shadow;
+  if (!ends.vertex && !ends.hits_only) w.by_class->begin_run(w.stream);
   w.stream.fill(w.counters, 0);
   ends.begin();
   const uint32_t* counters = static_cast<const uint32_t*>(w.counters.mapped());
@@ -333,40 +382,52 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       w.run_and_account(closest, shadows);
       return false;
     }
-    // Shadow rays of the vertices before, then the next vertices.
+    // Shadow rays of the vertices before, then the next vertices. Where the host traces, it traces both
+    // before the device goes on: one submission a bounce, of which each costs as much as tracing a thousand
+    // rays.
+    const auto trace_vertices = [&] {
+      w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
+              first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
+      w.stats.rays += active;
+    };
+    bool vertices_traced = branching || active == 0;
     if (shadow_count > 0) {
       const gpu::Resources& table = arriving[0];
       w.trace(bvh::Query::any_opaque, w.trace_any, table, w.shadow_rays, w.shadow_hits, &w.shadow_queues[0],
               shadow_count, "shadow trace", closest, shadows);
       w.stats.shadow_rays += shadow_count;
       w.stats.rays += shadow_count;
-      push.count = shadow_count;
+      uint32_t side = 0, going = shadow_count;
       push.use_queue = 1;
       push.round = 0;
-      w.stream.dispatch(shadow, table, push, Impl::workgroups(shadow_count), "shadow light");
       if (w.transparent) {
-        uint32_t side = 1;
-        for (;; side ^= 1) {
-          w.run_and_account(closest, shadows);
-          const uint32_t going = counters[k_counter_shadow_next];
-          w.stream.fill(w.counters, 0, 4 * k_counter_shadow_next, 4);
-          if (going == 0) break;
+        // Those that no opaque surface blocks; then again those that a transparent one has let through.
+        side = 1;
+        if (w.host_trace) {
+          going = w.pass_unblocked(shadow_count, shadows);
+        } else {
+          push.count = shadow_count;
+          w.stream.dispatch(shadow, table, push, Impl::workgroups(shadow_count), "shadow light");
+          going = w.take_going(closest, shadows);
+        }
+        push.round = 1;
+        for (; going > 0; side ^= 1) {
           w.trace(bvh::Query::closest_non_opaque, w.trace_non_opaque, arriving[side], w.shadow_rays,
                   w.shadow_hits, &w.shadow_queues[side], going, "shadow trace", closest, shadows);
           w.stats.shadow_rays += going;
           w.stats.rays += going;
+          if (w.host_trace && !w.meets_any(side, going)) break;  // all arrive
           push.count = going;
-          push.round = 1;
           w.stream.dispatch(shadow, arriving[side], push, Impl::workgroups(going), "shadow light");
+          going = w.take_going(closest, shadows);
         }
       }
+      if (w.host_trace && !vertices_traced) trace_vertices(), vertices_traced = true;
+      push.count = going;
+      if (going > 0) w.stream.dispatch(shadow, arriving[side], push, Impl::workgroups(going), "shadow light");
     }
     if (active > 0) {
-      if (!branching) {
-        w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
-                first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
-        w.stats.rays += active;
-      }
+      if (!vertices_traced) trace_vertices();
       if (first && ends.first_hits) ends.first_hits();
       if (ends.hits_only) {
         w.run_and_account(closest, shadows);
@@ -377,10 +438,17 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       push.count = active;
       push.use_queue = first ? 0 : 1;
       push.round = branching ? branch : 0;
-      if (ends.vertex)
+      if (ends.vertex) {
         w.stream.dispatch(*ends.vertex, own[parity], push, Impl::workgroups(active), ends.vertex_stage);
-      else
+      } else if (!branching && w.by_class->shades(active)) {
+        w.by_class->sort(w.stream, parity, active, !first, w.counters);
+        w.run_and_account(closest, shadows);
+        w.by_class->shade(w.stream, parity, w.shade, counters);
+      } else {
+        if (!branching) w.by_class->count(w.stream, parity, active, !first);
         w.stream.dispatch(w.shade, w.main[parity], push, Impl::workgroups(active), "shade");
+      }
+      shaded += active;
     } else {
       w.stream.fill(w.counters, 0, 0, 12);
     }
@@ -405,6 +473,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
   w.stats.dropped += counters[k_counter_dropped];
   w.stats.roulette += counters[k_counter_roulette];
   w.stats.depth += counters[k_counter_depth];
+  if (!ends.vertex) w.by_class->end_run(shaded, counters);
   return true;
 }
 
@@ -423,5 +492,8 @@ void Wavefront::uncounted(const std::function<void()>& trace) {
   impl_->stats = kept;
 }
 double Wavefront::compile_seconds() const { return impl_->compile_seconds; }
+HitClasses Wavefront::hit_classes() const {
+  return impl_->by_class->ready() ? impl_->by_class->classes() : HitClasses{};
+}
 
 }  // namespace lucerna::transport

@@ -17,6 +17,7 @@
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
 #include "shaders/shared/transport.h"
+#include "transport/hit_shading.h"
 #include "upload/device_scene.h"
 
 namespace lucerna::transport {
@@ -64,10 +65,10 @@ class Wavefront {
  public:
   /// `host_trace` empty: compute-bvh. `bind_lookup`: sets what kernels read that are compiled, by
   /// `extra_defines`, with a lookup; called again by rebind(). Compiles all kernels (throws Error, located)
-  /// and warms them up.
+  /// and warms them up, but for those of `rules`.
   Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
             uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines = {},
-            std::function<void(gpu::Resources&)> bind_lookup = {});
+            std::function<void(gpu::Resources&)> bind_lookup = {}, const HitClassRules& rules = {});
   ~Wavefront();
 
   /// The frame's constants; `enabled`: components on (bit i).
@@ -105,6 +106,8 @@ class Wavefront {
   /// What `trace` runs here is no part of the picture's cost: stats() stay as they are.
   void uncounted(const std::function<void()>& trace);
   double compile_seconds() const;
+  /// Of the hits that are shaded by kernels of their own; none before these are ready.
+  HitClasses hit_classes() const;
 
  private:
   struct Impl;

@@ -11,6 +11,7 @@
 #include "scene/core.h"
 #include "upload/alias_table.h"
 #include "upload/bsdf_table.h"
+#include "upload/material_kinds.h"
 #include "upload/media.h"
 #include "upload/textures.h"
 
@@ -89,6 +90,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
   Effects& e = flat.effects;
   e.specular = e.solid_glass = e.thin_glass = e.diffuse_transmission = false;
   e.volumes = e.unlit = e.alpha = e.glass_specular = false;
+  const MaterialKinds kinds = material_kinds(scene.materials);
   flat.materials.resize(scene.materials.size() * k_material_texels);
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const scene::Material& m = scene.materials[i];
@@ -120,7 +122,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     out[k_material_specular] = vec4(m.specular_color, m.unlit ? 0 : m.transmission);
     out[k_material_volume] = vec4(absorption, row);
     out[k_material_diffuse_t] = vec4(m.diffuse_transmission_color, m.diffuse_transmission);
-    out[k_material_detail] = vec4(m.normal_scale, m.alpha_cutoff, 0, 0);
+    out[k_material_detail] = vec4(m.normal_scale, m.alpha_cutoff, 0, as_float(kinds.of_material[i]));
     const bool lets_all_through = m.transmission >= 1 && !m.transmission_texture;
     e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && !lets_all_through));
     e.solid_glass |= solid;
@@ -132,6 +134,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     e.unlit |= m.unlit;
     e.alpha |= m.alpha_mode != scene::AlphaMode::opaque;
   }
+  e.kinds = kinds.features;
   if (flat.bsdf_tables.empty() || flat.glass_iors != glass_iors)
     flat.bsdf_tables = build_bsdf_tables(glass_iors);
   flat.glass_iors = std::move(glass_iors);

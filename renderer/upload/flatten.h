@@ -29,6 +29,7 @@ struct Effects {
   bool uv_transforms = false;           ///< a use of a texture that is scaled, turned or shifted
   bool tex_nearest = false;             ///< a texture that is not filtered
   bool tex_wraps = false;               ///< a texture that does not repeat
+  std::array<uint32_t, shared::k_hit_kinds> kinds{};  ///< features, by kind of hits (upload/material_kinds.h)
   std::array<uint32_t, shared::k_texture_uses> texture_buckets{};  ///< by use: bit b: bucket b may be read
   bool transparent() const { return alpha || thin_glass; }
   /// Groups of lights are kept apart, all components of one together (film::GroupsKept::in_short).

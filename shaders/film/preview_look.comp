@@ -50,9 +50,5 @@ void main() {
     features[2u * slot] = vec4(0.0, 0.0, 0.0, float(k_sight_beyond));
   }
   path.travelled = travelled;
-  rays[slot].origin = offset_origin(surface, on.direction);
-  rays[slot].direction = on.direction;
-  store_path(slot, path);
-  next_queue[atomicAdd(counters[k_counter_next], 1u)] = slot;
-  atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);
+  queue_ray(slot, path, offset_origin(surface, on.direction), on.direction);
 }

@@ -29,7 +29,7 @@ void main() {
   bool above = dot(ray.direction, facet_unpack(flags >> k_record_facet_shift)) > 0.0;
   ray.tmax = above ? k_infinity : -1.0;
   ray.slot = slot;
-  rays[slot] = ray;
+  store_ray(slot, ray);
   PathState p;
   p.throughput = vec3(above ? 1.0 : 0.0);
   p.pdf = 0.0;
@@ -41,6 +41,6 @@ void main() {
   p.eta_scale = 1.0;
   p.nulls = 0u;
   p.light_group = 0u;
-  paths[slot] = p;
+  store_path(slot, p);
   clear_radiance(slot);
 }

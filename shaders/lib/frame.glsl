@@ -27,7 +27,7 @@ bool automaton_no_diffuse(uint state) { return (frame.automaton[state] & (1u << 
 // Whether there is anything behind a further event that the scene's surfaces can bring about.
 bool automaton_goes_on(uint state) {
   bool on = automaton_live(automaton_after(state, 0u));
-#if LUCERNA_SPECULAR || LUCERNA_GLASS
+#if LUCERNA_SCENE_GLOSSY
   on = on || automaton_live(automaton_after(state, 1u)) || automaton_live(automaton_after(state, 2u));
 #endif
   return on;

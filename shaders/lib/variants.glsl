@@ -92,6 +92,32 @@
 #define LUCERNA_BUCKETS 0
 #endif
 
+// What hits a kernel shades, where they are told apart (renderer/transport/hit_classes.h): paths that leave the scene, surfaces,
+// those that emit, those that light samples reach; and what others are like that paths go on to.
+#ifndef LUCERNA_HITS_SKY
+#define LUCERNA_HITS_SKY 1
+#endif
+#ifndef LUCERNA_HITS_SURFACES
+#define LUCERNA_HITS_SURFACES 1
+#endif
+#ifndef LUCERNA_HITS_EMISSIVE
+#define LUCERNA_HITS_EMISSIVE LUCERNA_EMISSIVE
+#endif
+#ifndef LUCERNA_HITS_LIT
+#define LUCERNA_HITS_LIT LUCERNA_LIGHTS
+#endif
+#ifndef LUCERNA_SCENE_GLOSSY
+#define LUCERNA_SCENE_GLOSSY (LUCERNA_SPECULAR || LUCERNA_SOLID_GLASS || LUCERNA_THIN_GLASS)
+#endif
+#ifndef LUCERNA_COUNT_KINDS
+#define LUCERNA_COUNT_KINDS 0
+#endif
+
+// What the device can (renderer/gpu/kernel.cpp).
+#ifndef LUCERNA_SUBGROUPS
+#define LUCERNA_SUBGROUPS 0
+#endif
+
 // What the settings ask for, and what tests do.
 #ifndef LUCERNA_PHOTON_IRRADIANCE
 #define LUCERNA_PHOTON_IRRADIANCE 0

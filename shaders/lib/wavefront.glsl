@@ -1,9 +1,9 @@
 // What the wavefront's kernels share: queues, counters, and the state of the paths in flight.
 //
-// State is read through texel buffers (RGBA32F; integers as bit patterns) and written as storage buffers, word by word and
-// only what changed: on lavapipe a storage-buffer access under a mask is a scalar loop over the lanes for every word, and
-// those loops were two thirds of the shading time; a texel fetch is a vector operation (and an image store slower than
-// either). Within one dispatch a slot is touched by one invocation, which reads it before it writes it.
+// State is read through texel buffers (RGBA32F; integers as bit patterns) and written as storage buffers of four words: on
+// lavapipe a storage-buffer access under a mask is a scalar loop over the lanes, one for every store whatever its width, and
+// these loops were half of the shading time of a plain scene; a texel fetch is a vector operation (and an image store slower
+// than either). Within one dispatch a slot is touched by one invocation, which reads it before it writes it.
 #ifndef LUCERNA_LIB_WAVEFRONT
 #define LUCERNA_LIB_WAVEFRONT
 #include "lib/variants.glsl"
@@ -27,12 +27,12 @@ uniform samplerBuffer hit_texels;           // Hits, 1
 uniform samplerBuffer path_texels;          // Paths, 3
 uniform samplerBuffer shadow_ray_texels;    // ShadowRays, 2
 uniform samplerBuffer shadow_state_texels;  // ShadowStates, 2
-layout(scalar) writeonly buffer Rays { Ray rays[]; };
-layout(scalar) writeonly buffer Paths { PathState paths[]; };
+layout(scalar) writeonly buffer Rays { uvec4 rays[]; };    // store_ray()
+layout(scalar) writeonly buffer Paths { uvec4 paths[]; };  // store_path()
 layout(scalar) writeonly buffer Radiance { vec4 radiance[]; };
 layout(scalar) writeonly buffer Features { vec4 features[]; };  // 2 a slot: (albedo, hit 0/1) (normal, depth)
-layout(scalar) writeonly buffer ShadowRays { Ray shadow_rays[]; };
-layout(scalar) writeonly buffer ShadowStates { ShadowState shadow_states[]; };
+layout(scalar) writeonly buffer ShadowRays { uvec4 shadow_rays[]; };
+layout(scalar) writeonly buffer ShadowStates { uvec4 shadow_states[]; };
 
 Ray ray_from(vec4 a, vec4 b) { return Ray(a.xyz, a.w, b.xyz, floatBitsToUint(b.w)); }
 Ray load_ray(uint slot) { return ray_from(texelFetch(ray_texels, int(2u * slot)), texelFetch(ray_texels, int(2u * slot + 1u))); }
@@ -52,26 +52,70 @@ PathState load_path(uint slot) {
 }
 ShadowState load_shadow_state(uint slot) {
   vec4 a = texelFetch(shadow_state_texels, int(2u * slot)), b = texelFetch(shadow_state_texels, int(2u * slot + 1u));
-#if !(LUCERNA_SPECULAR || LUCERNA_GLASS)
-  b.xyz = vec3(0.0);  // where nothing is glossy it is not written
-#endif
   return ShadowState(a.xyz, floatBitsToUint(a.w), b.xyz, floatBitsToUint(b.w));
 }
-// What later vertices change of a path; what the scene cannot change is not written.
+uvec4 words(vec3 a, float b) { return floatBitsToUint(vec4(a, b)); }
+uvec4 words(vec3 a, uint b) { return uvec4(floatBitsToUint(a), b); }
+void store_ray(uint slot, Ray r) {
+  rays[2u * slot] = words(r.origin, r.tmax);
+  rays[2u * slot + 1u] = words(r.direction, r.slot);
+}
 void store_path(uint slot, PathState p) {
-  paths[slot].throughput = p.throughput;
-  paths[slot].pdf = p.pdf;
-  paths[slot].bits = p.bits;
-#if LUCERNA_VOLUMES
-  paths[slot].media = p.media;
+  paths[3u * slot] = words(p.throughput, p.pdf);
+  paths[3u * slot + 1u] = uvec4(p.pixel, p.sample_index, p.bits, p.media);
+  paths[3u * slot + 2u] = uvec4(floatBitsToUint(p.travelled), floatBitsToUint(p.eta_scale), p.nulls, p.light_group);
+}
+void store_shadow_ray(uint slot, Ray r) {
+  shadow_rays[2u * slot] = words(r.origin, r.tmax);
+  shadow_rays[2u * slot + 1u] = words(r.direction, r.slot);
+}
+void store_shadow_state(uint slot, ShadowState s) {
+  shadow_states[2u * slot] = words(s.diffuse, s.lanes);
+  shadow_states[2u * slot + 1u] = words(s.glossy, s.pad0);
+}
+
+// A place of its own in a queue, of which counters[length] is the length, for every invocation that gets here; counted by
+// `component` in counters[by_component ...]. Invocations that run together add to the counters at once: an atomic operation
+// each was a tenth of the shading time.
+uint queue_place(uint length, uint by_component, uint component) {
+#if LUCERNA_SUBGROUPS
+  uint mine = 1u << 8u * component;  // a byte a component
+  uint all = subgroupAdd(mine), before = subgroupExclusiveAdd(mine);
+  uvec4 each = uvec4(all, all >> 8, all >> 16, all >> 24) & 0xffu, each_before = uvec4(before, before >> 8, before >> 16, before >> 24) & 0xffu;
+  uint first = 0u;
+  if (subgroupElect()) first = atomicAdd(counters[length], each.x + each.y + each.z + each.w);
+  // The first of each component adds for all of it.
+  if ((before >> 8u * component & 0xffu) == 0u) atomicAdd(counters[by_component + component], all >> 8u * component & 0xffu);
+  return subgroupBroadcastFirst(first) + each_before.x + each_before.y + each_before.z + each_before.w;
+#else
+  atomicAdd(counters[by_component + component], 1u);
+  return atomicAdd(counters[length], 1u);
 #endif
-#if LUCERNA_TRANSPARENT
-  paths[slot].travelled = p.travelled;
-  paths[slot].nulls = p.nulls;
+}
+// The same, not counted by component.
+uint queue_place(uint length) {
+#if LUCERNA_SUBGROUPS
+  uint all = subgroupAdd(1u), before = subgroupExclusiveAdd(1u), first = 0u;
+  if (subgroupElect()) first = atomicAdd(counters[length], all);
+  return subgroupBroadcastFirst(first) + before;
+#else
+  return atomicAdd(counters[length], 1u);
 #endif
-#if LUCERNA_SOLID_GLASS
-  paths[slot].eta_scale = p.eta_scale;
+}
+// Counts invocations that get here.
+void count_one(uint counter) {
+#if LUCERNA_SUBGROUPS
+  uint all = subgroupAdd(1u);
+  if (subgroupElect()) atomicAdd(counters[counter], all);
+#else
+  atomicAdd(counters[counter], 1u);
 #endif
+}
+// Puts a path's next ray into the queue.
+void queue_ray(uint slot, PathState p, vec3 origin, vec3 direction) {
+  next_queue[queue_place(k_counter_next, k_counter_rays, automaton_account(path_automaton(p)))] = slot;
+  store_ray(slot, Ray(origin, k_infinity, direction, slot));
+  store_path(slot, p);
 }
 
 // Zero light, of no group.

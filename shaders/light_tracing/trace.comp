@@ -86,12 +86,8 @@ void main() {
   if (wanted && finite && max3(light) > 0.0) {
     atomicAdd(splat_counts[k_splats_joined], 1u);
     vec3 origin = offset_origin(v.surface, seen.towards);
-    shadow_rays[slot].origin = origin;
-    shadow_rays[slot].tmax = max(0.0, seen.distance - dot(origin - v.surface.position, seen.towards));
-    shadow_rays[slot].direction = seen.towards;
-    shadow_rays[slot].slot = slot;
-    shadow_states[slot].lanes = seen.pixel;
-    shadow_states[slot].glossy = vec3(0.0);
+    float distance = max(0.0, seen.distance - dot(origin - v.surface.position, seen.towards));
+    store_shadow_ray(slot, Ray(origin, distance, seen.towards, slot));
     uint stratum = 0u;
 #if LUCERNA_SPLATS_WEIGHED && LUCERNA_LIGHTS
     // What is not aimed has brought by itself only what no aimed path would have brought as well.
@@ -99,10 +95,8 @@ void main() {
     stratum = e.stratum;
     light *= stratum == 0u ? e.unaimed : 1.0;
 #endif
-    shadow_states[slot].pad0 = stratum;
-    shadow_states[slot].diffuse = light;
-    shadow_queue[atomicAdd(counters[k_counter_shadow], 1u)] = slot;
-    atomicAdd(counters[k_counter_shadow_rays + automaton_account(state)], 1u);
+    store_shadow_state(slot, ShadowState(light, seen.pixel, vec3(0.0), stratum));
+    shadow_queue[queue_place(k_counter_shadow, k_counter_shadow_rays, automaton_account(state))] = slot;
   }
   light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events) - 1u, random);
 }

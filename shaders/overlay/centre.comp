@@ -16,7 +16,7 @@ void main() {
   ray.direction = camera_direction(shift);
   ray.tmax = k_infinity;
   ray.slot = slot;
-  rays[slot] = ray;
+  store_ray(slot, ray);
   PathState p;
   p.throughput = vec3(1.0);
   p.pdf = 0.0;
@@ -31,7 +31,7 @@ void main() {
   p.eta_scale = 1.0;
   p.nulls = 0u;
   p.light_group = 0u;
-  paths[slot] = p;
+  store_path(slot, p);
   clear_radiance(slot);
   features[2u * slot] = vec4(0.0);
   features[2u * slot + 1u] = vec4(0.0);

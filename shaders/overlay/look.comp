@@ -25,9 +25,5 @@ void main() {
   if (!on.straight) path.nulls = 1u;  // not straight any more
   path.bits += 1u << k_path_events_shift;
   if (!on.straight && !on.turned) return;
-  rays[slot].origin = offset_origin(surface, on.direction);
-  rays[slot].direction = on.direction;
-  store_path(slot, path);
-  next_queue[atomicAdd(counters[k_counter_next], 1u)] = slot;
-  atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);
+  queue_ray(slot, path, offset_origin(surface, on.direction), on.direction);
 }

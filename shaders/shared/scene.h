@@ -21,7 +21,8 @@ LUCERNA_CONST uint k_material_surface = 2u;       ///< metallic, roughness, ior,
 LUCERNA_CONST uint k_material_specular = 3u;      ///< specular colour rgb, transmission
 LUCERNA_CONST uint k_material_volume = 4u;        ///< absorption rgb [1/m], glass table row (-1: none)
 LUCERNA_CONST uint k_material_diffuse_t = 5u;     ///< diffuse transmission colour rgb, factor
-LUCERNA_CONST uint k_material_detail = 6u;        ///< normal scale, alpha cutoff, medium of a solid (scene_media), 0
+LUCERNA_CONST uint k_material_detail = 6u;        ///< normal scale, alpha cutoff, medium of a solid (scene_media), bits of the
+                                                  ///< kind of hits on it
 LUCERNA_CONST uint k_material_textures = 7u;      ///< then k_texture_texels for each use:
 // (rectangle on the page: x, y, width, height over the page's size) (bits:texture, m2, m5, 0) (m0 m1 m3 m4)
 LUCERNA_CONST uint k_texture_texels = 3u;
@@ -44,6 +45,11 @@ LUCERNA_CONST uint k_texture_nearest = 1u << 20;
 LUCERNA_CONST uint k_texture_uv1 = 1u << 21;
 LUCERNA_CONST uint k_texture_present = 1u << 31;
 LUCERNA_CONST uint k_max_buckets = 6u;
+
+// Kinds of hits, by what their material calls for (renderer/upload/material_kinds.h).
+LUCERNA_CONST uint k_kind_sky = 0u;    ///< of paths that leave the scene
+LUCERNA_CONST uint k_kind_first = 1u;  ///< of materials
+LUCERNA_CONST uint k_hit_kinds = 32u;
 
 // Material flags.
 LUCERNA_CONST uint k_flag_double_sided = 1u;

@@ -69,12 +69,26 @@ LUCERNA_CONST uint k_counter_roulette = 12u;   ///< paths ended by roulette
 LUCERNA_CONST uint k_counter_depth = 13u;      ///< paths ended by the maximum depth
 LUCERNA_CONST uint k_counter_branching = 14u;   ///< vertices that another branch is to leave
 LUCERNA_CONST uint k_counter_branching_rays = 16u;  ///< [4]: those by the component that the branch is accounted to
-LUCERNA_CONST uint k_counter_slots = 20u;
+LUCERNA_CONST uint k_counter_kinds = 20u;       ///< [k_hit_kinds]: hits of each kind
+LUCERNA_CONST uint k_counter_classes = 52u;     ///< [k_hit_classes]: of each class
+LUCERNA_CONST uint k_counter_slots = 60u;
+
+/// Classes of hits that are shaded by kernels of their own; the first takes all.
+LUCERNA_CONST uint k_hit_classes = 8u;
+LUCERNA_CONST uint k_class_bits = 4u;
+
+/// transport/classes.comp.
+struct ClassesPush {
+  uint count, use_queue;  ///< as of TransportPush
+  uint slots;             ///< entries of a class's part of the queue
+  uint classes[4];        ///< by kind, k_class_bits each
+};
 
 struct TransportPush {
   uint count;          ///< entries of the queue, or slots
   uint use_queue;      ///< 0: slot = index
-  uint pixel_count;    ///< camera source: slots a sample, 64 for each block of the item
+  uint pixel_count;    ///< camera source: slots a sample, 64 for each block of the item; shading: entries of the queue
+                       ///< before the first of these
   uint round;          ///< shadow light: 0 for the rays just traced, 1 for those on their way behind a surface;
                        ///< shading: number of the branch that is to leave the vertices, 0: the first, or the only one
 };

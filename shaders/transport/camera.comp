@@ -31,7 +31,7 @@ void main() {
   ray.direction = normalize(frame.camera_forward + (frame.orthographic != 0u ? vec3(0.0) : shift));
   ray.tmax = inside ? k_infinity : -1.0;
   ray.slot = slot;
-  rays[slot] = ray;
+  store_ray(slot, ray);
   PathState p;
   p.throughput = vec3(1.0);
   p.pdf = 0.0;
@@ -51,7 +51,7 @@ void main() {
   p.eta_scale = 1.0;
   p.nulls = 0u;
   p.light_group = 0u;
-  paths[slot] = p;
+  store_path(slot, p);
   clear_radiance(slot);
 #if LUCERNA_SPLATS
   // What paths from lights have brought to the pixel, whatever this path meets. In a draft of fewer pixels: to the one that the

@@ -136,17 +136,10 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
     } else if (l.distance < 1e30) {
       shadow_ray.tmax = l.distance;
     }
-    shadow_rays[slot].origin = shadow_ray.origin;
-    shadow_rays[slot].tmax = shadow_ray.tmax;
-    shadow_rays[slot].direction = shadow_ray.direction;
-    shadow_states[slot].diffuse = shadow.diffuse;
-    shadow_states[slot].lanes = shadow.lanes;
-#if LUCERNA_SPECULAR || LUCERNA_GLASS
-    shadow_states[slot].glossy = shadow.glossy;
-#endif
-    shadow_queue[atomicAdd(counters[k_counter_shadow], 1u)] = slot;
     uint first = max3(shadow.diffuse) > 0.0 ? component_d : component_g;
-    atomicAdd(counters[k_counter_shadow_rays + first], 1u);
+    shadow_queue[queue_place(k_counter_shadow, k_counter_shadow_rays, first)] = slot;
+    store_shadow_ray(slot, shadow_ray);
+    store_shadow_state(slot, shadow);
   }
 }
 #endif

@@ -40,7 +40,7 @@ void main() {
   // Below 0 where it comes from afar.
   sampling = (e.afar ? -1.0 : 1.0) * e.sampling / push.share;
 #endif
-  rays[slot] = ray;
+  store_ray(slot, ray);
   PathState p;
   p.throughput = flux;
   p.pdf = over_radiance;
@@ -56,5 +56,5 @@ void main() {
   p.eta_scale = sampling;
   p.nulls = 0u;
   p.light_group = group;
-  paths[slot] = p;
+  store_path(slot, p);
 }

@@ -107,11 +107,6 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     if (b.transmitted) path.media = media_behind(v.surface, path.media);
 #endif
   }
-  if (!go_on) return;
-  rays[slot].origin = offset_origin(v.surface, direction);
-  rays[slot].direction = direction;
-  store_path(slot, path);
-  next_queue[atomicAdd(counters[k_counter_next], 1u)] = slot;
-  atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);
+  if (go_on) queue_ray(slot, path, offset_origin(v.surface, direction), direction);
 }
 #endif

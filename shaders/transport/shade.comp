@@ -47,7 +47,7 @@ void write_features(uint slot, Surface surface) {
 
 // Emission of the surface that a path meets.
 vec3 emission_met(PathState path, Surface surface, uint primitive, float travelled, vec3 direction) {
-#if LUCERNA_EMISSIVE
+#if LUCERNA_HITS_EMISSIVE
   if ((surface.flags & k_flag_emissive) != 0u && (surface.front || (surface.flags & k_flag_double_sided) != 0u)) {
     return path.throughput * surface.emission *
            emissive_weight(path, emissive_pdf(primitive, travelled * travelled, abs(dot(surface.normal_g, direction))));
@@ -88,7 +88,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
     float q = clamp(max3(throughput) / path.eta_scale, 0.0, 1.0);
     float u = to_unit(sample_vertex_bits(v.random, v.depth, k_pad_light_choice)).y;
     if (u >= q) {
-      if (go_on) atomicAdd(counters[k_counter_roulette], 1u);
+      if (go_on) count_one(k_counter_roulette);
       go_on = false;
     }
     throughput /= max(q, 1e-30);
@@ -104,22 +104,10 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   return go_on;
 }
 
-// Puts the path's next ray into the queue.
-void continue_path(uint slot, PathState path, uint branches, vec3 origin, vec3 direction) {
-  rays[slot].origin = origin;
-  rays[slot].direction = direction;
-  store_path(slot, path);
-#if LUCERNA_VERTEX_HOOKS
-  if (branches > 1u) paths[slot].sample_index = path.sample_index, paths[slot].eta_scale = path.eta_scale;
-#endif
-  next_queue[atomicAdd(counters[k_counter_next], 1u)] = slot;
-  atomicAdd(counters[k_counter_rays + automaton_account(path_automaton(path))], 1u);
-}
-
 void main() {
   uint index = global_index();
   if (index >= push.count) return;
-  uint slot = push.use_queue != 0u ? queue[index] : index;
+  uint slot = push.use_queue != 0u ? queue[push.pixel_count + index] : index;
   Ray ray;
   Hit hit;
   PathState path;
@@ -152,6 +140,7 @@ void main() {
   found.sky_known = false;
   found.samples_lights = true;
   found.branches = 1u;
+#if LUCERNA_HITS_SKY
   if (hit.prim == k_no_hit) {
     gain = environment_met(path, ray.direction, sun);
 #if LUCERNA_HIDDEN_BACKGROUND
@@ -166,6 +155,8 @@ void main() {
     }
 #endif
   }
+#endif
+#if LUCERNA_HITS_SURFACES
   if (hit.prim != k_no_hit) {
     Surface surface = make_surface(ray, hit);
 #if LUCERNA_VOLUMES
@@ -212,7 +203,7 @@ void main() {
         vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
         VertexIn v = VertexIn(slot, path, state, depth, hit, surface, bsdf, to_world, side, random, again);
         VertexHooks hooks = hooks_read(v, found);
-#if LUCERNA_LIGHTS
+#if LUCERNA_HITS_LIT
         if (!again) sample_direct_light(slot, path, surface, bsdf, wo, to_world, random, found.sky_known, found.samples_lights);
 #endif
 #if LUCERNA_VERTEX_HOOKS
@@ -227,8 +218,8 @@ void main() {
         if (!passed) go_on = scatter(v, hooks, wo, found.sky_known, found.branches, path, direction);
 #if LUCERNA_VERTEX_HOOKS
         if (push.round + 1u < found.branches) {
-          branching_queue[atomicAdd(counters[k_counter_branching], 1u)] = slot;
-          atomicAdd(counters[k_counter_branching_rays + automaton_account(path_automaton(path))], 1u);
+          uint account = automaton_account(path_automaton(path));
+          branching_queue[queue_place(k_counter_branching, k_counter_branching_rays, account)] = slot;
         }
 #endif
         hooks_end(v, hooks);
@@ -242,8 +233,9 @@ void main() {
       path.travelled = travelled;
       ++path.nulls;
     }
-    if (go_on) continue_path(slot, path, found.branches, offset_origin(surface, direction), direction);
+    if (go_on) queue_ray(slot, path, offset_origin(surface, direction), direction);
   }
+#endif
   if (again) return;
   uint met = lane_of(group, automaton_component(state)), met_sun = k_no_lane;
 #if LUCERNA_LIGHT_GROUPS > 1 && LUCERNA_SUN
@@ -259,9 +251,9 @@ void main() {
 #if LUCERNA_LOOKUP_BIAS
   add_lookup_bias(slot, found.bias);
 #endif
-#elif LUCERNA_LIGHT_GROUPS > 1 && LUCERNA_SUN
+#elif LUCERNA_HITS_SKY && LUCERNA_LIGHT_GROUPS > 1 && LUCERNA_SUN
   add_radiance_of_component(slot, met, gain, met_sun, sun);
-#else
+#elif LUCERNA_HITS_SKY || LUCERNA_HITS_EMISSIVE || LUCERNA_UNLIT
   add_radiance(slot, met, gain);
 #endif
 }

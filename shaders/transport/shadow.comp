@@ -20,7 +20,7 @@ void main() {
 #if LUCERNA_TRANSPARENT
   // hits: of the non-opaque triangles; the opaque ones have been tested by the first pass (push.round == 0).
   if (push.round == 0u) {
-    if (!blocked) shadow_queue[atomicAdd(counters[k_counter_shadow_next], 1u)] = slot;
+    if (!blocked) shadow_queue[queue_place(k_counter_shadow_next)] = slot;
     return;
   }
   if (blocked) {
@@ -42,11 +42,9 @@ void main() {
       ray.tmax -= ray.tmax < 1e30 ? dot(origin - ray.origin, ray.direction) : 0.0;
       ray.origin = origin;
       if (ray.tmax > 0.0) {
-        shadow_rays[slot].origin = ray.origin;
-        shadow_rays[slot].tmax = ray.tmax;
-        shadow_states[slot].diffuse = s.diffuse;
-        shadow_states[slot].glossy = s.glossy;
-        shadow_queue[atomicAdd(counters[k_counter_shadow_next], 1u)] = slot;
+        store_shadow_ray(slot, ray);
+        store_shadow_state(slot, s);
+        shadow_queue[queue_place(k_counter_shadow_next)] = slot;
         return;
       }
     } else {

@@ -60,7 +60,7 @@ inline Result render(const Render& r, const scene::Scene* made = nullptr) {
   session::Renderer renderer(
       test::renderer_options(r.validated && r.samples <= k_validated_samples, r.defines));
   renderer.settings().set("path.batch", k_batch);
-  for (const char* key : {"tracer", "path.batch"})
+  for (const char* key : {"tracer", "path.batch", "path.classes"})
     if (const auto at = r.settings.find(key); at != r.settings.end())
       renderer.settings().set(key, at->second);
   renderer.set_size(r.width, r.height);

@@ -34,6 +34,7 @@ std::vector<ChangeRow> change_rows() {
       {"camera", k_spoils_coverage, "records lie on surfaces, whoever looks"},
       {"tracer", k_spoils_nothing, "all tracers find the same surfaces"},
       {"path.batch", k_spoils_nothing, "how work is cut"},
+      {"path.classes", k_spoils_nothing, "by which kernels hits are shaded"},
       {"path.roulette_depth", k_spoils_light, "the rays' noise"},
       {"path.max_depth", k_spoils_light_and_coverage, "how far rays go, and from where lookups are made"},
       {"seed", k_spoils_all, "another cache, as good as this one"},

@@ -1,0 +1,41 @@
+#pragma once
+// Which kernels shade hits: of the kinds of materials that a scene has (upload/material_kinds.h) those with
+// most hits get a kernel of their own, in which nothing else is compiled. The others go to the class that
+// lacks nothing they call for and has least besides, or to the kernel for all hits. Pure; a hit is shaded the
+// same in every class that may take it, bit for bit.
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gpu/kernel.h"
+#include "shaders/shared/scene.h"
+
+namespace lucerna::transport {
+
+struct HitClass {
+  uint32_t features = 0;  ///< upload::MaterialFeature, of all its kinds together
+  bool sky = false;       ///< paths that leave the scene, and nothing else
+  bool operator==(const HitClass&) const = default;
+};
+
+struct HitClasses {
+  std::vector<HitClass> classes;  ///< at most shared::k_hit_classes - 1
+  /// By kind: 0: no class, else one more than its number.
+  std::array<uint32_t, shared::k_hit_kinds> of_kind{};
+  bool operator==(const HitClasses&) const = default;
+};
+
+/// Share of the hits from which on a kind gets a class.
+inline constexpr double k_least_class_share = 0.03;
+
+/// `features`: by kind; `hits`: of each kind, shared::k_hit_kinds of them.
+HitClasses choose_hit_classes(std::span<const uint32_t> features, std::span<const uint64_t> hits);
+
+/// transport::ClassesPush::classes.
+std::array<uint32_t, 4> packed(const HitClasses& classes);
+
+/// Defines of a class's kernel; `all`: of the kernel for all hits.
+gpu::Defines defines_of(const HitClass& hits, const gpu::Defines& all);
+
+}  // namespace lucerna::transport

@@ -1,0 +1,46 @@
+#pragma once
+// What hits on a material call for of shading, told apart by kind: materials that call for the same are of
+// one kind. By kinds hits are counted, and given to kernels in which nothing else is compiled
+// (transport/hit_classes.h).
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.h"
+#include "shaders/shared/scene.h"
+
+namespace lucerna::upload {
+
+/// Bits of a set of features. A material without a bit is shaded the same, bit for bit, where that part is
+/// not compiled in.
+enum MaterialFeature : uint32_t {
+  k_feature_specular = 1u << 0,  ///< conductor, or a dielectric's coat
+  k_feature_solid_glass = 1u << 1,
+  k_feature_thin_glass = 1u << 2,
+  k_feature_glass_specular = 1u << 3,  ///< of glass: a specular factor or colour
+  k_feature_diffuse_transmission = 1u << 4,
+  k_feature_unlit = 1u << 5,
+  k_feature_alpha = 1u << 6,  ///< mask or blend
+  k_feature_emission = 1u << 7,
+  k_feature_normal_map = 1u << 8,
+  k_feature_base_texture = 1u << 9,
+  k_feature_metallic_roughness_texture = 1u << 10,
+  k_feature_emission_texture = 1u << 11,
+  k_feature_specular_texture = 1u << 12,  ///< of factor or colour
+  k_feature_transmission_texture = 1u << 13,
+  k_feature_diffuse_transmission_texture = 1u << 14,  ///< of factor or colour
+  k_feature_light_samples = 1u << 15,                 ///< a lobe that is no delta
+  k_all_features = (1u << 16) - 1u,
+};
+
+uint32_t features_of(const scene::Material& material);
+
+/// The kinds of a scene's materials.
+struct MaterialKinds {
+  /// By kind, from shared::k_kind_first on; what there is no room for is of the last one, which has all.
+  std::array<uint32_t, shared::k_hit_kinds> features{};
+  std::vector<uint32_t> of_material;
+};
+MaterialKinds material_kinds(const std::vector<scene::Material>& materials);
+
+}  // namespace lucerna::upload

@@ -1,0 +1,30 @@
+// Hits by what their material calls for. Counts them by kind (LUCERNA_COUNT_KINDS), or puts each into its class's part of a
+// queue, from which a kernel shades it in which nothing else is compiled (renderer/transport/hit_classes.h).
+#define LUCERNA_PUSH ClassesPush
+#include "lib/variants.glsl"
+#include "lib/wavefront.glsl"
+
+uniform samplerBuffer scene_triangles;
+uniform samplerBuffer scene_materials;
+layout(scalar) writeonly buffer ClassQueue { uint class_queue[]; };  // push.slots a class
+
+uint kind_of(Hit hit) {
+  bool met = hit.prim != k_no_hit;
+  uint material = floatBitsToUint(texelFetch(scene_triangles, int(met ? hit.prim : 0u)).w) & k_triangle_material_mask;
+  uint kind = floatBitsToUint(texelFetch(scene_materials, int(material * k_material_texels + k_material_detail)).w);
+  return met ? kind : k_kind_sky;
+}
+
+void main() {
+  uint index = global_index();
+  if (index >= push.count) return;
+  uint slot = push.use_queue != 0u ? queue[index] : index;
+  uint kind = kind_of(load_hit(slot));
+#if LUCERNA_COUNT_KINDS
+  atomicAdd(counters[k_counter_kinds + kind], 1u);
+#else
+  const uint in_word = 32u / k_class_bits;
+  uint to = push.classes[kind / in_word] >> k_class_bits * (kind % in_word) & (1u << k_class_bits) - 1u;
+  class_queue[to * push.slots + atomicAdd(counters[k_counter_classes + to], 1u)] = slot;
+#endif
+}

@@ -1,0 +1,125 @@
+// links: transport
+// Which kinds of hits there are, and which get kernels of their own.
+#include <catch2/catch.hpp>
+
+#include "shaders/shared/transport.h"
+#include "transport/hit_classes.h"
+#include "upload/material_kinds.h"
+
+using namespace lucerna;
+using namespace lucerna::upload;
+using transport::choose_hit_classes;
+using transport::HitClass;
+using transport::HitClasses;
+
+namespace {
+
+using Counts = std::array<uint64_t, shared::k_hit_kinds>;
+using Features = std::array<uint32_t, shared::k_hit_kinds>;
+
+constexpr uint32_t k_matt = k_feature_light_samples, k_gloss = k_matt | k_feature_specular,
+                   k_textured = k_gloss | k_feature_base_texture, k_pane = k_gloss | k_feature_thin_glass;
+
+scene::Material material(float specular) {
+  scene::Material m;
+  m.metallic = 0, m.specular = specular;
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("materials that call for the same are of one kind") {
+  std::vector<scene::Material> materials(4, material(0));
+  materials[1].base_color = vec4(0.5f);
+  materials[2].specular = 1;
+  materials[3].roughness = 0;
+  const MaterialKinds kinds = material_kinds(materials);
+  CHECK(kinds.of_material == std::vector<uint32_t>{1, 1, 2, 1});
+  CHECK(kinds.features[shared::k_kind_sky] == 0);
+  CHECK(kinds.features[1] == k_matt);
+  CHECK(kinds.features[2] == k_gloss);
+  CHECK(kinds.features[3] == 0);
+}
+
+TEST_CASE("more kinds than there is room for share the last, which has everything") {
+  std::vector<scene::Material> materials;
+  for (uint32_t i = 0; i < 64; ++i) {
+    scene::Material m = material(float(i & 1));
+    m.unlit = i & 2, m.diffuse_transmission = i & 4 ? 0.5f : 0.0f, m.emission = vec3(i & 8 ? 1.0f : 0.0f);
+    if (i & 16) m.alpha_mode = scene::AlphaMode::blend;
+    if (i & 32) m.base_color_texture.texture = 0;
+    materials.push_back(m);
+  }
+  const MaterialKinds kinds = material_kinds(materials);
+  const uint32_t last = shared::k_hit_kinds - 1;
+  CHECK(kinds.features[last] == k_all_features);
+  CHECK(kinds.of_material.back() == last);
+  for (size_t i = 0; i < materials.size(); ++i)
+    CHECK((features_of(materials[i]) & ~kinds.features[kinds.of_material[i]]) == 0);
+}
+
+TEST_CASE("surfaces that scatter in single directions alone take no light samples") {
+  scene::Material m;
+  m.metallic = 1, m.roughness = 0;
+  CHECK(!(features_of(m) & k_feature_light_samples));
+  m.metallic_roughness_texture.texture = 0;
+  CHECK(features_of(m) & k_feature_light_samples);
+  m = material(1);
+  m.roughness = 0;
+  CHECK(features_of(m) & k_feature_light_samples);  // under the coat
+  m.transmission = 1;
+  CHECK(!(features_of(m) & k_feature_light_samples));
+  m.roughness = 0.2f;
+  CHECK(features_of(m) & k_feature_light_samples);
+}
+
+TEST_CASE("kinds with many hits get classes, others go where nothing lacks") {
+  Features features{0, k_matt, k_gloss, k_textured, k_pane};
+  features[5] = k_matt | k_feature_normal_map;
+  Counts hits{100, 500, 10, 300, 80, 10};
+  const HitClasses chosen = choose_hit_classes(features, hits);
+  REQUIRE(chosen.classes ==
+          std::vector<HitClass>{{k_matt, false}, {k_textured, false}, {0, true}, {k_pane, false}});
+  // Gloss: with panes as with textures one bit more; the first. A normal map: nowhere.
+  CHECK(chosen.of_kind[0] == 3);
+  CHECK(chosen.of_kind[1] == 1);
+  CHECK(chosen.of_kind[2] == 2);
+  CHECK(chosen.of_kind[3] == 2);
+  CHECK(chosen.of_kind[4] == 4);
+  CHECK(chosen.of_kind[5] == 0);
+  CHECK(packed(chosen) == std::array<uint32_t, 4>{0x042213, 0, 0, 0});
+}
+
+TEST_CASE("what leaves the scene is shaded with surfaces only by the kernel for all") {
+  Features features{0, k_matt, k_pane};
+  const HitClasses chosen = choose_hit_classes(features, Counts{1, 99, 0});
+  CHECK(chosen.classes == std::vector<HitClass>{{k_matt, false}});
+  CHECK(chosen.of_kind[0] == 0);
+  CHECK(choose_hit_classes(features, Counts{}).classes.empty());
+}
+
+TEST_CASE("there are no more classes than kernels") {
+  Features features{};
+  Counts hits{};
+  for (uint32_t k = 1; k < 12; ++k) features[k] = 1u << k, hits[k] = 100;
+  const HitClasses chosen = choose_hit_classes(features, hits);
+  CHECK(chosen.classes.size() == shared::k_hit_classes - 1);
+  for (const uint32_t c : chosen.of_kind) CHECK(c < shared::k_hit_classes);
+}
+
+TEST_CASE("a class's kernel keeps what light samples read of emissive surfaces") {
+  gpu::Defines all{{"LUCERNA_EMISSIVE", "1"}, {"LUCERNA_ALPHA", "1"},    {"LUCERNA_TEX_BASE", "1"},
+                   {"LUCERNA_LIGHTS", "1"},   {"LUCERNA_SPECULAR", "1"}, {"LUCERNA_VERTEX_EXTRA", "0"}};
+  gpu::Defines matt = transport::defines_of({k_matt, false}, all);
+  CHECK(matt["LUCERNA_ALPHA"] == "1");
+  CHECK(matt["LUCERNA_TEX_BASE"] == "1");
+  CHECK(matt["LUCERNA_SPECULAR"] == "0");
+  CHECK(matt["LUCERNA_SCENE_GLOSSY"] == "1");
+  CHECK(matt["LUCERNA_HITS_EMISSIVE"] == "0");
+  CHECK(matt["LUCERNA_HITS_SKY"] == "0");
+  all["LUCERNA_EMISSIVE"] = "0";
+  matt = transport::defines_of({k_matt, false}, all);
+  CHECK(matt["LUCERNA_ALPHA"] == "0");
+  CHECK(matt["LUCERNA_TEX_BASE"] == "0");
+  CHECK(transport::defines_of({0, true}, all)["LUCERNA_HITS_SURFACES"] == "0");
+}
