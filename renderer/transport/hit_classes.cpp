@@ -59,7 +59,7 @@ gpu::Defines defines_of(const HitClass& hits, const gpu::Defines& all) {
   const auto needs = [&](uint32_t features) { return (hits.features & features) != 0; };
   const bool glass = needs(k_feature_solid_glass | k_feature_thin_glass);
   // What light samples read of emissive triangles stays (LUCERNA_LIGHT_SURFACE).
-  const bool reads_lights = !hits.sky && on("LUCERNA_EMISSIVE") &&
+  const bool reads_lights = !hits.sky && on("LUCERNA_EMISSIVE") && !on("LUCERNA_PLAIN_EMITTERS") &&
                             (on("LUCERNA_TEX_EMISSION") || on("LUCERNA_ALPHA") || on("LUCERNA_VERTEX_EXTRA"));
   d["LUCERNA_SCENE_GLOSSY"] =
       on("LUCERNA_SPECULAR") || on("LUCERNA_SOLID_GLASS") || on("LUCERNA_THIN_GLASS") ? "1" : "0";

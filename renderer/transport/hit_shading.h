@@ -13,8 +13,8 @@ namespace lucerna::transport {
 /// When hits are shaded by class. Counts of hits.
 struct HitClassRules {
   bool enabled = true;
-  uint64_t count_after = 2'000'000;  ///< after so many a run's hits are counted by kind, and kernels compiled
-  uint64_t switch_after = 4'000'000;  ///< after so many these are waited for, and used
+  uint64_t count_after = 1'000'000;  ///< after so many a run's hits are counted by kind, and kernels compiled
+  uint64_t switch_after = 2'500'000;  ///< after so many these are waited for, and used
   uint32_t least_hits = 16384;        ///< of paths in flight; fewer are shaded by the kernel for all
   uint32_t least_of_class = 1024;     ///< fewer of a class at a time likewise
   /// From the second run on, where there are more than a few.

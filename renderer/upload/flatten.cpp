@@ -90,6 +90,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
   Effects& e = flat.effects;
   e.specular = e.solid_glass = e.thin_glass = e.diffuse_transmission = false;
   e.volumes = e.unlit = e.alpha = e.glass_specular = false;
+  e.plain_emitters = true;
   const MaterialKinds kinds = material_kinds(scene.materials);
   flat.materials.resize(scene.materials.size() * k_material_texels);
   for (size_t i = 0; i < scene.materials.size(); ++i) {
@@ -130,6 +131,8 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     e.glass_specular |= (solid || thin) && (m.specular != 1 || m.specular_color != vec3(1) ||
                                             m.specular_texture || m.specular_color_texture);
     e.diffuse_transmission |= m.diffuse_transmission > 0;
+    if (flags & k_flag_emissive)
+      e.plain_emitters &= !m.emission_texture && m.alpha_mode == scene::AlphaMode::opaque;
     e.volumes |= any(absorption);
     e.unlit |= m.unlit;
     e.alpha |= m.alpha_mode != scene::AlphaMode::opaque;

@@ -20,6 +20,7 @@ struct Effects {
        glass_specular = false, normal_maps = false, vertex_extra = false, tex_base = false,
        tex_metallic_roughness = false, tex_emission = false, tex_specular = false, tex_transmission = false,
        tex_diffuse_transmission = false;
+  bool plain_emitters = true;  ///< no emissive surface has a texture of emission or is transparent by alpha
   /// Lamps that a light sample is drawn from by what each sends there, besides its power; 0: there are few.
   uint32_t lamp_candidates = 0;
   bool sky_apart = false, sun = false;  ///< FlatScene::sun_threshold; texels that are brighter

@@ -97,7 +97,9 @@ EnvironmentTexels environment_texels_at(vec3 direction) {
   t.c = texelFetch(environment_texels, y1 * size.x + x0), t.d = texelFetch(environment_texels, y1 * size.x + x1);
   ivec2 cell = clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1);
   t.texel = cell.y * size.x + cell.x;
-  t.density = texelFetch(environment_texels, t.texel).w;
+  // The cell is one of the four.
+  vec2 column = cell.x == x0 ? vec2(t.a.w, t.c.w) : vec2(t.b.w, t.d.w);
+  t.density = cell.y == y0 ? column.x : column.y;
   return t;
 }
 vec3 environment_mix(vec3 a, vec3 b, vec3 c, vec3 d, vec2 f) {

@@ -10,6 +10,9 @@
 #ifndef LUCERNA_EMISSIVE
 #define LUCERNA_EMISSIVE 0
 #endif
+#ifndef LUCERNA_PLAIN_EMITTERS  // all emissive surfaces are opaque and shine evenly
+#define LUCERNA_PLAIN_EMITTERS 0
+#endif
 #ifndef LUCERNA_ENVIRONMENT_MAP
 #define LUCERNA_ENVIRONMENT_MAP 0
 #endif
@@ -228,7 +231,8 @@
 // What follows from these.
 #define LUCERNA_GLASS (LUCERNA_SOLID_GLASS || LUCERNA_THIN_GLASS)
 #define LUCERNA_TRANSPARENT (LUCERNA_ALPHA || LUCERNA_THIN_GLASS)
-// Light samples of emissive triangles look at their surface.
-#define LUCERNA_LIGHT_SURFACE (LUCERNA_EMISSIVE && (LUCERNA_TEX_EMISSION || LUCERNA_ALPHA || LUCERNA_VERTEX_EXTRA))
+// Light samples of emissive triangles look at their surface, for textures of it and holes in it.
+#define LUCERNA_LIGHT_SURFACE \
+  (LUCERNA_EMISSIVE && !LUCERNA_PLAIN_EMITTERS && (LUCERNA_TEX_EMISSION || LUCERNA_ALPHA || LUCERNA_VERTEX_EXTRA))
 
 #endif

@@ -117,6 +117,8 @@ TEST_CASE("a class's kernel keeps what light samples read of emissive surfaces")
   CHECK(matt["LUCERNA_SCENE_GLOSSY"] == "1");
   CHECK(matt["LUCERNA_HITS_EMISSIVE"] == "0");
   CHECK(matt["LUCERNA_HITS_SKY"] == "0");
+  all["LUCERNA_PLAIN_EMITTERS"] = "1";
+  CHECK(transport::defines_of({k_matt, false}, all)["LUCERNA_ALPHA"] == "0");
   all["LUCERNA_EMISSIVE"] = "0";
   matt = transport::defines_of({k_matt, false}, all);
   CHECK(matt["LUCERNA_ALPHA"] == "0");
