@@ -35,7 +35,15 @@ HitClasses choose_hit_classes(std::span<const uint32_t> features, std::span<cons
       if (more < least) least = more, chosen.of_kind[kind] = uint32_t(c + 1);
     }
   }
-  return chosen;
+  // What these kernels leave out of that for all, by the mean hit.
+  uint32_t compiled = 0;
+  for (size_t kind = 0; kind < kinds; ++kind) compiled |= features[kind];
+  compiled &= ~(k_feature_emission | k_feature_light_samples);
+  double left_out = 0;
+  for (size_t kind = 0; kind < kinds; ++kind)
+    if (const uint32_t c = chosen.of_kind[kind]; c > 0)
+      left_out += double(hits[kind]) * std::popcount(compiled & ~chosen.classes[c - 1].features);
+  return left_out < k_least_left_out * all ? HitClasses{} : chosen;
 }
 
 std::array<uint32_t, 4> packed(const HitClasses& classes) {

@@ -29,7 +29,12 @@ struct HitClasses {
 /// Share of the hits from which on a kind gets a class.
 inline constexpr double k_least_class_share = 0.03;
 
-/// `features`: by kind; `hits`: of each kind, shared::k_hit_kinds of them.
+/// Features that a mean hit is spared at least, lobes and textures; with less, sorting takes longer than it
+/// saves.
+inline constexpr double k_least_left_out = 0.5;
+
+/// `features`: by kind; `hits`: of each kind, shared::k_hit_kinds of them. No classes where they would save
+/// nothing.
 HitClasses choose_hit_classes(std::span<const uint32_t> features, std::span<const uint64_t> hits);
 
 /// transport::ClassesPush::classes.

@@ -98,6 +98,13 @@ TEST_CASE("what leaves the scene is shaded with surfaces only by the kernel for 
   CHECK(choose_hit_classes(features, Counts{}).classes.empty());
 }
 
+TEST_CASE("where all hits are alike there are no classes") {
+  CHECK(choose_hit_classes(Features{0, k_matt, k_matt | k_feature_emission}, Counts{10, 80, 10})
+            .classes.empty());
+  CHECK(choose_hit_classes(Features{0, k_textured, k_matt}, Counts{2, 90, 8}).classes.empty());
+  CHECK(choose_hit_classes(Features{0, k_textured, k_matt}, Counts{2, 50, 48}).classes.size() == 2);
+}
+
 TEST_CASE("there are no more classes than kernels") {
   Features features{};
   Counts hits{};
