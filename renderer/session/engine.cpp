@@ -1,6 +1,7 @@
 #include "session/engine.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/timer.h"
@@ -45,6 +46,19 @@ void claim(std::array<const solvers::SolverInfo*, paths::k_component_count>& by,
     by[c] = &info;
   }
 }
+
+/// #defines of kernels that choose lights as the settings say.
+gpu::Defines wanted_learned_defines(const plan::Settings& settings, const upload::FlatScene& flat) {
+  return settings.text("lights.sampling") == "learned" ? upload::learned_defines(flat) : gpu::Defines{};
+}
+
+/// Of one dispatch, of those that light samples are recorded of.
+constexpr uint32_t k_most_recorded_paths = 32768;
+/// Samples a pixel of the pilot picture in each generation, and its pixels for one of the picture. In all
+/// that is about as much as two samples of a small picture; of a large one less, for what is learned hangs on
+/// the scene.
+constexpr uint32_t k_generations[] = {2, 4, 8};
+constexpr double k_pilot_share = 1.0 / 7, k_most_pilot_pixels = 256 * 144;
 
 /// These components (bits) are paths' from now on.
 void to_paths(plan::Plan& plan, uint32_t components) {
@@ -100,6 +114,13 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
     if (!solver.hook().empty()) hooks.push_back({info->name, solver.hook()});
   }
   for (const auto& [name, value] : transport::hook_defines(hooks)) defines[name] = value;
+  learned_defines_ = wanted_learned_defines(settings, world.flat);
+  std::shared_ptr<transport::LightLearning> learning;
+  if (!learned_defines_.empty()) {
+    for (const auto& [name, value] : learned_defines_) defines[name] = value;
+    learning = std::make_shared<transport::LightLearning>(device, upload::make_light_clusters(world.flat),
+                                                          std::min(slots, k_most_recorded_paths));
+  }
   std::function<void(gpu::Resources&)> bind;
   if (!solvers_.empty())
     bind = [this](gpu::Resources& r) {
@@ -110,7 +131,7 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
                      : classes == "always" ? transport::HitClassRules::at_once()
                                            : transport::HitClassRules{};
   wavefront_ = std::make_unique<transport::Wavefront>(device, compiler, *world.device, slots, world.trace(),
-                                                      defines, bind, rules);
+                                                      defines, bind, rules, std::move(learning));
   developer_ = before ? before->developer_ : std::make_shared<film::Developer>(device, compiler);
   estimator_ = before && before->solvers_.empty() == solvers_.empty()
                    ? before->estimator_
@@ -125,7 +146,9 @@ bool Engine::serves(const plan::Plan& plan, const plan::Settings& settings, cons
       if (!find(info->name)) return false;
       ++wanted;
     }
-  if (wanted != solvers_.size() || world.device->defines() != scene_defines_) return false;
+  if (wanted != solvers_.size() || world.device->defines() != scene_defines_ ||
+      wanted_learned_defines(settings, world.flat) != learned_defines_)
+    return false;
   return std::all_of(solvers_.begin(), solvers_.end(), [&](const auto& solver) {
     return solver->serves(task_of(automaton_, plan, solver->info(), settings, world.flat.effects));
   });
@@ -159,6 +182,8 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
       solver->begin(own, spoils);
     });
   missed_.clear();
+  if (transport::LightLearning* learning = wavefront_->learning())
+    learning->forget(upload::make_light_clusters(picture.world.flat));
   route(picture.settings, picture.world.flat.effects);  // with what they leave to paths now
   wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
 }
@@ -203,6 +228,44 @@ solvers::Solver* Engine::refinable() const {
   for (const auto& solver : solvers_)
     if (solver->paths_refined() > 0) return solver.get();
   return nullptr;
+}
+
+bool Engine::learns() const {
+  const transport::LightLearning* learning = wavefront_->learning();
+  return learning && learning->generations() < std::size(k_generations);
+}
+
+bool Engine::learn(const PictureView& picture, const std::function<bool()>& cancel) {
+  const uint32_t generation = wavefront_->learning()->generations();
+  const double aspect = double(picture.width) / picture.height;
+  const double pixels = std::min(k_pilot_share * picture.width * picture.height, k_most_pilot_pixels);
+  const auto blocks = [](double side) { return uint32_t(std::clamp(side / 8 + 0.5, 1.0, 4096.0)); };
+  const uint32_t across = blocks(std::sqrt(pixels * aspect)), down = blocks(std::sqrt(pixels / aspect));
+  uint32_t first = 0;
+  for (uint32_t g = 0; g < generation; ++g) first += k_generations[g];
+  schedule::WorkItem item{{}, k_generations[generation]};
+  for (uint32_t b = 0; b < across * down; ++b) item.blocks.push_back({b, first});
+  return wavefront_->learn(item, pilot_frame(picture, 8 * across, 8 * down),
+                           frame(picture, picture.width, picture.height), plan_.enabled(), cancel);
+}
+
+shared::Frame Engine::pilot_frame(const PictureView& picture, uint32_t width, uint32_t height) const {
+  plan::Plan all = plan_;
+  for (size_t c = 0; c < all.solver.size(); ++c) all.solver[c] = solvers::find("path"), all.rest[c] = nullptr;
+  const solvers::Routing routing = this->routing(all, picture.settings, picture.world.flat.effects);
+  const solvers::Task task = {
+      .automaton = automaton_, .settings = picture.settings, .enabled = all.enabled()};
+  const solvers::Picture own{.task = task,
+                             .flat = picture.world.flat,
+                             .camera = picture.camera,
+                             .width = width,
+                             .height = height,
+                             .frame = {}};
+  shared::Frame frame = own.frame_for(routing, all.enabled());
+  transport::set_left(frame, frame);
+  frame.seed ^= 0x6c6c6c6cu;  // samples that no picture has
+  frame.max_depth = std::min(frame.max_depth, shared::k_learned_vertices);
+  return frame;
 }
 
 bool Engine::waits() const {

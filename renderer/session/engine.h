@@ -76,6 +76,10 @@ class Engine {
   /// A piece of preparation of one that is not ready (Solver::prepare). False when it was cancelled.
   bool prepare(solvers::Solver& solver, const PictureView& picture, const std::function<bool()>& cancel);
   bool waits() const;
+  /// Another generation of light samples is to be learned from before the picture's first sample.
+  bool learns() const;
+  /// That generation. False when it was cancelled.
+  bool learn(const PictureView& picture, const std::function<bool()>& cancel);
 
   /// Frame of the picture's paths, in a size of its own.
   shared::Frame frame(const PictureView& picture, uint32_t width, uint32_t height) const;
@@ -112,13 +116,17 @@ class Engine {
                    const upload::Effects& effects) const;
   shared::Frame frame_of(const Routes& routes, const PictureView& picture, uint32_t width,
                          uint32_t height) const;
+  /// Of paths that record light samples, of all components alike: what is learned does not hang on what is
+  /// computed how.
+  shared::Frame pilot_frame(const PictureView& picture, uint32_t width, uint32_t height) const;
   /// For the present plan less what solvers leave to paths everywhere (Solver::left).
   void route(const plan::Settings& settings, const upload::Effects& effects);
 
   const paths::Automaton& automaton_;
   plan::Plan plan_;
   gpu::Defines scene_defines_;  ///< that the kernels were made with
-  Routes routes_;               ///< of the picture begun last
+  gpu::Defines learned_defines_;
+  Routes routes_;  ///< of the picture begun last
   std::vector<std::unique_ptr<solvers::Solver>> solvers_;
   /// What solvers that were adopted alone have missed before the next picture.
   std::map<const solvers::Solver*, scene::Changes> missed_;

@@ -41,6 +41,13 @@ double Renderer::figure(const std::string& name) const {
 
 nlohmann::ordered_json Renderer::solver_statistics() {
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
+  if (const transport::LightLearning* learning = engine_->wavefront().learning())
+    all["lights"] = {{"clusters", learning->clusters().count()},
+                     {"rows", learning->rows()},
+                     {"records", learning->records()},
+                     {"arrived", learning->arrived()},
+                     {"gain", learning->gain()},
+                     {"bytes", learning->bytes()}};
   visit_solvers([&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
     if (nlohmann::ordered_json own = solver.statistics(canvas, picture); !own.is_null())
       all[solver.info().name] = std::move(own);

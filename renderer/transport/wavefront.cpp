@@ -34,6 +34,7 @@ struct Wavefront::Impl {
   gpu::Resources film_resources;
   std::function<void(gpu::Resources&)> bind_lookup;
   std::optional<HitShading> by_class;
+  std::shared_ptr<LightLearning> learning;
   TransportStats stats;
 
   Impl(gpu::Device& d, uint32_t n, const upload::Effects& effects, HostTrace trace)
@@ -114,8 +115,13 @@ struct Wavefront::Impl {
       shade_shadow[k].set("NextQueue", queues[0]);
       shade_shadow[k].set("ShadowQueue", shadow_queues[1 - k]);
     }
+    bind_learning();
     rebind_lookup();
     film_resources = main[0];
+  }
+  void bind_learning() {
+    for (int k = 0; k < 2 && learning; ++k)
+      for (gpu::Resources* r : {&main[k], &shade_shadow[k]}) learning->bind(*r);
   }
 
   /// Records what adds the paths of the last item to the film, or, where `samples` is 0, makes its picture.
@@ -212,7 +218,8 @@ struct Wavefront::Impl {
 
 Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
                      uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines,
-                     std::function<void(gpu::Resources&)> bind_lookup, const HitClassRules& rules)
+                     std::function<void(gpu::Resources&)> bind_lookup, const HitClassRules& rules,
+                     std::shared_ptr<LightLearning> learning)
     : impl_(std::make_unique<Impl>(device, slots, scene.effects(), std::move(host_trace))) {
   Impl& w = *impl_;
   const Timer timer;
@@ -241,6 +248,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   }
   w.bind_lookup = std::move(bind_lookup);
   w.by_class.emplace(device, compiler, slots, defines, scene.effects().kinds, rules);
+  w.learning = std::move(learning);
   w.bind(scene);
   if (!w.host_trace) {
     // Where nothing is transparent the any-hit kernel need not look at the flag.
@@ -272,7 +280,9 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
 Wavefront::~Wavefront() = default;
 
 void Wavefront::set_frame(const Frame& frame, uint32_t enabled) {
-  impl_->frame.write(&frame, sizeof frame);
+  Frame known = frame;
+  if (impl_->learning) impl_->learning->describe(known);
+  impl_->frame.write(&known, sizeof known);
   impl_->enabled = enabled;
   impl_->first_account = uint8_t(frame.automaton[0] >> 29 & 3u);
 }
@@ -340,6 +350,32 @@ bool Wavefront::probe(const schedule::WorkItem& item, const std::function<bool()
   const auto begin = [&] { w.stream.dispatch(w.camera, w.main[0], push, Impl::workgroups(count), "camera"); };
   return w.trace_paths(count, {.begin = begin, .first_hits = {}, .end = {}}, cancel);
 }
+
+bool Wavefront::learn(const schedule::WorkItem& item, const Frame& pilot, const Frame& picture,
+                      uint32_t enabled, const std::function<bool()>& cancel) {
+  Impl& w = *impl_;
+  LightLearning& learning = *w.learning;
+  learning.begin_generation();
+  const size_t at_once = std::min(learning.most_paths(), w.slots) / 64;
+  bool went = true;
+  for (uint32_t sample = 0; sample < item.sample_count && went; ++sample)
+    for (size_t first = 0; first < item.blocks.size() && went; first += at_once) {
+      schedule::WorkItem part{{}, 1};
+      for (size_t b = first; b < std::min(item.blocks.size(), first + at_once); ++b)
+        part.blocks.push_back({item.blocks[b].index, item.blocks[b].first_sample + sample});
+      learning.begin_recording();
+      set_frame(pilot, (1u << k_component_count) - 1);
+      went = probe(part, cancel);
+      learning.end_recording(went ? part.slots() : 0);
+    }
+  if (went) learning.finish_generation();
+  w.bind_learning();
+  set_frame(picture, enabled);
+  return went;
+}
+
+LightLearning* Wavefront::learning() { return impl_->learning.get(); }
+const LightLearning* Wavefront::learning() const { return impl_->learning.get(); }
 
 bool Wavefront::run(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel) {
   Impl& w = *impl_;

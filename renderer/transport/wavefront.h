@@ -18,6 +18,7 @@
 #include "shaders/shared/scene.h"
 #include "shaders/shared/transport.h"
 #include "transport/hit_shading.h"
+#include "transport/light_learning.h"
 #include "upload/device_scene.h"
 
 namespace lucerna::transport {
@@ -65,10 +66,12 @@ class Wavefront {
  public:
   /// `host_trace` empty: compute-bvh. `bind_lookup`: sets what kernels read that are compiled, by
   /// `extra_defines`, with a lookup; called again by rebind(). Compiles all kernels (throws Error, located)
-  /// and warms them up, but for those of `rules`.
+  /// and warms them up, but for those of `rules`. `learning`: given where `extra_defines` have
+  /// upload::learned_defines().
   Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
             uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines = {},
-            std::function<void(gpu::Resources&)> bind_lookup = {}, const HitClassRules& rules = {});
+            std::function<void(gpu::Resources&)> bind_lookup = {}, const HitClassRules& rules = {},
+            std::shared_ptr<LightLearning> learning = {});
   ~Wavefront();
 
   /// The frame's constants; `enabled`: components on (bit i).
@@ -89,6 +92,14 @@ class Wavefront {
   bool try_out(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
   /// The same without a film: for what kernels note on the way.
   bool probe(const schedule::WorkItem& item, const std::function<bool()>& cancel = {});
+  /// Traces the item for what its light samples teach: one generation of the learning it was made with. The
+  /// frame is then `picture` again, of `enabled` components. False when it was cancelled: nothing was
+  /// learned.
+  bool learn(const schedule::WorkItem& item, const shared::Frame& pilot, const shared::Frame& picture,
+             uint32_t enabled, const std::function<bool()>& cancel = {});
+  /// Null: lights are chosen by power.
+  LightLearning* learning();
+  const LightLearning* learning() const;
   /// Traces `count` <= slots() paths between ends of the caller's; cancellable as above, `end` is then not
   /// called. Their time and rays are in stats() like those of the film's paths. Their frame is that of
   /// set_frame().

@@ -20,6 +20,9 @@ uniform samplerBuffer light_alias;
 #if LUCERNA_EMISSIVE
 layout(scalar) readonly buffer PrimitiveLightPmf { float primitive_light_pmf[]; };  // pmf / area [1/m^2]
 #endif
+#if LUCERNA_LEARNED
+#include "lib/learned_lights.glsl"
+#endif
 #if LUCERNA_ENVIRONMENT_MAP
 uniform samplerBuffer environment_texels;
 uniform samplerBuffer environment_alias;
@@ -46,6 +49,10 @@ struct LightSample {
   vec3 offset;       // error bound of target, as Surface::offset
   bool sky;          // of the sky, where that is apart
   uint group;        // of lights
+#if LUCERNA_LEARNED
+  uint cluster;      // of lights
+  float chosen;      // probability of that
+#endif
 };
 
 // `bits`: 64 uniform random bits, the higher ones first. They choose the entry, and what is left of them within it flips its
@@ -83,6 +90,7 @@ struct EnvironmentTexels {
   vec2 f;           // from a to d
   int texel;
   float density;    // with which its directions are chosen, per solid angle
+  float u;          // across the map
 };
 EnvironmentTexels environment_texels_at(vec3 direction) {
   EnvironmentTexels t;
@@ -100,6 +108,7 @@ EnvironmentTexels environment_texels_at(vec3 direction) {
   // The cell is one of the four.
   vec2 column = cell.x == x0 ? vec2(t.a.w, t.c.w) : vec2(t.b.w, t.d.w);
   t.density = cell.y == y0 ? column.x : column.y;
+  t.u = uv.x;
   return t;
 }
 vec3 environment_mix(vec3 a, vec3 b, vec3 c, vec3 d, vec2 f) {
@@ -139,6 +148,14 @@ vec3 environment_radiance(vec3 d, out float pdf) {
   return frame.environment_radiance;
 #endif
 }
+#if LUCERNA_LEARNED && LUCERNA_ENVIRONMENT_MAP
+// ... where lights are chosen by the row of a place.
+vec3 environment_radiance(vec3 d, uint row, out float pdf) {
+  EnvironmentTexels t = environment_texels_at(d);
+  pdf = frame.environment_light_pmf * t.density * learned_ratio(row, sky_cluster(d, uint(t.texel), t.u));
+  return environment_mix(t.a.rgb, t.b.rgb, t.c.rgb, t.d.rgb, t.f);
+}
+#endif
 #endif
 
 #if LUCERNA_EMISSIVE
@@ -198,10 +215,37 @@ uint draw_lamp(uint light, vec3 position, vec3 normal, uint choice, float u, ino
   return drawn;
 }
 
+#if LUCERNA_LEARNED
+// The same within a cluster, in which no light is likelier than without learning; a lamp's pmf is that times the cluster's ratio.
+uint draw_lamp_of(LightCluster cluster, uint light, vec3 position, vec3 normal, uint choice, float u, float ratio, inout float pmf) {
+  const uint candidates = uint(LUCERNA_LAMP_CANDIDATES);
+  bool is_lamp = light - frame.first_lamp < frame.lamp_count;
+  uint drawn = light;
+  float sends_drawn = 0.0;
+  Reservoir drawing = Reservoir(u, 0.0);
+  for (uint k = 0u; k < (is_lamp && cluster.count > 1u ? candidates : 0u); ++k) {
+    uint bits = choice + k * (0xffffffffu / max(candidates, 1u));
+    uint lamp = cluster_member(cluster, uvec2(bits, hash_mix(bits)));
+    float sends = lamp_sends(lamp, position, normal);
+    bool taken = reservoir_draw(drawing, sends / max(texelFetch(light_alias, int(lamp)).z, 1e-30));
+    drawn = taken || drawing.total <= 0.0 ? lamp : drawn;
+    sends_drawn = taken ? sends : sends_drawn;
+  }
+  pmf = drawing.total > 0.0 ? ratio * sends_drawn * float(candidates) / drawing.total : pmf;
+  return drawn;
+}
+#endif
+
 // Chooses by `choice` (32 bits), places by u; detail: 64 further bits (environment). Where the sky is apart its
 // probability is sky_share, and the other lights share what is left. `normal`: of the surface, unit, on the side that is seen.
 // Needs lib/surface.glsl before it.
+#if LUCERNA_LEARNED
+// `row`: learned_row() of the place.
+LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 detail, uint row) {
+  const float sky_share = 0.0;
+#else
 LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 detail, float sky_share) {
+#endif
   LightSample s;
   s.primitive = k_no_hit;
   s.uv = vec2(0.0);
@@ -212,8 +256,23 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   s.sky = false;
   s.group = 0u;
   float pmf;
-  uint light = alias_choose(light_alias, frame.light_count, uvec2(choice, hash_mix(choice)), pmf);
+#if LUCERNA_LEARNED
+  float ratio;
+  s.cluster = alias_choose(learned_rows, row * frame.light_clusters, frame.light_clusters, uvec2(choice, hash_mix(choice)), ratio);
+  LightCluster cluster = light_cluster(s.cluster);
+  s.chosen = ratio * cluster.plain;
+  uint member = cluster_member(cluster, detail);
+  // The environment is the last of the lights.
+  uint light = s.cluster < frame.sky_clusters ? frame.light_count - 1u : member;
+  pmf = ratio * texelFetch(light_alias, int(light)).z;
 #if LUCERNA_LAMP_CANDIDATES
+  light = draw_lamp_of(cluster, light, position, normal, detail.x, u.x, ratio, pmf);
+#endif
+  u = cluster.corner + cluster.side * u;
+#else
+  uint light = alias_choose(light_alias, frame.light_count, uvec2(choice, hash_mix(choice)), pmf);
+#endif
+#if LUCERNA_LAMP_CANDIDATES && !LUCERNA_LEARNED
   // By numbers that lamps have no other use for, so that these are as even.
   light = draw_lamp(light, position, normal, detail.x, u.x, pmf);
 #endif
@@ -283,10 +342,15 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
     s.radiance = s.sky ? e.sky : e.sun;
     s.pdf = s.sky ? e.pdf_sky * sky_share : e.pdf_sun * (1.0 - sky_share);
 #else
+#if LUCERNA_LEARNED
+    s.direction = environment_in_cell(member, u);
+    s.radiance = environment_radiance(s.direction, row, s.pdf);
+#else
     uint cells = frame.environment_width * frame.environment_height;
     float texel_pmf;
     s.direction = environment_in_cell(alias_choose(environment_alias, cells, detail, texel_pmf), u);
     s.radiance = environment_radiance(s.direction, s.pdf);
+#endif
 #endif
   }
 #endif

@@ -127,6 +127,10 @@ struct Frame {
   float scene_radius;
   uint camera_in_solids;      ///< 1: paths from the camera may start inside a solid
   uint sky_group, sun_group;  ///< of lights, where they are kept apart: of the environment, and of its sun
+  vec3 learned_origin;        ///< of the grid of shared/learned_lights.h (LUCERNA_LEARNED)
+  float learned_scale;        ///< its cells a metre
+  uint light_clusters, sky_clusters;  ///< of them, those of the sky, which are the first
+  uint learning;              ///< 1: light samples are recorded
   uint automaton[64];         ///< paths::pack; k_automaton_states
 };
 

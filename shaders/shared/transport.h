@@ -47,7 +47,8 @@ struct PathState {
                        ///< how dense light samples are that meet where it begins (transport/emit.comp)
   uint nulls;          ///< null events since the last scattering event
   uint light_group;    ///< of a path from a light: the group that this is of, where groups are kept apart;
-                       ///< else the lowest bits of its number
+                       ///< else the lowest bits of its number. Of a path from the eye: the row of learned lights
+                       ///< (shared/learned_lights.h) of its last vertex
 };
 
 /// What a shadow ray brings if it arrives: the diffuse and the glossy lobe's shares go to lanes of their own.
@@ -55,7 +56,7 @@ struct ShadowState {
   vec3 diffuse;
   uint lanes;          ///< 0-7 lane of the diffuse share, 8-15 of the glossy one
   vec3 glossy;
-  uint pad0;
+  uint pad0;           ///< where light samples are recorded (LUCERNA_LEARNED): number of its record, from 1
 };
 
 // Counters, uint each.

@@ -33,8 +33,44 @@ uint sky_bits(Bsdf bsdf, bool sky_known, uint event) {
 #endif
 }
 
+#if LUCERNA_LEARNED
+layout(scalar) writeonly buffer LightRecords { LightRecord light_records[]; };
+
+// The weight against scattered rays is that which a cluster would have alone: a weight that hangs on its present probability
+// would teach what is seldom chosen to be chosen more seldom.
+void record_light_sample(uint slot, PathState path, vec3 position, vec3 normal, LightSample l, BsdfValue f, bool sent, inout ShadowState shadow) {
+  uint at = slot * k_learned_vertices + path_depth(path);
+  float within = l.pdf / max(l.chosen, 1e-30);
+  float rate = l.delta ? 0.0 : f.pdf / max(within, 1e-30);
+  float value = luminance(l.radiance * (f.diffuse + f.glossy)) / (max(within, 1e-30) * (1.0 + rate * rate));
+  float full = luminance(shadow.diffuse + shadow.glossy);
+  sent = sent && full > 0.0 && value > 0.0 && value < 1e30;
+  light_records[at].position = position;
+  light_records[at].cell = learned_facing(normal) << 16 | l.cluster;
+  light_records[at].value = sent ? value : 0.0;
+  light_records[at].rate = min(rate, 1e30);
+  light_records[at].full = sent ? full : -1.0;
+  light_records[at].before = luminance(path.throughput);
+  shadow.pad0 = at + 1u;
+}
+
+// Of light that a path's ray meets, which light samples would have found with that density.
+void record_light_met(uint slot, PathState path, vec3 light, float pdf, uint cluster) {
+  float chosen = learned_ratio(path.light_group, cluster) * light_cluster(cluster).plain;
+  float within = pdf / max(chosen, 1e-30), rate = path.pdf / max(within, 1e-30);
+  float value = luminance(path.throughput * light) * rate / (1.0 + rate * rate);  // times `before`
+  uint depth = path_depth(path);
+  if (value > 0.0 && value < 1e30 && within > 0.0 && path.pdf > 0.0 && depth > 0u && depth <= k_learned_vertices) {
+    uint at = slot * k_learned_vertices + depth - 1u;
+    light_records[at].met = cluster + 1u;
+    light_records[at].met_value = value;
+    light_records[at].met_rate = min(rate, 1e30);
+  }
+}
+#endif
+
 // What a path that leaves the scene brings; where groups of lights are kept apart, without the sun's part.
-vec3 environment_met(PathState path, vec3 direction, out vec3 sun) {
+vec3 environment_met(uint slot, PathState path, vec3 direction, out vec3 sun) {
   sun = vec3(0.0);
 #if LUCERNA_SKY_APART
   Environment e = environment_radiance(direction);
@@ -51,7 +87,16 @@ vec3 environment_met(PathState path, vec3 direction, out vec3 sun) {
   return path.throughput * light;
 #else
   float pdf;
+#if LUCERNA_LEARNED && LUCERNA_ENVIRONMENT_MAP
+  vec3 light = environment_radiance(direction, path.light_group, pdf);
+  // A loop, because a branch saves no work on lavapipe, and only pilot paths are recorded.
+  for (uint once = 0u; once < frame.learning; ++once) {
+    EnvironmentTexels t = environment_texels_at(direction);
+    record_light_met(slot, path, light, pdf, sky_cluster(direction, uint(t.texel), t.u));
+  }
+#else
   vec3 light = environment_radiance(direction, pdf);
+#endif
   return path.throughput * light * met_weight(path, pdf);
 #endif
 }
@@ -85,8 +130,9 @@ vec3 light_radiance(LightSample l) {
 #endif
 
 #if LUCERNA_LIGHTS
-// One light sample for all lobes, queued as a shadow ray if it is wanted.
-void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, vec3 wo, mat3 to_world, Sampler random, bool sky_known, bool wanted) {
+// One light sample for all lobes, queued as a shadow ray if it is wanted. `row`: of learned lights.
+void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, vec3 wo, mat3 to_world, Sampler random, bool sky_known, bool wanted,
+                         uint row) {
   uint state = path_automaton(path), depth = path_depth(path);
   uint component_d = automaton_component(automaton_after(state, k_event_diffuse));
   uint component_g = automaton_component(automaton_after(state, k_event_glossy));
@@ -97,7 +143,12 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
 #endif
   LightSample l = sample_light(surface.position, to_world[2], sample_vertex_bits(random, depth, k_pad_light_choice).x,
                                sample_vertex(random, depth, k_pad_light_uv),
-                               sample_vertex_bits(random, depth, k_pad_light_detail), sky_share);
+                               sample_vertex_bits(random, depth, k_pad_light_detail),
+#if LUCERNA_LEARNED
+                               row);
+#else
+                               sky_share);
+#endif
   vec3 wi = l.direction * to_world;
   BsdfValue f = bsdf_eval(bsdf, wo, wi);
   bool reflected = dot(l.direction, side) > 0.0;
@@ -121,6 +172,10 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
   bool worth = wanted && sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
   if (worth && !finite) atomicAdd(counters[k_counter_dropped], 1u);
+#if LUCERNA_LEARNED
+  for (uint once = 0u; once < (frame.learning != 0u && wanted && path.nulls == 0u && depth < k_learned_vertices ? 1u : 0u); ++once)
+    record_light_sample(slot, path, surface.position, to_world[2], l, f, worth && finite, shadow);
+#endif
   if (worth && finite) {
     Ray shadow_ray;
     shadow_ray.origin = offset_origin(surface, l.direction);

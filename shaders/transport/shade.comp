@@ -46,11 +46,16 @@ void write_features(uint slot, Surface surface) {
 }
 
 // Emission of the surface that a path meets.
-vec3 emission_met(PathState path, Surface surface, uint primitive, float travelled, vec3 direction) {
+vec3 emission_met(uint slot, PathState path, Surface surface, Hit hit, float travelled, vec3 direction) {
 #if LUCERNA_HITS_EMISSIVE
   if ((surface.flags & k_flag_emissive) != 0u && (surface.front || (surface.flags & k_flag_double_sided) != 0u)) {
-    return path.throughput * surface.emission *
-           emissive_weight(path, emissive_pdf(primitive, travelled * travelled, abs(dot(surface.normal_g, direction))));
+    float pdf = emissive_pdf(hit.prim, travelled * travelled, abs(dot(surface.normal_g, direction)));
+#if LUCERNA_LEARNED
+    uint cluster = emissive_cluster(hit.prim, vec2(hit.u, hit.v));
+    pdf *= learned_ratio(path.light_group, cluster);
+    for (uint once = 0u; once < frame.learning; ++once) record_light_met(slot, path, surface.emission, pdf, cluster);
+#endif
+    return path.throughput * surface.emission * emissive_weight(path, pdf);
   }
 #endif
   return vec3(0.0);
@@ -142,7 +147,7 @@ void main() {
   found.branches = 1u;
 #if LUCERNA_HITS_SKY
   if (hit.prim == k_no_hit) {
-    gain = environment_met(path, ray.direction, sun);
+    gain = environment_met(slot, path, ray.direction, sun);
 #if LUCERNA_HIDDEN_BACKGROUND
     // Straight from the eye; what mirrors and glass show of it stays, and all that it lights.
     if (depth == 0u && automaton_no_diffuse(state)) gain = sun = vec3(0.0);
@@ -180,7 +185,7 @@ void main() {
 
     if (!passed) {
       if (depth == 0u && !again) write_features(slot, surface);
-      if (!again) gain = emission_met(path, surface, hit.prim, travelled, ray.direction);
+      if (!again) gain = emission_met(slot, path, surface, hit, travelled, ray.direction);
       vec3 wo_world = -ray.direction;
       mat3 to_world = shading_frame(surface, wo_world);
       vec3 wo = wo_world * to_world;   // transposed
@@ -203,8 +208,12 @@ void main() {
         vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
         VertexIn v = VertexIn(slot, path, state, depth, hit, surface, bsdf, to_world, side, random, again);
         VertexHooks hooks = hooks_read(v, found);
+        uint row = 0u;
+#if LUCERNA_LEARNED && LUCERNA_HITS_LIT
+        row = learned_row(surface.position, to_world[2]);
+#endif
 #if LUCERNA_HITS_LIT
-        if (!again) sample_direct_light(slot, path, surface, bsdf, wo, to_world, random, found.sky_known, found.samples_lights);
+        if (!again) sample_direct_light(slot, path, surface, bsdf, wo, to_world, random, found.sky_known, found.samples_lights, row);
 #endif
 #if LUCERNA_VERTEX_HOOKS
         found.branches = passed || (path.bits & k_path_branched) != 0u ? 1u : min(found.branches, frame.most_branches);
@@ -216,6 +225,9 @@ void main() {
         }
 #endif
         if (!passed) go_on = scatter(v, hooks, wo, found.sky_known, found.branches, path, direction);
+#if LUCERNA_LEARNED && LUCERNA_LIGHTS
+        if (!passed) path.light_group = row;
+#endif
 #if LUCERNA_VERTEX_HOOKS
         if (push.round + 1u < found.branches) {
           uint account = automaton_account(path_automaton(path));

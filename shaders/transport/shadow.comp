@@ -5,6 +5,11 @@
 #if LUCERNA_SPLATS_SUMMED
 #include "transport/splat.glsl"
 #endif
+#if LUCERNA_LEARNED
+#include "lib/frame.glsl"
+#include "shaders/shared/learned_lights.h"
+layout(scalar) writeonly buffer LightRecords { LightRecord light_records[]; };
+#endif
 #if LUCERNA_TRANSPARENT
 #include "lib/surface.glsl"
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
@@ -56,6 +61,10 @@ void main() {
 #if LUCERNA_SPLATS_SUMMED
   if (!blocked) add_splat(slot, s);
 #else
+#if LUCERNA_LEARNED
+  for (uint once = 0u; once < (!blocked && frame.learning != 0u && s.pad0 > 0u ? 1u : 0u); ++once)
+    light_records[s.pad0 - 1u].arrived = luminance(s.diffuse + s.glossy);
+#endif
   if (!blocked) {
     add_radiance_of_group(slot, s.lanes & 0xffu, s.diffuse, (s.lanes >> 8) & 0xffu, s.glossy);
   }

@@ -15,6 +15,7 @@
 #include "shaders/shared/irradiance_cache/placement.h"
 #include "shaders/shared/irradiance_cache/placement_view.h"
 #include "shaders/shared/irradiance_cache/records.h"
+#include "shaders/shared/learned_lights.h"
 #include "shaders/shared/octree.h"
 #include "shaders/shared/overlay.h"
 #include "shaders/shared/photons/inspect.h"
@@ -161,12 +162,15 @@ std::vector<SharedStruct> structs() {
              spacing_beyond, spacing_of_distance, cell, pixel, eye),
       SHARED("irradiance_cache/placement.h", PlacementGrid, origin, scale, exponent),
       SHARED("irradiance_cache/placement.h", ChoosePush, count, seed, normal_tolerance),
+      SHARED("learned_lights.h", LightRecord, position, cell, value, rate, full, arrived, before, met,
+             met_value, met_rate),
       SHARED("ray.h", Ray, origin, tmax, direction, slot),
       SHARED("ray.h", Hit, t, prim, u, v),
       SHARED("scene.h", Frame, camera_origin, width, camera_right, height, camera_up, orthographic,
              camera_forward, seed, environment_radiance, light_count, first_lamp, lamp_count, lamp_pmf,
              environment_width, environment_height, environment_rotation, environment_light_pmf, max_depth,
-             roulette_depth, most_branches, scene_radius, camera_in_solids, sky_group, sun_group, automaton),
+             roulette_depth, most_branches, scene_radius, camera_in_solids, sky_group, sun_group,
+             learned_origin, learned_scale, light_clusters, sky_clusters, learning, automaton),
       SHARED("ramp.h", TileMark, position, bits),
       SHARED("ramp.h", TilesPush, width, height, side, across, line),
       SHARED("ramp.h", HeatPush, width, height, layer, ramp, logarithmic, lo, hi, unit),

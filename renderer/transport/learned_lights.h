@@ -1,0 +1,39 @@
+#pragma once
+// What light samples teach about choosing lights (shaders/shared/learned_lights.h): pure host code.
+#include <span>
+#include <vector>
+
+#include "shaders/shared/learned_lights.h"
+#include "upload/light_clusters.h"
+
+namespace lucerna::transport {
+
+/// Where the cells of space lie: a cube of shared::k_learned_cells along an axis. What lies outside is served
+/// by the cells at its border.
+struct LearnedCells {
+  vec3 origin{0};
+  float scale = 0;  ///< cells a metre; 0: there is one cell
+};
+/// Around most of the places where lights were sampled.
+LearnedCells learned_cells(std::span<const shared::LightRecord> records);
+
+/// Rows of probabilities of clusters, and which serves where.
+struct LearnedLights {
+  LearnedCells cells;
+  std::vector<uint32_t> grid;  ///< learned_grid
+  std::vector<vec4> rows;      ///< learned_rows
+  uint32_t row_count = 0;
+  /// Variance of a light sample with the probabilities without learning over that with these, both relative
+  /// to the square of what arrives: estimated from the same samples. 1 where nothing was recorded.
+  double gain = 1;
+};
+
+/// As without learning, everywhere.
+LearnedLights plain_lights(const upload::LightClusters& clusters);
+/// From recorded samples. Cells are as small as what was recorded there allows; where little was, they begin
+/// with what the cells around them have found, all of space with the probabilities without learning. The
+/// order of records does not matter.
+LearnedLights learn_lights(const upload::LightClusters& clusters, const LearnedCells& cells,
+                           std::span<const shared::LightRecord> records);
+
+}  // namespace lucerna::transport

@@ -1,0 +1,105 @@
+#include "transport/light_learning.h"
+
+#include <algorithm>
+
+namespace lucerna::transport {
+
+using namespace shared;
+
+namespace {
+
+template <class T>
+void put(gpu::Device& device, gpu::Buffer& buffer, const char* name, std::vector<T> values) {
+  values.resize((values.size() * sizeof(T) + 15) / 16 * 16 / sizeof(T));
+  gpu::make_texel_room(device, buffer, name, std::max<uint64_t>(16, values.size() * sizeof(T)));
+  if (!values.empty()) buffer.write(std::span<const T>(values));
+}
+
+}  // namespace
+
+LightLearning::LightLearning(gpu::Device& device, upload::LightClusters clusters, uint32_t most_paths)
+    : device_(device),
+      clusters_(std::move(clusters)),
+      most_paths_(most_paths),
+      records_(device, {.name = "light records",
+                        .bytes = uint64_t{most_paths} * k_learned_vertices * sizeof(LightRecord),
+                        .memory = gpu::Memory::host}) {
+  upload_clusters();
+  take(plain_lights(clusters_));
+}
+
+void LightLearning::upload_clusters() {
+  put(device_, cluster_texels_, "light clusters", clusters_.clusters);
+  put(device_, members_, "lights of clusters", clusters_.members);
+  put(device_, primitives_, "clusters of emissive triangles", clusters_.primitives);
+  put(device_, tiles_, "clusters of the sky", clusters_.tiles);
+}
+
+void LightLearning::take(const LearnedLights& lights) {
+  put(device_, grid_, "learned cells", lights.grid);
+  put(device_, rows_, "learned lights", lights.rows);
+  cells_ = lights.cells, row_count_ = lights.row_count, gain_ = lights.gain;
+  ++version_;
+}
+
+void LightLearning::bind(gpu::Resources& r) const {
+  r.set("learned_grid", grid_);
+  r.set("learned_rows", rows_);
+  r.set("light_clusters", cluster_texels_);
+  r.set("cluster_members", members_);
+  r.set("primitive_clusters", primitives_);
+  r.set("sky_tiles", tiles_);
+  r.set("LightRecords", records_);
+}
+
+void LightLearning::describe(Frame& frame) const {
+  frame.learned_origin = cells_.origin;
+  frame.learned_scale = cells_.scale;
+  frame.light_clusters = clusters_.count();
+  frame.sky_clusters = clusters_.sky;
+  frame.learning = recording_ ? 1 : 0;
+}
+
+void LightLearning::begin_generation() { fresh_.clear(); }
+
+void LightLearning::begin_recording() {
+  const std::vector<std::byte> none(records_.bytes());
+  records_.write(std::span<const std::byte>(none));
+  recording_ = true;
+}
+
+void LightLearning::end_recording(uint32_t paths) {
+  recording_ = false;
+  std::vector<LightRecord> all(size_t{std::min(paths, most_paths_)} * k_learned_vertices);
+  records_.read(all.data(), all.size() * sizeof(LightRecord));
+  std::erase_if(all, [](const LightRecord& r) { return r.full == 0; });
+  fresh_.insert(fresh_.end(), all.begin(), all.end());
+}
+
+void LightLearning::finish_generation() {
+  size_t arrived = 0;
+  for (const LightRecord& r : fresh_) arrived += r.arrived > 0;
+  arrived_ = fresh_.empty() ? 0 : double(arrived) / double(fresh_.size());
+  if (cells_.scale == 0) cells_ = learned_cells(fresh_);
+  samples_.insert(samples_.end(), fresh_.begin(), fresh_.end());
+  fresh_.clear();
+  take(learn_lights(clusters_, cells_, samples_));
+  ++generations_;
+}
+
+void LightLearning::forget(upload::LightClusters clusters) {
+  clusters_ = std::move(clusters);
+  samples_.clear();
+  cells_ = {};
+  recording_ = false;
+  generations_ = 0;
+  upload_clusters();
+  take(plain_lights(clusters_));
+}
+
+uint64_t LightLearning::bytes() const {
+  return grid_.bytes() + rows_.bytes() + cluster_texels_.bytes() + members_.bytes() + primitives_.bytes() +
+         tiles_.bytes() + records_.bytes();
+}
+
+}  // namespace lucerna::transport

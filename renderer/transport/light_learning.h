@@ -1,0 +1,59 @@
+#pragma once
+// Direct light that learns, on the device: what kernels choose lights by (shaders/shared/learned_lights.h),
+// and the recorded light samples that it is learned from.
+#include <vector>
+
+#include "gpu/kernel.h"
+#include "transport/learned_lights.h"
+
+namespace lucerna::transport {
+
+class LightLearning {
+ public:
+  /// Chooses as without learning at first. `most_paths`: that are recorded at once.
+  LightLearning(gpu::Device& device, upload::LightClusters clusters, uint32_t most_paths);
+
+  /// Sets what kernels read and write that are compiled with upload::learned_defines().
+  void bind(gpu::Resources& resources) const;
+  /// Sets what they are told of it.
+  void describe(shared::Frame& frame) const;
+  /// What is bound has other buffers since this number changed.
+  uint32_t version() const { return version_; }
+
+  /// A generation: light samples of the paths that are traced between begin_recording() and end_recording()
+  /// are recorded, by slot, as many times as it takes. Paths of a generation choose by what all before have
+  /// found; finish_generation() makes what the next choose by of all samples so far. How a generation is cut
+  /// does not matter.
+  void begin_generation();
+  void begin_recording();
+  void end_recording(uint32_t paths);
+  void finish_generation();
+  uint32_t generations() const { return generations_; }
+  uint32_t most_paths() const { return most_paths_; }
+  /// Begins again, for these lights.
+  void forget(upload::LightClusters clusters);
+
+  const upload::LightClusters& clusters() const { return clusters_; }
+  uint32_t rows() const { return row_count_; }
+  size_t records() const { return samples_.size(); }
+  double gain() const { return gain_; }
+  /// Share of the recorded light samples of the last generation that brought light.
+  double arrived() const { return arrived_; }
+  uint64_t bytes() const;
+
+ private:
+  void take(const LearnedLights& lights);
+  void upload_clusters();
+
+  gpu::Device& device_;
+  upload::LightClusters clusters_;
+  uint32_t most_paths_;
+  gpu::Buffer grid_, rows_, cluster_texels_, members_, primitives_, tiles_, records_;
+  LearnedCells cells_;
+  std::vector<shared::LightRecord> samples_, fresh_;  ///< of the generations before, and of that at work
+  bool recording_ = false;
+  uint32_t generations_ = 0, row_count_ = 0, version_ = 0;
+  double gain_ = 1, arrived_ = 0;
+};
+
+}  // namespace lucerna::transport

@@ -1,0 +1,272 @@
+#include "upload/light_clusters.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <queue>
+
+#include "upload/alias_table.h"
+
+namespace lucerna::upload {
+namespace {
+
+constexpr uint32_t k_sky_clusters = 256;  // their numbers are bytes
+constexpr uint32_t k_sky_side = 16;       // squares of a constant sky along a side
+constexpr uint32_t k_triangle_clusters = 128, k_lamp_clusters = 64, k_distant_clusters = 16;
+constexpr uint32_t k_most_squares = 8;  // of a triangle, along a side
+
+float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
+
+class Builder {
+ public:
+  explicit Builder(LightClusters& to) : to_(to) {}
+  /// `squares`: along a side; the cluster is that of column and row.
+  void add(const std::vector<uint32_t>& members, const std::vector<double>& weights, uint32_t squares = 1,
+           uint32_t column = 0, uint32_t row = 0) {
+    const std::vector<vec4> table = build_alias_table(weights);  // none: the cluster is never chosen
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0) / (squares * squares);
+    to_.clusters.emplace_back(as_float(uint32_t(to_.members.size())),
+                              as_float(uint32_t(std::max<size_t>(1, table.size()))),
+                              as_float(column | row << 8 | squares << 16), float(sum));
+    to_.plain.push_back(float(sum));
+    if (table.empty()) to_.members.emplace_back(1, 0, as_float(members[0]), as_float(members[0]));
+    for (size_t i = 0; i < table.size(); ++i)
+      to_.members.emplace_back(table[i].x, 0, as_float(members[i]),
+                               as_float(members[std::bit_cast<uint32_t>(table[i].y)]));
+  }
+  void add_squares(uint32_t member, double weight, uint32_t squares) {
+    for (uint32_t row = 0; row < squares; ++row)
+      for (uint32_t column = 0; column < squares; ++column) add({member}, {weight}, squares, column, row);
+  }
+
+ private:
+  LightClusters& to_;
+};
+
+struct Rectangle {
+  uint32_t x0, x1, y0, y1;  // of texels
+  double weight, solid_angle, priority;
+  bool operator<(const Rectangle& o) const { return priority < o.priority; }
+};
+
+/// Cuts the map of a sky into rectangles. What is cut next has the greatest product of weight and solid
+/// angle: by weight alone a sun would be cut into most of them, which is seen as a whole or not at all.
+class SkyCut {
+ public:
+  SkyCut(const std::vector<double>& weights, uint32_t w, uint32_t h)
+      : w_(w), h_(h), sums_(size_t(w + 1) * (h + 1)) {
+    for (uint32_t y = 0; y < h; ++y) {
+      double row = 0;
+      for (uint32_t x = 0; x < w; ++x) {
+        row += weights[size_t(y) * w + x];
+        sums_[at(x + 1, y + 1)] = sums_[at(x + 1, y)] + row;
+      }
+    }
+  }
+  std::vector<Rectangle> cut(uint32_t count) const {
+    std::priority_queue<Rectangle> open;
+    std::vector<Rectangle> done;
+    open.push(make(0, w_, 0, h_));
+    while (!open.empty() && open.size() + done.size() < count) {
+      const Rectangle r = open.top();
+      open.pop();
+      if ((r.x1 - r.x0 == 1 && r.y1 - r.y0 == 1) || !(r.weight > 0)) {
+        done.push_back(r);
+        continue;
+      }
+      const auto [a, b] = split(r);
+      open.push(a), open.push(b);
+    }
+    for (; !open.empty(); open.pop()) done.push_back(open.top());
+    // An order that does not hang on equal priorities.
+    std::sort(done.begin(), done.end(), [](const Rectangle& a, const Rectangle& b) {
+      return std::pair(a.y0, a.x0) < std::pair(b.y0, b.x0);
+    });
+    return done;
+  }
+
+ private:
+  size_t at(uint32_t x, uint32_t y) const { return size_t(y) * (w_ + 1) + x; }
+  double cosine(uint32_t y) const { return std::cos(std::numbers::pi * y / h_); }
+  Rectangle make(uint32_t x0, uint32_t x1, uint32_t y0, uint32_t y1) const {
+    Rectangle r{x0, x1, y0, y1, 0, 0, 0};
+    r.weight = std::max(0.0, sums_[at(x1, y1)] - sums_[at(x0, y1)] - sums_[at(x1, y0)] + sums_[at(x0, y0)]);
+    r.solid_angle = 2 * std::numbers::pi * (x1 - x0) / w_ * (cosine(y0) - cosine(y1));
+    r.priority = r.weight * r.solid_angle;
+    return r;
+  }
+  /// Across the side that is longer in the middle, where half of the weight lies on each side.
+  std::pair<Rectangle, Rectangle> split(const Rectangle& r) const {
+    const double wide =
+        2 * std::numbers::pi * (r.x1 - r.x0) / w_ * std::sin(std::numbers::pi * 0.5 * (r.y0 + r.y1) / h_);
+    const double high = std::numbers::pi * (r.y1 - r.y0) / h_;
+    const bool across = r.y1 - r.y0 == 1 || (r.x1 - r.x0 > 1 && wide > high);
+    const auto halves = [&](uint32_t middle) {
+      return across ? std::pair(make(r.x0, middle, r.y0, r.y1), make(middle, r.x1, r.y0, r.y1))
+                    : std::pair(make(r.x0, r.x1, r.y0, middle), make(r.x0, r.x1, middle, r.y1));
+    };
+    uint32_t low = (across ? r.x0 : r.y0) + 1, high_end = (across ? r.x1 : r.y1) - 1;
+    while (low < high_end) {
+      const uint32_t middle = (low + high_end) / 2;
+      if (2 * halves(middle).first.weight < r.weight)
+        low = middle + 1;
+      else
+        high_end = middle;
+    }
+    return halves(low);
+  }
+  uint32_t w_, h_;
+  std::vector<double> sums_;
+};
+
+void add_sky(const FlatScene& flat, LightClusters& to) {
+  const uint32_t w = flat.environment_width, h = flat.environment_height;
+  Builder builder(to);
+  if (w * h == 1) {
+    to.sky_squares = k_sky_side;
+    builder.add_squares(0, flat.environment_light_pmf, k_sky_side);
+    to.sky = to.count();
+    return;
+  }
+  std::vector<double> weights(size_t(w) * h);
+  for (size_t i = 0; i < weights.size(); ++i)
+    weights[i] = double(flat.environment.alias[i].z) * flat.environment_light_pmf;
+  to.tiles.resize((weights.size() + 15) / 16 * 16);
+  for (const Rectangle& r : SkyCut(weights, w, h).cut(k_sky_clusters)) {
+    std::vector<uint32_t> members;
+    std::vector<double> of;
+    for (uint32_t y = r.y0; y < r.y1; ++y)
+      for (uint32_t x = r.x0; x < r.x1; ++x) {
+        const uint32_t texel = y * w + x;
+        members.push_back(texel), of.push_back(weights[texel]);
+        to.tiles[texel] = uint8_t(to.count());
+      }
+    builder.add(members, of);
+  }
+  to.sky = to.count();
+}
+
+/// Along the Morton curve, so that neighbours in space are neighbours in the order.
+uint64_t morton(vec3 p, const Box& box) {
+  const vec3 size = glm::max(box.size(), vec3(1e-30f));
+  uint64_t code = 0;
+  const uvec3 at(glm::clamp((p - box.lo) / size * 1023.f, vec3(0), vec3(1023)));
+  for (int bit = 9; bit >= 0; --bit)
+    for (int axis = 2; axis >= 0; --axis) code = code << 1 | (at[axis] >> bit & 1u);
+  return code;
+}
+
+/// Runs of neighbouring lights, each of about 1 / `count` of the weight of all of them.
+void add_runs(const std::vector<uint32_t>& lights, const std::vector<vec3>& places, const FlatScene& flat,
+              uint32_t count, LightClusters& to, std::vector<uint32_t>* cluster_of) {
+  if (lights.empty()) return;
+  Box box;
+  for (const vec3& p : places) box.grow(p);
+  std::vector<std::pair<uint64_t, uint32_t>> order;
+  double all = 0;
+  for (size_t i = 0; i < lights.size(); ++i) {
+    order.emplace_back(morton(places[i], box), uint32_t(i));
+    all += flat.light_alias[lights[i]].z;
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<uint32_t> members;
+  std::vector<double> weights;
+  double sum = 0;
+  const auto finish = [&] {
+    if (members.empty()) return;
+    if (cluster_of)
+      for (const uint32_t m : members) (*cluster_of)[m] = to.count();
+    Builder(to).add(members, weights);
+    members.clear(), weights.clear(), sum = 0;
+  };
+  for (const auto& [code, i] : order) {
+    const double weight = flat.light_alias[lights[i]].z;
+    if (sum > 0 && sum + weight > all / count) finish();
+    members.push_back(lights[i]), weights.push_back(weight), sum += weight;
+  }
+  finish();
+}
+
+vec3 place_of(const FlatScene& flat, uint32_t light) {
+  return vec3(flat.lights[size_t(light) * shared::k_light_texels]);
+}
+
+void add_triangles(const FlatScene& flat, uint32_t count, LightClusters& to) {
+  double all = 0;
+  for (uint32_t i = 0; i < count; ++i) all += flat.light_alias[i].z;
+  std::vector<uint32_t> small, cluster_of(count, 0), squares_of(count, 1);
+  std::vector<vec3> places;
+  for (uint32_t i = 0; i < count; ++i) {
+    const double weight = flat.light_alias[i].z;
+    const auto squares = uint32_t(
+        std::min<double>(k_most_squares, std::sqrt(all > 0 ? weight / all * k_triangle_clusters : 0)));
+    if (squares > 1) {
+      cluster_of[i] = to.count(), squares_of[i] = squares;
+      Builder(to).add_squares(i, weight, squares);
+    } else {
+      const vec4* t = &flat.lights[size_t(i) * shared::k_light_texels];
+      small.push_back(i), places.push_back((vec3(t[0]) + vec3(t[1]) + vec3(t[2])) / 3.f);
+    }
+  }
+  add_runs(small, places, flat, k_triangle_clusters, to, &cluster_of);
+  to.primitives.assign((flat.triangles.size() + 3) / 4 * 4, 1u << 24);
+  for (uint32_t i = 0; i < count; ++i)
+    to.primitives[flat.entries[i].index] = cluster_of[i] | squares_of[i] << 24;
+}
+
+void add_lamps(const FlatScene& flat, uint32_t first, uint32_t end, LightClusters& to) {
+  std::vector<uint32_t> local, distant;
+  std::vector<vec3> places, directions;
+  for (uint32_t i = first; i < end; ++i) {
+    if (flat.entries[i].kind == shared::k_light_directional)
+      distant.push_back(i), directions.emplace_back(flat.lights[size_t(i) * shared::k_light_texels + 2]);
+    else
+      local.push_back(i), places.push_back(place_of(flat, i));
+  }
+  if (distant.size() > k_distant_clusters) {
+    add_runs(distant, directions, flat, k_distant_clusters, to, nullptr);
+  } else {
+    for (const uint32_t i : distant) Builder(to).add({i}, {flat.light_alias[i].z});
+  }
+  if (local.size() > k_lamp_clusters) {
+    add_runs(local, places, flat, k_lamp_clusters, to, nullptr);
+  } else {
+    for (const uint32_t i : local) Builder(to).add({i}, {flat.light_alias[i].z});
+  }
+}
+
+bool has_sky(const FlatScene& flat) {
+  return flat.environment_light_pmf > 0 && !flat.entries.empty() &&
+         flat.entries.back().kind == shared::k_light_environment;
+}
+
+}  // namespace
+
+bool has_light_clusters(const FlatScene& flat) {
+  if (flat.effects.sky_apart || flat.entries.empty()) return false;
+  return flat.entries.size() > 1 || has_sky(flat) || flat.entries[0].kind == shared::k_light_triangle;
+}
+
+LightClusters make_light_clusters(const FlatScene& flat) {
+  LightClusters to;
+  if (has_sky(flat)) add_sky(flat, to);
+  uint32_t triangles = 0;
+  while (triangles < flat.entries.size() && flat.entries[triangles].kind == shared::k_light_triangle)
+    ++triangles;
+  if (triangles > 0) add_triangles(flat, triangles, to);
+  add_lamps(flat, triangles, uint32_t(flat.entries.size()) - (has_sky(flat) ? 1 : 0), to);
+  return to;
+}
+
+gpu::Defines learned_defines(const FlatScene& flat) {
+  if (!has_light_clusters(flat)) return {};
+  gpu::Defines defines{{"LUCERNA_LEARNED", "1"}};
+  if (has_sky(flat) && flat.environment_width * flat.environment_height == 1)
+    defines["LUCERNA_SKY_SQUARES"] = std::to_string(k_sky_side);
+  return defines;
+}
+
+}  // namespace lucerna::upload

@@ -1,0 +1,172 @@
+// links: session
+// Direct light that learns: the same light as by power whatever there is to learn, to the bit the same
+// picture each time, and less noise where walls hide most of the lights.
+#include <limits>
+
+#include "images/light_mix_support.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+
+namespace {
+
+using test::Settings;
+
+test::Result with(const scene::Scene& s, const char* how, uint32_t samples, Settings settings = {},
+                  uint32_t size = 32) {
+  settings["lights.sampling"] = how;
+  return test::render(s, settings, samples, size, false);
+}
+
+/// A room with one opening of `wide` metres in its wall, under that sky; looked down into.
+scene::Scene window_room(scene::Image sky, bool pane, float wide = 0.5f) {
+  scene::Scene s;
+  s.name = "window", s.file = "window.gltf";
+  s.materials = {test::diffuse(vec3(0.6f))};
+  s.materials[0].double_sided = true;
+  const float low = 0.5f - 0.5f * wide, high = 0.5f + 0.5f * wide;
+  const vec3 x(2, 0, 0), y(0, 1, 0), z(0, 0, 2), o(-1, 0, -1);
+  test::add_quad(s, o, z, x);
+  test::add_quad(s, o + y, x, z);
+  test::add_quad(s, o, x, y);
+  test::add_quad(s, o + z, y, x);
+  test::add_quad(s, o, y, z);
+  // The wall with the opening.
+  const vec3 w = o + x;
+  test::add_quad(s, w, z * low, y);
+  test::add_quad(s, w + z * high, z * (1 - high), y);
+  test::add_quad(s, w + z * low, z * (high - low), y * 0.3f);
+  test::add_quad(s, w + z * low + y * 0.8f, z * (high - low), y * 0.2f);
+  if (pane) {
+    scene::Material glass;
+    glass.base_color = vec4(0.9f, 1, 0.8f, 1), glass.metallic = 0, glass.roughness = 0,
+    glass.transmission = 1;
+    s.materials.push_back(glass);
+    test::add_quad(s, w + z * low + y * 0.3f, z * (high - low), y * 0.5f, 1);
+  }
+  s.cameras = {test::looking_down({-0.1f, 0.97f, 0}, 1.5f)};
+  s.environment.given = true;
+  if (!sky.floats.empty()) s.images.push_back(std::move(sky)), s.environment.image = 0;
+  return s;
+}
+
+scene::Image sky(bool bad = false) {
+  scene::Image image;
+  image.name = "sky", image.width = 32, image.height = 16;
+  for (int i = 0; i < 32 * 16; ++i) {
+    const float value = i / 32 < 9 ? 1 + 0.2f * float(i % 7) : 0.1f;
+    image.floats.insert(image.floats.end(), {value, 0.9f * value, 1.2f * value, 1});
+  }
+  if (bad) {
+    image.floats[4 * (3 * 32 + 5)] = 1e7f;
+    image.floats[4 * (2 * 32 + 9) + 1] = std::numeric_limits<float>::quiet_NaN();
+    image.floats[4 * (4 * 32 + 1) + 2] = -50;
+    image.floats[4 * (5 * 32 + 15)] = std::numeric_limits<float>::infinity();
+  }
+  return image;
+}
+
+/// Lamps of very different power behind a screen: the brightest light next to nothing, and one lies in a
+/// niche.
+scene::Scene lamps() {
+  scene::Scene s = test::block_room();
+  s.materials.push_back(test::diffuse(vec3(0.5f), vec3(40, 20, 10)));
+  s.lights[0].intensity = vec3(1);
+  const auto add = [&](vec3 at, float intensity, scene::LightKind kind = scene::LightKind::point) {
+    scene::Light lamp = s.lights[0];
+    lamp.kind = kind, lamp.position = at, lamp.intensity = vec3(intensity), lamp.direction = vec3(0, -1, 0);
+    lamp.inner_cone = 0.3f, lamp.outer_cone = 0.6f;
+    s.lights.push_back(lamp);
+  };
+  add({3, 1, 0}, 1000);                 // outside
+  add({0, 0.5f, -0.5f}, 300);           // in the block
+  add({-1.99f, 0.02f, -1.99f}, 0.01f);  // in a corner of the floor
+  add({-1, 2.4f, 1}, 4, scene::LightKind::spot);
+  test::add_quad(s, {-0.7f, 2.4f, 0.4f}, {0.2f, 0, 0}, {0, 0, 0.2f}, uint32_t(s.materials.size() - 1));
+  test::add_quad(s, {1.9f, 0.1f, 1.9f}, {-0.05f, 0, 0}, {0, 0.05f, 0}, uint32_t(s.materials.size() - 1));
+  return s;
+}
+
+/// Pictures by power and learned, of as many samples: of that many seeds each.
+void check_same_light(const char* name, const scene::Scene& s, uint32_t samples,
+                      const Settings& settings = {}) {
+  INFO(name);
+  for (const char* seed : {"1", "2"}) {
+    Settings of = settings;
+    of["seed"] = seed;
+    const test::Result learned = with(s, "learned", samples, of);
+    of["seed"] = std::string(seed) + "0";
+    const test::Result power = with(s, "power", samples, of);
+    CHECK(test::worst_z(learned.image, power.image) < 6);
+    CHECK(learned.stats.dropped == 0);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the same light: through a window, through a pane, under a constant sky") {
+  check_same_light("window", window_room(sky(), false), 128);
+  check_same_light("pane", window_room(sky(), true), 128);
+  scene::Scene constant = window_room({}, false);
+  constant.environment.radiance = vec3(1, 2, 3);
+  check_same_light("constant", constant, 128);
+}
+
+TEST_CASE("the same light of lamps, most of them hidden") { check_same_light("lamps", lamps(), 256); }
+
+TEST_CASE("the same light of an open room, and of materials that reflect and refract") {
+  check_same_light("open", test::room(), 128, {{"relight.enabled", "off"}});
+}
+
+TEST_CASE("texels that are huge, negative or no numbers spoil nothing") {
+  const scene::Scene s = window_room(sky(true), false);
+  const test::Result r = with(s, "learned", 64);
+  CHECK(r.stats.dropped == 0);
+  for (const vec3& v : r.image.components[0]) REQUIRE(std::isfinite(luminance(v)));
+}
+
+TEST_CASE("one lamp, and a scene without light: nothing to learn, and nothing is paid") {
+  const scene::Scene one = test::block_room();
+  CHECK(test::identical(with(one, "learned", 8).image, with(one, "power", 8).image));
+  scene::Scene dark = window_room(sky(), false);
+  dark.environment.scale = 0;
+  CHECK(test::identical(with(dark, "learned", 8).image, with(dark, "power", 8).image));
+}
+
+TEST_CASE("the picture is a function of scene, settings and seed") {
+  const scene::Scene s = lamps();
+  const film::Image first = with(s, "learned", 8).image;
+  CHECK(test::identical(first, with(s, "learned", 8).image));
+  CHECK(test::identical(first, with(s, "learned", 8, {{"path.batch", "1024"}}).image));
+  CHECK_FALSE(test::identical(first, with(s, "power", 8).image));
+  // Work that was cancelled leaves no trace.
+  session::Renderer renderer(test::renderer_options(false));
+  renderer.settings().set("path.batch", test::k_batch);
+  renderer.set_size(32, 32);
+  renderer.set_scene(std::make_shared<scene::Scene>(s));
+  test::set(renderer,
+            {{"lights.sampling", "learned"}, {"samples", "8"}, {"cache.max_records", test::k_room}});
+  for (int limit = 0; !renderer.done(); ++limit) {
+    int asked = 0;
+    renderer.step([&] { return ++asked > limit; });
+  }
+  CHECK(test::identical(first, renderer.image()));
+}
+
+TEST_CASE("less noise through a window") {
+  const scene::Scene s = window_room(sky(), false, 0.2f);
+  const Settings primary = {
+      {"components.secondary", "off"}, {"components.tertiary", "off"}, {"components.caustic", "off"}};
+  const auto noise = [&](const char* how) {
+    const film::Image image = with(s, how, 16, primary, 96).image;
+    double sum = 0;
+    for (size_t i = 0; i < image.components[0].size(); ++i) {
+      const double d = luminance(image.components[0][i]) - luminance(image.odd_half[0][i]);
+      sum += d * d;
+    }
+    return sum;
+  };
+  const double power = noise("power"), learned = noise("learned");
+  INFO("variance " << power << " by power, " << learned << " learned");
+  CHECK(2.5 * learned < power);
+}
