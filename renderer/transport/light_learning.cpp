@@ -87,6 +87,11 @@ void LightLearning::finish_generation() {
   ++generations_;
 }
 
+void LightLearning::learn(std::vector<LightRecord> records) {
+  fresh_ = std::move(records);
+  finish_generation();
+}
+
 void LightLearning::forget(upload::LightClusters clusters) {
   clusters_ = std::move(clusters);
   samples_.clear();

@@ -28,6 +28,8 @@ class LightLearning {
   void begin_recording();
   void end_recording(uint32_t paths);
   void finish_generation();
+  /// The same of samples recorded elsewhere, as a generation.
+  void learn(std::vector<shared::LightRecord> records);
   uint32_t generations() const { return generations_; }
   uint32_t most_paths() const { return most_paths_; }
   /// Begins again, for these lights.

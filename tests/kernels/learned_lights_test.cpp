@@ -1,0 +1,78 @@
+// links: transport
+// Lights drawn by learned rows: the density that a sample has is the one that a scattered ray is weighted
+// against which meets the same light.
+#include <array>
+#include <cmath>
+
+#include "kernels/light_support.h"
+#include "transport/light_learning.h"
+
+using namespace lucerna;
+using namespace lucerna::test;
+
+TEST_CASE("densities of light samples and of rays that meet the same light agree, in every row") {
+  for (const bool constant : {false, true}) {
+    scene::Scene scene = constant ? scene::Scene{} : sky(64, 32, 40);
+    if (constant) scene.environment.radiance = vec3(2), scene.environment.given = true;
+    add_triangle(scene, {0, 4, 0}, {3, 4, 0}, {0.5f, 4, 1}, {10, 20, 30});
+    for (int i = 0; i < 200; ++i)
+      add_triangle(scene, {5, 0.1f * float(i), 1}, {5, 0.1f * float(i), 1.2f}, {5, 0.1f * float(i) + 0.1f, 1},
+                   vec3(3));
+    const upload::FlatScene flat = upload::flatten(scene);
+    transport::LightLearning learning(device(), upload::make_light_clusters(flat), 64);
+    // Rows that differ: what was recorded here and there is made up.
+    std::mt19937 random(4);
+    std::vector<shared::LightRecord> records(6000);
+    for (shared::LightRecord& r : records) {
+      r.position = vec3(float(random() % 100), float(random() % 100), float(random() % 100));
+      r.cell = random() % learning.clusters().count();
+      r.value = float(random() % 50), r.full = 1, r.arrived = float(random() % 2);
+    }
+    learning.learn(records);
+    REQUIRE(learning.rows() > 10);
+    const upload::DeviceScene on_device(device(), flat, {});
+    shared::Frame frame{};
+    frame.light_count = uint32_t(flat.lights.size() / shared::k_light_texels);
+    frame.environment_radiance = flat.environment_radiance;
+    frame.environment_width = flat.environment_width, frame.environment_height = flat.environment_height;
+    frame.environment_rotation = flat.environment_rotation;
+    frame.environment_light_pmf = flat.environment_light_pmf;
+    learning.describe(frame);
+    gpu::Buffer frame_buffer(device(), {"frame", sizeof frame});
+    frame_buffer.write(&frame, sizeof frame);
+    gpu::Defines defines = on_device.defines();
+    for (const auto& [name, value] : upload::learned_defines(flat)) defines[name] = value;
+    static gpu::ShaderCompiler compiler;
+    const gpu::Kernel kernel(device(), compiler,
+                             std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/learned_probe.comp",
+                             defines);
+    struct Pair {
+      float drawn, met;
+      uint32_t cluster, kind;
+    };
+    constexpr uint32_t k_draws = 1 << 17;
+    const gpu::Buffer pairs(device(), {"pairs", k_draws * sizeof(Pair)});
+    gpu::Resources resources;
+    on_device.bind(resources);
+    learning.bind(resources);
+    resources.set("FrameBlock", frame_buffer);
+    resources.set("Pairs", pairs);
+    struct Push {
+      uint32_t count, rows;
+    };
+    gpu::Stream stream(device());
+    stream.dispatch(kernel, resources, Push{k_draws, learning.rows()}, gpu::groups_for(k_draws, 64));
+    stream.run();
+    std::array<size_t, 3> drawn{}, apart{};
+    for (const Pair& p : pairs.read_all<Pair>()) {
+      ++drawn[p.kind];
+      apart[p.kind] += !(p.drawn > 0) || std::abs(p.met / p.drawn - 1) > 1e-4;
+    }
+    INFO("sky " << apart[0] << " of " << drawn[0] << ", triangles " << apart[1] << " of " << drawn[1]);
+    CHECK(drawn[0] > 1000);
+    CHECK(drawn[1] > 1000);
+    // At borders of texels and squares rounding may find the neighbour.
+    CHECK(apart[0] <= drawn[0] / 2000);
+    CHECK(apart[1] <= drawn[1] / 2000);
+  }
+}
