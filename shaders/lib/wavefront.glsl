@@ -110,9 +110,6 @@ void count_one(uint counter) {
 #else
   atomicAdd(counters[counter], 1u);
 #endif
-#if LUCERNA_LEARNED
-  paths[slot].light_group = p.light_group;
-#endif
 }
 // Puts a path's next ray into the queue.
 void queue_ray(uint slot, PathState p, vec3 origin, vec3 direction) {
