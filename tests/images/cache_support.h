@@ -8,11 +8,6 @@ namespace lucerna::test {
 /// All that may be looked up.
 inline const Settings k_cached{{"components.secondary", "cache"}, {"components.tertiary", "cache"}};
 
-/// Records that stand as closely, are as calm and gather along edges as they were made to before pictures
-/// began with few: more of the cache is at work in a small picture.
-inline const Settings k_dense_records{
-    {"cache.gather", "true"}, {"cache.min_radius", "3"}, {"cache.noise", "0.03"}, {"cache.stop", "0.002"}};
-
 /// Shows a scene of the test's; when it goes the device must have had nothing to say. `validated`: the layers
 /// take half of the time, which repetitions need not spend. `interactive`: as for a window, with drafts.
 struct CacheRenderer {
@@ -21,7 +16,7 @@ struct CacheRenderer {
       : r(test::renderer_options(validated, {}, interactive)) {
     r.set_size(size, size);
     r.settings().set("path.batch", "8192");
-    set(k_dense_records);
+    for (const auto& [key, value] : k_dense_records) r.settings().set(key, value);
     r.set_scene(std::make_shared<scene::Scene>(scene), {}, {{"cache.max_records", k_room, ""}});
   }
   ~CacheRenderer() { CHECK(r.device().validation_messages() == 0); }

@@ -1,5 +1,6 @@
 // links: schedule
 // Adaptive tiles against simulated noise: who gets samples, when tiles leave, how the device is filled.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -424,4 +425,18 @@ TEST_CASE("samples wanted later, more or fewer, are taken exactly once") {
   u.set_samples(300);
   run(u, have);
   CHECK(have == std::vector<uint32_t>(12, 300));
+}
+
+TEST_CASE("uniform passes end at every power of two, whatever fits into an item") {
+  for (const uint32_t slots : {64u, 64u * 100, 64u * 1000, 64u * 12 * 27}) {
+    UniformSchedule u(12, 600, slots);
+    std::vector<uint32_t> ends;
+    while (!u.done()) {
+      u.next();
+      if (ends.empty() || ends.back() != u.complete()) ends.push_back(u.complete());
+    }
+    for (uint32_t power = 1; power <= 512; power *= 2)
+      CHECK(std::find(ends.begin(), ends.end(), power) != ends.end());
+    CHECK(u.complete() == 600);
+  }
 }

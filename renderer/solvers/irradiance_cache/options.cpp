@@ -34,7 +34,8 @@ std::vector<OptionInfo> radius_rows() {
           "Irradiance cache: where something is nearer than twice the least radius, along edges, records "
           "only "
           "tell where light comes from. Paths gather it from there and end in records one vertex later: "
-          "grain that more samples take away, instead of specks that stay."),
+          "grain that more samples take away, instead of specks that further rays of records do, and several "
+          "times dearer."),
       integer_option(
           "cache.branches", 4, 1, 64, "paths",
           "Irradiance cache: paths by which each sample of the picture gathers where it does "
@@ -62,7 +63,8 @@ std::vector<OptionInfo> light_rows() {
           "cache.noise", "0.3", 0, 10, "",
           "Irradiance cache: relative standard error above which a record with a radius of 3 % of the "
           "picture's height gets more rays than the first level. Those that more of the picture reads get "
-          "more of them, others fewer, for what they are worth to it.",
+          "more of them, others fewer, for what they are worth to it. While samples grow more it is lowered "
+          "where that pays more than they do.",
           "More rays above"),
       boolean_option(
           "cache.environment", "false",

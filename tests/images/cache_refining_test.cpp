@@ -1,0 +1,69 @@
+// links: session
+// Records get further light as a picture's samples grow more, where that takes more from its error than as
+// many samples do: the same places and radii, less noise, and the same picture however work is cut.
+#include <catch2/catch.hpp>
+
+#include "cache_support.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+
+namespace {
+
+/// Indirect light alone, with as few rays to begin with as there may be.
+test::Settings noisy_records(const char* samples) {
+  test::Settings settings = test::k_cached;
+  for (const auto& [key, value] : test::Settings{{"components.primary", "off"},
+                                                 {"components.caustic", "off"},
+                                                 {"cache.gather", "false"},
+                                                 {"cache.rays", "64"},
+                                                 {"cache.noise", "0.3"},
+                                                 {"samples", samples}})
+    settings[key] = value;
+  return settings;
+}
+
+}  // namespace
+
+TEST_CASE("records are refined once their noise is more of the error than further samples would take") {
+  const scene::Scene room = test::block_room();
+  test::CacheRenderer shown(room, 48, false);
+  shown.set(noisy_records("8"));
+  shown.finish();
+  const irradiance_cache::RawRecords before = shown.records();
+  const uint64_t rays = shown.status().rays;
+  const double noise = shown.r.image_error().relative_records();
+  REQUIRE(noise > 0);
+  shown.set({{"samples", "256"}});
+  const film::Image picture = shown.finish();
+  CHECK(shown.r.film().record_errors_complete());
+  const irradiance_cache::RawRecords after = shown.records();
+  INFO(rays << " rays, then " << shown.status().rays << "; noise of records " << noise << ", then "
+            << shown.r.image_error().relative_records());
+  CHECK(shown.status().rays > 2 * rays);
+  CHECK(shown.r.image_error().relative_records() < 0.8 * noise);
+  // Radii and places are what they were.
+  REQUIRE(after.size() == before.size());
+  CHECK(after.spheres == before.spheres);
+
+  // Cut into other items, and interrupted.
+  test::CacheRenderer other(room, 48, false);
+  other.r.settings().set("path.batch", "32768");
+  other.set(noisy_records("256"));
+  int asked = 0;
+  while (!other.r.done()) other.r.step([&] { return ++asked % 97 == 0; });
+  CHECK(test::identical(other.r.image(), picture));
+  CHECK(other.records().lights == after.lights);
+}
+
+TEST_CASE("records that nobody need refine keep their rays") {
+  const scene::Scene room = test::block_room();
+  test::CacheRenderer shown(room, 32, false);
+  test::Settings settings = noisy_records("16");
+  settings["cache.rays"] = "1024", settings["cache.noise"] = "0.02", settings["components.primary"] = "path";
+  shown.set(settings);
+  while (shown.r.samples() == 0) REQUIRE(shown.r.step());
+  const uint64_t rays = shown.status().rays;
+  shown.finish();
+  CHECK(shown.status().rays == rays);
+}
