@@ -42,7 +42,7 @@ double median(std::vector<double> v) {
 }
 
 Values alone(const char* component) {
-  Values v;
+  Values v{{"photons.worth", "false"}};  // photons are measured, not whether they pay
   for (const char* c : {"primary", "secondary", "tertiary", "caustic"})
     if (c != std::string(component)) v.emplace_back(std::string("components.") + c, "off");
   return v;

@@ -14,9 +14,8 @@ void main() {
   int at = int(index * k_record_texels);
   vec4 place = texelFetch(record_texels, at), shape = texelFetch(record_texels, at + 3);
   if (bound >= shape.w) return;
-  float told = texelFetch(record_texels, at + 2).w, least = least_radius(place.xyz, told);
-  if (least == 0.0 && index < push.settled) return;
-  shrink_record(index, place, shape, least, bound / shape.w);
-  bool crowds = index >= push.settled && bound < push.crowd * least;
+  shrink_record(index, place, shape, bound / shape.w);
+  float told = texelFetch(record_texels, at + 2).w;
+  bool crowds = index >= push.undecided && bound < push.crowd * least_radius(place.xyz);
   records[at + 2].w = record_flags(told, crowds);
 }

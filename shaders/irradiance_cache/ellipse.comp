@@ -29,7 +29,7 @@ void main() {
   float holds_nothing = texelFetch(record_texels, at + 5).y;
   Principal p = principal_curvatures(bends.xyz);
 
-  float least = least_radius(place.xyz, told.w);
+  float least = least_radius(place.xyz);
   float bends_by = p.strongest / max(max(bends.w, push.dark), 1e-30);
   float minor = bends_by > 0.0 ? push.reach * inversesqrt(sqrt(bends_by * p.ratio)) : push.most;
   minor = min(minor, holds_nothing > 0.0 ? push.near * holds_nothing : push.near_tried * told.y);

@@ -15,9 +15,4 @@ float record_flags(float before, bool crowds) {
 float least_radius(vec3 position) {
   return min(cache.least_of_distance * (cache.parallel != 0u ? 1.0 : distance(position, cache.eye)), cache.least_most);
 }
-// ... of a record with these flags. Those that serve other records' rays alone are no wider than what is around them allows:
-// where that is little none is needed, because rays go on.
-float least_radius(vec3 position, float flags) {
-  return (floatBitsToUint(flags) >> k_record_origin_shift & 3u) == k_origin_recursive ? 0.0 : least_radius(position);
-}
 #endif

@@ -16,7 +16,7 @@ void main() {
   int at = int((push.first + index) * k_record_texels);
   vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
   vec4 told = texelFetch(record_texels, at + 2);
-  float least = least_radius(place.xyz, told.w);
+  float least = least_radius(place.xyz);
   float holds_nothing = push.near * told.y;
   bool crowds = record_flagged_crowded(told.w) || holds_nothing < push.crowd * least;
   float radius = crowds ? least : max(min(push.error * facing.w, min(push.most, holds_nothing)), least);

@@ -6,10 +6,10 @@
 layout(scalar) writeonly buffer Records { vec4 records[]; };
 layout(scalar) writeonly buffer Spheres { vec4 spheres[]; };  // of the octree
 
-// `place`, `shape`: texels 0 and 3. No wider than `factor` of what it is, but for `least`; of an ellipse both radii, in
+// `place`, `shape`: texels 0 and 3. No wider than `factor` of what it is, but for the least; of an ellipse both radii, in
 // proportion.
-void shrink_record(uint record, vec4 place, vec4 shape, float least, float factor) {
-  factor = min(1.0, max(factor, least / shape.w));
+void shrink_record(uint record, vec4 place, vec4 shape, float factor) {
+  factor = min(1.0, max(factor, least_radius(place.xyz) / shape.w));
   float radius = factor * place.w;
   records[record * k_record_texels].w = radius;
   records[record * k_record_texels + 3u] = vec4(factor > 0.0 ? shape.xyz / factor : vec3(0.0), factor * shape.w);

@@ -21,6 +21,7 @@ struct Bed : test::CacheRenderer {
       : CacheRenderer(scene, 32) {
     r.settings().set("samples", "4");
     r.settings().set("cache.max_records", "5000");
+    for (const auto& [key, value] : test::k_dense_records) r.settings().set(key, value);
     set(settings);
   }
   std::string refusal(const fs::path& file) {

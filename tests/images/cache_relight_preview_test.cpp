@@ -21,6 +21,9 @@ const Settings k_base{{"components.secondary", "cache"},
                       {"cache.error", "0.4"},
                       {"cache.gather", "false"},
                       {"cache.max_records", "5000"},
+                      {"cache.min_radius", "3"},
+                      {"cache.noise", "0.03"},
+                      {"cache.stop", "0.002"},
                       {"samples", "2"},
                       {"path.batch", "8192"}};
 

@@ -12,12 +12,17 @@ inline const Settings k_cached{{"components.secondary", "cache"}, {"components.t
 /// take half of the time, which repetitions need not spend. `interactive`: as for a window, with drafts.
 struct CacheRenderer {
   session::Renderer r;
+  /// As of a file beside the scene, which stand where nothing else is set.
+  static auto scene_settings() {
+    std::vector<session::SettingChange> all{{"cache.max_records", k_room, ""}};
+    for (const auto& [key, value] : k_dense_records) all.push_back({key, value, ""});
+    return all;
+  }
   CacheRenderer(const scene::Scene& scene, uint32_t size, bool validated = true, bool interactive = false)
       : r(test::renderer_options(validated, {}, interactive)) {
     r.set_size(size, size);
     r.settings().set("path.batch", "8192");
-    for (const auto& [key, value] : k_dense_records) r.settings().set(key, value);
-    r.set_scene(std::make_shared<scene::Scene>(scene), {}, {{"cache.max_records", k_room, ""}});
+    r.set_scene(std::make_shared<scene::Scene>(scene), {}, scene_settings());
   }
   ~CacheRenderer() { CHECK(r.device().validation_messages() == 0); }
   void set(const Settings& settings) { test::set(r, settings); }

@@ -16,6 +16,10 @@ const Settings k_cached{{"components.secondary", "cache"},
                         {"cache.rays", "64"},
                         {"cache.max_rays", "256"},
                         {"cache.max_records", "5000"},
+                        {"cache.gather", "true"},
+                        {"cache.min_radius", "3"},
+                        {"cache.noise", "0.03"},
+                        {"cache.stop", "0.002"},
                         {"samples", "2"},
                         {"path.batch", "8192"}};
 

@@ -61,6 +61,8 @@ session::Renderer& bed() {
     r->load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
     for (const auto& [key, value] : {std::pair{"components.secondary", "cache"},
                                      {"components.tertiary", "cache"},
+                                     {"cache.min_radius", "3"},
+                                     {"cache.gather", "true"},
                                      {"cache.rays", "64"},
                                      {"cache.max_rays", "64"},
                                      {"cache.error", "0.6"},

@@ -142,7 +142,7 @@ std::vector<SharedStruct> structs() {
       SHARED("irradiance_cache/records.h", RecordPush, first, records, elevations, azimuths, rays_before,
              parts, state, seed, pilot),
       SHARED("irradiance_cache/records.h", RadiusPush, first, count, error, most, near, crowd),
-      SHARED("irradiance_cache/records.h", ClampPush, count, near, crowd, settled),
+      SHARED("irradiance_cache/records.h", ClampPush, count, near, crowd, undecided),
       SHARED("irradiance_cache/records.h", ImportancePush, pixels, first, next),
       SHARED("irradiance_cache/records.h", PropagatePush, width, height, step, pixels, beyond),
       SHARED("irradiance_cache/records.h", EllipsePush, first, count, reach, most, dark, near, near_tried,

@@ -103,7 +103,7 @@ void Cache::Impl::end_pass(const Work& w) {
   // The levels' rays have met more than the first's. Records that are relit stay as they are: nobody would
   // fill gaps.
   if (progress.levels.level() > 0 && status.relighting.records == 0)
-    clamp_radii(w, ranges.evaluated(), options.radius.nearest, ranges.evaluated());
+    clamp_radii(w, ranges.evaluated(), options.radius.nearest);
   overlay.set_scales(tables.records.figures());
   pass().complete = true;
   if (status.relighting.records > 0) return relight_pass();

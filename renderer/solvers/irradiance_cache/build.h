@@ -161,9 +161,7 @@ struct Cache::Impl {
   /// ... of all, also of earlier passes, by the records around, that they be no wider than they need be.
   /// ... of the first `count`, those that are evaluated at least, by what is nearest to any of them; the
   /// octree is built anew.
-  /// `settled`: of these which of them crowd stays as it is, and how far those reach that serve records' rays
-  /// alone: other records have read them.
-  void clamp_radii(const Work& work, uint32_t count, float near, uint32_t settled);
+  void clamp_radii(const Work& work, uint32_t count, float near);
 
   // Light:
   /// One piece of looking where the picture reads records; false when it was cancelled.

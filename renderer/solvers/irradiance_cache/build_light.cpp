@@ -126,13 +126,12 @@ void Cache::Impl::publish_level(const Work& w) {
     set_radii(w, radii.by_light() ? By::light : By::distance);
     held = gathers;
   }
-  const uint32_t settled = ranges.evaluated();
   ranges.evaluate_pass();
   status.records = ranges.evaluated();
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
   add_time(BuildStep::octree, timer.milliseconds());
-  if (anew) clamp_radii(w, ranges.evaluated(), options.radius.nearest, settled);
+  if (anew) clamp_radii(w, ranges.evaluated(), options.radius.nearest);
   write_frame();
 }
 

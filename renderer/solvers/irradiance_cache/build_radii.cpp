@@ -61,7 +61,7 @@ bool Cache::Impl::measure(const Work& w) {
     queue_until(ranges.pass_end());
     progress.stage = Stage::evaluate;
   } else {
-    clamp_radii(w, ranges.pass_end(), radii.tried_near(), ranges.evaluated());
+    clamp_radii(w, ranges.pass_end(), radii.tried_near());
     places.radii = tables.records.radii(ranges.evaluated());
     progress.stage = Stage::thin;
   }
@@ -89,7 +89,7 @@ void Cache::Impl::set_radii(const Work& w, By by) {
   add_time(BuildStep::radius, timer.milliseconds());
 }
 
-void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near, uint32_t settled) {
+void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near) {
   const auto index_first = [&](uint32_t n) {
     StageTimer timer(w.wavefront);
     build_octree(w.wavefront, n);
@@ -97,7 +97,7 @@ void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near, uint32_
   };
   if (count > ranges.evaluated()) index_first(count);
   StageTimer timer(w.wavefront);
-  radii.clamp(w.stream(), binding(), count, near, crowd(), settled);
+  radii.clamp(w.stream(), binding(), count, near, crowd(), ranges.evaluated());
   add_time(BuildStep::radius, timer.milliseconds());
   index_first(ranges.evaluated());
 }

@@ -24,11 +24,11 @@ Clamping::Clamping(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t 
 }
 
 void Clamping::clamp(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind, uint32_t count,
-                     float near, float crowd, uint32_t settled) {
+                     float near, float crowd, uint32_t undecided) {
   if (count == 0) return;
   bind(resources_);
   resources_.set("Bounds", bounds_);
-  const ClampPush push{count, near, crowd, settled};
+  const ClampPush push{count, near, crowd, undecided};
   stream.dispatch(finding_, resources_, push, gpu::groups_for(count, 64), k_stage);
   stream.dispatch(shrinking_, resources_, push, gpu::groups_for(count, 64), k_stage);
   stream.run();

@@ -17,10 +17,10 @@ class Clamping {
   /// Where record i would serve at record j's place (or is j), nothing that any ray of j met is farther from
   /// i than d_j + |x_i - x_j|: shrinks the lesser radius of i to `near` times that, never below the least
   /// (shared::CacheFrame); of ellipses both radii in proportion. `bind`: what lookup.glsl reads, with `count`
-  /// records in the octree. Those from `settled` on that are to be less than `crowd` of the least crowd
+  /// records in the octree. Those from `undecided` on that are to be less than `crowd` of the least crowd
   /// (shared::k_record_crowded). On the device; the stream is run.
   void clamp(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind, uint32_t count,
-             float near, float crowd = 0, uint32_t settled = 0);
+             float near, float crowd = 0, uint32_t undecided = 0);
   uint64_t bytes() const { return bounds_.bytes(); }
 
  private:

@@ -33,6 +33,7 @@ std::vector<ChangeRow> change_rows() {
       {"about", k_spoils_nothing, "words"},
       {"camera", k_spoils_coverage, "records lie on surfaces, whoever looks"},
       {"tracer", k_spoils_nothing, "all tracers find the same surfaces"},
+      {"lights.", k_spoils_light, "the rays' noise"},
       {"path.batch", k_spoils_nothing, "how work is cut"},
       {"path.classes", k_spoils_nothing, "by which kernels hits are shaded"},
       {"path.roulette_depth", k_spoils_light, "the rays' noise"},

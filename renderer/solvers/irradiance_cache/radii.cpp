@@ -62,8 +62,8 @@ void Radii::set_by_light(gpu::Stream& stream, const Bind& bind, const Wanted& wa
 }
 
 void Radii::clamp(gpu::Stream& stream, const Bind& bind, uint32_t count, float near, float crowd,
-                  uint32_t settled) {
-  clamping_.clamp(stream, bind, count, near, crowd, settled);
+                  uint32_t undecided) {
+  clamping_.clamp(stream, bind, count, near, crowd, undecided);
 }
 
 uint64_t Radii::bytes() const { return clamping_.bytes() + pooled_.bytes(); }

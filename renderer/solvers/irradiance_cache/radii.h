@@ -38,7 +38,7 @@ class Radii {
                     float dark);
   /// As Clamping::clamp().
   void clamp(gpu::Stream& stream, const Bind& bind, uint32_t count, float near, float crowd,
-             uint32_t settled);
+             uint32_t undecided);
   uint64_t bytes() const;  ///< of device memory
 
  private:

@@ -61,6 +61,7 @@ std::vector<ChangeRow> change_rows() {
       {"camera", k_spoils_nothing, "lights and casters are the same, whoever looks"},
       {"tracer", k_spoils_nothing, "all tracers find the same surfaces"},
       {"path.batch", k_spoils_nothing, "how work is cut"},
+      {"lights.", k_spoils_nothing, "paths from the eye alone"},
       {"path.classes", k_spoils_nothing, "by which kernels hits are shaded"},
       {"path.", k_spoils_light, "how far paths go"},
       {"seed", k_spoils_light, "other paths, as good as these"},

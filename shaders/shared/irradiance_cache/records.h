@@ -171,7 +171,7 @@ struct ClampPush {
   uint count;      ///< records
   float near;      ///< lesser radius over the distance of the nearest thing, at most
   float crowd;     ///< as EllipsePush has it ...
-  uint settled;    ///< ... for records from this one on; of those before, the least there may be of some stay as they are
+  uint undecided;  ///< ... for records from this one on
 };
 /// Of a record that none clamps: the bits of infinity.
 LUCERNA_CONST uint k_no_bound = 0x7f800000u;
