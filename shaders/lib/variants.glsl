@@ -10,7 +10,8 @@
 #ifndef LUCERNA_EMISSIVE
 #define LUCERNA_EMISSIVE 0
 #endif
-#ifndef LUCERNA_PLAIN_EMITTERS  // all emissive surfaces are opaque and shine evenly
+// All emissive surfaces are opaque and shine evenly.
+#ifndef LUCERNA_PLAIN_EMITTERS
 #define LUCERNA_PLAIN_EMITTERS 0
 #endif
 #ifndef LUCERNA_ENVIRONMENT_MAP

@@ -106,7 +106,7 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
 
 TEST_CASE("the format is what its header says, byte for byte") {
   const std::string bytes = encode(some_cache(2));
-  const std::string head("LUCCACHE\3\0\0\0\4\0\0\0", 16);
+  const std::string head("LUCCACHE\3\0\0\0\5\0\0\0", 16);
   CHECK(bytes.substr(0, 16) == head);
   const auto number = [&](size_t at, int size) {
     uint64_t value = 0;
@@ -149,9 +149,9 @@ TEST_CASE("a file with one byte changed is refused, wherever it is and however")
   CHECK(refusal(other) == "a.cache: an irradiance cache in version 1 of its format; expected version 3");
   other = bytes, other[12] = 9;
   CHECK_THAT(refusal(other), Contains("its records are laid out otherwise: layout 9 of 368 bytes each, "
-                                      "expected layout 4 of 368"));
+                                      "expected layout 5 of 368"));
   other = bytes, other[17] = 2;
-  CHECK_THAT(refusal(other), Contains("layout 4 of 624 bytes each, expected layout 4 of 368"));
+  CHECK_THAT(refusal(other), Contains("layout 5 of 624 bytes each, expected layout 5 of 368"));
   CHECK_THAT(refusal("glTF and so on"), Contains("not an irradiance cache"));
 }
 
