@@ -252,17 +252,8 @@ bool Engine::learn(const PictureView& picture, const std::function<bool()>& canc
 shared::Frame Engine::pilot_frame(const PictureView& picture, uint32_t width, uint32_t height) const {
   plan::Plan all = plan_;
   for (size_t c = 0; c < all.solver.size(); ++c) all.solver[c] = solvers::find("path"), all.rest[c] = nullptr;
-  const solvers::Routing routing = this->routing(all, picture.settings, picture.world.flat.effects);
-  const solvers::Task task = {
-      .automaton = automaton_, .settings = picture.settings, .enabled = all.enabled()};
-  const solvers::Picture own{.task = task,
-                             .flat = picture.world.flat,
-                             .camera = picture.camera,
-                             .width = width,
-                             .height = height,
-                             .frame = {}};
-  shared::Frame frame = own.frame_for(routing, all.enabled());
-  transport::set_left(frame, frame);
+  const solvers::Routing traced = routing(all, picture.settings, picture.world.flat.effects);
+  shared::Frame frame = frame_of({.here = traced, .left = traced}, picture, width, height);
   frame.seed ^= 0x6c6c6c6cu;  // samples that no picture has
   frame.max_depth = std::min(frame.max_depth, shared::k_learned_vertices);
   return frame;

@@ -1,7 +1,6 @@
 #include "session/renderer.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <set>
 
@@ -518,40 +517,6 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
   if (wavefront.run(item, *film_, cancel)) return true;
   sampling_.uniform() = before;
   return false;
-}
-
-std::optional<bool> Renderer::refine(const std::function<bool()>& cancel) {
-  solvers::Solver* solver = engine_->refining();
-  if (!solver) {
-    // At powers of two, where passes over the picture end whatever they are cut into (schedule/uniform.h): so
-    // the picture does not depend on that.
-    constexpr uint32_t k_least = 16;
-    const uint32_t samples = sampling_.most_samples();
-    if (samples < k_least || !std::has_single_bit(samples) || samples == weighed_at_) return std::nullopt;
-    weighed_at_ = samples;
-    solver = engine_->refinable();
-    if (!solver || !refining_pays(solver->paths_refined())) return std::nullopt;
-  }
-  const bool went = engine_->with(*solver, picture_view(), [&](const solvers::Picture& picture) {
-    return solver->refine(engine_->wavefront(), picture, cancel);
-  });
-  if (!solver->refines()) {
-    film_->forget_record_errors();
-    errors_of_ = nullptr;
-  }
-  return went;
-}
-
-bool Renderer::refining_pays(uint64_t paths) {
-  // With n paths either's squared error is in proportion to 1/n, and falls by itself over n with each. What
-  // is read is refined in steps that double its paths, so that the two are even in the middle of a step.
-  image_error();
-  double sampled = 0, read = 0;
-  for (const film::TileError& tile : film::tile_errors(*film_, tile_side())) {
-    sampled += tile.relative * tile.relative;
-    read += tile.relative_records * tile.relative_records;
-  }
-  return 2 * read / double(paths) > sampled / double(std::max<uint64_t>(stats().paths, 1));
 }
 
 std::optional<bool> Renderer::prepare_round(const schedule::WorkItem& item,

@@ -62,8 +62,8 @@ class Renderer {
   /// `changes`: of settings, above the scene's own.
   void load(const std::filesystem::path& file, const Progress& progress = {},
             const std::vector<SettingChange>& changes = {});
-  /// The same for a scene made in memory. Settings start afresh (but for tracer, path.batch and path.classes), then the
-  /// scene's own, then `changes`.
+  /// The same for a scene made in memory. Settings start afresh (but for tracer, path.batch and
+  /// path.classes), then the scene's own, then `changes`.
   void set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress = {},
                  const std::vector<SettingChange>& changes = {});
   /// Null before the first.

@@ -27,6 +27,8 @@ constexpr uint32_t k_levels = 7;  // of the octree of the cells
 static_assert(1u << k_levels == k_learned_cells && k_learned_top * k_learned_brick == k_learned_cells);
 constexpr uint32_t k_top_level = 4;
 static_assert(1u << k_top_level == k_learned_top);
+/// Cells of the coarse grid, of all facings.
+constexpr uint32_t k_bricks = k_learned_facings * k_learned_top * k_learned_top * k_learned_top;
 
 /// Facing, then the path through the octree, 3 bits a level.
 uint32_t key_of(const LearnedCells& cells, const LightRecord& r) {
@@ -87,11 +89,8 @@ class Learner {
     const Range all{0, samples_.size()};
     const Moments root = moments_of(all, prior, false);
     const uint32_t row = add_row(root);
-    if (!(to_.cells.scale > 0)) {
-      fill_all(row);
-      return;
-    }
-    to_.grid.assign(k_learned_facings * k_learned_top * k_learned_top * k_learned_top, row << 1);
+    fill_all(row);
+    if (!(to_.cells.scale > 0)) return;
     for (uint32_t facing = 0; facing < k_learned_facings; ++facing) {
       const Range range = find(all, facing << 3 * k_levels, (facing + 1) << 3 * k_levels);
       visit(range, facing, 0, uvec3(0), root, row);
@@ -99,9 +98,7 @@ class Learner {
     to_.gain = noise_learned_ > 0 ? noise_plain_ / noise_learned_ : 1;
   }
 
-  void fill_all(uint32_t row) {
-    to_.grid.assign(k_learned_facings * k_learned_top * k_learned_top * k_learned_top, row << 1);
-  }
+  void fill_all(uint32_t row) { to_.grid.assign(k_bricks, row << 1); }
   uint32_t add_row(const Moments& moments) {
     std::vector<double> p(moments.size());
     double total = 0;
@@ -237,7 +234,6 @@ class Learner {
       return;
     }
     constexpr uint32_t k_brick_cells = k_learned_brick * k_learned_brick * k_learned_brick;
-    constexpr uint32_t k_bricks = k_learned_facings * k_learned_top * k_learned_top * k_learned_top;
     const uint32_t fine = k_levels - level, size = 1u << fine;
     const uvec3 first = corner * size;
     const uint32_t top = top_index(first / k_learned_brick);

@@ -32,7 +32,7 @@ float tangent_integral(uint j) {
 // Inverse distances of the first level, over the mean of those that are not 0, that gradients are made of at most.
 const float k_steepest = 10.0;
 
-// Of the distance of the nearest thing: how far off a record its slopes of translation hold. They tell how what is around shifts
+// Of the distance of the nearest thing: how far off a record its slopes of translation hold. They say how what is around shifts
 // and hides; beyond, along edges, they are noise of the rays that met that thing, which made half of the error of records there.
 const float k_of_nearest = 0.5;
 

@@ -15,21 +15,11 @@ layout(scalar) writeonly buffer Residuals { vec4 residuals[]; };
 // Where the others are as near as that (a third of the reach) they tell little of what is further off.
 const float k_least_square = 0.1;
 
-// What a record says of the luminance at a point with that normal, by its gradients, as cache_lookup() has it.
+// What a record says of the luminance at a point with that normal, by its gradients.
 float extrapolated(uint record, vec3 facing, vec3 away, vec3 n) {
-  vec3 tangent, bitangent;
-  make_basis(facing, tangent, bitangent);
-  vec3 turn = cross(facing, n);
-  vec2 r = vec2(dot(turn, tangent), dot(turn, bitangent)), t = vec2(dot(away, tangent), dot(away, bitangent));
+  Extrapolation by = extrapolation(facing, away, n);
   float light = 0.0;
-  for (uint p = 0u; p < k_part_count; ++p) {
-    int from = int((record * k_part_count + p) * k_part_texels);
-    vec4 a = texelFetch(irradiance_texels, from), b = texelFetch(irradiance_texels, from + 1);
-    vec4 c = texelFetch(irradiance_texels, from + 2), d = texelFetch(irradiance_texels, from + 3);
-    vec2 held = slope_offset(t, d.w);
-    vec3 change = r.x * vec3(a.a, b.xy) + r.y * vec3(b.zw, c.x) + held.x * c.yzw + held.y * d.xyz;
-    light += luminance(a.rgb + clamp(change, -a.rgb, a.rgb));
-  }
+  for (uint p = 0u; p < k_part_count; ++p) light += luminance(record_part(record, p, by));
   return light;
 }
 

@@ -148,6 +148,13 @@ Serving next_serving(inout uint i, uint last, vec3 x, vec3 n, uint media) {
   return s;
 }
 
+// ... and what it does to the nearest ones; `guide` is that of the nearest that crowds.
+void meet(Serving s, vec3 x, inout Nearest nearest, inout uint guide) {
+  float before = nearest.crowded;
+  nearest = nearer(nearest, s.weight, x - s.place.xyz, s.crowded);
+  guide = nearest.crowded < before ? s.record : guide;
+}
+
 // A record's light, extrapolated to a place that is `away` from it and where the light falls on `shading`.
 struct Extrapolation {
   vec2 r, t;  // turn and offset, along tangent and bitangent
@@ -205,9 +212,7 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool asks, float u
   OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
     Serving s = next_serving(i, range.last, x, n, media);
-    Nearest before = nearest;
-    nearest = nearer(nearest, s.weight, x - s.place.xyz, s.crowded);
-    found.guide = nearest.crowded < before.crowded ? s.record : found.guide;
+    meet(s, x, nearest, found.guide);
     float weight = s.crowded ? 0.0 : s.weight;
     Extrapolation by = extrapolation(s.facing.xyz, x - s.place.xyz, shading);
     vec3 light = vec3(0.0);  // weighted, of all groups
@@ -232,8 +237,7 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool asks, float u
 }
 
 // The same of one of the records that serve, each drawn with its share in the weight: right in the mean over `u`. Records that
-// serve a place differ by little, and of a drawn one alone the light is read: with all of them half of the time of a sample
-// was theirs.
+// serve a place differ by little, and of a drawn one alone the light is read, which takes a third of the time of a lookup away.
 Cached cache_draw(vec3 x, vec3 n, vec3 shading, uint media, bool asks, float u) {
   Cached found = nothing_cached();
   Reservoir drawing = Reservoir(u, 0.0);
@@ -243,9 +247,7 @@ Cached cache_draw(vec3 x, vec3 n, vec3 shading, uint media, bool asks, float u) 
   OctreeRange range = cache_range(x, asks && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
     Serving s = next_serving(i, range.last, x, n, media);
-    Nearest before = nearest;
-    nearest = nearer(nearest, s.weight, x - s.place.xyz, s.crowded);
-    found.guide = nearest.crowded < before.crowded ? s.record : found.guide;
+    meet(s, x, nearest, found.guide);
     bool drawn = reservoir_draw(drawing, s.crowded ? 0.0 : s.weight);
     record = drawn ? s.record : record;
     place = drawn ? s.place.xyz : place;

@@ -71,7 +71,7 @@ void store_shadow_ray(uint slot, Ray r) {
 }
 void store_shadow_state(uint slot, ShadowState s) {
   shadow_states[2u * slot] = words(s.diffuse, s.lanes);
-  shadow_states[2u * slot + 1u] = words(s.glossy, s.pad0);
+  shadow_states[2u * slot + 1u] = words(s.glossy, s.tag);
 }
 
 // A place of its own in a queue, of which counters[length] is the length, for every invocation that gets here; counted by

@@ -56,7 +56,8 @@ struct ShadowState {
   vec3 diffuse;
   uint lanes;          ///< 0-7 lane of the diffuse share, 8-15 of the glossy one
   vec3 glossy;
-  uint pad0;           ///< where light samples are recorded (LUCERNA_LEARNED): number of its record, from 1
+  uint tag;            ///< where light samples are recorded (LUCERNA_LEARNED): number of its record, from 1; of light
+                       ///< tracing: the stratum
 };
 
 // Counters, uint each.

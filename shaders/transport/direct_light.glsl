@@ -51,7 +51,7 @@ void record_light_sample(uint slot, PathState path, vec3 position, vec3 normal, 
   light_records[at].rate = min(rate, 1e30);
   light_records[at].full = sent ? full : -1.0;
   light_records[at].before = luminance(path.throughput);
-  shadow.pad0 = at + 1u;
+  shadow.tag = at + 1u;
 }
 
 // Of light that a path's ray meets, which light samples would have found with that density.
@@ -165,7 +165,7 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   shadow.diffuse = component_d < k_component_count ? arrives * f.diffuse : vec3(0.0);
   shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
   shadow.lanes = lane_of(l.group, component_d) | lane_of(l.group, component_g) << 8;
-  shadow.pad0 = 0u;
+  shadow.tag = 0u;
 #if LUCERNA_SKY_APART
   if (l.sky && sky_known) shadow.diffuse = vec3(0.0);
 #endif

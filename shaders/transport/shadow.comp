@@ -62,8 +62,8 @@ void main() {
   if (!blocked) add_splat(slot, s);
 #else
 #if LUCERNA_LEARNED
-  for (uint once = 0u; once < (!blocked && frame.learning != 0u && s.pad0 > 0u ? 1u : 0u); ++once)
-    light_records[s.pad0 - 1u].arrived = luminance(s.diffuse + s.glossy);
+  for (uint once = 0u; once < (!blocked && frame.learning != 0u && s.tag > 0u ? 1u : 0u); ++once)
+    light_records[s.tag - 1u].arrived = luminance(s.diffuse + s.glossy);
 #endif
   if (!blocked) {
     add_radiance_of_group(slot, s.lanes & 0xffu, s.diffuse, (s.lanes >> 8) & 0xffu, s.glossy);

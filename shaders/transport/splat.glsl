@@ -26,7 +26,7 @@ uint splat_owner(float exponential, float light, uint group) {
 }
 #endif
 
-// `state`: lanes the pixel, pad0 the stratum, where that is asked for. Rounded up or down at random, so that no dim light is
+// `state`: lanes the pixel, tag the stratum, where that is asked for. Rounded up or down at random, so that no dim light is
 // lost: by numbers of the path's, so that it is the same every time.
 void add_splat(uint slot, ShadowState state) {
   vec3 units = state.diffuse / splat_frame.unit;
@@ -46,7 +46,7 @@ void add_splat(uint slot, ShadowState state) {
   units += coin;
 #if LUCERNA_SPLATS_WEIGHED
   uvec2 worth = two_words(min(luminance(units), k_most_splat));
-  ADD_TO_LONG_SUM(splat_worths[state.pad0], worth.x, worth.y);
+  ADD_TO_LONG_SUM(splat_worths[state.tag], worth.x, worth.y);
 #else
   uvec2 red = two_words(units.r), green = two_words(units.g), blue = two_words(units.b);
   ADD_TO_LONG_SUM(splat_red[state.lanes], red.x, red.y);

@@ -31,7 +31,7 @@ Figures measure(const Case& c) {
   renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + c.scene + "/" + c.scene + ".gltf");
   test::Settings settings;
   settings["sampling.tile"] = "8", settings["cache.max_records"] = test::k_room;
-  settings.insert(test::k_dense_records.begin(), test::k_dense_records.end());
+  settings = test::dense_records(std::move(settings));
   settings["components.secondary"] = settings["components.tertiary"] = "path";
   // What is not cached would hide the records' part under its noise, which has a calibration of its own.
   settings["components.primary"] = settings["components.caustic"] = "off";
@@ -106,16 +106,12 @@ void make_small(session::Renderer& renderer, const test::Settings& more) {
   renderer.settings().set("path.batch", more.contains("path.batch") ? more.at("path.batch") : "131072");
   renderer.set_size(40, 32);
   renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
-  test::Settings settings{{"samples", "4"},
-                          {"cache.max_records", test::k_room},
-                          {"cache.gather", "true"},
-                          {"cache.min_radius", "3"},
-                          {"cache.noise", "0.03"},
-                          {"cache.stop", "0.002"},
-                          {"components.primary", "off"},
-                          {"components.caustic", "off"},
-                          {"components.secondary", "cache"},
-                          {"components.tertiary", "cache"}};
+  test::Settings settings = test::dense_records({{"samples", "4"},
+                                                 {"cache.max_records", test::k_room},
+                                                 {"components.primary", "off"},
+                                                 {"components.caustic", "off"},
+                                                 {"components.secondary", "cache"},
+                                                 {"components.tertiary", "cache"}});
   for (const auto& [key, value] : more) settings[key] = value;
   test::set(renderer, settings);
 }

@@ -18,10 +18,10 @@ namespace {
 constexpr uint32_t k_size = 32;
 
 /// So wide a least radius that all of a small picture lies along edges.
-const Settings k_all_gathered{{"cache.min_radius", "100"}, {"cache.max_radius", "1"},
-                              {"cache.rays", "256"},       {"cache.max_records", test::k_room},
-                              {"cache.gather", "true"},    {"cache.noise", "0.03"},
-                              {"cache.stop", "0.002"}};
+const Settings k_all_gathered = test::dense_records({{"cache.min_radius", "100"},
+                                                     {"cache.max_radius", "1"},
+                                                     {"cache.rays", "256"},
+                                                     {"cache.max_records", test::k_room}});
 
 uint32_t crowded(const irradiance_cache::RawRecords& all) {
   uint32_t count = 0;

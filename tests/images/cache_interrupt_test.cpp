@@ -14,23 +14,19 @@ using test::Settings;
 namespace {
 
 /// Everything over the picture that reads what is being built.
-const Settings k_shown{{"components.secondary", "cache"},
-                       {"components.tertiary", "cache"},
-                       {"cache.rays", "64"},
-                       {"cache.max_rays", "256"},
-                       {"cache.error", "0.6"},
-                       {"cache.max_records", "2000"},
-                       {"cache.gather", "true"},
-                       {"cache.min_radius", "3"},
-                       {"cache.noise", "0.03"},
-                       {"cache.stop", "0.002"},
-                       {"cache.passes", "2"},
-                       {"samples", "1"},
-                       {"overlay.records", "true"},
-                       {"overlay.normals", "true"},
-                       {"overlay.overlap", "true"},
-                       {"overlay.placement", "stage"},
-                       {"overlay.discontinuity", "irradiance"}};
+const Settings k_shown = test::dense_records({{"components.secondary", "cache"},
+                                              {"components.tertiary", "cache"},
+                                              {"cache.rays", "64"},
+                                              {"cache.max_rays", "256"},
+                                              {"cache.error", "0.6"},
+                                              {"cache.max_records", "2000"},
+                                              {"cache.passes", "2"},
+                                              {"samples", "1"},
+                                              {"overlay.records", "true"},
+                                              {"overlay.normals", "true"},
+                                              {"overlay.overlap", "true"},
+                                              {"overlay.placement", "stage"},
+                                              {"overlay.discontinuity", "irradiance"}});
 
 struct Bed {
   session::Renderer r;

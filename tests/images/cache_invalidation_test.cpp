@@ -18,21 +18,17 @@ using test::begins_with, test::identical, test::Settings;
 
 namespace {
 
-const Settings k_base{{"components.secondary", "cache"},
-                      {"components.tertiary", "cache"},
-                      {"cache.rays", "64"},
-                      // Records are placed alike in any light, and reach alike.
-                      {"cache.irradiance_weight", "0"},
-                      {"cache.metric", "split-sphere"},
-                      {"cache.max_rays", "256"},
-                      {"cache.error", "0.6"},
-                      {"cache.max_records", "5000"},
-                      {"cache.gather", "true"},
-                      {"cache.min_radius", "3"},
-                      {"cache.noise", "0.03"},
-                      {"cache.stop", "0.002"},
-                      {"samples", "2"},
-                      {"path.batch", "8192"}};
+const Settings k_base = test::dense_records({{"components.secondary", "cache"},
+                                             {"components.tertiary", "cache"},
+                                             {"cache.rays", "64"},
+                                             // Records are placed alike in any light, and reach alike.
+                                             {"cache.irradiance_weight", "0"},
+                                             {"cache.metric", "split-sphere"},
+                                             {"cache.max_rays", "256"},
+                                             {"cache.error", "0.6"},
+                                             {"cache.max_records", "5000"},
+                                             {"samples", "2"},
+                                             {"path.batch", "8192"}});
 
 scene::Scene room() { return test::block_room(true); }
 

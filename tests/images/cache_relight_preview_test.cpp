@@ -13,19 +13,16 @@ using test::begins_with, test::Settings;
 
 namespace {
 
-const Settings k_base{{"components.secondary", "cache"},
-                      {"components.tertiary", "cache"},
-                      {"components.primary", "off"},
-                      {"cache.rays", "64"},
-                      {"cache.max_rays", "256"},
-                      {"cache.error", "0.4"},
-                      {"cache.gather", "false"},
-                      {"cache.max_records", "5000"},
-                      {"cache.min_radius", "3"},
-                      {"cache.noise", "0.03"},
-                      {"cache.stop", "0.002"},
-                      {"samples", "2"},
-                      {"path.batch", "8192"}};
+const Settings k_base = test::dense_records({{"components.secondary", "cache"},
+                                             {"components.tertiary", "cache"},
+                                             {"components.primary", "off"},
+                                             {"cache.rays", "64"},
+                                             {"cache.max_rays", "256"},
+                                             {"cache.error", "0.4"},
+                                             {"cache.gather", "false"},
+                                             {"cache.max_records", "5000"},
+                                             {"samples", "2"},
+                                             {"path.batch", "8192"}});
 
 /// The window's renderer, step by step.
 struct Bed {

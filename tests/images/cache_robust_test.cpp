@@ -19,23 +19,20 @@ namespace {
 constexpr uint32_t k_size = 32;
 
 /// One branch, so that rays tell where records serve.
-const Settings k_both{{"components.secondary", "cache"}, {"components.tertiary", "cache"},
-                      {"cache.max_records", "20000"},    {"cache.gather", "true"},
-                      {"cache.min_radius", "3"},         {"cache.noise", "0.03"},
-                      {"cache.stop", "0.002"},           {"cache.branches", "1"}};
+const Settings k_both = test::dense_records({{"components.secondary", "cache"},
+                                             {"components.tertiary", "cache"},
+                                             {"cache.max_records", "20000"},
+                                             {"cache.branches", "1"}});
 /// Radii as wide as they may be, so that only what limits them keeps records from reaching where they must
 /// not.
-const Settings k_wide{{"components.secondary", "cache"},
-                      {"components.tertiary", "cache"},
-                      {"cache.max_records", "20000"},
-                      {"cache.gather", "true"},
-                      {"cache.noise", "0.03"},
-                      {"cache.stop", "0.002"},
-                      {"cache.error", "1"},
-                      {"cache.max_radius", "1"},
-                      {"cache.min_radius", "0.5"},
-                      {"cache.rays", "1024"},
-                      {"cache.max_rays", "1024"}};
+const Settings k_wide = test::dense_records({{"components.secondary", "cache"},
+                                             {"components.tertiary", "cache"},
+                                             {"cache.max_records", "20000"},
+                                             {"cache.error", "1"},
+                                             {"cache.max_radius", "1"},
+                                             {"cache.min_radius", "0.5"},
+                                             {"cache.rays", "1024"},
+                                             {"cache.max_rays", "1024"}});
 
 using Room = test::PanelRoom;
 

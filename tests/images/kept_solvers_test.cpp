@@ -11,12 +11,14 @@ using test::begins_with, test::identical, test::Settings;
 
 namespace {
 
-const Settings k_base{{"components.tertiary", "cache"}, {"cache.rays", "64"},
-                      {"cache.max_rays", "256"},        {"cache.error", "0.6"},
-                      {"cache.max_records", "5000"},    {"cache.gather", "true"},
-                      {"cache.min_radius", "3"},        {"cache.noise", "0.03"},
-                      {"cache.stop", "0.002"},          {"cache.irradiance_weight", "0"},
-                      {"cache.metric", "split-sphere"}, {"samples", "2"}};
+const Settings k_base = test::dense_records({{"components.tertiary", "cache"},
+                                             {"cache.rays", "64"},
+                                             {"cache.max_rays", "256"},
+                                             {"cache.error", "0.6"},
+                                             {"cache.max_records", "5000"},
+                                             {"cache.irradiance_weight", "0"},
+                                             {"cache.metric", "split-sphere"},
+                                             {"samples", "2"}});
 const Settings k_path{{"components.tertiary", "path"}}, k_cache{{"components.tertiary", "cache"}};
 
 }  // namespace

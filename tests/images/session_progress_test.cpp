@@ -11,17 +11,13 @@ using test::Settings;
 
 namespace {
 
-const Settings k_cached{{"components.secondary", "cache"},
-                        {"components.tertiary", "cache"},
-                        {"cache.rays", "64"},
-                        {"cache.max_rays", "256"},
-                        {"cache.max_records", "5000"},
-                        {"cache.gather", "true"},
-                        {"cache.min_radius", "3"},
-                        {"cache.noise", "0.03"},
-                        {"cache.stop", "0.002"},
-                        {"samples", "2"},
-                        {"path.batch", "8192"}};
+const Settings k_cached = test::dense_records({{"components.secondary", "cache"},
+                                               {"components.tertiary", "cache"},
+                                               {"cache.rays", "64"},
+                                               {"cache.max_rays", "256"},
+                                               {"cache.max_records", "5000"},
+                                               {"samples", "2"},
+                                               {"path.batch", "8192"}});
 
 /// The window's renderer of a room whose light is cached, at its beginning.
 struct Window {

@@ -16,19 +16,15 @@ using test::Settings;
 
 namespace {
 
-const Settings k_base{{"components.secondary", "cache"},
-                      {"components.tertiary", "cache"},
-                      {"cache.rays", "64"},
-                      {"cache.max_rays", "64"},
-                      {"cache.error", "0.6"},
-                      {"cache.max_records", "1000"},
-                      {"cache.gather", "true"},
-                      {"cache.min_radius", "3"},
-                      {"cache.noise", "0.03"},
-                      {"cache.stop", "0.002"},
-                      {"cache.passes", "1"},
-                      {"samples", "4"},
-                      {"path.batch", "4096"}};
+const Settings k_base = test::dense_records({{"components.secondary", "cache"},
+                                             {"components.tertiary", "cache"},
+                                             {"cache.rays", "64"},
+                                             {"cache.max_rays", "64"},
+                                             {"cache.error", "0.6"},
+                                             {"cache.max_records", "1000"},
+                                             {"cache.passes", "1"},
+                                             {"samples", "4"},
+                                             {"path.batch", "4096"}});
 
 struct Bed {
   test::CacheRenderer shown{test::block_room(true), 16};

@@ -104,16 +104,27 @@ struct Bench {
     return octree;
   }
   std::vector<Found> query(const Octree& octree, const Points& points, bool copies = false) {
+    return query(copies ? probe_copies : probe, octree, points, {});
+  }
+  /// Of spheres that are asked for near planes with these normals alone.
+  std::vector<Found> query_discs(const Octree& octree, const Points& points, const gpu::Buffer& normals) {
+    gpu::Resources r;
+    r.set("normals", normals);
+    return query({device, compiler, test::shader("octree_probe.comp"), {{"LUCERNA_DISCS", "1"}}}, octree,
+                 points, std::move(r));
+  }
+
+ private:
+  std::vector<Found> query(const gpu::Kernel& kernel, const Octree& octree, const Points& points,
+                           gpu::Resources r) {
     gpu::Buffer in = texels("points", points.size() * sizeof(vec4)),
                 out = texels("found", points.size() * sizeof(Found));
     in.write(std::span<const vec4>(points));
-    gpu::Resources r;
     octree.bind(r);
     r.set("spheres", spheres);
     r.set("points", in);
     r.set("Found", out);
-    stream.dispatch(copies ? probe_copies : probe, r, uint32_t(points.size()),
-                    gpu::groups_for(points.size(), 64));
+    stream.dispatch(kernel, r, uint32_t(points.size()), gpu::groups_for(points.size(), 64));
     stream.run();
     return out.read_all<Found>();
   }
@@ -254,20 +265,7 @@ TEST_CASE("discs are found near their planes, in fewer leaves than their spheres
     REQUIRE(octree.header().level == whole.header().level);
     CHECK(octree.header().references < whole.header().references * 6 / 10);
     CHECK((bench.crowd > 0 || octree.header().references <= octree.header().needed));
-    gpu::Kernel probe(bench.device, bench.compiler, test::shader("octree_probe.comp"),
-                      {{"LUCERNA_DISCS", "1"}});
-    gpu::Buffer in = bench.texels("points", points.size() * sizeof(vec4)),
-                out = bench.texels("found", points.size() * sizeof(Found));
-    in.write(std::span<const vec4>(points));
-    gpu::Resources r;
-    octree.bind(r);
-    r.set("spheres", bench.spheres);
-    r.set("normals", probed);
-    r.set("points", in);
-    r.set("Found", out);
-    bench.stream.dispatch(probe, r, k_points, gpu::groups_for(k_points, 64));
-    bench.stream.run();
-    const Differences d = compare(out.read_all<Found>(), points, [&](const vec4& x) {
+    const Differences d = compare(bench.query_discs(octree, points, probed), points, [&](const vec4& x) {
       Found f{};
       for (uint32_t i = 0; i < k_discs; ++i) {
         if (!contains(spheres[i], x)) continue;
@@ -330,20 +328,8 @@ TEST_CASE("what lies far away makes no leaf larger, and is found") {
     octree.set_core(core);
     octree.build(bench.stream, bench.spheres, {.most = count}, discs ? &planes : nullptr);
     CHECK(octree.header().open == (far > 0 ? 1u : 0u));
-    gpu::Kernel probe(bench.device, bench.compiler, test::shader("octree_probe.comp"),
-                      {{"LUCERNA_DISCS", discs ? "1" : "0"}});
-    gpu::Buffer in = bench.texels("points", points.size() * sizeof(vec4)),
-                out = bench.texels("found", points.size() * sizeof(Found));
-    in.write(std::span<const vec4>(points));
-    gpu::Resources r;
-    octree.bind(r);
-    r.set("spheres", bench.spheres);
-    r.set("normals", texels);
-    r.set("points", in);
-    r.set("Found", out);
-    bench.stream.dispatch(probe, r, uint32_t(points.size()), gpu::groups_for(points.size(), 64));
-    bench.stream.run();
-    const std::vector<Found> found = out.read_all<Found>();
+    const std::vector<Found> found =
+        discs ? bench.query_discs(octree, points, texels) : bench.query(octree, points);
     const Differences d = compare(found, points, [&](const vec4& x) {
       Found f{};
       for (uint32_t i = 0; i < count; ++i) {

@@ -186,7 +186,7 @@ std::vector<SharedStruct> structs() {
       SHARED("trace.h", TracePush, count, use_queue),
       SHARED("transport.h", PathState, throughput, pdf, pixel, sample_index, bits, media, travelled,
              eta_scale, nulls, light_group),
-      SHARED("transport.h", ShadowState, diffuse, lanes, glossy, pad0),
+      SHARED("transport.h", ShadowState, diffuse, lanes, glossy, tag),
       SHARED("transport.h", TransportPush, count, use_queue, pixel_count, round),
       SHARED("transport.h", ClassesPush, count, use_queue, slots, classes),
   };

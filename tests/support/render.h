@@ -49,6 +49,12 @@ inline constexpr const char *k_batch = "32768", *k_room = "20000";
 inline const Settings k_dense_records{
     {"cache.gather", "true"}, {"cache.min_radius", "3"}, {"cache.noise", "0.03"}, {"cache.stop", "0.002"}};
 
+/// These, and dense records where they do not say otherwise.
+inline Settings dense_records(Settings settings) {
+  settings.insert(k_dense_records.begin(), k_dense_records.end());
+  return settings;
+}
+
 inline void set(session::Renderer& renderer, const Settings& settings) {
   for (const auto& [key, value] : settings) renderer.settings().set(key, value);
   renderer.apply_settings();
@@ -73,10 +79,9 @@ inline Result render(const Render& r, const scene::Scene* made = nullptr) {
     renderer.set_scene(std::make_shared<scene::Scene>(*made));
   else
     renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + r.scene + "/" + r.scene + ".gltf");
-  Settings settings = r.settings;
+  Settings settings = dense_records(r.settings);
   settings["samples"] = std::to_string(r.samples);
   settings.try_emplace("cache.max_records", k_room);
-  settings.insert(k_dense_records.begin(), k_dense_records.end());
   set(renderer, settings);
   if (!r.camera.empty()) renderer.choose_camera(r.camera);
   Result result;

@@ -34,7 +34,7 @@ void Cache::Impl::count_bytes() {
 }
 
 void Cache::Impl::clear() {
-  progress.refining = {};
+  forget_refining();
   preview.end();
   tables.records.clear();
   places.forget();

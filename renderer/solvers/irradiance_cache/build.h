@@ -93,8 +93,9 @@ struct Cache::Impl {
 
   /// Records that are noisier than the last time allowed, over the root of 2, are to get further rays.
   void begin_refining();
-  /// That is given up as far as it has come.
+  /// That is given up as far as it has come; and the next time begins with the noise of building again.
   void end_refining();
+  void forget_refining();
   /// One piece of looking at the picture's points; false when it was cancelled.
   bool see(transport::Wavefront& wavefront, const CacheView& view, const std::function<bool()>& cancel);
   /// ... or all of them, for somebody who watches.
@@ -171,8 +172,10 @@ struct Cache::Impl {
   /// The records of this pass that are still too noisy, for four times as many rays. False when there are
   /// none.
   bool next_level();
-  /// Of these, which have all had as many rays, those that are too noisy.
-  std::vector<uint32_t> noisy(const std::vector<uint32_t>& records) const;
+  bool at_last_level() const;
+  /// Of these, which have all had as many rays, those that are too noisy. `figures`: of every record.
+  std::vector<uint32_t> noisy(const std::vector<uint32_t>& records,
+                              const std::vector<Records::Figures>& figures) const;
   /// The records of any pass that are to get further light next, and their level. False when there are none.
   bool next_refined();
   float share_of_noise(uint32_t record) const;

@@ -145,9 +145,11 @@ float Cache::Impl::share_of_noise(uint32_t record) const {
                     int(progress.levels.level()));
 }
 
-std::vector<uint32_t> Cache::Impl::noisy(const std::vector<uint32_t>& records) const {
-  if (records.empty() || uint64_t{4} * progress.levels.rays() > options.most_rays) return {};
-  const std::vector<Records::Figures> figures = tables.records.figures();
+bool Cache::Impl::at_last_level() const { return uint64_t{4} * progress.levels.rays() > options.most_rays; }
+
+std::vector<uint32_t> Cache::Impl::noisy(const std::vector<uint32_t>& records,
+                                         const std::vector<Records::Figures>& figures) const {
+  if (records.empty()) return {};
   const std::vector<float> light = tables.records.luminances();
   const float noise = options.noise * progress.refining.noise;
   std::vector<Noise> noises;
@@ -160,7 +162,9 @@ std::vector<uint32_t> Cache::Impl::noisy(const std::vector<uint32_t>& records) c
 
 bool Cache::Impl::next_level() {
   RecordQueue& queue = progress.queue;
-  queue.set(noisy(without_crowded(queue.all())));  // the rays so far may have met what is near
+  queue.set(without_crowded(queue.all()));  // the rays so far may have met what is near
+  if (queue.done() || at_last_level()) return false;
+  queue.set(noisy(queue.all(), tables.records.figures()));
   if (queue.done()) return false;
   progress.levels.next();
   return true;
@@ -181,15 +185,20 @@ void Cache::Impl::end_refining() {
   progress.stage = Stage::done;
 }
 
+void Cache::Impl::forget_refining() {
+  end_refining();
+  progress.refining = {};
+}
+
 bool Cache::Impl::next_refined() {
+  const std::vector<Records::Figures> figures = tables.records.figures();
   for (uint32_t& level = progress.refining.level;; ++level) {
     progress.levels.resume(level);
-    if (uint64_t{4} * progress.levels.rays() > options.most_rays) return false;
-    const std::vector<Records::Figures> figures = tables.records.figures();
+    if (at_last_level()) return false;
     std::vector<uint32_t> here;
     for (uint32_t r = 0; r < ranges.evaluated(); ++r)
       if (figures[r].rays == float(progress.levels.rays_before())) here.push_back(r);
-    progress.queue.set(noisy(without_crowded(std::move(here))));
+    progress.queue.set(noisy(without_crowded(std::move(here)), figures));
     if (progress.queue.done()) continue;
     progress.levels.next();
     ++level;

@@ -67,8 +67,7 @@ void Cache::clear() { impl_->clear(); }
 
 void Cache::extend() {
   Impl& c = *impl_;
-  c.end_refining();
-  c.progress.refining = {};
+  c.forget_refining();
   c.progress.probing.camera_moved = true;
   c.count_anew(true);
   c.picture.forget();

@@ -42,8 +42,7 @@ bool Cache::Impl::relight_first_places() {
 
 void Cache::Impl::relight(const std::optional<std::vector<vec3>>& factors, uint32_t sky_group) {
   if (relight_first_places()) return;
-  end_refining();
-  progress.refining = {};
+  forget_refining();
   if (status.relighting.records == 0) {
     progress.stopped_before = status.stop == StopReason::dark ? StopReason::building : status.stop;
     // A pass that has its first level has places and radii, and is complete when it is relit. Of one before
