@@ -19,7 +19,7 @@ struct Header {
   char magic[8];
   uint64_t words, checksum;
 };
-constexpr char k_magic[8] = {'L', 'U', 'C', 'S', 'P', 'V', '0', '1'};
+constexpr char k_magic[8] = {'L', 'U', 'C', 'S', 'P', 'V', '0', '2'};
 constexpr size_t k_most_files = 2000;
 
 uint64_t checksum(const std::vector<uint32_t>& words) {

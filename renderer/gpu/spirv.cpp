@@ -115,6 +115,14 @@ struct Parsed {
 
   uint32_t pointee(uint32_t pointer_type) const { return types.at(pointer_type).operands[1]; }
 
+  /// Whether the variable is a buffer, in words or in texels.
+  bool is_buffer(const Variable& v) const {
+    const Type* type = &types.at(pointee(v.pointer_type));
+    if (type->op == spv::OpTypeSampledImage) type = &types.at(type->operands[0]);
+    return type->op == spv::OpTypeStruct ||
+           (type->op == spv::OpTypeImage && type->operands[1] == spv::DimBuffer);
+  }
+
   /// Bytes from the start to the end of the last member; for push constants.
   uint32_t size_of(uint32_t id, uint32_t matrix_stride = 0) const {
     const Type& type = types.at(id);
@@ -208,9 +216,11 @@ std::vector<uint32_t> trim(const std::vector<uint32_t>& words) {
   const std::set<uint32_t> used = used_variables(words, parsed);
   std::set<uint32_t> resources, dropped;
   std::map<uint32_t, uint32_t> binding;
+  std::map<uint32_t, Variable> variables;
   for (const Variable& v : parsed.variables) {
     if (!is_resource(v.storage)) continue;
     resources.insert(v.id);
+    variables[v.id] = v;
     if (!used.count(v.id)) {
       dropped.insert(v.id);
     } else if (v.storage != spv::StorageClassPushConstant) {
@@ -238,10 +248,12 @@ std::vector<uint32_t> trim(const std::vector<uint32_t>& words) {
     if (!preamble && !decorated) {
       decorated = true;
       for (const auto& [id, number] : binding) {
+        const uint32_t aliased[] = {3u << 16 | spv::OpDecorate, id, spv::DecorationAliased};
         const uint32_t set[] = {4u << 16 | spv::OpDecorate, id, spv::DecorationDescriptorSet, 0};
         const uint32_t slot[] = {4u << 16 | spv::OpDecorate, id, spv::DecorationBinding, number};
         out.insert(out.end(), set, set + 4);
         out.insert(out.end(), slot, slot + 4);
+        if (parsed.is_buffer(variables.at(id))) out.insert(out.end(), aliased, aliased + 3);
       }
     }
     if (i.op == spv::OpEntryPoint) {

@@ -37,6 +37,9 @@ struct Module {
 
 /// Removes the resource variables that the entry point never reaches (a library file may declare more than a
 /// kernel uses) and numbers the bindings of the others 0, 1, 2 ... in set 0, whatever the source says.
+/// Buffers are declared as possibly one another (`Aliased`): kernels read a buffer as texels that they write
+/// as words, and without it compilers of GPUs move loads beyond stores (SPIR-V 2.18.2; GLSL has no word for
+/// it).
 std::vector<uint32_t> trim(const std::vector<uint32_t>& words);
 
 /// Describes a module that trim() has made.

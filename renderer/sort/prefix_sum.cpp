@@ -25,6 +25,9 @@ PrefixSum::PrefixSum(gpu::Device& device, gpu::ShaderCompiler& compiler, const R
   sums_ = gpu::Kernel(device, compiler, "sort/scan_sums.comp", defines);
   spine_ = gpu::Kernel(device, compiler, "sort/scan_spine.comp", defines);
   write_ = gpu::Kernel(device, compiler, "sort/scan_write.comp", defines);
+  gpu::Defines in_place = defines;
+  in_place["LUCERNA_SCAN_IN_PLACE"] = "1";
+  write_in_place_ = gpu::Kernel(device, compiler, "sort/scan_write.comp", in_place);
 }
 
 Runs PrefixSum::runs_for(const gpu::Device& device) {
@@ -52,7 +55,7 @@ void PrefixSum::encode(gpu::Stream& stream, const gpu::Buffer& in, const gpu::Bu
   const uint32_t groups = runs_.groups(count.most);
   stream.dispatch(sums_, resources, push, groups, stage);
   stream.dispatch(spine_, resources, push, 1, stage);
-  stream.dispatch(write_, resources, push, groups, stage);
+  stream.dispatch(&in == &out ? write_in_place_ : write_, resources, push, groups, stage);
 }
 
 }  // namespace lucerna::sort

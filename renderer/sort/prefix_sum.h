@@ -24,7 +24,7 @@ class PrefixSum {
 
  private:
   Runs runs_;
-  gpu::Kernel sums_, spine_, write_;
+  gpu::Kernel sums_, spine_, write_, write_in_place_;
   gpu::Buffer run_sums_, unused_;
 };
 

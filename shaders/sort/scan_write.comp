@@ -1,9 +1,27 @@
 // Prefix sum, last step: within every run, from what the runs before it sum up to. Elements are read before they are
-// written, by one invocation, so that output and input may be one buffer.
+// written, by one invocation. Where output and input are one buffer it is read under the name that it is written by: of
+// another name a compiler may read it again after it was written.
 #include "lib/scan.glsl"
+#ifndef LUCERNA_SCAN_IN_PLACE
+#define LUCERNA_SCAN_IN_PLACE 0
+#endif
 layout(local_size_x = LUCERNA_SCAN_GROUP) in;
 layout(scalar) readonly buffer ScanSums { uint scan_sums[]; };
+#if LUCERNA_SCAN_IN_PLACE
+layout(scalar) buffer ScanOut { uint scan_out[]; };
+
+uvec4 fetch(uint at, uint end) {
+  uint left = end - at;
+  return uvec4(scan_out[at], left > 1u ? scan_out[at + 1u] : 0u, left > 2u ? scan_out[at + 2u] : 0u,
+               left > 3u ? scan_out[at + 3u] : 0u);
+}
+#else
 layout(scalar) writeonly buffer ScanOut { uint scan_out[]; };
+
+uvec4 fetch(uint at, uint end) {
+  return scan_fetch(at, end);
+}
+#endif
 
 void main() {
   uint index = global_index(), count = scan_count(), length = scan_run_length(count);
@@ -11,7 +29,7 @@ void main() {
   if (run.first >= run.end) return;
   uint sum = scan_sums[index];
   for (uint at = run.first; at < run.end; at += 4u) {
-    uvec4 v = scan_fetch(at, run.end);
+    uvec4 v = fetch(at, run.end);
     uint y = sum + v.x, z = y + v.y, w = z + v.z;
     scan_out[at] = sum;
     if (at + 1u < run.end) scan_out[at + 1u] = y;

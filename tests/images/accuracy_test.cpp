@@ -8,6 +8,7 @@
 #include "images/cache_support.h"
 #include "session/accuracy.h"
 #include "session/session.h"
+#include "support/device_name.h"
 #include "support/rooms.h"
 
 using namespace lucerna;
@@ -133,7 +134,7 @@ TEST_CASE("the clock is the person's: what happens between steps counts, waiting
 }
 
 TEST_CASE("a session tells one clock everywhere, and it stands still while rendering is paused") {
-  session::Session s({.device = "cpu", .validation = false, .shaders = {}});
+  session::Session s({.device = test::device_name(), .validation = false, .shaders = {}});
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 6000; ++i, sleep_ms(5))
       if (const auto at = s.snapshot(); at && until(*at)) return at;

@@ -2,6 +2,7 @@
 // Photons where they outgrow the device's largest buffer: fewer light paths, the same light, and word of it.
 // Light tracing, where all of its sums would.
 #include "support/caustics.h"
+#include "support/device_name.h"
 
 using namespace lucerna;
 using test::mean_of, test::MeanOf;
@@ -20,7 +21,7 @@ Rendered render(const test::Settings& settings, uint64_t most_storage_buffer) {
   session::RendererOptions options = test::renderer_options(false);
   if (most_storage_buffer > 0)
     options.on = std::make_shared<gpu::Device>(
-        gpu::DeviceOptions{.selector = "cpu", .most_storage_buffer = most_storage_buffer});
+        gpu::DeviceOptions{.selector = test::device_name(), .most_storage_buffer = most_storage_buffer});
   session::Renderer r(options);
   r.settings().set("path.batch", "16384");
   scene::Scene room = test::block_room();
@@ -70,7 +71,7 @@ TEST_CASE("light tracing needs no larger buffer than the film") {
   for (const bool held : {false, true}) {
     session::RendererOptions options = test::renderer_options(false);
     options.on = std::make_shared<gpu::Device>(
-        gpu::DeviceOptions{.selector = "cpu", .most_storage_buffer = held ? k_limit : 0});
+        gpu::DeviceOptions{.selector = test::device_name(), .most_storage_buffer = held ? k_limit : 0});
     session::Renderer r(options);
     r.settings().set("path.batch", "16384");
     r.set_size(k_width, k_height);

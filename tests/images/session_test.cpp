@@ -2,6 +2,7 @@
 // The real session, driven from another thread as a window drives it: loads that are given up, edits in any
 // moment, files that are asked for, and an end at any time. Clean under the thread sanitizer (preset tsan).
 #include "session/session.h"
+#include "support/device_name.h"
 
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -49,7 +50,7 @@ void settle(const Session& session) {
 
 TEST_CASE("a load that was given up stays so, whatever is loaded after it") {
   Heard heard;
-  Session session({.device = "cpu"});
+  Session session({.device = test::device_name()});
   session.set_size(32, 24);
   // The first is under way or still to begin; the second takes nothing back of that it was given up.
   for (int round = 0; round < 3; ++round) {
@@ -68,7 +69,7 @@ TEST_CASE("a load that was given up stays so, whatever is loaded after it") {
 
 TEST_CASE("a command for a scene that is gone is left out, and what is refused is listed") {
   Heard heard;
-  Session session({.device = "cpu"});
+  Session session({.device = test::device_name()});
   session.set_size(32, 24);
   session.load(gltf("cornell"));
   settle(session);
@@ -108,7 +109,7 @@ TEST_CASE("a command for a scene that is gone is left out, and what is refused i
 }
 
 TEST_CASE("a picture is named as that of the scene that it shows, also while another one is being loaded") {
-  Session session({.device = "cpu"});
+  Session session({.device = test::device_name()});
   session.set_size(32, 24);
   session.load(gltf("cornell"));
   settle(session);
@@ -136,7 +137,7 @@ TEST_CASE("files that are asked for are written, also when the session ends at o
   const auto file = [&](const char* name) { return folder.path / name; };
   session::Saved picture, last, nowhere, cache;
   {
-    Session session({.device = "cpu"});
+    Session session({.device = test::device_name()});
     session.set_size(32, 24);
     session.load(gltf("cornell"));
     picture = session.save(file("a.exr"));
@@ -156,7 +157,7 @@ TEST_CASE("files that are asked for are written, also when the session ends at o
 
 TEST_CASE("a picture is measured as soon as there is one, also right after an edit") {
   Heard heard;
-  Session session({.device = "cpu"});
+  Session session({.device = test::device_name()});
   session.set_size(32, 24);
   session.load(gltf("cornell"));
   for (int round = 0; round < 4; ++round) {
@@ -178,7 +179,7 @@ TEST_CASE("edits from another thread at any moment, pictures looked at meanwhile
   const auto below = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
   std::atomic<uint64_t> published{0}, seen{0};
   for (int round = 0; round < 2; ++round) {
-    Session session({.device = "cpu"});
+    Session session({.device = test::device_name()});
     session.on_publish([&] { ++published; });
     session.set_size(32, 24);
     session.load(gltf("cornell"));

@@ -11,6 +11,7 @@
 #include "session/session.h"
 #include "shaders/shared/irradiance_cache/placement_view.h"
 #include "support/device.h"
+#include "support/device_name.h"
 #include "support/records.h"
 #include "support/solver.h"
 
@@ -25,8 +26,11 @@ constexpr uint32_t k_size = 128;
 /// A Cornell box with secondary and tertiary light cached, about to be built.
 session::Renderer& bed() {
   static const std::unique_ptr<session::Renderer> renderer = [] {
-    auto r = std::make_unique<session::Renderer>(session::RendererOptions{
-        .device = "cpu", .validation = true, .shaders = {}, .defines = {}, .interactive = true});
+    auto r = std::make_unique<session::Renderer>(session::RendererOptions{.device = test::device_name(),
+                                                                          .validation = true,
+                                                                          .shaders = {},
+                                                                          .defines = {},
+                                                                          .interactive = true});
     r->set_size(k_size, k_size);
     r->load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
     for (const auto& [key, value] : {std::pair{"components.secondary", "cache"},
@@ -383,7 +387,7 @@ TEST_CASE("what is chosen is drawn with its radius, and hidden by what is in fro
 }
 
 TEST_CASE("a session whose cache waits is at rest, answers, and goes on when it is told to") {
-  session::Session session({.device = "cpu"});
+  session::Session session({.device = test::device_name()});
   session.set_size(48, 48);
   session.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   for (const auto& [key, value] : {std::pair{"components.secondary", "cache"},

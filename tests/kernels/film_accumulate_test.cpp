@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "film/film.h"
+#include "support/device_name.h"
 
 using namespace lucerna;
 
@@ -21,7 +22,7 @@ float sample_value(uint32_t pixel, uint32_t component, uint32_t s) {
 }  // namespace
 
 TEST_CASE("a million samples of mixed magnitude: each half's sum is right to float's last digits") {
-  gpu::Device device({"cpu", true});
+  gpu::Device device({test::device_name(), true});
   gpu::ShaderCompiler compiler;
   gpu::Stream stream(device);
   film::Film film(device, 8, 8);

@@ -7,6 +7,7 @@
 
 #include "film/error.h"
 #include "film/estimator.h"
+#include "support/device_name.h"
 
 using namespace lucerna;
 using shared::BlockError;
@@ -25,7 +26,7 @@ uint32_t compact(uint32_t x) { return (x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u); 
 }  // namespace
 
 TEST_CASE("the error kernel: sums over the blocks of an item, to float's precision") {
-  gpu::Device device({"cpu", true});
+  gpu::Device device({test::device_name(), true});
   gpu::ShaderCompiler compiler;
   gpu::Stream stream(device);
   constexpr uint32_t k_width = 20, k_height = 12, k_samples = 6;  // blocks that stick out on two sides
@@ -264,7 +265,7 @@ TEST_CASE("the spread of the tiles: a bright window does not hide grainy walls")
 
 TEST_CASE(
     "the error kernel: what pixels read of records, summed beside their noise, which it leaves as it is") {
-  gpu::Device device({"cpu", true});
+  gpu::Device device({test::device_name(), true});
   gpu::ShaderCompiler compiler;
   gpu::Stream stream(device);
   constexpr uint32_t k_width = 12, k_height = 8;
@@ -354,7 +355,7 @@ TEST_CASE(
 TEST_CASE(
     "the bias of lookups: summed by halves beside their light, and squared without the noise of either "
     "half") {
-  gpu::Device device({"cpu", true});
+  gpu::Device device({test::device_name(), true});
   gpu::ShaderCompiler compiler;
   gpu::Stream stream(device);
   constexpr uint32_t k_width = 12, k_height = 8, k_blocks = 2, k_pixels = k_width * k_height;

@@ -8,6 +8,7 @@
 
 #include "film/film.h"
 #include "shaders/shared/group_sums.h"
+#include "support/device_name.h"
 
 using namespace lucerna;
 
@@ -21,7 +22,7 @@ using Brings = std::function<vec3(uint32_t group, uint32_t s)>;
 
 /// A film, and the kernel that adds to it.
 struct Bench {
-  gpu::Device device{{"cpu", true}};
+  gpu::Device device{{test::device_name(), true}};
   gpu::ShaderCompiler compiler;
   gpu::Stream stream{device};
   film::Film film{device, k_side, k_side, k_groups, film::GroupsKept::in_short};

@@ -12,6 +12,7 @@
 #include "film/film.h"
 #include "film/overlay.h"
 #include "film/tonemap.h"
+#include "support/device_name.h"
 
 using namespace lucerna;
 using shared::TileMark;
@@ -38,7 +39,7 @@ float farthest(const vec3& a, const vec3& b) {
 /// A film whose counts, vertices and errors are the test's own.
 struct Stage {
   static constexpr uint32_t k_width = 44, k_height = 27;  // tiles that are cut off on two sides
-  gpu::Device device{{"cpu", true}};
+  gpu::Device device{{test::device_name(), true}};
   gpu::ShaderCompiler compiler;
   gpu::Stream stream{device};
   film::Film film{device, k_width, k_height};

@@ -10,6 +10,7 @@
 #include "film/developer.h"
 #include "film/preview.h"
 #include "film/tonemap.h"
+#include "support/device_name.h"
 
 namespace lucerna::test {
 
@@ -27,7 +28,7 @@ using Source = std::function<Sample(uint32_t x, uint32_t y)>;
 struct Stage {
   uint32_t width, height;
   uint32_t component = 1;  ///< of what samples bring
-  gpu::Device device{{"cpu", true}};
+  gpu::Device device{{test::device_name(), true}};
   gpu::ShaderCompiler compiler;
   gpu::Stream stream{device};
   gpu::Kernel add{device, compiler, "film/add.comp"};

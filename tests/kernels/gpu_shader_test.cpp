@@ -51,6 +51,15 @@ std::vector<std::string> names(const std::vector<uint32_t>& words) {
   return list;
 }
 
+/// Buffers that the words declare as possibly one another.
+size_t aliased(const std::vector<uint32_t>& words) {
+  constexpr uint32_t k_decorate = 71, k_aliased = 20;  // OpDecorate, Aliased
+  size_t count = 0;
+  for (size_t at = 5; at < words.size(); at += words[at] >> 16)
+    count += (words[at] & 0xffff) == k_decorate && words[at + 2] == k_aliased;
+  return count;
+}
+
 }  // namespace
 
 TEST_CASE("a kernel declares only what it uses, whatever its includes declare") {
@@ -63,6 +72,7 @@ TEST_CASE("a kernel declares only what it uses, whatever its includes declare") 
   CHECK(module.workgroup[0] == 64);
   CHECK(module.resources[0].binding == 0);
   CHECK(module.resources[1].binding == 1);
+  CHECK(aliased(words) == 2);
 }
 
 TEST_CASE("an error names the file and the line") {

@@ -10,6 +10,7 @@
 
 #include "kernels/gpu_support.h"
 #include "overlay/painter.h"
+#include "support/device_name.h"
 
 using namespace lucerna;
 using shared::OverlayDisc;
@@ -24,7 +25,7 @@ constexpr uint32_t k_base = 0xff405060u;
 /// A picture of one colour. The camera is in the origin and looks along -z; the left half shows a wall that
 /// faces it, the right half shows nothing.
 struct Bed {
-  gpu::Device device{{"cpu", true}};
+  gpu::Device device{{test::device_name(), true}};
   gpu::ShaderCompiler compiler;
   upload::DeviceScene scene{device, {}, {}};
   transport::Wavefront wavefront{device, compiler, scene, 64, [](auto&&...) {}};
@@ -59,9 +60,8 @@ struct Bed {
   void put(const char* name, const std::vector<T>& values) {
     gpu::Resources table;
     film.bind(table);
-    void* to = std::get<const gpu::Buffer*>(*table.find(name))->mapped();
-    REQUIRE(to);
-    std::memcpy(to, values.data(), values.size() * sizeof(T));
+    gpu::Buffer& to = const_cast<gpu::Buffer&>(*std::get<const gpu::Buffer*>(*table.find(name)));
+    to.write(std::span<const T>(values));
   }
 
   /// Where a place of the picture lies in the scene, at that depth.

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "gpu/stream.h"
+#include "support/device_name.h"
 #include "upload/device_scene.h"
 #include "upload/textures.h"
 
@@ -80,7 +81,7 @@ scene::Scene make_scene(bool only_repeat) {
 }  // namespace
 
 TEST_CASE("every texture reads as a plain bilinear filter would") {
-  gpu::Device device({"cpu", true});
+  gpu::Device device({test::device_name(), true});
   gpu::ShaderCompiler compiler;
   for (const bool only_repeat : {true, false}) {
     const scene::Scene s = make_scene(only_repeat);

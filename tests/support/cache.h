@@ -10,6 +10,7 @@
 #include "scene/io/load.h"
 #include "shaders/shared/facet.h"
 #include "solvers/irradiance_cache/evaluate.h"
+#include "support/device_name.h"
 #include "transport/frame.h"
 #include "upload/device_scene.h"
 
@@ -18,7 +19,7 @@ namespace lucerna::test {
 class CacheBed {
  public:
   explicit CacheBed(const scene::Scene& scene, uint32_t slots = 65536)
-      : device({"cpu", true}),
+      : device({device_name(), true}),
         compiler(gpu::ShaderCompiler::default_root()),
         automaton(paths::compile_components()),
         flat(upload::flatten(scene)),

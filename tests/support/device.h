@@ -4,19 +4,27 @@
 #include <memory>
 
 #include "session/renderer.h"
+#include "support/device_name.h"
 
 namespace lucerna::test {
 
+/// A device is made before its variable is: it is then destroyed before what its driver registered for the
+/// end.
 inline std::shared_ptr<gpu::Device> shared_device(bool validation) {
-  static std::shared_ptr<gpu::Device> devices[2];
-  std::shared_ptr<gpu::Device>& device = devices[validation];
-  if (!device) device = std::make_shared<gpu::Device>(gpu::DeviceOptions{"cpu", validation});
-  return device;
+  const auto make = [&] {
+    return std::make_shared<gpu::Device>(gpu::DeviceOptions{device_name(), validation});
+  };
+  if (validation) {
+    static const std::shared_ptr<gpu::Device> validated = make();
+    return validated;
+  }
+  static const std::shared_ptr<gpu::Device> plain = make();
+  return plain;
 }
 
 inline session::RendererOptions renderer_options(bool validation = true, const gpu::Defines& defines = {},
                                                  bool interactive = false) {
-  return {.device = "cpu",
+  return {.device = device_name(),
           .validation = validation,
           .shaders = {},
           .defines = defines,

@@ -1,6 +1,6 @@
 #pragma once
-// Where the sources and the program lie. Kept out of the compiler's command line, so that what one clone has compiled
-// serves another. Included by the precompiled header of all tests.
+// Where the sources and the program lie. Kept out of the compiler's command line, so that what one clone has
+// compiled serves another. Included by the precompiled header of all tests.
 
 namespace lucerna::test {
 
