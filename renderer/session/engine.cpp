@@ -52,6 +52,13 @@ gpu::Defines wanted_learned_defines(const plan::Settings& settings, const upload
   return settings.text("lights.sampling") == "learned" ? upload::learned_defines(flat) : gpu::Defines{};
 }
 
+/// The lights and what hides them are the same after these changes.
+bool same_lights(const scene::Changes& changes) {
+  return std::all_of(changes.edits.begin(), changes.edits.end(), [](scene::Change edit) {
+    return edit == scene::Change::camera || edit == scene::Change::size || edit == scene::Change::restart;
+  });
+}
+
 /// Of one dispatch, of those that light samples are recorded of.
 constexpr uint32_t k_most_recorded_paths = 32768;
 /// Samples a pixel of the pilot picture in each generation, and its pixels for one of the picture. In all
@@ -182,8 +189,10 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
       solver->begin(own, spoils);
     });
   missed_.clear();
-  if (transport::LightLearning* learning = wavefront_->learning())
-    learning->forget(upload::make_light_clusters(picture.world.flat));
+  learned_elsewhere_ = wavefront_->learning() && begun_ && same_lights(changes);
+  if (wavefront_->learning() && !learned_elsewhere_)
+    wavefront_->forget_learned(upload::make_light_clusters(picture.world.flat));
+  begun_ = true;
   route(picture.settings, picture.world.flat.effects);  // with what they leave to paths now
   wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
 }
@@ -230,9 +239,16 @@ solvers::Solver* Engine::refinable() const {
   return nullptr;
 }
 
-bool Engine::learns() const {
+bool Engine::learns(uint32_t samples) const {
   const transport::LightLearning* learning = wavefront_->learning();
-  return learning && learning->generations() < std::size(k_generations);
+  if (!learning || learned_elsewhere_ || learning->generations() >= std::size(k_generations)) return false;
+  return !solvers_.empty() || samples >= 1u << learning->generations();
+}
+
+void Engine::begin_samples(const PictureView& picture) {
+  if (!std::exchange(learned_elsewhere_, false)) return;
+  wavefront_->forget_learned();
+  wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
 }
 
 bool Engine::learn(const PictureView& picture, const std::function<bool()>& cancel) {

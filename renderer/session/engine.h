@@ -76,8 +76,12 @@ class Engine {
   /// A piece of preparation of one that is not ready (Solver::prepare). False when it was cancelled.
   bool prepare(solvers::Solver& solver, const PictureView& picture, const std::function<bool()>& cancel);
   bool waits() const;
-  /// Another generation of light samples is to be learned from before the picture's first sample.
-  bool learns() const;
+  /// Another generation of light samples is to be learned from before the picture, that has so many samples
+  /// a pixel, goes on. A first picture of paths does not wait for that; what solvers prepare does.
+  bool learns(uint32_t samples) const;
+  /// What was learned from another view served until now, for drafts; the picture is to be the same whatever
+  /// was looked at before.
+  void begin_samples(const PictureView& picture);
   /// That generation. False when it was cancelled.
   bool learn(const PictureView& picture, const std::function<bool()>& cancel);
 
@@ -126,7 +130,9 @@ class Engine {
   plan::Plan plan_;
   gpu::Defines scene_defines_;  ///< that the kernels were made with
   gpu::Defines learned_defines_;
-  Routes routes_;  ///< of the picture begun last
+  bool begun_ = false;
+  bool learned_elsewhere_ = false;  ///< from another view
+  Routes routes_;                   ///< of the picture begun last
   std::vector<std::unique_ptr<solvers::Solver>> solvers_;
   /// What solvers that were adopted alone have missed before the next picture.
   std::map<const solvers::Solver*, scene::Changes> missed_;

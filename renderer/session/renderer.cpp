@@ -450,7 +450,8 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   if (!engine_ || done()) return false;
   clock_.go();
   const Timer timer;
-  const bool prepares = preparing() || engine_->learns();
+  engine_->begin_samples(picture_view());
+  const bool learns = engine_->learns(samples()), prepares = preparing() || (learns && samples() == 0);
   const bool progress = render_item(cancel);
   render_s_ += timer.seconds();
   if (display_) display_->plan().worked(timer.seconds());
@@ -460,7 +461,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   }
   if (prepares)
     prepared_s_ = clock_.seconds(), prepared_ = stats();
-  else if (progress)
+  else if (progress && !learns)
     note_progress(false);
   if (done()) rest();
   return progress;
@@ -469,7 +470,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
 bool Renderer::render_item(const std::function<bool()>& cancel) {
   const PictureView view = picture_view();
   transport::Wavefront& wavefront = engine_->wavefront();
-  if (engine_->learns()) return engine_->learn(view, cancel);
+  if (engine_->learns(samples())) return engine_->learn(view, cancel);
   if (solvers::Solver* next = engine_->unready()) {
     const bool rounds = engine_->in_rounds(), went = engine_->prepare(*next, view, cancel);
     if (engine_->in_rounds() != rounds && samples() == 0) start_schedule();

@@ -94,11 +94,15 @@ void LightLearning::learn(std::vector<LightRecord> records) {
 
 void LightLearning::forget(upload::LightClusters clusters) {
   clusters_ = std::move(clusters);
+  upload_clusters();
+  forget();
+}
+
+void LightLearning::forget() {
   samples_.clear();
   cells_ = {};
   recording_ = false;
   generations_ = 0;
-  upload_clusters();
   take(plain_lights(clusters_));
 }
 

@@ -32,8 +32,9 @@ class LightLearning {
   void learn(std::vector<shared::LightRecord> records);
   uint32_t generations() const { return generations_; }
   uint32_t most_paths() const { return most_paths_; }
-  /// Begins again, for these lights.
+  /// Begins again, for these lights, or for those that there are.
   void forget(upload::LightClusters clusters);
+  void forget();
 
   const upload::LightClusters& clusters() const { return clusters_; }
   uint32_t rows() const { return row_count_; }

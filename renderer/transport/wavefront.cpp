@@ -374,6 +374,15 @@ bool Wavefront::learn(const schedule::WorkItem& item, const Frame& pilot, const 
   return went;
 }
 
+void Wavefront::forget_learned(std::optional<upload::LightClusters> clusters) {
+  if (!impl_->learning) return;
+  if (clusters)
+    impl_->learning->forget(std::move(*clusters));
+  else
+    impl_->learning->forget();
+  impl_->bind_learning();
+}
+
 LightLearning* Wavefront::learning() { return impl_->learning.get(); }
 const LightLearning* Wavefront::learning() const { return impl_->learning.get(); }
 

@@ -99,6 +99,8 @@ class Wavefront {
              uint32_t enabled, const std::function<bool()>& cancel = {});
   /// Null: lights are chosen by power.
   LightLearning* learning();
+  /// Lights are chosen as without learning again: those there are, or these. The next frame is to be set.
+  void forget_learned(std::optional<upload::LightClusters> clusters = {});
   const LightLearning* learning() const;
   /// Traces `count` <= slots() paths between ends of the caller's; cancellable as above, `end` is then not
   /// called. Their time and rays are in stats() like those of the film's paths. Their frame is that of
