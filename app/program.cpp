@@ -420,7 +420,7 @@ void Program::add_bench_interiors() {
       ->check(named());
   interiors_->add_flag(
       "--quick", o.quick,
-      "three rooms in small pictures after 1 and 3 s: two minutes, and once their references");
+      "three rooms in small pictures after 0.8 and 4 s: two to three minutes, and once their references");
   interiors_
       ->add_option("--settings", o.settings,
                    "some of path, learned, cache, cache-learned; the first is what the others are held "
@@ -428,7 +428,7 @@ void Program::add_bench_interiors() {
       ->delimiter(',')
       ->check(CLI::IsMember(
           std::vector<std::string>(bench::k_interior_settings.begin(), bench::k_interior_settings.end())));
-  interiors_->add_option("--seconds", o.seconds, "that renders take [4,15,60; quick 1,3]")
+  interiors_->add_option("--seconds", o.seconds, "that renders take [4,15,60; quick 0.8,4]")
       ->delimiter(',')
       ->check(finite() & CLI::Range(0.01, 1e6));
   interiors_

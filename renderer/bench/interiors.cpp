@@ -28,7 +28,7 @@ struct Form {
   uint32_t reference_samples;
 };
 const Form k_full = {"interiors", 3, {4, 15, 60}, "320x180", 2048};
-const Form k_quick = {"interiors-quick", 2, {1, 3}, "192x108", 1024};
+const Form k_quick = {"interiors-quick", 2, {0.8, 4}, "192x108", 1024};
 
 struct Way {
   const char *name, *about;

@@ -29,7 +29,7 @@ std::vector<vec3> layer(const film::FilmImage& picture, const std::string& name)
 
 std::vector<std::string> outside_arguments(const Matrix& m, const Cell& cell, const SettingValues& values,
                                            const std::string& device, const scene::LoadOptions& scenes,
-                                           const OutsideFiles& files) {
+                                           const OutsideFiles& files, double times) {
   const SceneEntry& scene = m.scenes[cell.scene];
   const Budget budget = m.budget(cell);
   std::vector<std::string> all{"render",
@@ -59,12 +59,16 @@ std::vector<std::string> outside_arguments(const Matrix& m, const Cell& cell, co
   } else if (budget.kind == BudgetKind::errors) {
     add("--error", fmt::format("{}", budget.value));
   } else {
-    add("--time", fmt::format("{}", budget.value));
+    add("--time", fmt::format("{}", times * budget.value));
     add("--samples", endless);
     set.emplace("sampling.max_samples", endless);
   }
   for (const auto& [key, value] : set) add("--set", key + "=" + value);
   return all;
+}
+
+bool out_of_time(const ProgramResult& result) {
+  return result.status == 1 && result.last_line().find("--time: ") != std::string::npos;
 }
 
 std::vector<vec3> colours(const film::FilmImage& picture, const std::string& where) {

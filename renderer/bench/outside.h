@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/matrix.h"
+#include "bench/program.h"
 #include "bench/reference.h"
 #include "bench/result.h"
 #include "scene/io/load.h"
@@ -18,10 +19,15 @@ struct OutsideFiles {
 };
 
 /// The arguments of `PROGRAM render` for a cell, `values` the settings of all levels together but samples,
-/// seed and target error. What ends it is the cell's budget alone, whatever limits the scene itself names.
+/// seed and target error. What ends it is the cell's budget alone, whatever limits the scene itself names;
+/// where that is of seconds, so many `times` as long.
 std::vector<std::string> outside_arguments(const Matrix& matrix, const Cell& cell,
                                            const SettingValues& values, const std::string& device,
-                                           const scene::LoadOptions& scenes, const OutsideFiles& files);
+                                           const scene::LoadOptions& scenes, const OutsideFiles& files,
+                                           double times = 1);
+
+/// Whether it has ended because no pixel had a sample when its time was over.
+bool out_of_time(const ProgramResult& result);
 
 /// The figures of the picture that it has written, which are a curve of one point; names and budget of the
 /// result are left to the caller. Throws Error located at a file that is not as `render` writes it, or of

@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 using session::Renderer;
 
 constexpr double k_progress_every_s = 0.2;
+constexpr double k_most_waiting = 64;  ///< times the seconds that another program is given
 
 /// A setting's values above the scene's above those for all.
 SettingValues merged(const Matrix& matrix, const SceneEntry& scene, const SettingValues& own) {
@@ -290,17 +291,22 @@ Result Run::render_outside(const Cell& cell, const ReferenceInfo& reference, con
     fs::remove(files.picture, ignored), fs::remove(files.stats, ignored);
   };
   forget();
-  const ProgramResult run =
-      run_program(setting.program,
-                  outside_arguments(matrix_, cell, merged(matrix_, scene, setting.set), options_.device,
-                                    options_.scenes, files),
-                  {.interrupted = hooks_.interrupted, .waiting = [&](double seconds) {
-                     // Of samples it is not known how far it is.
-                     tell(budget.kind == BudgetKind::seconds ? std::min(1.0, seconds / budget.value) : 0);
-                   }});
-  if (run.interrupted) {
-    forget();
-    throw Interrupted{};
+  // A picture that is not there in time is waited for, as above.
+  ProgramResult run;
+  for (double times = 1; times <= k_most_waiting; times *= 2) {
+    run = run_program(setting.program,
+                      outside_arguments(matrix_, cell, merged(matrix_, scene, setting.set), options_.device,
+                                        options_.scenes, files, times),
+                      {.interrupted = hooks_.interrupted, .waiting = [&](double seconds) {
+                         // Of samples it is not known how far it is.
+                         const bool timed = budget.kind == BudgetKind::seconds;
+                         tell(timed ? std::min(1.0, seconds / (times * budget.value)) : 0);
+                       }});
+    if (run.interrupted) {
+      forget();
+      throw Interrupted{};
+    }
+    if (!out_of_time(run)) break;
   }
   if (run.status != 0) throw_error(setting.program, "ended with status {}: {}", run.status, run.last_line());
   const film::FilmImage truth = film::read_exr(reference.file);

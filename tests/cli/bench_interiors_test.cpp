@@ -109,6 +109,19 @@ TEST_CASE("bench interiors stops at Ctrl-C with what is finished") {
   CHECK_FALSE(fs::exists(place / "r/outside.exr"));
 }
 
+TEST_CASE("bench interiors waits for a picture that is not there in time") {
+  const lucerna::test::Folder place;
+  const Run r =
+      run("bench interiors --scenes " + k_room +
+          " --size 24x16 --seconds 0.01 --reference-samples 16 --repeats 1 --settings cache --report " +
+          (place / "r").string() + " --references " + (place / "refs").string());
+  INFO(r.out);
+  REQUIRE(r.status == 0);
+  const auto cell = read_json(place / "r/cells/cornell.cache.0.0.json");
+  CHECK(cell["wall_s"] > 0.01);
+  CHECK(cell["samples"] > 0);
+}
+
 TEST_CASE("bench interiors refuses what it cannot measure") {
   const lucerna::test::Folder place;
   const auto refused = [&](const std::string& arguments, const std::string& expected) {

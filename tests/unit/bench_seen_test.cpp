@@ -132,10 +132,12 @@ TEST_CASE("The project's own interiors are there, and three of them in the quick
   const Matrix quick = interiors_matrix(o, "", left_out);
   CHECK(names(quick.scenes) == k_quick_interiors);
   CHECK(quick.repeats == 2);
-  // Two minutes: renders and a second of loading each.
+  // Two to three minutes: renders and a second of loading each; times to errors need a factor of four.
   double seconds = 0;
   for (const Cell& c : quick.cells()) seconds += quick.budget(c).value + 1;
   CHECK(seconds < 180);
+  const std::vector<double>& times = quick.budgets(0, 0);
+  CHECK(times.front() * 1.2 <= times.back() / 4);
 }
 
 TEST_CASE("Another program has the settings that it knows, each beside its like") {
@@ -196,6 +198,9 @@ TEST_CASE("A program's words and status are reported, and it ends when the bench
   CHECK_FALSE(said.interrupted);
   CHECK(run_program("/bin/sh", {"-c", "kill -9 $$"}, {}).status == 128 + SIGKILL);
   CHECK(ProgramResult{}.last_line().empty());
+  CHECK(out_of_time({.status = 1, .text = "lucerna: --time: '1': no pixel has a sample\n"}));
+  CHECK_FALSE(out_of_time({.status = 1, .text = "lucerna: --set: '1': unknown setting\n"}));
+  CHECK_FALSE(out_of_time({.status = 0, .text = "lucerna: --time: after 1 s 20 % of the picture\n"}));
   int asked = 0;
   // What does not listen to SIGTERM is ended all the same.
   const ProgramResult stopped = run_program("/bin/sh", {"-c", "trap '' TERM; while :; do sleep 0.05; done"},
