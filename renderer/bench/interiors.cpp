@@ -10,7 +10,7 @@
 
 namespace lucerna::bench {
 
-const std::vector<std::string> k_own_interiors = {"ajar", "atrium",    "classroom", "conference",
+const std::vector<std::string> k_own_interiors = {"ajar", "arcade", "atrium",    "classroom", "conference",
                                                   "hall", "sun-patch", "window"};
 const std::vector<std::string> k_quick_interiors = {"classroom", "hall", "window"};
 
