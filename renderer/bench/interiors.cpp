@@ -10,8 +10,8 @@
 
 namespace lucerna::bench {
 
-const std::vector<std::string> k_own_interiors = {"ajar", "arcade", "atrium",    "classroom", "conference",
-                                                  "hall", "sun-patch", "window"};
+const std::vector<std::string> k_own_interiors = {"ajar",       "arcade", "atrium",    "classroom",
+                                                  "conference", "hall",   "sun-patch", "window"};
 const std::vector<std::string> k_quick_interiors = {"classroom", "hall", "window"};
 
 namespace {
@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// How much is measured, where nothing else is asked for.
+/// How much is measured, where nothing else is given.
 struct Form {
   const char* name;
   int repeats;

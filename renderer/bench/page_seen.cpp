@@ -29,7 +29,7 @@ std::string lead(const Json& report) {
       escape(text_of(report, "version")), incomplete(report),
       repeats > 1 ? fmt::format(", {} rounds with a seed each", repeats) : "", escape(k_about_seen), first,
       repeats > 1 ? "Below it is the interval that holds the true factor nine times in ten, by how repeats "
-                    "scatter; factors that it does not tell from 1 are dim."
+                    "scatter; factors whose interval holds 1 are dim."
                   : "Of one repeat each, how far they can be trusted is not known.");
 }
 

@@ -56,7 +56,7 @@ void describe_reference(std::map<std::string, std::string>& metadata, const Refe
 /// other.
 void add_odd_half(film::FilmImage& reference, const film::Image& image);
 
-/// Fills in what a reference's picture tells of its own noise. Throws Error as read_halves() and
+/// Fills in a reference's own noise, from its picture. Throws Error as read_halves() and
 /// film::read_reference().
 void find_noise(ReferenceInfo& info, const film::FilmImage& image, const SceneEntry& scene);
 

@@ -201,10 +201,10 @@ TEST_CASE("A program's words and status are reported, and it ends when the bench
   CHECK(out_of_time({.status = 1, .text = "lucerna: --time: '1': no pixel has a sample\n"}));
   CHECK_FALSE(out_of_time({.status = 1, .text = "lucerna: --set: '1': unknown setting\n"}));
   CHECK_FALSE(out_of_time({.status = 0, .text = "lucerna: --time: after 1 s 20 % of the picture\n"}));
-  int asked = 0;
+  int queries = 0;
   // What does not listen to SIGTERM is ended all the same.
   const ProgramResult stopped = run_program("/bin/sh", {"-c", "trap '' TERM; while :; do sleep 0.05; done"},
-                                            {.interrupted = [&] { return ++asked > 2; }});
+                                            {.interrupted = [&] { return ++queries > 2; }});
   CHECK(stopped.interrupted);
   CHECK(stopped.status == 128 + SIGKILL);
   CHECK_THROWS_WITH(run_program("/no/such/program", {}, {}), Contains("/no/such/program: cannot be run"));
@@ -244,7 +244,7 @@ TEST_CASE("Figures of the error as seen: after a time, to an error, factors with
   CHECK(r["seen_besides"].size() == 4);
 }
 
-TEST_CASE("Page and findings of the error as seen tell factors, and what is noise") {
+TEST_CASE("Page and findings of the error as seen hold factors, and what is noise") {
   MadeUp made;
   const Json r = made.report();
   const std::string html = make_page(r, made.place.path);
