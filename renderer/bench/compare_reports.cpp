@@ -87,10 +87,10 @@ void compare_scene(const Json& a, const Json& b, std::string& text) {
     }
     text += cell(quotient(number(*after, "/index/pi/median"), number(before, "/index/pi/median")),
                  index_noise, false);
-    text += cell(quotient(number(*after, "/seen_index/pi/median"), number(before, "/seen_index/pi/median")),
-                 seen_noise, false);
     text += cell(quotient(number(*after, "/rays_per_s/median"), number(before, "/rays_per_s/median")),
                  rate_noise, false);
+    text += cell(quotient(number(*after, "/seen_index/pi/median"), number(before, "/seen_index/pi/median")),
+                 seen_noise, false);
     text += "\n";
   }
 }
@@ -127,7 +127,7 @@ std::string compare_reports(const Json& before, const Json& after) {
   std::string text;
   compare_heads(before, after, text);
   text += fmt::format("{:<12} {:<16}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "scene", "setting", "to 5 % ",
-                      "to 2 % ", "to 1 % ", "index ", "as seen ", "rays/s ");
+                      "to 2 % ", "to 1 % ", "index ", "rays/s ", "as seen ");
   for (const Json& scene : before.at("scenes"))
     if (const Json* other = find_named(after.at("scenes"), scene.at("name").get<std::string>()))
       compare_scene(scene, *other, text);
