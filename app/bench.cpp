@@ -9,11 +9,13 @@
 #include "app/interrupt.h"
 #include "app/verbs.h"
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/log.h"
 #include "base/timer.h"
 #include "bench/compare_reports.h"
 #include "bench/machine.h"
 #include "bench/page.h"
+#include "bench/program.h"
 #include "bench/report.h"
 #include "bench/runner.h"
 #include "gpu/device.h"
@@ -59,9 +61,19 @@ Json earlier_report(const fs::path& folder) {
   }
 }
 
-int run(const BenchArguments& a) {
+/// What settings are rendered by, as one file's hash each: a folder is not gone on with by another build.
+void add_programs(const bench::Matrix& matrix, Json& identity) {
+  for (const bench::Setting& setting : matrix.settings) {
+    if (setting.program.empty() || identity.contains(setting.program)) continue;
+    const std::string bytes = read_file(setting.program);
+    Hash hash;
+    hash.add_bytes(bytes.data(), bytes.size());
+    identity[setting.program] = fmt::format("build {:016x}", hash.low());
+  }
+}
+
+int run(const BenchArguments& a, const bench::Matrix& matrix) {
   const Timer timer;
-  const bench::Matrix matrix = choose_matrix(a);
   const fs::path path = a.report;
   const bench::Machine machine = bench::this_machine();
   const double load = bench::load_average();
@@ -71,6 +83,7 @@ int run(const BenchArguments& a) {
     device = {{"name", chosen.info().name}, {"driver", chosen.info().driver}};
     identity = {{"version", LUCERNA_VERSION}, {"device", chosen.info().name}, {"processor", machine.cpu}};
   }
+  add_programs(matrix, identity);
   const bench::Folder folder(path, matrix, identity);
   const Json before = earlier_report(path);
 
@@ -138,7 +151,38 @@ int bench_matrix(const BenchArguments& a) {
     std::printf("%s\n", (fs::path(a.page) / "report.html").c_str());
     return 0;
   }
-  return run(a);
+  return run(a, choose_matrix(a));
+}
+
+int bench_interiors(const BenchInteriorsArguments& a) {
+  bench::InteriorsOptions options = a.options;
+  options.own = fs::path(LUCERNA_SOURCE_DIR) / "scenes";
+  std::error_code code;
+  options.program = fs::read_symlink("/proc/self/exe", code);
+  if (code) throw_error("/proc/self/exe", "cannot be read: {}", code.message());
+  std::string help;
+  if (!options.against.empty()) {
+    const bench::ProgramResult other = bench::run_program(options.against, {"render", "--help"}, {});
+    if (other.status != 0 || other.text.find("components.secondary") == std::string::npos)
+      throw_error("--against", "'{}': expected another lucerna", options.against.string());
+    help = other.text;
+  }
+  std::vector<std::string> left_out;
+  const bench::Matrix matrix = bench::interiors_matrix(options, help, left_out);
+  if (!left_out.empty())
+    std::fprintf(stderr, "lucerna: %s has no settings for %s; these have nothing beside them\n",
+                 options.against.c_str(), fmt::format("{}", fmt::join(left_out, ", ")).c_str());
+  return run({.matrix = {},
+              .built_in = {},
+              .report = a.report,
+              .references = a.references,
+              .device = a.device,
+              .quiet = a.quiet,
+              .command = a.command,
+              .compare = {},
+              .page = {},
+              .scenes = a.scenes},
+             matrix);
 }
 
 }  // namespace lucerna::app

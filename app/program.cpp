@@ -68,6 +68,7 @@ class Program {
   void add_small_benches();
   void add_bench_latency();
   void add_bench_photons();
+  void add_bench_interiors();
   void add_scene_options(CLI::App* verb);
   int view();
 
@@ -80,7 +81,7 @@ class Program {
 
   CLI::App *render_ = nullptr, *info_ = nullptr, *devices_ = nullptr, *compare_ = nullptr, *bench_ = nullptr,
            *rays_ = nullptr, *sort_ = nullptr, *lookup_ = nullptr, *interpolation_ = nullptr, *mix_ = nullptr,
-           *latency_ = nullptr, *photons_ = nullptr;
+           *latency_ = nullptr, *photons_ = nullptr, *interiors_ = nullptr;
   RenderArguments r;
   std::string info_scene_;
   bool info_json_ = false, devices_json_ = false;
@@ -93,6 +94,7 @@ class Program {
   BenchInterpolationArguments bi;
   BenchLatencyArguments bt;
   BenchPhotonsArguments bp;
+  BenchInteriorsArguments bn;
 };
 
 constexpr const char* k_device_help = "device: index, part of a name, cpu or gpu (also LUCERNA_DEVICE)";
@@ -107,6 +109,7 @@ Program::Program() {
   add_small_benches();
   add_bench_latency();
   add_bench_photons();
+  add_bench_interiors();
   app_.require_subcommand(0, 1);
   // Footers come last: verbs that are added take over what stands under the one that they are added to.
   app_.footer(settings_help());
@@ -390,10 +393,69 @@ void Program::add_bench_photons() {
   photons_->add_option("--device", o.device, k_device_help);
 }
 
+void Program::add_bench_interiors() {
+  interiors_ = bench_->add_subcommand(
+      "interiors",
+      "error as seen of rooms after 4, 15 and 60 s, and the time to 5, 2 and 1 %, by path tracing, learned "
+      "lights, cached light and both; hours (--interiors is the same)");
+  bench::InteriorsOptions& o = bn.options;
+  interiors_
+      ->add_option(
+          "--scenes", o.folders,
+          "folder with glTF scenes, each of which is measured, or one such file; may be given several "
+          "times [the program's own interiors]")
+      ->allow_extra_args(false)
+      ->check(named());
+  interiors_->add_option("--report", bn.report, "folder to write to and to go on in; new, empty or a bench's")
+      ->capture_default_str();
+  interiors_
+      ->add_option("--references", bn.references,
+                   "folder that keeps the reference pictures, for this and later benches")
+      ->capture_default_str()
+      ->check(named());
+  interiors_
+      ->add_option("--against", o.against,
+                   "another lucerna, such as the commit before, in a checkout of its own: rendered by turns "
+                   "with this one, every setting beside its like")
+      ->check(named());
+  interiors_->add_flag(
+      "--quick", o.quick,
+      "three rooms in small pictures after 0.8 and 4 s: two to three minutes, and once their references");
+  interiors_
+      ->add_option("--settings", o.settings,
+                   "some of path, learned, cache, cache-learned; the first is what the others are held "
+                   "against [all]")
+      ->delimiter(',')
+      ->check(CLI::IsMember(
+          std::vector<std::string>(bench::k_interior_settings.begin(), bench::k_interior_settings.end())));
+  interiors_->add_option("--seconds", o.seconds, "that renders take [4,15,60; quick 0.8,4]")
+      ->delimiter(',')
+      ->check(finite() & CLI::Range(0.01, 1e6));
+  interiors_
+      ->add_option("--samples", o.samples,
+                   "samples a pixel that end renders in place of time: then errors do not depend on the "
+                   "machine")
+      ->delimiter(',')
+      ->check(CLI::Range(1u, 1u << 20))
+      ->excludes("--seconds");
+  interiors_->add_option("--size", o.size,
+                         "picture, WIDTHxHEIGHT; turned where a scene's camera is upright [320x180; quick "
+                         "192x108]");
+  interiors_->add_option("--repeats", o.repeats, "renders of each, with other seeds [3; quick 2]")
+      ->check(CLI::Range(1, 100));
+  interiors_
+      ->add_option("--reference-samples", o.reference_samples,
+                   "samples a pixel of the reference pictures, in two halves [2048; quick 1024]")
+      ->check(CLI::Range(2u, 1u << 20));
+  interiors_->add_flag("--quiet", bn.quiet, "no progress");
+  interiors_->add_option("--device", bn.device, k_device_help);
+  add_scene_options(interiors_);
+}
+
 int Program::run(int argc, char** argv) {
   // They are asked for like built-in matrices, too.
-  std::string latency = "latency", photons = "photons";
-  for (std::string* name : {&latency, &photons})
+  std::string latency = "latency", photons = "photons", interiors = "interiors";
+  for (std::string* name : {&latency, &photons, &interiors})
     if (argc > 2 && argv[1] == std::string("bench") && argv[2] == "--" + *name) argv[2] = name->data();
   try {
     app_.parse(argc, argv);
@@ -402,9 +464,9 @@ int Program::run(int argc, char** argv) {
   }
   if (verbose_) log::set_console_level(log::Level::info);
   scenes_.most_bytes = uint64_t(scene_memory_ * k_gib);
-  r.scenes = b.scenes = bi.scenes = bx.scenes = bm.scenes = bt.load = scenes_;
+  r.scenes = b.scenes = bi.scenes = bx.scenes = bm.scenes = bt.load = bn.scenes = scenes_;
   for (std::string* device : {&r.device, &b.device, &bs.device, &bl.device, &bi.device, &bx.device,
-                              &bm.device, &bt.device, &bp.options.device})
+                              &bm.device, &bt.device, &bp.options.device, &bn.device})
     if (device->empty()) *device = device_;
   if (*render_) return render(r);
   if (*info_) return info(info_scene_, info_json_, scenes_);
@@ -424,6 +486,10 @@ int Program::run(int argc, char** argv) {
   if (*photons_) {
     bp.command = typed();
     return bench_photons(bp);
+  }
+  if (*interiors_) {
+    bn.command = typed();
+    return bench_interiors(bn);
   }
   if (*bench_) {
     bm.command = typed();

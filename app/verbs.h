@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/interiors.h"
 #include "bench/photons.h"
 #include "scene/io/load.h"
 
@@ -114,6 +115,15 @@ struct BenchArguments {
   scene::LoadOptions scenes;
 };
 int bench_matrix(const BenchArguments& arguments);
+
+struct BenchInteriorsArguments {
+  bench::InteriorsOptions options;
+  std::string report = "interiors-report", references = "interiors-references", device;
+  bool quiet = false;
+  std::string command;  ///< as typed, for the report
+  scene::LoadOptions scenes;
+};
+int bench_interiors(const BenchInteriorsArguments& arguments);
 
 struct CompareArguments {
   std::string a, b, layer, difference;

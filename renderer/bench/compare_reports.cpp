@@ -68,7 +68,8 @@ void compare_scene(const Json& a, const Json& b, std::string& text) {
     text += fmt::format("note: {} is {} in the old report and {} in the new one\n", scene,
                         a.value("size", ""), b.value("size", ""));
   const auto time_noise = joint_noise(a, b, "/noise/time"), index_noise = joint_noise(a, b, "/noise/index"),
-             rate_noise = joint_noise(a, b, "/noise/rate");
+             rate_noise = joint_noise(a, b, "/noise/rate"),
+             seen_noise = joint_noise(a, b, "/noise/seen_index");
   for (const Json& before : a.at("settings")) {
     const std::string name = before.at("name").get<std::string>();
     const Json* after = find_named(b.at("settings"), name);
@@ -88,6 +89,8 @@ void compare_scene(const Json& a, const Json& b, std::string& text) {
                  index_noise, false);
     text += cell(quotient(number(*after, "/rays_per_s/median"), number(before, "/rays_per_s/median")),
                  rate_noise, false);
+    text += cell(quotient(number(*after, "/seen_index/pi/median"), number(before, "/seen_index/pi/median")),
+                 seen_noise, false);
     text += "\n";
   }
 }
@@ -123,8 +126,8 @@ void name_missing(const Json& from, const Json& in, const char* which, std::stri
 std::string compare_reports(const Json& before, const Json& after) {
   std::string text;
   compare_heads(before, after, text);
-  text += fmt::format("{:<12} {:<16}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "scene", "setting", "to 5 % ",
-                      "to 2 % ", "to 1 % ", "index ", "rays/s ");
+  text += fmt::format("{:<12} {:<16}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}\n", "scene", "setting", "to 5 % ",
+                      "to 2 % ", "to 1 % ", "index ", "rays/s ", "as seen ");
   for (const Json& scene : before.at("scenes"))
     if (const Json* other = find_named(after.at("scenes"), scene.at("name").get<std::string>()))
       compare_scene(scene, *other, text);

@@ -137,10 +137,40 @@ std::string records_finding(const Json& report, const Json& scene) {
   return found.empty() ? "" : scene_line(scene, found, "");
 }
 
+/// What a mean factor over all scenes says of a setting against another one.
+std::string seen_finding(const Json& entry, const std::string& other) {
+  const std::string what = fmt::format("{}, {}", text_of(entry, "setting"), text_of(entry, "budget"));
+  if (entry.value("noise", false))
+    return fmt::format("{}: over {:.0f} scenes no difference from {} beyond the measurement’s noise.", what,
+                       entry.at("scenes").get<double>(), other);
+  const double ratio = entry.at("ratio").get<double>();
+  const std::string range = entry.contains("low")
+                                ? fmt::format(" ({} to {})", ratio_text(entry.at("low").get<double>()),
+                                              ratio_text(entry.at("high").get<double>()))
+                                : std::string();
+  return fmt::format("{}: over {:.0f} scenes {}{} the efficiency of {}.", what,
+                     entry.at("scenes").get<double>(), ratio_text(ratio), range, other);
+}
+
+/// Of a matrix of the error as seen: the mean factors over all scenes.
+std::vector<std::string> seen_findings(const Json& report) {
+  std::vector<std::string> lines;
+  const Json& settings = report.at("matrix").at("settings");
+  for (const Json& e : report.value("seen_ratios", Json::array()))
+    lines.push_back(seen_finding(e, text_of(settings.at(0), "name")));
+  for (const Json& e : report.value("seen_besides", Json::array()))
+    for (const Json& s : settings)
+      if (text_of(s, "name") == text_of(e, "setting")) lines.push_back(seen_finding(e, text_of(s, "beside")));
+  if (!lines.empty() && report.at("matrix").at("repeats").get<int>() < 2)
+    lines.push_back("Of one repeat each: what of these factors is noise is not known.");
+  return lines;
+}
+
 }  // namespace
 
 std::vector<std::string> findings(const Json& report) {
   std::vector<std::string> lines;
+  if (report.at("matrix").value("as_seen", false)) return seen_findings(report);
   for (const Json& scene : report.at("scenes")) {
     const Json& settings = scene.at("settings");
     if (settings.size() < 2) continue;

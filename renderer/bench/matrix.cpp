@@ -1,5 +1,7 @@
 #include "bench/matrix.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -44,6 +46,10 @@ class Node {
   std::string text() const {
     if (!json_.is_string()) throw_error(where_, "expected a text, found {}", json_text(json_));
     return json_.get<std::string>();
+  }
+  bool truth() const {
+    if (!json_.is_boolean()) throw_error(where_, "expected true or false, found {}", json_text(json_));
+    return json_.get<bool>();
   }
   double number(double lo, double hi, bool whole) const {
     const double x = json_.is_number() ? json_.get<double>() : NAN;
@@ -93,6 +99,14 @@ std::string read_curve(const Node& node) {
   return curve;
 }
 
+/// A file that can be run, from the root.
+std::string read_program(const Node& node) {
+  const std::string file = absolute_path(node.text()).string();
+  if (!is_plain_file(file) || access(file.c_str(), X_OK) != 0)
+    throw_error(node.where(), "'{}': expected a program, such as build/release/bin/lucerna", node.text());
+  return file;
+}
+
 void read_budgets(const Node& node, std::array<std::vector<double>, 3>& budgets) {
   node.only({"samples", "errors", "seconds"});
   for (size_t kind = 0; kind < budgets.size(); ++kind) {
@@ -133,7 +147,7 @@ Json parse_json(const std::string& text, const std::string& where) {
 
 /// One entry of "settings"; `m` holds those before it.
 Setting read_setting(const Node& node, const Matrix& m) {
-  node.only({"name", "about", "set", "curve", "budget"});
+  node.only({"name", "about", "set", "curve", "budget", "program", "beside"});
   Setting s;
   s.name = read_name(node.at("name"));
   if (std::any_of(m.settings.begin(), m.settings.end(), [&](const Setting& o) { return o.name == s.name; }))
@@ -141,6 +155,8 @@ Setting read_setting(const Node& node, const Matrix& m) {
   if (node.has("about")) s.about = node.at("about").text();
   if (node.has("set")) s.set = node.at("set").settings();
   if (node.has("curve")) s.curve = read_curve(node.at("curve"));
+  if (node.has("program")) s.program = read_program(node.at("program"));
+  if (node.has("beside")) s.beside = node.at("beside").text();
   const bool adaptive = effective(m.set, s.set, "sampling.mode") == "adaptive";
   s.budget = adaptive ? BudgetKind::errors : BudgetKind::samples;
   if (node.has("budget")) {
@@ -214,6 +230,12 @@ std::string Budget::text() const {
   }
 }
 
+std::optional<size_t> find_setting(const Matrix& m, const std::string& name) {
+  for (size_t k = 0; k < m.settings.size(); ++k)
+    if (m.settings[k].name == name) return k;
+  return std::nullopt;
+}
+
 std::vector<Cell> Matrix::cells() const {
   std::vector<Cell> all;
   for (size_t s = 0; s < scenes.size(); ++s) {
@@ -236,8 +258,8 @@ Matrix parse_matrix(const std::string& text, const std::string& where, const fs:
   const Json json = parse_json(text, where);
   const Node top(json, where + ": ");
   if (!json.is_object()) throw_error(where, "expected an object {{...}}, found {}", json.type_name());
-  top.only(
-      {"name", "about", "repeats", "warmup", "seed", "reference", "set", "budgets", "scenes", "settings"});
+  top.only({"name", "about", "repeats", "warmup", "seed", "reference", "set", "as_seen", "budgets", "scenes",
+            "settings"});
   Matrix m;
   m.name = top.has("name") ? top.at("name").text() : fs::path(where).stem().string();
   if (top.has("about")) top.at("about").text();
@@ -256,10 +278,15 @@ Matrix parse_matrix(const std::string& text, const std::string& where, const fs:
                 "{} is also the seed of a repeat; a reference must not share samples with what it judges",
                 m.reference_seed);
   if (top.has("set")) m.set = top.at("set").settings();
+  if (top.has("as_seen")) m.as_seen = top.at("as_seen").truth();
   std::array<std::vector<double>, 3> budgets;
   if (top.has("budgets")) read_budgets(top.at("budgets"), budgets);
 
   for (const Node& node : top.at("settings").list()) m.settings.push_back(read_setting(node, m));
+  for (const Setting& s : m.settings)
+    if (!s.beside.empty() && (s.beside == s.name || !find_setting(m, s.beside)))
+      throw_error(top.where() + "settings",
+                  "'{}' is to be held against '{}', and no other setting has that name", s.name, s.beside);
   for (const Node& node : top.at("scenes").list())
     m.scenes.push_back(read_scene(node, m, folder, budgets, reference_samples));
   return m;
@@ -280,6 +307,7 @@ nlohmann::ordered_json to_json(const Matrix& m) {
   j["reference"] = {{"seed", m.reference_seed}};
   j["set"] = Json::object();
   for (const auto& [key, value] : m.set) j["set"][key] = value;
+  if (m.as_seen) j["as_seen"] = true;
   for (const SceneEntry& s : m.scenes) {
     Json scene{
         {"name", s.name},     {"file", s.file.string()}, {"size", fmt::format("{}x{}", s.width, s.height)},
@@ -293,6 +321,8 @@ nlohmann::ordered_json to_json(const Matrix& m) {
     Json setting{{"name", s.name}, {"about", s.about}, {"set", Json::object()}};
     for (const auto& [key, value] : s.set) setting["set"][key] = value;
     if (!s.curve.empty()) setting["curve"] = s.curve;
+    if (!s.program.empty()) setting["program"] = s.program;
+    if (!s.beside.empty()) setting["beside"] = s.beside;
     setting["budget"] = k_budget_names[size_t(s.budget)];
     j["settings"].push_back(std::move(setting));
   }

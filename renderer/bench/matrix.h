@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,12 @@ struct Setting {
   /// to, and the report joins them by a line, error against records.
   std::string curve;
   BudgetKind budget = BudgetKind::samples;
+  /// "" or another lucerna (a file), whose verb `render` makes the pictures: in a process of its own, and
+  /// known are the figures of the picture in the end alone.
+  std::string program{};
+  /// "" or the name of another setting that this one is held against besides the first, such as the same
+  /// rendered by another program.
+  std::string beside{};
 };
 
 struct SceneEntry {
@@ -61,6 +68,7 @@ struct Matrix {
   uint32_t warmup = 8;                         ///< samples a pixel rendered and thrown away before the clock
   uint32_t seed = 1, reference_seed = 900001;  ///< repeat k has seed + k
   SettingValues set;                           ///< for all
+  bool as_seen = false;                        ///< the report's page is of the error as seen alone
   std::vector<SceneEntry> scenes;
   std::vector<Setting> settings;  ///< the first is what the others are held against
 
@@ -77,10 +85,13 @@ struct Matrix {
   std::string id(const Cell& c) const;
 };
 
+/// Its place in Matrix::settings.
+std::optional<size_t> find_setting(const Matrix& matrix, const std::string& name);
+
 /// Reads a matrix; `where` locates messages, `folder` is what relative scene files start from. Throws Error,
 /// located at the element ("m.json: settings[1].set"), for JSON that does not parse, unknown keys, wrong
-/// types, values out of range, unknown settings, names used twice, scenes that do not exist, and settings
-/// without a budget. k_matrix_help says what may stand in it.
+/// types, values out of range, unknown settings, programs that cannot be run, names used twice, scenes that
+/// do not exist, and settings without a budget. k_matrix_help says what may stand in it.
 Matrix parse_matrix(const std::string& text, const std::string& where, const std::filesystem::path& folder);
 /// The same from a file, whose folder scene files are relative to.
 Matrix read_matrix(const std::filesystem::path& file);

@@ -94,11 +94,13 @@ A matrix file is a JSON object; an unknown key is an error:
   seed       of the first repeat; every further one has the next [1]
   reference  {"samples": N, "seed": N}: of the long plain path-traced renders taken for the truth [4096, 900001]
   set        {"KEY": VALUE}: settings for all cells and references (keys: lucerna render --help)
+  as_seen    true: the page is of the error as seen alone [false]
   budgets    what ends a render; lists of {"samples": [..], "errors": [..], "seconds": [..]}
   scenes     [{"file": F.gltf (relative to the matrix file), "size": "WxH", "name", "camera", "set", "budgets",
               "reference_samples"}]
-  settings   [{"name", "about", "set": {..}, "curve", "budget": "samples" | "errors" | "seconds"}]; the first is
-              what the others are held against. Without "budget", adaptive settings take errors, the others
+  settings   [{"name", "about", "set": {..}, "curve", "program", "beside", "budget": "samples" |
+              "errors" | "seconds"}]; the first is what the others are held against, and besides it the setting named
+              as "beside". With "program" (another lucerna) that one renders, by its verb render. Without "budget", adaptive settings take errors, the others
               samples. Settings of one "curve" (a text) differ in how many records a solver comes to; the page joins
               them by a line, error against records.
 The smallest one:

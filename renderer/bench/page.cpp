@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "bench/html.h"
+#include "bench/page_parts.h"
 #include "bench/page_plots.h"
 #include "bench/thumbnails.h"
 
@@ -14,45 +15,18 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr uint32_t k_picture_width = 344;  ///< at most, on the page
-
-/// "4.12 s" with the range of the repeats in small.
-template <class F>
-std::string with_range(const Json& spread, F format, const std::string& mark = "") {
-  return fmt::format("{}{}<br/><small>{} – {}</small>", mark, format(median_of(spread)),
-                     format(spread.at("low").get<double>()), format(spread.at("high").get<double>()));
-}
-
-std::string key_of(size_t setting) {
-  return fmt::format("<span class=\"key\" style=\"background:{}\"></span>", setting_colour(setting));
-}
-
 std::string times_text(int times) {
   return times == 1 ? "once" : times == 2 ? "twice" : fmt::format("{} times", times);
 }
 
-/// A ratio, accented when it is a gain beyond the noise and dim when it is none.
-std::string ratio_cell(const Json& entry, bool extrapolated) {
-  if (!entry.contains("ratio")) return "<span class=\"noise\">1</span>";
-  const double ratio = entry.at("ratio").get<double>();
-  const bool known = entry.contains("noise"), noise = known && entry.at("noise").get<bool>();
-  const char* look = !known || noise ? "noise" : ratio > 1 ? "win" : "";
-  return fmt::format("<span class=\"{}\">{}{}</span>", look, extrapolated ? "~" : "", ratio_text(ratio));
-}
-
 std::string heading(const Json& report) {
-  const Json& cells = report.at("cells");
   std::string html = fmt::format(
       "<h1>What accuracy costs in time</h1>\n<p class=\"dim\" style=\"max-width:none\">lucerna bench, matrix "
       "“{}” · {} · {} · version {}</p>\n",
       escape(text_of(report.at("matrix"), "name")), escape(text_of(report, "date")),
       escape(report.contains("device") ? text_of(report.at("device"), "name") : ""),
       escape(text_of(report, "version")));
-  if (!report.value("complete", false))
-    html += fmt::format(
-        "<p class=\"warn\">Not complete: {} of {} renders are done. Run the same command again to go "
-        "on.</p>\n",
-        cells.at("done").get<int>(), cells.at("total").get<int>());
+  html += incomplete(report);
   const Json& m = report.at("matrix");
   const std::string plain = escape(text_of(m.at("settings").at(0), "name"));
   html += fmt::format(
@@ -66,68 +40,8 @@ std::string heading(const Json& report) {
       m.at("scenes").size(), m.at("scenes").size() == 1 ? "" : "s",
       m.at("scenes").size() == 1 ? "was" : "were", m.at("settings").size(),
       m.at("settings").size() == 1 ? "" : "s", times_text(m.at("repeats").get<int>()), plain);
-  const auto found = findings(report);
-  if (!found.empty()) {
-    html += "<ul class=\"found\">";
-    for (const std::string& line : found) html += "<li>" + escape(line) + "</li>\n";
-    html += "</ul>\n";
-  }
-  html +=
-      "<table><tr><th class=\"l\">setting</th><th class=\"l\">what it is</th><th class=\"l\">options "
-      "changed</th></tr>\n";
-  for (size_t k = 0; k < m.at("settings").size(); ++k) {
-    const Json& s = m.at("settings")[k];
-    std::string set;
-    for (const auto& [key, value] : s.at("set").items())
-      set += fmt::format("{}{}={}", set.empty() ? "" : ", ", key, value.get<std::string>());
-    html += fmt::format(
-        "<tr><td class=\"l\">{}{}</td><td class=\"l wide\">{}</td><td class=\"l "
-        "wide\"><code>{}</code></td></tr>\n",
-        key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")), escape(text_of(s, "about")),
-        set.empty() ? "–" : escape(set));
-  }
-  return html + "</table>\n";
-}
-
-/// An error as a measure gives it: relative mean squared errors as they are, others in per cent.
-std::string error_text(const std::string& measure, double error) {
-  return measure == "relmse_time" ? fmt::format("{:.3g}", error) : fmt::format("{:.4g} %", 100 * error);
-}
-
-std::string time_table(const Json& report, const std::string& measure) {
-  std::string html = "<div class=\"wrap\"><table><tr><th class=\"l\">scene</th><th class=\"l\">setting</th>";
-  for (const Json& e : report.at("scenes").at(0).at("settings").at(0).at(measure + "_to"))
-    html +=
-        fmt::format("<th>time to {}</th><th>factor</th>", error_text(measure, e.at("error").get<double>()));
-  html += "<th>factor at the smallest<br/>error both reached</th></tr>\n";
-  for (const Json& scene : report.at("scenes")) {
-    bool first = true;
-    for (const Json& s : scene.at("settings")) {
-      html += fmt::format("<tr{}><td class=\"l scene\">{}</td><td class=\"l\">{}{}</td>",
-                          first ? " class=\"first\"" : "", first ? escape(text_of(scene, "name")) : "",
-                          key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")));
-      for (const Json& e : s.at(measure + "_to")) {
-        const std::string kind = text_of(e, "kind");
-        if (!e.contains("seconds")) {
-          html += "<td class=\"noise\">–</td><td></td>";
-          continue;
-        }
-        html += fmt::format("<td>{}</td><td>{}</td>",
-                            with_range(e.at("seconds"), seconds_text,
-                                       kind == "extrapolated" ? "~"
-                                       : kind == "at_once"    ? "&lt; "
-                                                              : ""),
-                            ratio_cell(e, text_of(e, "ratio_kind") == "extrapolated"));
-      }
-      const std::string common = measure + "_common";
-      html += s.contains(common) ? fmt::format("<td>{}<br/><small>at {}</small></td></tr>\n",
-                                               ratio_cell(s.at(common), false),
-                                               error_text(measure, s.at(common).at("error").get<double>()))
-                                 : "<td class=\"noise\">–</td></tr>\n";
-      first = false;
-    }
-  }
-  return html + "</table></div>\n";
+  html += findings_list(report);
+  return html + settings_table(report);
 }
 
 /// Nothing for reports from before it was measured.
@@ -179,6 +93,15 @@ std::string relative_times(const Json& report) {
          "plain sampling does.</p>\n";
 }
 
+/// Nothing for reports from before it was measured.
+std::string seen_times(const Json& report) {
+  for (const Json& scene : report.at("scenes"))
+    for (const Json& s : scene.at("settings"))
+      if (!s.contains("seen_time_to")) return "";
+  return "<h3>The error as it is seen</h3>\n<p class=\"dim\">" + escape(k_about_seen) + "</p>\n" +
+         time_table(report, "seen_time");
+}
+
 std::string times(const Json& report) {
   return "<h2>Time to an error</h2>\n<p>Seconds of rendering, loading and compiling left out: median of the "
          "repeats, the range below it. <b>~</b> marks errors that were not reached: the time is what it "
@@ -190,7 +113,7 @@ std::string times(const Json& report) {
          "<h3>Nine tiles in ten, estimated error</h3>\n<p class=\"dim\">The renderer’s own estimate for "
          "tiles of 16×16 pixels, each relative to its own brightness: what the eye meets in the difficult "
          "corners, and what adaptive sampling works on.</p>\n" +
-         time_table(report, "tiles_time") + relative_times(report);
+         time_table(report, "tiles_time") + seen_times(report) + relative_times(report);
 }
 
 std::string index_table(const Json& report) {
@@ -222,41 +145,6 @@ std::string index_table(const Json& report) {
     html += "</tr>\n";
   }
   return html + "</table></div>\n";
-}
-
-std::string pictures(const Json& scene, const fs::path& folder) {
-  const std::string name = text_of(scene, "name");
-  uint32_t width = 0, height = 0;
-  if (std::sscanf(text_of(scene, "size").c_str(), "%ux%u", &width, &height) != 2 || !width || !height)
-    return "";
-  // Whole screen pixels a pixel where there is room for them.
-  const double zoom =
-      width <= k_picture_width ? double(k_picture_width / width) : double(k_picture_width) / width;
-  const auto w = uint32_t(std::lround(zoom * width)), h = uint32_t(std::lround(zoom * height));
-  double scale = 0;
-  std::string html;
-  for (const Json& s : scene.at("settings")) {
-    const std::string setting = text_of(s, "name"), stem = name + "." + setting;
-    const auto error = read_error_picture(folder / (stem + ".exr"));
-    if (!error) continue;
-    if (scale == 0) scale = scale_of(*error);
-    const Json& cell = s.at("cells").back();
-    const std::string what = fmt::format("{}, {}", setting, text_of(cell, "budget"));
-    html += fmt::format(
-        "<figure><div class=\"pair\" style=\"flex-direction:column\">{}{}</div><figcaption>{}<br/>{} in "
-        "{}</figcaption></figure>\n",
-        image_tag(folder / (stem + ".png"), w, h, name + ", " + what, name + ", " + what),
-        image_tag(*error, scale, w, h, "error of " + name + ", " + what,
-                  fmt::format("error of {}, {}: black 0, pale {}", name, what, percent_text(scale)),
-                  folder / (stem + ".error.png")),
-        escape(what), percent_text(median_of(cell.at("true"))), seconds_text(median_of(cell.at("wall_s"))));
-  }
-  if (html.empty()) return "";
-  return fmt::format(
-      "<div class=\"pictures\">{}</div>\n<div class=\"ramp\"><span>error image, difference in brightness "
-      "over the picture’s mean:</span><span>0</span><span class=\"scale\" "
-      "style=\"background:{}\"></span><span>{} and more</span></div>\n",
-      html, magma_gradient(), percent_text(scale));
 }
 
 /// That light was looked up in; 0 without any, and in reports from before they were counted.
@@ -367,7 +255,7 @@ std::string component_table(const Json& report, const Json& scene) {
 std::string scene_part(const Json& report, const Json& scene, const fs::path& folder) {
   return fmt::format("<h2>{} <small class=\"dim\">{} pixels</small></h2>\n", escape(text_of(scene, "name")),
                      escape(text_of(scene, "size"))) +
-         plots(report, scene) + pictures(scene, folder) + cells_table(report, scene) +
+         plots(report, scene) + pictures(scene, folder, k_of_mean) + cells_table(report, scene) +
          short_times(report, scene) + component_table(report, scene);
 }
 
@@ -422,39 +310,16 @@ std::string measurement(const Json& report) {
   html +=
       "</table>\n<p class=\"dim\">References are plain path tracing with another seed. The variance of their "
       "noise is taken off every true error; an error below 0.7 of that noise counts as not "
-      "measured.</p>\n<dl>";
-  const auto line = [&](const char* name, const std::string& value) {
-    if (!value.empty()) html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, escape(value));
-  };
-  if (report.contains("machine")) {
-    const Json& m = report.at("machine");
-    line("processor", fmt::format("{}, {} core{}", text_of(m, "cpu"), m.at("cores").get<int>(),
-                                  m.at("cores").get<int>() == 1 ? "" : "s"));
-    line("memory", fmt::format("{:.1f} GiB", m.at("memory_gib").get<double>()));
-    line("system", text_of(m, "system"));
-    if (m.contains("load"))
-      line("load before", fmt::format("{:.2f} programs running on average in the minute before the start",
-                                      m.at("load").get<double>()));
-  }
-  if (report.contains("device"))
-    line("device", text_of(report.at("device"), "name") + ", " + text_of(report.at("device"), "driver"));
-  line("version", "Lucerna " + text_of(report, "version"));
-  line("date", text_of(report, "date"));
-  if (report.contains("wall_s")) line("the bench took", seconds_text(report.at("wall_s").get<double>()));
-  if (!text_of(report, "command").empty())
-    html += fmt::format("<dt>command</dt><dd><code>{}</code></dd>\n", escape(text_of(report, "command")));
-  return html + "</dl>\n";
+      "measured.</p>\n";
+  return html + machine_facts(report);
 }
 
 }  // namespace
 
 std::string make_page(const Json& report, const fs::path& folder) {
   try {
-    std::string html = fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/><meta name=\"viewport\" "
-        "content=\"width=device-width, initial-scale=1\"/><title>lucerna bench: "
-        "{}</title><style>{}</style></head><body><main>\n",
-        escape(text_of(report.at("matrix"), "name")), k_style);
+    if (report.at("matrix").value("as_seen", false)) return make_seen_page(report, folder);
+    std::string html = page_head(text_of(report.at("matrix"), "name"));
     html += heading(report);
     if (!report.at("scenes").empty()) {
       html += times(report) + index_table(report);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "bench/html.h"
 #include "bench/plot.h"
@@ -18,14 +19,16 @@ Spread spread_of(const Json& j) {
   return {median_of(j), j.at("low").get<double>(), j.at("high").get<double>(), 1};
 }
 
-PlotLine line_of(const Json& report, const Json& setting, const char* curve, const char* cell_figure) {
+PlotLine line_of(const Json& report, const Json& setting, const char* curve, const char* cell_figure,
+                 double (*rooted)(double) = nullptr) {
   const std::string name = text_of(setting, "name");
   PlotLine line{.name = name, .colour = setting_colour(index_of(report, name))};
   for (const Json& p : setting.at(curve))
     line.points.push_back(
         {p[0].get<double>(), {p[1].get<double>(), p[2].get<double>(), p[3].get<double>(), 1}});
   for (const Json& cell : setting.at("cells")) {
-    const double seconds = median_of(cell.at("wall_s")), error = median_of(cell.at(cell_figure));
+    const double seconds = median_of(cell.at("wall_s")), figure = median_of(cell.at(cell_figure)),
+                 error = rooted ? rooted(figure) : figure;
     if (seconds > 0 && error > 0)
       line.dots.push_back({seconds, error,
                            fmt::format("{}, {}: {} in {}", name, text_of(cell, "budget"), percent_text(error),
@@ -100,6 +103,21 @@ size_t index_of(const Json& report, const std::string& setting) {
     if (text_of(s, "name") == setting) return here;
   }
   return 0;
+}
+
+std::string seen_plot(const Json& report, const Json& scene) {
+  std::vector<PlotLine> lines;
+  for (const Json& s : scene.at("settings"))
+    lines.push_back(
+        line_of(report, s, "seen_curve", "seen", [](double squared) { return std::sqrt(squared); }));
+  const std::string svg =
+      make_plot(lines, k_marks, text_of(scene, "name") + ": error as seen against seconds", "error as seen");
+  return svg.empty() ? ""
+                     : "<div class=\"plots\">\n" +
+                           figure(svg,
+                                  "Error as seen. The band is the range over the repeats, circles are the "
+                                  "ends of renders; the dotted lines are 5, 2 and 1 %.") +
+                           "</div>\n";
 }
 
 std::string plots(const Json& report, const Json& scene) {

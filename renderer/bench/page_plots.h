@@ -27,4 +27,7 @@ std::vector<PlotLine> record_curves(const nlohmann::ordered_json& report,
 /// records that light is looked up in where a curve has two settings or more with records.
 std::string plots(const nlohmann::ordered_json& report, const nlohmann::ordered_json& scene);
 
+/// Error as seen against seconds; "" where there is nothing to draw.
+std::string seen_plot(const nlohmann::ordered_json& report, const nlohmann::ordered_json& scene);
+
 }  // namespace lucerna::bench

@@ -80,6 +80,8 @@ void set_aside(const fs::path& file, const std::string& why, const Message& mess
 
 }  // namespace
 
+Json scene_json(const fs::path& file) { return Json::parse(json_part(read_file(file)), nullptr, false); }
+
 std::string scene_hash(const fs::path& file) {
   Pieces hash;
   const std::string bytes = read_file(file);
@@ -155,6 +157,14 @@ film::ReferencePair read_halves(const film::FilmImage& reference, const std::str
   return pair;
 }
 
+void find_noise(ReferenceInfo& info, const film::FilmImage& image, const SceneEntry& scene) {
+  const film::ReferencePair halves = read_halves(image, info.file.string());
+  info.relmse_noise = film::relative_mse_noise(halves), info.seen_noise = film::seen_mse_noise(halves);
+  const film::Reference reference = film::read_reference(info.file, scene.width, scene.height);
+  for (size_t k = 0; k < info.noise.size() && reference.noise; ++k)
+    info.noise[k] = (*reference.noise)[k] / reference.mean_luminance;
+}
+
 std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneEntry& scene,
                                             const std::string& key, const Message& message) {
   ReferenceInfo info;
@@ -172,7 +182,7 @@ std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneE
     info.seconds = std::strtod(told("bench.seconds").c_str(), nullptr);
     info.seed = uint32_t(std::strtoul(told("seed").c_str(), nullptr, 10));
     const film::Reference reference = film::read_reference(info.file, scene.width, scene.height);
-    if (info.key == key) info.relmse_noise = film::relative_mse_noise(read_halves(image, info.file.string()));
+    if (info.key == key) find_noise(info, image, scene);
     if (info.key.empty())
       why = "no reference of a bench";
     else if (info.key != key)
@@ -181,9 +191,6 @@ std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneE
       why = fmt::format("has {} samples, {} are wanted", info.samples, scene.reference_samples);
     else if (!reference.noise)
       why = "does not tell its own noise";
-    else
-      for (size_t k = 0; k < info.noise.size(); ++k)
-        info.noise[k] = (*reference.noise)[k] / reference.mean_luminance;
   } catch (const Error& e) {
     why = e.what();
     // The message names the file itself.

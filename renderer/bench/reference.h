@@ -2,6 +2,7 @@
 // Pictures taken for the truth: long plain path-traced renders, kept as EXR with what made them.
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -12,6 +13,10 @@
 #include "film/io/relative_mse.h"
 
 namespace lucerna::bench {
+
+/// The JSON of a .gltf, or of a .glb's first chunk; discarded where it does not parse. Throws Error when the
+/// file cannot be read.
+nlohmann::ordered_json scene_json(const std::filesystem::path& file);
 
 /// A short hash (16 hexadecimal digits) of all that a scene file is made of: the .gltf or .glb, the buffers
 /// and images it names, settings.json beside it and the environment named there. What is missing counts as
@@ -34,6 +39,7 @@ struct ReferenceInfo {
   double seconds = 0;          ///< that it took
   film::LayerFigures noise{};  ///< its own, rms over mean luminance
   double relmse_noise = 0;     ///< film::relative_mse_noise() of its halves
+  double seen_noise = 0;       ///< film::seen_mse_noise() of them
 };
 
 /// The reference if it is there and serves: its key matches, it has at least the samples wanted, and the
@@ -49,6 +55,10 @@ void describe_reference(std::map<std::string, std::string>& metadata, const Refe
 /// sequence of their own (film.h), so that either half of the samples is a reference independent of the
 /// other.
 void add_odd_half(film::FilmImage& reference, const film::Image& image);
+
+/// Fills in a reference's own noise, from its picture. Throws Error as read_halves() and
+/// film::read_reference().
+void find_noise(ReferenceInfo& info, const film::FilmImage& image, const SceneEntry& scene);
 
 /// Both halves. Throws Error located at `where` when the layer "odd" or the samples are missing, or a pixel
 /// has fewer than two samples.

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
-#include "base/json_text.h"
 #include "bench/analysis.h"
-#include "bench/page.h"
 
 namespace lucerna::bench {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Curve = std::vector<Point>;
 
@@ -31,7 +28,33 @@ struct Group {
       if (!budgets[b].empty()) return budgets[b];
     return k_none;
   }
+  /// Of a setting with a program of its own, by repeats: the points of all its budgets in one. Its curves.
+  std::vector<Result> joined;
+  std::vector<const Result*> with_curves() const {
+    if (joined.empty()) return largest();
+    std::vector<const Result*> all;
+    for (const Result& r : joined) all.push_back(&r);
+    return all;
+  }
 };
+
+/// Of another program only the end of a render is known: the ends of a repeat's budgets are its curve.
+std::vector<Result> join_budgets(const Group& group) {
+  std::map<int, Result> repeats;
+  for (const auto& results : group.budgets)
+    for (const Result* r : results) {
+      Result& joined = repeats[r->repeat];
+      std::vector<CurvePoint> curve = std::move(joined.curve);
+      joined = *r;
+      curve.insert(curve.end(), r->curve.begin(), r->curve.end());
+      std::stable_sort(curve.begin(), curve.end(),
+                       [](const CurvePoint& a, const CurvePoint& b) { return a.wall_s < b.wall_s; });
+      joined.curve = std::move(curve);
+    }
+  std::vector<Result> all;
+  for (auto& [repeat, joined] : repeats) all.push_back(std::move(joined));
+  return all;
+}
 
 template <class F>
 std::vector<double> collect(const std::vector<const Result*>& results, F value) {
@@ -60,6 +83,14 @@ Curve relmse_curve(const Result& r) {
   Curve curve;
   for (const CurvePoint& p : r.curve)
     if (p.relmse > 0) curve.push_back({p.wall_s, std::sqrt(p.relmse)});
+  return curve;
+}
+
+/// As relmse_curve().
+Curve seen_curve(const Result& r) {
+  Curve curve;
+  for (const CurvePoint& p : r.curve)
+    if (p.seen > 0) curve.push_back({p.wall_s, std::sqrt(p.seen)});
   return curve;
 }
 
@@ -121,6 +152,14 @@ std::vector<double> mean_times(const std::vector<Curve>& curves, const Scale& sc
   return times;
 }
 
+/// 1 / (squared error as seen * seconds) of each, as far as it is known.
+std::vector<double> seen_indices(const std::vector<const Result*>& results) {
+  std::vector<double> values;
+  for (const Result* r : results)
+    if (const auto pi = performance_index(r->seen, r->wall_s)) values.push_back(*pi);
+  return values;
+}
+
 std::vector<double> indices(const std::vector<const Result*>& results) {
   std::vector<double> values;
   for (const Result* r : results)
@@ -134,6 +173,7 @@ void add_ratio(Json& json, double ratio, const std::optional<double>& noise) {
   if (!noise) return;
   const double bound = *noise * (1 + 1e-9);  // repeats that are equal to the bit have no noise at all
   json["noise"] = ratio <= bound && ratio >= 1 / bound;
+  json["low"] = ratio / *noise, json["high"] = ratio * *noise;
 }
 
 /// The ratio of two times with its noise: that of the scene, or of these very times when they scatter more.
@@ -209,6 +249,8 @@ Json cells_json(const Matrix& m, size_t scene, size_t setting, const Group& grou
     add("true", [](const Result& r) { return r.truth[0]; });
     add("relmse", [](const Result& r) { return r.relmse; });
     add("relmse_all", [](const Result& r) { return r.relmse_all; });
+    add("seen", [](const Result& r) { return r.seen; });
+    add("seen_all", [](const Result& r) { return r.seen_all; });
     add("tiles_median", [](const Result& r) { return r.tiles.median; });
     add("tiles_decile", [](const Result& r) { return r.tiles.decile; });
     add("heavy_tiles", [](const Result& r) { return r.tiles.heavy; });
@@ -305,28 +347,49 @@ void add_relmse_end(Json& e, const std::vector<const Result*>& results, const st
   if (own.median > 0) add_ratio(e["relmse_end"], first.median / own.median, noise);
 }
 
+/// How much more efficient as seen, by variance x time, a setting's cells are than those of the same budget
+/// of another one, to each of them as `key`.
+void add_seen_ratios(Json& cells, const char* key, const std::vector<std::vector<const Result*>>& own,
+                     const std::vector<std::vector<const Result*>>& others,
+                     const std::optional<double>& noise) {
+  size_t at = 0;
+  for (size_t b = 0; b < own.size(); ++b) {
+    if (own[b].empty()) continue;
+    Json& cell = cells[at++];
+    if (b >= others.size()) continue;
+    const std::vector<double> here = seen_indices(own[b]), there = seen_indices(others[b]);
+    if (here.empty() || there.empty()) continue;
+    cell[key] = Json::object();
+    add_ratio(cell[key], spread(here).median / spread(there).median, noise);
+  }
+}
+
 Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, double reference_noise,
                 std::vector<std::optional<double>>& relative_indices) {
   const size_t n = groups.size();
   const Scale rms = rms_scale(), squared = relmse_scale();
-  std::vector<std::vector<Curve>> curves(n), tiles(n), relative(n);
-  std::vector<std::vector<double>> times, tile_times, relative_times, rates, pis(n);
+  std::vector<std::vector<Curve>> curves(n), tiles(n), relative(n), seen(n);
+  std::vector<std::vector<double>> times, tile_times, relative_times, seen_times, seen_pis, rates, pis(n);
   for (size_t k = 0; k < n; ++k) {
-    for (const Result* r : groups[k].largest()) {
+    for (const Result* r : groups[k].with_curves()) {
       curves[k].push_back(true_curve(*r, reference_noise));
       tiles[k].push_back(tiles_curve(*r));
       relative[k].push_back(relmse_curve(*r));
+      seen[k].push_back(seen_curve(*r));
     }
     times.push_back(mean_times(curves[k], rms));
     tile_times.push_back(mean_times(tiles[k], rms));
     relative_times.push_back(mean_times(relative[k], squared));
+    seen_times.push_back(mean_times(seen[k], rms));
+    for (const auto& results : groups[k].budgets) seen_pis.push_back(seen_indices(results));
     rates.push_back(collect(groups[k].largest(), [](const Result& r) { return double(r.rays) / r.wall_s; }));
     pis[k] = indices(groups[k].largest());
   }
   const auto repeats = size_t(m.repeats);
   const auto time_noise = noise_ratio(times, repeats), tile_noise = noise_ratio(tile_times, repeats),
              relative_noise = noise_ratio(relative_times, repeats), index_noise = noise_ratio(pis, repeats),
-             rate_noise = noise_ratio(rates, repeats);
+             rate_noise = noise_ratio(rates, repeats), seen_noise = noise_ratio(seen_times, repeats),
+             seen_index_noise = noise_ratio(seen_pis, repeats);
   const SceneEntry& scene = m.scenes[s];
   Json j{{"name", scene.name},
          {"file", scene.file.string()},
@@ -337,6 +400,7 @@ Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, dou
   };
   add_noise("time", time_noise), add_noise("tiles_time", tile_noise);
   add_noise("relmse_time", relative_noise);
+  add_noise("seen_time", seen_noise), add_noise("seen_index", seen_index_noise);
   add_noise("index", index_noise), add_noise("rate", rate_noise);
   const std::vector<double> fixed = fixed_times(curves);
   double best = 0;
@@ -348,10 +412,21 @@ Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, dou
     e["time_to"] = times_json(curves[k], curves[0], k == 0, time_noise, rms);
     e["tiles_time_to"] = times_json(tiles[k], tiles[0], k == 0, tile_noise, rms);
     e["relmse_time_to"] = times_json(relative[k], relative[0], k == 0, relative_noise, squared);
+    e["seen_time_to"] = times_json(seen[k], seen[0], k == 0, seen_noise, rms);
+    if (k > 0)
+      add_seen_ratios(e["cells"], "seen_ratio", groups[k].budgets, groups[0].budgets, seen_index_noise);
+    if (const auto beside = find_setting(m, m.settings[k].beside)) {
+      add_seen_ratios(e["cells"], "seen_beside", groups[k].budgets, groups[*beside].budgets,
+                      seen_index_noise);
+      e["seen_time_to_beside"] = times_json(seen[k], seen[*beside], false, seen_noise, rms);
+    }
+    const std::vector<double> seen_pi = seen_indices(groups[k].largest());
+    if (!seen_pi.empty()) e["seen_index"] = {{"pi", to_json(spread(seen_pi))}};
     add_relmse_end(e, groups[k].largest(), relative[k], relative[0], k == 0, relative_noise);
     if (k > 0) {
       if (auto common = common_json(curves[k], curves[0], time_noise, rms)) e["time_common"] = *common;
       if (auto common = common_json(tiles[k], tiles[0], tile_noise, rms)) e["tiles_time_common"] = *common;
+      if (auto common = common_json(seen[k], seen[0], seen_noise, rms)) e["seen_time_common"] = *common;
       if (auto common = common_json(relative[k], relative[0], relative_noise, squared))
         e["relmse_time_common"] = *common;
     }
@@ -375,9 +450,43 @@ Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, dou
     if (auto forecast = forecast_json(groups[k].largest())) e["forecast"] = std::move(*forecast);
     e["curve"] = curve_json(curves[k]);
     e["tiles_curve"] = curve_json(tiles[k]);
+    e["seen_curve"] = curve_json(seen[k]);
     j["settings"].push_back(std::move(e));
   }
   return j;
+}
+
+/// Geometric means over the scenes of what cells have under `key`, by settings and budgets; with an interval
+/// where all scenes' ratios have one.
+void summarize_seen(Json& report, const char* key) {
+  struct Mean {
+    std::string setting, budget;
+    double sum = 0, squares = 0, scenes = 0;
+    bool known = true;
+  };
+  std::vector<Mean> means;
+  for (const Json& scene : report.at("scenes"))
+    for (const Json& s : scene.at("settings"))
+      for (const Json& cell : s.at("cells")) {
+        if (!cell.contains(key)) continue;
+        const std::string setting = s.at("name").get<std::string>(),
+                          budget = cell.at("budget").get<std::string>();
+        auto at = std::find_if(means.begin(), means.end(),
+                               [&](const Mean& m) { return m.setting == setting && m.budget == budget; });
+        if (at == means.end()) at = means.insert(means.end(), Mean{setting, budget});
+        const Json& ratio = cell.at(key);
+        at->sum += std::log(ratio.at("ratio").get<double>()), ++at->scenes;
+        at->known = at->known && ratio.contains("high");
+        if (!at->known) continue;
+        const double width = std::log(ratio.at("high").get<double>() / ratio.at("ratio").get<double>());
+        at->squares += width * width;
+      }
+  for (const Mean& m : means) {
+    Json entry{{"setting", m.setting}, {"budget", m.budget}, {"scenes", m.scenes}};
+    add_ratio(entry, std::exp(m.sum / m.scenes),
+              m.known ? std::optional(std::exp(std::sqrt(m.squares) / m.scenes)) : std::nullopt);
+    report[std::string(key) + "s"].push_back(std::move(entry));
+  }
 }
 
 }  // namespace
@@ -402,6 +511,7 @@ Json make_report(const Matrix& m, const RunSummary& summary, const Json& about) 
                                     {"seconds", r.seconds},
                                     {"noise", noise},
                                     {"relmse_noise", r.relmse_noise},
+                                    {"seen_noise", r.seen_noise},
                                     {"key", r.key}});
   }
   report["scenes"] = Json::array();
@@ -417,6 +527,8 @@ Json make_report(const Matrix& m, const RunSummary& summary, const Json& about) 
       any = true;
     }
     if (!any) continue;
+    for (size_t k = 0; k < groups.size(); ++k)
+      if (!m.settings[k].program.empty()) groups[k].joined = join_budgets(groups[k]);
     relative.emplace_back(groups.size());
     const double noise = s < summary.references.size() ? summary.references[s].noise[0] : 0;
     report["scenes"].push_back(scene_json(m, s, groups, noise, relative.back()));
@@ -429,51 +541,11 @@ Json make_report(const Matrix& m, const RunSummary& summary, const Json& about) 
     if (count > 0)
       report["index"].push_back({{"setting", m.settings[k].name}, {"value", sum / count}, {"scenes", count}});
   }
+  for (const char* key : {"seen_ratio", "seen_beside"}) summarize_seen(report, key);
   report["results"] = Json::array();
   for (const Cell& c : cells)
     if (const auto at = summary.results.find(m.id(c)); at != summary.results.end())
       report["results"].push_back(bench::to_json(at->second));
-  return report;
-}
-
-std::string make_csv(const Json& report) {
-  std::string text =
-      "scene,setting,budget,repeat,seed,tracer,wall_s,device_s,setup_s,rays,paths,samples,mse,relmse,relmse_"
-      "all,"
-      "in_reference_noise,tiles_median,tiles_decile,tiles_worst,heavy_tiles,tiles_over,records,"
-      "record_rays,paths_error,records_error,interpolation_error";
-  for (const char* what : {"estimated", "true", "device_s"})
-    for (const char* layer : stats::k_layer_names) text += fmt::format(",{}_{}", what, layer);
-  text += ",forecast_s,forecast_rays\n";
-  for (const Json& entry : report.at("results")) {
-    const Result r = result_from_json(entry, "results");
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", r.scene,
-                    r.setting, r.budget, r.repeat, r.seed, r.tracer, r.wall_s, r.device_s, r.setup_s, r.rays,
-                    r.paths, r.samples, r.mse, r.relmse, r.relmse_all, int(r.in_reference_noise),
-                    r.tiles.median, r.tiles.decile, r.tiles.worst, r.tiles.heavy, r.tiles.over, r.records,
-                    r.record_rays, r.parts.paths, r.parts.records, r.parts.interpolation);
-    for (const Layers* layers : {&r.estimated, &r.truth, &r.component_s})
-      for (const double x : *layers) text += fmt::format(",{}", x);
-    text +=
-        r.forecast ? fmt::format(",{},{}\n", r.forecast->seconds.middle, r.forecast->rays.middle) : ",,\n";
-  }
-  return text;
-}
-
-void write_report(const fs::path& folder, const Json& report) {
-  write_file(folder / "report.json", json_text(report, 1) + "\n");
-  write_file(folder / "report.csv", make_csv(report));
-  write_file(folder / "report.html", make_page(report, folder / "pictures"));
-}
-
-Json read_report(const fs::path& file_or_folder) {
-  const fs::path file = is_folder(file_or_folder) ? file_or_folder / "report.json" : file_or_folder;
-  Json report = Json::parse(read_file(file), nullptr, false);
-  if (report.is_discarded()) throw_error(file.string(), "not JSON, perhaps half a file");
-  if (!report.is_object() || report.value("what", "") != "lucerna bench" || !report.contains("scenes"))
-    throw_error(file.string(), "no report of lucerna bench");
-  if (report.value("format", 0) != 1) throw_error(file.string(), "a report of another version of the bench");
   return report;
 }
 

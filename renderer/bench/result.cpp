@@ -71,7 +71,8 @@ struct Reader {
 template <class V, class P>
 void visit_point(V& v, P& p) {
   v("wall_s", p.wall_s), v("device_s", p.device_s), v("rays", p.rays), v("samples", p.samples);
-  v("estimated", p.estimated), v("true", p.truth), v("tiles", p.tiles), v.later("relmse", p.relmse);
+  v("estimated", p.estimated), v("true", p.truth), v("tiles", p.tiles), v.later("relmse", p.relmse),
+      v.later("seen", p.seen);
 }
 
 template <class V, class R>
@@ -82,6 +83,7 @@ void visit_result(V& v, R& r) {
   v("rays", r.rays), v("paths", r.paths), v("samples", r.samples);
   v("estimated", r.estimated), v("true", r.truth), v("component_s", r.component_s);
   v("mse", r.mse), v("relmse", r.relmse), v.later("relmse_all", r.relmse_all);
+  v.later("seen", r.seen), v.later("seen_all", r.seen_all);
   v("in_reference_noise", r.in_reference_noise);
   v("tiles_median", r.tiles.median), v("tiles_decile", r.tiles.decile), v("tiles_worst", r.tiles.worst);
   v("heavy_tiles", r.tiles.heavy), v("tiles_over", r.tiles.over), v("dropped", r.dropped);

@@ -25,6 +25,7 @@ struct CurvePoint {
   Layers truth{};     ///< the same against the reference, its noise taken off; 0: lost in that noise
   double tiles = 0;   ///< estimated relative error that nine tiles in ten are under
   double relmse = 0;  ///< as Result::relmse
+  double seen = 0;    ///< as Result::seen
 };
 
 /// What was foretold when a tenth of the render's time was over, against what it came to.
@@ -54,6 +55,9 @@ struct Result {
   /// Relative mean squared error of R, G, B against the reference's halves, without the worst pixels
   /// (film/io/relative_mse.h), and with them; 0: less than nothing, lost in their noise.
   double relmse = 0, relmse_all = 0;
+  /// The squared error as it is seen, without the worst pixels (film/io/relative_mse.h), and with them; 0:
+  /// less than nothing, lost in the references' noise, or in files from before it was measured.
+  double seen = 0, seen_all = 0;
   bool in_reference_noise = false;  ///< truth not to be told from the reference's own noise
   struct {
     double median = 0, decile = 0, worst = 0;  ///< estimated relative errors
@@ -70,8 +74,8 @@ struct Result {
 
 nlohmann::ordered_json to_json(const Result& result);
 /// Throws Error, located at `where`, for anything that to_json() does not write: half a file, missing or
-/// wrong values (only records, record_rays, relmse_all and a point's relmse may be missing), a curve that
-/// does not go forward.
+/// wrong values (only records, record_rays, relmse_all, a point's relmse and what is as seen may be missing),
+/// a curve that does not go forward.
 Result parse_result(const std::string& text, const std::string& where);
 Result result_from_json(const nlohmann::ordered_json& json, const std::string& where);
 

@@ -5,6 +5,8 @@
 
 #include "base/log.h"
 #include "base/timer.h"
+#include "bench/outside.h"
+#include "bench/program.h"
 #include "bench/time_left.h"
 #include "session/renderer.h"
 #include "stats/forecast.h"
@@ -16,6 +18,7 @@ namespace fs = std::filesystem;
 using session::Renderer;
 
 constexpr double k_progress_every_s = 0.2;
+constexpr double k_most_waiting = 64;  ///< times the seconds that another program is given
 
 /// A setting's values above the scene's above those for all.
 SettingValues merged(const Matrix& matrix, const SceneEntry& scene, const SettingValues& own) {
@@ -50,12 +53,22 @@ double fraction_done(const Renderer& r, const Budget& budget, double seconds) {
   return std::min(1.0, double(r.stats().paths) / pixels / r.max_samples());
 }
 
-film::RelativeMse relative_mse(const Renderer& r, const film::ReferencePair& halves) {
-  const film::Image image = r.image();
+std::vector<vec3> sum_of(const film::Image& image) {
   std::vector<vec3> sum(image.samples.size(), vec3(0));
   for (const auto& component : image.components)
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
-  return film::relative_mse(sum, halves);
+  return sum;
+}
+
+/// How far the picture as it is lies from the truth, by the measures that need both halves of it.
+struct Distances {
+  film::RelativeMse relative;
+  film::SeenMse seen;
+};
+
+Distances distances(const Renderer& r, const film::ReferencePair& halves) {
+  const std::vector<vec3> sum = sum_of(r.image());
+  return {film::relative_mse(sum, halves), film::seen_mse(sum, halves)};
 }
 
 /// What is told of the sum; of the components, the paths' noise.
@@ -65,7 +78,7 @@ Layers told(const stats::Entry& e) {
   return all;
 }
 
-CurvePoint make_point(const stats::Entry& e, const film::RelativeMse& relative) {
+CurvePoint make_point(const stats::Entry& e, const Distances& distances) {
   return {.wall_s = e.render_s,
           .device_s = e.device_s,
           .rays = e.rays,
@@ -73,7 +86,8 @@ CurvePoint make_point(const stats::Entry& e, const film::RelativeMse& relative) 
           .estimated = told(e),
           .truth = e.truth.value_or(Layers{}),
           .tiles = e.tile_worst_tenth,
-          .relmse = std::max(0.0, relative.trimmed)};
+          .relmse = std::max(0.0, distances.relative.trimmed),
+          .seen = std::max(0.0, distances.seen.trimmed)};
 }
 
 /// What could be foretold at a tenth of the time; nothing when the ledger had no line by then.
@@ -118,7 +132,13 @@ class Run {
  private:
   ReferenceInfo make_reference(const SceneEntry& scene, const std::string& key);
   Result render(const Cell& cell, const ReferenceInfo& reference, const std::string& scene_hash);
-  void save_pictures(Renderer& r, const Cell& cell, const film::FilmImage& reference);
+  /// The same by the setting's own program.
+  Result render_outside(const Cell& cell, const ReferenceInfo& reference, const std::string& scene_hash);
+  bool leaves_pictures(const Cell& cell) const {
+    return cell.repeat == 0 && cell.budget + 1 == matrix_.budgets(cell.scene, cell.setting).size();
+  }
+  void save_error_pictures(const std::vector<vec3>& sum, const Cell& cell, const film::FilmImage& truth,
+                           const std::string& where);
   /// What is long in preparing, and has run all its kernels, is prepared for the clock.
   bool warm(const Renderer& r, double seconds) const {
     return (r.preparing() && r.prepares_warm() && seconds > 20) || r.samples() >= matrix_.warmup;
@@ -177,11 +197,8 @@ ReferenceInfo Run::make_reference(const SceneEntry& scene, const std::string& ke
   film::FilmImage image = r->film_image();
   describe_reference(image.metadata, info);
   add_odd_half(image, r->image());
-  info.relmse_noise = film::relative_mse_noise(read_halves(image, info.file.string()));
   film::write_exr(info.file, image);
-  const film::Reference reference = film::read_reference(info.file, scene.width, scene.height);
-  for (size_t k = 0; k < info.noise.size() && reference.noise; ++k)
-    info.noise[k] = (*reference.noise)[k] / reference.mean_luminance;
+  find_noise(info, image, scene);
   return info;
 }
 
@@ -227,14 +244,14 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
     if (!step(*r)) break;
     // Before every pixel has a sample it is not the same picture.
     if (entries.size() > lines && entries.back().told)
-      result.curve.push_back(make_point(entries.back(), relative_mse(*r, halves)));
+      result.curve.push_back(make_point(entries.back(), distances(*r, halves)));
     tell(fraction_done(*r, budget, r->render_seconds()));
   }
   r->finish_ledger();
   const stats::Entry& last = entries.back();
   if (!result.curve.empty() && result.curve.back().wall_s >= last.render_s) result.curve.pop_back();
-  const film::RelativeMse relative = relative_mse(*r, halves);
-  result.curve.push_back(make_point(last, relative));
+  const auto [relative, seen] = distances(*r, halves);
+  result.curve.push_back(make_point(last, {relative, seen}));
 
   result.wall_s = last.render_s, result.device_s = last.device_s;
   result.rays = last.rays, result.paths = last.paths, result.samples = last.samples;
@@ -247,6 +264,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   // The reference's noise is itself known to a tenth or two; what is left of less than that is nothing.
   result.in_reference_noise = result.truth[0] < 0.7 * reference.noise[0];
   result.relmse = std::max(0.0, relative.trimmed), result.relmse_all = std::max(0.0, relative.all);
+  result.seen = std::max(0.0, seen.trimmed), result.seen_all = std::max(0.0, seen.all);
   const film::TileSpread tiles = film::tile_spread(r->tile_errors());
   result.tiles.median = tiles.median, result.tiles.decile = tiles.worst_tenth;
   result.tiles.worst = tiles.worst, result.tiles.heavy = tiles.heavy_tailed;
@@ -254,26 +272,71 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   result.dropped = r->stats().dropped;
   result.records = uint32_t(r->figure("records")), result.record_rays = uint64_t(r->figure("rays"));
   result.forecast = make_forecast(r->ledger(), r->adaptive() != nullptr);
-  if (cell.repeat == 0 && cell.budget + 1 == matrix_.budgets(cell.scene, cell.setting).size())
-    save_pictures(*r, cell, truth);
+  if (leaves_pictures(cell)) {
+    film::write_png(picture_file(folder_, scene.name, setting.name), truth.width, truth.height,
+                    r->picture(false));
+    save_error_pictures(sum_of(r->image()), cell, truth, reference.file.string());
+  }
   return result;
 }
 
-void Run::save_pictures(Renderer& r, const Cell& cell, const film::FilmImage& truth) {
-  const std::string &scene = matrix_.scenes[cell.scene].name, &setting = matrix_.settings[cell.setting].name;
-  film::write_png(picture_file(folder_, scene, setting), truth.width, truth.height, r.picture(false));
-  const film::Image image = r.image();
-  const film::Reference& reference = *r.reference();
-  std::vector<float> error(image.samples.size());
-  for (size_t i = 0; i < error.size(); ++i) {
-    vec3 sum(0);
-    for (const auto& component : image.components) sum += component[i];
-    error[i] = float(std::abs(double(luminance(sum)) - double(reference.luminance[0][i])) /
-                     reference.mean_luminance);
+Result Run::render_outside(const Cell& cell, const ReferenceInfo& reference, const std::string& scene_hash) {
+  const SceneEntry& scene = matrix_.scenes[cell.scene];
+  const Setting& setting = matrix_.settings[cell.setting];
+  const Budget budget = matrix_.budget(cell);
+  OutsideFiles files{.picture = folder_.path() / "outside.exr", .stats = folder_.path() / "outside.json"};
+  if (leaves_pictures(cell)) files.shown = picture_file(folder_, scene.name, setting.name);
+  const auto forget = [&] {
+    std::error_code ignored;
+    fs::remove(files.picture, ignored), fs::remove(files.stats, ignored);
+  };
+  forget();
+  // A picture that is not there in time is waited for, as above.
+  ProgramResult run;
+  for (double times = 1; times <= k_most_waiting; times *= 2) {
+    run = run_program(setting.program,
+                      outside_arguments(matrix_, cell, merged(matrix_, scene, setting.set), options_.device,
+                                        options_.scenes, files, times),
+                      {.interrupted = hooks_.interrupted, .waiting = [&](double seconds) {
+                         // Of samples it is not known how far it is.
+                         const bool timed = budget.kind == BudgetKind::seconds;
+                         tell(timed ? std::min(1.0, seconds / (times * budget.value)) : 0);
+                       }});
+    if (run.interrupted) {
+      forget();
+      throw Interrupted{};
+    }
+    if (!out_of_time(run)) break;
   }
-  film::FilmImage out{.width = truth.width, .height = truth.height};
-  out.channels.emplace_back("error", std::move(error));
-  film::write_exr(error_file(folder_, scene, setting), out);
+  if (run.status != 0) throw_error(setting.program, "ended with status {}: {}", run.status, run.last_line());
+  const film::FilmImage truth = film::read_exr(reference.file);
+  Result result = read_outside(files, scene, reference, truth);
+  result.scene = scene.name, result.setting = setting.name, result.budget = budget.text();
+  result.repeat = cell.repeat, result.seed = matrix_.seed + uint32_t(cell.repeat);
+  result.scene_hash = scene_hash, result.reference_hash = reference.key;
+  if (leaves_pictures(cell))
+    save_error_pictures(colours(film::read_exr(files.picture), files.picture.string()), cell, truth,
+                        reference.file.string());
+  forget();
+  return result;
+}
+
+void Run::save_error_pictures(const std::vector<vec3>& sum, const Cell& cell, const film::FilmImage& truth,
+                              const std::string& where) {
+  const std::string &scene = matrix_.scenes[cell.scene].name, &setting = matrix_.settings[cell.setting].name;
+  const std::vector<vec3> right = colours(truth, where);
+  double mean = 0;
+  for (const vec3& colour : right) mean += double(luminance(colour)) / double(right.size());
+  std::vector<float> error(right.size());
+  for (size_t i = 0; i < error.size(); ++i)
+    error[i] = float(std::abs(double(luminance(sum[i])) - double(luminance(right[i]))) / mean);
+  const auto save = [&](const fs::path& file, std::vector<float> values) {
+    film::FilmImage out{.width = truth.width, .height = truth.height};
+    out.channels.emplace_back("error", std::move(values));
+    film::write_exr(file, out);
+  };
+  save(error_file(folder_, scene, setting), std::move(error));
+  save(seen_file(folder_, scene, setting), film::seen_difference(sum, read_halves(truth, where)));
 }
 
 RunSummary Run::run() {
@@ -317,7 +380,9 @@ RunSummary Run::run() {
         begin({s, c.setting, c.budget},
               fmt::format("{}, {}, {}, repeat {} of {}", scene.name, matrix_.settings[c.setting].name,
                           matrix_.budget(c).text(), c.repeat + 1, matrix_.repeats));
-        Result result = render(c, *references[s], hashes[scene.name]);
+        Result result = matrix_.settings[c.setting].program.empty()
+                            ? render(c, *references[s], hashes[scene.name])
+                            : render_outside(c, *references[s], hashes[scene.name]);
         folder_.save(id, result);
         summary.results.emplace(id, std::move(result));
         ++summary.measured;
@@ -344,6 +409,10 @@ RunSummary run_matrix(const Matrix& matrix, const Folder& folder, const RunOptio
 
 fs::path picture_file(const Folder& folder, const std::string& scene, const std::string& setting) {
   return folder.pictures() / (scene + "." + setting + ".png");
+}
+
+fs::path seen_file(const Folder& folder, const std::string& scene, const std::string& setting) {
+  return folder.pictures() / (scene + "." + setting + ".seen.exr");
 }
 
 fs::path error_file(const Folder& folder, const std::string& scene, const std::string& setting) {

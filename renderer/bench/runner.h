@@ -40,16 +40,18 @@ struct RunSummary {
 };
 
 /// Every cell runs in a renderer of its own: load, render the warm-up, start afresh, and then the clock. A
-/// render that is interrupted is thrown away; the others are saved as they end. The truth comes from the
-/// scene's reference. At the largest budget of every setting the first repeat also leaves pictures.
-/// Throws Error as loading, rendering and writing do.
+/// setting with a program of its own is rendered by that (outside.h). A render that is interrupted is thrown
+/// away; the others are saved as they end. The truth comes from the scene's reference. At the largest budget
+/// of every setting the first repeat also leaves pictures. Throws Error as loading, rendering and writing do.
 RunSummary run_matrix(const Matrix& matrix, const Folder& folder, const RunOptions& options,
                       const Hooks& hooks);
 
 /// pictures/SCENE.SETTING.png, and how far off it is: .exr with the layer "error", |difference in luminance|
-/// over the reference's mean luminance.
+/// over the reference's mean luminance; and .seen.exr, where each pixel's is over what is around it
+/// (film::seen_difference()).
 std::filesystem::path picture_file(const Folder& folder, const std::string& scene,
                                    const std::string& setting);
+std::filesystem::path seen_file(const Folder& folder, const std::string& scene, const std::string& setting);
 std::filesystem::path error_file(const Folder& folder, const std::string& scene, const std::string& setting);
 
 }  // namespace lucerna::bench

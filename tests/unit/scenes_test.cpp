@@ -11,6 +11,7 @@
 #include "bvh/embree/host_tracer.h"
 #include "plan/settings.h"
 #include "scene/io/load.h"
+#include "scene/lamp.h"
 #include "unit/bvh_support.h"
 
 using namespace lucerna;
@@ -130,6 +131,7 @@ TEST_CASE("rooms lose rays through their openings only") {
       {"teapot", {}},
       {"ajar", {}},
       {"conference", {}},
+      {"arcade", {}},
       {"sun-patch", {{{-2.6f, 0.98f, 0.12f}, {-2.6f, 2.18f, 1.0f}}}},
       {"window", {{{-2.49f, 1.02f, -1.62f}, {-2.49f, 2.06f, -0.70f}}}},
       {"classroom",
@@ -147,6 +149,45 @@ TEST_CASE("rooms lose rays through their openings only") {
     CHECK(leaks(scene::load(file_of(room.scene)), room.openings, left) == 0);
     CHECK((left > 0) == !room.openings.empty());
   }
+}
+
+TEST_CASE("the arcade has about a thousand lamps of believable power") {
+  const scene::Scene s = scene::load(file_of("arcade"));
+  CHECK(s.cameras.size() == 3);
+  // Lamps with an extent: what shines and stands apart. Panes of the vault are the sky's.
+  size_t lamps = s.lights.size();
+  double watts = 0, sky = 0;
+  for (const scene::Light& light : s.lights) {
+    const double power = double(luminance(light.intensity)) * scene::solid_angle(light);
+    CHECK(light.kind == scene::LightKind::spot);
+    CHECK(power > 0.5);
+    CHECK(power < 16);
+    watts += power;
+  }
+  for (const scene::Instance& instance : s.instances)
+    for (const scene::Primitive& p : s.meshes[instance.mesh].primitives) {
+      const scene::Material& material = s.materials[p.material];
+      const auto radiance = double(luminance(material.emission));
+      if (!(radiance > 0)) continue;
+      const auto at = [&](uint32_t i) { return vec3(instance.to_world * vec4(p.positions[i], 1)); };
+      double area = 0;
+      for (const uvec3& t : p.triangles)
+        area += 0.5 * double(glm::length(glm::cross(at(t.y) - at(t.x), at(t.z) - at(t.x))));
+      const double power = 3.14159265 * radiance * area;
+      if (material.name == "night glass") {
+        sky += power;
+        continue;
+      }
+      INFO(material.name);
+      CHECK(power > 0.05);
+      CHECK(power < 60);  // a chandelier
+      watts += power, ++lamps;
+    }
+  CHECK(lamps > 900);
+  CHECK(lamps < 1300);
+  CHECK(watts > 1000);
+  CHECK(watts < 4000);
+  CHECK(sky < 0.05 * watts);
 }
 
 TEST_CASE("the conference hall's twenty spots shine freely") {

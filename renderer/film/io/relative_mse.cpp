@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace lucerna::film {
@@ -41,44 +42,71 @@ double mean(std::span<const double> values) {
   return values.empty() ? 0 : std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
-}  // namespace
+/// Of an even number of values the mean of the two in the middle.
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const size_t n = values.size();
+  const auto upper = values.begin() + ptrdiff_t(n / 2);
+  std::nth_element(values.begin(), upper, values.end());
+  return n % 2 ? *upper : (*upper + *std::max_element(values.begin(), upper)) / 2;
+}
 
-RelativeMse relative_mse(std::span<const vec3> picture, const ReferencePair& references,
-                         const RelativeMseOptions& options) {
+/// (l + f m)^2 of every pixel, for each colour.
+std::vector<dvec3> seen_scales(const ReferencePair& references, double floor) {
+  const uint32_t width = references.width, height = width ? uint32_t(references.first.size() / width) : 0;
+  std::vector<double> light(references.first.size()), local(light.size());
+  for (size_t p = 0; p < light.size(); ++p)
+    light[p] = (double(luminance(references.first[p])) + double(luminance(references.second[p]))) / 2;
+  for (int y = 0; y < int(height); ++y)
+    for (int x = 0; x < int(width); ++x) {
+      double sum = 0;
+      for (int v = y - 2; v <= y + 2; ++v)
+        for (int u = x - 2; u <= x + 2; ++u)
+          sum += light[size_t(std::clamp(v, 0, int(height) - 1)) * width +
+                       size_t(std::clamp(u, 0, int(width) - 1))];
+      local[size_t(y) * width + size_t(x)] = sum / 25;
+    }
+  double adapted = median(local);
+  if (!(adapted > 0)) adapted = mean(local);
+  std::vector<dvec3> scale(local.size());
+  for (size_t p = 0; p < scale.size(); ++p) {
+    const double seen = local[p] + floor * adapted;
+    scale[p] = dvec3(seen > 0 ? seen * seen : std::numeric_limits<double>::infinity());
+  }
+  return scale;
+}
+
+/// The mean over the colours of the product of the differences from both references, over the scale.
+std::vector<double> products(std::span<const vec3> picture, const ReferencePair& references,
+                             std::span<const dvec3> scale) {
   assert(picture.size() == references.first.size() && picture.size() == references.second.size());
-  const std::vector<dvec3> scale = scales(references, options.epsilon);
   std::vector<double> error(picture.size());
   for (size_t p = 0; p < error.size(); ++p) {
     const dvec3 t(picture[p]);
     error[p] = mean_of((t - dvec3(references.first[p])) * (t - dvec3(references.second[p])) / scale[p]);
   }
-  RelativeMse result{.all = mean(error)};
-
-  const uint32_t width = references.width, height = width ? uint32_t(error.size() / width) : 0;
-  std::vector<double> beside(error.size());
-  for (uint32_t y = 0; y < height; ++y)
-    for (uint32_t x = 0; x < width; ++x) {
-      double sum = 0, count = 0;
-      around(x, y, width, height, [&](size_t p) { sum += error[p], ++count; });
-      beside[size_t{y} * width + x] = sum / count;
-    }
-  const size_t dropped = size_t(std::ceil(options.trimmed_share * double(error.size())));
-  const size_t kept = error.size() - std::min(dropped, error.size());
-  std::vector<size_t> order(error.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  const auto calmer = [&](size_t a, size_t b) {
-    return beside[a] < beside[b] || (beside[a] == beside[b] && a < b);
-  };
-  if (kept < order.size())
-    std::nth_element(order.begin(), order.begin() + ptrdiff_t(kept), order.end(), calmer);
-  double sum = 0;
-  for (size_t i = 0; i < kept; ++i) sum += error[order[i]];
-  result.trimmed = kept > 0 ? sum / double(kept) : 0;
-  return result;
+  return error;
 }
 
-double relative_mse_noise(const ReferencePair& references, const RelativeMseOptions& options) {
-  const std::vector<dvec3> scale = scales(references, options.epsilon);
+/// The mean of `error` without the share of the pixels, rounded up, that are worst by `order`; of equals
+/// those that come last. 0 where none is left.
+double trimmed_mean(std::span<const double> error, std::span<const double> order, double share) {
+  const size_t dropped = size_t(std::ceil(share * double(error.size())));
+  const size_t kept = error.size() - std::min(dropped, error.size());
+  std::vector<size_t> pixels(error.size());
+  std::iota(pixels.begin(), pixels.end(), size_t{0});
+  const auto calmer = [&](size_t a, size_t b) {
+    return order[a] < order[b] || (order[a] == order[b] && a < b);
+  };
+  if (kept < pixels.size())
+    std::nth_element(pixels.begin(), pixels.begin() + ptrdiff_t(kept), pixels.end(), calmer);
+  double sum = 0;
+  for (size_t i = 0; i < kept; ++i) sum += error[pixels[i]];
+  return kept > 0 ? sum / double(kept) : 0;
+}
+
+/// What the references' own noise leaves to the mean of products().
+double products_noise(const ReferencePair& references, std::span<const dvec3> scale) {
   // With noises a and b of one variance s: (a - b)^2 / 2 has the mean s and, were they normal, the mean
   // square 3 s^2, where (a b)^2, of which the error has one a pixel, has s^2. Colours of a pixel are taken
   // for one.
@@ -89,6 +117,54 @@ double relative_mse_noise(const ReferencePair& references, const RelativeMseOpti
     squares += variance * variance / 3;
   }
   return scale.empty() ? 0 : std::sqrt(squares) / double(scale.size());
+}
+
+}  // namespace
+
+RelativeMse relative_mse(std::span<const vec3> picture, const ReferencePair& references,
+                         const RelativeMseOptions& options) {
+  const std::vector<double> error = products(picture, references, scales(references, options.epsilon));
+  const uint32_t width = references.width, height = width ? uint32_t(error.size() / width) : 0;
+  std::vector<double> beside(error.size());
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
+      double sum = 0, count = 0;
+      around(x, y, width, height, [&](size_t p) { sum += error[p], ++count; });
+      beside[size_t{y} * width + x] = sum / count;
+    }
+  return {.all = mean(error), .trimmed = trimmed_mean(error, beside, options.trimmed_share)};
+}
+
+double relative_mse_noise(const ReferencePair& references, const RelativeMseOptions& options) {
+  return products_noise(references, scales(references, options.epsilon));
+}
+
+SeenMse seen_mse(std::span<const vec3> picture, const ReferencePair& references,
+                 const SeenMseOptions& options) {
+  const std::vector<dvec3> scale = seen_scales(references, options.floor);
+  const std::vector<double> error = products(picture, references, scale);
+  std::vector<double> apart(error.size());
+  for (size_t p = 0; p < error.size(); ++p) {
+    const dvec3 d = dvec3(picture[p]) - (dvec3(references.first[p]) + dvec3(references.second[p])) / 2.0;
+    apart[p] = mean_of(d * d / scale[p]);
+  }
+  return {.all = mean(error), .trimmed = trimmed_mean(error, apart, options.trimmed_share)};
+}
+
+double seen_mse_noise(const ReferencePair& references, const SeenMseOptions& options) {
+  return products_noise(references, seen_scales(references, options.floor));
+}
+
+std::vector<float> seen_difference(std::span<const vec3> picture, const ReferencePair& references,
+                                   const SeenMseOptions& options) {
+  const std::vector<dvec3> scale = seen_scales(references, options.floor);
+  std::vector<float> difference(scale.size());
+  for (size_t p = 0; p < difference.size(); ++p) {
+    const double truth =
+        (double(luminance(references.first[p])) + double(luminance(references.second[p]))) / 2;
+    difference[p] = float(std::abs(double(luminance(picture[p])) - truth) / std::sqrt(scale[p].x));
+  }
+  return difference;
 }
 
 }  // namespace lucerna::film

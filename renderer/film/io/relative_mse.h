@@ -42,4 +42,35 @@ RelativeMse relative_mse(std::span<const vec3> picture, const ReferencePair& ref
 /// large.
 double relative_mse_noise(const ReferencePair& references, const RelativeMseOptions& options = {});
 
+struct SeenMseOptions {
+  double floor = 0.05;           ///< of the picture's median luminance; > 0
+  double trimmed_share = 0.001;  ///< of the pixels; 0..1
+};
+
+/// The squared error as it is seen. Means over the pixels of e = mean over R, G, B of
+/// (t - r1)(t - r2) / (l + f m)^2: l is the mean luminance over 5x5 pixels (edge pixels repeat beyond the
+/// edge), m the median of l over the pixels (where that is 0, their mean) and f the floor; both of the mean
+/// of the references. In expectation free of the references' noise, and may come out below 0. A picture that
+/// is `sqrt(e)` = 5 % off is off by a twentieth of what the eye is adapted to.
+struct SeenMse {
+  double all = 0;
+  /// Without the `trimmed_share` of the pixels (rounded up) that differ most from the mean of the references,
+  /// over the same (l + f m)^2: fireflies do not decide. The choice does not look at what the references
+  /// differ by, so that their noise favours no sign of the product.
+  double trimmed = 0;
+};
+
+/// `picture` is as large as either reference and finite, as they are. Pixels in whose 5x5 and in whose
+/// picture there is no light have no scale and count as 0. No pixels: 0.
+SeenMse seen_mse(std::span<const vec3> picture, const ReferencePair& references,
+                 const SeenMseOptions& options = {});
+
+/// The standard error of SeenMse::all as relative_mse_noise() is that of RelativeMse::all.
+double seen_mse_noise(const ReferencePair& references, const SeenMseOptions& options = {});
+
+/// |difference in luminance| over (l + f m) of every pixel: the picture of an error as it is seen. The
+/// references' own noise is in it.
+std::vector<float> seen_difference(std::span<const vec3> picture, const ReferencePair& references,
+                                   const SeenMseOptions& options = {});
+
 }  // namespace lucerna::film
