@@ -152,7 +152,10 @@ void Program::add_render() {
   render_->add_option("--camera", r.camera, "name of a scene camera, or its number from 1");
   render_->add_option(
       "--error", r.error,
-      "relative error that every tile is to reach, such as 0.02: samples go where it is not reached yet. A "
+      "error as seen that every tile is to reach, such as 0.02: samples go where it is not reached yet. It "
+      "is "
+      "relative to the light around each pixel; what the exposure (film.ev) shows as white or black has "
+      "none. A "
       "render ends at the first of --error, --samples and --time that is reached; what is not given does not "
       "end it where --time is, and without --time samples do, or with --error sampling.max_samples");
   render_->add_option("--samples", r.samples, "samples a pixel; with --error, the most that one may get")
@@ -166,8 +169,9 @@ void Program::add_render() {
   render_->add_option("--device", r.device, k_device_help);
   render_->add_option("--ledger", r.ledger, "time, rays and error as they went on, as CSV")->check(named());
   render_
-      ->add_option("--reference", r.reference,
-                   "EXR of the same picture, converged: ledger and figures then tell the true error")
+      ->add_option(
+          "--reference", r.reference,
+          "EXR of the same picture, converged: ledger and figures then hold the true error of the mean")
       ->check(named());
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     if (!solver->file) continue;

@@ -197,12 +197,26 @@ class Outputs {
   bool failed_ = false;
 };
 
+/// Finds the exposure where the settings say so and neither the scene nor `changes` name one.
+void find_exposure(session::Renderer& r, const std::vector<session::SettingChange>& changes) {
+  if (r.settings().text("film.exposure_at_load") != "always") return;
+  for (const session::SettingChange& change : changes)
+    if (change.key == "film.ev") return;
+  for (const auto& [key, value] : r.scene()->settings)
+    if (key == "film.ev") return;
+  const std::optional<float> ev = r.measure(std::nullopt).ev;
+  if (!ev) return;
+  r.settings().set("film.ev", fmt::format("{:.1f}", *ev));
+  r.apply_settings();
+  log::info("exposure found: film.ev={:.1f}", *ev);
+}
+
 /// Of the time that there is, what solvers may prepare in at most.
 constexpr double k_preparing = 0.5;
 
 /// Until picture and work are done, time is up or somebody interrupts. Seconds that it took.
-double run(session::Renderer& r, const RenderArguments& a, Outputs& outputs, const Interrupt& interrupt,
-           bool terminal) {
+double run(session::Renderer& r, const RenderArguments& a, const std::vector<session::SettingChange>& changes,
+           Outputs& outputs, const Interrupt& interrupt, bool terminal) {
   const double limit = a.seconds.value_or(0);  // 0: none
   const Timer timer;
   Timer since_line;
@@ -222,6 +236,8 @@ double run(session::Renderer& r, const RenderArguments& a, Outputs& outputs, con
     if (!r.step()) break;
     outputs.save_ready(r);
     if (!covered && r.samples() > 0) log::info("a sample of every pixel after {:.2f} s", timer.seconds());
+    // Tiles stop by the error as seen, which depends on the exposure.
+    if (!covered && r.samples() > 0 && r.adaptive()) find_exposure(r, changes);
     covered = r.samples() > 0;
     if (terminal && since_line.seconds() > 0.2)
       print_progress(r, timer.seconds(), limit, false), since_line.restart();
@@ -268,20 +284,6 @@ std::string advice(const session::Renderer& r) {
   return text;
 }
 
-/// Where the settings ask for it and nobody gives one.
-void find_exposure(session::Renderer& r, const std::vector<session::SettingChange>& changes) {
-  if (r.settings().text("film.exposure_at_load") != "always") return;
-  for (const session::SettingChange& change : changes)
-    if (change.key == "film.ev") return;
-  for (const auto& [key, value] : r.scene()->settings)
-    if (key == "film.ev") return;
-  const std::optional<float> ev = r.measure(std::nullopt).ev;
-  if (!ev) return;
-  r.settings().set("film.ev", fmt::format("{:.1f}", *ev));
-  r.apply_settings();
-  log::info("exposure found: film.ev={:.1f}", *ev);
-}
-
 }  // namespace
 
 int render(const RenderArguments& a) {
@@ -303,12 +305,13 @@ int render(const RenderArguments& a) {
       throw_error(fmt::format("--{}-save", name),
                   "no component is computed by '{}'; add --set components.secondary={}", name, name);
   Outputs outputs(to_save);
-  const double wall = run(r, a, outputs, interrupt, terminal);
+  const double wall = run(r, a, changes, outputs, interrupt, terminal);
   const bool interrupted = interrupt.signal() != 0;
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
   if (!interrupted) check_time(r, a);
-  if (makes_picture(a) && r.adaptive() && !interrupted) report_unreached(*r.adaptive(), advice(r));
+  if (makes_picture(a) && r.adaptive() && !interrupted)
+    report_unreached(*r.adaptive(), advice(r)), report_unseen(r);
   if (makes_picture(a)) outputs.attempt([&] { find_exposure(r, changes); });
   for (const std::string& file : a.outputs) outputs.attempt([&] { r.save(file); });
   if (!a.ledger.empty()) outputs.attempt([&] { write_file(a.ledger, r.ledger().csv()); });

@@ -9,14 +9,16 @@
 namespace lucerna::app {
 namespace {
 
-/// Noise of the picture, estimated from its halves (film/error.h), and what is told of its lookups' bias;
-/// of each component the bias where it is known to be none.
+/// Errors of the picture, estimated from its halves (film/error.h): as seen, and of the mean; with each
+/// component's share of the noise, and its bias where it is known to be none.
 nlohmann::ordered_json make_error(session::Renderer& r) {
   const film::ImageError error = r.image_error();
   nlohmann::ordered_json j;
   j["of"] = "sum";
+  j["seen"] = error.seen_sum();
+  j["of_mean"] = error.relative_sum();
   j["rms"] = error_sum(error.rms[0], error.records_rms, error.interpolation_rms);
-  j["relative"] = error.relative_sum();
+  j["white"] = error.white, j["dark"] = error.dark;
   const std::vector<film::TileError> tiles = r.tile_errors();
   const auto tell_tiles = [](nlohmann::ordered_json& to, const film::TileSpread& spread) {
     to["tile_median"] = spread.median;
@@ -29,20 +31,26 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   // Where photons are looked up and none has come by.
   j["unknown_tiles"] = std::count_if(tiles.begin(), tiles.end(), [](const auto& t) { return t.unknown; });
   // The parts of that sum, by where they come from.
-  const auto part = [&](const char* name, double rms, double relative, double film::TileError::*of) {
-    j[name] = {{"rms", rms}, {"relative", relative}};
+  const auto part = [&](const char* name, double seen, double of_mean, double rms,
+                        double film::TileError::*of) {
+    j[name] = {{"seen", seen}, {"of_mean", of_mean}, {"rms", rms}};
     tell_tiles(j[name], film::tile_spread(tiles, of));
   };
-  part("paths", error.rms[0], error.relative(0), &film::TileError::relative);
+  part("paths", error.seen(0), error.relative(0), error.rms[0], &film::TileError::relative);
   if (r.looks_up() && !r.lookup_errors_known()) j["records"] = j["bias"] = nullptr;
   if (r.looks_up() && r.lookup_errors_known()) {
-    part("records", error.records_rms, error.relative_records(), &film::TileError::relative_records);
-    part("bias", error.interpolation_rms, error.relative_interpolation(),
+    part("records", error.seen_records, error.relative_records(), error.records_rms,
+         &film::TileError::relative_records);
+    part("bias", error.seen_interpolation, error.relative_interpolation(), error.interpolation_rms,
          &film::TileError::relative_interpolation);
   }
   for (int c = 0; c < paths::k_component_count; ++c) {
     auto& component = j["components"][paths::k_component_names[c]];
-    component = {{"rms", error.rms[c + 1]}, {"relative", error.relative(c + 1)}, {"bias", nullptr}};
+    component = {{"seen", error.seen(c + 1)},
+                 {"share", error.share(c)},
+                 {"of_mean", error.relative(c + 1)},
+                 {"rms", error.rms[c + 1]},
+                 {"bias", nullptr}};
     if (const auto bias = r.bias(size_t(c))) component["bias"] = *bias;
   }
   return j;
@@ -55,7 +63,7 @@ nlohmann::ordered_json make_truth(const film::Reference& reference, const stats:
   for (int k = 0; k < stats::k_layers; ++k) {
     auto& layer = j[stats::k_layer_names[k]];
     if (!ledger.entries().empty() && ledger.entries().back().truth)
-      layer["relative"] = (*ledger.entries().back().truth)[k];
+      layer["of_mean"] = (*ledger.entries().back().truth)[k];
     if (reference.noise) layer["reference_noise"] = (*reference.noise)[k] / reference.mean_luminance;
   }
   return j;
@@ -112,13 +120,15 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
                              {"prepared_s", e.prepared_s}, {"paths", e.paths},       {"rays", e.rays},
                              {"samples", e.samples}};
     for (int k = 0; k < stats::k_layers; ++k) {
-      if (e.told) j["error"][stats::k_layer_names[k]] = e.error[k];
+      if (e.told) j["seen"][stats::k_layer_names[k]] = e.error[k];
+      if (e.told) j["of_mean"][stats::k_layer_names[k]] = e.of_mean.error[k];
       j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
     }
     if (e.told)
-      j["error_records"] = e.records, j["error_bias"] = e.interpolation, j["error_told"] = e.sum(),
-      j["tile_median"] = e.tile_median, j["tile_worst_decile"] = e.tile_worst_tenth,
-      j["error_degrees"] = e.degrees;
+      j["seen_records"] = e.records, j["seen_bias"] = e.interpolation, j["seen_total"] = e.sum(),
+      j["seen_degrees"] = e.degrees, j["of_mean_records"] = e.of_mean.records,
+      j["of_mean_bias"] = e.of_mean.interpolation, j["of_mean_total"] = e.of_mean.sum(),
+      j["tile_median"] = e.tile_median, j["tile_worst_decile"] = e.tile_worst_tenth;
     if (e.truth)
       for (int k = 0; k < stats::k_layers; ++k) j["truth"][stats::k_layer_names[k]] = (*e.truth)[k];
     if (e.total_rays) j["forecast_rays"] = {e.total_rays->low, e.total_rays->middle, e.total_rays->high};
@@ -163,6 +173,18 @@ void report_unreached(const schedule::AdaptiveSchedule& s, const std::string& ad
       s.count(schedule::TileState::capped) - by_lookups, s.options().max_samples,
       list.size() - s.count(schedule::TileState::capped), worst.sum(),
       list.front() % s.tiles_across() * s.options().tile, list.front() / s.tiles_across() * s.options().tile);
+}
+
+void report_unseen(session::Renderer& r) {
+  constexpr double k_most = 0.5;
+  const film::ImageError error = r.image_error();
+  if (error.white + error.dark <= k_most) return;
+  log::warning(
+      "with film.ev={} {:.0f} % of the picture is shown as white and {:.0f} % as black: no error is seen "
+      "there, "
+      "and tiles stop early. Name the exposure of the finished picture (--set film.ev=EV), or have it found "
+      "(--set film.exposure_at_load=always)",
+      r.settings().text("film.ev"), 100 * error.white, 100 * error.dark);
 }
 
 nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {

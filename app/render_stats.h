@@ -16,4 +16,8 @@ nlohmann::ordered_json make_stats(session::Renderer& renderer, double wall);
 /// keeps them there. `advice`: what helps where it is records.
 void report_unreached(const schedule::AdaptiveSchedule& schedule, const std::string& advice);
 
+/// Warns where most of the picture is shown as white or as black, so that adaptive sampling sees no error
+/// there.
+void report_unseen(session::Renderer& renderer);
+
 }  // namespace lucerna::app

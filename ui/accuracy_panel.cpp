@@ -17,9 +17,15 @@ namespace {
 using session::Accuracy;
 
 constexpr ImU32 k_sum = colour::text;
-/// Of the mean, of the median tile, of the worst tenth of the tiles; of the parts of the mean's.
-constexpr std::array<ImU32, 6> k_noise_ink = {
-    k_sum, colour::grey(132), colour::grey(164), colour::text_dim, colour::text_dim, colour::text_dim};
+/// As seen, of the median tile, of the worst tenth of the tiles, of the mean; of the parts of the error as
+/// seen.
+constexpr std::array<ImU32, 7> k_noise_ink = {k_sum,
+                                              colour::grey(132),
+                                              colour::grey(164),
+                                              colour::text_dim,
+                                              colour::text_dim,
+                                              colour::text_dim,
+                                              colour::text_dim};
 
 ImU32 layer_ink(size_t layer) { return layer == 0 ? k_sum : colour::component[layer - 1]; }
 
@@ -197,9 +203,9 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   const auto& lines = a.ledger.entries();
   for (size_t k = 0; k < stats::k_layers; ++k)
     look(error_points(plot, a, k),
-         k == 0 ? std::string(looks_up(lines.back()) ? "error of the mean (estimated)"
-                                                     : "noise of the mean (estimated)")
-                : fmt::format("{}, noise over the picture's mean (estimated)", stats::k_layer_names[k]),
+         k == 0
+             ? std::string(looks_up(lines.back()) ? "error as seen (estimated)" : "noise as seen (estimated)")
+             : fmt::format("{}, noise as seen (estimated)", stats::k_layer_names[k]),
          layer_ink(k), nullptr, k);
   const char* const what = looks_up(lines.back()) ? "error" : "noise";
   look(tile_points(plot, a, &stats::Entry::tile_median),
@@ -207,13 +213,13 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   look(tile_points(plot, a, &stats::Entry::tile_worst_tenth),
        fmt::format("{} of the worst tenth of the tiles (estimated)", what), k_noise_ink[2]);
   look(line_points(plot, a, [&](size_t i) { return lines[i].truth ? (*lines[i].truth)[0] : 0.0; }),
-       "sum, true error against " + a.reference, k_sum);
+       "sum, true error of the mean against " + a.reference, k_sum);
   if (a.adaptive) look(line_points(plot, a, [&](size_t i) { return a.hardest[i]; }), "hardest tile", k_sum);
   look(floor_points(plot, a),
-       "noise of records and bias of lookups, of the mean: what more samples do not go below",
-       colour::text_dim);
+       "noise of records and bias of lookups, as seen: what more samples do not go below", colour::text_dim);
   for (const Run& run : ui.runs.earlier())
-    look(error_points(plot, *run.accuracy, 0), "earlier render, noise (estimated)", colour::text_dim, &run);
+    look(error_points(plot, *run.accuracy, 0), "earlier render, noise as seen (estimated)", colour::text_dim,
+         &run);
   if (best.points.empty()) return;
   // The measured point nearest to the pointer.
   const auto near = std::min_element(best.points.begin(), best.points.end(), [&](ImVec2 p, ImVec2 q) {
@@ -236,6 +242,13 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
       {fmt::format("{}: {}", name, percent_text(plot.y.value(near->y))), colour::text},
       {run_figures(told, line), colour::text_dim}};
   const stats::Entry& then = told.ledger.entries()[line];
+  if (best.layer && *best.layer > 0)
+    rows.emplace_back(
+        fmt::format("{:.0f} % of the noise as seen (squared); of the mean {}",
+                    100 * then.share(int(*best.layer) - 1), percent_text(then.of_mean.error[*best.layer])),
+        colour::text_dim);
+  else if (best.layer)
+    rows.emplace_back(fmt::format("Of the mean {}", percent_text(then.of_mean.sum())), colour::text_dim);
   if (best.layer == size_t{0} && looks_up(then))
     rows.emplace_back(
         fmt::format("Paths {}{}, bias of lookups {} (added)", percent_text(then.error[0]),
@@ -303,13 +316,14 @@ void line_names(const Ui& ui, const Accuracy& a, const ImVec2& lo, float right) 
     x += w + px(after);
   };
   put("Lines:", colour::text_dim, 6);
-  put("mean", k_noise_ink[0], 8);
+  put("as seen", k_noise_ink[0], 8);
   put("median tile", k_noise_ink[1], 8);
   put("worst tenth", k_noise_ink[2], 8);
   if (looks_up(a.ledger.entries().back())) put("- - lookups", colour::text_dim, 8);
   if (a.adaptive) put("- - hardest tile", colour::text_dim, 8);
   if (!a.reference.empty())
-    put(a.reference_applies ? "\xC2\xB7 \xC2\xB7 \xC2\xB7 true error" : "reference of another view",
+    put(a.reference_applies ? "\xC2\xB7 \xC2\xB7 \xC2\xB7 true error of the mean"
+                            : "reference of another view",
         a.reference_applies ? colour::text : colour::warning, 8);
   // The components last: where there is no room, their colours are known from the panel on the left.
   const auto error = a.error();

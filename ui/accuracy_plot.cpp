@@ -70,27 +70,31 @@ std::optional<Present> present(const Accuracy& a) {
 
 std::vector<ErrorFigure> error_figures(const stats::Entry& line) {
   std::vector<ErrorFigure> figures{
-      {"of the mean", "mean", line.sum(),
-       "The pixels' standard errors (rms) over the picture's mean luminance. What is bright rules it: "
-       "behind a calm window walls may still be grainy."},
+      {"as seen", "as seen", line.sum(),
+       "Root mean square of the pixels' errors, each relative to the light around it. What the exposure "
+       "shows "
+       "as white or as black has no visible error."},
       {"of the median tile", "median tile", line.tile_median,
        "Half of the tiles are farther off, each held against its own pixels' brightness."},
       {"of the worst tenth of the tiles", "worst tenth", line.tile_worst_tenth,
        "A tenth of the tiles are at least this far off, each held against its own pixels' brightness: the "
-       "dark and difficult parts of the picture."}};
+       "dark and difficult parts of the picture."},
+      {"of the mean", "mean", line.of_mean.sum(),
+       "Root mean square of the pixels' errors over the picture's mean luminance, whatever the exposure. A "
+       "few bright pixels, such as the edges of a window, decide it."}};
   if (!looks_up(line)) return figures;
-  figures.push_back({"of the mean by the paths", "paths", line.error[0],
-                     "Noise of the samples, a part of what the mean is off by. More samples take it away."});
+  figures.push_back({"as seen, by the paths", "paths", line.error[0],
+                     "Noise of the samples, a part of the error as seen. More samples take it away."});
   if (line.records > 0)
     figures.push_back(
-        {"of the mean by the records", "records", line.records,
-         "Noise of the records that the samples read, a part of what the mean is off by. More samples "
+        {"as seen, by the records", "records", line.records,
+         "Noise of the records that the samples read, a part of the error as seen. More samples "
          "do not take it away; more rays a record do" +
              advice(&solvers::SolverInfo::against_noise) + "."});
   figures.push_back(
-      {"of the mean by the bias of lookups", "bias", line.interpolation,
+      {"as seen, by the bias of lookups", "bias", line.interpolation,
        "By how much light is off in the mean that is interpolated between records or blurred over the discs "
-       "of photons, a part of what the picture's mean is off by. More samples do not take it away, or slowly "
+       "of photons, a part of the error as seen. More samples do not take it away, or slowly "
        "as the discs shrink; more records and smaller discs do" +
            advice(&solvers::SolverInfo::against_bias) + "."});
   return figures;

@@ -21,9 +21,9 @@ struct ErrorFigure {
   double value = 0;  ///< relative
   std::string help;
 };
-/// Of the ledger's line: of the mean, of the median tile, of the worst tenth of the tiles; and where samples
-/// look light up, what of the mean's comes from the paths, from the noise of records if there are any, and
-/// from the lookups' bias.
+/// Of the ledger's line: as seen, of the median tile, of the worst tenth of the tiles, of the mean; and where
+/// samples look light up, what of the error as seen comes from the paths, from the noise of records if there
+/// are any, and from the lookups' bias.
 std::vector<ErrorFigure> error_figures(const stats::Entry& line);
 /// Whether that is so: else the error is the paths' noise.
 bool looks_up(const stats::Entry& line);

@@ -91,6 +91,7 @@ void component_row(Ui& ui, int c, float width) {
   const float right = at.x + width;
   const bool known = status && !off && ui.snapshot->samples > 0;
   const double error = known && ui.snapshot->accuracy ? ui.snapshot->accuracy->error()[index + 1] : 0;
+  const double noise_share = error > 0 ? ui.snapshot->accuracy->ledger.entries().back().share(c) : 0;
   // The share stands beside the name; error and time beside the solver.
   if (width > px(200))
     draw_text(list, {at.x + px(100), at.y}, {at.x + width - px(56), at.y + px(22)},
@@ -106,12 +107,13 @@ void component_row(Ui& ui, int c, float width) {
             known ? colour::text_dim : colour::text_faint, Align::right);
   ImGui::SetCursorScreenPos({figures, line});
   ImGui::InvisibleButton("##figures", {std::max(1.0f, right - figures), px(24)});
-  tooltip(known
-              ? fmt::format("Estimated noise of this component over the picture's mean luminance, and device "
-                            "time that its rays cost per sample a pixel. Its share of the light is {:.1f} %, "
-                            "its mean luminance {:.4g}.",
-                            100 * status->share, status->mean_luminance)
-              : "Nothing has been measured yet, or the component is off.");
+  tooltip(
+      known ? fmt::format("Estimated noise of this component as seen: root mean square over the pixels, each "
+                          "relative to the light around it. It is {:.0f} % of the picture's noise (squared). "
+                          "Beside it the device time that its rays cost per sample a pixel. Its share of "
+                          "the light is {:.1f} %, its mean luminance {:.4g}.",
+                          100 * noise_share, 100 * status->share, status->mean_luminance)
+            : "Nothing has been measured yet, or the component is off.");
 
   // Third line: the share as a bar.
   ImGui::SetCursorScreenPos({at.x + px(18), at.y + px(54)});

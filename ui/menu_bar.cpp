@@ -460,8 +460,8 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     ImGui::InvisibleButton("##state", {std::max(1.0f, right - state_left), area.hi.y - area.lo.y - px(2)});
     tooltip(
         (which > 0 ? states[0] + ". " : "") +
-        "Samples a pixel, noise of the mean (estimated; the panel Accuracy shows that of the tiles beside "
-        "it), and the time that has gone by since this picture was begun, pauses left out.");
+        "Samples a pixel, noise as seen (estimated; the panel Accuracy shows that of the tiles beside it), "
+        "and the time that has gone by since this picture was begun, pauses left out.");
     // Room for preview_text(), so that nothing moves when it goes.
     right = preview_begin - px(24);
   }

@@ -29,7 +29,7 @@ std::string layer_help(const std::string& layer) {
   if (layer == "normal") return "Shows the shading normal of the first surface.";
   if (layer == "depth") return "Shows the distance to the first surface.";
   if (layer == "samples") return "Shows the samples taken in each pixel.";
-  if (layer == "error") return "Shows the estimated relative error.";
+  if (layer == "error") return "Shows the estimated error as seen: relative to the light around.";
   if (layer == "cost") return "Shows the device time that each pixel's paths took.";
   return fmt::format("Shows the layer {}.", layer);
 }

@@ -73,8 +73,8 @@ Distances distances(const Renderer& r, const film::ReferencePair& halves) {
 
 /// What is told of the sum; of the components, the paths' noise.
 Layers told(const stats::Entry& e) {
-  Layers all = e.error;
-  all[0] = e.sum();
+  Layers all = e.of_mean.error;
+  all[0] = e.of_mean.sum();
   return all;
 }
 
@@ -255,8 +255,8 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
 
   result.wall_s = last.render_s, result.device_s = last.device_s;
   result.rays = last.rays, result.paths = last.paths, result.samples = last.samples;
-  result.parts.paths = last.error[0];
-  result.parts.records = last.records, result.parts.interpolation = last.interpolation;
+  result.parts.paths = last.of_mean.error[0];
+  result.parts.records = last.of_mean.records, result.parts.interpolation = last.of_mean.interpolation;
   result.estimated = told(last), result.truth = last.truth.value_or(Layers{});
   result.component_s = last.component_s;
   const double rms = result.truth[0] * r->reference()->mean_luminance;

@@ -2,8 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+
+#include "shaders/shared/tone.h"
 
 namespace lucerna::film {
+
+SeenRange seen_range(double ev, uint32_t curve) {
+  const float exposure = float(std::exp2(ev));
+  return {k_luminance_floor / exposure, shared::tone_white(curve) / exposure};
+}
 
 double student_90(double degrees) {
   // Cornish-Fisher expansion about the normal quantile z (Abramowitz and Stegun 26.7.5); it converges badly
@@ -240,24 +248,38 @@ TileSpread tile_spread(std::span<const TileError> tiles, double TileError::*part
 
 ImageError image_error(std::span<const shared::BlockError> blocks) {
   ImageError image;
-  std::array<double, 5> variance{};
+  std::array<double, 5> variance{}, seen{};
   double fourth = 0, records = 0, interpolation = 0;
+  double seen_fourth = 0, seen_records = 0, seen_interpolation = 0;
   for (const shared::BlockError& b : blocks) {
     image.pixels += b.pixels, fourth += b.fourth;
     records += b.records, interpolation += b.interpolation;
+    seen_records += b.records_relative, seen_interpolation += b.interpolation_relative;
+    image.white += b.white, image.dark += b.dark, seen_fourth += b.seen_fourth;
     if (without_evidence(b)) image.unknown += b.pixels;
-    for (int k = 0; k < 5; ++k) image.luminance[k] += b.luminance[k], variance[k] += b.variance[k];
+    for (int k = 0; k < 5; ++k)
+      image.luminance[k] += b.luminance[k], variance[k] += b.variance[k], seen[k] += b.seen[k];
   }
   if (image.pixels == 0) return image;
   for (int k = 0; k < 5; ++k) {
     image.luminance[k] /= image.pixels;
     image.rms[k] = std::sqrt(variance[k] / image.pixels);
+    image.seen_rms[k] = std::sqrt(seen[k] / image.pixels);
   }
-  image.unknown /= image.pixels;
+  image.unknown /= image.pixels, image.white /= image.pixels, image.dark /= image.pixels;
+  image.seen_records = quadratic_mean(seen_records, image.pixels);
+  image.seen_interpolation = quadratic_mean(seen_interpolation, image.pixels);
+  image.seen_degrees = seen_fourth > 0 ? 3 * seen[0] * seen[0] / seen_fourth : image.pixels;
   image.records_rms = quadratic_mean(records, image.pixels);
   image.interpolation_rms = quadratic_mean(interpolation, image.pixels);
   image.degrees = fourth > 0 ? 3 * variance[0] * variance[0] / fourth : image.pixels;
   return image;
+}
+
+double ImageError::share(int component) const {
+  const double all = std::inner_product(seen_rms.begin() + 1, seen_rms.end(), seen_rms.begin() + 1, 0.0);
+  const double own = seen_rms[size_t(component) + 1];
+  return all > 0 ? own * own / all : 0;
 }
 
 }  // namespace lucerna::film

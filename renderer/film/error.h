@@ -1,4 +1,13 @@
 #pragma once
+// Errors are measured in two ways, each by its name:
+// - as seen: every pixel's error relative to the light around it, with nothing seen below a floor and above
+//   display white under the exposure in force. shaders/shared/seen_error.h is the definition. Components'
+//   errors and their shares, the tiles that stop adaptive sampling, forecasts and decisions where work goes
+//   are by it.
+// - of the mean: the root mean square of the pixels' errors in luminance, relative to the picture's mean
+//   luminance. It does not depend on exposure, and is what a linear picture is held against a reference by. A
+//   few bright pixels decide it: with a window of 5 % of the pixels 95 % of it may lie at the window's edges.
+//
 // The error of a picture, of its tiles and of the whole, by where it comes from:
 // - paths: the noise of the samples, from the two independently scrambled halves of the film. More samples
 //   take it away.
@@ -26,6 +35,14 @@ namespace lucerna::film {
 
 using shared::k_luminance_floor;
 
+/// Luminances between which a picture's errors are seen (seen_error.h); both > 0.
+struct SeenRange {
+  float floor = k_luminance_floor, white = 1;
+  bool operator==(const SeenRange&) const = default;
+};
+/// Of a picture that is shown with that exposure (EV) and tone curve (shared::k_tone_*).
+SeenRange seen_range(double ev, uint32_t curve);
+
 /// What lookups make of a mean over some blocks, in luminance; degrees: of freedom of noise^2.
 struct RecordsError {
   double noise = 0, interpolation = 0, degrees = 0;
@@ -52,7 +69,7 @@ struct TileError {
   /// Degrees of freedom of standard_error^2 by Satterthwaite: (sum v)^2 / (sum v^2 / 3), for v has one degree
   /// of freedom and so E[v^2] = 3 sigma^4. All pixels alike: their number; one that dwarfs the rest: 3.
   double degrees = 0;
-  /// What stops the tile: the relative error r of its pixels (shaders/shared/film.h), in the mean over each
+  /// What stops the tile: the error as seen, limited to r (shaders/shared/film.h), in the mean over each
   /// quadrant of 4x4 pixels of a block, and of these the quadratic mean. A lone firefly, whose r is at
   /// most 1.26, adds 2 % to a tile of 16x16 pixels whatever its size and does not hold it; one hard corner
   /// counts for more than its area, but does not decide alone. Its own noise falls with the number of pixels,
@@ -103,8 +120,8 @@ std::vector<TileError> tile_errors(const Film& film, uint32_t side);
 /// calm tiles hold the truth in one case of five.
 void mark_heavy_tails(std::span<TileError> tiles, uint32_t across, double luminance_floor);
 
-/// How the relative errors of a picture's tiles spread. The noise of the mean (ImageError::relative) is ruled
-/// by the brightest pixels: behind a window that is calm, walls may still be grainy, and these tell.
+/// How the errors of a picture's tiles, as seen, spread: where ImageError::seen() is a mean over the picture,
+/// these say how its best and its worst parts look.
 struct TileSpread {
   double median = 0;       ///< of the median tile
   double worst_tenth = 0;  ///< what a tenth of the tiles are over
@@ -126,15 +143,33 @@ struct ImageError {
   /// Of the sum: the same of what records make of each pixel.
   double records_rms = 0, interpolation_rms = 0;
   double unknown = 0;  ///< share of the pixels that lie in blocks without_evidence()
-  /// rms over the sum's mean luminance: one scale for all, so that components can be compared. Of the sum,
-  /// with pixels of unknown error counted as wrong by the mean luminance.
+
+  /// Root mean squares over the pixels of the errors as seen, of the sum and of the components.
+  std::array<double, 5> seen_rms{};
+  double seen_degrees = 0;                          ///< of freedom of seen_rms[0]^2, as `degrees`
+  double seen_records = 0, seen_interpolation = 0;  ///< as records_rms and interpolation_rms, as seen
+  double white = 0, dark = 0;  ///< shares of the pixels that are no darker than white, darker than the floor
+
+  /// The error as seen. Of the sum, with pixels of unknown error counted as wrong by all of their light.
+  double seen(int layer) const {
+    const double known = seen_rms[size_t(layer)];
+    return layer == 0 ? std::sqrt(known * known + unknown) : known;
+  }
+  /// With what lookups add: what is reported of the picture.
+  double seen_sum() const { return error_sum(seen(0), seen_records, seen_interpolation); }
+  /// A component's share of the noise, 0..1 for component 0..3: its squared error as seen over the sum of
+  /// all components'. They add up to 1, or are all 0 where there is no noise.
+  double share(int component) const;
+
+  /// The error of the mean: rms over the sum's mean luminance. Of the sum, with pixels of unknown error
+  /// counted as wrong by the mean luminance.
   double relative(int layer) const {
     const double known = luminance[0] > 0 ? rms[size_t(layer)] / luminance[0] : 0;
     return layer == 0 ? std::sqrt(known * known + unknown) : known;
   }
   double relative_records() const { return luminance[0] > 0 ? records_rms / luminance[0] : 0; }
   double relative_interpolation() const { return luminance[0] > 0 ? interpolation_rms / luminance[0] : 0; }
-  /// Of the three: what is told of the picture.
+  /// Of the three.
   double relative_sum() const { return error_sum(relative(0), relative_records(), relative_interpolation()); }
 };
 ImageError image_error(std::span<const shared::BlockError> blocks);

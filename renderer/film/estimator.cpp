@@ -21,7 +21,7 @@ ErrorEstimator::ErrorEstimator(gpu::Device& device, gpu::ShaderCompiler& compile
       stopping_(device, compiler, "film/error.comp", defines(lookup_errors, true)) {}
 
 void ErrorEstimator::record(gpu::Stream& stream, const gpu::Kernel& kernel, std::span<const WorkBlock> blocks,
-                            const Film& film, float luminance_floor, const char* stage) {
+                            const Film& film, const SeenRange& seen, const char* stage) {
   if (blocks.empty()) return;
   gpu::make_room(device_, blocks_,
                  {.name = "estimated blocks", .bytes = blocks.size_bytes(), .memory = gpu::Memory::host});
@@ -32,21 +32,22 @@ void ErrorEstimator::record(gpu::Stream& stream, const gpu::Kernel& kernel, std:
   const ErrorPush push{film.width(),
                        film.height(),
                        count,
-                       luminance_floor,
+                       seen.floor,
+                       seen.white,
                        film.record_errors_complete(),
                        film.lookup_bias_known()};
   stream.dispatch(kernel, resources_, push, gpu::groups_for(count, 8), stage);
 }
 
-void ErrorEstimator::estimate(gpu::Stream& stream, const Film& film, float luminance_floor) {
+void ErrorEstimator::estimate(gpu::Stream& stream, const Film& film, const SeenRange& seen) {
   std::vector<WorkBlock> all;
   for (uint32_t b = 0; b < film.blocks(); ++b) all.push_back({b, 0});
-  record(stream, error_, all, film, luminance_floor, "ledger");
+  record(stream, error_, all, film, seen, "ledger");
 }
 
 void ErrorEstimator::estimate_stopping(gpu::Stream& stream, std::span<const WorkBlock> blocks,
-                                       const Film& film, float luminance_floor) {
-  record(stream, stopping_, blocks, film, luminance_floor, "stopping");
+                                       const Film& film, const SeenRange& seen) {
+  record(stream, stopping_, blocks, film, seen, "stopping");
 }
 
 }  // namespace lucerna::film

@@ -1,6 +1,6 @@
 #pragma once
 // What the halves of a film say of the noise in its blocks (shaders/film/error.comp), into film.errors().
-#include "film/film.h"
+#include "film/error.h"
 
 namespace lucerna::film {
 
@@ -12,15 +12,15 @@ class ErrorEstimator {
   /// (Film::complete_record_errors, lookup_bias_known). Compiles its kernels; throws Error, located.
   ErrorEstimator(gpu::Device& device, gpu::ShaderCompiler& compiler, bool lookup_errors);
 
-  /// Of all blocks. Pixels darker than `luminance_floor` are held against that.
-  void estimate(gpu::Stream& stream, const Film& film, float luminance_floor);
+  /// Of all blocks. `seen`: what of them is seen.
+  void estimate(gpu::Stream& stream, const Film& film, const SeenRange& seen);
   /// Of these blocks alone, and only what relative_error() reads; the rest of film.errors() stays.
   void estimate_stopping(gpu::Stream& stream, std::span<const shared::WorkBlock> blocks, const Film& film,
-                         float luminance_floor);
+                         const SeenRange& seen);
 
  private:
   void record(gpu::Stream& stream, const gpu::Kernel& kernel, std::span<const shared::WorkBlock> blocks,
-              const Film& film, float luminance_floor, const char* stage);
+              const Film& film, const SeenRange& seen, const char* stage);
 
   gpu::Device& device_;
   gpu::Kernel error_, stopping_;

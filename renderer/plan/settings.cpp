@@ -47,7 +47,9 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
                                                "Sampling")));
   list.push_back(without_restart(real_option(
       "sampling.target_error", "0.05", 0.0001, 10, "",
-      "Adaptive: relative standard error of its pixels under which a tile is done.", "Target error")));
+      "Adaptive: error as seen under which a tile is done, relative to the light around each pixel. What "
+      "film.ev and film.tone_curve show as white or black has no visible error.",
+      "Target error")));
   list.push_back(without_restart(integer_option(
       "sampling.min_samples", 64, 2, 1 << 20, "samples",
       "Adaptive: samples that every pixel gets before its tile may be done.", "Least samples")));

@@ -242,7 +242,7 @@ bool Renderer::keeps_light(const scene::Changes& changes) const {
 }
 
 void Renderer::start_schedule() {
-  floor_ = luminance_floor();
+  seen_ = seen_range();
   if (settings_.text("sampling.mode") == "adaptive")
     sampling_.start(
         schedule::AdaptiveSchedule(film_->blocks_across(), film_->blocks_down(), adaptive_options()));
@@ -252,7 +252,7 @@ void Renderer::start_schedule() {
 }
 
 void Renderer::change_schedule() {
-  floor_ = luminance_floor();
+  seen_ = seen_range();
   const std::vector<uint32_t> have = sampling_.counts();
   if (settings_.text("sampling.mode") == "adaptive") {
     std::vector<schedule::TileErrors> errors;
@@ -278,9 +278,8 @@ schedule::AdaptiveOptions Renderer::adaptive_options() const {
   };
 }
 
-/// What the floor of the display (film/error.h) is before exposure.
-float Renderer::luminance_floor() const {
-  return film::k_luminance_floor * float(std::exp2(-settings_.real("film.ev")));
+film::SeenRange Renderer::seen_range() const {
+  return film::seen_range(settings_.real("film.ev"), uint32_t(settings_.choice("film.tone_curve")));
 }
 
 uint32_t Renderer::tile_side() const { return uint32_t(std::stoul(settings_.text("sampling.tile"))); }
@@ -288,7 +287,7 @@ uint32_t Renderer::tile_side() const { return uint32_t(std::stoul(settings_.text
 film::ImageError Renderer::image_error() {
   settle_mix();
   transport::Wavefront& wavefront = engine_->wavefront();
-  engine_->estimator().estimate(wavefront.stream(), *film_, luminance_floor());
+  engine_->estimator().estimate(wavefront.stream(), *film_, seen_range());
   wavefront.account_stages();
   return film::image_error(film_->errors());
 }
@@ -306,7 +305,7 @@ std::optional<double> Renderer::bias(size_t component) const {
 std::vector<film::TileError> Renderer::tile_errors() const {
   const uint32_t side = tile_side();
   std::vector<film::TileError> tiles = film::tile_errors(*film_, side);
-  film::mark_heavy_tails(tiles, (film_->width() + side - 1) / side, luminance_floor());
+  film::mark_heavy_tails(tiles, (film_->width() + side - 1) / side, seen_range().floor);
   return tiles;
 }
 
@@ -499,7 +498,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     std::vector<schedule::TileErrors> errors(tiles.size());
     // One sample a pixel tells nothing of the error, and decides nothing.
     if (!tiles.empty() && adaptive->tiles()[tiles[0]].samples + item.sample_count > 1) {
-      engine_->estimator().estimate_stopping(wavefront.stream(), item.blocks, *film_, luminance_floor());
+      engine_->estimator().estimate_stopping(wavefront.stream(), item.blocks, *film_, seen_range());
       wavefront.account_stages();
       for (size_t i = 0; i < tiles.size(); ++i) {
         const film::RelativeError e = film::relative_error(*film_, adaptive->blocks_of(tiles[i]));
@@ -544,12 +543,12 @@ void Renderer::note_path_pace(double seconds) {
     return;
   transport::Wavefront& wavefront = engine_->wavefront();
   wavefront.uncounted([&] {
-    engine_->estimator().estimate(wavefront.stream(), *coarse_, luminance_floor());
+    engine_->estimator().estimate(wavefront.stream(), *coarse_, seen_range());
     wavefront.account_stages();
   });
   const double samples = before + 1, pixels = double(coarse_->width()) * coarse_->height();
   path_pace_ = {.seconds = coarse_s_ / (samples * pixels),
-                .noise = film::image_error(coarse_->errors()).relative(0) * std::sqrt(samples)};
+                .noise = film::image_error(coarse_->errors()).seen(0) * std::sqrt(samples)};
 }
 
 std::optional<stats::SamplePace> Renderer::path_pace() const {

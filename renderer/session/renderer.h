@@ -283,9 +283,9 @@ class Renderer {
   void mark_tiles(const film::View& view);
   bool previewed(const film::View& view) const;  ///< whether the window shows a preview of it
   film::HeatScale heat_scale(uint32_t layer) const;
-  float luminance_floor() const;
-  /// Another exposure shows other errors than those that tiles have stopped by.
-  bool judged_otherwise() const { return adaptive() && floor_ != luminance_floor(); }
+  film::SeenRange seen_range() const;
+  /// Another exposure or tone curve shows other errors than those that tiles have stopped by.
+  bool judged_otherwise() const { return adaptive() && seen_ != seen_range(); }
   /// The picture's light is as before, however it is computed and wherever it is seen from.
   bool keeps_light(const scene::Changes& changes) const;
   void start_schedule();
@@ -338,7 +338,7 @@ class Renderer {
   scene::Camera camera_;
   uint32_t width_ = 1280, height_ = 720;
   Sampling sampling_;
-  float floor_ = 0;  ///< luminance_floor() that the adaptive schedule's errors are of
+  film::SeenRange seen_;  ///< seen_range() that the adaptive schedule's errors are of
   uint64_t restarts_ = 0;
   uint64_t errors_restart_ = ~0ull;  ///< the image of which lookups' errors are being estimated ...
   const solvers::Solver* errors_of_ = nullptr;  ///< ... and whose

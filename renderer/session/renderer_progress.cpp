@@ -67,9 +67,12 @@ void Renderer::note_progress(bool at_once) {
   entry.told = samples() >= 2;
   if (entry.told) {
     const film::ImageError error = image_error();
-    for (int k = 0; k < stats::k_layers; ++k) entry.error[k] = error.relative(k);
-    entry.records = error.relative_records(), entry.interpolation = error.relative_interpolation();
-    entry.degrees = error.degrees;
+    for (int k = 0; k < stats::k_layers; ++k)
+      entry.error[k] = error.seen(k), entry.of_mean.error[k] = error.relative(k);
+    entry.records = error.seen_records, entry.interpolation = error.seen_interpolation;
+    entry.degrees = error.seen_degrees;
+    entry.of_mean.records = error.relative_records();
+    entry.of_mean.interpolation = error.relative_interpolation();
     const film::TileSpread tiles = film::tile_spread(film::tile_errors(*film_, tile_side()));
     entry.tile_median = tiles.median, entry.tile_worst_tenth = tiles.worst_tenth;
   }

@@ -33,12 +33,9 @@ std::optional<bool> Renderer::refine(const std::function<bool()>& cancel) {
 bool Renderer::refining_pays(uint64_t paths) {
   // With n paths either's squared error is in proportion to 1/n, and falls by itself over n with each. What
   // is read is refined in steps that double its paths, so that the two are even in the middle of a step.
-  image_error();
-  double sampled = 0, read = 0;
-  for (const film::TileError& tile : film::tile_errors(*film_, tile_side())) {
-    sampled += tile.relative * tile.relative;
-    read += tile.relative_records * tile.relative_records;
-  }
+  const film::ImageError error = image_error();
+  const double sampled = error.seen_rms[0] * error.seen_rms[0],
+               read = error.seen_records * error.seen_records;
   return 2 * read / double(paths) > sampled / double(std::max<uint64_t>(stats().paths, 1));
 }
 

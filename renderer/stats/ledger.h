@@ -32,9 +32,9 @@ struct Entry {
   double samples = 0;  ///< a pixel, on average
   /// Whether every pixel has samples in both halves of the film; otherwise errors are not known, and 0.
   bool told = false;
-  /// Noise of the paths, estimated: rms of the pixels' standard errors over the sum's mean luminance.
+  /// Noise of the paths, estimated, as it is seen (film::ImageError::seen).
   std::array<double, k_layers> error{};
-  double degrees = 0;  ///< of freedom of error[0]^2 (film::ImageError)
+  double degrees = 0;  ///< of freedom of error[0]^2 (film::ImageError::seen_degrees)
   /// What of the sum's error is not the paths', as `error`: the noise of records that they read, and what
   /// lookups are off by in the mean (film/error.h). Samples do not take it away, or, where it is the blur of
   /// photons, slowly as their discs shrink.
@@ -43,12 +43,20 @@ struct Entry {
   double sum() const { return error_sum(error[0], records, interpolation); }
   /// What more samples do not go below, as things are.
   double floor() const { return records + interpolation; }
+  /// A component's share of the noise, 0..1, as film::ImageError::share; component 0..3.
+  double share(int component) const;
+  /// The same errors, of the mean: rms of the pixels' errors in luminance over the sum's mean luminance.
+  struct OfMean {
+    std::array<double, k_layers> error{};
+    double records = 0, interpolation = 0;
+    double sum() const { return error_sum(error[0], records, interpolation); }
+  } of_mean;
   /// Error of the tiles, of the sum, each over its own pixels' luminance (film::TileError::relative_sum): of
   /// the median tile, and what a tenth of the tiles are over.
   double tile_median = 0, tile_worst_tenth = 0;
   std::array<double, k_layers> component_s{};  ///< device time by component; [0] all
   std::optional<std::array<double, k_layers>>
-      truth;                       ///< the same against a reference, its own noise taken off
+      truth;                       ///< of_mean against a reference, its own noise taken off
   std::optional<Band> total_rays;  ///< forecast of the whole render's, in adaptive sampling
 };
 

@@ -1,6 +1,6 @@
 // What the two halves of the film say of the noise in the blocks of a work item: one invocation a row of a block, eight
 // blocks a workgroup. All sums are taken in a fixed order. With LUCERNA_STOPPING_ONLY just what decides whether a tile goes
-// on, `relative` and `quadrant_pixels`: nobody asks for the rest after every pass.
+// on, `relative` and `quadrant_pixels`: the rest is not read after every pass.
 #include "lib/variants.glsl"
 #include "lib/film.glsl"
 #include "lib/blocks.glsl"
@@ -18,11 +18,14 @@ layout(scalar) readonly buffer FilmBiasOdd { float film_bias_odd[]; };
 #if LUCERNA_STOPPING_ONLY
 const uint k_sums = 4u;
 #else
-const uint k_sums = 4u + 12u;
+const uint k_sums = 17u;
 #endif
-// Of a row, by what is summed. First its two halves of four pixels: luminance, and how many are there; then luminance
-// [0..4], variance [0..4], fourth, difference. All of a kind lie together, so that neighbouring invocations write side by side.
+// Of a row, by what is summed: how many pixels its two halves of four have, then luminance [0..4], variance [0..4], fourth,
+// difference. All of a kind lie together, so that neighbouring invocations write side by side.
 shared float values[k_sums * 64u];
+// Of each block, shown(Y) of its pixels and those around; negative: none there.
+const uint k_around = k_block + 2u * k_seen_reach;
+shared float around[8u * k_around * k_around];
 
 float half_luminance(FilmHalf h, float n) { return luminance(h.sum + h.compensation) / n; }
 
@@ -34,16 +37,18 @@ float sum_of_rows(uint what, uint first, uint rows) {
 
 // A row of a block.
 struct Row {
-  float y[k_block], v[k_block];  // of its pixels: luminance and variance, of [0]; 0 where there are no two samples
-  float half_y[2], half_n[2];    // of its halves
+  float shown[k_block], seen[k_block];  // of its pixels: shown(Y) and D of seen_error.h; 0 where there are no two samples
+  float half_n[2];                      // pixels of its halves
+  uint there;                           // bit x: pixel x has two samples
 #if LUCERNA_LOOKUP_ERRORS
-  vec2 squares[k_block];  // of its pixels, as FilmRecords
-  vec2 records;           // their sum
+  vec2 squares[k_block];  // of its pixels, as FilmRecords, where they are seen
+  vec2 records;           // the sum of all of them
   vec2 bias;              // sums over the row, of the even and of the odd samples' mean
   float unmixed;          // sum over the row: luminance as samples have brought it
 #endif
 #if !LUCERNA_STOPPING_ONLY
-  float ys[5], vs[5], fourth, total_difference;  // sums over the row, as BlockError
+  float seen_of[4 * k_block];                                 // of its pixels, D of each component
+  float ys[5], vs[5], fourth, total_difference, white, dark;  // sums over the row, as BlockError
 #endif
 };
 
@@ -69,13 +74,14 @@ void read_halves(uint pixel, uint count, out float a[5], out float b[5], out flo
 // The row that begins at the pixel `first`; an empty one where there is no work.
 Row read_row(bool working, uvec2 first) {
   Row r;
-  r.half_y[0] = r.half_y[1] = r.half_n[0] = r.half_n[1] = 0.0;
+  r.half_n[0] = r.half_n[1] = 0.0;
+  r.there = 0u;
 #if LUCERNA_LOOKUP_ERRORS
   r.records = r.bias = vec2(0.0);
   r.unmixed = 0.0;
 #endif
 #if !LUCERNA_STOPPING_ONLY
-  r.fourth = r.total_difference = 0.0;
+  r.fourth = r.total_difference = r.white = r.dark = 0.0;
   for (uint c = 0u; c < 5u; ++c) r.ys[c] = r.vs[c] = 0.0;
 #endif
   for (uint x = 0u; x < k_block; ++x) {
@@ -85,9 +91,10 @@ Row read_row(bool working, uvec2 first) {
     bool there = count >= 2u;
     float a[5], b[5], unmixed;
     read_halves(pixel, count, a, b, unmixed);
-    float difference = 0.5 * (a[0] - b[0]);
-    r.y[x] = there ? 0.5 * (a[0] + b[0]) : 0.0;
-    r.v[x] = there ? difference * difference : 0.0;
+    float y = there ? 0.5 * (a[0] + b[0]) : 0.0, difference = there ? 0.5 * (a[0] - b[0]) : 0.0;
+    float part = seen_part(y, min(a[0], b[0]), push.luminance_white);
+    r.shown[x] = seen_shown(y, push.luminance_white);
+    r.seen[x] = part * abs(difference);
 #if LUCERNA_LOOKUP_ERRORS
     // Lookups err in proportion to their light, in that of each group alike.
     float mixed = unmixed > 0.0 ? (a[0] + b[0]) / unmixed : 1.0;
@@ -100,16 +107,20 @@ Row read_row(bool working, uvec2 first) {
     r.squares[x].y += bias.x * bias.y;
     r.bias += bias;
     r.records += r.squares[x];
+    r.squares[x] *= part * part;
 #endif
-    r.half_y[x / 4u] += r.y[x];
     r.half_n[x / 4u] += there ? 1.0 : 0.0;
+    r.there |= uint(there) << x;
 #if !LUCERNA_STOPPING_ONLY
-    r.ys[0] += r.y[x];
-    r.vs[0] += r.v[x];
-    r.fourth += r.v[x] * r.v[x];
-    r.total_difference += there ? difference : 0.0;
+    r.ys[0] += y;
+    r.vs[0] += difference * difference;
+    r.fourth += square(difference * difference);
+    r.total_difference += difference;
+    r.white += there && y >= push.luminance_white ? 1.0 : 0.0;
+    r.dark += there && y < push.luminance_floor ? 1.0 : 0.0;
     for (uint c = 1u; c < 5u; ++c) {
       difference = 0.5 * (a[c] - b[c]);
+      r.seen_of[4u * x + c - 1u] = there ? part * difference : 0.0;
       r.ys[c] += there ? 0.5 * (a[c] + b[c]) : 0.0;
       r.vs[c] += there ? difference * difference : 0.0;
     }
@@ -120,43 +131,100 @@ Row read_row(bool working, uvec2 first) {
 
 // Puts a row where the others of its block see it.
 void share_row(Row r, uint lane) {
-  for (uint h = 0u; h < 2u; ++h) {
-    values[h * 64u + lane] = r.half_y[h];
-    values[(2u + h) * 64u + lane] = r.half_n[h];
-  }
+  for (uint h = 0u; h < 2u; ++h) values[h * 64u + lane] = r.half_n[h];
 #if !LUCERNA_STOPPING_ONLY
   for (uint c = 0u; c < 5u; ++c) {
-    values[(4u + c) * 64u + lane] = r.ys[c];
-    values[(9u + c) * 64u + lane] = r.vs[c];
+    values[(2u + c) * 64u + lane] = r.ys[c];
+    values[(7u + c) * 64u + lane] = r.vs[c];
   }
-  values[14u * 64u + lane] = r.fourth;
-  values[15u * 64u + lane] = r.total_difference;
+  values[12u * 64u + lane] = r.fourth;
+  values[13u * 64u + lane] = r.total_difference;
 #endif
 }
 
 #if !LUCERNA_STOPPING_ONLY
 // What does not hang on the quadrants, each sum by a row of its own.
 void write_sums(uint block, uint row, uint first_row) {
-  if (row < 5u) block_errors[block].luminance[row] = sum_of_rows(4u + row, first_row, k_block);
-  if (row < 5u) block_errors[block].variance[row] = sum_of_rows(9u + row, first_row, k_block);
-  if (row == 5u) block_errors[block].fourth = sum_of_rows(14u, first_row, k_block);
-  if (row == 6u) block_errors[block].pixels = sum_of_rows(2u, first_row, k_block) + sum_of_rows(3u, first_row, k_block);
-  if (row == 7u) block_errors[block].difference = sum_of_rows(15u, first_row, k_block);
+  if (row < 5u) block_errors[block].luminance[row] = sum_of_rows(2u + row, first_row, k_block);
+  if (row < 5u) block_errors[block].variance[row] = sum_of_rows(7u + row, first_row, k_block);
+  if (row == 5u) block_errors[block].fourth = sum_of_rows(12u, first_row, k_block);
+  if (row == 6u) block_errors[block].pixels = sum_of_rows(0u, first_row, k_block) + sum_of_rows(1u, first_row, k_block);
+  if (row == 7u) block_errors[block].difference = sum_of_rows(13u, first_row, k_block);
 }
 #endif
 
-// Sums over the row of the pixels' relative errors, by half; `mean`: luminance of the halves' quadrants. `records`: of the
-// lookups' squares, over the square of what the errors are held against.
-void relative_errors(Row r, float mean[2], out float relative[2], out vec2 records) {
-  relative[0] = relative[1] = 0.0;
-  records = vec2(0.0);
+// shown(Y) of a pixel, whose place may be outside of the picture; negative: it has no two samples.
+float shown_at(ivec2 at) {
+  bool inside = at.x >= 0 && at.y >= 0 && uint(at.x) < push.width && uint(at.y) < push.height;
+  uint pixel = inside ? uint(at.y) * push.width + uint(at.x) : 0u;
+  uint count = inside ? film_count[pixel] : 0u;
+  if (count < 2u) return -1.0;
+  float a[5], b[5], unmixed;
+  read_halves(pixel, count, a, b, unmixed);
+  return seen_shown(0.5 * (a[0] + b[0]), push.luminance_white);
+}
+
+// A row's part of `around`: its own pixels, and ten of the block's eighty neighbours.
+void share_shown(Row r, bool working, ivec2 first, uint lane, uint row) {
+  const uint k_edge = k_seen_reach * k_around, k_sides = 2u * k_seen_reach;
+  uint base = lane / k_block * k_around * k_around;
+  for (uint x = 0u; x < k_block; ++x)
+    around[base + (row + k_seen_reach) * k_around + x + k_seen_reach] = (r.there >> x & 1u) != 0u ? r.shown[x] : -1.0;
+  const uint k_each = (2u * k_edge + k_block * k_sides) / k_block;
+  for (uint i = 0u; i < k_each; ++i) {
+    uint n = row * k_each + i, side = (n - 2u * k_edge) % k_sides;
+    // Rows above, rows below, then the pixels to the left and to the right.
+    uvec2 at = n < k_edge        ? uvec2(n % k_around, n / k_around)
+               : n < 2u * k_edge ? uvec2(n % k_around, n / k_around + k_block)
+                                 : uvec2(side < k_seen_reach ? side : side + k_block,
+                                         (n - 2u * k_edge) / k_sides + k_seen_reach);
+    around[base + at.y * k_around + at.x] = working ? shown_at(first + ivec2(at) - int(k_seen_reach)) : -1.0;
+  }
+}
+
+// Mean of shown(Y) around a pixel of the block.
+float local_shown(uint lane, uint x, uint row) {
+  uint from = lane / k_block * k_around * k_around + row * k_around + x;
+  float sum = 0.0, count = 0.0;
+  for (uint v = 0u; v <= 2u * k_seen_reach; ++v)
+    for (uint u = 0u; u <= 2u * k_seen_reach; ++u) {
+      float y = around[from + v * k_around + u];
+      sum += max(y, 0.0);
+      count += y >= 0.0 ? 1.0 : 0.0;
+    }
+  return sum / max(count, 1.0);
+}
+
+// Of a row, held against what is shown around its pixels: sums of r by half, of the lookups' squares, and of e^2 and e^4.
+struct Relative {
+  float of_half[2];
+  vec2 records;
+#if !LUCERNA_STOPPING_ONLY
+  float seen[5], fourth;
+#endif
+};
+
+Relative relative_errors(Row r, uint lane, uint row) {
+  Relative sum;
+  sum.of_half[0] = sum.of_half[1] = 0.0;
+  sum.records = vec2(0.0);
+#if !LUCERNA_STOPPING_ONLY
+  sum.fourth = 0.0;
+  for (uint c = 0u; c < 5u; ++c) sum.seen[c] = 0.0;
+#endif
   for (uint x = 0u; x < k_block; ++x) {
-    float scale = max(max(r.y[x], mean[x / 4u]), push.luminance_floor);
-    relative[x / 4u] += 1.2533141 * sqrt(r.v[x]) / scale;  // sqrt(pi/2)
+    float scale = seen_scale(r.shown[x], local_shown(lane, x, row), push.luminance_floor), e = r.seen[x] / scale;
+    sum.of_half[x / 4u] += 1.2533141 * min(e, 1.0);  // sqrt(pi/2)
 #if LUCERNA_LOOKUP_ERRORS
-    records += r.squares[x] / (scale * scale);
+    sum.records += r.squares[x] / (scale * scale);
+#endif
+#if !LUCERNA_STOPPING_ONLY
+    sum.seen[0] += e * e;
+    sum.fourth += square(e * e);
+    for (uint c = 1u; c < 5u; ++c) sum.seen[c] += square(r.seen_of[4u * x + c - 1u] / scale);
 #endif
   }
+  return sum;
 }
 
 void main() {
@@ -164,43 +232,53 @@ void main() {
   bool working = entry < push.block_count;
   WorkBlock block = blocks[working ? entry : 0u];
   uint across = (push.width + k_block - 1u) / k_block;
-  Row r = read_row(working, k_block * uvec2(block.index % across, block.index / across) + uvec2(0u, row));
+  uvec2 first = k_block * uvec2(block.index % across, block.index / across);
+  Row r = read_row(working, first + uvec2(0u, row));
   share_row(r, lane);
+  share_shown(r, working, ivec2(first), lane, row);
   barrier();
   // Each row's halves belong to the two quadrants above or below the middle.
   uint first_row = lane - row, quadrant_row = lane / 4u * 4u;
-  float mean[2], pixels[2];
-  for (uint h = 0u; h < 2u; ++h) {
-    pixels[h] = sum_of_rows(2u + h, quadrant_row, 4u);
-    mean[h] = sum_of_rows(h, quadrant_row, 4u) / max(pixels[h], 1.0);
-  }
+  float pixels[2];
+  for (uint h = 0u; h < 2u; ++h) pixels[h] = sum_of_rows(h, quadrant_row, 4u);
 #if !LUCERNA_STOPPING_ONLY
   if (working) write_sums(block.index, row, first_row);
 #endif
-  float relative[2];
-  vec2 records_relative;
-  relative_errors(r, mean, relative, records_relative);
+  Relative relative = relative_errors(r, lane, row);
   barrier();
-  for (uint h = 0u; h < 2u; ++h) values[h * 64u + lane] = relative[h];
+  for (uint h = 0u; h < 2u; ++h) values[h * 64u + lane] = relative.of_half[h];
+#if LUCERNA_LOOKUP_ERRORS
+  values[2u * 64u + lane] = relative.records.x;
+  values[3u * 64u + lane] = relative.records.y;
+#endif
+#if !LUCERNA_STOPPING_ONLY
+  for (uint c = 0u; c < 5u; ++c) values[(4u + c) * 64u + lane] = relative.seen[c];
+  values[9u * 64u + lane] = relative.fourth;
+  values[10u * 64u + lane] = r.white;
+  values[11u * 64u + lane] = r.dark;
+#if LUCERNA_LOOKUP_ERRORS
+  values[12u * 64u + lane] = r.records.x;
+  values[13u * 64u + lane] = r.records.y;
+  values[14u * 64u + lane] = r.bias.x;
+  values[15u * 64u + lane] = r.bias.y;
+  values[16u * 64u + lane] = r.unmixed;
+#endif
+#endif
   barrier();
 #if LUCERNA_LOOKUP_ERRORS
-  values[2u * 64u + lane] = records_relative.x;
-  values[3u * 64u + lane] = records_relative.y;
-  barrier();
   if (working && row == 2u) block_errors[block.index].records_relative = sum_of_rows(2u, first_row, k_block);
   if (working && row == 3u) block_errors[block.index].interpolation_relative = sum_of_rows(3u, first_row, k_block);
+#endif
 #if !LUCERNA_STOPPING_ONLY
-  barrier();
-  values[2u * 64u + lane] = r.records.x;
-  values[3u * 64u + lane] = r.records.y;
-  values[4u * 64u + lane] = r.bias.x;
-  values[5u * 64u + lane] = r.bias.y;
-  values[6u * 64u + lane] = r.unmixed;
-  barrier();
-  if (working && row < 2u) block_errors[block.index].bias[row] = sum_of_rows(4u + row, first_row, k_block);
-  if (working && row == 5u) block_errors[block.index].unmixed = sum_of_rows(6u, first_row, k_block);
-  if (working && row == 6u) block_errors[block.index].records = sum_of_rows(2u, first_row, k_block);
-  if (working && row == 7u) block_errors[block.index].interpolation = sum_of_rows(3u, first_row, k_block);
+  if (working && row < 5u) block_errors[block.index].seen[row] = sum_of_rows(4u + row, first_row, k_block);
+  if (working && row == 5u) block_errors[block.index].seen_fourth = sum_of_rows(9u, first_row, k_block);
+  if (working && row == 6u) block_errors[block.index].white = sum_of_rows(10u, first_row, k_block);
+  if (working && row == 7u) block_errors[block.index].dark = sum_of_rows(11u, first_row, k_block);
+#if LUCERNA_LOOKUP_ERRORS
+  if (working && row < 2u) block_errors[block.index].bias[row] = sum_of_rows(14u + row, first_row, k_block);
+  if (working && row == 5u) block_errors[block.index].unmixed = sum_of_rows(16u, first_row, k_block);
+  if (working && row == 6u) block_errors[block.index].records = sum_of_rows(12u, first_row, k_block);
+  if (working && row == 7u) block_errors[block.index].interpolation = sum_of_rows(13u, first_row, k_block);
 #endif
 #endif
   // Rows 0 and 1 write the upper two quadrants, 4 and 5 the lower.

@@ -3,6 +3,7 @@
 #define LUCERNA_SHARED_FILM_H
 #include "shaders/shared/compat.h"
 #include "shaders/shared/lanes.h"
+#include "shaders/shared/seen_error.h"
 LUCERNA_SHARED_BEGIN
 
 /// Sum of half of a pixel's samples of one component: the value is sum + compensation. Radiance.
@@ -40,20 +41,25 @@ struct BlockError {
   float variance[5];      ///< sum of v
   float fourth;           ///< sum of v^2, of [0]: how unevenly the noise is spread
   float difference;       ///< sum of (A - B) / 2, of [0]
-  // Relative error r = sqrt(pi/2) |A - B| / 2 over max(Y of the pixel, Y of its quadrant, floor), of [0], for the four
-  // quadrants of 4x4 pixels. Its mean is the relative standard error where noise is Gaussian; for any noise r stays below
-  // 1.26 (|A - B| / 2 is at most the pixel's own Y), so that no firefly can outweigh its neighbours.
+  // Relative error r = sqrt(pi/2) min(e, 1), e the error as seen (seen_error.h), of [0], for the four quadrants of 4x4
+  // pixels. Its mean is the relative standard error where noise is Gaussian; r stays below 1.26, so that no firefly can
+  // outweigh its neighbours.
   float relative[4];      ///< sum of r
   float quadrant_pixels[4];
   // Of what the pixels look up, where that is known, else 0: sums of the squares of the records' noise and of what lookups
   // are off by in the mean, by interpolation (BlockRecords; FilmRecords) and by blur (FilmBiasEven, FilmBiasOdd), which may
-  // be below 0 by chance; and of these over the square of what r is held against.
+  // be below 0 by chance; and of these, where they are seen, over the square of what e is held against.
   float records, interpolation;
   float records_relative, interpolation_relative;
   float bias[2];          ///< blur alone, with its sign: sum of the even samples' mean, of the odd ones'
   /// Where what pixels look up is known: the luminance of the light as it is (BlockRecords is of that), [0], as `luminance`
   /// sums up what is made of it by the mix of groups of lights.
   float unmixed;
+  // The error as seen: sums of e^2, and of e^4 of [0]; and how many pixels are no darker than white, are darker than the
+  // floor.
+  float seen[5];
+  float seen_fourth;
+  float white, dark;
 };
 
 /// What records of light that all samples read may be wrong by, in luminance, summed over pixels of a block: not the
@@ -69,10 +75,6 @@ struct BlockRecords {
   float interpolation_noise[2 * k_record_lanes];  ///< of `interpolation`, by noise of the records
 };
 
-/// Display radiance (after exposure) below which noise is held against this value instead of the pixel's own: 5 % of it is
-/// about one step of an 8-bit sRGB picture, so that black corners do not eat the render.
-LUCERNA_CONST float k_luminance_floor = 0.02f;
-
 /// What a lookup of secondary or tertiary light adds to its path's bias when it has found nothing at all (photons that do not
 /// lie anywhere near): far below any bias, so that it is lost beside one. A block in which this is all that there is has no
 /// evidence of how dark it is (film/error.h): BlockError::interpolation_relative is then above 0 and at most the second value.
@@ -82,7 +84,7 @@ LUCERNA_CONST float k_most_without_evidence = 1e-22f;
 struct ErrorPush {
   uint width, height;
   uint block_count;
-  float luminance_floor;  ///< noise in pixels darker than this is held against this
+  float luminance_floor, luminance_white;  ///< floor and white of seen_error.h
   uint records;           ///< not 0: FilmRecords is known
   uint bias;              ///< not 0: FilmBiasEven and FilmBiasOdd are
 };

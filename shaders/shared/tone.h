@@ -94,5 +94,11 @@ LUCERNA_TONE_FUNCTION vec3 tone_map(vec3 radiance, uint curve) {
   return srgb_encode(clamp(c, vec3(0.0f), vec3(1.0f)));
 }
 
+/// The exposed luminance from which a curve shows a grey as white: less than about a tenth of a relative change of it is
+/// seen, and none where the curve is cut off. linear: 1, neutral: 1.5, agx: the end of its scale.
+LUCERNA_TONE_FUNCTION float tone_white(uint curve) {
+  return curve == k_tone_neutral ? 1.5f : curve == k_tone_agx ? 16.3f : 1.0f;
+}
+
 LUCERNA_SHARED_END
 #endif

@@ -233,7 +233,11 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   CHECK(told["ledger"].size() + 1 == lines);
   CHECK(lines > 5);
   CHECK(told["ledger"].back()["paths"] == told["paths"]);
-  CHECK(told["ledger"].back()["error"]["sum"] == told["error"]["relative"]);
+  CHECK(told["ledger"].back()["seen"]["sum"] == told["error"]["seen"]);
+  CHECK(told["ledger"].back()["of_mean"]["sum"] == told["error"]["of_mean"]);
+  double shares = 0;
+  for (const auto& component : told["error"]["components"]) shares += component["share"].get<double>();
+  CHECK(shares == Approx(1));
   CHECK(told["forecast"]["seconds_to"]["0.01"][0] <= told["forecast"]["seconds_to"]["0.01"][2]);
   CHECK(j["ledger"].back()["forecast_rays"][1].get<double>() ==
         Approx(j["rays"].get<double>()).epsilon(0.01));
@@ -241,10 +245,11 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
               " --ledger /no/such/folder/e.csv",
           "/no/such/folder");
   // In uniform sampling the noise is told too, and falls as it should.
-  const double few = stats("--samples 64").first["error"]["relative"],
-               many = stats("--samples 256").first["error"]["relative"];
-  CHECK(many < 0.6 * few);
-  CHECK(many > 0.3 * few);
+  const auto few = stats("--samples 64").first["error"], many = stats("--samples 256").first["error"];
+  for (const char* error : {"seen", "of_mean"}) {
+    CHECK(many[error].get<double>() < 0.6 * few[error].get<double>());
+    CHECK(many[error].get<double>() > 0.3 * few[error].get<double>());
+  }
 }
 
 TEST_CASE("--stats and --ledger tell noise and bias of light that is looked up apart") {
@@ -260,20 +265,24 @@ TEST_CASE("--stats and --ledger tell noise and bias of light that is looked up a
   const auto j =
       stats("--samples 6 --set components.caustic=photons --set photons.worth=false --set photons.radius=6");
   const auto& error = j["error"];
-  CHECK(error["records"]["relative"] == 0);
-  CHECK(error["bias"]["relative"] > 0.01);
+  CHECK(error["records"]["seen"] == 0);
+  CHECK(error["records"]["of_mean"] == 0);
+  CHECK(error["bias"]["of_mean"] > 0.01);
   CHECK(error["bias"]["tile_worst"] > error["bias"]["tile_median"]);
-  CHECK(error["relative"].get<double>() ==
-        Approx(error["paths"]["relative"].get<double>() + error["bias"]["relative"].get<double>()));
+  for (const char* name : {"seen", "of_mean"})
+    CHECK(error[name].get<double>() ==
+          Approx(error["paths"][name].get<double>() + error["bias"][name].get<double>()));
   CHECK(error["components"]["caustic"]["bias"].is_null());
   CHECK(error["components"]["primary"]["bias"] == 0);
-  CHECK(j["ledger"].back()["error_bias"] == error["bias"]["relative"]);
-  CHECK(j["ledger"].back()["error_records"] == 0);
+  CHECK(j["ledger"].back()["seen_bias"] == error["bias"]["seen"]);
+  CHECK(j["ledger"].back()["of_mean_bias"] == error["bias"]["of_mean"]);
+  CHECK(j["ledger"].back()["seen_records"] == 0);
   CHECK(j["forecast"].contains("limited_by_lookups"));
   std::ifstream table(f / "b.csv");
   std::string head;
   std::getline(table, head);
-  CHECK(head.find(",error_records,error_bias,error_told,") != std::string::npos);
+  CHECK(head.find(",seen_records,seen_bias,seen_total,of_mean_records,of_mean_bias,of_mean_total,") !=
+        std::string::npos);
   // With one sample there are no two halves, and nothing is known; paths have no bias to be told of.
   CHECK(stats("--set components.caustic=photons --set photons.worth=false --samples 1")["error"]["bias"]
             .is_null());
@@ -293,7 +302,7 @@ TEST_CASE("--reference: the ledger tells the true error, and it is the estimated
   const auto j = nlohmann::json::parse(file);
   for (const char* layer : {"sum", "primary", "secondary", "tertiary", "caustic"}) {
     INFO(layer);
-    const double truth = j["truth"][layer]["relative"], estimate = j["ledger"].back()["error"][layer];
+    const double truth = j["truth"][layer]["of_mean"], estimate = j["ledger"].back()["of_mean"][layer];
     CHECK(j["ledger"].back()["truth"][layer] == truth);
     CHECK(j["truth"][layer]["reference_noise"] <= estimate);
     // 2304 pixels; caustics come in few large amounts and stay outside.

@@ -131,7 +131,7 @@ TEST_CASE("what is told of the error of a finished picture is told of the mix th
   for (const char* text : {"sky: solo", "lamp: solo", "block: solo", ""}) {
     b.mix(text);
     INFO(text);
-    CHECK(told() == Approx(b.r.image_error().relative(0)));
+    CHECK(told() == Approx(b.r.image_error().seen(0)));
     CHECK(told() != last);
     last = told();
   }
@@ -232,7 +232,7 @@ TEST_CASE("noise is told of the picture as it is mixed, and adaptive sampling go
     const double n = double(image.samples.size());
     CHECK(told.luminance[0] == Approx(sum / n).epsilon(1e-4));
     CHECK(told.rms[0] == Approx(std::sqrt(variance / n)).epsilon(1e-3));
-    CHECK(b.r.ledger().entries().back().error[0] == Approx(told.relative(0)).epsilon(1e-6));
+    CHECK(b.r.ledger().entries().back().error[0] == Approx(told.seen(0)).epsilon(1e-6));
     CHECK(b.r.ledger().entries().size() == (*text || b.r.ledger().entries().size() == 1 ? 1u : 0u));
   }
 

@@ -77,7 +77,7 @@ Told render(const scene::Scene& scene, uint32_t samples, const test::Settings& m
   told.bias = r.film().read_lookup_bias();
   told.bias_known = r.film().lookup_bias_known(), told.errors_known = r.lookup_errors_known();
   r.finish_ledger();
-  told.ledger_bias = r.ledger().entries().back().interpolation;
+  told.ledger_bias = r.ledger().entries().back().of_mean.interpolation;
   CHECK(r.device().validation_messages() == 0);
   return told;
 }

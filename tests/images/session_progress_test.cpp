@@ -86,7 +86,7 @@ TEST_CASE("drafts tell what path tracing would take before there is any light to
   paths["samples"] = "16";
   Window traced(64, paths);
   test::finish(traced.r);
-  const double noise = traced.r.image_error().relative(0) * 4;
+  const double noise = traced.r.image_error().seen(0) * 4;
   INFO("noise of one sample " << noise << ", told " << pace->noise);
   CHECK(pace->noise == Approx(noise).epsilon(0.35));
   CHECK(pace->seconds_to(pace->noise / 10) == Approx(100 * pace->seconds));

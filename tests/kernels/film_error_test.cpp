@@ -21,6 +21,15 @@ float sample_value(std::mt19937& random, uint32_t x) {
   return (x > 15 ? 1e-3f : 0.3f) * t * t;
 }
 
+/// Mean over the 5x5 pixels around, of those in the picture.
+template <class Shown>
+double mean_around(uint32_t x, uint32_t y, uint32_t width, uint32_t height, const Shown& shown) {
+  double sum = 0, count = 0;
+  for (uint32_t v = y < 2 ? 0 : y - 2; v <= std::min(y + 2, height - 1); ++v)
+    for (uint32_t u = x < 2 ? 0 : x - 2; u <= std::min(x + 2, width - 1); ++u) sum += shown(u, v), ++count;
+  return sum / count;
+}
+
 uint32_t compact(uint32_t x) { return (x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u); }
 
 }  // namespace
@@ -30,7 +39,7 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
   gpu::ShaderCompiler compiler;
   gpu::Stream stream(device);
   constexpr uint32_t k_width = 20, k_height = 12, k_samples = 6;  // blocks that stick out on two sides
-  constexpr float k_floor = 0.05f;
+  constexpr float k_floor = 0.05f, k_white = 4;
   film::Film film(device, k_width, k_height);
   film.clear(stream);
   const uint32_t blocks = film.blocks();
@@ -69,7 +78,7 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
   const shared::FilmPush added{k_width, k_height, 64 * blocks, k_samples, 0, 0};
   stream.dispatch(add, resources, added, blocks);
   // The last block of the list is left out: its figures stay as they were.
-  stream.dispatch(error, resources, shared::ErrorPush{k_width, k_height, blocks - 1, k_floor},
+  stream.dispatch(error, resources, shared::ErrorPush{k_width, k_height, blocks - 1, k_floor, k_white},
                   (blocks + 7) / 8);
   stream.run();
 
@@ -81,28 +90,38 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
       CHECK(got.pixels == 0);
       continue;
     }
-    double pixels = 0, luminance[5] = {}, variance[5] = {}, fourth = 0, difference = 0, quadrant_y[4] = {},
-           quadrant_n[4] = {};
+    double pixels = 0, luminance[5] = {}, variance[5] = {}, fourth = 0, difference = 0, quadrant_n[4] = {},
+           seen[5] = {}, seen_fourth = 0, white = 0, dark = 0;
     for (const bool second : {false, true}) {
       double relative[4] = {};
       for (uint32_t code = 0; code < 64; ++code) {
         const uint32_t x = b % 3 * 8 + compact(code), y = b / 3 * 8 + compact(code >> 1), q = code / 16;
         if (x >= k_width || y >= k_height) continue;
-        double a0 = 0, b0 = 0;
+        double a0 = 0, b0 = 0, apart[5] = {};
         for (uint32_t c = 0; c < 4; ++c) {
           const double* h = &half[((size_t(y) * k_width + x) * 4 + c) * 2];
           const double va = h[0] / (k_samples / 2), vb = h[1] / (k_samples / 2);
-          a0 += va, b0 += vb;
+          a0 += va, b0 += vb, apart[c + 1] = (va - vb) / 2;
           if (!second) luminance[c + 1] += (va + vb) / 2, variance[c + 1] += (va - vb) * (va - vb) / 4;
         }
         const double y0 = (a0 + b0) / 2, v0 = (a0 - b0) * (a0 - b0) / 4;
         if (!second) {
           ++pixels, ++quadrant_n[q];
-          luminance[0] += y0, variance[0] += v0, fourth += v0 * v0, quadrant_y[q] += y0;
+          white += y0 >= k_white, dark += y0 < k_floor;
+          luminance[0] += y0, variance[0] += v0, fourth += v0 * v0;
           difference += (a0 - b0) / 2;
         } else {
-          const double scale = std::max({y0, quadrant_y[q] / quadrant_n[q], double{k_floor}});
-          relative[q] += std::sqrt(1.5707963267948966 * v0) / scale;
+          const double shown = std::min(y0, double{k_white}), low = std::min({a0, b0, double{k_white}});
+          const double local = mean_around(x, y, k_width, k_height, [&](uint32_t u, uint32_t v) {
+            double sum = 0;
+            for (size_t h = 0; h < 8; ++h) sum += half[(size_t(v) * k_width + u) * 8 + h];
+            return std::min(sum / k_samples, double{k_white});
+          });
+          const double scale = std::max({shown / 4, local, double{k_floor}});
+          const double e = (shown - low) / scale, part = a0 == b0 ? 1 : (shown - low) / std::sqrt(v0);
+          relative[q] += std::sqrt(1.5707963267948966) * std::min(e, 1.0);
+          seen[0] += e * e, seen_fourth += e * e * e * e;
+          for (int c = 1; c < 5; ++c) seen[c] += std::pow(part * apart[c] / scale, 2);
         }
       }
       if (!second) continue;
@@ -110,12 +129,16 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
       for (int k = 0; k < 5; ++k) {
         CHECK(close(got.luminance[k], luminance[k]));
         CHECK(close(got.variance[k], variance[k]));
+        CHECK(got.seen[k] == Approx(seen[k]).epsilon(1e-4));
       }
+      CHECK(got.seen_fourth == Approx(seen_fourth).epsilon(1e-4));
+      CHECK(got.white == white);
+      CHECK(got.dark == dark);
       CHECK(close(got.fourth, fourth));
       CHECK(got.difference == Approx(difference).margin(2e-6 * luminance[0]));
       for (int q = 0; q < 4; ++q) {
         CHECK(got.quadrant_pixels[q] == quadrant_n[q]);
-        CHECK(close(got.relative[q], relative[q]));
+        CHECK(got.relative[q] == Approx(relative[q]).epsilon(2e-5));
       }
     }
   }
@@ -123,7 +146,7 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
   const std::vector<BlockError> full(film.errors().begin(), film.errors().end());
   film.clear(stream);
   stream.dispatch(add, resources, added, blocks);
-  stream.dispatch(stopping, resources, shared::ErrorPush{k_width, k_height, blocks - 1, k_floor},
+  stream.dispatch(stopping, resources, shared::ErrorPush{k_width, k_height, blocks - 1, k_floor, k_white},
                   (blocks + 7) / 8);
   stream.run();
   for (uint32_t b = 0; b < blocks; ++b) {
@@ -144,9 +167,9 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
     stream.run();
     stream.take_times();
     if (all)
-      estimator.estimate(stream, film, k_floor);
+      estimator.estimate(stream, film, {k_floor, k_white});
     else
-      estimator.estimate_stopping(stream, std::span(list).first(blocks - 1), film, k_floor);
+      estimator.estimate_stopping(stream, std::span(list).first(blocks - 1), film, {k_floor, k_white});
     stream.run();
     const std::vector<gpu::StageTime> times = stream.take_times();
     REQUIRE(times.size() == 1);
@@ -300,7 +323,8 @@ TEST_CASE(
   told.write(std::span<const vec2>(records));
   resources.set("FilmRecords", told);
   const auto run = [&](const gpu::Kernel& kernel, uint32_t known) {
-    stream.dispatch(kernel, resources, shared::ErrorPush{k_width, k_height, k_blocks, k_floor, known}, 1);
+    stream.dispatch(kernel, resources, shared::ErrorPush{k_width, k_height, k_blocks, k_floor, 1e9f, known},
+                    1);
     stream.run();
     return std::vector<BlockError>(film.errors().begin(), film.errors().end());
   };
@@ -319,21 +343,19 @@ TEST_CASE(
     double sums[4] = {};
     for (uint32_t q = 0; q < 4; ++q) {
       CHECK(full[b].relative[q] == without[b].relative[q]);
-      double mean = 0, pixels = 0;
-      for (const bool second : {false, true})
-        for (uint32_t k = 0; k < 16; ++k) {
-          const uint32_t x = b * 8 + q % 2 * 4 + k % 4, y = q / 2 * 4 + k / 4;
-          if (x >= k_width) continue;
-          double here = 0;
-          for (const auto& c : image.components) here += luminance(c[y * k_width + x]);
-          if (!second) {
-            mean += here, ++pixels;
-            continue;
-          }
-          const double scale = std::max({here, mean / pixels, double{k_floor}});
-          const vec2 r = records[y * k_width + x];
-          sums[0] += r.x, sums[1] += r.y, sums[2] += r.x / (scale * scale), sums[3] += r.y / (scale * scale);
-        }
+      for (uint32_t k = 0; k < 16; ++k) {
+        const uint32_t x = b * 8 + q % 2 * 4 + k % 4, y = q / 2 * 4 + k / 4;
+        if (x >= k_width) continue;
+        const auto shown = [&](uint32_t u, uint32_t v) {
+          double sum = 0;
+          for (const auto& c : image.components) sum += luminance(c[v * k_width + u]);
+          return sum;
+        };
+        const double scale =
+            std::max({shown(x, y) / 4, mean_around(x, y, k_width, k_height, shown), double{k_floor}});
+        const vec2 r = records[y * k_width + x];
+        sums[0] += r.x, sums[1] += r.y, sums[2] += r.x / (scale * scale), sums[3] += r.y / (scale * scale);
+      }
     }
     CHECK(full[b].records == Approx(sums[0]).epsilon(1e-5));
     CHECK(full[b].interpolation == Approx(sums[1]).epsilon(1e-4).margin(1e-7));
@@ -408,7 +430,8 @@ TEST_CASE(
   const auto run = [&](const gpu::Kernel& kernel, uint32_t known) {
     const std::vector<shared::WorkBlock> list{{0, 0}, {1, 0}};
     work.write(std::span<const shared::WorkBlock>(list));
-    stream.dispatch(kernel, resources, shared::ErrorPush{k_width, k_height, k_blocks, k_floor, 0, known}, 1);
+    stream.dispatch(kernel, resources,
+                    shared::ErrorPush{k_width, k_height, k_blocks, k_floor, 1e9f, 0, known}, 1);
     stream.run();
     return std::vector<BlockError>(film.errors().begin(), film.errors().end());
   };

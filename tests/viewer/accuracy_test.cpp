@@ -200,17 +200,20 @@ TEST_CASE("a target beyond the last sample of uniform sampling is not promised")
              Catch::StartsWith("10 % was reached after "));
 }
 
-TEST_CASE("noise has three names: of the mean, of the median tile, of the worst tenth of the tiles") {
+TEST_CASE("noise has four names: as seen, of the median tile, of the worst tenth of the tiles, of the mean") {
   stats::Entry line;
   line.told = true, line.error = {0.01, 0.01, 0, 0, 0}, line.tile_median = 0.04, line.tile_worst_tenth = 0.2;
+  line.of_mean.error[0] = 0.15;
   const auto figures = error_figures(line);
-  CHECK(figures[0].name == "of the mean");
+  CHECK(figures[0].name == "as seen");
   CHECK(figures[1].name == "of the median tile");
   CHECK(figures[2].name == "of the worst tenth of the tiles");
   CHECK(figures[0].value == 0.01);
   CHECK(figures[1].value == 0.04);
   CHECK(figures[2].value == 0.2);
-  CHECK(figures.size() == 3);
+  CHECK(figures[3].name == "of the mean");
+  CHECK(figures[3].value == 0.15);
+  CHECK(figures.size() == 4);
   for (const ErrorFigure& f : figures) {
     CHECK_FALSE(f.short_name.empty());
     CHECK_FALSE(f.help.empty());
@@ -234,14 +237,14 @@ TEST_CASE(
   a.ledger = ledger;
   const stats::Entry& last = a.ledger.entries().back();
   const auto figures = error_figures(last);
-  REQUIRE(figures.size() == 6);
+  REQUIRE(figures.size() == 7);
   CHECK(figures[0].value == Approx(std::hypot(last.error[0], 0.02) + 0.01));
-  CHECK(figures[3].short_name == "paths");
-  CHECK(figures[3].value == last.error[0]);
-  CHECK(figures[4].short_name == "records");
-  CHECK(figures[4].value == 0.02);
-  CHECK(figures[5].short_name == "bias");
-  CHECK(figures[5].value == 0.01);
+  CHECK(figures[4].short_name == "paths");
+  CHECK(figures[4].value == last.error[0]);
+  CHECK(figures[5].short_name == "records");
+  CHECK(figures[5].value == 0.02);
+  CHECK(figures[6].short_name == "bias");
+  CHECK(figures[6].value == 0.01);
   CHECK(present(a)->error == figures[0].value);
   CHECK_FALSE(session::seconds_to(a, 0.02));
   CHECK(target_texts(a, 0.02, {}, last.wall_s).at(0) ==
@@ -257,16 +260,16 @@ TEST_CASE("where samples read photons alone no records are named beside their bi
   session::Accuracy a = uniform(100);
   stats::Entry last = a.ledger.entries().back();
   CHECK_FALSE(looks_up(last));
-  CHECK(error_figures(last).size() == 3);
+  CHECK(error_figures(last).size() == 4);
   last.interpolation = 0.01;
   CHECK(looks_up(last));
   const auto figures = error_figures(last);
-  REQUIRE(figures.size() == 5);
+  REQUIRE(figures.size() == 6);
   CHECK(figures[0].value == Approx(last.error[0] + 0.01));
-  CHECK(figures[3].short_name == "paths");
-  CHECK(figures[4].short_name == "bias");
-  CHECK(figures[4].value == 0.01);
-  CHECK(figures[4].help.find("photons.radius") != std::string::npos);
+  CHECK(figures[4].short_name == "paths");
+  CHECK(figures[5].short_name == "bias");
+  CHECK(figures[5].value == 0.01);
+  CHECK(figures[5].help.find("photons.radius") != std::string::npos);
 }
 
 TEST_CASE("adaptive sampling: the forecast is of the rays that the tiles still need") {

@@ -214,8 +214,9 @@ struct Session::Impl {
       e.samples = n, e.paths = static_cast<uint64_t>(n * a->pixels), e.rays = 7 * e.paths;
       e.told = true, e.wall_s = e.render_s = e.device_s = 0.2 * n;
       for (size_t k = 0; k < 5; ++k) e.error[k] = (run_number % 2 ? 0.8 : 1.6) * shares[k] / std::sqrt(n);
+      e.of_mean.error = e.error;
       if (!reference.empty()) {
-        e.truth = e.error;
+        e.truth = e.of_mean.error;
         for (double& x : *e.truth) x *= 1.1;
       }
       a->ledger.add(e);
