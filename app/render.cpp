@@ -106,8 +106,7 @@ std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
     if (a.error) change("sampling.max_samples", std::to_string(a.samples), "--samples");
   }
   if (a.error) {
-    if (!(*a.error > 0))
-      throw_error("--error", "'{}': expected a positive relative error, such as 0.02", *a.error);
+    if (!(*a.error > 0)) throw_error("--error", "'{}': expected a positive error, such as 0.02", *a.error);
     change("sampling.mode", "adaptive");
     change("sampling.target_error", fmt::format("{}", *a.error));
   }

@@ -209,7 +209,7 @@ void draw_legend(Ui& ui, const Area& area) {
   }
   if (!tiles) return;
   const session::Accuracy& a = *s->accuracy;
-  title("Tiles: relative error, estimated");
+  title("Tiles: error as seen, estimated");
   std::vector<std::pair<float, std::string>> labels;
   for (const double times : {8.0, 4.0, 2.0, 1.0})
     labels.emplace_back(film::tile_position(times * a.target, a.target),

@@ -105,7 +105,7 @@ void add_panel_commands(Ui& ui, const Add& add) {
 
 void add_accuracy_commands(Ui& ui, const Add& add) {
   add("accuracy.what_if",
-      "In uniform sampling: asks what this relative error of the picture would cost. In adaptive sampling "
+      "In uniform sampling: asks what this error as seen of the picture would cost. In adaptive sampling "
       "sampling.target_error is the question; it begins with the error that was asked about last.",
       {{.name = "error", .type = Type::real, .lo = 0.0001, .hi = 10}},
       [&ui](const Arguments& a) { ui.what_if = a.real("error"), ui.what_if_asked = true; });

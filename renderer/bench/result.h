@@ -19,7 +19,7 @@ struct CurvePoint {
   double wall_s = 0, device_s = 0;
   uint64_t rays = 0;
   double samples = 0;  ///< a pixel, on average
-  /// Rms error over mean luminance, by the render itself: of the sum what is told (stats::Entry::sum), of the
+  /// Rms error over mean luminance, by the render itself: of the sum stats::Entry::OfMean::sum, of the
   /// components the paths' noise.
   Layers estimated{};
   Layers truth{};     ///< the same against the reference, its noise taken off; 0: lost in that noise
