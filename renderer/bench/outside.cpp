@@ -95,7 +95,8 @@ Result read_outside(const OutsideFiles& files, const SceneEntry& scene, const Re
   r.dropped = uint64_t(number(stats, "dropped"));
   r.samples = double(r.paths) / (double(scene.width) * scene.height);
   if (const auto error = stats.find("error"); error != stats.end() && error->is_object()) {
-    r.estimated[0] = number(*error, "relative");
+    // Programs from before errors as seen name it so.
+    r.estimated[0] = number(*error, error->contains("of_mean") ? "of_mean" : "relative");
     r.tiles.median = number(*error, "tile_median"), r.tiles.decile = number(*error, "tile_worst_decile");
     r.tiles.worst = number(*error, "tile_worst");
     r.tiles.heavy = uint64_t(number(*error, "heavy_tailed_tiles"));
