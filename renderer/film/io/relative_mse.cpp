@@ -143,12 +143,16 @@ SeenMse seen_mse(std::span<const vec3> picture, const ReferencePair& references,
                  const SeenMseOptions& options) {
   const std::vector<dvec3> scale = seen_scales(references, options.floor);
   const std::vector<double> error = products(picture, references, scale);
-  std::vector<double> apart(error.size());
-  for (size_t p = 0; p < error.size(); ++p) {
-    const dvec3 d = dvec3(picture[p]) - (dvec3(references.first[p]) + dvec3(references.second[p])) / 2.0;
-    apart[p] = mean_of(d * d / scale[p]);
+  double trimmed = 0;
+  for (const std::vector<vec3>* reference : {&references.first, &references.second}) {
+    std::vector<double> apart(error.size());
+    for (size_t p = 0; p < error.size(); ++p) {
+      const dvec3 d = dvec3(picture[p]) - dvec3((*reference)[p]);
+      apart[p] = mean_of(d * d / scale[p]);
+    }
+    trimmed += trimmed_mean(error, apart, options.trimmed_share) / 2;
   }
-  return {.all = mean(error), .trimmed = trimmed_mean(error, apart, options.trimmed_share)};
+  return {.all = mean(error), .trimmed = trimmed};
 }
 
 double seen_mse_noise(const ReferencePair& references, const SeenMseOptions& options) {

@@ -54,9 +54,9 @@ struct SeenMseOptions {
 /// is `sqrt(e)` = 5 % off is off by a twentieth of what the eye is adapted to.
 struct SeenMse {
   double all = 0;
-  /// Without the `trimmed_share` of the pixels (rounded up) that differ most from the mean of the references,
-  /// over the same (l + f m)^2: fireflies do not decide. The choice does not look at what the references
-  /// differ by, so that their noise favours no sign of the product.
+  /// Without the `trimmed_share` of the pixels (rounded up) that differ most from a reference, over the same
+  /// (l + f m)^2: fireflies do not decide. It is the mean of two such means, one for the choice by either
+  /// reference: the other one's noise knows nothing of that choice, and leaves the product's mean as it is.
   double trimmed = 0;
 };
 
