@@ -201,6 +201,14 @@ void Film::set_mix(std::span<const vec3> weights) {
   light_mix_.write(&mix_, sizeof mix_);
 }
 
+void Film::copy_surfaces(gpu::Stream& stream, const Film& from) {
+  const uint64_t pixels = uint64_t{width_} * height_;
+  stream.copy(from.albedo_, albedo_, pixels * 16);
+  stream.copy(from.normal_, normal_, pixels * 16);
+  stream.copy(from.count_, count_, pixels * 4);
+  stream.copy(from.vertices_, vertices_, pixels * 4);
+}
+
 void Film::bind_coarse(gpu::Resources& r) const {
   r.set("coarse_albedo", albedo_);
   r.set("coarse_normal", normal_);

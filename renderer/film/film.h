@@ -102,6 +102,10 @@ class Film {
   void bind(gpu::Resources& resources) const;
   /// A group's own sums, where they are kept apart by component.
   void bind_group(gpu::Resources& resources, uint32_t group) const;
+  /// Of a component: two halves a pixel (shared::FilmHalf), as samples have brought them.
+  const gpu::Buffer& sums(uint32_t component) const { return sums_.at(component); }
+  /// Takes surfaces and counts of samples of another film of the same size. Records; the stream is not run.
+  void copy_surfaces(gpu::Stream& stream, const Film& from);
   /// What it knows of surfaces, under the names coarse_albedo, coarse_normal and CoarseCount.
   void bind_coarse(gpu::Resources& resources) const;
   /// One for each block, in raster order, as the last estimates left them (all 0 where there was none).

@@ -10,6 +10,7 @@
 #include "kernels/gpu_support.h"
 #include "shaders/shared/emission.h"
 #include "shaders/shared/film.h"
+#include "shaders/shared/filter.h"
 #include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "shaders/shared/irradiance_cache/inspect.h"
 #include "shaders/shared/irradiance_cache/placement.h"
@@ -109,6 +110,7 @@ std::vector<SharedStruct> structs() {
              falloff, pixel, parallel, finest, flat_side, spacing, key),
       SHARED("irradiance_cache/discontinuity.h", DiscontinuityDrawPush, width, height, across, down, stride,
              level, first),
+      SHARED("filter.h", FilterPush, width, height, component, stride, scale),
       SHARED("film.h", FilmHalf, sum, compensation),
       SHARED("film.h", WorkBlock, index, first_sample),
       SHARED("film.h", BlockError, pixels, luminance, variance, fourth, difference, relative, quadrant_pixels,

@@ -1,0 +1,182 @@
+#include "film/filter/filter_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lucerna::film {
+
+namespace {
+
+// Half sides of the windows over which noise and bias of pixels and of tiles are averaged.
+constexpr int k_noise_reach = 2, k_bias_reach = 9, k_wide_reach = 30, k_tile_reach = 2;
+// Share of the samples' own variance that a comparison with them leaves open for a tile (README.md).
+constexpr double k_unseen = 0.4;
+// Of the median luminance: what differences in the dark are compared with.
+constexpr double k_dark = 0.05;
+
+struct Grid {
+  uint32_t width, height;
+  std::vector<double> values;
+};
+
+/// Means over squares of 2 * reach + 1, cut off at the edges.
+std::vector<double> box_mean(const Grid& grid, int reach) {
+  const int w = int(grid.width), h = int(grid.height);
+  std::vector<double> rows(grid.values.size()), out(grid.values.size());
+  const auto pass = [&](const std::vector<double>& from, std::vector<double>& to, int count, int lines,
+                        int step, int line_step) {
+    for (int line = 0; line < lines; ++line)
+      for (int i = 0; i < count; ++i) {
+        const int lo = std::max(0, i - reach), hi = std::min(count - 1, i + reach);
+        double sum = 0;
+        for (int k = lo; k <= hi; ++k)
+          sum += from[size_t(line) * size_t(line_step) + size_t(k) * size_t(step)];
+        to[size_t(line) * size_t(line_step) + size_t(i) * size_t(step)] = sum / (hi - lo + 1);
+      }
+  };
+  pass(grid.values, rows, w, h, 1, w);
+  pass(rows, out, h, w, w, 1);
+  return out;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::nth_element(values.begin(), values.begin() + long(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// Squares of what differences are compared with: of the luminance around, and a share of the picture's.
+std::vector<double> scales(const Grid& luminance, int reach) {
+  std::vector<double> scale = box_mean(luminance, reach);
+  const double dark = k_dark * median(scale);
+  for (double& s : scale) s = (s + dark) * (s + dark);
+  return scale;
+}
+
+/// Luminance of the halves of an image, and of both together.
+struct Halves {
+  std::vector<double> even, odd, mean;
+};
+Halves halves_of(const Image& image) {
+  const size_t n = image.samples.size();
+  Halves h{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t c = 0; c < size_t{k_components}; ++c) {
+      h.mean[i] += double(luminance(image.components[c][i]));
+      h.odd[i] += double(luminance(image.odd_half[c][i]));
+    }
+    const double count = image.samples[i], odd = image.samples[i] / 2;
+    if (image.samples[i] < 2)
+      h.even[i] = h.odd[i] = h.mean[i];
+    else
+      h.even[i] = (count * h.mean[i] - odd * h.odd[i]) / (count - odd);
+  }
+  return h;
+}
+
+double square(double x) { return x * x; }
+
+/// Of a mean of the filtered halves f and g, beside the samples' a and b, of which `variance` is that of a
+/// half: noise, and noise and bias together, each without bias itself. Below 0 by chance.
+struct Evidence {
+  double noise, all;
+};
+Evidence evidence(double f, double g, double a, double b, double variance) {
+  const double noise = square(f - g) / 4;
+  return {noise, 0.5 * (square(f - b) + square(g - a)) - variance - noise};
+}
+
+/// The averaged evidence of each place as a variance: noise where that is more. `samples`: variances of a
+/// half of the samples; they say how far evidence of bias can be off by chance, up to where that of a wider
+/// surround counts instead.
+std::vector<double> variances(Grid noise, Grid all, Grid samples, const std::vector<double>& scale, int reach,
+                              int wide_reach, int noise_reach) {
+  for (size_t i = 0; i < scale.size(); ++i)
+    if (scale[i] > 0) noise.values[i] /= scale[i], all.values[i] /= scale[i], samples.values[i] /= scale[i];
+  for (double& v : samples.values) v *= v;
+  const std::vector<double> near = box_mean(all, reach), wide = box_mean(all, wide_reach),
+                            chance = box_mean(samples, reach);
+  const double count = (2 * reach + 1) * (2 * reach + 1);
+  std::vector<double> v = box_mean(noise, noise_reach);
+  for (size_t i = 0; i < v.size(); ++i) {
+    const double square_near = near[i] * near[i],
+                 share = square_near > 0 ? square_near / (square_near + chance[i] / count) : 0;
+    v[i] = std::max({v[i], share * near[i] + (1 - share) * wide[i], 0.0}) * scale[i];
+  }
+  return v;
+}
+
+std::vector<float> pixel_errors(const Image& image, const Halves& s, const Halves& f) {
+  const size_t n = image.samples.size();
+  Grid noise{image.width, image.height, std::vector<double>(n)}, all = noise, samples = noise;
+  for (size_t i = 0; i < n; ++i) {
+    samples.values[i] = square(s.even[i] - s.odd[i]) / 2;
+    const Evidence e = evidence(f.even[i], f.odd[i], s.even[i], s.odd[i], samples.values[i]);
+    noise.values[i] = e.noise, all.values[i] = e.all;
+  }
+  const std::vector<double> v =
+      variances(noise, all, samples, scales({image.width, image.height, f.mean}, k_noise_reach), k_bias_reach,
+                k_wide_reach, k_noise_reach);
+  std::vector<float> errors(n);
+  for (size_t i = 0; i < n; ++i) errors[i] = float(image.samples[i] < 2 ? f.mean[i] : std::sqrt(v[i]));
+  return errors;
+}
+
+void estimate_tiles(FilterError& error, const Image& image, const Halves& s, const Halves& f, uint32_t side,
+                    double luminance_floor) {
+  const uint32_t across = error.tiles_across, down = error.tiles_down;
+  const size_t count = size_t{across} * down;
+  error.tiles.resize(count);
+  Grid noise{across, down, std::vector<double>(count)}, all = noise, mean = noise, samples = noise;
+  for (uint32_t t = 0; t < count; ++t) {
+    const uint32_t x0 = t % across * side, y0 = t / across * side, x1 = std::min(x0 + side, image.width),
+                   y1 = std::min(y0 + side, image.height);
+    double fe = 0, fo = 0, se = 0, so = 0, v = 0, squares = 0;
+    for (uint32_t y = y0; y < y1; ++y)
+      for (uint32_t x = x0; x < x1; ++x) {
+        const size_t i = size_t{y} * image.width + x;
+        fe += f.even[i], fo += f.odd[i], se += s.even[i], so += s.odd[i], mean.values[t] += f.mean[i];
+        v += square(s.even[i] - s.odd[i]) / 2;
+        squares += square(double{error.pixels[i]});
+      }
+    const double n = double(x1 - x0) * (y1 - y0);
+    mean.values[t] /= n;
+    samples.values[t] = v / (n * n) / 2;  // of the mean of both halves
+    const Evidence e = evidence(fe / n, fo / n, se / n, so / n, v / (n * n));
+    noise.values[t] = e.noise, all.values[t] = e.all;
+    error.tiles[t].luminance = mean.values[t];
+    error.tiles[t].relative = std::sqrt(squares / n) / std::max(mean.values[t], luminance_floor);
+  }
+  const std::vector<double> scale = scales(mean, 0);
+  const std::vector<double> v =
+      variances(noise, all, samples, scale, k_tile_reach, k_tile_reach, k_tile_reach);
+  for (size_t t = 0; t < count; ++t)
+    if (scale[t] > 0) samples.values[t] /= scale[t];
+  const std::vector<double> unseen = box_mean(samples, 1);
+  for (size_t t = 0; t < count; ++t)
+    error.tiles[t].standard_error = std::sqrt(v[t] + k_unseen * unseen[t] * scale[t]);
+}
+
+}  // namespace
+
+FilterError filter_error(const Image& samples, const Image& filtered, uint32_t side, double luminance_floor) {
+  const Halves s = halves_of(samples), f = halves_of(filtered);
+  FilterError error;
+  error.tiles_across = (samples.width + side - 1) / side;
+  error.tiles_down = (samples.height + side - 1) / side;
+  error.pixels = pixel_errors(samples, s, f);
+  double squares = 0;
+  for (size_t i = 0; i < error.pixels.size(); ++i)
+    error.luminance += f.mean[i], squares += square(double{error.pixels[i]});
+  error.luminance /= double(error.pixels.size());
+  error.rms = std::sqrt(squares / double(error.pixels.size()));
+  estimate_tiles(error, samples, s, f, side, luminance_floor);
+  std::vector<double> relative;
+  for (const FilteredTile& tile : error.tiles) relative.push_back(tile.relative);
+  std::sort(relative.begin(), relative.end());
+  error.tile_median = relative[relative.size() / 2];
+  error.tile_worst_tenth = relative[relative.size() * 9 / 10];
+  return error;
+}
+
+}  // namespace lucerna::film

@@ -1,0 +1,28 @@
+// A component of the film -> what is filtered: its halves over the colour of the surface, and the surface.
+#include "lib/film.glsl"
+#include "lib/invocation.glsl"
+#include "film/filter/filter.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { FilterPush push; };
+layout(scalar) writeonly buffer FilterLights { vec4 lights[]; };
+layout(scalar) writeonly buffer FilterSurfaces { vec4 surfaces[]; };
+
+void main() {
+  uint pixel = global_index();
+  if (pixel >= push.width * push.height) return;
+  uint count = film_count[pixel];
+  vec4 albedo = texelFetch(film_albedo, int(pixel)), normal = texelFetch(film_normal, int(pixel));
+  float samples = float(max(count, 1u)), hits = albedo.w;
+  FilterSurface s;
+  s.covered = hits / samples;
+  s.depth = hits > 0.0 ? normal.w / hits : 0.0;
+  float len = length(normal.xyz);
+  s.normal = len > 0.0 ? normal.xyz / len : vec3(0.0);
+  s.albedo = max(albedo.rgb / samples + (1.0 - s.covered), vec3(k_filter_least_albedo));
+  surfaces[pixel] = filter_texel(s);
+  FilmPixel p = film_load(push.component, pixel, film_ratio(pixel));
+  vec3 even = (p.even.sum + p.even.compensation) / float(max((count + 1u) / 2u, 1u));
+  vec3 odd = (p.odd.sum + p.odd.compensation) / float(max(count / 2u, 1u));
+  if (count < 2u) odd = even;
+  lights[pixel] = filter_texel(FilterLight(even * push.scale / s.albedo, odd * push.scale / s.albedo, 0.0));
+}

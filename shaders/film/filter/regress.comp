@@ -1,0 +1,76 @@
+// First-order regression of each half on what surfaces are like, over a window whose pixels count by what the other half says.
+#include "lib/invocation.glsl"
+#include "film/filter/filter.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { FilterPush push; };
+uniform samplerBuffer filter_data, filter_surfaces, filter_guides;
+layout(scalar) writeonly buffer FilterFitted { vec4 fitted[]; };
+#include "film/filter/window.glsl"
+
+// Moments of eight regressors, four and four, and of light.
+struct Moments {
+  mat4 aa, ab, bb;
+  mat3x4 ya, yb;
+};
+void add(inout Moments m, float w, vec4 a, vec4 b, vec3 y) {
+  vec4 wa = w * a, wb = w * b;
+  m.aa += outerProduct(wa, a);
+  m.ab += outerProduct(wa, b);
+  m.bb += outerProduct(wb, b);
+  m.ya += outerProduct(wa, y);
+  m.yb += outerProduct(wb, y);
+}
+// The light where all regressors but the constant are 0: normal equations, half of the unknowns eliminated.
+vec3 solve(Moments m) {
+  float ridge = k_filter_ridge * m.aa[0][0];
+  m.aa[1][1] += ridge;
+  m.aa[2][2] += ridge;
+  m.aa[3][3] += k_filter_ridge_albedo * m.aa[0][0];
+  for (int i = 0; i < 4; ++i) m.bb[i][i] += ridge;
+  // ab is a b^T: aa x + ab z = ya; ab^T x + bb z = yb.
+  mat4 inverse_b = inverse(m.bb);
+  mat4 schur = m.aa - m.ab * inverse_b * transpose(m.ab);
+  mat3x4 right = m.ya - m.ab * inverse_b * m.yb;
+  vec4 row = inverse(schur)[0];  // symmetric
+  return row * right;
+}
+
+float closeness(vec3 a, vec3 b, float va, float vb) {
+  vec3 d = a - b;
+  float tolerance = square(k_filter_equal) * max(dot(a, a), dot(b, b));
+  float distance = (dot(d, d) - va - min(va, vb)) / (square(k_filter_strength) * (va + vb) + tolerance + 1e-20);
+  return exp2(-max(distance, 0.0));
+}
+
+const int k_reach = 3;
+
+void main() {
+  uint pixel = global_index();
+  if (pixel >= push.width * push.height) return;
+  Window window = window_at(pixel);
+  FilterLight guide = filter_light(texelFetch(filter_guides, int(pixel)));
+  float variance = square(guide.deviation);
+  Moments even, odd;
+  even.aa = even.ab = even.bb = odd.aa = odd.ab = odd.bb = mat4(0.0);
+  even.ya = even.yb = odd.ya = odd.yb = mat3x4(0.0);
+  float z = max(window.surface.depth, 1e-20);
+  for (int y = -k_reach; y <= k_reach; ++y)
+    for (int x = -k_reach; x <= k_reach; ++x) {
+      ivec2 step = int(push.stride) * ivec2(x, y), at = window.xy + step;
+      bool inside = window_has(at);
+      int there = inside ? at.y * int(push.width) + at.x : int(pixel);
+      FilterSurface s = filter_surface(texelFetch(filter_surfaces, there));
+      FilterLight light = filter_light(texelFetch(filter_data, there)), g = filter_light(texelFetch(filter_guides, there));
+      float alike = inside ? filter_alike(window.surface, s, vec2(step), window.slope) : 0.0;
+      // Where nothing else is alike what is nearly so counts.
+      alike = inside ? max(alike, k_filter_unlike * pow(alike, 0.05)) : 0.0;
+      float v = square(g.deviation);
+      float by_odd = alike * closeness(guide.odd, g.odd, variance, v), by_even = alike * closeness(guide.even, g.even, variance, v);
+      vec4 a = vec4(1.0, vec2(x, y) / float(k_reach), luminance(window.surface.albedo) / luminance(s.albedo) - 1.0);
+      vec4 b = vec4(s.normal - window.surface.normal, (s.depth - window.surface.depth) / (0.1 * z));
+      if (s.covered == 0.0 || window.surface.covered == 0.0) b = vec4(0.0);
+      add(even, by_odd, a, b, light.even);
+      add(odd, by_even, a, b, light.odd);
+    }
+  fitted[pixel] = filter_texel(FilterLight(max(solve(even), vec3(0.0)), max(solve(odd), vec3(0.0)), 0.0));
+}

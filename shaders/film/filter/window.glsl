@@ -1,0 +1,27 @@
+// A pixel and what it shows, in the middle of a window. Needs push and filter_surfaces.
+#ifndef LUCERNA_FILM_FILTER_WINDOW
+#define LUCERNA_FILM_FILTER_WINDOW
+struct Window {
+  ivec2 xy;
+  FilterSurface surface;
+  vec2 slope;  // of depth [m a pixel]
+};
+
+bool window_has(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(push.width, push.height))); }
+
+float window_depth(ivec2 at) {
+  ivec2 last = ivec2(push.width, push.height) - 1;
+  ivec2 there = clamp(at, ivec2(0), last);
+  return there == at ? texelFetch(filter_surfaces, at.y * int(push.width) + at.x).x : 0.0;
+}
+
+Window window_at(uint pixel) {
+  Window w;
+  w.xy = ivec2(pixel % push.width, pixel / push.width);
+  w.surface = filter_surface(texelFetch(filter_surfaces, int(pixel)));
+  float z = w.surface.depth;
+  w.slope = vec2(filter_slope(window_depth(w.xy - ivec2(1, 0)), z, window_depth(w.xy + ivec2(1, 0))),
+                 filter_slope(window_depth(w.xy - ivec2(0, 1)), z, window_depth(w.xy + ivec2(0, 1))));
+  return w;
+}
+#endif
