@@ -8,7 +8,7 @@ namespace lucerna::film {
 namespace {
 
 // Half sides of the windows over which noise and bias of pixels and of tiles are averaged.
-constexpr int k_noise_reach = 2, k_bias_reach = 9, k_wide_reach = 30, k_tile_reach = 2;
+constexpr int k_noise_reach = 2, k_bias_reach = 9, k_tile_reach = 2;
 // Share of the samples' own variance that a comparison with them leaves open for a tile (README.md).
 constexpr double k_unseen = 0.4;
 // Of the median luminance: what differences in the dark are compared with.
@@ -86,40 +86,33 @@ Evidence evidence(double f, double g, double a, double b, double variance) {
   return {noise, 0.5 * (square(f - b) + square(g - a)) - variance - noise};
 }
 
-/// The averaged evidence of each place as a variance: noise where that is more. `samples`: variances of a
-/// half of the samples; they say how far evidence of bias can be off by chance, up to where that of a wider
-/// surround counts instead.
-std::vector<double> variances(Grid noise, Grid all, Grid samples, const std::vector<double>& scale, int reach,
-                              int wide_reach, int noise_reach) {
+/// The averaged evidence of each place as a variance: noise alone where that is more.
+std::vector<double> variances(Grid noise, Grid all, const std::vector<double>& scale, int noise_reach,
+                              int all_reach) {
   for (size_t i = 0; i < scale.size(); ++i)
-    if (scale[i] > 0) noise.values[i] /= scale[i], all.values[i] /= scale[i], samples.values[i] /= scale[i];
-  for (double& v : samples.values) v *= v;
-  const std::vector<double> near = box_mean(all, reach), wide = box_mean(all, wide_reach),
-                            chance = box_mean(samples, reach);
-  const double count = (2 * reach + 1) * (2 * reach + 1);
+    if (scale[i] > 0) noise.values[i] /= scale[i], all.values[i] /= scale[i];
   std::vector<double> v = box_mean(noise, noise_reach);
-  for (size_t i = 0; i < v.size(); ++i) {
-    const double square_near = near[i] * near[i],
-                 share = square_near > 0 ? square_near / (square_near + chance[i] / count) : 0;
-    v[i] = std::max({v[i], share * near[i] + (1 - share) * wide[i], 0.0}) * scale[i];
-  }
+  const std::vector<double> m = box_mean(all, all_reach);
+  for (size_t i = 0; i < v.size(); ++i) v[i] = std::max({v[i], m[i], 0.0}) * scale[i];
   return v;
 }
 
-std::vector<float> pixel_errors(const Image& image, const Halves& s, const Halves& f) {
+void estimate_pixels(FilterError& error, const Image& image, const Halves& s, const Halves& f) {
   const size_t n = image.samples.size();
-  Grid noise{image.width, image.height, std::vector<double>(n)}, all = noise, samples = noise;
+  Grid noise{image.width, image.height, std::vector<double>(n)}, all = noise;
+  double noise_sum = 0, all_sum = 0, unknown = 0;
   for (size_t i = 0; i < n; ++i) {
-    samples.values[i] = square(s.even[i] - s.odd[i]) / 2;
-    const Evidence e = evidence(f.even[i], f.odd[i], s.even[i], s.odd[i], samples.values[i]);
+    const Evidence e = evidence(f.even[i], f.odd[i], s.even[i], s.odd[i], square(s.even[i] - s.odd[i]) / 2);
     noise.values[i] = e.noise, all.values[i] = e.all;
+    noise_sum += e.noise, all_sum += e.all;
+    error.luminance += f.mean[i] / double(n);
+    if (image.samples[i] < 2) unknown += square(f.mean[i]);
   }
-  const std::vector<double> v =
-      variances(noise, all, samples, scales({image.width, image.height, f.mean}, k_noise_reach), k_bias_reach,
-                k_wide_reach, k_noise_reach);
-  std::vector<float> errors(n);
-  for (size_t i = 0; i < n; ++i) errors[i] = float(image.samples[i] < 2 ? f.mean[i] : std::sqrt(v[i]));
-  return errors;
+  error.rms = std::sqrt((std::max(noise_sum, all_sum) + unknown) / double(n));
+  const std::vector<double> scale = scales({image.width, image.height, f.mean}, k_noise_reach);
+  const std::vector<double> v = variances(noise, all, scale, k_noise_reach, k_bias_reach);
+  error.pixels.resize(n);
+  for (size_t i = 0; i < n; ++i) error.pixels[i] = float(image.samples[i] < 2 ? f.mean[i] : std::sqrt(v[i]));
 }
 
 void estimate_tiles(FilterError& error, const Image& image, const Halves& s, const Halves& f, uint32_t side,
@@ -137,19 +130,22 @@ void estimate_tiles(FilterError& error, const Image& image, const Halves& s, con
         const size_t i = size_t{y} * image.width + x;
         fe += f.even[i], fo += f.odd[i], se += s.even[i], so += s.odd[i], mean.values[t] += f.mean[i];
         v += square(s.even[i] - s.odd[i]) / 2;
-        squares += square(double{error.pixels[i]});
       }
     const double n = double(x1 - x0) * (y1 - y0);
     mean.values[t] /= n;
+    for (uint32_t y = y0; y < y1; ++y)
+      for (uint32_t x = x0; x < x1; ++x) {
+        const size_t i = size_t{y} * image.width + x;
+        squares += square(double{error.pixels[i]} / std::max({f.mean[i], mean.values[t], luminance_floor}));
+      }
     samples.values[t] = v / (n * n) / 2;  // of the mean of both halves
     const Evidence e = evidence(fe / n, fo / n, se / n, so / n, v / (n * n));
     noise.values[t] = e.noise, all.values[t] = e.all;
     error.tiles[t].luminance = mean.values[t];
-    error.tiles[t].relative = std::sqrt(squares / n) / std::max(mean.values[t], luminance_floor);
+    error.tiles[t].relative = std::sqrt(squares / n);
   }
   const std::vector<double> scale = scales(mean, 0);
-  const std::vector<double> v =
-      variances(noise, all, samples, scale, k_tile_reach, k_tile_reach, k_tile_reach);
+  const std::vector<double> v = variances(noise, all, scale, k_tile_reach, k_tile_reach);
   for (size_t t = 0; t < count; ++t)
     if (scale[t] > 0) samples.values[t] /= scale[t];
   const std::vector<double> unseen = box_mean(samples, 1);
@@ -164,12 +160,7 @@ FilterError filter_error(const Image& samples, const Image& filtered, uint32_t s
   FilterError error;
   error.tiles_across = (samples.width + side - 1) / side;
   error.tiles_down = (samples.height + side - 1) / side;
-  error.pixels = pixel_errors(samples, s, f);
-  double squares = 0;
-  for (size_t i = 0; i < error.pixels.size(); ++i)
-    error.luminance += f.mean[i], squares += square(double{error.pixels[i]});
-  error.luminance /= double(error.pixels.size());
-  error.rms = std::sqrt(squares / double(error.pixels.size()));
+  estimate_pixels(error, samples, s, f);
   estimate_tiles(error, samples, s, f, side, luminance_floor);
   std::vector<double> relative;
   for (const FilteredTile& tile : error.tiles) relative.push_back(tile.relative);

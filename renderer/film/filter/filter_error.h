@@ -12,7 +12,8 @@ struct FilteredTile {
   double standard_error = 0;  ///< of that mean: noise and bias together
   /// Half width of the interval around `luminance` that holds the truth with probability 0.9.
   double half_width_90() const { return 1.645 * standard_error; }
-  double relative = 0;  ///< quadratic mean of the pixels' errors over max(luminance, floor)
+  double relative = 0;  ///< quadratic mean of the pixels' errors, each over what is largest of its
+                        ///< luminance, the tile's, and the floor
 };
 
 struct FilterError {
@@ -22,7 +23,7 @@ struct FilterError {
   std::vector<float> pixels;
   std::vector<FilteredTile> tiles;  ///< in raster order
   double luminance = 0;             ///< mean of the picture
-  double rms = 0;                   ///< quadratic mean of `pixels`
+  double rms = 0;                   ///< of the picture, in the quadratic mean over its pixels
   double relative() const { return luminance > 0 ? rms / luminance : 0; }
   double tile_median = 0, tile_worst_tenth = 0;  ///< of FilteredTile::relative
 };
