@@ -185,6 +185,10 @@ void Program::add_render() {
         ->check(named());
   }
   render_->add_option("--stats", r.stats, "write figures of the run as JSON")->check(named());
+  render_->add_flag("--filter", r.filter,
+                    "filter the finished picture: a PNG shows it without noise, an EXR has it in layers of "
+                    "their own (filtered, filtered.primary, ..., filtered.error) beside the samples, and "
+                    "--stats says how wrong it is");
   render_->add_flag("--quiet", r.quiet, "no progress line");
   add_scene_options(render_);
 }

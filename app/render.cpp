@@ -283,6 +283,14 @@ std::string advice(const session::Renderer& r) {
   return text;
 }
 
+/// Filters the picture (--filter).
+void filter(session::Renderer& r) {
+  if (r.samples() < 2)
+    log::warning("--filter: pixels with less than two samples stay as they are: their noise is not known");
+  const session::Filtered& f = r.filter();
+  log::info("filtered in {:.2f} s; estimated error {:.2g} %", 1e-3 * f.ms, 100 * f.error.relative());
+}
+
 }  // namespace
 
 int render(const RenderArguments& a) {
@@ -299,6 +307,8 @@ int render(const RenderArguments& a) {
   const Interrupt interrupt;
   const bool terminal = !a.quiet && isatty(2);
   if (!load(r, a, changes, interrupt, terminal)) return interrupt.status();
+  if (a.filter && !r.film().fits_storage_buffers())
+    throw_error("--filter", "{}x{} is larger than this device can filter at once", width, height);
   for (const auto& [name, file] : to_save)
     if (!r.solver(name))
       throw_error(fmt::format("--{}-save", name),
@@ -312,6 +322,7 @@ int render(const RenderArguments& a) {
   if (makes_picture(a) && r.adaptive() && !interrupted)
     report_unreached(*r.adaptive(), advice(r)), report_unseen(r);
   if (makes_picture(a)) outputs.attempt([&] { find_exposure(r, changes); });
+  if (a.filter && makes_picture(a)) outputs.attempt([&] { filter(r); });
   for (const std::string& file : a.outputs) outputs.attempt([&] { r.save(file); });
   if (!a.ledger.empty()) outputs.attempt([&] { write_file(a.ledger, r.ledger().csv()); });
   if (!a.stats.empty())

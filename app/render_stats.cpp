@@ -56,6 +56,20 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   return j;
 }
 
+/// Of the filtered picture: its noise and bias, and what its lookups are wrong by.
+nlohmann::ordered_json make_filtered(session::Renderer& r, const session::Filtered& filtered) {
+  const film::FilterError& f = filtered.error;
+  const film::ImageError samples = r.image_error();
+  nlohmann::ordered_json j;
+  j["rms"] = error_sum(f.rms, samples.records_rms, samples.interpolation_rms);
+  j["of_mean"] = error_sum(f.relative(), samples.relative_records(), samples.relative_interpolation());
+  j["filter"] = {{"rms", f.rms}, {"of_mean", f.relative()}};
+  j["filter"]["tile_median"] = f.tile_median;
+  j["filter"]["tile_worst_decile"] = f.tile_worst_tenth;
+  j["ms"] = filtered.ms;
+  return j;
+}
+
 /// Difference from the reference, whose own noise is taken off where its file tells it.
 nlohmann::ordered_json make_truth(const film::Reference& reference, const stats::Ledger& ledger) {
   nlohmann::ordered_json j;
@@ -211,6 +225,7 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   j["peak_host_mb"] = session::peak_host_mb();
   j["peak_device_mb"] = double(r.device().peak_bytes()) / (1 << 20);
   j["error"] = make_error(r);
+  if (const session::Filtered* f = r.filtered()) j["filtered"] = make_filtered(r, *f);
   if (const film::Reference* reference = r.reference()) j["truth"] = make_truth(*reference, r.ledger());
   if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
   j["ledger"] = make_ledger(r.ledger());

@@ -24,6 +24,7 @@ struct RenderArguments {
   int64_t seed = -1;
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;
+  bool filter = false;        ///< files hold the filtered picture, too
   scene::LoadOptions scenes;  ///< what scenes may read and take; likewise below
 };
 int render(const RenderArguments& arguments);

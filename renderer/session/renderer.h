@@ -24,6 +24,7 @@
 #include "scene/scene.h"
 #include "session/display.h"
 #include "session/engine.h"
+#include "session/filtered.h"
 #include "session/kept_solvers.h"
 #include "session/lights_edit.h"
 #include "session/relight.h"
@@ -176,6 +177,12 @@ class Renderer {
   film::Brightness measure(std::optional<vec2> at) const;
   /// The image with its layers and metadata (its own noise among them), as EXR files hold it.
   film::FilmImage film_image();
+  /// Filters the picture as it is now (film/filter/): from here to its next sample film_image() has the
+  /// filtered layers beside its own, and save() writes the filtered picture as PNG. Throws Error where that
+  /// cannot be done: there is no picture, or no memory for it.
+  const Filtered& filter();
+  /// What filter() has made of the picture as it is; null: nothing.
+  const Filtered* filtered() const;
   /// Writes film_image() as EXR, or what the window shows as PNG: through exposure and tone curve, `as_shown`
   /// with the preview's filter too, where that is on.
   void save(const std::filesystem::path& file, bool as_shown = false);
@@ -328,6 +335,7 @@ class Renderer {
   std::unique_ptr<Engine> engine_;              ///< null before the first scene; goes before the world
   KeptSolvers kept_;
   std::unique_ptr<film::Film> film_, coarse_;
+  std::optional<Filtered> filtered_;
   std::unique_ptr<Display> display_;  ///< null in batch
   struct {
     uint64_t version = ~uint64_t{0}, paths = 0;

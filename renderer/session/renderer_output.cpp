@@ -107,8 +107,15 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<boo
   settle_mix();
   const film::View v = view();
   mark_tiles(v);
-  engine_->developer().tone_map(engine_->wavefront().stream(), *film_, v,
-                                with_coarse ? coarse_.get() : nullptr);
+  gpu::Stream& stream = engine_->wavefront().stream();
+  if (const Filtered* f = filtered(); f && v.layer < shared::k_layer_albedo) {
+    engine_->developer().tone_map(stream, *f->film, v);
+    stream.copy(f->film->picture(), film_->picture(), f->film->picture().bytes());
+    stream.run();
+    if (v.tiles > 0) engine_->developer().draw_tiles(stream, *film_, v);
+  } else {
+    engine_->developer().tone_map(stream, *film_, v, with_coarse ? coarse_.get() : nullptr);
+  }
   return finished_picture(cancel);
 }
 
@@ -171,6 +178,23 @@ void add_group_layers(film::FilmImage& out, const film::Film& film, const Religh
 
 }  // namespace
 
+const Filtered& Renderer::filter() {
+  if (!engine_ || !film_ || stats().paths == 0) throw Error("filter", "there is no picture to filter yet");
+  settle_mix();
+  filtered_.reset();  // its memory first
+  filtered_ = session::filter(*device_, *compiler_, engine_->wavefront().stream(), *film_, tile_side(),
+                              luminance_floor());
+  filtered_->paths = stats().paths;
+  return *filtered_;
+}
+
+const Filtered* Renderer::filtered() const {
+  const bool same = filtered_ && filtered_->paths == stats().paths &&
+                    filtered_->film->width() == film_->width() &&
+                    filtered_->film->height() == film_->height();
+  return same ? &*filtered_ : nullptr;
+}
+
 film::FilmImage Renderer::film_image() {
   settle_mix();
   const film::Image image = film_->read();
@@ -211,6 +235,7 @@ film::FilmImage Renderer::film_image() {
   if (const glm::dvec3& o = world_.scene->origin; o != glm::dvec3(0))
     out.metadata["origin"] = fmt::format("{} {} {}", o.x, o.y, o.z);
   out.metadata["noise"] = film::noise_text(image_error().rms);
+  if (const Filtered* f = filtered()) add_filtered_layers(out, *f);
   return out;
 }
 
@@ -226,7 +251,9 @@ void Renderer::save(const std::filesystem::path& file, bool as_shown) {
     settle_mix();
     const std::vector<uint8_t> shown = as_shown ? shown_picture(false) : picture(false);
     inspect(at);
-    film::write_png(file, film_->width(), film_->height(), shown);
+    std::map<std::string, std::string> metadata;
+    if (const Filtered* f = filtered(); f && !as_shown) metadata["filter"] = filter_text(f->error);
+    film::write_png(file, film_->width(), film_->height(), shown, metadata);
   } else
     throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);
 }

@@ -21,6 +21,8 @@ namespace lucerna::film {
 ///   N.X .Y .Z                              world-space shading normal, unit or 0 where nothing was hit
 ///   Z                                      distance along the view axis in metres, infinity where nothing
 ///   was hit samples                                samples taken in the pixel
+///   filtered.R .G .B  filtered.COMPONENT.R .G .B   the same without noise, where it is filtered
+///   filtered.error                                 standard error of the luminance of filtered
 /// Other names are allowed; a name occurs once. EXR sorts channels by name, so the order is not kept in a
 /// file (OpenImageIO moves R, G, B to the front).
 struct FilmImage {
