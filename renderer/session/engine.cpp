@@ -242,7 +242,7 @@ solvers::Solver* Engine::refinable() const {
 bool Engine::learns(uint32_t samples) const {
   const transport::LightLearning* learning = wavefront_->learning();
   if (!learning || learned_elsewhere_ || learning->generations() >= std::size(k_generations)) return false;
-  return !solvers_.empty() || samples >= 1u << learning->generations();
+  return samples >= 1u << learning->generations();
 }
 
 void Engine::begin_samples(const PictureView& picture) {

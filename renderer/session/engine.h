@@ -77,7 +77,8 @@ class Engine {
   bool prepare(solvers::Solver& solver, const PictureView& picture, const std::function<bool()>& cancel);
   bool waits() const;
   /// Another generation of light samples is to be learned from before the picture, that has so many samples
-  /// a pixel, goes on. A first picture of paths does not wait for that; what solvers prepare does.
+  /// a pixel, goes on. Its first sample does not wait for that; and whatever is computed how, it is learned
+  /// after the same samples, so that components that are computed as before stay as they were.
   bool learns(uint32_t samples) const;
   /// What was learned from another view served until now, for drafts; the picture is to be the same whatever
   /// was looked at before.

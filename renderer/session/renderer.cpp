@@ -450,7 +450,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   clock_.go();
   const Timer timer;
   engine_->begin_samples(picture_view());
-  const bool learns = engine_->learns(samples()), prepares = preparing() || (learns && samples() == 0);
+  const bool prepares = preparing(), learns = engine_->learns(samples());
   const bool progress = render_item(cancel);
   render_s_ += timer.seconds();
   if (display_) display_->plan().worked(timer.seconds());

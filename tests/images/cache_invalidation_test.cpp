@@ -112,7 +112,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
       {"camera", {{"camera", "above"}}},
       {"tracer", {{"tracer", "host"}}},
       {"path.batch", {{"path.batch", "4096"}}},
-      {"lights.", {{"lights.sampling", "learned"}}},
+      {"lights.", {{"lights.sampling", "power"}}},
       {"path.classes", {{"path.classes", "off"}}},
       {"path.roulette_depth", {{"path.roulette_depth", "7"}}},
       {"path.max_depth", {{"path.max_depth", "5"}}},
