@@ -244,6 +244,12 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   refused("render " + scene("cornell") + " --quiet -o " + (f / "e.exr").string() +
               " --ledger /no/such/folder/e.csv",
           "/no/such/folder");
+  // An exposure that shows nothing leaves nothing to sample, which is reported.
+  const auto [unseen, dark] = stats("--error 0.08 --set sampling.min_samples=4 --set film.ev=-12");
+  CHECK(unseen["error"]["dark"].get<double>() > 0.9);
+  CHECK(unseen["tiles"]["most_samples"] == 4);
+  CHECK(dark.find("% as black: no error is seen there") != std::string::npos);
+  CHECK(warning.find("no error is seen") == std::string::npos);
   // In uniform sampling the noise is told too, and falls as it should.
   const auto few = stats("--samples 64").first["error"], many = stats("--samples 256").first["error"];
   for (const char* error : {"seen", "of_mean"}) {
