@@ -183,7 +183,7 @@ const Filtered& Renderer::filter() {
   settle_mix();
   filtered_.reset();  // its memory first
   filtered_ = session::filter(*device_, *compiler_, engine_->wavefront().stream(), *film_, tile_side(),
-                              luminance_floor());
+                              seen_range().floor);
   filtered_->paths = stats().paths;
   return *filtered_;
 }
