@@ -38,7 +38,8 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   bool beyond = cache.probing == k_probe_beyond && own_state >= k_fallback_state;
   bool screen = cache.probing == k_probe_screen && v.depth == 0u;
   bool next_read = cache_next_read(own_state);
-  x.looks = (routes != k_no_routes || beyond || next_read || screen) && v.bsdf.p_diffuse + v.bsdf.p_transmitted > 0.0;
+  // What lights are chosen by is learned alike whoever computes what.
+  x.looks = frame.learning == 0u && (routes != k_no_routes || beyond || next_read || screen) && v.bsdf.p_diffuse + v.bsdf.p_transmitted > 0.0;
   x.noted = false;
   x.note = vec4(0.0);
   x.note_facing = vec4(0.0);

@@ -30,7 +30,8 @@ vec3 turn_along(vec3 w, vec3 a, vec3 b) {
 
 photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   photons_Vertex vertex = photons_Vertex(0u);
-  uint word = v.again ? k_photon_no_components : photons.component[v.state];
+  // What lights are chosen by is learned alike whoever computes what.
+  uint word = v.again || frame.learning != 0u ? k_photon_no_components : photons.component[v.state];
   uint components = word & k_photon_no_components, only = word >> k_photon_unreachable_only_shift;  // bits, by part
   // A pilot notes where light is looked up, and reads none. Where only light is read that paths from the eye do not find, these
   // go on as they would without.

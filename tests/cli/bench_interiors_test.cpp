@@ -57,7 +57,8 @@ TEST_CASE("bench interiors measures rooms as seen, beside another lucerna, and k
     CHECK(r["rays"] > 0);
     CHECK(r["samples"] == (r["budget"] == "4 samples" ? 4 : 16));
     CHECK(r["seen"] > 0);
-    CHECK(r["seen_all"] >= r["seen"]);
+    // Products of differences from two references: what is left out may by chance be below 0.
+    CHECK(r["seen_all"].get<double>() == Approx(r["seen"].get<double>()).epsilon(0.5));
     CHECK(r["true"]["sum"] > 0);
     CHECK(r["estimated"]["sum"] > 0);
     seen[r["setting"].get<std::string>() + r["budget"].get<std::string>() + r["repeat"].dump()] = r["seen"];

@@ -186,7 +186,7 @@ TEST_CASE("three hundred edits while a cache is built end in the picture of the 
   bed.undo();
   // The same scene with a cache that has lived through nothing: secondary and tertiary light are its, but for
   // where records happen to lie.
-  test::set(r, {{"cache.rays", "1024"}, {"cache.max_rays", "1024"}, {"samples", "16"}});
+  test::set(r, {{"cache.rays", "1024"}, {"cache.max_rays", "1024"}, {"samples", "64"}});
   bed.finish();
   const film::Image lived = r.image();
   r.restart();

@@ -146,7 +146,7 @@ TEST_CASE("light under water reaches a camera under water, whoever computes it")
   room.s.materials.push_back({});
   room.s.materials[3].metallic = 1, room.s.materials[3].roughness = 0.3f;
   room.quad({-0.9f, 0.01f, -0.5f}, {0, 0, 1}, {0.3f, 0.3f, 0}, 3);
-  const test::Result paths = test::render(room.s, {}, 256, 32, false);
+  const test::Result paths = test::render(room.s, {}, 2048, 32, false);
   const auto check = [&](const test::Settings& settings, std::initializer_list<int> components,
                          uint32_t samples, double epsilon) {
     const test::Result r = test::render(room.s, settings, samples, 32, false);

@@ -83,7 +83,7 @@ TEST_CASE("drafts tell what path tracing would take before there is any light to
   // The noise of one sample is that of a path traced picture.
   Settings paths = k_cached;
   paths["components.secondary"] = paths["components.tertiary"] = "path";
-  paths["samples"] = "16";
+  paths["samples"] = "16", paths["lights.sampling"] = "power";  // drafts come before lights are learned
   Window traced(64, paths);
   test::finish(traced.r);
   const double noise = traced.r.image_error().seen(0) * 4;
