@@ -153,10 +153,9 @@ void Program::add_render() {
   render_->add_option(
       "--error", r.error,
       "error as seen that every tile is to reach, such as 0.02: samples go where it is not reached yet. It "
-      "is "
-      "relative to the light around each pixel; what the exposure (film.ev) shows as white or black has "
-      "none. A "
-      "render ends at the first of --error, --samples and --time that is reached; what is not given does not "
+      "is relative to the light around each pixel; what the exposure (film.ev) shows as white or black has "
+      "none. A render ends at the first of --error, --samples and --time that is reached; what is not given "
+      "does not "
       "end it where --time is, and without --time samples do, or with --error sampling.max_samples");
   render_->add_option("--samples", r.samples, "samples a pixel; with --error, the most that one may get")
       ->check(CLI::Range(int64_t(1), int64_t(1) << 20));

@@ -71,8 +71,8 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
   list.push_back(choice_option("lights.sampling", "learned", {"power", "learned"}, "",
                                "How lights are chosen at a vertex. power: by what they emit. learned: by "
                                "what has arrived at places nearby, as short pilots find between the first "
-                               "samples: less noise where "
-                               "walls or blinds hide most lights, or most of the sky. The light is the same.",
+                               "samples: less noise where walls or blinds hide most lights, or most of the "
+                               "sky. The light is the same.",
                                "Choice of lights"));
   list.push_back(integer_option("path.roulette_depth", 4, 1, 1024, "vertices",
                                 "Vertex from which Russian roulette may end a path.", "Roulette from"));

@@ -189,10 +189,11 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
       solver->begin(own, spoils);
     });
   missed_.clear();
-  learned_elsewhere_ = wavefront_->learning() && begun_ && same_lights(changes);
-  if (wavefront_->learning() && !learned_elsewhere_)
+  // At the beginning nothing is learned, of the world that the engine was made for.
+  const bool learned = wavefront_->learning() && std::exchange(begun_, true);
+  learned_elsewhere_ = learned && same_lights(changes);
+  if (learned && !learned_elsewhere_)
     wavefront_->forget_learned(upload::make_light_clusters(picture.world.flat));
-  begun_ = true;
   route(picture.settings, picture.world.flat.effects);  // with what they leave to paths now
   wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
 }

@@ -1,6 +1,7 @@
 #include "session/filtered.h"
 
 #include "base/log.h"
+#include "film/io/planes.h"
 #include "paths/automaton.h"
 
 namespace lucerna::session {
@@ -25,18 +26,12 @@ void add_filtered_layers(film::FilmImage& out, const Filtered& filtered) {
   const film::Image image = filtered.film->read();
   const size_t n = image.samples.size();
   std::vector<vec3> sum(n, vec3(0));
-  const auto add = [&](const std::string& layer, const std::vector<vec3>& plane) {
-    for (int k = 0; k < 3; ++k) {
-      std::vector<float> channel(n);
-      for (size_t i = 0; i < n; ++i) channel[i] = plane[i][k];
-      out.channels.emplace_back(fmt::format("{}.{}", layer, "RGB"[k]), std::move(channel));
-    }
-  };
   for (size_t c = 0; c < image.components.size(); ++c) {
-    add(std::string("filtered.") + paths::k_component_names[c], image.components[c]);
+    film::add_plane(out, fmt::format("filtered.{}.", paths::k_component_names[c]), "RGB",
+                    image.components[c]);
     for (size_t i = 0; i < n; ++i) sum[i] += image.components[c][i];
   }
-  add("filtered", sum);
+  film::add_plane(out, "filtered.", "RGB", sum);
   out.channels.emplace_back("filtered.error", filtered.error.pixels);
   out.metadata["filter"] = filter_text(filtered.error);
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/log.h"
+#include "film/io/planes.h"
 #include "film/overlay.h"
 #include "film/tile_scale.h"
 #include "session/accuracy.h"
@@ -202,27 +203,20 @@ film::FilmImage Renderer::film_image() {
   out.width = image.width;
   out.height = image.height;
   const size_t n = image.samples.size();
-  const auto add = [&](const std::string& prefix, const char* names, const std::vector<vec3>& plane) {
-    for (int k = 0; k < 3; ++k) {
-      std::vector<float> channel(n);
-      for (size_t i = 0; i < n; ++i) channel[i] = plane[i][k];
-      out.channels.emplace_back(prefix + names[k], std::move(channel));
-    }
-  };
   std::vector<vec3> sum(n, vec3(0));
   for (const auto& component : image.components)
     for (size_t i = 0; i < n; ++i) sum[i] += component[i];
-  add("", "RGB", sum);
+  film::add_plane(out, "", "RGB", sum);
   for (int c = 0; c < film::k_components; ++c)
-    add(std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
+    film::add_plane(out, std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
   if (settings_.boolean("relight.layers")) {
     if (relight_.apart)
       add_group_layers(out, *film_, relight_);
     else
       log::warning("relight.layers: the EXR has no layers of groups of lights: {}", relight_.why_not);
   }
-  add("albedo.", "RGB", image.albedo);
-  add("N.", "XYZ", image.normal);
+  film::add_plane(out, "albedo.", "RGB", image.albedo);
+  film::add_plane(out, "N.", "XYZ", image.normal);
   out.channels.emplace_back("Z", image.depth);
   out.channels.emplace_back("samples", std::vector<float>(image.samples.begin(), image.samples.end()));
   out.metadata["version"] = LUCERNA_VERSION;
