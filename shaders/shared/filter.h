@@ -25,7 +25,16 @@ LUCERNA_CONST float k_filter_ridge_albedo = 0.0003f;  ///< the same of the slope
 /// Least weight of a pixel whose surface is nearly alike: counts where none is more so.
 LUCERNA_CONST float k_filter_unlike = 0.03f;
 /// Standard deviations by which the other half must speak against a fit before less than all of it is taken.
-LUCERNA_CONST float k_filter_doubt = 1.0f;
+LUCERNA_CONST float k_filter_doubt = 1.5f;
+/// Half side [pixels] of the window over which a fit is judged, and how its weights fall off.
+LUCERNA_CONST int k_filter_judged_reach = 6;
+LUCERNA_CONST float k_filter_judged_falloff = 0.025f;
+/// A pixel's evidence is bounded by the inverse of this.
+LUCERNA_CONST float k_filter_judged_most = 4.0f;
+/// Probability from which on it is chance that both halves are bright in a pixel, and the standard deviations above the mean
+/// around it that it then keeps.
+LUCERNA_CONST float k_filter_chance = 0.1f;
+LUCERNA_CONST float k_filter_usual = 4.0f;
 /// Relative difference up to which what was chosen is the samples, but for rounding.
 LUCERNA_CONST float k_filter_same = 0.004f;
 /// Light, over the colour of the surface and in the filter's scale, beyond which samples stay as they are.

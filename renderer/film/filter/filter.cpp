@@ -15,6 +15,7 @@ Filter::Filter(gpu::Device& device, gpu::ShaderCompiler& compiler)
       noise_(device, compiler, "film/filter/noise.comp"),
       guide_(device, compiler, "film/filter/guide.comp"),
       regress_(device, compiler, "film/filter/regress.comp"),
+      judge_(device, compiler, "film/filter/judge.comp"),
       choose_(device, compiler, "film/filter/choose.comp"),
       blend_(device, compiler, "film/filter/blend.comp") {}
 
@@ -40,7 +41,7 @@ void Filter::apply(gpu::Stream& stream, const Film& film, Film& filtered) {
   const auto room = [&](gpu::Buffer& buffer, const char* name) {
     gpu::make_texel_room(device_, buffer, name, pixels * 16);
   };
-  for (gpu::Buffer* b : {&lights_, &tamed_, &surfaces_, &guides_, &fitted_, &chosen_}) room(*b, "filter");
+  for (gpu::Buffer* b : {&lights_, &tamed_, &surfaces_, &guides_, &fitted_, &judged_, &chosen_}) room(*b, "filter");
   const uint32_t blocks =
       gpu::groups_for(width, shared::k_filter_block) * gpu::groups_for(height, shared::k_filter_block);
   gpu::make_texel_room(device_, taken_, "filter outliers", blocks * uint64_t{16});
@@ -77,10 +78,16 @@ void Filter::apply(gpu::Stream& stream, const Film& film, Film& filtered) {
     for (size_t stage = 0; stage < std::size(k_strides); ++stage) {
       push.stride = k_strides[stage];
       run(regress_, {{"filter_data", before}, {"filter_guides", guide}, {"FilterFitted", &fitted_}}, groups);
-      run(choose_,
+      run(judge_,
           {{"filter_lights", &lights_},
            {"filter_before", before},
            {"filter_fitted", &fitted_},
+           {"FilterJudged", &judged_}},
+          groups);
+      run(choose_,
+          {{"filter_before", before},
+           {"filter_fitted", &fitted_},
+           {"filter_judged", &judged_},
            {"FilterChosen", after}},
           groups);
       if (stage + 1 < std::size(k_strides)) {

@@ -18,8 +18,8 @@ class Filter {
 
  private:
   gpu::Device& device_;
-  gpu::Kernel pack_, tame_, outliers_, noise_, guide_, regress_, choose_, blend_;
-  gpu::Buffer lights_, tamed_, taken_, surfaces_, guides_, fitted_, chosen_;
+  gpu::Kernel pack_, tame_, outliers_, noise_, guide_, regress_, judge_, choose_, blend_;
+  gpu::Buffer lights_, tamed_, taken_, surfaces_, guides_, fitted_, judged_, chosen_;
   gpu::Resources resources_;
 };
 

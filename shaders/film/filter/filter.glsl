@@ -45,6 +45,9 @@ FilterSurface filter_surface(vec4 texel) {
   return FilterSurface(texel.x, b.y > 0.0 ? normalize(n) : vec3(0.0), vec3(rg, b.x), b.y);
 }
 
+// Weight of a pixel `offset` away, on either axis, in what speaks for a fit or against it.
+float filter_judged_weight(int offset) { return exp2(-k_filter_judged_falloff * float(offset * offset)); }
+
 // How depth changes from pixel to pixel: the smaller of the two differences on each axis, so that an edge beside does not count.
 float filter_slope(float before, float here, float after) {
   float a = here - before, b = after - here;

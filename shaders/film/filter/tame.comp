@@ -1,5 +1,6 @@
-// Takes from each half what the other does not confirm: light of a pixel that is brighter than all that the other half has met
-// around it is no more than that. What both halves have is light, however small it is.
+// Takes from each half what speaks for chance. Light that is brighter than all that the other half has met around it is no more
+// than that; and where both halves are bright in a pixel, although as many pixels are bright in either as would let two meet by
+// chance, they are no brighter than is usual around. What both halves have is light, however small it is.
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
 layout(local_size_x = 64) in;
@@ -7,23 +8,42 @@ layout(push_constant, scalar) uniform Push { FilterPush push; };
 uniform samplerBuffer filter_lights;
 layout(scalar) writeonly buffer FilterTamed { vec4 tamed[]; };
 
-const int k_reach = 2;
+const int k_reach = 3, k_unmet_reach = 2;
+const float k_pixels = float((2 * k_reach + 1) * (2 * k_reach + 1));
+
+// Whether it may be chance that `both` pixels are bright in both halves where evens and odds are bright in one: Chernoff's bound
+// of a Poisson variable of mean evens * odds / k_pixels.
+bool by_chance(float both, float evens, float odds) {
+  float expected = evens * odds / k_pixels;
+  return both <= expected || both - expected + both * log(expected / both) > log(k_filter_chance);
+}
 
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
   ivec2 size = ivec2(push.width, push.height), xy = ivec2(pixel % push.width, pixel / push.width);
   FilterLight here = filter_light(texelFetch(filter_lights, int(pixel)));
-  vec2 most = vec2(0.0);  // of the even and of the odd half
+  vec2 own = vec2(luminance(here.even), luminance(here.odd));  // of the even and of the odd half, as all pairs below
+  float bright = min(own.x, own.y), both = 0.0;
+  vec2 most = vec2(0.0), count = vec2(0.0), sum = vec2(0.0), squares = vec2(0.0);
   for (int y = -k_reach; y <= k_reach; ++y)
     for (int x = -k_reach; x <= k_reach; ++x) {
       ivec2 at = clamp(xy + ivec2(x, y), ivec2(0), size - 1);
       FilterLight l = filter_light(texelFetch(filter_lights, at.y * size.x + at.x));
-      most = max(most, vec2(luminance(l.even), luminance(l.odd)));
+      vec2 value = vec2(luminance(l.even), luminance(l.odd));
+      if (max(abs(x), abs(y)) <= k_unmet_reach) most = max(most, value);
+      count += vec2(greaterThanEqual(value, vec2(bright)));
+      both += min(value.x, value.y) >= bright ? 1.0 : 0.0;
+      sum += value;
+      squares += value * value;
     }
   most *= k_filter_confirmed;
-  float even = luminance(here.even), odd = luminance(here.odd);
-  if (even > most.y) here.even *= most.y / even;
-  if (odd > most.x) here.odd *= most.x / odd;
+  if (by_chance(both, count.x, count.y)) {
+    vec2 usual = (sum - own) / (k_pixels - 1.0), variance = (squares - own * own) / (k_pixels - 1.0) - usual * usual;
+    vec2 limit = usual + k_filter_usual * sqrt(max(variance, vec2(0.0)));
+    most = min(most, vec2(max(limit.x, limit.y)));
+  }
+  if (own.x > most.y) here.even *= most.y / own.x;
+  if (own.y > most.x) here.odd *= most.x / own.y;
   tamed[pixel] = filter_texel(here);
 }
