@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces that are lights: in many interiors the only ones.
+// Emitting surfaces.
 #include <cstdint>
 #include <vector>
 
@@ -9,8 +9,7 @@ namespace lucerna::ui {
 
 struct Ui;
 
-/// Indices of the materials that emit, or would if they were not switched off, and of which something is
-/// made.
+/// Indices of the materials that emit, or would if switched on, and that are used.
 const std::vector<uint32_t>& emitters(const Ui& ui);
 
 struct EmittingSurface {
@@ -18,7 +17,7 @@ struct EmittingSurface {
   vec3 middle{0};  ///< of its area, in the scene
   float area = 0;  ///< [m^2]
 };
-/// What is made of those materials, for marks in the picture: the largest, k_most_marked at most.
+/// The surfaces of these materials, for marks in the picture: the largest, at most k_most_marked.
 const std::vector<EmittingSurface>& emitting_surfaces(const Ui& ui);
 inline constexpr size_t k_most_marked = 200;
 

@@ -1,6 +1,5 @@
 #pragma once
-// Lights in the picture: marks by which they are selected, lamps by which they are dragged, and what spots
-// are aimed at.
+// Marks of lights in the picture: for selecting them, dragging lamps, and aiming spots.
 #include <optional>
 #include <vector>
 
@@ -23,18 +22,17 @@ struct LampHandle {
   ImVec2 at;      ///< on the screen
 };
 
-/// A point of the scene in the picture, which is shown there; false behind the eye.
+/// Projects a point of the scene to the screen; false if it is behind the eye.
 bool project(const scene::Camera& camera, const Area& shown, const vec3& point, ImVec2& at);
 
-/// Those that are shown: of all lights where they are marked, of the selected lamp always. Suns have no
-/// place.
+/// The visible handles: of all lights if they are marked, of the selected lamp always. Suns have none.
 std::vector<LampHandle> lamp_handles(Ui& ui, const Area& shown);
-/// The nearest to a point of the screen, close enough to be meant.
+/// The nearest handle to a point of the screen, if close enough.
 std::optional<LampHandle> lamp_handle_at(Ui& ui, const Area& shown, const ImVec2& at);
 /// `hot`: under the pointer, or dragged.
 void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle>& hot);
-/// Moves what a drag began on with the pointer: a lamp along the picture, with Shift straight up and down; a
-/// spot's aim to the surface under the pointer.
+/// Moves the dragged handle with the pointer: a lamp along the picture, with Shift vertically; a spot's aim
+/// to the surface under the pointer.
 void drag_lamp(Ui& ui, const Area& shown);
 
 }  // namespace lucerna::ui

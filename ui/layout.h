@@ -1,5 +1,5 @@
 #pragma once
-// Where the parts of the window go: pure arithmetic, window pixels.
+// Layout of the window's parts: a pure function, in window pixels.
 #include <imgui.h>
 
 #include <optional>
@@ -8,14 +8,13 @@ namespace lucerna::ui {
 
 enum class Panel { left, right, bottom };
 
-/// What the person has chosen, or what a frame shows of it; sizes in design pixels.
+/// Chosen layout, or the layout of a frame; sizes in design pixels.
 struct Layout {
   float left = 280, right = 296, bottom = 224;
   float log_share = 0.3f, passes_share = 0.3f;  ///< of the bottom strip's width
   bool panels = true;                           ///< Tab
   bool left_open = true, right_open = true, bottom_open = true;
-  /// The panel opened last; it is shown where there is no room for all. None: left before right before
-  /// bottom.
+  /// The panel opened last. It is shown if there is no room for all. None: left, then right, then bottom.
   std::optional<Panel> opened_last;
 };
 
@@ -25,7 +24,7 @@ struct Area {
   float height() const { return hi.y - lo.y; }
 };
 
-/// The parts; those that are not shown have no area. They tile the window: bar on top; left, (toolbar over
+/// Areas of the parts; hidden parts have none. They tile the window: bar on top; left, (toolbar over
 /// picture), right; bottom strip split into accuracy, passes and log.
 struct Areas {
   Area bar, left, toolbar, picture, right, accuracy, passes, log;
@@ -35,12 +34,11 @@ struct Areas {
 inline constexpr float k_bar_height = 32, k_toolbar_height = 36, k_folded = 24, k_folded_bottom = 28;
 inline constexpr float k_least_picture_width = 360, k_least_picture_height = 240;
 inline constexpr float k_least_side = 232, k_least_bottom = 96;
-/// Below this height the strip says little: it is folded rather than shown.
+/// Below this height the strip is folded.
 inline constexpr float k_useful_bottom = 140;
 
-/// Arranges the parts. Where the window leaves no usable picture beside the panels as chosen, they are shown
-/// narrower, and folded where even that does not do; the choice itself stays for a larger window. `scale` is
-/// window pixels per design pixel.
+/// Arranges the parts. If the window leaves no usable picture beside the chosen panels, they are shown
+/// narrower, then folded; the choice stays for a larger window. `scale` is window pixels per design pixel.
 Areas arrange(const Layout& layout, const ImVec2& window, float scale);
 
 }  // namespace lucerna::ui

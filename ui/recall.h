@@ -1,8 +1,7 @@
 #pragma once
-// What the window keeps between runs: recent files, bookmarks of scenes' views, whether the first steps were
-// shown, and the sizes of its panels, in the user's state folder
-// ($XDG_STATE_HOME or ~/.local/state, lucerna/window.json). Several windows share the file: each writes only
-// what changed in itself, under a lock, as soon as it has changed. A file that cannot be read counts as none.
+// State kept between runs: recent files, bookmarks, whether the first steps were shown, panel sizes. Stored
+// in the user's state folder ($XDG_STATE_HOME or ~/.local/state, lucerna/window.json). Several windows share
+// the file: each writes only its changes, under a lock, immediately. An unreadable file counts as none.
 #include <memory>
 
 #include "state.h"
@@ -11,19 +10,19 @@ namespace lucerna::ui {
 
 class Memory {
  public:
-  /// Puts what is kept into `ui`, which must outlive this.
+  /// Loads the state into `ui`, which must outlive this.
   explicit Memory(Ui& ui);
-  /// Saves what has changed since.
+  /// Saves the remaining changes.
   ~Memory();
   Memory(const Memory&) = delete;
   Memory& operator=(const Memory&) = delete;
 
-  /// Saves a change of bookmarks, recent files or the first steps at once, and one of the panels when it has
-  /// lasted half a second. Call once a frame; `now` in seconds.
+  /// Saves changes of bookmarks, recent files and the first steps at once, those of panels when they have
+  /// lasted half a second. Call once per frame; `now` in seconds.
   void follow(double now);
-  /// Merges what changed in `ui` since the last call with what other windows have written since, writes it,
-  /// and takes over their bookmarks and recent files. False if another window holds the lock. A failure to
-  /// write is logged as a warning, once.
+  /// Merges the changes in `ui` since the last call with those that other windows have written, writes the
+  /// result, and takes over their bookmarks and recent files. False if another window holds the lock. A
+  /// failure to write is logged once as a warning.
   bool save();
 
  private:

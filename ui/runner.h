@@ -1,5 +1,5 @@
 #pragma once
-// Carries out the steps of a script and the lines of the console, a little every frame, and measures.
+// Runs the steps of a script and the lines of the console, a few per frame, and measures.
 #include <deque>
 #include <optional>
 
@@ -8,25 +8,25 @@
 
 namespace lucerna::ui {
 
-/// Metadata that tells a picture of the window from other files.
+/// Metadata that identifies pictures of the window.
 inline constexpr const char* k_window_mark = "window";
 
 class Runner {
  public:
   /// Registers the commands of script.h at the workspace and reads a script (see parse_script); `stay`: its
-  /// end does not end the program. The workspace's commands refer to this object from now on.
+  /// end does not end the program. The workspace's commands refer to this object afterwards.
   Runner(Ui& ui, const std::vector<std::string>& lines, const std::string& name, bool stay = false);
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  /// Goes on as far as it can without waiting; call at the start of every frame.
+  /// Runs steps until one has to wait; call at the start of each frame.
   void advance();
-  /// Call after every presented frame. `interval_ms`: since the frame before was presented.
+  /// Call after each presented frame. `interval_ms`: since the previous one.
   void presented(double interval_ms);
 
-  /// Whether steps of a script are left.
+  /// True if steps of a script remain.
   bool running() const { return !steps_.empty(); }
-  /// Whether frames are to be drawn all the time.
+  /// True if frames must be drawn continuously.
   bool measuring() const { return measure_.has_value(); }
 
  private:
@@ -39,11 +39,11 @@ class Runner {
     bool begun = false;  ///< a frame has been shown since
   };
 
-  /// True while what was commanded before has not the effect yet that the step reads.
+  /// True while earlier commands do not yet have the effect that the step reads.
   bool waits_for_earlier(const Step& step) const;
-  /// True when the step is done; false: to be asked again.
+  /// True if the step is done; false: call again.
   bool carry_out(const Step& step);
-  /// Ends the script that the step belongs to, and the program if it is its own.
+  /// Ends the step's script, and the program if the script is its own.
   void give_up(const Step& step);
   void run_script(const std::string& file);
   void measure(double seconds);
@@ -51,9 +51,9 @@ class Runner {
   void console(const std::string& line);
   void add_commands();
   void add_script_commands();  ///< that act on scripts and the program as a whole
-  void add_mouse_commands();   ///< the pointer's doings, files dropped by it too
+  void add_mouse_commands();   ///< pointer events, including dropped files
   void add_key_commands();
-  /// For commands that are done when two frames have been drawn.
+  /// For commands that are done after two drawn frames.
   std::function<bool(const commands::Arguments&)> drawn();
 
   Ui& ui_;
@@ -62,8 +62,8 @@ class Runner {
   double began_ = 0;        ///< when
   std::optional<Measure> measure_;
   int frames_ = 0;          ///< drawn since the step began
-  bool in_script_ = false;  ///< a command is run for a step, not for a person
-  int settled_ = 0;         ///< times in a row that nothing was left to do
+  bool in_script_ = false;  ///< the running command belongs to a script
+  int settled_ = 0;         ///< consecutive frames without pending work
 };
 
 }  // namespace lucerna::ui

@@ -1,5 +1,5 @@
 #pragma once
-// Renders of one scene in this session: the one in progress, and those before it, to compare settings by.
+// Renders of one scene in this session, current and earlier, for comparing settings.
 #include <deque>
 #include <memory>
 #include <string>
@@ -16,19 +16,19 @@ struct Run {
   uint32_t width = 0, height = 0;
 };
 
-/// What another run was made with that this one was not, one line each: "sampling.mode uniform (now
-/// adaptive)". Nothing when they are alike.
+/// Settings and edits in which another run differs, one line each: "sampling.mode uniform (now adaptive)".
+/// Empty if none.
 std::vector<std::string> differences(const Run& other, const Run& now);
 
 class Runs {
  public:
   static constexpr size_t k_most = 6;
-  /// Takes note of the newest snapshot. A run that ends is kept when it is long enough to be drawn; another
-  /// scene forgets them all.
+  /// Processes the newest snapshot. A finished run is kept if it is long enough to be drawn; another scene
+  /// discards all.
   void follow(const session::Snapshot& snapshot, std::shared_ptr<const scene::Scene> scene);
   void clear() { earlier_.clear(); }
   const Run& current() const { return current_; }
-  /// The newest first.
+  /// Newest first.
   const std::deque<Run>& earlier() const { return earlier_; }
 
  private:

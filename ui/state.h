@@ -1,6 +1,6 @@
 #pragma once
-// What the window knows and what its parts share: the workspace, what the panels show, the log, and requests
-// to the loop that draws.
+// State that the window's parts share: the workspace, what the panels show, the log, and requests to the main
+// loop.
 #include <deque>
 #include <functional>
 #include <map>
@@ -23,10 +23,10 @@ using commands::named;
 using commands::Selection;
 using commands::Viewpoint;
 
-/// The right panel's name for the scene, beside the names of solvers.
+/// Name of the scene's panel on the right, beside the names of solvers.
 inline constexpr const char* k_scene_side = "scene";
 
-inline constexpr size_t k_recent_files = 8;  ///< that are kept
+inline constexpr size_t k_recent_files = 8;  ///< number of recent files kept
 
 struct LogLine {
   log::Level level;
@@ -34,7 +34,7 @@ struct LogLine {
   std::string text;
 };
 
-/// Takes log lines from any thread.
+/// Receives log lines from any thread.
 class LogInbox {
  public:
   LogInbox();
@@ -52,96 +52,96 @@ class LogInbox {
 struct Dialog {
   enum class Purpose { none, open, save, script, reference, solver_load, solver_save };
   Purpose purpose = Purpose::none;
-  const solvers::SolverInfo* solver = nullptr;  ///< whose work is loaded or saved
+  const solvers::SolverInfo* solver = nullptr;  ///< for solver_load and solver_save
   std::string path;
-  bool fresh = false;     ///< to be opened in the next frame
-  bool focus = false;     ///< its field takes the keyboard in the next frame
-  bool to_end = false;    ///< the cursor goes behind the text once the field has the keyboard
+  bool fresh = false;     ///< opens in the next frame
+  bool focus = false;     ///< its field gets the keyboard in the next frame
+  bool to_end = false;    ///< the cursor moves behind the text once the field has the keyboard
   int marked = -1;        ///< entry of the completion list
-  bool pictures = false;  ///< the program's scenes are shown in its place
-  bool as_shown = true;   ///< a PNG is saved with the filter that the window shows
+  bool pictures = false;  ///< shows the program's scenes
+  bool as_shown = true;   ///< a PNG is saved as the window shows it
 };
 
 /// The line under the log.
 struct Console {
   std::string text;
   std::vector<std::string> history;
-  int at = -1;         ///< entry of the history that is shown, or -1
+  int at = -1;         ///< shown entry of the history, or -1
   bool focus = false;  ///< takes the keyboard in the next frame
   bool active = false;
 };
 
-/// A workspace with a window around it.
+/// The workspace and the window's state.
 struct Ui : commands::Workspace {
   explicit Ui(session::Session& s);
 
   static double time();  ///< seconds since the window opened
 
-  /// Carries out a command that a control stands for; a failure goes to the log and the strip of errors. What
-  /// is done while one control is held, or in one flight, is one gesture.
+  /// Runs the command of a control; failures go to the log and the error strip. Everything done while one
+  /// control is held, or during one flight, is one gesture.
   template <class... A>
   void act(const std::string& command, const A&... words) {
     act_line(commands::line(command, words...));
   }
   void act_line(const std::string& line);
-  /// Turns a boolean setting over.
+  /// Toggles a boolean setting.
   void toggle(const std::string& key) { act("set", key, setting_on(key) ? "false" : "true"); }
   uint64_t gesture = 0;  ///< of the control that is held now; 0: none
-  /// Finds out which control is held; call once a frame.
+  /// Determines the held control; call once per frame.
   void follow_gesture();
 
-  /// Lines typed at the console, to be carried out by the runner.
+  /// Lines typed at the console, for the runner.
   std::vector<std::string> typed;
 
   Flight flight;
   std::set<int> chorded;  ///< GLFW keys whose last press was with Ctrl: they do not fly
-  /// Whether the selection is new since the last call, and was not made in the list (`chosen_in_list`): then
-  /// its row is to be shown.
+  /// True if the selection is new since the last call and was not made in the list (`chosen_in_list`): its
+  /// row must be scrolled into view.
   bool reveals();
-  /// A row has been pressed, which is in view; an emissive material has two.
+  /// A visible row was pressed; an emissive material has two.
   bool chosen_in_list = false;
-  /// Puts the camera where a drag or a flight has taken it.
+  /// Moves the camera to a view reached by a drag or a flight.
   void place(const Viewpoint& view);
-  /// The same for turns of the wheel: those that follow one another closely are one step.
+  /// The same for the wheel: turns in quick succession are one step.
   void place_by_wheel(const Viewpoint& view);
-  /// What a drag in the picture began on.
+  /// Where a drag in the picture started.
   struct {
     std::optional<vec3> point;       ///< of the scene
     float azimuth = 0;               ///< of what is turned by it, degrees
     std::optional<LampHandle> lamp;  ///< as it was then
   } drag;
-  /// The next click in the picture sets the exposure by what it hits.
+  /// True: the next click in the picture sets the exposure.
   bool dropper = false;
 
-  /// A sentence over the picture that goes by itself.
+  /// A sentence over the picture that disappears by itself.
   struct {
     std::string text;
     double until = 0;
   } note;
   void notice(const std::string& text, double seconds = 6);
-  /// Says that a wall stands in the way, now and then.
+  /// Reports that a wall is in the way, at most now and then.
   void say_blocked();
 
-  /// Carried out without anybody at the window: nothing is remembered, nothing done unasked.
+  /// Runs a script without a user: nothing is kept, nothing happens by itself.
   bool scripted = false;
   bool welcome = false;   ///< the first steps are shown
   bool welcomed = false;  ///< ... and were, now or in an earlier run
 
-  /// What the renderer does now, and since when. A command that is carried out is not shown any more: then
-  /// the first picture of it is in progress.
+  /// The command in progress and its start. Once a command is done and not shown yet, the first picture of it
+  /// is in progress.
   struct {
-    uint64_t command = 0;  ///< the session's number of it; 0: nothing is to be waited for
-    bool done = false;     ///< it is carried out, and no picture shows it yet
+    uint64_t command = 0;  ///< its number in the session; 0: none
+    bool done = false;     ///< done, but no picture shows it yet
     double since = 0;
-    std::string text;  ///< the line that gave it; "" for none
+    std::string text;  ///< its line; "" for none
   } busy;
-  /// Seconds that the renderer has been at one thing; 0 while that is not worth telling.
+  /// Duration of the command in progress [s]; 0 while it is too short to show.
   double busy_seconds() const;
   void follow_busy();
 
   // The window.
   Layout layout;                         ///< as chosen
-  Layout shown;                          ///< as this frame has room for
+  Layout shown;                          ///< as it fits this frame
   std::map<std::string, bool> sections;  ///< open or not, by title
   std::deque<LogLine> log;
   bool log_follows = true;
@@ -153,13 +153,13 @@ struct Ui : commands::Workspace {
   std::vector<std::string> recent;  ///< files, newest first, from the root
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
-  /// OpenGL name of an image file's picture, made when it is first asked for; 0 where it cannot be read. Null
-  /// without a window.
+  /// OpenGL name of an image file's picture, created on first use; 0 if it cannot be read. Null without a
+  /// window.
   std::function<unsigned(const std::string&)> picture_of;
   int picture_divisor = 1;  ///< window pixels per picture pixel
-  /// Frames to be drawn until the room for the picture is as the commands so far have it.
+  /// Frames to draw until the picture's area reflects the commands so far.
   int frames_to_settle = 0;
-  /// Pixels of the picture; none: as many as the window has room for.
+  /// Size of the picture in pixels; none: as large as the window allows.
   std::optional<std::pair<uint32_t, uint32_t>> picture_size;
   bool light_marks = false;  ///< lights are marked in the picture
   bool brackets = true;      ///< the selected object is marked in the picture
@@ -168,43 +168,43 @@ struct Ui : commands::Workspace {
 
   // Solvers.
   std::string side = k_scene_side;  ///< what the right panel shows: the scene, or the solver of that name
-  /// What the key K shows next: the panels of solvers that are in use, then the scene again.
+  /// The panel that K shows next: those of solvers in use, then the scene.
   std::string next_side() const;
   bool view_on(const solvers::ViewInfo& view) const;
-  /// On or off; of a choice the next of its ring.
+  /// Toggles a view; a choice advances in its ring.
   void turn_view(const solvers::ViewInfo& view);
-  /// Whether a view lies over the picture of which the pointer asks what is under it.
+  /// True if a view is on that inspects the place under the pointer.
   bool asks_pointer() const;
-  /// Where the pointer has asked last, as inspect.at takes it.
+  /// The last inspected place, as inspect.at takes it.
   std::optional<vec2> asked;
 
   // Accuracy.
   Runs runs;
-  double what_if = 0.01;  ///< relative error that is asked about in uniform sampling
-  /// It was asked about since the target was set last: adaptive sampling begins with it.
+  double what_if = 0.01;  ///< relative error of the forecast in uniform sampling
+  /// `what_if` was set after the target: adaptive sampling starts with it.
   bool what_if_asked = false;
-  /// What the target's line stands at: the setting in adaptive sampling, the question in uniform.
+  /// Position of the target line: the setting in adaptive sampling, `what_if` in uniform sampling.
   double target() const;
-  /// Seconds of rendering until it is reached.
+  /// Forecast of the seconds of rendering to reach it.
   std::optional<stats::Band> forecast();
-  std::optional<PlotRange> held_range;  ///< the plot's, while the target is dragged
+  std::optional<PlotRange> held_range;  ///< fixed range of the plot while the target is dragged
   float held_offset = 0;                ///< of the pointer from the line
 
   // Requests to the loop.
   std::vector<std::pair<int, int>> keys;  ///< pressed since the last frame: GLFW key and modifiers
   bool pressed(int key,
                int mods = 0) const;  ///< among `keys`, with exactly these modifiers (Shift is not looked at)
-  int frames_wanted = 3;             ///< to be drawn even when nothing happens
-  bool moving = false;               ///< something on screen moves by itself
-  std::optional<int> status;         ///< the program's, when it is to end with one
+  int frames_wanted = 3;             ///< to draw even if nothing happens
+  bool moving = false;               ///< an animation is on screen
+  std::optional<int> status;         ///< exit status, if the program must end
   struct Shot {
     std::string file;     ///< "" for none
     int settle = 0;       ///< frames to draw before it is taken
     bool failed = false;  ///< the last one could not be written
   } shot;
   std::optional<std::pair<int, int>> size;  ///< window size wanted
-  std::optional<float> scale;               ///< of text and controls wanted
-  /// Mouse and keys as a script moves them.
+  std::optional<float> scale;               ///< requested scale of text and controls
+  /// Mouse and keys moved by a script.
   struct Input {
     float x = 0, y = 0;  ///< window pixels
     int button = -1;     ///< -1: the pointer moves; otherwise the button changes, where the pointer is
@@ -250,14 +250,14 @@ struct Ui : commands::Workspace {
   } forecast_;
 };
 
-/// Handles the keys pressed and draws all parts of the window where the layout puts them; once a frame.
+/// Handles pressed keys and draws all parts of the window; once per frame.
 void draw_parts(Ui& ui);
 
-// The parts, each in a file of its own; called once a frame in this order. Coordinates are window pixels.
+// The parts, each in its file; called once per frame in this order. Coordinates are window pixels.
 void draw_menu_bar(Ui& ui, const Area& area);
 void draw_light_panel(Ui& ui, const Area& area);
 void draw_mix(Ui& ui);  ///< the light mix, into a section of that panel
-/// The titles of what the right panel may show; returns what is left of its area below them.
+/// The tabs of the right panel; returns the area below them.
 Area draw_side_tabs(Ui& ui, const Area& area);
 void draw_scene_panel(Ui& ui, const Area& area);
 void draw_solver_panel(Ui& ui, const solvers::SolverInfo& solver, const Area& area);
@@ -266,35 +266,35 @@ void draw_picture(Ui& ui, const Area& area);
 void draw_accuracy(Ui& ui, const Area& area);
 void draw_passes(Ui& ui, const Area& area);
 void draw_log(Ui& ui, const Area& area);
-/// What may be opened, where there is no picture; part of draw_picture. Nothing while something goes on.
+/// What can be opened while there is no picture; part of draw_picture. Draws nothing during a load.
 void draw_empty_state(Ui& ui, const Area& area);
-/// What goes on, what went wrong and the first steps, over the picture; part of draw_picture.
+/// Progress, errors and first steps over the picture; part of draw_picture.
 void draw_cards(Ui& ui, const Area& area);
-/// Over the picture's lower left; part of draw_picture.
+/// Over the picture's lower left corner; part of draw_picture.
 void draw_legend(Ui& ui, const Area& area);
-/// What inspect.at has found, in a card over the picture; part of draw_picture.
+/// The result of inspect.at, in a card over the picture; part of draw_picture.
 void draw_inspection(Ui& ui, const Area& area);
-/// Keeps the view under the next free name, and says so.
+/// Bookmarks the view under the next free name, with a notice.
 void keep_view(Ui& ui);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
 void draw_file_dialog(Ui& ui);  ///< part of draw_dialogs
 void handle_keys(Ui& ui);
 
-/// GLFW's key and modifiers of a name such as "ctrl+z". Throws Error when there is none such.
+/// GLFW's key and modifiers of a name such as "ctrl+z". Throws Error if there is none.
 std::pair<int, int> key_of(const std::string& name);
-/// Registers what only a window can do: panels, dialogs, the log.
+/// Registers the commands that need a window: panels, dialogs, the log.
 void add_window_commands(Ui& ui);
 
 /// Begins a bare panel at an area; end with ImGui::End().
 void begin_panel(const char* name, const Area& area, ImU32 background, bool scrolls);
-/// The heading of a panel of the bottom strip; returns the x where its content at the right may start.
+/// The heading of a panel in the bottom strip; returns the x where content on the right may start.
 float panel_heading(const char* title, const Area& area);
-/// A section of a panel, whose fold is a command; `fallback`: whether it is open before anybody has said so.
+/// A section of a panel, folded by a command; `fallback`: its initial state.
 bool panel_section(Ui& ui, const char* title, bool fallback, const std::string& note = "");
-/// What the panel of a solver holds, in a sentence.
+/// One sentence about the panel of a solver.
 std::string panel_help(const solvers::SolverInfo& solver);
-/// Its first letter as a capital, or as a small one.
+/// Makes the first letter a capital, or a small one.
 std::string capitalised(std::string text);
 std::string uncapitalised(std::string text);
 /// A control for an option of the settings table, by its type; the tooltip is its help.

@@ -1,6 +1,6 @@
 #pragma once
-// The look: colours, fonts, metrics. Greys are neutral (no hue) so that the picture is judged against them;
-// the only colours are one accent and those that mean something.
+// Colours, fonts, metrics. Greys are neutral (no hue), so that the picture is judged against them; the only
+// colours are one accent and those with a meaning.
 #include <imgui.h>
 
 #include <array>
@@ -55,7 +55,7 @@ struct Theme {
 Theme& theme();
 inline float px(float design) { return theme().px(design); }
 
-/// Loads the fonts at that scale and sets ImGui's style. Call with an ImGui context, before its first frame,
+/// Loads the fonts at that scale and sets ImGui's style. Call with an ImGui context before its first frame,
 /// and again when the scale changes (outside a frame, after dropping the backend's font texture).
 void apply_theme(float scale);
 

@@ -1,6 +1,6 @@
 #pragma once
-// The window: a lookdev viewer over one Session. It never waits for the renderer; everything it does goes
-// through the session's commands, and everything it shows comes from the session's snapshots.
+// The window: a lookdev viewer over one Session. It never waits for the renderer: it sends commands to the
+// session and shows its snapshots.
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -14,7 +14,7 @@ struct ViewerOptions {
   std::filesystem::path scene;         ///< loaded at the start; empty: the window invites to open one
   int width = 1440, height = 900;      ///< of the window, in units of the desktop (pixels on X11)
   bool hidden = false;                 ///< no visible window (drawing and screenshots work all the same)
-  float scale = 0;                     ///< of text and controls; 0: what the desktop asks for
+  float scale = 0;                     ///< of text and controls; 0: the desktop's
   bool remember = true;                ///< keep recent files and panel sizes in the user's state folder
   std::vector<std::string> set;        ///< settings, KEY=VALUE each, above those of the scene
   std::vector<std::string> script;     ///< steps carried out in order, one command a line; see script.h
@@ -24,12 +24,12 @@ struct ViewerOptions {
 };
 
 /// Opens the window and runs until it is closed or the script quits or ends. Returns the exit status: 0, the
-/// value given to the script's `quit`, or 1 when a scripted step failed or, where `quit` was given none, when
-/// there was an error (messages are logged). Throws Error when
-/// no display or no OpenGL 3.3 can be had, or when the script does not parse.
+/// value given to the script's `quit`, or 1 if a scripted step failed or, if `quit` had no value, if there
+/// was an error (messages are logged). Throws Error if there is no display or no OpenGL 3.3, or if the script
+/// does not parse.
 int run_viewer(session::Session& session, const ViewerOptions& options);
 
-/// Whether a window could be opened here at all (an X or Wayland display answers). Cheap; opens nothing.
+/// True if a window can be opened (an X or Wayland display answers). Cheap; opens nothing.
 bool display_available();
 
 }  // namespace lucerna::ui

@@ -11,41 +11,40 @@ namespace lucerna::ui {
 
 class Window {
  public:
-  /// Throws Error when there is no display or no OpenGL 3.3. `scale` 0: the desktop's.
+  /// Throws Error if there is no display or no OpenGL 3.3. `scale` 0: the desktop's.
   Window(int width, int height, bool hidden, float scale);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
   bool closing() const;
-  /// Sleeps until something happens, or `seconds` at most (0: only collects what has happened). Returns
-  /// whether input came.
+  /// Sleeps until something happens, or for at most `seconds` (0: only collects events). Returns whether
+  /// there was input.
   bool wait(double seconds);
   void begin_frame();
-  /// Draws what ImGui holds. Then read() may be called, then present().
+  /// Draws ImGui's content. Then read() may be called, then present().
   void end_frame();
   void present();
   /// The window as drawn, RGBA, top row first.
   std::vector<uint8_t> read(uint32_t& width, uint32_t& height) const;
   void set_size(int width, int height);
-  /// Of text and controls; 0: what the desktop asks for.
+  /// Scale of text and controls; 0: the desktop's.
   void set_scale(float scale);
   void set_title(const std::string& title);
-  /// Puts a picture into the texture (made anew when the size changes). Returns its OpenGL name.
+  /// Uploads a picture to the texture (recreated if the size changes). Returns its OpenGL name.
   unsigned upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height);
-  /// A picture that stays, drawn smoothly at other sizes. Returns its OpenGL name.
+  /// Creates a permanent texture with smooth scaling. Returns its OpenGL name.
   unsigned make_texture(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height);
   /// A key that went down, with its modifiers (GLFW_MOD_*).
   struct Key {
     int key, mods;
   };
-  /// Keys pressed since the last call, in order. (ImGui looks at keys once a frame and misses the quick
-  /// ones.)
+  /// Keys pressed since the last call, in order. (ImGui samples keys once per frame and misses quick ones.)
   std::vector<Key> pressed();
   /// Files dropped since the last call.
   std::vector<std::string> dropped();
 
-  // Input that a script makes up. It takes the way of the real one; once used, the pointer is the script's.
+  // Input made by a script. It takes the same path as real input; once used, the script owns the pointer.
   void move_mouse(float x, float y);  ///< window units
   void press_mouse(int button, bool down);
   void press_key(int key, int mods);

@@ -1,13 +1,12 @@
 #pragma once
-// What a relative error comes to by where it comes from.
+// The sum of errors by source.
 #include <cmath>
 
 namespace lucerna {
 
-/// hypot(paths, records) + interpolation: the noise of the paths and that of the records which they read are
-/// independent of each other, so that their variances add up; what lookups are off by in the mean, between
-/// records or by the blur of photons, has a sign that nobody knows, and is added to what they come to. All 0
-/// or more.
+/// hypot(paths, records) + interpolation. Noise of paths and noise of the records they read are independent,
+/// so their variances add. Interpolation is the bias of lookups (between records, blur of photons); its sign
+/// is unknown, so it is added on top. All are 0 or more.
 template <class Real>
 Real error_sum(Real paths, Real records, Real interpolation) {
   return std::hypot(paths, records) + interpolation;

@@ -7,19 +7,18 @@
 
 namespace lucerna {
 
-/// Writes a file whole or not at all (OutputFile, which see for links, pipes and devices). Throws Error
-/// located at `file`; what was there before then stays.
+/// Writes a file completely or not at all (see OutputFile for links, pipes and devices). On failure throws
+/// Error located at `file`; the old file stays.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
-/// Throws Error located at `file` when it cannot be read.
+/// Reads a whole file. Throws Error located at `file`.
 std::string read_file(const std::filesystem::path& file);
-/// Whether something has that name, behind links; of folders, whether it is one. False if that cannot be
-/// found out.
+/// True if the file, or the folder, exists; symbolic links are followed. False if this cannot be determined.
 bool file_exists(const std::filesystem::path& file);
 bool is_folder(const std::filesystem::path& path);
-/// Whether it is neither a folder nor a pipe or device, which may never answer a reader.
+/// True unless it is a folder, a pipe or a device (reading from these may block forever).
 bool is_plain_file(const std::filesystem::path& file);
-/// The path from the root, without "." and "..". Where the working folder is gone a relative path stays as it
-/// is.
+/// The absolute path, without "." and "..". If the working folder no longer exists, a relative path stays as
+/// it is.
 std::filesystem::path absolute_path(const std::filesystem::path& path);
 
 }  // namespace lucerna

@@ -6,20 +6,20 @@
 
 namespace lucerna {
 
-/// 128 bits that tell contents apart – sources, files, scenes – and nothing a hostile hand could not imitate.
-/// FNV-1a twice, from two seeds: every bit of an input that is otherwise the same changes the result.
+/// A 128-bit hash that distinguishes contents (sources, files, scenes). Not cryptographic: FNV-1a twice, with
+/// two seeds.
 class Hash {
  public:
   /// Adds the text and its length, so that ("ab", "c") and ("a", "bc") differ.
   void add(const std::string& text);
   void add_bytes(const void* data, size_t bytes);
-  /// The bytes of a value; types without padding, whose equal values have equal bytes.
+  /// Adds the bytes of a value. The type has no padding, and equal values have equal bytes.
   template <class T>
   void add_value(const T& value) {
     static_assert(std::is_trivially_copyable_v<T>);
     add_bytes(&value, sizeof value);
   }
-  /// Length and entries.
+  /// Adds length and elements.
   template <class T>
   void add_values(const std::vector<T>& values) {
     static_assert(std::is_trivially_copyable_v<T>);

@@ -1,7 +1,6 @@
 #pragma once
-// Asks the operating system for large pages under arrays that are read at random, before they are first
-// written to: a tree or a texture of tens of megabytes otherwise costs a page-table walk at every other
-// access (measured: 4 to 5 % of a whole frame).
+// Requests large pages for memory that is read at random (trees, textures), before it is first written. This
+// saves page-table walks.
 #include <cstddef>
 #include <cstdint>
 
@@ -12,7 +11,8 @@
 
 namespace lucerna {
 
-/// Advice alone: does nothing for ranges that hold no whole large page, or where the system has none to give.
+/// Advises the operating system. No effect on ranges without a whole large page, or if large pages are not
+/// available.
 inline void advise_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] size_t bytes) {
 #ifdef MADV_HUGEPAGE
   constexpr uintptr_t k_page = uintptr_t{2} << 20;
@@ -23,8 +23,8 @@ inline void advise_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] siz
 #endif
 }
 
-/// For the start of a program: gives large allocations memory of their own, never touched before, instead of
-/// pieces of the heap, on which advice would come too late.
+/// Call at the start of the program: large allocations get fresh memory instead of parts of the heap, for
+/// which the advice would come too late.
 inline void separate_large_allocations() {
 #ifdef M_MMAP_THRESHOLD
   mallopt(M_MMAP_THRESHOLD, 2 << 20);

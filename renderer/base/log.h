@@ -1,5 +1,5 @@
 #pragma once
-// Logging: lines go to standard error and to whoever listens (the window's Log panel). Thread-safe.
+// Logging to standard error and to listeners (the window's Log panel). Thread-safe.
 #include <fmt/format.h>
 
 #include <functional>

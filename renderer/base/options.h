@@ -23,16 +23,15 @@ struct OptionInfo {
   std::vector<std::string> choices;  ///< choice
   std::string help;                  ///< one sentence
   std::string label;                 ///< beside its control in the window; "": made from the key
-  bool restarts = true;  ///< a change makes the image start afresh (false: its display, or it goes on)
-  /// The light stays the same, another way or amount of computing it: until the new picture is better the old
-  /// one may be shown.
+  bool restarts = true;              ///< a change restarts the picture (false: display only, or it continues)
+  /// A change affects how the light is computed, not the light: the old picture may stay until the new one is
+  /// better.
   bool same_light = false;
-  /// integer and real: what the least value means, where that is 0 and no amount like the others
-  /// ("automatic", "all lamps"); "": it is one.
+  /// integer and real: meaning of 0 where it is no amount ("automatic", "all lamps"); "": 0 is an amount.
   std::string at_zero{};
 };
 
-// Rows, in short.
+// Factories for rows of a table.
 OptionInfo integer_option(const char* key, int64_t fallback, double lo, double hi, const char* unit,
                           const char* help, const char* label = "");
 OptionInfo real_option(const char* key, const char* fallback, double lo, double hi, const char* unit,
@@ -41,29 +40,29 @@ OptionInfo boolean_option(const char* key, const char* fallback, const char* hel
 OptionInfo choice_option(const char* key, const char* fallback, std::vector<std::string> choices,
                          const char* unit, const char* help, const char* label = "");
 OptionInfo text_option(const char* key, const char* help);
-/// The same option, a change of which lets the image go on.
+/// The same option, but a change does not restart the picture.
 OptionInfo without_restart(OptionInfo option);
-/// The same option, of how light is computed (same_light).
+/// The same option with same_light set.
 OptionInfo of_same_light(OptionInfo option);
 
-/// The same option, with that for its value 0 (at_zero).
+/// The same option with `meaning` as at_zero.
 OptionInfo with_zero(OptionInfo option, const char* meaning);
 
-/// What values an option takes, for people: "path|off", "true|false", "1 to 64 vertices"; "" for a text.
+/// The valid values, for display: "path|off", "true|false", "1 to 64 vertices"; "" for a text.
 std::string describe_values(const OptionInfo& option);
-/// Name of its control: its label, or else its key without the first word.
+/// Label of the control: OptionInfo::label, else the key without its first word.
 std::string option_label(const OptionInfo& option);
-/// Key and value of "KEY=VALUE", unchecked. Without a '=': an Error located at `where`.
+/// Splits "KEY=VALUE" without checking. Throws Error located at `where` if there is no '='.
 std::pair<std::string, std::string> split_change(const std::string& change, const std::string& where);
-/// Null when there is no such key.
+/// Null if the table has no such key.
 const OptionInfo* find_option(std::span<const OptionInfo> table, const std::string& key);
 
-/// A value for every option of a table; starts with the defaults.
+/// Values of all options of a table; initially the defaults.
 class OptionValues {
  public:
   /// The table must outlive it.
   explicit OptionValues(std::span<const OptionInfo> table);
-  /// Checks and stores. `where` locates the source in the message ("--set", "settings.json", ...).
+  /// Checks and stores a value. `where` names its source for the message ("--set", "settings.json").
   void set(const std::string& key, const std::string& value, const std::string& where = "setting");
   // A key that the table does not have throws std::out_of_range.
   const std::string& text(const std::string& key) const { return values_.at(key); }

@@ -6,38 +6,38 @@
 
 namespace lucerna {
 
-/// Where an output goes, and how its bytes get there:
-/// - a regular file, or a name that no file has: under a temporary name beside it, flushed to disk, then
-///   renamed by commit(). The old file stays until then, and stays for good where commit() is not reached.
-///   The new file has the permissions of the one that it replaces.
-/// - a symbolic link: its target, by these same rules. The link stays.
-/// - a pipe, a device, or one of the process's own descriptors (/dev/stdout, /dev/fd/3): bytes go into it
-///   directly, in order. It stays, and so do bytes that were written before a failure.
-/// Every failure is an Error located at the name that was given.
+/// An output file:
+/// - A regular or new file is written under a temporary name beside it, flushed to disk, and renamed by
+///   commit(). Until then, and if commit() is never called, the old file stays. The new file gets the old
+///   one's permissions.
+/// - For a symbolic link the same applies to its target; the link stays.
+/// - Into a pipe, a device or a descriptor (/dev/stdout, /dev/fd/3) bytes are written directly, in order;
+///   bytes written before a failure stay.
+/// Every failure is an Error located at the given name.
 class OutputFile {
  public:
-  /// A pipe without a reader is waited for: ten seconds at most.
+  /// Waits up to ten seconds for a pipe's reader.
   explicit OutputFile(const std::filesystem::path& file);
   /// Removes the temporary file unless it was committed.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Whether bytes go straight into what has that name: they can only be appended.
+  /// True if bytes go directly to the target and can only be appended.
   bool streams() const { return temporary_.empty(); }
   /// Appends bytes.
   void write(std::string_view bytes);
-  /// Writes at a place of the temporary file (not where the output streams()). Returns the bytes written,
-  /// fewer after a failure, which commit() then reports.
+  /// Writes at an offset of the temporary file (not if streams()). Returns the bytes written; fewer after a
+  /// failure, which commit() reports.
   size_t write_at(const void* bytes, size_t size, int64_t offset);
   bool failed() const { return failure_ != 0; }  ///< in write_at
-  /// Gives the file its name. Data first, then the name, then the folder's entry: after a power cut the old
-  /// or the new file is there, whole.
+  /// Renames the file. Data, name and folder entry are flushed in this order: after a power failure the old
+  /// or the new file is there, complete.
   void commit();
 
  private:
   [[noreturn]] void refuse(int code) const;
-  /// `waits`: for a reader.
+  /// `waits`: wait for a reader.
   void open_stream(bool waits);
   void open_temporary();
 
@@ -46,13 +46,12 @@ class OutputFile {
   int failure_ = 0;  ///< errno of the first write that failed
 };
 
-/// What OutputFile would refuse at once: a folder that is missing or closed, a folder's name, links that lead
-/// in a circle, a file that may not be written. Throws Error located at `file`; leaves no trace. For long
-/// work, before it begins.
+/// Throws Error located at `file` if OutputFile would: missing or unwritable folder, a folder's name, cyclic
+/// links, an unwritable file. Writes nothing. Call it before long work.
 void check_writable(const std::filesystem::path& file);
 
-/// The file that an output of that name makes or replaces, behind all links and from the root; "" where it
-/// goes into a pipe, a device or a descriptor. Throws Error as check_writable() does.
+/// The absolute path, links followed, of the file that an output of that name creates or replaces; "" for a
+/// pipe, device or descriptor. Throws Error like check_writable().
 std::filesystem::path file_behind(const std::filesystem::path& name);
 
 }  // namespace lucerna

@@ -1,5 +1,5 @@
 #pragma once
-// The part of a picture that a file holds (EXR: its data window), placed in the picture (its display window).
+// The part of a picture that a file stores (EXR: data window) within the whole picture (display window).
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -14,8 +14,8 @@ struct PictureWindow {
   bool whole() const { return x == 0 && y == 0 && width == full_width && height == full_height; }
 };
 
-/// From what OpenImageIO says of a file (its ImageSpec `spec`). Formats other than EXR hold all of the
-/// picture unless they give its size: an offset alone is one on paper.
+/// Reads the window from OpenImageIO's ImageSpec. Files other than EXR store the whole picture unless they
+/// give its size; an offset alone is a position on paper.
 template <class Spec>
 PictureWindow window_of(const Spec& spec, bool is_exr) {
   const auto size = [](int value) { return static_cast<uint32_t>(value); };
@@ -27,7 +27,7 @@ PictureWindow window_of(const Spec& spec, bool is_exr) {
   return window;
 }
 
-/// The picture, 0 outside the part; of what the part has outside the picture (overscan) nothing.
+/// The whole picture, 0 outside the part. Pixels of the part outside the picture (overscan) are dropped.
 template <class T>
 std::vector<T> fit_to_picture(const std::vector<T>& part, size_t channels, const PictureWindow& window) {
   std::vector<T> picture(channels * window.full_width * window.full_height, T(0));

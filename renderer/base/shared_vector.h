@@ -1,6 +1,6 @@
 #pragma once
-// A vector whose copies share their elements until one of them is changed: for what is large and seldom edited.
-// Reading through a const one never copies; anything that could change elements first makes them its own.
+// A copy-on-write vector for large data that is rarely edited. Const access never copies; non-const access
+// first makes the elements unique.
 #include <initializer_list>
 #include <memory>
 #include <utility>
@@ -8,7 +8,7 @@
 
 namespace lucerna {
 
-/// Objects of their own may be used from several threads at once, also where they share elements.
+/// Distinct objects may be used from several threads, even if they share elements.
 template <class T>
 class SharedVector {
  public:
@@ -26,7 +26,7 @@ class SharedVector {
   const T& front() const { return read().front(); }
   const T& back() const { return read().back(); }
   operator const std::vector<T>&() const { return read(); }
-  /// Whether no copy would be made of them if one of both were copied now.
+  /// True if both share the same elements.
   bool shares_with(const SharedVector& other) const { return items_ == other.items_; }
 
   auto begin() { return own().begin(); }
@@ -62,7 +62,7 @@ class SharedVector {
     return *items_;
   }
 
-  std::shared_ptr<std::vector<T>> items_;  ///< null: none
+  std::shared_ptr<std::vector<T>> items_;  ///< null: empty
 };
 
 }  // namespace lucerna

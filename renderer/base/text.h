@@ -1,11 +1,11 @@
 #pragma once
-// Texts that people write, taken apart.
+// Parsing helpers for texts that users write.
 #include <string>
 #include <vector>
 
 namespace lucerna {
 
-/// What lies between the characters `at`: one more part than there are of these.
+/// Splits at each character `at`; returns one more part than there are separators.
 inline std::vector<std::string> split(const std::string& text, char at) {
   std::vector<std::string> parts(1);
   for (const char c : text)
@@ -16,14 +16,14 @@ inline std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-/// The text's first bytes, at most so many, cut between two characters of UTF-8.
+/// The first bytes, at most `bytes`, cut between UTF-8 characters.
 inline std::string cut_text(const std::string& text, size_t bytes) {
   if (text.size() <= bytes) return text;
   while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xc0) == 0x80) --bytes;
   return text.substr(0, bytes);
 }
 
-/// Without blanks, tabs and line ends at either end.
+/// Removes blanks, tabs and line ends at both ends.
 inline std::string trimmed(const std::string& text) {
   const char* blanks = " \t\r\n";
   const size_t first = text.find_first_not_of(blanks);

@@ -15,7 +15,7 @@ class Timer {
   Clock::time_point start_ = Clock::now();
 };
 
-/// Adds up the wall time in which it goes; begins at 0 and stopped.
+/// Accumulates wall time while running; starts stopped at 0.
 class Stopwatch {
  public:
   void go() {
@@ -32,7 +32,7 @@ class Stopwatch {
   Timer since_;
 };
 
-/// CPU seconds that this process has used, of all its threads, user and system.
+/// CPU time of this process [s], all threads, user and system.
 double cpu_seconds();
 
 }  // namespace lucerna

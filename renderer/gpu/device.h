@@ -12,7 +12,7 @@
 
 namespace lucerna::gpu {
 
-/// What a device offers beyond what is required; recorded, used where it helps, never needed.
+/// Optional features of a device; used where they help, never required.
 struct OptionalFeatures {
   bool float_atomics = false;    ///< shaderBufferFloat32AtomicAdd
   bool subgroups = false;        ///< basic + vote + ballot + arithmetic in compute
@@ -43,8 +43,8 @@ struct DeviceInfo {
   std::string missing;  ///< the first required feature that is absent; empty when usable
 };
 
-/// All Vulkan devices, in the loader's order, usable or not. Throws Error when there is no Vulkan loader or
-/// driver, saying which package brings a software one.
+/// All Vulkan devices in the loader's order, usable or not. Throws Error if there is no Vulkan loader or
+/// driver, naming the package that contains a software driver.
 std::vector<DeviceInfo> enumerate();
 
 struct DeviceOptions {
@@ -54,9 +54,9 @@ struct DeviceOptions {
   /// Load the Khronos validation layer if present, with its synchronization checks; messages are counted and
   /// logged.
   bool validation = false;
-  /// false: device memory is never mapped, not even where it could be, as on a GPU. For tests of the copies.
+  /// false: device memory is never mapped, even if possible, as on a GPU. For tests of the copies.
   bool map_device_memory = true;
-  /// Not 0: a storage buffer reaches no further than that, in bytes. For tests of what outgrows it.
+  /// Largest visible size of a storage buffer in bytes; 0: the device's. For tests of the limit.
   uint64_t most_storage_buffer = 0;
 };
 
@@ -71,8 +71,7 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const;
-  /// For tests of what happens when memory runs out: so many more allocations succeed; nothing: as many as
-  /// there is memory for.
+  /// For tests of memory shortage: so many more allocations succeed; nothing: no limit.
   void limit_allocations(std::optional<uint64_t> count);
   uint64_t allocated_bytes() const;      ///< of buffers and images, now
   uint64_t peak_bytes() const;           ///< ... at most so far

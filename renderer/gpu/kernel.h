@@ -1,7 +1,7 @@
 #pragma once
-// Compute kernels: GLSL files compiled in process by glslang, with includes, defines and a disk cache; their
-// resources are bound BY NAME. A kernel declares only what it uses; the host keeps one table name -> resource
-// for a whole frame.
+// Compute kernels: GLSL files compiled in process by glslang, with includes, defines and a disk cache.
+// Resources are bound BY NAME: a kernel declares what it uses; the host has one table name -> resource for a
+// whole frame.
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -14,8 +14,8 @@
 
 namespace lucerna::gpu {
 
-/// #define NAME VALUE, in front of the source; a name that begins with k_include_define is none: its value is
-/// the text that #include of what follows is to find, in place of a file.
+/// #define NAME VALUE in front of the source. A name that begins with k_include_define is no macro: its value
+/// is the text that #include of the rest of the name finds instead of a file.
 using Defines = std::map<std::string, std::string>;
 inline constexpr const char* k_include_define = "include:";
 struct SpecConstant {
@@ -24,34 +24,32 @@ struct SpecConstant {
 };
 
 /// Finds, compiles and caches shaders. `root` is the shaders/ folder. A file is named relative to it, with or
-/// without "shaders/" in front, or by an absolute path (tests keep kernels of their own elsewhere).
-/// #include "shaders/x" is x below the root; #include "x" is x beside the including file, else below the
-/// root. Every kernel is compiled as GLSL 460 for Vulkan 1.2 (SPIR-V 1.5). In front of it stand: its defines;
-/// `layout(scalar)` as the default of buffers and push constants, so that structs lie as in C++; and the
+/// without "shaders/" in front, or by an absolute path (for kernels of tests). #include "shaders/x" is x
+/// below the root; #include "x" is x beside the including file, else below the root.
+/// Kernels are compiled as GLSL 460 for Vulkan 1.2 (SPIR-V 1.5). In front of the source are: its defines;
+/// `layout(scalar)` as the default of buffers and push constants, so that structs have the C++ layout; the
 /// extensions for includes, control-flow hints, 8- and 16-bit storage, 64-bit integers and their atomics,
-/// float atomics, basic subgroup operations and debugPrintfEXT (none of which costs anything unless used). A
-/// #version of its own is ignored. Errors read "shaders/lib/bsdf.glsl:123: 'foo' : undeclared identifier". A
-/// macro that an #if tests before it is defined is an error too (where its value matters), not 0: what the
-/// host may leave out is given its 0 in shaders/lib/variants.glsl.
+/// float atomics, basic subgroup operations and debugPrintfEXT. A #version in the source is ignored.
+/// Errors read "shaders/lib/bsdf.glsl:123: 'foo' : undeclared identifier". A macro that an #if tests before
+/// it is defined is an error too (where its value matters); macros that the host may set get their default 0
+/// in shaders/lib/variants.glsl.
 /// Disk cache: $XDG_CACHE_HOME/lucerna/spirv (or ~/.cache), keyed by the text of all files that the kernel
-/// may include + defines + compiler version; safe against concurrent processes and damaged files.
-/// Thread-safe.
+/// may include, defines and compiler version. Safe with concurrent processes and damaged files. Thread-safe.
 class ShaderCompiler {
  public:
   explicit ShaderCompiler(std::filesystem::path root = default_root());
   ~ShaderCompiler();
-  /// $LUCERNA_SHADERS, else shaders/ beside the executable's install prefix, else the source tree's.
+  /// $LUCERNA_SHADERS, else share/lucerna/shaders of the executable's install prefix, else the source tree's.
   static std::filesystem::path default_root();
   const std::filesystem::path& root() const;
   void set_cache(bool enabled);
-  /// Throws Error located at file and line. Resources that the kernel declares but never reaches are removed,
-  /// and bindings are numbered anew.
+  /// Compiles a file to SPIR-V. Throws Error located at file and line. Unused resources are removed, and
+  /// bindings are renumbered.
   std::vector<uint32_t> compile(const std::string& file, const Defines& defines = {});
-  /// Throws what compile() would of macros that are tested before they are defined, in a small part of its
-  /// time.
+  /// Throws the errors of compile() for undefined macros, in a small part of its time.
   void check_macros(const std::string& file, const Defines& defines = {}) const;
-  /// Files that the last compile() of this file and defines looked at, whether it succeeded or not (for hot
-  /// reload): the kernel and everything named by #include lines, those in inactive branches too.
+  /// Files that the last compile() with these arguments read, successful or not (for hot reload): the kernel
+  /// and all files in #include lines, also in inactive branches.
   std::vector<std::filesystem::path> dependencies(const std::string& file, const Defines& defines = {});
   double seconds_spent() const;  ///< in glslang, so far
   uint64_t cache_hits() const;
@@ -61,12 +59,12 @@ class ShaderCompiler {
   std::unique_ptr<Impl> impl_;
 };
 
-/// name -> resource. Resources must outlive every use. Setting a name again replaces it.
+/// Table name -> resource. Resources must outlive every use. Setting a name again replaces it.
 class Resources {
  public:
-  /// For the storage buffer block, the samplerBuffer, the usamplerBuffer or the imageBuffer of that name.
+  /// Binds the storage buffer block, samplerBuffer, usamplerBuffer or imageBuffer of that name.
   void set(const std::string& name, const Buffer& buffer);
-  /// For the sampler2DArray of that name.
+  /// Binds the sampler2DArray of that name.
   void set(const std::string& name, const TextureArray& array);
   void remove(const std::string& name);
   uint64_t version() const { return version_; }  ///< grows with every change
@@ -79,11 +77,10 @@ class Resources {
 };
 
 /// One compute pipeline. In the shader, `buffer NAME {...}` is bound to the resource NAME (the block's name,
-/// not the instance's), `uniform samplerBuffer NAME`, `uniform usamplerBuffer NAME`,
-/// `layout(rgba32f) uniform imageBuffer NAME` and `uniform sampler2DArray NAME` likewise; set and
-/// binding numbers are left out of the source (ignored if there). A library file may declare more than a
-/// kernel uses: only what main() reaches is needed. `constants` set `layout(constant_id = N) const` values
-/// (and local_size_x_id).
+/// not the instance's); so are `uniform samplerBuffer NAME`, `uniform usamplerBuffer NAME`, `layout(rgba32f)
+/// uniform imageBuffer NAME` and `uniform sampler2DArray NAME`. Set and binding numbers are ignored. A
+/// library file may declare more than a kernel uses: only what main() reaches is needed. `constants` set
+/// `layout(constant_id = N) const` values (and local_size_x_id).
 class Kernel {
  public:
   Kernel();

@@ -1,5 +1,5 @@
 #pragma once
-// Device memory for buffers and images (internal to gpu/). Large resources have an allocation each; small
+// Device memory for buffers and images (internal to gpu/). Large resources have separate allocations; small
 // buffers share blocks, because drivers limit the number of allocations.
 #include <volk.h>
 
@@ -15,7 +15,7 @@
 
 namespace lucerna::gpu {
 
-/// A piece of device memory. `mapped` points at its first byte, or is null.
+/// A range of device memory. `mapped` points at its first byte, or is null.
 struct Allocation {
   VkDeviceMemory memory = VK_NULL_HANDLE;
   VkDeviceSize offset = 0, bytes = 0;
@@ -24,7 +24,7 @@ struct Allocation {
   void* mapped = nullptr;
 };
 
-/// Thread-safe. Everything allocated must be freed before the allocator dies.
+/// Thread-safe. All allocations must be freed before the allocator is destroyed.
 class Allocator {
  public:
   Allocator(VkDevice device, const VolkDeviceTable& vk, const VkPhysicalDeviceMemoryProperties& memory,
@@ -33,9 +33,9 @@ class Allocator {
   Allocator(const Allocator&) = delete;
   Allocator& operator=(const Allocator&) = delete;
 
-  /// `name` and `wanted` (the bytes that the user asked for) are for the message. `counted`: part of
-  /// allocated_bytes(). Images never share a block, so that bufferImageGranularity cannot matter. Throws
-  /// Error when memory runs out.
+  /// `name` and `wanted` (the bytes requested by the user) are for the message. `counted`: part of
+  /// allocated_bytes(). Images never share a block, so bufferImageGranularity does not matter. Throws Error
+  /// if memory is short.
   Allocation allocate(const VkMemoryRequirements& needs, Memory kind, bool image, const std::string& name,
                       uint64_t wanted, bool counted = true);
   void free(Allocation& allocation, bool counted = true);

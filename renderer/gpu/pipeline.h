@@ -14,7 +14,7 @@ namespace lucerna::gpu {
 
 struct Handles;
 
-/// A pipeline with the layouts that it was made with. Destroyed with the last that holds it.
+/// A pipeline with its layouts. Destroyed with its last owner.
 struct Pipeline {
   explicit Pipeline(const Handles& handles) : handles(handles) {}
   ~Pipeline();
@@ -27,14 +27,13 @@ struct Pipeline {
   VkPipeline pipeline = VK_NULL_HANDLE;
 };
 
-/// A device's pipelines by what they are built from. Solvers and renderers that are built again find the
-/// kernels of the last ones: drivers take from milliseconds to seconds for each, lavapipe at its first
-/// dispatch. Those in use are kept, and of those that no kernel uses any more the last k_spare.
-/// Thread-safe.
+/// A device's pipelines by content. Solvers and renderers that are rebuilt find the kernels of the previous
+/// ones, since drivers need milliseconds to seconds per pipeline (lavapipe at its first dispatch). Pipelines
+/// in use are kept, and of the unused ones the last k_spare. Thread-safe.
 class Pipelines {
  public:
   using Make = std::function<std::shared_ptr<const Pipeline>()>;
-  /// `key` tells everything that `make` depends on. What `make` throws is passed on.
+  /// `key` contains everything that `make` depends on. Exceptions of `make` are passed on.
   std::shared_ptr<const Pipeline> find_or_make(const std::string& key, const Make& make);
   void clear();
   uint64_t made() const;  ///< so far
@@ -49,7 +48,7 @@ class Pipelines {
     std::shared_ptr<const Pipeline> pipeline;
   };
   mutable std::mutex mutex_;
-  std::vector<Entry> entries_;  ///< the one asked for last at the end
+  std::vector<Entry> entries_;  ///< most recently used last
   uint64_t made_ = 0;
 };
 

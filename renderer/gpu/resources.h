@@ -1,5 +1,5 @@
 #pragma once
-// Buffers and texture arrays. All are move-only and free themselves; a moved-from or default one is empty.
+// Buffers and texture arrays. Move-only; a default or moved-from object is empty.
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -25,12 +25,11 @@ struct BufferDesc {
                        ///< four words; bytes must be a multiple of 16
 };
 
-/// A storage buffer (also transfer source and destination, indirect arguments, and optionally a texel
-/// buffer).
+/// A storage buffer (also transfer source and target, indirect arguments, and optionally a texel buffer).
 class Buffer {
  public:
   Buffer();
-  /// Throws Error when it exceeds the device's limits or memory, naming the buffer, the size and the limit.
+  /// Throws Error, naming buffer, size and limit, if it exceeds the device's limits or memory.
   Buffer(Device& device, const BufferDesc& desc);
   ~Buffer();
   Buffer(Buffer&&) noexcept;
@@ -39,9 +38,9 @@ class Buffer {
   explicit operator bool() const { return impl_ != nullptr; }
   uint64_t bytes() const;
   const std::string& name() const;
-  /// Pointer to the whole buffer, or null where the memory is not mapped. Kernels must not be running.
+  /// Pointer to the whole buffer, or null if not mapped. Kernels must not be running.
   void* mapped() const;
-  /// Blocking copies, through staging where not mapped. offset + size <= bytes().
+  /// Blocking copies, through staging if not mapped. offset + size <= bytes().
   void write(const void* data, uint64_t size, uint64_t offset = 0);
   void read(void* data, uint64_t size, uint64_t offset = 0) const;
 
@@ -63,11 +62,10 @@ class Buffer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Room for desc.bytes, rounded up to texels: a new buffer in place of one that is smaller, without what was
-/// in it.
+/// Replaces a buffer that is smaller than desc.bytes, rounded up to texels; the content is lost.
 void make_room(Device& device, Buffer& buffer, BufferDesc desc);
 
-/// The same for a buffer in device memory that is read as texels, too.
+/// The same for a buffer in device memory that is also read as texels.
 void make_texel_room(Device& device, Buffer& buffer, const char* name, uint64_t bytes);
 
 enum class TexelFormat { rgba8_unorm, rgba8_srgb, rgba16f, rgba32f };
@@ -78,8 +76,8 @@ struct TextureArrayDesc {
   TexelFormat format = TexelFormat::rgba8_unorm;
 };
 
-/// A sampler2DArray in the shader: bilinear, one mip level, address mode repeat in both directions (other
-/// modes and nearest filtering are done on the coordinates in the shader).
+/// A sampler2DArray in the shader: bilinear, one mip level, address mode repeat in both directions. Shaders
+/// do other modes and nearest filtering on the coordinates.
 class TextureArray {
  public:
   TextureArray();

@@ -10,13 +10,13 @@
 
 namespace lucerna::gpu {
 
-/// A folder of files named by key. A file is written under a temporary name and renamed, so that a reader in
-/// another process sees a whole file or none; one that is cut short or altered counts as absent. Every
-/// failure is silent: the cache only saves time.
+/// A folder of files named by key. Files are written under a temporary name and renamed, so that other
+/// processes see a complete file or none; truncated or changed files count as absent. Failures are silent:
+/// the cache only saves time.
 class ShaderCache {
  public:
   explicit ShaderCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  /// $XDG_CACHE_HOME/lucerna/spirv, else ~/.cache/lucerna/spirv; empty (no cache) when neither is known.
+  /// $XDG_CACHE_HOME/lucerna/spirv, else ~/.cache/lucerna/spirv; empty (no cache) if neither is known.
   static std::filesystem::path default_folder();
   std::optional<std::vector<uint32_t>> load(const std::string& key) const;
   void store(const std::string& key, const std::vector<uint32_t>& words) const;

@@ -8,8 +8,7 @@
 
 namespace lucerna::gpu {
 
-/// One file of a shader. `display` is what messages call it: "shaders/lib/bsdf.glsl" for what lies below the
-/// root.
+/// One file of a shader. `display` is its name in messages: "shaders/lib/bsdf.glsl" for files below the root.
 struct ShaderFile {
   std::filesystem::path path;
   std::string display, text;
@@ -18,7 +17,7 @@ struct ShaderFile {
 class ShaderSource {
  public:
   explicit ShaderSource(std::filesystem::path root) : root_(std::move(root)) {}
-  /// The same with these texts in place of what #include of these names would find; they have no path.
+  /// A copy in which #include of these names finds these texts; they have no path.
   ShaderSource with(std::map<std::string, std::string> texts) const {
     ShaderSource other(root_);
     other.texts_ = std::move(texts);
@@ -27,11 +26,11 @@ class ShaderSource {
   const std::filesystem::path& root() const { return root_; }
   /// A kernel's file: relative to the root ("shaders/x" is x), or absolute.
   std::optional<ShaderFile> open(const std::string& file) const;
-  /// What #include "name" means in the file that messages call `includer`.
+  /// What #include "name" finds in the file with the display name `includer`.
   std::optional<ShaderFile> include(const std::string& name, const std::string& includer) const;
-  /// The file and all that its #include lines name, directly or not, each once, in order of first mention.
-  /// Lines are read without regard to #if, so this may be more than the compiler reads; what cannot be found
-  /// is left out (it may be in a branch for C++).
+  /// The file and all files that its #include lines name, directly or not, each once, in order of first
+  /// mention. #if is ignored, so this may be more than the compiler reads; files that are not found are
+  /// skipped (they may be in a C++ branch).
   std::vector<ShaderFile> closure(const ShaderFile& file) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Reading and trimming SPIR-V: which resources a kernel uses and how its structs are laid out. Public for the
-// tests that hold C++ struct layouts against the shaders'.
+// Reading and trimming SPIR-V: the resources of a kernel and the layout of its structs. Public for tests that
+// compare C++ struct layouts with those of the shaders.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -35,22 +35,19 @@ struct Module {
   int32_t workgroup_constant[3] = {-1, -1, -1};  ///< specialization constant that sets each, or -1
 };
 
-/// Removes the resource variables that the entry point never reaches (a library file may declare more than a
-/// kernel uses) and numbers the bindings of the others 0, 1, 2 ... in set 0, whatever the source says.
-/// Buffers are declared as possibly one another (`Aliased`): kernels read a buffer as texels that they write
-/// as words, and without it compilers of GPUs move loads beyond stores (SPIR-V 2.18.2; GLSL has no word for
-/// it).
+/// Removes resource variables that the entry point does not use (a library file may declare more) and
+/// renumbers the bindings 0, 1, 2 ... in set 0. Declares buffers as `Aliased`: kernels read a buffer as
+/// texels and write it as words, and otherwise GPU compilers move loads past stores (SPIR-V 2.18.2; GLSL has
+/// no keyword for it).
 std::vector<uint32_t> trim(const std::vector<uint32_t>& words);
 
-/// Describes a module that trim() has made.
+/// Describes a module made by trim().
 Module reflect(const std::vector<uint32_t>& words);
 
-/// Members of the struct of this name as laid out in memory, in order; empty when no laid-out struct has the
-/// name.
+/// Members of the struct of this name in memory layout, in order; empty if there is none.
 std::vector<Member> struct_members(const std::vector<uint32_t>& words, const std::string& name);
 
-/// The distance between two array elements of the struct of this name (ArrayStride), or 0 when there is no
-/// such array.
+/// Distance of two array elements of the struct of this name (ArrayStride); 0 if there is no such array.
 uint32_t struct_stride(const std::vector<uint32_t>& words, const std::string& name);
 
 }  // namespace lucerna::gpu::spirv

@@ -1,7 +1,6 @@
 #pragma once
-// Recording and running work. One Stream is used by one thread; work runs in order, each dispatch after the
-// one before it has finished and its writes are visible (a full compute barrier between dispatches unless
-// said otherwise).
+// Recording and running work. A Stream is used by one thread. Work runs in order: each dispatch starts after
+// the one before has finished and its writes are visible (a full compute barrier between dispatches).
 #include <string>
 #include <vector>
 
@@ -9,7 +8,7 @@
 
 namespace lucerna::gpu {
 
-/// Most workgroups along one axis that every Vulkan device takes.
+/// Largest number of workgroups along an axis that every Vulkan device supports.
 inline constexpr uint32_t k_most_groups = 65535;
 
 /// Workgroups of `workgroup` invocations that cover `items`.
@@ -30,17 +29,16 @@ class Stream {
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
 
-  /// Runs `groups` workgroups of the kernel. Above k_most_groups they are laid out as a grid of x × y
-  /// workgroups with x * y >= groups: so kernels take their index from global_index()
-  /// (shaders/lib/invocation.glsl), never from gl_GlobalInvocationID.x, and return when it is beyond their
-  /// count. 0 groups run nothing but warm the kernel up: software devices compile at the first dispatch.
-  /// `push` must be as large as the kernel's push constants. `stage` names the timer that the dispatch is
-  /// counted under ("" = none). Throws Error when a resource that the kernel declares is not in the table
-  /// (both named).
+  /// Runs `groups` workgroups of the kernel. Above k_most_groups they form a grid of x × y workgroups with x
+  /// * y >= groups; so kernels take their index from global_index() (shaders/lib/invocation.glsl), never from
+  /// gl_GlobalInvocationID.x, and return if it is beyond their count. 0 groups only warm the kernel up:
+  /// software devices compile at the first dispatch. `push` must be as large as the kernel's push constants.
+  /// `stage` names the timer of the dispatch ("": none). Throws Error, naming both, if a resource declared by
+  /// the kernel is not in the table.
   void dispatch(const Kernel& kernel, const Resources& resources, const void* push, size_t push_bytes,
                 uint32_t groups, const std::string& stage = {});
-  /// Workgroup counts are read from three uint32 at `offset` of `arguments` when it runs; each at most
-  /// k_most_groups (indirect_groups() of shaders/lib/invocation.glsl makes them of one count).
+  /// The same with workgroup counts read from three uint32 at `offset` of `arguments` when it runs, each at
+  /// most k_most_groups (see indirect_groups() in shaders/lib/invocation.glsl).
   void dispatch_indirect(const Kernel& kernel, const Resources& resources, const void* push,
                          size_t push_bytes, const Buffer& arguments, uint64_t offset,
                          const std::string& stage = {});
@@ -58,11 +56,11 @@ class Stream {
   void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset = 0,
             uint64_t to_offset = 0);
 
-  /// Submits what was recorded and waits for it; host-visible memory is then coherent for the host.
-  /// Does nothing when nothing was recorded.
+  /// Submits the recorded work and waits for it; host-visible memory is then coherent for the host. Does
+  /// nothing if nothing was recorded.
   void run();
-  /// Device milliseconds per stage since the last call, summed over dispatches of the same stage, in
-  /// first-use order.
+  /// Device milliseconds per stage since the last call, summed over dispatches of the same stage, in order of
+  /// first use.
   std::vector<StageTime> take_times();
 
  private:

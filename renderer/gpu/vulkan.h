@@ -1,6 +1,6 @@
 #pragma once
-// What the files of gpu/ share and nobody else sees: the Vulkan handles behind a Device, and the
-// implementations behind Buffer, TextureArray and Kernel.
+// Internal to gpu/: the Vulkan handles behind a Device, and the implementations of Buffer, TextureArray and
+// Kernel.
 #include <volk.h>
 
 #include <atomic>
@@ -21,11 +21,11 @@ namespace lucerna::gpu {
 /// Throws Error("device", ...) unless `result` is VK_SUCCESS; `doing` completes "Vulkan failed while ...".
 void check(VkResult result, const char* doing);
 
-/// A VkInstance with the few instance functions that are used, loaded for this very instance: volk's global
-/// pointers are shared by all threads and would be overwritten by a second instance.
+/// A VkInstance with the required instance functions, loaded for this instance: volk's global pointers are
+/// shared by all threads and would be overwritten by a second instance.
 class Instance {
  public:
-  /// Throws Error when there is no loader or no driver. `validation` is a wish: see validation_active().
+  /// Throws Error if there is no loader or driver. `validation` is requested only; see validation_active().
   explicit Instance(bool validation);
   ~Instance();
   Instance(const Instance&) = delete;
@@ -90,8 +90,7 @@ struct Handles {
   /// Calls `use(buffer, mapped)` with the staging buffer (of staging_bytes) while holding it.
   void with_staging(const std::function<void(VkBuffer, void*)>& use);
   static constexpr uint64_t staging_bytes = 16ull << 20;
-  /// Never given twice, so that a cached descriptor set cannot be taken for that of a newer resource at its
-  /// address.
+  /// Unique, so that a cached descriptor set is never used for a newer resource at the same address.
   uint64_t next_id() { return ++last_id_; }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// What an edit changes, in the scene's words. Who keeps something that was computed from a scene decides by
-// these, and by the keys of changed settings, what of it still holds (solvers/info.h).
+// Kinds of edits. Code that keeps data computed from a scene decides by these, and by the keys of changed
+// settings, which of it is still valid (solvers/info.h).
 #include <cstdint>
 #include <set>
 #include <string>
@@ -13,20 +13,20 @@ enum class Change : uint32_t {
   size,         ///< width or height of the picture
   lamp,         ///< a punctual light's strength, colour, place, cone, or whether it is on
   environment,  ///< the environment's strength or rotation
-  colour,       ///< diffuse colour, roughness or emission of a surface that was diffuse and is so still
-  material,     ///< any other factor of a material: what was a mirror may be diffuse now
-  shape,        ///< geometry, textures, what rays pass: another scene
+  colour,       ///< diffuse colour, roughness or emission of a surface that is diffuse before and after
+  material,     ///< any other factor of a material: a mirror may become diffuse
+  shape,        ///< geometry, textures, transparency: another scene
   shaders,      ///< the kernels
-  restart,      ///< nothing: a person asks to begin anew
+  restart,      ///< no change: the user restarts the picture
 };
 inline constexpr Change k_all_changes[] = {Change::camera,      Change::size,    Change::lamp,
                                            Change::environment, Change::colour,  Change::material,
                                            Change::shape,       Change::shaders, Change::restart};
 
-/// Several at once.
+/// Several changes.
 struct Changes {
   std::set<Change> edits;
-  std::set<std::string> settings;  ///< keys of the settings that have another value
+  std::set<std::string> settings;  ///< keys of changed settings
 
   Changes() = default;
   Changes(Change edit) : edits{edit} {}  // NOLINT: one edit is a set of edits

@@ -1,5 +1,5 @@
 #pragma once
-// What of a scene belongs together: without a sky dome, a terrain or a wall on the horizon.
+// The core of a scene: without a sky dome, a terrain or a wall on the horizon.
 #include <optional>
 #include <span>
 
@@ -7,13 +7,12 @@
 
 namespace lucerna::scene {
 
-/// The box of those triangles that lie together; nothing: all do. Triangles are taken by the distance of
-/// their farthest corner from the median of their centres, half of them at least, and on until the next one
-/// reaches more than 16 times as far as the last: that one and all others stand far away, or are far larger.
-/// `positions`: three a triangle.
+/// The box of the triangles that lie together; nothing if all do. Triangles are sorted by the distance of
+/// their farthest corner from the median of their centres. At least half of them belong to the core; it ends
+/// where the next one reaches more than 16 times as far as the last. `positions`: three per triangle.
 std::optional<Box> core_of(std::span<const vec3> positions);
 
-/// The same of all instances, in world space; where all lie together, bounds().
+/// The core of all instances, in world space; bounds() if all lie together.
 Box core_bounds(const Scene& scene);
 
 }  // namespace lucerna::scene

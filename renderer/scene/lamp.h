@@ -1,11 +1,11 @@
 #pragma once
-// Figures of lamps that follow from what the scene says of them.
+// Quantities derived from lamps.
 #include "scene/scene.h"
 
 namespace lucerna::scene {
 
-/// Steradians that a point or spot lamp shines through, each direction weighted with its intensity over that
-/// on the axis: its radiant power over its intensity. 0 for a directional light.
+/// Radiant power of a point or spot lamp over its intensity on the axis [sr]: the solid angle weighted by
+/// relative intensity. 0 for a directional light.
 double solid_angle(const Light& lamp);
 
 }  // namespace lucerna::scene

@@ -1,5 +1,5 @@
 #pragma once
-// What an edit of lights is known to do to all light, or to that of their groups.
+// Factors by which an edit multiplies the light of a scene.
 #include <optional>
 #include <vector>
 
@@ -7,19 +7,19 @@
 
 namespace lucerna::scene {
 
-/// What the light of each group is multiplied by everywhere, channel by channel, by index of the group (1 for
-/// groups without lights); without `groups` what all light is, alone. Of two scenes with the same surfaces,
-/// whose lights are the same but for strength and colour, those of a group all alike. Nothing where that
-/// cannot be said, or where nothing shines. `groups`: of both.
+/// Per group, the factor by which an edit multiplies its light everywhere, channel by channel (1 for groups
+/// without lights). Without `groups`: one factor for all light. Defined if both scenes have the same
+/// surfaces, and their lights differ in strength and colour only, within a group by the same factor. Nothing
+/// otherwise, or if nothing emits. `groups`: of both scenes.
 std::optional<std::vector<vec3>> light_factors(const Scene& before, const Scene& after,
                                                const LightGroups* groups = nullptr);
 
-/// True if all light of `after` is that of `before` times the factor of its group, but for rounding: surfaces
-/// are the same, and lights are but for strength and colour. `groups`: of both.
+/// True if, up to rounding, all light of `after` is that of `before` times the factor of its group: same
+/// surfaces, and lights that differ in strength and colour only. `groups`: of both scenes.
 bool is_multiplied(const Scene& before, const Scene& after, const LightGroups& groups,
                    const std::vector<vec3>& factors);
 
-/// Of all groups alike; nothing where they differ.
+/// The common factor of all groups; nothing if they differ.
 std::optional<vec3> common_factor(const std::vector<vec3>& factors);
 
 }  // namespace lucerna::scene

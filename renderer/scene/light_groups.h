@@ -1,6 +1,6 @@
 #pragma once
-// Groups of lights: what a person dims and tints together. Every light of a scene belongs to one group:
-// lamps, surfaces that emit, the sky of the environment, and its sun.
+// Groups of lights, which users dim and tint together. Each light of a scene belongs to one group: lamps,
+// emitting surfaces, the sky of the environment, and its sun.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,72 +9,71 @@
 
 namespace lucerna::scene {
 
-/// Groups that a picture's light can be kept apart by.
+/// Most groups whose light a picture can keep separately.
 inline constexpr uint32_t k_most_light_groups = 16;
-/// Name of the one that lights beyond these are joined in.
+/// Name of the group that collects lights beyond these.
 inline constexpr const char* k_other_lights = "others";
-/// The sun of an environment: its texels of more than so many times the mean radiance. As
-/// cache.environment_threshold is by default.
+/// Texels of an environment above this multiple of its mean radiance are a sun. The default of
+/// cache.environment_threshold.
 inline constexpr float k_sun_threshold = 16;
 
 struct LightGroup {
   std::string name;
   uint32_t lamps = 0;     ///< on or off
-  uint32_t surfaces = 0;  ///< placed pieces of meshes that emit, or are unlit
+  uint32_t surfaces = 0;  ///< placed primitives that emit or are unlit
   bool sky = false, sun = false;
   bool operator==(const LightGroup&) const = default;
 };
 
-/// Which light belongs to which group (indices into `groups`).
+/// The group of each light (indices into `groups`).
 struct LightGroups {
   std::vector<LightGroup> groups;  ///< at least one, at most k_most_light_groups; names are unique
   std::vector<uint8_t> lamps;      ///< by Scene::lights
-  /// By Scene::instances, then by its mesh's primitives; empty where nothing of it emits.
+  /// By Scene::instances, then by the mesh's primitives; empty if none of them emits.
   std::vector<std::vector<uint8_t>> surfaces;
   uint8_t sky = 0, sun = 0;
   bool has_sun = false;               ///< the environment's image has a sun
-  std::vector<std::string> messages;  ///< what had to be joined, one line each
+  std::vector<std::string> messages;  ///< which groups were joined, one line each
 
-  /// Index of a name; groups.size() when there is none such.
+  /// Index of a name; groups.size() if there is none.
   size_t find(const std::string& name) const;
   bool operator==(const LightGroups&) const = default;
 };
 
-/// What names go into which group: "PATTERN=GROUP; PATTERN=GROUP". In a pattern * stands for any characters
-/// and ? for one (of UTF-8). It is held against names of lamps, of nodes and materials that emit, and against
-/// "sky" and "sun"; the last that fits counts.
+/// Assigns names to groups: "PATTERN=GROUP; PATTERN=GROUP". In a pattern * matches any characters, ? one
+/// character (UTF-8). It is matched with names of lamps, with names of emitting nodes and materials, and with
+/// "sky" and "sun". The last match counts.
 struct LightGroupRule {
   std::string pattern, group;
   bool operator==(const LightGroupRule&) const = default;
 };
-/// Throws Error, naming the part that is wrong.
+/// Throws Error that names the invalid part.
 std::vector<LightGroupRule> parse_group_rules(const std::string& text);
 bool matches_pattern(const std::string& pattern, const std::string& name);
-/// Without blanks at its ends, and with _ for the characters ; : = | that separate words of a mix. "" stays
-/// "". Of a name of more than 64 bytes the first characters stay. Where either changes the name, ~ and eight
-/// digits of it follow, so that names that differ stay different: at most 64 bytes. Of its own result the
-/// function changes nothing.
+/// Makes a valid group name of at most 64 bytes: blanks at the ends are removed, and the separators of a mix
+/// ; : = | become _. Longer names keep their first characters. If either changes the name, ~ and eight hash
+/// digits follow, so that different names stay different. Idempotent; "" stays "".
 std::string group_name(const std::string& text);
-/// A lamp's or material's name without the number at its end: "Spot.001" and "Spot 2" are both "Spot".
+/// A lamp's or material's name without its final number: "Spot.001" and "Spot 2" become "Spot".
 std::string kind_of_light(const std::string& name);
 
-/// Surfaces of it emit, or show their colour as if they did.
+/// True if its surfaces emit, or are unlit (shown with their colour as radiance).
 bool is_light(const Material& material);
 
-/// Groups of a scene. A light belongs, in this order, to the group of the last rule that fits, that of its
-/// node's extras.light_group, that of its lamp's or material's; and where nothing is said, to one with its
-/// kind: lamps and materials of one name but for a number, "sky" and "sun". Beyond k_most_light_groups the
-/// groups that come last, in the order sky, sun, lamps, surfaces, are joined, and messages say which.
+/// The groups of a scene. A light's group is, in this order: that of the last matching rule, its node's
+/// extras.light_group, that of its lamp or material, or one with its kind (lamps and materials whose names
+/// differ only in a number, "sky", "sun"). Beyond k_most_light_groups the last groups, in the order sky, sun,
+/// lamps, surfaces, are joined; messages name them.
 LightGroups group_lights(const Scene& scene, const std::vector<LightGroupRule>& rules = {});
-/// The same, where those of an earlier state of the scene are known, which is still there: in the same
-/// environment image its sun need not be looked for again.
+/// The same, given the groups of an earlier state of the scene: the sun of an unchanged environment image is
+/// not searched again.
 LightGroups group_lights(const Scene& scene, const std::vector<LightGroupRule>& rules, const Scene& earlier,
                          const LightGroups& known);
 
-/// By texel of the environment's image, whether it is a sun's: of more than `threshold` times the mean
-/// radiance. Empty where there is no image.
+/// Per texel of the environment's image, whether it belongs to a sun: its radiance is above `threshold` times
+/// the mean. Empty without an image.
 std::vector<uint8_t> sun_texels(const Scene& scene, float threshold);
-/// Some texel is, by k_sun_threshold.
+/// True if a texel is above k_sun_threshold.
 bool has_sun(const Scene& scene);
 
 }  // namespace lucerna::scene

@@ -1,38 +1,36 @@
 #pragma once
-// Where the origin of a scene's coordinates is put. The renderer computes in single precision, whose steps
-// grow with the distance from the origin: 8 mm at 100 km, half a metre at the coordinates of national grids.
-// So a scene that lies far from the origin of its file is moved near it when it is loaded.
+// The origin of a scene's coordinates. The renderer computes in single precision, whose steps grow with the
+// distance from the origin: 8 mm at 100 km. So a scene far from the origin of its file is moved near it when
+// it is loaded.
 #include <glm/glm.hpp>
 #include <span>
 
 namespace lucerna::scene {
 
-/// What is far: more than so many times its own radius away.
+/// An object is far if it is more than this multiple of its radius away.
 inline constexpr double k_far = 100;
 
-/// A placed mesh, as far as choose_origin must know it, in the file's coordinates [m].
+/// What choose_origin() needs of a placed mesh, in the file's coordinates [m].
 struct Extent {
   glm::dvec3 centre{0};
   double radius = 0;  ///< above 0
   double weight = 1;  ///< of its vote
 };
 
-/// The new origin for something about `centre`, of the radius: near the centre, in round decimal numbers of
-/// about the radius, so that people can add it. 0 where centre is within k_far times the radius, and on each
-/// axis where it is within a tenth of that.
+/// The new origin for an object: near its centre, in round decimal numbers of about its radius, so that users
+/// can add it. 0 if the centre is within k_far radii; on each axis, 0 if within a tenth of that.
 glm::dvec3 round_origin(const glm::dvec3& centre, double radius);
 
-/// The point of the file that becomes the scene's origin, in round numbers; 0 unless what matters in the
+/// The point of the file that becomes the scene's origin, in round numbers; 0 unless the main part of the
 /// scene is far away relative to its own extent.
-/// - What is far relative to its own radius votes for moving; what is not, and would be far then, against.
-/// Votes
-///   weigh by size and triangles, and those with a camera near outweigh all others: a stray object decides
-///   nothing.
-/// - What is large enough to reach from the old origin to the new one at k_far times its radius (a room about
-///   a small object, a dome, a terrain) belongs to the scene's extent, and the scene stays; unless the rest
-///   is so far that single precision no longer shows it: k_far^2 times its radius with a camera near it,
+/// - Objects that are far relative to their own radius vote for moving; objects that would become far vote
+///   against. Votes weigh by size and triangles, and those with a camera nearby outweigh all others: a stray
+///   object decides nothing.
+/// - An object that reaches from the old origin to the new one within k_far times its radius (a room around a
+///   small object, a dome, a terrain) belongs to the scene's extent, and the scene stays; unless the rest is
+///   so far that single precision no longer resolves it: k_far^2 times its radius with a camera nearby,
 ///   k_far^3 without.
-/// Lamps do not belong among the extents: nothing is seen from there.
+/// Lamps are not extents: nothing is seen from there.
 glm::dvec3 choose_origin(std::span<const Extent> extents, std::span<const glm::dvec3> cameras);
 
 }  // namespace lucerna::scene

@@ -1,9 +1,8 @@
 #pragma once
-// The scene: plain data with stable ids (indices into the vectors of Scene), as loaded; nothing here knows of
-// glTF, files or a device. Right-handed, Y up, metres; colours are linear Rec.709; radiance in one unit
-// throughout (no photometric factor anywhere): emissive and environment values are radiance L, point and spot
-// intensity is radiant intensity I (irradiance I/d^2 at distance d), directional intensity is irradiance E on
-// a facing plane.
+// The scene: plain data with stable ids (indices into the vectors of Scene), independent of glTF, files and
+// devices. Right-handed, Y up, metres; colours are linear Rec.709. One unit of radiance throughout, without
+// photometric factors: emission and environment are radiance L, point and spot intensity is radiant intensity
+// I (irradiance I/d^2 at distance d), directional intensity is irradiance E on a facing plane.
 #include <array>
 #include <optional>
 #include <string>
@@ -27,8 +26,8 @@ struct Image {
 
 enum class Wrap : uint32_t { repeat, clamp, mirror };
 
-/// An image with the way to read it. `srgb`: 8-bit RGB texels are sRGB-encoded (colour data); alpha never is.
-/// The same image used as colour and as data appears as two textures.
+/// An image and how to read it. `srgb`: 8-bit RGB texels are sRGB-encoded (colour data); alpha never is. An
+/// image used both as colour and as data becomes two textures.
 struct Texture {
   Id image = k_none;
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
@@ -48,7 +47,7 @@ struct TextureUse {
 
 enum class AlphaMode : uint32_t { opaque, mask, blend };
 
-/// glTF metallic-roughness with the extensions that we read. Textures multiply the factors as glTF says.
+/// glTF metallic-roughness with the supported extensions. Textures multiply the factors as in glTF.
 struct Material {
   std::string name;
   vec4 base_color{1};             ///< rgb reflectance 0..1, a = coverage
@@ -61,7 +60,7 @@ struct Material {
   TextureUse emission_texture;
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
-  bool double_sided = false;  ///< decides only whether the back side emits; surfaces reflect on both sides
+  bool double_sided = false;  ///< whether the back side emits; surfaces reflect on both sides anyway
   bool unlit = false;  ///< shows base_color as radiance on E[SG]*L alone; no light source, black otherwise
   float ior = 1.5f;    ///< KHR_materials_ior; 0 means F = 1 (as the extension says)
   float specular = 1;  ///< KHR_materials_specular; multiplies F0 and F90 of the dielectric
@@ -77,13 +76,13 @@ struct Material {
   TextureUse diffuse_transmission_texture;  ///< a
   vec3 diffuse_transmission_color{1};
   TextureUse diffuse_transmission_color_texture;  ///< rgb
-  std::string group;  ///< of lights, if it emits: extras.light_group; "": not said (light_groups.h)
+  std::string group;  ///< of lights, if it emits: extras.light_group; "": none given (light_groups.h)
   bool operator==(const Material&) const = default;
 };
 
-/// Triangles of one material in object space. Streams are either empty or one entry a vertex.
-/// After loading: positions finite, triangles in range and not degenerate, normals present (unit length),
-/// tangents present (xyz unit, w = +-1) when the material has a normal texture.
+/// Triangles of one material in object space. Streams are empty or have one entry per vertex. After loading:
+/// positions finite, triangles in range and not degenerate, normals present (unit length), tangents present
+/// (xyz unit, w = +-1) if the material has a normal texture.
 struct Primitive {
   std::vector<vec3> positions;
   std::vector<vec3> normals;
@@ -106,7 +105,7 @@ struct Instance {
   Id mesh = k_none;
   mat4 to_world{1};
   bool flipped = false;
-  std::string group{};  ///< of lights, of what of it emits: the node's extras.light_group; "": not said
+  std::string group{};  ///< of its emitting parts: the node's extras.light_group; "": none given
 };
 
 /// Looks down its -Z, +Y up. Perspective: yfov in radians, of the picture's height. Orthographic: half
@@ -131,7 +130,7 @@ struct Light {
   vec3 direction{0, 0, -1};                         ///< unit; into the scene
   float inner_cone = 0, outer_cone = 0.785398163f;  ///< radians from the axis; spot only
   bool enabled = true;
-  std::string group{};  ///< of lights: extras.light_group of its node, or its own; "": not said
+  std::string group{};  ///< extras.light_group of its node, or its own; "": none given
 };
 
 /// Light from infinitely far: constant radiance, or a latitude-longitude image:
@@ -148,10 +147,10 @@ struct Environment {
 struct Scene {
   std::string name;  ///< the file's stem
   std::string file;
-  /// The point of the file that is the scene's origin [m]: 0 but for geometry far away (recentre.h). Every
-  /// position of the scene is counted from there; adding this gives the file's.
+  /// The point of the file that is the scene's origin [m]: 0 except for distant geometry (recentre.h). Adding
+  /// it to a position gives the file's coordinates.
   glm::dvec3 origin{0};
-  // Copies of a scene share these: who edits a lamp copies lamps.
+  // Shared between copies of a scene, so that editing a lamp copies lamps only.
   SharedVector<Image> images;
   SharedVector<Texture> textures;
   SharedVector<Mesh> meshes;
@@ -160,26 +159,26 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<Light> lights;
   Environment environment;
-  /// Render settings given beside the scene (settings.json), key -> value as text, in file order; checked by
+  /// Render settings from settings.json beside the scene, key -> value as text, in file order; checked by
   /// plan/.
   std::vector<std::pair<std::string, std::string>> settings;
-  std::vector<std::string> warnings;    ///< what loading had to mend or leave out, one line each
-  std::vector<std::string> extensions;  ///< glTF extensions that the file uses and that are honoured, sorted
-  std::vector<std::string> unknown_extensions;  ///< those that are ignored (a warning each), sorted
+  std::vector<std::string> warnings;            ///< what loading repaired or skipped, one line each
+  std::vector<std::string> extensions;          ///< supported glTF extensions that the file uses, sorted
+  std::vector<std::string> unknown_extensions;  ///< ignored extensions (a warning each), sorted
 };
 
 /// World-space bounds of all instances; empty for a scene without triangles.
 Box bounds(const Scene& scene);
 /// Triangles after instancing.
 uint64_t count_triangles(const Scene& scene);
-/// The camera used when a scene has none: looks at the bounds' centre from the front and a little above.
+/// The camera of a scene that has none: looks at the bounds' centre from the front, slightly above.
 Camera default_camera(const Scene& scene);
 
-/// The first camera of that name, or else of that number, from 1. Throws Error, listing the names, when there
+/// The first camera of that name, or else of that number, from 1. Throws Error, listing the names, if there
 /// is none.
 const Camera& find_camera(const Scene& scene, const std::string& name);
 
-/// The camera to begin with: find_camera()'s, or for an empty name the scene's first, or default_camera().
+/// The initial camera: find_camera(); for an empty name the scene's first, or default_camera().
 Camera starting_camera(const Scene& scene, const std::string& name);
 
 }  // namespace lucerna::scene

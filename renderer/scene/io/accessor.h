@@ -23,7 +23,7 @@ class AccessorReader {
   int components() const { return components_; }
   int component_type() const { return component_type_; }
   bool normalized() const { return normalized_; }
-  /// Whether every element has bytes of its own in a buffer; otherwise all are 0 but for sparse ones.
+  /// True if every element has bytes in a buffer; otherwise all are 0 except sparse ones.
   bool backed() const { return backed_; }
   /// Treats integers as normalized whatever the accessor says (colours, which glTF always normalizes).
   void force_normalized() { normalized_ = true; }

@@ -1,6 +1,5 @@
 #pragma once
-// What a node makes of a mesh's vertices before it is placed: morph targets and skins (glTF 2.0, 3.7.2.2 and
-// 3.7.3).
+// Deformation of a mesh's vertices by its node: morph targets and skins (glTF 2.0, 3.7.2.2 and 3.7.3).
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -14,19 +13,19 @@ namespace lucerna::scene {
 struct Pose {
   std::vector<float> weights;      ///< by morph target; empty: the mesh as it is
   std::vector<glm::dmat4> joints;  ///< by joint, joint's global matrix * inverse bind matrix; empty: no skin
-  /// Places vertices that have no joints: the node's matrix. Without a skin it is given where the matrix is
-  /// singular, so that no instance can have it.
+  /// Places vertices without joints: the node's matrix. Without a skin it is set if the matrix is singular,
+  /// so that no instance can have it.
   std::optional<glm::dmat4> matrix;
 
-  /// Vertices are moved to the world; otherwise the instance's matrix does so.
+  /// True if vertices are transformed to the world here; otherwise the instance's matrix does so.
   bool placed() const { return !joints.empty() || matrix; }
 };
 
 /// Deforms the vertices of one primitive.
 class Deformer {
  public:
-  /// `item` is the primitive, of `vertices` vertices. All must outlive this. Throws a located Error where
-  /// targets, joints or weights are not of the type or number that glTF asks for.
+  /// `item` is the primitive, with `vertices` vertices. All arguments must outlive this. Throws a located
+  /// Error if targets, joints or weights have a wrong type or number.
   Deformer(Document& document, const tinygltf::Primitive& source, const Item& item, const Pose& pose,
            size_t vertices);
 
@@ -53,8 +52,8 @@ class Deformer {
   mutable bool warned_ = false;
 };
 
-/// Takes normals to where `m` takes points: its inverse's transpose but for a positive factor, and, unlike
-/// that, defined for matrices of rank 2 too.
+/// The matrix for normals of points transformed by `m`: its inverse transpose up to a positive factor, but
+/// also defined for matrices of rank 2.
 glm::dmat3 normal_matrix(const glm::dmat3& m);
 
 template <class Vector>

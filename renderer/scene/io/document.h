@@ -1,5 +1,5 @@
 #pragma once
-// A glTF file as read and checked, before anything is made of it.
+// A glTF file, read and checked, before conversion.
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
@@ -17,13 +17,13 @@
 
 namespace lucerna::scene {
 
-/// Counted warnings: each kind is one line of the scene, whatever the number of cases.
+/// Warnings by kind, with counts: each kind is one line of the scene.
 class Warnings {
  public:
   /// Adds `count` cases of `kind`, a sentence in which "{}" stands for the count; `example` locates the first
   /// case.
   void add(const std::string& kind, const std::string& example = {}, uint64_t count = 1);
-  /// One line a kind, in the order in which they first came.
+  /// One line per kind, in order of first occurrence.
   std::vector<std::string> lines() const;
 
  private:
@@ -35,25 +35,25 @@ class Warnings {
   std::map<std::string, size_t> index_;
 };
 
-/// The scene asks for more memory than it may take.
+/// The scene needs more memory than allowed.
 class OverBudget : public Error {
  public:
   using Error::Error;
 };
 
-/// A file that the scene names is not in its folder.
+/// A file named by the scene is outside its folder.
 class OutsideFolder : public Error {
  public:
   using Error::Error;
 };
 
-/// What a scene may still take of LoadOptions::most_bytes. What it has taken for good or for a while is never
-/// given back, so that this also bounds the work that a small file can ask for. Any thread.
+/// The remaining part of LoadOptions::most_bytes. Memory used temporarily counts too, so this also bounds the
+/// work that a small file can cause. Thread-safe.
 class Budget {
  public:
   explicit Budget(uint64_t most) : most_(most) {}
-  /// Throws OverBudget at `where` when `bytes` more go beyond what is allowed; the format says for what
-  /// ("{} instances").
+  /// Throws OverBudget at `where` if `bytes` more exceed the budget; the format describes their use ("{}
+  /// instances").
   template <class... Args>
   void take(uint64_t bytes, const std::string& where, fmt::format_string<Args...> format, Args&&... args) {
     const uint64_t before = taken_.fetch_add(bytes);
@@ -69,7 +69,7 @@ class Budget {
   std::atomic<uint64_t> taken_{0};
 };
 
-/// What every step of loading needs.
+/// Shared state of all loading steps.
 struct Document {
   Document(const LoadOptions& options) : budget(options.most_bytes), outside(options.outside) {}
 
@@ -95,27 +95,26 @@ std::vector<uint8_t> read_file(const std::filesystem::path& path, const std::str
 /// Bytes behind a "data:" URI. Throws an Error at `item` unless it is base64 or percent-encoded text.
 std::vector<uint8_t> decode_data_uri(const Item& item);
 bool is_data_uri(const std::string& uri);
-/// "%20" and the like to bytes; a stray % stays.
+/// Decodes "%20" and the like; a stray % stays.
 std::string percent_decode(const std::string& uri);
-/// The file that a URI means (percent-decoded; as written if only that exists). Throws OutsideFolder at the
-/// item when it is not one of the scene's folder.
+/// The file that a URI names (percent-decoded, or as written if only that exists). Throws OutsideFolder at
+/// the item if it is outside the scene's folder.
 std::filesystem::path resolve_uri(const Document& document, const Item& uri);
-/// Throws OutsideFolder at `where` unless the file is in the scene's folder or below, its symbolic links
-/// followed, or files outside may be read. The file need not exist.
+/// Throws OutsideFolder at `where` unless the file is in the scene's folder or below, symbolic links
+/// followed, or files outside are allowed. The file need not exist.
 void require_inside(const Document& document, const std::filesystem::path& file, const std::string& where);
 
 /// Reads the container, the JSON and the buffers, and checks types, indices and sizes of everything that
 /// later steps touch (check_structure), then lets tinygltf make its model.
 void open_document(Document& document, const std::filesystem::path& path);
 
-/// Throws a located Error unless the document's structure is that of glTF 2.0 as far as we read it: after it
-/// every index is in range, every view inside its buffer, every accessor inside its view, the node graph a
-/// forest.
+/// Throws a located Error unless the structure is valid glTF 2.0, as far as it is read: afterwards every
+/// index is in range, every view inside its buffer, every accessor inside its view, the node graph a forest.
 void check_structure(const Document& document);
-/// extras.light_group of a node, material or lamp, a text or a whole number, as light_groups.h has names; ""
-/// where there is none. Throws a located Error when it is something else.
+/// extras.light_group of a node, material or lamp: a text or a whole number, normalized as in light_groups.h;
+/// "" if there is none. Throws a located Error for other types.
 std::string light_group(const Item& item);
-/// Whether an extension is honoured (load.h lists them).
+/// True if the extension is supported (load.h lists them).
 bool is_known_extension(const std::string& name);
 
 }  // namespace lucerna::scene

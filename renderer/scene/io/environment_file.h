@@ -1,15 +1,14 @@
 #pragma once
-// A picture that lights a scene, read by itself.
+// Loads an environment image on its own.
 #include <filesystem>
 
 #include "scene/scene.h"
 
 namespace lucerna::scene {
 
-/// Reads a latitude-longitude image (HDR, EXR or whatever the loader decodes) as linear floats, values that
-/// are negative or not finite replaced. Throws Error located at the file: it is not there, cannot be read or
-/// decoded, is cut short, takes more than `most_bytes`, or has a shape that check_environment_shape
-/// (images.h) refuses, as the environment that a scene names.
+/// Reads a latitude-longitude image (HDR, EXR or another supported format) as linear floats; negative and
+/// non-finite values are replaced. Throws Error located at the file: missing, unreadable, undecodable or
+/// truncated, larger than `most_bytes`, or of a shape that check_environment_shape() (images.h) refuses.
 Image load_environment(const std::filesystem::path& file, uint64_t most_bytes);
 
 }  // namespace lucerna::scene

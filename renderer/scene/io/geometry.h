@@ -7,9 +7,9 @@
 
 namespace lucerna::scene {
 
-/// Builds the scene's mesh of glTF mesh `index` in a pose. Primitives without triangles are left out. Where
-/// the pose places the vertices, they are relative to `origin`, a point near them in the world in multiples
-/// of 64 m (so 0 in most scenes): what is far away keeps its shape in single precision.
+/// Converts glTF mesh `index` in a pose. Primitives without triangles are skipped. If the pose places the
+/// vertices, they are relative to `origin`, a nearby point in the world in multiples of 64 m (0 in most
+/// scenes), so that distant geometry keeps its shape in single precision.
 Mesh load_mesh(Document& document, uint32_t index, MaterialLoader& materials, const Pose& pose,
                glm::dvec3& origin);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A JSON value that knows where it stands, so that every complaint about it is located.
+// A JSON value with its location, for messages.
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace lucerna::scene {
 
-/// A view of one value inside a document that outlives it. `file` is the document's name in messages, `path`
-/// the place inside it ("meshes[3].primitives[0]"). All readers throw a located Error when the value has
-/// another type.
+/// A view of one value in a document that outlives it. `file` is the document's name in messages, `path` the
+/// location inside it ("meshes[3].primitives[0]"). All readers throw a located Error if the value has another
+/// type.
 class Item {
  public:
   Item(const std::string& file, const nlohmann::json& value, std::string path = {})

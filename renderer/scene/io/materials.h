@@ -9,7 +9,7 @@
 
 namespace lucerna::scene {
 
-/// What geometry must know of a material.
+/// What geometry needs to know of a material.
 struct MaterialNeeds {
   /// n of the TEXCOORD_n that its textures read as TextureUse::uv_set 0 and 1; -1: none. 0 and 1 are
   /// themselves unless a set beyond them came first.
@@ -22,17 +22,16 @@ class MaterialLoader {
  public:
   MaterialLoader(Document& document, Scene& scene) : document_(document), scene_(scene) {}
 
-  /// The scene's id of glTF material `index` (-1: glTF's default material); reads it when asked for the first
-  /// time.
+  /// The scene's id of glTF material `index` (-1: glTF's default material); read on the first call.
   Id material(int index);
   const MaterialNeeds& needs(Id material) const { return needs_[material]; }
 
-  /// Decodes every image that a texture uses and fills Scene::images and Scene::textures. `decode` false:
-  /// neutral images stand for all of them.
+  /// Decodes every used image and fills Scene::images and Scene::textures. `decode` false: neutral images
+  /// instead.
   void load_images(bool decode);
 
  private:
-  struct Wanted {          // a texture as some material asks for it
+  struct Wanted {          // a texture as a material needs it
     uint32_t texture = 0;  // glTF index
     bool srgb = false;
     bool normal = false;

@@ -7,13 +7,13 @@
 
 namespace lucerna::scene {
 
-/// A glTF mesh in one pose. Nodes that show a mesh alike share it.
+/// A glTF mesh in one pose. Nodes with equal mesh and pose share it.
 struct MeshUse {
   uint32_t mesh = 0;  ///< glTF index
   Pose pose;
 };
 
-/// Where things are, in the file's coordinates and in double precision; in the order of the scene's lists.
+/// Positions in the file's coordinates and in double precision, in the order of the scene's lists.
 struct Placement {
   std::vector<MeshUse> uses;  ///< Instance::mesh indexes these until meshes are loaded
   std::vector<glm::dmat4> instances, cameras;
@@ -21,13 +21,13 @@ struct Placement {
 };
 
 /// Walks the default scene (scenes[scene], else the first, else all roots) and fills instances, cameras and
-/// lights, all but their places.
-/// - The matrix of a skinned mesh's node is ignored (glTF 2.0, 3.7.3.3), whatever it is.
-/// - A matrix that is singular in single precision but of rank 2 flattens meshes, which then have a pose of
-///   their own; cameras and lights keep the orientation that their other axes give. What has a matrix of
-///   rank 1 or 0 (scale 0 hides things: glTF 2.0, 3.5.3) is left out with a warning.
-/// - A camera whose values cannot be used is left out with a warning.
-/// Throws a located Error where a matrix above a mesh, camera or light is not finite.
+/// lights except their positions.
+/// - The matrix of a skinned mesh's node is ignored (glTF 2.0, 3.7.3.3).
+/// - A matrix that is singular in single precision but of rank 2 flattens meshes, which then have a separate
+///   pose; cameras and lights keep the orientation of their other axes. Objects with a matrix of rank 1 or 0
+///   (scale 0 hides them: glTF 2.0, 3.5.3) are skipped with a warning.
+/// - A camera with unusable values is skipped with a warning.
+/// Throws a located Error if a matrix above a mesh, camera or light is not finite.
 Placement load_nodes(Document& document, Scene& scene);
 
 /// The scene object that load_nodes walks, if there is one.
