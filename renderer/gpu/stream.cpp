@@ -347,6 +347,14 @@ void Stream::run() {
   impl_->collect_times();
 }
 
+void Stream::discard() {
+  if (!impl_->recording) return;
+  impl_->recording = false;
+  impl_->h.vk.vkEndCommandBuffer(impl_->commands);  // begin() resets the pool
+  impl_->timed.clear();
+  impl_->queries = 0;
+}
+
 std::vector<StageTime> Stream::take_times() {
   std::vector<StageTime> taken;
   // Stages of work that is recorded but has not run keep their places until it has.

@@ -59,6 +59,9 @@ class Stream {
   /// Submits the recorded work and waits for it; host-visible memory is then coherent for the host. Does
   /// nothing if nothing was recorded.
   void run();
+  /// Drops the work that is recorded and has not run: for work that could not be recorded as a whole, whose
+  /// buffers may go before the next run.
+  void discard();
   /// Device milliseconds per stage since the last call, summed over dispatches of the same stage, in order of
   /// first use.
   std::vector<StageTime> take_times();
