@@ -13,20 +13,13 @@ namespace {
 /// Samples of every pixel from which on a draft, of wider pixels, tells nothing any more.
 constexpr uint32_t k_draft_until = 4;
 
-/// Of mirrors and surfaces of glass, that a ray is followed by: two panes seen in a mirror are five.
-constexpr uint32_t k_most_turns = 6;
-
-film::PreviewCamera camera_of(const shared::Frame& f) {
-  return {{f.camera_origin, f.camera_right, f.camera_up, f.camera_forward}, f.orthographic != 0};
-}
-
 }  // namespace
 
 void Display::restart(const scene::Changes& changes, const vec3& scale, bool same_light) {
   const auto is = [&](scene::Change c) { return changes.edits.contains(c); };
   const bool repainted =
       is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders);
-  if (sight_.rays && (repainted || is(scene::Change::shape))) sight_.rays->forget();
+  if (repainted || is(scene::Change::shape)) sight_.forget();
   if (is(scene::Change::shape) || is(scene::Change::size))
     preview_.forget();
   else
@@ -50,7 +43,7 @@ bool Display::take(gpu::Stream& stream, const film::Film& film) {
 
 void Display::plain(const Engine& engine, const PictureView& view, const film::View& shown) {
   shares_ = {};
-  plain_ = {camera_of(engine.frame(view, view.width, view.height)), shown.exposure};
+  plain_ = {preview_camera(engine.frame(view, view.width, view.height)), shown.exposure};
 }
 
 void Display::warm(gpu::Stream& stream, const film::Film& film) {
@@ -72,7 +65,7 @@ void Display::mixed() {
 bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
                    const std::function<bool()>& cancel) {
   ++version_;
-  if (what == DraftPlan::Next::sight) return see(engine, view, cancel);
+  if (what == DraftPlan::Next::sight) return sight_.see(engine, view, cancel);
   const bool fine = what == DraftPlan::Next::fine;
   const uint32_t step = fine ? shared::k_preview_step : shared::k_coarse_step;
   if (fine) {
@@ -103,45 +96,6 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
   return complete;
 }
 
-const gpu::Buffer* Display::seen(const film::PreviewCamera& camera, const PictureView& view) const {
-  const auto& rays = sight_.rays;
-  const bool known = rays && rays->seen() && rays->stride() == 1 && rays->width() == view.width &&
-                     rays->height() == view.height && sight_.camera == camera;
-  return known ? &rays->surfaces() : nullptr;
-}
-
-bool Display::sight_wanted(const Engine& engine, const PictureView& view) const {
-  return uint64_t{view.width} * view.height <= overlay::Sight::k_most_points &&
-         !seen(camera_of(engine.frame(view, view.width, view.height)), view);
-}
-
-bool Display::see(Engine& engine, const PictureView& view, const std::function<bool()>& cancel) {
-  transport::Wavefront& wavefront = engine.wavefront();
-  shared::Frame frame = engine.frame(view, view.width, view.height);
-  const film::PreviewCamera camera = camera_of(frame);
-  if (!sight_.rays || sight_.defines != engine.defines()) {
-    sight_.rays.emplace(device_, compiler_, engine.defines());
-    sight_.look = gpu::Kernel(device_, compiler_, "film/preview_look.comp", engine.defines());
-    sight_.note = gpu::Kernel(device_, compiler_, "film/preview_sight.comp");
-    sight_.defines = engine.defines();
-  }
-  overlay::Sight& rays = *sight_.rays;
-  if (!rays.begun() || rays.width() != view.width || rays.height() != view.height || sight_.camera != camera)
-    rays.begin(frame, 1);
-  sight_.camera = camera;
-  const auto note = [&](const shared::SeePush& push) {
-    wavefront.bind_paths(sight_.resources);
-    sight_.resources.set("Surfaces", rays.surfaces());
-    wavefront.stream().dispatch(sight_.note, sight_.resources, push, gpu::groups_for(push.count, 64));
-  };
-  frame.max_depth = k_most_turns;
-  wavefront.set_frame(frame, engine.plan().enabled());
-  bool complete = true;
-  wavefront.uncounted([&] { complete = rays.see(wavefront, "sight", note, cancel, &sight_.look); });
-  wavefront.set_frame(engine.frame(view, view.width, view.height), engine.plan().enabled());
-  return complete;
-}
-
 bool Display::shows(const film::View& view, const film::Film& film) const {
   return view.layer < shared::k_layer_albedo &&
          film::Preview::fits(device_.info().limits, film.width(), film.height());
@@ -156,14 +110,14 @@ void Display::develop(Engine& engine, const PictureView& view, const film::Film&
   const film::Sampled sampled = samples > 0 ? film::Sampled::all
                                 : begun     ? film::Sampled::some
                                             : film::Sampled::none;
-  const film::PreviewCamera camera = camera_of(engine.frame(view, view.width, view.height));
+  const film::PreviewCamera camera = preview_camera(engine.frame(view, view.width, view.height));
   if (!draft && sampled == film::Sampled::none && preview_.has_history()) {
     preview_.recall(engine.wavefront().stream(), film, shown, camera);
     shares_ = {.stale = 1};
     return;
   }
   shares_ = preview_.develop(engine.wavefront().stream(), film, draft, shown, camera, true, sampled,
-                             seen(camera, view));
+                             sight_.surfaces(engine, view));
 }
 
 }  // namespace lucerna::session

@@ -5,17 +5,17 @@
 #include <optional>
 
 #include "film/preview.h"
-#include "overlay/sight.h"
 #include "scene/change.h"
 #include "session/draft_plan.h"
 #include "session/engine.h"
+#include "session/pixel_sight.h"
 
 namespace lucerna::session {
 
 class Display {
  public:
   Display(gpu::Device& device, gpu::ShaderCompiler& compiler)
-      : device_(device), compiler_(compiler), preview_(device, compiler) {}
+      : device_(device), preview_(device, compiler), sight_(device, compiler) {}
 
   /// The picture begins anew, of other light or as seen from elsewhere. `scale`: what an edit is known to
   /// multiply all light by. `same_light`: it changes none of it, only how it is computed or seen.
@@ -31,7 +31,10 @@ class Display {
 
   DraftPlan& plan() { return plan_; }
   /// Whether it is not known yet, and can be, what surfaces the pixels show of a picture that is previewed.
-  bool sight_wanted(const Engine& engine, const PictureView& view) const;
+  bool sight_wanted(const Engine& engine, const PictureView& view) const {
+    return sight_.wanted(engine, view);
+  }
+  PixelSight& sight() { return sight_; }
   /// Another sample of a draft, or a piece of what pixels show. `coarse`: the film of a quarter of the
   /// resolution. False when it was cancelled.
   bool draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
@@ -54,23 +57,11 @@ class Display {
   void plain(const Engine& engine, const PictureView& view, const film::View& shown);
 
  private:
-  bool see(Engine& engine, const PictureView& view, const std::function<bool()>& cancel);
-  /// The surfaces of that picture's pixels; null while they are not known.
-  const gpu::Buffer* seen(const film::PreviewCamera& camera, const PictureView& view) const;
-
   gpu::Device& device_;
-  gpu::ShaderCompiler& compiler_;
   film::Preview preview_;
   std::unique_ptr<film::Film> fine_;  ///< of half the resolution; made when it is called for
   DraftPlan plan_;
-  /// What surfaces the pixels of the picture show, in mirrors and through glass too (film/preview_look.comp).
-  struct {
-    std::optional<overlay::Sight> rays;
-    gpu::Defines defines;  ///< that these were made with
-    gpu::Kernel look, note;
-    gpu::Resources resources;
-    film::PreviewCamera camera;  ///< for which it was asked
-  } sight_;
+  PixelSight sight_;
   film::PreviewShares shares_;
   bool developed_ = false, warm_ = false;
   uint64_t version_ = 0;

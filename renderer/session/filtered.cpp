@@ -6,16 +6,50 @@
 
 namespace lucerna::session {
 
-Filtered filter(gpu::Device& device, gpu::ShaderCompiler& compiler, gpu::Stream& stream,
-                const film::Film& film, uint32_t side, float luminance_floor) {
-  film::Filter filter(device, compiler);
-  Filtered f{std::make_unique<film::Film>(device, film.width(), film.height()), {}, 0, 0};
-  stream.run();
-  stream.take_times();
-  filter.apply(stream, film, *f.film);
-  for (const gpu::StageTime& t : stream.take_times()) f.ms += t.milliseconds;
-  f.error = film::filter_error(film.read(), f.film->read(), side, double{luminance_floor});
-  return f;
+void PictureFilter::begin(const FilterJob& job) {
+  stop();
+  job_.emplace(job);
+}
+
+void PictureFilter::stop() {
+  if (filter_) filter_->release();
+  job_.reset();
+  result_ = {};
+  begun_ = filtered_ = false;
+}
+
+void PictureFilter::step(Engine& engine, const PictureView& view, PixelSight& sight,
+                         const std::function<bool()>& cancel) {
+  if (!job_) return;
+  try {
+    const film::Film& film = job_->film;
+    gpu::Stream& stream = engine.wavefront().stream();
+    if (!filter_) {
+      filter_.emplace(device_, compiler_);
+    } else if (!begun_ && sight.wanted(engine, view)) {
+      sight.see(engine, view, cancel);
+    } else if (!begun_) {
+      result_ = {std::make_unique<film::Film>(device_, film.width(), film.height()), {}, 0, job_->paths};
+      filter_->begin(film, *result_.film, sight.surfaces(engine, view));
+      begun_ = true;
+    } else if (!filtered_) {
+      engine.wavefront().uncounted([&] {
+        stream.run();
+        stream.take_times();
+        filtered_ = !filter_->step(stream);
+        for (const gpu::StageTime& t : stream.take_times()) result_.ms += t.milliseconds;
+      });
+    } else {
+      filter_->release();
+      result_.error =
+          film::filter_error(film.read(), result_.film->read(), job_->tile, double{job_->luminance_floor});
+      job_.reset();
+      begun_ = filtered_ = false;
+    }
+  } catch (...) {
+    stop();
+    throw;
+  }
 }
 
 std::string filter_text(const film::FilterError& error) {

@@ -74,7 +74,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   std::unique_ptr<Engine> engine = make_engine(world, plan, settings, changes);
   Films films =
       film_ && keeps(*film_, world.flat.effects) ? Films{} : make_films(width_, height_, world.flat.effects);
-  if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
+  if (films.picture) use(std::move(films));
   if (options_.interactive && !display_) display_ = std::make_unique<Display>(*device_, *compiler_);
   use(std::move(engine), changes);
   world_ = std::move(world);
@@ -112,6 +112,7 @@ void Renderer::take(Relight relight) {
 }
 
 void Renderer::remix() {
+  forget_filtered();
   film_->set_mix(relight_.weights), coarse_->set_mix(relight_.weights);
   if (display_) display_->mixed();
   // A drag at a slider changes one group, and that at presets comes as a row of mixes.
@@ -154,6 +155,11 @@ void Renderer::use(std::unique_ptr<Engine> engine, const scene::Changes& changes
   if (device_->allocated_bytes() > device_->info().memory_bytes / 2) kept_.clear();
 }
 
+void Renderer::use(Films films) {
+  forget_filtered();
+  film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
+}
+
 void Renderer::reload_shaders() {
   if (!engine_) return;
   std::unique_ptr<Engine> engine = make_engine(world_, engine_->plan(), settings_, scene::Change::shaders);
@@ -161,6 +167,7 @@ void Renderer::reload_shaders() {
   if (display_) display = std::make_unique<Display>(*device_, *compiler_);
   use(std::move(engine), scene::Change::shaders);
   display_ = std::move(display), shown_ = {};
+  forget_filtered(), window_filter_.reset();
   heed_settings();
   restart(scene::Change::shaders);
 }
@@ -205,9 +212,11 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
       film_->set_mix(weights);
       wavefront.mix(*film_);
     }
-    const bool taken = display_->take(wavefront.stream(), *film_);
+    const bool filtered = shown_filtered_ && shown_.filtered && !by_group;
+    const bool taken = display_->take(wavefront.stream(), filtered ? *shown_filtered_->film : *film_);
     known = known || (by_group && taken);
   }
+  forget_filtered();
   film_->set_mix(relight_.weights), coarse_->set_mix(relight_.weights);
   film_->clear(wavefront.stream());
   coarse_->clear(wavefront.stream());
@@ -401,7 +410,7 @@ bool Renderer::apply_plan(scene::Changes& changes) {
     use(make_engine(world_, plan, settings_, changes), changes);
   else
     engine_->set_plan(plan);
-  if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
+  if (films.picture) use(std::move(films));
   if (edit) edit->keep();
   if (edit && !anew) engine_->wavefront().rebind(*world_.device);
   take(std::move(relight));
@@ -429,8 +438,9 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
     }
     if (edit) edit->keep();
     take(std::move(relight));
-    film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
+    use(std::move(films));
   }
+  filter_fails_ = false;
   width_ = width, height_ = height;
   restart(scene::Change::size);
 }
@@ -446,6 +456,10 @@ void Renderer::choose_camera(const std::string& name) { set_camera(scene::find_c
 bool Renderer::step(const std::function<bool()>& cancel) {
   if (engine_) settle_mix();
   if (engine_ && samples() > 0 && judged_otherwise()) change_schedule();
+  if (filter_due()) {
+    filter_piece(cancel);
+    return true;
+  }
   if (!engine_ || done()) return false;
   clock_.go();
   const Timer timer;

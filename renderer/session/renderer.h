@@ -169,7 +169,7 @@ class Renderer {
   /// Whether shown_picture() has something to show before there is any new light: what was there before.
   bool remembers() const;
   /// Of the picture that shown_picture() has made last.
-  film::PreviewShares preview_shares() const { return display_ ? display_->shares() : film::PreviewShares{}; }
+  film::PreviewShares preview_shares() const;
   film::View view() const;
   film::Image image() const { return film_->read(); }  ///< without a mix that is pending
   /// The picture's brightness, or that at a point (0..1 to the right and down): of the coarse image while
@@ -183,6 +183,11 @@ class Renderer {
   const Filtered& filter();
   /// What filter() has made of the picture as it is; null: nothing.
   const Filtered* filtered() const;
+  /// Whether the next step() filters the picture for the window (RendererOptions::interactive): from some
+  /// samples on and again when there are twice as many, and when it is done. Sampling waits meanwhile.
+  bool filter_due() const;
+  /// Whether shown_picture() has another filtered picture since this was called last.
+  bool filter_news() { return std::exchange(filter_news_, false); }
   /// Writes film_image() as EXR, or what the window shows as PNG: through exposure and tone curve, `as_shown`
   /// with the preview's filter too, where that is on.
   void save(const std::filesystem::path& file, bool as_shown = false);
@@ -276,6 +281,7 @@ class Renderer {
                                       const plan::Settings& settings, const scene::Changes& changes) const;
   /// Puts another engine in the place of the one in use, whose work is kept where it may serve again.
   void use(std::unique_ptr<Engine> engine, const scene::Changes& changes);
+  void use(Films films);
   /// The scene with other lights, environment or factors of materials. Kernels are made for what it calls for
   /// now. On failure throws Error and everything stays as it was.
   void edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& change, bool factors);
@@ -287,6 +293,14 @@ class Renderer {
   }
   /// What the film has developed, with what solvers draw over it.
   std::vector<uint8_t> finished_picture(const std::function<bool()>& cancel);
+  std::vector<uint8_t> picture_of(const Filtered& filtered, const film::View& view,
+                                  const std::function<bool()>& cancel);
+  FilterJob filter_job() const;
+  /// A piece of the window's filtered picture. When there is no memory for it there will be none.
+  void filter_piece(const std::function<bool()>& cancel);
+  /// The window's filtered picture, where that view shows it; null: there is none.
+  const Filtered* shown_filtered(const film::View& view) const;
+  void forget_filtered();
   void mark_tiles(const film::View& view);
   bool previewed(const film::View& view) const;  ///< whether the window shows a preview of it
   film::HeatScale heat_scale(uint32_t layer) const;
@@ -335,10 +349,16 @@ class Renderer {
   std::unique_ptr<Engine> engine_;              ///< null before the first scene; goes before the world
   KeptSolvers kept_;
   std::unique_ptr<film::Film> film_, coarse_;
-  std::optional<Filtered> filtered_;
-  std::unique_ptr<Display> display_;  ///< null in batch
+  std::optional<Filtered> filtered_;              ///< by filter()
+  std::unique_ptr<PictureFilter> window_filter_;  ///< made when it is called for
+  std::optional<Filtered> shown_filtered_;        ///< what it has made last of the picture
+  bool filter_fails_ = false, filter_news_ = false;
+  double filter_s_ = 0, filter_piece_s_ = 0;  ///< that filtering took: last, and up to now
+  double filtered_at_s_ = 0;                  ///< render_s_ then
+  std::unique_ptr<Display> display_;          ///< null in batch
   struct {
     uint64_t version = ~uint64_t{0}, paths = 0;
+    bool filtered = false;
   } shown_;                       ///< Display::version() and the paths of the preview that was shown last
   bool draft_preparing_ = false;  ///< when a draft was drawn last
   double coarse_s_ = 0;           ///< of the coarse drafts since they began

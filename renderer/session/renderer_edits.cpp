@@ -125,7 +125,7 @@ void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Cha
       keeps(*film_, world_.flat.effects) ? Films{} : make_films(width_, height_, world_.flat.effects);
   if (anew) use(make_engine(world_, engine_->plan(), settings_, what), what);
   trial.keep();
-  if (films.picture) film_ = std::move(films.picture), coarse_ = std::move(films.coarse);
+  if (films.picture) use(std::move(films));
   take(std::move(relight));
   if (anew)
     heed_settings();

@@ -68,8 +68,11 @@ bool Renderer::shows_the_same() const {
   const auto draws = [&](const OptionInfo& option) {
     return option.key.starts_with("overlay.") && settings_.text(option.key) != option.fallback;
   };
-  return engine_ && film_ && previewed(view()) && !looked_at_ && shown_.version == display_->version() &&
-         shown_.paths == stats().paths && std::none_of(plan::options().begin(), plan::options().end(), draws);
+  if (!engine_ || !film_ || looked_at_ || shown_.version != display_->version()) return false;
+  const Filtered* f = shown_filtered(view());
+  const bool same = f ? shown_.filtered && shown_.paths == f->paths
+                      : previewed(view()) && !shown_.filtered && shown_.paths == stats().paths;
+  return same && std::none_of(plan::options().begin(), plan::options().end(), draws);
 }
 
 bool Renderer::remembers() const { return engine_ && film_ && previewed(view()) && display_->remembers(); }
@@ -86,15 +89,21 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
     return finished_picture(cancel);
   }
   settle_mix();
+  if (const Filtered* f = shown_filtered(v)) {
+    display_->plain(*engine_, picture_view(), v);
+    shown_ = {display_->version(), f->paths, true};
+    return picture_of(*f, v, cancel);
+  }
   if (!previewed(v)) {
     if (display_) display_->plain(*engine_, picture_view(), v);
     return picture(with_coarse, cancel);
   }
   mark_tiles(v);
   try {
-    shown_ = {display_->version(), stats().paths};
+    shown_ = {display_->version(), stats().paths, false};
     display_->develop(*engine_, picture_view(), *film_, *coarse_, v, samples(), stats().paths > 0);
   } catch (const Error& e) {
+    engine_->wavefront().stream().discard();
     // The picture itself does not need it.
     log::warning("{}; the window shows the samples as they are", e.what());
     settings_.set("preview.filter", "off");
@@ -108,15 +117,20 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<boo
   settle_mix();
   const film::View v = view();
   mark_tiles(v);
+  if (const Filtered* f = filtered(); f && v.layer < shared::k_layer_albedo) return picture_of(*f, v, cancel);
+  engine_->developer().tone_map(engine_->wavefront().stream(), *film_, v,
+                                with_coarse ? coarse_.get() : nullptr);
+  return finished_picture(cancel);
+}
+
+std::vector<uint8_t> Renderer::picture_of(const Filtered& filtered, const film::View& v,
+                                          const std::function<bool()>& cancel) {
+  mark_tiles(v);
   gpu::Stream& stream = engine_->wavefront().stream();
-  if (const Filtered* f = filtered(); f && v.layer < shared::k_layer_albedo) {
-    engine_->developer().tone_map(stream, *f->film, v);
-    stream.copy(f->film->picture(), film_->picture(), f->film->picture().bytes());
-    stream.run();
-    if (v.tiles > 0) engine_->developer().draw_tiles(stream, *film_, v);
-  } else {
-    engine_->developer().tone_map(stream, *film_, v, with_coarse ? coarse_.get() : nullptr);
-  }
+  engine_->developer().tone_map(stream, *filtered.film, v);
+  stream.copy(filtered.film->picture(), film_->picture(), filtered.film->picture().bytes());
+  stream.run();
+  if (v.tiles > 0) engine_->developer().draw_tiles(stream, *film_, v);
   return finished_picture(cancel);
 }
 
@@ -179,23 +193,6 @@ void add_group_layers(film::FilmImage& out, const film::Film& film, const Religh
 
 }  // namespace
 
-const Filtered& Renderer::filter() {
-  if (!engine_ || !film_ || stats().paths == 0) throw Error("filter", "there is no picture to filter yet");
-  settle_mix();
-  filtered_.reset();  // its memory first
-  filtered_ = session::filter(*device_, *compiler_, engine_->wavefront().stream(), *film_, tile_side(),
-                              seen_range().floor);
-  filtered_->paths = stats().paths;
-  return *filtered_;
-}
-
-const Filtered* Renderer::filtered() const {
-  const bool same = filtered_ && filtered_->paths == stats().paths &&
-                    filtered_->film->width() == film_->width() &&
-                    filtered_->film->height() == film_->height();
-  return same ? &*filtered_ : nullptr;
-}
-
 film::FilmImage Renderer::film_image() {
   settle_mix();
   const film::Image image = film_->read();
@@ -246,7 +243,8 @@ void Renderer::save(const std::filesystem::path& file, bool as_shown) {
     const std::vector<uint8_t> shown = as_shown ? shown_picture(false) : picture(false);
     inspect(at);
     std::map<std::string, std::string> metadata;
-    if (const Filtered* f = filtered(); f && !as_shown) metadata["filter"] = filter_text(f->error);
+    if (const Filtered* f = as_shown ? shown_filtered(view()) : filtered())
+      metadata["filter"] = filter_text(f->error);
     film::write_png(file, film_->width(), film_->height(), shown, metadata);
   } else
     throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);

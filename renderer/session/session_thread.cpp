@@ -94,7 +94,9 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
       renderer.ledger().entries().back().paths != renderer.stats().paths)
     renderer.finish_ledger();
   if (!filled && renderer.samples() > 0) filled = changed = true;
-  if (changed || since_publish.seconds() > publish_seconds || renderer.done() || renderer.waits())
+  changed = renderer.filter_news() || changed;
+  const bool over = (renderer.done() && !renderer.filter_due()) || renderer.waits();
+  if (changed || since_publish.seconds() > publish_seconds || over)
     publish_picture(renderer, renderer.samples() > 0 && !renderer.mix_pending() &&
                                   (since_numbers.seconds() > numbers_seconds || renderer.done() || paused));
 }

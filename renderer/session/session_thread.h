@@ -58,7 +58,9 @@ struct Session::Impl {
   };
   std::vector<Measure> measures;  // that wait for a picture
 
-  bool works(Renderer& r) const { return r.ready() && !paused && !r.done() && !r.waits(); }
+  bool works(Renderer& r) const {
+    return r.ready() && !paused && (!r.done() || r.filter_due()) && !r.waits();
+  }
 
   /// Whether it is to be written now, or cannot be, which writing will tell.
   bool due(Renderer& r, const Save& save) const {
@@ -66,6 +68,8 @@ struct Session::Impl {
       const solvers::Solver* solver = r.solver(save.solver);
       return !solver || solver->ready();
     }
+    // As it is shown, a finished picture is filtered first.
+    if (save.as_shown && r.done() && works(r)) return false;
     return r.samples() > 0 || !works(r);
   }
 

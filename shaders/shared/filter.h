@@ -8,6 +8,8 @@ struct FilterPush {
   uint width, height;
   uint component;  ///< 0..3
   uint stride;     ///< pixels from one of the window to the next
+  uint first;      ///< pixel of the first invocation, where a kernel runs in pieces
+  uint seen;       ///< not 0: it is known what the pixels show in mirrors and through glass
   float scale;     ///< radiance is multiplied by this, so that 16-bit floats hold it
 };
 
@@ -25,7 +27,7 @@ LUCERNA_CONST float k_filter_ridge_albedo = 0.0003f;  ///< the same of the slope
 /// Least weight of a pixel whose surface is nearly alike: counts where none is more so.
 LUCERNA_CONST float k_filter_unlike = 0.03f;
 /// Standard deviations by which the other half must speak against a fit before less than all of it is taken.
-LUCERNA_CONST float k_filter_doubt = 1.5f;
+LUCERNA_CONST float k_filter_doubt = 2.5f;
 /// Half side [pixels] of the window over which a fit is judged, and how its weights fall off.
 LUCERNA_CONST int k_filter_judged_reach = 6;
 LUCERNA_CONST float k_filter_judged_falloff = 0.025f;

@@ -1,5 +1,6 @@
 #include "film/filter/filter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -25,6 +26,9 @@ namespace {
 // so that no pattern of the wide ones is left.
 constexpr uint32_t k_strides[] = {1, 2, 4, 1};
 
+// Pixels that are fitted in a piece of the work.
+constexpr uint32_t k_piece = 1u << 16;
+
 /// Brings the mean luminance of the picture to about 1: a power of two, so that nothing is rounded.
 float scale_of(const std::array<vec3, k_components>& means) {
   const float y = luminance(means[0] + means[1] + means[2] + means[3]);
@@ -33,71 +37,108 @@ float scale_of(const std::array<vec3, k_components>& means) {
 
 }  // namespace
 
-void Filter::apply(gpu::Stream& stream, const Film& film, Film& filtered) {
+void Filter::apply(gpu::Stream& stream, const Film& film, Film& filtered, const gpu::Buffer* seen) {
+  begin(film, filtered, seen);
+  while (step(stream)) {
+  }
+  release();
+}
+
+void Filter::begin(const Film& film, Film& filtered, const gpu::Buffer* seen) {
+  release();
   const uint32_t width = film.width(), height = film.height();
   if (!film.fits_storage_buffers())
     throw_error("filter", "{}x{} is larger than this device can filter at once", width, height);
   const uint64_t pixels = uint64_t{width} * height;
-  const auto room = [&](gpu::Buffer& buffer, const char* name) {
-    gpu::make_texel_room(device_, buffer, name, pixels * 16);
-  };
-  for (gpu::Buffer* b : {&lights_, &tamed_, &surfaces_, &guides_, &fitted_, &judged_, &chosen_}) room(*b, "filter");
+  for (gpu::Buffer* b : {&lights_, &tamed_, &surfaces_, &guides_, &fitted_, &judged_, &chosen_})
+    gpu::make_texel_room(device_, *b, "filter", pixels * 16);
   const uint32_t blocks =
       gpu::groups_for(width, shared::k_filter_block) * gpu::groups_for(height, shared::k_filter_block);
   gpu::make_texel_room(device_, taken_, "filter outliers", blocks * uint64_t{16});
-  filtered.copy_surfaces(stream, film);
   film.bind(resources_);
   resources_.set("FilterSurfaces", surfaces_);
   resources_.set("filter_surfaces", surfaces_);
   resources_.set("FilterTaken", taken_);
   resources_.set("filter_taken", taken_);
+  resources_.set("filter_seen", seen ? *seen : surfaces_);
   const auto means = Film::means(film.read());
-  const uint32_t groups = gpu::groups_for(pixels, 64);
-  FilterPush push{width, height, 0, 1, scale_of(means)};
-  const auto run = [&](const gpu::Kernel& kernel,
-                       std::initializer_list<std::pair<const char*, const gpu::Buffer*>> names,
-                       uint32_t count) {
-    for (const auto& [name, buffer] : names) resources_.set(name, *buffer);
-    stream.dispatch(kernel, resources_, push, count, "filter");
-  };
-  for (uint32_t c = 0; c < k_components; ++c) {
-    const gpu::Buffer& sums = filtered.sums(c);
-    if (means[c] == vec3(0)) {
-      stream.fill(sums, 0);
-      continue;
-    }
-    push.component = c;
-    push.stride = 1;
-    run(pack_, {{"FilterLights", &lights_}}, groups);
-    run(tame_, {{"filter_lights", &lights_}, {"FilterTamed", &tamed_}}, groups);
-    run(outliers_, {{"filter_lights", &lights_}, {"filter_tamed", &tamed_}}, gpu::groups_for(blocks, 64));
-    // What later is compared with are the samples without their outliers.
-    run(noise_, {{"filter_noisy", &tamed_}, {"FilterMeasured", &lights_}}, groups);
-    run(guide_, {{"filter_lights", &lights_}, {"FilterGuides", &guides_}}, groups);
-    const gpu::Buffer *before = &lights_, *guide = &guides_, *after = &chosen_;
-    for (size_t stage = 0; stage < std::size(k_strides); ++stage) {
-      push.stride = k_strides[stage];
-      run(regress_, {{"filter_data", before}, {"filter_guides", guide}, {"FilterFitted", &fitted_}}, groups);
-      run(judge_,
-          {{"filter_lights", &lights_},
-           {"filter_before", before},
-           {"filter_fitted", &fitted_},
-           {"FilterJudged", &judged_}},
-          groups);
-      run(choose_,
-          {{"filter_before", before},
-           {"filter_fitted", &fitted_},
-           {"filter_judged", &judged_},
-           {"FilterChosen", after}},
-          groups);
-      if (stage + 1 < std::size(k_strides)) {
-        run(noise_, {{"filter_noisy", after}, {"FilterMeasured", &guides_}}, groups);
-        before = guide = &guides_;
-      }
-    }
-    run(blend_, {{"filter_chosen", after}, {"FilteredSums", &sums}}, groups);
+  push_ = {.width = width,
+           .height = height,
+           .component = 0,
+           .stride = 1,
+           .first = 0,
+           .seen = seen != nullptr,
+           .scale = scale_of(means)};
+  work_.push_back([&film, &filtered](gpu::Stream& stream) { filtered.copy_surfaces(stream, film); });
+  for (uint32_t c = 0; c < k_components; ++c)
+    if (means[c] == vec3(0))
+      work_.push_back([&filtered, c](gpu::Stream& stream) { stream.fill(filtered.sums(c), 0); });
+    else
+      plan_component(c, filtered);
+}
+
+bool Filter::step(gpu::Stream& stream) {
+  if (work_.empty()) return false;
+  try {
+    work_.front()(stream);
+  } catch (...) {
+    stream.discard();
+    release();
+    throw;
   }
   stream.run();
+  work_.pop_front();
+  return !work_.empty();
+}
+
+void Filter::release() {
+  work_.clear();
+  for (gpu::Buffer* b : {&lights_, &tamed_, &taken_, &surfaces_, &guides_, &fitted_, &judged_, &chosen_})
+    *b = {};
+}
+
+void Filter::plan_component(uint32_t component, Film& filtered) {
+  using Names = std::vector<std::pair<const char*, const gpu::Buffer*>>;
+  const uint32_t pixels = push_.width * push_.height;
+  FilterPush push = push_;
+  push.component = component;
+  const auto run = [&](const gpu::Kernel& kernel, const Names& names, uint32_t count) {
+    work_.push_back([this, &kernel, names, count, push](gpu::Stream& stream) {
+      for (const auto& [name, buffer] : names) resources_.set(name, *buffer);
+      stream.dispatch(kernel, resources_, push, gpu::groups_for(count, 64), "filter");
+    });
+  };
+  run(pack_, {{"FilterLights", &lights_}}, pixels);
+  run(tame_, {{"filter_lights", &lights_}, {"FilterTamed", &tamed_}}, pixels);
+  run(outliers_, {{"filter_lights", &lights_}, {"filter_tamed", &tamed_}}, uint32_t(taken_.bytes() / 16));
+  // What later is compared with are the samples without their outliers.
+  run(noise_, {{"filter_noisy", &tamed_}, {"FilterMeasured", &lights_}}, pixels);
+  run(guide_, {{"filter_lights", &lights_}, {"FilterGuides", &guides_}}, pixels);
+  const gpu::Buffer *before = &lights_, *guide = &guides_, *after = &chosen_;
+  for (size_t stage = 0; stage < std::size(k_strides); ++stage) {
+    push.stride = k_strides[stage];
+    for (push.first = 0; push.first < pixels; push.first += k_piece)
+      run(regress_, {{"filter_data", before}, {"filter_guides", guide}, {"FilterFitted", &fitted_}},
+          std::min(k_piece, pixels - push.first));
+    push.first = 0;
+    run(judge_,
+        {{"filter_lights", &lights_},
+         {"filter_before", before},
+         {"filter_fitted", &fitted_},
+         {"FilterJudged", &judged_}},
+        pixels);
+    run(choose_,
+        {{"filter_before", before},
+         {"filter_fitted", &fitted_},
+         {"filter_judged", &judged_},
+         {"FilterChosen", after}},
+        pixels);
+    if (stage + 1 < std::size(k_strides)) {
+      run(noise_, {{"filter_noisy", after}, {"FilterMeasured", &guides_}}, pixels);
+      before = guide = &guides_;
+    }
+  }
+  run(blend_, {{"filter_chosen", after}, {"FilteredSums", &filtered.sums(component)}}, pixels);
 }
 
 }  // namespace lucerna::film

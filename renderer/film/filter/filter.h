@@ -1,5 +1,8 @@
 #pragma once
-// The filter for finished pictures: a film -> a film of the same picture with less noise. README.md.
+// The filter for pictures: a film -> a film of the same picture with less noise. README.md.
+#include <deque>
+#include <functional>
+
 #include "film/film.h"
 #include "shaders/shared/filter.h"
 
@@ -12,15 +15,28 @@ class Filter {
 
   /// Filters each component of `film`, as its groups of lights are mixed, into `filtered`, a film of the same
   /// size and of one group: its halves are the filtered halves, its samples and surfaces those of `film`.
-  /// Pixels with less than two samples stay as they are. Runs the stream. Throws Error when memory is short
-  /// or the film is larger than a storage buffer.
-  void apply(gpu::Stream& stream, const Film& film, Film& filtered);
+  /// Pixels with less than two samples stay as they are. `seen`: what surfaces the pixels show, in mirrors
+  /// and through glass too, a texel each as shaders/shared/preview.h says; null: not known. Runs the stream.
+  /// Throws Error when memory is short or the film is larger than a storage buffer; the stream has nothing
+  /// recorded then.
+  void apply(gpu::Stream& stream, const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr);
+
+  /// The same in pieces, between which other work may run: begin(), then step() until it returns false. The
+  /// films, `seen`, and what is in them stay as they are until then, or until release().
+  void begin(const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr);
+  bool step(gpu::Stream& stream);
+  /// Gives up what is left of the work, and the memory for it.
+  void release();
 
  private:
+  void plan_component(uint32_t component, Film& filtered);
+
   gpu::Device& device_;
   gpu::Kernel pack_, tame_, outliers_, noise_, guide_, regress_, judge_, choose_, blend_;
   gpu::Buffer lights_, tamed_, taken_, surfaces_, guides_, fitted_, judged_, chosen_;
   gpu::Resources resources_;
+  shared::FilterPush push_{};
+  std::deque<std::function<void(gpu::Stream&)>> work_;
 };
 
 }  // namespace lucerna::film

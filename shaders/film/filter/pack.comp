@@ -1,9 +1,11 @@
-// A component of the film -> what is filtered: its halves over the colour of the surface, and the surface.
+// A component of the film -> what is filtered: its halves over the colour of the surface, and the surface that the pixel shows.
 #include "lib/film.glsl"
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
+#include "film/preview.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { FilterPush push; };
+uniform samplerBuffer filter_seen;
 layout(scalar) writeonly buffer FilterLights { vec4 lights[]; };
 layout(scalar) writeonly buffer FilterSurfaces { vec4 surfaces[]; };
 
@@ -19,6 +21,17 @@ void main() {
   float len = length(normal.xyz);
   s.normal = len > 0.0 ? normal.xyz / len : vec3(0.0);
   s.albedo = max(albedo.rgb / samples + (1.0 - s.covered), vec3(k_filter_least_albedo));
+  if (push.seen != 0u) {
+    // Mirrors and glass are what they show.
+    PreviewSurface seen = preview_surface(texelFetch(filter_seen, int(pixel)));
+    if (seen.samples == k_preview_beyond) {
+      bool met = seen.depth > 0.0;
+      s.depth = met ? seen.depth : 0.0;
+      s.normal = met ? seen.normal : vec3(0.0);
+      s.albedo = met ? max(seen.albedo, vec3(k_filter_least_albedo)) : vec3(1.0);
+      s.covered = met ? s.covered : 0.0;
+    }
+  }
   surfaces[pixel] = filter_texel(s);
   FilmPixel p = film_load(push.component, pixel, film_ratio(pixel));
   vec3 even = (p.even.sum + p.even.compensation) / float(max((count + 1u) / 2u, 1u));

@@ -45,7 +45,7 @@ float closeness(vec3 a, vec3 b, float va, float vb) {
 const int k_reach = 3;
 
 void main() {
-  uint pixel = global_index();
+  uint pixel = push.first + global_index();
   if (pixel >= push.width * push.height) return;
   Window window = window_at(pixel);
   FilterLight guide = filter_light(texelFetch(filter_guides, int(pixel)));

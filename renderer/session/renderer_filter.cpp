@@ -1,0 +1,96 @@
+// Pictures without noise: a finished one when it is called for, and the window's between its samples.
+#include <utility>
+
+#include "base/log.h"
+#include "session/renderer.h"
+
+namespace lucerna::session {
+
+namespace {
+
+// Samples that every pixel has when the window's picture is first filtered; before, it shows a preview.
+constexpr uint32_t k_first_samples = 8;
+// The window's picture is filtered again when it has so many times the samples, and so many times the seconds
+// of tracing that filtering it has taken.
+constexpr uint64_t k_more_samples = 2;
+constexpr double k_more_seconds = 3;
+
+}  // namespace
+
+const Filtered& Renderer::filter() {
+  if (!engine_ || !film_ || stats().paths == 0) throw Error("filter", "there is no picture to filter yet");
+  settle_mix();
+  forget_filtered();  // its memory first
+  PixelSight own(*device_, *compiler_);
+  PictureFilter filter(*device_, *compiler_);
+  filter.begin(filter_job());
+  while (filter.working()) filter.step(*engine_, picture_view(), display_ ? display_->sight() : own, {});
+  filtered_ = filter.take();
+  return *filtered_;
+}
+
+const Filtered* Renderer::filtered() const {
+  const bool same = filtered_ && filtered_->paths == stats().paths &&
+                    filtered_->film->width() == film_->width() &&
+                    filtered_->film->height() == film_->height();
+  return same ? &*filtered_ : nullptr;
+}
+
+FilterJob Renderer::filter_job() const { return {*film_, tile_side(), seen_range().floor, stats().paths}; }
+
+const Filtered* Renderer::shown_filtered(const film::View& v) const {
+  const bool shows =
+      shown_filtered_ && v.layer < shared::k_layer_albedo && settings_.text("preview.filter") == "auto";
+  return shows ? &*shown_filtered_ : nullptr;
+}
+
+bool Renderer::filter_due() const {
+  if (!engine_ || !film_ || !display_ || filter_fails_ || mix_pending_ ||
+      view().layer >= shared::k_layer_albedo || settings_.text("preview.filter") != "auto" ||
+      !film_->fits_storage_buffers())
+    return false;
+  if (window_filter_ && window_filter_->working()) return true;
+  const uint64_t paths = stats().paths;
+  if (samples() < 2 || (shown_filtered_ && shown_filtered_->paths == paths)) return false;
+  if (done()) return true;
+  if (preparing() || engine_->learns(samples())) return false;
+  return shown_filtered_ ? paths >= k_more_samples * shown_filtered_->paths &&
+                               render_s_ - filtered_at_s_ >= k_more_seconds * filter_s_
+                         : samples() >= k_first_samples;
+}
+
+void Renderer::filter_piece(const std::function<bool()>& cancel) {
+  const Timer timer;
+  try {
+    if (!window_filter_) window_filter_ = std::make_unique<PictureFilter>(*device_, *compiler_);
+    if (!window_filter_->working()) {
+      window_filter_->begin(filter_job());
+      filter_piece_s_ = 0;
+    }
+    window_filter_->step(*engine_, picture_view(), display_->sight(), cancel);
+  } catch (const Error& e) {
+    log::warning("{}; the window shows pictures with their noise", e.what());
+    filter_fails_ = true;
+    return;
+  }
+  filter_piece_s_ += timer.seconds();
+  if (window_filter_->working()) return;
+  shown_filtered_ = window_filter_->take();
+  filter_s_ = filter_piece_s_, filtered_at_s_ = render_s_;
+  filter_news_ = true;
+}
+
+void Renderer::forget_filtered() {
+  filtered_.reset();
+  shown_filtered_.reset();
+  if (window_filter_) window_filter_->stop();
+}
+
+film::PreviewShares Renderer::preview_shares() const {
+  if (!display_) return {};
+  if (const Filtered* f = engine_ && film_ ? shown_filtered(view()) : nullptr)
+    return {.stale = 0, .filtered = 1, .error = f->error.tile_median};
+  return display_->shares();
+}
+
+}  // namespace lucerna::session
