@@ -27,7 +27,7 @@ LUCERNA_CONST float k_filter_ridge_albedo = 0.0003f;  ///< the same of the slope
 /// Least weight of a pixel whose surface is nearly alike: counts where none is more so.
 LUCERNA_CONST float k_filter_unlike = 0.03f;
 /// Standard deviations by which the other half must speak against a fit before less than all of it is taken.
-LUCERNA_CONST float k_filter_doubt = 2.5f;
+LUCERNA_CONST float k_filter_doubt = 3.5f;
 /// Half side [pixels] of the window over which a fit is judged, and how its weights fall off.
 LUCERNA_CONST int k_filter_judged_reach = 6;
 LUCERNA_CONST float k_filter_judged_falloff = 0.025f;

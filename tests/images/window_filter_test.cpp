@@ -1,0 +1,95 @@
+// links: session film_io
+// The window's picture is filtered between samples: what it shows then, and when that is given up.
+#include <catch2/catch.hpp>
+
+#include "images/cache_support.h"
+#include "support/folder.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+using test::Settings;
+
+namespace {
+
+constexpr uint32_t k_size = 48;
+
+struct Window {
+  session::Renderer r;
+  explicit Window(const char* samples, bool interactive = true)
+      : r([&] {
+          session::RendererOptions o = test::renderer_options(true);
+          o.interactive = interactive;
+          return o;
+        }()) {
+    r.set_size(k_size, k_size);
+    r.set_scene(std::make_shared<scene::Scene>(test::block_room(true)));
+    test::set(r, {{"components.secondary", "path"}, {"components.tertiary", "path"}, {"samples", samples}});
+  }
+  ~Window() { CHECK(r.device().validation_messages() == 0); }
+};
+
+double mean_square(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+  REQUIRE(a.size() == b.size());
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
+  return sum / double(a.size());
+}
+
+}  // namespace
+
+TEST_CASE("the window shows its picture filtered, from some samples on and when it is done") {
+  Window truth("1024", false);
+  test::set(truth.r, {{"seed", "9"}});
+  test::finish(truth.r);
+  const std::vector<uint8_t> converged = truth.r.picture(false);
+
+  Window window("16");
+  session::Renderer& r = window.r;
+  // Up to its first filtered picture, which no edit and no person has called for.
+  for (int i = 0; i < 10000 && !r.filter_news(); ++i) REQUIRE(r.step());
+  CHECK(r.samples() >= 8);
+  CHECK(r.samples() < 16);
+  CHECK(r.preview_shares().filtered == 1);
+  CHECK(r.preview_shares().stale == 0);
+  const std::vector<uint8_t> first = r.shown_picture(false);
+  CHECK(mean_square(first, converged) < mean_square(r.picture(false), converged) / 2);
+
+  test::finish(r);
+  CHECK(r.filter_news());
+  CHECK_FALSE(r.filter_due());
+  const std::vector<uint8_t> shown = r.shown_picture(false), samples = r.picture(false);
+  CHECK(shown != first);
+  CHECK(mean_square(shown, converged) < mean_square(samples, converged) / 2);
+  CHECK(r.preview_shares().error.value_or(0) > 0);
+
+  // As shown, or the samples: by name.
+  const test::Folder f;
+  r.save(f / "shown.png", true);
+  r.save(f / "samples.png", false);
+  CHECK(film::read_metadata(f / "shown.png").count("filter") == 1);
+  CHECK(film::read_metadata(f / "samples.png").count("filter") == 0);
+  CHECK(r.shown_picture(false) == shown);
+  // Other light: nothing of it is left, and the same light again is the same picture.
+  scene::Light lamp = r.scene()->lights[0];
+  const scene::Light before = lamp;
+  lamp.position.x += 0.2f;
+  r.set_light(0, lamp);
+  CHECK(r.preview_shares().filtered < 1);
+  r.set_light(0, before);
+  test::finish(r);
+  CHECK(r.shown_picture(false) == shown);
+  // Where no filter is wanted, none is.
+  test::set(r, {{"preview.filter", "off"}});
+  CHECK(r.shown_picture(false) == samples);
+  CHECK_FALSE(r.filter_due());
+}
+
+TEST_CASE("in batch nothing is filtered that was not called for") {
+  Window batch("16", false);
+  test::finish(batch.r);
+  CHECK_FALSE(batch.r.filter_due());
+  CHECK(batch.r.filtered() == nullptr);
+  const std::vector<uint8_t> samples = batch.r.picture(false);
+  batch.r.filter();
+  CHECK(batch.r.picture(false) != samples);
+}
