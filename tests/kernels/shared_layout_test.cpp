@@ -70,7 +70,7 @@ std::vector<SharedStruct> structs() {
       SHARED("wide_sum.h", WideSum, low, high),
       SHARED("wide_sum.h", LongSum, low, middle, high),
       SHARED("splat.h", SplatOwners, red, green, blue),
-      SHARED("splat.h", SplatFrame, width, height, component, unit),
+      SHARED("splat.h", SplatFrame, width, height, component, unit, first, pixels),
       SHARED("splat.h", SplatPush, count),
       SHARED("overlay.h", LightPathsView, step, light, radius, pad0),
       SHARED("irradiance_cache/inspect.h", CacheLinesPush, width, height, left, top, across, down, lines,
