@@ -86,7 +86,7 @@ std::vector<SharedStruct> structs() {
              most_visits, surface_nodes, importance_mask, importance_eye, importance_slope, importance_base,
              importance_counts, lookups, vertices, tells_radiance, tells_surface, unreachable_parts,
              skips_unreachable, component),
-      SHARED("photons/irradiance.h", IrradianceFrame, triangles, states),
+      SHARED("photons/irradiance.h", IrradianceFrame, triangles, states, gathers),
       SHARED("photons/inspect.h", PhotonDensityPush, width, height, of, first, count, grid),
       SHARED("photons/inspect.h", PhotonHeatPush, width, height, lo, hi),
       SHARED("photons/inspect.h", PhotonSmoothPush, width, height, taps, down),
