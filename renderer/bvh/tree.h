@@ -33,15 +33,17 @@ struct Tree {
 /// them by a few units in the last place of their distances from the ray's origin. What of that is in
 /// proportion to the distance of the hit is, along every axis, a relative error of the distance at which the
 /// ray meets the faces of a box, and traversals allow for it there; what is left is in proportion to the size
-/// of the triangle alone, wherever it lies and however large the scene is.
+/// of the triangle alone, wherever it lies and however large the scene is. Along the ray the test's distance
+/// may be wrong by far more; it is held to where the ray is within half this margin around the triangle.
 float margin_of(const vec3* vertices);
 
 /// `box` grown by `margin` on all sides, rounded outwards.
 Box grown(const Box& box, float margin);
 
 /// One reference for every triangle that can be hit: those of no area (equal or collinear vertices) are left
-/// out, for they have no normal to shade with. Boxes are grown by margin_of() the triangle: a ray that the
-/// test accepts meets them. Throws Error naming the first triangle with a vertex that is not finite.
+/// out, for they have no normal to shade with. Boxes are grown by margin_of() the triangle: a ray is within
+/// its box where the test accepts it. Throws Error naming the first triangle with a vertex that is not
+/// finite.
 std::vector<Reference> references_of(const Triangles& triangles);
 
 /// Levels of inner nodes that `count` references need at least: ceil(log2(ceil(count / k_max_leaf))).

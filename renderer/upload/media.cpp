@@ -129,14 +129,6 @@ void join_borders(Solids& solids, std::vector<uint32_t> borders) {
     for (int k = 0; k < 3; ++k) corners[k] = root_of(parents, corners[k]);
 }
 
-/// By the error of the test of a ray that starts in the scene (shaders/lib/bvh.glsl, bvh_margin).
-Box grown(Box box, const FlatScene& flat) {
-  const vec3 centre = glm::abs(flat.scene_centre);
-  const float margin = 6e-7f * (3 * flat.scene_radius + std::max({centre.x, centre.y, centre.z}));
-  box.lo -= margin, box.hi += margin;
-  return box;
-}
-
 class TreeWriter {
  public:
   explicit TreeWriter(SolidShells& into) : into_(into) {}
@@ -181,17 +173,16 @@ std::shared_ptr<const SolidShells> make_solid_shells(const FlatScene& flat, std:
       numbers[root] = uint32_t(members.size());
       members.emplace_back(), made->boxes.emplace_back();
     }
+    const vec3* corners = &flat.positions[3 * size_t{solids.prims[i]}];
     Box box;
-    for (size_t k = 0; k < 3; ++k) box.grow(flat.positions[3 * size_t{solids.prims[i]} + k]);
-    members[numbers[root]].push_back({grown(box, flat), solids.prims[i]});
+    for (size_t k = 0; k < 3; ++k) box.grow(corners[k]);
+    box = bvh::grown(box, bvh::margin_of(corners));
+    members[numbers[root]].push_back({box, solids.prims[i]});
     made->boxes[numbers[root]].grow(box);
   }
   if (members.empty()) return made;
   std::vector<bvh::Reference> roots;
-  for (uint32_t s = 0; s < members.size(); ++s) {
-    made->boxes[s] = grown(made->boxes[s], flat);
-    roots.push_back({made->boxes[s], s});
-  }
+  for (uint32_t s = 0; s < members.size(); ++s) roots.push_back({made->boxes[s], s});
   TreeWriter writer(*made);
   const bvh::Tree upper = bvh::build_median(std::move(roots));
   const auto shell_leaf = [&](const bvh::Tree& tree) {

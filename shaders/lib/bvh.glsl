@@ -50,12 +50,12 @@ const uint k_bvh_prim = 0x1fffffffu;  // of a triangle's word, its id
 const uint k_bvh_done = 0xffffffffu;  // no link: no leaf has 7 triangles
 
 // ---- boxes ----
-// The ray meets the faces of the boxes at origin * inverse + byte * (cell * inverse), a sum of two terms that may cancel. Each
-// is wrong by up to 5 roundings (2^-24) of its own size, and so is the distance at which the test finds a triangle, beyond
-// what the boxes hold (margin_of(), renderer/bvh/tree.h); distances that are compared err by 7. Faces are moved towards and
-// away from the ray's origin by 17 roundings of both terms. So what is allowed for grows with the box and with its distance
-// from the ray, never with the scene.
-const float k_bvh_slack = 1e-6;
+// The ray meets the faces of the boxes at origin * inverse + byte * (cell * inverse), a sum of two terms that may cancel.
+// Each is wrong by up to 5 roundings (2^-24) of its own size. The distance at which the test finds a triangle is held to
+// where the ray is within a box that lies in these (bvh_within_box()), but for up to 20 roundings of the distance. Faces are
+// moved towards and away from the ray's origin by 34 roundings of both terms. So what is allowed for grows with the box and
+// with its distance from the ray, never with the scene.
+const float k_bvh_slack = 2e-6;
 
 // The four bytes of a word, the lowest first.
 vec4 bvh_bytes(uint w) { return vec4(ivec4(uvec4(w, w >> 8, w >> 16, w >> 24) & 0xffu)); }

@@ -11,8 +11,16 @@
 struct ShearedRay {
   vec3 origin;  // kx, ky, kz
   vec3 shear;
-  bvec3 along;  // which axis kz is
+  vec3 inverse;  // of the direction, without infinities
+  bvec3 along;   // which axis kz is
 };
+
+// A direction without zeros, so that no product below is 0 * infinity.
+vec3 bvh_inverse(vec3 d) {
+  const float tiny = 1e-25;
+  bvec3 small = lessThan(abs(d), vec3(tiny));
+  return 1.0 / mix(d, mix(vec3(tiny), vec3(-tiny), lessThan(d, vec3(0.0))), small);
+}
 
 vec3 bvh_permute(vec3 v, bvec3 along) {
   return along.x ? v.yzx : along.y ? v.zxy : v;
@@ -29,6 +37,7 @@ ShearedRay bvh_shear(Ray ray) {
   precise float inverse = 1.0 / d.z;
   precise vec2 shear = d.xy * inverse;
   s.shear = vec3(shear, inverse);
+  s.inverse = bvh_inverse(d);
   return s;
 }
 
@@ -56,6 +65,21 @@ float bvh_difference(float a, float b, float c, float d) {
   return r;
 }
 
+// `t` held to where the ray is within the box around the triangle, whose corners as seen from the ray's origin are `lo`
+// and `hi`. In a sliver, t by the edge functions is wrong by much more than the ray's place beside the triangle: by the
+// cube of its length over its area, in roundings. Then a triangle just behind the ray's origin would lie in front of it, or
+// not, as its leaf's box has room. The box has half the margin of those in the tree (margin_of(), renderer/bvh/tree.h).
+float bvh_within_box(float t, vec3 lo, vec3 hi, vec3 inverse) {
+  precise vec3 size = hi - lo;
+  precise float margin = 4.76837158203125e-7 * max(size.x, max(size.y, size.z));  // 2^-21
+  precise vec3 low = lo - margin, high = hi + margin;
+  precise vec3 a = low * inverse, b = high * inverse;
+  vec3 enters = min(a, b), leaves = max(a, b);
+  precise float enter = max(enters.x, max(enters.y, enters.z)) * 0.999999523162841796875;  // 1 - 2^-21
+  precise float leave = min(leaves.x, min(leaves.y, leaves.z)) * 1.000000476837158203125;  // 1 + 2^-21
+  return min(max(t, enter), leave);
+}
+
 // Whether the ray's line passes through the triangle; if so, where: distance t (of any sign), weights u of p1, v of p2.
 bool bvh_test(ShearedRay s, vec3 p0, vec3 p1, vec3 p2, out float t, out float u, out float v) {
   precise vec3 a = bvh_permute(p0, s.along) - s.origin;
@@ -77,13 +101,8 @@ bool bvh_test(ShearedRay s, vec3 p0, vec3 p1, vec3 p2, out float t, out float u,
   u = weight_b;
   v = weight_c;
   float least = min(wa, min(wb, wc)), most = max(wa, max(wb, wc));
-  return (least >= 0.0 || most <= 0.0) && det != 0.0;
-}
-
-// A direction without zeros, so that no product below is 0 * infinity.
-vec3 bvh_inverse(vec3 d) {
-  const float tiny = 1e-25;
-  bvec3 small = lessThan(abs(d), vec3(tiny));
-  return 1.0 / mix(d, mix(vec3(tiny), vec3(-tiny), lessThan(d, vec3(0.0))), small);
+  bool accept = (least >= 0.0 || most <= 0.0) && det != 0.0;
+  if (accept) t = bvh_within_box(t, min(a, min(b, c)), max(a, max(b, c)), s.inverse);
+  return accept;
 }
 #endif

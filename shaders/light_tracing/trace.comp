@@ -15,15 +15,16 @@ layout(scalar) readonly buffer LightRoundBlock { EmitPush light_round; };
 #endif
 
 layout(scalar) buffer LightPathCounts { uint light_path_counts[]; };
+layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
 layout(scalar) buffer SplatCounts { uint splat_counts[]; };
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
 
 struct Seen {
   vec3 towards;     // the eye, unit
   float distance;
-  uint pixel;
+  uint pixel;       // of the band that is summed
   float per_cosine; // d / (z^3 A), or 1 / A
-  bool inside;      // the picture
+  bool inside;      // the band
 };
 
 Seen camera_sees(vec3 x) {
@@ -37,7 +38,8 @@ Seen camera_sees(vec3 x) {
   float area = 4.0 * sqrt(right2 * up2) / (float(frame.width) * float(frame.height));
   Seen s;
   s.inside = z > 0.0 && at.x >= 0.0 && at.y >= 0.0 && at.x < float(frame.width) && at.y < float(frame.height);
-  s.pixel = s.inside ? uint(at.y) * frame.width + uint(at.x) : 0u;
+  s.pixel = s.inside ? uint(at.y) * frame.width + uint(at.x) - splat_frame.first : 0u;
+  s.inside = s.inside && s.pixel < splat_frame.pixels;
   s.towards = parallel ? -frame.camera_forward : -off / max(d, 1e-30);
   s.distance = parallel ? z : d;
   s.per_cosine = (parallel ? 1.0 : d / (z * z * z)) / area;

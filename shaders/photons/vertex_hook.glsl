@@ -44,8 +44,11 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   if (reads && some && v.state % k_left_states >= k_gather_state) vertex.from = k_known_state;
 #if LUCERNA_PHOTON_IRRADIANCE
   if (reads && irradiance_asked(v.state)) {
-    components = k_photon_no_components;
-    if (!irradiance_read(v, o)) vertex.from = k_fallback_state;
+    bool known = irradiance_read(v, o);
+    if (!known) vertex.from = k_fallback_state;
+    // Where nothing is known the path goes on for all but the light that no path finds.
+    if (known || irradiance.gathers == 0u) components = k_photon_no_components;
+    only = 0xfu;  // all parts
   }
 #endif
   vec3 x = v.surface.position;

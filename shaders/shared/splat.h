@@ -23,6 +23,7 @@ struct SplatFrame {
   uint width, height;  ///< of the picture that is complete, which camera.comp reads; 0: none
   uint component;      ///< that it belongs to
   float unit;          ///< of sums, radiance [W m^-2 sr^-1]
+  uint first, pixels;  ///< of the band of pixels that is summed: the first one, and how many there are
 };
 /// What a path brings at most, in units.
 LUCERNA_CONST float k_most_splat = 1.8e19f;
@@ -33,7 +34,7 @@ LUCERNA_CONST uint k_splats_pixels = 1u;  ///< that have got light
 LUCERNA_CONST uint k_splat_counts = 2u;
 
 struct SplatPush {
-  uint count;  ///< pixels
+  uint count;  ///< pixels of the band
 };
 
 LUCERNA_SHARED_END

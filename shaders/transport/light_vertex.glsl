@@ -26,6 +26,22 @@ float adjoint_correction(vec3 n_g, vec3 n_s, vec3 wo, vec3 wi) {
   return below > 0.0 ? above / below : 0.0;
 }
 
+// A reflection off a surface whose shading normal leans. A path from the eye that leaves along `towards` sees the surface in a
+// frame that is bent towards that direction (shading_frame()), not towards the light; so what it would weigh the light by is
+// evaluated as it would do it. `density`: that with which `towards` was drawn; `pick`: of the event.
+void reflect_as_seen(LightVertex v, vec3 from, vec3 towards, float density, float pick, out vec3 weight, out uint event) {
+  mat3 to_world = shading_frame(v.surface, towards);
+  vec3 wo = towards * to_world, wi = from * to_world;
+  BsdfValue f = bsdf_eval(make_bsdf(v.surface.parameters, wo.z), wo, wi);
+  float diffuse = luminance(f.diffuse), glossy = luminance(f.glossy);
+  float p_diffuse = diffuse + glossy > 0.0 ? diffuse / (diffuse + glossy) : 1.0;
+  bool is_diffuse = pick < p_diffuse;
+  event = is_diffuse ? k_event_diffuse : k_event_glossy;
+  float p = (is_diffuse ? p_diffuse : 1.0 - p_diffuse) * density;
+  float per_cosine = abs(dot(towards, v.surface.normal_g)) / max(abs(dot(from, v.surface.normal_g)), 1e-30);
+  weight = wi.z > 0.0 && p > 0.0 ? (is_diffuse ? f.diffuse : f.glossy) * (per_cosine / p) : vec3(0.0);
+}
+
 LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random) {
   LightVertex v;
   v.surface = make_surface(ray, hit);
@@ -77,13 +93,34 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     bool ends = depth > most_events;
     if (ends) atomicAdd(counters[k_counter_depth], 1u);
     vec2 u = sample_vertex(random, depth, k_pad_direction);
-    BsdfSample b = bsdf_sample(v.bsdf, v.wo, u, sample_vertex(random, depth, k_pad_lobe));
-    direction = normalize(v.to_world * b.wi);
+    vec2 lobe = sample_vertex(random, depth, k_pad_lobe);
     vec3 side = v.surface.front ? v.surface.normal_g : -v.surface.normal_g;
+    // Directions above the surface and below the plane of the shading normal: paths from the eye come from there, lobes about
+    // the normal never lead there. They are drawn evenly, as densely as from the whole hemisphere.
+    vec3 edge = cross(v.to_world[2], side);
+    float sine = length(edge), lean = atan(sine, dot(v.to_world[2], side));
+    bool leans = sine > 1e-4 && (v.bsdf.p_diffuse > 0.0 || bsdf_glossy(v.bsdf));
+    float below = leans ? lean / k_pi : 0.0;
+    BsdfSample b;
+    if (lobe.x < below) {
+      edge /= sine;
+      float z = 2.0 * u.x - 1.0, r = sqrt(max(0.0, 1.0 - z * z)), angle = u.y * lean;
+      // From the plane of the surface up to that of the shading normal.
+      direction = normalize(z * edge + r * (sin(angle) * side + cos(angle) * cross(edge, side)));
+      b.transmitted = false, b.eta2 = 1.0, b.pdf = 0.5 * k_inv_pi;
+      b.event = k_event_glossy, b.weight = vec3(0.0);
+    } else {
+      lobe.x = min((lobe.x - below) / (1.0 - below), 0.99999994);
+      b = bsdf_sample(v.bsdf, v.wo, u, lobe);
+      direction = normalize(v.to_world * b.wi);
+      b.pdf *= 1.0 - below, b.weight /= 1.0 - below;
+    }
     bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
-    uint next = automaton_after(path_automaton(path), b.event);
     // Radiance is scaled where it is refracted, flux is not.
     vec3 weight = b.weight * (adjoint_correction(v.surface.normal_g, v.to_world[2], ray.direction, direction) / b.eta2);
+    if (leans && sides_agree && !b.transmitted && b.event != k_event_specular)
+      reflect_as_seen(v, -ray.direction, direction, b.pdf, lobe.y, weight, b.event);
+    uint next = automaton_after(path_automaton(path), b.event);
     vec3 throughput = path.throughput * weight;
     bool finite = is_finite(throughput);
     go_on = !ends && sides_agree && (!finite || max3(throughput) > 0.0) && automaton_live(next);

@@ -26,7 +26,7 @@ uint splat_owner(float exponential, float light, uint group) {
 }
 #endif
 
-// `state`: lanes the pixel, tag the stratum, where that is asked for. Rounded up or down at random, so that no dim light is
+// `state`: lanes the pixel of the band, tag the stratum, where that is asked for. Rounded up or down at random, so that no dim light is
 // lost: by numbers of the path's, so that it is the same every time.
 void add_splat(uint slot, ShadowState state) {
   vec3 units = state.diffuse / splat_frame.unit;
@@ -34,7 +34,7 @@ void add_splat(uint slot, ShadowState state) {
   if (!fits) atomicAdd(counters[k_counter_dropped], 1u);
   units = fits ? units : vec3(0.0);
   PathState path = load_path(slot);
-  uint key = hash_combine(hash_combine(path.pixel, path.sample_index), state.lanes);
+  uint key = hash_combine(hash_combine(path.pixel, path.sample_index), splat_frame.first + state.lanes);
   vec3 coin = vec3(uvec3(key, hash_mix(key), hash_mix(key ^ 0x68bc21ebu)) >> 8u) * (1.0 / 16777216.0);
 #if LUCERNA_GROUP_SUMS && !LUCERNA_SPLATS_WEIGHED
   // One number for all colours: they are then mostly of one path.

@@ -169,6 +169,20 @@ TEST_CASE("light that comes in through a slot is aimed at where it falls, and st
   CHECK(render(open, photons, 1, 16).entrances == 0);
 }
 
+TEST_CASE("a wall far away adds nothing to aim at") {
+  const test::Settings photons{{"components.caustic", "off"},
+                               {"components.secondary", "photons"},
+                               {"components.tertiary", "photons"},
+                               {"photons.worth", "false"},
+                               {"photons.per_round", "20000"}};
+  scene::Scene room = slotted_room();
+  const uint32_t alone = render(room, photons, 1, 24).entrances;
+  CHECK(alone >= 1);
+  test::add_quad(room, {1e5f, 0, 0}, {0, 10, 0}, {0, 0, 10}, 0);
+  const uint32_t beside = render(room, photons, 1, 24).entrances;
+  CHECK(beside == alone);
+}
+
 TEST_CASE("behind records, too, it is found where light gets in, whether there are some yet or not") {
   const scene::Scene room = slotted_room();
   session::Renderer r(test::renderer_options());

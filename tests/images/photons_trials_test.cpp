@@ -176,6 +176,29 @@ TEST_CASE("where paths are chosen photons compute what these cannot find", "[pho
   }
 }
 
+TEST_CASE("records whose rays find no irradiance have the light that paths cannot find", "[photons_trials]") {
+  scene::Scene room = mirror_room();
+  const auto compare = [&](const char* nearest) {
+    const test::Settings all{{"components.secondary", "photons"},
+                             {"components.tertiary", "photons"},
+                             {"components.caustic", "off"},
+                             {"photons.per_round", k_many},
+                             {"photons.worth", "false"}};
+    const film::Image truth = Session(room, all, 16).image();
+    Session records(room,
+                    {{"components.secondary", "cache"},
+                     {"components.tertiary", "photons"},
+                     {"components.caustic", "off"},
+                     {"photons.nearest", nearest}},
+                    16);
+    check_same_light(records.image(), truth, 2, 0.04);
+  };
+  compare("8");
+  // What lets light through is never known.
+  room.materials[0].diffuse_transmission = 0.1f;
+  compare("8");
+}
+
 TEST_CASE("a house on a wide ground has its light, and photons do not report darkness as exact",
           "[photons_trials]") {
   // Four metres of walls around a block, under a sun; the ground is two kilometres wide. The camera sees a

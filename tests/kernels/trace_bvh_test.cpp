@@ -101,6 +101,19 @@ TEST_CASE("compute tracer agrees with the oracle and with the host tracer") {
   CHECK(device().validation_messages() == 0);
 }
 
+TEST_CASE("beside slivers both tracers find the same, on the device") {
+  Random random(27);
+  const gpu::Kernel closest = kernel(Query::closest, false);
+  Mesh slivers;
+  for (int i = 0; i < 40; ++i) slivers = joined(std::move(slivers), sliver(random));
+  const std::vector<Ray> rays = rays_beside(random, slivers, 100000);
+  std::vector<Hit> hits(rays.size()), from_host(rays.size());
+  ComputeTracer(slivers).trace(closest, rays, hits);
+  HostTracer(slivers.view()).trace(Query::closest, rays, from_host, nullptr, 100000, false);
+  CHECK(judge_all(slivers.view(), Query::closest, rays, hits) == "");
+  if (device().info().is_cpu) CHECK(differences(Query::closest, hits, from_host) == 0);
+}
+
 TEST_CASE("other ways to fetch and to keep the stack give the same hits") {
   Random random(21);
   const Mesh mesh = soup(random, 5000, 10, 1, vec3(0), 0.3f);
@@ -168,6 +181,31 @@ TEST_CASE("far things change neither hits nor work, on the device") {
     CHECK(differ == 0);
     // A dome has boxes with the middle in them.
     CHECK(visits(beside) < 1.1 * visits(alone) + 20.0 * double(rays.size()));
+  }
+}
+
+TEST_CASE("a wall 20 km from a room costs its rays less than a tenth more work, on the device") {
+  Random random(28);
+  Mesh room = star(random, 8, 3, 0);
+  room = joined(std::move(room), soup(random, 20000, 1.5f, 0.02f));
+  std::vector<Ray> rays(20000);
+  for (Ray& ray : rays) ray = make_ray(random.in_box(1.5f), random.direction());
+  const gpu::Kernel counting = kernel(Query::closest, false, {{"LUCERNA_COUNT_BVH", "1"}});
+  const auto visits = [&](const Mesh& mesh) {
+    std::vector<Hit> hits(rays.size());
+    ComputeTracer(mesh).trace(counting, rays, hits);
+    double sum = 0;
+    for (const Hit& hit : hits) sum += double(hit.u);
+    return sum;
+  };
+  const double alone = visits(room);
+  for (const float away : {2e4f, 1e6f}) {
+    Mesh beside = room;
+    const vec3 p(away, 0, 0), up(0, 10, 0), along(0, 0, 10);
+    beside.add(p, p + along, p + along + up), beside.add(p, p + along + up, p + up);
+    const double factor = visits(beside) / alone;
+    INFO("at " << away << " m");
+    CHECK(factor < 1.1);
   }
 }
 

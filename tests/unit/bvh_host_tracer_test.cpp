@@ -1,9 +1,11 @@
 // links: bvh_embree
 // The host tracer against the oracle, and against leaks.
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cstring>
 
 #include "bvh/embree/host_tracer.h"
+#include "bvh/embree/packed_triangles.h"
 #include "bvh/embree/reference.h"
 #include "unit/bvh_support.h"
 
@@ -17,6 +19,37 @@ constexpr Query k_queries[] = {Query::closest, Query::any_opaque, Query::closest
 
 bool same(const std::vector<Hit>& a, const std::vector<Hit>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Hit)) == 0;
+}
+
+std::vector<PackedTriangles> packed(const Mesh& mesh) {
+  std::vector<PackedTriangles> all;
+  for (size_t first = 0; first < mesh.count(); first += k_lanes) {
+    PackedTriangles triangles;
+    for (size_t k = 0; k < k_lanes; ++k) {
+      const size_t prim = first + k < mesh.count() ? first + k : first;
+      triangles.prim[k] = static_cast<uint32_t>(prim);
+      for (size_t corner = 0; corner < 3; ++corner)
+        for (int axis = 0; axis < 3; ++axis)
+          triangles.vertex[corner][axis][k] = mesh.vertices[3 * prim + corner][axis];
+    }
+    all.push_back(triangles);
+  }
+  return all;
+}
+
+/// By the same test, without a tree.
+Hit closest_of_all(const std::vector<PackedTriangles>& all, const Ray& ray) {
+  Hit hit{0, shared::k_no_hit, 0, 0};
+  const ShearedRay sheared(ray);
+  for (const PackedTriangles& triangles : all) {
+    Floats t, u, v;
+    for (uint32_t hits = intersect(triangles, sheared, t, u, v); hits != 0; hits &= hits - 1) {
+      const int k = std::countr_zero(hits);
+      if (hit.prim == shared::k_no_hit || t[k] < hit.t || (t[k] == hit.t && triangles.prim[k] < hit.prim))
+        hit = {t[k], triangles.prim[k], u[k], v[k]};
+    }
+  }
+  return hit;
 }
 
 }  // namespace
@@ -48,6 +81,30 @@ TEST_CASE("of exact copies the first is hit") {
     for (const Hit& hit : hits) later += hit.prim != shared::k_no_hit && hit.prim >= once.count();
     CHECK(later == 0);
   }
+}
+
+TEST_CASE("trees find exactly what the test of triangles accepts") {
+  Random random(19);
+  size_t differ = 0, blocked_differ = 0, found = 0;
+  for (int i = 0; i < 202; ++i) {
+    const Mesh mesh = i < 200 ? sliver(random) : i == 200 ? soup(random, 100, 1, 1) : icosphere(1, 1);
+    const uint32_t count = i < 200 ? 1000 : 20000;
+    const HostTracer tracer(mesh.view(), 1);
+    const std::vector<PackedTriangles> all = packed(mesh);
+    const std::vector<Ray> rays = rays_beside(random, mesh, count);
+    std::vector<Hit> hits(count), blocked(count);
+    tracer.trace(Query::closest, rays, hits, nullptr, count, false);
+    tracer.trace(Query::any_opaque, rays, blocked, nullptr, count, false);
+    for (uint32_t k = 0; k < count; ++k) {
+      const Hit expected = closest_of_all(all, rays[k]);
+      found += expected.prim != shared::k_no_hit;
+      differ += expected.prim != hits[k].prim || expected.t != hits[k].t;
+      blocked_differ += (expected.prim == shared::k_no_hit) != (blocked[k].prim == shared::k_no_hit);
+    }
+  }
+  CHECK(found > 20000);
+  CHECK(differ == 0);
+  CHECK(blocked_differ == 0);
 }
 
 TEST_CASE("no ray leaks through a closed mesh: 10^7 rays") {

@@ -175,6 +175,29 @@ inline std::vector<Ray> hard_rays(Random& random, const Mesh& mesh, size_t count
   return rays;
 }
 
+/// A sliver along an axis, so that its box is as thin as itself.
+inline Mesh sliver(Random& random) {
+  const vec3 p = random.in_box(1);
+  vec3 along(0);
+  along[static_cast<int>(random.below(3))] = random.uniform(1, 3);
+  Mesh mesh;
+  mesh.add(p, p + along, p + std::exp2(random.uniform(-14, -8)) * random.direction());
+  return mesh;
+}
+
+/// Rays that start close to a triangle, on one side and on the other.
+inline std::vector<Ray> rays_beside(Random& random, const Mesh& mesh, size_t count) {
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < count; ++i) {
+    const vec3* p = &mesh.vertices[3 * size_t{random.below(static_cast<uint32_t>(mesh.count()))}];
+    const float s = random.uniform(), t = random.uniform(0, 1 - s);
+    const vec3 a = p[1] - p[0], b = p[2] - p[0], n = glm::normalize(glm::cross(a, b));
+    const float lift = (random.below(2) ? 1.0f : -1.0f) * std::exp2(random.uniform(-22, -14));
+    rays.push_back(make_ray(p[0] + s * a + t * b + lift * glm::length(a) * n, random.direction()));
+  }
+  return rays;
+}
+
 /// How far single-precision rounding can move a crossing, in world units: a few units in the last place of
 /// the coordinates as seen from the ray.
 inline double slack(const Triangles& triangles, const Ray& ray, uint32_t prim) {

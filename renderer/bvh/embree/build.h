@@ -10,8 +10,9 @@ namespace lucerna::bvh {
 inline constexpr uint32_t k_largest_leaf = 8;
 
 struct BuildOptions {
-  /// Cut long triangles where it pays, so that one may lie in several leaves. Never changes a hit. Building
-  /// takes four times as long; scenes of many small triangles gain nothing, which is why it is off.
+  /// Cut long triangles where it pays, so that one may lie in several leaves. Changes no hit but, by
+  /// rounding, those of slivers whose distance lies outside of the part that the ray meets. Building takes
+  /// four times as long; scenes of many small triangles gain nothing, which is why it is off.
   bool spatial_splits = false;
   /// References that spatial splits may add, as a share of the triangles.
   float split_budget = 0.3f;

@@ -39,6 +39,7 @@ struct alignas(64) PackedTriangles {
 struct ShearedRay {
   float origin[3];  ///< permuted: kx, ky, kz
   float shear[3];
+  float inverse[3];                       ///< of the direction, permuted, without infinities
   float limit;                            ///< hits beyond it do not count
   uint32_t best_prim = shared::k_no_hit;  ///< hit at `limit`, if any: an equal distance needs a lower id
   int kx, ky, kz;                         ///< kz: the axis in which the direction is largest
@@ -53,10 +54,15 @@ struct ShearedRay {
     along = std::abs(d[kz]);
     shear[2] = 1.0f / d[kz];
     shear[0] = d[kx] * shear[2], shear[1] = d[ky] * shear[2];
+    inverse[0] = inverse_of(d[kx]), inverse[1] = inverse_of(d[ky]), inverse[2] = inverse_of(d[kz]);
     origin[0] = ray.origin[kx], origin[1] = ray.origin[ky], origin[2] = ray.origin[kz];
   }
   ShearedRay() = default;
 
+  static float inverse_of(float d) {
+    constexpr float k_least = 1e-25f;
+    return 1.0f / (std::abs(d) < k_least ? d < 0 ? -k_least : k_least : d);
+  }
   /// The float before a positive one: std::nextafter(x, 0), without its call.
   static float before(float x) { return x > 0 ? std::bit_cast<float>(std::bit_cast<uint32_t>(x) - 1) : x; }
   /// The direction of the line that the test follows: unlike ray.direction's it has no rounding of the shear
@@ -92,6 +98,39 @@ LUCERNA_LANES_INLINE void refine(Floats& r, const Floats& a, const Floats& b, co
   }
 }
 
+LUCERNA_LANES_INLINE void keep_lesser(Floats& a, const Floats& b) { a = b < a ? b : a; }
+LUCERNA_LANES_INLINE void keep_greater(Floats& a, const Floats& b) { a = b > a ? b : a; }
+
+/// `t` held to where the ray is within the box around the triangle. In a sliver, t by the edge functions is
+/// wrong by much more than the ray's place beside the triangle: by the cube of its length over its area, in
+/// roundings. Then a triangle just behind the ray's origin would lie in front of it, or not, as its leaf's
+/// box has room. The box has half the margin of those in the tree (margin_of(), bvh/tree.h).
+LUCERNA_LANES_INLINE void keep_within_box(const PackedTriangles& triangles, const ShearedRay& ray,
+                                          Floats& t) {
+  constexpr float k_half_margin = 0x1p-21f, k_slack = 0x1p-21f;
+  const int axes[3] = {ray.kx, ray.ky, ray.kz};
+  Floats low[3], high[3];
+#pragma GCC unroll 3
+  for (int k = 0; k < 3; ++k) {
+    low[k] = high[k] = triangles.vertex[0][axes[k]] - ray.origin[k];
+#pragma GCC unroll 2
+    for (int corner = 1; corner < 3; ++corner) {
+      const Floats place = triangles.vertex[corner][axes[k]] - ray.origin[k];
+      keep_lesser(low[k], place), keep_greater(high[k], place);
+    }
+  }
+  Floats margin = high[0] - low[0];
+  keep_greater(margin, high[1] - low[1]), keep_greater(margin, high[2] - low[2]);
+  margin *= k_half_margin;
+  Floats enter = Floats{} - std::numeric_limits<float>::infinity(), leave = -enter;
+#pragma GCC unroll 3
+  for (int k = 0; k < 3; ++k) {
+    const Floats a = (low[k] - margin) * ray.inverse[k], b = (high[k] + margin) * ray.inverse[k];
+    keep_greater(enter, a < b ? a : b), keep_lesser(leave, a < b ? b : a);
+  }
+  keep_greater(t, enter * (1.0f - k_slack)), keep_lesser(t, leave * (1.0f + k_slack));
+}
+
 /// t, u, v of the triangles; returns the lanes that are hit with 0 < t <= ray.limit, as bits.
 LUCERNA_LANES_INLINE uint32_t intersect(const PackedTriangles& triangles, const ShearedRay& ray, Floats& t,
                                         Floats& u, Floats& v) {
@@ -119,6 +158,7 @@ LUCERNA_LANES_INLINE uint32_t intersect(const PackedTriangles& triangles, const 
   const Floats scale = 1.0f / det;
   t = (a * z[0] + b * z[1] + c * z[2]) * scale;
   u = b * scale, v = c * scale;
+  keep_within_box(triangles, ray, t);
   hit &= (t > 0.0f) & (t <= ray.limit);
   return lanes(hit);
 }

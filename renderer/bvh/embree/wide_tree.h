@@ -39,12 +39,13 @@ WideTree make_wide_tree(const Tree& tree, const Triangles& triangles,
 /// of length 1.
 struct WideRay {
   float origin[3];
-  float near[3], far[3];  ///< 1 / direction, less and more by 8 roundings of 2^-24
+  float near[3], far[3];  ///< 1 / direction, less and more by 32 roundings of 2^-24
   int entry[3];           ///< the face of each axis by which it enters; entry ^ 1 is the other
 
   explicit WideRay(const shared::Ray& ray, const ShearedRay& sheared) {
-    // Four roundings are the walk's own, two those of the vertices' places.
-    constexpr float k_slack = 0x1p-21f, k_least = 1e-25f;
+    // Eight roundings are those of the distances that are compared, three more the shear's; the walk's own
+    // are four.
+    constexpr float k_slack = 0x1p-19f, k_least = 1e-25f;
     const vec3 direction = sheared.direction();
     for (int axis = 0; axis < 3; ++axis) {
       float d = direction[axis];
@@ -56,8 +57,5 @@ struct WideRay {
     }
   }
 };
-
-LUCERNA_LANES_INLINE void keep_lesser(Floats& a, const Floats& b) { a = b < a ? b : a; }
-LUCERNA_LANES_INLINE void keep_greater(Floats& a, const Floats& b) { a = b > a ? b : a; }
 
 }  // namespace lucerna::bvh

@@ -21,7 +21,7 @@ Splats::Splats(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::De
       round_(device, {.name = "round of light paths", .bytes = sizeof(EmitPush)}),
       picture_(device, {.name = "picture of splats", .bytes = 16, .texel = true}) {
   summed_ = compile(false);
-  write_frame(false);
+  write_frame();
 }
 
 Splats::Kernels Splats::compile(bool weighed) const {
@@ -43,10 +43,16 @@ void Splats::bind_sums(gpu::Resources& resources) const {
   if (groups_) resources.set("SplatOwnerList", owners_);
 }
 
-void Splats::write_frame(bool shown) {
+void Splats::write_frame(bool whole) {
   SplatFrame f = frame_;
-  if (!shown) f.width = f.height = 0;
+  if (!shown_) f.width = f.height = 0;
+  f.first = whole ? 0 : band_ * band_pixels_;
+  f.pixels = whole ? frame_.width * frame_.height : pixels_of_band();
   block_.write(&f, sizeof f);
+}
+
+uint32_t Splats::pixels_of_band() const {
+  return std::min(band_pixels_, frame_.width * frame_.height - band_ * band_pixels_);
 }
 
 void Splats::begin(transport::Wavefront& wavefront, uint32_t width, uint32_t height, uint32_t component,
@@ -54,17 +60,22 @@ void Splats::begin(transport::Wavefront& wavefront, uint32_t width, uint32_t hei
   restart();
   const uint64_t pixels = uint64_t{width} * height;
   if (width != frame_.width || height != frame_.height || !sums_[0]) {
+    constexpr uint64_t k_texel = 16;
+    static_assert(k_texel >= sizeof(LongSum) && k_texel >= sizeof(SplatOwners));
+    const uint64_t band = std::min(pixels, device_.info().limits.max_storage_buffer / k_texel);
     std::array<gpu::Buffer, 3> sums;
     for (gpu::Buffer& of_color : sums)
-      of_color = {device_, {.name = "sums of splats", .bytes = pixels * sizeof(LongSum)}};
-    gpu::Buffer picture(device_, {.name = "picture of splats", .bytes = 16 * pixels, .texel = true});
-    gpu::Buffer owners;
-    if (groups_) owners = {device_, {.name = "groups of splats", .bytes = pixels * sizeof(SplatOwners)}};
+      of_color = {device_, {.name = "sums of splats", .bytes = band * sizeof(LongSum)}};
+    gpu::Buffer picture(device_, {.name = "picture of splats", .bytes = k_texel * pixels, .texel = true});
+    gpu::Buffer owners, band_picture;
+    if (groups_) owners = {device_, {.name = "groups of splats", .bytes = band * sizeof(SplatOwners)}};
+    if (band < pixels) band_picture = {device_, {.name = "band of splats", .bytes = k_texel * band}};
     sums_ = std::move(sums), picture_ = std::move(picture), owners_ = std::move(owners);
+    band_picture_ = std::move(band_picture), band_pixels_ = uint32_t(band);
     wavefront.rebind_lookup();
   }
-  frame_ = {width, height, component, unit};
-  write_frame(false);
+  frame_ = {width, height, component, unit, 0, 0}, shown_ = false;
+  write_frame();
   clear(wavefront);
 }
 
@@ -79,8 +90,9 @@ Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::Lig
                            uint32_t enabled, const std::function<bool()>& cancel) {
   if (!tracing_ || next_.round != round.number || next_.paths != round.paths) {
     next_ = {.round = round.number, .paths = round.paths};
-    traced_ = 0, tracing_ = true;
+    traced_ = 0, tracing_ = true, band_ = 0;
   }
+  if (traced_ == 0) write_frame(&kernels == &weighed_);
   const uint32_t count = std::min(wavefront.slots(), round.paths - traced_);
   const EmitPush told{count, traced_, round.number, 1 / float(round.paths),
                       transport::LightEmitter::stratum_step(round.paths)};
@@ -101,13 +113,14 @@ Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::Lig
   const Timer timer;
   if (!emitter_.trace(wavefront, lights, round, traced_, count, work, picture, enabled, cancel)) {
     // Part of its light has arrived.
-    tracing_ = false;
+    tracing_ = false, band_ = 0;
     clear(wavefront);
     return Went::cancelled;
   }
   counts_.read(counts, sizeof counts);
   next_.joined += counts[k_splats_joined];
-  next_.escaped += emitter_.escaped(), next_.dark += emitter_.dark();
+  // The same paths serve all bands.
+  if (band_ == 0) next_.escaped += emitter_.escaped(), next_.dark += emitter_.dark();
   next_.trace_s += timer.seconds();
   traced_ += count;
   return traced_ < round.paths ? Went::on : Went::complete;
@@ -124,23 +137,35 @@ bool Splats::trace(transport::Wavefront& wavefront, const transport::LightSource
     next_ = {.round = round.number};
   }
   const Timer timer;
-  const uint32_t pixels = frame_.width * frame_.height;
+  resolve(wavefront);
+  next_.trace_s += timer.seconds();
+  if (band_ + 1 < bands()) {
+    ++band_, traced_ = 0;
+    return true;
+  }
+  band_ = 0, shown_ = true;
+  write_frame();
+  figures_ = next_;
+  tracing_ = false, complete_ = true;
+  return true;
+}
+
+void Splats::resolve(transport::Wavefront& wavefront) {
+  const uint32_t pixels = pixels_of_band();
   uint32_t counts[k_splat_counts] = {};
   counts_.write(counts, sizeof counts);
   gpu::Resources r;
   bind(r);
   r.set("SplatCounts", counts_);
   bind_sums(r);
-  r.set("SplatPicture", picture_);
+  r.set("SplatPicture", band_picture_ ? band_picture_ : picture_);
   wavefront.stream().dispatch(resolve_, r, SplatPush{pixels}, gpu::groups_for(pixels, 64), "splats");
+  if (band_picture_)
+    wavefront.stream().copy(band_picture_, picture_, 16 * uint64_t{pixels}, 0,
+                            16 * uint64_t{band_} * band_pixels_);
   wavefront.account_stages();
   counts_.read(counts, sizeof counts);
-  write_frame(true);
-  next_.pixels = counts[k_splats_pixels];
-  next_.trace_s += timer.seconds();
-  figures_ = next_;
-  tracing_ = false, complete_ = true;
-  return true;
+  next_.pixels += counts[k_splats_pixels];
 }
 
 std::optional<std::vector<double>> Splats::weigh(transport::Wavefront& wavefront,
@@ -167,7 +192,7 @@ std::optional<std::vector<double>> Splats::weigh(transport::Wavefront& wavefront
 
 uint64_t Splats::bytes() const {
   uint64_t sum = picture_.bytes();
-  for (const gpu::Buffer* b : {&sums_[0], &sums_[1], &sums_[2], &owners_, &worths_})
+  for (const gpu::Buffer* b : {&sums_[0], &sums_[1], &sums_[2], &owners_, &band_picture_, &worths_})
     sum += *b ? b->bytes() : 0;
   return sum;
 }

@@ -2,6 +2,7 @@
 // What the light paths of one round bring straight to the camera's pixels (shaders/shared/splat.h).
 //
 // Bit-identical, however threads run and however many paths are in flight: light is summed in whole numbers.
+// A picture of more pixels than a storage buffer holds is summed in bands, each by the same light paths.
 #include <array>
 
 #include "shaders/shared/splat.h"
@@ -34,7 +35,7 @@ class Splats {
   void begin(transport::Wavefront& wavefront, uint32_t width, uint32_t height, uint32_t component,
              float unit);
   /// The next round is to begin anew.
-  void restart() { tracing_ = false, complete_ = false; }
+  void restart() { tracing_ = false, complete_ = false, band_ = 0; }
 
   /// One batch of the round, as many paths as the wavefront has slots; with the last the round is complete,
   /// and paths from the camera bring it. The wavefront's frame is then `picture`, of `enabled` components,
@@ -62,7 +63,10 @@ class Splats {
   Went batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
              const transport::LightRound& round, const Kernels& kernels, const shared::Frame& picture,
              uint32_t enabled, const std::function<bool()>& cancel);
-  void write_frame(bool shown);
+  void write_frame(bool whole = false);  ///< whole: of all bands
+  uint32_t bands() const { return (frame_.width * frame_.height - 1) / band_pixels_ + 1; }
+  uint32_t pixels_of_band() const;
+  void resolve(transport::Wavefront& wavefront);
   void clear(transport::Wavefront& wavefront);
   void bind_sums(gpu::Resources& resources) const;
 
@@ -74,9 +78,13 @@ class Splats {
   Kernels summed_, weighed_;  ///< weighed_: when it is first called for
   gpu::Kernel resolve_;
   gpu::Buffer counts_, block_, round_, picture_, worths_;
-  /// LongSum of each pixel: red, green, blue. One buffer of all would be the largest that a picture needs.
+  /// LongSum of each pixel of a band: red, green, blue. One buffer of all would be the largest that a picture
+  /// needs.
   std::array<gpu::Buffer, 3> sums_;
-  gpu::Buffer owners_;  ///< of groups_
+  gpu::Buffer owners_;        ///< of groups_
+  gpu::Buffer band_picture_;  ///< where there are several bands
+  uint32_t band_pixels_ = 1, band_ = 0;
+  bool shown_ = false;  ///< picture_ is that of a round
   shared::SplatFrame frame_{};
   RoundFigures figures_, next_;
   bool tracing_ = false, complete_ = false;

@@ -196,7 +196,7 @@ bool PhotonSolver::note_importance(transport::Wavefront& wavefront, const Pictur
     std::vector<transport::FirstHit> reached;
     for (const PhotonLookup& l : map_.reached())
       if (l.carried > 0) reached.push_back({l.position, double(l.carried)});
-    reached_boxes_ = transport::nested_boxes(std::move(reached), 2 * picture.flat.scene_radius);
+    reached_boxes_ = transport::nested_boxes(std::move(reached), 2 * picture.flat.core_radius);
     aim_step_ = AimStep::first_hits;
   }
   map_.clear();

@@ -64,7 +64,8 @@ void IrradianceMap::upload(const IrradianceCells& cells, const Wanted& wanted) {
   roots_.write(std::span<const uvec4>(cells.roots));
   nodes_.write(std::span<const vec4>(cells.nodes));
   const IrradianceFrame frame{.triangles = uint32_t(cells.roots.size()),
-                              .states = {uint32_t(wanted.states), uint32_t(wanted.states >> 32)}};
+                              .states = {uint32_t(wanted.states), uint32_t(wanted.states >> 32)},
+                              .gathers = wanted.gathers ? 1u : 0u};
   block_.write(&frame, sizeof frame);
   pieces_ = cells.known, readable_ = true;
 }

@@ -17,7 +17,8 @@ class IrradianceMap {
   struct Wanted {
     uint32_t nearest = 0;  ///< IrradianceCellsBuilder's
     float widest = 0;
-    uint64_t states = 0;  ///< bits: of the eye path, in which tertiary light is looked up, and nothing else
+    uint64_t states = 0;   ///< bits: of the eye path, in which tertiary light is looked up, and nothing else
+    bool gathers = false;  ///< IrradianceFrame::gathers
     uint32_t max_depth = 64;  ///< scattering events of a path from the eye to a light, at most
   };
   /// One piece of making it of a complete map that tells of its surfaces; until complete(). Lookups find what

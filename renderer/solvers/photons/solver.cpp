@@ -367,6 +367,8 @@ bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture&
       {.nearest = nearest,
        .widest = k_widest * standing_radius(picture, standing_->figures().paths, 2 * float(nearest)),
        .states = tertiary_states(standing_->lookup()),
+       // No rounds serve records' rays, and paths that go on find no light of points by way of mirrors.
+       .gathers = feeds_ && hides_,
        .max_depth = picture.frame.max_depth});
   irradiance_round_ = standing_->round();
   return true;

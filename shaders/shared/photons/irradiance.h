@@ -32,6 +32,7 @@ LUCERNA_INLINE uvec3 irradiance_quarter(uvec2 at) {
 struct IrradianceFrame {
   uint triangles;  ///< 0: nothing is known
   uint states[2];  ///< bits: in these states of the eye path it is looked up
+  uint gathers;    ///< 1: where nothing is known the photons with k_photon_unreachable are added up, which no path finds
 };
 
 LUCERNA_SHARED_END

@@ -1,0 +1,26 @@
+// links: upload scene
+// The shells of solids that enclose places where paths start.
+#include <catch2/catch.hpp>
+
+#include "support/rooms.h"
+#include "upload/media.h"
+
+using namespace lucerna;
+
+TEST_CASE("boxes of solids hold the margin of their own triangles, whatever stands far away") {
+  scene::Scene s;
+  s.materials = {{}, test::diffuse(vec3(0.5f))};
+  s.materials[0].metallic = 0, s.materials[0].transmission = 1, s.materials[0].thickness = 1;
+  s.materials[0].attenuation_color = {0.9f, 0.5f, 0.1f}, s.materials[0].attenuation_distance = 0.1f;
+  test::add_ball(s, {0.2f, 0.1f, 0}, 0.05f, 0, 12);
+  const upload::FlatScene alone = upload::flatten(s);
+  REQUIRE(alone.shells != nullptr);
+  REQUIRE(alone.shells->boxes.size() == 1);
+  const Box box = alone.shells->boxes[0];
+  CHECK(box.size().x < 0.1001f);
+  test::add_quad(s, {1e5f, 0, 0}, {0, 10, 0}, {0, 0, 10}, 1);
+  const upload::FlatScene beside = upload::flatten(s);
+  CHECK(beside.shells->boxes[0].lo == box.lo);
+  CHECK(beside.shells->boxes[0].hi == box.hi);
+  CHECK(beside.shells->nodes == alone.shells->nodes);
+}
