@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "upload/alias_table.h"
@@ -14,9 +15,11 @@ using namespace shared;
 
 namespace {
 
-/// Probability that every cluster keeps of that without learning: what has been seen in vain so far is still
-/// found.
-constexpr double k_defensive = 0.15;
+/// Probability that every cluster keeps of that without learning, and of an even one: what has been seen in
+/// vain so far is still found, be it of little power.
+constexpr double k_defensive = 0.11, k_even = 0.04;
+/// The latter before anything is learned: where a strong light is hidden, a weak one is chosen now and then.
+constexpr double k_even_at_first = 0.1;
 /// Samples that what is known of the cells around counts for, in each cluster.
 constexpr double k_prior_samples = 6;
 /// Samples of a cell that is cut at least; a fifth of what it takes gives a cell its own row.
@@ -80,6 +83,9 @@ class Learner {
     firsts_.resize(clusters.count());
     weights_.resize(clusters.count());
     find_rates();
+    for (const float plain : clusters.plain) even_.push_back(plain > 0 ? 1 : 0);
+    const double lit = std::accumulate(even_.begin(), even_.end(), 0.0);
+    for (double& p : even_) p /= std::max(1.0, lit);
   }
 
   void learn() {
@@ -99,12 +105,20 @@ class Learner {
   }
 
   void fill_all(uint32_t row) { to_.grid.assign(k_bricks, row << 1); }
+  /// As without learning, but for this share, which is even over the clusters that have any light.
+  void mix_all(double even) {
+    std::vector<double> p(even_.size());
+    for (size_t c = 0; c < p.size(); ++c) p[c] = (1 - even) * clusters_.plain[c] + even * even_[c];
+    put_row(p);
+    fill_all(to_.row_count - 1);
+  }
   uint32_t add_row(const Moments& moments) {
     std::vector<double> p(moments.size());
     double total = 0;
     for (size_t c = 0; c < p.size(); ++c) total += p[c] = std::sqrt(moments[c]);
     for (size_t c = 0; c < p.size(); ++c)
-      p[c] = total > 0 ? k_defensive * clusters_.plain[c] + (1 - k_defensive) * p[c] / total
+      p[c] = total > 0 ? k_defensive * clusters_.plain[c] + (1 - k_defensive - k_even) * p[c] / total +
+                             k_even * even_[c]
                        : clusters_.plain[c];
     put_row(p);
     return to_.row_count - 1;
@@ -256,7 +270,7 @@ class Learner {
   std::vector<Sample> samples_;
   size_t cut_ = 0;
   uint32_t most_rows_ = 0;
-  std::vector<double> sums_, firsts_, weights_, rates_;
+  std::vector<double> sums_, firsts_, weights_, rates_, even_;
   std::vector<uint32_t> counts_;
   double noise_plain_ = 0, noise_learned_ = 0;
 };
@@ -286,8 +300,13 @@ LearnedCells learned_cells(std::span<const LightRecord> records) {
 
 LearnedLights plain_lights(const upload::LightClusters& clusters) {
   LearnedLights to;
-  Learner learner(clusters, {}, {}, to);
-  learner.fill_all(learner.add_row(Moments(clusters.count(), 0.0)));
+  Learner(clusters, {}, {}, to).mix_all(k_even_at_first);
+  return to;
+}
+
+LearnedLights exploring_lights(const upload::LightClusters& clusters) {
+  LearnedLights to;
+  Learner(clusters, {}, {}, to).mix_all(0.5);
   return to;
 }
 

@@ -28,8 +28,11 @@ struct LearnedLights {
   double gain = 1;
 };
 
-/// As without learning, everywhere.
+/// Nearly as without learning, everywhere: a tenth is even over clusters.
 LearnedLights plain_lights(const upload::LightClusters& clusters);
+/// For what is recorded first: half as without learning, half evenly over clusters, so that lights of little
+/// power are found that are all that a place sees.
+LearnedLights exploring_lights(const upload::LightClusters& clusters);
 /// From recorded samples. Cells are as small as what was recorded there allows; where little was, they begin
 /// with what the cells around them have found, all of space with the probabilities without learning. The
 /// order of records does not matter.

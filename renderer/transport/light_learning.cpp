@@ -1,6 +1,7 @@
 #include "transport/light_learning.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lucerna::transport {
 
@@ -29,10 +30,12 @@ LightLearning::LightLearning(gpu::Device& device, upload::LightClusters clusters
 }
 
 void LightLearning::upload_clusters() {
-  put(device_, cluster_texels_, "light clusters", clusters_.clusters);
-  put(device_, members_, "lights of clusters", clusters_.members);
-  put(device_, primitives_, "clusters of emissive triangles", clusters_.primitives);
-  put(device_, tiles_, "clusters of the sky", clusters_.tiles);
+  // The device has them from now on.
+  put(device_, cluster_texels_, "light clusters", std::exchange(clusters_.clusters, {}));
+  put(device_, members_, "lights of clusters", std::exchange(clusters_.members, {}));
+  put(device_, primitives_, "clusters of emissive triangles", std::exchange(clusters_.primitives, {}));
+  put(device_, tiles_, "clusters of the sky", std::exchange(clusters_.tiles, {}));
+  put(device_, facets_, "emissive triangles", std::exchange(clusters_.facets, {}));
 }
 
 void LightLearning::take(const LearnedLights& lights) {
@@ -49,6 +52,7 @@ void LightLearning::bind(gpu::Resources& r) const {
   r.set("cluster_members", members_);
   r.set("primitive_clusters", primitives_);
   r.set("sky_tiles", tiles_);
+  r.set("light_facets", facets_);
   r.set("LightRecords", records_);
 }
 
@@ -60,7 +64,10 @@ void LightLearning::describe(Frame& frame) const {
   frame.learning = recording_ ? 1 : 0;
 }
 
-void LightLearning::begin_generation() { fresh_.clear(); }
+void LightLearning::begin_generation() {
+  fresh_.clear();
+  if (generations_ == 0) take(exploring_lights(clusters_));
+}
 
 void LightLearning::begin_recording() {
   const std::vector<std::byte> none(records_.bytes());
@@ -76,16 +83,24 @@ void LightLearning::end_recording(uint32_t paths) {
   fresh_.insert(fresh_.end(), all.begin(), all.end());
 }
 
+void LightLearning::abandon_generation() {
+  fresh_.clear();
+  if (generations_ == 0) take(plain_lights(clusters_));
+}
+
 void LightLearning::finish_generation() {
   size_t arrived = 0;
   for (const LightRecord& r : fresh_) arrived += r.arrived > 0;
   arrived_ = fresh_.empty() ? 0 : double(arrived) / double(fresh_.size());
   if (cells_.scale == 0) cells_ = learned_cells(fresh_);
   samples_.insert(samples_.end(), fresh_.begin(), fresh_.end());
+  record_count_ = samples_.size();
   fresh_.clear();
   take(learn_lights(clusters_, cells_, samples_));
   ++generations_;
 }
+
+void LightLearning::end() { samples_ = {}, fresh_ = {}; }
 
 void LightLearning::learn(std::vector<LightRecord> records) {
   fresh_ = std::move(records);
@@ -99,7 +114,8 @@ void LightLearning::forget(upload::LightClusters clusters) {
 }
 
 void LightLearning::forget() {
-  samples_.clear();
+  end();
+  record_count_ = 0;
   cells_ = {};
   recording_ = false;
   generations_ = 0;
@@ -108,7 +124,8 @@ void LightLearning::forget() {
 
 uint64_t LightLearning::bytes() const {
   return grid_.bytes() + rows_.bytes() + cluster_texels_.bytes() + members_.bytes() + primitives_.bytes() +
-         tiles_.bytes() + records_.bytes();
+         tiles_.bytes() + facets_.bytes() + records_.bytes() +
+         (samples_.capacity() + fresh_.capacity()) * sizeof(LightRecord);
 }
 
 }  // namespace lucerna::transport

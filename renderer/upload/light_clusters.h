@@ -15,6 +15,7 @@ struct LightClusters {
   std::vector<vec4> clusters, members;  ///< light_clusters, cluster_members
   std::vector<uint32_t> primitives;     ///< primitive_clusters
   std::vector<uint8_t> tiles;           ///< sky_tiles
+  std::vector<vec4> facets;             ///< light_facets
   uint32_t count() const { return uint32_t(plain.size()); }
 };
 
