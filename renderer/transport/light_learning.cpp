@@ -42,6 +42,8 @@ void LightLearning::take(const LearnedLights& lights) {
   put(device_, grid_, "learned cells", lights.grid);
   put(device_, rows_, "learned lights", lights.rows);
   cells_ = lights.cells, row_count_ = lights.row_count, gain_ = lights.gain;
+  row_arrived_ = lights.arrived;
+  row_arrived_.resize(row_count_, -1.f);
   ++version_;
 }
 
@@ -95,8 +97,9 @@ void LightLearning::finish_generation() {
   if (cells_.scale == 0) cells_ = learned_cells(fresh_);
   samples_.insert(samples_.end(), fresh_.begin(), fresh_.end());
   record_count_ = samples_.size();
+  const size_t last = fresh_.size();
   fresh_.clear();
-  take(learn_lights(clusters_, cells_, samples_));
+  take(learn_lights(clusters_, cells_, samples_, last));
   ++generations_;
 }
 
@@ -120,6 +123,14 @@ void LightLearning::forget() {
   recording_ = false;
   generations_ = 0;
   take(plain_lights(clusters_));
+}
+
+std::vector<float> LightLearning::row(uint32_t row) const {
+  std::vector<vec4> texels(clusters_.count());
+  rows_.read(texels.data(), texels.size() * sizeof(vec4), uint64_t{row} * texels.size() * sizeof(vec4));
+  std::vector<float> p;
+  for (size_t c = 0; c < texels.size(); ++c) p.push_back(texels[c].z * clusters_.plain[c]);
+  return p;
 }
 
 uint64_t LightLearning::bytes() const {

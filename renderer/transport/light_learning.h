@@ -47,6 +47,10 @@ class LightLearning {
   double gain() const { return gain_; }
   /// Share of the recorded light samples of the last generation that brought light.
   double arrived() const { return arrived_; }
+  /// Probabilities of the clusters in a row of learned_rows.
+  std::vector<float> row(uint32_t row) const;
+  /// LearnedLights::arrived.
+  const std::vector<float>& row_arrived() const { return row_arrived_; }
   /// That all of this takes, on the device and the host.
   uint64_t bytes() const;
 
@@ -60,6 +64,7 @@ class LightLearning {
   gpu::Buffer grid_, rows_, cluster_texels_, members_, primitives_, tiles_, facets_, records_;
   LearnedCells cells_;
   std::vector<shared::LightRecord> samples_, fresh_;  ///< of the generations before, and of that at work
+  std::vector<float> row_arrived_;
   size_t record_count_ = 0;
   bool recording_ = false;
   uint32_t generations_ = 0, row_count_ = 0, version_ = 0;

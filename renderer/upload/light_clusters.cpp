@@ -265,6 +265,57 @@ void add_lamps(const FlatScene& flat, uint32_t first, uint32_t end, LightCluster
   }
 }
 
+/// Of a place in the map of the sky, 0..1 to the right and down.
+vec3 sky_direction(const FlatScene& flat, double u, double v) {
+  const double phi = (u - 0.5) * 2 * std::numbers::pi - flat.environment_rotation;
+  const double theta = v * std::numbers::pi;
+  return vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
+}
+
+/// Of a member of the cluster with that square.
+vec3 place_in(const FlatScene& flat, uint32_t light, uint32_t square) {
+  const vec4* t = &flat.lights[size_t(light) * shared::k_light_texels];
+  if (flat.entries[light].kind == shared::k_light_directional) return -vec3(t[2]);
+  if (flat.entries[light].kind != shared::k_light_triangle) return vec3(t[0]);
+  const uint32_t side = square >> 16 & 0xffu;
+  if (side == 1) return (vec3(t[0]) + vec3(t[1]) + vec3(t[2])) / 3.f;
+  // As sample_light() of shaders/lib/lights.glsl places points.
+  vec2 m = 0.5f * (vec2(square & 0xffu, square >> 8 & 0xffu) + 0.5f) / float(side);
+  const float offset = m.y - m.x;
+  m += offset > 0 ? vec2(0, offset) : vec2(-offset, 0);
+  return m.x * vec3(t[0]) + m.y * vec3(t[1]) + (1 - m.x - m.y) * vec3(t[2]);
+}
+
+void find_places(const FlatScene& flat, LightClusters& to) {
+  const uint32_t w = flat.environment_width, h = flat.environment_height;
+  for (uint32_t c = 0; c < to.count(); ++c) {
+    const auto first = std::bit_cast<uint32_t>(to.clusters[c].x),
+               count = std::bit_cast<uint32_t>(to.clusters[c].y),
+               square = std::bit_cast<uint32_t>(to.clusters[c].z);
+    ClusterPlace place{.is_sky = c < to.sky, .count = count};
+    for (uint32_t i = first; i < first + count; ++i) {
+      const auto member = std::bit_cast<uint32_t>(to.members[i].z);
+      if (!place.is_sky) {
+        if (i == first)
+          place.light = member, place.is_far = flat.entries[member].kind == shared::k_light_directional;
+        place.at += place_in(flat, member, square);
+      } else if (const uint32_t side = to.sky_squares; side > 0) {
+        // Squares are even in height, not in angle.
+        const double y = 1 - 2 * ((square >> 8 & 0xffu) + 0.5) / side;
+        place.at += sky_direction(flat, ((square & 0xffu) + 0.5) / side, std::acos(y) / std::numbers::pi);
+      } else {
+        place.at += sky_direction(flat, (member % w + 0.5) / w, (member / w + 0.5) / h);
+      }
+    }
+    if (place.is_sky) place.is_far = true, place.light = uint32_t(flat.entries.size()) - 1;
+    if (place.is_far)
+      place.at = glm::length(place.at) > 1e-6f ? glm::normalize(place.at) : vec3(0, 1, 0);
+    else
+      place.at /= float(std::max(1u, count));
+    to.places.push_back(place);
+  }
+}
+
 bool has_sky(const FlatScene& flat) {
   return flat.environment_light_pmf > 0 && !flat.entries.empty() &&
          flat.entries.back().kind == shared::k_light_environment;
@@ -285,6 +336,7 @@ LightClusters make_light_clusters(const FlatScene& flat) {
     ++triangles;
   if (triangles > 0) add_triangles(flat, triangles, to);
   add_lamps(flat, triangles, uint32_t(flat.entries.size()) - (has_sky(flat) ? 1 : 0), to);
+  find_places(flat, to);
   return to;
 }
 
