@@ -262,6 +262,10 @@ void view_menu(Ui& ui) {
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");
       entry("Tiles", "T", tiles->help.c_str(), ui.setting_on(tiles->key)))
     ui.toggle(tiles->key);
+  for (const char* key : {"overlay.lights", "overlay.light_arrival"})
+    if (const OptionInfo* option = plan::find_option(key);
+        entry(option->label.c_str(), nullptr, option->help.c_str(), ui.setting_on(key)))
+      ui.toggle(key);
   if (entry("Samples as they are", "U",
             "Neither filters the noise of the first samples nor keeps what was shown before an edit.",
             ui.setting("preview.filter") == "off"))

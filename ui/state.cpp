@@ -161,6 +161,7 @@ void Ui::turn_view(const solvers::ViewInfo& view) {
 }
 
 bool Ui::asks_pointer() const {
+  if (setting_on("overlay.lights")) return true;
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::ViewInfo& view : solver->views)
       if (view.asks_pointer && view_on(view) && uses(*solver)) return true;

@@ -11,7 +11,8 @@ void Workspace::add_inspect_commands() {
   registry.add(
       {.name = "inspect.at",
        .help = "Shows what the solvers that are looked up hold at a point of the picture: what of it serves "
-               "there, and how much each counts; a script goes on when it is shown.",
+               "there, and how much each counts; with overlay.lights the lights that are chosen there. A "
+               "script goes on when it is shown.",
        .parameters = {{.name = "right", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture widths"},
                       {.name = "down", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture heights"}},
        .run =

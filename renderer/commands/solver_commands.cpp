@@ -44,6 +44,7 @@ void Workspace::needs_solver(const SolverInfo& solver) const {
 
 void Workspace::needs_lookup() const {
   needs_scene();
+  if (setting("overlay.lights") == "true") return;  // there are lights to be shown everywhere
   const SolverInfo* missing = nullptr;
   for (const SolverInfo* solver : solvers::registered()) {
     if (!solver->looked_up) continue;

@@ -152,6 +152,17 @@ void add_display_options(std::vector<OptionInfo>& list) {
   list.push_back(without_restart(boolean_option(
       "overlay.tiles", "false",
       "Shows over the picture which tiles are at work and how far their error is from the target.")));
+  list.push_back(without_restart(
+      boolean_option("overlay.lights", "false",
+                     "Shows what lights are chosen by at the point under the pointer: arrows to the lights, "
+                     "or parts of the sky, that are chosen there most often, with their shares of the light "
+                     "samples.",
+                     "Lights of a point")));
+  list.push_back(without_restart(
+      boolean_option("overlay.light_arrival", "false",
+                     "Shows over the picture how many of the shadow rays towards lights arrive, of those "
+                     "that lights were last learned from.",
+                     "Shadow rays that arrive")));
   list.push_back(without_restart(choice_option(
       "preview.filter", "auto", {"auto", "off"}, "",
       "What the window shows while a picture is made: auto filters the noise of its first samples, and keeps "

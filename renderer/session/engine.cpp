@@ -262,8 +262,10 @@ bool Engine::learn(const PictureView& picture, const std::function<bool()>& canc
   for (uint32_t g = 0; g < generation; ++g) first += k_generations[g];
   schedule::WorkItem item{{}, k_generations[generation]};
   for (uint32_t b = 0; b < across * down; ++b) item.blocks.push_back({b, first});
-  return wavefront_->learn(item, pilot_frame(picture, 8 * across, 8 * down),
-                           frame(picture, picture.width, picture.height), plan_.enabled(), cancel);
+  const bool went = wavefront_->learn(item, pilot_frame(picture, 8 * across, 8 * down),
+                                      frame(picture, picture.width, picture.height), plan_.enabled(), cancel);
+  if (went && generation + 1 == std::size(k_generations)) wavefront_->learning()->end();
+  return went;
 }
 
 shared::Frame Engine::pilot_frame(const PictureView& picture, uint32_t width, uint32_t height) const {

@@ -27,6 +27,7 @@
 #include "session/filtered.h"
 #include "session/kept_solvers.h"
 #include "session/lights_edit.h"
+#include "session/lights_view.h"
 #include "session/relight.h"
 #include "session/sampling.h"
 #include "session/world.h"
@@ -301,6 +302,8 @@ class Renderer {
   /// The window's filtered picture, where that view shows it; null: there is none.
   const Filtered* shown_filtered(const film::View& view) const;
   void forget_filtered();
+  /// The views of learned lights, over the picture.
+  void draw_lights(const std::function<bool()>& cancel);
   void mark_tiles(const film::View& view);
   bool previewed(const film::View& view) const;  ///< whether the window shows a preview of it
   film::HeatScale heat_scale(uint32_t layer) const;
@@ -356,6 +359,7 @@ class Renderer {
   double filter_s_ = 0, filter_piece_s_ = 0;  ///< that filtering took: last, and up to now
   double filtered_at_s_ = 0;                  ///< render_s_ then
   std::unique_ptr<Display> display_;          ///< null in batch
+  std::unique_ptr<LightsView> lights_view_;   ///< null until it is shown
   struct {
     uint64_t version = ~uint64_t{0}, paths = 0;
     bool filtered = false;

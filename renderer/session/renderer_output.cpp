@@ -54,7 +54,19 @@ std::vector<uint8_t> Renderer::finished_picture(const std::function<bool()>& can
   visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas,
                    const solvers::Picture& picture) { solver.draw(canvas, picture); },
                 cancel);
+  draw_lights(cancel);
   return film_->read_picture();
+}
+
+void Renderer::draw_lights(const std::function<bool()>& cancel) {
+  if (!engine_ || !film_ || !LightsView::shown(settings_)) {
+    if (lights_view_) lights_view_->forget();
+    return;
+  }
+  if (!lights_view_) lights_view_ = std::make_unique<LightsView>(*device_, *compiler_);
+  lights_view_->draw({engine_->wavefront(), *film_, *coarse_, cancel}, engine_->wavefront().learning(),
+                     world_.flat, engine_->frame(picture_view(), film_->width(), film_->height()),
+                     *world_.scene, settings_, looked_at_);
 }
 
 bool Renderer::previewed(const film::View& v) const {

@@ -62,6 +62,8 @@ std::vector<std::shared_ptr<const solvers::Report>> Renderer::reports() {
   visit_solvers([&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
     all.push_back(solver.report(canvas, picture, samples() > 0));
   });
+  if (lights_view_ && lights_view_->report())
+    all.push_back(std::make_shared<const solvers::Report>(*lights_view_->report()));
   return all;
 }
 

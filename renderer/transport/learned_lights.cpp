@@ -4,7 +4,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "upload/alias_table.h"
 
@@ -14,13 +16,17 @@ using namespace shared;
 
 namespace {
 
-/// Probability that every cluster keeps of that without learning: what has been seen in vain so far is still
-/// found.
-constexpr double k_defensive = 0.15;
+/// Probability that every cluster keeps of that without learning, and of an even one: what has been seen in
+/// vain so far is still found, be it of little power.
+constexpr double k_defensive = 0.11, k_even = 0.04;
+/// The latter before anything is learned: where a strong light is hidden, a weak one is chosen now and then.
+constexpr double k_even_at_first = 0.1;
 /// Samples that what is known of the cells around counts for, in each cluster.
 constexpr double k_prior_samples = 6;
 /// Samples of a cell that is cut at least; a fifth of what it takes gives a cell its own row.
 constexpr size_t k_cut = 256;
+/// Light samples of which the share that has arrived is a figure.
+constexpr size_t k_known_rays = 16;
 /// Rows at most, and their texels.
 constexpr uint32_t k_most_rows = 16384, k_most_row_texels = 1u << 22;
 constexpr uint32_t k_levels = 7;  // of the octree of the cells
@@ -45,6 +51,7 @@ uint32_t key_of(const LearnedCells& cells, const LightRecord& r) {
 struct Sample {
   uint32_t key;
   bool scattered;
+  bool last, arrived;  // of the last generation; its shadow ray has arrived
   uint32_t cluster;
   double value, rate;
 };
@@ -55,17 +62,19 @@ using Moments = std::vector<double>;
 class Learner {
  public:
   Learner(const upload::LightClusters& clusters, const LearnedCells& cells,
-          std::span<const LightRecord> records, LearnedLights& to)
+          std::span<const LightRecord> records, LearnedLights& to, size_t last = 0)
       : clusters_(clusters), to_(to) {
     to_.cells = cells;
     samples_.reserve(records.size() + records.size() / 4);
-    for (const LightRecord& r : records) {
+    for (size_t i = 0; i < records.size(); ++i) {
+      const LightRecord& r = records[i];
       if (r.full == 0) continue;
       const uint32_t key = key_of(cells, r);
-      samples_.push_back(
-          {key, false, r.cell & 0xffffu, r.full > 0 ? double(r.value) * (r.arrived / r.full) : 0.0, r.rate});
+      samples_.push_back({key, false, i + last >= records.size(), r.full > 0 && r.arrived > 0,
+                          r.cell & 0xffffu, r.full > 0 ? double(r.value) * (r.arrived / r.full) : 0.0,
+                          r.rate});
       if (r.met > 0 && r.before > 0)
-        samples_.push_back({key, true, r.met - 1, double(r.met_value) / r.before, r.met_rate});
+        samples_.push_back({key, true, false, false, r.met - 1, double(r.met_value) / r.before, r.met_rate});
     }
     // By all that they are, so that sums do not hang on the order in which they came.
     std::sort(samples_.begin(), samples_.end(), [](const Sample& a, const Sample& b) {
@@ -80,6 +89,9 @@ class Learner {
     firsts_.resize(clusters.count());
     weights_.resize(clusters.count());
     find_rates();
+    for (const float plain : clusters.plain) even_.push_back(plain > 0 ? 1 : 0);
+    const double lit = std::accumulate(even_.begin(), even_.end(), 0.0);
+    for (double& p : even_) p /= std::max(1.0, lit);
   }
 
   void learn() {
@@ -89,6 +101,7 @@ class Learner {
     const Range all{0, samples_.size()};
     const Moments root = moments_of(all, prior, false);
     const uint32_t row = add_row(root);
+    note_arrived(all, row, -1);
     fill_all(row);
     if (!(to_.cells.scale > 0)) return;
     for (uint32_t facing = 0; facing < k_learned_facings; ++facing) {
@@ -99,12 +112,20 @@ class Learner {
   }
 
   void fill_all(uint32_t row) { to_.grid.assign(k_bricks, row << 1); }
+  /// As without learning, but for this share, which is even over the clusters that have any light.
+  void mix_all(double even) {
+    std::vector<double> p(even_.size());
+    for (size_t c = 0; c < p.size(); ++c) p[c] = (1 - even) * clusters_.plain[c] + even * even_[c];
+    put_row(p);
+    fill_all(to_.row_count - 1);
+  }
   uint32_t add_row(const Moments& moments) {
     std::vector<double> p(moments.size());
     double total = 0;
     for (size_t c = 0; c < p.size(); ++c) total += p[c] = std::sqrt(moments[c]);
     for (size_t c = 0; c < p.size(); ++c)
-      p[c] = total > 0 ? k_defensive * clusters_.plain[c] + (1 - k_defensive) * p[c] / total
+      p[c] = total > 0 ? k_defensive * clusters_.plain[c] + (1 - k_defensive - k_even) * p[c] / total +
+                             k_even * even_[c]
                        : clusters_.plain[c];
     put_row(p);
     return to_.row_count - 1;
@@ -196,13 +217,23 @@ class Learner {
     noise_learned_ += weight * std::max(0.0, learned - mean * mean);
   }
 
+  /// Of the last generation's rays; `around`: where these are too few.
+  void note_arrived(Range range, uint32_t row, float around) {
+    size_t count = 0, arrived = 0;
+    for (size_t i = range.first; i < range.end; ++i)
+      if (samples_[i].last) ++count, arrived += samples_[i].arrived;
+    to_.arrived.resize(row + 1, -1.f);
+    to_.arrived[row] = count >= k_known_rays ? float(arrived) / float(count) : around;
+  }
+
   /// A cell of a level with what is known of the one around it, and its row.
   void visit(Range range, uint32_t key, uint32_t level, uvec3 corner, const Moments& around, uint32_t row) {
     Moments own = around;
     bool judged = false;
     if (range.size() >= cut_ / 5 && to_.row_count < most_rows_) {
       own = moments_of(range, around, true);
-      row = add_row(own);
+      const uint32_t around_row = std::exchange(row, add_row(own));
+      note_arrived(range, row, to_.arrived[around_row]);
       fill(level, corner, key, row);
       judged = true;
     }
@@ -256,7 +287,7 @@ class Learner {
   std::vector<Sample> samples_;
   size_t cut_ = 0;
   uint32_t most_rows_ = 0;
-  std::vector<double> sums_, firsts_, weights_, rates_;
+  std::vector<double> sums_, firsts_, weights_, rates_, even_;
   std::vector<uint32_t> counts_;
   double noise_plain_ = 0, noise_learned_ = 0;
 };
@@ -286,15 +317,20 @@ LearnedCells learned_cells(std::span<const LightRecord> records) {
 
 LearnedLights plain_lights(const upload::LightClusters& clusters) {
   LearnedLights to;
-  Learner learner(clusters, {}, {}, to);
-  learner.fill_all(learner.add_row(Moments(clusters.count(), 0.0)));
+  Learner(clusters, {}, {}, to).mix_all(k_even_at_first);
+  return to;
+}
+
+LearnedLights exploring_lights(const upload::LightClusters& clusters) {
+  LearnedLights to;
+  Learner(clusters, {}, {}, to).mix_all(0.5);
   return to;
 }
 
 LearnedLights learn_lights(const upload::LightClusters& clusters, const LearnedCells& cells,
-                           std::span<const LightRecord> records) {
+                           std::span<const LightRecord> records, size_t last) {
   LearnedLights to;
-  Learner(clusters, cells, records, to).learn();
+  Learner(clusters, cells, records, to, last).learn();
   return to;
 }
 

@@ -23,17 +23,23 @@ struct LearnedLights {
   std::vector<uint32_t> grid;  ///< learned_grid
   std::vector<vec4> rows;      ///< learned_rows
   uint32_t row_count = 0;
+  /// By row: share of the light samples of the last generation there whose shadow rays have arrived; < 0: not
+  /// known.
+  std::vector<float> arrived;
   /// Variance of a light sample with the probabilities without learning over that with these, both relative
   /// to the square of what arrives: estimated from the same samples. 1 where nothing was recorded.
   double gain = 1;
 };
 
-/// As without learning, everywhere.
+/// Nearly as without learning, everywhere: a tenth is even over clusters.
 LearnedLights plain_lights(const upload::LightClusters& clusters);
+/// For what is recorded first: half as without learning, half evenly over clusters, so that lights of little
+/// power are found that are all that a place sees.
+LearnedLights exploring_lights(const upload::LightClusters& clusters);
 /// From recorded samples. Cells are as small as what was recorded there allows; where little was, they begin
 /// with what the cells around them have found, all of space with the probabilities without learning. The
-/// order of records does not matter.
+/// order of records does not matter. `last`: records of the last generation, which are the last of them.
 LearnedLights learn_lights(const upload::LightClusters& clusters, const LearnedCells& cells,
-                           std::span<const shared::LightRecord> records);
+                           std::span<const shared::LightRecord> records, size_t last = 0);
 
 }  // namespace lucerna::transport

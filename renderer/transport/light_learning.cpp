@@ -1,6 +1,7 @@
 #include "transport/light_learning.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lucerna::transport {
 
@@ -29,16 +30,20 @@ LightLearning::LightLearning(gpu::Device& device, upload::LightClusters clusters
 }
 
 void LightLearning::upload_clusters() {
-  put(device_, cluster_texels_, "light clusters", clusters_.clusters);
-  put(device_, members_, "lights of clusters", clusters_.members);
-  put(device_, primitives_, "clusters of emissive triangles", clusters_.primitives);
-  put(device_, tiles_, "clusters of the sky", clusters_.tiles);
+  // The device has them from now on.
+  put(device_, cluster_texels_, "light clusters", std::exchange(clusters_.clusters, {}));
+  put(device_, members_, "lights of clusters", std::exchange(clusters_.members, {}));
+  put(device_, primitives_, "clusters of emissive triangles", std::exchange(clusters_.primitives, {}));
+  put(device_, tiles_, "clusters of the sky", std::exchange(clusters_.tiles, {}));
+  put(device_, facets_, "emissive triangles", std::exchange(clusters_.facets, {}));
 }
 
 void LightLearning::take(const LearnedLights& lights) {
   put(device_, grid_, "learned cells", lights.grid);
   put(device_, rows_, "learned lights", lights.rows);
   cells_ = lights.cells, row_count_ = lights.row_count, gain_ = lights.gain;
+  row_arrived_ = lights.arrived;
+  row_arrived_.resize(row_count_, -1.f);
   ++version_;
 }
 
@@ -49,6 +54,7 @@ void LightLearning::bind(gpu::Resources& r) const {
   r.set("cluster_members", members_);
   r.set("primitive_clusters", primitives_);
   r.set("sky_tiles", tiles_);
+  r.set("light_facets", facets_);
   r.set("LightRecords", records_);
 }
 
@@ -60,7 +66,10 @@ void LightLearning::describe(Frame& frame) const {
   frame.learning = recording_ ? 1 : 0;
 }
 
-void LightLearning::begin_generation() { fresh_.clear(); }
+void LightLearning::begin_generation() {
+  fresh_.clear();
+  if (generations_ == 0) take(exploring_lights(clusters_));
+}
 
 void LightLearning::begin_recording() {
   const std::vector<std::byte> none(records_.bytes());
@@ -76,16 +85,25 @@ void LightLearning::end_recording(uint32_t paths) {
   fresh_.insert(fresh_.end(), all.begin(), all.end());
 }
 
+void LightLearning::abandon_generation() {
+  fresh_.clear();
+  if (generations_ == 0) take(plain_lights(clusters_));
+}
+
 void LightLearning::finish_generation() {
   size_t arrived = 0;
   for (const LightRecord& r : fresh_) arrived += r.arrived > 0;
   arrived_ = fresh_.empty() ? 0 : double(arrived) / double(fresh_.size());
   if (cells_.scale == 0) cells_ = learned_cells(fresh_);
   samples_.insert(samples_.end(), fresh_.begin(), fresh_.end());
+  record_count_ = samples_.size();
+  const size_t last = fresh_.size();
   fresh_.clear();
-  take(learn_lights(clusters_, cells_, samples_));
+  take(learn_lights(clusters_, cells_, samples_, last));
   ++generations_;
 }
+
+void LightLearning::end() { samples_ = {}, fresh_ = {}; }
 
 void LightLearning::learn(std::vector<LightRecord> records) {
   fresh_ = std::move(records);
@@ -99,16 +117,26 @@ void LightLearning::forget(upload::LightClusters clusters) {
 }
 
 void LightLearning::forget() {
-  samples_.clear();
+  end();
+  record_count_ = 0;
   cells_ = {};
   recording_ = false;
   generations_ = 0;
   take(plain_lights(clusters_));
 }
 
+std::vector<float> LightLearning::row(uint32_t row) const {
+  std::vector<vec4> texels(clusters_.count());
+  rows_.read(texels.data(), texels.size() * sizeof(vec4), uint64_t{row} * texels.size() * sizeof(vec4));
+  std::vector<float> p;
+  for (size_t c = 0; c < texels.size(); ++c) p.push_back(texels[c].z * clusters_.plain[c]);
+  return p;
+}
+
 uint64_t LightLearning::bytes() const {
   return grid_.bytes() + rows_.bytes() + cluster_texels_.bytes() + members_.bytes() + primitives_.bytes() +
-         tiles_.bytes() + records_.bytes();
+         tiles_.bytes() + facets_.bytes() + records_.bytes() +
+         (samples_.capacity() + fresh_.capacity()) * sizeof(LightRecord);
 }
 
 }  // namespace lucerna::transport

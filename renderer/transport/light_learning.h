@@ -22,12 +22,16 @@ class LightLearning {
 
   /// A generation: light samples of the paths that are traced between begin_recording() and end_recording()
   /// are recorded, by slot, as many times as it takes. Paths of a generation choose by what all before have
-  /// found; finish_generation() makes what the next choose by of all samples so far. How a generation is cut
-  /// does not matter.
+  /// found, those of the first by exploring_lights(); finish_generation() makes what the next choose by of
+  /// all samples so far. How a generation is cut does not matter.
   void begin_generation();
   void begin_recording();
   void end_recording(uint32_t paths);
   void finish_generation();
+  /// In place of that, where not all of its paths were traced: they count for nothing.
+  void abandon_generation();
+  /// No generation follows: the records are let go.
+  void end();
   /// The same of samples recorded elsewhere, as a generation.
   void learn(std::vector<shared::LightRecord> records);
   uint32_t generations() const { return generations_; }
@@ -36,12 +40,18 @@ class LightLearning {
   void forget(upload::LightClusters clusters);
   void forget();
 
+  /// Without what the device alone reads.
   const upload::LightClusters& clusters() const { return clusters_; }
   uint32_t rows() const { return row_count_; }
-  size_t records() const { return samples_.size(); }
+  size_t records() const { return record_count_; }
   double gain() const { return gain_; }
   /// Share of the recorded light samples of the last generation that brought light.
   double arrived() const { return arrived_; }
+  /// Probabilities of the clusters in a row of learned_rows.
+  std::vector<float> row(uint32_t row) const;
+  /// LearnedLights::arrived.
+  const std::vector<float>& row_arrived() const { return row_arrived_; }
+  /// That all of this takes, on the device and the host.
   uint64_t bytes() const;
 
  private:
@@ -51,9 +61,11 @@ class LightLearning {
   gpu::Device& device_;
   upload::LightClusters clusters_;
   uint32_t most_paths_;
-  gpu::Buffer grid_, rows_, cluster_texels_, members_, primitives_, tiles_, records_;
+  gpu::Buffer grid_, rows_, cluster_texels_, members_, primitives_, tiles_, facets_, records_;
   LearnedCells cells_;
   std::vector<shared::LightRecord> samples_, fresh_;  ///< of the generations before, and of that at work
+  std::vector<float> row_arrived_;
+  size_t record_count_ = 0;
   bool recording_ = false;
   uint32_t generations_ = 0, row_count_ = 0, version_ = 0;
   double gain_ = 1, arrived_ = 0;

@@ -356,6 +356,7 @@ bool Wavefront::learn(const schedule::WorkItem& item, const Frame& pilot, const 
   Impl& w = *impl_;
   LightLearning& learning = *w.learning;
   learning.begin_generation();
+  w.bind_learning();
   const size_t at_once = std::min(learning.most_paths(), w.slots) / 64;
   bool went = true;
   for (uint32_t sample = 0; sample < item.sample_count && went; ++sample)
@@ -368,7 +369,10 @@ bool Wavefront::learn(const schedule::WorkItem& item, const Frame& pilot, const 
       went = probe(part, cancel);
       learning.end_recording(went ? part.slots() : 0);
     }
-  if (went) learning.finish_generation();
+  if (went)
+    learning.finish_generation();
+  else
+    learning.abandon_generation();
   w.bind_learning();
   set_frame(picture, enabled);
   return went;

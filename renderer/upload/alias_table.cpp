@@ -1,8 +1,21 @@
 #include "upload/alias_table.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace lucerna::upload {
+namespace {
+
+/// The nearest probability that coin_below() of shaders/lib/sampler.glsl has to the bit; of one above 0,
+/// above 0.
+double as_coin(double p, bool possible) {
+  const double steps = p < 0.5 ? 0x1p32 : 0x1p24;
+  const double nearest = double(float(std::round(p * steps) / steps));
+  return possible ? std::max(nearest, 0x1p-32) : nearest;
+}
+
+}  // namespace
 
 std::vector<vec4> build_alias_table(std::span<const double> weights) {
   double total = 0;
@@ -34,10 +47,15 @@ std::vector<vec4> build_alias_table(std::span<const double> weights) {
     else
       scaled[i] = 0, alias[i] = heaviest;
   }
+  // Probabilities are those of the coins: a weight of 1e-16 of the others is chosen more often than that.
+  std::vector<double> pmf(n, 0.0);
+  for (size_t i = 0; i < n; ++i) {
+    scaled[i] = as_coin(scaled[i], weights[i] > 0);
+    pmf[i] += scaled[i] / double(n), pmf[alias[i]] += (1 - scaled[i]) / double(n);
+  }
   std::vector<vec4> table(n);
   for (size_t i = 0; i < n; ++i)
-    table[i] = vec4(float(scaled[i]), std::bit_cast<float>(alias[i]), float(weights[i] / total),
-                    float(weights[alias[i]] / total));
+    table[i] = vec4(float(scaled[i]), std::bit_cast<float>(alias[i]), float(pmf[i]), float(pmf[alias[i]]));
   return table;
 }
 

@@ -87,8 +87,7 @@ void choose_texels(const EnvironmentMap& map, const EnvironmentWeights& weights,
   std::vector<float> densities(weights.texels.size());
   for (size_t i = 0; i < weights.texels.size(); ++i) {
     const float density =
-        to.sky_weight > 0 ? float(texel_density(weights.texels[i] / to.sky_weight, i, map.width, map.height))
-                          : 0;
+        to.sky_weight > 0 ? float(texel_density(to.alias[i].z, i, map.width, map.height)) : 0;
     densities[i] = weights.is_sun[i] ? -density : density;
   }
   to.density = std::move(densities);
@@ -99,14 +98,17 @@ void choose_sun_cells(const EnvironmentMap& map, const std::vector<double>& weig
   to.sun_weight = std::accumulate(weights.begin(), weights.end(), 0.0);
   if (!(to.sun_weight > 0)) return;
   std::vector<double> cells;
-  std::vector<vec4> texels, densities((weights.size() + 3) / 4, vec4(0));
+  std::vector<vec4> texels;
   for (size_t i = 0; i < weights.size(); ++i) {
     if (weights[i] <= 0) continue;
-    densities[i / 4][int(i % 4)] = float(texel_density(weights[i] / to.sun_weight, i, map.width, map.height));
     cells.push_back(weights[i]);
     texels.emplace_back(std::bit_cast<float>(uint32_t(i)), 0, 0, 0);
   }
-  std::vector<vec4> table = build_alias_table(cells);
+  std::vector<vec4> table = build_alias_table(cells), densities((weights.size() + 3) / 4, vec4(0));
+  for (size_t k = 0; k < texels.size(); ++k) {
+    const auto i = std::bit_cast<uint32_t>(texels[k].x);
+    densities[i / 4][int(i % 4)] = float(texel_density(table[k].z, i, map.width, map.height));
+  }
   table.insert(table.end(), texels.begin(), texels.end());
   to.sun_cells = std::move(table), to.sun_density = std::move(densities);
 }

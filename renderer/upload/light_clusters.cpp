@@ -8,6 +8,7 @@
 #include <numeric>
 #include <queue>
 
+#include "shaders/shared/learned_lights.h"
 #include "upload/alias_table.h"
 
 namespace lucerna::upload {
@@ -17,20 +18,22 @@ constexpr uint32_t k_sky_clusters = 256;  // their numbers are bytes
 constexpr uint32_t k_sky_side = 16;       // squares of a constant sky along a side
 constexpr uint32_t k_triangle_clusters = 128, k_lamp_clusters = 64, k_distant_clusters = 16;
 constexpr uint32_t k_most_squares = 8;  // of a triangle, along a side
+/// Of so many emissive triangles one is drawn from this many candidates of its cluster.
+constexpr size_t k_many_triangles = 64, k_triangle_candidates = 8;
 
 float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
 
 class Builder {
  public:
   explicit Builder(LightClusters& to) : to_(to) {}
-  /// `squares`: along a side; the cluster is that of column and row.
+  /// `squares`: along a side; the cluster is that of column and row. `kind`: k_cluster_of_triangles, or 0.
   void add(const std::vector<uint32_t>& members, const std::vector<double>& weights, uint32_t squares = 1,
-           uint32_t column = 0, uint32_t row = 0) {
+           uint32_t column = 0, uint32_t row = 0, uint32_t kind = 0) {
     const std::vector<vec4> table = build_alias_table(weights);  // none: the cluster is never chosen
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0) / (squares * squares);
     to_.clusters.emplace_back(as_float(uint32_t(to_.members.size())),
                               as_float(uint32_t(std::max<size_t>(1, table.size()))),
-                              as_float(column | row << 8 | squares << 16), float(sum));
+                              as_float(column | row << 8 | squares << 16 | kind), float(sum));
     to_.plain.push_back(float(sum));
     if (table.empty()) to_.members.emplace_back(1, 0, as_float(members[0]), as_float(members[0]));
     for (size_t i = 0; i < table.size(); ++i)
@@ -179,7 +182,7 @@ void add_runs(const std::vector<uint32_t>& lights, const std::vector<vec3>& plac
     if (members.empty()) return;
     if (cluster_of)
       for (const uint32_t m : members) (*cluster_of)[m] = to.count();
-    Builder(to).add(members, weights);
+    Builder(to).add(members, weights, 1, 0, 0, cluster_of ? shared::k_cluster_of_triangles : 0);
     members.clear(), weights.clear(), sum = 0;
   };
   for (const auto& [code, i] : order) {
@@ -188,6 +191,28 @@ void add_runs(const std::vector<uint32_t>& lights, const std::vector<vec3>& plac
     members.push_back(lights[i]), weights.push_back(weight), sum += weight;
   }
   finish();
+}
+
+/// Of light_facets.
+vec4 facet_of(const FlatScene& flat, uint32_t light) {
+  const vec4* t = &flat.lights[size_t(light) * shared::k_light_texels];
+  const glm::dvec3 a{vec3(t[0])}, b{vec3(t[1])}, c{vec3(t[2])};
+  glm::dvec3 n = glm::cross(b - a, c - a);
+  const auto sides = std::bit_cast<uint32_t>(t[3].w);
+  const double twice_area = glm::length(n);
+  if ((sides & shared::k_light_flipped) != 0) n = -n;
+  n /= std::max(std::abs(n.x) + std::abs(n.y) + std::abs(n.z), 1e-300);
+  glm::dvec2 map(n.x, n.y);
+  if (n.z < 0)
+    map = glm::dvec2((1 - std::abs(n.y)) * (n.x < 0 ? -1 : 1), (1 - std::abs(n.x)) * (n.y < 0 ? -1 : 1));
+  const auto twelve = [](double v) {
+    return uint32_t(std::clamp(std::round((0.5 + 0.5 * v) * 4095), 0.0, 4095.0));
+  };
+  const double exponent = std::log2(std::max(0.5 * twice_area, 1e-300)) + 64;
+  const uint32_t bits = twelve(map.x) | twelve(map.y) << 12 |
+                        uint32_t(std::clamp(std::round(exponent), 0.0, 127.0)) << 24 |
+                        ((sides & shared::k_light_both_sides) != 0 ? 1u << 31 : 0u);
+  return {vec3((a + b + c) / 3.0), as_float(bits)};
 }
 
 vec3 place_of(const FlatScene& flat, uint32_t light) {
@@ -212,6 +237,8 @@ void add_triangles(const FlatScene& flat, uint32_t count, LightClusters& to) {
     }
   }
   add_runs(small, places, flat, k_triangle_clusters, to, &cluster_of);
+  if (count >= k_many_triangles)
+    for (uint32_t i = 0; i < count; ++i) to.facets.push_back(facet_of(flat, i));
   to.primitives.assign((flat.triangles.size() + 3) / 4 * 4, 1u << 24);
   for (uint32_t i = 0; i < count; ++i)
     to.primitives[flat.entries[i].index] = cluster_of[i] | squares_of[i] << 24;
@@ -238,6 +265,57 @@ void add_lamps(const FlatScene& flat, uint32_t first, uint32_t end, LightCluster
   }
 }
 
+/// Of a place in the map of the sky, 0..1 to the right and down.
+vec3 sky_direction(const FlatScene& flat, double u, double v) {
+  const double phi = (u - 0.5) * 2 * std::numbers::pi - flat.environment_rotation;
+  const double theta = v * std::numbers::pi;
+  return vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
+}
+
+/// Of a member of the cluster with that square.
+vec3 place_in(const FlatScene& flat, uint32_t light, uint32_t square) {
+  const vec4* t = &flat.lights[size_t(light) * shared::k_light_texels];
+  if (flat.entries[light].kind == shared::k_light_directional) return -vec3(t[2]);
+  if (flat.entries[light].kind != shared::k_light_triangle) return vec3(t[0]);
+  const uint32_t side = square >> 16 & 0xffu;
+  if (side == 1) return (vec3(t[0]) + vec3(t[1]) + vec3(t[2])) / 3.f;
+  // As sample_light() of shaders/lib/lights.glsl places points.
+  vec2 m = 0.5f * (vec2(square & 0xffu, square >> 8 & 0xffu) + 0.5f) / float(side);
+  const float offset = m.y - m.x;
+  m += offset > 0 ? vec2(0, offset) : vec2(-offset, 0);
+  return m.x * vec3(t[0]) + m.y * vec3(t[1]) + (1 - m.x - m.y) * vec3(t[2]);
+}
+
+void find_places(const FlatScene& flat, LightClusters& to) {
+  const uint32_t w = flat.environment_width, h = flat.environment_height;
+  for (uint32_t c = 0; c < to.count(); ++c) {
+    const auto first = std::bit_cast<uint32_t>(to.clusters[c].x),
+               count = std::bit_cast<uint32_t>(to.clusters[c].y),
+               square = std::bit_cast<uint32_t>(to.clusters[c].z);
+    ClusterPlace place{.is_sky = c < to.sky, .count = count};
+    for (uint32_t i = first; i < first + count; ++i) {
+      const auto member = std::bit_cast<uint32_t>(to.members[i].z);
+      if (!place.is_sky) {
+        if (i == first)
+          place.light = member, place.is_far = flat.entries[member].kind == shared::k_light_directional;
+        place.at += place_in(flat, member, square);
+      } else if (const uint32_t side = to.sky_squares; side > 0) {
+        // Squares are even in height, not in angle.
+        const double y = 1 - 2 * ((square >> 8 & 0xffu) + 0.5) / side;
+        place.at += sky_direction(flat, ((square & 0xffu) + 0.5) / side, std::acos(y) / std::numbers::pi);
+      } else {
+        place.at += sky_direction(flat, (member % w + 0.5) / w, (member / w + 0.5) / h);
+      }
+    }
+    if (place.is_sky) place.is_far = true, place.light = uint32_t(flat.entries.size()) - 1;
+    if (place.is_far)
+      place.at = glm::length(place.at) > 1e-6f ? glm::normalize(place.at) : vec3(0, 1, 0);
+    else
+      place.at /= float(std::max(1u, count));
+    to.places.push_back(place);
+  }
+}
+
 bool has_sky(const FlatScene& flat) {
   return flat.environment_light_pmf > 0 && !flat.entries.empty() &&
          flat.entries.back().kind == shared::k_light_environment;
@@ -258,6 +336,7 @@ LightClusters make_light_clusters(const FlatScene& flat) {
     ++triangles;
   if (triangles > 0) add_triangles(flat, triangles, to);
   add_lamps(flat, triangles, uint32_t(flat.entries.size()) - (has_sky(flat) ? 1 : 0), to);
+  find_places(flat, to);
   return to;
 }
 
@@ -266,6 +345,9 @@ gpu::Defines learned_defines(const FlatScene& flat) {
   gpu::Defines defines{{"LUCERNA_LEARNED", "1"}};
   if (has_sky(flat) && flat.environment_width * flat.environment_height == 1)
     defines["LUCERNA_SKY_SQUARES"] = std::to_string(k_sky_side);
+  if (flat.entries.size() >= k_many_triangles &&
+      flat.entries[k_many_triangles - 1].kind == shared::k_light_triangle)
+    defines["LUCERNA_TRIANGLE_CANDIDATES"] = std::to_string(k_triangle_candidates);
   return defines;
 }
 

@@ -8,6 +8,15 @@
 
 namespace lucerna::upload {
 
+/// Where a cluster is, for views.
+struct ClusterPlace {
+  vec3 at{0};  ///< mean of its lights' places; of far ones the unit direction towards them
+  bool is_far = false;
+  bool is_sky = false;
+  uint32_t light = 0;  ///< the first of its lights: an entry of LightDistribution::entries
+  uint32_t count = 0;  ///< lights, or texels of the sky
+};
+
 struct LightClusters {
   uint32_t sky = 0;          ///< clusters of the sky, which are the first
   uint32_t sky_squares = 0;  ///< a constant sky is cut into so many squares along a side; 0: into texels
@@ -15,6 +24,8 @@ struct LightClusters {
   std::vector<vec4> clusters, members;  ///< light_clusters, cluster_members
   std::vector<uint32_t> primitives;     ///< primitive_clusters
   std::vector<uint8_t> tiles;           ///< sky_tiles
+  std::vector<vec4> facets;             ///< light_facets
+  std::vector<ClusterPlace> places;     ///< by cluster
   uint32_t count() const { return uint32_t(plain.size()); }
 };
 

@@ -130,7 +130,7 @@ uint emission_choose_in(uint group, uvec2 bits) {
   fraction = uaddCarry(fraction, more, carry);
   i += carry;
   vec4 member = texelFetch(emission_members, int(header.x + i));
-  i = float(fraction >> 8) * (1.0 / 16777216.0) < member.x ? i : floatBitsToUint(member.y);
+  i = coin_below(fraction, member.x) ? i : floatBitsToUint(member.y);
   return floatBitsToUint(texelFetch(emission_groups, int(emission.groups + emission.count + header.x + i)).x);
 }
 

@@ -4,6 +4,7 @@
 #define LUCERNA_LIB_LEARNED_LIGHTS
 #include "lib/variants.glsl"
 #include "lib/frame.glsl"
+#include "lib/sampler.glsl"
 #include "shaders/shared/learned_lights.h"
 
 uniform samplerBuffer learned_grid;
@@ -45,12 +46,13 @@ struct LightCluster {
   vec2 corner;        // of its square
   float side;         // ... 1 over the squares along a side
   float plain;        // probability without learning
+  bool of_triangles;  // ... in a run
 };
 LightCluster light_cluster(uint cluster) {
   vec4 c = texelFetch(light_clusters, int(cluster));
   uint square = floatBitsToUint(c.z);
-  float side = 1.0 / float(square >> 16);
-  return LightCluster(floatBitsToUint(c.x), floatBitsToUint(c.y), vec2(square & 0xffu, square >> 8 & 0xffu) * side, side, c.w);
+  float side = 1.0 / float(square >> 16 & 0xffu);
+  return LightCluster(floatBitsToUint(c.x), floatBitsToUint(c.y), vec2(square & 0xffu, square >> 8 & 0xffu) * side, side, c.w, (square & k_cluster_of_triangles) != 0u);
 }
 
 // Chooses a member of a cluster as without learning; bits: 64, as alias_choose().
@@ -61,7 +63,7 @@ uint cluster_member(LightCluster c, uvec2 bits) {
   fraction = uaddCarry(fraction, more, carry);
   i += carry;
   vec4 e = texelFetch(cluster_members, int(c.first + i));
-  return floatBitsToUint(float(fraction >> 8) * (1.0 / 16777216.0) < e.x ? e.z : e.w);
+  return floatBitsToUint(coin_below(fraction, e.x) ? e.z : e.w);
 }
 
 // Which square of `squares` along a side holds these random numbers.

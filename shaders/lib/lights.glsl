@@ -52,6 +52,7 @@ struct LightSample {
 #if LUCERNA_LEARNED
   uint cluster;      // of lights
   float chosen;      // probability of that
+  float factor;      // of what the sample brings: pdf over the density that it stands for, being drawn from candidates
 #endif
 };
 
@@ -64,7 +65,7 @@ uint alias_choose(samplerBuffer table, uint begin, uint count, uvec2 bits, out f
   fraction = uaddCarry(fraction, more, carry);
   i += carry;
   vec4 e = texelFetch(table, int(begin + i));
-  bool first = float(fraction >> 8) * (1.0 / 16777216.0) < e.x;
+  bool first = coin_below(fraction, e.x);
   pmf = first ? e.z : e.w;
   return first ? i : floatBitsToUint(e.y);
 }
@@ -236,6 +237,50 @@ uint draw_lamp_of(LightCluster cluster, uint light, vec3 position, vec3 normal, 
 }
 #endif
 
+#if LUCERNA_LEARNED && LUCERNA_TRIANGLE_CANDIDATES
+uniform samplerBuffer light_facets;
+
+// What a small emissive triangle of power 1 would send to a place if nothing were between, but for a factor; 0 only where its
+// side that emits cannot be seen from there: its normal is known to a thousandth.
+float facet_sends(uint triangle, vec3 position, vec3 normal) {
+  vec4 f = texelFetch(light_facets, int(triangle));
+  uint bits = floatBitsToUint(f.w);
+  vec2 map = vec2(bits & 0xfffu, bits >> 12 & 0xfffu) * (2.0 / 4095.0) - 1.0;
+  vec3 n = vec3(map, 1.0 - abs(map.x) - abs(map.y));
+  float fold = max(-n.z, 0.0);
+  n.x -= n.x >= 0.0 ? fold : -fold;
+  n.y -= n.y >= 0.0 ? fold : -fold;
+  vec3 to = f.xyz - position;
+  float d2 = max(dot(to, to), 1e-20), scale = inversesqrt(d2);
+  float faces = -dot(n, to) * scale * inversesqrt(dot(n, n));
+  faces = max((bits >> 31) != 0u ? abs(faces) : faces, -0.004) + 0.004;
+  float area = exp2(float(bits >> 24 & 0x7fu) - 64.0);
+  return faces * max(dot(normal, to) * scale, 0.05) / (d2 + area);
+}
+
+// In place of a triangle of a cluster of several one of candidates, as draw_lamp_of() does. A ray may meet it, and is weighted
+// against the density without candidates; `factor`: that over the density that the choice stands for.
+uint draw_triangle_of(LightCluster cluster, uint light, vec3 position, vec3 normal, uvec2 choice, float ratio, inout float pmf, out float factor) {
+  const uint candidates = uint(LUCERNA_TRIANGLE_CANDIDATES);
+  bool small = cluster.of_triangles && cluster.count > 1u;
+  uint drawn = light;
+  float sends_drawn = 0.0;
+  Reservoir drawing = Reservoir(to_unit(choice).y, 0.0);
+  for (uint k = 0u; k < (small ? candidates : 0u); ++k) {
+    uint bits = choice.x + k * (0xffffffffu / max(candidates, 1u));
+    uint triangle = cluster_member(cluster, uvec2(bits, hash_mix(bits)));
+    float sends = facet_sends(triangle, position, normal);
+    bool taken = reservoir_draw(drawing, sends);
+    drawn = taken ? triangle : drawn;
+    sends_drawn = taken ? sends : sends_drawn;
+  }
+  factor = small ? drawing.total / (float(candidates) * max(sends_drawn, 1e-37)) : 1.0;
+  factor = drawing.total > 0.0 || !small ? factor : 0.0;
+  pmf = small ? ratio * texelFetch(light_alias, int(drawn)).z : pmf;
+  return drawn;
+}
+#endif
+
 // Chooses by `choice` (32 bits), places by u; detail: 64 further bits (environment). Where the sky is apart its
 // probability is sky_share, and the other lights share what is left. `normal`: of the surface, unit, on the side that is seen.
 // Needs lib/surface.glsl before it.
@@ -267,6 +312,10 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   pmf = ratio * texelFetch(light_alias, int(light)).z;
 #if LUCERNA_LAMP_CANDIDATES
   light = draw_lamp_of(cluster, light, position, normal, detail.x, u.x, ratio, pmf);
+#endif
+  s.factor = 1.0;
+#if LUCERNA_TRIANGLE_CANDIDATES
+  light = draw_triangle_of(cluster, light, position, normal, detail, ratio, pmf, s.factor);
 #endif
   u = cluster.corner + cluster.side * u;
 #else

@@ -12,9 +12,12 @@
 // learned_rows: an alias table of the clusters a row: (threshold, bits alias, ratio of this cluster, ratio of the alias).
 // light_clusters: one texel a cluster: (bits first member, bits number of members, bits square, probability without learning).
 // A square is column | row << 8 | squares a side << 16 of the unit square of random numbers that choose a place on the
-// member: 1 << 16 is all of it.
+// member: 1 << 16 is all of it. k_cluster_of_triangles: of a run of emissive triangles.
 // cluster_members: alias tables: (threshold, bits 0, bits member, bits member of the alias). A member of the sky is a texel of
 // the environment, else an entry of scene_lights.
+// light_facets (LUCERNA_TRIANGLE_CANDIDATES): one texel a triangle of scene_lights: (centroid, bits facing). Facing: the normal
+// of the side that emits, as the octahedral map has it, in twice 12 bits; from bit 24 e, of the area 2^(e - 64) m^2; bit 31:
+// both sides emit.
 // primitive_clusters: a word a primitive, four a texel: first cluster | squares a side << 24.
 // sky_tiles: a byte a texel of the environment, 16 a texel: its cluster.
 #ifndef LUCERNA_SHARED_LEARNED_LIGHTS_H
@@ -26,6 +29,7 @@ LUCERNA_CONST uint k_learned_top = 16u;    ///< cells of the coarse grid along a
 LUCERNA_CONST uint k_learned_brick = 8u;   ///< cells of the fine grid in one of these, along an axis
 LUCERNA_CONST uint k_learned_cells = 128u; ///< cells of the fine grid along an axis
 LUCERNA_CONST uint k_learned_facings = 6u;
+LUCERNA_CONST uint k_cluster_of_triangles = 0x80000000u;
 LUCERNA_CONST uint k_learned_vertices = 4u;  ///< of a path, of which a light sample is recorded
 
 /// A vertex: its light sample, and the light that the ray scattered there meets. A value is what light contributes over the

@@ -42,7 +42,7 @@ void record_light_sample(uint slot, PathState path, vec3 position, vec3 normal, 
   uint at = slot * k_learned_vertices + path_depth(path);
   float within = l.pdf / max(l.chosen, 1e-30);
   float rate = l.delta ? 0.0 : f.pdf / max(within, 1e-30);
-  float value = luminance(l.radiance * (f.diffuse + f.glossy)) / (max(within, 1e-30) * (1.0 + rate * rate));
+  float value = l.factor * luminance(l.radiance * (f.diffuse + f.glossy)) / (max(within, 1e-30) * (1.0 + rate * rate));
   float full = luminance(shadow.diffuse + shadow.glossy);
   sent = sent && full > 0.0 && value > 0.0 && value < 1e30;
   light_records[at].position = position;
@@ -158,6 +158,9 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
 #endif
   float weight = l.delta ? 1.0 : mis_weight(l.pdf, f.pdf);
   vec3 arrives = path.throughput * l.radiance * (weight / max(l.pdf, 1e-37));
+#if LUCERNA_LEARNED
+  arrives *= l.factor;
+#endif
 #if LUCERNA_VOLUMES
   arrives *= media_transmittance(reflected ? path.media : media_behind(surface, path.media), min(l.distance, 1e30));
 #endif

@@ -17,6 +17,7 @@
 #include "shaders/shared/irradiance_cache/placement_view.h"
 #include "shaders/shared/irradiance_cache/records.h"
 #include "shaders/shared/learned_lights.h"
+#include "shaders/shared/learned_view.h"
 #include "shaders/shared/octree.h"
 #include "shaders/shared/overlay.h"
 #include "shaders/shared/photons/inspect.h"
@@ -166,6 +167,8 @@ std::vector<SharedStruct> structs() {
              spacing_beyond, spacing_of_distance, cell, pixel, eye),
       SHARED("irradiance_cache/placement.h", PlacementGrid, origin, scale, exponent),
       SHARED("irradiance_cache/placement.h", ChoosePush, count, seed, normal_tolerance),
+      SHARED("learned_view.h", LearnedPoint, position, solid, normal, row),
+      SHARED("learned_view.h", LearnedViewPush, width, height, pixel, rows),
       SHARED("learned_lights.h", LightRecord, position, cell, value, rate, full, arrived, before, met,
              met_value, met_rate),
       SHARED("ray.h", Ray, origin, tmax, direction, slot),
