@@ -362,10 +362,12 @@ void help_menu(Ui& ui) {
   end_menu();
 }
 
-/// What of the picture is not its samples: "42 % from before", or "filtered". Empty where all is.
+/// What of the picture is not its samples: "42 % from before", "filtered", or "filtered, 2.4 % off" where all
+/// of it is. Empty where nothing is.
 std::string preview_text(const session::Snapshot& s) {
   if (s.stale > 0.005)
     return fmt::format("{} from before", padded(fmt::format("{:.0f} %", 100 * s.stale), 5));
+  if (s.filtered >= 1 && s.shown_error) return fmt::format("filtered, {} off", percent_text(*s.shown_error));
   return s.filtered > 0.02 ? "filtered" : "";
 }
 
@@ -447,7 +449,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     draw_text(list, {state_left, area.lo.y}, {right, area.hi.y}, elided(states[which], right - state_left),
               colour::text, Align::right);
     const float preview_end = state_left - px(16),
-                preview_begin = preview_end - text_width("100 % from before");
+                preview_begin = preview_end - text_width("filtered, 88.8 % off");
     if (const std::string preview = preview_text(*s); !preview.empty() && preview_begin > menus_end) {
       draw_text(list, {preview_begin, area.lo.y}, {preview_end, area.hi.y}, preview, colour::accent,
                 Align::right);

@@ -93,12 +93,12 @@ uvec2 sample_2d_bits(Sampler s, uint pad) {
   return bits;
 }
 
-// 24 bits keep the value strictly below 1.
 // True with probability p: of 32 random bits, for p below 1/2 to 2^-32, above to 2^-24, where no float lies between. Tables are
 // made of such p (upload/alias_table.cpp).
 bool coin_below(uint bits, float p) {
   return p < 0.5 ? float(bits) * (1.0 / 4294967296.0) < p : float(bits >> 8) * (1.0 / 16777216.0) < p;
 }
+// 24 bits keep the value strictly below 1.
 vec2 to_unit(uvec2 bits) { return vec2(bits >> 8) * (1.0 / 16777216.0); }
 vec2 sample_2d(Sampler s, uint pad) { return to_unit(sample_2d_bits(s, pad)); }
 
