@@ -30,7 +30,7 @@ void PictureFilter::step(Engine& engine, const PictureView& view, PixelSight& si
       sight.see(engine, view, cancel);
     } else if (!begun_) {
       result_ = {std::make_unique<film::Film>(device_, film.width(), film.height()), {}, 0, job_->paths};
-      filter_->begin(film, *result_.film, sight.surfaces(engine, view));
+      filter_->begin(film, *result_.film, sight.surfaces(engine, view), job_->looked_up);
       begun_ = true;
     } else if (!filtered_) {
       engine.wavefront().uncounted([&] {

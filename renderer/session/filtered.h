@@ -25,6 +25,7 @@ struct FilterJob {
   uint32_t tile;          ///< side of a tile [pixels]
   float luminance_floor;  ///< as filter_error()
   uint64_t paths;         ///< that the film holds
+  uint32_t looked_up;     ///< components (bits) that look records up
 };
 
 class PictureFilter {

@@ -36,7 +36,13 @@ const Filtered* Renderer::filtered() const {
   return same ? &*filtered_ : nullptr;
 }
 
-FilterJob Renderer::filter_job() const { return {*film_, tile_side(), seen_range().floor, stats().paths}; }
+FilterJob Renderer::filter_job() const {
+  constexpr uint32_t k_by_way = 1u << 1 | 1u << 2;  // secondary and tertiary: what records hold
+  uint32_t looked_up = 0;
+  for (const auto& solver : engine_->solvers())
+    looked_up |= engine_->plan().components_of(solver->info()) & k_by_way;
+  return {*film_, tile_side(), seen_range().floor, stats().paths, looked_up};
+}
 
 const Filtered* Renderer::shown_filtered(const film::View& v) const {
   const bool shows =

@@ -9,6 +9,7 @@ struct FilterPush {
   uint component;  ///< 0..3
   uint stride;     ///< pixels from one of the window to the next
   uint first;      ///< pixel of the first invocation, where a kernel runs in pieces
+  uint looked_up;  ///< bit i: component i looks records up, whose errors are known
   uint seen;       ///< not 0: it is known what the pixels show in mirrors and through glass
   float scale;     ///< radiance is multiplied by this, so that 16-bit floats hold it
 };

@@ -37,14 +37,15 @@ float scale_of(const std::array<vec3, k_components>& means) {
 
 }  // namespace
 
-void Filter::apply(gpu::Stream& stream, const Film& film, Film& filtered, const gpu::Buffer* seen) {
-  begin(film, filtered, seen);
+void Filter::apply(gpu::Stream& stream, const Film& film, Film& filtered, const gpu::Buffer* seen,
+                   uint32_t looked_up) {
+  begin(film, filtered, seen, looked_up);
   while (step(stream)) {
   }
   release();
 }
 
-void Filter::begin(const Film& film, Film& filtered, const gpu::Buffer* seen) {
+void Filter::begin(const Film& film, Film& filtered, const gpu::Buffer* seen, uint32_t looked_up) {
   release();
   const uint32_t width = film.width(), height = film.height();
   if (!film.fits_storage_buffers())
@@ -67,6 +68,7 @@ void Filter::begin(const Film& film, Film& filtered, const gpu::Buffer* seen) {
            .component = 0,
            .stride = 1,
            .first = 0,
+           .looked_up = film.record_errors_complete() ? looked_up : 0,
            .seen = seen != nullptr,
            .scale = scale_of(means)};
   work_.push_back([&film, &filtered](gpu::Stream& stream) { filtered.copy_surfaces(stream, film); });

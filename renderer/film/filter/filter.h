@@ -16,14 +16,17 @@ class Filter {
   /// Filters each component of `film`, as its groups of lights are mixed, into `filtered`, a film of the same
   /// size and of one group: its halves are the filtered halves, its samples and surfaces those of `film`.
   /// Pixels with less than two samples stay as they are. `seen`: what surfaces the pixels show, in mirrors
-  /// and through glass too, a texel each as shaders/shared/preview.h says; null: not known. Runs the stream.
+  /// and through glass too, a texel each as shaders/shared/preview.h says; null: not known. `looked_up`:
+  /// components (bits) that look records up; what these err by, where the film knows it, is not taken for
+  /// light. Runs the stream.
   /// Throws Error when memory is short or the film is larger than a storage buffer; the stream has nothing
   /// recorded then.
-  void apply(gpu::Stream& stream, const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr);
+  void apply(gpu::Stream& stream, const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr,
+             uint32_t looked_up = 0);
 
   /// The same in pieces, between which other work may run: begin(), then step() until it returns false. The
   /// films, `seen`, and what is in them stay as they are until then, or until release().
-  void begin(const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr);
+  void begin(const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr, uint32_t looked_up = 0);
   bool step(gpu::Stream& stream);
   /// Gives up what is left of the work, and the memory for it.
   void release();

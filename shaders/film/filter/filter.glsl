@@ -5,21 +5,21 @@
 #include "shaders/shared/filter.h"
 
 // Light of a pixel over the colour of its surface, in the two halves of the film: rgb of one half, rgb of the other, standard
-// deviation of a half (root of the sum of the channels' variances), and nothing.
+// deviation of a half (root of the sum of the channels' variances), and that of what both halves have alike (of records).
 struct FilterLight {
   vec3 even, odd;
-  float deviation;
+  float deviation, common;
 };
 FilterLight filter_light(vec4 texel) {
   uvec4 t = floatBitsToUint(texel);
   vec2 a = unpackHalf2x16(t.x), b = unpackHalf2x16(t.y), c = unpackHalf2x16(t.z);
-  return FilterLight(vec3(a, b.x), vec3(b.y, c), unpackHalf2x16(t.w).x);
+  return FilterLight(vec3(a, b.x), vec3(b.y, c), unpackHalf2x16(t.w).x, unpackHalf2x16(t.w).y);
 }
 vec4 filter_texel(FilterLight l) {
   const float k_largest = 60000.0;
   vec3 a = min(l.even, vec3(k_largest)), b = min(l.odd, vec3(k_largest));
   return uintBitsToFloat(uvec4(packHalf2x16(a.xy), packHalf2x16(vec2(a.z, b.x)), packHalf2x16(b.yz),
-                               packHalf2x16(vec2(min(l.deviation, k_largest), 0.0))));
+                               packHalf2x16(min(vec2(l.deviation, l.common), vec2(k_largest)))));
 }
 
 // What the samples of a pixel have met, in the mean.

@@ -15,6 +15,7 @@ void main() {
   Window window = window_at(pixel);
   vec3 even = vec3(0.0), odd = vec3(0.0);
   float weights = 0.0, variance = 0.0;
+  FilterLight here = filter_light(texelFetch(filter_lights, int(pixel)));
   for (int y = -k_reach; y <= k_reach; ++y)
     for (int x = -k_reach; x <= k_reach; ++x) {
       ivec2 at = window.xy + ivec2(x, y);
@@ -28,5 +29,5 @@ void main() {
       variance += square(w * l.deviation);
       weights += w;
     }
-  guides[pixel] = filter_texel(FilterLight(even / weights, odd / weights, sqrt(variance) / weights));
+  guides[pixel] = filter_texel(FilterLight(even / weights, odd / weights, sqrt(variance) / weights, here.common));
 }
