@@ -28,5 +28,5 @@ void main() {
   float e = length(even), o = length(odd);
   even *= e > 0.0 ? min(1.0, k_filter_confirmed * o / e) : 0.0;
   odd *= o > 0.0 ? min(1.0, k_filter_confirmed * e / o) : 0.0;
-  chosen[pixel] = filter_texel(FilterLight(f.even + (1.0 - share) * even, f.odd + (1.0 - share) * odd, 0.0, b.common));
+  chosen[pixel] = filter_texel(FilterLight(f.even + (1.0 - share) * even, f.odd + (1.0 - share) * odd, 0.0, b.in_both));
 }

@@ -8,7 +8,7 @@
 // deviation of a half (root of the sum of the channels' variances), and that of what both halves have alike (of records).
 struct FilterLight {
   vec3 even, odd;
-  float deviation, common;
+  float deviation, in_both;
 };
 FilterLight filter_light(vec4 texel) {
   uvec4 t = floatBitsToUint(texel);
@@ -19,7 +19,7 @@ vec4 filter_texel(FilterLight l) {
   const float k_largest = 60000.0;
   vec3 a = min(l.even, vec3(k_largest)), b = min(l.odd, vec3(k_largest));
   return uintBitsToFloat(uvec4(packHalf2x16(a.xy), packHalf2x16(vec2(a.z, b.x)), packHalf2x16(b.yz),
-                               packHalf2x16(min(vec2(l.deviation, l.common), vec2(k_largest)))));
+                               packHalf2x16(min(vec2(l.deviation, l.in_both), vec2(k_largest)))));
 }
 
 // What the samples of a pixel have met, in the mean.

@@ -29,5 +29,5 @@ void main() {
       variance += square(w * l.deviation);
       weights += w;
     }
-  guides[pixel] = filter_texel(FilterLight(even / weights, odd / weights, sqrt(variance) / weights, here.common));
+  guides[pixel] = filter_texel(FilterLight(even / weights, odd / weights, sqrt(variance) / weights, here.in_both));
 }

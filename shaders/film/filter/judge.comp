@@ -22,7 +22,7 @@ void main() {
     vec2 d = vec2(dot(even, even), dot(odd, odd)), scale = 1.0 / (light + k_filter_judged_most * d);
     float t = scale.x * dot(even, l.odd - f.even) + scale.y * dot(odd, l.even - f.odd), w = filter_judged_weight(x);
     // What both halves have alike of noise, and the fit takes away, does not speak against it.
-    t += dot(scale, min(vec2(square(l.common)), d));
+    t += dot(scale, min(vec2(square(l.in_both)), d));
     // The variance of t is that of the samples along d: of a colour without a hue, a third of it. Beside bright edges that is
     // too much, and t itself shows it.
     float variance = min(square(l.deviation) / 3.0 * dot(scale * scale, d), t * t);

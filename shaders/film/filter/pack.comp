@@ -42,14 +42,14 @@ void main() {
   vec3 even = (p.even.sum + p.even.compensation) / float(max((count + 1u) / 2u, 1u));
   vec3 odd = (p.odd.sum + p.odd.compensation) / float(max(count / 2u, 1u));
   if (count < 2u) odd = even;
-  float common = 0.0;
+  float in_both = 0.0;
   if ((push.looked_up >> push.component & 1u) != 0u) {
     // As if records erred in the light of all components alike.
     float all = 0.0;
     for (uint c = 0u; c < k_component_count; ++c)
       if ((push.looked_up >> c & 1u) != 0u) all += luminance_sum(film_load(c, pixel));
     float share = all > 0.0 ? luminance_sum(p) / all : 0.0;
-    common = share * sqrt(film_records[pixel].x) * push.scale / luminance(s.albedo);
+    in_both = share * sqrt(film_records[pixel].x) * push.scale / luminance(s.albedo);
   }
-  lights[pixel] = filter_texel(FilterLight(even * push.scale / s.albedo, odd * push.scale / s.albedo, 0.0, common));
+  lights[pixel] = filter_texel(FilterLight(even * push.scale / s.albedo, odd * push.scale / s.albedo, 0.0, in_both));
 }

@@ -49,7 +49,7 @@ void main() {
   if (pixel >= push.width * push.height) return;
   Window window = window_at(pixel);
   FilterLight guide = filter_light(texelFetch(filter_guides, int(pixel)));
-  float variance = square(guide.deviation) + square(guide.common);
+  float variance = square(guide.deviation) + square(guide.in_both);
   Moments even, odd;
   even.aa = even.ab = even.bb = odd.aa = odd.ab = odd.bb = mat4(0.0);
   even.ya = even.yb = odd.ya = odd.yb = mat3x4(0.0);
@@ -64,7 +64,7 @@ void main() {
       float alike = inside ? filter_alike(window.surface, s, vec2(step), window.slope) : 0.0;
       // Where nothing else is alike what is nearly so counts.
       alike = inside ? max(alike, k_filter_unlike * pow(alike, 0.05)) : 0.0;
-      float v = square(g.deviation) + square(g.common);
+      float v = square(g.deviation) + square(g.in_both);
       float by_odd = alike * closeness(guide.odd, g.odd, variance, v), by_even = alike * closeness(guide.even, g.even, variance, v);
       vec4 a = vec4(1.0, vec2(x, y) / float(k_reach), luminance(window.surface.albedo) / luminance(s.albedo) - 1.0);
       vec4 b = vec4(s.normal - window.surface.normal, (s.depth - window.surface.depth) / (0.1 * z));
