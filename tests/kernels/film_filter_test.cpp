@@ -3,6 +3,7 @@
 // reports of both.
 #include "film/filter/filter.h"
 
+#include <bit>
 #include <catch2/catch.hpp>
 
 #include "film/filter/filter_error.h"
@@ -25,10 +26,10 @@ struct Filtered {
   }
 };
 
-Filtered filter(test::Stage& stage) {
+Filtered filter(test::Stage& stage, uint32_t looked_up = 0) {
   film::Filter filter(stage.device, stage.compiler);
   film::Film out(stage.device, stage.width, stage.height);
-  filter.apply(stage.stream, stage.film, out);
+  filter.apply(stage.stream, stage.film, out, nullptr, looked_up);
   Filtered f{stage.film.read(), out.read(), {}};
   f.error = film::filter_error(f.samples, f.filtered, 16, 0.02);
   return f;
@@ -230,6 +231,33 @@ TEST_CASE("the filter: the same film, the same bits; light of any size") {
   }
   // Powers of two scale all of it.
   for (size_t k = 1; k < found.size(); ++k) CHECK(found[k] == found[0]);
+}
+
+TEST_CASE("the filter: noise that both halves have of records is none of the picture's light") {
+  test::Stage stage(64, 48);
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise(0, 0.1f), records(0, 0.15f);
+  // A record serves 4x4 pixels.
+  std::vector<float> held(16 * 12);
+  for (float& h : held) h = records(random);
+  stage.sample(stage.film, 16, [&](uint32_t x, uint32_t y) {
+    return Sample{vec3(1 + held[y / 4 * 16 + x / 4] + noise(random))};
+  });
+  const Truth light = [](uint32_t, uint32_t) { return 1.0; };
+  const double before = rms(stage.film.read(), light), unknown = rms(filter(stage, 2).filtered, light);
+  CHECK(unknown > 0.6 * before);
+  stage.film.make_room_for_record_errors();
+  gpu::Resources resources;
+  stage.film.bind(resources);
+  const gpu::Buffer& squares = *std::get<const gpu::Buffer*>(*resources.find("FilmRecords"));
+  stage.stream.fill(squares, std::bit_cast<uint32_t>(0.15f * 0.15f));
+  stage.stream.run();
+  stage.film.complete_record_errors();
+  const double known = rms(filter(stage, 2).filtered, light);
+  INFO(before << ", unknown " << unknown << ", known " << known);
+  CHECK(known < 0.8 * unknown);
+  // Another component looks them up, or none.
+  CHECK(rms(filter(stage, 1).filtered, light) == unknown);
 }
 
 TEST_CASE("the filter: it fades as samples grow") {
