@@ -306,7 +306,12 @@ TEST_CASE("another colour brings the light of a cache built with it") {
 }
 
 TEST_CASE("ellipses that other light makes smaller leave no gaps") {
-  const Settings ellipses{{"cache.metric", "hessian"}, {"cache.min_radius", "1"}, {"cache.gather", "false"}};
+  // With so many rays the means differ by about 1 % from seed to seed.
+  const Settings ellipses{{"cache.metric", "hessian"},
+                          {"cache.min_radius", "1"},
+                          {"cache.gather", "false"},
+                          {"cache.rays", "256"},
+                          {"cache.max_rays", "1024"}};
   Bed relit(ellipses), fresh(ellipses);
   relit.finish();
   uint32_t records = relit.records().size();
