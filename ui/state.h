@@ -175,8 +175,11 @@ struct Ui : commands::Workspace {
   void turn_view(const solvers::ViewInfo& view);
   /// True if a view is on that inspects the place under the pointer.
   bool asks_pointer() const;
-  /// The last inspected place, as inspect.at takes it.
+  /// The last inspected place of a pointer at rest, as inspect.at takes it.
   std::optional<vec2> asked;
+  /// Inspections known here, and whether a script has asked since the pointer moved: then it asks nothing.
+  uint64_t inspections_known = 0;
+  bool script_asked = false;
 
   // Accuracy.
   Runs runs;

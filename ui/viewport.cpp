@@ -2,6 +2,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
+#include <utility>
 
 #include <algorithm>
 #include <cmath>
@@ -327,7 +328,12 @@ void ask(Ui& ui, const Area& shown, bool active) {
   static ImVec2 last;
   static double since = 0;
   const ImVec2 at = ImGui::GetIO().MousePos;
-  if (at.x != last.x || at.y != last.y) last = at, since = ui.now;
+  if (at.x != last.x || at.y != last.y) last = at, since = ui.now, ui.script_asked = false;
+  if (std::exchange(ui.inspections_known, ui.inspections) != ui.inspections) {
+    ui.script_asked = true;
+    ui.asked.reset();
+  }
+  if (ui.script_asked) return;
   const vec2 place((at.x - shown.lo.x) / std::max(1.0f, shown.width()),
                    (at.y - shown.lo.y) / std::max(1.0f, shown.height()));
   const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
@@ -335,6 +341,7 @@ void ask(Ui& ui, const Area& shown, bool active) {
   if (ui.asks_pointer() && ui.picture_hovered && inside && still) {
     if (active || ui.asked == place || ui.now - since < k_rest) return;
     ui.asked = place;
+    ++ui.inspections_known;
     ui.act("inspect.at", place.x, place.y);
   } else if (ui.asked) {
     ui.asked.reset();

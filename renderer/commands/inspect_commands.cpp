@@ -17,6 +17,7 @@ void Workspace::add_inspect_commands() {
                       {.name = "down", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture heights"}},
        .run =
            [this, place](const Arguments& a) {
+             ++inspections;
              needs_lookup();
              session.inspect(place(a), scene_id_);
            },

@@ -78,6 +78,7 @@ class Workspace {
   /// Takes in what the session has published since. Call before looking and before running commands.
   void refresh(double time);
   std::shared_ptr<const session::Snapshot> snapshot;
+  uint64_t inspections = 0;  ///< inspect.at commands so far
   /// Whether the newest picture knows what all commands so far have brought.
   bool up_to_date() const { return snapshot && snapshot->commands >= session.commands(); }
   std::shared_ptr<const scene::Scene> scene;  ///< with the edits that the session has taken
