@@ -111,7 +111,7 @@ std::vector<SharedStruct> structs() {
              falloff, pixel, parallel, finest, flat_side, spacing, key),
       SHARED("irradiance_cache/discontinuity.h", DiscontinuityDrawPush, width, height, across, down, stride,
              level, first),
-      SHARED("filter.h", FilterPush, width, height, component, stride, scale),
+      SHARED("filter.h", FilterPush, width, height, component, stride, first, looked_up, seen, scale),
       SHARED("film.h", FilmHalf, sum, compensation),
       SHARED("film.h", WorkBlock, index, first_sample),
       SHARED("film.h", BlockError, pixels, luminance, variance, fourth, difference, relative, quadrant_pixels,
