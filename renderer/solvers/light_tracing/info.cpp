@@ -11,7 +11,7 @@ std::vector<OptionInfo> option_rows() {
       with_zero(integer_option(
                     "light.per_round", 0, 0, 1 << 24, "paths",
                     "Light tracing: paths from lights in a round, of which there is one for every sample of "
-                    "the picture; 0: as many as the picture has pixels, at least 16384.",
+                    "the picture; 0: as many as the picture has pixels, 16,384 to 1,048,576.",
                     "Paths a round"),
                 "automatic"),
       boolean_option("light.aim", "true",
