@@ -2,11 +2,11 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
-#include <utility>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/figures.h"
 #include "commands/light_edit.h"

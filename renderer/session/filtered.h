@@ -32,14 +32,14 @@ class PictureFilter {
  public:
   PictureFilter(gpu::Device& device, gpu::ShaderCompiler& compiler) : device_(device), compiler_(compiler) {}
 
-  /// Begins to filter the picture. The film stays as it is until done() or stop().
+  /// Begins to filter the picture. The film stays as it is while working().
   void begin(const FilterJob& job);
-  /// The next piece; afterwards done() may be true. Throws Error as film::Filter; the work is stopped then.
+  /// The next piece; working() is false after the last. Throws Error as film::Filter; the work is stopped then.
   /// `sight` is asked what the pixels show, and looks where it is not known yet.
   void step(Engine& engine, const PictureView& view, PixelSight& sight, const std::function<bool()>& cancel);
   bool working() const { return job_.has_value(); }
   void stop();
-  /// Of the picture begun last, once it is done: then working() is false.
+  /// Of the picture begun last, once working() is false.
   Filtered take() { return std::move(result_); }
 
  private:

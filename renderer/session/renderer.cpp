@@ -167,7 +167,7 @@ void Renderer::reload_shaders() {
   if (display_) display = std::make_unique<Display>(*device_, *compiler_);
   use(std::move(engine), scene::Change::shaders);
   display_ = std::move(display), shown_ = {};
-  forget_filtered(), window_filter_.reset();
+  window_filter_.reset();
   heed_settings();
   restart(scene::Change::shaders);
 }

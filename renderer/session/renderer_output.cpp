@@ -128,8 +128,8 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
 std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<bool()>& cancel) {
   settle_mix();
   const film::View v = view();
-  mark_tiles(v);
   if (const Filtered* f = filtered(); f && v.layer < shared::k_layer_albedo) return picture_of(*f, v, cancel);
+  mark_tiles(v);
   engine_->developer().tone_map(engine_->wavefront().stream(), *film_, v,
                                 with_coarse ? coarse_.get() : nullptr);
   return finished_picture(cancel);

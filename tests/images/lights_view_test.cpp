@@ -33,7 +33,7 @@ TEST_CASE("arrows show the lights of a point with their shares; a map which shad
   CHECK(of_lights(r.reports()) == nullptr);
 
   test::set(r, {{"overlay.lights", "true"}});
-  CHECK(r.picture(false) == plain);  // nobody points anywhere
+  CHECK(r.picture(false) == plain);  // no place is inspected
   {
     const auto reports = r.reports();
     const solvers::Report* report = of_lights(reports);

@@ -59,6 +59,7 @@ struct ShearedRay {
   }
   ShearedRay() = default;
 
+  /// 1 / d, so that no product with it is 0 * infinity.
   static float inverse_of(float d) {
     constexpr float k_least = 1e-25f;
     return 1.0f / (std::abs(d) < k_least ? d < 0 ? -k_least : k_least : d);

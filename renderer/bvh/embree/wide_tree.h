@@ -45,15 +45,13 @@ struct WideRay {
   explicit WideRay(const shared::Ray& ray, const ShearedRay& sheared) {
     // Eight roundings are those of the distances that are compared, three more the shear's; the walk's own
     // are four.
-    constexpr float k_slack = 0x1p-19f, k_least = 1e-25f;
+    constexpr float k_slack = 0x1p-19f;
     const vec3 direction = sheared.direction();
     for (int axis = 0; axis < 3; ++axis) {
-      float d = direction[axis];
-      if (std::abs(d) < k_least) d = std::copysign(k_least, d);  // no product is 0 * infinity
-      const float inverse = 1.0f / d;
+      const float inverse = ShearedRay::inverse_of(direction[axis]);
       origin[axis] = ray.origin[axis];
       near[axis] = (1.0f - k_slack) * inverse, far[axis] = (1.0f + k_slack) * inverse;
-      entry[axis] = 2 * axis + (d < 0 ? 1 : 0);
+      entry[axis] = 2 * axis + (inverse < 0 ? 1 : 0);
     }
   }
 };

@@ -18,9 +18,8 @@ class Filter {
   /// Pixels with less than two samples stay as they are. `seen`: what surfaces the pixels show, in mirrors
   /// and through glass too, a texel each as shaders/shared/preview.h says; null: not known. `looked_up`:
   /// components (bits) that look records up; what these err by, where the film knows it, is not taken for
-  /// light. Runs the stream.
-  /// Throws Error when memory is short or the film is larger than a storage buffer; the stream has nothing
-  /// recorded then.
+  /// light. Runs the stream. Throws Error when memory is short or the film is larger than a storage buffer;
+  /// the stream has nothing recorded then.
   void apply(gpu::Stream& stream, const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr,
              uint32_t looked_up = 0);
 

@@ -2,6 +2,7 @@
 #ifndef LUCERNA_FILM_FILTER
 #define LUCERNA_FILM_FILTER
 #include "lib/math.glsl"
+#include "film/preview.glsl"
 #include "shaders/shared/filter.h"
 
 // Light of a pixel over the colour of its surface, in the two halves of the film: rgb of one half, rgb of the other, standard
@@ -29,20 +30,13 @@ struct FilterSurface {
   vec3 albedo;     // of what was met and what was not (1), as light is divided by it
   float covered;   // share of the samples that have met something
 };
-// Normals on an octahedron (Cigolle et al. 2014).
 vec4 filter_texel(FilterSurface s) {
-  vec3 n = s.normal / (abs(s.normal.x) + abs(s.normal.y) + abs(s.normal.z) + 1e-20);
-  vec2 o = n.z >= 0.0 ? n.xy : (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
-  return vec4(s.depth, uintBitsToFloat(packSnorm2x16(o)), uintBitsToFloat(packHalf2x16(s.albedo.rg)),
+  return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)), uintBitsToFloat(packHalf2x16(s.albedo.rg)),
               uintBitsToFloat(packHalf2x16(vec2(s.albedo.b, s.covered))));
 }
 FilterSurface filter_surface(vec4 texel) {
-  vec2 o = unpackSnorm2x16(floatBitsToUint(texel.y));
-  vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
-  float t = max(-n.z, 0.0);
-  n.xy += vec2(n.x >= 0.0 ? -t : t, n.y >= 0.0 ? -t : t);
   vec2 rg = unpackHalf2x16(floatBitsToUint(texel.z)), b = unpackHalf2x16(floatBitsToUint(texel.w));
-  return FilterSurface(texel.x, b.y > 0.0 ? normalize(n) : vec3(0.0), vec3(rg, b.x), b.y);
+  return FilterSurface(texel.x, b.y > 0.0 ? preview_normal(floatBitsToUint(texel.y)) : vec3(0.0), vec3(rg, b.x), b.y);
 }
 
 // Weight of a pixel `offset` away, on either axis, in what speaks for a fit or against it.

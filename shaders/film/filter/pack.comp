@@ -2,7 +2,6 @@
 #include "lib/film.glsl"
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
-#include "film/preview.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { FilterPush push; };
 layout(scalar) readonly buffer FilmRecords { vec2 film_records[]; };  // squares: noise of records, of interpolation
