@@ -166,7 +166,8 @@ void add_display_options(std::vector<OptionInfo>& list) {
   list.push_back(without_restart(choice_option(
       "preview.filter", "auto", {"auto", "off"}, "",
       "What the window shows: auto filters the noise out of the picture, and keeps what was shown before an "
-      "edit until the new light is better; off shows the samples as they are. Figures are always those of the "
+      "edit until the new light is better; off shows the samples as they are. Figures are always those of "
+      "the "
       "samples, and EXR files hold these.",
       "Preview")));
   list.push_back(without_restart(text_option("about", "What the scene is for.")));

@@ -34,8 +34,8 @@ class PictureFilter {
 
   /// Begins to filter the picture. The film stays as it is while working().
   void begin(const FilterJob& job);
-  /// The next piece; working() is false after the last. Throws Error as film::Filter; the work is stopped then.
-  /// `sight` is asked what the pixels show, and looks where it is not known yet.
+  /// The next piece; working() is false after the last. Throws Error as film::Filter; the work is stopped
+  /// then. `sight` is asked what the pixels show, and looks where it is not known yet.
   void step(Engine& engine, const PictureView& view, PixelSight& sight, const std::function<bool()>& cancel);
   bool working() const { return job_.has_value(); }
   void stop();

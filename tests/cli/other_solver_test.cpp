@@ -14,7 +14,8 @@ TEST_CASE("a registered solver stands in --help, computes its component and is i
   const std::string program = std::string(LUCERNA_BINARY) + "-ambient";
   const auto help = test::run_command(program + " render --help");
   CHECK(help.status == 0);
-  CHECK_THAT(help.out, Catch::Contains("ambient.radiance") && Catch::Contains("path|cache|photons|ambient|off"));
+  CHECK_THAT(help.out,
+             Catch::Contains("ambient.radiance") && Catch::Contains("path|cache|photons|ambient|off"));
   const std::string stats = (folder.path / "stats.json").string();
   const std::string scene = std::string(LUCERNA_SOURCE_DIR) + "/scenes/furnace-closed/furnace-closed.gltf";
   const auto rendered = test::run_command(program + " render " + scene +

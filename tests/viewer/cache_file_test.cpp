@@ -23,7 +23,8 @@ TEST_CASE("a script saves the cache when it is complete, loads it, and goes on w
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const auto read = [&](const char* name) { return read_file(file(name)); };
-  CHECK_THAT(outcome.output, Catch::Contains("a.cache: will be written when the irradiance cache is complete"));
+  CHECK_THAT(outcome.output,
+             Catch::Contains("a.cache: will be written when the irradiance cache is complete"));
   CHECK_THAT(outcome.output, Catch::Contains("complete for this view"));
   CHECK_THAT(outcome.output, Catch::Contains("broken.cache: cut short"));
   CHECK_THAT(outcome.output, Catch::Contains("its records were made with cache.error = 0.3 (now 0.4)"));
