@@ -316,8 +316,8 @@ void Program::add_bench_latency() {
   latency_->add_option("SCENES", bt.scenes, "glTF scenes, or names of folders in scenes/")->required();
   latency_
       ->add_option("--edits", bt.edits,
-                   "some of load, strength, move (of the brightest lamp), sky (turned), material, camera, "
-                   "solver (switched); each on top of those before")
+                   "some of load, strength, move (of the brightest lamp), sky (turned), material, undo, "
+                   "camera, solver (switched); each on top of those before")
       ->delimiter(',');
   latency_->add_option("--solvers", bt.solvers, "of secondary and tertiary light [path,cache]")
       ->delimiter(',');
@@ -330,6 +330,7 @@ void Program::add_bench_latency() {
                    "sessions of each scene and solver; the middle one of each figure is told at the end")
       ->check(CLI::Range(1u, 1000u))
       ->capture_default_str();
+  latency_->add_option("--seed", bt.seed, "of the edits' amounts; 0: fixed amounts")->capture_default_str();
   latency_
       ->add_option("--settle", bt.settle,
                    "seconds, at most, that are waited before an edit until the picture is complete")

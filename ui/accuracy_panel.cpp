@@ -381,15 +381,17 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
 std::vector<std::string> early_texts(const session::Snapshot& s, double target) {
   std::vector<std::string> texts;
   if (s.shown_error) {
-    const double error = *s.shown_error;
+    const film::ShownError error = *s.shown_error;
     std::string when;
     // As noise falls, with the square root of time.
-    if (error < session::k_usable_error)
+    const double excess = std::max(error.median / session::k_usable_error.median,
+                                   error.worst_tenth / session::k_usable_error.worst_tenth);
+    if (session::usable(error))
       when = ": usable";
     else if (s.seconds > 0.1)
-      when = fmt::format(", usable in about {}",
-                         about_text(s.seconds * (std::pow(error / session::k_usable_error, 2) - 1)));
-    texts.push_back(fmt::format("What is shown is off by about {}{}", percent_text(error), when));
+      when = fmt::format(", usable in about {}", about_text(s.seconds * (excess * excess - 1)));
+    texts.push_back(fmt::format("Shown picture: about {} off, in its worst tenth {}{}",
+                                percent_text(error.median), percent_text(error.worst_tenth), when));
   }
   if (!s.preparing.empty())
     texts.push_back(s.preparing_left ? fmt::format("{}; {:.0f} % of all work, about {} left", s.preparing,

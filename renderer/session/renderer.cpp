@@ -466,6 +466,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   engine_->begin_samples(picture_view());
   const bool prepares = preparing(), learns = engine_->learns(samples());
   const bool progress = render_item(cancel);
+  judge_filtered();
   render_s_ += timer.seconds();
   if (display_) display_->plan().worked(timer.seconds());
   if (display_ && samples() > 0) {
@@ -576,7 +577,9 @@ bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   if (std::exchange(draft_preparing_, prepares) && !prepares) display_->light_changed();
   const bool filled = samples() > 0;
   const bool sight = !filled && previewed(view()) && display_->sight_wanted(*engine_, picture_view());
-  const DraftPlan::Next what = display_->plan().next(prepares, filled, sight, display_->shares().error);
+  const DraftPlan::Next what = display_->plan().next(
+      prepares, filled, sight,
+      display_->shares().error ? std::optional(display_->shares().error->median) : std::nullopt);
   if (what == DraftPlan::Next::nothing) return false;
   clock_.go();
   const Timer timer;

@@ -299,6 +299,7 @@ class Renderer {
   FilterJob filter_job() const;
   /// A piece of the window's filtered picture. When there is no memory for it there will be none.
   void filter_piece(const std::function<bool()>& cancel);
+  void judge_filtered();
   /// The window's filtered picture, where that view shows it; null: there is none.
   const Filtered* shown_filtered(const film::View& view) const;
   void forget_filtered();
@@ -356,6 +357,7 @@ class Renderer {
   std::unique_ptr<PictureFilter> window_filter_;  ///< made when it is called for
   std::optional<Filtered> shown_filtered_;        ///< what it has made last of the picture
   bool filter_fails_ = false, filter_news_ = false;
+  uint64_t judged_paths_ = 0;                 ///< when the error of shown_filtered_ was estimated last
   double filter_s_ = 0, filter_piece_s_ = 0;  ///< that filtering took: last, and up to now
   double filtered_at_s_ = 0;                  ///< render_s_ then
   std::unique_ptr<Display> display_;          ///< null in batch

@@ -18,6 +18,8 @@ layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
 layout(scalar) writeonly buffer Shares { PreviewShares shares[]; };
+// Halves: luminance of what is shown, and its expected relative error over a mean of 3x3 pixels (1 at most).
+layout(scalar) writeonly buffer Shown { uint shown_pixels[]; };
 
 // Squares of a difference, over its variance, up to which it is taken for chance: noise of few paths has far outliers, and
 // where no light has changed nearly all of what is different is one.
@@ -329,6 +331,7 @@ void main() {
     }
     told.xyz = min(told.xyz, vec3(4.0));
     told.w = unknown ? 1.0 : min(k_mean_deviation * sqrt(variance) / max(luminance(color), k_preview_dark), 1.0);
+    shown_pixels[pixel] = packHalf2x16(vec2(min(luminance(color), 60000.0), told.w));
     LUCERNA_PREVIEW_STORE(packed, pixel, result)
     picture[pixel] = picture_packed(tone_map(color, push.curve));
   }
@@ -338,6 +341,6 @@ void main() {
     vec4 sum = vec4(0.0);
     for (uint i = 0u; i < 64u; ++i) sum += group_shares[i];
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (group < (push.width * push.height + 63u) / 64u) shares[group] = PreviewShares(sum.x, sum.y, sum.z, sum.w);
+    if (group < (push.width * push.height + 63u) / 64u) shares[group] = PreviewShares(sum.x, sum.y, sum.z);
   }
 }
