@@ -269,7 +269,7 @@ class Latency {
       if (at.snapshot && at.snapshot->rgba.size() == reference.mean.size() * 4)
         m.distance = picture_distance(shown_luminance(at.snapshot->rgba), reference.mean, o_.width,
                                       reference.half_difference),
-        m.told = at.snapshot->shown_error;
+        m.estimated = at.snapshot->shown_error;
       moments.push_back(m);
     }
     LatencyResult result = latency_of(moments, o_.seconds);
@@ -277,7 +277,7 @@ class Latency {
     result.loading_s = loading;
     if (!o_.pictures.empty()) {
       const std::string name = fmt::format("{}-{}-{}", result.scene, solver, result.edit);
-      for (const double t : k_told_s) {
+      for (const double t : k_reported_s) {
         const auto next =
             std::find_if(shown.begin(), shown.end(), [&](const Shown& x) { return x.seconds > loading + t; });
         if (const auto& picture = std::prev(next)->snapshot;
@@ -432,9 +432,9 @@ LatencyResult latency_of(std::span<const Moment> moments, double seconds) {
       r.usable_s = m.seconds;
     r.rise = std::max(r.rise, m.distance.error - std::min(least, m.distance.error));
     least = std::min(least, m.distance.error);
-    for (size_t k = 0; k < k_told_s.size(); ++k)
-      if (m.seconds <= k_told_s[k] && k_told_s[k] <= seconds + 0.5)
-        r.error[k] = m.distance.error, r.told[k] = m.told;
+    for (size_t k = 0; k < k_reported_s.size(); ++k)
+      if (m.seconds <= k_reported_s[k] && k_reported_s[k] <= seconds + 0.5)
+        r.error[k] = m.distance.error, r.estimated[k] = m.estimated;
   }
   return r;
 }
@@ -456,7 +456,7 @@ LatencyResult median_of(std::span<const LatencyResult> runs) {
   r.rise = *middle(of(&LatencyResult::rise)), r.loading_s = *middle(of(&LatencyResult::loading_s));
   for (size_t k = 0; k < r.error.size(); ++k)
     r.error[k] = middle([k](const LatencyResult& run) { return run.error[k]; }),
-    r.told[k] = middle([k](const LatencyResult& run) { return run.told[k]; });
+    r.estimated[k] = middle([k](const LatencyResult& run) { return run.estimated[k]; });
   return r;
 }
 
@@ -469,16 +469,17 @@ std::vector<LatencyResult> measure_latency(const LatencyOptions& options, const 
 std::string latency_heading() {
   std::string row =
       fmt::format("{:<14} {:<8} {:<10} {:>8} {:>8}", "scene", "solver", "edit", "lit", "usable");
-  for (const double t : k_told_s) row += fmt::format(" {:>15}", fmt::format("at {:g} s", t));
+  for (const double t : k_reported_s) row += fmt::format(" {:>15}", fmt::format("at {:g} s", t));
   return row + fmt::format(" {:>9}", "set back");
 }
 
 std::string latency_row(const LatencyResult& r) {
   std::string row = fmt::format("{:<14} {:<8} {:<10} {:>8} {:>8}", r.scene, r.solver, r.edit,
                                 text(r.lit_s, "s"), text(r.usable_s, "s"));
-  for (size_t k = 0; k < k_told_s.size(); ++k)
-    row += fmt::format(" {:>15}", text(r.error[k], "%", 100) +
-                                      (r.told[k] ? fmt::format(" ({:.3g})", 100 * *r.told[k]) : ""));
+  for (size_t k = 0; k < k_reported_s.size(); ++k)
+    row +=
+        fmt::format(" {:>15}", text(r.error[k], "%", 100) +
+                                   (r.estimated[k] ? fmt::format(" ({:.3g})", 100 * *r.estimated[k]) : ""));
   row += fmt::format(" {:>9}", text(r.rise, "%", 100));
   if (r.loading_s > 0) row += fmt::format("  (loading {:.2f} s)", r.loading_s);
   return row;
@@ -491,13 +492,15 @@ nlohmann::ordered_json to_json(const LatencyResult& r) {
   };
   j["lit_s"] = or_null(r.lit_s);
   j["usable_s"] = or_null(r.usable_s);
-  for (size_t k = 0; k < k_told_s.size(); ++k)
-    j["error"][fmt::format("{:g}", k_told_s[k])] = or_null(r.error[k]),
-                                   j["told"][fmt::format("{:g}", k_told_s[k])] = or_null(r.told[k]);
+  for (size_t k = 0; k < k_reported_s.size(); ++k)
+    j["error"][fmt::format("{:g}", k_reported_s[k])] = or_null(r.error[k]),
+                                   j["estimated"][fmt::format("{:g}", k_reported_s[k])] =
+                                       or_null(r.estimated[k]);
   j["set_back"] = r.rise;
   j["loading_s"] = r.loading_s;
   for (const Moment& m : r.moments)
-    j["moments"].push_back({{"s", m.seconds}, {"error", m.distance.error}, {"told", or_null(m.told)}});
+    j["moments"].push_back(
+        {{"s", m.seconds}, {"error", m.distance.error}, {"estimated", or_null(m.estimated)}});
   return j;
 }
 

@@ -51,20 +51,21 @@ std::vector<float> shown_luminance(std::span<const uint8_t> rgba);
 struct Moment {
   double seconds = 0;
   PictureDistance distance;
-  std::optional<double> told;  ///< the window's own estimate of the error (Snapshot::shown_error)
+  std::optional<double> estimated;  ///< the window's own estimate of the error (Snapshot::shown_error)
 };
 
 /// Relative error below which a picture is usable.
 inline constexpr double k_usable = session::k_usable_error;
 /// Seconds after the edit of which errors are told.
-inline constexpr std::array<double, 5> k_told_s = {0.3, 1, 3, 10, 30};
+inline constexpr std::array<double, 5> k_reported_s = {0.3, 1, 3, 10, 30};
 
 struct LatencyResult {
   std::string scene, solver, edit;
   std::optional<double> lit_s;     ///< until no more than 0.1 % of the lit pixels are black, and stay so
   std::optional<double> usable_s;  ///< until the error is below k_usable and stays there
-  std::array<std::optional<double>, k_told_s.size()> error{};  ///< where measured for so long
-  std::array<std::optional<double>, k_told_s.size()> told{};   ///< the window's own estimate of it, then
+  std::array<std::optional<double>, k_reported_s.size()> error{};  ///< where measured for so long
+  std::array<std::optional<double>, k_reported_s.size()>
+      estimated{};  ///< the window's own estimate of it, then
   /// The most by which the error has grown again from its least so far.
   double rise = 0;
   double loading_s = 0;         ///< of a load
@@ -94,7 +95,7 @@ struct LatencyOptions {
   } settle;                ///< of the picture before an edit
   std::string device;
   std::filesystem::path references;                      ///< folder; pictures that serve are kept
-  std::filesystem::path pictures;                        ///< folder for PNGs at k_told_s; empty: none
+  std::filesystem::path pictures;                        ///< folder for PNGs at k_reported_s; empty: none
   std::vector<std::pair<std::string, std::string>> set;  ///< settings of the sessions, beyond the scene's
   scene::LoadOptions scenes = {};
 };
