@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 /// One figure: elements a second of a way to do it.
 struct Row {
-  std::string what, who;
+  std::string what, method;
   uint32_t size = 0;
   Timing time;
   double ratio = 0;  ///< times as fast as the first host function of the same task
@@ -100,8 +100,9 @@ std::string to_text(const std::vector<Row>& rows, const std::string& device, int
       repeats, device);
   for (const Row& r : rows) {
     const auto rate = [&](double seconds) { return 1e-6 * r.size / seconds; };
-    text += fmt::format("{:<22}{:>9}  {:<20}{:>10.3f} ms {:>9.1f} ({:.1f} to {:.1f})", r.what, r.size, r.who,
-                        1e3 * r.time.median, rate(r.time.median), rate(r.time.high), rate(r.time.low));
+    text +=
+        fmt::format("{:<22}{:>9}  {:<20}{:>10.3f} ms {:>9.1f} ({:.1f} to {:.1f})", r.what, r.size, r.method,
+                    1e3 * r.time.median, rate(r.time.median), rate(r.time.high), rate(r.time.low));
     text += fmt::format("  factor {:.2f}\n", r.ratio);
   }
   return text;
@@ -128,7 +129,7 @@ int bench_sort(const BenchSortArguments& a) {
   Json j{{"device", device.info().name}, {"repeats", a.repeats}, {"seed", a.seed}, {"rows", Json::array()}};
   for (const Row& r : bench.rows)
     j["rows"].push_back({{"what", r.what},
-                         {"who", r.who},
+                         {"method", r.method},
                          {"size", r.size},
                          {"seconds", {{"median", r.time.median}, {"low", r.time.low}, {"high", r.time.high}}},
                          {"elements_per_s", r.size / r.time.median},

@@ -229,7 +229,7 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
       may_prepare = true;
       if (r.preparing()) {
         log::info("half of the time is up: the picture is rendered with what has been prepared");
-        r.make_do();
+        r.finish_early();
       }
     }
     if (!r.step()) break;

@@ -228,20 +228,20 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   if (best.run) stroke(list, best.points, colour::text_dim, px(1.5f));
   list->AddCircleFilled(*near, px(3), best.ink, 12);
-  const Accuracy& told = best.run ? *best.run->accuracy : a;
+  const Accuracy& chosen = best.run ? *best.run->accuracy : a;
   // Which line of the ledger that is, by its time.
   const double seconds = plot.x.value(near->x);
   size_t line = 0;
-  for (size_t i = 0; i < told.ledger.entries().size(); ++i)
-    if (std::abs(std::log(told.ledger.entries()[i].wall_s / seconds)) <
-        std::abs(std::log(told.ledger.entries()[line].wall_s / seconds)))
+  for (size_t i = 0; i < chosen.ledger.entries().size(); ++i)
+    if (std::abs(std::log(chosen.ledger.entries()[i].wall_s / seconds)) <
+        std::abs(std::log(chosen.ledger.entries()[line].wall_s / seconds)))
       line = i;
   std::string name = best.name;
   name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   std::vector<std::pair<std::string, ImU32>> rows{
       {fmt::format("{}: {}", name, percent_text(plot.y.value(near->y))), colour::text},
-      {run_figures(told, line), colour::text_dim}};
-  const stats::Entry& then = told.ledger.entries()[line];
+      {run_figures(chosen, line), colour::text_dim}};
+  const stats::Entry& then = chosen.ledger.entries()[line];
   if (best.layer && *best.layer > 0)
     rows.emplace_back(
         fmt::format("{:.0f} % of the noise as seen (squared); of the mean {}",

@@ -209,8 +209,8 @@ class Renderer {
   bool preparing() const { return engine_ && engine_->unready(); }
   /// ... and waits for a command.
   bool waits() const { return engine_ && engine_->waits(); }
-  /// That is to end as soon as it can, with what there is (solvers::Solver::make_do).
-  void make_do();
+  /// That is to end as soon as it can, with what there is (solvers::Solver::finish_early).
+  void finish_early();
   /// One of SolverInfo::commands; nothing where the solver is not at work.
   void solver_command(const std::string& name, const std::string& command);
   /// Writes the work of a solver (SolverInfo::file), once it is ready. Throws Error located at `file`: the
@@ -267,8 +267,8 @@ class Renderer {
   Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
                        std::shared_ptr<const scene::Scene> scene, uint32_t width, uint32_t height) const;
   /// How lights are to be told apart.
-  upload::LightsApart wanted_apart(const plan::Plan& plan, const plan::Settings& settings,
-                                   const Relight& relight) const;
+  upload::LightSeparation wanted_separation(const plan::Plan& plan, const plan::Settings& settings,
+                                            const Relight& relight) const;
   /// Takes it up, and tells what is new of its messages.
   void take(Relight relight);
   /// The film's picture follows another mix.
@@ -325,7 +325,7 @@ class Renderer {
   /// Takes up the plan that the settings make, with new kernels and solvers where it takes any: then true. On
   /// failure throws Error and everything stays.
   bool apply_plan(scene::Changes& changes);
-  void heed_settings();  ///< tells the solvers
+  void notify_settings_changed();  ///< tells the solvers
   bool render_item(const std::function<bool()>& cancel);
   /// Where further work on what paths read takes more from the picture's squared error than as many further
   /// samples do: a piece of it, and whether that was done.

@@ -188,7 +188,7 @@ bool isolated(ivec2 at, PreviewSurface here) {
 
 void main() {
   uint pixel = global_index(), lane = gl_LocalInvocationIndex;
-  vec4 told = vec4(0.0);
+  vec4 shares = vec4(0.0);
   if (pixel < push.width * push.height) {
     vec4 surface = vec4(-1.0, 0.0, 0.0, 0.0);
     PreviewLight own;
@@ -324,7 +324,7 @@ void main() {
       result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);
       if ((push.show >> c & 1u) != 0u) color += now;
       float showing = float(push.show >> c & 1u), shown = luminance(now) * showing;
-      told.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
+      shares.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
       // Pixels' own samples are independent; what is filtered, or was there before, errs alike in pixels side by side.
       variance += showing * (square(1.0 - keep) * (square((1.0 - amount) * noise[c]) / 9.0 + square(amount * smooth_error)) + of_before);
       unknown = unknown || (nothing && !has_old);
@@ -335,7 +335,7 @@ void main() {
     LUCERNA_PREVIEW_STORE(packed, pixel, result)
     picture[pixel] = picture_packed(tone_map(color, push.curve));
   }
-  group_shares[lane] = told;
+  group_shares[lane] = shares;
   barrier();
   if (lane == 0u) {
     vec4 sum = vec4(0.0);

@@ -77,9 +77,9 @@ TEST_CASE("--filter: layers beside the samples, a picture without noise, and its
   const nlohmann::json with = figures(f, "a"), without = figures(f, "plain");
   CHECK_FALSE(without.contains("filtered"));
   CHECK(with["error"] == without["error"]);
-  const double told = with["filtered"]["of_mean"], before = with["error"]["of_mean"];
-  CHECK(told > 0);
-  CHECK(told < 0.7 * before);
+  const double reported = with["filtered"]["of_mean"], before = with["error"]["of_mean"];
+  CHECK(reported > 0);
+  CHECK(reported < 0.7 * before);
 }
 
 TEST_CASE("--filter: one sample a pixel says nothing of its noise") {

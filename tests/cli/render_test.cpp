@@ -226,19 +226,19 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   CHECK(nowhere.status == 1);
   CHECK(nowhere.out.find("name at least one output") != std::string::npos);
   // The story of the render, in JSON and as a table with as many lines.
-  const auto [told, nothing] = stats("--samples 32 --ledger " + (f / "e.csv").string());
+  const auto [result, nothing] = stats("--samples 32 --ledger " + (f / "e.csv").string());
   std::ifstream table(f / "e.csv");
   size_t lines = 0;
   for (std::string line; std::getline(table, line);) ++lines;
-  CHECK(told["ledger"].size() + 1 == lines);
+  CHECK(result["ledger"].size() + 1 == lines);
   CHECK(lines > 5);
-  CHECK(told["ledger"].back()["paths"] == told["paths"]);
-  CHECK(told["ledger"].back()["seen"]["sum"] == told["error"]["seen"]);
-  CHECK(told["ledger"].back()["of_mean"]["sum"] == told["error"]["of_mean"]);
+  CHECK(result["ledger"].back()["paths"] == result["paths"]);
+  CHECK(result["ledger"].back()["seen"]["sum"] == result["error"]["seen"]);
+  CHECK(result["ledger"].back()["of_mean"]["sum"] == result["error"]["of_mean"]);
   double shares = 0;
-  for (const auto& component : told["error"]["components"]) shares += component["share"].get<double>();
+  for (const auto& component : result["error"]["components"]) shares += component["share"].get<double>();
   CHECK(shares == Approx(1));
-  CHECK(told["forecast"]["seconds_to"]["0.01"][0] <= told["forecast"]["seconds_to"]["0.01"][2]);
+  CHECK(result["forecast"]["seconds_to"]["0.01"][0] <= result["forecast"]["seconds_to"]["0.01"][2]);
   CHECK(j["ledger"].back()["forecast_rays"][1].get<double>() ==
         Approx(j["rays"].get<double>()).epsilon(0.01));
   refused("render " + scene("cornell") + " --quiet -o " + (f / "e.exr").string() +
@@ -268,8 +268,8 @@ TEST_CASE("--stats and --ledger tell noise and bias of light that is looked up a
     std::ifstream file(f / "b.json");
     return nlohmann::json::parse(file);
   };
-  const auto j =
-      stats("--samples 6 --set components.caustic=photons --set photons.worth=false --set photons.radius=6");
+  const auto j = stats(
+      "--samples 6 --set components.caustic=photons --set photons.efficiency=false --set photons.radius=6");
   const auto& error = j["error"];
   CHECK(error["records"]["seen"] == 0);
   CHECK(error["records"]["of_mean"] == 0);
@@ -290,7 +290,7 @@ TEST_CASE("--stats and --ledger tell noise and bias of light that is looked up a
   CHECK(head.find(",seen_records,seen_bias,seen_total,of_mean_records,of_mean_bias,of_mean_total,") !=
         std::string::npos);
   // With one sample there are no two halves, and nothing is known; paths have no bias to be told of.
-  CHECK(stats("--set components.caustic=photons --set photons.worth=false --samples 1")["error"]["bias"]
+  CHECK(stats("--set components.caustic=photons --set photons.efficiency=false --samples 1")["error"]["bias"]
             .is_null());
   CHECK_FALSE(stats("--samples 6 --set components.caustic=path")["error"].contains("bias"));
 }

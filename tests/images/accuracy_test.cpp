@@ -48,10 +48,10 @@ TEST_CASE("while a cache is built nothing is told of accuracy, however often its
     // Drafts, as a person sees them while records are made: each is a sixteenth of a sample, or a quarter.
     shown += bed.r.draw_draft();
     keeper.follow(bed.r, 1);
-    const auto told = keeper.publish(bed.r, true);
-    CHECK(told->ledger.entries().empty());
-    REQUIRE(told->paths == 0);
-    CHECK_FALSE(session::seconds_to(*told, 10).has_value());
+    const auto reported = keeper.publish(bed.r, true);
+    CHECK(reported->ledger.entries().empty());
+    REQUIRE(reported->paths == 0);
+    CHECK_FALSE(session::seconds_to(*reported, 10).has_value());
   }
   REQUIRE(shown > 4);
   CHECK(bed.r.stats().paths == 0);
@@ -59,17 +59,17 @@ TEST_CASE("while a cache is built nothing is told of accuracy, however often its
   bed.set({{"path.batch", "1024"}});
   while (bed.r.step()) {
     keeper.follow(bed.r, 1);
-    const auto told = keeper.publish(bed.r, true);
+    const auto reported = keeper.publish(bed.r, true);
     if (bed.r.samples() < 2) {
-      for (const stats::Entry& e : told->ledger.entries()) CHECK_FALSE(e.told);
+      for (const stats::Entry& e : reported->ledger.entries()) CHECK_FALSE(e.has_error);
       bed.r.finish_ledger();
-      CHECK_FALSE(bed.r.ledger().entries().back().told);
+      CHECK_FALSE(bed.r.ledger().entries().back().has_error);
       CHECK_FALSE(stats::seconds_to(bed.r.ledger(), 10).has_value());
     }
   }
   bed.r.finish_ledger();
   for (const stats::Entry& e : bed.r.ledger().entries()) {
-    if (!e.told) continue;
+    if (!e.has_error) continue;
     CHECK(e.samples >= 2);
     CHECK(e.error[0] > 0);
   }

@@ -50,18 +50,18 @@ const irradiance_cache::Records& records(const session::Renderer& r) { return te
 TEST_CASE(
     "records that keep groups of lights apart hold the light, and make the picture, of those that do not") {
   const scene::Scene even = block_room(true);  // no sun, which would be a light of its own
-  Bench apart(even, cached()), together(even, cached({{"relight.enabled", "off"}}));
-  const film::Image a = apart.image(), b = together.image();
-  CHECK(apart.r.relight().apart);
-  CHECK(apart.r.film().in_short());
+  Bench separate(even, cached()), together(even, cached({{"relight.enabled", "off"}}));
+  const film::Image a = separate.image(), b = together.image();
+  CHECK(separate.r.relight().separate);
+  CHECK(separate.r.film().is_compact());
   CHECK(identical(a, b));
-  CHECK(apart.r.stats().rays == together.r.stats().rays);
-  const uint32_t count = records(apart.r).size();
+  CHECK(separate.r.stats().rays == together.r.stats().rays);
+  const uint32_t count = records(separate.r).size();
   REQUIRE(count > 50);
   CHECK(count == records(together.r).size());
   CHECK(records(together.r).raw(count).groups.empty());
-  CHECK(records(apart.r).raw(count).groups.size() == count);
-  CHECK(apart.r.device().validation_messages() == 0);
+  CHECK(records(separate.r).raw(count).groups.size() == count);
+  CHECK(separate.r.device().validation_messages() == 0);
 }
 
 TEST_CASE("a mix of records' light is the mix of path traced light, within what records are off by") {

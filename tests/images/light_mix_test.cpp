@@ -30,20 +30,20 @@ TEST_CASE("a mix by powers of two and nothing is, to the bit, the picture of lig
     INFO(text);
     const scene::LightMix mix = scene::parse_mix(text);
     const scene::Scene shining = scene::mixed_scene(s, groups, mix);
-    const film::Image anew = trace(s, shining, as_they_are),
+    const film::Image rendered = trace(s, shining, as_they_are),
                       mixed = trace(s, s, scene::mix_weights(mix, groups));
-    CHECK(identical(mixed, anew));
+    CHECK(identical(mixed, rendered));
     CHECK_FALSE(identical(mixed, neutral));
   }
 }
 
 TEST_CASE("groups together are the picture that is made without them") {
   const scene::Scene s = room();
-  Bench apart(s), together(s, {{"relight.enabled", "off"}});
-  const film::Image a = apart.image();
-  CHECK(apart.r.relight().apart);
-  CHECK_FALSE(together.r.relight().apart);
-  CHECK(apart.r.film().groups() == 5);
+  Bench separate(s), together(s, {{"relight.enabled", "off"}});
+  const film::Image a = separate.image();
+  CHECK(separate.r.relight().separate);
+  CHECK_FALSE(together.r.relight().separate);
+  CHECK(separate.r.film().groups() == 5);
   CHECK(together.r.film().groups() == 1);
   // The sun of the environment is a light of its own where groups are apart: other samples, the same light.
   CHECK(worst_z(a, together.image()) < 5.5);
@@ -62,21 +62,21 @@ TEST_CASE("an environment's sun that is seen is of its own group") {
   const vec3 towards(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
   const vec3 right = glm::normalize(glm::cross(towards, vec3(0, 1, 0))), up = glm::cross(right, towards);
   s.cameras[0].to_world = mat4(vec4(right, 0), vec4(up, 0), vec4(-towards, 0), vec4(0, 10, 0, 1));
-  Bench apart(s), together(s, {{"relight.enabled", "off"}});
-  const film::Image a = apart.image();
+  Bench separate(s), together(s, {{"relight.enabled", "off"}});
+  const film::Image a = separate.image();
   CHECK(difference(a, together.image()) < 1e-6);
   const double all = mean(a.components[0]);
-  apart.mix("sun: solo");
-  CHECK(mean(apart.r.image().components[0]) > 0.5 * all);
-  apart.mix("sun: mute");
-  CHECK(mean(apart.r.image().components[0]) < 0.5 * all);
+  separate.mix("sun: solo");
+  CHECK(mean(separate.r.image().components[0]) > 0.5 * all);
+  separate.mix("sun: mute");
+  CHECK(mean(separate.r.image().components[0]) < 0.5 * all);
 }
 
 TEST_CASE("one group of lights costs nothing and changes no bit") {
   const scene::Scene s = room();
   Bench off(s, {{"relight.enabled", "off"}}), one(s, {{"relight.groups", "*=all"}});
   CHECK(one.r.relight().groups->groups.size() == 1);
-  CHECK(one.r.relight().apart);
+  CHECK(one.r.relight().separate);
   const film::Image image = one.image();
   CHECK(identical(off.image(), image));
   CHECK(one.r.film().groups() == 1);
@@ -88,7 +88,7 @@ TEST_CASE("light of one group is mixed without a ray, whoever computes it") {
   for (const Settings& how :
        {Settings{}, Settings{{"components.secondary", "cache"}, {"components.tertiary", "cache"}},
         Settings{{"components.caustic", "light"}},
-        Settings{{"components.secondary", "photons"}, {"photons.worth", "false"}}}) {
+        Settings{{"components.secondary", "photons"}, {"photons.efficiency", "false"}}}) {
     Settings all = how;
     all["relight.groups"] = "*=all";
     Bench b(s, all, 4);
@@ -122,18 +122,18 @@ TEST_CASE("what is told of the error of a finished picture is told of the mix th
   session::AccuracyKeeper keeper;
   b.image();
   b.r.finish_ledger();
-  const auto told = [&] {
+  const auto reported = [&] {
     keeper.follow(b.r, 1);
     return keeper.publish(b.r, true)->error()[0];
   };
-  double last = told();
+  double last = reported();
   CHECK(last > 0);
   for (const char* text : {"sky: solo", "lamp: solo", "block: solo", ""}) {
     b.mix(text);
     INFO(text);
-    CHECK(told() == Approx(b.r.image_error().seen(0)));
-    CHECK(told() != last);
-    last = told();
+    CHECK(reported() == Approx(b.r.image_error().seen(0)));
+    CHECK(reported() != last);
+    last = reported();
   }
 }
 
@@ -205,8 +205,9 @@ TEST_CASE("mixing equals rendering anew: switches, strengths from 10^-4 to 10^4,
     INFO(text);
     b.mix(text);
     const scene::LightMix mix = scene::parse_mix(text);
-    Bench anew(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}}, 64);
-    const film::Image mixed = b.r.image(), other = anew.image();
+    Bench rendered(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}},
+                   64);
+    const film::Image mixed = b.r.image(), other = rendered.image();
     CHECK(worst_z(mixed, other) < 5.5);
     for (int c = 0; c < film::k_components; ++c)
       CHECK((mean(mixed.components[c]) > 0) == (mean(other.components[c]) > 0));
@@ -219,7 +220,7 @@ TEST_CASE("noise is told of the picture as it is mixed, and adaptive sampling go
   for (const char* text : {"lamp: solo", "block: ev=4; sky: mute", ""}) {
     INFO(text);
     b.mix(text);
-    const film::ImageError told = b.r.image_error();
+    const film::ImageError reported = b.r.image_error();
     // By hand, from the halves of the picture that is shown.
     const film::Image image = b.r.image();
     double variance = 0, sum = 0;
@@ -230,9 +231,9 @@ TEST_CASE("noise is told of the picture as it is mixed, and adaptive sampling go
       variance += (all - odd) * (all - odd), sum += all;
     }
     const double n = double(image.samples.size());
-    CHECK(told.luminance[0] == Approx(sum / n).epsilon(1e-4));
-    CHECK(told.rms[0] == Approx(std::sqrt(variance / n)).epsilon(1e-3));
-    CHECK(b.r.ledger().entries().back().error[0] == Approx(told.seen(0)).epsilon(1e-6));
+    CHECK(reported.luminance[0] == Approx(sum / n).epsilon(1e-4));
+    CHECK(reported.rms[0] == Approx(std::sqrt(variance / n)).epsilon(1e-3));
+    CHECK(b.r.ledger().entries().back().error[0] == Approx(reported.seen(0)).epsilon(1e-6));
     CHECK(b.r.ledger().entries().size() == (*text || b.r.ledger().entries().size() == 1 ? 1u : 0u));
   }
 

@@ -26,7 +26,7 @@ TEST_CASE("all solvers compute light of as many events") {
   const scene::Scene s = mirror_room();
   for (const char* depth : {"2", "3"}) {
     test::Settings settings{{"path.max_depth", depth},
-                            {"photons.worth", "false"},
+                            {"photons.efficiency", "false"},
                             {"photons.radius", "2"},
                             {"photons.floor", "2"}};
     const auto render = [&](const test::Settings& more, uint32_t samples) {

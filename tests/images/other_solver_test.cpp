@@ -83,9 +83,10 @@ TEST_CASE("changes spoil of it what its table says; those of other solvers' sett
   CHECK(r.figure("begun") == first);
   r.restart();
   CHECK(r.figure("begun") == first + 1);
-  CHECK_FALSE(solvers::spoiled_by_setting(test::ambient_info(), "cache.rays").any());
-  CHECK_FALSE(solvers::spoiled_by_setting(*solvers::find("cache"), "ambient.radiance").any());
-  CHECK(solvers::spoiled_by_setting(test::ambient_info(), "ambient.radiance") == solvers::k_spoils_all);
+  CHECK_FALSE(solvers::invalidated_by_setting(test::ambient_info(), "cache.rays").any());
+  CHECK_FALSE(solvers::invalidated_by_setting(*solvers::find("cache"), "ambient.radiance").any());
+  CHECK(solvers::invalidated_by_setting(test::ambient_info(), "ambient.radiance") ==
+        solvers::k_invalidates_all);
   // Another solver's setting that begins the picture anew leaves it as it is; its own makes it anew.
   test::set(r, {{"cache.rays", "64"}});
   CHECK(r.figure("begun") == first + 1);

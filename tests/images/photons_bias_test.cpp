@@ -52,7 +52,7 @@ scene::Scene turned_sun(bool wavy, float half = 1) {
   return s;
 }
 
-struct Told {
+struct Reported {
   film::Image image;
   film::ImageError error;
   std::vector<film::TileError> tiles;
@@ -60,26 +60,26 @@ struct Told {
   bool bias_known = false, errors_known = false;
   double ledger_bias = 0;
 };
-Told render(const scene::Scene& scene, uint32_t samples, const test::Settings& more) {
+Reported render(const scene::Scene& scene, uint32_t samples, const test::Settings& more) {
   session::Renderer r(test::renderer_options(samples <= test::k_validated_samples));
   r.set_size(k_size, k_size);
   r.set_scene(std::make_shared<scene::Scene>(scene));
   test::Settings settings{{"components.caustic", "photons"},
-                          {"photons.worth", "false"},
+                          {"photons.efficiency", "false"},
                           {"photons.per_round", "200000"},
                           {"samples", std::to_string(samples)}};
   for (const auto& [key, value] : more) settings[key] = value;
   test::set(r, settings);
-  Told told;
-  told.image = test::finish(r);
-  told.error = r.image_error();
-  told.tiles = r.tile_errors();
-  told.bias = r.film().read_lookup_bias();
-  told.bias_known = r.film().lookup_bias_known(), told.errors_known = r.lookup_errors_known();
+  Reported reported;
+  reported.image = test::finish(r);
+  reported.error = r.image_error();
+  reported.tiles = r.tile_errors();
+  reported.bias = r.film().read_lookup_bias();
+  reported.bias_known = r.film().lookup_bias_known(), reported.errors_known = r.lookup_errors_known();
   r.finish_ledger();
-  told.ledger_bias = r.ledger().entries().back().of_mean.interpolation;
+  reported.ledger_bias = r.ledger().entries().back().of_mean.interpolation;
   CHECK(r.device().validation_messages() == 0);
-  return told;
+  return reported;
 }
 
 struct Amount {
@@ -88,7 +88,7 @@ struct Amount {
 /// The sum over pixels of weight(x, y) times what the picture holds there, or what is told of its bias; in
 /// luminance.
 template <class Weight>
-Amount picture_sum(const Told& t, Weight&& weight) {
+Amount picture_sum(const Reported& t, Weight&& weight) {
   double all = 0, odd = 0;
   for (uint32_t i = 0; i < k_size * k_size; ++i) {
     const double w = weight(i % k_size, i / k_size);
@@ -98,7 +98,7 @@ Amount picture_sum(const Told& t, Weight&& weight) {
   return {all, std::abs(all - odd)};
 }
 template <class Weight>
-Amount bias_sum(const Told& t, Weight&& weight) {
+Amount bias_sum(const Reported& t, Weight&& weight) {
   double even = 0, odd = 0;
   for (uint32_t i = 0; i < k_size * k_size; ++i) {
     const double w = weight(i % k_size, i / k_size);
@@ -131,23 +131,24 @@ TEST_CASE(
     double most_short;  // of the bias, that is not told because the light bends by more than a parabola
   };
   for (const Case& c : {Case{"5", "1", 12, 0.1}, Case{"3", "1", 48, 0.04}, Case{"7", "0.6667", 12, 0.1}}) {
-    const Told t = render(turned_sun(true), c.rounds,
-                          {{"photons.radius", c.radius}, {"photons.alpha", c.alpha}, {"photons.floor", "0"}});
-    double kept = 0, told = 0;  // averaged over rounds
+    const Reported t =
+        render(turned_sun(true), c.rounds,
+               {{"photons.radius", c.radius}, {"photons.alpha", c.alpha}, {"photons.floor", "0"}});
+    double kept = 0, reported = 0;  // averaged over rounds
     for (uint32_t i = 0; i < c.rounds; ++i) {
       const double q = k * k_pixel * std::atof(c.radius) * photons::radius_ratio(i, std::atof(c.alpha));
-      kept += epanechnikov(q) / c.rounds, told += 2 * (flat(q) - epanechnikov(q)) / c.rounds;
+      kept += epanechnikov(q) / c.rounds, reported += 2 * (flat(q) - epanechnikov(q)) / c.rounds;
     }
     const Amount mean = picture_sum(t, one), picture = picture_sum(t, wave), bias = bias_sum(t, wave),
                  even = bias_sum(t, one);
     const double truth = (kept - 1) * contrast * mean.value;
     INFO("radius " << c.radius << ": picture " << picture.value / mean.value << " +- "
                    << picture.noise / mean.value << " (" << kept * contrast << "), bias told "
-                   << bias.value / mean.value << " +- " << bias.noise / mean.value << " (" << told * contrast
-                   << "), true " << truth / mean.value);
+                   << bias.value / mean.value << " +- " << bias.noise / mean.value << " ("
+                   << reported * contrast << "), true " << truth / mean.value);
     // 4 standard errors, each from two halves, which can be near each other by chance: half a hundredth more.
     CHECK(std::abs(picture.value - kept * contrast * mean.value) < 4 * picture.noise + 0.005 * mean.value);
-    CHECK(std::abs(bias.value - told * contrast * mean.value) < 4 * bias.noise + 0.03 * std::abs(truth));
+    CHECK(std::abs(bias.value - reported * contrast * mean.value) < 4 * bias.noise + 0.03 * std::abs(truth));
     CHECK(bias.value < 0);
     CHECK(std::abs(bias.value) > (1 - c.most_short - 0.03) * std::abs(truth) - 4 * bias.noise);
     CHECK(std::abs(bias.value) < 1.03 * std::abs(truth) + 4 * bias.noise);
@@ -156,7 +157,7 @@ TEST_CASE(
     CHECK(std::abs(even.value) < 4 * even.noise + 0.002 * mean.value);
     // The picture's figure is that of its pixels: the quadratic mean of a cosine.
     CHECK(t.error.interpolation_rms ==
-          Approx(std::abs(told) * contrast * mean.value / std::sqrt(2.0)).epsilon(0.1));
+          Approx(std::abs(reported) * contrast * mean.value / std::sqrt(2.0)).epsilon(0.1));
     CHECK(t.ledger_bias == Approx(t.error.relative_interpolation()));
     CHECK(t.error.relative_sum() == Approx(t.error.relative(0) + t.error.relative_interpolation()));
     CHECK(t.errors_known);
@@ -165,8 +166,9 @@ TEST_CASE(
 
 TEST_CASE("even light has no blur to tell of, up to the border of what it lies on") {
   // The floor ends within the picture, 16 pixels from its middle.
-  const Told t = render(turned_sun(false, 16 * float(k_pixel)), 32,
-                        {{"photons.radius", "4"}, {"photons.alpha", "1"}, {"photons.per_round", "400000"}});
+  const Reported t =
+      render(turned_sun(false, 16 * float(k_pixel)), 32,
+             {{"photons.radius", "4"}, {"photons.alpha", "1"}, {"photons.per_round", "400000"}});
   const auto within = [](uint32_t x, uint32_t y, int least, int most) {
     const int u = std::min({int(x) - 16, 47 - int(x), int(y) - 16, 47 - int(y)});
     return u >= least && u < most ? 1.0 : 0.0;
@@ -193,18 +195,18 @@ TEST_CASE("where there are no photons nothing is told of their blur") {
   // Nothing focuses.
   scene::Scene plain = turned_sun(false);
   plain.materials[1] = test::diffuse(vec3(0.5f));
-  const Told none = render(plain, 4, {});
+  const Reported none = render(plain, 4, {});
   CHECK_FALSE(none.bias_known);
   CHECK(none.error.interpolation_rms == 0);
   CHECK(none.error.relative_sum() == none.error.relative(0));
   // Paths alone.
-  const Told paths = render(turned_sun(true), 4, {{"components.caustic", "path"}});
+  const Reported paths = render(turned_sun(true), 4, {{"components.caustic", "path"}});
   CHECK_FALSE(paths.bias_known);
   CHECK(paths.error.interpolation_rms == 0);
   // No light at all.
   scene::Scene dark = turned_sun(true);
   dark.lights.clear();
-  const Told unlit = render(dark, 4, {});
+  const Reported unlit = render(dark, 4, {});
   CHECK(unlit.error.interpolation_rms == 0);
   for (const auto& half : unlit.bias)
     for (const float value : half) REQUIRE(value == 0);
@@ -217,7 +219,7 @@ TEST_CASE("what is told is the same however the work is cut or interrupted, and 
     r.set_size(40, 32);
     r.set_scene(std::make_shared<scene::Scene>(turned_sun(true)));
     test::set(r, {{"components.caustic", "photons"},
-                  {"photons.worth", "false"},
+                  {"photons.efficiency", "false"},
                   {"photons.radius", "4"},
                   {"samples", "5"}});
   };
@@ -245,7 +247,7 @@ TEST_CASE("records and photons in one picture are both told of") {
   test::set(r, {{"components.secondary", "cache"},
                 {"components.tertiary", "cache"},
                 {"components.caustic", "photons"},
-                {"photons.worth", "false"},
+                {"photons.efficiency", "false"},
                 {"photons.radius", "4"},
                 {"samples", "8"}});
   test::finish(r);
@@ -264,7 +266,7 @@ TEST_CASE("records and photons in one picture are both told of") {
   test::set(r, {{"components.secondary", "off"},
                 {"components.tertiary", "off"},
                 {"components.caustic", "photons"},
-                {"photons.worth", "false"}});
+                {"photons.efficiency", "false"}});
   test::finish(r);
   const film::ImageError photons = r.image_error();
   CHECK_FALSE(r.film().record_errors_complete());
@@ -282,7 +284,7 @@ TEST_CASE("a target that blur keeps tiles over is not said to be reached, and co
     r.set_size(k_size, 32);
     r.set_scene(std::make_shared<scene::Scene>(turned_sun(true)));
     test::set(r, {{"components.caustic", "photons"},
-                  {"photons.worth", "false"},
+                  {"photons.efficiency", "false"},
                   {"photons.per_round", "300000"},
                   {"photons.radius", radius},
                   {"photons.alpha", "1"},

@@ -24,7 +24,7 @@ struct Case {
 
 struct Figures {
   size_t asked = 0, by_noise = 0, by_sum = 0, heavy = 0;
-  double told_noise = 0, told_bias = 0, told = 0, truth = 0;
+  double estimated_noise = 0, estimated_bias = 0, estimated = 0, truth = 0;
 };
 
 void count(Figures& f, const Shot& shot, const Shot& reference) {
@@ -33,8 +33,8 @@ void count(Figures& f, const Shot& shot, const Shot& reference) {
   for (size_t i = 0; i < shot.luminance.size(); ++i)
     squares += std::pow(double{shot.luminance[i]} - double{reference.luminance[i]}, 2);
   f.truth += std::sqrt(std::max(0.0, squares / double(shot.luminance.size()) - own)) / mean;
-  f.told += shot.error.relative_sum();
-  f.told_noise += shot.error.relative(0), f.told_bias += shot.error.relative_interpolation();
+  f.estimated += shot.error.relative_sum();
+  f.estimated_noise += shot.error.relative(0), f.estimated_bias += shot.error.relative_interpolation();
   for (size_t t = 0; t < shot.tiles.size(); ++t) {
     film::TileError a = shot.tiles[t];
     const film::TileError& r = reference.tiles[t];
@@ -64,10 +64,11 @@ TEST_CASE("the error told of a picture of photons is the true one") {
       at ? std::vector<std::string>{at} : std::vector<std::string>{"1.5", "3", "6"};
   // Diffuse light is path traced, for paths are soon done with it; caustics of a small lamp are not, so that
   // photons of many rounds with a small radius are what those with a large one are held against.
-  const test::Settings caustic{{"components.caustic", "photons"}, {"photons.worth", "false"}};
-  const test::Settings diffuse{
-      {"components.secondary", "photons"}, {"components.tertiary", "photons"}, {"photons.worth", "false"}};
-  const test::Settings fine{{"components.caustic", "photons"}, {"photons.worth", "false"},
+  const test::Settings caustic{{"components.caustic", "photons"}, {"photons.efficiency", "false"}};
+  const test::Settings diffuse{{"components.secondary", "photons"},
+                               {"components.tertiary", "photons"},
+                               {"photons.efficiency", "false"}};
+  const test::Settings fine{{"components.caustic", "photons"}, {"photons.efficiency", "false"},
                             {"photons.radius", "0.4"},         {"photons.floor", "0.25"},
                             {"photons.per_round", "200000"},   {"samples", "384"}};
   for (const Case& c :
@@ -113,15 +114,15 @@ TEST_CASE("the error told of a picture of photons is the true one") {
           "told "
           "%.4f (noise %.4f, bias %.4f), true %.4f\n",
           c.scene, radius.c_str(), share * double(f.by_noise), share * double(f.by_sum), f.asked, f.heavy,
-          f.told / n, f.told_noise / n, f.told_bias / n, f.truth / n);
+          f.estimated / n, f.estimated_noise / n, f.estimated_bias / n, f.truth / n);
       std::fflush(stdout);
       INFO(c.scene << " radius " << radius);
       // 85 %, and two standard errors of as many independent tiles.
       const double tiles = double(f.asked), chance = 2 * std::sqrt(0.9 * 0.1 * tiles);
       CHECK(double(f.by_sum) > 0.85 * tiles - chance);
       CHECK(f.by_noise < f.by_sum);
-      CHECK(f.told > 0.8 * f.truth);
-      CHECK(f.told < 1.6 * f.truth);
+      CHECK(f.estimated > 0.8 * f.truth);
+      CHECK(f.estimated < 1.6 * f.truth);
     }
   }
 }

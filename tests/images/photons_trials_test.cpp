@@ -46,16 +46,16 @@ TEST_CASE("where photons are far from worth it paths bring the light, and the pi
   const film::Image path = Session(room, {{"components.caustic", "off"}}).image();
   Session all(room, photons_for({"secondary", "tertiary"}, k_few));
   CHECK(test::identical(all.image(), path));
-  CHECK(all.solver().left() == (k_secondary | k_tertiary));
+  CHECK(all.solver().delegated_components() == (k_secondary | k_tertiary));
   CHECK(all.r.samples() == 4);
   CHECK(all.solver().map().figures().photons == 0);
   Session secondary(room, photons_for({"secondary"}, k_few));
   CHECK(test::identical(secondary.image(), path));
-  CHECK(secondary.solver().left() == k_secondary);
+  CHECK(secondary.solver().delegated_components() == k_secondary);
   // Where paths gather, a map of so few photons is known nowhere, and both ways are the same.
   Session tertiary(room, photons_for({"tertiary"}, k_few));
   tertiary.image();
-  CHECK(tertiary.solver().left() == 0);
+  CHECK(tertiary.solver().delegated_components() == 0);
 }
 
 TEST_CASE("where photons are worth it they bring the light", "[photons_trials]") {
@@ -64,8 +64,8 @@ TEST_CASE("where photons are worth it they bring the light", "[photons_trials]")
        {photons_for({"secondary", "tertiary"}, k_many), photons_for({"tertiary"}, k_many)}) {
     Session s(room, how);
     const film::Image image = s.image();
-    CHECK(s.solver().left() == 0);
-    CHECK(test::identical(image, Session(room, with(how, {{"photons.worth", "false"}})).image()));
+    CHECK(s.solver().delegated_components() == 0);
+    CHECK(test::identical(image, Session(room, with(how, {{"photons.efficiency", "false"}})).image()));
   }
 }
 
@@ -78,16 +78,16 @@ TEST_CASE("the choice is the same however work is cut, and is made anew when lig
   test::set(s.r, {{"path.batch", "1024"}});
   CHECK(test::identical(first, s.image()));
   // Without the choice, and with it again.
-  test::set(s.r, {{"photons.worth", "false"}});
+  test::set(s.r, {{"photons.efficiency", "false"}});
   const film::Image photons = s.image();
-  CHECK(s.solver().left() == 0);
+  CHECK(s.solver().delegated_components() == 0);
   CHECK_FALSE(test::identical(first.components[1], photons.components[1]));
-  test::set(s.r, {{"photons.worth", "true"}});
+  test::set(s.r, {{"photons.efficiency", "true"}});
   CHECK(test::identical(first, s.image()));
   // Many photons: another answer; and few again.
   test::set(s.r, {{"photons.per_round", k_many}});
   s.image();
-  CHECK(s.solver().left() == 0);
+  CHECK(s.solver().delegated_components() == 0);
   test::set(s.r, {{"photons.per_round", k_few}});
   CHECK(test::identical(first, s.image()));
   // A lamp twice as bright gives the same choice and twice the light; another camera the picture of a fresh
@@ -96,7 +96,7 @@ TEST_CASE("the choice is the same however work is cut, and is made anew when lig
   bright.lights[0].intensity *= 2.0f;
   s.r.set_light(0, bright.lights[0]);
   const film::Image twice = s.image();
-  CHECK(s.solver().left() == (k_secondary | k_tertiary));
+  CHECK(s.solver().delegated_components() == (k_secondary | k_tertiary));
   CHECK(test::mean(twice.components[2]) == Approx(2 * test::mean(first.components[2])).epsilon(1e-4));
   CHECK(test::identical(twice, Session(bright, few).image()));
 }
@@ -111,7 +111,7 @@ TEST_CASE("beside caustics of photons the choice is that of the other light alon
                            {"components.caustic", "photons"}};
   Session few(s, with(all, {{"photons.per_round", k_few}}), 64);
   const film::Image left = few.image();
-  CHECK(few.solver().left() == (k_secondary | k_tertiary));
+  CHECK(few.solver().delegated_components() == (k_secondary | k_tertiary));
   // Caustics are of photons still: paths do not find what a mirror makes of a point.
   CHECK(test::mean(left.components[3]) > 0);
   CHECK(test::mean(Session(s, {}, 64).image().components[3]) == 0);
@@ -155,10 +155,10 @@ TEST_CASE("where paths are chosen photons compute what these cannot find", "[pho
                            {"components.tertiary", "photons"},
                            {"components.caustic", "photons"}};
   const film::Image truth =
-      Session(room, with(all, {{"photons.per_round", k_many}, {"photons.worth", "false"}}), 16).image();
+      Session(room, with(all, {{"photons.per_round", k_many}, {"photons.efficiency", "false"}}), 16).image();
   Session chosen(room, with(all, {{"photons.per_round", k_few}}), 1024);
   const film::Image image = chosen.image();
-  REQUIRE(chosen.solver().left() == (k_secondary | k_tertiary));
+  REQUIRE(chosen.solver().delegated_components() == (k_secondary | k_tertiary));
   const film::Image paths = Session(room, {}, 64).image();
   // Part of the tertiary light is beyond paths, and all of the caustics.
   CHECK(test::mean(paths.components[2]) < 0.96 * test::mean(truth.components[2]));
@@ -183,7 +183,7 @@ TEST_CASE("records whose rays find no irradiance have the light that paths canno
                              {"components.tertiary", "photons"},
                              {"components.caustic", "off"},
                              {"photons.per_round", k_many},
-                             {"photons.worth", "false"}};
+                             {"photons.efficiency", "false"}};
     const film::Image truth = Session(room, all, 16).image();
     Session records(room,
                     {{"components.secondary", "cache"},
@@ -222,7 +222,7 @@ TEST_CASE("a house on a wide ground has its light, and photons do not report dar
   for (const size_t c : {1u, 2u}) check_same_light(image, paths, c, 0);
   // Where photons have to bring it many arrive, though a path that is not aimed finds the house by chance of
   // one in 100,000.
-  Session forced(s, with(photons, {{"photons.worth", "false"}}), 1);
+  Session forced(s, with(photons, {{"photons.efficiency", "false"}}), 1);
   forced.image();
   CHECK(forced.solver().map().figures().photons > 50);
 }
@@ -236,7 +236,7 @@ TEST_CASE("light that no photon has brought is unknown, and holds the picture", 
   Session blind(s,
                 {{"components.secondary", "photons"},
                  {"components.tertiary", "photons"},
-                 {"photons.worth", "false"},
+                 {"photons.efficiency", "false"},
                  {"photons.per_round", "1"},
                  {"sampling.mode", "adaptive"},
                  {"sampling.min_samples", "4"},

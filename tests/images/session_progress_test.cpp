@@ -64,13 +64,13 @@ TEST_CASE("while a cache is built or relit it is told how far that is") {
   lamp.position.x += 0.2f;
   window.r.set_light(0, lamp);
   double before = 0;
-  int told = 0;
+  int reported = 0;
   for (int i = 0; i < 10000 && window.r.preparing(); ++i, window.r.step())
     if (const auto p = window.progress()) {
       CHECK(p->done > before - 0.05);
-      before = p->done, ++told;
+      before = p->done, ++reported;
     }
-  CHECK(told > 0);
+  CHECK(reported > 0);
 }
 
 TEST_CASE("drafts tell what path tracing would take before there is any light to be looked up") {

@@ -248,14 +248,14 @@ TEST_CASE("candidates are collected in the order of their slots, those seen stra
     const Choice all = bench.placement.choice();
     uint32_t at = 0;
     for (uint32_t i = 0; i < 200; ++i) {
-      const uint32_t told = uint32_t(slots[2 * i].w);
-      if (told == 0 || (told == 1 && !screen_too)) continue;
+      const uint32_t reported = uint32_t(slots[2 * i].w);
+      if (reported == 0 || (reported == 1 && !screen_too)) continue;
       for (int twice = 0; twice < 2; ++twice, ++at) {
         CHECK(all.candidates[at].position.x == float(i));
         CHECK(all.candidates[at].facet == i);
-        CHECK(all.candidates[at].origin == told - 1);
+        CHECK(all.candidates[at].origin == reported - 1);
         CHECK(all.candidates[at].reach ==
-              Approx(std::max(told == 3 ? 20.0f : 0.001f, 0.1f * (float(i) + 5))));
+              Approx(std::max(reported == 3 ? 20.0f : 0.001f, 0.1f * (float(i) + 5))));
       }
     }
     CHECK(at == 2 * each);

@@ -215,12 +215,12 @@ TEST_CASE("the overlap told of the picture is that of its pixels, counted by han
   r.picture(false);
   const auto report = test::cache_report(r);
   REQUIRE(report->overlap);
-  const irradiance_cache::Overlap& told = *report->overlap;
+  const irradiance_cache::Overlap& reported = *report->overlap;
   const std::vector<Record> all = test::cache(r)->records().read();
   const film::Image image = r.image();
   uint64_t pixels = 0, served = 0, sum = 0;
   uint32_t most = 0;
-  std::vector<uint32_t> histogram(told.histogram.size(), 0);
+  std::vector<uint32_t> histogram(reported.histogram.size(), 0);
   for (uint32_t p = 0; p < k_size * k_size; ++p) {
     const vec2 at = place_of(p) / float(k_size);
     const auto hit = session::pick(*r.scene(), r.camera(), at.x, at.y, 1);
@@ -231,17 +231,17 @@ TEST_CASE("the overlap told of the picture is that of its pixels, counted by han
     ++pixels, served += count > 0, sum += count, most = std::max(most, count);
     ++histogram[std::min<size_t>(count, histogram.size() - 1)];
   }
-  INFO(told.pixels << " pixels, " << told.served << " served by " << told.mean << ", " << told.most
-                   << " at most; by hand " << pixels << ", " << served << ", " << double(sum) / double(served)
-                   << ", " << most);
+  INFO(reported.pixels << " pixels, " << reported.served << " served by " << reported.mean << ", "
+                       << reported.most << " at most; by hand " << pixels << ", " << served << ", "
+                       << double(sum) / double(served) << ", " << most);
   CHECK(served > 1000);
-  CHECK(double(told.pixels) == Approx(double(pixels)).epsilon(0.003));
-  CHECK(double(told.served) == Approx(double(served)).epsilon(0.01));
-  CHECK(told.mean == Approx(double(sum) / double(served)).epsilon(0.01));
-  CHECK(std::abs(int(told.most) - int(most)) <= 1);
-  CHECK(std::accumulate(told.histogram.begin(), told.histogram.end(), 0ull) == told.pixels);
+  CHECK(double(reported.pixels) == Approx(double(pixels)).epsilon(0.003));
+  CHECK(double(reported.served) == Approx(double(served)).epsilon(0.01));
+  CHECK(reported.mean == Approx(double(sum) / double(served)).epsilon(0.01));
+  CHECK(std::abs(int(reported.most) - int(most)) <= 1);
+  CHECK(std::accumulate(reported.histogram.begin(), reported.histogram.end(), 0ull) == reported.pixels);
   for (size_t i = 0; i < histogram.size(); ++i)
-    CHECK(std::abs(int(told.histogram[i]) - int(histogram[i])) < int(pixels / 100));
+    CHECK(std::abs(int(reported.histogram[i]) - int(histogram[i])) < int(pixels / 100));
 }
 
 TEST_CASE("on a normal map what is told is what paths are answered: on the smooth surface, or in vain") {
@@ -253,10 +253,10 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
     r.set_scene(std::make_shared<scene::Scene>(room));
     test::set(r, {{"components.secondary", "cache"}, {"components.tertiary", "cache"}, {"samples", "2"}});
     test::finish(r);
-    const irradiance_cache::Overlap told = *test::cache_report(r)->overlap;
-    CHECK(told.pixels == 64 * 64);
+    const irradiance_cache::Overlap reported = *test::cache_report(r)->overlap;
+    CHECK(reported.pixels == 64 * 64);
     // Three quarters of the texels are tilted; 45 degrees are more than records can bridge, 12 are not.
-    const double unserved = double(told.histogram[0] - told.gathered) / double(told.pixels);
+    const double unserved = double(reported.histogram[0] - reported.gathered) / double(reported.pixels);
     INFO(unserved << " not served");
     if (degrees < 20)
       CHECK(unserved < 0.01);
@@ -269,11 +269,11 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
         r.picture(false);
         const Inspection found = test::cache_report(r)->inspection;
         REQUIRE(found.solid);
-        CHECK(found.asks != shared::k_asks_nothing);
+        CHECK(found.lookup != shared::k_lookup_none);
         CHECK(found.surface.normal == vec3(0, 0, 1));
         CHECK(found.surface.position.z == Approx(-0.98).margin(1e-5));
-        CHECK((found.count > 0) == (found.asks == shared::k_asks));
-        in_vain += found.asks == shared::k_asks_in_vain, ++asked;
+        CHECK((found.count > 0) == (found.lookup == shared::k_lookup_possible));
+        in_vain += found.lookup == shared::k_lookup_too_steep, ++asked;
       }
     if (degrees < 20)
       CHECK(in_vain == 0);
@@ -286,7 +286,7 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
     test::finish(r);
     r.inspect(vec2(0.5f, 0.5f));
     r.picture(false);
-    CHECK(test::cache_report(r)->inspection.asks == shared::k_asks_nothing);
+    CHECK(test::cache_report(r)->inspection.lookup == shared::k_lookup_none);
     CHECK(test::cache_report(r)->inspection.count == 0);
     CHECK(test::cache_report(r)->overlap->pixels == 0);
     CHECK(r.device().validation_messages() == 0);
@@ -299,9 +299,9 @@ TEST_CASE("it is told who serves what the camera sees where only later vertices 
   r.set_scene(std::make_shared<scene::Scene>(test::PanelRoom().s));
   test::set(r, {{"components.tertiary", "cache"}, {"samples", "2"}});
   test::finish(r);
-  const irradiance_cache::Overlap told = *test::cache_report(r)->overlap;
-  CHECK(told.pixels == 48 * 48);
-  CHECK(told.served > told.pixels / 2);
+  const irradiance_cache::Overlap reported = *test::cache_report(r)->overlap;
+  CHECK(reported.pixels == 48 * 48);
+  CHECK(reported.served > reported.pixels / 2);
   // Without a pass of building it looks at the picture because it is asked.
   const auto file = std::filesystem::temp_directory_path() / fmt::format("lucerna-told-{}.cache", getpid());
   r.solver_save("cache", file);
@@ -311,7 +311,7 @@ TEST_CASE("it is told who serves what the camera sees where only later vertices 
   test::finish(r);
   REQUIRE(test::cache(r)->status().loaded > 0);
   const uint64_t rays = r.stats().rays;
-  CHECK(test::cache_report(r)->overlap->histogram == told.histogram);
+  CHECK(test::cache_report(r)->overlap->histogram == reported.histogram);
   CHECK(r.stats().rays == rays);
 }
 
@@ -464,8 +464,8 @@ TEST_CASE("the log of building adds up to what the cache holds") {
   for (const irradiance_cache::CachePass& p : s.passes) {
     CHECK(p.complete);
     CHECK(p.paths > 0);
-    CHECK(p.asked <= p.paths);
-    CHECK(p.asked_world <= p.asked);
+    CHECK(p.uncovered <= p.paths);
+    CHECK(p.uncovered_world <= p.uncovered);
     records += p.records, rays += p.rays;
     for (size_t k = 0; k < ms.size(); ++k) ms[k] += p.ms[k];
   }
@@ -483,7 +483,8 @@ TEST_CASE("the log of building adds up to what the cache holds") {
   CHECK(std::accumulate(ms.begin(), ms.end(), 0.0) - ms[size_t(irradiance_cache::BuildStep::choose)] <=
         stages);
   if (s.stop == irradiance_cache::StopReason::covered)
-    CHECK(double(s.passes.back().asked) <= r.settings().real("cache.stop") * double(s.passes.back().paths));
+    CHECK(double(s.passes.back().uncovered) <=
+          r.settings().real("cache.stop") * double(s.passes.back().paths));
 
   // Seen from elsewhere passes are added; begun anew they are forgotten.
   const size_t before = s.passes.size();

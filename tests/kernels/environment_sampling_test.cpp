@@ -149,9 +149,9 @@ TEST_CASE("directions of the environment map: by its density, which integrates t
              chi_square(within, std::vector<double>(within.size(), drawn / double(within.size()))).p);
     CHECK(jury.verdict() == "");
     // What a draw says of its density is what hitting the sky in that direction is told.
-    const auto told = lights.environment(again);
+    const auto reported = lights.environment(again);
     size_t different = 0;
-    for (size_t i = 0; i < told.size(); ++i) different += std::abs(told[i].pdf / pdfs[i] - 1) > 1e-4f;
+    for (size_t i = 0; i < reported.size(); ++i) different += std::abs(reported[i].pdf / pdfs[i] - 1) > 1e-4f;
     CHECK(different == 0);
   }
 }
@@ -208,41 +208,41 @@ TEST_CASE("tables of an environment are made once for its texels, whatever else 
            flat.environment.sun_cells.shares_with(before.sun_cells);
   };
   scene::Scene edited = scene;
-  const auto as_anew = [&] {
-    const upload::FlatScene anew = upload::flatten(edited, flat.sun_threshold);
+  const auto as_rebuilt = [&] {
+    const upload::FlatScene rebuilt = upload::flatten(edited, flat.sun_threshold);
     const auto same = [](const auto& a, const auto& b) {
       return std::equal(a.begin(), a.end(), b.begin(), b.end());
     };
-    return same(flat.environment.alias, anew.environment.alias) &&
-           same(flat.environment.density, anew.environment.density) &&
-           same(flat.environment.sun_cells, anew.environment.sun_cells) &&
-           same(flat.sun_density, anew.sun_density) && same(flat.light_alias, anew.light_alias) &&
-           same(flat.environment_texels, anew.environment_texels);
+    return same(flat.environment.alias, rebuilt.environment.alias) &&
+           same(flat.environment.density, rebuilt.environment.density) &&
+           same(flat.environment.sun_cells, rebuilt.environment.sun_cells) &&
+           same(flat.sun_density, rebuilt.sun_density) && same(flat.light_alias, rebuilt.light_alias) &&
+           same(flat.environment_texels, rebuilt.environment_texels);
   };
   edited.environment.rotation = 80, edited.environment.scale = 3;
   edited.lights.emplace_back().intensity = vec3(300);
   upload::flatten_lights(edited, flat);
   CHECK(kept());
   CHECK(flat.environment_texels.shares_with(texels));
-  CHECK(as_anew());
+  CHECK(as_rebuilt());
   // Others where the sun is apart by another threshold, or not at all, and where a texel is another.
   for (const float threshold : {1.5f, 0.0f, 16.0f}) {
     flat.sun_threshold = threshold;
     upload::flatten_lights(edited, flat);
     CHECK_FALSE(kept());
-    CHECK(as_anew());
+    CHECK(as_rebuilt());
   }
   scene::Image& image = edited.images[edited.environment.image];
   image.floats[4 * 100] += 50;
   upload::flatten_lights(edited, flat);
   CHECK_FALSE(flat.environment_texels.shares_with(texels));
-  CHECK(as_anew());
+  CHECK(as_rebuilt());
   edited.environment.image = scene::k_none;
   for (const vec3 colour : {vec3(1), vec3(2, 1, 0)}) {
     edited.environment.radiance = colour;
     upload::flatten_lights(edited, flat);
     CHECK(flat.environment_texels[0] == colour);
-    CHECK(as_anew());
+    CHECK(as_rebuilt());
   }
 }
 
@@ -252,7 +252,7 @@ TEST_CASE("sky and sun apart: two emitters that add up to the environment, each 
   lamp.intensity = vec3(300);
   scene.lights.push_back(lamp);
   Lights whole(scene), lights(scene, 16);
-  REQUIRE(lights.flat.effects.sky_apart);
+  REQUIRE(lights.flat.effects.separate_sky);
   REQUIRE(lights.flat.effects.sun);
   // One texel is the sun; filtering reaches it from the eight around it.
   CHECK(lights.flat.environment.sun_cells.size() == 2 * 9);
@@ -312,17 +312,19 @@ TEST_CASE("sky and sun apart: two emitters that add up to the environment, each 
   CHECK(sky_mean.error() < 0.01 * sky_light);
   CHECK(sun_mean.error() < 0.01 * sun_light);
   for (const int sun : {0, 1}) {
-    const auto told = lights.environment(again[sun], sun == 1);
+    const auto reported = lights.environment(again[sun], sun == 1);
     size_t wrong = 0;
-    for (size_t i = 0; i < told.size(); ++i) wrong += std::abs(told[i].pdf / pdfs[sun][i] - 1) > 1e-3f;
-    CHECK(double(wrong) < 1e-3 * double(told.size()));  // rounding may put a direction into the next texel
+    for (size_t i = 0; i < reported.size(); ++i)
+      wrong += std::abs(reported[i].pdf / pdfs[sun][i] - 1) > 1e-3f;
+    CHECK(double(wrong) <
+          1e-3 * double(reported.size()));  // rounding may put a direction into the next texel
   }
   // A sky without anything bright has no sun, and light samples know nothing else.
   scene.lights.clear();
   scene.environment.image = scene::k_none;
   scene.environment.radiance = vec3(1);
   const upload::FlatScene even = upload::flatten(scene, 2);
-  CHECK(even.effects.sky_apart);
+  CHECK(even.effects.separate_sky);
   CHECK_FALSE(even.effects.sun);
   CHECK(even.environment_light_pmf == 1);
   CHECK(even.effects.lights);

@@ -319,9 +319,9 @@ TEST_CASE(
   std::vector<vec2> records(size_t{k_width} * k_height);
   for (size_t i = 0; i < records.size(); ++i)
     records[i] = vec2(1e-4f * float(i), 2e-4f * float(i % 7) - 3e-4f);
-  gpu::Buffer told(device, {.name = "told", .bytes = records.size() * sizeof(vec2)});
-  told.write(std::span<const vec2>(records));
-  resources.set("FilmRecords", told);
+  gpu::Buffer estimated(device, {.name = "told", .bytes = records.size() * sizeof(vec2)});
+  estimated.write(std::span<const vec2>(records));
+  resources.set("FilmRecords", estimated);
   const auto run = [&](const gpu::Kernel& kernel, uint32_t known) {
     stream.dispatch(kernel, resources, shared::ErrorPush{k_width, k_height, k_blocks, k_floor, 1e9f, known},
                     1);
@@ -423,10 +423,10 @@ TEST_CASE(
     stream.run();
   }
   REQUIRE(film.lookup_bias_known());
-  const auto told = film.read_lookup_bias();
+  const auto estimated = film.read_lookup_bias();
   for (int half = 0; half < 2; ++half)
     for (size_t i = 0; i < k_pixels; ++i)
-      CHECK(double(told[half][i]) == Approx(mean[half][i]).epsilon(1e-5).margin(1e-7));
+      CHECK(double(estimated[half][i]) == Approx(mean[half][i]).epsilon(1e-5).margin(1e-7));
   const auto run = [&](const gpu::Kernel& kernel, uint32_t known) {
     const std::vector<shared::WorkBlock> list{{0, 0}, {1, 0}};
     work.write(std::span<const shared::WorkBlock>(list));

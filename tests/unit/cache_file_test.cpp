@@ -36,7 +36,7 @@ CacheFile some_cache(uint32_t records) {
   c.made_with.recursive = records % 2 == 0;
   c.made_with.seed = "7";
   c.view = "perspective 0.8 at 1 2 3";
-  c.status.pass = 3, c.status.probed.asked = 5, c.status.probed.paths = 1ull << 40,
+  c.status.pass = 3, c.status.probed.uncovered = 5, c.status.probed.paths = 1ull << 40,
   c.status.rays = 123456789012ull;
   c.status.stop = StopReason::passes;
   float next = 1;
@@ -90,7 +90,7 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
     CHECK(d.made_with.seed == c.made_with.seed);
     CHECK(d.view == c.view);
     CHECK(d.status.pass == c.status.pass);
-    CHECK(d.status.probed.asked == c.status.probed.asked);
+    CHECK(d.status.probed.uncovered == c.status.probed.uncovered);
     CHECK(d.status.probed.paths == c.status.probed.paths);
     CHECK(d.status.rays == c.status.rays);
     CHECK(d.status.stop == c.status.stop);
@@ -123,10 +123,10 @@ TEST_CASE("the format is what its header says, byte for byte") {
 TEST_CASE("a file that is cut short is refused at every length") {
   const std::string bytes = encode(some_cache(3));
   for (size_t n = 0; n < bytes.size(); ++n) {
-    const std::string told = refusal(bytes.substr(0, n));
-    INFO(n << ": " << told);
-    REQUIRE(told.find("a.cache: cut short: ") == 0);
-    REQUIRE_THAT(told, Contains(std::to_string(n)));
+    const std::string reported = refusal(bytes.substr(0, n));
+    INFO(n << ": " << reported);
+    REQUIRE(reported.find("a.cache: cut short: ") == 0);
+    REQUIRE_THAT(reported, Contains(std::to_string(n)));
   }
   CHECK(refusal(bytes).empty());
   CHECK_THAT(refusal(bytes + "x"), Contains("a.cache: damaged: ") && Contains("it says that it has"));
@@ -138,11 +138,12 @@ TEST_CASE("a file with one byte changed is refused, wherever it is and however")
     for (const int change : {1, 0x80, 0xff}) {
       std::string other = bytes;
       other[n] = char(other[n] ^ change);
-      const std::string told = refusal(other);
-      INFO(n << " ^ " << change << ": " << told);
-      REQUIRE(told.find("a.cache: ") == 0);
-      if (n < 8) REQUIRE_THAT(told, Contains("not an irradiance cache: expected a file that begins with"));
-      if (n >= 28) REQUIRE_THAT(told, Contains("damaged: its checksum is"));
+      const std::string reported = refusal(other);
+      INFO(n << " ^ " << change << ": " << reported);
+      REQUIRE(reported.find("a.cache: ") == 0);
+      if (n < 8)
+        REQUIRE_THAT(reported, Contains("not an irradiance cache: expected a file that begins with"));
+      if (n >= 28) REQUIRE_THAT(reported, Contains("damaged: its checksum is"));
     }
   std::string other = bytes;
   other[8] = 1;
@@ -168,9 +169,9 @@ TEST_CASE(
       hash.add_bytes(other.data(), other.size() - 8);
       const uint64_t sum = hash.low();
       std::memcpy(other.data() + other.size() - 8, &sum, sizeof sum);
-      const std::string told = refusal(other);
-      ++(told.empty() ? read : refused);
-      REQUIRE((told.empty() || told.starts_with("a.cache: damaged: ")));
+      const std::string reported = refusal(other);
+      ++(reported.empty() ? read : refused);
+      REQUIRE((reported.empty() || reported.starts_with("a.cache: damaged: ")));
     }
   CHECK(refused > 50);  // lengths and counts
   CHECK(read > 2000);   // the records' own numbers

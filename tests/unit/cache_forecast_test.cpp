@@ -47,7 +47,7 @@ const std::vector<std::vector<Pass>> k_measured = {
 CachePass pass(const Pass& p, uint32_t number, double part) {
   CachePass r;
   r.number = number, r.complete = part == 1;
-  r.paths = 1000000, r.asked = uint64_t(p.asked * 1e6);
+  r.paths = 1000000, r.uncovered = uint64_t(p.asked * 1e6);
   r.records = p.records, r.rays = uint64_t(part * double(p.rays));
   r.ms[size_t(BuildStep::evaluate)] = part * p.ms;
   return r;
@@ -71,17 +71,17 @@ TEST_CASE("what is left of building a cache is told while it is built") {
     for (const Pass& p : all) whole += p.ms;
     for (uint32_t i = 0; i < all.size(); ++i) {
       for (const double part : {0.4, 0.7}) {
-        const auto told = forecast_of(at(all, i, part), k_stop);
+        const auto reported = forecast_of(at(all, i, part), k_stop);
         INFO("pass " << i << ", " << part << " of it");
-        REQUIRE(told);
+        REQUIRE(reported);
         const double done = before + part * all[i].ms;
-        CHECK(told->done > 0);
-        CHECK(told->done < 1);
+        CHECK(reported->done > 0);
+        CHECK(reported->done < 1);
         // Of the whole: small scenes are done sooner than the first pass lets one think.
-        const double foretold = done + told->left_ms;
-        CHECK(foretold < (i == 0 ? 2.3 : 1.7) * whole);
-        CHECK(foretold > whole / 1.7);
-        CHECK(told->done == Approx(done / foretold));
+        const double predicted = done + reported->left_ms;
+        CHECK(predicted < (i == 0 ? 2.3 : 1.7) * whole);
+        CHECK(predicted > whole / 1.7);
+        CHECK(reported->done == Approx(done / predicted));
       }
       before += all[i].ms;
     }
@@ -107,10 +107,10 @@ TEST_CASE("relighting is as far as the rays that records had before") {
   p.relit = true, p.records = 100, p.rays = 1000;
   p.ms[size_t(BuildStep::evaluate)] = 50;
   s.passes = {p}, s.rays = 1000;
-  const auto told = forecast_of(s, k_stop);
-  REQUIRE(told);
-  CHECK(told->done == Approx(0.25));
-  CHECK(told->left_ms == Approx(150));
+  const auto reported = forecast_of(s, k_stop);
+  REQUIRE(reported);
+  CHECK(reported->done == Approx(0.25));
+  CHECK(reported->left_ms == Approx(150));
   // Rays are counted before their time is known, and what is set up before them does not scale.
   s.passes[0].ms = {};
   s.passes[0].ms[size_t(BuildStep::measure)] = 500;
@@ -140,7 +140,7 @@ TEST_CASE("what comes into view takes its part of what the cache took") {
   CHECK_FALSE(forecast_of(s, k_stop));
   double last = 0;
   for (const double asked : {0.0005, 0.002, 0.02, 0.3, 0.9}) {
-    s.passes.back().paths = 1000000, s.passes.back().asked = uint64_t(asked * 1e6);
+    s.passes.back().paths = 1000000, s.passes.back().uncovered = uint64_t(asked * 1e6);
     const double left = forecast_of(s, k_stop)->left_ms;
     CHECK(left > last);
     CHECK(forecast_of(s, k_stop)->done == Approx(100130 / (100130 + left)).epsilon(0.01));

@@ -22,7 +22,7 @@ CacheReport complete() {
   c.status.pass = 2, c.status.records = 120, c.status.rays = 64 * 120;
   for (uint32_t i = 0; i < 2; ++i) {
     CachePass p;
-    p.number = i, p.complete = true, p.paths = 1000, p.asked = i == 0 ? 500 : 1;
+    p.number = i, p.complete = true, p.paths = 1000, p.uncovered = i == 0 ? 500 : 1;
     p.records = i == 0 ? 100 : 20, p.rays = 64 * p.records, p.tried = 150, p.clusters = 40;
     for (size_t k = 0; k < p.ms.size(); ++k) p.ms[k] = double(k + 1);
     c.status.passes.push_back(p);
@@ -182,30 +182,32 @@ TEST_CASE(
     "the card tells the record under a point and what serves there, in short where there is little room") {
   using Room = solvers::Card::Room;
   CacheReport c = complete();
-  c.inspection.solid = true, c.inspection.asks = shared::k_asks;
+  c.inspection.solid = true, c.inspection.lookup = shared::k_lookup_possible;
   CHECK_FALSE(make_report(c, settings()).card);  // nobody looks
   c.looked_at = vec2(0.5f);
-  const auto told = [&](Room room = Room::much) { return words_of(*make_report(c, settings()).card, room); };
-  CHECK_THAT(told(), Contains("No record serves here: it is path traced."));
+  const auto reported = [&](Room room = Room::much) {
+    return words_of(*make_report(c, settings()).card, room);
+  };
+  CHECK_THAT(reported(), Contains("No record serves here: it is path traced."));
   c.status.stop = StopReason::building;
-  CHECK_THAT(told(), Contains("No record serves here yet."));
+  CHECK_THAT(reported(), Contains("No record serves here yet."));
   c.inspection.gathers = true;
-  CHECK_THAT(told(), Contains("Paths gather the light here."));
+  CHECK_THAT(reported(), Contains("Paths gather the light here."));
   c.inspection.gathers = false, c.inspection.count = 9;
   for (uint32_t i = 0; i < 9; ++i) c.inspection.serving.push_back({100 + i, float(9 - i) / 45, {}, 1});
   Record record;
   record.radius = 0.31f, record.lesser_radius = 0.1f, record.mean_distance = INFINITY, record.rays = 64;
   record.parts[1].value = vec3(0.5f, 0.25f, 0.125f);
   c.inspection.under = {1508, record, {}};
-  const std::string much = told(), little = told(Room::little);
+  const std::string much = reported(), little = reported(Room::little);
   CHECK_THAT(much, Contains("pass 1 \xC2\xB7 screen") && Contains("Radius|10.0 cm x 31.0 cm\n") &&
                        Contains("Mean distance (harmonic)|\xE2\x88\x9E") && Contains("secondary\n") &&
                        !Contains("tertiary"));
   CHECK_THAT(much, Contains("Served by 9 records\nweight 100\n") && Contains("and 3 more|13.3 %"));
   CHECK_THAT(little, Contains("508|31.0 cm\n") && !Contains("Radius") && Contains("weight 105") &&
                          !Contains("weight 106"));
-  c.inspection.asks = shared::k_asks_in_vain;
-  CHECK_THAT(told(), Contains("too steep"));
+  c.inspection.lookup = shared::k_lookup_too_steep;
+  CHECK_THAT(reported(), Contains("too steep"));
   c.inspection.solid = false;
   CHECK_FALSE(make_report(c, settings()).card);
 }

@@ -16,7 +16,7 @@ Ledger render(double exponent, uint64_t paths, double wobble = 0) {
   for (uint64_t p = 100; p <= paths; p += 100) {
     if (!ledger.due(p, 100)) continue;
     Entry e;
-    e.told = true, e.degrees = 2000, e.paths = p, e.rays = 5 * p, e.samples = double(p) / 100,
+    e.has_error = true, e.degrees = 2000, e.paths = p, e.rays = 5 * p, e.samples = double(p) / 100,
     e.wall_s = 1e-3 * double(p);
     for (double& x : e.error)
       x = 2 * std::pow(double(p) / 100, -exponent) * (1 + wobble * std::sin(double(ledger.entries().size())));
@@ -119,11 +119,11 @@ TEST_CASE("time to a smaller error: the law is found, the truth lies within the 
   REQUIRE(reached);
   CHECK(reached->low == reached->high);
   CHECK(reached->middle == Approx(0.1 * 4 / 0.21 / 0.21).epsilon(0.02));
-  Ledger untold = render(0.5, 1000);
-  Entry nothing = untold.entries().back();
-  nothing.told = false, nothing.paths *= 2, nothing.error = {};
-  untold.add(nothing);
-  CHECK_FALSE(seconds_to(untold, 10));
+  Ledger unreported = render(0.5, 1000);
+  Entry nothing = unreported.entries().back();
+  nothing.has_error = false, nothing.paths *= 2, nothing.error = {};
+  unreported.add(nothing);
+  CHECK_FALSE(seconds_to(unreported, 10));
   CHECK_FALSE(seconds_to(Ledger(), 0.1));
   CHECK_FALSE(seconds_to(render(0.5, 1000), 0));
 }
@@ -180,7 +180,7 @@ TEST_CASE("the band of 90 % holds the truth of made-up renders in nine cases of 
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   constexpr int k_pixels = 400, k_renders = 200;
-  int told = 0, in = 0, low = 0, pairs = 0, steady = 0;
+  int reported = 0, in = 0, low = 0, pairs = 0, steady = 0;
   double width = 0;
   for (int render = 0; render < k_renders; ++render) {
     const double q = 0.25 + 0.75 * uniform(random), bend = std::pow(10, 2 * uniform(random) - 0.5);
@@ -198,7 +198,7 @@ TEST_CASE("the band of 90 % holds the truth of made-up renders in nine cases of 
       }
       done = n;
       Entry e;
-      e.told = true, e.samples = n, e.paths = uint64_t(n * k_pixels), e.rays = 5 * e.paths;
+      e.has_error = true, e.samples = n, e.paths = uint64_t(n * k_pixels), e.rays = 5 * e.paths;
       e.wall_s = e.render_s = 0.1 * n, e.error[0] = std::sqrt(sum / k_pixels);
       e.degrees = 3 * sum * sum / fourth;
       all.push_back(e);
@@ -216,20 +216,20 @@ TEST_CASE("the band of 90 % holds the truth of made-up renders in nine cases of 
       Ledger whole;
       for (const Entry& line : all) whole.add(line);
       const double truth = seconds_to(whole, target)->middle;
-      ++told, in += band->low <= truth && truth <= band->high, low += truth > band->high;
+      ++reported, in += band->low <= truth && truth <= band->high, low += truth > band->high;
       if (before) ++pairs, steady += before->low <= band->middle && band->middle <= before->high;
       before = band;
       width += std::log(band->high / band->low);
     }
   }
-  INFO(told << " told, " << in << " held the truth, " << low << " were too short; on average "
-            << std::exp(width / told) << " from end to end");
-  REQUIRE(told > 1000);
-  CHECK(in > 0.88 * told);
-  CHECK(low < 0.1 * told);
+  INFO(reported << " told, " << in << " held the truth, " << low << " were too short; on average "
+                << std::exp(width / reported) << " from end to end");
+  REQUIRE(reported > 1000);
+  CHECK(in > 0.88 * reported);
+  CHECK(low < 0.1 * reported);
   // What is said next was within what was said before.
   CHECK(steady > 0.97 * pairs);
-  CHECK(std::exp(width / told) < 5);
+  CHECK(std::exp(width / reported) < 5);
 }
 
 TEST_CASE("paths of an adaptive render: easy tiles stop at the minimum, hard ones go on, the cap holds") {

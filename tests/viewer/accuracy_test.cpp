@@ -25,7 +25,7 @@ session::Accuracy uniform(int samples, double first_error = 0.8) {
   a.run = 1, a.scene_id = 1, a.max_samples = 100000, a.pixels = 1000;
   for (double n = 1; n <= samples; n *= 1.25) {
     stats::Entry e;
-    e.told = true, e.wall_s = e.render_s = e.device_s = 0.5 * n;
+    e.has_error = true, e.wall_s = e.render_s = e.device_s = 0.5 * n;
     e.samples = n, e.paths = static_cast<uint64_t>(1000 * n), e.rays = 5 * e.paths;
     e.error = {first_error / std::sqrt(n), 0.5 * first_error / std::sqrt(n),
                0.01 * first_error / std::sqrt(n), 0, 0};
@@ -202,7 +202,8 @@ TEST_CASE("a target beyond the last sample of uniform sampling is not promised")
 
 TEST_CASE("noise has four names: as seen, of the median tile, of the worst tenth of the tiles, of the mean") {
   stats::Entry line;
-  line.told = true, line.error = {0.01, 0.01, 0, 0, 0}, line.tile_median = 0.04, line.tile_worst_tenth = 0.2;
+  line.has_error = true, line.error = {0.01, 0.01, 0, 0, 0}, line.tile_median = 0.04,
+  line.tile_worst_tenth = 0.2;
   line.of_mean.error[0] = 0.15;
   const auto figures = error_figures(line);
   CHECK(figures[0].name == "as seen");
@@ -348,10 +349,10 @@ TEST_CASE("earlier runs of a scene are kept, told apart and forgotten with it") 
   s.width = 640;
   CHECK(runs.earlier().size() == 2);
   show(changed, 6);
-  const auto told = differences(runs.earlier().back(), runs.current());
-  REQUIRE(told.size() == 2);
-  CHECK(told[0] == "sampling.mode uniform (now adaptive)");
-  CHECK_THAT(told[1], Catch::StartsWith("320 \xC3\x97 200 pixels"));
+  const auto reported = differences(runs.earlier().back(), runs.current());
+  REQUIRE(reported.size() == 2);
+  CHECK(reported[0] == "sampling.mode uniform (now adaptive)");
+  CHECK_THAT(reported[1], Catch::StartsWith("320 \xC3\x97 200 pixels"));
   CHECK(differences(runs.current(), runs.current()).empty());
   Run lit = runs.current();
   auto dark = std::make_shared<scene::Scene>();

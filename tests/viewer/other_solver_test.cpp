@@ -22,7 +22,7 @@ const solvers::SolverInfo& lantern() {
       .options = {integer_option("lantern.slides", 24, 1, 100, "slides", "Slides in the tray.", "Slides"),
                   without_restart(choice_option("overlay.slides", "off", {"off", "rims", "whole"}, "",
                                                 "Slides.", "Slides"))},
-      .views = {{.option = "overlay.slides", .label = "Slides", .shortcut = 'M', .asks_pointer = true}},
+      .views = {{.option = "overlay.slides", .label = "Slides", .shortcut = 'M', .inspects_pointer = true}},
       .commands = {{.name = "next",
                     .label = "Next slide",
                     .help = "Changes it.",
@@ -37,7 +37,7 @@ const solvers::SolverInfo& lantern() {
 
 const solvers::SolverType k_lantern{.info = lantern()};
 
-solvers::Report told(const plan::Settings& settings, std::optional<vec2> looked_at) {
+solvers::Report reported(const plan::Settings& settings, std::optional<vec2> looked_at) {
   solvers::Report r{.solver = "lantern", .state = "shines"};
   r.sections = {
       {.title = "Lantern",
@@ -69,7 +69,7 @@ const bool k_added = [] {
   session::fake::more = [](const plan::Settings& settings,
                            std::optional<vec2> looked_at) -> std::optional<solvers::Report> {
     if (settings.text("components.caustic") != "lantern") return std::nullopt;
-    return told(settings, looked_at);
+    return reported(settings, looked_at);
   };
   return true;
 }();

@@ -75,7 +75,7 @@ TEST_CASE("each part of the picture has the better way, and the same light", "[p
   CHECK(both.by_photons < 0.9);
   CHECK(both.regions.gain > 1);
   // Against many photons everywhere: blurred by less than 1 %.
-  const Rendered photons = render(scene, with(k_by_photons, {{"photons.worth", "false"}}), 256);
+  const Rendered photons = render(scene, with(k_by_photons, {{"photons.efficiency", "false"}}), 256);
   CHECK(photons.by_photons == 1);
   for (const auto& [first, end] : {std::pair{2u, 10u}, {10u, 22u}, {22u, 30u}}) {
     const test::MeanOf a = test::mean_of(both.image, 3, first, 0, end, k_size),
@@ -86,7 +86,8 @@ TEST_CASE("each part of the picture has the better way, and the same light", "[p
     }
   }
   // The wide lamp's light has less noise than by as few photons; the small one's has theirs.
-  const Rendered few = render(scene, with(with(k_by_photons, k_few), {{"photons.worth", "false"}}), 2048);
+  const Rendered few =
+      render(scene, with(with(k_by_photons, k_few), {{"photons.efficiency", "false"}}), 2048);
   const auto noise = [](const film::Image& image, uint32_t first, uint32_t end) {
     double sum = 0;
     for (uint32_t y = 4; y < k_size - 4; ++y)
@@ -104,11 +105,11 @@ TEST_CASE("where photons are nowhere worth it none are sent, and the picture is 
           "[photons_worth]") {
   scene::Scene scene = two_lamps();
   scene.materials[3].emission = vec3(0);  // the wide lamp alone
-  const Rendered left = render(scene, with(k_by_photons, k_few), 8), path = render(scene, k_caustics, 8);
-  CHECK(left.regions.nowhere);
-  CHECK(left.by_photons == 0);
-  CHECK(test::identical(left.image, path.image));
-  CHECK(test::mean(left.image.components[3]) > 0);
+  const Rendered delegated = render(scene, with(k_by_photons, k_few), 8), path = render(scene, k_caustics, 8);
+  CHECK(delegated.regions.nowhere);
+  CHECK(delegated.by_photons == 0);
+  CHECK(test::identical(delegated.image, path.image));
+  CHECK(test::mean(delegated.image.components[3]) > 0);
 }
 
 TEST_CASE("regions are shown, and the same for the same scene, view and settings", "[photons_worth]") {
@@ -130,9 +131,9 @@ TEST_CASE("regions are shown, and the same for the same scene, view and settings
   CHECK(at(26) == 1);
   CHECK(at(5) == 0);
   // Photons everywhere in between, a size in between; paths in flight.
-  test::set(r, {{"photons.worth", "false"}});
+  test::set(r, {{"photons.efficiency", "false"}});
   CHECK_FALSE(test::identical(once, test::finish(r)));
-  test::set(r, {{"photons.worth", "true"}});
+  test::set(r, {{"photons.efficiency", "true"}});
   r.set_size(20, 24);
   test::finish(r);
   r.set_size(k_size, k_size);
@@ -162,15 +163,16 @@ TEST_CASE("the pilot knows the noise of either way", "[photons_worth]") {
   // Smooth mirrors, and rough ones on which paths sample the lamps.
   for (const float roughness : {0.0f, 0.3f}) {
     const scene::Scene scene = two_lamps(roughness);
-    const Rendered told = render(scene, photons, 1);
+    const Rendered reported = render(scene, photons, 1);
     const film::Image path = render(scene, k_caustics, k_samples).image,
-                      counted = render(scene, with(photons, {{"photons.worth", "false"}}), k_samples).image;
+                      counted =
+                          render(scene, with(photons, {{"photons.efficiency", "false"}}), k_samples).image;
     for (const uint32_t x : {4u, 22u}) {
       photons::Region mean;
       double n = 0;
       for (uint32_t v = 3; v < 13; ++v)
         for (uint32_t u = x / 2; u < x / 2 + 3; ++u) {
-          const photons::Region& r = told.regions.all[v * told.regions.width + u];
+          const photons::Region& r = reported.regions.all[v * reported.regions.width + u];
           mean.mean += r.mean, mean.photons += r.photons, mean.paths += r.paths, ++n;
         }
       mean.mean /= n, mean.photons /= n, mean.paths /= n;
