@@ -8,7 +8,7 @@
 
 namespace lucerna::bench {
 
-/// A render in progress: its error after so many seconds, both above 0. Curves are sorted by seconds.
+/// A render in progress: its error after that many seconds, both above 0. Curves are sorted by seconds.
 struct Point {
   double seconds = 0, error = 0;
 };
@@ -26,18 +26,18 @@ struct Reach {
   double seconds = 0;
 };
 
-/// Where the straight line through two points (xa, ya), (xb, yb) of a log-log plot is at x, all above 0; with
-/// xa == xb: at ya.
+/// Value at x of the line through two points (xa, ya), (xb, yb) of a log-log plot, all above 0; ya if xa ==
+/// xb.
 double log_line(double xa, double ya, double xb, double yb, double x);
 
 /// When the error is `target` for good: the curve's last passage through it, interpolated in the logarithms.
 Reach time_to(std::span<const Point> curve, double target);
 
-/// The error after so many seconds, interpolated in the logarithms; nothing outside the curve.
+/// Error after that many seconds, interpolated in logarithms; nullopt outside the curve.
 std::optional<double> error_at(std::span<const Point> curve, double seconds);
 
-/// The error after so many seconds, and beyond the curve's end by error^2 * t = constant as in time_to(),
-/// where that is known; nothing before its begin.
+/// Error after that many seconds; beyond the curve's end extrapolated by error^2 * t = constant as in
+/// time_to(), if valid; nullopt before its beginning.
 struct ErrorAfter {
   ReachKind kind = ReachKind::unknown;  ///< measured or extrapolated
   double error = 0;
@@ -68,9 +68,8 @@ Spread spread(std::vector<double> values);
 /// values (0.449 for three). Nothing when no group has two values.
 std::optional<double> noise_ratio(std::span<const std::vector<double>> groups, size_t repeats);
 
-/// A common time grid of the curves, evenly spaced in log time from where all have begun to where half of
-/// them have ended, with the spread at each time over those that are still there; empty when there is no such
-/// time.
+/// Spread of the curves over a common time grid, evenly spaced in log time from where all have begun to where
+/// half of them have ended, at each time over the remaining ones; empty if there is no such time.
 struct Band {
   double seconds = 0;
   Spread error;

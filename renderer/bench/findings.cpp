@@ -13,12 +13,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// How a ratio is told: how much better, or worse, than the first setting.
+/// Text for a ratio: how much better or worse than the first setting.
 std::string gain_text(double ratio, const char* better, const char* worse) {
   return fmt::format("{:.2f} times {}", ratio > 1 ? ratio : 1 / ratio, ratio > 1 ? better : worse);
 }
 
-/// A scene's line of what its settings were found to do; what is to be said when none does anything.
+/// Line of a scene with the findings on its settings; `none`: text without findings.
 std::string scene_line(const Json& scene, const std::vector<std::string>& found,
                        const std::string& otherwise) {
   const std::string name = text_of(scene, "name");
@@ -55,7 +55,7 @@ class Found {
   std::vector<Finding> findings_;
 };
 
-/// What is to be said of one measure of one scene; only what was measured, never what was extrapolated.
+/// Finding on one measure of one scene; from measured values only, never extrapolated ones.
 std::string finding(const Json& report, const Json& scene, const std::string& first, const char* measure,
                     const char* what) {
   Found found(report);
@@ -68,7 +68,7 @@ std::string finding(const Json& report, const Json& scene, const std::string& fi
     const double ratio = common.at("ratio").get<double>();
     found.add(
         text_of(setting, "name"), ratio,
-        fmt::format("{} brings {} to {:.4g} % in {}, {} in {}: {}", text_of(setting, "name"), what,
+        fmt::format("{}: {} to {:.4g} % in {}, {} in {}: {}", text_of(setting, "name"), what,
                     100 * common.at("error").get<double>(), seconds_text(common.at("seconds").get<double>()),
                     first, seconds_text(common.at("first_seconds").get<double>()),
                     gain_text(ratio, "sooner", "later")));
@@ -130,9 +130,9 @@ std::string records_finding(const Json& report, const Json& scene) {
   for (size_t i = 1; i < curves.size(); ++i) {
     const double error = std::max(least_error(curves[0]), least_error(curves[i]));
     const double first = records_to(curves[0], error), own = records_to(curves[i], error);
-    found.push_back(fmt::format(
-        "{} brings the whole picture to {:.3g} % with {:.0f} records, {} with {:.0f}: {}", curves[i].name,
-        100 * error, own, curves[0].name, first, gain_text(first / own, "fewer", "more")));
+    found.push_back(fmt::format("{}: the whole picture to {:.3g} % with {:.0f} records, {} with {:.0f}: {}",
+                                curves[i].name, 100 * error, own, curves[0].name, first,
+                                gain_text(first / own, "fewer", "more")));
   }
   return found.empty() ? "" : scene_line(scene, found, "");
 }

@@ -38,7 +38,7 @@ void check_claim(const std::string& where, const std::string& text, const Json& 
                 at, found["identity"].value(at, "another"), wanted["identity"].value(at, "another"));
 }
 
-/// Proves by a file that the folder can be written: permissions alone do not tell.
+/// Tests with a file that the folder can be written: permissions alone do not show it.
 void check_writable(const fs::path& folder) {
   const fs::path probe = folder / fmt::format(".bench-{}", getpid());
   const int handle = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);

@@ -41,7 +41,7 @@ const std::vector<Way> k_ways = {
     {"cache-learned", "secondary and tertiary light cached, lights chosen by what arrived nearby", "cache",
      "learned"}};
 
-/// Whether a program whose help this is has the setting, and the value where it lists values.
+/// True if a program with this help has the setting, and the value if it lists values.
 bool knows(const std::string& help, const std::string& key, const std::string& value) {
   const size_t at = help.find("  " + key + " ");
   if (at == std::string::npos) return false;

@@ -10,7 +10,7 @@
 
 namespace lucerna::bench {
 
-/// The interiors among the project's own scenes, and the three that stand for them in the quick form.
+/// The interiors among the project's scenes, and the three of the quick form.
 extern const std::vector<std::string> k_own_interiors, k_quick_interiors;
 
 struct InteriorsOptions {
@@ -37,10 +37,10 @@ inline constexpr std::array<const char*, 4> k_interior_settings = {"path", "lear
 std::vector<std::filesystem::path> find_interiors(const std::filesystem::path& folder,
                                                   const std::filesystem::path& own);
 
-/// The matrix. Rooms that have one name get numbers (kitchen, kitchen-2). Settings of the other program are
-/// "before-path" .. and follow those that they stand beside. `help_of_other` is what its `render --help`
-/// writes: settings that need an option which is not in it are left out, and named in `left_out`. Throws
-/// Error as find_interiors() and parse_matrix().
+/// The matrix. Rooms with equal names get numbers (kitchen, kitchen-2). Settings of the other program are
+/// "before-path" .. and follow the ones they are compared with. `help_of_other`: output of its `render
+/// --help`; settings that need a missing option are left out and listed in `left_out`. Throws Error like
+/// find_interiors() and parse_matrix().
 Matrix interiors_matrix(const InteriorsOptions& options, const std::string& help_of_other,
                         std::vector<std::string>& left_out);
 

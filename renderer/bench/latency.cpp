@@ -63,7 +63,7 @@ class Latency {
       : o_(options), message_(message), done_(done), interrupted_(interrupted) {}
 
   std::vector<LatencyResult> run() {
-    // A session would report a refused one and go on without it.
+    // A session would only report a refused setting.
     plan::Settings checked;
     for (const auto& [key, value] : o_.set) checked.set(key, value, "--set");
     for (const fs::path& folder : {o_.references, o_.pictures}) {
@@ -177,7 +177,7 @@ class Latency {
     const Reference& reference = reference_of(file, float(std::exp2(s.settings().real("film.ev"))));
     std::vector<Moment> moments;
     for (const Shown& at : shown) {
-      // What is shown while a scene is loaded is what it begins with.
+      // Pictures shown during loading count from the start.
       Moment m{std::max(0.0, at.seconds - loading), {1, 1, 1, 1}, {}};
       if (at.snapshot && at.snapshot->rgba.size() == reference.mean.size() * 4)
         m.distance = picture_distance(shown_luminance(at.snapshot->rgba), reference.mean, o_.width,

@@ -1,6 +1,6 @@
 #pragma once
-// How soon the window shows something to work with: a session is driven as the window does it, an edit is
-// made, and every picture that it publishes is held against a reference of the edited scene.
+// Latency of the window: drives a session like the window, makes an edit, and compares every published
+// picture with a reference of the edited scene.
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -25,7 +25,7 @@ struct Moment {
   std::optional<film::ShownError> reported;  ///< the window's own estimate (Snapshot::shown_error)
 };
 
-/// Whether a picture is good to work with: session::usable() of its true error.
+/// True if a picture is good enough to work with: session::usable() of its true error.
 bool usable(const PictureDistance& distance);
 /// Seconds after the edit at which errors are listed.
 inline constexpr std::array<double, 5> k_listed_s = {0.3, 1, 3, 10, 30};
@@ -75,9 +75,9 @@ struct LatencyOptions {
   scene::LoadOptions scenes = {};
 };
 
-/// Measures all; `done` is told of each edit as it ends. What an edit needs and a scene has not is told by
-/// `message` and left out. Results of repeated sessions follow each other. Throws Error as loading, rendering
-/// and writing do, and when `interrupted`.
+/// Measures all edits; calls `done` at the end of each. Edits that a scene does not support are reported by
+/// `message` and left out. Results of repeated sessions are consecutive. Throws Error like loading, rendering
+/// and writing, and if `interrupted`.
 std::vector<LatencyResult> measure_latency(const LatencyOptions& options, const Message& message,
                                            const std::function<void(const LatencyResult&)>& done,
                                            const std::function<bool()>& interrupted = {});

@@ -1,11 +1,11 @@
 #pragma once
-// The machine that measured, as far as it tells.
+// Description of the measuring machine.
 #include <string>
 
 namespace lucerna::bench {
 
 struct Machine {
-  std::string cpu, system;  ///< "unknown" where it cannot be told
+  std::string cpu, system;  ///< "unknown" if not available
   unsigned cores = 0;       ///< logical, that this process may use
   double memory_gib = 0;
 };

@@ -182,8 +182,8 @@ void read_size(const Node& size, SceneEntry& scene) {
   scene.width = w, scene.height = h;
 }
 
-/// One entry of "scenes"; `m` holds those before it and all settings. `budgets` and `reference_samples`:
-/// where it has none of its own.
+/// One entry of "scenes"; `m` contains the former ones and all settings. `budgets` and `reference_samples`:
+/// defaults.
 SceneEntry read_scene(const Node& node, const Matrix& m, const fs::path& folder,
                       const std::array<std::vector<double>, 3>& budgets, uint32_t reference_samples) {
   node.only({"name", "file", "size", "camera", "set", "reference_samples", "budgets"});

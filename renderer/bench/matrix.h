@@ -29,7 +29,7 @@ struct Budget {
 
 using SettingValues = std::map<std::string, std::string>;
 
-/// One way of rendering, by what it changes in the options (plan/settings.h).
+/// One method of rendering, as changes of options (plan/settings.h).
 struct Setting {
   std::string name, about;
   SettingValues set;
@@ -37,11 +37,11 @@ struct Setting {
   /// to, and the report joins them by a line, error against records.
   std::string curve;
   BudgetKind budget = BudgetKind::samples;
-  /// "" or another lucerna (a file), whose verb `render` makes the pictures: in a process of its own, and
-  /// known are the figures of the picture in the end alone.
+  /// "" or the file of another lucerna, whose verb `render` makes the pictures in a separate process; only
+  /// the figures of the final picture are available.
   std::string program{};
-  /// "" or the name of another setting that this one is held against besides the first, such as the same
-  /// rendered by another program.
+  /// "" or the name of another setting to compare with besides the first, such as the same method in another
+  /// program.
   std::string beside{};
 };
 
@@ -70,7 +70,7 @@ struct Matrix {
   SettingValues set;                           ///< for all
   bool as_seen = false;                        ///< the report's page is of the error as seen alone
   std::vector<SceneEntry> scenes;
-  std::vector<Setting> settings;  ///< the first is what the others are held against
+  std::vector<Setting> settings;  ///< the first is the baseline of comparisons
 
   const std::vector<double>& budgets(size_t scene, size_t setting) const {
     return scenes[scene].budgets[size_t(settings[setting].budget)];
@@ -101,7 +101,7 @@ struct BuiltinInfo {
   std::string matrix;  ///< JSON
 };
 /// "quick": three scenes in small pictures, within ten minutes on two cores. "full": larger, with the atrium,
-/// more budgets and the settings that solvers want to be measured with. Then those that solvers bring.
+/// more budgets and the solvers' bench settings. Then the matrices of solvers.
 std::vector<BuiltinInfo> builtin_matrices();
 /// One of them, with scenes taken from `scenes`. Throws Error when there is none of that name.
 Matrix builtin_matrix(const std::string& name, const std::filesystem::path& scenes);

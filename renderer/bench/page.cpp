@@ -170,14 +170,15 @@ std::string cells_table(const Json& report, const Json& scene) {
   std::string html =
       "<div class=\"wrap\"><table><tr><th class=\"l\">setting</th><th "
       "class=\"l\">budget</th><th>seconds</th><th>samples<br/>a pixel</th><th>rays</th><th>rays a "
-      "second</th><th>error told of<br/>the mean</th><th>of the<br/>median tile</th><th>of the "
+      "second</th><th>estimated error<br/>of the mean</th><th>of the<br/>median tile</th><th>of the "
       "worst<br/>tenth of "
       "the tiles</th><th>true error<br/>of the mean</th><th>not<br/>reached</th>";
   const bool with_records = has_records(scene);
-  html += with_records
-              ? "<th>records</th><th>their rays</th><th>told of the mean:<br/>paths</th><th>records</th>"
-                "<th>inter-<br/>polation</th></tr>\n"
-              : "</tr>\n";
+  html +=
+      with_records
+          ? "<th>records</th><th>their rays</th><th>estimated for the mean:<br/>paths</th><th>records</th>"
+            "<th>inter-<br/>polation</th></tr>\n"
+          : "</tr>\n";
   for (const Json& s : scene.at("settings")) {
     for (const Json& c : s.at("cells")) {
       const double seconds = median_of(c.at("wall_s"));

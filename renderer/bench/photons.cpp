@@ -53,14 +53,14 @@ Values operator+(Values a, const Values& b) {
   return a;
 }
 
-/// Renders of which errors are told, over rounds or over radii.
+/// Renders whose errors are reported, over rounds or over radii.
 struct Series {
   const char* name;
   const char* scene;
   const char* component;
-  const char* reference;  ///< who computes the component for the truth; "": noise alone is measured
+  const char* reference;  ///< solver that computes the true component; "": only noise is measured
   double radius, floor, alpha;
-  bool over_radius;  ///< one picture a radius, of so many times `radius`; else one after 1, 2, 4 .. rounds
+  bool over_radius;  ///< one picture per radius, a multiple of `radius`; else one after 1, 2, 4 .. rounds
   /// Rounds from which on the slope is taken: before, where light is fine, most of the noise is of where
   /// paths from the eye fall within their pixels, which is stratified over the samples and soon gone.
   uint32_t first;
@@ -88,7 +88,7 @@ class Bench {
   Json run();
 
  private:
-  // Units: what is measured in one go and kept as a file, with about what it takes.
+  // Unit: a measurement stored as one file, with its approximate effort.
   struct Unit {
     std::string name;
     fs::path file;
@@ -124,7 +124,7 @@ class Bench {
     for (const auto& [key, value] : values) list.push_back({key, value, ""});
     return list;
   }
-  /// Until every pixel has so many samples.
+  /// Renders until every pixel has that many samples.
   void render_to(Renderer& r, uint32_t samples) {
     while (r.samples() < samples && !r.done()) {
       if (hooks_.interrupted()) throw Interrupted{};
@@ -137,7 +137,7 @@ class Bench {
     if (!at_once && since_progress_.seconds() < k_progress_every_s) return;
     since_progress_.restart();
     status_.fraction = std::min(1.0, fraction);
-    // By how long what is done has taken, the unit under way with its part.
+    // From the time of finished units, including the finished part of the current one.
     const double done = done_ + status_.fraction * current_, all = effort_;
     if (done > 0.02 * all) status_.left_s = clock_.seconds() * (all - done) / done;
     hooks_.progress(status_);
@@ -164,8 +164,7 @@ std::vector<float> luminance_of(const film::Image& image) {
   return all;
 }
 
-/// 1 where a pixel and the four around it show one plane: what is seen there is lit itself, and is no mirror
-/// image in something curved.
+/// 1 where a pixel and its four neighbours show one plane, which excludes mirror images in curved surfaces.
 std::vector<float> planes_of(const film::Image& image) {
   std::vector<float> plane(image.samples.size(), 1.0f);
   const auto w = int(image.width), h = int(image.height);
@@ -202,7 +201,7 @@ film::FilmImage Bench::after_rounds(const Series& s, uint32_t seed) {
     r = load(s.scene, o_.side, v);
   }
   const std::vector<double> places = places_of(s, o_.rounds);
-  // Bias is what is wanted of a radius: few rounds are enough.
+  // Only the bias is needed for radii: few rounds suffice.
   const uint32_t samples = s.over_radius ? std::max(8u, o_.rounds / 8) : o_.rounds;
   for (size_t k = 0; k < places.size(); ++k) {
     if (k == 0 || s.over_radius) {
@@ -342,7 +341,7 @@ Json Bench::slopes() const {
   return all;
 }
 
-/// Medians over rounds, the first (which compiles) left out.
+/// Medians over rounds, without the first (which compiles).
 Json Bench::timed_rounds(Renderer& r, uint32_t paths) {
   std::vector<double> wall, cpu, trace, build;
   double photons = 0;
@@ -393,8 +392,8 @@ void Bench::plan_rounds() {
          }});
 }
 
-/// The scene `glass` without its lamp, under so many lamps without extent, spread over its ceiling, that are
-/// as strong together.
+/// The scene `glass` without its lamp, under that many point lamps spread over its ceiling, with equal total
+/// power.
 std::shared_ptr<const scene::Scene> with_lamps(const fs::path& file, uint32_t count) {
   scene::Scene s = scene::load(file);
   for (scene::Material& m : s.materials) m.emission = vec3(0), m.emission_texture = {};
@@ -496,7 +495,7 @@ Json Bench::run() {
 }  // namespace
 
 nlohmann::ordered_json to_json(const PhotonBenchOptions& o) {
-  // What belongs to some parts alone is told with these: another list of paths measures no slope anew.
+  // Values of single parts are stored with them: another list of paths does not repeat the slopes.
   return {{"name", "photons"},
           {"side", o.side},
           {"seeds", o.seeds},

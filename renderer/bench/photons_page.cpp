@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Costs that differ by less than this factor are told to be the same.
+/// Costs within this factor are reported as equal.
 constexpr double k_flat = 1.25;
 constexpr double k_free_promise = 0.01;
 
@@ -76,7 +76,7 @@ std::vector<std::string> photon_findings(const Json& report) {
                     f.at("rays_with_photons").get<uint64_t>(), f.at("rays").get<uint64_t>(),
                     high < k_free_promise  ? "under 1 %"
                     : low > k_free_promise ? "over 1 %"
-                                           : "not to be told from 1 %"));
+                                           : "not distinguishable from 1 %"));
   }
   return all;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Another program at work: a lucerna that renders for the bench in a process of its own.
+// Runs another lucerna that renders for the bench, in a separate process.
 #include <filesystem>
 #include <functional>
 #include <string>

@@ -31,7 +31,7 @@ std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const s
 /// "cornell-128x128.exr".
 std::filesystem::path reference_file(const std::filesystem::path& folder, const SceneEntry& scene);
 
-/// What is known of a reference beside its picture; in the EXR's metadata as bench.*.
+/// Description of a reference; in the EXR's metadata as bench.*.
 struct ReferenceInfo {
   std::filesystem::path file;
   std::string key;
@@ -42,18 +42,17 @@ struct ReferenceInfo {
   double seen_noise = 0;       ///< film::seen_mse_noise() of them
 };
 
-/// The reference if it is there and serves: its key matches, it has at least the samples wanted, and the
-/// picture is whole and finite. Otherwise nothing; a file that does not serve is told of and renamed to
-/// NAME.exr.old (.old2, ...), for it may be someone's.
+/// The reference if it is usable: its key matches, it has at least the wanted samples, and the picture is
+/// complete and finite. Otherwise nullopt; an unusable file is reported and renamed to NAME.exr.old (.old2,
+/// ...), because it may still be needed.
 std::optional<ReferenceInfo> find_reference(const std::filesystem::path& folder, const SceneEntry& scene,
                                             const std::string& key, const Message& message);
 
 /// Metadata to write with the picture of a new reference.
 void describe_reference(std::map<std::string, std::string>& metadata, const ReferenceInfo& info);
 
-/// The layer "odd" of a reference: the mean over its odd samples of all components together. They are a
-/// sequence of their own (film.h), so that either half of the samples is a reference independent of the
-/// other.
+/// Adds the layer "odd" of a reference: the mean over its odd samples, all components together. Odd samples
+/// are a separate sequence (film.h), so each half of the samples is an independent reference.
 void add_odd_half(film::FilmImage& reference, const film::Image& image);
 
 /// Fills in a reference's own noise, from its picture. Throws Error as read_halves() and

@@ -28,7 +28,7 @@ struct Group {
       if (!budgets[b].empty()) return budgets[b];
     return k_none;
   }
-  /// Of a setting with a program of its own, by repeats: the points of all its budgets in one. Its curves.
+  /// For a setting with a separate program, by repeat: the points of all its budgets as one curve.
   std::vector<Result> joined;
   std::vector<const Result*> with_curves() const {
     if (joined.empty()) return largest();
@@ -38,7 +38,7 @@ struct Group {
   }
 };
 
-/// Of another program only the end of a render is known: the ends of a repeat's budgets are its curve.
+/// Joins a repeat's budgets into its curve, because only the end of another program's render is available.
 std::vector<Result> join_budgets(const Group& group) {
   std::map<int, Result> repeats;
   for (const auto& results : group.budgets)
@@ -63,7 +63,7 @@ std::vector<double> collect(const std::vector<const Result*>& results, F value) 
   return values;
 }
 
-/// Points whose error is to be told from the reference's noise.
+/// Points whose error exceeds the reference's noise.
 Curve true_curve(const Result& r, double reference_noise) {
   Curve curve;
   for (const CurvePoint& p : r.curve)
@@ -152,7 +152,7 @@ std::vector<double> mean_times(const std::vector<Curve>& curves, const Scale& sc
   return times;
 }
 
-/// 1 / (squared error as seen * seconds) of each, as far as it is known.
+/// 1 / (squared error as seen * seconds) of each, where known.
 std::vector<double> seen_indices(const std::vector<const Result*>& results) {
   std::vector<double> values;
   for (const Result* r : results)

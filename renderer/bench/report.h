@@ -14,7 +14,7 @@ inline constexpr double k_targets[] = {0.05, 0.02, 0.01};
 /// And relative mean squared errors: 2 % and less of a pixel's own brightness in the end.
 inline constexpr double k_relmse_targets[] = {0.01, 0.002, 0.0004};
 
-/// `about`: what stands at its head as it is (version, date, command, machine, device ...). The rest:
+/// `about`: copied to its head (version, date, command, machine, device ...). The rest:
 ///   matrix, complete, cells {done, total}, references [{scene, file, samples, seconds, noise ..}],
 ///   scenes [{name, size, noise {time, index, rate}, fixed_s, settings [summary]}],
 ///   index [{setting, value, scenes}], seen_ratios and seen_besides [{setting, budget, scenes, ratio ..}]:
@@ -22,20 +22,19 @@ inline constexpr double k_relmse_targets[] = {0.01, 0.002, 0.0004};
 /// A summary of a setting on a scene: cells [{budget, wall_s, rays, records .. as {median, low, high}}],
 ///   time_to [{error, kind, seconds {median, low, high}, ratio, noise, low, high}] of the whole picture's
 ///   true error, time_common {error, seconds, first_seconds, ratio, noise} at the smallest error that it and
-///   the first setting have both reached, tiles_time_to and tiles_time_common, the same of the estimated
-///   error that nine tiles in ten are under, relmse_time_to and relmse_time_common, the same of the relative
-///   mean squared error (Result::relmse), relmse_power (of the time, that it falls with: -1 where
-///   extrapolation may be trusted), relmse_end {seconds, relmse, first, kind}: what it is in the end, and the
-///   first setting's after as many seconds, seen_time_to and seen_time_common, the same of the error as seen
-///   (the root of Result::seen), in cells seen_ratio {ratio, noise}: how much more efficient as seen
-///   (variance times time) the setting is than the first at this budget, seen_beside {ratio, noise} than the
-///   setting that it stands beside, seen_time_to_beside, seen_curve, seen_index {pi: 1 / (seen * seconds)},
+///   the first setting have both reached, tiles_time_to and tiles_time_common, the same for the estimated
+///   error that nine tiles in ten are under, relmse_time_to and relmse_time_common, the same for the relative
+///   mean squared error (Result::relmse), relmse_power (exponent of its fall over time: -1 where
+///   extrapolation is reliable), relmse_end {seconds, relmse, first, kind}: its final value, and the
+///   first setting's after as many seconds, seen_time_to and seen_time_common, the same for the error as seen
+///   (the root of Result::seen), in cells seen_ratio {ratio, noise}: efficiency as seen (variance times time)
+///   relative to the first setting at this budget, seen_beside {ratio, noise} relative to the
+///   setting it is compared with, seen_time_to_beside, seen_curve, seen_index {pi: 1 / (seen * seconds)},
 ///   error_at [{seconds, error}], curve [[seconds, median, low, high]] and tiles_curve, index {pi, relative,
-///   ratio, noise}, rays_per_s, forecast {seconds, rays: ratio to what it came to}.
-/// Curves of a setting with a program of its own are the ends of its budgets, repeat by repeat.
-/// Ratios are the first setting's time over this one's, above 1: sooner; `noise` says that a ratio is not to
-/// be told from 1 (analysis.h), low and high are the interval that holds the true one nine times in ten. What
-/// is not known is left out.
+///   ratio, noise}, rays_per_s, forecast {seconds, rays: ratio to the final value}.
+/// Curves of a setting with a separate program are the ends of its budgets, repeat by repeat. Ratios are the
+/// first setting's time over this one's, above 1: sooner; `noise`: the ratio is not distinguishable from 1
+/// (analysis.h); low and high: 90 % interval. Unknown values are left out.
 nlohmann::ordered_json make_report(const Matrix& matrix, const RunSummary& summary,
                                    const nlohmann::ordered_json& about);
 

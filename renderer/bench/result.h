@@ -28,7 +28,7 @@ struct CurvePoint {
   double seen = 0;    ///< as Result::seen
 };
 
-/// What was foretold when a tenth of the render's time was over, against what it came to.
+/// Forecast at a tenth of the render's time, and the final value.
 struct ForecastResult {
   double at_s = 0;  ///< when the forecast was made
   stats::Band seconds, rays;
@@ -40,7 +40,7 @@ struct Result {
   int repeat = 0;
   uint32_t seed = 0;
   std::string scene_hash;      ///< of the files when it was rendered
-  std::string reference_hash;  ///< of the reference that it was held against
+  std::string reference_hash;  ///< of its reference
   std::string tracer;
   double wall_s = 0, device_s = 0;  ///< of rendering alone
   double setup_s = 0;               ///< loading, compiling, warming up: not in wall_s
@@ -49,8 +49,8 @@ struct Result {
   Layers estimated{}, truth{}, component_s{};
   struct {
     double paths = 0, records = 0, interpolation = 0;
-  } parts;  ///< of estimated[0], by where it comes from (base/error_sum.h); 0 in files from before they were
-            ///< told apart
+  } parts;         ///< parts of estimated[0] (base/error_sum.h); 0 in files from before they were
+                   ///< separated
   double mse = 0;  ///< squared true rms error in luminance, the reference's noise taken off
   /// Relative mean squared error of R, G, B against the reference's halves, without the worst pixels
   /// (film/io/relative_mse.h), and with them; 0: less than nothing, lost in their noise.
@@ -58,7 +58,7 @@ struct Result {
   /// The squared error as it is seen, without the worst pixels (film/io/relative_mse.h), and with them; 0:
   /// less than nothing, lost in the references' noise, or in files from before it was measured.
   double seen = 0, seen_all = 0;
-  bool in_reference_noise = false;  ///< truth not to be told from the reference's own noise
+  bool in_reference_noise = false;  ///< truth is not distinguishable from the reference's noise
   struct {
     double median = 0, decile = 0, worst = 0;  ///< estimated relative errors
     uint64_t heavy = 0;                        ///< whose light comes in rare large amounts
@@ -73,9 +73,9 @@ struct Result {
 };
 
 nlohmann::ordered_json to_json(const Result& result);
-/// Throws Error, located at `where`, for anything that to_json() does not write: half a file, missing or
-/// wrong values (only records, record_rays, relmse_all, a point's relmse and what is as seen may be missing),
-/// a curve that does not go forward.
+/// Throws Error, located at `where`, for anything that to_json() does not write: truncated files, missing or
+/// wrong values (only records, record_rays, relmse_all, a point's relmse and values as seen may be missing),
+/// a curve that is not rising in time.
 Result parse_result(const std::string& text, const std::string& where);
 Result result_from_json(const nlohmann::ordered_json& json, const std::string& where);
 

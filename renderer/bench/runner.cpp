@@ -28,7 +28,7 @@ SettingValues merged(const Matrix& matrix, const SceneEntry& scene, const Settin
   return values;
 }
 
-/// A renderer of its own with the scene loaded and the settings applied. A scene warns once in a bench.
+/// A new renderer with the scene loaded and the settings applied. Warnings of a scene appear once per bench.
 std::unique_ptr<Renderer> make_renderer(const SceneEntry& scene, const SettingValues& values,
                                         const RunOptions& options) {
   auto r = std::make_unique<Renderer>(session::RendererOptions{
@@ -71,7 +71,7 @@ Distances distances(const Renderer& r, const film::ReferencePair& halves) {
   return {film::relative_mse(sum, halves), film::seen_mse(sum, halves)};
 }
 
-/// What is told of the sum; of the components, the paths' noise.
+/// Estimated error of the sum; of the components, the noise of paths.
 Layers estimated_errors(const stats::Entry& e) {
   Layers all = e.of_mean.error;
   all[0] = e.of_mean.sum();
@@ -111,7 +111,7 @@ std::optional<ForecastResult> make_forecast(const stats::Ledger& ledger, bool ad
     f.rays = *at.total_rays;
     f.seconds = scaled(f.rays, 1 / rays_per_s);
   } else {
-    // Its own records' part, as it will be told in the end: the paths' is what is foretold.
+    // The records' part is the final one: only the noise of paths is predicted.
     const auto seconds = stats::seconds_to(early, entries.back().sum());
     if (!seconds) return std::nullopt;
     f.seconds = *seconds;
@@ -237,8 +237,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
     return budget.kind == BudgetKind::seconds && r->render_seconds() >= budget.value;
   };
   const auto& entries = r->ledger().entries();
-  // A picture that is not there in time, for something was still being prepared, is waited for: its time
-  // tells.
+  // A picture that is late because of preparation is waited for; its time is recorded.
   while (!r->done() && (!out_of_time() || entries.empty())) {
     const size_t lines = entries.size();
     if (!step(*r)) break;
@@ -261,7 +260,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   result.component_s = last.component_s;
   const double rms = result.truth[0] * r->reference()->mean_luminance;
   result.mse = rms * rms;
-  // The reference's noise is itself known to a tenth or two; what is left of less than that is nothing.
+  // The reference's noise is uncertain by a tenth or two; remainders below that are not significant.
   result.in_reference_noise = result.truth[0] < 0.7 * reference.noise[0];
   result.relmse = std::max(0.0, relative.trimmed), result.relmse_all = std::max(0.0, relative.all);
   result.seen = std::max(0.0, seen.trimmed), result.seen_all = std::max(0.0, seen.all);
