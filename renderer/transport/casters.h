@@ -17,8 +17,8 @@ std::vector<uint32_t> cluster(std::span<const Box> things, uint32_t most);
 /// A box around the things of each such cluster.
 std::vector<Box> cluster_boxes(std::span<const Box> things, uint32_t most);
 
-/// Whether a material's smooth lobes can bundle light: a metal, or glass, rougher at most than 0.5.
-/// Varnish, which mirrors a twenty-fifth of what it gets, is found without being aimed at.
+/// By material: true if its smooth lobes can focus light: metal or glass with a roughness of at most 0.5.
+/// Varnish, which reflects 4 %, is found without aiming.
 std::vector<bool> casting_materials(const upload::FlatMaterials& flat);
 
 /// At most shared::k_most_casters boxes around all casters, a little wider than these so that no box is flat.

@@ -13,7 +13,7 @@ struct FrameOptions {
   uint32_t max_depth = 64;      ///< scattering events after which a path ends
   uint32_t roulette_depth = 3;  ///< events before roulette may end one
   uint32_t enabled = 15;        ///< components on (bit i)
-  paths::LookupRoutes routes;   ///< what is looked up, beside those
+  paths::LookupRoutes routes;   ///< additional lookups
   /// Components of paths that a lookup has left alone (shared::k_fallback_state); 0: there are no such paths.
   uint32_t fallback = 0;
   /// What of these is looked up later, by paths that have passed a lookup on purpose

@@ -1,8 +1,8 @@
 #pragma once
-// Which kernels shade hits: of the kinds of materials that a scene has (upload/material_kinds.h) those with
-// most hits get a kernel of their own, in which nothing else is compiled. The others go to the class that
-// lacks nothing they call for and has least besides, or to the kernel for all hits. Pure; a hit is shaded the
-// same in every class that may take it, bit for bit.
+// Choice of shading kernels. The scene's material kinds (upload/material_kinds.h) with the most hits get
+// separate kernels that compile in nothing else. Other kinds join the class that has all their features and
+// the fewest others, or use the kernel for all hits. Pure; shading is bit-identical in every class that may
+// take a hit.
 #include <array>
 #include <cstdint>
 #include <span>

@@ -33,8 +33,8 @@ struct LearnedLights {
 
 /// Nearly as without learning, everywhere: a tenth is even over clusters.
 LearnedLights plain_lights(const upload::LightClusters& clusters);
-/// For what is recorded first: half as without learning, half evenly over clusters, so that lights of little
-/// power are found that are all that a place sees.
+/// For the first generation: half as without learning, half uniform over clusters, so that weak lights are
+/// found where they are the only ones visible.
 LearnedLights exploring_lights(const upload::LightClusters& clusters);
 /// From recorded samples. Cells are as small as what was recorded there allows; where little was, they begin
 /// with what the cells around them have found, all of space with the probabilities without learning. The

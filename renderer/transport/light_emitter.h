@@ -10,7 +10,7 @@
 
 namespace lucerna::transport {
 
-/// Of a round, what these kernels are told.
+/// Parameters of a round for these kernels.
 struct LightRound {
   uint32_t number = 0;   ///< its random numbers are those of this number and the frame's seed
   uint32_t paths = 0;    ///< at most shared::k_most_light_paths
@@ -18,7 +18,7 @@ struct LightRound {
   uint32_t account = 0;  ///< component that their time is accounted to
 };
 
-/// What is done at vertices (PathEnds::vertex), and with what shadow rays bring (PathEnds::arrival).
+/// Kernels for vertices (PathEnds::vertex) and for light of shadow rays (PathEnds::arrival).
 struct LightVertexWork {
   const gpu::Kernel* vertex = nullptr;
   std::string stage;

@@ -15,7 +15,7 @@ class LightLearning {
 
   /// Sets what kernels read and write that are compiled with upload::learned_defines().
   void bind(gpu::Resources& resources) const;
-  /// Sets what they are told of it.
+  /// Sets the fields of the frame.
   void describe(shared::Frame& frame) const;
   /// What is bound has other buffers since this number changed.
   uint32_t version() const { return version_; }
@@ -36,7 +36,7 @@ class LightLearning {
   void learn(std::vector<shared::LightRecord> records);
   uint32_t generations() const { return generations_; }
   uint32_t most_paths() const { return most_paths_; }
-  /// Begins again, for these lights, or for those that there are.
+  /// Restarts, with these lights or the present ones.
   void forget(upload::LightClusters clusters);
   void forget();
 
@@ -45,7 +45,7 @@ class LightLearning {
   uint32_t rows() const { return row_count_; }
   size_t records() const { return record_count_; }
   double gain() const { return gain_; }
-  /// Share of the recorded light samples of the last generation that brought light.
+  /// Share of the last generation's recorded light samples that contributed light.
   double arrived() const { return arrived_; }
   /// Probabilities of the clusters in a row of learned_rows.
   std::vector<float> row(uint32_t row) const;
@@ -63,7 +63,7 @@ class LightLearning {
   uint32_t most_paths_;
   gpu::Buffer grid_, rows_, cluster_texels_, members_, primitives_, tiles_, facets_, records_;
   LearnedCells cells_;
-  std::vector<shared::LightRecord> samples_, fresh_;  ///< of the generations before, and of that at work
+  std::vector<shared::LightRecord> samples_, fresh_;  ///< of earlier generations, and of the current one
   std::vector<float> row_arrived_;
   size_t record_count_ = 0;
   bool recording_ = false;

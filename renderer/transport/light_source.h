@@ -1,10 +1,10 @@
 #pragma once
-// Where paths from lights begin: each light in proportion to its power, with its own distribution over places
-// and directions (shaders/lib/emission.glsl). For photons, and for whatever else is traced from lights.
+// Emission of light paths: each light in proportion to its power, with its distribution over places and
+// directions (shaders/lib/emission.glsl). For photons, light tracing and other uses.
 //
-// A share of the paths may be aimed at casters (casters.h), and at where light from afar gets in
-// (first_hits.h): strata are the pairs of a group of lights and a box, besides stratum 0, which is not aimed.
-// Whatever the shares, what paths bring on average stays the same; stratum 0 must have one.
+// A share of the paths may be aimed at casters (casters.h) and at entrances of distant light (first_hits.h):
+// strata are the pairs of a group of lights and a box, and stratum 0, which is unaimed. Shares do not change
+// the mean; stratum 0 must have one.
 #include <span>
 #include <vector>
 
@@ -21,7 +21,8 @@ struct LightGroups {
 /// At most `most` (>= 1), of lights that shine: where there are more, those of the end share one.
 LightGroups group_lights(const upload::FlatScene& flat, std::span<const double> power, uint32_t most);
 
-/// Whether an entry of the light table, or the sky's behind them, sends its light through the scene's disk.
+/// True if an entry of the light table, or the sky's behind them, is distant light, which passes the scene's
+/// disk.
 bool from_afar(const upload::FlatLights& lights, uint32_t entry);
 
 class LightSource {
@@ -30,7 +31,7 @@ class LightSource {
   /// Throws Error: no memory. Nothing is aimed.
   LightSource(gpu::Device& device, const upload::FlatLights& lights, const vec3& scene_centre,
               float scene_radius);
-  /// Half of what comes from afar begins in front of the scene's core, where that is not the scene.
+  /// If the scene has a smaller core, half of the distant light starts in front of it.
   LightSource(gpu::Device& device, const upload::FlatScene& flat);
   /// Paths are aimed at these boxes, in equal shares but for `unaimed` of stratum 0 (0 < unaimed <= 1). None,
   /// or no light: nothing is aimed. Throws Error: no memory.
@@ -40,7 +41,7 @@ class LightSource {
   void choose_by(std::span<const double> weights);
   /// Luminance of each entry's flux [W].
   std::span<const double> powers() const { return powers_; }
-  /// The strata's shares, or what is in proportion to them; that of stratum 0 above 0.
+  /// Sets the strata's shares, up to a factor; that of stratum 0 must be above 0.
   void share_out(std::span<const double> shares);
   /// 1 + groups * casters; 1 where nothing is aimed.
   uint32_t strata() const { return 1 + table_.groups * table_.casters; }
@@ -51,7 +52,7 @@ class LightSource {
   void bind(gpu::Resources& resources) const;
   /// Luminance of the flux of all lights [W]; 0: there is nothing to begin.
   double power() const { return power_; }
-  double power_from_afar() const { return power_from_afar_; }  ///< ... of those that are far away
+  double power_from_afar() const { return power_from_afar_; }  ///< ... of distant lights
   const shared::EmissionTable& table() const { return table_; }
   uint64_t bytes() const;
 

@@ -51,14 +51,13 @@ struct PathEnds {
       first_hits;             ///< reads the hits of the first rays (before they are shaded); may be empty
   std::function<void()> end;  ///< reads the radiance of every slot, by component
   bool hits_only = false;     ///< only the first rays are traced, and nothing is shaded
-  /// What is done at every vertex in place of shade.comp, for paths that come from lights: a kernel that
-  /// begins with shaders/lib/wavefront.glsl and is told a TransportPush, as a stage of that name. Null:
-  /// shade.comp.
+  /// Kernel that replaces shade.comp at every vertex, for light paths: it includes
+  /// shaders/lib/wavefront.glsl, takes a TransportPush, and is the stage of that name. Null: shade.comp.
   const gpu::Kernel* vertex = nullptr;
   std::string vertex_stage = {};
-  std::function<void(gpu::Resources&)> bind_vertex = {};  ///< what it reads besides the paths
-  /// What is done with what the shadow rays of these vertices bring, in place of adding it to the paths'
-  /// radiance: transport/shadow.comp, compiled otherwise. Reads what `bind_vertex` sets. Null: shadow.comp.
+  std::function<void(gpu::Resources&)> bind_vertex = {};  ///< binds what it reads besides the paths
+  /// Kernel that receives the light of shadow rays of these vertices instead of the paths' radiance: a
+  /// variant of transport/shadow.comp. Reads what `bind_vertex` sets. Null: shadow.comp.
   const gpu::Kernel* arrival = nullptr;
 };
 
@@ -81,12 +80,12 @@ class Wavefront {
   /// Calls `bind_lookup` again: after its buffers have changed.
   void rebind_lookup();
   uint32_t slots() const;
-  /// Traces the item and adds it to the film, group by group of lights where the scene's are kept apart and
-  /// the film does so too, else mixed as the film says. `cancel` is asked between bounces; a cancelled item
-  /// leaves the film as it was and returns false.
+  /// Traces the item and adds it to the film, by light group if scene and film separate groups, else mixed as
+  /// the film says. `cancel` is called between bounces; a cancelled item leaves the film unchanged and
+  /// returns false.
   bool run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
-  /// Makes the film's picture anew of its groups of lights, as they are mixed (film::Film::set_mix), where it
-  /// keeps them apart by component. Traces nothing.
+  /// Recomputes the film's picture from its light groups by their mix (film::Film::set_mix), if it stores
+  /// them by component. Traces nothing.
   void mix(film::Film& film);
   /// The same for a film that is not the picture's: stats().paths stays as it is.
   bool try_out(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
@@ -99,7 +98,7 @@ class Wavefront {
              uint32_t enabled, const std::function<bool()>& cancel = {});
   /// Null: lights are chosen by power.
   LightLearning* learning();
-  /// Lights are chosen as without learning again: those there are, or these. The next frame is to be set.
+  /// Resets learned light selection, for the present lights or these. The frame must be set again.
   void forget_learned(std::optional<upload::LightClusters> clusters = {});
   const LightLearning* learning() const;
   /// Traces `count` <= slots() paths between ends of the caller's; cancellable as above, `end` is then not
@@ -119,7 +118,7 @@ class Wavefront {
   /// What `trace` runs here is no part of the picture's cost: stats() stay as they are.
   void uncounted(const std::function<void()>& trace);
   double compile_seconds() const;
-  /// Of the hits that are shaded by kernels of their own; none before these are ready.
+  /// Classes of hits with separate kernels; none before these are ready.
   HitClasses hit_classes() const;
 
  private:
