@@ -12,12 +12,11 @@ class Developer {
   /// Compiles its kernels; throws Error, located.
   Developer(gpu::Device& device, gpu::ShaderCompiler& compiler);
 
-  /// Film -> its picture. `coarse` fills pixels without samples, if given (it is tone-mapped first). Runs the
-  /// stream; what it takes is nobody's stage.
+  /// Tone-maps the film. `coarse`: fills pixels without samples, if given (it is tone-mapped first). Runs the
+  /// stream; its time belongs to no stage.
   void tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse = nullptr);
-  /// The film's picture of all components as its groups of lights are mixed (Film::set_mix), of what it
-  /// keeps to show that at once (Film::quick). Compiles its kernel, unless prepare_mix() has. Runs the
-  /// stream.
+  /// Picture of all components with the mix of light groups (Film::set_mix), from the data for immediate
+  /// display (Film::quick). Compiles its kernel unless prepare_mix() has. Runs the stream.
   void mix(gpu::Stream& stream, const Film& film, const View& view);
   /// So that the first mix does not wait for a compiler. Does nothing where it has been done, and where the
   /// film is not Film::quick(). Runs the stream. Throws Error, located.

@@ -1,28 +1,25 @@
 #pragma once
-// Errors are measured in two ways, each by its name:
-// - as seen: every pixel's error relative to the light around it, with nothing seen below a floor and above
-//   display white under the exposure in force. shaders/shared/seen_error.h is the definition. Components'
-//   errors and their shares, the tiles that stop adaptive sampling, forecasts and decisions where work goes
-//   are by it.
-// - of the mean: the root mean square of the pixels' errors in luminance, relative to the picture's mean
-//   luminance. It does not depend on exposure, and is what a linear picture is held against a reference by. A
-//   few bright pixels decide it: with a window of 5 % of the pixels 95 % of it may lie at the window's edges.
+// Two measures of error, each with its name:
+// - as seen: every pixel's error relative to the light around it, with nothing visible below a floor and
+//   above display white at the current exposure; defined in shaders/shared/seen_error.h. Used for
+//   component errors and shares, for stopping tiles in adaptive sampling, for forecasts, and to
+//   distribute work.
+// - of the mean: root mean square of the pixels' luminance errors relative to the picture's mean
+//   luminance. Independent of exposure; used to compare a linear picture with a reference. Few bright
+//   pixels dominate it: with a window of 5 % of the pixels, 95 % of it may come from the window's edges.
 //
-// The error of a picture, of its tiles and of the whole, by where it comes from:
-// - paths: the noise of the samples, from the two independently scrambled halves of the film. More samples
-//   take it away.
-// - records: the noise of what the samples read of records, which all of them have in common.
-// - interpolation: what looking light up where it is not stored is off by in the mean, as an absolute value:
-//   between records for ever, by the blur of photons as long as their discs are wide. A person is told of it
-//   as the bias of lookups.
-// The last two are known where somebody has told the film of them (Film::record_errors_complete(),
-// lookup_bias_known()), and 0 where nothing is looked up. What they come to together: base/error_sum.h.
+// Parts of the error of a picture and of its tiles:
+// - paths: noise of the samples, from the two independently scrambled halves of the film. Falls with
+//   more samples.
+// - records: noise of records, common to all samples that read them.
+// - interpolation: mean error of lookups, as an absolute value: constant between records; for photons,
+//   the blur of their discs. Reported to the user as the bias of lookups.
+// The last two are known if the film has them (Film::record_errors_complete(), lookup_bias_known()), and
+// 0 without lookups. Their sum: base/error_sum.h. Other errors of biased solvers are not included.
 //
-// What else a biased solver gets wrong for ever is not in it.
-//
-// Where lookups have found nothing in any sample of a block (photons that are too few to come by there) the
-// halves agree on nothing, and no noise is seen. No sample is no evidence: such a block has an unknown error,
-// and counts as wrong by all of its light, tiles by 1, the picture by its share of the pixels.
+// If lookups find nothing in any sample of a block (too few photons), the halves agree and show no
+// noise. That is no evidence: such a block has an unknown error, and counts with all of its light, a
+// tile as 1, the picture by the share of such pixels.
 #include <array>
 #include <cmath>
 #include <span>
@@ -51,12 +48,12 @@ RecordsError records_error(std::span<const shared::BlockRecords> blocks);
 /// Of a block, as its light is mixed: in proportion to its luminance, as if records erred in the light of
 /// every group alike.
 shared::BlockRecords mixed_records(const shared::BlockRecords& records, const shared::BlockError& block);
-/// What blur makes of a mean over some blocks, in luminance and as an absolute value. The halves of the film
-/// tell it independently of each other, so that the root of their product, 0 where they do not agree in sign,
-/// is free of their noise in the mean of its square.
+/// Blur error of a mean over blocks, in luminance, as an absolute value. The halves of the film estimate it
+/// independently, so the square of the root of their product (0 if their signs differ) is free of their noise
+/// on average.
 double blur_error(std::span<const shared::BlockError> blocks);
 
-/// Whether lookups of secondary or tertiary light have found nothing in any sample of this block.
+/// True if lookups of secondary or tertiary light have found nothing in any sample of this block.
 bool without_evidence(const shared::BlockError& block);
 
 /// Of a tile: some blocks that lie together.
@@ -78,9 +75,9 @@ struct TileError {
   double variance = 0, fourth = 0;  ///< sums of v and v^2, from which the two above come
   double difference = 0;            ///< of `luminance` in the film's two halves, half of it
   RecordsError records;             ///< of the mean: pixels that read the same records err together
-  /// Quadratic means over the pixels of what records make of each, against what `relative` is held against.
+  /// Root mean squares over the pixels of the lookup errors, relative as in `relative`.
   double relative_records = 0, relative_interpolation = 0;
-  /// Of the three relative ones: what is told of the tile.
+  /// Sum of the three relative ones: the estimated error of the tile.
   double relative_sum() const { return error_sum(relative, relative_records, relative_interpolation); }
   bool unknown = false;  ///< a block of it is without_evidence(); `relative` is then 1 at least
   /// Set by mark_heavy_tails(): the noise is not of a kind that the interval below can speak for.
@@ -101,12 +98,12 @@ struct RelativeError {
 };
 RelativeError relative_error(const Film& film, std::span<const uint32_t> blocks);
 
-/// For tiles, `across` in a row, whose pixels have noise in common: photons of a round are read by all pixels
-/// that they lie near, so that a tile's mean is noisier than its pixels' variances come to, by how many
-/// pixels share what they read. That is told by the square of TileError::difference, in the mean the mean's
-/// variance whatever pixels have in common, over TileError::variance as a mean's; averaged over the tile and
-/// the two rings of tiles around it, and not taken for less than 1. standard_error is widened by its root,
-/// and `degrees` are those of such an estimate.
+/// For tiles, `across` in a row, whose pixels have common noise: nearby pixels read the same photons of a
+/// round, so the noise of a tile's mean exceeds what its pixels' variances imply, by the number of pixels
+/// that share data. That factor is estimated as the square of TileError::difference, whose mean is the
+/// variance of the mean, over the variance implied by TileError::variance; averaged over the tile and two
+/// rings of tiles around it, and at least 1. standard_error is multiplied by its root, and `degrees` is set
+/// for this estimate.
 void count_shared_noise(std::span<TileError> tiles, uint32_t across);
 
 /// The tiles of a film, `side` pixels (8 or 16) along each side, in raster order, from film.errors(); with
@@ -137,8 +134,8 @@ struct ImageError {
   double pixels = 0;
   std::array<double, 5> luminance{};  ///< mean
   std::array<double, 5> rms{};        ///< of the pixels' standard errors, in luminance
-  /// Degrees of freedom of rms[0]^2, as TileError::degrees: its own relative standard error is
-  /// sqrt(2 / degrees), as far as its noise has been met.
+  /// Degrees of freedom of rms[0]^2, as TileError::degrees: its relative standard error is sqrt(2 / degrees),
+  /// if the samples represent its noise.
   double degrees = 0;
   /// Of the sum: the same of what records make of each pixel.
   double records_rms = 0, interpolation_rms = 0;
@@ -155,7 +152,7 @@ struct ImageError {
     const double known = seen_rms[size_t(layer)];
     return layer == 0 ? std::sqrt(known * known + unknown) : known;
   }
-  /// With what lookups add: what is reported of the picture.
+  /// Including lookups: the reported error of the picture.
   double seen_sum() const { return error_sum(seen(0), seen_records, seen_interpolation); }
   /// A component's share of the noise, 0..1 for component 0..3: its squared error as seen over the sum of
   /// all components'. They add up to 1, or are all 0 where there is no noise.

@@ -9,7 +9,7 @@ namespace {
 
 float rounded(double ev) { return static_cast<float>(std::round(10 * std::clamp(ev, -20.0, 20.0)) / 10); }
 
-/// Mean of a rectangle, of what is finite in it.
+/// Mean of the finite pixels of a rectangle.
 vec3 mean(std::span<const vec3> radiance, uint32_t width, uint32_t x0, uint32_t y0, uint32_t x1,
           uint32_t y1) {
   glm::dvec3 sum(0);

@@ -18,7 +18,7 @@ constexpr uint64_t k_light_bytes = 16 * k_preview_texels;
 
 uint32_t groups(uint64_t items) { return gpu::groups_for(items, 64); }
 
-/// Along a side of so many cells.
+/// Number of blocks along a side of that many cells.
 uint32_t change_blocks(uint32_t cells) { return gpu::groups_for(cells, k_preview_change_step); }
 
 uint32_t tile_count(uint32_t pixels) { return gpu::groups_for(pixels, k_preview_tile); }
@@ -343,7 +343,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   const gpu::Buffer *from = &grid_, *to = &filtered_, *before = &before_[0], *before_to = &before_[1],
                     *lost = &lost_[0], *lost_to = &lost_[1], *texture = &texture_[0],
                     *texture_to = &texture_[1];
-  // Cells that show one pixel of a draft tell nothing of its noise.
+  // Cells that show one pixel of a preview sample have no information about its noise.
   const uint32_t base = draft && 3 * draft->width() < 2 * across ? 2 : 1;
   for (uint32_t pass = 0; pass < k_filter_passes; ++pass) {
     resources_.set("grid_texels", *from);

@@ -1,13 +1,13 @@
 #pragma once
-// What the window shows of a picture until its samples are enough: their light filtered over surfaces that
-// are alike, a draft of fewer pixels where there are none yet, and what was shown before an edit as far as
-// the new light does not contradict it (shaders/film/preview_resolve.comp says how they are mixed). It is
-// display only: the film, and what files get of it, know nothing of it.
+// Preview in the window until there are enough samples: the samples' light filtered over similar surfaces,
+// preview samples at lower resolution before the first samples, and the picture from before an edit where the
+// new light does not contradict it (mixing: shaders/film/preview_resolve.comp). Display only: film and files
+// do not contain it.
 //
-// Filtering is done on a grid of half the picture's resolution, on light divided by the surface's colour: an
-// edge-avoiding a-trous filter (H. Dammertz et al. 2010) that stops at differences of more than the noise (C.
-// Schied et al. 2017), which the two halves of the samples tell of. A pixel whose samples have met several
-// surfaces is shown as a mixture of what those around it that show each of them are.
+// Filtering works on a grid of half the picture's resolution, on light divided by the surface's colour: an
+// edge-avoiding a-trous filter (H. Dammertz et al. 2010) that stops at differences above the noise (C. Schied
+// et al. 2017), which the two halves of the samples estimate. A pixel whose samples have met several surfaces
+// is a mixture of nearby pixels that show one of them each.
 #include <optional>
 
 #include "film/film.h"
@@ -16,7 +16,7 @@
 
 namespace lucerna::film {
 
-/// Of what is shown, 0..1.
+/// Shares of the shown picture, 0..1.
 struct PreviewShares {
   double stale = 0;     ///< light from before the last edit, by luminance
   double filtered = 0;  ///< filtered light of the present, by luminance
@@ -39,16 +39,15 @@ class Preview {
   /// Compiles its kernels; throws Error, located.
   Preview(gpu::Device& device, gpu::ShaderCompiler& compiler);
 
-  /// Whether pictures of that size can be previewed on this device.
+  /// True if pictures of that size can have a preview on this device.
   static bool fits(const gpu::Limits& limits, uint32_t width, uint32_t height);
   /// Nothing has been shown yet.
   void forget();
-  /// The picture begins anew: what was shown last is what was there before. Its light is to be multiplied by
-  /// `scale`, where an edit is known to do that to all light; `repainted`: surfaces may have other colours;
-  /// `same_light`: light has not changed, no more than the camera or how light is computed.
+  /// Starts a new picture: the last one becomes the history. `scale`: known factor of the edit on all light;
+  /// `repainted`: surfaces may have other colours; `same_light`: only the camera or the computation of light
+  /// has changed.
   void keep(const vec3& scale = vec3(1), bool repainted = false, bool same_light = false);
-  /// The picture begins anew with better light than it had so far. Of what was there before nothing has
-  /// changed.
+  /// Starts a new picture with better light. The history stays unchanged.
   void better();
   /// Film -> its picture, of the layers that show light (View::layer up to shared::k_layer_primary + 3).
   /// `draft`: a film of the same view with pixels of whole pixels, or null; `filtered`: noise is filtered,
@@ -58,14 +57,14 @@ class Preview {
   PreviewShares develop(gpu::Stream& stream, const Film& film, const Film* draft, const View& view,
                         const PreviewCamera& camera, bool filtered, Sampled sampled = Sampled::some,
                         const gpu::Buffer* seen = nullptr);
-  /// Whether anything is known from before the picture began anew.
+  /// True if there is a history.
   bool has_history() const { return history_.known; }
   /// Has the device compile what an edit needs – recall(), and develop() in other light –, which takes it
   /// seconds, so that the first one does not wait for it. After develop() or take(). The stream is run.
   void warm(gpu::Stream& stream, const Film& film);
-  /// What was there before, as this camera sees it, becomes the film's picture: what can be shown at once,
-  /// without any new light. has_history(). What comes into view is taken from what is beside it. Throws and
-  /// runs as develop().
+  /// Makes the history, reprojected to this camera, the film's picture: it can be shown without new light.
+  /// Requires has_history(). Newly visible parts are filled from their surroundings. Throws and runs the
+  /// stream like develop().
   void recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera);
   /// The film's picture has been shown as it is, with that exposure: keep() is to know it. Every pixel has a
   /// sample. Throws as develop(). The stream is run.
@@ -89,8 +88,8 @@ class Preview {
     bool known = false;
     PreviewCamera camera;
     float exposure = 1;
-    vec3 scale{1};  ///< of its light, as far as edits since are known to do that
-    /// Light is as it was; but what is seen of it can hang on the direction.
+    vec3 scale{1};  ///< known factor on its light by edits since
+    /// Light is unchanged, but its appearance may depend on the direction.
     bool same_light = true;
     bool recoloured = false;  ///< surfaces had other colours
     vec3 scale_for(const View& view) const { return scale * (view.exposure / exposure); }
@@ -137,9 +136,8 @@ class Preview {
   PreviewCamera camera_;
   std::optional<PreviewCamera> moved_camera_;  ///< of `moved_`
   float exposure_ = 1;
-  bool shown_ = false;  ///< `now_` is what was developed last, of light that `history_` knows nothing of
-  bool repainted_ =
-      false;  ///< surfaces that have no samples yet may have other colours than any that is known
+  bool shown_ = false;      ///< `now_` is what was developed last, of light that `history_` knows nothing of
+  bool repainted_ = false;  ///< surfaces without samples may have colours other than the known ones
 };
 
 }  // namespace lucerna::film

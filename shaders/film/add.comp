@@ -46,7 +46,7 @@ void add_mixed(inout FilmHalf h, FilmHalf of_group, vec3 weight) {
 }
 #endif
 
-// What sample `slot` brings of a component.
+// Light of sample `slot` in a component.
 vec3 light_of_component(uint slot, uint component) {
 #if LUCERNA_FILM_LANES
   return texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(push.group, component)))).rgb;

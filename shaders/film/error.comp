@@ -43,8 +43,8 @@ struct Row {
 #if LUCERNA_LOOKUP_ERRORS
   vec2 squares[k_block];  // of its pixels, as FilmRecords, where they are seen
   vec2 records;           // the sum of all of them
-  vec2 bias;              // sums over the row, of the even and of the odd samples' mean
-  float unmixed;          // sum over the row: luminance as samples have brought it
+  vec2 bias;              // sums over the row, of the means of the even and of the odd samples
+  float unmixed;          // sum over the row: luminance before the mix
 #endif
 #if !LUCERNA_STOPPING_ONLY
   float seen_of[4 * k_block];                                 // of its pixels, D of each component
@@ -52,8 +52,7 @@ struct Row {
 #endif
 };
 
-// Means of the luminance in the film's two halves, of the sum and by component; `unmixed`: twice the luminance as samples
-// have brought it.
+// Mean luminance of the film's two halves, of the sum and by component; `unmixed`: twice the luminance before the mix.
 void read_halves(uint pixel, uint count, out float a[5], out float b[5], out float unmixed) {
   float even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
   FilmRatio ratio = film_ratio(pixel);

@@ -72,7 +72,7 @@ vec4 preview_texel(PreviewSurface s) {
   return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)), uintBitsToFloat(packUnorm4x8(vec4(s.albedo, covered))), s.samples);
 }
 
-// Whether a pixel that was shown, or holds samples, tells of light at all.
+// True if a pixel that was shown, or holds samples, has any information about the light.
 bool preview_lit(PreviewLight l, PreviewSurface s) { return l.of[0].w >= 0.0 || s.samples > 0.0; }
 
 // What blocks of cells say of how light has changed (film/preview_change.comp), between their middles; 1 where there are none.
@@ -148,9 +148,9 @@ bool preview_mixed(PreviewSurface s, PreviewSurface centre, float primary, sampl
   return !s.emits && primary > k_preview_bright && preview_beside_emitter(surfaces, size, pixel);
 }
 
-// Whether one surface's light tells of the other's: 0..1. `offset`: between their points; `scale`: how far they may be off
-// each other's plane [m]. Colours of which one is four times as bright count half: light over the colour is not what falls on a
-// surface where it mirrors some of it, and next to a table that shines a dark mat would glow.
+// Similarity of two surfaces, 0..1: how well the light of one predicts the other's. `offset`: between their points; `scale`:
+// tolerance of the distance from each other's plane [m]. Colours that differ by a factor of four count half: light over
+// colour is not irradiance where the surface is glossy, and a dark mat next to a bright table would glow.
 float preview_alike(PreviewSurface a, PreviewSurface b, vec3 offset, float scale) {
   if (a.depth < 0.0 || b.depth < 0.0) return 1.0;
   if (a.depth == 0.0 || b.depth == 0.0) return a.depth == b.depth ? 1.0 : 0.0;

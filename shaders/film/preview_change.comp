@@ -1,5 +1,5 @@
-// How much light has changed since what was shown before, told by few samples of many pixels: by component, pooled over
-// blocks of the grid's cells and over the whole picture. One workgroup a block, then one for all.
+// Estimates how much the light has changed since the last display, from few samples of many pixels: by component, pooled
+// over blocks of grid cells and over the whole picture. One workgroup a block, then one for all.
 #include "film/preview.glsl"
 #define LUCERNA_SUM_ROWS int(k_preview_change_texels)
 #include "lib/sum_rows.glsl"

@@ -1,11 +1,11 @@
-// A pass of an edge-avoiding a-trous filter over the grid (Dammertz et al. 2010): 3x3 cells, `step` apart, weighed by
-// whether they are of one surface, and by whether their light differs by more than its noise (Schied et al. 2017). The first
-// pass weighs by surfaces alone and finds the noise, from the halves of the samples where there are two, else from how much
-// neighbours differ.
+// One pass of an edge-avoiding a-trous filter over the grid (Dammertz et al. 2010): 3x3 cells, `step` apart, weighted by
+// similarity of the surfaces, and of their light relative to its noise (Schied et al. 2017). The first pass weights by
+// surfaces only and estimates the noise, from the halves of the samples if there are two, else from the differences of
+// neighbours.
 //
-// The few cells that hold most of what single paths bring count for less in the first pass, or they would show as specks. What
-// is so lost is spread more widely, over what is of one surface, and given back by the preview's picture: rooms would seem
-// darker than they are as long as samples are few.
+// The first pass reduces the weight of the few cells that hold most of the light of single paths, which would show as
+// specks. The removed light is spread over the same surface and added back in the preview's picture; otherwise rooms would
+// look too dark while samples are few.
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"
 #ifndef LUCERNA_PREVIEW_FIRST
@@ -77,7 +77,7 @@ void main() {
     plain_sum += plain;
     colours = preview_sum(colours, preview_texture(texelFetch(texture_texels, there)), plain);
 #if LUCERNA_PREVIEW_FIRST
-    // Few cells hold most of what single paths bring: shown bright, they count for less.
+    // Few cells hold most of the light of single paths; they get less weight, so that they do not show as specks.
     float white = 1.0 / luminance(preview_modulation(s));
     vec4 damped = 1.0 + max(y / white - 1.0, vec4(0.0));
     w /= damped;
@@ -117,14 +117,14 @@ void main() {
   vec4 error = sqrt(variance) * inverse;
 #if LUCERNA_PREVIEW_FIRST
   mean /= max(plain_sum, 1e-20);
-  // Where few are alike, their differences tell little: all around then stand for them.
+  // With few similar cells, their differences are uncertain: all cells around are used.
   any_mean /= max(any_sum, 1e-20);
   vec4 any = max(any_square / max(any_sum, 1e-20) - any_mean * any_mean, vec4(0.0));
   vec4 alike = max(square_mean / max(plain_sum, 1e-20) - mean * mean, vec4(0.0));
   vec4 spread = mix(any, alike, clamp(plain_sum / max(any_sum, 1e-20) * 2.0 - 1.0, 0.0, 1.0)) * (9.0 / 8.0);
   vec4 of_cell = known_sum > 0.5 * plain_sum ? known / max(known_sum, 1e-20) : spread;
   if (push.blocks_across > 0u) {
-    // Few paths that find next to nothing tell of no noise: they have what samples have of the light that is to be expected.
+    // Few paths that find next to nothing do not show the noise: it is then that of samples of the expected light.
     uvec2 blocks = uvec2(push.blocks_across, push.blocks_down);
     vec4 expected = texelFetch(before_texels, int(cell)) * preview_change(change_texels, blocks, vec2(xy));
     vec4 dark = k_preview_by_way * (1.0 - smoothstep(vec4(k_dark), vec4(k_not_dark), mean / max(expected, vec4(1e-6))));
@@ -134,8 +134,7 @@ void main() {
     of_cell = max(of_cell, dark * missed * noise * expected * expected / max(here.samples, 1e-3));
   }
   grid_noise[cell] = sqrt(of_cell);
-  // A cell that is alone on its surface has nobody to tell it more than its few paths do. Those around, on other surfaces,
-  // are better than that.
+  // A cell alone on its surface has only its few paths; even cells of other surfaces around predict its light better.
   float alone = (1.0 - smoothstep(0.05, 0.2, others / max(any_sum - 4.0, 1e-20))) / (1.0 + k_alone_until * here.samples);
   of_cell = mix(of_cell, max(of_cell, any), alone);
   error = sqrt(of_cell * alike_square) / max(plain_sum, 1e-20);

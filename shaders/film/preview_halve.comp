@@ -81,7 +81,7 @@ bool alike(PreviewSurface a, PreviewSurface b) {
   return (a.depth > 0.0) == (b.depth > 0.0) && dot(a.normal, b.normal) > 0.8 && a.emits == b.emits;
 }
 
-// Light, in units of white, up to which it is looked at to tell whether it goes with the colours (preview_resolve.comp).
+// Light, in units of white, up to which its correlation with colour is measured (preview_resolve.comp).
 const float k_most_light = 4.0;
 // Of four pixels, two rows of two.
 struct Quad {
@@ -180,7 +180,7 @@ void main() {
     show_others[k] = mixed(pixel, s);
     pure = pure || (s.samples > 0.0 && alike(s, here) && !show_others[k]);
   }
-  for (uint k = 0u; k < 4u; ++k) {  // of a wider cell, which is one of a draft alone, these tell enough
+  for (uint k = 0u; k < 4u; ++k) {  // a wider cell exists only for preview samples, where these are enough
     int pixel = pixel_of(xy, k);
     PreviewSurface s = surface_at(pixel);
     if (s.samples > 0.0 && (alike(s, here) || s.depth < 0.0) && !(pure && show_others[k]))
@@ -202,7 +202,7 @@ void main() {
   vec4 now = vec4(luminance(total.of[0].rgb), luminance(total.of[1].rgb), luminance(total.of[2].rgb), luminance(total.of[3].rgb));
   grid_before[cell] = before_known > 0.0 ? before / before_known : now;
   LUCERNA_PREVIEW_STORE(grid, cell, total)
-  // Where all of them may have light of what shines beside they tell little of its own.
+  // If all of them may contain light of an emitter next to it, they have little information about its own light.
   bool lit_beside = push.sampled != 0u && !pure && !here.emits && luminance(preview_modulation(here) * total.of[0].rgb) > k_preview_bright &&
                   push.surfaces == k_preview_surface_seen &&
                   preview_beside_emitter(guide_surfaces, uvec2(push.width, push.height), uint(first));

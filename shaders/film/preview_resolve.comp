@@ -1,10 +1,10 @@
-// The preview's picture: of each component the pixel's own samples as far as their noise allows, else the filtered grid
-// times the surface's colour; mixed with what was shown before as far as that is not seen to be wrong.
+// Picture of the preview: for each component the pixel's own samples as far as their noise permits, else the filtered grid
+// times the surface's colour; mixed with the picture of before where that is not visibly wrong.
 //
-// With new light N of variance v and older light O of variance u the difference d = N - O tells of a change: its square is
-// on average v + u + change^2. The mix w O + (1 - w) N errs least with w = v / (v + u + change^2). Both are filtered for the
-// difference, so that detail which the filter takes away is no change. Before, what was there is scaled by what the samples
-// of many pixels around say of the change (film/preview_change.comp).
+// For new light N of variance v and older light O of variance u, the difference d = N - O measures the change: the mean of
+// its square is v + u + change^2. The mix w O + (1 - w) N has the least error for w = v / (v + u + change^2). Both are
+// filtered for the difference, so that detail lost in filtering does not count as change. Before that, O is scaled by the
+// change measured over many pixels (film/preview_change.comp).
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "film/preview.glsl"
@@ -29,7 +29,7 @@ const float k_least_noise = 0.5;  // of a sample, relative, in light that has no
 const float k_clean = 0.02, k_noisy = 0.08;
 // Of light, how much may not follow the colours; and of the sums that are filtered, 1 over how many are independent at most.
 const float k_prior = 0.35, k_fewest = 1.0 / 256.0;
-// Of what pixels around have, the noise of a pixel from which on that is asked itself.
+// A pixel's own noise is used if it exceeds this times the noise of its surroundings.
 const float k_outlier = 3.0;
 // Of filtered light, what the filter may be off by.
 const float k_filter_error = 0.04;
@@ -37,7 +37,7 @@ const float k_filter_error = 0.04;
 // filtered was measured to be off on interiors, because few samples know too little of their noise.
 const float k_mean_deviation = 1.25 * 0.798;
 
-// Of the nearest cells' weight, what has to be of a pixel's surface. Else cells so far around are asked.
+// Minimum weight of the nearest cells on a pixel's surface. With less, cells farther away are searched.
 const float k_alone = 0.02;
 const int k_wide = 3;
 // A pixel that is of no cell's surface, or an outlier, is filtered until it has so many samples, less and less up to so many.
@@ -47,7 +47,7 @@ const float k_most_back = 1.0, k_most_back_relative = 3.0;
 
 shared vec4 group_shares[64];
 
-// Sums over the cells that tell of the pixel, by weight.
+// Weighted sums over the cells that contribute to the pixel.
 vec4 light[k_component_count];
 vec4 noise = vec4(0.0), before_smooth = vec4(0.0), lost = vec4(0.0);
 vec3 modulation = vec3(0.0);
@@ -89,7 +89,7 @@ struct Part {
   vec3 normal, albedo;
 };
 const int k_mix_across = 3;  // cells
-const float k_apart = 0.3;   // difference of depths, relative, that tells as much as one of normals
+const float k_apart = 0.3;   // relative difference of depths that counts as much as one of normals
 
 // The k-th of the cells about a place, with its weight; false where none is known.
 bool near_cell(vec2 p, int k, out int cell, out PreviewSurface s, out float weight) {
@@ -116,8 +116,8 @@ float share_of(Part a, Part b, PreviewSurface here, float primary) {
   return all > 0.0 ? clamp(off / all, 0.0, 1.0) : 1.0;
 }
 
-// Light of a pixel that shows several surfaces: of those around that show each of them alone, in the shares that its means
-// and the number of its rays that have met any tell of. False, and nothing is done: nobody around shows its own.
+// Light of a pixel that shows several surfaces: mixed from nearby pixels that show each of them alone, in the shares that
+// the pixel's means and hit count imply. False, and nothing is done, if no nearby pixel shows its surfaces.
 bool mix_cells(vec2 p, PreviewSurface here, PreviewSurface centre, float primary) {
   if (centre.depth <= 0.0) centre = here;
   Part parts[k_part_count];
@@ -292,7 +292,7 @@ void main() {
       // Nor is a pixel whose halves differ by far more than those around: a rare bright path would show as a speck.
       float doubt_own = own.of[c].w > k_outlier * noise[c] ? own.of[c].w : 0.0;
       float relative = max(noise[c], doubt_own) / max(max(smooth_luminance, own_luminance), k_luminance_floor);
-      // Two of few paths that brought far more than is around may agree by chance. Lamps' own light has such borders.
+      // Two of few paths that are far brighter than the surroundings may agree by chance. Borders of emitters look the same.
       bool far_above = k_preview_by_way[c] > 0.0 && own_luminance > 2.0 * smooth_luminance + k_outlier * noise[c];
       float unlikely = far_above ? few * smoothstep(k_clean, k_noisy, noise[c] / max(smooth_luminance, k_luminance_floor)) : 0.0;
       // How far its own samples are not to be shown alone.
@@ -304,7 +304,7 @@ void main() {
       float error = mix(noise[c], smooth_error, amount);
       vec3 before = has_old ? old.of[c].rgb * push.history_scale : vec3(0.0);
       float u = has_old ? square(old.of[c].w) : 0.0, v = square(error) + 1e-8;
-      // Paths that have brought nothing yet seem to be without noise: what was there says how much may come.
+      // Paths that have found no light yet seem to have no noise: older light shows how much may come.
       float unsure = rough;
       if (push.same_light != 0u) {
         float n = max(here.samples, 1.0), least = k_least_noise * luminance(before);
@@ -312,13 +312,13 @@ void main() {
         unsure = max(rough, smoothstep(k_clean, k_noisy, least / (n * max(max(smooth_luminance, own_luminance), k_luminance_floor))));
       }
       float difference = luminance(modulation) * before_smooth[c] * inverse - smooth_luminance;
-      // What noise alone brings now and then is no change: it would show as specks.
+      // Chance alone must not count as change: it would show as specks.
       float change = max(square(difference) - by_chance * (u + v), 0.0);
       float keep = has_old ? unsure * v / (v + u + change) : 0.0;
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;
       if (nothing) keep = has_old ? 1.0 : 0.0;
       now = mix(now, before, keep);
-      // Where light has changed, the error that is told counts all that samples hold against the old, chance or not.
+      // If light has changed, the reported error assumes that all evidence of the samples against the old light is real.
       float doubt = push.same_light != 0u ? change : max(square(difference) - u - v, 0.0);
       float of_before = keep * keep * (u + doubt), left = sqrt(square((1.0 - keep) * error) + of_before);
       result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);

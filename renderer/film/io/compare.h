@@ -56,9 +56,9 @@ struct Comparison {
 };
 
 /// Compares one layer (FilmImage::layer; "" is the sum R, G, B). Throws Error, located at the layer or
-/// "compare", when the sizes differ, a layer is missing or has not the same number of channels in both, or an
-/// option is out of range. Non-finite values do not throw: they are counted, and their pixels left out.
-/// Percentiles are nearest-rank: the ceil(q n)-th smallest value.
+/// "compare", if the sizes differ, a layer is missing or has a different number of channels, or an option is
+/// out of range. Non-finite values do not throw: they are counted, and their pixels are left out. Percentiles
+/// are nearest-rank: the ceil(q n)-th smallest value.
 Comparison compare(const FilmImage& a, const FilmImage& b, const std::string& layer = "",
                    const CompareOptions& options = {});
 
@@ -66,7 +66,7 @@ Comparison compare(const FilmImage& a, const FilmImage& b, const std::string& la
 std::string to_json(const Comparison& comparison);
 /// "" or which layers are not finite, one line: "rgb: 12 pixels of the first image, 0 of the second; ...".
 std::string non_finite_text(const Comparison& comparison);
-/// A few lines for a person, ending in a line break.
+/// A few lines of text, ending in a line break.
 std::string to_text(const Comparison& comparison);
 
 /// |a - b| * factor of a layer as sRGB bytes (RGBA, alpha 255) for write_png; a single channel is shown grey;

@@ -19,10 +19,10 @@ struct RelativeMseOptions {
 };
 
 /// Means over the pixels of e = mean over R, G, B of (t - r1)(t - r2) / (r^2 + epsilon), t the picture, r1
-/// and r2 the references and r their mean over the eight neighbours (were the pixel itself among them,
-/// noise would divide by what it has made small or large, and errors to the bright side count for more). With
-/// references free of noise it is the relative mean squared error; with noise it is so in expectation, for
-/// theirs is independent, and may come out below 0.
+/// and r2 the references and r their mean over the eight neighbours (with the pixel itself, its own noise
+/// would be in the denominator, and bright errors would count more). With noise-free references it is the
+/// relative mean squared error; with noisy ones it is so in expectation, because their noise is independent,
+/// and it may be below 0.
 struct RelativeMse {
   double all = 0;
   /// Without the `trimmed_share` of the pixels whose eight neighbours are worst by e in the mean. Were they
@@ -37,9 +37,8 @@ struct RelativeMse {
 RelativeMse relative_mse(std::span<const vec3> picture, const ReferencePair& references,
                          const RelativeMseOptions& options = {});
 
-/// The standard error, in units of RelativeMse::all, that the references' own noise leaves to it, taken from
-/// how far they are apart. Pixels count as independent; rare large amounts make it too small rather than too
-/// large.
+/// Standard error of RelativeMse::all, in its units, from the references' own noise, estimated from their
+/// difference. Pixels count as independent; rare large values make it rather too small.
 double relative_mse_noise(const ReferencePair& references, const RelativeMseOptions& options = {});
 
 struct SeenMseOptions {
