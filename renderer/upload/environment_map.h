@@ -21,7 +21,7 @@ struct EnvironmentMap {
     const scene::Image& image = scene.images[environment.image];
     texels = image.floats.data(), width = image.width, height = image.height;
   }
-  /// Of a texel, without Environment::scale; what is not finite or below 0 is 0.
+  /// Radiance of a texel without Environment::scale; 0 if not finite or negative.
   vec3 radiance(size_t texel) const {
     const float* t = texels + 4 * texel;
     vec3 c = texels ? vec3(t[0], t[1], t[2]) : environment.radiance;

@@ -1,6 +1,6 @@
 #pragma once
-// By what directions of the environment are chosen. That hangs on its image alone, and is long in the making
-// for a large one: edits of other lights, and of the environment's strength and rotation, leave it as it is.
+// Sampling tables of the environment's directions. They depend on its image alone and are slow to build for a
+// large one: edits of other lights, and of the environment's strength and rotation, keep them.
 #include <optional>
 
 #include "base/shared_vector.h"
@@ -18,20 +18,20 @@ struct EnvironmentSource {
   bool operator==(const EnvironmentSource& o) const;
 };
 
-/// Copies share what is large.
+/// Copies share the large tables.
 struct EnvironmentTables {
   SharedVector<vec4> alias;
   SharedVector<float> density;  ///< by texel, of its directions [1/sr]; the sign bit: it is one of the sun's
   SharedVector<vec4> sun_cells;
   SharedVector<vec4> sun_density;  ///< four texels each [1/sr], without the sun's own pmf
   double sky_weight = 0,
-         sun_weight = 0;  ///< luminance times solid angle, times width / 2 pi; the sun's: where it is apart
+         sun_weight = 0;  ///< luminance times solid angle, times width / 2 pi; the sun's if it is separate
   std::optional<EnvironmentSource> source;  ///< none: there is no environment
-  float sun_threshold = 0;                  ///< 0: the sun is not apart
+  float sun_threshold = 0;                  ///< 0: the sun is not separate
 };
 
-/// `sun_threshold`: FlatScene's; 0: the environment is one emitter. `before`: what is returned where it is of
-/// the same texels.
+/// `sun_threshold`: FlatScene's; 0: the environment is one emitter. `before`: returned if it is of the same
+/// texels.
 EnvironmentTables environment_tables(const scene::Scene& scene, float sun_threshold,
                                      const EnvironmentTables& before);
 

@@ -25,7 +25,7 @@ struct Effects {
   uint32_t lamp_candidates = 0;
   bool separate_sky = false, sun = false;  ///< FlatScene::sun_threshold; texels that are brighter
   uint32_t media = 0;                      ///< that solids hold, where any absorbs (upload/media.h)
-  uint32_t light_groups = 1;               ///< that are kept apart (FlatScene::groups)
+  uint32_t light_groups = 1;               ///< number of separate groups (FlatScene::groups)
   bool group_components = true;            ///< ... by component, too
   bool uv_transforms = false;              ///< a use of a texture that is scaled, turned or shifted
   bool tex_nearest = false;                ///< a texture that is not filtered
@@ -33,7 +33,7 @@ struct Effects {
   std::array<uint32_t, shared::k_hit_kinds> kinds{};  ///< features, by kind of hits (upload/material_kinds.h)
   std::array<uint32_t, shared::k_texture_uses> texture_buckets{};  ///< by use: bit b: bucket b may be read
   bool transparent() const { return alpha || thin_glass; }
-  /// Groups of lights are kept apart, all components of one together (film::GroupStorage::compact).
+  /// Separate light groups with all components together (film::GroupStorage::compact).
   bool has_compact_groups() const { return light_groups > 1 && !group_components; }
 };
 
@@ -52,8 +52,8 @@ struct LightEntry {
   uint32_t index = 0;
 };
 
-/// By what lights are chosen, and with which probability: flatten_light_distribution(). Nothing of it needs
-/// to be as bright as what it is about: samples are divided by the probabilities, whatever they are.
+/// Probabilities of light selection: flatten_light_distribution(). They need not match the lights' present
+/// brightness: samples are divided by them.
 struct LightDistribution {
   std::vector<LightEntry> entries;         ///< of the light table; emissive triangles first
   std::vector<std::string> lamp_names;     ///< by scene::Scene::lights, as the scene calls them; may be ""
@@ -74,7 +74,7 @@ struct LightDistribution {
 /// What lights emit and from where: flatten_emission().
 struct Emission {
   std::vector<vec4> lights;                                ///< the light table
-  std::vector<uint8_t> emissive_groups;                    ///< by primitive; empty: they are not kept apart
+  std::vector<uint8_t> emissive_groups;                    ///< by primitive; empty: groups are not separate
   SharedVector<vec3> environment_texels;                   ///< radiance, without the factor
   std::optional<EnvironmentSource> environment_source;     ///< of these
   uint32_t environment_width = 0, environment_height = 0;  ///< 0: it is dark
@@ -103,10 +103,10 @@ struct FlatScene : FlatLights, FlatMaterials {
   std::vector<uvec4> triangles;  ///< scene_triangles
   std::vector<vec4> vertices, tangents, extra;
   std::vector<Bucket> buckets;
-  /// Above 0: the environment is two emitters (shared/scene.h), its sun the texels of more than so many times
-  /// its mean luminance.
+  /// Above 0: the environment is two emitters (shared/scene.h); the sun consists of texels above this times
+  /// the mean luminance.
   float sun_threshold = 0;
-  std::shared_ptr<const scene::LightGroups> groups;  ///< whose light is kept apart; null: no groups are
+  std::shared_ptr<const scene::LightGroups> groups;  ///< separate groups; null: none
   bool group_components = true;  ///< by component, too; else all light of a group in one (film::GroupStorage)
   vec3 scene_centre{0};
   float scene_radius = 1;  ///< of a sphere around that which holds all surfaces
@@ -117,7 +117,7 @@ struct FlatScene : FlatLights, FlatMaterials {
   Effects effects;
 };
 
-/// How lights are told apart: FlatScene's fields of these names.
+/// How lights are separated: FlatScene's fields of these names.
 struct LightSeparation {
   float sun_threshold = 0;
   std::shared_ptr<const scene::LightGroups> groups;
@@ -142,9 +142,9 @@ void flatten_lights(const scene::Scene& scene, FlatScene& flat);
 /// By power; of the environment by the luminance of its texels, and with a share of all that an interior
 /// needs.
 void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat);
-/// For the distribution that `flat` has. That may have been made for other strengths, colours and another
-/// rotation of the environment, where all that emits now has done so then: samples then bring the same light
-/// on average, with more noise.
+/// For the existing distribution of `flat`. It may have been made for other strengths, colours and another
+/// rotation of the environment, as long as all present emitters emitted then: samples are unbiased, with more
+/// noise.
 void flatten_emission(const scene::Scene& scene, FlatScene& flat);
 
 }  // namespace lucerna::upload

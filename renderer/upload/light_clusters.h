@@ -19,7 +19,7 @@ struct ClusterPlace {
 
 struct LightClusters {
   uint32_t sky = 0;          ///< clusters of the sky, which are the first
-  uint32_t sky_squares = 0;  ///< a constant sky is cut into so many squares along a side; 0: into texels
+  uint32_t sky_squares = 0;  ///< squares per side into which a constant sky is divided; 0: into texels
   std::vector<float> plain;  ///< by cluster: probability without learning; they sum to 1
   std::vector<vec4> clusters, members;  ///< light_clusters, cluster_members
   std::vector<uint32_t> primitives;     ///< primitive_clusters
@@ -29,7 +29,7 @@ struct LightClusters {
   uint32_t count() const { return uint32_t(plain.size()); }
 };
 
-/// Whether there is anything to choose: more than one cluster. Not where the sky is separate from its sun.
+/// True if there is more than one cluster. Not if the sky is separate from its sun.
 bool has_light_clusters(const FlatScene& flat);
 /// For the distribution that `flat` has. A cut of about 256 clusters of the sky, 128 of emissive triangles,
 /// 64 of lamps.

@@ -1,7 +1,6 @@
 #pragma once
-// What hits on a material call for of shading, told apart by kind: materials that call for the same are of
-// one kind. By kinds hits are counted, and given to kernels in which nothing else is compiled
-// (transport/hit_classes.h).
+// Kinds of materials by the shading features they need: materials with equal features are of one kind. Hits
+// are counted by kind, and shaded by kernels that compile in nothing else (transport/hit_classes.h).
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -37,7 +36,8 @@ uint32_t features_of(const scene::Material& material);
 
 /// The kinds of a scene's materials.
 struct MaterialKinds {
-  /// By kind, from shared::k_kind_first on; what there is no room for is of the last one, which has all.
+  /// By kind, from shared::k_kind_first on; kinds beyond the maximum share the last one, which has all
+  /// features.
   std::array<uint32_t, shared::k_hit_kinds> features{};
   std::vector<uint32_t> of_material;
 };

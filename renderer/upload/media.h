@@ -14,8 +14,8 @@
 
 namespace lucerna::upload {
 
-/// Closed shells of solids, as a binary tree in depth-first order whose nodes name where to go on when they
-/// are missed (texels: shaders/shared/scene.h, scene_media).
+/// Closed shells of solids, as a binary tree in depth-first order whose nodes store where traversal continues
+/// if they are missed (texels: shaders/shared/scene.h, scene_media).
 struct SolidShells {
   std::vector<bool> solid;          ///< by material: the shells are made of these
   std::vector<Box> boxes;           ///< one a shell
@@ -29,7 +29,7 @@ std::shared_ptr<const SolidShells> make_solid_shells(const FlatScene& flat, std:
 /// `flat` has. Nothing where no solid absorbs.
 void flatten_media(FlatScene& flat);
 
-/// Whether any solid's box meets `box`, so that a path that starts in it may start inside a medium.
+/// True if any solid's box intersects `box`, so that a path starting in it may start inside a medium.
 bool meets_solids(const FlatMaterials& flat, const Box& box);
 
 }  // namespace lucerna::upload

@@ -8,8 +8,8 @@
 
 namespace lucerna::upload {
 
-/// Mean luminances of textures over triangles, without a texel left out. Keeps the sums of each texture that
-/// it was asked about, 8 bytes a texel; valid as long as the scene.
+/// Exact mean luminances of textures over triangles. Keeps the sums of each requested texture, 8 bytes a
+/// texel; valid as long as the scene.
 class TextureMeans {
  public:
   explicit TextureMeans(const scene::Scene& scene) : scene_(scene) {}

@@ -1,8 +1,7 @@
 #pragma once
-// Textures -> pages. All 8-bit colour textures lie side by side on the pages (layers) of one texture array,
-// all 8-bit data textures on those of another, float ones on a third: a device without dynamic indexing of
-// sampler arrays pays for each array that a read may have to look at, whatever the textures' sizes. Texels
-// are copied, never resampled.
+// Texture pages. All 8-bit colour textures share the pages (layers) of one texture array, all 8-bit data
+// textures another, float ones a third: a device without dynamic indexing of sampler arrays pays for each
+// array that a read may access, whatever the textures' sizes. Texels are copied, never resampled.
 #include <vector>
 
 #include "scene/scene.h"
