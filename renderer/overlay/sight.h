@@ -13,7 +13,7 @@
 
 namespace lucerna::overlay {
 
-/// Nobody has looked.
+/// No traced points.
 inline constexpr shared::SightGrid k_no_sight{0, 1};
 
 class Sight {
@@ -24,13 +24,12 @@ class Sight {
   /// outlive it.
   Sight(gpu::Device& device, gpu::ShaderCompiler& compiler, gpu::Defines defines = {});
 
-  /// Forgets what was seen: the picture is to be that of `frame`. `texels`: that surfaces() hold of a point.
-  /// Throws Error when there is no memory.
+  /// Starts a picture with that frame. `texels`: of surfaces() per point. Throws Error: memory.
   void begin(const shared::Frame& frame, uint32_t texels = shared::k_surface_texels);
   /// Forgets what was seen; see() wants begin() again.
   void forget() { begun_ = false; }
   bool begun() const { return begun_; }
-  /// Whether all points of the picture have been looked at.
+  /// True once all points have been traced.
   bool seen() const { return begun_ && done_ == points(); }
   /// Sends the next rays, as many as there are slots. The wavefront's frame is the picture's; `note` records
   /// what writes surfaces() of these points, by what the wavefront's kernels have kept of their paths. All is
@@ -51,9 +50,7 @@ class Sight {
   uint32_t down() const { return down_; }
   uint32_t points() const { return across_ * down_; }
   uint32_t stride() const { return stride_; }  ///< pixels from one to the next
-  float pixel() const {
-    return pixel_;
-  }  ///< width of what a point stands for at a depth of 1 m, or everywhere [m]
+  float pixel() const { return pixel_; }  ///< width of a point's cell at a depth of 1 m, or everywhere [m]
   bool parallel() const { return parallel_; }  ///< everywhere
   uint64_t bytes() const { return surfaces_ ? surfaces_.bytes() : 0; }
 

@@ -1,4 +1,4 @@
-// Marks the pixels of discs' rims: one invocation a straight piece of one.
+// Marks the pixels of discs' rims: one invocation for each segment of one.
 #include "overlay/mark.glsl"
 layout(scalar) readonly buffer OverlayDiscs { OverlayDisc discs[]; };
 

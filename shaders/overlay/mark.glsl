@@ -1,5 +1,5 @@
-// Strokes leave marks at the pixels that they go over; lay.comp lays these over the picture (shaders/shared/overlay.h).
-// Whoever includes this says in shows() what hides a stroke, and in stroke_at() where a share of it lies.
+// Strokes mark the pixels they cover; lay.comp draws the marks over the picture (shaders/shared/overlay.h). The including
+// file defines shows(), the visibility of a stroke, and stroke_at(), the position of a part of it.
 #ifndef LUCERNA_OVERLAY_MARK
 #define LUCERNA_OVERLAY_MARK
 #include "lib/invocation.glsl"
