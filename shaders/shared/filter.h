@@ -1,4 +1,4 @@
-// What the kernels of the filter (shaders/film/filter/) take. Read by C++ and GLSL.
+// Parameters of the filter's kernels (shaders/film/filter/). Read by C++ and GLSL.
 #ifndef LUCERNA_SHARED_FILTER_H
 #define LUCERNA_SHARED_FILTER_H
 #include "shaders/shared/compat.h"

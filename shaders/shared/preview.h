@@ -1,10 +1,10 @@
-// What is shown of a picture until its samples are enough: layout and what the kernels are told. Read by C++ and GLSL.
+// Preview of a picture until it has enough samples: data layout and kernel parameters. Read by C++ and GLSL.
 //
-// Of a pixel: k_preview_texels texels of sixteen half floats, component by component red, green, blue and the standard
-// error of the luminance (below 0: not known), in units of what is shown white; and one texel of its surface: depth along the
-// view axis [m] (0: nothing is there; below 0: not known, and where a draft has seen it about k_preview_about less
-// this), bits packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, share of the samples that have met
-// it or, where it is known to emit light, 0), samples – of what a ray has met: 0, or k_preview_beyond.
+// For each pixel: k_preview_texels texels of sixteen half floats, by component red, green, blue and the standard error of the
+// luminance (negative: unknown), in units of display white; and one texel of its surface: depth along the view axis [m] (0: no
+// surface; negative: unknown, or, if a preview sample has seen it, approximately k_preview_about less the depth), bits
+// packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, share of the samples that hit it, or 0 if it is known to emit
+// light), samples, or for a ray's hit: 0, or k_preview_beyond.
 #ifndef LUCERNA_SHARED_PREVIEW_H
 #define LUCERNA_SHARED_PREVIEW_H
 #include "shaders/shared/compat.h"

@@ -82,7 +82,7 @@ LUCERNA_CONST float k_overlap_scale = 12.0f;
 LUCERNA_CONST vec3 k_unserved_ink = vec3(0.75f, 0.12f, 0.16f);
 LUCERNA_CONST vec3 k_gathered_ink = vec3(0.45f, 0.47f, 0.52f);  ///< none serves: paths gather there
 
-// What the tiles' overlay is told of a tile.
+// Mark of one tile for the tiles' overlay.
 struct TileMark {
   float position;  ///< on k_ramp_tiles; negative: its error is not known
   uint bits;       ///< 0-1 one of k_tile_*, then the flags

@@ -83,13 +83,12 @@ LUCERNA_CONST uint k_light_environment = 4u;
 // environment_texels: one a texel: (radiance rgb, density of the directions through it as environment_alias chooses
 // them, per solid angle). environment_alias: like light_alias.
 //
-// Where records hold the environment's light (LUCERNA_SEPARATE_SKY) it is two emitters: the sun, texels brighter than a
-// threshold, and the sky, the others; filtered between texels, each has its share of a direction's radiance. The density
-// and the alias table above are then the sky's, the density's sign bit tells a texel of the sun, and the sky is no entry of
-// scene_lights: light samples choose it with a probability of its own. The sun (LUCERNA_SUN) is the entry of
-// k_light_environment, with bits of the number of its cells in texel 1 x. Its cells are those from which bilinear
-// filtering reaches a texel of the sun.
-// sun_cells: alias table of the cells, like light_alias, then bits of the texel that each is.
+// If records store the environment's light (LUCERNA_SEPARATE_SKY), it is two emitters: the sun, texels brighter than a
+// threshold, and the sky, the others; filtered between texels, each has its share of a direction's radiance. The density and
+// the alias table above are then the sky's, the density's sign bit marks texels of the sun, and the sky is no entry of
+// scene_lights: light samples select it with a separate probability. The sun (LUCERNA_SUN) is the entry of
+// k_light_environment, with bits of the number of its cells in texel 1 x. Its cells are those from which bilinear filtering
+// reaches a texel of the sun. sun_cells: alias table of the cells, like light_alias, then bits of each cell's texel.
 // sun_density: four texels each: density of the texel's directions as the sun's, times the sun's pmf in light_alias.
 // bsdf_table: see renderer/upload/bsdf_table.h.
 //

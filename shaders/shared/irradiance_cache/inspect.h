@@ -1,6 +1,5 @@
-// What a person asks of an irradiance cache at a pixel of the picture, and what is drawn to answer. Read by
-// C++ and GLSL. Places in the picture are in pixels from its upper left corner; depths are along the view
-// axis [m].
+// Inspection of an irradiance cache at a pixel, and its overlays. Read by C++ and GLSL. Places in the picture are in pixels
+// from its upper left corner; depths are along the view axis [m].
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_INSPECT_H
 #define LUCERNA_SHARED_IRRADIANCE_CACHE_INSPECT_H
 #include "shaders/shared/compat.h"
@@ -17,20 +16,20 @@ struct InspectPush {
   SightGrid grid;
 };
 
-LUCERNA_CONST uint k_lookup_none = 0u;  ///< nothing diffuse is seen
-LUCERNA_CONST uint k_lookup_too_steep = 1u;  ///< no record can serve so steep a normal map (k_surface_bent)
+LUCERNA_CONST uint k_lookup_none = 0u;  ///< the surface is not diffuse
+LUCERNA_CONST uint k_lookup_too_steep = 1u;  ///< the normal map is too steep for records (k_surface_bent)
 LUCERNA_CONST uint k_lookup_possible = 2u;
 /// What the camera sees in a pixel.
 struct InspectHeader {
-  uint solid;  ///< 0: nothing, and then nothing else here holds
-  uint lookup;   ///< k_asks_*
-  uint count;  ///< records that serve there; the first k_inspect_most of them are listed
-  uint gathers;  ///< not 0: none does, and those that are there say that paths gather (k_record_crowded)
+  uint solid;  ///< 0: no surface; then nothing else is valid
+  uint lookup;   ///< k_lookup_*
+  uint count;  ///< number of records that serve; the first k_inspect_most are listed
+  uint gathers;  ///< not 0: no record serves and paths gather (k_record_crowded)
   uint under;  ///< of the records whose discs are drawn there the one whose centre is nearest; k_no_record:
                ///< none
   float size;   ///< of a pixel there [m]
   float depth;  ///< [m]
-  vec3 position, normal;  ///< as lookups are asked there; where nothing asks, of what is seen
+  vec3 position, normal;  ///< of the lookup; without a lookup, of the visible surface
   vec3 under_at;  ///< centre of `under` in the picture, and its depth
 };
 /// A record that serves there.

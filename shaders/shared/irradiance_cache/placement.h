@@ -1,5 +1,4 @@
-// Candidates: places that ask for a record of an irradiance cache, and how some of them are chosen. Read by
-// C++ and GLSL.
+// Candidates for records of an irradiance cache, and the choice among them. Read by C++ and GLSL.
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_PLACEMENT_H
 #define LUCERNA_SHARED_IRRADIANCE_CACHE_PLACEMENT_H
 #include "shaders/shared/compat.h"
@@ -19,9 +18,9 @@ LUCERNA_CONST uint k_bounds_runs = 1024u;
 struct CollectPush {
   uint count;            ///< slots, or points of the grid
   uint samples;          ///< paths a pixel in the slots
-  uint to;               ///< place of the first one that is collected
-  uint screen_too;       ///< 0: what the camera sees straight is left out
-  uint parallel;         ///< the view: distances are from the eye, or 1 m
+  uint to;               ///< position of the first collected one
+  uint screen_too;       ///< 0: skips directly visible surfaces
+  uint parallel;         ///< parallel view: distances are 1 m, not from the eye
   float spacing;         ///< [m]
   float spacing_beyond;  ///< [m]; of k_origin_recursive
   float spacing_of_distance;

@@ -5,9 +5,9 @@
 #include "shaders/shared/ramp.h"
 LUCERNA_SHARED_BEGIN
 
-// What has become of a place, in the order in which one is drawn over another.
-LUCERNA_CONST uint k_placed_candidate = 0u;  ///< asked for
-LUCERNA_CONST uint k_placed_rejected = 1u;   ///< tried, and not needed beside wider ones
+// State of a place, in drawing order.
+LUCERNA_CONST uint k_placed_candidate = 0u;  ///< candidate only
+LUCERNA_CONST uint k_placed_rejected = 1u;   ///< tried, but a wider record covers it
 LUCERNA_CONST uint k_placed_tried = 2u;      ///< drawn from its cluster
 LUCERNA_CONST uint k_placed_chosen = 3u;     ///< becomes a record
 LUCERNA_CONST uint k_placed_mask = 3u;
@@ -27,8 +27,8 @@ struct PlacementPush {
   uint count;
   uint rings;
   float dot;        ///< radius of a candidate's dot [pixels]
-  float tried_dot;  ///< ... of a chosen place's; others that were tried are smaller
-  uint by_cluster;  ///< not 0: candidates are coloured by their clusters, else by what asked for them
+  float tried_dot;  ///< ... of a chosen place; other tried ones are smaller
+  uint by_cluster;  ///< not 0: candidates are coloured by cluster, else by origin
 };
 
 /// Inks of what is tried, encoded 0..1; the legend has them too. Chosen: the accent of records that light.

@@ -1,9 +1,8 @@
 // The records of an irradiance cache. Read by C++ and GLSL.
 //
-// A record holds the irradiance of a point on a surface in parts, so that components stay apart wherever it
-// is read. The parts have the numbers of the components that a path beginning with ED would bring them to:
-// light that comes from the hemisphere straight, over one diffuse event, over more, or over mirrors and glass
-// alone.
+// A record stores the irradiance at a surface point in parts, so that components stay separate wherever it is read. Parts
+// have the numbers of the components of a path that begins with ED: direct light, light over one diffuse event, over more,
+// or over mirrors and glass alone.
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
 #define LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
 #include "shaders/shared/compat.h"
@@ -37,17 +36,16 @@ LUCERNA_CONST uint k_record_texels = 6u;
 /// Most of the greater radius over the lesser.
 LUCERNA_CONST float k_record_ratio = 2.0f;
 LUCERNA_CONST uint k_record_pass = 0x7fu;  ///< mask: the pass that placed it, from 0
-/// Something is nearer to it than a few of the least radii, so that what light there is there is too fine to
-/// be interpolated. It holds none, and says of its disc that paths gather there themselves. In the place of
-/// its irradiance it tells them where light comes from (k_guide_*).
+/// Crowded: geometry is nearer than a few minimum radii, so the light there is too fine to interpolate. The record stores no
+/// irradiance; paths within its disc gather. In place of irradiance it stores a guide table (k_guide_*).
 LUCERNA_CONST uint k_record_crowded = 0x80u;
-LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: what asked for it, k_origin_*
+LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: origin of its candidate, k_origin_*
 LUCERNA_CONST uint k_record_facet_shift =
     10u;  ///< 11 + 11 bits: the geometric normal, octahedral (Cigolle et al. 2014)
-LUCERNA_CONST uint k_origin_screen = 0u;  ///< a surface that the camera sees straight
-LUCERNA_CONST uint k_origin_world = 1u;   ///< what it sees in mirrors, through glass or by one diffuse bounce
+LUCERNA_CONST uint k_origin_screen = 0u;  ///< a directly visible surface
+LUCERNA_CONST uint k_origin_world = 1u;   ///< seen in mirrors, through glass or by one diffuse bounce
 LUCERNA_CONST uint k_origin_recursive =
-    2u;  ///< a vertex beyond the lookup: what other records' rays will ask
+    2u;  ///< a vertex beyond the lookup, for rays of other records
 
 // irradiance_texels: k_part_texels for each (record, part), record by record: 16 floats:
 //   irradiance rgb; rotational gradient rgb along the tangent, then along the bitangent; translational
@@ -57,9 +55,9 @@ LUCERNA_CONST uint k_origin_recursive =
 LUCERNA_CONST uint k_part_texels = 4u;
 LUCERNA_CONST float k_record_slope_most = 1e30f;
 
-// Of a record that crowds the same texels hold one byte for each cell of its hemisphere, elevations of one
-// azimuth in turn: the luminance that its rays brought from there, over the greatest of them. Cells are even
-// in azimuth from the tangent on, and in sin^2 of the angle from the normal.
+// For crowded records the same texels store one byte for each cell of the hemisphere, elevations of one azimuth in turn: the
+// luminance of its rays, over the maximum. Cells are uniform in azimuth from the tangent on, and in sin^2 of the angle from
+// the normal.
 LUCERNA_CONST uint k_guide_azimuths = 32u, k_guide_elevations = 8u;
 LUCERNA_CONST uint k_guide_texels = 16u;
 LUCERNA_CONST uint k_guide_most =
@@ -70,9 +68,9 @@ LUCERNA_CONST uint k_no_guide = 0xffffffffu;
 /// to that.
 LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + 2u * k_part_count * k_part_texels + 1u);
 
-// candidate_texels: 2 a path slot, all 0 where there is none:
-//   0: position, off its surface; where there is one 1 + k_origin_* + k_candidate_media times the media
-//   1: smooth normal on the side that asks, bits facet
+// candidate_texels: 2 per path slot, all 0 without a candidate:
+//   0: position, off its surface; 1 + k_origin_* + k_candidate_media times the media
+//   1: smooth normal on the lit side, bits facet
 LUCERNA_CONST uint k_candidate_media = 4u;
 LUCERNA_CONST uint k_candidate_texels = 2u;
 
@@ -125,7 +123,7 @@ struct PropagatePush {
   uint beyond;  ///< not 0: what records have read counts too
 };
 
-/// What paths are told of the cache.
+/// Parameters of lookups.
 struct CacheFrame {
   /// By state of the automaton, for the diffuse lobe of a vertex met in it: bits 4 p on: the component to
   /// which part p goes; k_component_count: none. k_no_routes: no lookup there.
@@ -137,8 +135,8 @@ struct CacheFrame {
   /// lie and still be served.
   float off_plane;
   uint probing;  ///< k_probe_*
-  /// The same of records no wider than the least radius that a record has there: steps of surfaces that small
-  /// are not seen, and would else ask for ever.
+  /// The same for records of minimum radius: steps of surfaces that small are invisible, and would otherwise produce
+  /// candidates forever.
   float off_plane_least;
   float least_of_distance;  ///< the least radius, of the distance from `eye`; where `parallel`, in metres
   float least_most;         ///< ... at most [m]
@@ -156,7 +154,7 @@ struct RecordPush {
   uint parts;        ///< bit p: part p is wanted
   uint state;        ///< of the automaton after ED
   uint seed;
-  uint pilot;  ///< not 0: rays that decide how far a record serves and bring it no light
+  uint pilot;  ///< not 0: pilot rays, which set the radius and contribute no light
 };
 
 struct RadiusPush {
@@ -183,8 +181,7 @@ struct ImportancePush {
   uint next;   ///< not 0: there are next places too
 };
 LUCERNA_CONST uint k_importance_steps = 256u;  ///< that a pixel of which a record has all is
-/// Most that a record is to bring through another one, over the irradiance of that: its square in steps is
-/// less than 2^32.
+/// Upper bound of a record's importance through another one, relative to that one: its square in steps is below 2^32.
 LUCERNA_CONST float k_importance_most = 2048.0f;
 LUCERNA_CONST uint k_importance_place = 0x40000000u;  ///< a place is one; above the 22 bits of its normal
 
@@ -200,7 +197,7 @@ struct EllipsePush {
   float crowd;
 };
 
-/// Pools what pilot rays have told.
+/// Averages pilot results.
 struct PoolPush {
   uint first, count;  ///< records
 };

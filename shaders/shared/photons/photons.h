@@ -66,8 +66,8 @@ struct PhotonFrame {
   uint importance_counts;  ///< 0: all photons are stored
   uint lookups;            ///< entries of PhotonLookups, one a pixel, in which caustics' lookups are noted; 0: none is
   uint vertices;           ///< behind those, so many a pixel: where its path goes on from the first diffuse vertex
-  uint stores_radiance;     ///< 1: stored photons tell what paths from the eye would bring (PhotonRadiances)
-  uint stores_surface;      ///< 1: stored photons tell where on which triangle they lie (PhotonSurfaces)
+  uint stores_radiance;     ///< 1: photons store the radiance that eye paths would carry (PhotonRadiances)
+  uint stores_surface;      ///< 1: photons store their triangle and position (PhotonSurfaces)
   uint unreachable_parts;  ///< bit p: of part p only photons with k_photon_unreachable are stored; k_photon_ends_reachable
   uint skips_unreachable;  ///< 1: photons with k_photon_unreachable are not stored
   /// By state of the eye path. Bits 4p to 4p+3: the component to which part p contributes. Bit 16+p: of part p only photons
@@ -109,21 +109,21 @@ LUCERNA_CONST uint k_photon_most_importance = 4096u;     ///< of one lookup
 /// never light.
 LUCERNA_CONST float k_photon_unseen_share = 0.25f;
 
-/// Of a photon of a pilot: what it brings to the picture, and where it comes from.
+/// Contribution of a pilot's photon to the picture, and its origin.
 struct PhotonContribution {
   uint stratum;      ///< of its path's emission
   uint light;        ///< ... entry of emission_alias
   uint id;           ///< k_photon_id_events
-  float contribution;       ///< what it brings to the picture, up to a factor; 0: light straight from a lamp
+  float contribution;       ///< to the picture, up to a common factor; 0: direct light
   vec3 position;     ///< [m]
-  float importance;  ///< how much of the picture hangs on lookups around it, an area, up to a factor
-  // Of caustics, where radiance is told:
+  float importance;  ///< importance of the lookups around it, an area, up to a common factor
+  // For caustics, if radiance is stored:
   float flux;        ///< luminance; 0: no caustic
-  float radiance;    ///< that arrives as a path from the eye would bring it, which meets the same light the same way
+  float radiance;    ///< arriving radiance as an eye path would carry it that meets the same light in the same way
   uint facet;        ///< side of the surface on which it arrives
   uint unreachable;  ///< 1: k_photon_unreachable
 };
-/// Where a path of the pilot from the eye looks caustics up.
+/// Caustics lookup of a pilot's eye path.
 struct PhotonLookup {
   vec3 position;     ///< [m]
   float carried;     ///< luminance of its throughput times the diffuse albedo; 0: there is none
@@ -139,7 +139,7 @@ LUCERNA_CONST float k_radiance_unmet = 1e30f;  ///< that no path from the eye co
 // PhotonCounts, uint each.
 LUCERNA_CONST uint k_photons_stored = 0u;    ///< so far, or wanted to be
 LUCERNA_CONST uint k_photons_capacity = 1u;  ///< for which there is room
-LUCERNA_CONST uint k_photons_spared = 2u;    ///< photons left out because nobody looks where they lie
+LUCERNA_CONST uint k_photons_spared = 2u;    ///< photons not stored because no lookup is near
 LUCERNA_CONST uint k_photons_by_part = 3u;   ///< [4]: of those that are stored
 LUCERNA_CONST uint k_photon_counts = 7u;
 
