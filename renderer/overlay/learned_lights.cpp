@@ -11,8 +11,8 @@ using namespace shared;
 
 namespace {
 
-constexpr float k_head = 0.12f,
-                k_head_width = 0.35f;  // length over the arrow's, width over the head's length
+/// Length of an arrow's head over the arrow's, and its width over its length.
+constexpr float k_head = 0.12f, k_head_width = 0.35f;
 
 /// A line with two short lines at its end, perpendicular to the view.
 void add_arrow(std::vector<OverlaySegment>& to, const vec3& from, const vec3& at, float share,

@@ -23,7 +23,7 @@ struct Drawing {
 };
 
 struct Style {
-  bool dimmed = false;  ///< dims the picture under the strokes, so that they are visible on any background
+  bool dimmed = false;       ///< dims the picture, so that strokes are visible on any background
   float edge_alpha = 0.55f;  ///< alpha of the dark edges
 };
 

@@ -49,9 +49,8 @@ class Sight {
   uint32_t down() const { return down_; }
   uint32_t points() const { return across_ * down_; }
   uint32_t stride() const { return stride_; }  ///< pixels from one to the next
-  float pixel() const {
-    return pixel_;
-  }  ///< width of a point's cell, at a depth of 1 m unless parallel() [m]
+  /// Width of a point's cell, at a depth of 1 m unless parallel() [m].
+  float pixel() const { return pixel_; }
   bool parallel() const { return parallel_; }  ///< orthographic: cells have one width at all depths
   uint64_t bytes() const { return surfaces_ ? surfaces_.bytes() : 0; }
 
