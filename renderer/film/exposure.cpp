@@ -38,7 +38,7 @@ Brightness measure_picture(std::span<const vec3> radiance, uint32_t width, uint3
   std::sort(blocks.begin(), blocks.end());
   const float bright = blocks[blocks.size() - 1 - blocks.size() / 20];
   const float brightest = blocks.back();
-  // Of a small light in the dark the light itself.
+  // For a small light in the dark, the light itself is used.
   const float reference = bright > 1e-6f * brightest ? bright : brightest;
   if (!(reference > 0)) return found;
   double sum = 0, count = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// How bright a picture is, and with which exposure it is seen well: pure functions.
+// Brightness of a picture and a suitable exposure: pure functions.
 #include <optional>
 #include <span>
 
@@ -7,13 +7,13 @@
 
 namespace lucerna::film {
 
-/// Display radiance that a grey card is shown with.
+/// Display radiance of a grey card.
 inline constexpr float k_middle_grey = 0.18f;
 
 /// Result of a brightness measurement.
 struct Brightness {
   vec3 color{0};            ///< mean radiance
-  std::optional<float> ev;  ///< exposure that shows it well; none where it is black
+  std::optional<float> ev;  ///< suitable exposure; none if black
 };
 
 /// Measures a whole picture. Uses means over blocks of about 1/32 of its height, so that the noise of a

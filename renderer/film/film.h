@@ -16,7 +16,7 @@ namespace lucerna::film {
 
 inline constexpr int k_components = 4;
 
-/// What the film holds, read back: means over the samples. Row 0 at the top.
+/// Contents of the film: means over the samples. Row 0 is at the top.
 struct Image {
   uint32_t width = 0, height = 0;
   std::array<std::vector<vec3>, k_components> components;  ///< radiance
@@ -41,7 +41,7 @@ struct View {
   uint32_t curve = 0;  ///< tone curve
   float exposure = 1;  ///< factor
   float scale = 1;     ///< depth shown white
-  HeatScale heat;      ///< of the layers that are heat maps
+  HeatScale heat;      ///< for heat maps
   /// Side of the tiles whose marks (Film::mark_tiles) are drawn over the picture; 0: none.
   uint32_t tiles = 0;
 };
@@ -103,15 +103,15 @@ class Film {
   const gpu::Buffer& sums(uint32_t component) const { return sums_.at(component); }
   /// Takes surfaces and counts of samples of another film of the same size. Records; the stream is not run.
   void copy_surfaces(gpu::Stream& stream, const Film& from);
-  /// What it knows of surfaces, under the names coarse_albedo, coarse_normal and CoarseCount.
+  /// Binds its surfaces as coarse_albedo, coarse_normal and CoarseCount.
   void bind_coarse(gpu::Resources& resources) const;
-  /// One for each block, in raster order, as the last estimates left them (all 0 where there was none).
+  /// The latest estimate of each block, in raster order; all 0 without one.
   std::span<const shared::BlockError> errors() const;
   /// Allocates the errors from records (BlockRecords, one per block in raster order), written by kernels as
   /// FilmRecords and BlockRecordSums; and marks them as complete. Unknown until then, and after a clear().
   void make_room_for_record_errors();
   void complete_record_errors() { record_errors_complete_ = true; }
-  /// Records have become other ones.
+  /// Invalidates the errors from records, after a change of records.
   void forget_record_errors() { record_errors_complete_ = false; }
   bool record_errors_complete() const { return record_errors_complete_; }
   /// Empty while unknown.
@@ -129,14 +129,14 @@ class Film {
   std::vector<vec3> read_group_sum(uint32_t group) const;
   /// Mean radiance of each component over the picture's sampled pixels.
   static std::array<vec3, k_components> means(const Image& image);
-  /// What the overlay of tiles shows: one mark a tile, in raster order; at most one a block.
+  /// Sets the marks of the tile overlay: one per tile, in raster order; at most one per block.
   void mark_tiles(std::span<const shared::TileMark> marks);
   const gpu::Buffer& picture() const { return picture_; }
   std::vector<uint8_t> read_picture() const;
 
  private:
   std::vector<shared::GroupSums> read_group_sums() const;
-  /// What a pixel's even and odd half are multiplied by as the groups are mixed; empty: nothing.
+  /// Factors on a pixel's even and odd half by the mix of groups; empty: 1.
   std::vector<vec3> mix_ratios() const;
 
   uint32_t width_, height_, groups_;
@@ -145,10 +145,10 @@ class Film {
   using Sums = std::array<gpu::Buffer, k_components>;
   Sums make_sums() const;
   Sums sums_;
-  std::vector<Sums> group_sums_;  // by component; none where there is one group: they are the picture's
+  std::vector<Sums> group_sums_;  // by component; empty with one group, whose sums are the picture's
   gpu::Buffer group_short_;       // GroupSums of compact groups
   gpu::Buffer light_mix_, group_light_;
-  shared::GroupMix mix_{};  // what light_mix_ holds
+  shared::GroupMix mix_{};  // contents of light_mix_
   bool quick_ = false;
   gpu::Buffer albedo_, normal_, count_, vertices_, picture_, errors_, tile_marks_;
   gpu::Device& device_;

@@ -66,15 +66,15 @@ class Preview {
   /// Requires has_history(). Newly visible parts are filled from their surroundings. Throws and runs the
   /// stream like develop().
   void recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera);
-  /// The film's picture has been shown as it is, with that exposure: keep() is to know it. Every pixel has a
-  /// sample. Throws as develop(). The stream is run.
+  /// Takes the film's picture, shown unfiltered with that exposure, as the last shown picture for keep().
+  /// Requires a sample in every pixel. Throws and runs the stream like develop().
   void take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera);
-  /// The film has been filtered, and that is shown in place of a preview: `luminances` and their standard
-  /// errors, one a pixel. What error is expected of it. Throws as develop(). The stream is run.
+  /// Takes a filtered picture that is shown in place of a preview: `luminances` and their standard `errors`,
+  /// one a pixel. Returns its expected error. Throws and runs the stream like develop().
   ShownError show_filtered(gpu::Stream& stream, const Film& film, std::span<const float> luminances,
                            std::span<const float> errors, const View& view);
-  /// Its error as the samples judge it that the film has got since; nothing if show_filtered() was not the
-  /// last to show something. The stream is run.
+  /// Error of that picture, measured by samples added to the film since; none if show_filtered() was not the
+  /// last call that showed a picture. Runs the stream.
   std::optional<ShownError> judge_filtered(gpu::Stream& stream, const Film& film);
   uint64_t bytes() const;  ///< of device memory
 
@@ -82,7 +82,7 @@ class Preview {
   struct Pixels {
     gpu::Buffer light, surfaces;
   };
-  /// What was shown before, as it was seen then.
+  /// The previous picture, from its own camera.
   struct History {
     Pixels pixels;
     bool known = false;
@@ -98,7 +98,8 @@ class Preview {
   void make_room(uint32_t width, uint32_t height, const Film* draft);
   void pack(gpu::Stream& stream, const Film& film, const Pixels& to, const View& view,
             const gpu::Buffer* guide, const gpu::Buffer& sums);
-  /// Records; the tiles can be read when the stream has run. Whether the picture before is judged too.
+  /// Records; the tiles can be read after the stream has run. Returns whether the previous picture is
+  /// measured too.
   bool judge(gpu::Stream& stream, const Film& by, const View& view);
   void judge_tiles(gpu::Stream& stream, const Film& by, uint32_t step, const gpu::Buffer& shown);
   std::span<const shared::PreviewTile> tiles() const;
@@ -112,21 +113,21 @@ class Preview {
   uint32_t width_ = 0, height_ = 0;
   Pixels now_, draft_;
   History history_;
-  Pixels moved_;  ///< the history's as they are seen now, where that is from elsewhere
+  Pixels moved_;  ///< the history's pixels from the present camera, if it has moved
   gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], lost_[2], texture_[2], noise_, changes_, ratios_,
       shares_, depths_, nearest_;
-  /// What was shown last and before, and what samples there were then.
+  /// The last two shown pictures, and the sums of samples at their time.
   gpu::Buffer pixels_shown_[2], sums_[2], draft_sums_, tiles_;
   struct Judged {
-    uint32_t step;  ///< of the film's pixels, in the picture's
+    uint32_t step;  ///< width of the film's pixels in those of the picture
     float exposure;
     uint32_t show;
     bool operator==(const Judged&) const = default;
   };
-  std::optional<Judged> judged_;  ///< of pixels_shown_[1] and sums_[1]
+  std::optional<Judged> judged_;  ///< belongs to pixels_shown_[1] and sums_[1]
   ShownJudge errors_;
-  /// Of a filtered picture: how it is shown, and errors_ without its own measurements, which are made again
-  /// from its beginning.
+  /// A shown filtered picture: its view, and errors_ before its own measurements, which are repeated from its
+  /// beginning.
   struct FilteredShown {
     View view;
     ShownJudge before;
@@ -134,9 +135,9 @@ class Preview {
   std::optional<FilteredShown> filtered_shown_;
   gpu::Resources resources_;
   PreviewCamera camera_;
-  std::optional<PreviewCamera> moved_camera_;  ///< of `moved_`
+  std::optional<PreviewCamera> moved_camera_;  ///< camera of `moved_`
   float exposure_ = 1;
-  bool shown_ = false;      ///< `now_` is what was developed last, of light that `history_` knows nothing of
+  bool shown_ = false;  ///< `now_` is the last developed picture, with light that `history_` does not include
   bool repainted_ = false;  ///< surfaces without samples may have colours other than the known ones
 };
 

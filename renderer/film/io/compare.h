@@ -1,5 +1,5 @@
 #pragma once
-// How far an image is from a reference: the figures of `lucerna compare`, for stochastic images too.
+// Difference of an image from a reference: the figures of `lucerna compare`, also for stochastic images.
 #include <array>
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 namespace lucerna::film {
 
 struct CompareOptions {
-  double epsilon = 0.01;         ///< of the relative measures, in squared units of the layer; > 0
+  double epsilon = 0.01;         ///< regularization of relative measures, in squared units of the layer; > 0
   double trimmed_share = 0.001;  ///< share of the worst pixels that the trimmed measures drop; 0..1
   uint32_t block = 16;  ///< side of the blocks, pixels; > 0 (blocks at the right and bottom may be smaller)
 };
@@ -27,9 +27,9 @@ struct Comparison {
   std::string layer;
   uint32_t width = 0, height = 0;
   std::vector<std::string> channels;         ///< names in b, in the order of the vectors below
-  uint64_t pixels = 0;                       ///< that are finite in both: what the figures rest on
+  uint64_t pixels = 0;                       ///< number of pixels finite in both images: basis of the figures
   std::array<uint64_t, 2> non_finite{0, 0};  ///< values (not pixels) that are NaN or infinite, in a and in b
-  std::array<uint64_t, 2> nan{0, 0};         ///< of those, the NaNs
+  std::array<uint64_t, 2> nan{0, 0};         ///< NaNs among those
   /// Layers of either image, the one compared or not, that are not finite somewhere. No figure below holds
   /// for such pictures.
   std::vector<NonFinitePixels> non_finite_layers;
@@ -40,7 +40,7 @@ struct Comparison {
   double relmse = 0;  ///< mean over pixels of mean_C (a - b)^2 / (b^2 + epsilon)
   struct {
     double rmse = 0, relmse = 0;
-  } trimmed;  ///< the same without the ceil(trimmed_share * pixels) worst pixels of each
+  } trimmed;  ///< likewise, without the ceil(trimmed_share * pixels) worst pixels of each
   struct {
     double absolute = 0;  ///< of mean_C |a - b|
     double relative = 0;  ///< of mean_C |a - b| / sqrt(b^2 + epsilon)
