@@ -29,7 +29,7 @@ inline constexpr double k_least_unaimed_from_afar = 0.6;
 std::vector<double> light_weights(std::span<const std::vector<uint32_t>> groups,
                                   std::span<const double> power, std::span<const double> contribution);
 
-/// A pilot's paths, all in a round of no sample.
+/// Paths of a pilot, all in one round that belongs to no sample.
 inline constexpr uint32_t k_pilot_paths = 1u << 14, k_pilot_paths_a_stratum = 8;
 inline constexpr uint32_t k_pilot_round = 0xffffffffu;
 

@@ -1,7 +1,7 @@
 #pragma once
 // Entrances of distant light. Few paths of the sun and the sky, which cross the disk of the whole scene, pass
 // the openings of a house in it. A pilot records the first hits of those that contribute, and further paths
-// are aimed there (light_source.h): a line to such a place leads through the opening.
+// are aimed there (light_source.h): a line to such a position passes the opening.
 #include <vector>
 
 #include "base/math.h"
@@ -22,7 +22,7 @@ std::vector<Box> first_hit_boxes(std::vector<FirstHit> hits);
 
 inline constexpr uint32_t k_most_nested_boxes = 12;
 
-/// Boxes around the centre of these places (weighted median of each axis) with 50, 80 and 95 % of their
+/// Boxes around the centre of these positions (weighted median of each axis) with 50, 80 and 95 % of their
 /// weight, and wider ones up to `extent` [m], four times each: for places so widely spread that a few
 /// clusters would be random. The density of paths aimed at all of them falls with the distance. At most
 /// k_most_nested_boxes; empty without weight.

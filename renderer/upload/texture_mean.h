@@ -1,5 +1,5 @@
 #pragma once
-// What an emission texture has on a triangle: by how much its light is chosen.
+// Mean of an emission texture over a triangle, for the selection probability of its light.
 #include <array>
 #include <map>
 #include <vector>

@@ -1,4 +1,4 @@
-// Light of light paths that are connected to the camera, and its sums. Read by C++ and GLSL.
+// Sums of the light of light paths that are connected to the camera. Read by C++ and GLSL.
 #ifndef LUCERNA_SHARED_SPLAT_H
 #define LUCERNA_SHARED_SPLAT_H
 #include "shaders/shared/wide_sum.h"
@@ -20,9 +20,9 @@ LUCERNA_CONST uint k_splat_owner_bits = 4u;  ///< k_most_groups
 
 /// Parameters of the round's picture.
 struct SplatFrame {
-  uint width, height;  ///< of the complete picture, which camera.comp reads; 0: none
-  uint component;      ///< of that picture
-  float unit;          ///< of sums, radiance [W m^-2 sr^-1]
+  uint width, height;  ///< size of the complete picture, which camera.comp reads; 0: none
+  uint component;      ///< component of that picture
+  float unit;          ///< unit of the sums, radiance [W m^-2 sr^-1]
   uint first, pixels;  ///< band of pixels being summed: first pixel and number
 };
 /// Maximum contribution of a path, in units.

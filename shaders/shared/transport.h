@@ -37,7 +37,7 @@ struct PathState {
                        ///< Light paths: flux over the radiance of an eye path along the same way,
                        ///< by luminance; 0: no eye path finds it
   uint pixel;          ///< index into the film (y * width + x)
-  uint sample_index;   ///< of the pixel
+  uint sample_index;   ///< sample of the pixel
   uint bits;           ///< 0-5 automaton state, 6-8 and 31 k_path_*, 9-30 scattering events so far
   uint media;          ///< media around the ray, a stack (lib/media.glsl); 0: none
   float travelled;     ///< metres since the last scattering event, over null events
